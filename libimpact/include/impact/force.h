@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * force: what acts on bodies besides uniform gravity and contact.
+ */
+#ifndef IMPACT_FORCE_H
+#define IMPACT_FORCE_H
+
+#include <quat/quat.h>
+#include "status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum impact_force_kind {
+    IMPACT_FORCE_WIND,       /* a tube of constant direction; strength falls along it */
+    IMPACT_FORCE_ATTRACTION, /* between every two bodies that move: G m1 m2 / r^power, along the line of centres */
+    IMPACT_FORCE_CUSTOM      /* the caller's function */
+} impact_force_kind;
+
+/* Force (N, world, at the centre) and torque (N m, world) of a custom force at time t; both are zero on entry. They must be smooth
+ * along the motion. Return false to stop the run with an error. */
+typedef bool impact_force_function(double t, int body, double mass, qvec3 position, quat orientation, qvec3 velocity, qvec3 omega,
+                                   qvec3 *force, qvec3 *torque, void *context);
+
+typedef struct impact_force_def {
+    impact_force_kind kind;
+    const char *name;
+    const char *body; /* acts on this body only; NULL: on every body that moves */
+
+    /* wind: along the unit of direction, at distance d = |(x - origin) . direction| along the tube:
+     * strength (1 + d/falloff_length)^(-falloff_power) while d <= reach and within radius of the axis, else 0. */
+    qvec3 origin, direction;
+    double strength;       /* N */
+    double reach, radius;  /* m; infinite: no edge. attraction uses reach too: no force between bodies further apart */
+    double falloff_power;  /* 0: none */
+    double falloff_length; /* m, > 0 */
+
+    double constant; /* attraction: G in N m^power / kg^2 */
+    double power;    /* attraction: 2 for Newton */
+
+    impact_force_function *function; /* custom */
+    void *context;
+} impact_force_def;
+
+/* Defaults: wind along +x of strength 0 with no edge and no falloff; attraction with Newton's G = 6.67430e-11 and power 2 (CODATA 2018). */
+IMPACT_API impact_force_def impact_default_force_def(impact_force_kind kind);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gap: the signed distance of two convex bodies, its normal and its witness points.
+ */
+#ifndef IMPACT_GAP_H
+#define IMPACT_GAP_H
+
+#include <quat/quat.h>
+#include "shape.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A shape and where it stands: body to world is x_world = position + orientation x_body orientation*. */
+typedef struct impact_solid {
+    impact_shape shape;
+    qvec3 position;   /* m, world */
+    quat orientation; /* normalised on use; zero or NaN is refused */
+} impact_solid;
+
+/* Which road answered. */
+typedef enum impact_gap_path {
+    IMPACT_PATH_NONE,
+    IMPACT_PATH_CLOSED_FORM,
+    IMPACT_PATH_NEWTON, /* from the cached or the centre-line seed */
+    IMPACT_PATH_GJK,    /* Newton from libccd's seed */
+    IMPACT_PATH_FALLBACK
+} impact_gap_path;
+
+/* What the last query of one pair leaves for the next. Start from zeros; one per pair; never required (NULL). */
+typedef struct impact_gap_cache {
+    bool valid;
+    qvec3 normal; /* world */
+} impact_gap_cache;
+
+typedef struct impact_contact {
+    double gap;      /* m; > 0 separated, < 0 overlapping */
+    qvec3 normal;    /* unit, world, from body 2 to body 1 */
+    qvec3 point1, point2;   /* witness points, world, m */
+    qvec3 offset1, offset2; /* the same relative to each body's position, exact when bodies are far from the origin */
+    double stiffness;       /* smallest eigenvalue of the gap's Hessian in the tangent plane, m; small: the witness points are soft */
+    double lower, upper;    /* bracket of the gap, m; equal to gap when settled */
+    impact_gap_path path;
+} impact_contact;
+
+/* The gap of two solids. Every pair of shapes but two planes (IMPACT_EARGUMENT). IMPACT_OK; IMPACT_SOFT, IMPACT_DEEP or
+ * IMPACT_BRACKET with an answer; a negative status leaves every number of *contact NaN. */
+IMPACT_API impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
+                                    impact_contact *contact);
+
+/* d(gap)/dt in m/s for the bodies' velocities (m/s, world, of the positions) and angular velocities (rad/s, world):
+ * exactly normal . (u1 - u2), u the velocities of the witness points. */
+IMPACT_API double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2, qvec3 omega2);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

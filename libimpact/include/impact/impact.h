@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * All of libimpact's rooms.
+ */
+#ifndef IMPACT_IMPACT_H
+#define IMPACT_IMPACT_H
+
+#include "status.h"
+#include "shape.h"
+#include "gap.h"
+#include "collide.h"
+#include "ode.h"
+#include "force.h"
+#include "record.h"
+#include "scene.h"
+
+#endif

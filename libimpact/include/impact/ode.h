@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ode: a thin face over SUNDIALS' CVODE: y' = f(t, y) to the next root of g(t, y). The only room that names SUNDIALS.
+ * Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT.
+ */
+#ifndef IMPACT_ODE_H
+#define IMPACT_ODE_H
+
+#include <stddef.h>
+#include "status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct impact_ode impact_ode; /* one integrator with its workspace; not shared between threads */
+
+typedef enum impact_ode_method { IMPACT_ODE_ADAMS, IMPACT_ODE_BDF } impact_ode_method;
+
+/* y' into rate[n]. Return 0; > 0: try a smaller step; < 0: give up. */
+typedef int impact_ode_rhs(double t, const double *y, double *rate, void *context);
+/* g into value[roots]. Return 0, or non-zero to give up. */
+typedef int impact_ode_roots(double t, const double *y, double *value, void *context);
+
+typedef struct impact_ode_def {
+    int size;                 /* n >= 1 */
+    int roots;                /* >= 0 */
+    impact_ode_rhs *rhs;
+    impact_ode_roots *root_functions; /* may be NULL when roots = 0 */
+    void *context;            /* handed to both */
+    impact_ode_method method; /* Adams with fixed-point iteration, or BDF with Newton and a dense difference-quotient Jacobian */
+    double relative_tolerance; /* > 0 */
+    double absolute_tolerance; /* >= 0, for every component; see also absolute_tolerances */
+    const double *absolute_tolerances; /* n values, copied, or NULL */
+    long max_steps;           /* per advance; 0: 100000 */
+} impact_ode_def;
+
+typedef struct impact_ode_counts {
+    long steps, rhs_calls, root_calls, error_test_failures, starts;
+} impact_ode_counts;
+
+/* Copies the definition; *ode is NULL on failure. */
+IMPACT_API impact_status impact_ode_create(const impact_ode_def *def, impact_ode **ode);
+IMPACT_API void impact_ode_destroy(impact_ode *ode); /* NULL is fine */
+
+/* (Re)starts at (t, y[n]); keeps the workspace. */
+IMPACT_API impact_status impact_ode_start(impact_ode *ode, double t, const double *y);
+
+/* Bounds the step from now on; 0: no bound. */
+IMPACT_API impact_status impact_ode_limit_step(impact_ode *ode, double max_step);
+
+/* One internal step towards t_stop, never past it. *t and y[n] are the new state: the end of the step, or the first root in it.
+ * roots_found[roots]: -1 or +1 where the root function crosses falling or rising, else 0 (NULL: not wanted).
+ * *found: whether a root ended the step. IMPACT_EINTEGRATOR: see impact_ode_message. */
+IMPACT_API impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found, bool *found);
+
+/* Steps until t_stop or the first root; the rest as impact_ode_step. */
+IMPACT_API impact_status impact_ode_advance(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found, bool *found);
+
+/* The solution (derivative = 0) or its derivative at any t of the last step taken. */
+IMPACT_API impact_status impact_ode_interpolate(const impact_ode *ode, double t, int derivative, double *y);
+/* Where the last internal step began and ended. */
+IMPACT_API void impact_ode_last_step(const impact_ode *ode, double *begin, double *end);
+
+/* Totals since creation. */
+IMPACT_API impact_ode_counts impact_ode_count(const impact_ode *ode);
+/* The last failure in words, with numbers; "" when there was none. */
+IMPACT_API const char *impact_ode_message(const impact_ode *ode);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

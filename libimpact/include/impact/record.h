@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * record: samples and events of a run, to a caller's sink or to CSV files.
+ */
+#ifndef IMPACT_RECORD_H
+#define IMPACT_RECORD_H
+
+#include <quat/quat.h>
+#include "status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One body at one time; SI, world frame. */
+typedef struct impact_sample {
+    double t;
+    int body;         /* index in the scene's definition */
+    const char *name; /* lives as long as the scene */
+    qvec3 position;
+    quat orientation; /* body to world, unit; its sign is continuous along the run */
+    qvec3 velocity;   /* of the centre */
+    qvec3 omega;
+} impact_sample;
+
+typedef enum impact_event_kind {
+    IMPACT_EVENT_IMPACT,  /* an impulse was exchanged */
+    IMPACT_EVENT_CONTACT, /* bounces died out: the contact is held from here on */
+    IMPACT_EVENT_SLIP,    /* a held contact begins to slide */
+    IMPACT_EVENT_STICK,   /* sliding ends: the held contact rolls or rests */
+    IMPACT_EVENT_LIFTOFF, /* a held contact opens */
+    IMPACT_EVENT_FORCE,   /* a body crosses the edge of a force's reach */
+    IMPACT_EVENT_REST     /* a body has come to rest */
+} impact_event_kind;
+
+/* The lower-case word for an event; never NULL. */
+IMPACT_API const char *impact_event_name(impact_event_kind kind);
+
+typedef struct impact_event {
+    double t;
+    impact_event_kind kind;
+    int body1, body2;          /* indices; body2 = -1 when there is none */
+    const char *name1, *name2; /* name2 = "" when there is none; for IMPACT_EVENT_FORCE the force's name */
+    qvec3 point;               /* contact point, world; the body's centre when there is no contact */
+    qvec3 normal;              /* from body 2 to body 1; zero when there is none */
+    double impulse_normal, impulse_tangential; /* N s */
+    double normal_before, normal_after;        /* normal relative velocity, m/s */
+    const char *phases;        /* e.g. "slip-c stick-c stick-r"; "" when there are none */
+    double energy_before, energy_after; /* mechanical energy of the whole scene, J */
+} impact_event;
+
+/* Where a run's rows go. Any function may be NULL. A sink returns false to stop the run with IMPACT_ESINK. */
+typedef struct impact_recorder {
+    void *context;
+    bool (*sample)(void *context, const impact_sample *sample);
+    bool (*event)(void *context, const impact_event *event);
+    bool (*progress)(void *context, double t, double t_end); /* now and then; false stops the run with IMPACT_STOPPED */
+} impact_recorder;
+
+/* CSV sink. Rows go to "PATH.part" files; only impact_csv_close(csv, true) gives them their names, so that no partial file
+ * passes for a whole one. 17 significant digits, one header line, "\n", '.' whatever the locale.
+ * samples: t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz
+ * events:  t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,energy_before,energy_after */
+typedef struct impact_csv impact_csv;
+
+/* Either path may be NULL. IMPACT_ESINK when a file cannot be opened: message (may be NULL) names it and says why. */
+IMPACT_API impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **csv, char *message,
+                                         unsigned long message_size);
+/* A recorder over it (no progress function); valid until the close. */
+IMPACT_API impact_recorder impact_csv_recorder(impact_csv *csv);
+/* keep: flush, close and rename, IMPACT_ESINK when any of it fails; otherwise the partial files are removed. NULL is fine. */
+IMPACT_API impact_status impact_csv_close(impact_csv *csv, bool keep, char *message, unsigned long message_size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene: bodies, forces and material rules, and their motion through impacts, rolling and rest.
+ * Definitions are plain structs; impact_scene_create copies all it needs. One scene per thread; scenes share nothing.
+ */
+#ifndef IMPACT_SCENE_H
+#define IMPACT_SCENE_H
+
+#include <quat/quat.h>
+#include "collide.h"
+#include "force.h"
+#include "record.h"
+#include "shape.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct impact_body_def {
+    const char *name;     /* unique in the scene, not empty */
+    impact_shape shape;
+    bool is_static;       /* never moves; planes must be static */
+    double mass;          /* kg; NaN: density times the shape's volume. Ignored for static bodies */
+    double density;       /* kg/m^3; used when mass is NaN */
+    qvec3 moments;        /* principal moments about the centre, kg m^2, along the body axes; NaN: of the uniform solid */
+    qvec3 position;       /* m */
+    quat orientation;     /* body to world; normalised */
+    qvec3 velocity;       /* m/s */
+    qvec3 omega;          /* rad/s, world */
+    double friction;      /* >= 0; joined with the other body's by the scene's rule */
+    double restitution;   /* in [0, 1] */
+    double linear_damping, angular_damping; /* part of the (angular) velocity lost per second, in [0, 1): factor (1 - d)^t */
+} impact_body_def;
+
+/* How two bodies' coefficients make the pair's. */
+typedef enum impact_pair_rule { IMPACT_PRODUCT, IMPACT_GEOMETRIC_MEAN, IMPACT_MINIMUM, IMPACT_MAXIMUM } impact_pair_rule;
+
+/* One pair's own coefficients, over the rule; NaN: by the rule. */
+typedef struct impact_pair_def {
+    const char *body1, *body2;
+    double friction, restitution;
+} impact_pair_def;
+
+typedef struct impact_scene_def {
+    const char *name;
+    qvec3 gravity;        /* m/s^2 */
+    double duration;      /* s, > 0 */
+    double output_rate;   /* samples per second; 0: none but those beside events */
+
+    const impact_body_def *bodies;
+    int body_count;
+    const impact_force_def *forces;
+    int force_count;
+    const impact_pair_def *pairs;
+    int pair_count;
+
+    impact_pair_rule friction_rule, restitution_rule;
+    impact_law law;
+    impact_solver solver; /* of impacts */
+
+    double tolerance;     /* relative, of the motion's integration */
+    double rest_height;   /* m: a bounce that would rise less than this is the last, and the contact is held */
+    double rest_speed;    /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
+    long max_events;      /* IMPACT_EVENT_LIMIT after so many */
+} impact_scene_def;
+
+/* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis), Poisson's law,
+ * tolerance 1e-12, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events. */
+IMPACT_API impact_scene_def impact_default_scene_def(void);
+IMPACT_API impact_body_def impact_default_body_def(void);
+
+typedef struct impact_scene impact_scene;
+
+/* *scene is NULL on failure, and message (may be NULL) says what is wrong with which body, key and value. */
+IMPACT_API impact_status impact_scene_create(const impact_scene_def *def, impact_scene **scene, char *message,
+                                             unsigned long message_size);
+IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
+
+/* Runs on to the definition's duration, or to time t of it. Rows go to the recorder (NULL: nowhere). Samples stand at k/output_rate;
+ * two more, just before and just after, beside each event, for the bodies in it. IMPACT_OK: the time was reached; IMPACT_AT_REST:
+ * nothing moves any more and nothing will, state stands until the end; other positive statuses: stopped early; negative: failed,
+ * see impact_scene_message. A scene at rest or stopped can be run on. */
+IMPACT_API impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder);
+IMPACT_API impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder);
+
+/* The last message, with numbers; "" when there was none. */
+IMPACT_API const char *impact_scene_message(const impact_scene *scene);
+IMPACT_API double impact_scene_time(const impact_scene *scene);
+/* Index of the body so named, or -1. */
+IMPACT_API int impact_scene_find(const impact_scene *scene, const char *body);
+/* The body's state now. IMPACT_EARGUMENT when there is no such body. */
+IMPACT_API impact_status impact_scene_body(const impact_scene *scene, int body, impact_sample *sample);
+
+/* What the run used; each is 0 where the scene does not need it. */
+typedef struct impact_usage {
+    long ballistic_flights;  /* stretches of flight in closed form */
+    long integrators;        /* CVODE integrators created for the motion */
+    long integrator_starts, integrator_steps, integrator_rhs_calls;
+    long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */
+    long impacts_closed_form, impacts_series, impacts_cvode;  /* impacts, by solver */
+    long events[IMPACT_EVENT_REST + 1];                       /* by kind */
+    long samples;
+} impact_usage;
+
+IMPACT_API impact_usage impact_scene_usage(const impact_scene *scene);
+
+/* The energy account, J: kinetic + potential = start + work of forces - the losses, to the tolerance of the run. */
+typedef struct impact_energy {
+    double start;                /* kinetic + potential at t = 0 */
+    double kinetic, potential;   /* now; potential of uniform gravity and of attraction */
+    double force_work;           /* done by wind and custom forces */
+    double damping_loss, sliding_loss, impact_loss; /* each >= 0 */
+} impact_energy;
+
+IMPACT_API impact_energy impact_scene_energy(const impact_scene *scene);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#include <impact/gap.h>
+#include <quat/rotation.h>
+
+static impact_contact no_contact(void)
+{
+    const qvec3 nan = {NAN, NAN, NAN};
+    return (impact_contact){.gap = NAN, .normal = nan, .point1 = nan, .point2 = nan, .offset1 = nan, .offset2 = nan,
+                            .stiffness = NAN, .lower = NAN, .upper = NAN, .path = IMPACT_PATH_NONE};
+}
+
+/* Fills the contact from the gap, the normal (2 to 1) and the witness offsets. */
+static void closed_form(const impact_solid *body1, const impact_solid *body2, double gap, qvec3 normal, qvec3 offset1,
+                        qvec3 offset2, double stiffness, impact_contact *contact)
+{
+    *contact = (impact_contact){.gap = gap, .normal = normal,
+                                .point1 = qvec3_add(body1->position, offset1), .point2 = qvec3_add(body2->position, offset2),
+                                .offset1 = offset1, .offset2 = offset2, .stiffness = stiffness, .lower = gap, .upper = gap,
+                                .path = IMPACT_PATH_CLOSED_FORM};
+}
+
+static impact_status sphere_sphere(const impact_solid *body1, const impact_solid *body2, impact_contact *contact)
+{
+    const double r1 = body1->shape.a, r2 = body2->shape.a;
+    const qvec3 d = qvec3_sub(body1->position, body2->position);
+    const double distance = qvec3_norm(d);
+    const qvec3 normal = distance > 0 ? qvec3_scale(d, 1 / distance) : (qvec3){0, 0, 1};
+    const double gap = distance - r1 - r2;
+    closed_form(body1, body2, gap, normal, qvec3_scale(normal, -r1), qvec3_scale(normal, r2), r1 + r2 + gap, contact);
+    return distance > 0 ? IMPACT_OK : IMPACT_DEEP;
+}
+
+/* sphere is body 1. */
+static impact_status sphere_plane(const impact_solid *sphere, const impact_solid *plane, quat plane_orientation, impact_contact *contact)
+{
+    const double r = sphere->shape.a;
+    const qvec3 normal = quat_rotate(plane_orientation, (qvec3){0, 0, 1});
+    const qvec3 d = qvec3_sub(sphere->position, plane->position);
+    const double height = qvec3_dot(normal, d);
+    closed_form(sphere, plane, height - r, normal, qvec3_scale(normal, -r), qvec3_axpy(-height, normal, d), r, contact);
+    return IMPACT_OK;
+}
+
+static impact_contact swapped(impact_contact c)
+{
+    impact_contact s = c;
+    s.normal = qvec3_neg(c.normal);
+    s.point1 = c.point2, s.point2 = c.point1;
+    s.offset1 = c.offset2, s.offset2 = c.offset1;
+    return s;
+}
+
+impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache, impact_contact *contact)
+{
+    (void)cache;
+    *contact = no_contact();
+    quat q1, q2;
+    if (quat_normalize(body1->orientation, &q1) != QUAT_OK || quat_normalize(body2->orientation, &q2) != QUAT_OK) return IMPACT_EDOMAIN;
+    const impact_shape_kind k1 = body1->shape.kind, k2 = body2->shape.kind;
+    if (k1 == IMPACT_SPHERE && k2 == IMPACT_SPHERE) return sphere_sphere(body1, body2, contact);
+    if (k1 == IMPACT_SPHERE && k2 == IMPACT_PLANE) return sphere_plane(body1, body2, q2, contact);
+    if (k1 == IMPACT_PLANE && k2 == IMPACT_SPHERE) {
+        const impact_status status = sphere_plane(body2, body1, q1, contact);
+        *contact = swapped(*contact);
+        return status;
+    }
+    return IMPACT_EARGUMENT;
+}
+
+double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2, qvec3 omega2)
+{
+    const qvec3 u1 = qvec3_add(velocity1, qvec3_cross(omega1, contact->offset1));
+    const qvec3 u2 = qvec3_add(velocity2, qvec3_cross(omega2, contact->offset2));
+    return qvec3_dot(contact->normal, qvec3_sub(u1, u2));
+}
