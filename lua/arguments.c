@@ -1,0 +1,440 @@
+/* SPDX-License-Identifier: MIT */
+#include "arguments.h"
+
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- errors ---- */
+
+static const char layers_key[] = "quat.layers"; /* registry: set of the chunk names of our own layers */
+
+int quat_lua_layer(lua_State *L)
+{
+    lua_Debug info;
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, layers_key);
+    if (lua_getstack(L, 1, &info) && lua_getinfo(L, "S", &info)) {
+        lua_pushboolean(L, 1);
+        lua_setfield(L, -2, info.source);
+    }
+    return 0;
+}
+
+void quat_lua_where(lua_State *L)
+{
+    lua_Debug info;
+    luaL_checkstack(L, 3, NULL);
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, layers_key);
+    for (int level = 0; lua_getstack(L, level, &info); level++) {
+        lua_getinfo(L, "Sl", &info);
+        if (info.currentline <= 0) continue;
+        const bool ours = lua_getfield(L, -1, info.source) != LUA_TNIL;
+        lua_pop(L, 1);
+        if (ours) continue;
+        lua_pop(L, 1);
+        lua_pushfstring(L, "%s:%d: ", info.short_src, info.currentline);
+        return;
+    }
+    lua_pop(L, 1);
+    lua_pushliteral(L, "");
+}
+
+/* Raises "where [kind ['name']: ]message". */
+static int raise(lua_State *L, const quat_lua_reader *reader, const char *format, va_list list)
+{
+    char message[512];
+    vsnprintf(message, sizeof message, format, list);
+    luaL_checkstack(L, 4, NULL);
+    if (reader && reader->where) lua_pushstring(L, reader->where);
+    else quat_lua_where(L);
+    if (!reader) lua_pushstring(L, message);
+    else if (reader->name) lua_pushfstring(L, "%s '%s': %s", reader->kind, reader->name, message);
+    else lua_pushfstring(L, "%s: %s", reader->kind, message);
+    lua_concat(L, 2);
+    return lua_error(L);
+}
+
+int quat_lua_error(lua_State *L, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    raise(L, NULL, format, list);
+    va_end(list);
+    return 0;
+}
+
+int quat_lua_reader_error(const quat_lua_reader *reader, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    raise(reader->L, reader, format, list);
+    va_end(list);
+    return 0;
+}
+
+int quat_lua_failure(lua_State *L, const char *message)
+{
+    lua_pushnil(L);
+    lua_pushstring(L, message);
+    return 2;
+}
+
+/* ---- one value, of an argument (reader NULL) or of a key ---- */
+
+/* The value at index in words for an error, at most a few dozen characters. */
+static const char *describe(lua_State *L, int index, char *text, size_t size)
+{
+    switch (lua_type(L, index)) {
+    case LUA_TNUMBER:
+        if (lua_isinteger(L, index)) snprintf(text, size, LUA_INTEGER_FMT, lua_tointeger(L, index));
+        else if (isnan(lua_tonumber(L, index))) snprintf(text, size, "nan");
+        else snprintf(text, size, LUA_NUMBER_FMT, lua_tonumber(L, index));
+        break;
+    case LUA_TSTRING: snprintf(text, size, "the string '%.40s'", lua_tostring(L, index)); break;
+    case LUA_TBOOLEAN: snprintf(text, size, "%s", lua_toboolean(L, index) ? "true" : "false"); break;
+    case LUA_TNIL:
+    case LUA_TNONE: snprintf(text, size, "nothing"); break;
+    default: snprintf(text, size, "a %s", luaL_typename(L, index)); break;
+    }
+    return text;
+}
+
+static int refuse(lua_State *L, const quat_lua_reader *reader, const char *key, int index, const char *wanted)
+{
+    char text[80];
+    describe(L, index, text, sizeof text);
+    if (reader) return quat_lua_reader_error(reader, "%s must be %s, got %s", key, wanted, text);
+    return quat_lua_error(L, "argument '%s' must be %s, got %s", key, wanted, text);
+}
+
+static bool in_range(double value, quat_lua_range range)
+{
+    switch (range) {
+    case QUAT_LUA_FINITE: return isfinite(value);
+    case QUAT_LUA_POSITIVE: return isfinite(value) && value > 0;
+    case QUAT_LUA_NOT_NEGATIVE: return isfinite(value) && value >= 0;
+    case QUAT_LUA_FRACTION: return value >= 0 && value <= 1;
+    case QUAT_LUA_BELOW_ONE: return value >= 0 && value < 1;
+    case QUAT_LUA_POSITIVE_OR_INF: return value > 0;
+    }
+    return false;
+}
+
+static double number_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index, quat_lua_range range)
+{
+    static const char *const words[] = {
+        [QUAT_LUA_FINITE] = "a finite number",           [QUAT_LUA_POSITIVE] = "a positive number",
+        [QUAT_LUA_NOT_NEGATIVE] = "a number >= 0",       [QUAT_LUA_FRACTION] = "a number from 0 to 1",
+        [QUAT_LUA_BELOW_ONE] = "a number in [0, 1)",     [QUAT_LUA_POSITIVE_OR_INF] = "a positive number or math.huge",
+    };
+    /* Strings that look like numbers are refused: they are mistakes more often than not. */
+    if (lua_type(L, index) != LUA_TNUMBER || !in_range(lua_tonumber(L, index), range))
+        refuse(L, reader, key, index, words[range]);
+    return lua_tonumber(L, index);
+}
+
+static lua_Integer integer_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index, lua_Integer least,
+                              lua_Integer most)
+{
+    int exact = 0;
+    const lua_Integer value = lua_type(L, index) == LUA_TNUMBER ? lua_tointegerx(L, index, &exact) : 0;
+    if (!exact || value < least || value > most) {
+        char wanted[96];
+        if (most == LUA_MAXINTEGER) snprintf(wanted, sizeof wanted, "a whole number >= " LUA_INTEGER_FMT, least);
+        else snprintf(wanted, sizeof wanted, "a whole number from " LUA_INTEGER_FMT " to " LUA_INTEGER_FMT, least, most);
+        refuse(L, reader, key, index, wanted);
+    }
+    return value;
+}
+
+static const char *string_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index)
+{
+    size_t length = 0;
+    const char *text = lua_type(L, index) == LUA_TSTRING ? lua_tolstring(L, index, &length) : NULL;
+    if (!text || strlen(text) != length) refuse(L, reader, key, index, "a string");
+    return text;
+}
+
+static int choice_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index, const char *const words[])
+{
+    char wanted[256] = "one of";
+    const char *given = lua_type(L, index) == LUA_TSTRING ? lua_tostring(L, index) : "";
+    for (int i = 0; words[i]; i++) {
+        if (strcmp(words[i], given) == 0) return i;
+        const size_t used = strlen(wanted);
+        snprintf(wanted + used, sizeof wanted - used, "%s '%s'", i > 0 ? "," : "", words[i]);
+    }
+    return refuse(L, reader, key, index, wanted);
+}
+
+/* The components of the table at index, by place or by letter; all must be finite. False when it is not such a table. */
+static bool components_at(lua_State *L, int index, const char *letters, double *values)
+{
+    const int count = (int)strlen(letters);
+    index = lua_absindex(L, index);
+    if (!lua_istable(L, index)) return false;
+    luaL_checkstack(L, 2, NULL);
+    const bool by_place = lua_rawlen(L, index) > 0;
+    for (int i = 0; i < count; i++) {
+        const char letter[2] = {letters[i], 0};
+        const int type = by_place ? lua_rawgeti(L, index, i + 1) : lua_getfield(L, index, letter);
+        values[i] = lua_tonumber(L, -1);
+        lua_pop(L, 1);
+        if (type != LUA_TNUMBER || !isfinite(values[i])) return false;
+    }
+    return !by_place || lua_rawlen(L, index) == (lua_Unsigned)count;
+}
+
+static qvec3 vec3_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index)
+{
+    double v[3] = {0, 0, 0};
+    if (!components_at(L, index, "xyz", v))
+        refuse(L, reader, key, index, "a vector {x, y, z} of finite numbers");
+    return (qvec3){v[0], v[1], v[2]};
+}
+
+static quat quat_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index)
+{
+    double v[4] = {1, 0, 0, 0};
+    const quat *given = luaL_testudata(L, index, QUAT_LUA_QUAT);
+    if (given) {
+        v[0] = given->w, v[1] = given->x, v[2] = given->y, v[3] = given->z;
+        for (int i = 0; i < 4; i++)
+            if (!isfinite(v[i])) refuse(L, reader, key, index, "a quaternion of finite numbers");
+    } else if (!components_at(L, index, "wxyz", v)) {
+        refuse(L, reader, key, index, "a quaternion or {w, x, y, z} of finite numbers");
+    }
+    return (quat){v[0], v[1], v[2], v[3]};
+}
+
+/* ---- arguments ---- */
+
+double quat_lua_arg_number(lua_State *L, int arg, const char *name, quat_lua_range range)
+{
+    return number_at(L, NULL, name, arg, range);
+}
+
+double quat_lua_arg_number_or(lua_State *L, int arg, const char *name, quat_lua_range range, double fallback)
+{
+    return lua_isnoneornil(L, arg) ? fallback : number_at(L, NULL, name, arg, range);
+}
+
+lua_Integer quat_lua_arg_integer(lua_State *L, int arg, const char *name, lua_Integer least, lua_Integer most)
+{
+    return integer_at(L, NULL, name, arg, least, most);
+}
+
+qvec3 quat_lua_arg_vec3(lua_State *L, int arg, const char *name) { return vec3_at(L, NULL, name, arg); }
+quat quat_lua_arg_quat(lua_State *L, int arg, const char *name) { return quat_at(L, NULL, name, arg); }
+
+int quat_lua_arg_choice(lua_State *L, int arg, const char *name, const char *const words[])
+{
+    return choice_at(L, NULL, name, arg, words);
+}
+
+/* ---- tables ---- */
+
+static int least(int a, int b) { return a < b ? a : b; }
+
+/* Edit distance with swaps of neighbours (optimal string alignment); words over 31 letters count as far. */
+static int distance(const char *a, const char *b)
+{
+    enum { LONGEST = 31 };
+    int d[LONGEST + 1][LONGEST + 1];
+    const int m = (int)strlen(a), n = (int)strlen(b);
+    if (m > LONGEST || n > LONGEST) return INT_MAX;
+    for (int i = 0; i <= m; i++) d[i][0] = i;
+    for (int j = 0; j <= n; j++) d[0][j] = j;
+    for (int i = 1; i <= m; i++) {
+        for (int j = 1; j <= n; j++) {
+            const int change = a[i - 1] != b[j - 1];
+            d[i][j] = least(least(d[i - 1][j] + 1, d[i][j - 1] + 1), d[i - 1][j - 1] + change);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = least(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+    return d[m][n];
+}
+
+/* The key that was probably meant: at most a third of its letters wrong; NULL when none is near. */
+static const char *nearest(const char *given, const char *const keys[])
+{
+    const char *best = NULL;
+    int best_distance = INT_MAX;
+    for (int i = 0; keys[i]; i++) {
+        const int d = distance(given, keys[i]);
+        if (d < best_distance && 3 * d <= (int)strlen(keys[i]) + 1) best = keys[i], best_distance = d;
+    }
+    return best;
+}
+
+static bool is_among(const char *given, const char *const keys[])
+{
+    for (int i = 0; keys[i]; i++)
+        if (strcmp(given, keys[i]) == 0) return true;
+    return false;
+}
+
+static int unknown_key(const quat_lua_reader *reader, const char *const keys[])
+{
+    lua_State *L = reader->L; /* the key is second from the top */
+    const char *owner = reader->name ? reader->name : "", *quote = reader->name ? "'" : "", *space = reader->name ? " " : "";
+    luaL_checkstack(L, 6, NULL);
+    if (reader->where) lua_pushstring(L, reader->where);
+    else quat_lua_where(L);
+    if (lua_type(L, -3) == LUA_TSTRING) {
+        const char *given = lua_tostring(L, -3), *meant = nearest(given, keys);
+        lua_pushfstring(L, "unknown key '%s' in %s%s%s%s%s", given, reader->kind, space, quote, owner, quote);
+        if (meant) lua_pushfstring(L, " (did you mean '%s'?)", meant);
+        else lua_pushliteral(L, "");
+    } else {
+        const char *given = luaL_tolstring(L, -3, NULL);
+        lua_pushfstring(L, "unknown key [%s] in %s%s%s%s%s", given, reader->kind, space, quote, owner, quote);
+        lua_remove(L, -2);
+        lua_pushliteral(L, " (its values have names)");
+    }
+    lua_concat(L, 3);
+    return lua_error(L);
+}
+
+quat_lua_reader quat_lua_read(lua_State *L, int index, const char *kind, const char *where, const char *const keys[])
+{
+    quat_lua_reader reader = {L, lua_absindex(L, index), kind, NULL, where};
+    char text[80];
+    if (!lua_istable(L, index))
+        quat_lua_reader_error(&reader, "a table of its values is needed, got %s", describe(L, index, text, sizeof text));
+    luaL_checkstack(L, 4, NULL);
+    if (lua_getfield(L, reader.index, "name") == LUA_TSTRING) reader.name = lua_tostring(L, -1);
+    lua_pop(L, 1);
+    for (lua_pushnil(L); lua_next(L, reader.index); lua_pop(L, 1))
+        if (lua_type(L, -2) != LUA_TSTRING || !is_among(lua_tostring(L, -2), keys)) unknown_key(&reader, keys);
+    return reader;
+}
+
+bool quat_lua_has(const quat_lua_reader *reader, const char *key)
+{
+    const bool has = lua_getfield(reader->L, reader->index, key) != LUA_TNIL;
+    lua_pop(reader->L, 1);
+    return has;
+}
+
+void quat_lua_need(const quat_lua_reader *reader, const char *key)
+{
+    if (!quat_lua_has(reader, key)) quat_lua_reader_error(reader, "%s is missing", key);
+}
+
+/* Pushes the key's value; false (and nothing pushed) when it is absent. */
+static bool push_field(const quat_lua_reader *reader, const char *key)
+{
+    luaL_checkstack(reader->L, 2, NULL);
+    if (lua_getfield(reader->L, reader->index, key) != LUA_TNIL) return true;
+    lua_pop(reader->L, 1);
+    return false;
+}
+
+double quat_lua_get_number(const quat_lua_reader *reader, const char *key, quat_lua_range range, double fallback)
+{
+    if (!push_field(reader, key)) return fallback;
+    const double value = number_at(reader->L, reader, key, -1, range);
+    lua_pop(reader->L, 1);
+    return value;
+}
+
+lua_Integer quat_lua_get_integer(const quat_lua_reader *reader, const char *key, lua_Integer lowest, lua_Integer most,
+                                 lua_Integer fallback)
+{
+    if (!push_field(reader, key)) return fallback;
+    const lua_Integer value = integer_at(reader->L, reader, key, -1, lowest, most);
+    lua_pop(reader->L, 1);
+    return value;
+}
+
+bool quat_lua_get_boolean(const quat_lua_reader *reader, const char *key, bool fallback)
+{
+    if (!push_field(reader, key)) return fallback;
+    if (!lua_isboolean(reader->L, -1)) refuse(reader->L, reader, key, -1, "true or false");
+    const bool value = lua_toboolean(reader->L, -1);
+    lua_pop(reader->L, 1);
+    return value;
+}
+
+const char *quat_lua_get_string(const quat_lua_reader *reader, const char *key, const char *fallback)
+{
+    if (!push_field(reader, key)) return fallback;
+    const char *value = string_at(reader->L, reader, key, -1);
+    lua_pop(reader->L, 1);
+    return value;
+}
+
+int quat_lua_get_choice(const quat_lua_reader *reader, const char *key, const char *const words[], int fallback)
+{
+    if (!push_field(reader, key)) return fallback;
+    const int value = choice_at(reader->L, reader, key, -1, words);
+    lua_pop(reader->L, 1);
+    return value;
+}
+
+qvec3 quat_lua_get_vec3(const quat_lua_reader *reader, const char *key, qvec3 fallback)
+{
+    if (!push_field(reader, key)) return fallback;
+    const qvec3 value = vec3_at(reader->L, reader, key, -1);
+    lua_pop(reader->L, 1);
+    return value;
+}
+
+quat quat_lua_get_quat(const quat_lua_reader *reader, const char *key, quat fallback)
+{
+    if (!push_field(reader, key)) return fallback;
+    const quat value = quat_at(reader->L, reader, key, -1);
+    lua_pop(reader->L, 1);
+    return value;
+}
+
+/* ---- results ---- */
+
+/* v.x, v.y, v.z of a vector table; nothing else. */
+static int vec3_index(lua_State *L)
+{
+    const char *key = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
+    if (key[0] >= 'x' && key[0] <= 'z' && key[1] == 0) lua_rawgeti(L, 1, key[0] - 'x' + 1);
+    else lua_pushnil(L);
+    return 1;
+}
+
+static int vec3_tostring(lua_State *L)
+{
+    char text[120];
+    double v[3];
+    for (int i = 0; i < 3; i++) {
+        lua_rawgeti(L, 1, i + 1);
+        v[i] = lua_tonumber(L, -1);
+    }
+    snprintf(text, sizeof text, "(%.14g, %.14g, %.14g)", v[0], v[1], v[2]);
+    lua_pushstring(L, text);
+    return 1;
+}
+
+void quat_lua_push_vec3(lua_State *L, qvec3 v)
+{
+    const double component[3] = {v.x, v.y, v.z};
+    luaL_checkstack(L, 4, NULL);
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; i++) {
+        lua_pushnumber(L, component[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    if (luaL_newmetatable(L, QUAT_LUA_VEC3)) {
+        static const luaL_Reg methods[] = {{"__index", vec3_index}, {"__tostring", vec3_tostring}, {NULL, NULL}};
+        luaL_setfuncs(L, methods, 0);
+    }
+    lua_setmetatable(L, -2);
+}
+
+void quat_lua_push_quat(lua_State *L, quat q)
+{
+    luaL_checkstack(L, 3, NULL);
+    quat *place = lua_newuserdatauv(L, sizeof q, 0);
+    *place = q;
+    luaL_newmetatable(L, QUAT_LUA_QUAT); /* filled by quat.core, whichever comes first */
+    lua_setmetatable(L, -2);
+}
