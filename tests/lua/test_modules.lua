@@ -1,0 +1,50 @@
+-- SPDX-License-Identifier: MIT
+--- The modules in a stock Lua 5.4: what they load, and how they read arguments.
+local check = require "check"
+
+--- Whether a library of this name is in the process; nil where the system cannot tell.
+local function loaded(name)
+  local maps = io.open("/proc/self/maps")
+  if not maps then return nil end
+  local text = maps:read("a")
+  maps:close()
+  return text:find(name, 1, true) ~= nil
+end
+
+local quat = require "quat"
+for _, name in ipairs { "libimpact", "impact/core", "sundials", "libccd", "libgsl" } do
+  check.truth(not loaded(name), "require 'quat' leaves out " .. name)
+end
+
+local impact = require "impact"
+check.truth(not loaded("libgsl"), "require 'impact' leaves out libgsl")
+check.truth(impact.version:match("^%d+%.%d+%.%d+$"), "impact.version is a version")
+check.equal(type(impact.has("cvode")), "boolean")
+
+-- Quaternions and vectors.
+local q = quat.new(1, 2, 3, 4)
+check.equal(q.w + 10 * q.x + 100 * q.y + 1000 * q.z, 4321)
+check.equal(quat.new({ 1, 2, 3, 4 }).z, 4)
+check.equal(quat.new({ w = 1, x = 2, y = 3, z = 4 }).y, 3)
+check.equal(quat.new(q).x, 2)
+check.equal(quat.no_such_room, nil)
+check.raises("argument 'q' must be a quaternion or {w, x, y, z} of finite numbers, got a table", quat.new, { 1, 2, 3 })
+check.raises("argument 'z' must be a finite number, got inf", quat.new, 1, 2, 3, math.huge)
+
+-- Shapes.
+local ball = impact.sphere(0.3)
+check.equal(ball.kind, "sphere")
+check.close(ball.volume, 4 / 3 * math.pi * 0.027, 1e-16)
+check.close(ball.inertia.y, 0.4 * 0.09, 1e-17)
+check.equal(impact.sphere({ radius = 2 }).a, 2)
+check.equal(impact.plane().a, math.huge)
+check.equal(impact.plane({ width = 3, depth = 8 }).b, 4)
+check.raises("argument 'radius' must be a positive number, got -1", impact.sphere, -1)
+check.raises("argument 'radius' must be a positive number, got the string '2'", impact.sphere, "2")
+check.raises("sphere: radius must be a positive number, got nan", impact.sphere, { radius = 0 / 0 })
+check.raises("sphere: radius is missing", impact.sphere, {})
+check.raises("unknown key 'radus' in sphere (did you mean 'radius'?)", impact.sphere, { radus = 1 })
+check.raises("unknown key [1] in plane (its values have names)", impact.plane, { 3, 3 })
+check.raises("argument 'part' must be one of 'cvode', 'ccd', got the string 'gsl'", impact.has, "gsl")
+
+check.report("modules")
