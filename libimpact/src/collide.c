@@ -1,9 +1,258 @@
-/* SPDX-License-Identifier: MIT */
-#include <impact/collide.h>
+/* SPDX-License-Identifier: MIT
+ *
+ * The door of the room: checks, scales, picks a solver, and turns a finished course into an outcome.
+ */
+#include "collide_course.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+const char *impact_law_name(impact_law law)
+{
+    switch (law) {
+    case IMPACT_POISSON: return "poisson";
+    case IMPACT_NEWTON: return "newton";
+    case IMPACT_STRONGE: return "stronge";
+    }
+    return "unknown";
+}
+
+const char *impact_solver_name(impact_solver solver)
+{
+    switch (solver) {
+    case IMPACT_SOLVER_AUTO: return "auto";
+    case IMPACT_SOLVER_CLOSED_FORM: return "closed form";
+    case IMPACT_SOLVER_SERIES: return "series";
+    case IMPACT_SOLVER_CVODE: return "cvode";
+    }
+    return "unknown";
+}
+
+const char *impact_phase_name(impact_phase phase)
+{
+    switch (phase) {
+    case IMPACT_SLIP_C: return "slip-c";
+    case IMPACT_STICK_C: return "stick-c";
+    case IMPACT_SLIP_R: return "slip-r";
+    case IMPACT_STICK_R: return "stick-r";
+    case IMPACT_REVERSAL: return "reversal";
+    }
+    return "unknown";
+}
+
+/* ---- checks ---- */
+
+static impact_status refuse(char *message, size_t size, impact_status status, const char *format, ...)
+{
+    if (size > 0) {
+        va_list values;
+        va_start(values, format);
+        vsnprintf(message, size, format, values);
+        va_end(values);
+    }
+    return status;
+}
+
+static bool finite3(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+static impact_status check_vector(const char *name, int number, qvec3 v, char *message, size_t size)
+{
+    if (finite3(v)) return IMPACT_OK;
+    return refuse(message, size, IMPACT_EDOMAIN, "body %d: %s is (%g, %g, %g), must be finite", number, name, v.x, v.y,
+                  v.z);
+}
+
+static impact_status check_body(const impact_collider *body, int number, char *message, size_t size)
+{
+    impact_status status = check_vector("offset", number, body->offset, message, size);
+    if (status == IMPACT_OK) status = check_vector("velocity", number, body->velocity, message, size);
+    if (status == IMPACT_OK) status = check_vector("omega", number, body->omega, message, size);
+    if (status != IMPACT_OK) return status;
+    if (isnan(body->mass)) return refuse(message, size, IMPACT_EDOMAIN, "body %d: mass is NaN", number);
+    if (!(body->mass > 0))
+        return refuse(message, size, IMPACT_EARGUMENT, "body %d: mass is %g, must be > 0", number, body->mass);
+    if (isinf(body->mass)) return IMPACT_OK;
+    const qvec3 j = body->moments;
+    status = check_vector("moments", number, j, message, size);
+    if (status != IMPACT_OK) return status;
+    if (!(j.x > 0 && j.y > 0 && j.z > 0))
+        return refuse(message, size, IMPACT_EARGUMENT, "body %d: moments are (%g, %g, %g), must be > 0", number, j.x,
+                      j.y, j.z);
+    const quat q = body->orientation;
+    const double n2 = quat_dot(q, q);
+    if (!isfinite(n2))
+        return refuse(message, size, IMPACT_EDOMAIN,
+                      "body %d: orientation is (%g, %g, %g, %g), must be a finite unit quaternion", number, q.w, q.x,
+                      q.y, q.z);
+    if (!(fabs(n2 - 1) <= 1e-6))
+        return refuse(message, size, IMPACT_EARGUMENT, "body %d: orientation has length %.17g, must be 1", number,
+                      sqrt(n2));
+    return IMPACT_OK;
+}
+
+static impact_status check(const impact_collision *collision, char *message, size_t size)
+{
+    for (int i = 0; i < 2; i++) {
+        const impact_status status = check_body(&collision->body[i], i + 1, message, size);
+        if (status != IMPACT_OK) return status;
+    }
+    if (isinf(collision->body[0].mass) && isinf(collision->body[1].mass))
+        return refuse(message, size, IMPACT_EARGUMENT, "both bodies are static (mass inf): one must move");
+    const qvec3 n = collision->normal;
+    if (!finite3(n))
+        return refuse(message, size, IMPACT_EDOMAIN, "normal is (%g, %g, %g), must be finite", n.x, n.y, n.z);
+    if (n.x == 0 && n.y == 0 && n.z == 0)
+        return refuse(message, size, IMPACT_EARGUMENT, "normal is (0, 0, 0), must have a direction");
+    if (!isfinite(collision->friction))
+        return refuse(message, size, IMPACT_EDOMAIN, "friction is %g, must be finite", collision->friction);
+    if (!(collision->friction >= 0))
+        return refuse(message, size, IMPACT_EARGUMENT, "friction is %g, must be >= 0", collision->friction);
+    const double eps = collision->restitution;
+    if (!isfinite(eps)) return refuse(message, size, IMPACT_EDOMAIN, "restitution is %g, must be finite", eps);
+    if (!(eps >= 0 && (eps <= 1 || collision->any_restitution)))
+        return refuse(message, size, IMPACT_EARGUMENT, "restitution is %g, must be in [0, 1]", eps);
+    if ((int)collision->law < IMPACT_POISSON || collision->law > IMPACT_STRONGE)
+        return refuse(message, size, IMPACT_EARGUMENT, "law is %d, must be one of impact_law", (int)collision->law);
+    if ((int)collision->solver < IMPACT_SOLVER_AUTO || collision->solver > IMPACT_SOLVER_CVODE)
+        return refuse(message, size, IMPACT_EARGUMENT, "solver is %d, must be one of impact_solver",
+                      (int)collision->solver);
+    return IMPACT_OK;
+}
+
+impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size)
+{
+    if (size > 0) message[0] = '\0';
+    return check(collision, message, size);
+}
+
+/* ---- from the caller's units to scaled ones and back ---- */
+
+static double energy(const impact_collider *body, const impact_ready *ready, qvec3 velocity, qvec3 omega)
+{
+    if (ready->inverse_mass == 0) return 0;
+    const qvec3 j = body->moments, w = ready->round ? omega : impact_frame_to_body(ready->orientation, omega);
+    return 0.5 * (body->mass * qvec3_dot(velocity, velocity) + (j.x * w.x * w.x + j.y * w.y * w.y + j.z * w.z * w.z));
+}
+
+static void push(const impact_collider *body, const impact_ready *ready, qvec3 impulse, qvec3 *velocity, qvec3 *omega)
+{
+    *velocity = body->velocity;
+    *omega = body->omega;
+    if (ready->inverse_mass == 0) return;
+    *velocity = qvec3_axpy(ready->inverse_mass, impulse, body->velocity);
+    qvec3 l = qvec3_cross(body->offset, impulse);
+    const qvec3 w = ready->inverse_moments;
+    if (ready->round) {
+        *omega = qvec3_axpy(w.x, l, body->omega);
+        return;
+    }
+    l = impact_frame_to_body(ready->orientation, l);
+    *omega =
+        qvec3_add(body->omega, impact_frame_to_world(ready->orientation, (qvec3){w.x * l.x, w.y * l.y, w.z * l.z}));
+}
+
+static void unchanged(const impact_collision *collision, impact_outcome *outcome, double value)
+{
+    *outcome = (impact_outcome){.impulse = {value, value, value}};
+    for (int i = 0; i < 2; i++) {
+        outcome->velocity[i] = collision->body[i].velocity;
+        outcome->omega[i] = collision->body[i].omega;
+    }
+    outcome->impulse_normal = outcome->impulse_tangential = outcome->compression_impulse = value;
+    outcome->work_compression = outcome->work_restitution = outcome->work_friction = value;
+    outcome->normal_before = outcome->normal_after = outcome->energy_before = outcome->energy_after = value;
+    outcome->conditioning = value;
+}
+
+static qvec3 relative_velocity(const impact_collision *collision)
+{
+    const impact_collider *one = &collision->body[0], *two = &collision->body[1];
+    return qvec3_sub(qvec3_add(one->velocity, qvec3_cross(one->omega, one->offset)),
+                     qvec3_add(two->velocity, qvec3_cross(two->omega, two->offset)));
+}
+
+static void report(const impact_collision *collision, const impact_ready ready[2], const impact_course *course,
+                   double speed, impact_outcome *outcome)
+{
+    const impact_frame *frame = course->frame;
+    const double unit = speed / frame->scale, joule = speed * unit;
+    double px = course->px, py = course->py;
+    /* Friction's direction rounds: the cone is kept to the last bit. */
+    const double across2 = px * px + py * py, most = course->mu * course->p;
+    if (across2 > most * most) {
+        const double f = most / sqrt(across2) * (1 - 1e-16);
+        px *= f;
+        py *= f;
+    }
+    const qvec3 n = qvec3_scale(frame->n, course->p * unit);
+    const qvec3 t = qvec3_axpy(px * unit, frame->t1, qvec3_scale(frame->t2, py * unit));
+    outcome->impulse = qvec3_add(n, t);
+    outcome->impulse_normal = course->p * unit;
+    outcome->impulse_tangential = sqrt(px * px + py * py) * unit;
+    outcome->normal_before = -speed;
+    outcome->normal_after = course->uz * speed;
+    outcome->compression_impulse = course->p_c * unit;
+    outcome->work_compression = course->work_c * joule;
+    outcome->work_restitution = course->work_r * joule;
+    outcome->work_friction = course->work_f * joule;
+    outcome->compressions = course->compressions;
+    outcome->phase_count = course->phase_count;
+    for (int i = 0; i < course->phase_count; i++) outcome->phases[i] = course->phases[i];
+    outcome->conditioning = frame->conditioning;
+    outcome->energy_rose = course->work_c + course->work_r + course->work_f > -1e-12 * course->work_c;
+    outcome->energy_before = outcome->energy_after = 0;
+    for (int i = 0; i < 2; i++) {
+        const impact_collider *body = &collision->body[i];
+        push(body, &ready[i], i == 0 ? outcome->impulse : qvec3_neg(outcome->impulse), &outcome->velocity[i],
+             &outcome->omega[i]);
+        outcome->energy_before += energy(body, &ready[i], body->velocity, body->omega);
+        outcome->energy_after += energy(body, &ready[i], outcome->velocity[i], outcome->omega[i]);
+    }
+}
+
+static impact_status fail(const impact_collision *collision, impact_outcome *outcome, impact_status status)
+{
+    unchanged(collision, outcome, NAN);
+    return status;
+}
+
+static impact_status solve(const impact_collision *collision, impact_course *course, impact_outcome *outcome)
+{
+    if (collision->solver == IMPACT_SOLVER_AUTO || collision->solver == IMPACT_SOLVER_CLOSED_FORM) {
+        if (impact_course_closed_form(course)) {
+            outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
+            return course->ended ? IMPACT_OK : IMPACT_EUNSETTLED;
+        }
+        if (collision->solver == IMPACT_SOLVER_CLOSED_FORM) return IMPACT_EARGUMENT;
+    }
+    return IMPACT_EABSENT;
+}
 
 impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome)
 {
-    (void)collision;
-    (void)outcome;
-    return IMPACT_EABSENT;
+    impact_status status = check(collision, NULL, 0);
+    if (status != IMPACT_OK) return fail(collision, outcome, status);
+    impact_ready ready[2];
+    for (int i = 0; i < 2; i++) impact_frame_ready(&collision->body[i], &ready[i]);
+    impact_frame frame;
+    impact_frame_make(collision, ready, &frame);
+    const qvec3 u = relative_velocity(collision);
+    const double approach = qvec3_dot(u, frame.n);
+    if (!(approach < 0)) {
+        unchanged(collision, outcome, 0);
+        for (int i = 0; i < 2; i++)
+            outcome->energy_before +=
+                energy(&collision->body[i], &ready[i], collision->body[i].velocity, collision->body[i].omega);
+        outcome->energy_after = outcome->energy_before;
+        outcome->normal_before = outcome->normal_after = approach;
+        outcome->conditioning = frame.conditioning;
+        return isfinite(approach) ? IMPACT_SEPARATING : fail(collision, outcome, IMPACT_EDOMAIN);
+    }
+    const double speed = -approach;
+    impact_course course;
+    impact_course_start(&course, &frame, collision, qvec3_dot(u, frame.t1) / speed, qvec3_dot(u, frame.t2) / speed);
+    status = solve(collision, &course, outcome);
+    if (status != IMPACT_OK) return fail(collision, outcome, status);
+    report(collision, ready, &course, speed, outcome);
+    return IMPACT_OK;
 }

@@ -5,6 +5,7 @@
 #ifndef IMPACT_COLLIDE_H
 #define IMPACT_COLLIDE_H
 
+#include <stddef.h>
 #include <quat/quat.h>
 #include "status.h"
 
@@ -34,13 +35,15 @@ typedef enum impact_solver {
 typedef struct impact_collision {
     impact_collider body[2];
     qvec3 normal;       /* from body 2 to body 1, finite, non-zero; normalised on use */
-    double friction;    /* mu >= 0 */
-    double restitution; /* in [0, 1] */
+    double friction;    /* mu >= 0, of sliding and of sticking alike */
+    double restitution; /* in [0, 1]; see any_restitution */
     impact_law law;
     impact_solver solver;
+    bool any_restitution; /* take a restitution above 1 too */
 } impact_collision;
 
-/* What happened in order: sliding or sticking in compression (C) and restitution (R), and reversals between. */
+/* What happened in order: sliding or sticking in compression (C) and restitution (R). A reversal stands where sliding came to a
+ * stop and went on at once in another direction, friction being too weak to hold. */
 typedef enum impact_phase {
     IMPACT_SLIP_C = 1,
     IMPACT_STICK_C,
@@ -54,19 +57,28 @@ enum { IMPACT_MAX_PHASES = 16 };
 typedef struct impact_outcome {
     qvec3 velocity[2], omega[2];  /* after the impact, world */
     qvec3 impulse;                /* on body 1, N s, world; body 2 gets the negative */
-    double impulse_normal;        /* along the normal, N s */
-    double impulse_tangential;    /* magnitude across it, N s */
+    double impulse_normal;        /* along the normal, N s, > 0 */
+    double impulse_tangential;    /* magnitude across it, N s; at most mu times impulse_normal */
     double normal_before, normal_after; /* u_z, normal relative velocity at the contact, m/s; before < 0 */
     double compression_impulse;   /* p_c, N s, summed over compressions */
-    double work_compression, work_restitution, work_friction; /* J */
+    double work_compression, work_restitution, work_friction; /* J: <= 0, >= 0, <= 0; their sum is the change of energy */
     double energy_before, energy_after; /* kinetic, J, of the bodies that move */
     int compressions;             /* how many times the contact was compressed */
     int phase_count;
     unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order */
     impact_solver solver;         /* the one that answered */
-    double conditioning;          /* of the contact's inverse mass matrix M; 1 is best */
-    bool energy_rose;             /* Newton's law only: it can */
+    double conditioning;          /* of the contact's inverse mass matrix M: largest over smallest eigenvalue; 1 is best */
+    bool energy_rose;             /* Newton's law only (or a restitution above 1): it can */
 } impact_outcome;
+
+/* One word for each: "poisson", "closed form", "slip-c" ...; "unknown" for any other value. */
+IMPACT_API const char *impact_law_name(impact_law law);
+IMPACT_API const char *impact_solver_name(impact_solver solver);
+IMPACT_API const char *impact_phase_name(impact_phase phase);
+
+/* Whether impact_collide would take the collision: IMPACT_OK, or IMPACT_EDOMAIN (NaN or infinity) or IMPACT_EARGUMENT (out of range)
+ * with the thing and its value in message[size], cut to fit; size 0: no message. */
+IMPACT_API impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size);
 
 /* Solves one impact. IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome: nothing changed);
  * negative: the outcome holds the velocities given and NaN elsewhere. */

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Laws of restitution and the straight pieces of an impact.
+ *
+ * Poisson: restitution impulse = eps (compression impulse), both summed over repeated compressions.
+ * Newton: the first uz = -eps uz(0) in restitution.
+ * Stronge: with W the normal work, W_c = min W is the work of loading (what is reloaded elastically does not lower the minimum),
+ * and the impact ends in restitution at W = (1 - eps^2) W_c (Stronge, Impact Mechanics, 2000, section 3.5).
+ */
+#include "collide_course.h"
+
+#include <float.h>
+
+void impact_course_start(impact_course *course, const impact_frame *frame, const impact_collision *collision, double ux,
+                         double uy)
+{
+    *course = (impact_course){.frame = frame,
+                              .mu = collision->friction,
+                              .eps = collision->restitution,
+                              .law = collision->law,
+                              .ux = ux,
+                              .uy = uy,
+                              .s = hypot(ux, uy),
+                              .uz = -1,
+                              .compressing = true,
+                              .compressions = 1};
+}
+
+void impact_course_phase(impact_course *course, impact_phase phase)
+{
+    const int n = course->phase_count;
+    if (n > 0 && course->phases[n - 1] == phase) return;
+    if (n < IMPACT_MAX_PHASES) course->phases[course->phase_count++] = (unsigned char)phase;
+}
+
+void impact_course_turn(impact_course *course)
+{
+    course->uz = 0;
+    course->compressing = !course->compressing;
+    if (course->compressing) course->compressions++;
+}
+
+void impact_course_book(impact_course *course, double dp, double work, double friction)
+{
+    course->p += dp;
+    course->work += work;
+    course->work_f += friction;
+    if (course->compressing) {
+        course->p_c += dp;
+        course->work_c += work;
+        if (course->work < course->work_low) course->work_low = course->work;
+    } else {
+        course->p_r += dp;
+        course->work_r += work;
+    }
+}
+
+double impact_course_left_poisson(const impact_course *course) { return course->eps * course->p_c - course->p_r; }
+double impact_course_target_newton(const impact_course *course) { return course->eps; }
+double impact_course_target_stronge(const impact_course *course)
+{
+    return (1 - course->eps) * (1 + course->eps) * course->work_low;
+}
+
+/* p left in restitution when uz changes by Z per unit of p; INFINITY when this line never ends the impact. */
+static double left_on_line(const impact_course *course, double Z)
+{
+    switch (course->law) {
+    case IMPACT_POISSON: return fmax(impact_course_left_poisson(course), 0);
+    case IMPACT_NEWTON: {
+        const double more = impact_course_target_newton(course) - course->uz;
+        if (more <= 0) return 0;
+        return Z > 0 ? more / Z : INFINITY;
+    }
+    case IMPACT_STRONGE: {
+        const double more = impact_course_target_stronge(course) - course->work;
+        if (more <= 0) return 0;
+        const double root = course->uz * course->uz + 2 * Z * more;
+        return root >= 0 ? 2 * more / (course->uz + sqrt(root)) : INFINITY;
+    }
+    }
+    return 0;
+}
+
+static void line_piece(impact_course *course, const impact_line *line, double dp)
+{
+    if (!(dp > 0 && dp < INFINITY)) return;
+    const bool c = course->compressing;
+    impact_course_phase(course,
+                        line->stick ? (c ? IMPACT_STICK_C : IMPACT_STICK_R) : (c ? IMPACT_SLIP_C : IMPACT_SLIP_R));
+    const double ds = line->R * dp, dz = line->Z * dp;
+    impact_course_book(course, dp, dp * (course->uz + 0.5 * dz),
+                       line->stick ? 0 : -course->mu * dp * (course->s + 0.5 * ds));
+    course->px += line->gx * dp;
+    course->py += line->gy * dp;
+    course->s = fmax(course->s + ds, 0);
+    course->uz += dz;
+}
+
+void impact_course_line(impact_course *course, const impact_line *line, double room)
+{
+    const double Z = line->Z;
+    while (!course->ended) {
+        if (course->compressing) {
+            const double left = Z > 0 ? -course->uz / Z : INFINITY;
+            if (left >= room) {
+                line_piece(course, line, room);
+                return;
+            }
+            line_piece(course, line, left);
+            impact_course_turn(course);
+            room -= left;
+            continue;
+        }
+        const double end = left_on_line(course, Z), turn = Z < 0 ? -course->uz / Z : INFINITY;
+        if (room < end && room <= turn) {
+            line_piece(course, line, room);
+            return;
+        }
+        if (end <= turn) {
+            line_piece(course, line, end);
+            if (course->law == IMPACT_NEWTON) course->uz = impact_course_target_newton(course);
+            course->ended = true;
+        } else {
+            line_piece(course, line, turn);
+            impact_course_turn(course);
+        }
+        room -= end <= turn ? end : turn;
+    }
+}
+
+impact_line impact_course_sliding(const impact_frame *frame, double mu, double x, double y)
+{
+    const double along = frame->c * x + frame->d * y;
+    return (impact_line){
+        .R = along - mu * (frame->a * x * x + frame->b * y * y), .Z = 1 - mu * along, .gx = -mu * x, .gy = -mu * y};
+}
+
+double impact_course_turning(const impact_frame *frame, double mu, double x, double y)
+{
+    return (frame->d * x - frame->c * y) + mu * (frame->a - frame->b) * x * y;
+}
+
+/* The root lambda > 0 of |(mu M_tt + lambda)^-1 M_tz| = 1: Newton on 1/|.| - 1, convex and rising, from the left (More & Sorensen 1983). */
+static double restart_speed(const impact_frame *frame, double mu, double *x, double *y)
+{
+    double lambda = 0;
+    for (int i = 0; i < 60; i++) {
+        const double ea = mu * frame->a + lambda, eb = mu * frame->b + lambda;
+        *x = frame->c / ea;
+        *y = frame->d / eb;
+        const double n2 = *x * *x + *y * *y, n = sqrt(n2);
+        const double step = (n - 1) * n2 / (*x * *x / ea + *y * *y / eb);
+        lambda += step;
+        if (!(fabs(step) > 2 * DBL_EPSILON * lambda)) break;
+    }
+    const double f = 1 / sqrt(*x * *x + *y * *y);
+    *x *= f;
+    *y *= f;
+    return fmax(lambda, 0);
+}
+
+impact_line impact_course_from_rest(const impact_frame *frame, double mu)
+{
+    const double alpha = -frame->c / frame->a, beta = -frame->d / frame->b;
+    if (alpha * alpha + beta * beta <= mu * mu)
+        return (impact_line){.Z = frame->k, .gx = alpha, .gy = beta, .stick = true};
+    double x = 0, y = 0;
+    if (mu == 0) {
+        /* No friction: the tangential motion does not matter; R = |M_tz|. */
+        const double speed = hypot(frame->c, frame->d);
+        return (impact_line){.R = speed, .Z = 1};
+    }
+    const double lambda = restart_speed(frame, mu, &x, &y);
+    /* Z = xi' M xi + mu R as a sum of what is positive: no cancellation, and Z > 0 is plain. */
+    const double ex = alpha + mu * x, ey = beta + mu * y;
+    const double Z = frame->k + frame->a * ex * ex + frame->b * ey * ey + mu * lambda;
+    return (impact_line){.R = lambda, .Z = Z, .gx = -mu * x, .gy = -mu * y};
+}
+
+void impact_course_finish(impact_course *course)
+{
+    course->s = course->ux = course->uy = 0;
+    const impact_line line = impact_course_from_rest(course->frame, course->mu);
+    if (!line.stick && course->phase_count > 0 && !course->ended) impact_course_phase(course, IMPACT_REVERSAL);
+    impact_course_line(course, &line, INFINITY);
+}
+
+bool impact_course_closed_form(impact_course *course)
+{
+    const impact_frame *frame = course->frame;
+    if (course->mu == 0) {
+        const impact_line line = {.Z = 1};
+        impact_course_line(course, &line, INFINITY);
+        return true;
+    }
+    if (course->s == 0) {
+        impact_course_finish(course);
+        return true;
+    }
+    const double x = course->ux / course->s, y = course->uy / course->s;
+    const double rate = fabs(frame->c) + fabs(frame->d) + course->mu * fmax(frame->a, frame->b);
+    if (fabs(impact_course_turning(frame, course->mu, x, y)) > 4e-16 * rate) return false;
+    const impact_line line = impact_course_sliding(frame, course->mu, x, y);
+    impact_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
+    if (!course->ended) impact_course_finish(course);
+    return true;
+}

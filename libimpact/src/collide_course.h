@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * collide, inside: one impact under way, in scaled units: velocities over U = |u_z(0)|, impulses times M_zz / U.
+ * The course knows the laws of restitution; how u moves between events is told to it by the solvers.
+ */
+#ifndef IMPACT_COLLIDE_COURSE_H
+#define IMPACT_COLLIDE_COURSE_H
+
+#include "collide_frame.h"
+
+typedef struct impact_course {
+    const impact_frame *frame;
+    double mu, eps;
+    impact_law law;
+    double ux, uy, s, uz; /* relative velocity at the contact; s = |(ux, uy)| */
+    double px, py, p;     /* impulse on body 1; p along the normal */
+    double work,
+        work_low; /* of the normal impulse, and the least it has been (the compression work of Stronge's law) */
+    double work_c, work_r; /* the same, summed over compressions (negative) and over restitutions (positive) */
+    double work_f;         /* of friction, <= 0 */
+    double p_c, p_r;       /* impulse spent in compressions and in restitutions */
+    bool compressing, ended;
+    int compressions, phase_count;
+    unsigned char phases[IMPACT_MAX_PHASES];
+} impact_course;
+
+/* A straight piece: u and the impulse change in proportion to p. Per unit of p: s by R, uz by Z, (px, py) by (gx, gy). */
+typedef struct impact_line {
+    double R, Z, gx, gy;
+    bool stick;
+} impact_line;
+
+void impact_course_start(impact_course *course, const impact_frame *frame, const impact_collision *collision, double ux,
+                         double uy);
+
+/* Follows a line for at most `room` of p (INFINITY: to the end of the impact) through as many events as there are. */
+void impact_course_line(impact_course *course, const impact_line *line, double room);
+
+/* Where friction goes on from u_t = 0: sticking, or sliding along the one possible direction. */
+impact_line impact_course_from_rest(const impact_frame *frame, double mu);
+
+/* The line of sliding in the direction (x, y), a unit vector, if it were not to turn. */
+impact_line impact_course_sliding(const impact_frame *frame, double mu, double x, double y);
+
+/* How fast the sliding direction turns, per unit of tau: T = (-y, x) . (M_tz - mu M_tt (x, y)). */
+double impact_course_turning(const impact_frame *frame, double mu, double x, double y);
+
+/* The restitution impulse, velocity or work at which the impact ends. */
+double impact_course_left_poisson(const impact_course *course);
+double impact_course_target_newton(const impact_course *course);
+double impact_course_target_stronge(const impact_course *course);
+
+void impact_course_phase(impact_course *course, impact_phase phase);
+/* uz has come up to 0: compression turns to restitution; uz has come down to 0: compressed again. */
+void impact_course_turn(impact_course *course);
+/* Adds a piece that stays within one phase: impulse dp, works of normal impulse and friction. */
+void impact_course_book(impact_course *course, double dp, double work, double friction);
+
+/* Everything from u_t = 0 on. */
+void impact_course_finish(impact_course *course);
+
+/* Solves the whole impact when the sliding direction does not turn; false when it would. */
+bool impact_course_closed_form(impact_course *course);
+
+#endif
