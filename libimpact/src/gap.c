@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/gap.h>
 #include <quat/rotation.h>
+#include "support.h"
 
 static impact_contact no_contact(void)
 {
@@ -30,14 +31,28 @@ static impact_status sphere_sphere(const impact_solid *body1, const impact_solid
     return distance > 0 ? IMPACT_OK : IMPACT_DEEP;
 }
 
-/* sphere is body 1. */
-static impact_status sphere_plane(const impact_solid *sphere, const impact_solid *plane, quat plane_orientation, impact_contact *contact)
+/* Power of two that brings the shape's largest semi-axis into [1, 2). */
+static double unit_scale(const impact_shape *shape)
 {
-    const double r = sphere->shape.a;
+    return ldexp(1, -ilogb(fmax(shape->a, fmax(shape->b, shape->c))));
+}
+
+/* body is body 1: the gap is its lowest point's height, by the support function. */
+static impact_status body_plane(const impact_solid *body, quat body_orientation, const impact_solid *plane, quat plane_orientation,
+                                impact_contact *contact)
+{
+    const double scale = unit_scale(&body->shape);
     const qvec3 normal = quat_rotate(plane_orientation, (qvec3){0, 0, 1});
-    const qvec3 d = qvec3_sub(sphere->position, plane->position);
-    const double height = qvec3_dot(normal, d);
-    closed_form(sphere, plane, height - r, normal, qvec3_scale(normal, -r), qvec3_axpy(-height, normal, d), r, contact);
+    const double down[3] = {-normal.x, -normal.y, -normal.z};
+    impact_form form;
+    impact_surface surface;
+    double x[3];
+    impact_form_make(&body->shape, scale, body_orientation, &form);
+    const double h = impact_form_support_world(&form, down, x, &surface) / scale;
+    const qvec3 offset = {x[0] / scale, x[1] / scale, x[2] / scale};
+    const double gap = qvec3_dot(normal, qvec3_sub(body->position, plane->position)) - h;
+    const qvec3 foot = qvec3_axpy(-gap, normal, qvec3_add(qvec3_sub(body->position, plane->position), offset));
+    closed_form(body, plane, gap, normal, offset, foot, INFINITY, contact);
     return IMPACT_OK;
 }
 
@@ -56,11 +71,12 @@ impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, i
     *contact = no_contact();
     quat q1, q2;
     if (quat_normalize(body1->orientation, &q1) != QUAT_OK || quat_normalize(body2->orientation, &q2) != QUAT_OK) return IMPACT_EDOMAIN;
-    const impact_shape_kind k1 = body1->shape.kind, k2 = body2->shape.kind;
-    if (k1 == IMPACT_SPHERE && k2 == IMPACT_SPHERE) return sphere_sphere(body1, body2, contact);
-    if (k1 == IMPACT_SPHERE && k2 == IMPACT_PLANE) return sphere_plane(body1, body2, q2, contact);
-    if (k1 == IMPACT_PLANE && k2 == IMPACT_SPHERE) {
-        const impact_status status = sphere_plane(body2, body1, q1, contact);
+    const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
+    if (plane1 && plane2) return IMPACT_EARGUMENT;
+    if (body1->shape.kind == IMPACT_SPHERE && body2->shape.kind == IMPACT_SPHERE) return sphere_sphere(body1, body2, contact);
+    if (plane2) return body_plane(body1, q1, body2, q2, contact);
+    if (plane1) {
+        const impact_status status = body_plane(body2, q2, body1, q1, contact);
         *contact = swapped(*contact);
         return status;
     }

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Random shapes, directions and rotations for the contact rooms' tests and campaigns: a fixed stream per seed, the same
+ * on every machine.
+ */
+#ifndef CONTACT_RANDOM_H
+#define CONTACT_RANDOM_H
+
+#include <stdint.h>
+#include <impact/shape.h>
+#include <quat/rotation.h>
+
+typedef struct random_stream {
+    uint64_t state;
+} random_stream;
+
+/* splitmix64 (Steele, Lea, Flood 2014). */
+static inline uint64_t random_bits(random_stream *random)
+{
+    uint64_t z = (random->state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+static inline double random_unit(random_stream *random) { return (double)(random_bits(random) >> 11) * 0x1p-53; }
+
+/* low to high, evenly in the logarithm. */
+static inline double random_log(random_stream *random, double low, double high)
+{
+    return low * exp(random_unit(random) * log(high / low));
+}
+
+static inline qvec3 random_direction(random_stream *random)
+{
+    const double z = 2 * random_unit(random) - 1, angle = 6.28318530717958647692 * random_unit(random);
+    const double rho = sqrt(1 - z * z);
+    return (qvec3){rho * cos(angle), rho * sin(angle), z};
+}
+
+/* Evenly over the rotations (Shoemake 1992). */
+static inline quat random_rotation(random_stream *random)
+{
+    const double a = random_unit(random), b = 6.28318530717958647692 * random_unit(random),
+                 c = 6.28318530717958647692 * random_unit(random);
+    const quat q = {sqrt(a) * cos(c), sqrt(1 - a) * sin(b), sqrt(1 - a) * cos(b), sqrt(a) * sin(c)};
+    quat unit;
+    quat_normalize(q, &unit);
+    return unit;
+}
+
+enum {
+    RANDOM_SPHERE,
+    RANDOM_ELLIPSOID,
+    RANDOM_NEEDLE,       /* ellipsoids of aspect up to 1e6 */
+    RANDOM_ROUND,        /* equal exponents in [1.5, 4] */
+    RANDOM_MIXED,        /* independent exponents in [1.3, 10] */
+    RANDOM_CYLINDER,     /* (2, 2, up to 100) */
+    RANDOM_OCTAHEDRAL,   /* exponents in [1, 1.3] */
+    RANDOM_BOXY,         /* exponents in [10, 100] */
+    RANDOM_EXTREME,      /* exponents in [1, 1000], aspect to 1e3 */
+    RANDOM_BARR,         /* eps in [0.2, 1.6] */
+    RANDOM_BARR_EXTREME, /* eps in [0.02, 2] */
+    RANDOM_FAMILIES
+};
+
+static inline const char *random_family_name(int family)
+{
+    static const char *const names[] = {"sphere",     "ellipsoid", "needle",  "round", "mixed",       "cylinder",
+                                        "octahedral", "boxy",      "extreme", "barr",  "barr-extreme"};
+    return names[family];
+}
+
+static inline impact_shape random_shape(random_stream *random, int family)
+{
+    impact_shape shape = {IMPACT_SPHERE, 1, 1, 1, 2, 2, 2};
+    const double low = family == RANDOM_NEEDLE ? 1e-6 : family == RANDOM_EXTREME ? 1e-3 : 0.2;
+    const double a = random_log(random, low, 1), b = random_log(random, low, 1), c = random_log(random, low, 1);
+    const double f[3] = {random_unit(random), random_unit(random), random_unit(random)};
+    switch (family) {
+    case RANDOM_SPHERE: impact_shape_sphere(a, &shape); break;
+    case RANDOM_ELLIPSOID:
+    case RANDOM_NEEDLE: impact_shape_ellipsoid(a, b, c, &shape); break;
+    case RANDOM_ROUND: {
+        const double p = 1.5 * pow(4 / 1.5, f[0]);
+        impact_shape_superquadric(a, b, c, p, p, p, &shape);
+        break;
+    }
+    case RANDOM_MIXED:
+        impact_shape_superquadric(a, b, c, 1.3 * pow(10 / 1.3, f[0]), 1.3 * pow(10 / 1.3, f[1]), 1.3 * pow(10 / 1.3, f[2]), &shape);
+        break;
+    case RANDOM_CYLINDER: impact_shape_superquadric(a, a, c, 2, 2, 4 * pow(25, f[0]), &shape); break;
+    case RANDOM_OCTAHEDRAL: /* some exactly 1 */
+        impact_shape_superquadric(a, b, c, 1 + 0.3 * fmax(0, 2 * f[0] - 1), 1 + 0.3 * fmax(0, 2 * f[1] - 1),
+                                  1 + 0.3 * fmax(0, 2 * f[2] - 1), &shape);
+        break;
+    case RANDOM_BOXY: impact_shape_superquadric(a, b, c, 10 * pow(10, f[0]), 10 * pow(10, f[1]), 10 * pow(10, f[2]), &shape); break;
+    case RANDOM_EXTREME: impact_shape_superquadric(a, b, c, pow(1000, f[0]), pow(1000, f[1]), pow(1000, f[2]), &shape); break;
+    case RANDOM_BARR: impact_shape_superellipsoid(a, b, c, 0.2 * pow(8, f[0]), 0.2 * pow(8, f[1]), &shape); break;
+    case RANDOM_BARR_EXTREME: impact_shape_superellipsoid(a, b, c, 0.02 * pow(100, f[0]), 0.02 * pow(100, f[1]), &shape); break;
+    default: break;
+    }
+    return shape;
+}
+
+/* Exponents in [1.5, 4], superquadric or Barr's. */
+static inline impact_shape random_smooth_shape(random_stream *random, bool nested)
+{
+    impact_shape shape = random_shape(random, RANDOM_SPHERE);
+    const double a = 0.5 + random_unit(random), b = 0.5 + random_unit(random), c = 0.5 + random_unit(random);
+    const double r = 1.5 + 2.5 * random_unit(random), s = 1.5 + 2.5 * random_unit(random), t = 1.5 + 2.5 * random_unit(random);
+    if (nested) impact_shape_superellipsoid(a, b, c, 2 / t, 2 / r, &shape);
+    else impact_shape_superquadric(a, b, c, r, s, t, &shape);
+    return shape;
+}
+
+#endif
