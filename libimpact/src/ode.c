@@ -107,6 +107,13 @@ static bool set_solver(impact_ode *ode)
     return ode->linear && CVodeSetLinearSolver(ode->cvode, ode->linear, ode->jacobian) == CV_SUCCESS;
 }
 
+static bool set_root_directions(impact_ode *ode)
+{
+    if (!ode->def.falling_roots_only || ode->def.roots == 0) return true;
+    for (int i = 0; i < ode->def.roots; i++) ode->roots_found[i] = -1;
+    return CVodeSetRootDirection(ode->cvode, ode->roots_found) == CV_SUCCESS; /* copies */
+}
+
 static bool build(impact_ode *ode)
 {
     const impact_ode_def *def = &ode->def;
@@ -118,7 +125,7 @@ static bool build(impact_ode *ode)
     N_VConst(0, ode->y);
     return quiet(ode) == 0 && CVodeInit(ode->cvode, rhs, 0, ode->y) == CV_SUCCESS && set_tolerances(ode) && set_solver(ode) &&
            CVodeSetUserData(ode->cvode, ode) == CV_SUCCESS && CVodeSetNoInactiveRootWarn(ode->cvode) == CV_SUCCESS &&
-           (def->roots == 0 || CVodeRootInit(ode->cvode, def->roots, roots) == CV_SUCCESS);
+           (def->roots == 0 || CVodeRootInit(ode->cvode, def->roots, roots) == CV_SUCCESS) && set_root_directions(ode);
 }
 
 impact_status impact_ode_create(const impact_ode_def *def, impact_ode **out)

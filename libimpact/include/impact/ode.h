@@ -27,6 +27,7 @@ typedef struct impact_ode_def {
     int roots;                /* >= 0 */
     impact_ode_rhs *rhs;
     impact_ode_roots *root_functions; /* may be NULL when roots = 0 */
+    bool falling_roots_only;  /* report a root function only where it falls through zero */
     void *context;            /* handed to both */
     impact_ode_method method; /* Adams with fixed-point iteration, or BDF with Newton and a dense difference-quotient Jacobian */
     double relative_tolerance; /* > 0 */

@@ -98,6 +98,7 @@ typedef struct impact_usage {
     long integrator_starts, integrator_steps, integrator_rhs_calls;
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode;  /* impacts, by solver */
+    long impacts_simultaneous;  /* of these, answers to another impact in the same instant, taken in the order of the definition */
     long events[IMPACT_EVENT_REST + 1];                       /* by kind */
     long samples;
 } impact_usage;

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * field: the scene's forces summed over its bodies, and the edges of their reach. Internal.
+ */
+#ifndef IMPACT_FIELD_H
+#define IMPACT_FIELD_H
+
+#include "world.h"
+
+typedef struct impact_load {
+    qvec3 force, torque; /* N, N m, world */
+    double work_rate;    /* W: of wind and custom forces */
+    double damping_rate; /* W lost to damping, >= 0 */
+} impact_load;
+
+/* Load of gravity, fields and damping on every body at time t. false: a custom force refused. */
+bool impact_field_loads(const impact_world *world, double t, const impact_state *states, impact_load *loads);
+
+/* Potential energy of gravity and attraction, J. */
+double impact_field_potential(const impact_world *world, const impact_state *states);
+
+/* How many edges the fields have; their values, each > 0 on the side where the motion now is. */
+int impact_field_edge_count(const impact_world *world);
+void impact_field_edges(const impact_world *world, const impact_state *states, double *value);
+/* Sets every inside flag from where the bodies are. */
+void impact_field_locate(impact_world *world, const impact_state *states);
+/* Edge was crossed: turns its flag, and tells whose edge it is. */
+void impact_field_cross(impact_world *world, int edge, int *field, int *body);
+
+/* Slots of a field over so many bodies; for allocation. */
+int impact_field_slots(const impact_force_def *def, int body_count);
+/* Whether any force but uniform gravity acts on any body. */
+bool impact_field_any(const impact_world *world);
+
+#endif

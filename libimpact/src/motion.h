@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * motion: from one event of the world to the next, in closed form where flight has one, by the integrator elsewhere. Internal.
+ */
+#ifndef IMPACT_MOTION_H
+#define IMPACT_MOTION_H
+
+#include <impact/ode.h>
+#include "persist.h"
+
+typedef enum impact_end_kind {
+    IMPACT_END_TIME,    /* the time asked for */
+    IMPACT_END_GAP,     /* an open pair's gap fell to zero */
+    IMPACT_END_RETURN,  /* a body that had passed beside a plane's bounds is before the plane again */
+    IMPACT_END_BOUNDS,  /* a held contact left its plane's bounds */
+    IMPACT_END_LIFTOFF, /* a held contact's pressure fell to zero */
+    IMPACT_END_SLIP,    /* a rolling contact's friction reached its cone */
+    IMPACT_END_STICK,   /* a sliding contact's slip died out */
+    IMPACT_END_EDGE,    /* a body crossed the edge of a field's reach */
+    IMPACT_END_SLOW     /* a body that rolls or rests became slower than the rest speed */
+} impact_end_kind;
+
+typedef struct impact_end {
+    impact_end_kind kind;
+    int index; /* pair, edge or body */
+} impact_end;
+
+/* Where samples go on the way: emit is called at every k/rate up to where the motion ends. */
+typedef struct impact_sampler {
+    double rate; /* 0: never */
+    long next;   /* k of the next sample */
+    bool (*emit)(void *context, double t, const impact_state *states);
+    bool (*pulse)(void *context, double t); /* called at every step of the integrator; false stops */
+    void *context;
+} impact_sampler;
+
+/* Work since the start of the run, J. */
+typedef struct impact_works {
+    double force, damping, sliding;
+} impact_works;
+
+typedef struct impact_motion {
+    impact_world *world;
+    double tolerance, rest_speed;
+    bool *resting; /* per body: no longer watched for rest */
+    impact_persist persist;
+    impact_load *loads;
+    impact_works works;
+    char message[256];
+
+    /* the integrator's side; absent until it is needed */
+    impact_ode *ode;
+    int size, roots;
+    double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
+    int *found;
+    impact_state *scratch, *sampled;
+    bool sliding;      /* the integration variable is not time: see motion.c */
+    double slip_scale; /* m/s */
+} impact_motion;
+
+impact_status impact_motion_open(impact_motion *motion, impact_world *world, double tolerance, double rest_speed);
+void impact_motion_close(impact_motion *motion);
+
+/* Advances the states (consistent modes: see impact_persist_resolve) from *t to the next event, at most to t_end. */
+impact_status impact_motion_advance(impact_motion *motion, double *t, double t_end, impact_state *states, impact_sampler *sampler,
+                                    impact_end *end);
+
+/* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
+bool impact_motion_load(impact_motion *motion, double t, const impact_state *states);
+
+#endif

@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * With n the normal, u the relative velocity of the contact points and u' its rate along the moving contact:
+ *   held:    d2(gap)/dt2 = n . u' + n' . u = 0
+ *   rolling: u' = 0
+ *   sliding: tangential force = -friction pressure u_t/|u_t|
+ * and u' = bias + K (reactions), linear. All held contacts are solved together, one unknown for a sliding contact and three for
+ * a rolling one; where the reactions are not unique (hyperstatic), redundant unknowns are zero.
+ */
+#include "persist.h"
+#include "world_gap.h"
+
+#include <stdlib.h>
+
+impact_status impact_persist_reserve(impact_persist *persist, const impact_world *world)
+{
+    int held = 0;
+    for (int p = 0; p < world->pair_count; p++) held += impact_is_held(&world->pairs[p]);
+    persist->count = held;
+    if (held <= persist->capacity) return IMPACT_OK;
+    const size_t n = 3 * (size_t)held;
+    impact_touch *touches = realloc(persist->touches, (size_t)held * sizeof *touches);
+    if (touches) persist->touches = touches;
+    double *matrix = realloc(persist->matrix, n * n * sizeof *matrix);
+    if (matrix) persist->matrix = matrix;
+    double *right = realloc(persist->right, n * sizeof *right);
+    if (right) persist->right = right;
+    int *order = realloc(persist->order, n * sizeof *order);
+    if (order) persist->order = order;
+    if (!touches || !matrix || !right || !order) return IMPACT_ENOMEM;
+    persist->capacity = held;
+    return IMPACT_OK;
+}
+
+void impact_persist_free(impact_persist *persist)
+{
+    free(persist->touches);
+    free(persist->matrix);
+    free(persist->right);
+    free(persist->order);
+    *persist = (impact_persist){0};
+}
+
+/* ---- geometry ---- */
+
+/* Two spheres: n turns with the line of centres. A plane's normal stays. */
+static qvec3 turning_of_normal(const impact_world *world, const impact_touch *touch, const impact_state *states)
+{
+    if (world->bodies[touch->body2].shape.kind == IMPACT_PLANE) return (qvec3){0, 0, 0};
+    const qvec3 d = qvec3_sub(states[touch->body1].v, states[touch->body2].v);
+    const double distance = qvec3_norm(qvec3_sub(states[touch->body1].x, states[touch->body2].x));
+    return qvec3_scale(qvec3_axpy(-qvec3_dot(d, touch->normal), touch->normal, d), 1 / distance);
+}
+
+/* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the centre. */
+static qvec3 free_acceleration(const impact_body *body, const impact_state *state, const impact_load *load, qvec3 r, qvec3 r_rate)
+{
+    if (body->is_static) return (qvec3){0, 0, 0};
+    const qvec3 omega = impact_omega(body, state);
+    const qvec3 torque = qvec3_sub(load->torque, qvec3_cross(omega, state->momentum));
+    const qvec3 alpha = impact_inverse_inertia(body, state->q, torque);
+    const qvec3 a = qvec3_scale(load->force, body->inverse_mass);
+    return qvec3_add(qvec3_add(a, qvec3_cross(alpha, r)), qvec3_cross(omega, r_rate));
+}
+
+impact_touch impact_persist_touch(impact_world *world, int p, const impact_state *states, const impact_load *loads)
+{
+    impact_pair *pair = &world->pairs[p];
+    const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    impact_contact contact;
+    impact_world_gap(world, pair, states, &contact);
+    impact_touch touch = {.pair = p, .body1 = pair->body1, .body2 = pair->body2, .mode = pair->mode, .friction = pair->friction,
+                          .normal = contact.normal, .r1 = contact.offset1, .r2 = contact.offset2};
+    const qvec3 u1 = qvec3_add(s1->v, qvec3_cross(impact_omega(b1, s1), touch.r1));
+    const qvec3 u2 = b2->is_static ? (qvec3){0, 0, 0} : qvec3_add(s2->v, qvec3_cross(impact_omega(b2, s2), touch.r2));
+    const qvec3 u = qvec3_sub(u1, u2);
+    touch.slip = qvec3_axpy(-qvec3_dot(u, touch.normal), touch.normal, u);
+    touch.speed = qvec3_norm(touch.slip);
+    touch.direction = touch.speed > 0.1 * world->slip_speed ? qvec3_scale(touch.slip, 1 / touch.speed) : pair->direction;
+    touch.normal_rate = turning_of_normal(world, &touch, states);
+    /* On a sphere r = -+ radius n, so that it turns as n does. */
+    const qvec3 rate1 = qvec3_scale(touch.normal_rate, -b1->shape.a), rate2 = qvec3_scale(touch.normal_rate, b2->shape.a);
+    touch.bias = qvec3_sub(free_acceleration(b1, s1, &loads[pair->body1], touch.r1, rate1),
+                           free_acceleration(b2, s2, &loads[pair->body2], touch.r2, rate2));
+    return touch;
+}
+
+/* ---- the linear system ---- */
+
+/* Change of touch a's relative acceleration (or velocity) for a force (or impulse) f on body 1 of touch b. */
+static qvec3 response(const impact_world *world, const impact_state *states, const impact_touch *a, const impact_touch *b, qvec3 f)
+{
+    const int bodies[2] = {b->body1, b->body2};
+    const qvec3 arms[2] = {b->r1, b->r2};
+    qvec3 change = {0, 0, 0};
+    for (int k = 0; k < 2; k++) {
+        const impact_body *body = &world->bodies[bodies[k]];
+        if (body->is_static) continue;
+        const qvec3 force = k == 0 ? f : qvec3_neg(f);
+        const qvec3 da = qvec3_scale(force, body->inverse_mass);
+        const qvec3 dalpha = impact_inverse_inertia(body, states[bodies[k]].q, qvec3_cross(arms[k], force));
+        if (bodies[k] == a->body1) change = qvec3_add(change, qvec3_add(da, qvec3_cross(dalpha, a->r1)));
+        if (bodies[k] == a->body2) change = qvec3_sub(change, qvec3_add(da, qvec3_cross(dalpha, a->r2)));
+    }
+    return change;
+}
+
+/* An orthonormal tangent, and the other is normal x it. */
+static qvec3 tangent_of(qvec3 n)
+{
+    const qvec3 t = fabs(n.x) < 0.6 ? (qvec3){0, n.z, -n.y} : (qvec3){-n.z, 0, n.x};
+    return qvec3_scale(t, 1 / qvec3_norm(t));
+}
+
+static int unknowns_of(const impact_touch *touch) { return touch->mode == IMPACT_ROLL ? 3 : 1; }
+
+/* Row i of a touch: which component of u' it fixes. */
+static qvec3 row_direction(const impact_touch *touch, int i)
+{
+    if (i == 0) return touch->normal;
+    const qvec3 t = tangent_of(touch->normal);
+    return i == 1 ? t : qvec3_cross(touch->normal, t);
+}
+
+/* Column i: which force its unknown stands for; with friction, a sliding contact's pressure brings its friction along. */
+static qvec3 column_direction(const impact_touch *touch, int i, bool with_friction)
+{
+    if (touch->mode == IMPACT_SLIDE && with_friction) return qvec3_axpy(-touch->friction, touch->direction, touch->normal);
+    return row_direction(touch, i);
+}
+
+/* Gauss with complete pivoting; unknowns whose pivots vanish are set to zero. x comes in right. */
+static void solve_linear(double *a, double *right, int *order, int n)
+{
+    for (int i = 0; i < n; i++) order[i] = i;
+    double first = 0;
+    int rank = 0;
+    for (; rank < n; rank++) {
+        int row = rank, column = rank;
+        for (int i = rank; i < n; i++)
+            for (int j = rank; j < n; j++)
+                if (fabs(a[i * n + j]) > fabs(a[row * n + column])) row = i, column = j;
+        const double pivot = a[row * n + column];
+        if (rank == 0) first = fabs(pivot);
+        if (fabs(pivot) <= 1e-12 * first) break;
+        for (int j = 0; j < n; j++) {
+            const double swap = a[rank * n + j];
+            a[rank * n + j] = a[row * n + j], a[row * n + j] = swap;
+        }
+        const double swap = right[rank];
+        right[rank] = right[row], right[row] = swap;
+        for (int i = 0; i < n; i++) {
+            const double other = a[i * n + rank];
+            a[i * n + rank] = a[i * n + column], a[i * n + column] = other;
+        }
+        const int which = order[rank];
+        order[rank] = order[column], order[column] = which;
+        for (int i = rank + 1; i < n; i++) {
+            const double factor = a[i * n + rank] / pivot;
+            if (factor == 0) continue;
+            for (int j = rank; j < n; j++) a[i * n + j] -= factor * a[rank * n + j];
+            right[i] -= factor * right[rank];
+        }
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        if (i >= rank) {
+            right[i] = 0;
+            continue;
+        }
+        for (int j = i + 1; j < rank; j++) right[i] -= a[i * n + j] * right[j];
+        right[i] /= a[i * n + i];
+    }
+    for (int i = 0; i < n; i++) a[order[i]] = right[i]; /* the matrix is spent: its first row serves */
+    for (int i = 0; i < n; i++) right[i] = a[i];
+}
+
+/* Fills the matrix for the touches as they are; returns its size. */
+static int build_matrix(impact_persist *persist, const impact_world *world, const impact_state *states, bool with_friction)
+{
+    int n = 0;
+    for (int c = 0; c < persist->count; c++) n += unknowns_of(&persist->touches[c]);
+    int column = 0;
+    for (int b = 0; b < persist->count; b++)
+        for (int j = 0; j < unknowns_of(&persist->touches[b]); j++, column++) {
+            const qvec3 f = column_direction(&persist->touches[b], j, with_friction);
+            int row = 0;
+            for (int a = 0; a < persist->count; a++) {
+                const qvec3 change = response(world, states, &persist->touches[a], &persist->touches[b], f);
+                for (int i = 0; i < unknowns_of(&persist->touches[a]); i++, row++)
+                    persist->matrix[row * n + column] = qvec3_dot(row_direction(&persist->touches[a], i), change);
+            }
+        }
+    return n;
+}
+
+static void find_touches(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+{
+    int c = 0;
+    for (int p = 0; p < world->pair_count; p++)
+        if (impact_is_held(&world->pairs[p])) persist->touches[c++] = impact_persist_touch(world, p, states, loads);
+}
+
+/* Adds the unknowns x up to each touch's force. */
+static void collect_forces(impact_persist *persist, const double *x, bool with_friction)
+{
+    for (int c = 0; c < persist->count; c++) {
+        impact_touch *touch = &persist->touches[c];
+        touch->pressure = x[0];
+        touch->force = (qvec3){0, 0, 0};
+        for (int i = 0; i < unknowns_of(touch); i++)
+            touch->force = qvec3_axpy(*x++, column_direction(touch, i, with_friction), touch->force);
+    }
+}
+
+/* What the reactions leave of each touch's tangential acceleration, and how far its friction is from the cone. */
+static void finish_touches(impact_persist *persist, const impact_world *world, const impact_state *states)
+{
+    for (int a = 0; a < persist->count; a++) {
+        impact_touch *touch = &persist->touches[a];
+        qvec3 rate = touch->bias;
+        for (int b = 0; b < persist->count; b++)
+            rate = qvec3_add(rate, response(world, states, touch, &persist->touches[b], persist->touches[b].force));
+        touch->slip_rate = qvec3_axpy(-qvec3_dot(rate, touch->normal), touch->normal, rate);
+        const qvec3 tangential = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
+        touch->margin = touch->friction * touch->pressure - qvec3_norm(tangential);
+    }
+}
+
+void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+{
+    find_touches(persist, world, states, loads);
+    const int n = build_matrix(persist, world, states, true);
+    int row = 0;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        persist->right[row++] = -qvec3_dot(touch->normal, touch->bias) - qvec3_dot(touch->normal_rate, touch->slip);
+        for (int i = 1; i < unknowns_of(touch); i++) persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->bias);
+    }
+    solve_linear(persist->matrix, persist->right, persist->order, n);
+    collect_forces(persist, persist->right, true);
+    finish_touches(persist, world, states);
+}
+
+/* ---- constraints put back ---- */
+
+static void apply_impulse(const impact_world *world, impact_state *states, const impact_touch *touch, qvec3 impulse)
+{
+    impact_state *s1 = &states[touch->body1], *s2 = &states[touch->body2];
+    s1->v = qvec3_axpy(world->bodies[touch->body1].inverse_mass, impulse, s1->v);
+    s1->momentum = qvec3_add(s1->momentum, qvec3_cross(touch->r1, impulse));
+    if (world->bodies[touch->body2].is_static) return;
+    s2->v = qvec3_axpy(-world->bodies[touch->body2].inverse_mass, impulse, s2->v);
+    s2->momentum = qvec3_sub(s2->momentum, qvec3_cross(touch->r2, impulse));
+}
+
+static void close_gaps(impact_world *world, impact_state *states)
+{
+    for (int p = 0; p < world->pair_count; p++) {
+        impact_pair *pair = &world->pairs[p];
+        if (!impact_is_held(pair)) continue;
+        impact_contact contact;
+        impact_world_gap(world, pair, states, &contact);
+        const double w1 = world->bodies[pair->body1].inverse_mass, w2 = world->bodies[pair->body2].inverse_mass;
+        impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+        s1->x = qvec3_axpy(-contact.gap * w1 / (w1 + w2), contact.normal, s1->x);
+        s2->x = qvec3_axpy(contact.gap * w2 / (w1 + w2), contact.normal, s2->x);
+    }
+}
+
+void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads)
+{
+    if (persist->count == 0) return;
+    enum { SWEEPS = 3 }; /* contacts that share a body disturb each other by the square of their gaps */
+    for (int sweep = 0; sweep < (persist->count > 1 ? SWEEPS : 1); sweep++) close_gaps(world, states);
+    find_touches(persist, world, states, loads);
+    const int n = build_matrix(persist, world, states, false);
+    int row = 0;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        persist->right[row++] = -impact_world_approach(world, touch, states);
+        for (int i = 1; i < unknowns_of(touch); i++) persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->slip);
+    }
+    solve_linear(persist->matrix, persist->right, persist->order, n);
+    collect_forces(persist, persist->right, false);
+    for (int c = 0; c < persist->count; c++) apply_impulse(world, states, &persist->touches[c], persist->touches[c].force);
+}
+
+/* ---- modes ---- */
+
+/* The contact that pulls hardest, or -1. */
+static int worst_pull(const impact_persist *persist, double scale)
+{
+    int worst = -1;
+    for (int c = 0; c < persist->count; c++)
+        if (persist->touches[c].pressure < -1e-12 * scale &&
+            (worst < 0 || persist->touches[c].pressure < persist->touches[worst].pressure))
+            worst = c;
+    return worst;
+}
+
+/* The rolling contact whose friction is furthest out of its cone, or -1. */
+static int worst_grip(const impact_persist *persist, double scale)
+{
+    int worst = -1;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (touch->mode == IMPACT_ROLL && touch->margin < -1e-12 * scale &&
+            (worst < 0 || touch->margin < persist->touches[worst].margin))
+            worst = c;
+    }
+    return worst;
+}
+
+static bool starts_to_slide(const impact_world *world, const impact_touch *touch)
+{
+    return touch->mode == IMPACT_SLIDE && touch->speed <= world->slip_speed;
+}
+
+/* A contact that slides from rest slides the way it is accelerated: a fixed point of the reactions. */
+static bool turn_directions(impact_persist *persist, impact_world *world)
+{
+    bool settled = true;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        const double size = qvec3_norm(touch->slip_rate);
+        if (!starts_to_slide(world, touch) || size == 0) continue;
+        const qvec3 direction = qvec3_scale(touch->slip_rate, 1 / size);
+        if (qvec3_norm(qvec3_sub(direction, touch->direction)) > 1e-13) settled = false;
+        world->pairs[touch->pair].direction = direction;
+    }
+    return settled;
+}
+
+static double force_scale(const impact_persist *persist)
+{
+    double scale = 0;
+    for (int c = 0; c < persist->count; c++) scale = fmax(scale, qvec3_norm(persist->touches[c].force));
+    return scale;
+}
+
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads)
+{
+    enum { TURNS = 100 };
+    impact_status status = impact_persist_reserve(persist, world);
+    for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 4 * world->pair_count + 8; round++) {
+        for (int turn = 0; turn < TURNS; turn++) {
+            impact_persist_solve(persist, world, states, loads);
+            if (turn_directions(persist, world)) break;
+        }
+        const double scale = force_scale(persist);
+        const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale);
+        if (pull >= 0) {
+            world->pairs[persist->touches[pull].pair].mode = IMPACT_OPEN;
+            status = impact_persist_reserve(persist, world);
+        } else if (grip >= 0) {
+            impact_pair *pair = &world->pairs[persist->touches[grip].pair];
+            const qvec3 against = qvec3_axpy(-persist->touches[grip].pressure, persist->touches[grip].normal, persist->touches[grip].force);
+            pair->mode = IMPACT_SLIDE;
+            pair->direction = qvec3_scale(against, -1 / qvec3_norm(against));
+        } else {
+            for (int c = 0; c < persist->count; c++) {
+                const impact_touch *touch = &persist->touches[c];
+                if (starts_to_slide(world, touch))
+                    states[touch->body1].v = qvec3_axpy(2 * world->slip_speed - touch->speed, touch->direction, states[touch->body1].v);
+            }
+            return IMPACT_OK;
+        }
+    }
+    return persist->count == 0 ? status : IMPACT_EUNSETTLED;
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * persist: contacts that are held after the bounces died out: their reactions while rolling or sliding, when a mode ends, and the
+ * constraints put back exactly. Strictly convex bodies on planes and on each other. Internal.
+ */
+#ifndef IMPACT_PERSIST_H
+#define IMPACT_PERSIST_H
+
+#include "field.h"
+
+/* One held contact at one instant. */
+typedef struct impact_touch {
+    int pair, body1, body2;
+    impact_mode mode;
+    double friction;
+    qvec3 normal;     /* from body 2 to body 1 */
+    qvec3 r1, r2;     /* contact point from each centre */
+    qvec3 normal_rate; /* d(normal)/dt as the contact moves, 1/s */
+    qvec3 slip;       /* tangential velocity of body 1's contact point over body 2's, m/s */
+    double speed;     /* |slip| */
+    qvec3 direction;  /* unit of slip, or the pair's direction when the speed is too small to tell */
+    qvec3 bias;       /* relative acceleration of the contact points without reactions, m/s^2 */
+    /* solved for: */
+    double pressure;  /* normal force, N */
+    qvec3 force;      /* on body 1, N */
+    double margin;    /* rolling: friction x pressure - |tangential force|, N */
+    qvec3 slip_rate;  /* tangential relative acceleration of the contact points, m/s^2 */
+} impact_touch;
+
+typedef struct impact_persist {
+    int capacity;  /* contacts there is room for */
+    int count;     /* held contacts now */
+    impact_touch *touches;
+    double *matrix, *right; /* (3 capacity)^2 and 3 capacity */
+    int *order;             /* 3 capacity */
+} impact_persist;
+
+/* Room for every pair of the world that is held now; the geometry of none. */
+impact_status impact_persist_reserve(impact_persist *persist, const impact_world *world);
+void impact_persist_free(impact_persist *persist);
+
+/* Geometry and reactions of every held contact under the loads. */
+void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads);
+
+/* The contact as it is, whether held or not; its bias without any reaction. */
+impact_touch impact_persist_touch(impact_world *world, int pair, const impact_state *states, const impact_load *loads);
+
+/* Puts positions and velocities back on the held contacts exactly. */
+void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads);
+
+/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and slide what must.
+ * A contact that begins to slide is given its direction, and a speed just over the world's slip_speed. */
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads);
+
+#endif

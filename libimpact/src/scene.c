@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene_internal.h"
+#include "scene_check.h"
+#include "world_gap.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool emit_samples(void *context, double t, const impact_state *states)
+{
+    impact_scene *scene = context;
+    const impact_recorder *recorder = scene->recorder;
+    for (int i = 0; recorder->sample && i < scene->world.body_count; i++) {
+        if (scene->world.bodies[i].is_static) continue;
+        const impact_sample sample = impact_scene_sample(scene, t, i, states);
+        scene->world.usage.samples++;
+        if (recorder->sample(recorder->context, &sample)) continue;
+        scene->stop = IMPACT_ESINK;
+        return false;
+    }
+    return true;
+}
+
+static bool pulse(void *context, double t)
+{
+    impact_scene *scene = context;
+    if (!scene->recorder || !scene->recorder->progress) return true;
+    if (scene->recorder->progress(scene->recorder->context, t, scene->duration)) return true;
+    scene->stop = IMPACT_STOPPED;
+    return false;
+}
+
+/* A touch of a few rounding errors is no overlap. */
+static impact_status check_overlaps(impact_scene *scene, char *message, unsigned long message_size)
+{
+    impact_world *world = &scene->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        impact_pair *pair = &world->pairs[p];
+        const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+        if (impact_world_distance_bound(world, pair, scene->states) > 0) continue;
+        impact_contact contact;
+        const impact_status status = impact_world_gap(world, pair, scene->states, &contact);
+        if (status < 0) {
+            if (message)
+                snprintf(message, message_size, "bodies '%s' and '%s': %s", b1->name, b2->name, impact_status_string(status));
+            return status;
+        }
+        const double size = qvec3_norm(scene->states[pair->body1].x) + b1->radius;
+        if (impact_world_inside_bounds(world, pair, scene->states, &contact) < 0) {
+            pair->beyond = contact.gap < 0;
+        } else if (contact.gap < -1e-9 * size) {
+            if (message)
+                snprintf(message, message_size, "body '%s': overlaps '%s' by %.6g m at the start", b1->name, b2->name, -contact.gap);
+            return IMPACT_EARGUMENT;
+        }
+    }
+    return IMPACT_OK;
+}
+
+impact_status impact_scene_create(const impact_scene_def *def, impact_scene **out, char *message, unsigned long message_size)
+{
+    *out = NULL;
+    if (message && message_size > 0) message[0] = '\0';
+    impact_status status = impact_scene_check(def, message, message_size);
+    if (status != IMPACT_OK) return status;
+    impact_scene *scene = calloc(1, sizeof *scene);
+    if (!scene) return IMPACT_ENOMEM;
+    scene->duration = def->duration;
+    scene->law = def->law;
+    scene->solver = def->solver;
+    scene->rest_height = def->rest_height;
+    scene->rest_speed = def->rest_speed;
+    scene->max_events = def->max_events;
+    scene->sampler = (impact_sampler){.rate = def->output_rate, .emit = emit_samples, .pulse = pulse, .context = scene};
+    status = impact_scene_build(scene, def);
+    if (status == IMPACT_OK) {
+        impact_field_locate(&scene->world, scene->states);
+        scene->energy_start = impact_scene_total_energy(scene);
+        status = check_overlaps(scene, message, message_size);
+    }
+    if (status != IMPACT_OK) {
+        impact_scene_destroy(scene);
+        return status;
+    }
+    *out = scene;
+    return IMPACT_OK;
+}
+
+void impact_scene_destroy(impact_scene *scene)
+{
+    if (!scene) return;
+    impact_scene_unbuild(scene);
+    free(scene);
+}
+
+static bool all_at_rest(const impact_scene *scene)
+{
+    bool any = false;
+    for (int i = 0; i < scene->world.body_count; i++) {
+        if (scene->world.bodies[i].is_static) continue;
+        if (!scene->motion.resting[i]) return false;
+        any = true;
+    }
+    return any;
+}
+
+/* One stretch of motion and the event at its end. */
+static impact_status advance(impact_scene *scene, double t_end)
+{
+    enum { MAX_STALLS = 10000 };
+    const double t_before = scene->t;
+    impact_end end;
+    impact_sampler silent = {.pulse = pulse, .context = scene};
+    const bool samples = scene->recorder && scene->recorder->sample;
+    scene->stop = IMPACT_OK;
+    impact_status status = impact_motion_advance(&scene->motion, &scene->t, t_end, scene->states,
+                                                 samples ? &scene->sampler : &silent, &end);
+    if (status < 0) {
+        snprintf(scene->message, sizeof scene->message, "%s", scene->motion.message);
+        return status;
+    }
+    status = impact_scene_handle(scene, end);
+    if (status != IMPACT_OK) return status;
+    scene->stalls = scene->t > t_before ? 0 : scene->stalls + 1;
+    if (scene->stalls < MAX_STALLS) return scene->stop;
+    snprintf(scene->message, sizeof scene->message, "%d events at the one instant t = %.17g brought no end", MAX_STALLS, scene->t);
+    return IMPACT_EUNSETTLED;
+}
+
+static impact_status run(impact_scene *scene, double t_end)
+{
+    scene->message[0] = '\0';
+    if (!isfinite(t_end)) return IMPACT_EDOMAIN;
+    const double due = ceil(scene->t * scene->sampler.rate);
+    if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
+    impact_status status = impact_scene_settle(scene, -1);
+    while (status == IMPACT_OK && scene->t < t_end) {
+        if (all_at_rest(scene)) return IMPACT_AT_REST;
+        if (scene->event_count >= scene->max_events) {
+            snprintf(scene->message, sizeof scene->message, "%ld events by t = %.17g: the limit", scene->event_count, scene->t);
+            return IMPACT_EVENT_LIMIT;
+        }
+        status = pulse(scene, scene->t) ? advance(scene, t_end) : scene->stop;
+    }
+    return status;
+}
+
+impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
+{
+    scene->recorder = recorder;
+    const impact_status status = run(scene, t);
+    scene->recorder = NULL;
+    if (status < 0 && scene->message[0] == '\0') snprintf(scene->message, sizeof scene->message, "%s", impact_status_string(status));
+    return status;
+}
+
+impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder)
+{
+    return impact_scene_run_to(scene, scene->duration, recorder);
+}
+
+const char *impact_scene_message(const impact_scene *scene) { return scene->message; }
+
+double impact_scene_time(const impact_scene *scene) { return scene->t; }
+
+int impact_scene_find(const impact_scene *scene, const char *body)
+{
+    for (int i = 0; i < scene->world.body_count; i++)
+        if (strcmp(scene->world.bodies[i].name, body) == 0) return i;
+    return -1;
+}
+
+impact_status impact_scene_body(const impact_scene *scene, int body, impact_sample *sample)
+{
+    if (body < 0 || body >= scene->world.body_count) return IMPACT_EARGUMENT;
+    *sample = impact_scene_sample(scene, scene->t, body, scene->states);
+    return IMPACT_OK;
+}
+
+impact_usage impact_scene_usage(const impact_scene *scene) { return scene->world.usage; }
+
+impact_energy impact_scene_energy(const impact_scene *scene)
+{
+    return (impact_energy){.start = scene->energy_start,
+                           .kinetic = impact_world_kinetic_energy(&scene->world, scene->states),
+                           .potential = impact_field_potential(&scene->world, scene->states),
+                           .force_work = scene->motion.works.force,
+                           .damping_loss = scene->motion.works.damping,
+                           .sliding_loss = scene->motion.works.sliding,
+                           .impact_loss = scene->impact_loss};
+}

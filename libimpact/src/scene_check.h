@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene_check: what is wrong with a definition, in one sentence that names the thing and the value. Internal.
+ */
+#ifndef IMPACT_SCENE_CHECK_H
+#define IMPACT_SCENE_CHECK_H
+
+#include <impact/scene.h>
+
+/* IMPACT_OK, or a failure with its message. */
+impact_status impact_scene_check(const impact_scene_def *def, char *message, unsigned long message_size);
+
+/* Index of the named body of the definition, or -1. */
+int impact_scene_def_find(const impact_scene_def *def, const char *name);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+#include <impact/scene.h>
+
+#include <math.h>
+
+impact_scene_def impact_default_scene_def(void)
+{
+    return (impact_scene_def){
+        .name = "scene",
+        .gravity = {0, 0, -9.80665}, /* standard gravity, CGPM 1901 */
+        .duration = 1,
+        .output_rate = 24,
+        .friction_rule = IMPACT_PRODUCT,
+        .restitution_rule = IMPACT_PRODUCT,
+        .law = IMPACT_POISSON,
+        .solver = IMPACT_SOLVER_AUTO,
+        .tolerance = 1e-12,
+        .rest_height = 1e-12,
+        .rest_speed = 1e-9,
+        .max_events = 1000000,
+    };
+}
+
+impact_body_def impact_default_body_def(void)
+{
+    return (impact_body_def){
+        .mass = NAN,
+        .density = 1000,
+        .moments = {NAN, NAN, NAN},
+        .orientation = {1, 0, 0, 0},
+        .friction = 0.5,
+        .restitution = 0.5,
+    };
+}

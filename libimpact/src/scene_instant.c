@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What happens at one instant: impacts, one after another, until no touching pair approaches; then the contacts that are held.
+ */
+#include "scene_internal.h"
+#include "world_gap.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- rows ---- */
+
+double impact_scene_total_energy(const impact_scene *scene)
+{
+    return impact_world_kinetic_energy(&scene->world, scene->states) + impact_field_potential(&scene->world, scene->states);
+}
+
+impact_sample impact_scene_sample(const impact_scene *scene, double t, int body, const impact_state *states)
+{
+    const impact_state *s = &states[body];
+    const impact_body *b = &scene->world.bodies[body];
+    return (impact_sample){t, body, b->name, s->x, s->q, s->v, impact_omega(b, s)};
+}
+
+static bool record_rows(impact_scene *scene, int body, const impact_state *states)
+{
+    const impact_recorder *recorder = scene->recorder;
+    if (body < 0 || scene->world.bodies[body].is_static || !recorder->sample) return true;
+    const impact_sample sample = impact_scene_sample(scene, scene->t, body, states);
+    scene->world.usage.samples++;
+    return recorder->sample(recorder->context, &sample);
+}
+
+/* Counts the event, and hands it on between its bodies' rows before and after. */
+static impact_status record(impact_scene *scene, const impact_event *event)
+{
+    scene->world.usage.events[event->kind]++;
+    scene->event_count++;
+    if (!scene->recorder) return IMPACT_OK;
+    const int other = event->kind == IMPACT_EVENT_FORCE ? -1 : event->body2;
+    const bool taken = record_rows(scene, event->body1, scene->before) && record_rows(scene, other, scene->before) &&
+                       (!scene->recorder->event || scene->recorder->event(scene->recorder->context, event)) &&
+                       record_rows(scene, event->body1, scene->states) && record_rows(scene, other, scene->states);
+    memcpy(scene->before, scene->states, sizeof *scene->states * (size_t)scene->world.body_count);
+    return taken ? IMPACT_OK : IMPACT_ESINK;
+}
+
+static impact_event event_of_touch(const impact_scene *scene, impact_event_kind kind, const impact_touch *touch)
+{
+    const impact_world *world = &scene->world;
+    const double energy = impact_scene_total_energy(scene);
+    return (impact_event){.t = scene->t, .kind = kind, .body1 = touch->body1, .body2 = touch->body2,
+                          .name1 = world->bodies[touch->body1].name, .name2 = world->bodies[touch->body2].name,
+                          .point = qvec3_add(scene->states[touch->body1].x, touch->r1), .normal = touch->normal, .phases = "",
+                          .energy_before = energy, .energy_after = energy};
+}
+
+static impact_event event_of_body(const impact_scene *scene, impact_event_kind kind, int body)
+{
+    const double energy = impact_scene_total_energy(scene);
+    return (impact_event){.t = scene->t, .kind = kind, .body1 = body, .body2 = -1, .name1 = scene->world.bodies[body].name,
+                          .name2 = "", .point = scene->states[body].x, .phases = "", .energy_before = energy, .energy_after = energy};
+}
+
+/* ---- touching pairs ---- */
+
+typedef struct meeting {
+    impact_touch touch;
+    double velocity;     /* d(gap)/dt, m/s */
+    double acceleration; /* d2(gap)/dt2 without reactions, m/s^2 */
+} meeting;
+
+/* Fills the meeting of a held pair, or of an open one that touches within its plane's bounds; false otherwise. */
+static bool meets(impact_scene *scene, int p, meeting *m)
+{
+    impact_world *world = &scene->world;
+    impact_pair *pair = &world->pairs[p];
+    if (pair->beyond || impact_world_distance_bound(world, pair, scene->states) > world->bodies[pair->body1].radius) return false;
+    impact_contact contact;
+    impact_world_gap(world, pair, scene->states, &contact);
+    const double size = qvec3_norm(scene->states[pair->body1].x) + world->bodies[pair->body1].radius;
+    if (!impact_is_held(pair) &&
+        (contact.gap > 1e-12 * size || impact_world_inside_bounds(world, pair, scene->states, &contact) < 0))
+        return false;
+    m->touch = impact_persist_touch(world, p, scene->states, scene->motion.loads);
+    m->velocity = impact_world_approach(world, &m->touch, scene->states);
+    m->acceleration = qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip);
+    return true;
+}
+
+/* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies together. */
+static bool dies_out(const impact_scene *scene, const meeting *m, double speed)
+{
+    return m->acceleration < 0 && speed * speed < -2 * m->acceleration * scene->rest_height;
+}
+
+/* ---- one impact ---- */
+
+static impact_collider collider(const impact_scene *scene, int body, qvec3 offset)
+{
+    const impact_body *b = &scene->world.bodies[body];
+    const impact_state *s = &scene->states[body];
+    return (impact_collider){b->mass, b->moments, s->q, offset, s->v, impact_omega(b, s)};
+}
+
+static const char *phases_in_words(const impact_outcome *outcome, char *words, size_t size)
+{
+    static const char *const names[] = {
+        [IMPACT_SLIP_C] = "slip-c", [IMPACT_STICK_C] = "stick-c", [IMPACT_SLIP_R] = "slip-r", [IMPACT_STICK_R] = "stick-r",
+        [IMPACT_REVERSAL] = "reversal"};
+    size_t used = 0;
+    words[0] = '\0';
+    for (int i = 0; i < outcome->phase_count && used < size; i++)
+        used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "", names[outcome->phases[i]]);
+    return words;
+}
+
+static void count_solver(impact_scene *scene, impact_solver solver)
+{
+    impact_usage *usage = &scene->world.usage;
+    if (solver == IMPACT_SOLVER_CLOSED_FORM) usage->impacts_closed_form++;
+    if (solver == IMPACT_SOLVER_SERIES) usage->impacts_series++;
+    if (solver == IMPACT_SOLVER_CVODE) usage->impacts_cvode++;
+}
+
+/* Solves the pair's impact. One whose bounce would die out is solved with restitution 0: it then exchanges, at once, the whole impulse
+ * of the infinitely many bounces that would follow, less what the pressing force brings while they last: the sum
+ * m w (1 + e)(1 + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
+static impact_status strike(impact_scene *scene, const meeting *m)
+{
+    impact_world *world = &scene->world;
+    const impact_touch *touch = &m->touch;
+    const double restitution = world->pairs[touch->pair].restitution;
+    const impact_collision collision = {
+        .body = {collider(scene, touch->body1, touch->r1), collider(scene, touch->body2, touch->r2)},
+        .normal = touch->normal,
+        .friction = touch->friction,
+        .restitution = dies_out(scene, m, restitution * m->velocity) ? 0 : restitution,
+        .law = scene->law,
+        .solver = scene->solver};
+    impact_outcome outcome;
+    const impact_status status = impact_collide(&collision, &outcome);
+    if (status != IMPACT_OK) {
+        snprintf(scene->message, sizeof scene->message, "impact of '%s' and '%s' at t = %.17g: %s", world->bodies[touch->body1].name,
+                 world->bodies[touch->body2].name, scene->t, impact_status_string(status));
+        return status < 0 ? status : IMPACT_EUNSETTLED;
+    }
+    impact_event event = event_of_touch(scene, IMPACT_EVENT_IMPACT, touch);
+    const int bodies[2] = {touch->body1, touch->body2};
+    for (int k = 0; k < 2; k++) {
+        const impact_body *body = &world->bodies[bodies[k]];
+        impact_state *state = &scene->states[bodies[k]];
+        if (body->is_static) continue;
+        state->v = outcome.velocity[k];
+        state->momentum = impact_inertia(body, state->q, outcome.omega[k]);
+        scene->motion.resting[bodies[k]] = false;
+    }
+    count_solver(scene, outcome.solver);
+    char words[128];
+    event.phases = phases_in_words(&outcome, words, sizeof words);
+    event.impulse_normal = outcome.impulse_normal;
+    event.impulse_tangential = outcome.impulse_tangential;
+    event.normal_before = outcome.normal_before;
+    event.normal_after = outcome.normal_after;
+    event.energy_after = impact_scene_total_energy(scene);
+    return record(scene, &event);
+}
+
+/* The first touching pair that approaches in earnest, or -1. Held contacts that barely do are put right by projection. */
+static int find_approach(impact_scene *scene, int first, meeting *m)
+{
+    const double slow = scene->world.slip_speed;
+    for (int k = first >= 0 ? -1 : 0; k < scene->world.pair_count; k++) {
+        const int p = k < 0 ? first : k;
+        if (!meets(scene, p, m)) continue;
+        const bool held = impact_is_held(&scene->world.pairs[p]);
+        if (m->velocity < -slow && !(held && dies_out(scene, m, m->velocity))) return p;
+    }
+    return -1;
+}
+
+/* ---- which contacts are held ---- */
+
+static void choose_modes(impact_scene *scene)
+{
+    impact_world *world = &scene->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        meeting m;
+        impact_pair *pair = &world->pairs[p];
+        if (!meets(scene, p, &m)) continue;
+        const bool stays = m.acceleration < 0 ? dies_out(scene, &m, m.velocity) : impact_is_held(pair) && m.velocity <= world->slip_speed;
+        pair->mode = !stays ? IMPACT_OPEN : m.touch.speed > world->slip_speed ? IMPACT_SLIDE : IMPACT_ROLL;
+    }
+}
+
+static impact_event_kind change_of_mode(impact_mode before, impact_mode now)
+{
+    if (now == IMPACT_OPEN) return IMPACT_EVENT_LIFTOFF;
+    if (before == IMPACT_OPEN) return IMPACT_EVENT_CONTACT;
+    return now == IMPACT_ROLL ? IMPACT_EVENT_STICK : IMPACT_EVENT_SLIP;
+}
+
+static impact_status record_changes(impact_scene *scene)
+{
+    impact_world *world = &scene->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        const impact_mode now = world->pairs[p].mode;
+        if (now == scene->modes[p]) continue;
+        const impact_touch touch = impact_persist_touch(world, p, scene->states, scene->motion.loads);
+        impact_event event = event_of_touch(scene, change_of_mode(scene->modes[p], now), &touch);
+        event.phases = now == IMPACT_SLIDE ? "slide" : now == IMPACT_ROLL ? "roll" : "";
+        scene->motion.resting[touch.body1] = scene->motion.resting[touch.body2] = false;
+        const impact_status status = record(scene, &event);
+        if (status != IMPACT_OK) return status;
+    }
+    return IMPACT_OK;
+}
+
+static impact_status load(impact_scene *scene)
+{
+    if (impact_motion_load(&scene->motion, scene->t, scene->states)) return IMPACT_OK;
+    memcpy(scene->message, scene->motion.message, sizeof scene->motion.message);
+    return IMPACT_EDOMAIN;
+}
+
+/* A body that is slower than the rest speed, held, and not accelerated, is at rest. */
+static bool comes_to_rest(const impact_scene *scene, int body)
+{
+    const impact_body *b = &scene->world.bodies[body];
+    const impact_state *s = &scene->states[body];
+    if (b->is_static || scene->motion.resting[body]) return false;
+    if (qvec3_norm(s->v) + b->radius * qvec3_norm(impact_omega(b, s)) > scene->rest_speed) return false;
+    qvec3 force = scene->motion.loads[body].force, torque = scene->motion.loads[body].torque;
+    bool held = false;
+    for (int c = 0; c < scene->motion.persist.count; c++) {
+        const impact_touch *touch = &scene->motion.persist.touches[c];
+        if (touch->body1 != body && touch->body2 != body) continue;
+        held = touch->mode == IMPACT_ROLL;
+        if (!held) return false;
+        const qvec3 f = touch->body1 == body ? touch->force : qvec3_neg(touch->force);
+        force = qvec3_add(force, f);
+        torque = qvec3_add(torque, qvec3_cross(touch->body1 == body ? touch->r1 : touch->r2, f));
+    }
+    const double acceleration = qvec3_norm(force) * b->inverse_mass + b->radius * qvec3_norm(impact_inverse_inertia(b, s->q, torque));
+    return held && acceleration < 100 * scene->rest_speed;
+}
+
+static impact_status bring_to_rest(impact_scene *scene)
+{
+    for (int i = 0; i < scene->world.body_count; i++) {
+        if (!comes_to_rest(scene, i)) continue;
+        scene->states[i].v = scene->states[i].momentum = (qvec3){0, 0, 0};
+        scene->motion.resting[i] = true;
+        const impact_event event = event_of_body(scene, IMPACT_EVENT_REST, i);
+        const impact_status status = record(scene, &event);
+        if (status != IMPACT_OK) return status;
+    }
+    return IMPACT_OK;
+}
+
+/* From tentative modes to consistent ones, with the constraints exact. */
+static impact_status hold(impact_scene *scene)
+{
+    impact_motion *motion = &scene->motion;
+    impact_status status = impact_persist_reserve(&motion->persist, &scene->world);
+    if (status == IMPACT_OK) status = load(scene);
+    if (status != IMPACT_OK) return status;
+    impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);
+    status = load(scene);
+    if (status == IMPACT_OK) status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads);
+    if (status == IMPACT_EUNSETTLED)
+        snprintf(scene->message, sizeof scene->message, "no consistent set of contact forces found at t = %.17g", scene->t);
+    if (status == IMPACT_OK) status = record_changes(scene);
+    return status == IMPACT_OK ? bring_to_rest(scene) : status;
+}
+
+static void remember(impact_scene *scene)
+{
+    memcpy(scene->before, scene->states, sizeof *scene->states * (size_t)scene->world.body_count);
+    for (int p = 0; p < scene->world.pair_count; p++) scene->modes[p] = scene->world.pairs[p].mode;
+}
+
+static impact_status strike_all(impact_scene *scene, int first)
+{
+    enum { MAX_IMPACTS = 100000 };
+    meeting m;
+    impact_status status = load(scene);
+    for (int count = 0; status == IMPACT_OK; count++) {
+        const int p = find_approach(scene, first, &m);
+        if (p < 0) return IMPACT_OK;
+        if (count > 0) scene->world.usage.impacts_simultaneous++;
+        if (count == MAX_IMPACTS) {
+            snprintf(scene->message, sizeof scene->message, "%d impacts in the one instant t = %.17g brought no end", count, scene->t);
+            return IMPACT_EUNSETTLED;
+        }
+        status = strike(scene, &m);
+        if (status == IMPACT_OK) status = load(scene);
+        first = -1;
+    }
+    return status;
+}
+
+impact_status impact_scene_settle(impact_scene *scene, int pair)
+{
+    remember(scene);
+    const double energy = impact_scene_total_energy(scene);
+    impact_status status = strike_all(scene, pair);
+    if (status == IMPACT_OK) {
+        choose_modes(scene);
+        status = hold(scene);
+    }
+    scene->impact_loss += energy - impact_scene_total_energy(scene);
+    return status;
+}
+
+/* ---- the ends of stretches of motion ---- */
+
+static impact_status arrive(impact_scene *scene, int p)
+{
+    impact_world *world = &scene->world;
+    impact_pair *pair = &world->pairs[p];
+    impact_contact contact;
+    impact_world_gap(world, pair, scene->states, &contact);
+    if (impact_world_inside_bounds(world, pair, scene->states, &contact) >= 0) return impact_scene_settle(scene, p);
+    pair->beyond = true;
+    return IMPACT_OK;
+}
+
+/* The contact changes its mode, and the rest follows. */
+static impact_status change_mode(impact_scene *scene, int p, impact_mode mode)
+{
+    remember(scene);
+    impact_pair *pair = &scene->world.pairs[p];
+    if (mode == IMPACT_SLIDE) { /* it will slide against the friction that held it */
+        impact_status status = load(scene);
+        if (status != IMPACT_OK) return status;
+        impact_persist_solve(&scene->motion.persist, &scene->world, scene->states, scene->motion.loads);
+        for (int c = 0; c < scene->motion.persist.count; c++) {
+            const impact_touch *touch = &scene->motion.persist.touches[c];
+            if (touch->pair != p) continue;
+            const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
+            pair->direction = qvec3_scale(friction, -1 / qvec3_norm(friction));
+        }
+    }
+    pair->mode = mode;
+    const double energy = impact_scene_total_energy(scene);
+    const impact_status status = hold(scene);
+    scene->impact_loss += energy - impact_scene_total_energy(scene);
+    return status;
+}
+
+static impact_status cross_edge(impact_scene *scene, int edge)
+{
+    int field, body;
+    remember(scene);
+    impact_field_cross(&scene->world, edge, &field, &body);
+    impact_event event = event_of_body(scene, IMPACT_EVENT_FORCE, body);
+    event.name2 = scene->world.fields[field].name;
+    const impact_status status = record(scene, &event);
+    return status == IMPACT_OK ? hold(scene) : status;
+}
+
+impact_status impact_scene_handle(impact_scene *scene, impact_end end)
+{
+    switch (end.kind) {
+    case IMPACT_END_TIME: return IMPACT_OK;
+    case IMPACT_END_GAP: return arrive(scene, end.index);
+    case IMPACT_END_RETURN: scene->world.pairs[end.index].beyond = false; return IMPACT_OK;
+    case IMPACT_END_BOUNDS: scene->world.pairs[end.index].beyond = true; return change_mode(scene, end.index, IMPACT_OPEN);
+    case IMPACT_END_LIFTOFF: return change_mode(scene, end.index, IMPACT_OPEN);
+    case IMPACT_END_SLIP: return change_mode(scene, end.index, IMPACT_SLIDE);
+    case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);
+    case IMPACT_END_EDGE: return cross_edge(scene, end.index);
+    case IMPACT_END_SLOW: remember(scene); return hold(scene);
+    }
+    return IMPACT_OK;
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The scene as its own source files see it: scene_build.c makes it, scene_instant.c does what happens at one instant,
+ * scene.c runs it. Internal.
+ */
+#ifndef IMPACT_SCENE_INTERNAL_H
+#define IMPACT_SCENE_INTERNAL_H
+
+#include "motion.h"
+
+struct impact_scene {
+    impact_world world;
+    impact_motion motion;
+    impact_state *states;
+    impact_state *before;    /* as the states were when the event at hand came */
+    impact_mode *modes;      /* as the pairs' modes were then */
+    double t, duration;
+    impact_law law;
+    impact_solver solver;
+    double rest_height, rest_speed;
+    long max_events, event_count;
+    long stalls; /* events since time last moved */
+    impact_sampler sampler;
+    const impact_recorder *recorder; /* of the run under way */
+    impact_status stop;              /* why the recorder stopped the run */
+    double energy_start, impact_loss;
+    char message[512];
+};
+
+/* The world of a definition that impact_scene_check has passed. */
+impact_status impact_scene_build(impact_scene *scene, const impact_scene_def *def);
+void impact_scene_unbuild(impact_scene *scene);
+
+/* Kinetic + potential, J. */
+double impact_scene_total_energy(const impact_scene *scene);
+impact_sample impact_scene_sample(const impact_scene *scene, double t, int body, const impact_state *states);
+
+/* At the scene's time: all impacts there are (the pair's first, if pair >= 0), then which contacts are held, in which mode. */
+impact_status impact_scene_settle(impact_scene *scene, int pair);
+/* At the scene's time: what the end of a stretch of motion stands for. */
+impact_status impact_scene_handle(impact_scene *scene, impact_end end);
+
+#endif

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * world: the bodies, pairs and forces of one scene as the rooms of motion see them. Internal.
+ */
+#ifndef IMPACT_WORLD_H
+#define IMPACT_WORLD_H
+
+#include <quat/rotation.h>
+#include <impact/force.h>
+#include <impact/gap.h>
+#include <impact/scene.h>
+
+/* What moves of a body. The angular momentum, not omega, is the state: it is what torque-free motion keeps. */
+typedef struct impact_state {
+    qvec3 x;
+    quat q;
+    qvec3 v;
+    qvec3 momentum; /* angular, about the centre, world */
+} impact_state;
+
+/* What does not change of a body. */
+typedef struct impact_body {
+    char *name;
+    impact_shape shape;
+    bool is_static;
+    bool spherical; /* three equal principal moments: omega is parallel to the angular momentum */
+    double mass, inverse_mass;
+    qvec3 moments, inverse_moments;
+    double radius; /* of the bounding ball */
+    double friction, restitution;
+    double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
+} impact_body;
+
+typedef enum impact_mode {
+    IMPACT_OPEN,  /* apart, or about to be */
+    IMPACT_SLIDE, /* held, sliding */
+    IMPACT_ROLL   /* held, the contact point at rest: rolling, pivoting or resting */
+} impact_mode;
+
+/* Two bodies that can touch; body1 moves. */
+typedef struct impact_pair {
+    int body1, body2;
+    double friction, restitution;
+    impact_mode mode;
+    bool beyond;     /* IMPACT_OPEN: body 1 passed beside the bounds of the plane and is behind it */
+    qvec3 direction; /* IMPACT_SLIDE: the way body 1 slips over body 2 when the speed is too small to tell */
+    impact_gap_cache cache;
+} impact_pair;
+
+/* A force with its edges: inside[slot] tells whether the slot's body (wind) or couple of bodies (attraction) is within reach. It is
+ * held between events, so that the forces are smooth there. */
+typedef struct impact_field {
+    impact_force_def def; /* name is owned; body is not used: see only */
+    char *name;
+    int only; /* the one body it acts on, or -1 */
+    int slots;
+    bool *inside;
+} impact_field;
+
+typedef struct impact_world {
+    int body_count, pair_count, field_count;
+    impact_body *bodies;
+    impact_pair *pairs;
+    impact_field *fields;
+    qvec3 gravity;
+    double slip_speed; /* m/s: a held contact that slips slower than this sticks */
+    impact_usage usage;
+} impact_world;
+
+static inline bool impact_is_held(const impact_pair *pair) { return pair->mode != IMPACT_OPEN; }
+
+/* J^-1 a, for a vector in the world frame. */
+static inline qvec3 impact_inverse_inertia(const impact_body *body, quat q, qvec3 a)
+{
+    if (body->spherical) return qvec3_scale(a, body->inverse_moments.x);
+    const qvec3 b = quat_rotate_inverse(q, a);
+    return quat_rotate(q, (qvec3){b.x * body->inverse_moments.x, b.y * body->inverse_moments.y, b.z * body->inverse_moments.z});
+}
+
+/* J a, for a vector in the world frame; zero for a static body. */
+static inline qvec3 impact_inertia(const impact_body *body, quat q, qvec3 a)
+{
+    if (body->is_static) return (qvec3){0, 0, 0};
+    if (body->spherical) return qvec3_scale(a, body->moments.x);
+    const qvec3 b = quat_rotate_inverse(q, a);
+    return quat_rotate(q, (qvec3){b.x * body->moments.x, b.y * body->moments.y, b.z * body->moments.z});
+}
+
+static inline qvec3 impact_omega(const impact_body *body, const impact_state *state)
+{
+    return impact_inverse_inertia(body, state->q, state->momentum);
+}
+
+static inline impact_solid impact_solid_of(const impact_body *body, const impact_state *state)
+{
+    return (impact_solid){body->shape, state->x, state->q};
+}
+
+#endif
