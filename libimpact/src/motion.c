@@ -116,7 +116,8 @@ static double time_to_contact(impact_motion *motion, impact_pair *pair, const im
         impact_world_gap(world, pair, states, &contact);
         const double rate = qvec3_dot(contact.normal, qvec3_sub(states[pair->body1].v, states[pair->body2].v));
         const double acceleration = world->bodies[pair->body2].is_static ? qvec3_dot(contact.normal, world->gravity) : 0;
-        const double step = impact_flight_fall_time(sign * contact.gap, sign * rate, sign * acceleration);
+        const double gap = sign * contact.gap + (contact.gap <= pair->slack ? pair->slack : 0);
+        const double step = impact_flight_fall_time(gap, sign * rate, sign * acceleration);
         if (!(dt + step <= horizon)) return INFINITY;
         if (dt + step == dt) return dt;
         dt += step;
@@ -229,7 +230,8 @@ static int rates(double tau, const double *y, double *rate, void *context)
     }
     if (motion->persist.count > 0) impact_persist_solve(&motion->persist, world, motion->scratch, motion->loads);
     for (int c = 0; c < motion->persist.count; c++)
-        rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
+        if (motion->persist.touches[c].mode == IMPACT_SLIDE)
+            rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
     add_reactions(motion);
     const double clock = clock_rate(motion);
     rate[Y_TIME] = clock;
@@ -245,7 +247,7 @@ static int rates(double tau, const double *y, double *rate, void *context)
 
 /* ---- roots: every one falls through zero when its event comes ---- */
 
-/* The gap, and minus its rate. Far apart, of the bounding balls: positive either way. */
+/* The gap, minus its rate, and how far the slack is from being cleared. Far apart, of the bounding balls: positive either way. */
 static void open_pair_roots(impact_world *world, impact_pair *pair, const impact_state *states, double *value)
 {
     const double bound = impact_world_distance_bound(world, pair, states);
@@ -256,7 +258,8 @@ static void open_pair_roots(impact_world *world, impact_pair *pair, const impact
     }
     impact_contact contact;
     impact_world_gap(world, pair, states, &contact);
-    value[0] = pair->beyond ? -contact.gap : contact.gap;
+    value[0] = pair->beyond ? -contact.gap : contact.gap + pair->slack;
+    if (pair->slack > 0) value[2] = 2 * pair->slack - contact.gap;
     value[1] = pair->beyond ? 1 : -impact_world_gap_rate(world, pair, states, &contact);
 }
 
@@ -349,7 +352,7 @@ static double last_step_value(impact_motion *motion, last_step_function f, const
     impact_contact contact;
     unpack(motion, y, motion->scratch);
     impact_world_gap(motion->world, &motion->world->pairs[f.pair], motion->scratch, &contact);
-    return contact.gap;
+    return contact.gap + motion->world->pairs[f.pair].slack;
 }
 
 /* Interpolates the last step where f changes sign between tau = low and high, by the Illinois form of regula falsi. */
@@ -397,6 +400,7 @@ static impact_end end_of_root(const impact_motion *motion, int root)
     if (root < ROOTS_PER_PAIR * world->pair_count) {
         const int p = root / ROOTS_PER_PAIR, slot = root % ROOTS_PER_PAIR;
         const impact_pair *pair = &world->pairs[p];
+        if (!impact_is_held(pair) && slot == 2) return (impact_end){IMPACT_END_CLEAR, p};
         if (!impact_is_held(pair)) return (impact_end){pair->beyond ? IMPACT_END_RETURN : IMPACT_END_GAP, p};
         if (slot == 0) return (impact_end){IMPACT_END_LIFTOFF, p};
         if (slot == 2) return (impact_end){IMPACT_END_BOUNDS, p};
@@ -442,7 +446,7 @@ static impact_status polish_gap(impact_motion *motion, int pair, double *tau, do
     const double rate = impact_world_gap_rate(world, &world->pairs[pair], motion->scratch, &contact) * clock_rate(motion);
     double low, high;
     impact_ode_last_step(motion->ode, &low, &high);
-    const double polished = *tau - contact.gap / rate;
+    const double polished = *tau - (contact.gap + world->pairs[pair].slack) / rate;
     if (!(polished >= low && polished <= high) || fabs(polished - *tau) > 1e-9 * (high - low)) return IMPACT_OK;
     *tau = polished;
     return impact_ode_interpolate(motion->ode, polished, 0, y);

@@ -43,13 +43,47 @@ void impact_persist_free(impact_persist *persist)
 
 /* ---- geometry ---- */
 
-/* Two spheres: n turns with the line of centres. A plane's normal stays. */
-static qvec3 turning_of_normal(const impact_world *world, const impact_touch *touch, const impact_state *states)
+/* What a body's surface does at the contact: the Hessian of its support function there, in the world, whose eigenvalues are the radii of
+ * curvature, applied to a tangential vector. */
+static qvec3 curve(const impact_body *body, const impact_state *state, qvec3 outward, qvec3 v)
 {
-    if (world->bodies[touch->body2].shape.kind == IMPACT_PLANE) return (qvec3){0, 0, 0};
-    const qvec3 d = qvec3_sub(states[touch->body1].v, states[touch->body2].v);
-    const double distance = qvec3_norm(qvec3_sub(states[touch->body1].x, states[touch->body2].x));
-    return qvec3_scale(qvec3_axpy(-qvec3_dot(d, touch->normal), touch->normal, d), 1 / distance);
+    if (body->shape.kind == IMPACT_SPHERE) return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
+    const qmat3 h = impact_shape_support_hessian(&body->shape, quat_rotate_inverse(state->q, outward));
+    const qvec3 b = quat_rotate_inverse(state->q, v);
+    return quat_rotate(state->q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
+                                         h.m[1][0] * b.x + h.m[1][1] * b.y + h.m[1][2] * b.z,
+                                         h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
+}
+
+/* An orthonormal tangent, and the other is normal x it. */
+static qvec3 tangent_of(qvec3 n)
+{
+    const qvec3 t = fabs(n.x) < 0.6 ? (qvec3){0, n.z, -n.y} : (qvec3){-n.z, 0, n.x};
+    return qvec3_scale(t, 1 / qvec3_norm(t));
+}
+
+/* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each surface the
+ * point of outward normal m moves by r' = w x r + W (m' - w x m), W the support function's Hessian; that both points stay together
+ * gives (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n). A plane's normal stays (W2 is infinite). */
+static void contact_rates(const impact_world *world, impact_touch *touch, const impact_state *states, qvec3 *rate1, qvec3 *rate2)
+{
+    const impact_body *b1 = &world->bodies[touch->body1], *b2 = &world->bodies[touch->body2];
+    const impact_state *s1 = &states[touch->body1], *s2 = &states[touch->body2];
+    const qvec3 n = touch->normal, out1 = qvec3_neg(n);
+    const qvec3 w1 = impact_omega(b1, s1), turn1 = qvec3_cross(w1, n);
+    touch->normal_rate = *rate2 = (qvec3){0, 0, 0};
+    if (b2->shape.kind != IMPACT_PLANE) {
+        const qvec3 w2 = b2->is_static ? (qvec3){0, 0, 0} : impact_omega(b2, s2), turn2 = qvec3_cross(w2, n);
+        const qvec3 t1 = tangent_of(n), t2 = qvec3_cross(n, t1);
+        const qvec3 c1 = qvec3_add(curve(b1, s1, out1, t1), curve(b2, s2, n, t1));
+        const qvec3 c2 = qvec3_add(curve(b1, s1, out1, t2), curve(b2, s2, n, t2));
+        const qvec3 moves = qvec3_add(touch->slip, qvec3_add(curve(b1, s1, out1, turn1), curve(b2, s2, n, turn2)));
+        const double a = qvec3_dot(t1, c1), b = qvec3_dot(t1, c2), d = qvec3_dot(t2, c2), determinant = a * d - b * b;
+        const double x = qvec3_dot(t1, moves), y = qvec3_dot(t2, moves);
+        touch->normal_rate = qvec3_axpy((d * x - b * y) / determinant, t1, qvec3_scale(t2, (a * y - b * x) / determinant));
+        *rate2 = qvec3_add(qvec3_cross(w2, touch->r2), curve(b2, s2, n, qvec3_sub(touch->normal_rate, turn2)));
+    }
+    *rate1 = qvec3_add(qvec3_cross(w1, touch->r1), curve(b1, s1, out1, qvec3_sub(turn1, touch->normal_rate)));
 }
 
 /* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the centre. */
@@ -78,9 +112,8 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
     touch.slip = qvec3_axpy(-qvec3_dot(u, touch.normal), touch.normal, u);
     touch.speed = qvec3_norm(touch.slip);
     touch.direction = touch.speed > 0.1 * world->slip_speed ? qvec3_scale(touch.slip, 1 / touch.speed) : pair->direction;
-    touch.normal_rate = turning_of_normal(world, &touch, states);
-    /* On a sphere r = -+ radius n, so that it turns as n does. */
-    const qvec3 rate1 = qvec3_scale(touch.normal_rate, -b1->shape.a), rate2 = qvec3_scale(touch.normal_rate, b2->shape.a);
+    qvec3 rate1, rate2;
+    contact_rates(world, &touch, states, &rate1, &rate2);
     touch.bias = qvec3_sub(free_acceleration(b1, s1, &loads[pair->body1], touch.r1, rate1),
                            free_acceleration(b2, s2, &loads[pair->body2], touch.r2, rate2));
     return touch;
@@ -104,13 +137,6 @@ static qvec3 response(const impact_world *world, const impact_state *states, con
         if (bodies[k] == a->body2) change = qvec3_sub(change, qvec3_add(da, qvec3_cross(dalpha, a->r2)));
     }
     return change;
-}
-
-/* An orthonormal tangent, and the other is normal x it. */
-static qvec3 tangent_of(qvec3 n)
-{
-    const qvec3 t = fabs(n.x) < 0.6 ? (qvec3){0, n.z, -n.y} : (qvec3){-n.z, 0, n.x};
-    return qvec3_scale(t, 1 / qvec3_norm(t));
 }
 
 static int unknowns_of(const impact_touch *touch) { return touch->mode == IMPACT_ROLL ? 3 : 1; }

@@ -14,7 +14,7 @@ impact_scene_def impact_default_scene_def(void)
         .restitution_rule = IMPACT_PRODUCT,
         .law = IMPACT_POISSON,
         .solver = IMPACT_SOLVER_AUTO,
-        .tolerance = 1e-12,
+        .tolerance = 1e-13,
         .rest_height = 1e-12,
         .rest_speed = 1e-9,
         .max_events = 1000000,

@@ -64,6 +64,13 @@ static impact_event event_of_body(const impact_scene *scene, impact_event_kind k
 
 /* ---- touching pairs ---- */
 
+/* Gaps up to this are rounding, m. */
+static double touching_distance(const impact_scene *scene, int p)
+{
+    const int body = scene->world.pairs[p].body1;
+    return 1e-12 * (qvec3_norm(scene->states[body].x) + scene->world.bodies[body].radius);
+}
+
 typedef struct meeting {
     impact_touch touch;
     double velocity;     /* d(gap)/dt, m/s */
@@ -78,9 +85,8 @@ static bool meets(impact_scene *scene, int p, meeting *m)
     if (pair->beyond || impact_world_distance_bound(world, pair, scene->states) > world->bodies[pair->body1].radius) return false;
     impact_contact contact;
     impact_world_gap(world, pair, scene->states, &contact);
-    const double size = qvec3_norm(scene->states[pair->body1].x) + world->bodies[pair->body1].radius;
     if (!impact_is_held(pair) &&
-        (contact.gap > 1e-12 * size || impact_world_inside_bounds(world, pair, scene->states, &contact) < 0))
+        (contact.gap > touching_distance(scene, p) || impact_world_inside_bounds(world, pair, scene->states, &contact) < 0))
         return false;
     m->touch = impact_persist_touch(world, p, scene->states, scene->motion.loads);
     m->velocity = impact_world_approach(world, &m->touch, scene->states);
@@ -210,6 +216,7 @@ static impact_status record_changes(impact_scene *scene)
         impact_event event = event_of_touch(scene, change_of_mode(scene->modes[p], now), &touch);
         event.phases = now == IMPACT_SLIDE ? "slide" : now == IMPACT_ROLL ? "roll" : "";
         scene->motion.resting[touch.body1] = scene->motion.resting[touch.body2] = false;
+        world->pairs[p].slack = now == IMPACT_OPEN ? touching_distance(scene, p) : 0;
         const impact_status status = record(scene, &event);
         if (status != IMPACT_OK) return status;
     }
@@ -365,6 +372,7 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     switch (end.kind) {
     case IMPACT_END_TIME: return IMPACT_OK;
     case IMPACT_END_GAP: return arrive(scene, end.index);
+    case IMPACT_END_CLEAR: scene->world.pairs[end.index].slack = 0; return IMPACT_OK;
     case IMPACT_END_RETURN: scene->world.pairs[end.index].beyond = false; return IMPACT_OK;
     case IMPACT_END_BOUNDS: scene->world.pairs[end.index].beyond = true; return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_LIFTOFF: return change_mode(scene, end.index, IMPACT_OPEN);

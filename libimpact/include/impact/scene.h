@@ -65,7 +65,7 @@ typedef struct impact_scene_def {
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis), Poisson's law,
- * tolerance 1e-12, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events. */
+ * tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events. */
 IMPACT_API impact_scene_def impact_default_scene_def(void);
 IMPACT_API impact_body_def impact_default_body_def(void);
 
