@@ -1,31 +1,154 @@
 /* SPDX-License-Identifier: MIT */
 #include <quat/quat.h>
+#include "dd.h"
+#include "scale.h"
 
 const char *quat_status_string(quat_status status)
 {
     switch (status) {
     case QUAT_OK: return "ok";
     case QUAT_NOT_UNIQUE: return "the answer is not unique; one was chosen";
+    case QUAT_NOT_CONVERGED: return "the iteration did not converge; the last iterate is returned";
     case QUAT_EDOMAIN: return "zero, infinite or NaN where a finite, non-zero value is needed";
     case QUAT_EARGUMENT: return "argument out of range";
     case QUAT_ENOMEM: return "out of memory";
     case QUAT_EABSENT: return "this part was left out of the build";
+    case QUAT_ERANGE: return "the result is larger than the largest double";
     }
     return "unknown status";
 }
 
-double qvec3_norm(qvec3 a) { return hypot(hypot(a.x, a.y), a.z); }
+/* ---- vectors and matrices ---- */
 
-quat_status quat_normalize(quat q, quat *unit)
+double qvec3_norm(qvec3 a) { return quat_norm(quat_pure(a)); }
+
+quat_status qvec3_normalize(qvec3 a, qvec3 *unit)
 {
-    const double largest = fmax(fmax(fabs(q.w), fabs(q.x)), fmax(fabs(q.y), fabs(q.z)));
-    if (!(isfinite(q.w) && isfinite(q.x) && isfinite(q.y) && isfinite(q.z)) || largest == 0) {
-        *unit = quat_identity();
-        return QUAT_EDOMAIN;
-    }
-    const int shift = -ilogb(largest);
-    const quat s = {ldexp(q.w, shift), ldexp(q.x, shift), ldexp(q.y, shift), ldexp(q.z, shift)};
-    const double norm = sqrt(quat_dot(s, s));
-    *unit = (quat){s.w / norm, s.x / norm, s.y / norm, s.z / norm};
+    quat q;
+    const quat_status status = quat_normalize(quat_pure(a), &q);
+    *unit = status == QUAT_OK ? quat_vector(q) : qvec3_make(0, 0, 1);
+    return status;
+}
+
+qmat3 qmat3_mul(const qmat3 *a, const qmat3 *b)
+{
+    qmat3 r;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            r.m[i][j] = a->m[i][0] * b->m[0][j] + a->m[i][1] * b->m[1][j] + a->m[i][2] * b->m[2][j];
+    return r;
+}
+
+qmat3 qmat3_transpose(const qmat3 *a)
+{
+    qmat3 r;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) r.m[i][j] = a->m[j][i];
+    return r;
+}
+
+double qmat3_det(const qmat3 *a)
+{
+    const qvec3 r0 = {a->m[0][0], a->m[0][1], a->m[0][2]};
+    const qvec3 r1 = {a->m[1][0], a->m[1][1], a->m[1][2]};
+    const qvec3 r2 = {a->m[2][0], a->m[2][1], a->m[2][2]};
+    return qvec3_dot(r0, qvec3_cross(r1, r2));
+}
+
+/* ---- lengths ---- */
+
+double quat_norm(quat q)
+{
+    const double n2 = quat_norm2(q);
+    if (n2 >= 1e-280 && n2 <= 1e280) return sqrt(n2);
+    if (isinf(q.w) || isinf(q.x) || isinf(q.y) || isinf(q.z)) return INFINITY;
+    int exponent;
+    const quat s = quat_prescale(q, &exponent);
+    return ldexp(sqrt(quat_norm2(s)), exponent);
+}
+
+quat_status quat_normalize_scaled(quat q, quat *unit)
+{
+    *unit = quat_identity();
+    if (!quat_isfinite(q) || quat_equal(q, quat_make(0, 0, 0, 0))) return QUAT_EDOMAIN;
+    int exponent;
+    const quat s = quat_prescale(q, &exponent);
+    const double n = sqrt(quat_norm2(s));
+    *unit = quat_make(s.w / n, s.x / n, s.y / n, s.z / n);
     return QUAT_OK;
+}
+
+/* ---- products and quotients ---- */
+
+QUAT_FMA_CLONES
+quat quat_mul_compensated(quat p, quat q)
+{
+    const double a[4] = {p.w, p.x, p.y, p.z};
+    const double b[4][4] = {
+        {q.w, -q.x, -q.y, -q.z}, {q.x, q.w, q.z, -q.y}, {q.y, -q.z, q.w, q.x}, {q.z, q.y, -q.x, q.w}};
+    return quat_make(quat_dd_dot4(a, b[0]).hi, quat_dd_dot4(a, b[1]).hi, quat_dd_dot4(a, b[2]).hi,
+                     quat_dd_dot4(a, b[3]).hi);
+}
+
+/* q* / |q|^2 of a prescaled q: the inverse is this times 2^-exponent. */
+static quat scaled_inverse(quat s)
+{
+    const double n2 = quat_norm2(s);
+    return quat_make(s.w / n2, -s.x / n2, -s.y / n2, -s.z / n2);
+}
+
+static quat_status checked(quat value, quat *result)
+{
+    const bool fits = quat_isfinite(value);
+    *result = fits ? value : quat_identity();
+    return fits ? QUAT_OK : QUAT_ERANGE;
+}
+
+quat_status quat_inverse(quat q, quat *inverse)
+{
+    *inverse = quat_identity();
+    if (!quat_isfinite(q) || quat_equal(q, quat_make(0, 0, 0, 0))) return QUAT_EDOMAIN;
+    int exponent;
+    const quat s = quat_prescale(q, &exponent);
+    return checked(quat_ldexp(scaled_inverse(s), -exponent), inverse);
+}
+
+static quat_status divide(quat p, quat q, bool left, quat *quotient)
+{
+    *quotient = quat_identity();
+    if (!quat_isfinite(p) || !quat_isfinite(q) || quat_equal(q, quat_make(0, 0, 0, 0))) return QUAT_EDOMAIN;
+    int ep, eq;
+    const quat sp = quat_prescale(p, &ep), inverse = scaled_inverse(quat_prescale(q, &eq));
+    const quat r = left ? quat_mul(inverse, sp) : quat_mul(sp, inverse);
+    return checked(quat_ldexp(r, ep - eq), quotient);
+}
+
+quat_status quat_div(quat p, quat q, quat *quotient) { return divide(p, q, false, quotient); }
+quat_status quat_div_left(quat q, quat p, quat *quotient) { return divide(p, q, true, quotient); }
+
+/* ---- distances and comparisons ---- */
+
+double quat_distance(quat p, quat q) { return 2 * atan2(quat_norm(quat_sub(p, q)), quat_norm(quat_add(p, q))); }
+
+double quat_rotation_distance(quat p, quat q)
+{
+    const double minus = quat_norm(quat_sub(p, q)), plus = quat_norm(quat_add(p, q));
+    if (isnan(minus) || isnan(plus)) return NAN;
+    return 4 * atan2(fmin(minus, plus), fmax(minus, plus));
+}
+
+double quat_angle(quat q) { return 2 * atan2(qvec3_norm(quat_vector(q)), fabs(q.w)); }
+
+bool quat_near(quat p, quat q, double tolerance) { return quat_norm(quat_sub(p, q)) <= tolerance; }
+
+bool quat_same_rotation(quat p, quat q, double angle) { return quat_rotation_distance(p, q) <= angle; }
+
+/* ---- random ---- */
+
+quat quat_random(quat_uniform uniform, void *state)
+{
+    const double two_pi = 6.28318530717958647692;
+    const double u = uniform(state), a = two_pi * uniform(state), b = two_pi * uniform(state);
+    const double r = sqrt(1 - u), s = sqrt(u);
+    return quat_make(s * cos(b), r * sin(a), r * cos(a), s * sin(b));
 }

@@ -3,12 +3,18 @@
  * quat: types and algebra.
  *
  * Conventions (docs/conventions.md): w first, q = (w, x, y, z) = w + xi + yj + zk; Hamilton product; right-handed,
- * active rotations from body to world, v_world = q v q*; p q applies q first, then p.
+ * active rotations from body to world, v_world = q v q*; p q applies q first, then p; radians.
+ *
+ * Two kinds of function. Those that return a value follow IEEE arithmetic: they never fail, a NaN in an argument comes
+ * out as NaN, and "unit" in their comment is a precondition, kept to a few rounding errors. Those that return a
+ * quat_status check their arguments and always set their result, to the documented value if they fail.
  */
 #ifndef QUAT_QUAT_H
 #define QUAT_QUAT_H
 
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include "export.h"
 
 #ifdef __cplusplus
@@ -31,11 +37,13 @@ typedef struct qmat3 {
 /* 0 is success; positive, success with a reason; negative, failure: the result is then a documented value. */
 typedef enum quat_status {
     QUAT_OK = 0,
-    QUAT_NOT_UNIQUE = 1, /* the answer is one of several; a documented one was chosen */
-    QUAT_EDOMAIN = -1,   /* zero, infinite or NaN where a finite, non-zero value is needed */
-    QUAT_EARGUMENT = -2, /* a count, a selector or a pointer out of its range */
+    QUAT_NOT_UNIQUE = 1,    /* the answer is one of several; a documented one was chosen */
+    QUAT_NOT_CONVERGED = 2, /* the last iterate is returned */
+    QUAT_EDOMAIN = -1,      /* zero, infinite or NaN where a finite, non-zero value is needed */
+    QUAT_EARGUMENT = -2,    /* a count, a selector or a pointer out of its range */
     QUAT_ENOMEM = -3,
-    QUAT_EABSENT = -4    /* the part was left out of this build */
+    QUAT_EABSENT = -4, /* the part was left out of this build */
+    QUAT_ERANGE = -5   /* the result is larger than the largest double */
 } quat_status;
 
 /* One short English sentence for a status; never NULL. */
@@ -43,39 +51,148 @@ QUAT_API const char *quat_status_string(quat_status status);
 
 /* ---- vectors ---- */
 
-static inline qvec3 qvec3_make(double x, double y, double z) { return (qvec3){x, y, z}; }
-static inline qvec3 qvec3_add(qvec3 a, qvec3 b) { return (qvec3){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static inline qvec3 qvec3_sub(qvec3 a, qvec3 b) { return (qvec3){a.x - b.x, a.y - b.y, a.z - b.z}; }
-static inline qvec3 qvec3_neg(qvec3 a) { return (qvec3){-a.x, -a.y, -a.z}; }
-static inline qvec3 qvec3_scale(qvec3 a, double s) { return (qvec3){a.x * s, a.y * s, a.z * s}; }
+static inline qvec3 qvec3_make(double x, double y, double z)
+{
+    const qvec3 r = {x, y, z};
+    return r;
+}
+static inline qvec3 qvec3_add(qvec3 a, qvec3 b) { return qvec3_make(a.x + b.x, a.y + b.y, a.z + b.z); }
+static inline qvec3 qvec3_sub(qvec3 a, qvec3 b) { return qvec3_make(a.x - b.x, a.y - b.y, a.z - b.z); }
+static inline qvec3 qvec3_neg(qvec3 a) { return qvec3_make(-a.x, -a.y, -a.z); }
+static inline qvec3 qvec3_scale(qvec3 a, double s) { return qvec3_make(a.x * s, a.y * s, a.z * s); }
 /* a + s b */
-static inline qvec3 qvec3_axpy(double s, qvec3 b, qvec3 a) { return (qvec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z}; }
+static inline qvec3 qvec3_axpy(double s, qvec3 b, qvec3 a)
+{
+    return qvec3_make(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
+}
 static inline double qvec3_dot(qvec3 a, qvec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline qvec3 qvec3_cross(qvec3 a, qvec3 b)
 {
-    return (qvec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return qvec3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
-/* Length without overflow or underflow; inf for an infinite component, NaN for a NaN. */
+/* True when no component is infinite or NaN. */
+static inline bool qvec3_isfinite(qvec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
+/* Length without overflow or underflow; inf for an infinite component, else NaN for a NaN. */
 QUAT_API double qvec3_norm(qvec3 a);
+/* a/|a| at every finite, non-zero scale. Zero, infinite and NaN give QUAT_EDOMAIN and *unit = (0, 0, 1). */
+QUAT_API quat_status qvec3_normalize(qvec3 a, qvec3 *unit);
 
-/* ---- quaternions ---- */
+/* ---- matrices ---- */
 
-static inline quat quat_make(double w, double x, double y, double z) { return (quat){w, x, y, z}; }
-static inline quat quat_identity(void) { return (quat){1, 0, 0, 0}; }
-static inline quat quat_conj(quat q) { return (quat){q.w, -q.x, -q.y, -q.z}; }
-static inline double quat_dot(quat p, quat q) { return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z; }
+static inline qmat3 qmat3_identity(void)
+{
+    const qmat3 r = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    return r;
+}
+/* m v */
+static inline qvec3 qmat3_apply(const qmat3 *m, qvec3 v)
+{
+    return qvec3_make(m->m[0][0] * v.x + m->m[0][1] * v.y + m->m[0][2] * v.z,
+                      m->m[1][0] * v.x + m->m[1][1] * v.y + m->m[1][2] * v.z,
+                      m->m[2][0] * v.x + m->m[2][1] * v.y + m->m[2][2] * v.z);
+}
+/* The matrix product a b. */
+QUAT_API qmat3 qmat3_mul(const qmat3 *a, const qmat3 *b);
+QUAT_API qmat3 qmat3_transpose(const qmat3 *a);
+QUAT_API double qmat3_det(const qmat3 *a);
 
-/* Hamilton product p q: as rotations, q first, then p. */
+/* ---- building and taking apart ---- */
+
+static inline quat quat_make(double w, double x, double y, double z)
+{
+    const quat r = {w, x, y, z};
+    return r;
+}
+static inline quat quat_identity(void) { return quat_make(1, 0, 0, 0); }
+/* w + v */
+static inline quat quat_from_parts(double w, qvec3 v) { return quat_make(w, v.x, v.y, v.z); }
+/* The pure quaternion (0, v). */
+static inline quat quat_pure(qvec3 v) { return quat_make(0, v.x, v.y, v.z); }
+/* The vector part (x, y, z). */
+static inline qvec3 quat_vector(quat q) { return qvec3_make(q.x, q.y, q.z); }
+
+/* ---- algebra ---- */
+
+static inline quat quat_add(quat p, quat q) { return quat_make(p.w + q.w, p.x + q.x, p.y + q.y, p.z + q.z); }
+static inline quat quat_sub(quat p, quat q) { return quat_make(p.w - q.w, p.x - q.x, p.y - q.y, p.z - q.z); }
+static inline quat quat_neg(quat q) { return quat_make(-q.w, -q.x, -q.y, -q.z); }
+static inline quat quat_scale(quat q, double s) { return quat_make(q.w * s, q.x * s, q.y * s, q.z * s); }
+/* p + s q */
+static inline quat quat_axpy(double s, quat q, quat p)
+{
+    return quat_make(p.w + s * q.w, p.x + s * q.x, p.y + s * q.y, p.z + s * q.z);
+}
+static inline quat quat_conj(quat q) { return quat_make(q.w, -q.x, -q.y, -q.z); }
+static inline double quat_dot(quat p, quat q) { return (p.w * q.w + p.x * q.x) + (p.y * q.y + p.z * q.z); }
+
+/* Hamilton product p q: as rotations, q first, then p. Sums go in pairs: shorter chains, smaller error. */
 static inline quat quat_mul(quat p, quat q)
 {
-    return (quat){p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z,
-                  p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
-                  p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x,
-                  p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
+    return quat_make((p.w * q.w - p.x * q.x) - (p.y * q.y + p.z * q.z),
+                     (p.w * q.x + p.x * q.w) + (p.y * q.z - p.z * q.y),
+                     (p.w * q.y + p.y * q.w) + (p.z * q.x - p.x * q.z),
+                     (p.w * q.z + p.z * q.w) + (p.x * q.y - p.y * q.x));
 }
 
+/* p q with every component as if summed in twice the precision and rounded once (Ogita, Rump and Oishi 2005,
+ * algorithm Dot2, with FMA): for differences such as the vector part of p q* with p near q. The same bits on every
+ * machine, since fma() is correctly rounded with and without the instruction. Products that leave 1e-290 ... 1e290
+ * may lose the compensation. */
+QUAT_API quat quat_mul_compensated(quat p, quat q);
+
+/* |q|^2; overflows and underflows as the sum does. */
+static inline double quat_norm2(quat q) { return quat_dot(q, q); }
+/* |q| without overflow or underflow; inf for an infinite component, else NaN for a NaN. */
+QUAT_API double quat_norm(quat q);
+/* True when no component is infinite or NaN. */
+static inline bool quat_isfinite(quat q) { return isfinite(q.w) && isfinite(q.x) && isfinite(q.y) && isfinite(q.z); }
+
+/* The part of quat_normalize for scales at which |q|^2 over- or underflows, and for what cannot be normalised. */
+QUAT_API quat_status quat_normalize_scaled(quat q, quat *unit);
+
 /* q/|q| at every finite, non-zero scale. Zero, infinite and NaN give QUAT_EDOMAIN and *unit = 1. */
-QUAT_API quat_status quat_normalize(quat q, quat *unit);
+static inline quat_status quat_normalize(quat q, quat *unit)
+{
+    const double n2 = quat_norm2(q);
+    if (!(n2 >= 1e-280 && n2 <= 1e280)) return quat_normalize_scaled(q, unit);
+    const double n = sqrt(n2);
+    *unit = quat_make(q.w / n, q.x / n, q.y / n, q.z / n);
+    return QUAT_OK;
+}
+
+/* q (3 - |q|^2)/2: one Newton step towards |q| = 1, for the drift of long products; error 3/2 (|q| - 1)^2. */
+static inline quat quat_renormalize(quat q) { return quat_scale(q, 1.5 - 0.5 * quat_norm2(q)); }
+
+/* 1/q = q* / |q|^2. Zero, infinite and NaN give QUAT_EDOMAIN, |q| < 1/DBL_MAX gives QUAT_ERANGE; *inverse = 1 then. */
+QUAT_API quat_status quat_inverse(quat q, quat *inverse);
+/* p (1/q). Errors as quat_inverse's, and QUAT_EDOMAIN when p is infinite or NaN. */
+QUAT_API quat_status quat_div(quat p, quat q, quat *quotient);
+/* (1/q) p. Errors as quat_div's. */
+QUAT_API quat_status quat_div_left(quat q, quat p, quat *quotient);
+
+/* ---- distances and comparisons ---- */
+
+/* Angle between unit p and q as points of S^3, 0 ... pi: 2 atan2(|p - q|, |p + q|) (Kahan). Blind to no sign. */
+QUAT_API double quat_distance(quat p, quat q);
+/* Angle of the rotation that carries unit p to unit q, 0 ... pi; q and -q are the same rotation. */
+QUAT_API double quat_rotation_distance(quat p, quat q);
+/* Rotation angle of q, of any non-zero length, 0 ... pi: 2 atan2(|v|, |w|). 0 for q = 0. */
+QUAT_API double quat_angle(quat q);
+/* True when all components are equal (0 = -0; NaN equals nothing). */
+static inline bool quat_equal(quat p, quat q) { return p.w == q.w && p.x == q.x && p.y == q.y && p.z == q.z; }
+/* |p - q| <= tolerance: near as points of R^4. */
+QUAT_API bool quat_near(quat p, quat q, double tolerance);
+/* Unit p and q turn space alike to within `angle` radians, whatever their signs. */
+QUAT_API bool quat_same_rotation(quat p, quat q, double angle);
+/* The one of q and -q on the same side of S^3 as `reference`; q when they are perpendicular. */
+static inline quat quat_nearest(quat q, quat reference) { return quat_dot(q, reference) < 0 ? quat_neg(q) : q; }
+
+/* ---- random ---- */
+
+/* A generator of the caller's: uniform in [0, 1), with its state. */
+typedef double (*quat_uniform)(void *state);
+/* A unit quaternion, uniform on S^3, from three numbers of the generator (Shoemake 1992). */
+QUAT_API quat quat_random(quat_uniform uniform, void *state);
 
 #ifdef __cplusplus
 }
