@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/gap.h>
 #include <quat/rotation.h>
-#include "support.h"
+#include "gap_solver.h"
 
 static impact_contact no_contact(void)
 {
@@ -65,6 +65,41 @@ static impact_contact swapped(impact_contact c)
     return s;
 }
 
+/* Scaled to a largest semi-axis in [1, 2). */
+static void make_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale, impact_pair *pair)
+{
+    impact_form_make(&body2->shape, scale, q2, &pair->form[0]);
+    impact_form_make(&body1->shape, scale, q1, &pair->form[1]);
+    const qvec3 c = qvec3_sub(body1->position, body2->position);
+    pair->c[0] = c.x * scale, pair->c[1] = c.y * scale, pair->c[2] = c.z * scale;
+    pair->size = 0;
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 3; i++) pair->size = fmax(pair->size, pair->form[k].axis[i]);
+    pair->reach = pair->size + sqrt(pair->c[0] * pair->c[0] + pair->c[1] * pair->c[1] + pair->c[2] * pair->c[2]);
+}
+
+static impact_status smooth_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, impact_gap_cache *cache,
+                                 impact_contact *contact)
+{
+    const double scale = fmin(unit_scale(&body1->shape), unit_scale(&body2->shape));
+    impact_pair pair;
+    make_pair(body1, q1, body2, q2, scale, &pair);
+    impact_meeting meeting;
+    impact_gap_path path;
+    const double cached[3] = {cache ? cache->normal.x : 0, cache ? cache->normal.y : 0, cache ? cache->normal.z : 0};
+    const impact_status status = impact_gap_settle(&pair, cache && cache->valid ? cached : NULL, &meeting, &path);
+    if (status < 0) return status;
+    const double back = 1 / scale;
+    const qvec3 normal = {meeting.n[0], meeting.n[1], meeting.n[2]};
+    const qvec3 offset1 = {meeting.x[1][0] * back, meeting.x[1][1] * back, meeting.x[1][2] * back};
+    const qvec3 offset2 = {meeting.x[0][0] * back, meeting.x[0][1] * back, meeting.x[0][2] * back};
+    closed_form(body1, body2, meeting.gap * back, normal, offset1, offset2, meeting.stiffness * back, contact);
+    contact->path = path;
+    contact->lower = meeting.lower * back, contact->upper = meeting.upper * back;
+    if (cache) *cache = (impact_gap_cache){true, normal};
+    return status;
+}
+
 impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache, impact_contact *contact)
 {
     (void)cache;
@@ -80,7 +115,7 @@ impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, i
         *contact = swapped(*contact);
         return status;
     }
-    return IMPACT_EARGUMENT;
+    return smooth_pair(body1, q1, body2, q2, cache, contact);
 }
 
 double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2, qvec3 omega2)

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gap_solver (internal): the gap of two bodies with forms, in scaled units, and the ways to it.
+ *
+ * Body A is the public body 2 and body B the public body 1, so that the normal from A to B is the public one.
+ * For every unit n, g(n) = n.c - h_A(n) - h_B(-n) is a lower bound of the gap, and the gap is its maximum.
+ */
+#ifndef IMPACT_GAP_SOLVER_H
+#define IMPACT_GAP_SOLVER_H
+
+#include <impact/gap.h>
+#include "support.h"
+
+typedef struct impact_pair {
+    impact_form form[2];
+    double c[3];  /* centre of B minus centre of A, world axes */
+    double size;  /* largest semi-axis of both */
+    double reach; /* size + |c| */
+} impact_pair;
+
+typedef struct impact_meeting {
+    double gap;
+    double n[3];    /* unit, A to B */
+    double x[2][3]; /* witness points relative to the centres, world axes */
+    double stiffness; /* smallest eigenvalue of H_A + H_B + gap I across n */
+    double lower, upper; /* bracket of the gap; upper is certain for separated bodies only */
+} impact_meeting;
+
+/* g(n), n unit; x (NULL: not wanted) are the support points. */
+double impact_pair_gap(const impact_pair *pair, const double n[3], double x[2][3]);
+
+/* Mixed primal/dual Newton from the unit seed n: true when it settled on the global maximum of g (gap >= 0) or on a local one
+ * that two overlapping bodies have; *meeting is then the answer. */
+bool impact_gap_newton(const impact_pair *pair, const double n[3], impact_meeting *meeting);
+
+typedef enum impact_simplex_end { IMPACT_SIMPLEX_APART, IMPACT_SIMPLEX_OVERLAP } impact_simplex_end;
+
+/* Distance of the bodies shrunk by the factor shrink, from the unit seed n, until the bracket is within tolerance of
+ * size + distance, or for so many steps. n: the best normal met; *lower, *upper: the bracket of the shrunk bodies' distance. */
+impact_simplex_end impact_gap_simplex(const impact_pair *pair, double shrink, double tolerance, int steps, double n[3],
+                                      double *lower, double *upper);
+
+/* libccd's way: the normal with the largest g among all the directions that its intersection test (deep: its penetration
+ * search) asks for. False when this build has no libccd or nothing was met. */
+bool impact_gap_harvest(const impact_pair *pair, bool deep, double n[3]);
+
+/* All the ways in order, from a cached normal (NULL: none). */
+impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting, impact_gap_path *path);
+
+#endif
