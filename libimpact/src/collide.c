@@ -2,7 +2,7 @@
  *
  * The door of the room: checks, scales, picks a solver, and turns a finished course into an outcome.
  */
-#include "collide_course.h"
+#include "collide_series.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -224,6 +224,11 @@ static impact_status solve(const impact_collision *collision, impact_course *cou
             return course->ended ? IMPACT_OK : IMPACT_EUNSETTLED;
         }
         if (collision->solver == IMPACT_SOLVER_CLOSED_FORM) return IMPACT_EARGUMENT;
+    }
+    if (collision->solver != IMPACT_SOLVER_CVODE) {
+        outcome->solver = IMPACT_SOLVER_SERIES;
+        const bool straight = collision->solver == IMPACT_SOLVER_AUTO;
+        return impact_series_solve(course, IMPACT_SERIES_ORDER, straight) ? IMPACT_OK : IMPACT_EUNSETTLED;
     }
     return IMPACT_EABSENT;
 }

@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * With d tau = dp / s, s = |u_t|, sliding is  du_t/dtau = s M_tz - mu M_tt u_t,  dp/dtau = s: Lipschitz, free of angles, and regular
+ * where sliding stops. One Taylor step holds u_t, s (from s^2 = u_t . u_t), uz, p and the works as polynomials of tau; the step length
+ * follows from the last coefficients (Jorba & Zou 2005).
+ *
+ * Events: theta turns monotonically within a slip, by far less than pi/2 in a step, so Z = d uz / dp is monotone between the zeros of
+ * M_tz x u_t. Splitting a step there and at the zeros of Z leaves pieces on which uz is monotone: no event can be missed.
+ */
+#include "collide_series.h"
+
+#include <float.h>
+
+static const double inverse[] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
+                                 1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13,
+                                 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20,
+                                 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24, 1.0 / 25, 1.0 / 26, 1.0 / 27,
+                                 1.0 / 28, 1.0 / 29, 1.0 / 30, 1.0 / 31, 1.0 / 32, 1.0 / 33};
+
+/* The largest h for which the last two terms stay below 2^-60 of s. */
+static double step_length(const impact_taylor *taylor)
+{
+    const int n = taylor->order;
+    double h = INFINITY;
+    for (int k = n - 1; k <= n; k++) {
+        const double size = fmax(fmax(fabs(taylor->x[k]), fabs(taylor->y[k])), fabs(taylor->s[k]));
+        if (size > 0) h = fmin(h, exp(log(taylor->s[0] / size * 0x1p-60) / k));
+    }
+    return h;
+}
+
+void impact_taylor_make(impact_taylor *taylor, const impact_frame *frame, double mu, double ux, double uy, double s,
+                        int order)
+{
+    double *x = taylor->x, *y = taylor->y, *v = taylor->s;
+    const double ma = mu * frame->a, mb = mu * frame->b, c = frame->c, d = frame->d, half = 0.5 / s;
+    taylor->order = order;
+    x[0] = ux;
+    y[0] = uy;
+    v[0] = s;
+    taylor->squared[0] = s * s;
+    for (int k = 0; k < order; k++) {
+        const int n = k + 1;
+        x[n] = (c * v[k] - ma * x[k]) * inverse[n];
+        y[n] = (d * v[k] - mb * y[k]) * inverse[n];
+        /* s^2 = x^2 + y^2, term n; every product but the middle one stands twice. */
+        double q = 0, r = 0;
+        for (int i = 1; 2 * i < n; i++) {
+            q += x[i] * x[n - i] + y[i] * y[n - i];
+            r += v[i] * v[n - i];
+        }
+        q += x[0] * x[n] + y[0] * y[n];
+        q *= 2;
+        r *= 2;
+        if (n % 2 == 0) {
+            q += x[n / 2] * x[n / 2] + y[n / 2] * y[n / 2];
+            r += v[n / 2] * v[n / 2];
+        }
+        taylor->squared[n] = q;
+        v[n] = (q - r) * half;
+    }
+    for (int k = 0; k <= order; k++) taylor->climb[k] = v[k] - mu * (c * x[k] + d * y[k]);
+    taylor->h = step_length(taylor);
+}
+
+static double value(const double *coefficient, int order, double t)
+{
+    double sum = coefficient[order];
+    for (int k = order - 1; k >= 0; k--) sum = sum * t + coefficient[k];
+    return sum;
+}
+
+/* Integral from 0 to t. */
+static double integral(const double *coefficient, int order, double t)
+{
+    double sum = coefficient[order] * inverse[order + 1];
+    for (int k = order - 1; k >= 0; k--) sum = sum * t + coefficient[k] * inverse[k + 1];
+    return sum * t;
+}
+
+/* ---- one step and the events in it ---- */
+
+typedef struct step {
+    impact_course *course;
+    impact_taylor taylor;
+    double uz0;                           /* uz at tau = 0 */
+    double power[IMPACT_SERIES_MOST + 1]; /* uz s, the rate of the normal work */
+    bool has_power;
+    double at;                        /* where the course stands in this step */
+    double p, work, friction, px, py; /* integrals from 0 to `at` */
+} step;
+
+static double uz_at(const step *st, double t) { return st->uz0 + integral(st->taylor.climb, st->taylor.order, t); }
+
+static void make_power(step *st)
+{
+    const int order = st->taylor.order;
+    double uz[IMPACT_SERIES_MOST + 1];
+    uz[0] = st->uz0;
+    for (int k = 1; k <= order; k++) uz[k] = st->taylor.climb[k - 1] * inverse[k];
+    for (int k = 0; k <= order; k++) {
+        double sum = 0;
+        for (int i = 0; i <= k; i++) sum += uz[i] * st->taylor.s[k - i];
+        st->power[k] = sum;
+    }
+    st->has_power = true;
+}
+
+static double work_at(step *st, double t)
+{
+    if (!st->has_power) make_power(st);
+    return integral(st->power, st->taylor.order, t);
+}
+
+/* What a root is looked for of. */
+typedef enum target { TARGET_UZ, TARGET_CLIMB, TARGET_CROSS, TARGET_P, TARGET_WORK } target;
+
+static double target_value(step *st, target what, double t, double wanted, double *slope)
+{
+    const impact_taylor *ty = &st->taylor;
+    const int n = ty->order;
+    switch (what) {
+    case TARGET_UZ: *slope = value(ty->climb, n, t); return uz_at(st, t) - wanted;
+    case TARGET_P: *slope = value(ty->s, n, t); return integral(ty->s, n, t) - wanted;
+    case TARGET_WORK: *slope = value(st->power, n, t); return work_at(st, t) - wanted;
+    case TARGET_CLIMB:
+        *slope = 0;
+        for (int k = n; k >= 1; k--) *slope = *slope * t + k * ty->climb[k];
+        return value(ty->climb, n, t) - wanted;
+    case TARGET_CROSS: {
+        const double c = st->course->frame->c, d = st->course->frame->d;
+        double sum = 0, rate = 0;
+        for (int k = n; k >= 0; k--) {
+            rate = rate * t + sum;
+            sum = sum * t + (c * ty->y[k] - d * ty->x[k]);
+        }
+        *slope = rate;
+        return sum - wanted;
+    }
+    }
+    *slope = 0;
+    return 0;
+}
+
+/* The root of a monotone function on [low, high] whose signs differ at the ends: Newton kept inside a shrinking bracket. */
+static double find_root(step *st, target what, double wanted, double low, double high)
+{
+    double slope, f_low = target_value(st, what, low, wanted, &slope);
+    const double f_high = target_value(st, what, high, wanted, &slope);
+    if (f_low == 0) return low;
+    if (f_high == 0 || (f_low > 0) == (f_high > 0)) return high;
+    double t = low + (high - low) * (f_low / (f_low - f_high));
+    for (int i = 0; i < 80; i++) {
+        const double f = target_value(st, what, t, wanted, &slope);
+        if (f == 0) return t;
+        if ((f > 0) == (f_low > 0))
+            low = t;
+        else
+            high = t;
+        double new_t = t - f / slope;
+        if (!(new_t >= low && new_t <= high)) new_t = 0.5 * (low + high);
+        const double move = fabs(new_t - t);
+        t = new_t;
+        if (move <= 2 * DBL_EPSILON * t) break;
+    }
+    return t;
+}
+
+/* Moves the course on to tau = t within one phase. */
+static void move_to(step *st, double t)
+{
+    impact_course *course = st->course;
+    if (!(t > st->at)) return;
+    const impact_taylor *ty = &st->taylor;
+    const int n = ty->order;
+    impact_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    const double p = integral(ty->s, n, t), work = work_at(st, t), friction = -course->mu * integral(ty->squared, n, t);
+    const double px = -course->mu * integral(ty->x, n, t), py = -course->mu * integral(ty->y, n, t);
+    impact_course_book(course, p - st->p, work - st->work, friction - st->friction);
+    course->px += px - st->px;
+    course->py += py - st->py;
+    course->uz = uz_at(st, t);
+    st->p = p;
+    st->work = work;
+    st->friction = friction;
+    st->px = px;
+    st->py = py;
+    st->at = t;
+}
+
+/* In restitution, uz >= 0 up to `to`: whether the impact ends by then, and where. */
+static bool end_by(step *st, double to, double *where)
+{
+    const impact_course *course = st->course;
+    switch (course->law) {
+    case IMPACT_POISSON: {
+        const double wanted = st->p + impact_course_left_poisson(course);
+        if (wanted <= st->p) {
+            *where = st->at;
+            return true;
+        }
+        if (integral(st->taylor.s, st->taylor.order, to) < wanted) return false;
+        *where = find_root(st, TARGET_P, wanted, st->at, to);
+        return true;
+    }
+    case IMPACT_NEWTON: {
+        const double wanted = impact_course_target_newton(course);
+        if (course->uz >= wanted) {
+            *where = st->at;
+            return true;
+        }
+        if (uz_at(st, to) < wanted) return false;
+        *where = find_root(st, TARGET_UZ, wanted, st->at, to);
+        return true;
+    }
+    case IMPACT_STRONGE: {
+        const double more = impact_course_target_stronge(course) - course->work;
+        if (more <= 0) {
+            *where = st->at;
+            return true;
+        }
+        if (work_at(st, to) < st->work + more) return false;
+        *where = find_root(st, TARGET_WORK, st->work + more, st->at, to);
+        return true;
+    }
+    }
+    return false;
+}
+
+/* The sense of uz on a piece where it is monotone; at a turn, uz itself is rounding. */
+static bool climbs(const step *st, double to)
+{
+    return value(st->taylor.climb, st->taylor.order, 0.5 * (st->at + to)) > 0;
+}
+
+/* Follows the course to tau = to through its events; uz is monotone on the way. */
+static void monotone_piece(step *st, double to)
+{
+    impact_course *course = st->course;
+    for (int i = 0; i < 4 && !course->ended; i++) {
+        const double uz_to = uz_at(st, to);
+        if (course->compressing) {
+            if (uz_to < 0 || !climbs(st, to)) break;
+            move_to(st, find_root(st, TARGET_UZ, 0, st->at, to));
+            impact_course_turn(course);
+            continue;
+        }
+        const bool turns = uz_to < 0 && !climbs(st, to);
+        const double turn = turns ? find_root(st, TARGET_UZ, 0, st->at, to) : to;
+        double end;
+        if (end_by(st, turn, &end)) {
+            move_to(st, end);
+            if (course->law == IMPACT_NEWTON) course->uz = impact_course_target_newton(course);
+            course->ended = true;
+            return;
+        }
+        if (!turns) break;
+        move_to(st, turn);
+        impact_course_turn(course);
+    }
+    if (!course->ended) move_to(st, to);
+}
+
+static void split_at_climb(step *st, double to)
+{
+    const int n = st->taylor.order;
+    const double low = value(st->taylor.climb, n, st->at), high = value(st->taylor.climb, n, to);
+    if ((low > 0 && high < 0) || (low < 0 && high > 0)) monotone_piece(st, find_root(st, TARGET_CLIMB, 0, st->at, to));
+    if (!st->course->ended) monotone_piece(st, to);
+}
+
+static void follow_step(step *st)
+{
+    impact_course *course = st->course;
+    const impact_frame *frame = course->frame;
+    const int n = st->taylor.order;
+    const double h = st->taylor.h, x = value(st->taylor.x, n, h), y = value(st->taylor.y, n, h);
+    const double before = frame->c * course->uy - frame->d * course->ux, after = frame->c * y - frame->d * x;
+    if ((before > 0 && after < 0) || (before < 0 && after > 0))
+        split_at_climb(st, find_root(st, TARGET_CROSS, 0, 0, h));
+    if (!course->ended) split_at_climb(st, h);
+    course->ux = st->at == h ? x : value(st->taylor.x, n, st->at);
+    course->uy = st->at == h ? y : value(st->taylor.y, n, st->at);
+    course->s = sqrt(course->ux * course->ux + course->uy * course->uy);
+}
+
+/* ---- the end of a slip ---- */
+
+typedef enum stride { STRIDE_TAKEN, STRIDE_NOT_YET, STRIDE_EVENT } stride;
+
+/* Takes the rest of the slip in one stride, if the series reaches so far and no event lies on the way. */
+static stride take_tail(impact_course *course)
+{
+    const impact_frame *frame = course->frame;
+    const double mu = course->mu;
+    impact_tail tail;
+    if (!impact_tail_make(&tail, frame, mu, course->ux, course->uy, course->s, course->uz)) return STRIDE_NOT_YET;
+    const double uz = course->uz + tail.rise;
+    if (course->compressing ? uz >= 0 : uz < 0) return STRIDE_EVENT;
+    if (!course->compressing) {
+        switch (course->law) {
+        case IMPACT_POISSON:
+            if (tail.p >= impact_course_left_poisson(course)) return STRIDE_EVENT;
+            break;
+        case IMPACT_NEWTON:
+            if (uz >= impact_course_target_newton(course)) return STRIDE_EVENT;
+            break;
+        case IMPACT_STRONGE:
+            if (course->work + tail.work >= impact_course_target_stronge(course)) return STRIDE_EVENT;
+            break;
+        }
+    }
+    impact_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    impact_course_book(course, tail.p, tail.work, tail.work_f);
+    course->px += tail.px;
+    course->py += tail.py;
+    course->uz = uz;
+    course->s = 0;
+    return STRIDE_TAKEN;
+}
+
+/* Whether Z keeps its sign and uz its sense on the way to the end of the slip: then what holds at its end holds on it. */
+static bool tail_is_near(const impact_course *course, double x, double y)
+{
+    const impact_frame *frame = course->frame;
+    const double mu = course->mu, along = frame->c * x + frame->d * y;
+    const double R = along - mu * (frame->a * x * x + frame->b * y * y);
+    const double T = impact_course_turning(frame, mu, x, y),
+                 slope = -along + mu * (frame->a - frame->b) * (x * x - y * y);
+    if (!(R < 0 && slope < 0 && fabs(T) < 0.5 * -slope)) return false;
+    /* Z and its slope in theta bound its change over twice the angle that Newton sees. */
+    const double Z = 1 - mu * along, swing = mu * hypot(frame->c, frame->d) * 2 * fabs(T / slope);
+    return fabs(Z) > swing;
+}
+
+bool impact_series_solve(impact_course *course, int order, bool straight)
+{
+    const impact_frame *frame = course->frame;
+    if (course->mu == 0) return impact_course_closed_form(course);
+    const double mu = course->mu, small = 1e-17 * fmin(course->s, 1);
+    const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
+    int events = -1;
+    for (int steps = 0; steps < 400 && course->s > 0 && !course->ended; steps++) {
+        const double x = course->ux / course->s, y = course->uy / course->s;
+        const bool frozen = straight && fabs(impact_course_turning(frame, mu, x, y)) <= 4e-16 * rate;
+        if (frozen || course->s <= small) {
+            const impact_line line = impact_course_sliding(frame, mu, x, y);
+            impact_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
+            if (!course->ended) course->s = 0;
+            break;
+        }
+        /* A tail with an event in it is not tried again before that event is past. */
+        const int event = 2 * course->compressions + course->compressing;
+        if (event != events && tail_is_near(course, x, y)) {
+            const stride result = take_tail(course);
+            if (result == STRIDE_TAKEN) break;
+            if (result == STRIDE_EVENT) events = event;
+        }
+        step st = {.course = course, .uz0 = course->uz};
+        impact_taylor_make(&st.taylor, frame, mu, course->ux, course->uy, course->s, order);
+        follow_step(&st);
+    }
+    if (!course->ended && course->s == 0) impact_course_finish(course);
+    return course->ended;
+}
