@@ -1,44 +1,107 @@
 # SPDX-License-Identifier: MIT
 # Compiler settings shared by every target, and the one way a library of this house is made.
+include(CheckLinkerFlag)
 
 # -ffp-contract=off keeps gcc and clang on the same bits wherever only + - * / sqrt are used.
 add_library(house_rules INTERFACE)
 target_compile_options(house_rules INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -ffp-contract=off)
 
-# add_house_library(NAME SOURCES ... LIBRARIES ... DEFINITIONS ...)
-# compiles the sources once and links them twice: NAME::NAME (shared) and NAME::NAME_static.
-# LIBRARIES given as NAME::NAME of this house are linked in the matching kind.
+# A shared library names as needed only what it calls, so that loading the algebra loads libm and nothing else.
+check_linker_flag(C -Wl,--as-needed HOUSE_HAS_AS_NEEDED)
+
+if(APPLE)
+  set(house_origin @loader_path)
+else()
+  set(house_origin $ORIGIN)
+endif()
+
+# add_house_library(NAME [PACKAGE PACKAGE] SOURCES ... [HOUSE ...] [LIBRARIES ...] [DEFINITIONS ...])
+# compiles the sources once and links them twice: PACKAGE::NAME (shared) and PACKAGE::NAME_static; PACKAGE is NAME unless given.
+# HOUSE: this house's own libraries (quat), linked in the matching kind and shown to users; LIBRARIES: all others, kept private.
+# Exports NAME-targets and NAME_static-targets, apart, because only the static one asks a user to have LIBRARIES at hand.
 function(add_house_library name)
-  cmake_parse_arguments(LIB "" "" "SOURCES;HOUSE;LIBRARIES;DEFINITIONS" ${ARGN})
-  string(TOUPPER ${name} upper)
+  cmake_parse_arguments(LIB "" "PACKAGE" "SOURCES;HOUSE;LIBRARIES;DEFINITIONS" ${ARGN})
+  if(NOT LIB_PACKAGE)
+    set(LIB_PACKAGE ${name})
+  endif()
+  string(TOUPPER ${LIB_PACKAGE} upper)
   add_library(${name}_objects OBJECT ${LIB_SOURCES})
   set_target_properties(${name}_objects PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_definitions(${name}_objects PRIVATE ${upper}_BUILDING ${LIB_DEFINITIONS})
   target_include_directories(${name}_objects PUBLIC include PRIVATE src)
-  target_link_libraries(${name}_objects PRIVATE $<BUILD_INTERFACE:house_rules> ${LIB_LIBRARIES})
-  foreach(house ${LIB_HOUSE})
-    target_link_libraries(${name}_objects PRIVATE ${house})
-  endforeach()
+  target_link_libraries(${name}_objects PRIVATE house_rules ${LIB_LIBRARIES} ${LIB_HOUSE})
 
-  foreach(kind shared static)
-    string(TOUPPER ${kind} KIND)
-    if(kind STREQUAL shared)
-      set(target ${name})
-      set(suffix "")
-    else()
+  foreach(kind SHARED STATIC)
+    set(target ${name})
+    set(suffix "")
+    if(kind STREQUAL STATIC)
       set(target ${name}_static)
       set(suffix _static)
     endif()
-    add_library(${target} ${KIND} $<TARGET_OBJECTS:${name}_objects>)
-    add_library(${name}::${target} ALIAS ${target})
+    add_library(${target} ${kind} $<TARGET_OBJECTS:${name}_objects>)
+    add_library(${LIB_PACKAGE}::${target} ALIAS ${target})
     set_target_properties(${target} PROPERTIES
-      OUTPUT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION 0 EXPORT_NAME ${target} LINKER_LANGUAGE C)
+      OUTPUT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+      LINKER_LANGUAGE C INSTALL_RPATH ${house_origin})
     target_include_directories(${target} PUBLIC
       $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     foreach(house ${LIB_HOUSE})
       target_link_libraries(${target} PUBLIC ${house}${suffix})
     endforeach()
     target_link_libraries(${target} PRIVATE ${LIB_LIBRARIES})
+    # Inline functions in the headers call libm too.
+    target_link_libraries(${target} PUBLIC m)
+    install(TARGETS ${target} EXPORT ${target}-targets
+      LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+      RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(EXPORT ${target}-targets NAMESPACE ${LIB_PACKAGE}::
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/${LIB_PACKAGE})
   endforeach()
+  if(HOUSE_HAS_AS_NEEDED)
+    target_link_options(${name} PRIVATE -Wl,--as-needed)
+  endif()
+endfunction()
+
+# install_house_package(NAME): cmake/NAME-config.cmake.in, so that find_package(NAME) finds what was built.
+function(install_house_package name)
+  set(directory ${CMAKE_INSTALL_LIBDIR}/cmake/${name})
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/${name}-config.cmake.in ${name}-config.cmake
+    INSTALL_DESTINATION ${directory} NO_SET_AND_CHECK_MACRO)
+  write_basic_package_version_file(${name}-config-version.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/${name}-config-version.cmake
+    DESTINATION ${directory})
+endfunction()
+
+# The flags that link the libraries given as paths: -lNAME, and -LDIRECTORY where the linker would not look by itself.
+function(link_flags output)
+  set(flags "")
+  foreach(library ${ARGN})
+    if(library MATCHES "/")
+      get_filename_component(directory ${library} DIRECTORY)
+      get_filename_component(name ${library} NAME_WE)
+      string(REGEX REPLACE "^lib" "" name ${name})
+      if(NOT directory IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES)
+        list(APPEND flags -L${directory})
+      endif()
+      list(APPEND flags -l${name})
+    else()
+      list(APPEND flags -l${library})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES flags)
+  string(JOIN " " flags ${flags})
+  set(${output} ${flags} PARENT_SCOPE)
+endfunction()
+
+# install_pkg_config(NAME DESCRIPTION text LICENSE licence [REQUIRES package] [LIBRARIES path or name ...]):
+# LIBRARIES are what a static link needs besides. The prefix is found from the file's own place, so that the tree can be moved.
+function(install_pkg_config name)
+  cmake_parse_arguments(PC "" "DESCRIPTION;LICENSE;REQUIRES" "LIBRARIES" ${ARGN})
+  file(RELATIVE_PATH PC_UP ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" PC_UP ${PC_UP})
+  link_flags(PC_PRIVATE ${PC_LIBRARIES})
+  set(PC_NAME ${name})
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/house.pc.in ${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# outside.sh CMAKE CC BUILD WORK: installs BUILD, moves the tree, and builds strangers' programs against it:
+# a CMake project and plain cc with pkg-config, shared and static.
+set -euo pipefail
+cmake=$1 cc=$2 build=$3 work=$4
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+
+"$cmake" --install "$build" --prefix "$work/first" >install.log
+mv first moved # an installed tree can be moved
+prefix=$work/moved
+libdir=$(dirname "$(find "$prefix" -name libquat.a)")
+if grep -rIl -e "$build" -e "$work/first" "$libdir/cmake" "$libdir/pkgconfig"; then
+    echo "these files name the place they were built or installed in"
+    exit 1
+fi
+
+echo "-- CMake"
+"$cmake" -S "$here/outside" -B project -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >configure.log || { cat configure.log; exit 1; }
+"$cmake" --build project >build.log || { cat build.log; exit 1; }
+for program in project/with_*; do
+    "$program"
+done
+
+echo "-- pkg-config"
+export PKG_CONFIG_PATH=$libdir/pkgconfig
+flags() { pkg-config "$@"; }
+for name in quat impact; do
+    # shellcheck disable=SC2046
+    "$cc" -o "shared_$name" "$here/outside/with_$name.c" $(flags --cflags --libs "$name") -Wl,-rpath,"$libdir"
+    "./shared_$name"
+done
+if ldd shared_quat | grep -E 'gsl|sundials|ccd'; then
+    echo "a program of the algebra loads more than libquat and libm"
+    exit 1
+fi
+
+# With the shared libraries gone the same names find the archives.
+cp -R moved static_only
+find static_only -name 'lib*.so*' -delete
+PKG_CONFIG_PATH=$(dirname "$(find "$work/static_only" -name libquat.a)")/pkgconfig
+for name in quat impact; do
+    # shellcheck disable=SC2046
+    "$cc" -o "static_$name" "$here/outside/with_$name.c" $(flags --static --cflags --libs "$name")
+    "./static_$name"
+done
+if ldd static_impact | grep -E 'libquat|libimpact'; then
+    echo "a static program loads our shared libraries"
+    exit 1
+fi
+
+if [ -x "$prefix/bin/impact" ]; then
+    echo "-- runner"
+    "$prefix/bin/impact" --version
+fi
