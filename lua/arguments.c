@@ -46,11 +46,16 @@ static int raise(lua_State *L, const quat_lua_reader *reader, const char *format
     char message[512];
     vsnprintf(message, sizeof message, format, list);
     luaL_checkstack(L, 4, NULL);
-    if (reader && reader->where) lua_pushstring(L, reader->where);
-    else quat_lua_where(L);
-    if (!reader) lua_pushstring(L, message);
-    else if (reader->name) lua_pushfstring(L, "%s '%s': %s", reader->kind, reader->name, message);
-    else lua_pushfstring(L, "%s: %s", reader->kind, message);
+    if (reader && reader->where)
+        lua_pushstring(L, reader->where);
+    else
+        quat_lua_where(L);
+    if (!reader)
+        lua_pushstring(L, message);
+    else if (reader->name)
+        lua_pushfstring(L, "%s '%s': %s", reader->kind, reader->name, message);
+    else
+        lua_pushfstring(L, "%s: %s", reader->kind, message);
     lua_concat(L, 2);
     return lua_error(L);
 }
@@ -87,9 +92,12 @@ static const char *describe(lua_State *L, int index, char *text, size_t size)
 {
     switch (lua_type(L, index)) {
     case LUA_TNUMBER:
-        if (lua_isinteger(L, index)) snprintf(text, size, LUA_INTEGER_FMT, lua_tointeger(L, index));
-        else if (isnan(lua_tonumber(L, index))) snprintf(text, size, "nan");
-        else snprintf(text, size, LUA_NUMBER_FMT, lua_tonumber(L, index));
+        if (lua_isinteger(L, index))
+            snprintf(text, size, LUA_INTEGER_FMT, lua_tointeger(L, index));
+        else if (isnan(lua_tonumber(L, index)))
+            snprintf(text, size, "nan");
+        else
+            snprintf(text, size, LUA_NUMBER_FMT, lua_tonumber(L, index));
         break;
     case LUA_TSTRING: snprintf(text, size, "the string '%.40s'", lua_tostring(L, index)); break;
     case LUA_TBOOLEAN: snprintf(text, size, "%s", lua_toboolean(L, index) ? "true" : "false"); break;
@@ -124,9 +132,9 @@ static bool in_range(double value, quat_lua_range range)
 static double number_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index, quat_lua_range range)
 {
     static const char *const words[] = {
-        [QUAT_LUA_FINITE] = "a finite number",           [QUAT_LUA_POSITIVE] = "a positive number",
-        [QUAT_LUA_NOT_NEGATIVE] = "a number >= 0",       [QUAT_LUA_FRACTION] = "a number from 0 to 1",
-        [QUAT_LUA_BELOW_ONE] = "a number in [0, 1)",     [QUAT_LUA_POSITIVE_OR_INF] = "a positive number or math.huge",
+        [QUAT_LUA_FINITE] = "a finite number",       [QUAT_LUA_POSITIVE] = "a positive number",
+        [QUAT_LUA_NOT_NEGATIVE] = "a number >= 0",   [QUAT_LUA_FRACTION] = "a number from 0 to 1",
+        [QUAT_LUA_BELOW_ONE] = "a number in [0, 1)", [QUAT_LUA_POSITIVE_OR_INF] = "a positive number or math.huge",
     };
     /* Strings that look like numbers are refused: they are mistakes more often than not. */
     if (lua_type(L, index) != LUA_TNUMBER || !in_range(lua_tonumber(L, index), range))
@@ -134,15 +142,17 @@ static double number_at(lua_State *L, const quat_lua_reader *reader, const char 
     return lua_tonumber(L, index);
 }
 
-static lua_Integer integer_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index, lua_Integer least,
-                              lua_Integer most)
+static lua_Integer integer_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index,
+                              lua_Integer least, lua_Integer most)
 {
     int exact = 0;
     const lua_Integer value = lua_type(L, index) == LUA_TNUMBER ? lua_tointegerx(L, index, &exact) : 0;
     if (!exact || value < least || value > most) {
         char wanted[96];
-        if (most == LUA_MAXINTEGER) snprintf(wanted, sizeof wanted, "a whole number >= " LUA_INTEGER_FMT, least);
-        else snprintf(wanted, sizeof wanted, "a whole number from " LUA_INTEGER_FMT " to " LUA_INTEGER_FMT, least, most);
+        if (most == LUA_MAXINTEGER)
+            snprintf(wanted, sizeof wanted, "a whole number >= " LUA_INTEGER_FMT, least);
+        else
+            snprintf(wanted, sizeof wanted, "a whole number from " LUA_INTEGER_FMT " to " LUA_INTEGER_FMT, least, most);
         refuse(L, reader, key, index, wanted);
     }
     return value;
@@ -189,8 +199,7 @@ static bool components_at(lua_State *L, int index, const char *letters, double *
 static qvec3 vec3_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index)
 {
     double v[3] = {0, 0, 0};
-    if (!components_at(L, index, "xyz", v))
-        refuse(L, reader, key, index, "a vector {x, y, z} of finite numbers");
+    if (!components_at(L, index, "xyz", v)) refuse(L, reader, key, index, "a vector {x, y, z} of finite numbers");
     return (qvec3){v[0], v[1], v[2]};
 }
 
@@ -250,7 +259,8 @@ static int distance(const char *a, const char *b)
         for (int j = 1; j <= n; j++) {
             const int change = a[i - 1] != b[j - 1];
             d[i][j] = least(least(d[i - 1][j] + 1, d[i][j - 1] + 1), d[i - 1][j - 1] + change);
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = least(d[i][j], d[i - 2][j - 2] + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                d[i][j] = least(d[i][j], d[i - 2][j - 2] + 1);
         }
     }
     return d[m][n];
@@ -278,15 +288,20 @@ static bool is_among(const char *given, const char *const keys[])
 static int unknown_key(const quat_lua_reader *reader, const char *const keys[])
 {
     lua_State *L = reader->L; /* the key is second from the top */
-    const char *owner = reader->name ? reader->name : "", *quote = reader->name ? "'" : "", *space = reader->name ? " " : "";
+    const char *owner = reader->name ? reader->name : "", *quote = reader->name ? "'" : "",
+               *space = reader->name ? " " : "";
     luaL_checkstack(L, 6, NULL);
-    if (reader->where) lua_pushstring(L, reader->where);
-    else quat_lua_where(L);
+    if (reader->where)
+        lua_pushstring(L, reader->where);
+    else
+        quat_lua_where(L);
     if (lua_type(L, -3) == LUA_TSTRING) {
         const char *given = lua_tostring(L, -3), *meant = nearest(given, keys);
         lua_pushfstring(L, "unknown key '%s' in %s%s%s%s%s", given, reader->kind, space, quote, owner, quote);
-        if (meant) lua_pushfstring(L, " (did you mean '%s'?)", meant);
-        else lua_pushliteral(L, "");
+        if (meant)
+            lua_pushfstring(L, " (did you mean '%s'?)", meant);
+        else
+            lua_pushliteral(L, "");
     } else {
         const char *given = luaL_tolstring(L, -3, NULL);
         lua_pushfstring(L, "unknown key [%s] in %s%s%s%s%s", given, reader->kind, space, quote, owner, quote);
@@ -302,7 +317,8 @@ quat_lua_reader quat_lua_read(lua_State *L, int index, const char *kind, const c
     quat_lua_reader reader = {L, lua_absindex(L, index), kind, NULL, where};
     char text[80];
     if (!lua_istable(L, index))
-        quat_lua_reader_error(&reader, "a table of its values is needed, got %s", describe(L, index, text, sizeof text));
+        quat_lua_reader_error(&reader, "a table of its values is needed, got %s",
+                              describe(L, index, text, sizeof text));
     luaL_checkstack(L, 4, NULL);
     if (lua_getfield(L, reader.index, "name") == LUA_TSTRING) reader.name = lua_tostring(L, -1);
     lua_pop(L, 1);
@@ -396,8 +412,10 @@ quat quat_lua_get_quat(const quat_lua_reader *reader, const char *key, quat fall
 static int vec3_index(lua_State *L)
 {
     const char *key = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
-    if (key[0] >= 'x' && key[0] <= 'z' && key[1] == 0) lua_rawgeti(L, 1, key[0] - 'x' + 1);
-    else lua_pushnil(L);
+    if (key[0] >= 'x' && key[0] <= 'z' && key[1] == 0)
+        lua_rawgeti(L, 1, key[0] - 'x' + 1);
+    else
+        lua_pushnil(L);
     return 1;
 }
 

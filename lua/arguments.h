@@ -52,7 +52,8 @@ int quat_lua_failure(lua_State *L, const char *message);
 /* ---- arguments of functions, by position; name is the argument's name in the error ---- */
 
 double quat_lua_arg_number(lua_State *L, int arg, const char *name, quat_lua_range range);
-double quat_lua_arg_number_or(lua_State *L, int arg, const char *name, quat_lua_range range, double fallback); /* nil or none */
+double quat_lua_arg_number_or(lua_State *L, int arg, const char *name, quat_lua_range range,
+                              double fallback); /* nil or none */
 lua_Integer quat_lua_arg_integer(lua_State *L, int arg, const char *name, lua_Integer least, lua_Integer most);
 /* {x, y, z} or {x=, y=, z=}, all finite. */
 qvec3 quat_lua_arg_vec3(lua_State *L, int arg, const char *name);

@@ -4,20 +4,311 @@
 local core = require "impact.core"
 core.layer()
 
+---@alias vec {[1]: number, [2]: number, [3]: number}|vec3
+---@alias impact.rule "product"|"geometric_mean"|"minimum"|"maximum"
+
 ---@class impact.shape
 ---@field kind string
 ---@field volume number  m^3
 ---@field inertia vec3  per unit mass, m^2
 ---@field bounding_radius number  m
 
+---@class impact.body
+---@field name string  unique in the scene
+---@field shape impact.shape
+---@field static? boolean  never moves; planes are static by themselves
+---@field mass? number  kg
+---@field density? number  kg/m^3, instead of mass
+---@field moments? vec  principal moments, kg m^2; of the uniform solid by default
+---@field position? vec  m
+---@field orientation? quat|number[]  body to world, {w, x, y, z}
+---@field normal? vec  for planes, instead of orientation: where the free side is
+---@field velocity? vec  m/s
+---@field omega? vec  rad/s, world
+---@field friction? number
+---@field restitution? number
+---@field linear_damping? number  part of the velocity lost per second
+---@field angular_damping? number
+
+---@class impact.wind
+---@field name? string
+---@field body? string  acts on this body only
+---@field origin? vec  m
+---@field direction? vec
+---@field strength number  N
+---@field reach? number  m along the tube
+---@field radius? number  m from its axis
+---@field falloff_power? number
+---@field falloff_length? number  m
+
+---@class impact.attraction
+---@field name? string
+---@field body? string
+---@field constant? number  G, N m^power/kg^2
+---@field power? number
+---@field reach? number  m
+
+---@class impact.force
+---@field name? string
+---@field body? string
+---@field law fun(t: number, body: impact.state): vec?, vec?  force (N) and torque (N m); the state is valid during the call only
+
+---@class impact.state
+---@field t number
+---@field body string
+---@field position vec3
+---@field orientation quat
+---@field velocity vec3
+---@field omega vec3
+
+---@class impact.definition
+---@field name? string
+---@field duration number  s
+---@field bodies impact.body[]
+---@field forces? (impact.wind|impact.attraction|impact.force)[]
+---@field gravity? vec  m/s^2
+---@field output_rate? number  samples per second
+---@field rules? {friction?: impact.rule, restitution?: impact.rule}
+---@field pairs? {bodies: string[], friction?: number, restitution?: number}[]
+---@field law? "poisson"|"newton"|"stronge"
+---@field solver? "auto"|"closed_form"|"series"|"cvode"
+---@field tolerance? number
+---@field rest_height? number  m
+---@field rest_speed? number  m/s
+---@field max_events? integer
+---@field plot? fun(scene: impact.scene): plot.figure
+
+---@class impact.options
+---@field csv? string  NAME.csv and NAME_events.csv
+---@field record? boolean  keeps the rows for scene:track and scene:events
+---@field on_sample? fun(state: impact.state): boolean?  false stops the run
+---@field on_event? fun(event: table): boolean?
+---@field on_progress? fun(t: number, t_end: number): boolean?
+
+---@class impact.scene
+---@field run fun(self, options?: impact.options): string?, string?, string?  why it ended; or nil, message, "run"|"output"
+---@field run_to fun(self, t: number, options?: impact.options): string?, string?, string?
+---@field time fun(self): number
+---@field duration fun(self): number
+---@field name fun(self): string
+---@field definition fun(self): impact.definition
+---@field state fun(self, body: string): impact.state
+---@field energy fun(self): table  start, kinetic, potential, force_work, damping_loss, sliding_loss, impact_loss, J
+---@field usage fun(self): table  what the run used, by name; and events, by kind
+---@field events fun(self): table[]  of a recorded run
+---@field close fun(self)
+
 ---@class impactlib
 ---@field version string
 ---@field has fun(part: "cvode"|"ccd"): boolean  whether this build holds the part
 ---@field sphere fun(radius: number|{radius: number}): impact.shape
 ---@field plane fun(bounds?: {width?: number, depth?: number}): impact.shape
+---@field body fun(definition: impact.body): impact.body
+---@field wind fun(definition: impact.wind): impact.wind
+---@field attraction fun(definition?: impact.attraction): impact.attraction
+---@field force fun(definition: impact.force): impact.force
+---@field scene fun(definition: impact.definition): impact.scene
 local impact = {}
 for name, value in pairs(core) do
-  if name ~= "layer" then impact[name] = value end
+  if name ~= "layer" and name ~= "scene_methods" then impact[name] = value end
+end
+
+local methods = core.scene_methods
+local recorded_track = methods.track
+
+-- ---- tracks: the recorded rows of a body, as columns ----
+
+local columns = { "t", "x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy", "wz" }
+
+--- The quaternion's rate, omega q / 2 with omega in the world.
+local function quaternion_rate(r)
+  return {
+    qw = (-r.wx * r.qx - r.wy * r.qy - r.wz * r.qz) / 2,
+    qx = (r.wx * r.qw + r.wy * r.qz - r.wz * r.qy) / 2,
+    qy = (r.wy * r.qw + r.wz * r.qx - r.wx * r.qz) / 2,
+    qz = (r.wz * r.qw + r.wx * r.qy - r.wy * r.qx) / 2,
+  }
+end
+
+local velocity_of = { x = "vx", y = "vy", z = "vz" }
+
+--- The state at part s of the way from row a to row b, h seconds apart: cubic Hermite in x and q, linear in the velocities.
+local function between(a, b, h, s)
+  local row = { t = a.t + s * h }
+  local h00, h10 = (1 + 2 * s) * (1 - s) ^ 2, s * (1 - s) ^ 2
+  local h01, h11 = s * s * (3 - 2 * s), s * s * (s - 1)
+  for place, speed in pairs(velocity_of) do
+    row[place] = h00 * a[place] + h10 * h * a[speed] + h01 * b[place] + h11 * h * b[speed]
+    row[speed] = (1 - s) * a[speed] + s * b[speed]
+  end
+  for _, w in ipairs { "wx", "wy", "wz" } do row[w] = (1 - s) * a[w] + s * b[w] end
+  local rate_a, rate_b, norm = quaternion_rate(a), quaternion_rate(b), 0
+  for _, q in ipairs { "qw", "qx", "qy", "qz" } do
+    row[q] = h00 * a[q] + h10 * h * rate_a[q] + h01 * b[q] + h11 * h * rate_b[q]
+    norm = norm + row[q] ^ 2
+  end
+  norm = math.sqrt(norm)
+  for _, q in ipairs { "qw", "qx", "qy", "qz" } do row[q] = row[q] / norm end
+  return row
+end
+
+local function row_of(track, i)
+  local row = {}
+  for _, column in ipairs(columns) do row[column] = track[column][i] end
+  return row
+end
+
+--- The recorded rows of a body as columns t, x, y, z, qw ... wz. With a rate, rows are put between them, at least so many per
+--- second, for smooth curves; the recorded rows stay as they are.
+---@param body string
+---@param rate? number
+---@return table
+function methods:track(body, rate)
+  local track = recorded_track(self, body)
+  if not rate then return track end
+  local fine = {}
+  for _, column in ipairs(columns) do fine[column] = {} end
+  local function add(row)
+    for _, column in ipairs(columns) do fine[column][#fine[column] + 1] = row[column] end
+  end
+  local a
+  for i = 1, #track.t do
+    local b = row_of(track, i)
+    local steps = a and math.ceil((b.t - a.t) * rate) or 0
+    for k = 1, steps - 1 do add(between(a, b, b.t - a.t, k / steps)) end
+    add(b)
+    a = b
+  end
+  return fine
+end
+
+--- A track's rows before and after time t. Of the rows at t itself, the first ends the one, the others begin the other.
+---@return table, table
+function impact.split(track, t)
+  local before, after = {}, {}
+  for _, column in ipairs(columns) do before[column], after[column] = {}, {} end
+  local passed = false
+  for i = 1, #track.t do
+    local part = (passed or track.t[i] > t) and after or before
+    for _, column in ipairs(columns) do part[column][#part[column] + 1] = track[column][i] end
+    passed = passed or track.t[i] >= t
+  end
+  return before, after
+end
+
+--- The first recorded event of a kind ("impact", "contact", ...) between two bodies, or nil; a nil name is any.
+---@return table?
+function methods:first(kind, body1, body2)
+  for _, event in ipairs(self:events()) do
+    local straight = (not body1 or event.body1 == body1) and (not body2 or event.body2 == body2)
+    local turned = (not body1 or event.body2 == body1) and (not body2 or event.body1 == body2)
+    if event.event == kind and (straight or turned) then return event end
+  end
+  return nil
+end
+
+local function find_body(self, name)
+  for _, body in ipairs(self:definition().bodies) do
+    if body.name == name then return body end
+  end
+  error(string.format("scene '%s' has no body '%s'", self:name(), tostring(name)), 3)
+end
+
+--- The radius of the smallest ball about a body's centre that holds it, m.
+---@return number
+function methods:radius(body)
+  return find_body(self, body).shape.bounding_radius
+end
+
+--- The energies of a body along a track of it, J, as columns: translation, rotation, potential (of gravity), total.
+---@return table
+function methods:energies(body, track)
+  local definition = find_body(self, body)
+  local shape = definition.shape
+  local mass = definition.mass or (definition.density or 1000) * shape.volume
+  local moments = definition.moments or { mass * shape.inertia.x, mass * shape.inertia.y, mass * shape.inertia.z }
+  local gravity = self:definition().gravity or { 0, 0, -9.81 }
+  local result = { translation = {}, rotation = {}, potential = {}, total = {} }
+  for i = 1, #track.t do
+    local r = row_of(track, i)
+    -- The angular velocity along the body's axes: conj(q) omega q.
+    local tx = 2 * (r.wy * r.qz - r.wz * r.qy)
+    local ty = 2 * (r.wz * r.qx - r.wx * r.qz)
+    local tz = 2 * (r.wx * r.qy - r.wy * r.qx)
+    local bx = r.wx + r.qw * tx + (ty * r.qz - tz * r.qy)
+    local by = r.wy + r.qw * ty + (tz * r.qx - tx * r.qz)
+    local bz = r.wz + r.qw * tz + (tx * r.qy - ty * r.qx)
+    local translation = mass / 2 * (r.vx ^ 2 + r.vy ^ 2 + r.vz ^ 2)
+    local rotation = (moments[1] * bx ^ 2 + moments[2] * by ^ 2 + moments[3] * bz ^ 2) / 2
+    local potential = -mass * (gravity[1] * r.x + gravity[2] * r.y + gravity[3] * r.z)
+    result.translation[i], result.rotation[i], result.potential[i] = translation, rotation, potential
+    result.total[i] = translation + rotation + potential
+  end
+  return result
+end
+
+-- ---- plot and summary ----
+
+--- Whether the definition holds a plot.
+---@return boolean
+function methods:has_plot()
+  return self:definition().plot ~= nil
+end
+
+--- The figure that the definition's plot makes of the recorded run.
+---@return plot.figure
+function methods:figure()
+  local plot = self:definition().plot
+  if not plot then error(string.format("scene '%s' has no plot", self:name()), 2) end
+  return plot(self)
+end
+
+local event_kinds = { "impact", "contact", "slip", "stick", "liftoff", "force", "rest" }
+
+local parts = {
+  { "ballistic_flights", "flight in closed form", "stretches" },
+  { "integrators", "CVODE for the motion", "integrators" },
+  { "gap_closed_form", "gaps in closed form", "queries" },
+  { "gap_newton", "gaps by Newton", "queries" },
+  { "gap_gjk", "gaps by GJK", "queries" },
+  { "gap_fallback", "gaps by the fallback", "queries" },
+  { "impacts_closed_form", "impacts in closed form", "impacts" },
+  { "impacts_series", "impacts by series", "impacts" },
+  { "impacts_cvode", "impacts by CVODE", "impacts" },
+}
+
+local function energy_line(energy)
+  local balance = energy.start + energy.force_work - energy.damping_loss - energy.sliding_loss - energy.impact_loss -
+      energy.kinetic - energy.potential
+  return string.format(
+    "%.6g J at the start %+.6g by forces %+.6g by damping %+.6g by sliding %+.6g by impacts = %.6g J now (off by %.1g J)",
+    energy.start, energy.force_work, -energy.damping_loss, -energy.sliding_loss, -energy.impact_loss,
+    energy.kinetic + energy.potential, math.abs(balance))
+end
+
+--- What happened, in a few lines: why it ended, events by kind, the energy account, what was used and what was not.
+---@param reason? string
+---@return string
+function methods:summary(reason)
+  local usage, happened, used, unused = self:usage(), {}, {}, {}
+  for _, kind in ipairs(event_kinds) do
+    local count = usage.events[kind] or 0
+    if count > 0 then happened[#happened + 1] = string.format("%d %s", count, kind) end
+  end
+  for _, part in ipairs(parts) do
+    local count = usage[part[1]]
+    if count > 0 then
+      used[#used + 1] = string.format("%s (%d %s)", part[2], count, part[3])
+    else
+      unused[#unused + 1] = part[2]
+    end
+  end
+  local steps = usage.integrator_steps > 0 and
+      string.format("\n             CVODE took %d steps from %d starts, with %d evaluations of the forces", usage.integrator_steps,
+        usage.integrator_starts, usage.integrator_rhs_calls) or ""
+  return string.format("%s: %s, t = %.6g s\n  events     %s\n  energy     %s\n  used       %s%s\n  not used   %s\n", self:name(),
+    reason or "so far", self:time(), #happened > 0 and table.concat(happened, ", ") or "none", energy_line(self:energy()),
+    table.concat(used, ", "), steps, #unused > 0 and table.concat(unused, ", ") or "nothing was left out")
 end
 
 return impact

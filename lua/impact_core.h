@@ -14,8 +14,41 @@
 IMPACT_API int luaopen_impact_core(lua_State *L);
 
 void impact_lua_open_shape(lua_State *L);
+void impact_lua_open_body(lua_State *L);
+void impact_lua_open_force(lua_State *L);
+void impact_lua_open_scene(lua_State *L);
 
 /* Pushes a shape userdata. */
 void impact_lua_push_shape(lua_State *L, const impact_shape *shape);
+
+/* ---- who runs the scripts ---- */
+
+/* Set by a program that runs scripts; absent in a stock interpreter. */
+typedef struct impact_lua_host {
+    const char *directory;                                      /* scene:run{csv="name"} writes in here */
+    bool confined;                                              /* and csv takes plain names only */
+    bool (*prepare)(void *context, char *message, size_t size); /* makes the folder; false with a message */
+    bool (*progress)(void *context, double t, double t_end);    /* false: the run fails, and its files are dropped */
+    void *context;
+} impact_lua_host;
+
+/* host must outlive the state. */
+void impact_lua_set_host(lua_State *L, const impact_lua_host *host);
+/* NULL when there is none. */
+const impact_lua_host *impact_lua_get_host(lua_State *L);
+
+/* ---- definitions that a script makes before the scene ---- */
+
+/* Makes the table at arg a checked definition of the kind: gives it the metatable and keeps its position for later errors. */
+void impact_lua_mark(lua_State *L, int arg, const char *metatable);
+/* Whether the value at index was so marked. */
+bool impact_lua_is_marked(lua_State *L, int index, const char *metatable);
+/* Pushes the "file:line: " where the table at index was made, or nil; returns the string or NULL. */
+const char *impact_lua_push_position(lua_State *L, int index);
+
+/* Read a definition over the library's defaults. The strings in *def live as long as the table. */
+void impact_lua_read_body(lua_State *L, int index, const char *where, impact_body_def *def);
+/* The kinds' metatables decide; a custom force's function and context stay unset. Raises when it is no force; item names it. */
+void impact_lua_read_force(lua_State *L, int index, const char *where, const char *item, impact_force_def *def);
 
 #endif

@@ -63,18 +63,24 @@ static int shape_index(lua_State *L)
     const struct {
         const char *key;
         double value;
-    } numbers[] = {{"a", shape->a}, {"b", shape->b}, {"c", shape->c}, {"r", shape->r}, {"s", shape->s}, {"t", shape->t}};
+    } numbers[] = {{"a", shape->a}, {"b", shape->b}, {"c", shape->c},
+                   {"r", shape->r}, {"s", shape->s}, {"t", shape->t}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         if (strcmp(key, numbers[i].key) == 0) {
             lua_pushnumber(L, numbers[i].value);
             return 1;
         }
     }
-    if (strcmp(key, "kind") == 0) lua_pushstring(L, kind_words[shape->kind]);
-    else if (strcmp(key, "volume") == 0) lua_pushnumber(L, impact_shape_volume(shape));
-    else if (strcmp(key, "inertia") == 0) quat_lua_push_vec3(L, impact_shape_inertia(shape));
-    else if (strcmp(key, "bounding_radius") == 0) lua_pushnumber(L, impact_shape_bounding_radius(shape));
-    else lua_pushnil(L);
+    if (strcmp(key, "kind") == 0)
+        lua_pushstring(L, kind_words[shape->kind]);
+    else if (strcmp(key, "volume") == 0)
+        lua_pushnumber(L, impact_shape_volume(shape));
+    else if (strcmp(key, "inertia") == 0)
+        quat_lua_push_vec3(L, impact_shape_inertia(shape));
+    else if (strcmp(key, "bounding_radius") == 0)
+        lua_pushnumber(L, impact_shape_bounding_radius(shape));
+    else
+        lua_pushnil(L);
     return 1;
 }
 

@@ -12,8 +12,10 @@ static int quat_new(lua_State *L)
         quat_lua_push_quat(L, quat_lua_arg_quat(L, 1, "q"));
         return 1;
     }
-    const double w = quat_lua_arg_number(L, 1, "w", QUAT_LUA_FINITE), x = quat_lua_arg_number(L, 2, "x", QUAT_LUA_FINITE);
-    const double y = quat_lua_arg_number(L, 3, "y", QUAT_LUA_FINITE), z = quat_lua_arg_number(L, 4, "z", QUAT_LUA_FINITE);
+    const double w = quat_lua_arg_number(L, 1, "w", QUAT_LUA_FINITE),
+                 x = quat_lua_arg_number(L, 2, "x", QUAT_LUA_FINITE);
+    const double y = quat_lua_arg_number(L, 3, "y", QUAT_LUA_FINITE),
+                 z = quat_lua_arg_number(L, 4, "z", QUAT_LUA_FINITE);
     quat_lua_push_quat(L, quat_make(w, x, y, z));
     return 1;
 }
@@ -22,11 +24,16 @@ static int quat_component(lua_State *L)
 {
     const quat *q = check_self(L);
     const char *key = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
-    if (strcmp(key, "w") == 0) lua_pushnumber(L, q->w);
-    else if (strcmp(key, "x") == 0) lua_pushnumber(L, q->x);
-    else if (strcmp(key, "y") == 0) lua_pushnumber(L, q->y);
-    else if (strcmp(key, "z") == 0) lua_pushnumber(L, q->z);
-    else lua_pushnil(L);
+    if (strcmp(key, "w") == 0)
+        lua_pushnumber(L, q->w);
+    else if (strcmp(key, "x") == 0)
+        lua_pushnumber(L, q->x);
+    else if (strcmp(key, "y") == 0)
+        lua_pushnumber(L, q->y);
+    else if (strcmp(key, "z") == 0)
+        lua_pushnumber(L, q->z);
+    else
+        lua_pushnil(L);
     return 1;
 }
 

@@ -1,0 +1,425 @@
+-- SPDX-License-Identifier: MIT
+--- Figures as plain data, drawn by gnuplot: `local plot = require "quat.plot"`. The guide is docs/lua.md.
+---
+---   local figure = plot.figure { title = "A circle",
+---     plot.panel { equal = true, plot.line { x, y, label = "the circle" } } }
+---   plot.save(figure, "circle")  -- circle.png
+---
+--- A figure is numbers, strings and tables only: the runner copies it into a state of its own before it draws. Nothing that a
+--- script wrote reaches gnuplot but numbers, and strings in single quotes.
+
+local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
+local format, gsub, match, rep = string.format, string.gsub, string.match, string.rep
+local concat, unpack = table.concat, table.unpack
+local floor, huge, min, max = math.floor, math.huge, math.min, math.max
+local pcall, require, io, os = pcall, require, io, os
+
+local plot = {}
+
+--- Colours that stand apart for most eyes, also in grey.
+plot.colors = {
+  blue = "#2b6cb0",
+  red = "#c53030",
+  green = "#2f855a",
+  orange = "#dd6b20",
+  purple = "#6b46c1",
+  teal = "#2c7a7b",
+  grey = "#a0aec0",
+  dark = "#2d3748",
+  black = "#000000",
+}
+local cycle = { "blue", "red", "green", "orange", "purple", "teal" }
+
+-- ---- describing ----
+
+local panel_keys = {
+  title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = "string",
+  xrange = "table", yrange = "table", zrange = "table", view = "table", at = "table", frame = "boolean", box = "table",
+  three = "boolean",
+}
+local figure_keys = { title = "string", subtitle = "string", size = "table", grid = "table" }
+local item_keys = {
+  line = { label = "string", color = "string", width = "number", dash = "boolean", fill = "boolean", opacity = "number" },
+  points = { label = "string", color = "string", size = "number", shape = "string" },
+  arrows = { label = "string", color = "string", width = "number", head = "number" },
+  surface = { label = "string", color = "string", opacity = "number", lines = "boolean", value = "table", range = "table" },
+  text = { color = "string", at = "table", align = "string", size = "number" },
+  mark = { label = "string", color = "string", x = "number", y = "number", dash = "boolean" },
+}
+
+--- Checks a description's names; `level` is the stack level to blame.
+local function checked(what, keys, description, level)
+  if type(description) ~= "table" then error(what .. ": a table is needed, got a " .. type(description), level + 1) end
+  for key, value in pairs(description) do
+    if type(key) == "string" and key ~= "kind" then
+      local wanted = keys[key]
+      if not wanted then error(format("unknown key '%s' in %s", key, what), level + 1) end
+      if type(value) ~= wanted then
+        error(format("%s: %s must be a %s, got a %s", what, key, wanted, type(value)), level + 1)
+      end
+    end
+  end
+  return description
+end
+
+local function maker(kind)
+  return function(description)
+    checked(kind, item_keys[kind], description, 2)
+    description.kind = kind
+    return description
+  end
+end
+
+---@class plot.figure
+---@class plot.panel
+---@class plot.item
+
+--- A line through {x, y} or {x, y, z} (lists of numbers; NaN lifts the pen).
+--- Also: label, color (a name of plot.colors or "#rrggbb"), width, dash, fill and opacity (a filled polygon, flat panels only).
+---@type fun(description: table): plot.item
+plot.line = maker "line"
+--- Points at {x, y[, z]}: label, color, size, shape ("dot", "circle", "square", "triangle", "cross", "star").
+---@type fun(description: table): plot.item
+plot.points = maker "points"
+--- Arrows from {x, y, dx, dy} or {x, y, z, dx, dy, dz}: label, color, width, head.
+---@type fun(description: table): plot.item
+plot.arrows = maker "arrows"
+--- A surface through {x, y, z}, each a list of rows of equal length: color, or value (rows of numbers to colour by) and
+--- range {least, most}; opacity; lines (its mesh, drawn).
+---@type fun(description: table): plot.item
+plot.surface = maker "surface"
+--- A text {"words", at = {x, y[, z]}}: color, align ("left", "center", "right"), size.
+---@type fun(description: table): plot.item
+plot.text = maker "text"
+--- A line right across the panel at x= or y=: label, color, dash.
+---@type fun(description: table): plot.item
+plot.mark = maker "mark"
+
+--- A panel of items: title, xlabel, ylabel, zlabel, equal (the same scale on all axes), legend ("top left" ..., "none"), xrange,
+--- yrange, zrange ({least, most}), view ({about x, about z}, degrees), frame (axes drawn), three (three-dimensional; by itself
+--- when an item has a z), at ({column, row[, columns, rows]} in the figure's grid), box ({left, bottom, right, top} of the axes,
+--- as parts of the figure, instead of at).
+---@return plot.panel
+function plot.panel(description)
+  checked("panel", panel_keys, description, 2)
+  for i, item in ipairs(description) do
+    if type(item) ~= "table" or not item_keys[item.kind] then
+      error(format("panel: item %d must be made with plot.line, plot.points, ...", i), 2)
+    end
+  end
+  description.kind = "panel"
+  return description
+end
+
+--- A figure of panels: title, subtitle, size ({width, height}, pixels), grid ({columns, rows}).
+---@return plot.figure
+function plot.figure(description)
+  checked("figure", figure_keys, description, 2)
+  for i, panel in ipairs(description) do
+    if type(panel) ~= "table" or panel.kind ~= "panel" then error(format("figure: item %d must be a plot.panel", i), 2) end
+  end
+  if #description == 0 then error("figure: no panel in it", 2) end
+  description.kind = "figure"
+  return description
+end
+
+-- ---- gnuplot's commands ----
+
+--- A string as gnuplot's single-quoted one: no escapes, no substitution; control characters and backquotes do not pass.
+local function quote(text)
+  local clean = gsub(tostring(text), "[%c`]", " ")
+  return "'" .. gsub(clean, "'", "''") .. "'"
+end
+
+local function number(value, what)
+  if type(value) ~= "number" then error((what or "a value") .. " must be a number, got a " .. type(value), 0) end
+  if value ~= value or value == huge or value == -huge then return "NaN" end
+  return format("%.9g", value)
+end
+
+local function color(value, fallback)
+  local code = plot.colors[value or fallback] or value
+  if type(code) ~= "string" or not match(code, "^#%x%x%x%x%x%x$") then
+    error(format("the color '%s' is neither '#rrggbb' nor one of plot.colors", tostring(value)), 0)
+  end
+  return code
+end
+
+local function with_opacity(code, opacity)
+  if not opacity then return code end
+  return format("#%02x%s", floor(255 * (1 - min(1, max(0, opacity))) + 0.5), code:sub(2))
+end
+
+local shapes = { dot = 7, circle = 6, square = 5, triangle = 9, cross = 2, star = 3 }
+
+local function columns_of(item, count)
+  local columns = { unpack(item, 1, count) }
+  for i, column in ipairs(columns) do
+    if type(column) ~= "table" then error(format("%s: column %d is not a list", item.kind, i), 0) end
+    if #column ~= #columns[1] then
+      error(format("%s: columns 1 and %d have %d and %d rows", item.kind, i, #columns[1], #column), 0)
+    end
+  end
+  if #columns ~= count then error(format("%s: %d columns are needed, got %d", item.kind, count, #columns), 0) end
+  return columns
+end
+
+local function data_block(out, name, columns)
+  out[#out + 1] = name .. " << EOD"
+  local row = {}
+  for i = 1, #columns[1] do
+    for c = 1, #columns do row[c] = number(columns[c][i], "a plotted value") end
+    out[#out + 1] = concat(row, " ")
+  end
+  if #columns[1] == 0 then out[#out + 1] = rep("NaN ", #columns) end
+  out[#out + 1] = "EOD"
+end
+
+local function surface_block(out, name, item)
+  local x, y, z, value = item[1], item[2], item[3], item.value
+  if type(x) ~= "table" or type(y) ~= "table" or type(z) ~= "table" then error("surface: x, y and z are lists of rows", 0) end
+  out[#out + 1] = name .. " << EOD"
+  for i = 1, #x do
+    for j = 1, #x[i] do
+      local shade = value and value[i][j] or 0
+      out[#out + 1] = concat({ number(x[i][j]), number(y[i][j]), number(z[i][j]), number(shade) }, " ")
+    end
+    out[#out + 1] = ""
+  end
+  out[#out + 1] = "EOD"
+end
+
+local function title_of(item)
+  return item.label and "title " .. quote(item.label) or "notitle"
+end
+
+--- Each returns the plotting clause of an item whose data stands in block `name`.
+local clauses = {}
+
+function clauses.line(out, name, item, three, fallback)
+  data_block(out, name, columns_of(item, three and 3 or 2))
+  if item.fill and not three then
+    return format("%s using 1:2 with filledcurves closed lc rgb %s %s", name,
+      quote(with_opacity(color(item.color, fallback), item.opacity or 0.25)), title_of(item))
+  end
+  return format("%s using 1:2%s with lines lw %s dt %s lc rgb %s %s", name, three and ":3" or "", number(item.width or 2),
+    item.dash and "(7,4)" or "solid", quote(with_opacity(color(item.color, fallback), item.opacity)), title_of(item))
+end
+
+function clauses.points(out, name, item, three, fallback)
+  data_block(out, name, columns_of(item, three and 3 or 2))
+  local shape = shapes[item.shape or "dot"]
+  if not shape then error(format("points: unknown shape '%s'", tostring(item.shape)), 0) end
+  return format("%s using 1:2%s with points pt %d ps %s lw 1.5 lc rgb %s %s", name, three and ":3" or "", shape,
+    number(item.size or 1), quote(color(item.color, fallback)), title_of(item))
+end
+
+function clauses.arrows(out, name, item, three, fallback)
+  data_block(out, name, columns_of(item, three and 6 or 4))
+  return format("%s using 1:2:3:4%s with vectors filled head size graph %s,20,60 lw %s lc rgb %s %s", name,
+    three and ":5:6" or "", number(item.head or 0.02), number(item.width or 1.5), quote(color(item.color, fallback)), title_of(item))
+end
+
+function clauses.surface(out, name, item, _, fallback)
+  surface_block(out, name, item)
+  if item.value then return format("%s using 1:2:3:4 with pm3d %s", name, title_of(item)) end
+  local code = quote(with_opacity(color(item.color, fallback), item.opacity or 0.35))
+  if item.lines == true then return format("%s using 1:2:3 with lines lw 0.7 lc rgb %s %s", name, code, title_of(item)) end
+  return format("%s using 1:2:3 with pm3d fillcolor rgb %s %s", name, code, title_of(item))
+end
+
+local function position(at, three)
+  local a = { number(at[1], "a position"), number(at[2], "a position") }
+  if three then a[3] = number(at[3] or 0, "a position") end
+  return concat(a, ",")
+end
+
+local aligns = { left = "left", center = "center", right = "right" }
+
+local function put_text(out, item, three)
+  out[#out + 1] = format("set label %s at %s %s front font ',%s' tc rgb %s", quote(item[1]),
+    position(item.at or { 0, 0, 0 }, three), aligns[item.align or "left"] or "left", number(item.size or 11),
+    quote(color(item.color, "dark")))
+end
+
+local function put_mark(out, item)
+  local look = format("nohead front lw 1.2 dt %s lc rgb %s", item.dash == false and "solid" or "(3,3)",
+    quote(color(item.color, "dark")))
+  if item.x then
+    local x = number(item.x)
+    out[#out + 1] = format("set arrow from first %s, graph 0 to first %s, graph 1 %s", x, x, look)
+    if item.label then
+      out[#out + 1] = format("set label %s at first %s, graph 0.97 left offset 0.5,0 front font ',10' tc rgb %s",
+        quote(item.label), x, quote(color(item.color, "dark")))
+    end
+  elseif item.y then
+    local y = number(item.y)
+    out[#out + 1] = format("set arrow from graph 0, first %s to graph 1, first %s %s", y, y, look)
+    if item.label then
+      out[#out + 1] = format("set label %s at graph 0.02, first %s left offset 0,0.5 front font ',10' tc rgb %s",
+        quote(item.label), y, quote(color(item.color, "dark")))
+    end
+  end
+end
+
+local function is_three(panel)
+  if panel.three then return true end
+  for _, item in ipairs(panel) do
+    local kind = item.kind
+    if kind == "surface" or (kind == "arrows" and #item == 6) or ((kind == "line" or kind == "points") and #item == 3) then
+      return true
+    end
+  end
+  return false
+end
+
+local function range(out, axis, limits)
+  out[#out + 1] = limits and format("set %srange [%s:%s]", axis, number(limits[1]), number(limits[2])) or
+      format("set %srange [*:*]", axis)
+end
+
+local legends = {
+  ["top left"] = "top left", ["top right"] = "top right", ["bottom left"] = "bottom left",
+  ["bottom right"] = "bottom right", ["top center"] = "top center", ["bottom center"] = "bottom center",
+  ["below"] = "below center horizontal", ["outside"] = "outside right top", ["center"] = "center center",
+}
+
+local function put_axes(out, panel, three)
+  local add = function(...) out[#out + 1] = format(...) end
+  add("unset label; unset arrow; unset xlabel; unset ylabel; unset zlabel; unset title")
+  if panel.title then add("set title %s font ',12' offset 0,-0.4 tc rgb '#1a202c'", quote(panel.title)) end
+  for _, axis in ipairs { "x", "y", "z" } do
+    local label = panel[axis .. "label"]
+    if label then add("set %slabel %s font ',11' tc rgb '#2d3748'", axis, quote(label)) end
+    range(out, axis, panel[axis .. "range"])
+  end
+  local legend = panel.legend or "top right"
+  if legend == "none" then
+    add("unset key")
+  else
+    add("set key %s noopaque samplen 2.2 spacing 1.15 font ',10.5' tc rgb '#2d3748'", legends[legend] or "top right")
+  end
+  if panel.frame == false then
+    add("unset border; unset xtics; unset ytics; unset ztics; unset grid")
+  else
+    add("set border %d lc rgb '#718096' lw 1", three and 31 or 3)
+    add("set xtics nomirror out scale 0.6 font ',10' tc rgb '#2d3748'; set ytics nomirror out scale 0.6 font ',10' tc rgb '#2d3748'")
+    if three then add("set ztics out scale 0.6 font ',10' tc rgb '#2d3748'") end
+    add("set grid lc rgb '#e2e8f0' lw 1 dt solid")
+  end
+  if three then
+    local view = panel.view or { 65, 35 }
+    add("set view %s,%s,1,1", number(view[1]), number(view[2]))
+    add(panel.equal and "set view equal xyz; set size noratio" or "unset view; set view %s,%s; set size noratio",
+      number(view[1]), number(view[2]))
+    add("set xyplane relative 0; set pm3d depthorder border lc rgb '#ffffff' lw 0.2; unset colorbox; unset hidden3d")
+  else
+    add(panel.equal and "set size ratio -1" or "set size noratio")
+  end
+end
+
+--- Where the panel's axes stand: its box, or its cell of the figure's grid.
+local function put_place(out, panel, place, top, three)
+  local add = function(...) out[#out + 1] = format(...) end
+  if panel.box then
+    local b = panel.box
+    add("set lmargin at screen %s; set bmargin at screen %s; set rmargin at screen %s; set tmargin at screen %s",
+      number(b[1]), number(b[2]), number(b[3]), number(b[4]))
+    add("set origin 0,0; set size 1,1")
+    return
+  end
+  local left, width = (place.column - 1) / place.columns, place.wide / place.columns
+  local height = top * place.high / place.rows
+  local bottom = top - top * (place.row - 1) / place.rows - height
+  add("set origin %s,%s; set size %s,%s", number(left), number(bottom), number(width), number(height))
+  if three then
+    add("set lmargin 2; set rmargin 2; set tmargin 2; set bmargin 1")
+  else
+    add("set lmargin 9.5; set rmargin 3; set tmargin 2.2; set bmargin 3.6")
+  end
+end
+
+local function put_panel(out, panel, number_of, place, top)
+  local three = is_three(panel)
+  put_place(out, panel, place, top, three)
+  put_axes(out, panel, three)
+  local parts, colored = {}, 0
+  for i, item in ipairs(panel) do
+    if item.kind == "text" then
+      put_text(out, item, three)
+    elseif item.kind == "mark" then
+      put_mark(out, item)
+    else
+      if not item.color then colored = colored + 1 end
+      local name = format("$panel%d_%d", number_of, i)
+      parts[#parts + 1] = clauses[item.kind](out, name, item, three, cycle[(colored - 1) % #cycle + 1])
+      if item.value then
+        out[#out + 1] = "set palette defined (0 '#2b6cb0', 0.5 '#f7fafc', 1 '#c53030'); set colorbox"
+        if item.range then range(out, "cb", item.range) else range(out, "cb") end
+      end
+    end
+  end
+  if #parts == 0 then parts[1] = three and "NaN notitle" or "NaN notitle" end
+  out[#out + 1] = (three and "splot " or "plot ") .. concat(parts, ", \\\n  ")
+end
+
+--- The commands that draw the figure: to the file `output`, or to standard output.
+---@param figure plot.figure
+---@param output? string
+---@return string
+function plot.gnuplot(figure, output)
+  if type(figure) ~= "table" or figure.kind ~= "figure" then error("a figure is made with plot.figure", 0) end
+  local size = figure.size or { 1280, 860 }
+  local grid = figure.grid or { #figure > 1 and 2 or 1, #figure > 1 and floor((#figure + 1) / 2) or 1 }
+  local out = {
+    "set encoding utf8",
+    format("set terminal pngcairo noenhanced size %d,%d font 'DejaVu Sans,11' background '#ffffff'",
+      floor(min(8000, max(100, size[1]))), floor(min(8000, max(100, size[2])))),
+    output and "set output " .. quote(output) or "set output",
+    "set multiplot",
+  }
+  local top = 1
+  if figure.title then
+    local line = 30 / size[2]
+    out[#out + 1] = format("set label 1001 %s at screen 0.5,%s center front font ',16' tc rgb '#1a202c'", quote(figure.title),
+      number(1 - 0.85 * line))
+    top = 1 - 1.5 * line
+    if figure.subtitle then
+      out[#out + 1] = format("set label 1002 %s at screen 0.5,%s center front font ',11' tc rgb '#4a5568'",
+        quote(figure.subtitle), number(1 - 1.65 * line))
+      top = 1 - 2.2 * line
+    end
+    out[#out + 1] = "set origin 0,0; set size 1,1; unset border; unset tics; unset key; set margins 0,0,0,0"
+    out[#out + 1] = "plot [0:1][0:1] NaN notitle"
+    out[#out + 1] = "unset label"
+  end
+  for i, panel in ipairs(figure) do
+    local at = panel.at or { (i - 1) % grid[1] + 1, floor((i - 1) / grid[1]) + 1 }
+    local place = { column = at[1], row = at[2], wide = at[3] or 1, high = at[4] or 1, columns = grid[1], rows = grid[2] }
+    put_panel(out, panel, i, place, top)
+  end
+  out[#out + 1] = "unset multiplot"
+  out[#out + 1] = "set output"
+  return concat(out, "\n") .. "\n"
+end
+
+--- Draws the figure as NAME.png: in the runner's output folder, or in a stock Lua where the name says.
+--- true, or nil and why (gnuplot is not installed, the file cannot be written).
+---@return true?, string?
+function plot.save(figure, name)
+  local hosted, host = pcall(require, "quat.host")
+  if hosted and type(host) == "table" then return host.save(figure, name) end
+  local part, final = name .. ".png.part", name .. ".png"
+  local commands = plot.gnuplot(figure, part)
+  local pipe = io.popen("gnuplot -d -", "w")
+  if not pipe then return nil, "gnuplot cannot be started" end
+  pipe:write(commands)
+  local good = pipe:close()
+  if not good then
+    os.remove(part)
+    return nil, "gnuplot is not installed, or failed"
+  end
+  return os.rename(part, final)
+end
+
+return plot

@@ -1,0 +1,145 @@
+-- SPDX-License-Identifier: MIT
+--- Pictures of a recorded scene: `local portrait = require "impact.portrait"`; for a definition's plot.
+local impact = require "impact"
+local plot = require "quat.plot"
+require "impact.core".layer()
+
+local portrait = {}
+
+local colors = plot.colors
+
+--- The part of a column list where keep(row number) holds; elsewhere the pen is lifted.
+local function speed(track)
+  local v = {}
+  for i = 1, #track.t do v[i] = math.sqrt(track.vx[i] ^ 2 + track.vy[i] ^ 2 + track.vz[i] ^ 2) end
+  return v
+end
+
+local function spin(track)
+  local w = {}
+  for i = 1, #track.t do w[i] = math.sqrt(track.wx[i] ^ 2 + track.wy[i] ^ 2 + track.wz[i] ^ 2) end
+  return w
+end
+
+--- The orientation where the other body was met, and whether it was met at all.
+local function meeting(scene, body, other)
+  local event = other and scene:first("impact", body, other)
+  return event and event.t
+end
+
+--- The curves of a track before and after the meeting, in one colour: solid, then dashed.
+local function two_parts(items, before, after, x, y, color, label)
+  items[#items + 1] = plot.line { before[x], before[y], color = color, label = label, width = 2.2 }
+  if #after.t > 0 then items[#items + 1] = plot.line { after[x], after[y], color = color, dash = true, width = 2.2 } end
+end
+
+local function with_marks(panel, t, other)
+  if t then panel[#panel + 1] = plot.mark { x = t, label = other, color = "red" } end
+  return plot.panel(panel)
+end
+
+--- Position, speed and energy over time, for the right-hand side of a picture.
+local function over_time(scene, body, other, boxes, track, before, after, t)
+  local position = { title = "position of the centre", ylabel = "m", legend = "bottom right", box = boxes[1] }
+  two_parts(position, before, after, "t", "x", "blue", "x")
+  two_parts(position, before, after, "t", "z", "orange", "z")
+  local moving = { title = "speed of the centre, and of the turning at the rim", ylabel = "m/s", legend = "top right", box = boxes[2] }
+  local rim, radius = spin(track), scene:radius(body)
+  for i = 1, #rim do rim[i] = rim[i] * radius end
+  moving[1] = plot.line { track.t, speed(track), color = "blue", label = "|v|" }
+  moving[2] = plot.line { track.t, rim, color = "purple", label = "r |ω|" }
+  local energies = scene:energies(body, track)
+  local energy = { title = "energy", xlabel = "time, s", ylabel = "J", legend = "top right", box = boxes[3] }
+  energy[1] = plot.line { track.t, energies.total, color = "dark", label = "all" }
+  energy[2] = plot.line { track.t, energies.translation, color = "blue", label = "moving" }
+  energy[3] = plot.line { track.t, energies.rotation, color = "purple", label = "turning" }
+  energy[4] = plot.line { track.t, energies.potential, color = "orange", label = "height" }
+  return with_marks(position, t, other), with_marks(moving, t), with_marks(energy, t)
+end
+
+local right = { { 0.56, 0.695, 0.975, 0.885 }, { 0.56, 0.385, 0.975, 0.575 }, { 0.56, 0.085, 0.975, 0.275 } }
+
+--- The samples of the recorded run: rows at t, both sides of an event, all bodies' own.
+local function parts(scene, body, other)
+  local track = scene:track(body, 500)
+  local t = meeting(scene, body, other)
+  local before, after = impact.split(track, t or math.huge)
+  return track, before, after, t
+end
+
+--- A planar motion's orientation: (q0, q2) on the unit circle, q over time, and beside them position, speed and energy;
+--- solid before `body` meets `other`, dashed after.
+---@return plot.figure
+function portrait.planar(scene, body, other)
+  local track, before, after, t = parts(scene, body, other)
+  local circle = { {}, {} }
+  for i = 0, 360 do
+    circle[1][i + 1], circle[2][i + 1] = math.cos(math.rad(i)), math.sin(math.rad(i))
+  end
+  -- The way goes out and back on one and the same circle: the way back is drawn a little inside.
+  local inner = { qw = {}, qy = {} }
+  for i = 1, #after.t do inner.qw[i], inner.qy[i] = 0.94 * after.qw[i], 0.94 * after.qy[i] end
+  local last = #before.t
+  local arc = plot.panel {
+    title = "orientation on the circle q₀² + q₂² = 1",
+    xlabel = "q₀",
+    ylabel = "q₂",
+    equal = true,
+    legend = "center",
+    xrange = { -1.15, 1.15 },
+    yrange = { -1.15, 1.15 },
+    box = { 0.06, 0.41, 0.47, 0.885 },
+    plot.line { circle[1], circle[2], color = "grey", width = 1 },
+    plot.line { before.qw, before.qy, color = "blue", width = 3, label = "before the " .. other },
+    plot.line { inner.qw, inner.qy, color = "blue", width = 2.5, dash = true, label = "after it, drawn inside" },
+    plot.points { { before.qw[1] }, { before.qy[1] }, color = "green", size = 1.6, label = "start" },
+    plot.points { { before.qw[last] }, { before.qy[last] }, color = "red", size = 1.6, label = "the " .. other },
+  }
+  local q = { title = "orientation over time", xlabel = "time, s", legend = "bottom right", box = { 0.06, 0.085, 0.47, 0.275 },
+    yrange = { -1.1, 1.1 } }
+  two_parts(q, before, after, "t", "qw", "blue", "q₀")
+  two_parts(q, before, after, "t", "qy", "orange", "q₂")
+  local position, moving, energy = over_time(scene, body, other, right, track, before, after, t)
+  return plot.figure {
+    title = "A sphere meets floor and wall",
+    subtitle = "solid before the " .. other .. ", dashed after",
+    size = { 1400, 1000 },
+    arc, with_marks(q, t, other), position, moving, energy,
+  }
+end
+
+--- A motion's orientation in space: the curve (q1, q2, q3), q over time, and beside them position, speed and energy.
+---@return plot.figure
+function portrait.space(scene, body, other)
+  local track, before, after, t = parts(scene, body, other)
+  local last = #before.t
+  local curve = plot.panel {
+    title = "the orientation's curve (q₁, q₂, q₃)",
+    xlabel = "q₁",
+    ylabel = "q₂",
+    zlabel = "q₃",
+    legend = "top left",
+    view = { 62, 38 },
+    equal = true,
+    box = { 0.05, 0.38, 0.49, 0.9 },
+    plot.line { before.qx, before.qy, before.qz, color = "blue", width = 2.5, label = "before the " .. other },
+    plot.line { after.qx, after.qy, after.qz, color = "blue", dash = true, width = 1.8, label = "after it" },
+    plot.points { { before.qx[1] }, { before.qy[1] }, { before.qz[1] }, color = "green", size = 1.6, label = "start" },
+    plot.points { { before.qx[last] }, { before.qy[last] }, { before.qz[last] }, color = "red", size = 1.6, label = "the " .. other },
+  }
+  local q = { title = "orientation over time", xlabel = "time, s", legend = "outside", box = { 0.06, 0.085, 0.44, 0.275 },
+    yrange = { -1.1, 1.1 } }
+  two_parts(q, before, after, "t", "qw", "dark", "q₀")
+  two_parts(q, before, after, "t", "qx", "blue", "q₁")
+  two_parts(q, before, after, "t", "qy", "orange", "q₂")
+  two_parts(q, before, after, "t", "qz", "green", "q₃")
+  local position, moving, energy = over_time(scene, body, other, right, track, before, after, t)
+  return plot.figure {
+    title = "A spinning sphere meets floor and wall",
+    subtitle = "solid before the " .. other .. ", dashed after",
+    size = { 1400, 1000 },
+    curve, with_marks(q, t, other), position, moving, energy,
+  }
+end
+
+return portrait

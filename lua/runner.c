@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * impact SCRIPT.lua: runs a scene script, writes its CSV files and its picture, and tells what happened.
+ */
+#define _XOPEN_SOURCE 700
+#include "runner.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static void usage(FILE *file)
+{
+    fputs("usage: impact SCRIPT.lua [options]\n"
+          "\n"
+          "Runs the scene that the script returns and writes NAME.csv, NAME_events.csv and, when the scene has a plot "
+          "and gnuplot\n"
+          "is there, NAME.png. A script that returns nothing has done its work itself.\n"
+          "\n"
+          "  --out DIR         the output folder; made when needed (default: out)\n"
+          "  --quiet           no progress, no closing summary\n"
+          "  --max-memory MB   bounds the memory of the script\n"
+          "  --max-time S      bounds the time of the whole run, in seconds\n"
+          "  --trust           lets the script start programs, open any file and load C modules\n"
+          "  --help            this text\n"
+          "  --version         versions, and what this build holds\n"
+          "\n"
+          "exit codes\n"
+          "  0  done\n"
+          "  1  the script has an error: its file, line and reason are told\n"
+          "  2  the command line is wrong\n"
+          "  3  the run failed\n"
+          "  4  an output could not be written\n"
+          "  5  --max-memory or --max-time was reached\n",
+          file);
+}
+
+static void version(void)
+{
+    printf("impact %s (%s; CVODE: %s, libccd: %s)\n", impact_version(), LUA_RELEASE,
+           impact_has(IMPACT_PART_CVODE) ? "yes" : "no", impact_has(IMPACT_PART_CCD) ? "yes" : "no");
+}
+
+/* ---- the command line ---- */
+
+static int wrong_usage(const char *format, const char *value)
+{
+    fputs("impact: ", stderr);
+    fprintf(stderr, format, value);
+    fputs("; see impact --help\n", stderr);
+    return IMPACT_EXIT_USAGE;
+}
+
+/* A positive, finite number, all of the text; NaN otherwise. */
+static double positive(const char *text)
+{
+    char *end = NULL;
+    const double value = strtod(text, &end);
+    return *text && !*end && value > 0 && isfinite(value) ? value : NAN;
+}
+
+/* -1: go on; else exit so. */
+static int read_command(int count, char **words, impact_runner *runner)
+{
+    for (int i = 1; i < count; i++) {
+        const char *word = words[i], *value = i + 1 < count ? words[i + 1] : NULL;
+        if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return usage(stdout), IMPACT_EXIT_OK;
+        if (strcmp(word, "--version") == 0) return version(), IMPACT_EXIT_OK;
+        if (strcmp(word, "--quiet") == 0)
+            runner->quiet = true;
+        else if (strcmp(word, "--trust") == 0)
+            runner->trust = true;
+        else if (strcmp(word, "--out") == 0 || strcmp(word, "--max-memory") == 0 || strcmp(word, "--max-time") == 0) {
+            if (!value || !*value) return wrong_usage("%s needs a value", word);
+            i++;
+            if (strcmp(word, "--out") == 0) {
+                runner->directory = value;
+                continue;
+            }
+            const double number = positive(value);
+            if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
+            if (strcmp(word, "--max-time") == 0)
+                runner->max_time = number;
+            else
+                runner->max_memory = (size_t)(number * 1048576.0);
+        } else if (word[0] == '-' && word[1])
+            return wrong_usage("unknown option '%s'", word);
+        else if (runner->script)
+            return wrong_usage("one script at a time: '%s' is too many", word);
+        else
+            runner->script = word;
+    }
+    if (!runner->script) return usage(stderr), IMPACT_EXIT_USAGE;
+    return -1;
+}
+
+/* ---- while it runs ---- */
+
+static void clear_progress(impact_runner *runner)
+{
+    if (runner->progress_shown) fputs("\r\033[K", stderr);
+    runner->progress_shown = false;
+}
+
+/* The host's progress function. */
+static bool on_progress(void *context, double t, double t_end)
+{
+    impact_runner *runner = context;
+    if (impact_runner_time_is_over()) return false;
+    if (runner->quiet || !isatty(STDERR_FILENO)) return true;
+    const double now = impact_runner_now();
+    if (now - runner->started < 0.5 || now - runner->progress_at < 0.1) return true;
+    runner->progress_at = now;
+    runner->progress_shown = true;
+    fprintf(stderr, "\r\033[Kt = %.4g of %.4g s, %.0f %%", t, t_end, 100 * t / t_end);
+    fflush(stderr);
+    return true;
+}
+
+static bool prepare(void *context, char *message, size_t size)
+{
+    return impact_runner_open_folder(context, message, size);
+}
+
+static int complain(impact_runner *runner, int code, const char *message)
+{
+    clear_progress(runner);
+    fprintf(stderr, "impact: %s\n", message ? message : "unknown error");
+    return code;
+}
+
+/* The error on top of the stack, of a protected call that ended with status. */
+static int complain_of(lua_State *L, impact_runner *runner, int status)
+{
+    char message[120];
+    if (impact_runner_time_is_over()) {
+        snprintf(message, sizeof message, "time limit of %g s reached", runner->max_time);
+        return complain(runner, IMPACT_EXIT_LIMIT, message);
+    }
+    if (status == LUA_ERRMEM) {
+        snprintf(message, sizeof message, "memory limit of %g MB reached", (double)runner->max_memory / 1048576.0);
+        return complain(runner, IMPACT_EXIT_LIMIT, runner->memory_refused ? message : "not enough memory");
+    }
+    const char *text = lua_tostring(L, -1);
+    return complain(runner, IMPACT_EXIT_SCRIPT, text ? text : "the script raised an error that is not a text");
+}
+
+/* ---- a scene ---- */
+
+/* The name of the files: the definition's, else the script's own. */
+static void choose_name(lua_State *L, int scene, const impact_runner *runner, char *name, size_t size)
+{
+    lua_getfield(L, scene, "definition");
+    lua_pushvalue(L, scene);
+    lua_call(L, 1, 1);
+    lua_getfield(L, -1, "name");
+    if (lua_type(L, -1) == LUA_TSTRING) {
+        snprintf(name, size, "%s", lua_tostring(L, -1));
+    } else {
+        const char *slash = strrchr(runner->script, '/');
+        snprintf(name, size, "%s", slash ? slash + 1 : runner->script);
+        char *dot = strrchr(name, '.');
+        if (dot && dot != name) *dot = 0;
+    }
+    lua_pop(L, 2);
+    if (!impact_runner_is_plain(name))
+        luaL_error(L, "%s: the scene's name '%s' names the files: it must be plain, without '/'", runner->script, name);
+}
+
+/* scene:run{csv = name, record = whether it has a plot}; an exit code. Pushes the reason it ended. */
+static int run_scene(lua_State *L, int scene, impact_runner *runner, const char *name, bool plot)
+{
+    lua_getfield(L, scene, "run");
+    lua_pushvalue(L, scene);
+    lua_createtable(L, 0, 2);
+    lua_pushstring(L, name);
+    lua_setfield(L, -2, "csv");
+    lua_pushboolean(L, plot);
+    lua_setfield(L, -2, "record");
+    lua_call(L, 2, 3);
+    clear_progress(runner);
+    if (!lua_isnil(L, -3)) {
+        lua_pop(L, 2);
+        return IMPACT_EXIT_OK;
+    }
+    const char *kind = lua_tostring(L, -1), *message = lua_tostring(L, -2);
+    if (impact_runner_time_is_over()) return complain_of(L, runner, LUA_ERRRUN);
+    return complain(runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
+}
+
+/* The picture of a scene with a plot; an exit code. *drawn tells whether there is one. */
+static int draw_scene(lua_State *L, int scene, impact_runner *runner, const char *name, bool *drawn)
+{
+    char message[400] = "", text[600];
+    lua_getfield(L, scene, "figure");
+    lua_pushvalue(L, scene);
+    lua_call(L, 1, 1);
+    switch (impact_runner_draw(L, lua_gettop(L), runner, name, message, sizeof message)) {
+    case IMPACT_DRAWN: *drawn = true; return IMPACT_EXIT_OK;
+    case IMPACT_DRAW_NO_GNUPLOT:
+        fprintf(stderr, "impact: gnuplot is not installed: no picture is drawn; the CSV files are complete\n");
+        return IMPACT_EXIT_OK;
+    case IMPACT_DRAW_REFUSED:
+        snprintf(text, sizeof text, "%s: the plot of scene '%s': %s", runner->script, name, message);
+        return complain(runner, IMPACT_EXIT_SCRIPT, text);
+    default:
+        if (impact_runner_time_is_over()) return complain_of(L, runner, LUA_ERRRUN);
+        snprintf(text, sizeof text, "no picture: %s", message);
+        return complain(runner, IMPACT_EXIT_OUTPUT, text);
+    }
+}
+
+static void summarise(lua_State *L, int scene, const impact_runner *runner, const char *name, bool drawn)
+{
+    lua_getfield(L, scene, "summary");
+    lua_pushvalue(L, scene);
+    lua_pushvalue(L, -3); /* the reason */
+    lua_call(L, 2, 1);
+    const char *directory = runner->directory, *text = lua_tostring(L, -1);
+    printf("%s  wrote      %s/%s.csv, %s/%s_events.csv", text ? text : "", directory, name, directory, name);
+    if (drawn) printf(", %s/%s.png", directory, name);
+    putchar('\n');
+    lua_pop(L, 1);
+}
+
+static int drive_scene(lua_State *L, int scene, impact_runner *runner)
+{
+    char name[256];
+    bool drawn = false;
+    choose_name(L, scene, runner, name, sizeof name);
+    lua_getfield(L, scene, "has_plot");
+    lua_pushvalue(L, scene);
+    lua_call(L, 1, 1);
+    const bool plot = lua_toboolean(L, -1);
+    lua_pop(L, 1);
+    int code = run_scene(L, scene, runner, name, plot);
+    if (code != IMPACT_EXIT_OK) return code;
+    const int reason = lua_gettop(L);
+    if (plot) code = draw_scene(L, scene, runner, name, &drawn);
+    lua_settop(L, reason);
+    if (!runner->quiet) summarise(L, scene, runner, name, drawn);
+    return code;
+}
+
+/* Protected: (runner) -> exit code */
+static int work(lua_State *L)
+{
+    impact_runner *runner = lua_touserdata(L, 1);
+    impact_runner_open_libraries(L, runner);
+    impact_runner_start_clock(L, runner);
+    if (luaL_loadfilex(L, runner->script, runner->trust ? NULL : "t") != LUA_OK) return lua_error(L);
+    lua_call(L, 0, 1);
+    int code = IMPACT_EXIT_OK;
+    if (luaL_testudata(L, -1, "impact.scene"))
+        code = drive_scene(L, lua_gettop(L), runner);
+    else if (!lua_isnil(L, -1))
+        return luaL_error(L, "%s: a script returns a scene, impact.scene{...}, or nothing; this one returned a %s",
+                          runner->script, luaL_typename(L, -1));
+    lua_pushinteger(L, code);
+    return 1;
+}
+
+static int run_script(impact_runner *runner)
+{
+    int code;
+    lua_State *L = lua_newstate(impact_runner_allocate, runner);
+    if (!L)
+        return complain(runner, IMPACT_EXIT_LIMIT,
+                        runner->memory_refused ? "the memory limit is too small to start" : "not enough memory");
+    lua_pushcfunction(L, work);
+    lua_pushlightuserdata(L, runner);
+    const int status = lua_pcall(L, 1, 1, 0);
+    if (status == LUA_OK)
+        code = (int)lua_tointeger(L, -1);
+    else
+        code = complain_of(L, runner, status);
+    lua_close(L);
+    return code;
+}
+
+int main(int count, char **words)
+{
+    impact_runner runner = {.directory = "out", .folder = -1, .started = impact_runner_now()};
+    int code = read_command(count, words, &runner);
+    if (code < 0) {
+        runner.host = (impact_lua_host){.directory = runner.directory,
+                                        .confined = !runner.trust,
+                                        .prepare = prepare,
+                                        .progress = on_progress,
+                                        .context = &runner};
+        code = run_script(&runner);
+    }
+    if (fflush(stdout) != 0 && code == IMPACT_EXIT_OK) code = IMPACT_EXIT_OUTPUT;
+    return code;
+}

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The runner: impact SCRIPT.lua. Its parts: runner.c (the command), runner_limits.c (memory and time), runner_sandbox.c (what a
+ * script can reach), runner_files.c (the output folder), runner_draw.c (pictures by gnuplot).
+ */
+#ifndef IMPACT_RUNNER_H
+#define IMPACT_RUNNER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <lauxlib.h>
+#include <lua.h>
+#include "impact_core.h"
+
+/* Exit codes, as --help tells them. */
+enum {
+    IMPACT_EXIT_OK = 0,
+    IMPACT_EXIT_SCRIPT = 1,
+    IMPACT_EXIT_USAGE = 2,
+    IMPACT_EXIT_RUN = 3,
+    IMPACT_EXIT_OUTPUT = 4,
+    IMPACT_EXIT_LIMIT = 5
+};
+
+typedef struct impact_runner {
+    const char *script;
+    const char *directory; /* the output folder; made when the first file is */
+    bool quiet, trust;
+    double max_time;   /* s; 0: no limit */
+    size_t max_memory; /* bytes; 0: no limit */
+    size_t memory;     /* bytes the Lua state holds */
+    bool memory_refused;
+    int folder; /* descriptor of the output folder, or -1 */
+    bool progress_shown;
+    double started; /* s, monotonic */
+    double progress_at;
+    impact_lua_host host;
+} impact_runner;
+
+/* ---- runner_limits.c ---- */
+
+/* A lua_Alloc whose context is the runner. */
+void *impact_runner_allocate(void *context, void *block, size_t old_size, size_t new_size);
+/* Starts the clock of --max-time: when it is over, Lua code and runs are stopped; what cannot be stopped so is ended with the
+ * process, IMPACT_EXIT_LIMIT, a second later. */
+void impact_runner_start_clock(lua_State *L, const impact_runner *runner);
+bool impact_runner_time_is_over(void);
+double impact_runner_now(void); /* s, monotonic */
+
+/* ---- runner_files.c: nothing here follows a link out of the folder ---- */
+
+/* Makes and opens the output folder; false with a message. */
+bool impact_runner_open_folder(impact_runner *runner, char *message, size_t size);
+/* Opens a file below the output folder, made of plain components; -1 with errno. */
+int impact_runner_open_file(impact_runner *runner, const char *path, int flags);
+/* A name that stands for a file of the folder itself: no '/', no leading '.', no control characters. */
+bool impact_runner_is_plain(const char *name);
+/* Gives NAME.part its name, or removes it; both in the folder. */
+bool impact_runner_finish_file(impact_runner *runner, const char *name, bool keep);
+/* io.open for scripts; the runner is upvalue 1. */
+int impact_runner_io_open(lua_State *L);
+
+/* ---- runner_sandbox.c ---- */
+
+/* Opens the libraries of a new state, our modules among them; without --trust only what cannot reach out. */
+void impact_runner_open_libraries(lua_State *L, impact_runner *runner);
+/* Loads one of the embedded layers: pushes its chunk. */
+bool impact_runner_load_layer(lua_State *L, const char *module);
+
+/* ---- runner_draw.c ---- */
+
+typedef enum impact_draw_result {
+    IMPACT_DRAWN,
+    IMPACT_DRAW_NO_GNUPLOT,
+    IMPACT_DRAW_REFUSED,
+    IMPACT_DRAW_FAILED
+} impact_draw_result;
+
+/* Draws the figure at index (plain data, see plot.lua) as NAME.png in the output folder; other than IMPACT_DRAWN: with a message. */
+impact_draw_result impact_runner_draw(lua_State *L, int index, impact_runner *runner, const char *name, char *message,
+                                      size_t size);
+/* luaopen of quat.host: save(figure, name) and write(name, text); the runner is upvalue 1. */
+int impact_runner_open_host(lua_State *L);
+
+#endif

@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Pictures. A script describes a figure as plain data; the data is copied into a Lua state of our own, which no script has touched,
+ * and there becomes gnuplot's commands. gnuplot starts without a shell, reads the commands from a file without a name and writes
+ * the picture to a descriptor of ours.
+ */
+#define _XOPEN_SOURCE 700
+#include "runner.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <lualib.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* ---- plain data from one state to another ---- */
+
+enum { DEEPEST = 12 };
+
+/* Protected in `to`. */
+static int push_string(lua_State *to)
+{
+    const char *text = lua_touserdata(to, 1);
+    lua_pushlstring(to, text, *(size_t *)lua_touserdata(to, 2));
+    return 1;
+}
+
+static int push_table(lua_State *to) { return lua_newtable(to), 1; }
+static int set_entry(lua_State *to) { return lua_rawset(to, 1), 0; }
+
+/* Pushes a copy of the value at index of `from` onto `to`; NULL, or what is wrong. Raises in neither state: `to` is worked in
+ * protected calls, and `from` is only read. */
+static const char *copy(lua_State *from, int index, lua_State *to, int depth)
+{
+    if (depth > DEEPEST) return "a figure's tables are nested too deep";
+    if (!lua_checkstack(from, 8) || !lua_checkstack(to, 8)) return "not enough memory";
+    index = lua_absindex(from, index);
+    switch (lua_type(from, index)) {
+    case LUA_TNUMBER: lua_pushnumber(to, lua_tonumber(from, index)); return NULL;
+    case LUA_TBOOLEAN: lua_pushboolean(to, lua_toboolean(from, index)); return NULL;
+    case LUA_TSTRING: {
+        size_t length;
+        const char *text = lua_tolstring(from, index, &length);
+        lua_pushcfunction(to, push_string);
+        lua_pushlightuserdata(to, (void *)text);
+        lua_pushlightuserdata(to, &length);
+        return lua_pcall(to, 2, 1, 0) == LUA_OK ? NULL : "not enough memory";
+    }
+    case LUA_TTABLE: break;
+    default: return "a figure holds numbers, strings and tables only";
+    }
+    lua_pushcfunction(to, push_table);
+    if (lua_pcall(to, 0, 1, 0) != LUA_OK) return "not enough memory";
+    const int table = lua_gettop(to);
+    for (lua_pushnil(from); lua_next(from, index); lua_pop(from, 1)) {
+        lua_pushcfunction(to, set_entry);
+        lua_pushvalue(to, table);
+        /* A number that is a whole one stands for a place in a list. */
+        const char *wrong = NULL;
+        if (lua_isinteger(from, -2))
+            lua_pushinteger(to, lua_tointeger(from, -2));
+        else if (lua_type(from, -2) == LUA_TSTRING)
+            wrong = copy(from, -2, to, depth + 1);
+        else
+            wrong = "a figure's tables have names or places as keys";
+        if (!wrong) wrong = copy(from, -1, to, depth + 1);
+        if (!wrong && lua_pcall(to, 3, 0, 0) != LUA_OK) wrong = "not enough memory";
+        if (wrong) return lua_pop(from, 2), wrong;
+    }
+    return NULL;
+}
+
+/* ---- gnuplot's commands ---- */
+
+static int write_commands(lua_State *to) /* protected: (FILE *, figure) */
+{
+    FILE *file = lua_touserdata(to, 1);
+    size_t length;
+    luaL_openlibs(to);
+    impact_runner_load_layer(to, "quat.plot");
+    lua_call(to, 0, 1);
+    lua_getfield(to, -1, "gnuplot");
+    lua_pushvalue(to, 2);
+    lua_call(to, 1, 1);
+    const char *text = luaL_checklstring(to, -1, &length);
+    if (fwrite(text, 1, length, file) != length || fflush(file) != 0)
+        return luaL_error(to, "cannot write gnuplot's commands");
+    rewind(file);
+    return 0;
+}
+
+static bool make_commands(lua_State *L, int index, impact_runner *runner, FILE *file, char *message, size_t size)
+{
+    lua_State *to = lua_newstate(impact_runner_allocate, runner);
+    if (!to) return snprintf(message, size, "not enough memory"), false;
+    lua_pushcfunction(to, write_commands);
+    lua_pushlightuserdata(to, file);
+    const char *wrong = copy(L, index, to, 0);
+    if (!wrong && lua_pcall(to, 2, 0, 0) != LUA_OK) {
+        const char *text = lua_tostring(to, -1);
+        const char *plain =
+            text && strncmp(text, "quat.plot:", 10) == 0 ? strchr(text, ' ') : NULL; /* not our line number */
+        wrong = plain ? plain + 1 : text ? text : "it cannot be drawn";
+    }
+    if (wrong) snprintf(message, size, "%s", wrong);
+    lua_close(to);
+    return wrong == NULL;
+}
+
+/* ---- the process ---- */
+
+enum { NO_PROGRAM = 127 };
+
+static int run_gnuplot(FILE *commands, int picture, FILE *complaints)
+{
+    int status = 0;
+    const pid_t child = fork();
+    if (child < 0) return -1;
+    if (child == 0) {
+        if (dup2(fileno(commands), 0) < 0 || dup2(picture, 1) < 0 || dup2(fileno(complaints), 2) < 0) _exit(NO_PROGRAM);
+        execlp("gnuplot", "gnuplot", "-d", "-", (char *)NULL);
+        _exit(NO_PROGRAM);
+    }
+    while (waitpid(child, &status, 0) < 0) {
+        if (errno != EINTR) return -1;
+        if (impact_runner_time_is_over()) kill(child, SIGKILL);
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* The last line that gnuplot had to say, without its caret. */
+static void last_complaint(FILE *complaints, char *message, size_t size)
+{
+    char line[300];
+    snprintf(message, size, "gnuplot failed");
+    rewind(complaints);
+    while (fgets(line, sizeof line, complaints)) {
+        line[strcspn(line, "\r\n")] = 0;
+        if (strspn(line, " \t^") < strlen(line)) snprintf(message, size, "gnuplot: %s", line);
+    }
+}
+
+static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, const char *file_name, char *message,
+                                        size_t size)
+{
+    char part[256];
+    if (!impact_runner_open_folder(runner, message, size)) return IMPACT_DRAW_FAILED;
+    snprintf(part, sizeof part, "%s.part", file_name);
+    unlinkat(runner->folder, part, 0);
+    const int picture = impact_runner_open_file(runner, part, O_WRONLY | O_CREAT | O_EXCL);
+    FILE *complaints = tmpfile();
+    int code = -1;
+    impact_draw_result result = IMPACT_DRAW_FAILED;
+    if (picture < 0 || !complaints)
+        snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, part, strerror(errno));
+    else
+        code = run_gnuplot(commands, picture, complaints);
+    const bool drawn = code == 0 && lseek(picture, 0, SEEK_END) > 0;
+    if (picture >= 0 && complaints && !drawn) {
+        if (code == NO_PROGRAM)
+            snprintf(message, size, "gnuplot is not installed"), result = IMPACT_DRAW_NO_GNUPLOT;
+        else
+            last_complaint(complaints, message, size);
+    }
+    if (complaints) fclose(complaints);
+    if (picture >= 0) close(picture);
+    if (picture >= 0 && impact_runner_finish_file(runner, file_name, drawn)) return IMPACT_DRAWN;
+    if (drawn) snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, file_name, strerror(errno));
+    return result;
+}
+
+impact_draw_result impact_runner_draw(lua_State *L, int index, impact_runner *runner, const char *name, char *message,
+                                      size_t size)
+{
+    char file_name[240];
+    impact_draw_result result = IMPACT_DRAW_REFUSED;
+    snprintf(file_name, sizeof file_name, "%s.png", name);
+    FILE *commands = tmpfile();
+    if (!commands)
+        return snprintf(message, size, "cannot make a temporary file: %s", strerror(errno)), IMPACT_DRAW_FAILED;
+    if (make_commands(L, index, runner, commands, message, size))
+        result = draw_commands(commands, runner, file_name, message, size);
+    fclose(commands);
+    return result;
+}
+
+/* ---- quat.host ---- */
+
+static const char *plain_name(lua_State *L, int arg)
+{
+    size_t length;
+    const char *name = luaL_checklstring(L, arg, &length);
+    if (strlen(name) != length || !impact_runner_is_plain(name))
+        quat_lua_error(L, "the name of a file must be plain, without '/', got '%s'", name);
+    return name;
+}
+
+/* save(figure, name): true, or nil and why */
+static int host_save(lua_State *L)
+{
+    char message[400] = "";
+    impact_runner *runner = lua_touserdata(L, lua_upvalueindex(1));
+    const char *name = plain_name(L, 2);
+    switch (impact_runner_draw(L, 1, runner, name, message, sizeof message)) {
+    case IMPACT_DRAWN: lua_pushboolean(L, 1); return 1;
+    case IMPACT_DRAW_REFUSED: return quat_lua_error(L, "figure '%s': %s", name, message);
+    default: return quat_lua_failure(L, message);
+    }
+}
+
+/* write(name, text): the whole file or none; true, or nil and why */
+static int host_write(lua_State *L)
+{
+    char message[400] = "", part[256];
+    size_t length;
+    impact_runner *runner = lua_touserdata(L, lua_upvalueindex(1));
+    const char *name = plain_name(L, 1), *text = luaL_checklstring(L, 2, &length);
+    if (!impact_runner_open_folder(runner, message, sizeof message)) return quat_lua_failure(L, message);
+    snprintf(part, sizeof part, "%s.part", name);
+    unlinkat(runner->folder, part, 0);
+    const int descriptor = impact_runner_open_file(runner, part, O_WRONLY | O_CREAT | O_EXCL);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    bool good = file && fwrite(text, 1, length, file) == length;
+    if (file) good = fclose(file) == 0 && good;
+    const int error = errno;
+    if (file && impact_runner_finish_file(runner, name, good)) {
+        lua_pushboolean(L, 1);
+        return 1;
+    }
+    snprintf(message, sizeof message, "cannot write '%s/%s': %s", runner->directory, name, strerror(error));
+    return quat_lua_failure(L, message);
+}
+
+int impact_runner_open_host(lua_State *L)
+{
+    static const luaL_Reg functions[] = {{"save", host_save}, {"write", host_write}, {NULL, NULL}};
+    luaL_newlibtable(L, functions);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    luaL_setfuncs(L, functions, 1);
+    return 1;
+}

@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a script can reach. Without --trust: no programs, no files but those of the output folder, no C code but ours, no bytecode,
+ * no look into other functions' insides.
+ */
+#include "runner.h"
+
+#include <lualib.h>
+#include <string.h>
+#include "quat_core.h"
+#include "runner_layers.h"
+
+/* Keeps only the named fields of a library's table, which is shared by everyone who holds it. */
+static void keep_only(lua_State *L, const char *library, const char *const names[])
+{
+    lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_getfield(L, -1, library);
+    lua_newtable(L); /* what stays */
+    for (int i = 0; names[i]; i++) {
+        lua_getfield(L, -2, names[i]);
+        lua_setfield(L, -2, names[i]);
+    }
+    for (lua_pushnil(L); lua_next(L, -3);) { /* clearing fields while stepping is allowed */
+        lua_pop(L, 1);
+        lua_pushvalue(L, -1);
+        lua_pushnil(L);
+        lua_rawset(L, -5);
+    }
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1)) {
+        lua_pushvalue(L, -2);
+        lua_pushvalue(L, -2);
+        lua_rawset(L, -6);
+    }
+    lua_pop(L, 3);
+}
+
+/* load(chunk, name, mode, environment) for source text only; upvalue 1 is the original. */
+static int load_text(lua_State *L)
+{
+    const int count = lua_gettop(L);
+    if (count < 3) lua_settop(L, 3);
+    lua_pushliteral(L, "t");
+    lua_replace(L, 3);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, count < 3 ? 3 : count, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+static int load_layer(lua_State *L)
+{
+    const char *module = luaL_checkstring(L, 1);
+    if (!impact_runner_load_layer(L, module)) return luaL_error(L, "no layer '%s'", module);
+    lua_pushvalue(L, 1);
+    lua_call(L, 1, 1);
+    return 1;
+}
+
+bool impact_runner_load_layer(lua_State *L, const char *module)
+{
+    for (const impact_runner_layer *layer = impact_runner_layers; layer->module; layer++) {
+        if (strcmp(layer->module, module) != 0) continue;
+        char name[64];
+        snprintf(name, sizeof name, "=%s", module);
+        if (luaL_loadbufferx(L, (const char *)layer->source, layer->size, name, "t") != LUA_OK) lua_error(L);
+        return true;
+    }
+    return false;
+}
+
+static void preload(lua_State *L, const char *module, lua_CFunction opener)
+{
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
+    lua_pushcfunction(L, opener);
+    lua_setfield(L, -2, module);
+    lua_pop(L, 1);
+}
+
+static void preload_ours(lua_State *L, impact_runner *runner)
+{
+    for (const impact_runner_layer *layer = impact_runner_layers; layer->module; layer++)
+        preload(L, layer->module, load_layer);
+    preload(L, "quat.core", luaopen_quat_core);
+    preload(L, "impact.core", luaopen_impact_core);
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
+    lua_pushlightuserdata(L, runner);
+    lua_pushcclosure(L, impact_runner_open_host, 1);
+    lua_setfield(L, -2, "quat.host");
+    lua_pop(L, 1);
+}
+
+static void close_in(lua_State *L, impact_runner *runner)
+{
+    static const char *const io_names[] = {"write", "type", "stdout", "stderr", "close", NULL};
+    static const char *const os_names[] = {"clock", "date", "difftime", "time", NULL};
+    static const char *const debug_names[] = {"traceback", NULL};
+    static const char *const package_names[] = {"loaded", "preload", "config", NULL};
+    lua_getglobal(L, "package"); /* require keeps this table; only its preload searcher stays */
+    lua_getfield(L, -1, "searchers");
+    lua_rawgeti(L, -1, 1);
+    lua_createtable(L, 1, 0);
+    lua_insert(L, -2);
+    lua_rawseti(L, -2, 1);
+    lua_remove(L, -2);
+    keep_only(L, LUA_LOADLIBNAME, package_names);
+    lua_setfield(L, -2, "searchers");
+    lua_pop(L, 1);
+    keep_only(L, LUA_IOLIBNAME, io_names);
+    keep_only(L, LUA_OSLIBNAME, os_names);
+    keep_only(L, LUA_DBLIBNAME, debug_names);
+
+    lua_getglobal(L, "io");
+    lua_pushlightuserdata(L, runner);
+    lua_pushcclosure(L, impact_runner_io_open, 1);
+    lua_setfield(L, -2, "open");
+    lua_getglobal(L, "string");
+    lua_pushnil(L);
+    lua_setfield(L, -2, "dump");
+    lua_pop(L, 2);
+
+    lua_getglobal(L, "load");
+    lua_pushcclosure(L, load_text, 1);
+    lua_setglobal(L, "load");
+    lua_pushnil(L);
+    lua_setglobal(L, "dofile");
+    lua_pushnil(L);
+    lua_setglobal(L, "loadfile");
+}
+
+void impact_runner_open_libraries(lua_State *L, impact_runner *runner)
+{
+    luaL_checkversion(L);
+    luaL_openlibs(L);
+    preload_ours(L, runner);
+    impact_lua_set_host(L, &runner->host);
+    if (!runner->trust) close_in(L, runner);
+}
