@@ -15,7 +15,7 @@ while read -r header; do
     [ -z "${cxx%%*NOTFOUND}" ] ||
         "$cxx" -std=c++17 "${warnings[@]}" "${includes[@]}" -x c++ - <<<"$text" || { echo "$header: not clean C++17"; bad=1; }
     count=$((count + 1))
-done < <(for directory; do (cd "$directory" && find . -name '*.h' | sed 's|^\./||'); done | sort)
+done <<<"$(for directory; do (cd "$directory" && find . -name '*.h' | sed 's|^\./||'); done | sort)"
 [ -n "${cxx%%*NOTFOUND}" ] || echo "no C++ compiler: C only"
 echo "$count headers"
 [ "$count" -gt 0 ] && [ "$bad" = 0 ]

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# outside.sh CMAKE CC BUILD WORK: installs BUILD, moves the tree, and builds strangers' programs against it:
+# outside.sh CMAKE GENERATOR CC BUILD WORK: installs BUILD, moves the tree, and builds strangers' programs against it:
 # a CMake project and plain cc with pkg-config, shared and static.
 set -euo pipefail
-cmake=$1 cc=$2 build=$3 work=$4
+cmake=$1 generator=$2 cc=$3 build=$4 work=$5
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 rm -rf "$work"
 mkdir -p "$work"
@@ -19,7 +19,7 @@ if grep -rIl -e "$build" -e "$work/first" "$libdir/cmake" "$libdir/pkgconfig"; t
 fi
 
 echo "-- CMake"
-"$cmake" -S "$here/outside" -B project -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >configure.log || { cat configure.log; exit 1; }
+"$cmake" -S "$here/outside" -B project -G "$generator" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_C_COMPILER="$cc" >configure.log || { cat configure.log; exit 1; }
 "$cmake" --build project >build.log || { cat build.log; exit 1; }
 for program in project/with_*; do
     "$program"
