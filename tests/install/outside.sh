@@ -27,10 +27,9 @@ done
 
 echo "-- pkg-config"
 export PKG_CONFIG_PATH=$libdir/pkgconfig
-flags() { pkg-config "$@"; }
 for name in quat impact; do
     # shellcheck disable=SC2046
-    "$cc" -o "shared_$name" "$here/outside/with_$name.c" $(flags --cflags --libs "$name") -Wl,-rpath,"$libdir"
+    "$cc" -o "shared_$name" "$here/outside/with_$name.c" $(pkg-config --cflags --libs "$name") -Wl,-rpath,"$libdir"
     "./shared_$name"
 done
 if ldd shared_quat | grep -E 'gsl|sundials|ccd'; then
@@ -41,10 +40,10 @@ fi
 # With the shared libraries gone the same names find the archives.
 cp -R moved static_only
 find static_only -name 'lib*.so*' -delete
-PKG_CONFIG_PATH=$(dirname "$(find "$work/static_only" -name libquat.a)")/pkgconfig
+only=$(dirname "$(find "$work/static_only" -name libquat.a)")/pkgconfig
 for name in quat impact; do
     # shellcheck disable=SC2046
-    "$cc" -o "static_$name" "$here/outside/with_$name.c" $(flags --static --cflags --libs "$name")
+    "$cc" -o "static_$name" "$here/outside/with_$name.c" $(PKG_CONFIG_PATH=$only pkg-config --static --cflags --libs "$name")
     "./static_$name"
 done
 if ldd static_impact | grep -E 'libquat|libimpact'; then
@@ -56,3 +55,16 @@ if [ -x "$prefix/bin/impact" ]; then
     echo "-- runner"
     "$prefix/bin/impact" --version
 fi
+
+echo "-- examples of the first pages"
+# example PAGE LANGUAGE: the page's one block in that language.
+example() { awk -v fence="\`\`\`$2" '$0 == fence { on = 1; next } /^\`\`\`/ { on = 0 } on' "$here/../../$1"; }
+for page in README.md docs/hello.md; do
+    name=$(basename "$page" .md)
+    example "$page" c >"$name.c"
+    # shellcheck disable=SC2046
+    "$cc" -std=c11 -Wall -Wextra -Wpedantic -Werror -o "$name" "$name.c" $(pkg-config --cflags --libs impact) -Wl,-rpath,"$libdir"
+    "./$name"
+    example "$page" lua >"$name.lua"
+    [ ! -x "$prefix/bin/impact" ] || "$prefix/bin/impact" "$name.lua" --out "$name.out" --quiet
+done
