@@ -18,7 +18,7 @@ for bits in {0..1}{0..1}{0..1}{0..1}; do
             ctest --test-dir "$build" --output-on-failure -LE slow -j "$jobs" &&
             cmake --install "$build" --prefix "$build/tree"
     } >"$log" 2>&1 || result="failed, see $log"
-    printf '%-14s %s %s  %s\n' "${flags[@]#-D*_}" "$(grep -o '[0-9]*% tests passed.*' "$log" || true)" "$result"
+    echo "${flags[*]#-D}: $(grep -o '[0-9]*% tests passed.*' "$log" || true); $result"
     if [ "$result" = ok ]; then rm -rf "$build"; else failed=1; fi
 done
 exit "$failed"
