@@ -5,7 +5,8 @@ include(CheckLinkerFlag)
 # -ffp-contract=off keeps gcc and clang on the same bits wherever only + - * / sqrt are used.
 add_library(house_rules INTERFACE)
 target_compile_options(house_rules INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -ffp-contract=off)
+  -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes> $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
+  -ffp-contract=off)
 
 # A shared library names as needed only what it calls, so that loading the algebra loads libm and nothing else.
 check_linker_flag(C -Wl,--as-needed HOUSE_HAS_AS_NEEDED)
