@@ -11,7 +11,7 @@
 local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
 local format, gsub, match, rep = string.format, string.gsub, string.match, string.rep
 local concat, unpack = table.concat, table.unpack
-local floor, huge, min, max = math.floor, math.huge, math.min, math.max
+local abs, ceil, floor, huge, log, max, min = math.abs, math.ceil, math.floor, math.huge, math.log, math.max, math.min
 local pcall, require, io, os = pcall, require, io, os
 
 local plot = {}
@@ -35,7 +35,7 @@ local cycle = { "blue", "red", "green", "orange", "purple", "teal" }
 local panel_keys = {
   title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = "string",
   xrange = "table", yrange = "table", zrange = "table", view = "table", at = "table", frame = "boolean", box = "table",
-  three = "boolean",
+  three = "boolean", zoom = "number",
 }
 local figure_keys = { title = "string", subtitle = "string", size = "table", grid = "table" }
 local item_keys = {
@@ -95,8 +95,8 @@ plot.text = maker "text"
 ---@type fun(description: table): plot.item
 plot.mark = maker "mark"
 
---- A panel of items: title, xlabel, ylabel, zlabel, equal (the same scale on all axes), legend ("top left" ..., "none"), xrange,
---- yrange, zrange ({least, most}), view ({about x, about z}, degrees), frame (axes drawn), three (three-dimensional; by itself
+--- A panel of items: title, xlabel, ylabel, zlabel, equal (the same scale on all axes), legend ("top left" ..., "center", "row", "none"), xrange,
+--- yrange, zrange ({least, most}), view ({about x, about z}, degrees), zoom, frame (axes drawn), three (three-dimensional; by itself
 --- when an item has a z), at ({column, row[, columns, rows]} in the figure's grid), box ({left, bottom, right, top} of the axes,
 --- as parts of the figure, instead of at).
 ---@return plot.panel
@@ -273,15 +273,54 @@ local function is_three(panel)
   return false
 end
 
-local function range(out, axis, limits)
-  out[#out + 1] = limits and format("set %srange [%s:%s]", axis, number(limits[1]), number(limits[2])) or
-      format("set %srange [*:*]", axis)
+--- The least and the most of what a panel's items hold along an axis (1, 2 or 3); nil when there is nothing.
+local function extent(panel, axis, three)
+  local least, most
+  local function take(value)
+    if type(value) == "number" and value == value and value ~= huge and value ~= -huge then
+      least, most = min(least or value, value), max(most or value, value)
+    end
+  end
+  for _, item in ipairs(panel) do
+    if item.kind == "surface" then
+      for _, row in ipairs(item[axis] or {}) do for _, value in ipairs(row) do take(value) end end
+    elseif item.kind == "line" or item.kind == "points" or item.kind == "arrows" then
+      local column, step = item[axis], item.kind == "arrows" and item[axis + (three and 3 or 2)]
+      for i, value in ipairs(column or {}) do
+        take(value)
+        if step and value == value then take(value + (step[i] or 0)) end
+      end
+    end
+  end
+  return least, most
+end
+
+--- A step of 1, 2 or 5 times a power of ten that divides the span into about `parts`.
+local function nice_step(span, parts)
+  local power = 10 ^ floor(log(span / parts) / log(10))
+  local rest = span / parts / power
+  return (rest < 1.5 and 1 or rest < 3.5 and 2 or rest < 7.5 and 5 or 10) * power
+end
+
+--- Range and marks of an axis: as asked, or as the data; `tight` keeps the data's own ends.
+local function put_range(out, panel, axis, name, three, tight, parts)
+  local asked = panel[name .. "range"]
+  local least, most
+  if asked then least, most = asked[1], asked[2] else least, most = extent(panel, axis, three) end
+  if not least or not (number(least) ~= "NaN" and number(most) ~= "NaN") then least, most = 0, 1 end
+  local margin = 1e-9 * max(abs(least), abs(most))
+  if most - least <= margin then least, most = least - max(margin, 0.5), most + max(margin, 0.5) end
+  local step = nice_step(most - least, parts)
+  if not asked and not tight then least, most = floor(least / step + 1e-9) * step, ceil(most / step - 1e-9) * step end
+  out[#out + 1] = format("set %srange [%s:%s]", name, number(least - 1e-5 * step), number(most + 1e-5 * step)) -- rounding must not clip
+  return step
 end
 
 local legends = {
   ["top left"] = "top left", ["top right"] = "top right", ["bottom left"] = "bottom left",
   ["bottom right"] = "bottom right", ["top center"] = "top center", ["bottom center"] = "bottom center",
-  ["below"] = "below center horizontal", ["outside"] = "outside right top", ["center"] = "center center",
+  ["center"] = "center center", ["row"] = "top right horizontal",
+  ["center right"] = "center right", ["center left"] = "center left",
 }
 
 local function put_axes(out, panel, three)
@@ -291,27 +330,32 @@ local function put_axes(out, panel, three)
   for _, axis in ipairs { "x", "y", "z" } do
     local label = panel[axis .. "label"]
     if label then add("set %slabel %s font ',11' tc rgb '#2d3748'", axis, quote(label)) end
-    range(out, axis, panel[axis .. "range"])
+  end
+  local steps = {}
+  for i, axis in ipairs { "x", "y", "z" } do
+    if i < 3 or three then
+      steps[i] = put_range(out, panel, i, axis, three, i == 1 and not three and not panel.equal, three and 4 or i == 1 and 7 or 5)
+    end
   end
   local legend = panel.legend or "top right"
   if legend == "none" then
     add("unset key")
   else
-    add("set key %s noopaque samplen 2.2 spacing 1.15 font ',10.5' tc rgb '#2d3748'", legends[legend] or "top right")
+    add("set key vertical %s Left reverse noopaque samplen 2.2 spacing 1.15 font ',10.5' tc rgb '#2d3748'", legends[legend] or "top right")
   end
   if panel.frame == false then
     add("unset border; unset xtics; unset ytics; unset ztics; unset grid")
   else
     add("set border %d lc rgb '#718096' lw 1", three and 31 or 3)
-    add("set xtics nomirror out scale 0.6 font ',10' tc rgb '#2d3748'; set ytics nomirror out scale 0.6 font ',10' tc rgb '#2d3748'")
-    if three then add("set ztics out scale 0.6 font ',10' tc rgb '#2d3748'") end
-    add("set grid lc rgb '#e2e8f0' lw 1 dt solid")
+    local look = "nomirror out scale 0.6 font ',10' tc rgb '#2d3748'"
+    add("set xtics %s %s; set ytics %s %s", number(steps[1]), look, number(steps[2]), look)
+    if three then add("set ztics %s %s", number(steps[3]), look) end
+    add("set grid lc rgb '#cbd5e0' lt 1 lw 1 dt solid")
   end
   if three then
     local view = panel.view or { 65, 35 }
-    add("set view %s,%s,1,1", number(view[1]), number(view[2]))
-    add(panel.equal and "set view equal xyz; set size noratio" or "unset view; set view %s,%s; set size noratio",
-      number(view[1]), number(view[2]))
+    add("set size noratio; set view %s,%s,%s,1; set view %s", number(view[1]), number(view[2]), number(panel.zoom or 1),
+      panel.equal and "equal xyz" or "noequal")
     add("set xyplane relative 0; set pm3d depthorder border lc rgb '#ffffff' lw 0.2; unset colorbox; unset hidden3d")
   else
     add(panel.equal and "set size ratio -1" or "set size noratio")
@@ -355,11 +399,12 @@ local function put_panel(out, panel, number_of, place, top)
       parts[#parts + 1] = clauses[item.kind](out, name, item, three, cycle[(colored - 1) % #cycle + 1])
       if item.value then
         out[#out + 1] = "set palette defined (0 '#2b6cb0', 0.5 '#f7fafc', 1 '#c53030'); set colorbox"
-        if item.range then range(out, "cb", item.range) else range(out, "cb") end
+        out[#out + 1] = item.range and format("set cbrange [%s:%s]", number(item.range[1]), number(item.range[2])) or
+            "set cbrange [*:*]"
       end
     end
   end
-  if #parts == 0 then parts[1] = three and "NaN notitle" or "NaN notitle" end
+  if #parts == 0 then parts[1] = "NaN notitle" end
   out[#out + 1] = (three and "splot " or "plot ") .. concat(parts, ", \\\n  ")
 end
 

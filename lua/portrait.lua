@@ -6,9 +6,7 @@ require "impact.core".layer()
 
 local portrait = {}
 
-local colors = plot.colors
-
---- The part of a column list where keep(row number) holds; elsewhere the pen is lifted.
+--- |v| and |w| along a track.
 local function speed(track)
   local v = {}
   for i = 1, #track.t do v[i] = math.sqrt(track.vx[i] ^ 2 + track.vy[i] ^ 2 + track.vz[i] ^ 2) end
@@ -21,7 +19,7 @@ local function spin(track)
   return w
 end
 
---- The orientation where the other body was met, and whether it was met at all.
+--- When the other body was met first, or nil.
 local function meeting(scene, body, other)
   local event = other and scene:first("impact", body, other)
   return event and event.t
@@ -39,9 +37,11 @@ local function with_marks(panel, t, other)
 end
 
 --- Position, speed and energy over time, for the right-hand side of a picture.
-local function over_time(scene, body, other, boxes, track, before, after, t)
+local function over_time(scene, body, other, axes, track, before, after, t)
+  local boxes = { { 0.56, 0.69, 0.975, 0.885 }, { 0.56, 0.385, 0.975, 0.58 }, { 0.56, 0.08, 0.975, 0.275 } }
   local position = { title = "position of the centre", ylabel = "m", legend = "bottom right", box = boxes[1] }
   two_parts(position, before, after, "t", "x", "blue", "x")
+  if axes == 3 then two_parts(position, before, after, "t", "y", "green", "y") end
   two_parts(position, before, after, "t", "z", "orange", "z")
   local moving = { title = "speed of the centre, and of the turning at the rim", ylabel = "m/s", legend = "top right", box = boxes[2] }
   local rim, radius = spin(track), scene:radius(body)
@@ -56,8 +56,6 @@ local function over_time(scene, body, other, boxes, track, before, after, t)
   energy[4] = plot.line { track.t, energies.potential, color = "orange", label = "height" }
   return with_marks(position, t, other), with_marks(moving, t), with_marks(energy, t)
 end
-
-local right = { { 0.56, 0.695, 0.975, 0.885 }, { 0.56, 0.385, 0.975, 0.575 }, { 0.56, 0.085, 0.975, 0.275 } }
 
 --- The samples of the recorded run: rows at t, both sides of an event, all bodies' own.
 local function parts(scene, body, other)
@@ -80,26 +78,26 @@ function portrait.planar(scene, body, other)
   local inner = { qw = {}, qy = {} }
   for i = 1, #after.t do inner.qw[i], inner.qy[i] = 0.94 * after.qw[i], 0.94 * after.qy[i] end
   local last = #before.t
+  local function least(column) return math.min(0, math.floor(column * 10) / 10) - 0.1 end
   local arc = plot.panel {
     title = "orientation on the circle q₀² + q₂² = 1",
     xlabel = "q₀",
     ylabel = "q₂",
     equal = true,
-    legend = "center",
-    xrange = { -1.15, 1.15 },
-    yrange = { -1.15, 1.15 },
-    box = { 0.06, 0.41, 0.47, 0.885 },
+    legend = "bottom left",
+    xrange = { least(math.min(table.unpack(track.qw))), 1.1 },
+    yrange = { least(math.min(table.unpack(track.qy))), 1.1 },
+    box = { 0.06, 0.405, 0.403, 0.885 },
     plot.line { circle[1], circle[2], color = "grey", width = 1 },
     plot.line { before.qw, before.qy, color = "blue", width = 3, label = "before the " .. other },
     plot.line { inner.qw, inner.qy, color = "blue", width = 2.5, dash = true, label = "after it, drawn inside" },
     plot.points { { before.qw[1] }, { before.qy[1] }, color = "green", size = 1.6, label = "start" },
     plot.points { { before.qw[last] }, { before.qy[last] }, color = "red", size = 1.6, label = "the " .. other },
   }
-  local q = { title = "orientation over time", xlabel = "time, s", legend = "bottom right", box = { 0.06, 0.085, 0.47, 0.275 },
-    yrange = { -1.1, 1.1 } }
+  local q = { title = "orientation over time", xlabel = "time, s", legend = "center right", box = { 0.06, 0.08, 0.47, 0.275 } }
   two_parts(q, before, after, "t", "qw", "blue", "q₀")
   two_parts(q, before, after, "t", "qy", "orange", "q₂")
-  local position, moving, energy = over_time(scene, body, other, right, track, before, after, t)
+  local position, moving, energy = over_time(scene, body, other, 2, track, before, after, t)
   return plot.figure {
     title = "A sphere meets floor and wall",
     subtitle = "solid before the " .. other .. ", dashed after",
@@ -121,19 +119,19 @@ function portrait.space(scene, body, other)
     legend = "top left",
     view = { 62, 38 },
     equal = true,
-    box = { 0.05, 0.38, 0.49, 0.9 },
+    box = { 0.03, 0.36, 0.5, 0.9 },
     plot.line { before.qx, before.qy, before.qz, color = "blue", width = 2.5, label = "before the " .. other },
     plot.line { after.qx, after.qy, after.qz, color = "blue", dash = true, width = 1.8, label = "after it" },
     plot.points { { before.qx[1] }, { before.qy[1] }, { before.qz[1] }, color = "green", size = 1.6, label = "start" },
     plot.points { { before.qx[last] }, { before.qy[last] }, { before.qz[last] }, color = "red", size = 1.6, label = "the " .. other },
   }
-  local q = { title = "orientation over time", xlabel = "time, s", legend = "outside", box = { 0.06, 0.085, 0.44, 0.275 },
-    yrange = { -1.1, 1.1 } }
+  local q = { title = "orientation over time", xlabel = "time, s", legend = "row", box = { 0.06, 0.08, 0.47, 0.275 },
+    yrange = { -1, 1.5 } }
   two_parts(q, before, after, "t", "qw", "dark", "q₀")
   two_parts(q, before, after, "t", "qx", "blue", "q₁")
   two_parts(q, before, after, "t", "qy", "orange", "q₂")
   two_parts(q, before, after, "t", "qz", "green", "q₃")
-  local position, moving, energy = over_time(scene, body, other, right, track, before, after, t)
+  local position, moving, energy = over_time(scene, body, other, 3, track, before, after, t)
   return plot.figure {
     title = "A spinning sphere meets floor and wall",
     subtitle = "solid before the " .. other .. ", dashed after",
