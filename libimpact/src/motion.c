@@ -425,15 +425,30 @@ static impact_status pick_event(impact_motion *motion, double tau_before, double
     for (int root = 0; root < motion->roots; root++) {
         if (motion->found[root] == 0) continue;
         if (!is_closest_approach(motion, root)) {
-            if (end->kind == IMPACT_END_TIME) *end = end_of_root(motion, root);
+            if (end->kind != IMPACT_END_TIME) continue;
+            *end = end_of_root(motion, root);
+            motion->found[root] = 0;
             continue;
         }
         const int pair = root / ROOTS_PER_PAIR;
         if (last_step_value(motion, (last_step_function){pair, 0}, y) >= 0) continue;
         *end = (impact_end){IMPACT_END_GAP, pair};
+        memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
         return find_in_last_step(motion, (last_step_function){pair, 0}, tau_before, *tau, tau, y);
     }
     return IMPACT_OK;
+}
+
+bool impact_motion_also_crossed(impact_motion *motion, impact_end *end)
+{
+    const int first = ROOTS_PER_PAIR * motion->world->pair_count, edges = impact_field_edge_count(motion->world);
+    for (int edge = 0; motion->found && edge < edges; edge++) {
+        if (motion->found[first + edge] == 0) continue;
+        motion->found[first + edge] = 0;
+        *end = (impact_end){IMPACT_END_EDGE, edge};
+        return true;
+    }
+    return false;
 }
 
 /* CVODE places roots to 1e-14 of the step; one Newton step on the gap places them to rounding. */
@@ -491,6 +506,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
             if (status != IMPACT_OK) return fail(motion, status);
             y[Y_TIME] = t_end;
             *end = (impact_end){IMPACT_END_TIME, 0};
+            memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots);
         }
         *t = y[Y_TIME];
         memcpy(motion->kept, y, sizeof *y * (size_t)motion->size); /* samples overwrite y */

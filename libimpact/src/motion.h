@@ -66,6 +66,10 @@ void impact_motion_close(impact_motion *motion);
 impact_status impact_motion_advance(impact_motion *motion, double *t, double t_end, impact_state *states, impact_sampler *sampler,
                                     impact_end *end);
 
+/* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet: the restarted
+ * integrator would never see it. False when there is none. */
+bool impact_motion_also_crossed(impact_motion *motion, impact_end *end);
+
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
 bool impact_motion_load(impact_motion *motion, double t, const impact_state *states);
 

@@ -121,6 +121,7 @@ static impact_status advance(impact_scene *scene, double t_end)
         return status;
     }
     status = impact_scene_handle(scene, end);
+    while (status == IMPACT_OK && impact_motion_also_crossed(&scene->motion, &end)) status = impact_scene_handle(scene, end);
     if (status != IMPACT_OK) return status;
     scene->stalls = scene->t > t_before ? 0 : scene->stalls + 1;
     if (scene->stalls < MAX_STALLS) return scene->stop;
