@@ -196,6 +196,19 @@ function impact.split(track, t)
   return before, after
 end
 
+--- A column over times t, read off at other times by straight lines; where t has two rows for one time, the later.
+---@return number[]
+function impact.along(t, column, times)
+  local result, i = {}, 1
+  for row, time in ipairs(times) do
+    while i < #t and t[i + 1] <= time do i = i + 1 end
+    local step = i < #t and t[i + 1] - t[i] or 0
+    local part = step > 0 and math.max(0, time - t[i]) / step or 0
+    result[row] = part > 0 and column[i] + part * (column[i + 1] - column[i]) or column[i]
+  end
+  return result
+end
+
 --- The first recorded event of a kind ("impact", "contact", ...) between two bodies, or nil; a nil name is any.
 ---@return table?
 function methods:first(kind, body1, body2)

@@ -350,7 +350,7 @@ local function put_axes(out, panel, three)
     local look = "nomirror out scale 0.6 font ',10' tc rgb '#2d3748'"
     add("set xtics %s %s; set ytics %s %s", number(steps[1]), look, number(steps[2]), look)
     if three then add("set ztics %s %s", number(steps[3]), look) end
-    add("set grid lc rgb '#cbd5e0' lt 1 lw 1 dt solid")
+    add("set grid lc rgb '#e2e8f0' lt 1 lw 1 dt solid")
   end
   if three then
     local view = panel.view or { 65, 35 }

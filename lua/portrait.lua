@@ -140,4 +140,74 @@ function portrait.space(scene, body, other)
   }
 end
 
+--- The outline of a ball of radius r about (x, y), appended to a list of columns with the pen lifted before it.
+local function outline(columns, x, y, r)
+  local n = #columns[1]
+  columns[1][n + 1], columns[2][n + 1] = 0 / 0, 0 / 0
+  for i = 0, 48 do
+    columns[1][n + 2 + i] = x + r * math.cos(math.pi * i / 24)
+    columns[2][n + 2 + i] = y + r * math.sin(math.pi * i / 24)
+  end
+end
+
+--- The paths of two bodies in the plane of two axes, with the bodies drawn at the start, where they meet, and at the end.
+local function seen(description, scene, bodies, tracks, t, x, y)
+  for i, body in ipairs(bodies) do
+    local before, after = impact.split(tracks[i], t or math.huge)
+    local color = i == 1 and "blue" or "orange"
+    description[#description + 1] = plot.line { before[x], before[y], color = color, width = 2, label = body }
+    if #after.t > 0 then description[#description + 1] = plot.line { after[x], after[y], color = color, width = 2, dash = true } end
+    local rings, r, last, all = { {}, {} }, scene:radius(body), #before.t, #tracks[i].t
+    outline(rings, before[x][1], before[y][1], r)
+    outline(rings, before[x][last], before[y][last], r)
+    outline(rings, tracks[i][x][all], tracks[i][y][all], r)
+    description[#description + 1] = plot.line { rings[1], rings[2], color = color, width = 1.2 }
+  end
+  return plot.panel(description)
+end
+
+--- Two bodies that meet: their paths from the side and from above, their orientations, speeds, and the energy.
+---@return plot.figure
+function portrait.pair(scene, left, right)
+  local bodies = { left, right }
+  local tracks = { scene:track(left, 500), scene:track(right, 500) }
+  local t = meeting(scene, left, right)
+  local side = seen({ title = "from the side", xlabel = "x, m", ylabel = "z, m", equal = true, legend = "top center",
+    yrange = { 0, 5.5 }, box = { 0.09, 0.64, 0.47, 0.89 } }, scene, bodies, tracks, t, "x", "z")
+  local above = seen({ title = "from above", xlabel = "x, m", ylabel = "y, m", equal = true, legend = "none",
+    box = { 0.09, 0.08, 0.47, 0.53 } }, scene, bodies, tracks, t, "x", "y")
+  local q = { title = "orientation of the " .. left .. " one", legend = "row", box = { 0.59, 0.7, 0.98, 0.9 }, yrange = { -1, 1.5 } }
+  local before, after = impact.split(tracks[1], t or math.huge)
+  for i, name in ipairs { "qw", "qx", "qy", "qz" } do
+    two_parts(q, before, after, "t", name, ({ "dark", "blue", "orange", "green" })[i], ({ "q₀", "q₁", "q₂", "q₃" })[i])
+  end
+  local turning = { title = "angular velocity of the " .. left .. " one", ylabel = "rad/s", legend = "bottom right",
+    box = { 0.59, 0.39, 0.98, 0.59 } }
+  for i, name in ipairs { "wx", "wy", "wz" } do
+    two_parts(turning, before, after, "t", name, ({ "blue", "orange", "green" })[i], ({ "ω₁", "ω₂", "ω₃" })[i])
+  end
+  local energy = { title = "energy of both", xlabel = "time, s", ylabel = "J", legend = "top right", box = { 0.59, 0.08, 0.98, 0.28 } }
+  local sums = {}
+  for i, body in ipairs(bodies) do
+    for part, column in pairs(scene:energies(body, tracks[i])) do
+      if i == 1 then
+        sums[part] = column
+      else
+        local there = impact.along(tracks[2].t, column, tracks[1].t)
+        for row = 1, #sums[part] do sums[part][row] = sums[part][row] + there[row] end
+      end
+    end
+  end
+  for i, part in ipairs { "total", "translation", "rotation", "potential" } do
+    energy[i] = plot.line { tracks[1].t, sums[part], color = ({ "dark", "blue", "purple", "orange" })[i],
+      label = ({ "all", "moving", "turning", "height" })[i] }
+  end
+  return plot.figure {
+    title = "Two spheres meet",
+    subtitle = "solid before they meet, dashed after",
+    size = { 1400, 1000 },
+    side, above, with_marks(q, t, "meeting"), with_marks(turning, t), with_marks(energy, t),
+  }
+end
+
 return portrait
