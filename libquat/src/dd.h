@@ -34,27 +34,30 @@ static inline quat_dd quat_two_prod(double a, double b)
     return (quat_dd){p, fma(a, b, -p)};
 }
 
-/* s + a b in twice the precision. */
-static inline quat_dd quat_dd_fma(quat_dd s, double a, double b)
+/* The sum of n <= 16 terms as if in three times the precision (Ogita, Rump and Oishi 2005, SumK with K = 3). */
+static inline quat_dd quat_sum3(int n, const double *terms)
 {
-    const quat_dd p = quat_two_prod(a, b), t = quat_two_sum(s.hi, p.hi);
-    return (quat_dd){t.hi, s.lo + (t.lo + p.lo)};
+    double sum = terms[0], errors = 0, rest = 0;
+    for (int i = 1; i < n; i++) {
+        const quat_dd t = quat_two_sum(sum, terms[i]), e = quat_two_sum(errors, t.lo);
+        sum = t.hi;
+        errors = e.hi;
+        rest += e.lo;
+    }
+    const quat_dd total = quat_two_sum(sum, errors);
+    return quat_two_sum(total.hi, total.lo + rest);
 }
 
-/* a0 b0 + a1 b1 + a2 b2 + a3 b3 in twice the precision. */
-static inline quat_dd quat_dd_dot4(const double a[4], const double b[4])
+/* base + a0 b0 + a1 b1 + a2 b2 + a3 b3 in three times the precision. */
+static inline quat_dd quat_dot4_plus(double base, const double a[4], const double b[4])
 {
-    quat_dd s = quat_two_prod(a[0], b[0]);
-    for (int i = 1; i < 4; i++) s = quat_dd_fma(s, a[i], b[i]);
-    return quat_two_sum(s.hi, s.lo);
-}
-
-/* The square root of s > 0. */
-static inline quat_dd quat_dd_sqrt(quat_dd s)
-{
-    const double r = sqrt(s.hi);
-    const double residual = fma(-r, r, s.hi) + s.lo;
-    return quat_two_sum(r, residual / (2 * r));
+    double terms[9] = {base};
+    for (int i = 0; i < 4; i++) {
+        const quat_dd p = quat_two_prod(a[i], b[i]);
+        terms[1 + i] = p.hi;
+        terms[5 + i] = p.lo;
+    }
+    return quat_sum3(9, terms);
 }
 
 #endif

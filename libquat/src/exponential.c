@@ -3,27 +3,44 @@
 #include "dd.h"
 #include "scale.h"
 
-/* |v| in twice the precision, for 1e-140 < |v| < 1e140. */
-static inline quat_dd norm_dd(double x, double y, double z)
+/* |v| as hi + lo + lowest, for 1e-140 < |v| < 1e140. */
+typedef struct length {
+    double hi, lo, lowest;
+} length;
+
+static inline length length_of(double x, double y, double z)
 {
-    const double v[4] = {x, y, z, 0};
-    return quat_dd_sqrt(quat_dd_dot4(v, v));
+    const double n = sqrt(x * x + y * y + z * z), a[4] = {x, y, z, n}, b[4] = {x, y, z, -n};
+    /* (n + lo)^2 = |v|^2: 2 n lo = e - lo^2 with e = |v|^2 - n^2 */
+    const quat_dd e = quat_dot4_plus(0, a, b);
+    const double lo = e.hi / (2 * n), lowest = (fma(-lo, 2 * n, e.hi) + e.lo - lo * lo) / (2 * n);
+    return (length){n, lo, lowest};
 }
 
-/* cos a and sin(a)/a for the angle a = a.hi + a.lo > 0; the second with its own rounding error, so that what is
- * multiplied by it is rounded once. Angles past 2^26 lose the low part of the angle to plain addition formulas. */
+/* cos a and sin a. Where one of them vanishes, at pi/2 and pi, the distance from there has all its digits first. */
 typedef struct circle {
-    double cosine;
-    quat_dd sinc;
+    double cosine, sine;
 } circle;
 
-static inline circle circle_of(quat_dd a)
+static inline circle circle_of(length a)
 {
+    static const double half_pi[3] = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1.f1976b7ed8fbcp-110};
+    for (int k = 1; k <= 2; k++) {
+        const double x = a.hi - k * half_pi[0]; /* exact so near */
+        if (fabs(x) > 1e-3) continue;
+        const double terms[5] = {x, a.lo, -k * half_pi[1], a.lowest, -k * half_pi[2]};
+        const double d = quat_sum3(5, terms).hi;
+        return k == 1 ? (circle){-sin(d), cos(d)} : (circle){-cos(d), -sin(d)};
+    }
     const double c = cos(a.hi), s = sin(a.hi);
-    /* near pi the low part is all there is: sin(hi + lo) = sin hi + lo cos hi, to lo^2 */
-    const double sine_lo = a.lo * c, f = s / a.hi;
-    const double residual = (fma(-f, a.hi, s) + sine_lo) - f * a.lo;
-    return (circle){c - a.lo * s, quat_two_sum(f, residual / a.hi)};
+    return (circle){c - a.lo * s, s + a.lo * c};
+}
+
+/* s/a with its own rounding error, so that what is multiplied by it is rounded once. */
+static inline quat_dd over(double s, length a)
+{
+    const double f = s / a.hi;
+    return (quat_dd){f, (fma(-f, a.hi, s) - f * a.lo) / a.hi};
 }
 
 /* scale.hi + scale.lo times the component x, rounded once. */
@@ -32,24 +49,29 @@ static inline double times(quat_dd scale, double x) { return scale.hi * x + (fma
 /* Below this the second term of both series is less than a rounding error. */
 static const double tiny_angle = 1e-8;
 
+/* scale times exp(0, v). */
 QUAT_FMA_CLONES
-quat quat_exp_pure(qvec3 v)
+static quat scaled_exp_pure(double scale, qvec3 v)
 {
     const double largest = fmax(fmax(fabs(v.x), fabs(v.y)), fabs(v.z));
     if (largest < tiny_angle) {
         const double n2 = qvec3_dot(v, v);
-        return quat_make(1 - n2 / 2, v.x, v.y, v.z);
+        return quat_make(scale * (1 - n2 / 2), scale * v.x, scale * v.y, scale * v.z);
     }
     if (!qvec3_isfinite(v)) return quat_make(NAN, NAN, NAN, NAN);
     if (largest > 1e140) {
-        const double n = qvec3_norm(v), s = isfinite(n) ? sin(n) / n : NAN;
-        return quat_make(isfinite(n) ? cos(n) : NAN, s * v.x, s * v.y, s * v.z);
+        const double n = qvec3_norm(v), s = isfinite(n) ? scale * (sin(n) / n) : NAN;
+        return quat_make(isfinite(n) ? scale * cos(n) : NAN, s * v.x, s * v.y, s * v.z);
     }
-    const circle k = circle_of(norm_dd(v.x, v.y, v.z));
-    return quat_make(k.cosine, times(k.sinc, v.x), times(k.sinc, v.y), times(k.sinc, v.z));
+    const length a = length_of(v.x, v.y, v.z);
+    const circle k = circle_of(a);
+    const quat_dd sinc = over(k.sine, a), p = quat_two_prod(scale, sinc.hi), f = {p.hi, p.lo + scale * sinc.lo};
+    return quat_make(scale * k.cosine, times(f, v.x), times(f, v.y), times(f, v.z));
 }
 
-/* The v of quat_log_unit; |s|^2 in the range of doubles. */
+quat quat_exp_pure(qvec3 v) { return scaled_exp_pure(1, v); }
+
+/* The v of quat_log_unit for a prescaled s. */
 QUAT_FMA_CLONES
 static qvec3 log_scaled(quat s)
 {
@@ -59,12 +81,12 @@ static qvec3 log_scaled(quat s)
     int exponent = ilogb(largest);
     if (exponent > -400) exponent = 0;
     const quat v = quat_ldexp(quat_make(0, s.x, s.y, s.z), -exponent);
-    const quat_dd n = norm_dd(v.x, v.y, v.z);
+    const length n = length_of(v.x, v.y, v.z);
     /* atan2 of hi + lo: d atan2(n, w)/dn = w/(n^2 + w^2) */
     const double y = ldexp(n.hi, exponent), angle = atan2(y, s.w);
     const double angle_lo = ldexp(n.lo, exponent) * s.w / (y * y + s.w * s.w);
-    const double f = angle / n.hi;
-    const quat_dd k = {f, ((fma(-f, n.hi, angle) + angle_lo) - f * n.lo) / n.hi};
+    quat_dd k = over(angle, n);
+    k.lo += angle_lo / n.hi;
     return qvec3_make(times(k, v.x), times(k, v.y), times(k, v.z));
 }
 
@@ -80,31 +102,9 @@ quat_status quat_exp(quat q, quat *result)
     *result = quat_identity();
     if (!quat_isfinite(q)) return QUAT_EDOMAIN;
     const double e = exp(q.w);
-    const quat u = quat_exp_pure(quat_vector(q));
-    if (!isfinite(e)) return QUAT_ERANGE;
-    *result = quat_scale(u, e);
+    if (!isfinite(e) || !isfinite(qvec3_norm(quat_vector(q)))) return QUAT_ERANGE;
+    *result = scaled_exp_pure(e, quat_vector(q));
     return QUAT_OK;
-}
-
-/* |s|^2 - 1 to nearly three times the precision: nine exact terms, summed with all their rounding errors. */
-QUAT_FMA_CLONES
-static double norm2_minus_one(quat s)
-{
-    const double c[4] = {s.w, s.x, s.y, s.z};
-    double sum = -1, errors = 0, errors_of_errors = 0, low[8];
-    for (int i = 0; i < 4; i++) {
-        const quat_dd square = quat_two_prod(c[i], c[i]), t = quat_two_sum(sum, square.hi);
-        sum = t.hi;
-        low[2 * i] = square.lo;
-        low[2 * i + 1] = t.lo;
-    }
-    for (int i = 0; i < 8; i++) {
-        const quat_dd t = quat_two_sum(errors, low[i]);
-        errors = t.hi;
-        errors_of_errors += t.lo;
-    }
-    const quat_dd total = quat_two_sum(sum, errors);
-    return total.hi + (total.lo + errors_of_errors);
 }
 
 /* ln|s| for |s|^2 in the range of doubles. */
@@ -112,8 +112,8 @@ QUAT_FMA_CLONES
 static double log_norm(quat s)
 {
     const double c[4] = {s.w, s.x, s.y, s.z};
-    const quat_dd n2 = quat_dd_dot4(c, c);
-    if (n2.hi > 0.5 && n2.hi < 2) return 0.5 * log1p(norm2_minus_one(s));
+    const quat_dd n2 = quat_dot4_plus(0, c, c);
+    if (n2.hi > 0.5 && n2.hi < 2) return 0.5 * log1p(quat_dot4_plus(-1, c, c).hi);
     return 0.5 * (log(n2.hi) + n2.lo / n2.hi);
 }
 
@@ -122,10 +122,10 @@ quat_status quat_log(quat q, quat *result)
     *result = quat_make(0, 0, 0, 0);
     if (!quat_isfinite(q) || quat_equal(q, quat_make(0, 0, 0, 0))) return QUAT_EDOMAIN;
     const double n2 = quat_norm2(q), ln2 = 0.693147180559945309417;
-    int exponent = 0;
-    quat s = q;
-    if (!(n2 >= 1e-280 && n2 <= 1e280)) s = quat_prescale(q, &exponent);
-    *result = quat_from_parts(log_norm(s) + exponent * ln2, log_scaled(s));
+    int exponent;
+    const quat s = quat_prescale(q, &exponent);
+    const double logarithm = n2 >= 1e-280 && n2 <= 1e280 ? log_norm(q) : log_norm(s) + exponent * ln2;
+    *result = quat_from_parts(logarithm, log_scaled(s));
     return q.w < 0 && q.x == 0 && q.y == 0 && q.z == 0 ? QUAT_NOT_UNIQUE : QUAT_OK;
 }
 

@@ -67,14 +67,32 @@ double quat_norm(quat q)
     return ldexp(sqrt(quat_norm2(s)), exponent);
 }
 
-quat_status quat_normalize_scaled(quat q, quat *unit)
+/* q/|q| for |q|^2 in the range of doubles: the plain quotient, corrected by the residual |q|^2 - n^2 of its length. */
+QUAT_FMA_CLONES
+static quat divide_by_length(quat q)
 {
+    const double n = sqrt(quat_norm2(q)), a[4] = {q.w, q.x, q.y, q.z};
+    double high = -n * n, low = fma(-n, n, -high);
+    for (int i = 0; i < 4; i++) {
+        const quat_dd square = quat_two_prod(a[i], a[i]), t = quat_two_sum(high, square.hi);
+        high = t.hi;
+        low += t.lo + square.lo;
+    }
+    const quat unit = quat_make(q.w / n, q.x / n, q.y / n, q.z / n);
+    return quat_axpy(-0.5 * (high + low) / (n * n), unit, unit);
+}
+
+quat_status quat_normalize(quat q, quat *unit)
+{
+    const double n2 = quat_norm2(q);
+    if (n2 >= 1e-280 && n2 <= 1e280) {
+        *unit = divide_by_length(q);
+        return QUAT_OK;
+    }
     *unit = quat_identity();
     if (!quat_isfinite(q) || quat_equal(q, quat_make(0, 0, 0, 0))) return QUAT_EDOMAIN;
     int exponent;
-    const quat s = quat_prescale(q, &exponent);
-    const double n = sqrt(quat_norm2(s));
-    *unit = quat_make(s.w / n, s.x / n, s.y / n, s.z / n);
+    *unit = divide_by_length(quat_prescale(q, &exponent));
     return QUAT_OK;
 }
 
@@ -86,8 +104,8 @@ quat quat_mul_compensated(quat p, quat q)
     const double a[4] = {p.w, p.x, p.y, p.z};
     const double b[4][4] = {
         {q.w, -q.x, -q.y, -q.z}, {q.x, q.w, q.z, -q.y}, {q.y, -q.z, q.w, q.x}, {q.z, q.y, -q.x, q.w}};
-    return quat_make(quat_dd_dot4(a, b[0]).hi, quat_dd_dot4(a, b[1]).hi, quat_dd_dot4(a, b[2]).hi,
-                     quat_dd_dot4(a, b[3]).hi);
+    return quat_make(quat_dot4_plus(0, a, b[0]).hi, quat_dot4_plus(0, a, b[1]).hi, quat_dot4_plus(0, a, b[2]).hi,
+                     quat_dot4_plus(0, a, b[3]).hi);
 }
 
 /* q* / |q|^2 of a prescaled q: the inverse is this times 2^-exponent. */

@@ -134,8 +134,8 @@ static inline quat quat_mul(quat p, quat q)
                      (p.w * q.z + p.z * q.w) + (p.x * q.y - p.y * q.x));
 }
 
-/* p q with every component as if summed in twice the precision and rounded once (Ogita, Rump and Oishi 2005,
- * algorithm Dot2, with FMA): for differences such as the vector part of p q* with p near q. The same bits on every
+/* p q with every component as if summed in three times the precision and rounded once (Ogita, Rump and Oishi 2005,
+ * algorithm DotK with K = 3, by FMA): for differences such as the vector part of p (1/p), all of which is rounding. The same bits on every
  * machine, since fma() is correctly rounded with and without the instruction. Products that leave 1e-290 ... 1e290
  * may lose the compensation. */
 QUAT_API quat quat_mul_compensated(quat p, quat q);
@@ -147,17 +147,16 @@ QUAT_API double quat_norm(quat q);
 /* True when no component is infinite or NaN. */
 static inline bool quat_isfinite(quat q) { return isfinite(q.w) && isfinite(q.x) && isfinite(q.y) && isfinite(q.z); }
 
-/* The part of quat_normalize for scales at which |q|^2 over- or underflows, and for what cannot be normalised. */
-QUAT_API quat_status quat_normalize_scaled(quat q, quat *unit);
+/* q/|q| at every finite, non-zero scale, every component to one rounding unit of the whole. Zero, infinite and NaN give
+ * QUAT_EDOMAIN and *unit = 1. */
+QUAT_API quat_status quat_normalize(quat q, quat *unit);
 
-/* q/|q| at every finite, non-zero scale. Zero, infinite and NaN give QUAT_EDOMAIN and *unit = 1. */
-static inline quat_status quat_normalize(quat q, quat *unit)
+/* q/|q| by the plain formula, inline and unchecked: to 2.6 rounding units for |q| between 1e-140 and 1e140, anything
+ * outside. */
+static inline quat quat_unit(quat q)
 {
-    const double n2 = quat_norm2(q);
-    if (!(n2 >= 1e-280 && n2 <= 1e280)) return quat_normalize_scaled(q, unit);
-    const double n = sqrt(n2);
-    *unit = quat_make(q.w / n, q.x / n, q.y / n, q.z / n);
-    return QUAT_OK;
+    const double n = sqrt(quat_norm2(q));
+    return quat_make(q.w / n, q.x / n, q.y / n, q.z / n);
 }
 
 /* q (3 - |q|^2)/2: one Newton step towards |q| = 1, for the drift of long products; error 3/2 (|q| - 1)^2. */
