@@ -2,6 +2,7 @@
  *
  * The door of the room: checks, scales, picks a solver, and turns a finished course into an outcome.
  */
+#include "collide_cvode.h"
 #include "collide_series.h"
 
 #include <stdarg.h>
@@ -196,6 +197,7 @@ static void report(const impact_collision *collision, const impact_ready ready[2
     outcome->work_restitution = course->work_r * joule;
     outcome->work_friction = course->work_f * joule;
     outcome->compressions = course->compressions;
+    outcome->jammed = course->jammed;
     outcome->phase_count = course->phase_count;
     for (int i = 0; i < course->phase_count; i++) outcome->phases[i] = course->phases[i];
     outcome->conditioning = frame->conditioning;
@@ -216,21 +218,22 @@ static impact_status fail(const impact_collision *collision, impact_outcome *out
     return status;
 }
 
-static impact_status solve(const impact_collision *collision, impact_course *course, impact_outcome *outcome)
+static impact_status solve(const impact_collision *collision, impact_course *course, double speed,
+                           impact_outcome *outcome)
 {
-    if (collision->solver == IMPACT_SOLVER_AUTO || collision->solver == IMPACT_SOLVER_CLOSED_FORM) {
-        if (impact_course_closed_form(course)) {
-            outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
-            return course->ended ? IMPACT_OK : IMPACT_EUNSETTLED;
-        }
-        if (collision->solver == IMPACT_SOLVER_CLOSED_FORM) return IMPACT_EARGUMENT;
+    const bool any = collision->solver == IMPACT_SOLVER_AUTO;
+    if (collision->solver == IMPACT_SOLVER_CVODE || collision->friction_law) {
+        outcome->solver = IMPACT_SOLVER_CVODE;
+        return impact_cvode_solve(course, collision, speed);
     }
-    if (collision->solver != IMPACT_SOLVER_CVODE) {
-        outcome->solver = IMPACT_SOLVER_SERIES;
-        const bool straight = collision->solver == IMPACT_SOLVER_AUTO;
-        return impact_series_solve(course, IMPACT_SERIES_ORDER, straight) ? IMPACT_OK : IMPACT_EUNSETTLED;
+    if ((any || collision->solver == IMPACT_SOLVER_CLOSED_FORM) && impact_course_closed_form(course)) {
+        outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
+        return course->ended ? IMPACT_OK : IMPACT_EUNSETTLED;
     }
-    return IMPACT_EABSENT;
+    if (collision->solver == IMPACT_SOLVER_CLOSED_FORM) return IMPACT_EARGUMENT;
+    outcome->solver = IMPACT_SOLVER_SERIES;
+    const int order = collision->series_order == 0 ? IMPACT_SERIES_ORDER : collision->series_order;
+    return impact_series_solve(course, order) ? IMPACT_OK : IMPACT_EUNSETTLED;
 }
 
 impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome)
@@ -256,7 +259,7 @@ impact_status impact_collide(const impact_collision *collision, impact_outcome *
     const double speed = -approach;
     impact_course course;
     impact_course_start(&course, &frame, collision, qvec3_dot(u, frame.t1) / speed, qvec3_dot(u, frame.t2) / speed);
-    status = solve(collision, &course, outcome);
+    status = solve(collision, &course, speed, outcome);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
     report(collision, ready, &course, speed, outcome);
     return IMPACT_OK;

@@ -55,6 +55,12 @@ void impact_course_book(impact_course *course, double dp, double work, double fr
     }
 }
 
+void impact_course_reach(impact_course *course, double uz)
+{
+    if (course->compressing && uz < course->uz) course->jammed = true;
+    course->uz = uz;
+}
+
 double impact_course_left_poisson(const impact_course *course) { return course->eps * course->p_c - course->p_r; }
 double impact_course_target_newton(const impact_course *course) { return course->eps; }
 double impact_course_target_stronge(const impact_course *course)
@@ -94,7 +100,7 @@ static void line_piece(impact_course *course, const impact_line *line, double dp
     course->px += line->gx * dp;
     course->py += line->gy * dp;
     course->s = fmax(course->s + ds, 0);
-    course->uz += dz;
+    impact_course_reach(course, course->uz + dz);
 }
 
 void impact_course_line(impact_course *course, const impact_line *line, double room)

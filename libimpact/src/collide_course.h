@@ -19,7 +19,7 @@ typedef struct impact_course {
     double work_c, work_r; /* the same, summed over compressions (negative) and over restitutions (positive) */
     double work_f;         /* of friction, <= 0 */
     double p_c, p_r;       /* impulse spent in compressions and in restitutions */
-    bool compressing, ended;
+    bool compressing, ended, jammed;
     int compressions, phase_count;
     unsigned char phases[IMPACT_MAX_PHASES];
 } impact_course;
@@ -49,6 +49,9 @@ double impact_course_turning(const impact_frame *frame, double mu, double x, dou
 double impact_course_left_poisson(const impact_course *course);
 double impact_course_target_newton(const impact_course *course);
 double impact_course_target_stronge(const impact_course *course);
+
+/* uz at the end of a piece within one phase; a fall in compression is a jam. */
+void impact_course_reach(impact_course *course, double uz);
 
 void impact_course_phase(impact_course *course, impact_phase phase);
 /* uz has come up to 0: compression turns to restitution; uz has come down to 0: compressed again. */

@@ -60,7 +60,8 @@ void impact_taylor_make(impact_taylor *taylor, const impact_frame *frame, double
         v[n] = (q - r) * half;
     }
     for (int k = 0; k <= order; k++) taylor->climb[k] = v[k] - mu * (c * x[k] + d * y[k]);
-    taylor->h = step_length(taylor);
+    /* A straight slip at constant speed would have no end. */
+    taylor->h = fmin(step_length(taylor), 100 / (fabs(c) + fabs(d) + fmax(ma, mb)));
 }
 
 static double value(const double *coefficient, int order, double t)
@@ -179,7 +180,7 @@ static void move_to(step *st, double t)
     impact_course_book(course, p - st->p, work - st->work, friction - st->friction);
     course->px += px - st->px;
     course->py += py - st->py;
-    course->uz = uz_at(st, t);
+    impact_course_reach(course, uz_at(st, t));
     st->p = p;
     st->work = work;
     st->friction = friction;
@@ -314,7 +315,7 @@ static stride take_tail(impact_course *course)
     impact_course_book(course, tail.p, tail.work, tail.work_f);
     course->px += tail.px;
     course->py += tail.py;
-    course->uz = uz;
+    impact_course_reach(course, uz);
     course->s = 0;
     return STRIDE_TAKEN;
 }
@@ -333,7 +334,7 @@ static bool tail_is_near(const impact_course *course, double x, double y)
     return fabs(Z) > swing;
 }
 
-bool impact_series_solve(impact_course *course, int order, bool straight)
+bool impact_series_solve(impact_course *course, int order)
 {
     const impact_frame *frame = course->frame;
     if (course->mu == 0) return impact_course_closed_form(course);
@@ -342,7 +343,7 @@ bool impact_series_solve(impact_course *course, int order, bool straight)
     int events = -1;
     for (int steps = 0; steps < 400 && course->s > 0 && !course->ended; steps++) {
         const double x = course->ux / course->s, y = course->uy / course->s;
-        const bool frozen = straight && fabs(impact_course_turning(frame, mu, x, y)) <= 4e-16 * rate;
+        const bool frozen = fabs(impact_course_turning(frame, mu, x, y)) <= 4e-16 * rate;
         if (frozen || course->s <= small) {
             const impact_line line = impact_course_sliding(frame, mu, x, y);
             impact_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);

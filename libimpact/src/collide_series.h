@@ -33,7 +33,7 @@ typedef struct impact_tail {
 bool impact_tail_make(impact_tail *tail, const impact_frame *frame, double mu, double ux, double uy, double s,
                       double uz);
 
-/* The impact by series of the given order. Straight pieces are taken in one stride when `straight`. False: not settled. */
-bool impact_series_solve(impact_course *course, int order, bool straight);
+/* The impact by series of the given order, straight pieces in one stride. False: not settled. */
+bool impact_series_solve(impact_course *course, int order);
 
 #endif

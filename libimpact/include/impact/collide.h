@@ -7,6 +7,7 @@
 
 #include <stddef.h>
 #include <quat/quat.h>
+#include "ode.h"
 #include "status.h"
 
 #ifdef __cplusplus
@@ -32,6 +33,12 @@ typedef enum impact_solver {
     IMPACT_SOLVER_CVODE
 } impact_solver;
 
+/* mu at the sliding speed given, m/s; finite and >= 0, smooth for speed > 0; mu(0) decides whether friction can hold. */
+typedef double impact_friction_law(double speed, void *context);
+
+/* An integrator kept from one impact to the next; not shared between threads. */
+typedef struct impact_collide_workspace impact_collide_workspace;
+
 typedef struct impact_collision {
     impact_collider body[2];
     qvec3 normal;       /* from body 2 to body 1, finite, non-zero; normalised on use */
@@ -40,6 +47,13 @@ typedef struct impact_collision {
     impact_law law;
     impact_solver solver;
     bool any_restitution; /* take a restitution above 1 too */
+
+    /* The rest may stay zero. */
+    int series_order;                  /* Taylor series: 8 ... 32; 0: 22 */
+    impact_friction_law *friction_law; /* in place of `friction`, by CVODE; NULL: constant friction */
+    void *friction_context;
+    double tangential_compliance; /* eta^2 = normal over tangential stiffness of the contact, by CVODE and Stronge's law; 0: rigid */
+    impact_collide_workspace *workspace; /* for CVODE; NULL: one is made for the call (it allocates), Adams at 1e-12 */
 } impact_collision;
 
 /* What happened in order: sliding or sticking in compression (C) and restitution (R). A reversal stands where sliding came to a
@@ -68,6 +82,7 @@ typedef struct impact_outcome {
     unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order */
     impact_solver solver;         /* the one that answered */
     double conditioning;          /* of the contact's inverse mass matrix M: largest over smallest eigenvalue; 1 is best */
+    bool jammed;                  /* friction drove the contact on into compression: u_z fell while it was < 0 */
     bool energy_rose;             /* Newton's law only (or a restitution above 1): it can */
 } impact_outcome;
 
@@ -79,6 +94,12 @@ IMPACT_API const char *impact_phase_name(impact_phase phase);
 /* Whether impact_collide would take the collision: IMPACT_OK, or IMPACT_EDOMAIN (NaN or infinity) or IMPACT_EARGUMENT (out of range)
  * with the thing and its value in message[size], cut to fit; size 0: no message. */
 IMPACT_API impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size);
+
+/* A workspace for CVODE's road, of the method and relative tolerance given (1e-14 ... 1e-2). IMPACT_EABSENT in a build without CVODE. */
+IMPACT_API impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance, impact_collide_workspace **workspace);
+IMPACT_API void impact_collide_workspace_destroy(impact_collide_workspace *workspace); /* NULL is fine */
+/* CVODE's work since the workspace was made. */
+IMPACT_API impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace);
 
 /* Solves one impact. IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome: nothing changed);
  * negative: the outcome holds the velocities given and NaN elsewhere. */
