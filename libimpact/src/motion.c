@@ -99,6 +99,13 @@ static impact_state fly(const impact_world *world, int i, const impact_state *st
     return (impact_state){end.position, end.orientation, end.velocity, start->momentum};
 }
 
+static void set_slack(impact_motion *motion, const impact_state *states)
+{
+    impact_world *world = motion->world;
+    for (int p = 0; p < world->pair_count; p++)
+        world->pairs[p].slack = impact_world_touching_distance(world, &world->pairs[p], states);
+}
+
 /* Time until the pair's gap falls to zero (or, beyond a plane's bounds, until it rises to it), or infinity. With the normal held fixed
  * the gap of two bodies that do not turn is bounded below by a parabola, which each step falls down: no contact can be missed, and
  * against a plane the first step is exact. */
@@ -116,7 +123,8 @@ static double time_to_contact(impact_motion *motion, impact_pair *pair, const im
         impact_world_gap(world, pair, states, &contact);
         const double rate = qvec3_dot(contact.normal, qvec3_sub(states[pair->body1].v, states[pair->body2].v));
         const double acceleration = world->bodies[pair->body2].is_static ? qvec3_dot(contact.normal, world->gravity) : 0;
-        const double gap = sign * contact.gap + (contact.gap <= pair->slack ? pair->slack : 0);
+        const bool grazes = dt == 0 && fabs(contact.gap) <= pair->slack && fabs(rate) <= world->slip_speed;
+        const double gap = grazes ? pair->slack : sign * contact.gap;
         const double step = impact_flight_fall_time(gap, sign * rate, sign * acceleration);
         if (!(dt + step <= horizon)) return INFINITY;
         if (dt + step == dt) return dt;
@@ -130,6 +138,7 @@ static impact_status advance_ballistic(impact_motion *motion, double *t, double 
 {
     impact_world *world = motion->world;
     double dt = t_end - *t;
+    set_slack(motion, states);
     *end = (impact_end){IMPACT_END_TIME, 0};
     for (int p = 0; p < world->pair_count; p++) {
         const double contact = time_to_contact(motion, &world->pairs[p], states, dt);
@@ -205,18 +214,6 @@ static void body_rates(const impact_body *body, const impact_state *s, qvec3 for
     for (int k = 0; k < Y_PER_BODY; k++) rate[k] = clock * values[k];
 }
 
-static void add_reactions(impact_motion *motion)
-{
-    for (int c = 0; c < motion->persist.count; c++) {
-        const impact_touch *touch = &motion->persist.touches[c];
-        impact_load *l1 = &motion->loads[touch->body1], *l2 = &motion->loads[touch->body2];
-        l1->force = qvec3_add(l1->force, touch->force);
-        l1->torque = qvec3_add(l1->torque, qvec3_cross(touch->r1, touch->force));
-        l2->force = qvec3_sub(l2->force, touch->force);
-        l2->torque = qvec3_sub(l2->torque, qvec3_cross(touch->r2, touch->force));
-    }
-}
-
 static int rates(double tau, const double *y, double *rate, void *context)
 {
     impact_motion *motion = context;
@@ -232,7 +229,7 @@ static int rates(double tau, const double *y, double *rate, void *context)
     for (int c = 0; c < motion->persist.count; c++)
         if (motion->persist.touches[c].mode == IMPACT_SLIDE)
             rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
-    add_reactions(motion);
+    impact_persist_add_reactions(&motion->persist, motion->loads);
     const double clock = clock_rate(motion);
     rate[Y_TIME] = clock;
     for (int k = Y_FORCE_WORK; k < Y_BODIES; k++) rate[k] *= clock;
@@ -247,7 +244,7 @@ static int rates(double tau, const double *y, double *rate, void *context)
 
 /* ---- roots: every one falls through zero when its event comes ---- */
 
-/* The gap, minus its rate, and how far the slack is from being cleared. Far apart, of the bounding balls: positive either way. */
+/* The gap with its slack, and minus its rate. Far apart, of the bounding balls: positive either way. */
 static void open_pair_roots(impact_world *world, impact_pair *pair, const impact_state *states, double *value)
 {
     const double bound = impact_world_distance_bound(world, pair, states);
@@ -259,7 +256,6 @@ static void open_pair_roots(impact_world *world, impact_pair *pair, const impact
     impact_contact contact;
     impact_world_gap(world, pair, states, &contact);
     value[0] = pair->beyond ? -contact.gap : contact.gap + pair->slack;
-    if (pair->slack > 0) value[2] = 2 * pair->slack - contact.gap;
     value[1] = pair->beyond ? 1 : -impact_world_gap_rate(world, pair, states, &contact);
 }
 
@@ -352,7 +348,7 @@ static double last_step_value(impact_motion *motion, last_step_function f, const
     impact_contact contact;
     unpack(motion, y, motion->scratch);
     impact_world_gap(motion->world, &motion->world->pairs[f.pair], motion->scratch, &contact);
-    return contact.gap + motion->world->pairs[f.pair].slack;
+    return contact.gap;
 }
 
 /* Interpolates the last step where f changes sign between tau = low and high, by the Illinois form of regula falsi. */
@@ -400,7 +396,6 @@ static impact_end end_of_root(const impact_motion *motion, int root)
     if (root < ROOTS_PER_PAIR * world->pair_count) {
         const int p = root / ROOTS_PER_PAIR, slot = root % ROOTS_PER_PAIR;
         const impact_pair *pair = &world->pairs[p];
-        if (!impact_is_held(pair) && slot == 2) return (impact_end){IMPACT_END_CLEAR, p};
         if (!impact_is_held(pair)) return (impact_end){pair->beyond ? IMPACT_END_RETURN : IMPACT_END_GAP, p};
         if (slot == 0) return (impact_end){IMPACT_END_LIFTOFF, p};
         if (slot == 2) return (impact_end){IMPACT_END_BOUNDS, p};
@@ -412,7 +407,7 @@ static impact_end end_of_root(const impact_motion *motion, int root)
     return (impact_end){IMPACT_END_SLOW, root - edges};
 }
 
-/* A root of an open pair's gap rate: the gap is smallest here. Nothing, unless it is negative: then both its zeros lie in the step. */
+/* A root of an open pair's gap rate: the gap is smallest here. If it is below its slack, both its zeros lie in the step. */
 static bool is_closest_approach(const impact_motion *motion, int root)
 {
     return root < ROOTS_PER_PAIR * motion->world->pair_count && root % ROOTS_PER_PAIR == 1 &&
@@ -431,7 +426,7 @@ static impact_status pick_event(impact_motion *motion, double tau_before, double
             continue;
         }
         const int pair = root / ROOTS_PER_PAIR;
-        if (last_step_value(motion, (last_step_function){pair, 0}, y) >= 0) continue;
+        if (last_step_value(motion, (last_step_function){pair, 0}, y) >= -motion->world->pairs[pair].slack) continue;
         *end = (impact_end){IMPACT_END_GAP, pair};
         memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
         return find_in_last_step(motion, (last_step_function){pair, 0}, tau_before, *tau, tau, y);
@@ -451,7 +446,7 @@ bool impact_motion_also_crossed(impact_motion *motion, impact_end *end)
     return false;
 }
 
-/* CVODE places roots to 1e-14 of the step; one Newton step on the gap places them to rounding. */
+/* From the root that was watched for, the slack below zero and to 1e-14 of the step, one Newton step back to where the gap is zero. */
 static impact_status polish_gap(impact_motion *motion, int pair, double *tau, double *y)
 {
     impact_world *world = motion->world;
@@ -461,8 +456,8 @@ static impact_status polish_gap(impact_motion *motion, int pair, double *tau, do
     const double rate = impact_world_gap_rate(world, &world->pairs[pair], motion->scratch, &contact) * clock_rate(motion);
     double low, high;
     impact_ode_last_step(motion->ode, &low, &high);
-    const double polished = *tau - (contact.gap + world->pairs[pair].slack) / rate;
-    if (!(polished >= low && polished <= high) || fabs(polished - *tau) > 1e-9 * (high - low)) return IMPACT_OK;
+    const double polished = *tau - contact.gap / rate;
+    if (!(polished >= low && polished <= high) || rate >= 0) return IMPACT_OK; /* a gap that was never open */
     *tau = polished;
     return impact_ode_interpolate(motion->ode, polished, 0, y);
 }
@@ -489,14 +484,16 @@ static impact_status fail(impact_motion *motion, impact_status status)
 static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, impact_state *states,
                                impact_sampler *sampler, impact_end *end)
 {
-    enum { MAX_STEPS = 10000000 };
+    enum { MAX_STILL = 1000 };
+    int still = 0;
     double tau = motion->sliding ? 0 : *t;
     const double stop = motion->sliding ? 1000 * (t_end - *t) + 1000 : t_end;
     *end = (impact_end){IMPACT_END_TIME, 0};
-    for (long step = 0; step < MAX_STEPS; step++) {
+    while (still < MAX_STILL) {
         const double tau_before = tau;
         bool found;
         impact_status status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
+        if (motion->message[0] != '\0') return IMPACT_EDOMAIN; /* a load was refused */
         if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);
         if (status == IMPACT_OK && end->kind == IMPACT_END_GAP) status = polish_gap(motion, end->index, &tau, y);
         if (status != IMPACT_OK) return fail(motion, status);
@@ -514,8 +511,9 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         memcpy(y, motion->kept, sizeof *y * (size_t)motion->size);
         if (status == IMPACT_OK && !sampler->pulse(sampler->context, *t)) status = IMPACT_STOPPED;
         if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME || tau == stop) return status;
+        still = tau > tau_before ? 0 : still + 1;
     }
-    snprintf(motion->message, sizeof motion->message, "%d integration steps brought no event by t = %.17g", MAX_STEPS, *t);
+    snprintf(motion->message, sizeof motion->message, "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
     return IMPACT_EUNSETTLED;
 }
 
@@ -525,6 +523,7 @@ static impact_status advance_integrated(impact_motion *motion, double *t, double
     impact_status status = motion->ode ? IMPACT_OK : open_integrator(motion);
     if (status != IMPACT_OK) return status;
     memcpy(motion->scratch, states, sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
+    set_slack(motion, states);
     motion->sliding = false;
     for (int p = 0; p < motion->world->pair_count; p++) motion->sliding |= motion->world->pairs[p].mode == IMPACT_SLIDE;
     if (motion->persist.count > 0) impact_persist_solve(&motion->persist, motion->world, states, motion->loads);

@@ -11,7 +11,6 @@
 typedef enum impact_end_kind {
     IMPACT_END_TIME,    /* the time asked for */
     IMPACT_END_GAP,     /* an open pair's gap fell to zero */
-    IMPACT_END_CLEAR,   /* a pair that lifted off is clear of its slack */
     IMPACT_END_RETURN,  /* a body that had passed beside a plane's bounds is before the plane again */
     IMPACT_END_BOUNDS,  /* a held contact left its plane's bounds */
     IMPACT_END_LIFTOFF, /* a held contact's pressure fell to zero */

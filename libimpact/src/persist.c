@@ -268,6 +268,27 @@ void impact_persist_solve(impact_persist *persist, impact_world *world, const im
     finish_touches(persist, world, states);
 }
 
+void impact_persist_add_reactions(const impact_persist *persist, impact_load *loads)
+{
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        impact_load *l1 = &loads[touch->body1], *l2 = &loads[touch->body2];
+        l1->force = qvec3_add(l1->force, touch->force);
+        l1->torque = qvec3_add(l1->torque, qvec3_cross(touch->r1, touch->force));
+        l2->force = qvec3_sub(l2->force, touch->force);
+        l2->torque = qvec3_sub(l2->torque, qvec3_cross(touch->r2, touch->force));
+    }
+}
+
+double impact_persist_own_acceleration(const impact_persist *persist, const impact_world *world, const impact_state *states, int pair)
+{
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (touch->pair == pair) return qvec3_dot(touch->normal, response(world, states, touch, touch, touch->force));
+    }
+    return 0;
+}
+
 /* ---- constraints put back ---- */
 
 static void apply_impulse(const impact_world *world, impact_state *states, const impact_touch *touch, qvec3 impulse)
@@ -338,6 +359,13 @@ static int worst_grip(const impact_persist *persist, double scale)
     return worst;
 }
 
+qvec3 impact_persist_against_friction(const impact_touch *touch)
+{
+    const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
+    const double size = qvec3_norm(friction);
+    return size > 0 ? qvec3_scale(friction, -1 / size) : tangent_of(touch->normal);
+}
+
 static bool starts_to_slide(const impact_world *world, const impact_touch *touch)
 {
     return touch->mode == IMPACT_SLIDE && touch->speed <= world->slip_speed;
@@ -350,7 +378,7 @@ static bool turn_directions(impact_persist *persist, impact_world *world)
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
         const double size = qvec3_norm(touch->slip_rate);
-        if (!starts_to_slide(world, touch) || size == 0) continue;
+        if (!starts_to_slide(world, touch) || size <= 1e-9 * qvec3_norm(touch->bias)) continue;
         const qvec3 direction = qvec3_scale(touch->slip_rate, 1 / size);
         if (qvec3_norm(qvec3_sub(direction, touch->direction)) > 1e-13) settled = false;
         world->pairs[touch->pair].direction = direction;
@@ -365,10 +393,55 @@ static double force_scale(const impact_persist *persist)
     return scale;
 }
 
-impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads)
+/* Sliding that has died out, here or because another contact's did, is rolling until its friction says otherwise. */
+static void stop_slow_slides(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads, int slips)
+{
+    find_touches(persist, world, states, loads);
+    for (int c = 0; c < persist->count; c++)
+        if (starts_to_slide(world, &persist->touches[c]) && persist->touches[c].pair != slips)
+            world->pairs[persist->touches[c].pair].mode = IMPACT_ROLL;
+}
+
+/* What reactions and loads do to the velocities in dt seconds. */
+static void accelerate(const impact_persist *persist, const impact_world *world, impact_state *states, const impact_load *loads, double dt)
+{
+    for (int c = 0; c < persist->count; c++)
+        apply_impulse(world, states, &persist->touches[c], qvec3_scale(persist->touches[c].force, dt));
+    for (int i = 0; i < world->body_count; i++) {
+        states[i].v = qvec3_axpy(dt * world->bodies[i].inverse_mass, loads[i].force, states[i].v);
+        states[i].momentum = qvec3_axpy(dt, loads[i].torque, states[i].momentum);
+    }
+}
+
+/* Slip from rest has no direction to read off: the contacts that begin to slide get just enough speed to tell, from their acceleration;
+ * or, where friction has only just reached its cone and there is none yet, along the direction that the friction held off. */
+static void start_slides(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads)
+{
+    enum { LONGEST_MICROSECONDS = 100 };
+    const double longest = 1e-6 * LONGEST_MICROSECONDS, wanted = 2 * world->slip_speed;
+    double dt = 0;
+    bool pushed = false;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (!starts_to_slide(world, touch)) continue;
+        const double rate = qvec3_norm(touch->slip_rate);
+        if (rate * longest > wanted) {
+            dt = fmax(dt, wanted / rate);
+        } else {
+            states[touch->body1].v = qvec3_axpy(wanted, touch->direction, states[touch->body1].v);
+            pushed = true;
+        }
+    }
+    if (dt > 0) accelerate(persist, world, states, loads, dt);
+    if (pushed) impact_persist_project(persist, world, states, loads);
+}
+
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads,
+                                     int slips)
 {
     enum { TURNS = 100 };
     impact_status status = impact_persist_reserve(persist, world);
+    stop_slow_slides(persist, world, states, loads, slips);
     for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 4 * world->pair_count + 8; round++) {
         for (int turn = 0; turn < TURNS; turn++) {
             impact_persist_solve(persist, world, states, loads);
@@ -381,15 +454,10 @@ impact_status impact_persist_resolve(impact_persist *persist, impact_world *worl
             status = impact_persist_reserve(persist, world);
         } else if (grip >= 0) {
             impact_pair *pair = &world->pairs[persist->touches[grip].pair];
-            const qvec3 against = qvec3_axpy(-persist->touches[grip].pressure, persist->touches[grip].normal, persist->touches[grip].force);
             pair->mode = IMPACT_SLIDE;
-            pair->direction = qvec3_scale(against, -1 / qvec3_norm(against));
+            pair->direction = impact_persist_against_friction(&persist->touches[grip]);
         } else {
-            for (int c = 0; c < persist->count; c++) {
-                const impact_touch *touch = &persist->touches[c];
-                if (starts_to_slide(world, touch))
-                    states[touch->body1].v = qvec3_axpy(2 * world->slip_speed - touch->speed, touch->direction, states[touch->body1].v);
-            }
+            start_slides(persist, world, states, loads);
             return IMPACT_OK;
         }
     }

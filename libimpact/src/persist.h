@@ -42,14 +42,25 @@ void impact_persist_free(impact_persist *persist);
 /* Geometry and reactions of every held contact under the loads. */
 void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads);
 
+/* Adds the reactions that were solved for to the loads of their bodies. */
+void impact_persist_add_reactions(const impact_persist *persist, impact_load *loads);
+
+/* The part of a held pair's d2(gap)/dt2 that its own reaction, as solved for, makes; 0 for a pair that is not held. */
+double impact_persist_own_acceleration(const impact_persist *persist, const impact_world *world, const impact_state *states, int pair);
+
 /* The contact as it is, whether held or not; its bias without any reaction. */
 impact_touch impact_persist_touch(impact_world *world, int pair, const impact_state *states, const impact_load *loads);
+
+/* Unit vector against a touch's friction as solved for: the way it would slide if the friction gave way. */
+qvec3 impact_persist_against_friction(const impact_touch *touch);
 
 /* Puts positions and velocities back on the held contacts exactly. */
 void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads);
 
-/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and slide what must.
- * A contact that begins to slide is given its direction, and a speed just over the world's slip_speed. */
-impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads);
+/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and slide what must; the pair
+ * `slips` (or -1) slides whether it must or not, since its friction has just reached the cone. A contact that begins to slide is given
+ * its direction and the first of its speed. */
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads,
+                                     int slips);
 
 #endif

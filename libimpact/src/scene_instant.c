@@ -62,19 +62,33 @@ static impact_event event_of_body(const impact_scene *scene, impact_event_kind k
                           .name2 = "", .point = scene->states[body].x, .phases = "", .energy_before = energy, .energy_after = energy};
 }
 
-/* ---- touching pairs ---- */
+/* ---- loads ---- */
 
-/* Gaps up to this are rounding, m. */
-static double touching_distance(const impact_scene *scene, int p)
+static impact_status load(impact_scene *scene)
 {
-    const int body = scene->world.pairs[p].body1;
-    return 1e-12 * (qvec3_norm(scene->states[body].x) + scene->world.bodies[body].radius);
+    if (impact_motion_load(&scene->motion, scene->t, scene->states)) return IMPACT_OK;
+    memcpy(scene->message, scene->motion.message, sizeof scene->motion.message);
+    return IMPACT_EDOMAIN;
 }
+
+/* The loads with the reactions of the contacts that are held. */
+static impact_status load_with_reactions(impact_scene *scene)
+{
+    impact_persist *persist = &scene->motion.persist;
+    impact_status status = impact_persist_reserve(persist, &scene->world);
+    if (status == IMPACT_OK) status = load(scene);
+    if (status != IMPACT_OK || persist->count == 0) return status;
+    impact_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
+    impact_persist_add_reactions(persist, scene->motion.loads);
+    return IMPACT_OK;
+}
+
+/* ---- touching pairs ---- */
 
 typedef struct meeting {
     impact_touch touch;
     double velocity;     /* d(gap)/dt, m/s */
-    double acceleration; /* d2(gap)/dt2 without reactions, m/s^2 */
+    double acceleration; /* d2(gap)/dt2 under the loads and the other contacts' reactions, m/s^2 */
 } meeting;
 
 /* Fills the meeting of a held pair, or of an open one that touches within its plane's bounds; false otherwise. */
@@ -86,11 +100,12 @@ static bool meets(impact_scene *scene, int p, meeting *m)
     impact_contact contact;
     impact_world_gap(world, pair, scene->states, &contact);
     if (!impact_is_held(pair) &&
-        (contact.gap > touching_distance(scene, p) || impact_world_inside_bounds(world, pair, scene->states, &contact) < 0))
+        (contact.gap > impact_world_touching_distance(world, pair, scene->states) || impact_world_inside_bounds(world, pair, scene->states, &contact) < 0))
         return false;
     m->touch = impact_persist_touch(world, p, scene->states, scene->motion.loads);
     m->velocity = impact_world_approach(world, &m->touch, scene->states);
-    m->acceleration = qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip);
+    m->acceleration = qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip) -
+                      impact_persist_own_acceleration(&scene->motion.persist, world, scene->states, p);
     return true;
 }
 
@@ -216,18 +231,10 @@ static impact_status record_changes(impact_scene *scene)
         impact_event event = event_of_touch(scene, change_of_mode(scene->modes[p], now), &touch);
         event.phases = now == IMPACT_SLIDE ? "slide" : now == IMPACT_ROLL ? "roll" : "";
         scene->motion.resting[touch.body1] = scene->motion.resting[touch.body2] = false;
-        world->pairs[p].slack = now == IMPACT_OPEN ? touching_distance(scene, p) : 0;
         const impact_status status = record(scene, &event);
         if (status != IMPACT_OK) return status;
     }
     return IMPACT_OK;
-}
-
-static impact_status load(impact_scene *scene)
-{
-    if (impact_motion_load(&scene->motion, scene->t, scene->states)) return IMPACT_OK;
-    memcpy(scene->message, scene->motion.message, sizeof scene->motion.message);
-    return IMPACT_EDOMAIN;
 }
 
 /* A body that is slower than the rest speed, held, and not accelerated, is at rest. */
@@ -265,8 +272,8 @@ static impact_status bring_to_rest(impact_scene *scene)
     return IMPACT_OK;
 }
 
-/* From tentative modes to consistent ones, with the constraints exact. */
-static impact_status hold(impact_scene *scene)
+/* From tentative modes to consistent ones, with the constraints exact; the pair `slips` (or -1) slides. */
+static impact_status hold(impact_scene *scene, int slips)
 {
     impact_motion *motion = &scene->motion;
     impact_status status = impact_persist_reserve(&motion->persist, &scene->world);
@@ -274,7 +281,7 @@ static impact_status hold(impact_scene *scene)
     if (status != IMPACT_OK) return status;
     impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);
     status = load(scene);
-    if (status == IMPACT_OK) status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads);
+    if (status == IMPACT_OK) status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads, slips);
     if (status == IMPACT_EUNSETTLED)
         snprintf(scene->message, sizeof scene->message, "no consistent set of contact forces found at t = %.17g", scene->t);
     if (status == IMPACT_OK) status = record_changes(scene);
@@ -291,7 +298,7 @@ static impact_status strike_all(impact_scene *scene, int first)
 {
     enum { MAX_IMPACTS = 100000 };
     meeting m;
-    impact_status status = load(scene);
+    impact_status status = load_with_reactions(scene);
     for (int count = 0; status == IMPACT_OK; count++) {
         const int p = find_approach(scene, first, &m);
         if (p < 0) return IMPACT_OK;
@@ -301,7 +308,7 @@ static impact_status strike_all(impact_scene *scene, int first)
             return IMPACT_EUNSETTLED;
         }
         status = strike(scene, &m);
-        if (status == IMPACT_OK) status = load(scene);
+        if (status == IMPACT_OK) status = load_with_reactions(scene);
         first = -1;
     }
     return status;
@@ -314,7 +321,7 @@ impact_status impact_scene_settle(impact_scene *scene, int pair)
     impact_status status = strike_all(scene, pair);
     if (status == IMPACT_OK) {
         choose_modes(scene);
-        status = hold(scene);
+        status = hold(scene, -1);
     }
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
@@ -342,16 +349,13 @@ static impact_status change_mode(impact_scene *scene, int p, impact_mode mode)
         impact_status status = load(scene);
         if (status != IMPACT_OK) return status;
         impact_persist_solve(&scene->motion.persist, &scene->world, scene->states, scene->motion.loads);
-        for (int c = 0; c < scene->motion.persist.count; c++) {
-            const impact_touch *touch = &scene->motion.persist.touches[c];
-            if (touch->pair != p) continue;
-            const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
-            pair->direction = qvec3_scale(friction, -1 / qvec3_norm(friction));
-        }
+        for (int c = 0; c < scene->motion.persist.count; c++)
+            if (scene->motion.persist.touches[c].pair == p)
+                pair->direction = impact_persist_against_friction(&scene->motion.persist.touches[c]);
     }
     pair->mode = mode;
     const double energy = impact_scene_total_energy(scene);
-    const impact_status status = hold(scene);
+    const impact_status status = hold(scene, mode == IMPACT_SLIDE ? p : -1);
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
 }
@@ -364,7 +368,7 @@ static impact_status cross_edge(impact_scene *scene, int edge)
     impact_event event = event_of_body(scene, IMPACT_EVENT_FORCE, body);
     event.name2 = scene->world.fields[field].name;
     const impact_status status = record(scene, &event);
-    return status == IMPACT_OK ? hold(scene) : status;
+    return status == IMPACT_OK ? hold(scene, -1) : status;
 }
 
 impact_status impact_scene_handle(impact_scene *scene, impact_end end)
@@ -372,14 +376,13 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     switch (end.kind) {
     case IMPACT_END_TIME: return IMPACT_OK;
     case IMPACT_END_GAP: return arrive(scene, end.index);
-    case IMPACT_END_CLEAR: scene->world.pairs[end.index].slack = 0; return IMPACT_OK;
     case IMPACT_END_RETURN: scene->world.pairs[end.index].beyond = false; return IMPACT_OK;
     case IMPACT_END_BOUNDS: scene->world.pairs[end.index].beyond = true; return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_LIFTOFF: return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_SLIP: return change_mode(scene, end.index, IMPACT_SLIDE);
     case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);
     case IMPACT_END_EDGE: return cross_edge(scene, end.index);
-    case IMPACT_END_SLOW: remember(scene); return hold(scene);
+    case IMPACT_END_SLOW: remember(scene); return hold(scene, -1);
     }
     return IMPACT_OK;
 }

@@ -43,7 +43,7 @@ typedef struct impact_pair {
     double friction, restitution;
     impact_mode mode;
     bool beyond;     /* IMPACT_OPEN: body 1 passed beside the bounds of the plane and is behind it */
-    double slack;    /* IMPACT_OPEN, just lifted off: the gap counts from -slack until it exceeds it, so that noise is no contact, m */
+    double slack;    /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
     qvec3 direction; /* IMPACT_SLIDE: the way body 1 slips over body 2 when the speed is too small to tell */
     impact_gap_cache cache;
 } impact_pair;
