@@ -32,6 +32,7 @@ for name in quat impact; do
     "$cc" -o "shared_$name" "$here/outside/with_$name.c" $(pkg-config --cflags --libs "$name") -Wl,-rpath,"$libdir"
     "./shared_$name"
 done
+# Pay only for what is used.
 if ldd shared_quat | grep -E 'gsl|sundials|ccd'; then
     echo "a program of the algebra loads more than libquat and libm"
     exit 1
@@ -54,6 +55,18 @@ fi
 if [ -x "$prefix/bin/impact" ]; then
     echo "-- runner"
     "$prefix/bin/impact" --version
+fi
+
+core=$(find "$prefix" -path '*quat/core.so')
+lua=$(command -v lua5.4 || command -v lua || true)
+if [ -n "$core" ] && [ -n "$lua" ]; then
+    echo "-- stock Lua"
+    LUA_PATH="$prefix/share/lua/5.4/?.lua" LUA_CPATH="$(dirname "$(dirname "$core")")/?.so" \
+        "$lua" -e 'print(require "quat".new(1, 0, 0, 0), require "impact".sphere(0.3).volume)'
+    if ldd "$core" | grep -E 'gsl|sundials|ccd'; then
+        echo "require \"quat\" loads more than libquat and libm"
+        exit 1
+    fi
 fi
 
 echo "-- examples of the first pages"
