@@ -168,5 +168,7 @@ quat quat_random(quat_uniform uniform, void *state)
     const double two_pi = 6.28318530717958647692;
     const double u = uniform(state), a = two_pi * uniform(state), b = two_pi * uniform(state);
     const double r = sqrt(1 - u), s = sqrt(u);
-    return quat_make(s * cos(b), r * sin(a), r * cos(a), s * sin(b));
+    quat q;
+    quat_normalize(quat_make(s * cos(b), r * sin(a), r * cos(a), s * sin(b)), &q);
+    return q;
 }

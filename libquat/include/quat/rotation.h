@@ -14,23 +14,20 @@ extern "C" {
 
 /* ---- the operator ---- */
 
-/* v rotated by the unit quaternion q (body to world): v + 2 w (u x v) + 2 u x (u x v), u the vector part. */
+/* v rotated by the unit quaternion q (body to world): the vector part of (q v) q*. As two products it rounds half as
+ * much as v + 2 w (u x v) + 2 u x (u x v) and takes no longer. Scales by |q|^2 if q is not unit. For many vectors by
+ * the same q, quat_rotate_array. */
 static inline qvec3 quat_rotate(quat q, qvec3 v)
 {
-    const qvec3 u = qvec3_make(q.x, q.y, q.z);
-    qvec3 t = qvec3_cross(u, v);
-    t = qvec3_make(t.x + t.x, t.y + t.y, t.z + t.z);
-    return qvec3_add(v, qvec3_axpy(q.w, t, qvec3_cross(u, t)));
+    const double s = q.x * v.x + q.y * v.y + q.z * v.z; /* q v = -s + a */
+    const qvec3 a = qvec3_make(q.w * v.x + (q.y * v.z - q.z * v.y), q.w * v.y + (q.z * v.x - q.x * v.z),
+                               q.w * v.z + (q.x * v.y - q.y * v.x));
+    return qvec3_make((s * q.x + a.x * q.w) + (q.y * a.z - q.z * a.y), (s * q.y + a.y * q.w) + (q.z * a.x - q.x * a.z),
+                      (s * q.z + a.z * q.w) + (q.x * a.y - q.y * a.x));
 }
 
 /* The inverse rotation, world to body. */
 static inline qvec3 quat_rotate_inverse(quat q, qvec3 v) { return quat_rotate(quat_conj(q), v); }
-
-/* q v q* for any q: rotates, and scales by |q|^2. */
-static inline qvec3 quat_sandwich(quat q, qvec3 v)
-{
-    return quat_vector(quat_mul(quat_mul(q, quat_pure(v)), quat_conj(q)));
-}
 
 /* ---- reflections ---- */
 
