@@ -13,7 +13,7 @@ needed=$(readelf --dynamic --wide "$2" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
 echo "$2 needs: ${needed//$'\n'/ }"
 strangers=$(grep -vE "^($allowed)\.so" <<<"$needed" || true)
 [ -z "$strangers" ] || { echo "not in its row: $strangers"; exit 1; }
-if ldd "$2" | grep -iE 'fortran|flang|quadmath'; then
+if ldd "$2" | grep -E '^\s*lib(gfortran|flang|quadmath)'; then
     echo "a Fortran runtime is loaded"
     exit 1
 fi

@@ -27,13 +27,15 @@ done
 
 echo "-- pkg-config"
 export PKG_CONFIG_PATH=$libdir/pkgconfig
-for name in quat impact; do
+names=(quat impact)
+[ ! -f "$libdir/pkgconfig/quat_gsl.pc" ] || names+=(quat_gsl)
+for name in "${names[@]}"; do
     # shellcheck disable=SC2046
-    "$cc" -o "shared_$name" "$here/outside/with_$name.c" $(pkg-config --cflags --libs "$name") -Wl,-rpath,"$libdir"
+    "$cc" -o "shared_$name" "$here/outside/with_${name%_gsl}.c" $(pkg-config --cflags --libs "$name") -Wl,-rpath,"$libdir"
     "./shared_$name"
 done
 # Pay only for what is used.
-if ldd shared_quat | grep -E 'gsl|sundials|ccd'; then
+if ldd shared_quat | grep -E '^\s*lib(gsl|sundials|ccd)'; then
     echo "a program of the algebra loads more than libquat and libm"
     exit 1
 fi
@@ -42,12 +44,12 @@ fi
 cp -R moved static_only
 find static_only -name 'lib*.so*' -delete
 only=$(dirname "$(find "$work/static_only" -name libquat.a)")/pkgconfig
-for name in quat impact; do
+for name in "${names[@]}"; do
     # shellcheck disable=SC2046
-    "$cc" -o "static_$name" "$here/outside/with_$name.c" $(PKG_CONFIG_PATH=$only pkg-config --static --cflags --libs "$name")
+    "$cc" -o "static_$name" "$here/outside/with_${name%_gsl}.c" $(PKG_CONFIG_PATH=$only pkg-config --static --cflags --libs "$name")
     "./static_$name"
 done
-if ldd static_impact | grep -E 'libquat|libimpact'; then
+if ldd static_impact | grep -E '^\s*lib(quat|impact)'; then
     echo "a static program loads our shared libraries"
     exit 1
 fi
@@ -63,7 +65,7 @@ if [ -n "$core" ] && [ -n "$lua" ]; then
     echo "-- stock Lua"
     LUA_PATH="$prefix/share/lua/5.4/?.lua" LUA_CPATH="$(dirname "$(dirname "$core")")/?.so" \
         "$lua" -e 'print(require "quat".new(1, 0, 0, 0), require "impact".sphere(0.3).volume)'
-    if ldd "$core" | grep -E 'gsl|sundials|ccd'; then
+    if ldd "$core" | grep -E '^\s*lib(gsl|sundials|ccd)'; then
         echo "require \"quat\" loads more than libquat and libm"
         exit 1
     fi
