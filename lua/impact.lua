@@ -100,6 +100,7 @@ core.layer()
 
 ---@class impactlib
 ---@field version string
+---@field defaults table  what the library takes for absent keys: gravity, output_rate, tolerance, density, friction ...
 ---@field has fun(part: "cvode"|"ccd"): boolean  whether this build holds the part
 ---@field sphere fun(radius: number|{radius: number}): impact.shape
 ---@field plane fun(bounds?: {width?: number, depth?: number}): impact.shape
@@ -238,9 +239,10 @@ end
 function methods:energies(body, track)
   local definition = find_body(self, body)
   local shape = definition.shape
-  local mass = definition.mass or (definition.density or 1000) * shape.volume
+  local mass = definition.mass or (definition.density or impact.defaults.density) * shape.volume
   local moments = definition.moments or { mass * shape.inertia.x, mass * shape.inertia.y, mass * shape.inertia.z }
-  local gravity = self:definition().gravity or { 0, 0, -9.81 }
+  local gravity = self:definition().gravity or impact.defaults.gravity
+  local gx, gy, gz = gravity[1] or gravity.x, gravity[2] or gravity.y, gravity[3] or gravity.z
   local result = { translation = {}, rotation = {}, potential = {}, total = {} }
   for i = 1, #track.t do
     local r = row_of(track, i)
@@ -253,7 +255,7 @@ function methods:energies(body, track)
     local bz = r.wz + r.qw * tz + (tx * r.qy - ty * r.qx)
     local translation = mass / 2 * (r.vx ^ 2 + r.vy ^ 2 + r.vz ^ 2)
     local rotation = (moments[1] * bx ^ 2 + moments[2] * by ^ 2 + moments[3] * bz ^ 2) / 2
-    local potential = -mass * (gravity[1] * r.x + gravity[2] * r.y + gravity[3] * r.z)
+    local potential = -mass * (gx * r.x + gy * r.y + gz * r.z)
     result.translation[i], result.rotation[i], result.potential[i] = translation, rotation, potential
     result.total[i] = translation + rotation + potential
   end

@@ -365,6 +365,36 @@ static int scene_tostring(lua_State *L)
     return 1;
 }
 
+/* defaults: what the library takes for an absent key, for scripts to read. */
+static void add_defaults(lua_State *L)
+{
+    const impact_scene_def scene = impact_default_scene_def();
+    const impact_body_def body = impact_default_body_def();
+    const struct {
+        const char *key;
+        double value;
+    } numbers[] = {
+        {"output_rate", scene.output_rate},
+        {"tolerance", scene.tolerance},
+        {"rest_height", scene.rest_height},
+        {"rest_speed", scene.rest_speed},
+        {"max_events", (double)scene.max_events},
+        {"density", body.density},
+        {"friction", body.friction},
+        {"restitution", body.restitution},
+        {"linear_damping", body.linear_damping},
+        {"angular_damping", body.angular_damping},
+    };
+    lua_newtable(L);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        lua_pushnumber(L, numbers[i].value);
+        lua_setfield(L, -2, numbers[i].key);
+    }
+    quat_lua_push_vec3(L, scene.gravity);
+    lua_setfield(L, -2, "gravity");
+    lua_setfield(L, -2, "defaults");
+}
+
 void impact_lua_open_scene(lua_State *L)
 {
     static const luaL_Reg meta[] = {
@@ -393,4 +423,5 @@ void impact_lua_open_scene(lua_State *L)
     lua_pop(L, 1);
     lua_pushcfunction(L, scene_new);
     lua_setfield(L, -2, "scene");
+    add_defaults(L);
 }
