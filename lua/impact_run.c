@@ -31,7 +31,7 @@ static void set_vec3(lua_State *L, int table, const char *key, const qvec3 *v)
     lua_pop(L, 1);
 }
 
-/* A vector that a law returned; nil is zero. */
+/* A vector that a law returned; nil is zero. The law's entry is at index 2. */
 static qvec3 returned_vec3(lua_State *L, int index, const char *what)
 {
     double v[3] = {0, 0, 0};
@@ -43,8 +43,13 @@ static qvec3 returned_vec3(lua_State *L, int index, const char *what)
         good = lua_type(L, -1) == LUA_TNUMBER && isfinite(v[i]);
         lua_pop(L, 1);
     }
-    if (!good) luaL_error(L, "the %s must be a vector {x, y, z} of finite numbers", what);
-    return (qvec3){v[0], v[1], v[2]};
+    if (good) return (qvec3){v[0], v[1], v[2]};
+    lua_rawgeti(L, 2, 4);
+    lua_rawgeti(L, 2, 5);
+    lua_pushfstring(L, "%sforce '%s': the %s must be a vector {x, y, z} of finite numbers", lua_tostring(L, -2),
+                    lua_tostring(L, -1), what);
+    lua_error(L);
+    return (qvec3){0, 0, 0};
 }
 
 /* Protected: (law_call *, {function, state, orientation, where, name}) */
@@ -73,18 +78,6 @@ static int call_law(lua_State *L)
     return 0;
 }
 
-/* Protected: (impact_lua_law's entry, error) -> "where force 'name': error", for errors without a place of their own. */
-static int explain(lua_State *L)
-{
-    lua_rawgeti(L, 1, 4);
-    lua_rawgeti(L, 1, 5);
-    if (lua_type(L, 2) == LUA_TSTRING)
-        lua_pushfstring(L, "%sforce '%s': %s", lua_tostring(L, 3), lua_tostring(L, 4), lua_tostring(L, 2));
-    else
-        lua_pushvalue(L, 2);
-    return 1;
-}
-
 static bool fail(impact_lua_scene *self) /* the error is on top */
 {
     lua_replace(self->L, self->error_slot);
@@ -105,11 +98,6 @@ bool impact_lua_call_law(double t, int body, double mass, qvec3 position, quat o
     lua_pushlightuserdata(L, &call);
     lua_rawgeti(L, self->laws_slot, law->index);
     if (lua_pcall(L, 2, 0, 0) == LUA_OK) return true;
-    lua_pushcfunction(L, explain);
-    lua_insert(L, -2);
-    lua_rawgeti(L, self->laws_slot, law->index);
-    lua_insert(L, -2);
-    lua_pcall(L, 2, 1, 0);
     return fail(self);
 }
 

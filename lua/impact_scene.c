@@ -218,7 +218,7 @@ static int refuse_scene(lua_State *L, const impact_scene_def *def, const char *m
         lua_pushfstring(L, "%s%s", where, message);
         return lua_error(L);
     }
-    return quat_lua_error(L, "scene '%s': %s", def->name, message);
+    return quat_lua_error(L, "%s", message);
 }
 
 static int scene_new(lua_State *L)

@@ -61,36 +61,57 @@ static double positive(const char *text)
     return *text && !*end && value > 0 && isfinite(value) ? value : NAN;
 }
 
+/* Takes an option with a value; an exit code, or -1. */
+static int take_value(impact_runner *runner, const char *option, const char *value)
+{
+    if (strcmp(option, "--out") == 0) return runner->directory = value, -1;
+    const double number = positive(value);
+    if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
+    if (strcmp(option, "--max-time") == 0)
+        runner->max_time = number;
+    else
+        runner->max_memory = (size_t)(number * 1048576.0);
+    return -1;
+}
+
+/* The option with a value that the word is, alone or as OPTION=VALUE; NULL: none. */
+static const char *option_of(const char *word, const char **value)
+{
+    static const char *const options[] = {"--out", "--max-memory", "--max-time"};
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        const size_t length = strlen(options[i]);
+        if (strncmp(word, options[i], length) != 0 || (word[length] && word[length] != '=')) continue;
+        *value = word[length] ? word + length + 1 : NULL;
+        return options[i];
+    }
+    return NULL;
+}
+
 /* -1: go on; else exit so. */
 static int read_command(int count, char **words, impact_runner *runner)
 {
     for (int i = 1; i < count; i++) {
-        const char *word = words[i], *value = i + 1 < count ? words[i + 1] : NULL;
-        if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return usage(stdout), IMPACT_EXIT_OK;
-        if (strcmp(word, "--version") == 0) return version(), IMPACT_EXIT_OK;
-        if (strcmp(word, "--quiet") == 0)
+        const char *word = words[i], *value = NULL, *option = option_of(word, &value);
+        if (option) {
+            if (!value && i + 1 < count) value = words[++i];
+            if (!value || !*value) return wrong_usage("%s needs a value", option);
+            const int code = take_value(runner, option, value);
+            if (code >= 0) return code;
+        } else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
+            return usage(stdout), IMPACT_EXIT_OK;
+        } else if (strcmp(word, "--version") == 0) {
+            return version(), IMPACT_EXIT_OK;
+        } else if (strcmp(word, "--quiet") == 0) {
             runner->quiet = true;
-        else if (strcmp(word, "--trust") == 0)
+        } else if (strcmp(word, "--trust") == 0) {
             runner->trust = true;
-        else if (strcmp(word, "--out") == 0 || strcmp(word, "--max-memory") == 0 || strcmp(word, "--max-time") == 0) {
-            if (!value || !*value) return wrong_usage("%s needs a value", word);
-            i++;
-            if (strcmp(word, "--out") == 0) {
-                runner->directory = value;
-                continue;
-            }
-            const double number = positive(value);
-            if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
-            if (strcmp(word, "--max-time") == 0)
-                runner->max_time = number;
-            else
-                runner->max_memory = (size_t)(number * 1048576.0);
-        } else if (word[0] == '-' && word[1])
+        } else if (word[0] == '-' && word[1]) {
             return wrong_usage("unknown option '%s'", word);
-        else if (runner->script)
+        } else if (runner->script) {
             return wrong_usage("one script at a time: '%s' is too many", word);
-        else
+        } else {
             runner->script = word;
+        }
     }
     if (!runner->script) return usage(stderr), IMPACT_EXIT_USAGE;
     return -1;

@@ -1,0 +1,56 @@
+-- SPDX-License-Identifier: MIT
+--- Runs the runner for a test: `local runner = require "runner"`; arg[1] is the program, arg[2] a folder to work in.
+local runner = {}
+
+local program, folder = arg[1], arg[2]
+
+local function quote(text)
+  return "'" .. text:gsub("'", "'\\''") .. "'"
+end
+
+local function shell(command)
+  local _, _, code = os.execute(command)
+  return code
+end
+
+runner.folder = folder
+runner.quote = quote
+runner.shell = shell
+
+function runner.read(name)
+  local file = io.open(folder .. "/" .. name, "rb")
+  if not file then return nil end
+  local text = file:read("a")
+  file:close()
+  return text
+end
+
+function runner.exists(name)
+  return shell("test -e " .. quote(folder .. "/" .. name)) == 0
+end
+
+function runner.write(name, text)
+  local file = assert(io.open(folder .. "/" .. name, "wb"))
+  file:write(text)
+  file:close()
+end
+
+--- An empty folder to work in.
+function runner.clean()
+  shell("rm -rf " .. quote(folder) .. " && mkdir -p " .. quote(folder))
+end
+
+--- Runs the program in the folder with a command line: exit code, what it said, what it complained of.
+function runner.command(line)
+  local code = shell(string.format("cd %s && %s %s >stdout.txt 2>stderr.txt </dev/null", quote(folder), quote(program), line))
+  return code, runner.read("stdout.txt"), runner.read("stderr.txt")
+end
+
+--- Runs a script's text as script.lua with --out o.
+function runner.script(text, options)
+  shell("rm -rf " .. quote(folder .. "/o"))
+  runner.write("script.lua", text)
+  return runner.command("script.lua --out o " .. (options or ""))
+end
+
+return runner

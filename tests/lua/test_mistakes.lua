@@ -1,0 +1,158 @@
+-- SPDX-License-Identifier: MIT
+--- Mistakes in scripts and on the command line: one clear line, the right exit code, no file under its final name.
+local check = require "check"
+local runner = require "runner"
+runner.clean()
+
+--- A good scene with one change: `body` and `scene` are put into the tables.
+local function scene(body, rest)
+  return string.format([[
+local impact = require "impact"
+local coin = impact.body {
+  name = "coin", %s
+}
+local floor = impact.body { name = "floor", shape = impact.plane() }
+return impact.scene {
+  name = "toss", duration = 0.1, bodies = { floor, coin }, %s
+}
+]], body, rest or "")
+end
+
+local good = 'shape = impact.sphere(0.1), mass = 1, position = { 0, 0, 1 },'
+
+local function refused(text, wanted, code, options)
+  local got, _, said = runner.script(text, options)
+  if got ~= (code or 1) or said ~= "impact: " .. wanted .. "\n" then
+    error(string.format("wanted exit code %d and\n%s\ngot %d and\n%s\nof the script\n%s", code or 1, wanted, got, said, text), 2)
+  end
+  check.truth(not runner.exists("o/toss.csv") and not runner.exists("o/toss_events.csv"), "no file stands under its final name")
+  check.truth(runner.shell("find " .. runner.quote(runner.folder) .. " -name '*.part' | grep -q .") ~= 0, "no partial file stays")
+end
+
+check.equal(runner.script(scene(good)), 0)
+check.truth(runner.exists("o/toss.csv"), "the good scene's CSV")
+
+-- A body's keys.
+refused(scene(good .. "fricton = 1,"), "script.lua:2: unknown key 'fricton' in body 'coin' (did you mean 'friction'?)")
+refused(scene(good .. "colour = 1,"), "script.lua:2: unknown key 'colour' in body 'coin'")
+refused(scene(good .. "7,"), "script.lua:2: unknown key [1] in body 'coin' (its values have names)")
+refused(scene("shape = impact.sphere(0.1), mass = -1,"), "script.lua:2: body 'coin': mass must be a positive number, got -1")
+refused(scene("shape = impact.sphere(0.1), mass = 0/0,"), "script.lua:2: body 'coin': mass must be a positive number, got nan")
+refused(scene("shape = impact.sphere(0.1), mass = '4',"), "script.lua:2: body 'coin': mass must be a positive number, got the string '4'")
+refused(scene("mass = 1,"), "script.lua:2: body 'coin': shape is missing")
+refused(scene("shape = 3,"), "script.lua:2: body 'coin': shape must be a shape such as impact.sphere(0.3), got a number")
+refused(scene("shape = impact.sphere(-0.1),"), "script.lua:3: argument 'radius' must be a positive number, got -0.1")
+refused(scene(good .. "density = 3,"), "script.lua:2: body 'coin': give mass or density, not both")
+refused(scene(good .. "velocity = { 1, 2 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got a table")
+refused(scene(good .. "velocity = { 1, 2, 0/0 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got a table")
+refused(scene(good .. "omega = 3,"), "script.lua:2: body 'coin': omega must be a vector {x, y, z} of finite numbers, got 3")
+refused(scene(good .. "orientation = { 0, 0, 0, 0 },"), "script.lua:2: body 'coin': orientation must not be zero")
+refused(scene(good .. "normal = { 0, 0, 1 },"), "script.lua:2: body 'coin': normal is for planes; give orientation")
+refused(scene("shape = impact.plane(), normal = { 0, 0, 0 },"), "script.lua:2: body 'coin': normal must not be zero")
+refused(scene(good .. "friction = -0.5,"), "script.lua:2: body 'coin': friction must be a number >= 0, got -0.5")
+refused(scene(good .. "restitution = 1.5,"), "script.lua:2: body 'coin': restitution must be a number from 0 to 1, got 1.5")
+refused(scene(good .. "linear_damping = 1,"), "script.lua:2: body 'coin': linear_damping must be a number in [0, 1), got 1")
+refused(scene(good .. "static = 1,"), "script.lua:2: body 'coin': static must be true or false, got 1")
+refused('require "impact".body { shape = 1 }', "script.lua:1: body: name is missing")
+refused('require "impact".body { name = "" }', "script.lua:1: body '': name must not be empty")
+refused('require "impact".body(3)', "script.lua:1: body: a table of its values is needed, got 3")
+
+-- The scene's keys.
+refused(scene(good, "duraton = 3,"), "script.lua:6: unknown key 'duraton' in scene 'toss' (did you mean 'duration'?)")
+refused(scene(good, "duration = -1,"), "script.lua:6: scene 'toss': duration must be a positive number, got -1")
+refused(scene(good, "gravity = 9.81,"), "script.lua:6: scene 'toss': gravity must be a vector {x, y, z} of finite numbers, got 9.81")
+refused(scene(good, "rules = { friction = 'mean' },"),
+  "script.lua:6: rules: friction must be one of 'product', 'geometric_mean', 'minimum', 'maximum', got the string 'mean'")
+refused(scene(good, "rules = { frition = 'product' },"), "script.lua:6: unknown key 'frition' in rules (did you mean 'friction'?)")
+refused(scene(good, "forces = { { strength = 1 } },"),
+  "script.lua:6: forces[1] must be made with impact.wind, impact.attraction or impact.force")
+refused(scene(good, "forces = { impact.wind { direction = { 1, 0, 0 } } },"), "script.lua:7: wind: strength is missing")
+refused(scene(good, "forces = { impact.wind { strength = 1, direction = { 0, 0, 0 } } },"), "script.lua:7: wind: direction must not be zero")
+refused(scene(good, "forces = { impact.force { name = 'pull' } },"), "script.lua:7: force 'pull': law is missing")
+refused(scene(good, "forces = { impact.force { name = 'pull', law = 3 } },"),
+  "script.lua:7: force 'pull': law must be a function(t, body), got a number")
+refused(scene(good, "pairs = { { bodies = { 'coin' } } },"), "script.lua:6: pair: bodies must be the names of two bodies")
+refused(scene(good, "plot = 3,"), "script.lua:6: scene 'toss': plot must be a function(scene) that returns a figure, got a number")
+refused(scene(good, "bodies = { a = coin },"), "script.lua:6: scene 'toss': bodies must be a list, without names for its members")
+refused('return require "impact".scene { name = "toss", duration = 1 }', "script.lua:1: scene 'toss': bodies is missing")
+refused((scene(good):gsub("toss", "a/b")),
+  "script.lua: the scene's name 'a/b' names the files: it must be plain, without '/'")
+
+-- What only the library can see comes with the place of the body it speaks of.
+local function refused_by_library(text, start)
+  local code, _, said = runner.script(text)
+  check.equal(code, 1)
+  if said:sub(1, #start) ~= start then error(string.format("wanted '%s...', got '%s'", start, said), 2) end
+  check.truth(said:find("\n") == #said, "one line")
+end
+refused_by_library(scene(good, "bodies = { floor, coin, coin },"), "impact: script.lua:")
+refused_by_library(scene(good, "forces = { impact.wind { strength = 1, body = 'cone' } },"), "impact: script.lua:6: ")
+refused_by_library(scene(good, "pairs = { { bodies = { 'coin', 'cone' } } },"), "impact: script.lua:6: ")
+refused_by_library(scene("shape = impact.plane(), static = false,"), "impact: script.lua:2: body 'coin': ")
+
+-- Scripts that fail.
+refused("return {", "script.lua:1: unexpected symbol near <eof>")
+refused("local a\na.b = 1", "script.lua:2: attempt to index a nil value (local 'a')")
+refused("error('no')", "script.lua:1: no")
+refused("error({})", "the script raised an error that is not a text")
+refused("return 3", "script.lua: a script returns a scene, impact.scene{...}, or nothing; this one returned a number")
+refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) error('no') end } },"), "script.lua:7: no")
+refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) return { 0, 0, 0/0 } end } },"),
+  "script.lua:7: force 'pull': the force must be a vector {x, y, z} of finite numbers")
+refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t, b) return { 0, 0, b.posision.x } end } },"),
+  "script.lua:7: attempt to index a nil value (field 'posision')")
+refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:run { csv = 'toss', on_sample = function() error('no') end }",
+  "script.lua:11: no")
+refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:run { cvs = 'toss' }",
+  "script.lua:11: unknown key 'cvs' in run (did you mean 'csv'?)")
+refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:run { on_event = function() scene:time() end, csv = 'toss', on_sample = function() scene:run() end }",
+  "script.lua:11: scene 'toss' is running; ask when the run has ended")
+refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:state 'cone'", "script.lua:11: scene 'toss' has no body 'cone'")
+
+-- A plot that fails keeps the CSV files, which are whole, and tells.
+local function plot_refused(plot, wanted)
+  local code, _, said = runner.script(scene(good, "plot = function(scene) " .. plot .. " end,"))
+  check.equal(said, "impact: script.lua" .. wanted .. "\n")
+  check.equal(code, 1)
+  check.truth(runner.exists("o/toss.csv") and not runner.exists("o/toss.png"), "CSV, but no picture")
+end
+plot_refused("return 3", ": the plot of scene 'toss': a figure is made with plot.figure")
+plot_refused("return { kind = 'figure', { kind = 'panel', { kind = 'line', { 1 }, { 1, 2 } } } }",
+  ": the plot of scene 'toss': line: columns 1 and 2 have 1 and 2 rows")
+plot_refused("return { kind = 'figure', print }", ": the plot of scene 'toss': a figure holds numbers, strings and tables only")
+plot_refused("return (require 'quat.plot'.figure { titel = 'x' })", ":7: unknown key 'titel' in figure")
+plot_refused("return (scene:figur())", ":7: attempt to call a nil value (method 'figur')")
+
+-- A run that fails, with the script in order.
+local code, _, said = runner.script(scene(good, "forces = { impact.force { law = function(t) return { 1e308 * math.sin(1e6 * t), 1e308, 1e308 } end } },"))
+check.equal(code, 3)
+check.truth(said:match("^impact: [^\n]+\n$"), "one line of the failed run")
+check.truth(not runner.exists("o/toss.csv"), "no CSV of a failed run")
+
+-- Folders and files that cannot be written. (Root may write anywhere, so the folder is put below a file.)
+runner.write("file", "")
+runner.write("script.lua", scene(good))
+code, _, said = runner.command("script.lua --out file/below")
+check.equal(code, 4)
+check.equal(said, "impact: cannot write to the folder 'file/below': Not a directory\n")
+runner.shell("mkdir -p " .. runner.quote(runner.folder .. "/full/toss.csv"))
+code, _, said = runner.command("script.lua --out full")
+check.equal(code, 4)
+check.truth(said:match("^impact: [^\n]*toss%.csv[^\n]*\n$"), "one line that names the file")
+
+-- The command line.
+for _, case in ipairs {
+  { "", 2 }, { "script.lua other.lua", 2 }, { "--frob script.lua", 2 }, { "script.lua --out", 2 }, { "script.lua --max-time x", 2 },
+  { "script.lua --max-memory -3", 2 }, { "--help", 0 }, { "--version", 0 }, { "nothing.lua", 1 }, { "script.lua --out=p --quiet", 0 },
+} do
+  local got, out, err = runner.command(case[1])
+  check.equal(got, case[2])
+  if case[2] == 2 then check.truth(#err > 0 and #out == 0, "a complaint of " .. case[1]) end
+end
+local _, out = runner.command("--version")
+check.truth(out:match("^impact %d+%.%d+%.%d+ %(Lua 5%.4%.%d+; CVODE: %a+, libccd: %a+%)\n$"), "the version's form")
+check.truth(runner.exists("p/toss.csv"), "--out=DIR")
+_, out = runner.command("script.lua --quiet --out q")
+check.equal(out, "")
+
+check.report("mistakes")
