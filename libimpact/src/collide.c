@@ -165,13 +165,6 @@ static void unchanged(const impact_collision *collision, impact_outcome *outcome
     outcome->conditioning = value;
 }
 
-static qvec3 relative_velocity(const impact_collision *collision)
-{
-    const impact_collider *one = &collision->body[0], *two = &collision->body[1];
-    return qvec3_sub(qvec3_add(one->velocity, qvec3_cross(one->omega, one->offset)),
-                     qvec3_add(two->velocity, qvec3_cross(two->omega, two->offset)));
-}
-
 static void report(const impact_collision *collision, const impact_ready ready[2], const impact_course *course,
                    double speed, impact_outcome *outcome)
 {
@@ -244,7 +237,7 @@ impact_status impact_collide(const impact_collision *collision, impact_outcome *
     for (int i = 0; i < 2; i++) impact_frame_ready(&collision->body[i], &ready[i]);
     impact_frame frame;
     impact_frame_make(collision, ready, &frame);
-    const qvec3 u = relative_velocity(collision);
+    const qvec3 u = impact_frame_velocity(collision);
     const double approach = qvec3_dot(u, frame.n);
     if (!(approach < 0)) {
         unchanged(collision, outcome, 0);

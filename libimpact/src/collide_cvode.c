@@ -14,6 +14,7 @@ enum { ROOT_UZ, ROOT_CLIMB, ROOT_END, ROOT_STOP, ROOTS };
 struct impact_collide_workspace {
     impact_ode *ode;
     double tolerance;
+    impact_ode_method method;
     /* The impact at hand; the integrals in y count from the last start. */
     const impact_course *course;
     impact_friction_law *law;
@@ -77,6 +78,7 @@ impact_status impact_collide_workspace_create(impact_ode_method method, double t
     impact_collide_workspace *ws = calloc(1, sizeof *ws);
     if (!ws) return IMPACT_ENOMEM;
     ws->tolerance = tolerance;
+    ws->method = method;
     const impact_ode_def def = {.size = SIZE,
                                 .roots = ROOTS,
                                 .rhs = rates,
@@ -92,6 +94,12 @@ impact_status impact_collide_workspace_create(impact_ode_method method, double t
     }
     *workspace = ws;
     return IMPACT_OK;
+}
+
+impact_status impact_cvode_workspace_like(const impact_collide_workspace *pattern, impact_collide_workspace **workspace)
+{
+    if (!pattern) return impact_collide_workspace_create(IMPACT_ODE_ADAMS, 1e-12, workspace);
+    return impact_collide_workspace_create(pattern->method, pattern->tolerance, workspace);
 }
 
 void impact_collide_workspace_destroy(impact_collide_workspace *workspace)
@@ -217,7 +225,7 @@ impact_status impact_cvode_solve(impact_course *course, const impact_collision *
 {
     impact_collide_workspace *ws = collision->workspace;
     if (!ws) {
-        const impact_status status = impact_collide_workspace_create(IMPACT_ODE_ADAMS, 1e-12, &ws);
+        const impact_status status = impact_cvode_workspace_like(NULL, &ws);
         if (status != IMPACT_OK) return status;
     }
     ws->course = course;

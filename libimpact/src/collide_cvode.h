@@ -11,4 +11,8 @@
  * not end, IMPACT_EINTEGRATOR where CVODE gives up, IMPACT_EABSENT in a build without it. */
 impact_status impact_cvode_solve(impact_course *course, const impact_collision *collision, double speed);
 
+/* A new workspace of the same method and tolerance; NULL: the default ones. */
+impact_status impact_cvode_workspace_like(const impact_collide_workspace *pattern,
+                                          impact_collide_workspace **workspace);
+
 #endif

@@ -160,3 +160,10 @@ void impact_frame_make(const impact_collision *collision, const impact_ready rea
                                            frame->b * (frame->k + frame->c * frame->c / frame->a),
                                        frame->a * frame->b * frame->k);
 }
+
+qvec3 impact_frame_velocity(const impact_collision *collision)
+{
+    const impact_collider *one = &collision->body[0], *two = &collision->body[1];
+    return qvec3_sub(qvec3_add(one->velocity, qvec3_cross(one->omega, one->offset)),
+                     qvec3_add(two->velocity, qvec3_cross(two->omega, two->offset)));
+}

@@ -27,6 +27,9 @@ typedef struct impact_frame {
 void impact_frame_ready(const impact_collider *body, impact_ready *ready);
 void impact_frame_make(const impact_collision *collision, const impact_ready ready[2], impact_frame *frame);
 
+/* Of the contact points, body 1 less body 2, world. */
+qvec3 impact_frame_velocity(const impact_collision *collision);
+
 /* World vector to principal axes and back. */
 qvec3 impact_frame_to_body(quat q, qvec3 v);
 qvec3 impact_frame_to_world(quat q, qvec3 v);

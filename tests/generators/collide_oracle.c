@@ -467,7 +467,7 @@ static void straight(run *rn, real R, real Z, real x, real y)
             dp = (-rn->pr.eps * rn->pr.u[N] - st.u[N]) / Z;
         else {
             const real more = (1 - rn->pr.eps * rn->pr.eps) * rn->low - st.work;
-            dp = 2 * more / (st.u[N] + sqrtq(st.u[N] * st.u[N] + 2 * Z * more));
+            dp = more > 0 ? 2 * more / (st.u[N] + sqrtq(st.u[N] * st.u[N] + 2 * Z * more)) : 0;
         }
         st.P[N] += dp;
         st.u[X] += R * x * dp;

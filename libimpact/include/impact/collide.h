@@ -105,6 +105,52 @@ IMPACT_API impact_ode_counts impact_collide_workspace_count(const impact_collide
  * negative: the outcome holds the velocities given and NaN elsewhere. */
 IMPACT_API impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome);
 
+/* Solves count impacts into outcomes[count] and, when wanted, statuses[count], on so many threads (1 ... 256; 0: as many as the machine
+ * has). The answers are the same bits for any number of threads. Returns the first failure, else IMPACT_OK; separating pairs are no
+ * failure. A workspace given in a collision serves as a pattern: each thread makes its own of the same method and tolerance.
+ * Friction laws are called from several threads at once. IMPACT_EARGUMENT: threads out of range. */
+IMPACT_API impact_status impact_collide_many(const impact_collision *collisions, size_t count, int threads, impact_outcome *outcomes,
+                                             impact_status *statuses);
+
+/* ---- sliding itself, as data for plotting ---- */
+
+/* The inverse mass that the contact feels, M = [[a, 0, c], [0, b, d], [c, d, m]], 1/kg, in the frame (t1, t2, n) with the principal
+ * tangential axes; and mu. From impact_flow_make, or filled by hand (t1, t2, n are only carried along). */
+typedef struct impact_flow {
+    qvec3 t1, t2, n;
+    double a, b, c, d, m;
+    double friction;
+} impact_flow;
+
+/* The flow of a collision; velocity[3]: the relative velocity of the contact points along (t1, t2, n), m/s. Status as impact_collide,
+ * but approach is not asked for. */
+IMPACT_API impact_status impact_flow_make(const impact_collision *collision, impact_flow *flow, double velocity[3]);
+
+typedef struct impact_flow_point {
+    double p;            /* normal impulse so far, N s */
+    double velocity[3];  /* along (t1, t2, n), m/s */
+    double impulse[2];   /* tangential impulse along (t1, t2), N s */
+    double speed, theta; /* |u_t|, and its angle from t1, rad, in (-pi, pi]; 0 where u_t = 0 */
+    bool stick;          /* u_t = 0 and friction holds it there */
+} impact_flow_point;
+
+/* points[count]: the flow from velocity[3] at count >= 2 equal steps of p from 0 to p_end > 0 (N s): sliding, stopping, sticking or
+ * sliding on, without regard to compression and restitution. IMPACT_EARGUMENT, IMPACT_EDOMAIN: M not positive definite, mu < 0, p_end
+ * <= 0, count < 2, NaN; IMPACT_EUNSETTLED: the series did not settle. */
+IMPACT_API impact_status impact_flow_sample(const impact_flow *flow, const double velocity[3], double p_end, int count,
+                                            impact_flow_point *points);
+
+/* A direction in which sliding does not turn. */
+typedef struct impact_flow_direction {
+    double theta; /* from t1, rad, in [0, 2 pi) */
+    double rate;  /* R = d|u_t|/dp there, 1/kg: negative where sliding ends */
+    double climb; /* Z = du_n/dp, 1/kg */
+    double pull;  /* dT/dtheta, 1/kg: negative where directions nearby turn to this one */
+} impact_flow_direction;
+
+/* Up to 4 directions in order of theta; returns how many: 0 where every direction is one (a = b, c = d = 0) or M is not positive definite. */
+IMPACT_API int impact_flow_directions(const impact_flow *flow, impact_flow_direction directions[4]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The sliding flow as data: u(p) at equal steps of p, and the directions that do not turn.
+ */
+#include "collide_series.h"
+
+#include <float.h>
+
+/* ---- invariant directions ---- */
+
+static const double turn = 6.283185307179586;
+
+static double turning_at(const impact_frame *frame, double mu, double theta)
+{
+    return impact_course_turning(frame, mu, cos(theta), sin(theta));
+}
+
+static double pull_at(const impact_frame *frame, double mu, double theta)
+{
+    const double x = cos(theta), y = sin(theta);
+    return -(frame->c * x + frame->d * y) + mu * (frame->a - frame->b) * (x * x - y * y);
+}
+
+typedef double angle_function(const impact_frame *frame, double mu, double theta);
+
+/* The zero between low and high, where the signs differ. */
+static double bisect(angle_function *f, const impact_frame *frame, double mu, double low, double high)
+{
+    const bool rising = f(frame, mu, low) < 0;
+    for (int i = 0; i < 70 && high - low > 2e-16 * turn; i++) {
+        const double mid = 0.5 * (low + high);
+        if ((f(frame, mu, mid) < 0) == rising)
+            low = mid;
+        else
+            high = mid;
+    }
+    return 0.5 * (low + high);
+}
+
+static bool unlike(double a, double b) { return (a < 0) != (b < 0); }
+
+static int add_direction(const impact_frame *frame, const impact_flow *flow, double theta,
+                         impact_flow_direction *directions, int n)
+{
+    if (n == 4) return n;
+    const impact_line line = impact_course_sliding(frame, flow->friction, cos(theta), sin(theta));
+    directions[n] = (impact_flow_direction){.theta = theta < turn ? theta : 0,
+                                            .rate = line.R * flow->m,
+                                            .climb = line.Z * flow->m,
+                                            .pull = pull_at(frame, flow->friction, theta) * flow->m};
+    return n + 1;
+}
+
+static bool frame_of(const impact_flow *flow, impact_frame *frame)
+{
+    const double m = flow->m, a = flow->a / m, b = flow->b / m, c = flow->c / m, d = flow->d / m;
+    const double k = 1 - c * c / a - d * d / b;
+    if (!(m > 0 && a > 0 && b > 0 && k > 0 && isfinite(a + b + k) && flow->friction >= 0 && isfinite(flow->friction)))
+        return false;
+    *frame = (impact_frame){
+        .t1 = flow->t1, .t2 = flow->t2, .n = flow->n, .a = a, .b = b, .c = c, .d = d, .k = k, .scale = m};
+    return true;
+}
+
+int impact_flow_directions(const impact_flow *flow, impact_flow_direction directions[4])
+{
+    enum { CELLS = 360 };
+    impact_frame frame;
+    if (!frame_of(flow, &frame)) return 0;
+    const double mu = flow->friction;
+    const double size = fabs(frame.c) + fabs(frame.d) + mu * fabs(frame.a - frame.b);
+    if (size <= 4 * DBL_EPSILON * (1 + mu * (frame.a + frame.b))) return 0;
+    int n = 0;
+    for (int i = 0; i < CELLS; i++) {
+        const double low = turn * i / CELLS, high = turn * (i + 1) / CELLS;
+        const double T_low = turning_at(&frame, mu, low), T_high = turning_at(&frame, mu, high);
+        if (unlike(T_low, T_high)) {
+            n = add_direction(&frame, flow, bisect(turning_at, &frame, mu, low, high), directions, n);
+            continue;
+        }
+        /* Two directions close together: T comes to the other side and back within one cell. */
+        if (!unlike(pull_at(&frame, mu, low), pull_at(&frame, mu, high))) continue;
+        const double middle = bisect(pull_at, &frame, mu, low, high);
+        if (!unlike(T_low, turning_at(&frame, mu, middle))) continue;
+        n = add_direction(&frame, flow, bisect(turning_at, &frame, mu, low, middle), directions, n);
+        n = add_direction(&frame, flow, bisect(turning_at, &frame, mu, middle, high), directions, n);
+    }
+    return n;
+}
+
+/* ---- the flow at equal steps of p ---- */
+
+typedef struct sampler {
+    const impact_flow *flow;
+    const impact_frame *frame;
+    const double *start;
+    double unit; /* N s per scaled impulse */
+    double speed;
+    double p_end; /* N s */
+    int count, next;
+    impact_flow_point *points;
+    double x, y, s, p, px, py; /* scaled, now */
+} sampler;
+
+static double wanted_p(const sampler *sm) { return sm->p_end * sm->next / (sm->count - 1) / sm->unit; }
+
+static void put(sampler *sm, double x, double y, double p, double px, double py, bool stick)
+{
+    impact_flow_point *out = &sm->points[sm->next];
+    const impact_frame *frame = sm->frame;
+    out->p = sm->p_end * sm->next / (sm->count - 1);
+    out->velocity[0] = x * sm->speed;
+    out->velocity[1] = y * sm->speed;
+    out->velocity[2] = sm->start[2] + (frame->c * px + frame->d * py + p) * sm->speed;
+    out->impulse[0] = px * sm->unit;
+    out->impulse[1] = py * sm->unit;
+    out->speed = sqrt(x * x + y * y) * sm->speed;
+    out->theta = out->speed > 0 ? atan2(y, x) : 0;
+    out->stick = stick;
+    sm->next++;
+}
+
+/* All that is left, along a line in the direction (x, y) from now on. */
+static void along_line(sampler *sm, const impact_line *line, double x, double y)
+{
+    while (sm->next < sm->count) {
+        const double p = wanted_p(sm), dp = p - sm->p, s = sm->s + line->R * dp;
+        put(sm, s * x, s * y, p, sm->px + line->gx * dp, sm->py + line->gy * dp, line->stick);
+    }
+}
+
+static void from_rest(sampler *sm)
+{
+    const impact_line line = impact_course_from_rest(sm->frame, sm->flow->friction);
+    const double pull = hypot(line.gx, line.gy);
+    sm->s = 0;
+    if (line.stick)
+        along_line(sm, &line, 0, 0);
+    else if (sm->flow->friction > 0)
+        along_line(sm, &line, -line.gx / pull, -line.gy / pull);
+    else
+        along_line(sm, &line, sm->frame->c / line.R, sm->frame->d / line.R);
+}
+
+static double integral_at(const double *c, int order, double t)
+{
+    double sum = c[order] / (order + 1);
+    for (int k = order - 1; k >= 0; k--) sum = sum * t + c[k] / (k + 1);
+    return sum * t;
+}
+
+static double value_at(const double *c, int order, double t)
+{
+    double sum = c[order];
+    for (int k = order - 1; k >= 0; k--) sum = sum * t + c[k];
+    return sum;
+}
+
+/* Puts the points within one Taylor step, and moves to its end. */
+static void through_step(sampler *sm, const impact_taylor *ty)
+{
+    const int n = ty->order;
+    const double h = ty->h, mu = sm->flow->friction, dp = integral_at(ty->s, n, h);
+    double t = 0;
+    while (sm->next < sm->count && wanted_p(sm) <= sm->p + dp) {
+        const double p = wanted_p(sm);
+        double low = t, high = h;
+        for (int i = 0; i < 60; i++) {
+            const double f = sm->p + integral_at(ty->s, n, t) - p;
+            if (f > 0)
+                high = t;
+            else
+                low = t;
+            double to = t - f / value_at(ty->s, n, t);
+            if (!(to >= low && to <= high)) to = 0.5 * (low + high);
+            const double move = fabs(to - t);
+            t = to;
+            if (move <= 2 * DBL_EPSILON * t) break;
+        }
+        put(sm, value_at(ty->x, n, t), value_at(ty->y, n, t), p, sm->px - mu * integral_at(ty->x, n, t),
+            sm->py - mu * integral_at(ty->y, n, t), false);
+    }
+    sm->px -= mu * integral_at(ty->x, n, h);
+    sm->py -= mu * integral_at(ty->y, n, h);
+    sm->p += dp;
+    sm->x = value_at(ty->x, n, h);
+    sm->y = value_at(ty->y, n, h);
+    sm->s = sqrt(sm->x * sm->x + sm->y * sm->y);
+}
+
+static impact_status sample(sampler *sm)
+{
+    const impact_frame *frame = sm->frame;
+    const double mu = sm->flow->friction, small = 1e-17 * sm->s;
+    const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
+    for (int steps = 0; steps < 1000 && sm->next < sm->count; steps++) {
+        if (sm->s <= small) {
+            from_rest(sm);
+            return IMPACT_OK;
+        }
+        const double x = sm->x / sm->s, y = sm->y / sm->s;
+        const impact_line line = impact_course_sliding(frame, mu, x, y);
+        if (fabs(impact_course_turning(frame, mu, x, y)) <= 4e-16 * rate && line.R >= 0) {
+            along_line(sm, &line, x, y);
+            return IMPACT_OK;
+        }
+        impact_tail tail;
+        if (line.R < 0 && impact_tail_make(&tail, frame, mu, sm->x, sm->y, sm->s, 0) && sm->p + tail.p < wanted_p(sm)) {
+            sm->p += tail.p;
+            sm->px += tail.px;
+            sm->py += tail.py;
+            sm->s = 0;
+            continue;
+        }
+        impact_taylor taylor;
+        impact_taylor_make(&taylor, frame, mu, sm->x, sm->y, sm->s, IMPACT_SERIES_ORDER);
+        through_step(sm, &taylor);
+    }
+    return sm->next == sm->count ? IMPACT_OK : IMPACT_EUNSETTLED;
+}
+
+impact_status impact_flow_sample(const impact_flow *flow, const double velocity[3], double p_end, int count,
+                                 impact_flow_point *points)
+{
+    impact_frame frame;
+    if (!isfinite(velocity[0] + velocity[1] + velocity[2]) || isnan(p_end)) return IMPACT_EDOMAIN;
+    if (count < 2 || !(p_end > 0 && p_end < INFINITY) || !frame_of(flow, &frame)) return IMPACT_EARGUMENT;
+    const double s = hypot(velocity[0], velocity[1]), speed = s > 0 ? s : 1;
+    sampler sm = {.flow = flow,
+                  .frame = &frame,
+                  .start = velocity,
+                  .unit = speed / flow->m,
+                  .speed = speed,
+                  .p_end = p_end,
+                  .count = count,
+                  .points = points,
+                  .x = velocity[0] / speed,
+                  .y = velocity[1] / speed,
+                  .s = s / speed};
+    put(&sm, sm.x, sm.y, 0, 0, 0, s == 0 && impact_course_from_rest(&frame, flow->friction).stick);
+    return sample(&sm);
+}
+
+impact_status impact_flow_make(const impact_collision *collision, impact_flow *flow, double velocity[3])
+{
+    const impact_status status = impact_collide_check(collision, NULL, 0);
+    if (status != IMPACT_OK) return status;
+    impact_ready ready[2];
+    impact_frame frame;
+    for (int i = 0; i < 2; i++) impact_frame_ready(&collision->body[i], &ready[i]);
+    impact_frame_make(collision, ready, &frame);
+    const double m = frame.scale;
+    *flow = (impact_flow){.t1 = frame.t1,
+                          .t2 = frame.t2,
+                          .n = frame.n,
+                          .a = frame.a * m,
+                          .b = frame.b * m,
+                          .c = frame.c * m,
+                          .d = frame.d * m,
+                          .m = m,
+                          .friction = collision->friction};
+    const qvec3 u = impact_frame_velocity(collision);
+    velocity[0] = qvec3_dot(u, frame.t1);
+    velocity[1] = qvec3_dot(u, frame.t2);
+    velocity[2] = qvec3_dot(u, frame.n);
+    return IMPACT_OK;
+}
