@@ -129,9 +129,11 @@ local over = "time limit of 0.2 s reached"
 limited("while true do end", "--max-time 0.2", over)
 limited("while true do pcall(function() while true do end end) end", "--max-time 0.2", over)
 limited("while true do pcall(coroutine.wrap(function() while true do end end)) end", "--max-time 0.2", over)
-limited("local impact = require 'impact' return impact.scene { name = 'long', duration = 1e7, gravity = { 0, 0, 0 }, " ..
-  "forces = { impact.force { law = function(t, b) return { -b.position.x, 0, 0 } end } }, " ..
-  "bodies = { impact.body { name = 'ball', shape = impact.sphere(1), position = { 1, 0, 0 } } } }", "--max-time 0.2", over)
+if require "impact".has "cvode" then
+  limited("local impact = require 'impact' return impact.scene { name = 'long', duration = 1e7, gravity = { 0, 0, 0 }, " ..
+    "forces = { impact.force { law = function(t, b) return { -b.position.x, 0, 0 } end } }, " ..
+    "bodies = { impact.body { name = 'ball', shape = impact.sphere(1), position = { 1, 0, 0 } } } }", "--max-time 0.2", over)
+end
 local stuck = "time limit reached, and the script did not stop"
 limited("setmetatable({}, { __gc = function() while true do end end }) collectgarbage()", "--max-time 0.2", stuck)
 limited("string.find(('a'):rep(400), ('.-'):rep(12) .. 'b')", "--max-time 0.2", stuck)

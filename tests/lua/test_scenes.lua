@@ -1,0 +1,65 @@
+-- SPDX-License-Identifier: MIT
+--- The example scenes against the rows committed beside them, a tolerance per column; arg[3] is the folder of the scenes.
+--- After a change that is meant to move them: impact SCENE.lua --out examples/scenes/expected, without the picture.
+local check = require "check"
+local runner = require "runner"
+runner.clean()
+local scenes = arg[3]
+
+-- What the integrator's tolerance of 1e-12 leaves room for, many times over; another compiler moves the last digits only.
+local tolerances = {
+  t = 1e-10, x = 1e-9, y = 1e-9, z = 1e-9, qw = 1e-9, qx = 1e-9, qy = 1e-9, qz = 1e-9, vx = 1e-8, vy = 1e-8, vz = 1e-8,
+  wx = 1e-8, wy = 1e-8, wz = 1e-8, px = 1e-9, py = 1e-9, pz = 1e-9, nx = 1e-9, ny = 1e-9, nz = 1e-9, impulse_n = 1e-8,
+  impulse_t = 1e-8, un_before = 1e-8, un_after = 1e-8, energy_before = 1e-7, energy_after = 1e-7,
+}
+
+local function cells(line)
+  local row = {}
+  for cell in (line .. ","):gmatch("([^,]*),") do row[#row + 1] = cell end
+  return row
+end
+
+local function rows(path)
+  local file = assert(io.open(path))
+  local list = {}
+  for line in file:lines() do list[#list + 1] = cells(line) end
+  file:close()
+  return list
+end
+
+local function compare(name)
+  local wanted, got = rows(scenes .. "/expected/" .. name), rows(runner.folder .. "/" .. name)
+  local header = wanted[1]
+  check.equal(table.concat(got[1], ","), table.concat(header, ","))
+  check.equal(#got, #wanted)
+  for i = 2, #wanted do
+    for c, column in ipairs(header) do
+      local a, b, tolerance = wanted[i][c], got[i][c], tolerances[column]
+      local good = tolerance and math.abs(tonumber(a) - tonumber(b)) <= tolerance or not tolerance and a == b
+      if not good then
+        error(string.format("%s, row %d, %s: wanted %s, got %s%s", name, i, column, a, b,
+          tolerance and string.format(", off by %.3g tolerances", math.abs(a - b) / tolerance) or ""))
+      end
+      check.truth(good)
+    end
+  end
+end
+
+for _, name in ipairs { "sphere_wall", "sphere_wall_spin", "two_spheres" } do
+  local code, out, said = runner.command(string.format("%s --out .", runner.quote(scenes .. "/" .. name .. ".lua")))
+  check.equal(code, 0)
+  check.truth(said == "" or said:find("gnuplot is not installed", 1, true), "no complaint but of a missing gnuplot: " .. said)
+  check.truth(said ~= "" or (runner.read(name .. ".png") or ""):sub(1, 4) == "\137PNG", "the picture of " .. name)
+  for _, line in ipairs { "events", "energy", "used", "not used", "wrote" } do
+    check.truth(out:find("\n  " .. line .. " +"), "the summary's line on " .. line)
+  end
+  compare(name .. ".csv")
+  compare(name .. "_events.csv")
+end
+
+-- A second run, at another time and place, is the same to the bit.
+runner.shell(string.format("cd %s && mkdir again", runner.quote(runner.folder)))
+check.equal(runner.command(string.format("%s --out again --quiet", runner.quote(scenes .. "/sphere_wall.lua"))), 0)
+check.equal(runner.read("again/sphere_wall.csv"), runner.read("sphere_wall.csv"))
+
+check.report("scenes")
