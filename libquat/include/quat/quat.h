@@ -160,7 +160,7 @@ static inline quat quat_unit(quat q)
 }
 
 /* q (3 - |q|^2)/2: one Newton step towards |q| = 1, for the drift of long products; error 3/2 (|q| - 1)^2. */
-static inline quat quat_renormalize(quat q) { return quat_scale(q, 1.5 - 0.5 * quat_norm2(q)); }
+static inline quat quat_renormalize(quat q) { return quat_axpy(0.5 - 0.5 * quat_norm2(q), q, q); }
 
 /* 1/q = q* / |q|^2. Zero, infinite and NaN give QUAT_EDOMAIN, |q| < 1/DBL_MAX gives QUAT_ERANGE; *inverse = 1 then. */
 QUAT_API quat_status quat_inverse(quat q, quat *inverse);
