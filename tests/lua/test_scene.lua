@@ -1,0 +1,184 @@
+-- SPDX-License-Identifier: MIT
+--- Scenes made and run from a stock Lua, against closed forms.
+local check = require "check"
+local impact = require "impact"
+local quat = require "quat"
+
+local function drop(rest)
+  local definition = {
+    name = "drop", gravity = { 0, 0, -10 }, duration = 0.9, output_rate = 10,
+    bodies = {
+      impact.body { name = "floor", shape = impact.plane(), restitution = 1 },
+      impact.body { name = "ball", shape = impact.sphere(0.1), mass = 2, position = { 0, 0, 0.6 }, restitution = 0.5 },
+    },
+  }
+  for key, value in pairs(rest or {}) do definition[key] = value end
+  return impact.scene(definition)
+end
+
+-- A drop of 0.5 m: the first bounce at t = sqrt(0.1) s with sqrt(10) m/s, half of it back.
+do
+  local scene, samples, impacts, progress = drop(), 0, {}, 0
+  check.equal(tostring(scene), "scene 'drop' (2 bodies)")
+  check.equal(scene:name(), "drop")
+  check.equal(scene:duration(), 0.9)
+  check.equal(scene:time(), 0)
+  local reason = scene:run {
+    record = true,
+    on_sample = function(state)
+      samples = samples + 1
+      check.equal(state.body, "ball")
+    end,
+    on_event = function(event) impacts[#impacts + 1] = event end,
+    on_progress = function() progress = progress + 1 end,
+  }
+  check.equal(reason, "end of time")
+  check.equal(scene:time(), 0.9)
+  check.equal(impacts[1].event, "impact")
+  check.equal(impacts[1].body1 .. impacts[1].body2, "ballfloor")
+  check.close(impacts[1].t, math.sqrt(0.1), 1e-15)
+  check.close(impacts[1].un_before, -math.sqrt(10), 1e-14)
+  check.close(impacts[1].un_after, math.sqrt(10) / 2, 1e-14)
+  check.close(impacts[1].impulse_n, 3 * math.sqrt(10), 1e-14)
+  check.close(impacts[1].normal.z, 1, 0)
+  check.equal(#scene:events(), #impacts)
+  check.equal(scene:events()[2].t, impacts[2].t)
+  check.equal(scene:first("impact", "floor", "ball").t, impacts[1].t)
+  check.equal(scene:first("liftoff"), nil)
+  local track = scene:track("ball")
+  check.equal(#track.t, samples)
+  check.equal(#track.wz, samples)
+  check.close(track.z[2], 0.6 - 10 * 0.01 / 2, 1e-15)
+  -- Between the rows of a parabola, the cubic is the parabola.
+  local fine = scene:track("ball", 1000)
+  for i = 1, #fine.t do
+    if fine.t[i] > math.sqrt(0.1) then break end
+    check.close(fine.z[i], 0.6 - 5 * fine.t[i] ^ 2, 1e-14)
+  end
+  local before, after = impact.split(track, impacts[1].t)
+  check.equal(#before.t + #after.t, #track.t)
+  check.truth(before.vz[#before.t] < 0 and after.vz[1] > 0, "the split stands at the bounce")
+  local energies = scene:energies("ball", track)
+  check.close(energies.total[1], 2 * 10 * 0.6, 1e-13)
+  check.close(energies.total[#before.t], 2 * 10 * 0.6, 1e-13)
+  local usage, energy = scene:usage(), scene:energy()
+  check.equal(usage.integrators, 0)
+  check.equal(usage.gap_gjk, 0)
+  check.equal(usage.events.impact, usage.impacts_closed_form)
+  check.close(energy.start - energy.impact_loss - energy.kinetic - energy.potential, 0, 1e-12)
+  check.truth(scene:summary(reason):find("drop: end of time, t = 0.9 s", 1, true) == 1, "the summary's first line")
+  scene:close()
+  check.raises("the scene is closed", function() scene:time() end)
+end
+
+-- In pieces, and stopped.
+do
+  local whole, pieces = drop(), drop()
+  whole:run_to(0.7)
+  for k = 1, 7 do check.equal(pieces:run_to(k / 10), "end of time") end
+  check.close(pieces:state("ball").position.z, whole:state("ball").position.z, 1e-14)
+  check.equal(drop():run { on_sample = function(state) return state.t < 0.2 end }, "stopped by the script")
+  local scene = drop()
+  check.equal(scene:run { on_event = function() return false end }, "stopped by the script")
+  check.close(scene:time(), math.sqrt(0.1), 1e-15)
+  check.equal(drop({ max_events = 2 }):run(), "event limit")
+  check.equal(drop({ duration = 60 }):run(), "at rest")
+  local ok, message = pcall(function() drop():run { on_event = function() error { code = 7 } end } end)
+  check.truth(not ok and message.code == 7, "an error of the script goes through as it is")
+end
+
+-- A run inside another scene's, and inside a coroutine.
+do
+  local inner = 0
+  local co = coroutine.wrap(function()
+    drop():run { on_event = function()
+      if inner == 0 then
+        inner = 1
+        local scene = drop()
+        check.equal(scene:run(), "end of time")
+        inner = scene:time()
+      end
+    end }
+    coroutine.yield(1)
+    check.raises("attempt to yield across a C-call boundary", function()
+      local ok, message = pcall(function() drop():run { on_event = function() coroutine.yield() end } end)
+      error(message, 1)
+    end)
+    return 2
+  end)
+  check.equal(co(), 1)
+  check.equal(inner, 0.9)
+end
+
+-- CSV, whole or not at all.
+do
+  local base = os.tmpname()
+  check.equal(drop():run { csv = base }, "end of time")
+  for _, name in ipairs { base .. ".csv", base .. "_events.csv" } do
+    local file = assert(io.open(name))
+    check.truth(file:read("l"):match("^t,"), "the header")
+    file:close()
+    os.remove(name)
+  end
+  pcall(function() drop():run { csv = base, on_event = function() error("no") end } end)
+  for _, name in ipairs { ".csv", "_events.csv", ".csv.part", "_events.csv.part" } do
+    check.equal(io.open(base .. name), nil)
+  end
+  os.remove(base)
+  local reason, message, kind = drop():run { csv = "/no/such/folder/x" }
+  check.equal(reason, nil)
+  check.equal(kind, "output")
+  check.truth(message:find("/no/such/folder/x.csv", 1, true), "the message names the file")
+end
+
+-- The orientation of planes given by their normals: the free side is there.
+do
+  for _, normal in ipairs { { 0, 0, 1 }, { 0, 0, -1 }, { 1, 0, 0 }, { -3, 0, 0 }, { 1e-9, 0, -1 }, { 1, 2, -2 }, { -1, 1, 1e200 } } do
+    local scene = impact.scene {
+      duration = 1,
+      bodies = { impact.body { name = "wall", shape = impact.plane(), normal = normal } },
+    }
+    local q = scene:state("wall").orientation
+    local n = { 2 * (q.x * q.z + q.w * q.y), 2 * (q.y * q.z - q.w * q.x), 1 - 2 * (q.x ^ 2 + q.y ^ 2) }
+    local scale = math.max(math.abs(normal[1]), math.abs(normal[2]), math.abs(normal[3]))
+    local length = scale * math.sqrt((normal[1] / scale) ^ 2 + (normal[2] / scale) ^ 2 + (normal[3] / scale) ^ 2)
+    for k = 1, 3 do check.close(n[k], normal[k] / length, 4e-16) end
+  end
+  local scene = impact.scene {
+    duration = 1,
+    bodies = { impact.body { name = "ball", shape = impact.sphere(1), orientation = quat.new(0, 0, 3, 4), omega = { x = 1, y = 2, z = 3 } } },
+  }
+  check.close(scene:state("ball").orientation.z, 0.8, 1e-16)
+  check.equal(scene:state("ball").omega[2], 2)
+end
+
+-- A table may change after the scene is made: the scene has copied it. Bodies may be used again.
+do
+  local ball = impact.body { name = "ball", shape = impact.sphere(0.1), mass = 1 }
+  local scene = impact.scene { duration = 1, gravity = { 0, 0, 0 }, bodies = { ball } }
+  ball.position = { 5, 0, 0 }
+  check.equal(scene:state("ball").position.x, 0)
+  check.equal(impact.scene({ duration = 1, bodies = { ball } }):state("ball").position.x, 5)
+  ball.mass = -1
+  check.raises("body 'ball': mass must be a positive number, got -1", impact.scene, { duration = 1, bodies = { ball } })
+end
+
+-- Forces by laws of the script's own, against closed forms.
+if impact.has("cvode") then
+  local scene = impact.scene {
+    duration = 3, gravity = { 0, 0, 0 },
+    bodies = { impact.body { name = "ball", shape = impact.sphere(0.1), mass = 2, position = { 1, 0, 0 } } },
+    forces = { impact.force { name = "spring", body = "ball", law = function(t, body)
+      local x = body.position
+      return { -8 * x[1], -8 * x[2], -8 * x.z }, { 0, 0, 0.008 }
+    end } },
+  }
+  check.equal(scene:run(), "end of time")
+  local ball = scene:state("ball")
+  check.close(ball.position.x, math.cos(2 * 3), 1e-9)
+  check.close(ball.velocity.x, -2 * math.sin(2 * 3), 1e-9)
+  check.close(ball.omega.z, 3, 1e-9) -- moment 0.4 x 2 x 0.01
+  check.close(scene:energy().force_work, scene:energy().kinetic, 1e-9)
+end
+
+check.report("scene")
