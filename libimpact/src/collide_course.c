@@ -5,7 +5,7 @@
  * Poisson: restitution impulse = eps (compression impulse), both summed over repeated compressions.
  * Newton: the first uz = -eps uz(0) in restitution.
  * Stronge: with W the normal work, W_c = min W is the work of loading (what is reloaded elastically does not lower the minimum),
- * and the impact ends in restitution at W = (1 - eps^2) W_c (Stronge, Impact Mechanics, 2000, section 3.5).
+ * and the impact ends in restitution once W - W_c = eps^2 |W_c| (Stronge, Impact Mechanics, 2000, section 3.5).
  */
 #include "collide_course.h"
 
@@ -43,12 +43,16 @@ void impact_course_turn(impact_course *course)
 void impact_course_book(impact_course *course, double dp, double work, double friction)
 {
     course->p += dp;
-    course->work += work;
+    /* Kept apart from the work of loading, so that a small eps does not cancel. */
+    course->above += work;
+    if (course->above < 0) {
+        course->work_low += course->above;
+        course->above = 0;
+    }
     course->work_f += friction;
     if (course->compressing) {
         course->p_c += dp;
         course->work_c += work;
-        if (course->work < course->work_low) course->work_low = course->work;
     } else {
         course->p_r += dp;
         course->work_r += work;
@@ -63,9 +67,9 @@ void impact_course_reach(impact_course *course, double uz)
 
 double impact_course_left_poisson(const impact_course *course) { return course->eps * course->p_c - course->p_r; }
 double impact_course_target_newton(const impact_course *course) { return course->eps; }
-double impact_course_target_stronge(const impact_course *course)
+double impact_course_left_stronge(const impact_course *course)
 {
-    return (1 - course->eps) * (1 + course->eps) * course->work_low;
+    return -course->eps * course->eps * course->work_low - course->above;
 }
 
 /* p left in restitution when uz changes by Z per unit of p; INFINITY when this line never ends the impact. */
@@ -79,7 +83,7 @@ static double left_on_line(const impact_course *course, double Z)
         return Z > 0 ? more / Z : INFINITY;
     }
     case IMPACT_STRONGE: {
-        const double more = impact_course_target_stronge(course) - course->work;
+        const double more = impact_course_left_stronge(course);
         if (more <= 0) return 0;
         const double root = course->uz * course->uz + 2 * Z * more;
         return root >= 0 ? 2 * more / (course->uz + sqrt(root)) : INFINITY;

@@ -12,13 +12,16 @@ typedef struct impact_course {
     const impact_frame *frame;
     double mu, eps;
     impact_law law;
-    double ux, uy, s, uz; /* relative velocity at the contact; s = |(ux, uy)| */
-    double px, py, p;     /* impulse on body 1; p along the normal */
-    double work,
-        work_low; /* of the normal impulse, and the least it has been (the compression work of Stronge's law) */
-    double work_c, work_r; /* the same, summed over compressions (negative) and over restitutions (positive) */
-    double work_f;         /* of friction, <= 0 */
-    double p_c, p_r;       /* impulse spent in compressions and in restitutions */
+    /* Relative velocity at the contact; s = |(ux, uy)|. */
+    double ux, uy, s, uz;
+    /* Impulse on body 1; p along the normal. */
+    double px, py, p;
+    /* The least the normal work has been (Stronge's work of loading, <= 0), and how far it is above that now. */
+    double work_low, above;
+    /* Normal work summed over compressions (<= 0) and over restitutions (>= 0); work of friction, <= 0. */
+    double work_c, work_r, work_f;
+    /* Normal impulse spent in compressions and in restitutions. */
+    double p_c, p_r;
     bool compressing, ended, jammed;
     int compressions, phase_count;
     unsigned char phases[IMPACT_MAX_PHASES];
@@ -45,10 +48,10 @@ impact_line impact_course_sliding(const impact_frame *frame, double mu, double x
 /* How fast the sliding direction turns, per unit of tau: T = (-y, x) . (M_tz - mu M_tt (x, y)). */
 double impact_course_turning(const impact_frame *frame, double mu, double x, double y);
 
-/* The restitution impulse, velocity or work at which the impact ends. */
+/* The restitution impulse still due, the velocity at which the impact ends, the work still to be given back. */
 double impact_course_left_poisson(const impact_course *course);
 double impact_course_target_newton(const impact_course *course);
-double impact_course_target_stronge(const impact_course *course);
+double impact_course_left_stronge(const impact_course *course);
 
 /* uz at the end of a piece within one phase; a fall in compression is a jam. */
 void impact_course_reach(impact_course *course, double uz);

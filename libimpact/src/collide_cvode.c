@@ -64,7 +64,7 @@ static int root_functions(double tau, const double *y, double *value, void *cont
     switch (course->law) {
     case IMPACT_POISSON: value[ROOT_END] = y[P] - impact_course_left_poisson(course); break;
     case IMPACT_NEWTON: value[ROOT_END] = value[ROOT_UZ] - impact_course_target_newton(course); break;
-    case IMPACT_STRONGE: value[ROOT_END] = course->work + y[WORK] - impact_course_target_stronge(course); break;
+    case IMPACT_STRONGE: value[ROOT_END] = y[WORK] - impact_course_left_stronge(course); break;
     }
     return 0;
 }
@@ -134,7 +134,7 @@ static bool over_at_once(const impact_course *course)
     switch (course->law) {
     case IMPACT_POISSON: return impact_course_left_poisson(course) <= 0;
     case IMPACT_NEWTON: return course->uz >= impact_course_target_newton(course);
-    case IMPACT_STRONGE: return course->work >= impact_course_target_stronge(course);
+    case IMPACT_STRONGE: return impact_course_left_stronge(course) <= 0;
     }
     return false;
 }

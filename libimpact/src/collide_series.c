@@ -215,7 +215,7 @@ static bool end_by(step *st, double to, double *where)
         return true;
     }
     case IMPACT_STRONGE: {
-        const double more = impact_course_target_stronge(course) - course->work;
+        const double more = impact_course_left_stronge(course);
         if (more <= 0) {
             *where = st->at;
             return true;
@@ -244,6 +244,7 @@ static void monotone_piece(step *st, double to)
             if (uz_to < 0 || !climbs(st, to)) break;
             move_to(st, find_root(st, TARGET_UZ, 0, st->at, to));
             impact_course_turn(course);
+            if (course->law == IMPACT_STRONGE) return;
             continue;
         }
         const bool turns = uz_to < 0 && !climbs(st, to);
@@ -262,12 +263,20 @@ static void monotone_piece(step *st, double to)
     if (!course->ended) move_to(st, to);
 }
 
+/* A step that stops short of its end at a turn (Stronge's law) goes on as a new one: the work given back is then an integral from
+ * there, and not a small difference. */
+static bool stopped(const step *st, double at) { return st->course->ended || st->at < at; }
+
 static void split_at_climb(step *st, double to)
 {
     const int n = st->taylor.order;
     const double low = value(st->taylor.climb, n, st->at), high = value(st->taylor.climb, n, to);
-    if ((low > 0 && high < 0) || (low < 0 && high > 0)) monotone_piece(st, find_root(st, TARGET_CLIMB, 0, st->at, to));
-    if (!st->course->ended) monotone_piece(st, to);
+    if ((low > 0 && high < 0) || (low < 0 && high > 0)) {
+        const double split = find_root(st, TARGET_CLIMB, 0, st->at, to);
+        monotone_piece(st, split);
+        if (stopped(st, split)) return;
+    }
+    monotone_piece(st, to);
 }
 
 static void follow_step(step *st)
@@ -277,9 +286,13 @@ static void follow_step(step *st)
     const int n = st->taylor.order;
     const double h = st->taylor.h, x = value(st->taylor.x, n, h), y = value(st->taylor.y, n, h);
     const double before = frame->c * course->uy - frame->d * course->ux, after = frame->c * y - frame->d * x;
-    if ((before > 0 && after < 0) || (before < 0 && after > 0))
-        split_at_climb(st, find_root(st, TARGET_CROSS, 0, 0, h));
-    if (!course->ended) split_at_climb(st, h);
+    if ((before > 0 && after < 0) || (before < 0 && after > 0)) {
+        const double split = find_root(st, TARGET_CROSS, 0, 0, h);
+        split_at_climb(st, split);
+        if (!stopped(st, split)) split_at_climb(st, h);
+    } else {
+        split_at_climb(st, h);
+    }
     course->ux = st->at == h ? x : value(st->taylor.x, n, st->at);
     course->uy = st->at == h ? y : value(st->taylor.y, n, st->at);
     course->s = sqrt(course->ux * course->ux + course->uy * course->uy);
@@ -307,7 +320,7 @@ static stride take_tail(impact_course *course)
             if (uz >= impact_course_target_newton(course)) return STRIDE_EVENT;
             break;
         case IMPACT_STRONGE:
-            if (course->work + tail.work >= impact_course_target_stronge(course)) return STRIDE_EVENT;
+            if (tail.work >= impact_course_left_stronge(course)) return STRIDE_EVENT;
             break;
         }
     }
