@@ -17,7 +17,14 @@
 #include <cmocka.h>
 #include <quat/quat.h>
 
+#ifdef __clang__
+/* clang calls the type by another name, and glibc's header then hides its functions, though they are there. */
+__extension__ typedef __float128 wide;
+wide fabsf128(wide), sqrtf128(wide), sinf128(wide), cosf128(wide), expf128(wide), logf128(wide), log1pf128(wide);
+wide fmaxf128(wide, wide), atan2f128(wide, wide);
+#else
 __extension__ typedef _Float128 wide;
+#endif
 
 typedef struct wquat {
     wide w, x, y, z;
