@@ -3,10 +3,12 @@
  * What a script can reach. Without --trust: no programs, no files but those of the output folder, no C code but ours, no bytecode,
  * no look into other functions' insides.
  */
+#define _XOPEN_SOURCE 700
 #include "runner.h"
 
 #include <lualib.h>
 #include <string.h>
+#include <unistd.h>
 #include "quat_core.h"
 #include "runner_layers.h"
 
@@ -68,6 +70,32 @@ bool impact_runner_load_layer(lua_State *L, const char *module)
     return false;
 }
 
+/* require "quat.gsl": the module beside this program, from the build tree or as installed, so that GSL is loaded by those only who
+ * use it. Upvalue 1 is package.loadlib. */
+static int load_gsl(lua_State *L)
+{
+    static const char *const places[] = {"modules", IMPACT_RUNNER_MODULES};
+    char program[4096];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length <= 0) return luaL_error(L, "quat.gsl: this program does not know where it is");
+    program[length] = 0;
+    *strrchr(program, '/') = 0;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        const char *path = lua_pushfstring(L, "%s/%s/quat/gsl.so", program, places[i]);
+        if (access(path, R_OK) != 0) continue;
+        lua_pushvalue(L, lua_upvalueindex(1));
+        lua_pushstring(L, path);
+        lua_pushliteral(L, "luaopen_quat_gsl");
+        lua_call(L, 2, 2);
+        if (lua_isnil(L, -2)) return luaL_error(L, "quat.gsl: %s", lua_tostring(L, -1));
+        lua_pop(L, 1);
+        lua_pushliteral(L, "quat.gsl");
+        lua_call(L, 1, 1);
+        return 1;
+    }
+    return luaL_error(L, "quat.gsl is not in this build");
+}
+
 static void preload(lua_State *L, const char *module, lua_CFunction opener)
 {
     luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
@@ -86,6 +114,11 @@ static void preload_ours(lua_State *L, impact_runner *runner)
     lua_pushlightuserdata(L, runner);
     lua_pushcclosure(L, impact_runner_open_host, 1);
     lua_setfield(L, -2, "quat.host");
+    lua_getglobal(L, LUA_LOADLIBNAME);
+    lua_getfield(L, -1, "loadlib");
+    lua_remove(L, -2);
+    lua_pushcclosure(L, load_gsl, 1);
+    lua_setfield(L, -2, "quat.gsl");
     lua_pop(L, 1);
 }
 
