@@ -72,6 +72,25 @@ static qvec3 support(const impact_solid *body, qvec3 n)
     return quat_rotate(body->orientation, x);
 }
 
+/* Whether g has a local maximum at the normal when the gap is the given negative one: H_A + H_B + gap I positive across it. */
+static bool is_deepest(const impact_solid body[2], qvec3 n, double gap)
+{
+    double W[3][3] = {{0}};
+    for (int k = 0; k < 2; k++) {
+        const qmat3 H = impact_shape_support_hessian(&body[k].shape, quat_rotate_inverse(body[k].orientation, k ? n : qvec3_neg(n)));
+        const qmat3 R = quat_to_matrix(body[k].orientation);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                for (int a = 0; a < 3; a++)
+                    for (int b = 0; b < 3; b++) W[i][j] += R.m[i][a] * H.m[a][b] * R.m[j][b];
+    }
+    /* eigenvalues 0, r1, r2: trace and sum of principal minors */
+    const double trace = W[0][0] + W[1][1] + W[2][2];
+    const double minors = W[0][0] * W[1][1] - W[0][1] * W[1][0] + W[1][1] * W[2][2] - W[1][2] * W[2][1] + W[2][2] * W[0][0] -
+                          W[2][0] * W[0][2];
+    return isfinite(trace) && minors / trace > -4 * gap;
+}
+
 static void one_pair(random_stream *random, int family, tally tallies[SIGNS])
 {
     impact_solid body[2] = {{.position = {0, 0, 0}}, {.position = {0, 0, 0}}};
@@ -87,6 +106,7 @@ static void one_pair(random_stream *random, int family, tally tallies[SIGNS])
     double thin = size;
     for (int k = 0; k < 2; k++) thin = fmin(thin, fmin(body[k].shape.a, fmin(body[k].shape.b, body[k].shape.c)));
     const double gap = sign == 0 ? size * random_log(random, 1e-9, 100) : sign == 1 ? 0 : -thin * random_log(random, 1e-12, 1e-4);
+    if (gap < 0 && !is_deepest(body, normal, gap)) return; /* another normal is the nearer way out: no truth to be had */
     body[0].position = qvec3_axpy(gap, normal, qvec3_sub(support(&body[1], normal), support(&body[0], qvec3_neg(normal))));
 
     impact_contact contact;
@@ -171,7 +191,8 @@ int main(int argc, char **argv)
     if (!jobs || !total) return 1;
     for (long k = 0; k < threads; k++) {
         jobs[k].pairs = pairs / threads;
-        jobs[k].seed = seed * 1000003u + (uint64_t)k * 0x9e3779b97f4a7c15u;
+        random_stream seeds = {seed * 1000003u + (uint64_t)k}; /* mixed: streams apart by a shift would repeat each other */
+        jobs[k].seed = random_bits(&seeds);
         jobs[k].only = only;
         if (pthread_create(&jobs[k].thread, NULL, work, &jobs[k]) != 0) return 1;
     }

@@ -95,7 +95,7 @@ impact_simplex_end impact_gap_simplex(const impact_pair *pair, double shrink, do
             *lower = bound;
             memcpy(best, u, sizeof best);
         }
-        if (*upper - *lower <= tolerance * (pair->size + *upper)) break;
+        if (step > 0 && *upper - *lower <= tolerance * (pair->size + *upper)) break;
         bool known = false;
         for (int i = 0; i < s.count; i++) known = known || memcmp(s.w[i], w, sizeof w) == 0;
         if (known) break;
