@@ -6,7 +6,8 @@
 #include "gap_solver.h"
 #include <string.h>
 
-/* Deeper than this part of the smallest semi-axis, an overlap may have several local answers. */
+/* Deeper than this part of the smallest semi-axis, or of the smallest radius of both surfaces together at the contact, an overlap may
+ * have several local answers. */
 static const double deep_part = 0.05;
 
 typedef struct search {
@@ -18,15 +19,19 @@ typedef struct search {
     double low, low_n[3]; /* the largest g met, and where */
 } search;
 
-static bool done(const search *s) { return s->found && s->best.gap >= -deep_part * s->thin; }
+static bool done(const search *s)
+{
+    const double depth = -s->best.gap, radius = s->best.stiffness + depth;
+    return s->found && (depth <= 1e-13 * s->pair->reach || depth <= deep_part * fmin(s->thin, radius));
+}
 
 static double distance_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-/* Newton from n; true when the search is over. */
-static bool try_from(search *s, const double n[3], impact_gap_path path)
+/* Newton from n and, when not NULL, the points x; true when the search is over. */
+static bool try_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
 {
     impact_meeting meeting;
-    if (impact_gap_newton(s->pair, n, &meeting) && (!s->found || meeting.gap > s->best.gap)) {
+    if (impact_gap_newton(s->pair, n, x, &meeting) && (!s->found || meeting.gap > s->best.gap)) {
         s->best = meeting;
         s->path = path;
         s->found = true;
@@ -45,17 +50,18 @@ static bool try_simplex(search *s, double *upper)
 {
     static const double shrink[] = {1, 0.99, 0.9, 0.7, 0.45, 0.2, 0.05}, tolerance[] = {1e-2, 1e-4, 1e-7, 1e-11};
     for (size_t i = 0; i < sizeof shrink / sizeof *shrink; i++) {
-        double n[3], low, high;
+        double n[3], x[2][3], low, high;
         centre_line(s->pair, n);
         for (size_t j = 0; j < sizeof tolerance / sizeof *tolerance; j++) {
-            const bool apart = impact_gap_simplex(s->pair, shrink[i], tolerance[j], 20 << j, n, &low, &high) == IMPACT_SIMPLEX_APART;
+            const bool apart = impact_gap_simplex(s->pair, shrink[i], tolerance[j], 20 << j, n, x, &low, &high) == IMPACT_SIMPLEX_APART;
             const double g = impact_pair_gap(s->pair, n, NULL);
             if (g > s->low) {
                 s->low = g;
                 memcpy(s->low_n, n, sizeof s->low_n);
             }
             if (shrink[i] == 1 && apart) *upper = fmin(*upper, high);
-            if (try_from(s, n, IMPACT_PATH_FALLBACK)) return true;
+            if (try_from(s, n, (const double(*)[3])x, IMPACT_PATH_FALLBACK)) return true;
+            if (try_from(s, n, NULL, IMPACT_PATH_FALLBACK)) return true;
             if (!apart) break;
         }
         if (shrink[i] == 1 && s->low > 0) break; /* apart: shrinking adds nothing */
@@ -71,7 +77,7 @@ static bool try_axes(search *s)
             for (int side = -1; side <= 1; side += 2) {
                 const double(*m)[3] = s->pair->form[k].rotation;
                 const double n[3] = {side * m[0][i], side * m[1][i], side * m[2][i]};
-                if (try_from(s, n, IMPACT_PATH_FALLBACK)) return true;
+                if (try_from(s, n, NULL, IMPACT_PATH_FALLBACK)) return true;
             }
     return false;
 }
@@ -89,9 +95,9 @@ static bool try_homotopy(search *s)
             if (stage == 0) form->round = form->uniform = true, form->nested = false;
         }
         impact_meeting meeting;
-        if (impact_gap_newton(&eased, n, &meeting)) memcpy(n, meeting.n, sizeof n);
+        if (impact_gap_newton(&eased, n, NULL, &meeting)) memcpy(n, meeting.n, sizeof n);
     }
-    return try_from(s, n, IMPACT_PATH_FALLBACK);
+    return try_from(s, n, NULL, IMPACT_PATH_FALLBACK);
 }
 
 /* No way settled: the best that is known for certain. */
@@ -113,10 +119,10 @@ impact_status impact_gap_settle(const impact_pair *pair, const double *cached, i
         for (int i = 0; i < 3; i++) s.thin = fmin(s.thin, pair->form[k].axis[i]);
     double n[3], upper = distance_of(pair->c);
     centre_line(pair, n);
-    bool over = (cached && try_from(&s, cached, IMPACT_PATH_NEWTON)) || try_from(&s, n, IMPACT_PATH_NEWTON);
-    over = over || (impact_gap_harvest(pair, false, n) && try_from(&s, n, IMPACT_PATH_GJK));
+    bool over = (cached && try_from(&s, cached, NULL, IMPACT_PATH_NEWTON)) || try_from(&s, n, NULL, IMPACT_PATH_NEWTON);
+    over = over || (impact_gap_harvest(pair, false, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK));
     over = over || try_simplex(&s, &upper) || try_homotopy(&s);
-    if (!over) over = impact_gap_harvest(pair, true, n) && try_from(&s, n, IMPACT_PATH_GJK);
+    if (!over) over = impact_gap_harvest(pair, true, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK);
     over = over || try_axes(&s);
     *path = s.found ? s.path : IMPACT_PATH_FALLBACK;
     if (!s.found) return bracket(&s, upper, meeting);

@@ -365,7 +365,7 @@ double impact_pair_gap(const impact_pair *pair, const double n[3], double x[2][3
     return dot(n, pair->c) - h;
 }
 
-/* H = P Q^-1 across m, for N scaled to length 1 along m. A flat surface has no finite H: its radii are then capped softly at 1e6
+/* H = P Q^-1 across m, for N scaled to length 1 along m. A flat surface has no finite H: its radii are then capped softly at 1e3
  * sizes, H (1 + cap H)^-1. */
 static void add_radii(const impact_pair *pair, const iterate *it, int k, double W[2][2])
 {
@@ -378,8 +378,10 @@ static void add_radii(const impact_pair *pair, const iterate *it, int k, double 
         }
     }
     double det = Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0];
-    if (!(fabs(det) > 1e-6 * (fabs(Q[0][0] * Q[1][1]) + fabs(Q[0][1] * Q[1][0])))) {
-        const double cap = 1e-6 / pair->size;
+    const double cap = 1e-3 / pair->size;
+    bool flat = !(fabs(det) > 1e-6 * (fabs(Q[0][0] * Q[1][1]) + fabs(Q[0][1] * Q[1][0])));
+    for (int j = 0; j < 2; j++) flat = flat || fabs(Q[0][j]) + fabs(Q[1][j]) < cap * (fabs(P[0][j]) + fabs(P[1][j]));
+    if (flat) {
         for (int j = 0; j < 2; j++)
             for (int i = 0; i < 2; i++) Q[i][j] += cap * P[i][j];
         det = Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0];
@@ -402,20 +404,22 @@ static double stiffness(const impact_pair *pair, const iterate *it, double gap)
     return (W[0][0] * W[1][1] - off * off) / larger;
 }
 
-/* Whether the point midway between the witness points is in both bodies, with room for rounding. */
-static bool midway_inside(const impact_pair *pair, const iterate *it)
+/* Whether the point x_A + part (x_B + c - x_A) is in body k, with room for rounding. */
+static bool holds(const impact_pair *pair, const iterate *it, int k, double part)
 {
-    for (int k = 0; k < 2; k++) {
-        double world[3], body[3];
-        const double side = k ? -0.5 : 0.5;
-        for (int i = 0; i < 3; i++) world[i] = it->chart[k].x[i] + side * it->v[i];
-        const impact_form *form = &pair->form[k];
-        to_body(form->rotation, world, body);
-        const double thin = fmin(form->axis[0], fmin(form->axis[1], form->axis[2]));
-        const double steepest = fmax(fmax(form->p[0], form->p[1]), fmax(form->p[2], form->p[3]));
-        if (!(impact_form_inside(form, body) <= 1 + 1e-12 * steepest * pair->size / thin)) return false;
-    }
-    return true;
+    double world[3], body[3];
+    for (int i = 0; i < 3; i++) world[i] = it->chart[k].x[i] + (k ? part - 1 : part) * it->v[i];
+    const impact_form *form = &pair->form[k];
+    to_body(form->rotation, world, body);
+    const double thin = fmin(form->axis[0], fmin(form->axis[1], form->axis[2]));
+    const double steepest = fmax(fmax(form->p[0], form->p[1]), fmax(form->p[2], form->p[3]));
+    return impact_form_inside(form, body) <= 1 + 4e-15 * steepest * pair->size / thin;
+}
+
+/* Whether the bodies are seen to have a point in common: a witness point in the other body, or the one midway in both. */
+static bool share_a_point(const impact_pair *pair, const iterate *it)
+{
+    return (holds(pair, it, 0, 0.5) && holds(pair, it, 1, 0.5)) || holds(pair, it, 1, 0) || holds(pair, it, 0, 1);
 }
 
 /* Closes the bracket at the point reached and says whether it is an answer. */
@@ -426,21 +430,51 @@ static bool judge(const impact_pair *pair, const iterate *it, impact_meeting *me
     meeting->upper = fmax(meeting->gap, meeting->gap > slip ? norm(it->v) : it->vm + slip);
     if (!(meeting->upper - meeting->lower <= 2e-14 * pair->reach)) return false;
     meeting->stiffness = stiffness(pair, it, meeting->gap);
-    if (meeting->gap < 0 && !(meeting->stiffness >= -1e-6 * pair->size && midway_inside(pair, it))) return false;
+    if (meeting->gap < 0 && !(meeting->stiffness >= -1e-12 * pair->size && share_a_point(pair, it))) return false;
     memcpy(meeting->n, it->m, sizeof meeting->n);
     for (int k = 0; k < 2; k++) memcpy(meeting->x[k], it->chart[k].x, sizeof meeting->x[k]);
     return true;
 }
 
-bool impact_gap_newton(const impact_pair *pair, const double n[3], impact_meeting *meeting)
+/* Takes the gentler half of each pair from the point x (body axes) where the surface point came from the normal alone. */
+static void use_point(const impact_form *form, const double x[3], impact_surface *s)
 {
-    impact_surface s[2];
+    int pivot = 0;
+    double heaviest = -1, rest = 1;
+    for (int i = 0; i < 3; i++) {
+        const double p = form->p[i], u = clamp_unit(x[i] / form->axis[i]), size = fabs(u);
+        if (p == 1) {
+            const bool face = size > 1e-7;
+            s->u[i] = face ? u : 0;
+            if (face) s->e[i] = copysign(1, u);
+        } else if (size > 0 && (p - 1) * pow(size, p - 2) <= 1) {
+            s->u[i] = u, s->e[i] = signed_root(u, p - 1);
+        }
+        if (s->u[i] * s->e[i] > heaviest) heaviest = s->u[i] * s->e[i], pivot = i;
+    }
+    for (int i = 0; i < 3; i++)
+        if (i != pivot) rest -= s->u[i] * s->e[i];
+    settle_pivot(form->p[pivot], fmax(rest, 0.01), &s->u[pivot], &s->e[pivot]);
+}
+
+static void start(const impact_pair *pair, const double n[3], const double (*x)[3], impact_surface s[2])
+{
     for (int k = 0; k < 2; k++) {
+        const impact_form *form = &pair->form[k];
         const double world[3] = {k ? -n[0] : n[0], k ? -n[1] : n[1], k ? -n[2] : n[2]};
         double d[3];
-        to_body(pair->form[k].rotation, world, d);
-        impact_form_support(&pair->form[k], d, &s[k]);
+        to_body(form->rotation, world, d);
+        impact_form_support(form, d, &s[k]);
+        if (!x || form->nested) continue;
+        to_body(form->rotation, x[k], d);
+        use_point(form, d, &s[k]);
     }
+}
+
+bool impact_gap_newton(const impact_pair *pair, const double n[3], const double (*x)[3], impact_meeting *meeting)
+{
+    impact_surface s[2];
+    start(pair, n, x, s);
     double last = INFINITY;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         iterate it;

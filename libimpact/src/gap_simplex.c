@@ -8,8 +8,9 @@
 
 typedef struct simplex {
     int count;
-    double w[4][3];   /* points of the shrunk c + B - A */
-    double share[4];  /* of the nearest point */
+    double w[4][3];    /* points of the shrunk c + B - A */
+    double x[4][2][3]; /* where they come from */
+    double share[4];   /* of the nearest point */
 } simplex;
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -68,7 +69,10 @@ static double reduce(simplex *s, double v[3])
     int count = 0;
     for (int i = 0; i < s->count; i++)
         if (best_mask & 1 << i) {
-            if (count != i) memcpy(s->w[count], s->w[i], sizeof s->w[0]);
+            if (count != i) {
+                memcpy(s->w[count], s->w[i], sizeof s->w[0]);
+                memcpy(s->x[count], s->x[i], sizeof s->x[0]);
+            }
             s->share[count] = best_share[count];
             count++;
         }
@@ -76,11 +80,21 @@ static double reduce(simplex *s, double v[3])
     return sqrt(best);
 }
 
+/* The bodies' points whose difference is the nearest one. */
+static void nearest(const simplex *s, double x[2][3])
+{
+    for (int k = 0; k < 2; k++)
+        for (int j = 0; j < 3; j++) {
+            x[k][j] = 0;
+            for (int i = 0; i < s->count; i++) x[k][j] += s->share[i] * s->x[i][k][j];
+        }
+}
+
 impact_simplex_end impact_gap_simplex(const impact_pair *pair, double shrink, double tolerance, int steps, double n[3],
-                                      double *lower, double *upper)
+                                      double x[2][3], double *lower, double *upper)
 {
     simplex s = {0};
-    double v[3], x[2][3];
+    double v[3];
     for (int k = 0; k < 3; k++) v[k] = n[k];
     *upper = INFINITY;
     *lower = -INFINITY;
@@ -99,14 +113,17 @@ impact_simplex_end impact_gap_simplex(const impact_pair *pair, double shrink, do
         bool known = false;
         for (int i = 0; i < s.count; i++) known = known || memcmp(s.w[i], w, sizeof w) == 0;
         if (known) break;
-        memcpy(s.w[s.count++], w, sizeof w);
+        memcpy(s.w[s.count], w, sizeof w);
+        memcpy(s.x[s.count++], x, sizeof s.x[0]);
         distance = reduce(&s, v);
         *upper = fmin(*upper, distance);
         if (s.count == 4 || !(distance > 1e-12 * pair->size)) {
             memcpy(n, best, sizeof best);
+            nearest(&s, x);
             return IMPACT_SIMPLEX_OVERLAP;
         }
     }
     memcpy(n, best, sizeof best);
+    nearest(&s, x);
     return IMPACT_SIMPLEX_APART;
 }

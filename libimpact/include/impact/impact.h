@@ -8,6 +8,7 @@
 #include "status.h"
 #include "shape.h"
 #include "gap.h"
+#include "toi.h"
 #include "collide.h"
 #include "ode.h"
 #include "force.h"
