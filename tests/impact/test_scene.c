@@ -570,9 +570,25 @@ static void bad_definitions_are_named(void **state)
     expect_refusal(&def, "pair with 'flor': the scene has no such body");
 }
 
+static void a_build_without_cvode_says_so(void **state)
+{
+    (void)state;
+    thesis_scene *s = make_thesis_scene(false);
+    impact_scene *scene = make_scene(&s->def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_EABSENT);
+    assert_non_null(strstr(impact_scene_message(scene), "CVODE"));
+    impact_scene_destroy(scene);
+    free(s);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
+    const struct CMUnitTest closed_forms[] = {
+        cmocka_unit_test(ten_bounces),
+        cmocka_unit_test(cradle),
+        cmocka_unit_test(bad_definitions_are_named),
+    };
+    const struct CMUnitTest integrated[] = {
         cmocka_unit_test(first_bounce_is_where_the_closed_form_puts_it),
         cmocka_unit_test(rolls_as_the_closed_form_says_and_meets_the_wall_rolling),
         cmocka_unit_test(never_penetrates_and_never_gains_energy),
@@ -580,17 +596,17 @@ int main(void)
         cmocka_unit_test(samples_stand_on_the_grid_and_beside_events),
         cmocka_unit_test(uses_only_what_it_needs),
         cmocka_unit_test(the_same_bits_on_every_run),
-        cmocka_unit_test(ten_bounces),
         cmocka_unit_test(bowling_ball),
         cmocka_unit_test(incline),
         cmocka_unit_test(falls_off_the_edge),
-        cmocka_unit_test(cradle),
         cmocka_unit_test(fall_by_attraction),
         cmocka_unit_test(invariant_under_rotation_and_order),
         cmocka_unit_test(in_pieces_as_in_one),
         cmocka_unit_test(stops_when_asked),
         cmocka_unit_test(a_force_that_is_no_number_stops_the_run),
-        cmocka_unit_test(bad_definitions_are_named),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest absent[] = {cmocka_unit_test(a_build_without_cvode_says_so)};
+    const int failed = cmocka_run_group_tests(closed_forms, NULL, NULL);
+    if (!impact_has(IMPACT_PART_CVODE)) return failed + cmocka_run_group_tests(absent, NULL, NULL);
+    return failed + cmocka_run_group_tests(integrated, NULL, NULL);
 }
