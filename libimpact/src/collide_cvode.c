@@ -153,8 +153,8 @@ static impact_status to_root(const impact_course *course, impact_collide_workspa
     impact_status status = impact_ode_start(ws->ode, 0, y);
     double tau = 0;
     bool any = false;
-    for (double stop = 100 / rate; status == IMPACT_OK && !any && !*settled; stop *= 4) {
-        if (stop > 1e30 / rate) return IMPACT_EUNSETTLED;
+    for (double stop = 100 / (rate + course->s); status == IMPACT_OK && !any && !*settled; stop *= 4) {
+        if (stop > 1e30 / (rate + course->s)) return IMPACT_EUNSETTLED;
         status = impact_ode_advance(ws->ode, stop, &tau, y, found, &any);
         *settled = !any && !ws->law &&
                    fabs(impact_course_turning(frame, mu, cos(y[THETA]), sin(y[THETA]))) <= ws->tolerance * rate;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Writes tests/data/collide_oracle.csv: impacts and their answers by the closed hodograph in 128 bits.
- *   cmake --build build --target generate_collide_oracle && build/tests/impact/generate_collide_oracle > tests/data/collide_oracle.csv
+ *   cmake --build build --target generate_collide_oracle && build/tests/generators/generate_collide_oracle > tests/data/collide_oracle.csv
  * The library is asked only which random impacts are interesting (reversal, jam, second compression), never for an answer.
  */
 #include <stdio.h>
