@@ -53,8 +53,10 @@ static void stick_or_the_one_direction(void **state)
         const int cells = 2000;
         for (int k = 0; k < cells && i < 2000; k++) {
             const double t = 6.283185307179586 * k / cells, u = 6.283185307179586 * (k + 1) / cells;
-            const bool root = (impact_course_turning(&f, mu, cos(t), sin(t)) < 0) != (impact_course_turning(&f, mu, cos(u), sin(u)) < 0);
-            leaving += root && impact_course_sliding(&f, mu, cos(t), sin(t)).R > 1e-3 && impact_course_sliding(&f, mu, cos(u), sin(u)).R > 1e-3;
+            const bool root = (impact_course_turning(&f, mu, cos(t), sin(t)) < 0) !=
+                              (impact_course_turning(&f, mu, cos(u), sin(u)) < 0);
+            leaving += root && impact_course_sliding(&f, mu, cos(t), sin(t)).R > 1e-3 &&
+                       impact_course_sliding(&f, mu, cos(u), sin(u)).R > 1e-3;
         }
         assert_true(leaving <= 1);
     }
@@ -89,17 +91,13 @@ static void newton_gains_on_a_rod(void **state)
 {
     (void)state;
     const double angle = 55 * acos(-1) / 180, half = 1, m = 1, j = m * half * half / 3;
-    impact_collision c = {.body = {{m,
-                                    {j, j, 1e-9},
-                                    {1, 0, 0, 0},
-                                    {half * cos(angle), 0, -half * sin(angle)},
-                                    {-1, 0, -1},
-                                    {0, 0, 0}},
-                                   {.mass = INFINITY, .orientation = {1, 0, 0, 0}}},
-                          .normal = {0, 0, 1},
-                          .friction = 0.5,
-                          .restitution = 1,
-                          .law = IMPACT_NEWTON};
+    impact_collision c = {
+        .body = {{m, {j, j, 1e-9}, {1, 0, 0, 0}, {half * cos(angle), 0, -half * sin(angle)}, {-1, 0, -1}, {0, 0, 0}},
+                 {.mass = INFINITY, .orientation = {1, 0, 0, 0}}},
+        .normal = {0, 0, 1},
+        .friction = 0.5,
+        .restitution = 1,
+        .law = IMPACT_NEWTON};
     impact_outcome o;
     double least = INFINITY, most = -INFINITY;
     for (int side = -1; side <= 1; side += 2) {
@@ -132,10 +130,12 @@ static void laws_end_where_they_say(void **state)
             assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
             const double p = o.impulse_normal, e = c.restitution;
             if (c.law == IMPACT_POISSON) assert_true(fabs(p - (1 + e) * o.compression_impulse) <= 4e-15 * p);
-            if (c.law == IMPACT_NEWTON) assert_true(fabs(o.normal_after + e * o.normal_before) <= 4e-15 * fabs(o.normal_before));
+            if (c.law == IMPACT_NEWTON)
+                assert_true(fabs(o.normal_after + e * o.normal_before) <= 4e-15 * fabs(o.normal_before));
             if (c.law == IMPACT_STRONGE && o.compressions == 1)
                 assert_true(fabs(o.work_restitution + e * e * o.work_compression) <= 4e-14 * -o.work_compression);
-            assert_true(o.normal_after >= 0 && o.work_friction <= 0 && o.work_compression <= 0 && o.work_restitution >= 0);
+            assert_true(o.normal_after >= 0 && o.work_friction <= 0 && o.work_compression <= 0 &&
+                        o.work_restitution >= 0);
         }
 }
 

@@ -23,7 +23,8 @@ static double by_definition(const impact_collision *c, qvec3 e, qvec3 f)
         const qvec3 z = impact_frame_to_world(q, (qvec3){0, 0, 1});
         const qvec3 re = qvec3_cross(body->offset, e), rf = qvec3_cross(body->offset, f);
         sum += qvec3_dot(e, f) / body->mass + qvec3_dot(re, x) * qvec3_dot(rf, x) / body->moments.x +
-               qvec3_dot(re, y) * qvec3_dot(rf, y) / body->moments.y + qvec3_dot(re, z) * qvec3_dot(rf, z) / body->moments.z;
+               qvec3_dot(re, y) * qvec3_dot(rf, y) / body->moments.y +
+               qvec3_dot(re, z) * qvec3_dot(rf, z) / body->moments.z;
     }
     return sum;
 }
@@ -39,7 +40,8 @@ static void frame_is_principal(void **state)
             for (int k = 0; k < 2; k++) impact_frame_ready(&c.body[k], &ready[k]);
             impact_frame_make(&c, ready, &f);
             const double big = f.scale * (f.a + f.b + 1) * 1e-13;
-            assert_true(fabs(qvec3_dot(f.t1, f.t2)) < 1e-15 && fabs(qvec3_dot(f.t1, f.n)) < 1e-15 && fabs(qvec3_dot(f.t2, f.n)) < 1e-15);
+            assert_true(fabs(qvec3_dot(f.t1, f.t2)) < 1e-15 && fabs(qvec3_dot(f.t1, f.n)) < 1e-15 &&
+                        fabs(qvec3_dot(f.t2, f.n)) < 1e-15);
             assert_true(qvec3_dot(qvec3_cross(f.t1, f.t2), f.n) > 0.999999);
             assert_true(fabs(by_definition(&c, f.t1, f.t1) - f.a * f.scale) < big);
             assert_true(fabs(by_definition(&c, f.t2, f.t2) - f.b * f.scale) < big);
@@ -58,13 +60,15 @@ static void frame_is_principal(void **state)
 static void frame_on_paper(void **state)
 {
     (void)state;
-    const impact_collision c = {.body = {{1, {1, 1, 1}, {1, 0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {.mass = INFINITY}},
-                                .normal = {0, 0, 2}};
+    const impact_collision c = {
+        .body = {{1, {1, 1, 1}, {1, 0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {.mass = INFINITY}},
+        .normal = {0, 0, 2}};
     impact_ready ready[2];
     impact_frame f;
     for (int k = 0; k < 2; k++) impact_frame_ready(&c.body[k], &ready[k]);
     impact_frame_make(&c, ready, &f);
-    assert_true(fabs(f.scale - 2) < 1e-15 && fabs(f.a * f.b - 0.5) < 1e-15 && fabs(f.a + f.b - 1.5) < 1e-15 && f.c == 0 && f.d == 0);
+    assert_true(fabs(f.scale - 2) < 1e-15 && fabs(f.a * f.b - 0.5) < 1e-15 && fabs(f.a + f.b - 1.5) < 1e-15 &&
+                f.c == 0 && f.d == 0);
     assert_true(fabs(f.conditioning - 2) < 0.02);
 }
 
