@@ -3,6 +3,8 @@
  * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves). While a contact slides, time is not the
  * variable of integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever faster.
  * In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign can flip.
+ * Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the direction is bound to the
+ * acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t.
  */
 #include "motion.h"
 #include "world_gap.h"
@@ -27,7 +29,8 @@ impact_status impact_motion_open(impact_motion *motion, impact_world *world, dou
 
 void impact_motion_close(impact_motion *motion)
 {
-    impact_ode_destroy(motion->ode);
+    impact_ode_destroy(motion->adams);
+    impact_ode_destroy(motion->bdf);
     impact_persist_free(&motion->persist);
     free(motion->resting);
     free(motion->loads);
@@ -200,7 +203,8 @@ static double clock_rate(const impact_motion *motion)
     if (!motion->sliding) return 1;
     double slowness = 1;
     for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].mode == IMPACT_SLIDE) slowness += motion->slip_scale / motion->persist.touches[c].speed;
+        if (motion->persist.touches[c].mode == IMPACT_SLIDE && !motion->persist.touches[c].onset)
+            slowness += motion->slip_scale / motion->persist.touches[c].speed;
     return 1 / slowness;
 }
 
@@ -263,7 +267,7 @@ static void held_pair_roots(impact_world *world, const impact_touch *touch, cons
 {
     const impact_contact contact = {.offset2 = touch->r2};
     value[0] = touch->pressure;
-    value[1] = touch->mode == IMPACT_ROLL ? touch->margin : touch->speed - world->slip_speed;
+    value[1] = touch->mode == IMPACT_ROLL ? touch->margin : touch->onset ? touch->drive - (1 - 1e-9) : touch->speed - world->slip_speed;
     value[2] = impact_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
 }
@@ -300,9 +304,10 @@ static int root_values(double tau, const double *y, double *value, void *context
 
 /* ---- one stretch of integration ---- */
 
-static impact_status open_integrator(impact_motion *motion)
+static impact_status allocate_state(impact_motion *motion)
 {
     const impact_world *world = motion->world;
+    if (motion->y) return IMPACT_OK;
     int moving = 0;
     for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
     motion->size = Y_BODIES + Y_PER_BODY * moving;
@@ -310,16 +315,68 @@ static impact_status open_integrator(impact_motion *motion)
     motion->kept = calloc((size_t)motion->size, sizeof *motion->kept);
     motion->found = calloc((size_t)motion->roots, sizeof *motion->found);
     motion->y = calloc((size_t)motion->size, sizeof *motion->y);
-    if (!motion->kept || !motion->y || !motion->found) return IMPACT_ENOMEM;
-    const impact_ode_def def = {.size = motion->size, .roots = motion->roots, .rhs = rates, .root_functions = root_values,
-                                .context = motion, .method = IMPACT_ODE_ADAMS, .relative_tolerance = motion->tolerance,
-                                .absolute_tolerance = 1e-2 * motion->tolerance, .falling_roots_only = true};
-    const impact_status status = impact_ode_create(&def, &motion->ode);
-    if (status == IMPACT_EABSENT)
-        snprintf(motion->message, sizeof motion->message,
-                 "this motion needs the integrator, and this build has none (IMPACT_WITH_CVODE is off)");
-    motion->world->usage.integrators += status == IMPACT_OK;
+    return motion->kept && motion->y && motion->found ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
+/* Makes the integrator of the method the one at work, creating it when it is first needed. */
+static impact_status choose_integrator(impact_motion *motion, impact_ode_method method)
+{
+    impact_ode **ode = method == IMPACT_ODE_ADAMS ? &motion->adams : &motion->bdf;
+    impact_status status = allocate_state(motion);
+    if (status == IMPACT_OK && !*ode) {
+        const impact_ode_def def = {.size = motion->size, .roots = motion->roots, .rhs = rates, .root_functions = root_values,
+                                    .context = motion, .method = method, .relative_tolerance = motion->tolerance,
+                                    .absolute_tolerance = 1e-2 * motion->tolerance, .falling_roots_only = true};
+        status = impact_ode_create(&def, ode);
+        if (status == IMPACT_EABSENT)
+            snprintf(motion->message, sizeof motion->message,
+                     "this motion needs the integrator, and this build has none (IMPACT_WITH_CVODE is off)");
+        motion->world->usage.integrators += status == IMPACT_OK;
+    }
+    motion->ode = *ode;
     return status;
+}
+
+static void count_work(impact_motion *motion)
+{
+    impact_ode_counts adams = {0}, bdf = {0};
+    if (motion->adams) adams = impact_ode_count(motion->adams);
+    if (motion->bdf) bdf = impact_ode_count(motion->bdf);
+    impact_usage *usage = &motion->world->usage;
+    usage->integrator_starts = adams.starts + bdf.starts;
+    usage->integrator_steps = adams.steps + bdf.steps;
+    usage->integrator_rhs_calls = adams.rhs_calls + bdf.rhs_calls;
+}
+
+static bool any_onset(const impact_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].onset) return true;
+    return false;
+}
+
+/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does. */
+static double slowest_slip(const impact_motion *motion)
+{
+    double slowest = INFINITY;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (touch->mode == IMPACT_SLIDE && !touch->onset) slowest = fmin(slowest, touch->speed);
+    }
+    return slowest;
+}
+
+/* Ends the onset of every contact that slides fast enough to have a direction of its own; tells whether one did. */
+static bool end_onsets(impact_motion *motion)
+{
+    bool ended = false;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (!touch->onset || touch->speed < motion->world->onset_speed) continue;
+        motion->world->pairs[touch->pair].onset = false;
+        ended = true;
+    }
+    return ended;
 }
 
 /* The speed below which slip slows the clock: small against the motion and the weight of the sliding bodies. */
@@ -511,33 +568,39 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         memcpy(y, motion->kept, sizeof *y * (size_t)motion->size);
         if (status == IMPACT_OK && !sampler->pulse(sampler->context, *t)) status = IMPACT_STOPPED;
         if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME || tau == stop) return status;
+        if (end_onsets(motion) || (motion->stiff && slowest_slip(motion) > 1e-2 * motion->slip_scale)) return IMPACT_OK;
         still = tau > tau_before ? 0 : still + 1;
     }
     snprintf(motion->message, sizeof motion->message, "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
     return IMPACT_EUNSETTLED;
 }
 
+/* Which variable and which method the stretch needs. */
+static impact_status choose_road(impact_motion *motion, const impact_state *states)
+{
+    if (motion->persist.count > 0) impact_persist_solve(&motion->persist, motion->world, states, motion->loads);
+    const double slowest = slowest_slip(motion);
+    motion->slip_scale = slip_scale(motion, states);
+    motion->stiff = motion->after_onset && slowest < 1e-2 * motion->slip_scale;
+    motion->after_onset = any_onset(motion);
+    motion->sliding = isfinite(slowest) && !motion->stiff;
+    return choose_integrator(motion, motion->stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
+}
+
 static impact_status advance_integrated(impact_motion *motion, double *t, double t_end, impact_state *states,
                                         impact_sampler *sampler, impact_end *end)
 {
-    impact_status status = motion->ode ? IMPACT_OK : open_integrator(motion);
-    if (status != IMPACT_OK) return status;
     memcpy(motion->scratch, states, sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
     set_slack(motion, states);
-    motion->sliding = false;
-    for (int p = 0; p < motion->world->pair_count; p++) motion->sliding |= motion->world->pairs[p].mode == IMPACT_SLIDE;
-    if (motion->persist.count > 0) impact_persist_solve(&motion->persist, motion->world, states, motion->loads);
-    if (motion->sliding) motion->slip_scale = slip_scale(motion, states);
+    impact_status status = choose_road(motion, states);
+    if (status != IMPACT_OK) return status;
     pack(motion, *t, states, motion->y);
     status = impact_ode_start(motion->ode, motion->sliding ? 0 : *t, motion->y);
     if (status != IMPACT_OK) return fail(motion, status);
     status = integrate(motion, t, t_end, motion->y, states, sampler, end);
     unpack(motion, motion->y, states);
     motion->works = (impact_works){motion->y[Y_FORCE_WORK], motion->y[Y_DAMPING], motion->y[Y_SLIDING]};
-    const impact_ode_counts counts = impact_ode_count(motion->ode);
-    motion->world->usage.integrator_starts = counts.starts;
-    motion->world->usage.integrator_steps = counts.steps;
-    motion->world->usage.integrator_rhs_calls = counts.rhs_calls;
+    count_work(motion);
     return status;
 }
 

@@ -49,12 +49,15 @@ typedef struct impact_motion {
     char message[256];
 
     /* the integrator's side; absent until it is needed */
-    impact_ode *ode;
+    impact_ode *ode;         /* the one at work: adams or bdf */
+    impact_ode *adams, *bdf; /* for smooth motion; for the slow slip after an onset, which is stiff */
     int size, roots;
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
     int *found;
     impact_state *scratch, *sampled;
     bool sliding;      /* the integration variable is not time: see motion.c */
+    bool after_onset;  /* the last stretch was the onset of some slip */
+    bool stiff;        /* this one follows it */
     double slip_scale; /* m/s */
 } impact_motion;
 

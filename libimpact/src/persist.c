@@ -111,7 +111,8 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
     const qvec3 u = qvec3_sub(u1, u2);
     touch.slip = qvec3_axpy(-qvec3_dot(u, touch.normal), touch.normal, u);
     touch.speed = qvec3_norm(touch.slip);
-    touch.direction = touch.speed > 0.1 * world->slip_speed ? qvec3_scale(touch.slip, 1 / touch.speed) : pair->direction;
+    touch.onset = pair->mode == IMPACT_SLIDE && pair->onset;
+    touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
     qvec3 rate1, rate2;
     contact_rates(world, &touch, states, &rate1, &rate2);
     touch.bias = qvec3_sub(free_acceleration(b1, s1, &loads[pair->body1], touch.r1, rate1),
@@ -253,9 +254,8 @@ static void finish_touches(impact_persist *persist, const impact_world *world, c
     }
 }
 
-void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+static void solve_reactions(impact_persist *persist, const impact_world *world, const impact_state *states)
 {
-    find_touches(persist, world, states, loads);
     const int n = build_matrix(persist, world, states, true);
     int row = 0;
     for (int c = 0; c < persist->count; c++) {
@@ -266,6 +266,60 @@ void impact_persist_solve(impact_persist *persist, impact_world *world, const im
     solve_linear(persist->matrix, persist->right, persist->order, n);
     collect_forces(persist, persist->right, true);
     finish_touches(persist, world, states);
+}
+
+/* The unit vector d and the least k >= 0 of (A + k) d = b, for A symmetric and positive definite, in two dimensions: k by Newton on
+ * 1/|d(k)| = 1, which is concave and increasing, from k = 0. *drive = |A^-1 b|; below 1 there is no k: d is then A^-1 b/drive. */
+static void secular(double a11, double a12, double a22, double b1, double b2, double *d1, double *d2, double *drive)
+{
+    double k = 0;
+    *drive = 0;
+    for (int i = 0; i < 60; i++) {
+        const double p = a11 + k, q = a22 + k, determinant = p * q - a12 * a12;
+        *d1 = (q * b1 - a12 * b2) / determinant;
+        *d2 = (p * b2 - a12 * b1) / determinant;
+        const double size = hypot(*d1, *d2);
+        if (i == 0) *drive = size;
+        const double e1 = (q * *d1 - a12 * *d2) / determinant, e2 = (p * *d2 - a12 * *d1) / determinant;
+        const double step = (size - 1) * size * size / (*d1 * e1 + *d2 * e2);
+        *d1 /= size, *d2 /= size;
+        if (!(step > 1e-16 * (p + q))) return;
+        k += step;
+    }
+}
+
+/* Slip that begins from rest goes the way it is accelerated, slip_rate || direction, until it is fast enough to have a direction of its
+ * own. Turns the touch's direction there, with the pressure as it is; returns by how much. */
+static double turn_onset(const impact_world *world, const impact_state *states, impact_touch *touch)
+{
+    const qvec3 t1 = tangent_of(touch->normal), t2 = qvec3_cross(touch->normal, t1);
+    const double grip = touch->friction * touch->pressure;
+    const qvec3 k1 = response(world, states, touch, touch, qvec3_scale(t1, grip));
+    const qvec3 k2 = response(world, states, touch, touch, qvec3_scale(t2, grip));
+    const double a11 = qvec3_dot(t1, k1), a12 = qvec3_dot(t1, k2), a22 = qvec3_dot(t2, k2);
+    const double x = qvec3_dot(t1, touch->direction), y = qvec3_dot(t2, touch->direction);
+    const double b1 = qvec3_dot(t1, touch->slip_rate) + a11 * x + a12 * y, b2 = qvec3_dot(t2, touch->slip_rate) + a12 * x + a22 * y;
+    if (!(grip > 0) || (b1 == 0 && b2 == 0)) {
+        touch->drive = 0;
+        return 0;
+    }
+    double d1, d2;
+    secular(a11, a12, a22, b1, b2, &d1, &d2, &touch->drive);
+    touch->direction = qvec3_axpy(d1, t1, qvec3_scale(t2, d2));
+    return hypot(d1 - x, d2 - y);
+}
+
+void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+{
+    enum { TURNS = 50 };
+    find_touches(persist, world, states, loads);
+    for (int turn = 0; turn < TURNS; turn++) {
+        solve_reactions(persist, world, states);
+        double turned = 0;
+        for (int c = 0; c < persist->count; c++)
+            if (persist->touches[c].onset) turned = fmax(turned, turn_onset(world, states, &persist->touches[c]));
+        if (turned < 1e-15) return;
+    }
 }
 
 void impact_persist_add_reactions(const impact_persist *persist, impact_load *loads)
@@ -359,31 +413,12 @@ static int worst_grip(const impact_persist *persist, double scale)
     return worst;
 }
 
-qvec3 impact_persist_against_friction(const impact_touch *touch)
+/* Unit vector against a touch's friction as solved for: the way it would slide if the friction gave way. */
+static qvec3 against_friction(const impact_touch *touch)
 {
     const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
     const double size = qvec3_norm(friction);
     return size > 0 ? qvec3_scale(friction, -1 / size) : tangent_of(touch->normal);
-}
-
-static bool starts_to_slide(const impact_world *world, const impact_touch *touch)
-{
-    return touch->mode == IMPACT_SLIDE && touch->speed <= world->slip_speed;
-}
-
-/* A contact that slides from rest slides the way it is accelerated: a fixed point of the reactions. */
-static bool turn_directions(impact_persist *persist, impact_world *world)
-{
-    bool settled = true;
-    for (int c = 0; c < persist->count; c++) {
-        const impact_touch *touch = &persist->touches[c];
-        const double size = qvec3_norm(touch->slip_rate);
-        if (!starts_to_slide(world, touch) || size <= 1e-9 * qvec3_norm(touch->bias)) continue;
-        const qvec3 direction = qvec3_scale(touch->slip_rate, 1 / size);
-        if (qvec3_norm(qvec3_sub(direction, touch->direction)) > 1e-13) settled = false;
-        world->pairs[touch->pair].direction = direction;
-    }
-    return settled;
 }
 
 static double force_scale(const impact_persist *persist)
@@ -393,71 +428,38 @@ static double force_scale(const impact_persist *persist)
     return scale;
 }
 
+void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch)
+{
+    pair->mode = IMPACT_SLIDE;
+    pair->onset = true;
+    pair->direction = against_friction(touch);
+}
+
 /* Sliding that has died out, here or because another contact's did, is rolling until its friction says otherwise. */
-static void stop_slow_slides(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads, int slips)
+static void stop_slow_slides(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
 {
     find_touches(persist, world, states, loads);
-    for (int c = 0; c < persist->count; c++)
-        if (starts_to_slide(world, &persist->touches[c]) && persist->touches[c].pair != slips)
-            world->pairs[persist->touches[c].pair].mode = IMPACT_ROLL;
-}
-
-/* What reactions and loads do to the velocities in dt seconds. */
-static void accelerate(const impact_persist *persist, const impact_world *world, impact_state *states, const impact_load *loads, double dt)
-{
-    for (int c = 0; c < persist->count; c++)
-        apply_impulse(world, states, &persist->touches[c], qvec3_scale(persist->touches[c].force, dt));
-    for (int i = 0; i < world->body_count; i++) {
-        states[i].v = qvec3_axpy(dt * world->bodies[i].inverse_mass, loads[i].force, states[i].v);
-        states[i].momentum = qvec3_axpy(dt, loads[i].torque, states[i].momentum);
-    }
-}
-
-/* Slip from rest has no direction to read off: the contacts that begin to slide get just enough speed to tell, from their acceleration;
- * or, where friction has only just reached its cone and there is none yet, along the direction that the friction held off. */
-static void start_slides(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads)
-{
-    enum { LONGEST_MICROSECONDS = 100 };
-    const double longest = 1e-6 * LONGEST_MICROSECONDS, wanted = 2 * world->slip_speed;
-    double dt = 0;
-    bool pushed = false;
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
-        if (!starts_to_slide(world, touch)) continue;
-        const double rate = qvec3_norm(touch->slip_rate);
-        if (rate * longest > wanted) {
-            dt = fmax(dt, wanted / rate);
-        } else {
-            states[touch->body1].v = qvec3_axpy(wanted, touch->direction, states[touch->body1].v);
-            pushed = true;
-        }
+        if (touch->mode == IMPACT_SLIDE && touch->speed <= world->slip_speed && !touch->onset)
+            world->pairs[touch->pair].mode = IMPACT_ROLL;
     }
-    if (dt > 0) accelerate(persist, world, states, loads, dt);
-    if (pushed) impact_persist_project(persist, world, states, loads);
 }
 
-impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads,
-                                     int slips)
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
 {
-    enum { TURNS = 100 };
     impact_status status = impact_persist_reserve(persist, world);
-    stop_slow_slides(persist, world, states, loads, slips);
+    stop_slow_slides(persist, world, states, loads);
     for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 4 * world->pair_count + 8; round++) {
-        for (int turn = 0; turn < TURNS; turn++) {
-            impact_persist_solve(persist, world, states, loads);
-            if (turn_directions(persist, world)) break;
-        }
+        impact_persist_solve(persist, world, states, loads);
         const double scale = force_scale(persist);
         const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale);
         if (pull >= 0) {
             world->pairs[persist->touches[pull].pair].mode = IMPACT_OPEN;
             status = impact_persist_reserve(persist, world);
         } else if (grip >= 0) {
-            impact_pair *pair = &world->pairs[persist->touches[grip].pair];
-            pair->mode = IMPACT_SLIDE;
-            pair->direction = impact_persist_against_friction(&persist->touches[grip]);
+            impact_persist_begin_slide(&world->pairs[persist->touches[grip].pair], &persist->touches[grip]);
         } else {
-            start_slides(persist, world, states, loads);
             return IMPACT_OK;
         }
     }

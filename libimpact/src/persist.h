@@ -18,12 +18,14 @@ typedef struct impact_touch {
     qvec3 normal_rate; /* d(normal)/dt as the contact moves, 1/s */
     qvec3 slip;       /* tangential velocity of body 1's contact point over body 2's, m/s */
     double speed;     /* |slip| */
-    qvec3 direction;  /* unit of slip, or the pair's direction when the speed is too small to tell */
+    bool onset;       /* sliding from rest, too slow for a direction of its own */
+    qvec3 direction;  /* unit of slip; at the onset, of its acceleration */
     qvec3 bias;       /* relative acceleration of the contact points without reactions, m/s^2 */
     /* solved for: */
     double pressure;  /* normal force, N */
     qvec3 force;      /* on body 1, N */
     double margin;    /* rolling: friction x pressure - |tangential force|, N */
+    double drive;     /* at the onset: friction needed to hold the contact over what there is; below 1 it sticks again */
     qvec3 slip_rate;  /* tangential relative acceleration of the contact points, m/s^2 */
 } impact_touch;
 
@@ -51,16 +53,13 @@ double impact_persist_own_acceleration(const impact_persist *persist, const impa
 /* The contact as it is, whether held or not; its bias without any reaction. */
 impact_touch impact_persist_touch(impact_world *world, int pair, const impact_state *states, const impact_load *loads);
 
-/* Unit vector against a touch's friction as solved for: the way it would slide if the friction gave way. */
-qvec3 impact_persist_against_friction(const impact_touch *touch);
+/* Lets the touch's pair slide from rest, against the friction as solved for. */
+void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch);
 
 /* Puts positions and velocities back on the held contacts exactly. */
 void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads);
 
-/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and slide what must; the pair
- * `slips` (or -1) slides whether it must or not, since its friction has just reached the cone. A contact that begins to slide is given
- * its direction and the first of its speed. */
-impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads,
-                                     int slips);
+/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and slide what must. */
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads);
 
 #endif

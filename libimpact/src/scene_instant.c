@@ -210,7 +210,9 @@ static void choose_modes(impact_scene *scene)
         impact_pair *pair = &world->pairs[p];
         if (!meets(scene, p, &m)) continue;
         const bool stays = m.acceleration < 0 ? dies_out(scene, &m, m.velocity) : impact_is_held(pair) && m.velocity <= world->slip_speed;
-        pair->mode = !stays ? IMPACT_OPEN : m.touch.speed > world->slip_speed ? IMPACT_SLIDE : IMPACT_ROLL;
+        const bool slides = m.touch.speed > world->slip_speed || (impact_is_held(pair) && m.touch.onset);
+        pair->mode = !stays ? IMPACT_OPEN : slides ? IMPACT_SLIDE : IMPACT_ROLL;
+        pair->onset = slides && m.touch.onset && m.touch.speed < world->onset_speed;
     }
 }
 
@@ -272,8 +274,8 @@ static impact_status bring_to_rest(impact_scene *scene)
     return IMPACT_OK;
 }
 
-/* From tentative modes to consistent ones, with the constraints exact; the pair `slips` (or -1) slides. */
-static impact_status hold(impact_scene *scene, int slips)
+/* From tentative modes to consistent ones, with the constraints exact. */
+static impact_status hold(impact_scene *scene)
 {
     impact_motion *motion = &scene->motion;
     impact_status status = impact_persist_reserve(&motion->persist, &scene->world);
@@ -281,7 +283,7 @@ static impact_status hold(impact_scene *scene, int slips)
     if (status != IMPACT_OK) return status;
     impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);
     status = load(scene);
-    if (status == IMPACT_OK) status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads, slips);
+    if (status == IMPACT_OK) status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads);
     if (status == IMPACT_EUNSETTLED)
         snprintf(scene->message, sizeof scene->message, "no consistent set of contact forces found at t = %.17g", scene->t);
     if (status == IMPACT_OK) status = record_changes(scene);
@@ -321,7 +323,7 @@ impact_status impact_scene_settle(impact_scene *scene, int pair)
     impact_status status = strike_all(scene, pair);
     if (status == IMPACT_OK) {
         choose_modes(scene);
-        status = hold(scene, -1);
+        status = hold(scene);
     }
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
@@ -345,19 +347,25 @@ static impact_status change_mode(impact_scene *scene, int p, impact_mode mode)
 {
     remember(scene);
     impact_pair *pair = &scene->world.pairs[p];
-    if (mode == IMPACT_SLIDE) { /* it will slide against the friction that held it */
-        impact_status status = load(scene);
-        if (status != IMPACT_OK) return status;
-        impact_persist_solve(&scene->motion.persist, &scene->world, scene->states, scene->motion.loads);
-        for (int c = 0; c < scene->motion.persist.count; c++)
-            if (scene->motion.persist.touches[c].pair == p)
-                pair->direction = impact_persist_against_friction(&scene->motion.persist.touches[c]);
-    }
     pair->mode = mode;
+    pair->onset = false;
     const double energy = impact_scene_total_energy(scene);
-    const impact_status status = hold(scene, mode == IMPACT_SLIDE ? p : -1);
+    const impact_status status = hold(scene);
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
+}
+
+/* A rolling contact's friction has reached its cone: it slides, against the friction that held it. */
+static impact_status begin_slide(impact_scene *scene, int p)
+{
+    remember(scene);
+    impact_persist *persist = &scene->motion.persist;
+    const impact_status status = load(scene);
+    if (status != IMPACT_OK) return status;
+    impact_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
+    for (int c = 0; c < persist->count; c++)
+        if (persist->touches[c].pair == p) impact_persist_begin_slide(&scene->world.pairs[p], &persist->touches[c]);
+    return hold(scene);
 }
 
 static impact_status cross_edge(impact_scene *scene, int edge)
@@ -368,7 +376,7 @@ static impact_status cross_edge(impact_scene *scene, int edge)
     impact_event event = event_of_body(scene, IMPACT_EVENT_FORCE, body);
     event.name2 = scene->world.fields[field].name;
     const impact_status status = record(scene, &event);
-    return status == IMPACT_OK ? hold(scene, -1) : status;
+    return status == IMPACT_OK ? hold(scene) : status;
 }
 
 impact_status impact_scene_handle(impact_scene *scene, impact_end end)
@@ -379,10 +387,10 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_RETURN: scene->world.pairs[end.index].beyond = false; return IMPACT_OK;
     case IMPACT_END_BOUNDS: scene->world.pairs[end.index].beyond = true; return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_LIFTOFF: return change_mode(scene, end.index, IMPACT_OPEN);
-    case IMPACT_END_SLIP: return change_mode(scene, end.index, IMPACT_SLIDE);
+    case IMPACT_END_SLIP: return begin_slide(scene, end.index);
     case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);
     case IMPACT_END_EDGE: return cross_edge(scene, end.index);
-    case IMPACT_END_SLOW: remember(scene); return hold(scene, -1);
+    case IMPACT_END_SLOW: remember(scene); return hold(scene);
     }
     return IMPACT_OK;
 }

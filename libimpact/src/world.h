@@ -44,7 +44,8 @@ typedef struct impact_pair {
     impact_mode mode;
     bool beyond;     /* IMPACT_OPEN: body 1 passed beside the bounds of the plane and is behind it */
     double slack;    /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
-    qvec3 direction; /* IMPACT_SLIDE: the way body 1 slips over body 2 when the speed is too small to tell */
+    bool onset;      /* IMPACT_SLIDE: from rest, and slower than the world's onset_speed yet */
+    qvec3 direction; /* IMPACT_SLIDE, onset: about where the slip goes */
     impact_gap_cache cache;
 } impact_pair;
 
@@ -64,7 +65,8 @@ typedef struct impact_world {
     impact_pair *pairs;
     impact_field *fields;
     qvec3 gravity;
-    double slip_speed; /* m/s: a held contact that slips slower than this sticks */
+    double slip_speed;  /* m/s: slip that dies out below this sticks */
+    double onset_speed; /* m/s: slip that begins goes the way it is accelerated up to this */
     impact_usage usage;
 } impact_world;
 
