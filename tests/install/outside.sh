@@ -27,11 +27,14 @@ done
 
 echo "-- pkg-config"
 export PKG_CONFIG_PATH=$libdir/pkgconfig
+# pkg-config quotes for the shell, which matters when the path holds a space.
+flags=()
+ask() { eval "flags=($(pkg-config "$@"))"; }
 names=(quat impact)
 [ ! -f "$libdir/pkgconfig/quat_gsl.pc" ] || names+=(quat_gsl)
 for name in "${names[@]}"; do
-    # shellcheck disable=SC2046
-    "$cc" -o "shared_$name" "$here/outside/with_${name%_gsl}.c" $(pkg-config --cflags --libs "$name") -Wl,-rpath,"$libdir"
+    ask --cflags --libs "$name"
+    "$cc" -o "shared_$name" "$here/outside/with_${name%_gsl}.c" "${flags[@]}" -Wl,-rpath,"$libdir"
     "./shared_$name"
 done
 # Pay only for what is used.
@@ -45,8 +48,8 @@ cp -R moved static_only
 find static_only -name 'lib*.so*' -delete
 only=$(dirname "$(find "$work/static_only" -name libquat.a)")/pkgconfig
 for name in "${names[@]}"; do
-    # shellcheck disable=SC2046
-    "$cc" -o "static_$name" "$here/outside/with_${name%_gsl}.c" $(PKG_CONFIG_PATH=$only pkg-config --static --cflags --libs "$name")
+    PKG_CONFIG_PATH=$only ask --static --cflags --libs "$name"
+    "$cc" -o "static_$name" "$here/outside/with_${name%_gsl}.c" "${flags[@]}"
     "./static_$name"
 done
 if ldd static_impact | grep -E '^\s*lib(quat|impact)'; then
@@ -77,8 +80,8 @@ example() { awk -v fence="\`\`\`$2" '$0 == fence { on = 1; next } /^\`\`\`/ { on
 for page in README.md docs/hello.md; do
     name=$(basename "$page" .md)
     example "$page" c >"$name.c"
-    # shellcheck disable=SC2046
-    "$cc" -std=c11 -Wall -Wextra -Wpedantic -Werror -o "$name" "$name.c" $(pkg-config --cflags --libs impact) -Wl,-rpath,"$libdir"
+    ask --cflags --libs impact
+    "$cc" -std=c11 -Wall -Wextra -Wpedantic -Werror -o "$name" "$name.c" "${flags[@]}" -Wl,-rpath,"$libdir"
     "./$name"
     example "$page" lua >"$name.lua"
     [ ! -x "$prefix/bin/impact" ] || "$prefix/bin/impact" "$name.lua" --out "$name.out" --quiet

@@ -10,7 +10,7 @@ bad=0
 check() { # check FILE NM-FLAG...
     local file=$1 names strangers
     shift
-    names=$(nm --extern-only --defined-only --format=posix "$@" "$file" | awk 'NF >= 2 && $1 !~ /:$/ { print $1 }' | sort -u)
+    names=$(nm --extern-only --defined-only --format=posix "$@" "$file" | awk 'NF >= 2 && !/:$/ { print $1 }' | sort -u)
     strangers=$(grep -vE "$prefix" <<<"$names" || true)
     echo "$file: $(wc -l <<<"$names") names"
     [ -n "$names" ] || { echo "  none at all"; bad=1; }
