@@ -24,8 +24,8 @@ static inline void assert_near(double got, double wanted, double tolerance)
 static inline void assert_near3(qvec3 got, qvec3 wanted, double tolerance)
 {
     if (qvec3_norm(qvec3_sub(got, wanted)) <= tolerance) return;
-    fail_msg("wanted (%.17g, %.17g, %.17g), got (%.17g, %.17g, %.17g): off by %.3g, allowed %.3g", wanted.x, wanted.y, wanted.z,
-             got.x, got.y, got.z, qvec3_norm(qvec3_sub(got, wanted)), tolerance);
+    fail_msg("wanted (%.17g, %.17g, %.17g), got (%.17g, %.17g, %.17g): off by %.3g, allowed %.3g", wanted.x, wanted.y,
+             wanted.z, got.x, got.y, got.z, qvec3_norm(qvec3_sub(got, wanted)), tolerance);
 }
 
 static inline void assert_at_most(double got, double bound)

@@ -50,7 +50,8 @@ static double attraction_potential(const impact_force_def *def, double m1, doubl
     return k * (pow(distance, e) - at_zero) / e;
 }
 
-static void add_attraction(const impact_world *world, const impact_field *field, const impact_state *states, impact_load *loads)
+static void add_attraction(const impact_world *world, const impact_field *field, const impact_state *states,
+                           impact_load *loads)
 {
     int slot = 0;
     for (int j = 1; j < world->body_count; j++)
@@ -67,8 +68,8 @@ static void add_attraction(const impact_world *world, const impact_field *field,
 
 /* ---- all of them ---- */
 
-static bool add_to_body(const impact_field *field, const impact_world *world, double t, const impact_state *states, int i,
-                        impact_load *load)
+static bool add_to_body(const impact_field *field, const impact_world *world, double t, const impact_state *states,
+                        int i, impact_load *load)
 {
     const impact_body *body = &world->bodies[i];
     const qvec3 omega = impact_omega(body, &states[i]);
@@ -150,7 +151,8 @@ int impact_field_slots(const impact_force_def *def, int body_count)
 bool impact_field_any(const impact_world *world)
 {
     for (int i = 0; i < world->body_count; i++)
-        if (!world->bodies[i].is_static && (world->bodies[i].linear_rate != 0 || world->bodies[i].angular_rate != 0)) return true;
+        if (!world->bodies[i].is_static && (world->bodies[i].linear_rate != 0 || world->bodies[i].angular_rate != 0))
+            return true;
     return world->field_count > 0;
 }
 

@@ -24,6 +24,6 @@ double impact_flight_fall_time(double a, double b, double c)
     const double discriminant = b * b - 2 * a * c;
     if (discriminant < 0) return INFINITY;
     const double root = sqrt(discriminant);
-    if (b < 0) return 2 * a / (root - b);          /* falling: the nearer root, no cancellation */
-    return c < 0 ? (b + root) / -c : INFINITY;     /* rising: only a negative acceleration brings it back */
+    if (b < 0) return 2 * a / (root - b);      /* falling: the nearer root, no cancellation */
+    return c < 0 ? (b + root) / -c : INFINITY; /* rising: only a negative acceleration brings it back */
 }

@@ -65,12 +65,26 @@ impact_status impact_motion_open(impact_motion *motion, impact_world *world, dou
 void impact_motion_close(impact_motion *motion);
 
 /* Advances the states (consistent modes: see impact_persist_resolve) from *t to the next event, at most to t_end. */
-impact_status impact_motion_advance(impact_motion *motion, double *t, double t_end, impact_state *states, impact_sampler *sampler,
-                                    impact_end *end);
+impact_status impact_motion_advance(impact_motion *motion, double *t, double t_end, impact_state *states,
+                                    impact_sampler *sampler, impact_end *end);
 
 /* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet: the restarted
  * integrator would never see it. False when there is none. */
 bool impact_motion_also_crossed(impact_motion *motion, impact_end *end);
+
+/* The two roads of impact_motion_advance: in closed form, and by the integrator. */
+impact_status impact_motion_fly(impact_motion *motion, double *t, double t_end, impact_state *states,
+                                impact_sampler *sampler, impact_end *end);
+impact_status impact_motion_integrate(impact_motion *motion, double *t, double t_end, impact_state *states,
+                                      impact_sampler *sampler, impact_end *end);
+
+/* When the next sample is due; infinite when none is. */
+double impact_motion_sample_time(const impact_sampler *sampler);
+/* Emits one, with the held contacts put back exactly. */
+impact_status impact_motion_emit(impact_motion *motion, impact_sampler *sampler, double t, const impact_state *states);
+
+/* Sets every pair's slack for the stretch that begins. */
+void impact_motion_set_slack(impact_motion *motion, const impact_state *states);
 
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
 bool impact_motion_load(impact_motion *motion, double t, const impact_state *states);

@@ -52,7 +52,8 @@ static void on_error(int code, const char *module, const char *function, char *t
 static int open_context(SUNContext *context) { return SUNContext_Create(NULL, context); }
 static int quiet(impact_ode *ode) { return CVodeSetErrHandlerFn(ode->cvode, on_error, ode); }
 #else
-static void on_error(int line, const char *function, const char *file, const char *text, SUNErrCode code, void *context, SUNContext sundials)
+static void on_error(int line, const char *function, const char *file, const char *text, SUNErrCode code, void *context,
+                     SUNContext sundials)
 {
     (void)line, (void)file, (void)sundials;
     if (code < 0) note(context, function, text);
@@ -123,8 +124,9 @@ static bool build(impact_ode *ode)
     ode->cvode = CVodeCreate(def->method == IMPACT_ODE_ADAMS ? CV_ADAMS : CV_BDF, ode->sundials);
     if (!ode->y || !ode->cvode) return false;
     N_VConst(0, ode->y);
-    return quiet(ode) == 0 && CVodeInit(ode->cvode, rhs, 0, ode->y) == CV_SUCCESS && set_tolerances(ode) && set_solver(ode) &&
-           CVodeSetUserData(ode->cvode, ode) == CV_SUCCESS && CVodeSetNoInactiveRootWarn(ode->cvode) == CV_SUCCESS &&
+    return quiet(ode) == 0 && CVodeInit(ode->cvode, rhs, 0, ode->y) == CV_SUCCESS && set_tolerances(ode) &&
+           set_solver(ode) && CVodeSetUserData(ode->cvode, ode) == CV_SUCCESS &&
+           CVodeSetNoInactiveRootWarn(ode->cvode) == CV_SUCCESS &&
            (def->roots == 0 || CVodeRootInit(ode->cvode, def->roots, roots) == CV_SUCCESS) && set_root_directions(ode);
 }
 
@@ -198,7 +200,8 @@ impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double 
     if (CVodeSetStopTime(ode->cvode, t_stop) != CV_SUCCESS) return IMPACT_EINTEGRATOR;
     const int result = CVode(ode->cvode, t_stop, ode->y, t, CV_ONE_STEP);
     if (result < 0) {
-        if (ode->message[0] == '\0') snprintf(ode->message, sizeof ode->message, "CVODE failed with %d at t = %.17g", result, *t);
+        if (ode->message[0] == '\0')
+            snprintf(ode->message, sizeof ode->message, "CVODE failed with %d at t = %.17g", result, *t);
         return IMPACT_EINTEGRATOR;
     }
     memcpy(y, N_VGetArrayPointer(ode->y), sizeof(double) * (size_t)ode->def.size);
@@ -220,7 +223,8 @@ impact_status impact_ode_advance(impact_ode *ode, double t_stop, double *t, doub
         const impact_status status = impact_ode_step(ode, t_stop, t, y, roots_found, found);
         if (status != IMPACT_OK || *found || *t == t_stop) return status;
     }
-    snprintf(ode->message, sizeof ode->message, "%ld steps did not reach t = %.17g; stopped at %.17g", ode->def.max_steps, t_stop, *t);
+    snprintf(ode->message, sizeof ode->message, "%ld steps did not reach t = %.17g; stopped at %.17g",
+             ode->def.max_steps, t_stop, *t);
     return IMPACT_EINTEGRATOR;
 }
 

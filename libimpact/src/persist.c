@@ -47,7 +47,8 @@ void impact_persist_free(impact_persist *persist)
  * curvature, applied to a tangential vector. */
 static qvec3 curve(const impact_body *body, const impact_state *state, qvec3 outward, qvec3 v)
 {
-    if (body->shape.kind == IMPACT_SPHERE) return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
+    if (body->shape.kind == IMPACT_SPHERE)
+        return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
     const qmat3 h = impact_shape_support_hessian(&body->shape, quat_rotate_inverse(state->q, outward));
     const qvec3 b = quat_rotate_inverse(state->q, v);
     return quat_rotate(state->q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
@@ -65,7 +66,8 @@ static qvec3 tangent_of(qvec3 n)
 /* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each surface the
  * point of outward normal m moves by r' = w x r + W (m' - w x m), W the support function's Hessian; that both points stay together
  * gives (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n). A plane's normal stays (W2 is infinite). */
-static void contact_rates(const impact_world *world, impact_touch *touch, const impact_state *states, qvec3 *rate1, qvec3 *rate2)
+static void contact_rates(const impact_world *world, impact_touch *touch, const impact_state *states, qvec3 *rate1,
+                          qvec3 *rate2)
 {
     const impact_body *b1 = &world->bodies[touch->body1], *b2 = &world->bodies[touch->body2];
     const impact_state *s1 = &states[touch->body1], *s2 = &states[touch->body2];
@@ -80,14 +82,16 @@ static void contact_rates(const impact_world *world, impact_touch *touch, const 
         const qvec3 moves = qvec3_add(touch->slip, qvec3_add(curve(b1, s1, out1, turn1), curve(b2, s2, n, turn2)));
         const double a = qvec3_dot(t1, c1), b = qvec3_dot(t1, c2), d = qvec3_dot(t2, c2), determinant = a * d - b * b;
         const double x = qvec3_dot(t1, moves), y = qvec3_dot(t2, moves);
-        touch->normal_rate = qvec3_axpy((d * x - b * y) / determinant, t1, qvec3_scale(t2, (a * y - b * x) / determinant));
+        touch->normal_rate =
+            qvec3_axpy((d * x - b * y) / determinant, t1, qvec3_scale(t2, (a * y - b * x) / determinant));
         *rate2 = qvec3_add(qvec3_cross(w2, touch->r2), curve(b2, s2, n, qvec3_sub(touch->normal_rate, turn2)));
     }
     *rate1 = qvec3_add(qvec3_cross(w1, touch->r1), curve(b1, s1, out1, qvec3_sub(turn1, touch->normal_rate)));
 }
 
 /* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the centre. */
-static qvec3 free_acceleration(const impact_body *body, const impact_state *state, const impact_load *load, qvec3 r, qvec3 r_rate)
+static qvec3 free_acceleration(const impact_body *body, const impact_state *state, const impact_load *load, qvec3 r,
+                               qvec3 r_rate)
 {
     if (body->is_static) return (qvec3){0, 0, 0};
     const qvec3 omega = impact_omega(body, state);
@@ -104,8 +108,14 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
     const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     impact_contact contact;
     impact_world_gap(world, pair, states, &contact);
-    impact_touch touch = {.pair = p, .body1 = pair->body1, .body2 = pair->body2, .mode = pair->mode, .friction = pair->friction,
-                          .normal = contact.normal, .r1 = contact.offset1, .r2 = contact.offset2};
+    impact_touch touch = {.pair = p,
+                          .body1 = pair->body1,
+                          .body2 = pair->body2,
+                          .mode = pair->mode,
+                          .friction = pair->friction,
+                          .normal = contact.normal,
+                          .r1 = contact.offset1,
+                          .r2 = contact.offset2};
     const qvec3 u1 = qvec3_add(s1->v, qvec3_cross(impact_omega(b1, s1), touch.r1));
     const qvec3 u2 = b2->is_static ? (qvec3){0, 0, 0} : qvec3_add(s2->v, qvec3_cross(impact_omega(b2, s2), touch.r2));
     const qvec3 u = qvec3_sub(u1, u2);
@@ -123,7 +133,8 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
 /* ---- the linear system ---- */
 
 /* Change of touch a's relative acceleration (or velocity) for a force (or impulse) f on body 1 of touch b. */
-static qvec3 response(const impact_world *world, const impact_state *states, const impact_touch *a, const impact_touch *b, qvec3 f)
+static qvec3 response(const impact_world *world, const impact_state *states, const impact_touch *a,
+                      const impact_touch *b, qvec3 f)
 {
     const int bodies[2] = {b->body1, b->body2};
     const qvec3 arms[2] = {b->r1, b->r2};
@@ -153,7 +164,8 @@ static qvec3 row_direction(const impact_touch *touch, int i)
 /* Column i: which force its unknown stands for; with friction, a sliding contact's pressure brings its friction along. */
 static qvec3 column_direction(const impact_touch *touch, int i, bool with_friction)
 {
-    if (touch->mode == IMPACT_SLIDE && with_friction) return qvec3_axpy(-touch->friction, touch->direction, touch->normal);
+    if (touch->mode == IMPACT_SLIDE && with_friction)
+        return qvec3_axpy(-touch->friction, touch->direction, touch->normal);
     return row_direction(touch, i);
 }
 
@@ -203,7 +215,8 @@ static void solve_linear(double *a, double *right, int *order, int n)
 }
 
 /* Fills the matrix for the touches as they are; returns its size. */
-static int build_matrix(impact_persist *persist, const impact_world *world, const impact_state *states, bool with_friction)
+static int build_matrix(impact_persist *persist, const impact_world *world, const impact_state *states,
+                        bool with_friction)
 {
     int n = 0;
     for (int c = 0; c < persist->count; c++) n += unknowns_of(&persist->touches[c]);
@@ -221,7 +234,8 @@ static int build_matrix(impact_persist *persist, const impact_world *world, cons
     return n;
 }
 
-static void find_touches(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+static void find_touches(impact_persist *persist, impact_world *world, const impact_state *states,
+                         const impact_load *loads)
 {
     int c = 0;
     for (int p = 0; p < world->pair_count; p++)
@@ -261,7 +275,8 @@ static void solve_reactions(impact_persist *persist, const impact_world *world, 
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
         persist->right[row++] = -qvec3_dot(touch->normal, touch->bias) - qvec3_dot(touch->normal_rate, touch->slip);
-        for (int i = 1; i < unknowns_of(touch); i++) persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->bias);
+        for (int i = 1; i < unknowns_of(touch); i++)
+            persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->bias);
     }
     solve_linear(persist->matrix, persist->right, persist->order, n);
     collect_forces(persist, persist->right, true);
@@ -298,7 +313,8 @@ static double turn_onset(const impact_world *world, const impact_state *states, 
     const qvec3 k2 = response(world, states, touch, touch, qvec3_scale(t2, grip));
     const double a11 = qvec3_dot(t1, k1), a12 = qvec3_dot(t1, k2), a22 = qvec3_dot(t2, k2);
     const double x = qvec3_dot(t1, touch->direction), y = qvec3_dot(t2, touch->direction);
-    const double b1 = qvec3_dot(t1, touch->slip_rate) + a11 * x + a12 * y, b2 = qvec3_dot(t2, touch->slip_rate) + a12 * x + a22 * y;
+    const double b1 = qvec3_dot(t1, touch->slip_rate) + a11 * x + a12 * y,
+                 b2 = qvec3_dot(t2, touch->slip_rate) + a12 * x + a22 * y;
     if (!(grip > 0) || (b1 == 0 && b2 == 0)) {
         touch->drive = 0;
         return 0;
@@ -309,7 +325,8 @@ static double turn_onset(const impact_world *world, const impact_state *states, 
     return hypot(d1 - x, d2 - y);
 }
 
-void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states,
+                          const impact_load *loads)
 {
     enum { TURNS = 50 };
     find_touches(persist, world, states, loads);
@@ -334,7 +351,8 @@ void impact_persist_add_reactions(const impact_persist *persist, impact_load *lo
     }
 }
 
-double impact_persist_own_acceleration(const impact_persist *persist, const impact_world *world, const impact_state *states, int pair)
+double impact_persist_own_acceleration(const impact_persist *persist, const impact_world *world,
+                                       const impact_state *states, int pair)
 {
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
@@ -369,7 +387,8 @@ static void close_gaps(impact_world *world, impact_state *states)
     }
 }
 
-void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads)
+void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states,
+                            const impact_load *loads)
 {
     if (persist->count == 0) return;
     enum { SWEEPS = 3 }; /* contacts that share a body disturb each other by the square of their gaps */
@@ -380,11 +399,13 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
         persist->right[row++] = -impact_world_approach(world, touch, states);
-        for (int i = 1; i < unknowns_of(touch); i++) persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->slip);
+        for (int i = 1; i < unknowns_of(touch); i++)
+            persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->slip);
     }
     solve_linear(persist->matrix, persist->right, persist->order, n);
     collect_forces(persist, persist->right, false);
-    for (int c = 0; c < persist->count; c++) apply_impulse(world, states, &persist->touches[c], persist->touches[c].force);
+    for (int c = 0; c < persist->count; c++)
+        apply_impulse(world, states, &persist->touches[c], persist->touches[c].force);
 }
 
 /* ---- modes ---- */
@@ -436,7 +457,8 @@ void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch)
 }
 
 /* Sliding that has died out, here or because another contact's did, is rolling until its friction says otherwise. */
-static void stop_slow_slides(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+static void stop_slow_slides(impact_persist *persist, impact_world *world, const impact_state *states,
+                             const impact_load *loads)
 {
     find_touches(persist, world, states, loads);
     for (int c = 0; c < persist->count; c++) {
@@ -446,7 +468,8 @@ static void stop_slow_slides(impact_persist *persist, impact_world *world, const
     }
 }
 
-impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads)
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states,
+                                     const impact_load *loads)
 {
     impact_status status = impact_persist_reserve(persist, world);
     stop_slow_slides(persist, world, states, loads);

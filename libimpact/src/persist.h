@@ -13,25 +13,25 @@ typedef struct impact_touch {
     int pair, body1, body2;
     impact_mode mode;
     double friction;
-    qvec3 normal;     /* from body 2 to body 1 */
-    qvec3 r1, r2;     /* contact point from each centre */
+    qvec3 normal;      /* from body 2 to body 1 */
+    qvec3 r1, r2;      /* contact point from each centre */
     qvec3 normal_rate; /* d(normal)/dt as the contact moves, 1/s */
-    qvec3 slip;       /* tangential velocity of body 1's contact point over body 2's, m/s */
-    double speed;     /* |slip| */
-    bool onset;       /* sliding from rest, too slow for a direction of its own */
-    qvec3 direction;  /* unit of slip; at the onset, of its acceleration */
-    qvec3 bias;       /* relative acceleration of the contact points without reactions, m/s^2 */
+    qvec3 slip;        /* tangential velocity of body 1's contact point over body 2's, m/s */
+    double speed;      /* |slip| */
+    bool onset;        /* sliding from rest, too slow for a direction of its own */
+    qvec3 direction;   /* unit of slip; at the onset, of its acceleration */
+    qvec3 bias;        /* relative acceleration of the contact points without reactions, m/s^2 */
     /* solved for: */
-    double pressure;  /* normal force, N */
-    qvec3 force;      /* on body 1, N */
-    double margin;    /* rolling: friction x pressure - |tangential force|, N */
-    double drive;     /* at the onset: friction needed to hold the contact over what there is; below 1 it sticks again */
-    qvec3 slip_rate;  /* tangential relative acceleration of the contact points, m/s^2 */
+    double pressure; /* normal force, N */
+    qvec3 force;     /* on body 1, N */
+    double margin;   /* rolling: friction x pressure - |tangential force|, N */
+    double drive;    /* at the onset: friction needed to hold the contact over what there is; below 1 it sticks again */
+    qvec3 slip_rate; /* tangential relative acceleration of the contact points, m/s^2 */
 } impact_touch;
 
 typedef struct impact_persist {
-    int capacity;  /* contacts there is room for */
-    int count;     /* held contacts now */
+    int capacity; /* contacts there is room for */
+    int count;    /* held contacts now */
     impact_touch *touches;
     double *matrix, *right; /* (3 capacity)^2 and 3 capacity */
     int *order;             /* 3 capacity */
@@ -42,13 +42,15 @@ impact_status impact_persist_reserve(impact_persist *persist, const impact_world
 void impact_persist_free(impact_persist *persist);
 
 /* Geometry and reactions of every held contact under the loads. */
-void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads);
+void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states,
+                          const impact_load *loads);
 
 /* Adds the reactions that were solved for to the loads of their bodies. */
 void impact_persist_add_reactions(const impact_persist *persist, impact_load *loads);
 
 /* The part of a held pair's d2(gap)/dt2 that its own reaction, as solved for, makes; 0 for a pair that is not held. */
-double impact_persist_own_acceleration(const impact_persist *persist, const impact_world *world, const impact_state *states, int pair);
+double impact_persist_own_acceleration(const impact_persist *persist, const impact_world *world,
+                                       const impact_state *states, int pair);
 
 /* The contact as it is, whether held or not; its bias without any reaction. */
 impact_touch impact_persist_touch(impact_world *world, int pair, const impact_state *states, const impact_load *loads);
@@ -57,9 +59,11 @@ impact_touch impact_persist_touch(impact_world *world, int pair, const impact_st
 void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch);
 
 /* Puts positions and velocities back on the held contacts exactly. */
-void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads);
+void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states,
+                            const impact_load *loads);
 
 /* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and slide what must. */
-impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads);
+impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states,
+                                     const impact_load *loads);
 
 #endif

@@ -82,9 +82,10 @@ impact_status impact_csv_open(const char *samples_path, const char *events_path,
     if (!csv) return IMPACT_ENOMEM;
     const bool samples = open_part(&csv->samples, samples_path, "t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n");
     if (!samples) explain(message, message_size, samples_path, "cannot be written");
-    const bool events = samples && open_part(&csv->events, events_path,
-                                             "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
-                                             "energy_before,energy_after\n");
+    const bool events =
+        samples && open_part(&csv->events, events_path,
+                             "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
+                             "energy_before,energy_after\n");
     if (samples && !events) explain(message, message_size, events_path, "cannot be written");
     if (!events) {
         impact_csv_close(csv, false, NULL, 0);
@@ -127,20 +128,24 @@ static bool put_sample(void *context, const impact_sample *s)
 {
     FILE *file = ((impact_csv *)context)->samples.file;
     if (!file) return true;
-    const double values[] = {s->position.x, s->position.y, s->position.z, s->orientation.w, s->orientation.x, s->orientation.y,
-                             s->orientation.z, s->velocity.x, s->velocity.y, s->velocity.z, s->omega.x, s->omega.y, s->omega.z};
-    return put_number(file, s->t, ',') && put_word(file, s->name) && put_numbers(file, values, sizeof values / sizeof *values, '\n');
+    const double values[] = {s->position.x,    s->position.y,    s->position.z, s->orientation.w, s->orientation.x,
+                             s->orientation.y, s->orientation.z, s->velocity.x, s->velocity.y,    s->velocity.z,
+                             s->omega.x,       s->omega.y,       s->omega.z};
+    return put_number(file, s->t, ',') && put_word(file, s->name) &&
+           put_numbers(file, values, sizeof values / sizeof *values, '\n');
 }
 
 static bool put_event(void *context, const impact_event *e)
 {
     FILE *file = ((impact_csv *)context)->events.file;
     if (!file) return true;
-    const double values[] = {e->point.x, e->point.y, e->point.z, e->normal.x, e->normal.y, e->normal.z, e->impulse_normal,
-                             e->impulse_tangential, e->normal_before, e->normal_after};
+    const double values[] = {e->point.x,       e->point.y,     e->point.z,        e->normal.x,
+                             e->normal.y,      e->normal.z,    e->impulse_normal, e->impulse_tangential,
+                             e->normal_before, e->normal_after};
     return put_number(file, e->t, ',') && put_word(file, impact_event_name(e->kind)) && put_word(file, e->name1) &&
-           put_word(file, e->name2) && put_numbers(file, values, sizeof values / sizeof *values, ',') && put_word(file, e->phases) &&
-           put_number(file, e->energy_before, ',') && put_number(file, e->energy_after, '\n');
+           put_word(file, e->name2) && put_numbers(file, values, sizeof values / sizeof *values, ',') &&
+           put_word(file, e->phases) && put_number(file, e->energy_before, ',') &&
+           put_number(file, e->energy_after, '\n');
 }
 
 impact_recorder impact_csv_recorder(impact_csv *csv)

@@ -43,7 +43,8 @@ static impact_status check_overlaps(impact_scene *scene, char *message, unsigned
         const impact_status status = impact_world_gap(world, pair, scene->states, &contact);
         if (status < 0) {
             if (message)
-                snprintf(message, message_size, "bodies '%s' and '%s': %s", b1->name, b2->name, impact_status_string(status));
+                snprintf(message, message_size, "bodies '%s' and '%s': %s", b1->name, b2->name,
+                         impact_status_string(status));
             return status;
         }
         const double size = qvec3_norm(scene->states[pair->body1].x) + b1->radius;
@@ -51,14 +52,16 @@ static impact_status check_overlaps(impact_scene *scene, char *message, unsigned
             pair->beyond = contact.gap < 0;
         } else if (contact.gap < -1e-9 * size) {
             if (message)
-                snprintf(message, message_size, "body '%s': overlaps '%s' by %.6g m at the start", b1->name, b2->name, -contact.gap);
+                snprintf(message, message_size, "body '%s': overlaps '%s' by %.6g m at the start", b1->name, b2->name,
+                         -contact.gap);
             return IMPACT_EARGUMENT;
         }
     }
     return IMPACT_OK;
 }
 
-impact_status impact_scene_create(const impact_scene_def *def, impact_scene **out, char *message, unsigned long message_size)
+impact_status impact_scene_create(const impact_scene_def *def, impact_scene **out, char *message,
+                                  unsigned long message_size)
 {
     *out = NULL;
     if (message && message_size > 0) message[0] = '\0';
@@ -121,11 +124,13 @@ static impact_status advance(impact_scene *scene, double t_end)
         return status;
     }
     status = impact_scene_handle(scene, end);
-    while (status == IMPACT_OK && impact_motion_also_crossed(&scene->motion, &end)) status = impact_scene_handle(scene, end);
+    while (status == IMPACT_OK && impact_motion_also_crossed(&scene->motion, &end))
+        status = impact_scene_handle(scene, end);
     if (status != IMPACT_OK) return status;
     scene->stalls = scene->t > t_before ? 0 : scene->stalls + 1;
     if (scene->stalls < MAX_STALLS) return scene->stop;
-    snprintf(scene->message, sizeof scene->message, "%d events at the one instant t = %.17g brought no end", MAX_STALLS, scene->t);
+    snprintf(scene->message, sizeof scene->message, "%d events at the one instant t = %.17g brought no end", MAX_STALLS,
+             scene->t);
     return IMPACT_EUNSETTLED;
 }
 
@@ -139,7 +144,8 @@ static impact_status run(impact_scene *scene, double t_end)
     while (status == IMPACT_OK && scene->t < t_end) {
         if (all_at_rest(scene)) return IMPACT_AT_REST;
         if (scene->event_count >= scene->max_events) {
-            snprintf(scene->message, sizeof scene->message, "%ld events by t = %.17g: the limit", scene->event_count, scene->t);
+            snprintf(scene->message, sizeof scene->message, "%ld events by t = %.17g: the limit", scene->event_count,
+                     scene->t);
             return IMPACT_EVENT_LIMIT;
         }
         status = pulse(scene, scene->t) ? advance(scene, t_end) : scene->stop;
@@ -152,7 +158,8 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     scene->recorder = recorder;
     const impact_status status = run(scene, t);
     scene->recorder = NULL;
-    if (status < 0 && scene->message[0] == '\0') snprintf(scene->message, sizeof scene->message, "%s", impact_status_string(status));
+    if (status < 0 && scene->message[0] == '\0')
+        snprintf(scene->message, sizeof scene->message, "%s", impact_status_string(status));
     return status;
 }
 

@@ -28,9 +28,14 @@ static bool equal_moments(qvec3 m) { return fabs(m.x - m.y) <= 1e-14 * m.x && fa
 
 static bool build_body(const impact_body_def *def, impact_body *body, impact_state *state)
 {
-    *body = (impact_body){.name = copy_string(def->name), .shape = def->shape, .is_static = def->is_static, .mass = INFINITY,
-                          .radius = impact_shape_bounding_radius(&def->shape), .friction = def->friction,
-                          .restitution = def->restitution, .linear_rate = -log1p(-def->linear_damping),
+    *body = (impact_body){.name = copy_string(def->name),
+                          .shape = def->shape,
+                          .is_static = def->is_static,
+                          .mass = INFINITY,
+                          .radius = impact_shape_bounding_radius(&def->shape),
+                          .friction = def->friction,
+                          .restitution = def->restitution,
+                          .linear_rate = -log1p(-def->linear_damping),
                           .angular_rate = -log1p(-def->angular_damping)};
     *state = (impact_state){.x = def->position};
     quat_normalize(def->orientation, &state->q);
@@ -48,7 +53,8 @@ static bool build_body(const impact_body_def *def, impact_body *body, impact_sta
 static const impact_pair_def *find_own_rule(const impact_scene_def *def, int i, int j)
 {
     for (int k = 0; k < def->pair_count; k++) {
-        const int a = impact_scene_def_find(def, def->pairs[k].body1), b = impact_scene_def_find(def, def->pairs[k].body2);
+        const int a = impact_scene_def_find(def, def->pairs[k].body1),
+                  b = impact_scene_def_find(def, def->pairs[k].body2);
         if ((a == i && b == j) || (a == j && b == i)) return &def->pairs[k];
     }
     return NULL;
@@ -66,7 +72,8 @@ static impact_status build_pairs(impact_world *world, const impact_scene_def *de
             if (a->is_static && b->is_static) continue;
             const impact_pair_def *own = find_own_rule(def, i, j);
             impact_pair *pair = &world->pairs[world->pair_count++];
-            *pair = (impact_pair){.body1 = a->is_static ? j : i, .body2 = a->is_static ? i : j,
+            *pair = (impact_pair){.body1 = a->is_static ? j : i,
+                                  .body2 = a->is_static ? i : j,
                                   .friction = joined(def->friction_rule, a->friction, b->friction),
                                   .restitution = joined(def->restitution_rule, a->restitution, b->restitution)};
             if (own && !isnan(own->friction)) pair->friction = own->friction;

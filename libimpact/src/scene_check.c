@@ -51,7 +51,8 @@ static void check_mass(check *c, const impact_body_def *body)
 {
     if (body->is_static) return;
     if (isnan(body->mass))
-        require(c, isfinite(body->density) && body->density > 0, "density", body->density, "must be positive and finite, or give a mass");
+        require(c, isfinite(body->density) && body->density > 0, "density", body->density,
+                "must be positive and finite, or give a mass");
     else
         require(c, isfinite(body->mass) && body->mass > 0, "mass", body->mass, "must be positive and finite");
     const double m[3] = {body->moments.x, body->moments.y, body->moments.z};
@@ -69,12 +70,16 @@ static void check_body(check *c, const impact_body_def *body)
     require_vector(c, body->omega, "omega");
     quat unit;
     const double size = body->orientation.w + body->orientation.x + body->orientation.y + body->orientation.z;
-    require(c, quat_normalize(body->orientation, &unit) == QUAT_OK, "orientation", size, "must be a finite quaternion that is not zero");
+    require(c, quat_normalize(body->orientation, &unit) == QUAT_OK, "orientation", size,
+            "must be a finite quaternion that is not zero");
     check_mass(c, body);
     require(c, isfinite(body->friction) && body->friction >= 0, "friction", body->friction, "must be >= 0 and finite");
-    require(c, body->restitution >= 0 && body->restitution <= 1, "restitution", body->restitution, "must lie in [0, 1]");
-    require(c, body->linear_damping >= 0 && body->linear_damping < 1, "linear_damping", body->linear_damping, "must lie in [0, 1)");
-    require(c, body->angular_damping >= 0 && body->angular_damping < 1, "angular_damping", body->angular_damping, "must lie in [0, 1)");
+    require(c, body->restitution >= 0 && body->restitution <= 1, "restitution", body->restitution,
+            "must lie in [0, 1]");
+    require(c, body->linear_damping >= 0 && body->linear_damping < 1, "linear_damping", body->linear_damping,
+            "must lie in [0, 1)");
+    require(c, body->angular_damping >= 0 && body->angular_damping < 1, "angular_damping", body->angular_damping,
+            "must lie in [0, 1)");
     require_words(c, body->is_static || body->shape.kind != IMPACT_PLANE, "a plane must be static");
     char why[200];
     require_words(c, impact_shape_check(&body->shape, why, sizeof why) == IMPACT_OK, why);
@@ -99,7 +104,8 @@ static void check_bodies(check *c, const impact_scene_def *def)
 
 static void check_force(check *c, const impact_scene_def *def, const impact_force_def *force)
 {
-    require_words(c, !force->body || impact_scene_def_find(def, force->body) >= 0, "acts on a body that the scene does not have");
+    require_words(c, !force->body || impact_scene_def_find(def, force->body) >= 0,
+                  "acts on a body that the scene does not have");
     require(c, force->reach > 0, "reach", force->reach, "must be positive");
     switch (force->kind) {
     case IMPACT_FORCE_WIND:
@@ -109,7 +115,8 @@ static void check_force(check *c, const impact_scene_def *def, const impact_forc
         require(c, isfinite(force->strength), "strength", force->strength, "must be finite");
         require(c, force->radius > 0, "radius", force->radius, "must be positive");
         require(c, isfinite(force->falloff_power), "falloff_power", force->falloff_power, "must be finite");
-        require(c, isfinite(force->falloff_length) && force->falloff_length > 0, "falloff_length", force->falloff_length, "must be positive and finite");
+        require(c, isfinite(force->falloff_length) && force->falloff_length > 0, "falloff_length",
+                force->falloff_length, "must be positive and finite");
         break;
     case IMPACT_FORCE_ATTRACTION:
         require_words(c, !force->body, "an attraction acts on every two bodies: it takes no 'body'");
@@ -129,22 +136,34 @@ static void check_pair(check *c, const impact_scene_def *def, const impact_pair_
     c->name = pair->body2 ? pair->body2 : "";
     require_words(c, j >= 0, "the scene has no such body");
     require_words(c, i != j, "a pair needs two bodies");
-    require(c, isnan(pair->friction) || (isfinite(pair->friction) && pair->friction >= 0), "friction", pair->friction, "must be >= 0 and finite");
-    require(c, isnan(pair->restitution) || (pair->restitution >= 0 && pair->restitution <= 1), "restitution", pair->restitution, "must lie in [0, 1]");
+    require(c, isnan(pair->friction) || (isfinite(pair->friction) && pair->friction >= 0), "friction", pair->friction,
+            "must be >= 0 and finite");
+    require(c, isnan(pair->restitution) || (pair->restitution >= 0 && pair->restitution <= 1), "restitution",
+            pair->restitution, "must lie in [0, 1]");
 }
 
 impact_status impact_scene_check(const impact_scene_def *def, char *message, unsigned long message_size)
 {
-    check c = {.message = message, .size = message_size, .kind = "scene", .name = def->name ? def->name : "", .status = IMPACT_OK};
+    check c = {.message = message,
+               .size = message_size,
+               .kind = "scene",
+               .name = def->name ? def->name : "",
+               .status = IMPACT_OK};
     require_vector(&c, def->gravity, "gravity");
     require(&c, isfinite(def->duration) && def->duration > 0, "duration", def->duration, "must be positive and finite");
-    require(&c, isfinite(def->output_rate) && def->output_rate >= 0, "output_rate", def->output_rate, "must be >= 0 and finite");
-    require(&c, def->tolerance >= 1e-15 && def->tolerance <= 1e-2, "tolerance", def->tolerance, "must lie in [1e-15, 1e-2]");
-    require(&c, isfinite(def->rest_height) && def->rest_height > 0, "rest_height", def->rest_height, "must be positive and finite");
-    require(&c, isfinite(def->rest_speed) && def->rest_speed > 0, "rest_speed", def->rest_speed, "must be positive and finite");
+    require(&c, isfinite(def->output_rate) && def->output_rate >= 0, "output_rate", def->output_rate,
+            "must be >= 0 and finite");
+    require(&c, def->tolerance >= 1e-15 && def->tolerance <= 1e-2, "tolerance", def->tolerance,
+            "must lie in [1e-15, 1e-2]");
+    require(&c, isfinite(def->rest_height) && def->rest_height > 0, "rest_height", def->rest_height,
+            "must be positive and finite");
+    require(&c, isfinite(def->rest_speed) && def->rest_speed > 0, "rest_speed", def->rest_speed,
+            "must be positive and finite");
     require(&c, def->max_events > 0, "max_events", (double)def->max_events, "must be positive");
-    require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule", def->friction_rule, "is no rule");
-    require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule", def->restitution_rule, "is no rule");
+    require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule",
+            def->friction_rule, "is no rule");
+    require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule",
+            def->restitution_rule, "is no rule");
     check_bodies(&c, def);
     for (int k = 0; c.status == IMPACT_OK && k < def->force_count; k++) {
         c.kind = "force";

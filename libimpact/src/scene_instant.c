@@ -12,7 +12,8 @@
 
 double impact_scene_total_energy(const impact_scene *scene)
 {
-    return impact_world_kinetic_energy(&scene->world, scene->states) + impact_field_potential(&scene->world, scene->states);
+    return impact_world_kinetic_energy(&scene->world, scene->states) +
+           impact_field_potential(&scene->world, scene->states);
 }
 
 impact_sample impact_scene_sample(const impact_scene *scene, double t, int body, const impact_state *states)
@@ -49,17 +50,32 @@ static impact_event event_of_touch(const impact_scene *scene, impact_event_kind 
 {
     const impact_world *world = &scene->world;
     const double energy = impact_scene_total_energy(scene);
-    return (impact_event){.t = scene->t, .kind = kind, .body1 = touch->body1, .body2 = touch->body2,
-                          .name1 = world->bodies[touch->body1].name, .name2 = world->bodies[touch->body2].name,
-                          .point = qvec3_add(scene->states[touch->body1].x, touch->r1), .normal = touch->normal, .phases = "",
-                          .energy_before = energy, .energy_after = energy};
+    return (impact_event){.t = scene->t,
+                          .kind = kind,
+                          .body1 = touch->body1,
+                          .body2 = touch->body2,
+                          .name1 = world->bodies[touch->body1].name,
+                          .name2 = world->bodies[touch->body2].name,
+                          .point = qvec3_add(scene->states[touch->body1].x, touch->r1),
+                          .normal = touch->normal,
+                          .phases = "",
+                          .energy_before = energy,
+                          .energy_after = energy};
 }
 
 static impact_event event_of_body(const impact_scene *scene, impact_event_kind kind, int body)
 {
     const double energy = impact_scene_total_energy(scene);
-    return (impact_event){.t = scene->t, .kind = kind, .body1 = body, .body2 = -1, .name1 = scene->world.bodies[body].name,
-                          .name2 = "", .point = scene->states[body].x, .phases = "", .energy_before = energy, .energy_after = energy};
+    return (impact_event){.t = scene->t,
+                          .kind = kind,
+                          .body1 = body,
+                          .body2 = -1,
+                          .name1 = scene->world.bodies[body].name,
+                          .name2 = "",
+                          .point = scene->states[body].x,
+                          .phases = "",
+                          .energy_before = energy,
+                          .energy_after = energy};
 }
 
 /* ---- loads ---- */
@@ -96,11 +112,12 @@ static bool meets(impact_scene *scene, int p, meeting *m)
 {
     impact_world *world = &scene->world;
     impact_pair *pair = &world->pairs[p];
-    if (pair->beyond || impact_world_distance_bound(world, pair, scene->states) > world->bodies[pair->body1].radius) return false;
+    if (pair->beyond || impact_world_distance_bound(world, pair, scene->states) > world->bodies[pair->body1].radius)
+        return false;
     impact_contact contact;
     impact_world_gap(world, pair, scene->states, &contact);
-    if (!impact_is_held(pair) &&
-        (contact.gap > impact_world_touching_distance(world, pair, scene->states) || impact_world_inside_bounds(world, pair, scene->states, &contact) < 0))
+    if (!impact_is_held(pair) && (contact.gap > impact_world_touching_distance(world, pair, scene->states) ||
+                                  impact_world_inside_bounds(world, pair, scene->states, &contact) < 0))
         return false;
     m->touch = impact_persist_touch(world, p, scene->states, scene->motion.loads);
     m->velocity = impact_world_approach(world, &m->touch, scene->states);
@@ -126,9 +143,11 @@ static impact_collider collider(const impact_scene *scene, int body, qvec3 offse
 
 static const char *phases_in_words(const impact_outcome *outcome, char *words, size_t size)
 {
-    static const char *const names[] = {
-        [IMPACT_SLIP_C] = "slip-c", [IMPACT_STICK_C] = "stick-c", [IMPACT_SLIP_R] = "slip-r", [IMPACT_STICK_R] = "stick-r",
-        [IMPACT_REVERSAL] = "reversal"};
+    static const char *const names[] = {[IMPACT_SLIP_C] = "slip-c",
+                                        [IMPACT_STICK_C] = "stick-c",
+                                        [IMPACT_SLIP_R] = "slip-r",
+                                        [IMPACT_STICK_R] = "stick-r",
+                                        [IMPACT_REVERSAL] = "reversal"};
     size_t used = 0;
     words[0] = '\0';
     for (int i = 0; i < outcome->phase_count && used < size; i++)
@@ -162,8 +181,9 @@ static impact_status strike(impact_scene *scene, const meeting *m)
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);
     if (status != IMPACT_OK) {
-        snprintf(scene->message, sizeof scene->message, "impact of '%s' and '%s' at t = %.17g: %s", world->bodies[touch->body1].name,
-                 world->bodies[touch->body2].name, scene->t, impact_status_string(status));
+        snprintf(scene->message, sizeof scene->message, "impact of '%s' and '%s' at t = %.17g: %s",
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, scene->t,
+                 impact_status_string(status));
         return status < 0 ? status : IMPACT_EUNSETTLED;
     }
     impact_event event = event_of_touch(scene, IMPACT_EVENT_IMPACT, touch);
@@ -209,7 +229,8 @@ static void choose_modes(impact_scene *scene)
         meeting m;
         impact_pair *pair = &world->pairs[p];
         if (!meets(scene, p, &m)) continue;
-        const bool stays = m.acceleration < 0 ? dies_out(scene, &m, m.velocity) : impact_is_held(pair) && m.velocity <= world->slip_speed;
+        const bool stays = m.acceleration < 0 ? dies_out(scene, &m, m.velocity)
+                                              : impact_is_held(pair) && m.velocity <= world->slip_speed;
         const bool slides = m.touch.speed > world->slip_speed || (impact_is_held(pair) && m.touch.onset);
         pair->mode = !stays ? IMPACT_OPEN : slides ? IMPACT_SLIDE : IMPACT_ROLL;
         pair->onset = slides && m.touch.onset && m.touch.speed < world->onset_speed;
@@ -257,7 +278,8 @@ static bool comes_to_rest(const impact_scene *scene, int body)
         force = qvec3_add(force, f);
         torque = qvec3_add(torque, qvec3_cross(touch->body1 == body ? touch->r1 : touch->r2, f));
     }
-    const double acceleration = qvec3_norm(force) * b->inverse_mass + b->radius * qvec3_norm(impact_inverse_inertia(b, s->q, torque));
+    const double acceleration =
+        qvec3_norm(force) * b->inverse_mass + b->radius * qvec3_norm(impact_inverse_inertia(b, s->q, torque));
     return held && acceleration < 100 * scene->rest_speed;
 }
 
@@ -283,9 +305,11 @@ static impact_status hold(impact_scene *scene)
     if (status != IMPACT_OK) return status;
     impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);
     status = load(scene);
-    if (status == IMPACT_OK) status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads);
+    if (status == IMPACT_OK)
+        status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads);
     if (status == IMPACT_EUNSETTLED)
-        snprintf(scene->message, sizeof scene->message, "no consistent set of contact forces found at t = %.17g", scene->t);
+        snprintf(scene->message, sizeof scene->message, "no consistent set of contact forces found at t = %.17g",
+                 scene->t);
     if (status == IMPACT_OK) status = record_changes(scene);
     return status == IMPACT_OK ? bring_to_rest(scene) : status;
 }
@@ -306,7 +330,8 @@ static impact_status strike_all(impact_scene *scene, int first)
         if (p < 0) return IMPACT_OK;
         if (count > 0) scene->world.usage.impacts_simultaneous++;
         if (count == MAX_IMPACTS) {
-            snprintf(scene->message, sizeof scene->message, "%d impacts in the one instant t = %.17g brought no end", count, scene->t);
+            snprintf(scene->message, sizeof scene->message, "%d impacts in the one instant t = %.17g brought no end",
+                     count, scene->t);
             return IMPACT_EUNSETTLED;
         }
         status = strike(scene, &m);
@@ -385,7 +410,9 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_TIME: return IMPACT_OK;
     case IMPACT_END_GAP: return arrive(scene, end.index);
     case IMPACT_END_RETURN: scene->world.pairs[end.index].beyond = false; return IMPACT_OK;
-    case IMPACT_END_BOUNDS: scene->world.pairs[end.index].beyond = true; return change_mode(scene, end.index, IMPACT_OPEN);
+    case IMPACT_END_BOUNDS:
+        scene->world.pairs[end.index].beyond = true;
+        return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_LIFTOFF: return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_SLIP: return begin_slide(scene, end.index);
     case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);

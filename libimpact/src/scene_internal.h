@@ -12,8 +12,8 @@ struct impact_scene {
     impact_world world;
     impact_motion motion;
     impact_state *states;
-    impact_state *before;    /* as the states were when the event at hand came */
-    impact_mode *modes;      /* as the pairs' modes were then */
+    impact_state *before; /* as the states were when the event at hand came */
+    impact_mode *modes;   /* as the pairs' modes were then */
     double t, duration;
     impact_law law;
     impact_solver solver;

@@ -42,8 +42,9 @@ typedef struct impact_pair {
     int body1, body2;
     double friction, restitution;
     impact_mode mode;
-    bool beyond;     /* IMPACT_OPEN: body 1 passed beside the bounds of the plane and is behind it */
-    double slack;    /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
+    bool beyond; /* IMPACT_OPEN: body 1 passed beside the bounds of the plane and is behind it */
+    double
+        slack; /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
     bool onset;      /* IMPACT_SLIDE: from rest, and slower than the world's onset_speed yet */
     qvec3 direction; /* IMPACT_SLIDE, onset: about where the slip goes */
     impact_gap_cache cache;
@@ -77,7 +78,8 @@ static inline qvec3 impact_inverse_inertia(const impact_body *body, quat q, qvec
 {
     if (body->spherical) return qvec3_scale(a, body->inverse_moments.x);
     const qvec3 b = quat_rotate_inverse(q, a);
-    return quat_rotate(q, (qvec3){b.x * body->inverse_moments.x, b.y * body->inverse_moments.y, b.z * body->inverse_moments.z});
+    return quat_rotate(
+        q, (qvec3){b.x * body->inverse_moments.x, b.y * body->inverse_moments.y, b.z * body->inverse_moments.z});
 }
 
 /* J a, for a vector in the world frame; zero for a static body. */

@@ -2,7 +2,8 @@
 #include "world_gap.h"
 #include "persist.h"
 
-impact_status impact_world_gap(impact_world *world, impact_pair *pair, const impact_state *states, impact_contact *contact)
+impact_status impact_world_gap(impact_world *world, impact_pair *pair, const impact_state *states,
+                               impact_contact *contact)
 {
     const impact_solid solid1 = impact_solid_of(&world->bodies[pair->body1], &states[pair->body1]);
     const impact_solid solid2 = impact_solid_of(&world->bodies[pair->body2], &states[pair->body2]);

@@ -10,7 +10,8 @@
 struct impact_touch;
 
 /* The pair's contact, counted by the road that answered. */
-impact_status impact_world_gap(impact_world *world, impact_pair *pair, const impact_state *states, impact_contact *contact);
+impact_status impact_world_gap(impact_world *world, impact_pair *pair, const impact_state *states,
+                               impact_contact *contact);
 
 /* d(gap)/dt at a contact of the pair. */
 double impact_world_gap_rate(const impact_world *world, const impact_pair *pair, const impact_state *states,

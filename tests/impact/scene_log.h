@@ -67,7 +67,8 @@ static inline impact_scene *make_scene(const impact_scene_def *def)
     return scene;
 }
 
-static inline impact_body_def plane_body(const char *name, qvec3 position, quat orientation, double friction, double restitution)
+static inline impact_body_def plane_body(const char *name, qvec3 position, quat orientation, double friction,
+                                         double restitution)
 {
     impact_body_def body = impact_default_body_def();
     body.name = name;

@@ -18,7 +18,6 @@ static int find_impact(const scene_log *log, int other)
     return -1;
 }
 
-
 static const double linear_rate = 0.040821994520255166; /* -ln(1 - .04) */
 static const double angular_rate = 1.8838747581358606;  /* -ln(1 - .848) */
 static const double wind_force = 25, wind_reach = 2;
@@ -116,7 +115,8 @@ static void rolls_as_the_closed_form_says_and_meets_the_wall_rolling(void **stat
 {
     (void)state;
     scene_log log = run_thesis_scene(true, NULL, NULL);
-    const int stick = find_event(&log, IMPACT_EVENT_STICK, "roll", 0), edge = find_event(&log, IMPACT_EVENT_FORCE, NULL, 0);
+    const int stick = find_event(&log, IMPACT_EVENT_STICK, "roll", 0),
+              edge = find_event(&log, IMPACT_EVENT_FORCE, NULL, 0);
     const int wall = find_impact(&log, WALL);
     assert_true(stick >= 0 && edge > stick && wall > edge);
     const double rate = (linear_rate + 0.4 * angular_rate) / 1.4, drift = wind_force / (1.4 * mass) / rate;
@@ -126,7 +126,8 @@ static void rolls_as_the_closed_form_says_and_meets_the_wall_rolling(void **stat
         const impact_sample *s = &log.samples[i];
         if (s->t < from || (s->t == from && fabs(s->velocity.x - radius * s->omega.y) > 1e-12)) continue;
         if (s->t == from) v0 = s->velocity.x; /* the last of the rows at this time */
-        if (s->t > from && s->t <= until) assert_near(s->velocity.x, drift + (v0 - drift) * exp(-rate * (s->t - from)), 1e-11);
+        if (s->t > from && s->t <= until)
+            assert_near(s->velocity.x, drift + (v0 - drift) * exp(-rate * (s->t - from)), 1e-11);
         if (s->t == until) v1 = s->velocity.x;
         if (s->t > until && s->t < log.events[wall].t)
             assert_near(s->velocity.x, v1 * exp(-rate * (s->t - until)), 1e-11);
@@ -153,10 +154,12 @@ static void check_penetration_and_energy(bool grips)
         last = own;
     }
     const double end = energy.kinetic + energy.potential;
-    assert_near(end, energy.start + energy.force_work - energy.damping_loss - energy.sliding_loss - energy.impact_loss, 1e-9);
+    assert_near(end, energy.start + energy.force_work - energy.damping_loss - energy.sliding_loss - energy.impact_loss,
+                1e-9);
     assert_near(energy.force_work, wind_force * wind_reach, 1e-10);
     assert_true(energy.damping_loss > 0 && energy.sliding_loss > 0 && energy.impact_loss > 0);
-    for (int i = 0; i < log.event_count; i++) assert_at_most(log.events[i].energy_after, log.events[i].energy_before + 1e-12);
+    for (int i = 0; i < log.event_count; i++)
+        assert_at_most(log.events[i].energy_after, log.events[i].energy_before + 1e-12);
     free_log(&log);
 }
 
@@ -174,7 +177,8 @@ static void comes_back_sliding_and_rolling(void **state)
     scene_log log = run_thesis_scene(false, NULL, NULL);
     const int wall = find_impact(&log, WALL);
     assert_true(wall > 0);
-    const int slide = find_event(&log, IMPACT_EVENT_CONTACT, "slide", 1), roll = find_event(&log, IMPACT_EVENT_STICK, "roll", 0);
+    const int slide = find_event(&log, IMPACT_EVENT_CONTACT, "slide", 1),
+              roll = find_event(&log, IMPACT_EVENT_STICK, "roll", 0);
     assert_true(slide > wall && roll > slide);
     for (int i = 0; i < log.sample_count; i++) {
         const impact_sample *s = &log.samples[i];
@@ -497,7 +501,8 @@ static void stops_when_asked(void **state)
     impact_scene_destroy(scene);
 }
 
-static bool not_a_number(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque, void *context)
+static bool not_a_number(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
+                         void *context)
 {
     (void)body, (void)m, (void)x, (void)q, (void)v, (void)w, (void)torque, (void)context;
     if (t > 0.1) force->x = NAN;
@@ -556,7 +561,8 @@ static void bad_definitions_are_named(void **state)
     expect_refusal(&def, "body 'coin': restitution = 1.5: must lie in [0, 1]");
     bodies[1] = ball_body("coin", (qvec3){0, 0, 1}, 1, 0);
     bodies[1].moments = (qvec3){1, 1, 3};
-    expect_refusal(&def, "body 'coin': moments = 3: is larger than the other two together: no rigid body has such moments");
+    expect_refusal(&def,
+                   "body 'coin': moments = 3: is larger than the other two together: no rigid body has such moments");
     bodies[1] = ball_body("coin", (qvec3){0, 0, 1}, 1, 0);
     bodies[0].is_static = false;
     expect_refusal(&def, "body 'floor': a plane must be static");

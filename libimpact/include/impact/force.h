@@ -20,8 +20,8 @@ typedef enum impact_force_kind {
 
 /* Force (N, world, at the centre) and torque (N m, world) of a custom force at time t; both are zero on entry. They must be smooth
  * along the motion. Return false to stop the run with an error. */
-typedef bool impact_force_function(double t, int body, double mass, qvec3 position, quat orientation, qvec3 velocity, qvec3 omega,
-                                   qvec3 *force, qvec3 *torque, void *context);
+typedef bool impact_force_function(double t, int body, double mass, qvec3 position, quat orientation, qvec3 velocity,
+                                   qvec3 omega, qvec3 *force, qvec3 *torque, void *context);
 
 typedef struct impact_force_def {
     impact_force_kind kind;

@@ -23,17 +23,18 @@ typedef int impact_ode_rhs(double t, const double *y, double *rate, void *contex
 typedef int impact_ode_roots(double t, const double *y, double *value, void *context);
 
 typedef struct impact_ode_def {
-    int size;                 /* n >= 1 */
-    int roots;                /* >= 0 */
+    int size;  /* n >= 1 */
+    int roots; /* >= 0 */
     impact_ode_rhs *rhs;
     impact_ode_roots *root_functions; /* may be NULL when roots = 0 */
-    bool falling_roots_only;  /* report a root function only where it falls through zero */
-    void *context;            /* handed to both */
-    impact_ode_method method; /* Adams with fixed-point iteration, or BDF with Newton and a dense difference-quotient Jacobian */
-    double relative_tolerance; /* > 0 */
-    double absolute_tolerance; /* >= 0, for every component; see also absolute_tolerances */
+    bool falling_roots_only;          /* report a root function only where it falls through zero */
+    void *context;                    /* handed to both */
+    impact_ode_method
+        method; /* Adams with fixed-point iteration, or BDF with Newton and a dense difference-quotient Jacobian */
+    double relative_tolerance;         /* > 0 */
+    double absolute_tolerance;         /* >= 0, for every component; see also absolute_tolerances */
     const double *absolute_tolerances; /* n values, copied, or NULL */
-    long max_steps;           /* per advance; 0: 100000 */
+    long max_steps;                    /* per advance; 0: 100000 */
 } impact_ode_def;
 
 typedef struct impact_ode_counts {
@@ -53,10 +54,12 @@ IMPACT_API impact_status impact_ode_limit_step(impact_ode *ode, double max_step)
 /* One internal step towards t_stop, never past it. *t and y[n] are the new state: the end of the step, or the first root in it.
  * roots_found[roots]: -1 or +1 where the root function crosses falling or rising, else 0 (NULL: not wanted).
  * *found: whether a root ended the step. IMPACT_EINTEGRATOR: see impact_ode_message. */
-IMPACT_API impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found, bool *found);
+IMPACT_API impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found,
+                                         bool *found);
 
 /* Steps until t_stop or the first root; the rest as impact_ode_step. */
-IMPACT_API impact_status impact_ode_advance(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found, bool *found);
+IMPACT_API impact_status impact_ode_advance(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found,
+                                            bool *found);
 
 /* The solution (derivative = 0) or its derivative at any t of the last step taken. */
 IMPACT_API impact_status impact_ode_interpolate(const impact_ode *ode, double t, int derivative, double *y);

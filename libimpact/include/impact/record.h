@@ -45,8 +45,8 @@ typedef struct impact_event {
     qvec3 normal;              /* from body 2 to body 1; zero when there is none */
     double impulse_normal, impulse_tangential; /* N s */
     double normal_before, normal_after;        /* normal relative velocity, m/s */
-    const char *phases;        /* e.g. "slip-c stick-c stick-r"; "" when there are none */
-    double energy_before, energy_after; /* mechanical energy of the whole scene, J */
+    const char *phases;                        /* e.g. "slip-c stick-c stick-r"; "" when there are none */
+    double energy_before, energy_after;        /* mechanical energy of the whole scene, J */
 } impact_event;
 
 /* Where a run's rows go. Any function may be NULL. A sink returns false to stop the run with IMPACT_ESINK. */
@@ -64,8 +64,8 @@ typedef struct impact_recorder {
 typedef struct impact_csv impact_csv;
 
 /* Either path may be NULL. IMPACT_ESINK when a file cannot be opened: message (may be NULL) names it and says why. */
-IMPACT_API impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **csv, char *message,
-                                         unsigned long message_size);
+IMPACT_API impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **csv,
+                                         char *message, unsigned long message_size);
 /* A recorder over it (no progress function); valid until the close. */
 IMPACT_API impact_recorder impact_csv_recorder(impact_csv *csv);
 /* keep: flush, close and rename, IMPACT_ESINK when any of it fails; otherwise the partial files are removed. NULL is fine. */

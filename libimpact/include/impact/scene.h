@@ -17,23 +17,29 @@ extern "C" {
 #endif
 
 typedef struct impact_body_def {
-    const char *name;     /* unique in the scene, not empty */
+    const char *name; /* unique in the scene, not empty */
     impact_shape shape;
-    bool is_static;       /* never moves; planes must be static */
-    double mass;          /* kg; NaN: density times the shape's volume. Ignored for static bodies */
-    double density;       /* kg/m^3; used when mass is NaN */
-    qvec3 moments;        /* principal moments about the centre, kg m^2, along the body axes; NaN: of the uniform solid */
-    qvec3 position;       /* m */
-    quat orientation;     /* body to world; normalised */
-    qvec3 velocity;       /* m/s */
-    qvec3 omega;          /* rad/s, world */
-    double friction;      /* >= 0; joined with the other body's by the scene's rule */
-    double restitution;   /* in [0, 1] */
-    double linear_damping, angular_damping; /* part of the (angular) velocity lost per second, in [0, 1): factor (1 - d)^t */
+    bool is_static;     /* never moves; planes must be static */
+    double mass;        /* kg; NaN: density times the shape's volume. Ignored for static bodies */
+    double density;     /* kg/m^3; used when mass is NaN */
+    qvec3 moments;      /* principal moments about the centre, kg m^2, along the body axes; NaN: of the uniform solid */
+    qvec3 position;     /* m */
+    quat orientation;   /* body to world; normalised */
+    qvec3 velocity;     /* m/s */
+    qvec3 omega;        /* rad/s, world */
+    double friction;    /* >= 0; joined with the other body's by the scene's rule */
+    double restitution; /* in [0, 1] */
+    double linear_damping,
+        angular_damping; /* part of the (angular) velocity lost per second, in [0, 1): factor (1 - d)^t */
 } impact_body_def;
 
 /* How two bodies' coefficients make the pair's. */
-typedef enum impact_pair_rule { IMPACT_PRODUCT, IMPACT_GEOMETRIC_MEAN, IMPACT_MINIMUM, IMPACT_MAXIMUM } impact_pair_rule;
+typedef enum impact_pair_rule {
+    IMPACT_PRODUCT,
+    IMPACT_GEOMETRIC_MEAN,
+    IMPACT_MINIMUM,
+    IMPACT_MAXIMUM
+} impact_pair_rule;
 
 /* One pair's own coefficients, over the rule; NaN: by the rule. */
 typedef struct impact_pair_def {
@@ -43,9 +49,9 @@ typedef struct impact_pair_def {
 
 typedef struct impact_scene_def {
     const char *name;
-    qvec3 gravity;        /* m/s^2 */
-    double duration;      /* s, > 0 */
-    double output_rate;   /* samples per second; 0: none but those beside events */
+    qvec3 gravity;      /* m/s^2 */
+    double duration;    /* s, > 0 */
+    double output_rate; /* samples per second; 0: none but those beside events */
 
     const impact_body_def *bodies;
     int body_count;
@@ -58,10 +64,10 @@ typedef struct impact_scene_def {
     impact_law law;
     impact_solver solver; /* of impacts */
 
-    double tolerance;     /* relative, of the motion's integration */
-    double rest_height;   /* m: a bounce that would rise less than this is the last, and the contact is held */
-    double rest_speed;    /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
-    long max_events;      /* IMPACT_EVENT_LIMIT after so many */
+    double tolerance;   /* relative, of the motion's integration */
+    double rest_height; /* m: a bounce that would rise less than this is the last, and the contact is held */
+    double rest_speed;  /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
+    long max_events;    /* IMPACT_EVENT_LIMIT after so many */
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis), Poisson's law,
@@ -93,13 +99,14 @@ IMPACT_API impact_status impact_scene_body(const impact_scene *scene, int body, 
 
 /* What the run used; each is 0 where the scene does not need it. */
 typedef struct impact_usage {
-    long ballistic_flights;  /* stretches of flight in closed form */
-    long integrators;        /* CVODE integrators created for the motion */
+    long ballistic_flights; /* stretches of flight in closed form */
+    long integrators;       /* CVODE integrators created for the motion */
     long integrator_starts, integrator_steps, integrator_rhs_calls;
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */
-    long impacts_closed_form, impacts_series, impacts_cvode;  /* impacts, by solver */
-    long impacts_simultaneous;  /* of these, answers to another impact in the same instant, taken in the order of the definition */
-    long events[IMPACT_EVENT_REST + 1];                       /* by kind */
+    long impacts_closed_form, impacts_series, impacts_cvode; /* impacts, by solver */
+    long
+        impacts_simultaneous; /* of these, answers to another impact in the same instant, taken in the order of the definition */
+    long events[IMPACT_EVENT_REST + 1]; /* by kind */
     long samples;
 } impact_usage;
 
@@ -107,9 +114,9 @@ IMPACT_API impact_usage impact_scene_usage(const impact_scene *scene);
 
 /* The energy account, J: kinetic + potential = start + work of forces - the losses, to the tolerance of the run. */
 typedef struct impact_energy {
-    double start;                /* kinetic + potential at t = 0 */
-    double kinetic, potential;   /* now; potential of uniform gravity and of attraction */
-    double force_work;           /* done by wind and custom forces */
+    double start;                                   /* kinetic + potential at t = 0 */
+    double kinetic, potential;                      /* now; potential of uniform gravity and of attraction */
+    double force_work;                              /* done by wind and custom forces */
     double damping_loss, sliding_loss, impact_loss; /* each >= 0 */
 } impact_energy;
 

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves). While a contact slides, time is not the
+ * variable of integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever faster.
+ * In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign can flip.
+ * Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the direction is bound to the
+ * acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t.
+ */
+#include "motion_equations.h"
+#include "world_gap.h"
+
+#include <string.h>
+
+/* ---- the integrated state ---- */
+
+void impact_motion_pack(const impact_motion *motion, double t, const impact_state *states, double *y)
+{
+    y[Y_TIME] = t;
+    y[Y_FORCE_WORK] = motion->works.force;
+    y[Y_DAMPING] = motion->works.damping;
+    y[Y_SLIDING] = motion->works.sliding;
+    double *b = y + Y_BODIES;
+    for (int i = 0; i < motion->world->body_count; i++) {
+        if (motion->world->bodies[i].is_static) continue;
+        const impact_state *s = &states[i];
+        const double values[Y_PER_BODY] = {s->x.x, s->x.y, s->x.z, s->q.w,        s->q.x,        s->q.y,       s->q.z,
+                                           s->v.x, s->v.y, s->v.z, s->momentum.x, s->momentum.y, s->momentum.z};
+        memcpy(b, values, sizeof values);
+        b += Y_PER_BODY;
+    }
+}
+
+/* Static bodies' states are left as they are. */
+void impact_motion_unpack(const impact_motion *motion, const double *y, impact_state *states)
+{
+    const double *b = y + Y_BODIES;
+    for (int i = 0; i < motion->world->body_count; i++) {
+        if (motion->world->bodies[i].is_static) continue;
+        impact_state *s = &states[i];
+        s->x = (qvec3){b[0], b[1], b[2]};
+        quat_normalize((quat){b[3], b[4], b[5], b[6]}, &s->q);
+        s->v = (qvec3){b[7], b[8], b[9]};
+        s->momentum = (qvec3){b[10], b[11], b[12]};
+        b += Y_PER_BODY;
+    }
+}
+
+/* dt/dtau. */
+double impact_motion_clock(const impact_motion *motion)
+{
+    if (!motion->sliding) return 1;
+    double slowness = 1;
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].mode == IMPACT_SLIDE && !motion->persist.touches[c].onset)
+            slowness += motion->slip_scale / motion->persist.touches[c].speed;
+    return 1 / slowness;
+}
+
+static void body_rates(const impact_body *body, const impact_state *s, qvec3 force, qvec3 torque, double clock,
+                       double *rate)
+{
+    const qvec3 omega = impact_omega(body, s);
+    const quat turning = quat_mul((quat){0, omega.x, omega.y, omega.z}, s->q);
+    const double values[Y_PER_BODY] = {s->v.x,
+                                       s->v.y,
+                                       s->v.z,
+                                       0.5 * turning.w,
+                                       0.5 * turning.x,
+                                       0.5 * turning.y,
+                                       0.5 * turning.z,
+                                       force.x * body->inverse_mass,
+                                       force.y * body->inverse_mass,
+                                       force.z * body->inverse_mass,
+                                       torque.x,
+                                       torque.y,
+                                       torque.z};
+    for (int k = 0; k < Y_PER_BODY; k++) rate[k] = clock * values[k];
+}
+
+int impact_motion_rates(double tau, const double *y, double *rate, void *context)
+{
+    impact_motion *motion = context;
+    impact_world *world = motion->world;
+    impact_motion_unpack(motion, y, motion->scratch);
+    if (!impact_motion_load(motion, motion->sliding ? y[Y_TIME] : tau, motion->scratch)) return -1;
+    rate[Y_FORCE_WORK] = rate[Y_DAMPING] = rate[Y_SLIDING] = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        rate[Y_FORCE_WORK] += motion->loads[i].work_rate;
+        rate[Y_DAMPING] += motion->loads[i].damping_rate;
+    }
+    if (motion->persist.count > 0) impact_persist_solve(&motion->persist, world, motion->scratch, motion->loads);
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].mode == IMPACT_SLIDE)
+            rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
+    impact_persist_add_reactions(&motion->persist, motion->loads);
+    const double clock = impact_motion_clock(motion);
+    rate[Y_TIME] = clock;
+    for (int k = Y_FORCE_WORK; k < Y_BODIES; k++) rate[k] *= clock;
+    double *b = rate + Y_BODIES;
+    for (int i = 0; i < world->body_count; i++) {
+        if (world->bodies[i].is_static) continue;
+        body_rates(&world->bodies[i], &motion->scratch[i], motion->loads[i].force, motion->loads[i].torque, clock, b);
+        b += Y_PER_BODY;
+    }
+    return 0;
+}
+
+/* ---- roots: every one falls through zero when its event comes ---- */
+
+/* The gap with its slack, and minus its rate. Far apart, of the bounding balls: positive either way. */
+static void open_pair_roots(impact_world *world, impact_pair *pair, const impact_state *states, double *value)
+{
+    const double bound = impact_world_distance_bound(world, pair, states);
+    if (bound > world->bodies[pair->body1].radius) {
+        value[0] = pair->beyond ? -bound : bound;
+        value[1] = 1;
+        return;
+    }
+    impact_contact contact;
+    impact_world_gap(world, pair, states, &contact);
+    value[0] = pair->beyond ? -contact.gap : contact.gap + pair->slack;
+    value[1] = pair->beyond ? 1 : -impact_world_gap_rate(world, pair, states, &contact);
+}
+
+static void held_pair_roots(impact_world *world, const impact_touch *touch, const impact_state *states, double *value)
+{
+    const impact_contact contact = {.offset2 = touch->r2};
+    value[0] = touch->pressure;
+    value[1] = touch->mode == IMPACT_ROLL ? touch->margin
+               : touch->onset             ? touch->drive - (1 - 1e-9)
+                                          : touch->speed - world->slip_speed;
+    value[2] = impact_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
+    if (!isfinite(value[2])) value[2] = 1;
+}
+
+/* How fast any point of the body moves, m/s. */
+double impact_motion_speed(const impact_body *body, const impact_state *state)
+{
+    return qvec3_norm(state->v) + body->radius * qvec3_norm(impact_omega(body, state));
+}
+
+int impact_motion_root_values(double tau, const double *y, double *value, void *context)
+{
+    impact_motion *motion = context;
+    impact_world *world = motion->world;
+    impact_state *states = motion->scratch;
+    impact_motion_unpack(motion, y, states);
+    if (motion->persist.count > 0) {
+        if (!impact_motion_load(motion, motion->sliding ? y[Y_TIME] : tau, states)) return -1;
+        impact_persist_solve(&motion->persist, world, states, motion->loads);
+    }
+    for (int p = 0, c = 0; p < world->pair_count; p++, value += ROOTS_PER_PAIR) {
+        value[2] = 1;
+        if (impact_is_held(&world->pairs[p]))
+            held_pair_roots(world, &motion->persist.touches[c++], states, value);
+        else
+            open_pair_roots(world, &world->pairs[p], states, value);
+    }
+    impact_field_edges(world, states, value);
+    value += impact_field_edge_count(world);
+    for (int i = 0; i < world->body_count; i++)
+        value[i] = motion->resting[i] ? 1 : impact_motion_speed(&world->bodies[i], &states[i]) - motion->rest_speed;
+    return 0;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * motion_equations: what the integrator integrates, and the roots it looks for. Internal.
+ */
+#ifndef IMPACT_MOTION_EQUATIONS_H
+#define IMPACT_MOTION_EQUATIONS_H
+
+#include "motion.h"
+
+enum { Y_TIME, Y_FORCE_WORK, Y_DAMPING, Y_SLIDING, Y_BODIES, Y_PER_BODY = 13, ROOTS_PER_PAIR = 3 };
+
+/* Between the bodies' states and the integrated state y; static bodies' states are left as they are. */
+void impact_motion_pack(const impact_motion *motion, double t, const impact_state *states, double *y);
+void impact_motion_unpack(const impact_motion *motion, const double *y, impact_state *states);
+
+/* dt/dtau, for the touches as they stand. */
+double impact_motion_clock(const impact_motion *motion);
+
+/* How fast any point of the body moves at most, m/s. */
+double impact_motion_speed(const impact_body *body, const impact_state *state);
+
+/* For impact_ode: the rates of y, and the root functions: ROOTS_PER_PAIR for each pair (open: its gap and slack, minus its gap's
+ * rate; held: its pressure, what is left of its mode, its distance from the plane's bounds), one for each edge of a field, one for each
+ * body (its speed over the rest speed). Every one falls through zero when its event comes. */
+int impact_motion_rates(double tau, const double *y, double *rate, void *motion);
+int impact_motion_root_values(double tau, const double *y, double *value, void *motion);
+
+#endif

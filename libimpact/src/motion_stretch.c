@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One stretch of integration: which variable and method it needs, its steps, its samples, and the event at its end.
+ */
+#include "motion_equations.h"
+#include "world_gap.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static impact_status allocate_state(impact_motion *motion)
+{
+    const impact_world *world = motion->world;
+    if (motion->y) return IMPACT_OK;
+    int moving = 0;
+    for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
+    motion->size = Y_BODIES + Y_PER_BODY * moving;
+    motion->roots = ROOTS_PER_PAIR * world->pair_count + impact_field_edge_count(world) + world->body_count;
+    motion->kept = calloc((size_t)motion->size, sizeof *motion->kept);
+    motion->found = calloc((size_t)motion->roots, sizeof *motion->found);
+    motion->y = calloc((size_t)motion->size, sizeof *motion->y);
+    return motion->kept && motion->y && motion->found ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
+/* Makes the integrator of the method the one at work, creating it when it is first needed. */
+static impact_status choose_integrator(impact_motion *motion, impact_ode_method method)
+{
+    impact_ode **ode = method == IMPACT_ODE_ADAMS ? &motion->adams : &motion->bdf;
+    impact_status status = allocate_state(motion);
+    if (status == IMPACT_OK && !*ode) {
+        const impact_ode_def def = {.size = motion->size,
+                                    .roots = motion->roots,
+                                    .rhs = impact_motion_rates,
+                                    .root_functions = impact_motion_root_values,
+                                    .context = motion,
+                                    .method = method,
+                                    .relative_tolerance = motion->tolerance,
+                                    .absolute_tolerance = 1e-2 * motion->tolerance,
+                                    .falling_roots_only = true};
+        status = impact_ode_create(&def, ode);
+        if (status == IMPACT_EABSENT)
+            snprintf(motion->message, sizeof motion->message,
+                     "this motion needs the integrator, and this build has none (IMPACT_WITH_CVODE is off)");
+        motion->world->usage.integrators += status == IMPACT_OK;
+    }
+    motion->ode = *ode;
+    return status;
+}
+
+static void count_work(impact_motion *motion)
+{
+    impact_ode_counts adams = {0}, bdf = {0};
+    if (motion->adams) adams = impact_ode_count(motion->adams);
+    if (motion->bdf) bdf = impact_ode_count(motion->bdf);
+    impact_usage *usage = &motion->world->usage;
+    usage->integrator_starts = adams.starts + bdf.starts;
+    usage->integrator_steps = adams.steps + bdf.steps;
+    usage->integrator_rhs_calls = adams.rhs_calls + bdf.rhs_calls;
+}
+
+static bool any_onset(const impact_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].onset) return true;
+    return false;
+}
+
+/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does. */
+static double slowest_slip(const impact_motion *motion)
+{
+    double slowest = INFINITY;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (touch->mode == IMPACT_SLIDE && !touch->onset) slowest = fmin(slowest, touch->speed);
+    }
+    return slowest;
+}
+
+/* Ends the onset of every contact that slides fast enough to have a direction of its own; tells whether one did. */
+static bool end_onsets(impact_motion *motion)
+{
+    bool ended = false;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (!touch->onset || touch->speed < motion->world->onset_speed) continue;
+        motion->world->pairs[touch->pair].onset = false;
+        ended = true;
+    }
+    return ended;
+}
+
+/* The speed below which slip slows the clock: small against the motion and the weight of the sliding bodies. */
+static double slip_scale(const impact_motion *motion, const impact_state *states)
+{
+    double scale = 0;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (touch->mode != IMPACT_SLIDE) continue;
+        const impact_body *body = &motion->world->bodies[touch->body1];
+        const double fall = fabs(touch->pressure) * body->inverse_mass * body->radius;
+        scale = fmax(scale, 0.05 * (impact_motion_speed(body, &states[touch->body1]) + sqrt(fall)));
+    }
+    return fmax(scale, motion->world->slip_speed);
+}
+
+/* The function of the interpolated state whose zero is looked for in the last step: the clock against a time, or a pair's gap. */
+typedef struct last_step_function {
+    int pair; /* or -1: the clock */
+    double t;
+} last_step_function;
+
+static double last_step_value(impact_motion *motion, last_step_function f, const double *y)
+{
+    if (f.pair < 0) return y[Y_TIME] - f.t;
+    impact_contact contact;
+    impact_motion_unpack(motion, y, motion->scratch);
+    impact_world_gap(motion->world, &motion->world->pairs[f.pair], motion->scratch, &contact);
+    return contact.gap;
+}
+
+/* Interpolates the last step where f changes sign between tau = low and high, by the Illinois form of regula falsi. */
+static impact_status find_in_last_step(impact_motion *motion, last_step_function f, double low, double high,
+                                       double *tau, double *y)
+{
+    impact_status status = impact_ode_interpolate(motion->ode, low, 0, y);
+    double f_low = last_step_value(motion, f, y);
+    if (status == IMPACT_OK) status = impact_ode_interpolate(motion->ode, high, 0, y);
+    double f_high = last_step_value(motion, f, y);
+    *tau = high;
+    for (int i = 0, side = 0; status == IMPACT_OK && i < 100 && f_high != f_low; i++) {
+        double guess = (f_low * high - f_high * low) / (f_low - f_high);
+        if (!(guess > low && guess < high)) guess = 0.5 * (low + high);
+        if (guess == low || guess == high || guess == *tau) break;
+        *tau = guess;
+        status = impact_ode_interpolate(motion->ode, guess, 0, y);
+        const double value = last_step_value(motion, f, y);
+        if (value == 0) break;
+        if ((value > 0) == (f_high > 0)) {
+            high = guess, f_high = value;
+            if (side == 1) f_low *= 0.5;
+            side = 1;
+        } else {
+            low = guess, f_low = value;
+            if (side == -1) f_high *= 0.5;
+            side = -1;
+        }
+    }
+    return status;
+}
+
+/* The state of the last step at time t. */
+static impact_status interpolate_time(impact_motion *motion, double t, double *y)
+{
+    if (!motion->sliding) return impact_ode_interpolate(motion->ode, t, 0, y);
+    double low, high, tau;
+    impact_ode_last_step(motion->ode, &low, &high);
+    return find_in_last_step(motion, (last_step_function){-1, t}, low, high, &tau, y);
+}
+
+/* The event that a root stands for; how deep a gap's closest approach is tells whether its rate's root is one. */
+static impact_end end_of_root(const impact_motion *motion, int root)
+{
+    const impact_world *world = motion->world;
+    if (root < ROOTS_PER_PAIR * world->pair_count) {
+        const int p = root / ROOTS_PER_PAIR, slot = root % ROOTS_PER_PAIR;
+        const impact_pair *pair = &world->pairs[p];
+        if (!impact_is_held(pair)) return (impact_end){pair->beyond ? IMPACT_END_RETURN : IMPACT_END_GAP, p};
+        if (slot == 0) return (impact_end){IMPACT_END_LIFTOFF, p};
+        if (slot == 2) return (impact_end){IMPACT_END_BOUNDS, p};
+        return (impact_end){pair->mode == IMPACT_ROLL ? IMPACT_END_SLIP : IMPACT_END_STICK, p};
+    }
+    root -= ROOTS_PER_PAIR * world->pair_count;
+    const int edges = impact_field_edge_count(world);
+    if (root < edges) return (impact_end){IMPACT_END_EDGE, root};
+    return (impact_end){IMPACT_END_SLOW, root - edges};
+}
+
+/* A root of an open pair's gap rate: the gap is smallest here. If it is below its slack, both its zeros lie in the step. */
+static bool is_closest_approach(const impact_motion *motion, int root)
+{
+    return root < ROOTS_PER_PAIR * motion->world->pair_count && root % ROOTS_PER_PAIR == 1 &&
+           !impact_is_held(&motion->world->pairs[root / ROOTS_PER_PAIR]);
+}
+
+/* Looks through the roots found at *tau for the event that ends the stretch; a gap's zero that the step hid moves *tau and y back to it. */
+static impact_status pick_event(impact_motion *motion, double tau_before, double *tau, double *y, impact_end *end)
+{
+    for (int root = 0; root < motion->roots; root++) {
+        if (motion->found[root] == 0) continue;
+        if (!is_closest_approach(motion, root)) {
+            if (end->kind != IMPACT_END_TIME) continue;
+            *end = end_of_root(motion, root);
+            motion->found[root] = 0;
+            continue;
+        }
+        const int pair = root / ROOTS_PER_PAIR;
+        if (last_step_value(motion, (last_step_function){pair, 0}, y) >= -motion->world->pairs[pair].slack) continue;
+        *end = (impact_end){IMPACT_END_GAP, pair};
+        memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
+        return find_in_last_step(motion, (last_step_function){pair, 0}, tau_before, *tau, tau, y);
+    }
+    return IMPACT_OK;
+}
+
+bool impact_motion_also_crossed(impact_motion *motion, impact_end *end)
+{
+    const int first = ROOTS_PER_PAIR * motion->world->pair_count, edges = impact_field_edge_count(motion->world);
+    for (int edge = 0; motion->found && edge < edges; edge++) {
+        if (motion->found[first + edge] == 0) continue;
+        motion->found[first + edge] = 0;
+        *end = (impact_end){IMPACT_END_EDGE, edge};
+        return true;
+    }
+    return false;
+}
+
+/* From the root that was watched for, the slack below zero and to 1e-14 of the step, one Newton step back to where the gap is zero. */
+static impact_status polish_gap(impact_motion *motion, int pair, double *tau, double *y)
+{
+    impact_world *world = motion->world;
+    impact_contact contact;
+    impact_motion_unpack(motion, y, motion->scratch);
+    impact_world_gap(world, &world->pairs[pair], motion->scratch, &contact);
+    const double rate =
+        impact_world_gap_rate(world, &world->pairs[pair], motion->scratch, &contact) * impact_motion_clock(motion);
+    double low, high;
+    impact_ode_last_step(motion->ode, &low, &high);
+    const double polished = *tau - contact.gap / rate;
+    if (!(polished >= low && polished <= high) || rate >= 0) return IMPACT_OK; /* a gap that was never open */
+    *tau = polished;
+    return impact_ode_interpolate(motion->ode, polished, 0, y);
+}
+
+static impact_status emit_until(impact_motion *motion, double t, impact_state *states, impact_sampler *sampler,
+                                double *y)
+{
+    while (impact_motion_sample_time(sampler) <= t) {
+        impact_status status = interpolate_time(motion, impact_motion_sample_time(sampler), y);
+        if (status != IMPACT_OK) return status;
+        impact_motion_unpack(motion, y, states);
+        status = impact_motion_emit(motion, sampler, impact_motion_sample_time(sampler), states);
+        if (status != IMPACT_OK) return status;
+    }
+    return IMPACT_OK;
+}
+
+static impact_status fail(impact_motion *motion, impact_status status)
+{
+    if (motion->message[0] == '\0')
+        snprintf(motion->message, sizeof motion->message, "%s", impact_ode_message(motion->ode));
+    return status;
+}
+
+/* Steps until an event or t_end; y at the end is the state at *t. */
+static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, impact_state *states,
+                               impact_sampler *sampler, impact_end *end)
+{
+    enum { MAX_STILL = 1000 };
+    int still = 0;
+    double tau = motion->sliding ? 0 : *t;
+    const double stop = motion->sliding ? 1000 * (t_end - *t) + 1000 : t_end;
+    *end = (impact_end){IMPACT_END_TIME, 0};
+    while (still < MAX_STILL) {
+        const double tau_before = tau;
+        bool found;
+        impact_status status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
+        if (motion->message[0] != '\0') return IMPACT_EDOMAIN; /* a load was refused */
+        if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);
+        if (status == IMPACT_OK && end->kind == IMPACT_END_GAP) status = polish_gap(motion, end->index, &tau, y);
+        if (status != IMPACT_OK) return fail(motion, status);
+        if (!motion->sliding) y[Y_TIME] = tau;
+        if (y[Y_TIME] > t_end) {
+            status = interpolate_time(motion, t_end, y);
+            if (status != IMPACT_OK) return fail(motion, status);
+            y[Y_TIME] = t_end;
+            *end = (impact_end){IMPACT_END_TIME, 0};
+            memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots);
+        }
+        *t = y[Y_TIME];
+        memcpy(motion->kept, y, sizeof *y * (size_t)motion->size); /* samples overwrite y */
+        status = emit_until(motion, *t, states, sampler, y);
+        memcpy(y, motion->kept, sizeof *y * (size_t)motion->size);
+        if (status == IMPACT_OK && !sampler->pulse(sampler->context, *t)) status = IMPACT_STOPPED;
+        if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME || tau == stop) return status;
+        if (end_onsets(motion) || (motion->stiff && slowest_slip(motion) > 1e-2 * motion->slip_scale)) return IMPACT_OK;
+        still = tau > tau_before ? 0 : still + 1;
+    }
+    snprintf(motion->message, sizeof motion->message,
+             "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
+    return IMPACT_EUNSETTLED;
+}
+
+/* Which variable and which method the stretch needs. */
+static impact_status choose_road(impact_motion *motion, const impact_state *states)
+{
+    if (motion->persist.count > 0) impact_persist_solve(&motion->persist, motion->world, states, motion->loads);
+    const double slowest = slowest_slip(motion);
+    motion->slip_scale = slip_scale(motion, states);
+    motion->stiff = motion->after_onset && slowest < 1e-2 * motion->slip_scale;
+    motion->after_onset = any_onset(motion);
+    motion->sliding = isfinite(slowest) && !motion->stiff;
+    return choose_integrator(motion, motion->stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
+}
+
+impact_status impact_motion_integrate(impact_motion *motion, double *t, double t_end, impact_state *states,
+                                      impact_sampler *sampler, impact_end *end)
+{
+    memcpy(motion->scratch, states,
+           sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
+    impact_motion_set_slack(motion, states);
+    impact_status status = choose_road(motion, states);
+    if (status != IMPACT_OK) return status;
+    impact_motion_pack(motion, *t, states, motion->y);
+    status = impact_ode_start(motion->ode, motion->sliding ? 0 : *t, motion->y);
+    if (status != IMPACT_OK) return fail(motion, status);
+    status = integrate(motion, t, t_end, motion->y, states, sampler, end);
+    impact_motion_unpack(motion, motion->y, states);
+    motion->works = (impact_works){motion->y[Y_FORCE_WORK], motion->y[Y_DAMPING], motion->y[Y_SLIDING]};
+    count_work(motion);
+    return status;
+}
