@@ -100,18 +100,38 @@ static impact_status smooth_pair(const impact_solid *body1, quat q1, const impac
     return status;
 }
 
+/* Unit to rounding as it comes, in most calls. */
+static bool unit_of(quat q, quat *unit)
+{
+    const double square = quat_dot(q, q);
+    if (fabs(square - 1) <= 4.5e-16) {
+        *unit = q;
+        return true;
+    }
+    return quat_normalize(q, unit) == QUAT_OK;
+}
+
+static bool finite_place(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+static impact_status check(const impact_solid *body, quat *unit)
+{
+    if (!unit_of(body->orientation, unit) || !finite_place(body->position)) return IMPACT_EDOMAIN;
+    return impact_shape_check(&body->shape, NULL, 0);
+}
+
 impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache, impact_contact *contact)
 {
-    (void)cache;
     *contact = no_contact();
     quat q1, q2;
-    if (quat_normalize(body1->orientation, &q1) != QUAT_OK || quat_normalize(body2->orientation, &q2) != QUAT_OK) return IMPACT_EDOMAIN;
+    impact_status status = check(body1, &q1);
+    if (status == IMPACT_OK) status = check(body2, &q2);
+    if (status != IMPACT_OK) return status;
     const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
     if (plane1 && plane2) return IMPACT_EARGUMENT;
     if (body1->shape.kind == IMPACT_SPHERE && body2->shape.kind == IMPACT_SPHERE) return sphere_sphere(body1, body2, contact);
     if (plane2) return body_plane(body1, q1, body2, q2, contact);
     if (plane1) {
-        const impact_status status = body_plane(body2, q2, body1, q1, contact);
+        status = body_plane(body2, q2, body1, q1, contact);
         *contact = swapped(*contact);
         return status;
     }

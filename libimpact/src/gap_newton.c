@@ -476,13 +476,20 @@ bool impact_gap_newton(const impact_pair *pair, const double n[3], const double 
     impact_surface s[2];
     start(pair, n, x, s);
     double last = INFINITY;
+    int settled = 0; /* how often it has: while the bracket is wider than rounding, a few more steps may close it */
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         iterate it;
-        if (!look(pair, s, &it)) return false;
-        if ((last < finest_step || i == MAX_ITERATIONS - 1) && judge(pair, &it, meeting)) return true;
+        if (!look(pair, s, &it)) return settled > 0;
+        if (last < finest_step || i == MAX_ITERATIONS - 1) {
+            impact_meeting now;
+            if (judge(pair, &it, &now)) {
+                if (settled++ == 0 || now.upper - now.lower < meeting->upper - meeting->lower) *meeting = now;
+                if (meeting->upper - meeting->lower <= 1e-15 * pair->reach || settled == 4) return true;
+            }
+        }
         double step[2][2];
         newton_step(pair, &it, step);
-        if (!advance(pair, &it, step, s, &last)) return false;
+        if (!advance(pair, &it, step, s, &last)) return settled > 0;
     }
-    return false;
+    return settled > 0;
 }
