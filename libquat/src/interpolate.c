@@ -44,29 +44,29 @@ static quat great_circle(quat p, quat q, double t)
     return quat_axpy(sin(angle) / long_difference, difference, quat_scale(middle, cos(angle)));
 }
 
-/* For p.q >= 0 and 0 < t < 1. */
-static inline quat short_slerp(quat p, quat q, double t)
+/* For 0 < t < 1, from p to side q, side = +-1 such that they are no more than a right angle apart. */
+static inline quat short_slerp(quat p, quat q, double side, double t)
 {
     double a, b;
-    quat_slerp_weights(0.25 * quat_norm2(quat_sub(q, p)), 2 * t - 1, &a, &b);
+    quat_slerp_weights(0.25 * quat_norm2(quat_axpy(-side, p, q)), 2 * t - 1, &a, &b);
     /* most of the error by now is one of length */
-    return quat_renormalize(quat_axpy(b, q, quat_scale(p, a)));
+    return quat_renormalize(quat_axpy(side * b, q, quat_scale(p, a)));
 }
 
 quat quat_slerp(quat p, quat q, double t)
 {
-    const quat near = quat_nearest(q, p);
-    if (t > 0 && t < 1) return short_slerp(p, near, t);
+    /* the sign as a number: as a branch it would be mispredicted every second time */
+    if (t > 0 && t < 1) return short_slerp(p, q, copysign(1, quat_dot(p, q)), t);
     if (t == 0) return p;
-    if (t == 1) return near;
-    return great_circle(p, near, t);
+    const quat near = quat_nearest(q, p);
+    return t == 1 ? near : great_circle(p, near, t);
 }
 
 quat quat_slerp_as_given(quat p, quat q, double t)
 {
     if (t == 0) return p;
     if (t == 1) return q;
-    if (t > 0 && t < 1 && quat_dot(p, q) >= 0) return short_slerp(p, q, t);
+    if (t > 0 && t < 1 && quat_dot(p, q) >= 0) return short_slerp(p, q, 1, t);
     return great_circle(p, q, t);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <quat/quat.h>
 #include "dd.h"
+#include "length_kernel.h"
 #include "scale.h"
 
 const char *quat_status_string(quat_status status)
@@ -67,20 +68,8 @@ double quat_norm(quat q)
     return ldexp(sqrt(quat_norm2(s)), exponent);
 }
 
-/* q/|q| for |q|^2 in the range of doubles: the plain quotient, corrected by the residual |q|^2 - n^2 of its length. */
 QUAT_FMA_CLONES
-static quat divide_by_length(quat q)
-{
-    const double n = sqrt(quat_norm2(q)), a[4] = {q.w, q.x, q.y, q.z};
-    double high = -n * n, low = fma(-n, n, -high);
-    for (int i = 0; i < 4; i++) {
-        const quat_dd square = quat_two_prod(a[i], a[i]), t = quat_two_sum(high, square.hi);
-        high = t.hi;
-        low += t.lo + square.lo;
-    }
-    const quat unit = quat_make(q.w / n, q.x / n, q.y / n, q.z / n);
-    return quat_axpy(-0.5 * (high + low) / (n * n), unit, unit);
-}
+static quat divide_by_length(quat q) { return quat_divide_by_length(q); }
 
 quat_status quat_normalize(quat q, quat *unit)
 {

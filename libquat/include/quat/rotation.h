@@ -80,12 +80,11 @@ static inline quat_status quat_from_matrix(const qmat3 *m, quat *q)
     const double a = m->m[0][0], b = m->m[1][1], c = m->m[2][2];
     const double wx = m->m[2][1] - m->m[1][2], wy = m->m[0][2] - m->m[2][0], wz = m->m[1][0] - m->m[0][1];
     const double xy = m->m[1][0] + m->m[0][1], xz = m->m[0][2] + m->m[2][0], yz = m->m[2][1] + m->m[1][2];
-    const double rows[4][4] = {{1 + ((a + b) + c), wx, wy, wz},
-                               {wx, 1 + ((a - b) - c), xy, xz},
-                               {wy, xy, 1 + ((b - a) - c), yz},
-                               {wz, xz, yz, 1 + ((c - a) - b)}};
-    const int lower = rows[1][1] > rows[0][0], upper = 2 + (rows[3][3] > rows[2][2]);
-    const double *const r = rows[rows[upper][upper] > rows[lower][lower] ? upper : lower];
+    const double ww = 1 + ((a + b) + c), xx = 1 + ((a - b) - c), yy = 1 + ((b - a) - c), zz = 1 + ((c - a) - b);
+    const double rows[4][4] = {{ww, wx, wy, wz}, {wx, xx, xy, xz}, {wy, xy, yy, yz}, {wz, xz, yz, zz}};
+    /* chosen by arithmetic: branches would be mispredicted for random rotations */
+    const unsigned x = xx > ww, z = zz > yy, second = (zz > yy ? zz : yy) > (xx > ww ? xx : ww);
+    const double *const r = rows[(x & ~(0u - second)) | ((2 + z) & (0u - second))];
     const double n2 = (r[0] * r[0] + r[1] * r[1]) + (r[2] * r[2] + r[3] * r[3]);
     if (!(n2 >= 1e-280 && n2 <= 1e280)) {
         *q = quat_identity();
