@@ -17,7 +17,7 @@
 ---   wall       restitution 0.3 x 0.3, friction 0.25 x 0.25; the floor answers in the same instant
 ---
 --- The motion is planar: q = (q0, 0, q2, 0) stays on a circle of S3, out to the wall and back. The thesis' own figure 14 shows a
---- space curve; sphere_wall_spin.lua has one.
+--- space curve; sphere_wall_spin.lua has one. sphere_wall_rolling.lua has grip enough to roll to the wall.
 local impact = require "impact"
 local portrait = require "impact.portrait"
 
