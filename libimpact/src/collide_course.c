@@ -151,6 +151,12 @@ double impact_course_turning(const impact_frame *frame, double mu, double x, dou
     return (frame->d * x - frame->c * y) + mu * (frame->a - frame->b) * x * y;
 }
 
+bool impact_course_is_straight(const impact_frame *frame, double mu, double x, double y)
+{
+    const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
+    return fabs(impact_course_turning(frame, mu, x, y)) <= 1e-15 * rate;
+}
+
 /* The root lambda > 0 of |(mu M_tt + lambda)^-1 M_tz| = 1: Newton on 1/|.| - 1, convex and rising, from the left (More & Sorensen 1983). */
 static double restart_speed(const impact_frame *frame, double mu, double *x, double *y)
 {
@@ -209,8 +215,7 @@ bool impact_course_closed_form(impact_course *course)
         return true;
     }
     const double x = course->ux / course->s, y = course->uy / course->s;
-    const double rate = fabs(frame->c) + fabs(frame->d) + course->mu * fmax(frame->a, frame->b);
-    if (fabs(impact_course_turning(frame, course->mu, x, y)) > 4e-16 * rate) return false;
+    if (!impact_course_is_straight(frame, course->mu, x, y)) return false;
     const impact_line line = impact_course_sliding(frame, course->mu, x, y);
     impact_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
     if (!course->ended) impact_course_finish(course);

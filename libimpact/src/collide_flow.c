@@ -120,13 +120,19 @@ static void put(sampler *sm, double x, double y, double p, double px, double py,
     sm->next++;
 }
 
-/* All that is left, along a line in the direction (x, y) from now on. */
+/* Along a line in the direction (x, y) from now on, to where it stops. */
 static void along_line(sampler *sm, const impact_line *line, double x, double y)
 {
-    while (sm->next < sm->count) {
+    const double room = line->R < 0 ? sm->s / -line->R : INFINITY;
+    while (sm->next < sm->count && wanted_p(sm) <= sm->p + room) {
         const double p = wanted_p(sm), dp = p - sm->p, s = sm->s + line->R * dp;
         put(sm, s * x, s * y, p, sm->px + line->gx * dp, sm->py + line->gy * dp, line->stick);
     }
+    if (room == INFINITY) return;
+    sm->p += room;
+    sm->px += line->gx * room;
+    sm->py += line->gy * room;
+    sm->s = 0;
 }
 
 static void from_rest(sampler *sm)
@@ -192,7 +198,6 @@ static impact_status sample(sampler *sm)
 {
     const impact_frame *frame = sm->frame;
     const double mu = sm->flow->friction, small = 1e-17 * sm->s;
-    const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
     for (int steps = 0; steps < 1000 && sm->next < sm->count; steps++) {
         if (sm->s <= small) {
             from_rest(sm);
@@ -200,9 +205,9 @@ static impact_status sample(sampler *sm)
         }
         const double x = sm->x / sm->s, y = sm->y / sm->s;
         const impact_line line = impact_course_sliding(frame, mu, x, y);
-        if (fabs(impact_course_turning(frame, mu, x, y)) <= 4e-16 * rate && line.R >= 0) {
+        if (impact_course_is_straight(frame, mu, x, y)) {
             along_line(sm, &line, x, y);
-            return IMPACT_OK;
+            continue;
         }
         impact_tail tail;
         if (line.R < 0 && impact_tail_make(&tail, frame, mu, sm->x, sm->y, sm->s, 0) && sm->p + tail.p < wanted_p(sm)) {

@@ -352,12 +352,10 @@ bool impact_series_solve(impact_course *course, int order)
     const impact_frame *frame = course->frame;
     if (course->mu == 0) return impact_course_closed_form(course);
     const double mu = course->mu, small = 1e-17 * fmin(course->s, 1);
-    const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
     int events = -1;
     for (int steps = 0; steps < 400 && course->s > 0 && !course->ended; steps++) {
         const double x = course->ux / course->s, y = course->uy / course->s;
-        const bool frozen = fabs(impact_course_turning(frame, mu, x, y)) <= 4e-16 * rate;
-        if (frozen || course->s <= small) {
+        if (course->s <= small || impact_course_is_straight(frame, mu, x, y)) {
             const impact_line line = impact_course_sliding(frame, mu, x, y);
             impact_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
             if (!course->ended) course->s = 0;
