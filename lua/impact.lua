@@ -12,6 +12,33 @@ core.layer()
 ---@field volume number  m^3
 ---@field inertia vec3  per unit mass, m^2
 ---@field bounding_radius number  m
+---@field support fun(self, direction: vec): number, vec3  the support function, and where it is reached
+---@field point fun(self, u: number, v: number): vec3  on the surface, u in [-pi, pi), v in [-pi/2, pi/2]
+---@field normal fun(self, u: number, v: number): vec3  the outward unit normal there
+---@field inside fun(self, x: vec): number  below 1 inside, 1 on the surface
+---@field curvatures fun(self, direction: vec): number, number  1/m, larger first, where the normal is along direction
+---@field mesh fun(self, nu: integer, nv: integer): vec3[], vec3[]  points and normals, nv + 1 rows of nu
+
+---@class impact.solid
+---@field shape impact.shape
+---@field position? vec  m
+---@field orientation? quat|number[]  body to world
+---@field velocity? vec  m/s; for toi only, as the next two
+---@field acceleration? vec  m/s^2
+---@field omega? vec  rad/s, world
+
+---@class impact.contact
+---@field gap number  m; negative when the bodies overlap
+---@field lower number  m; bracket of the gap
+---@field upper number
+---@field normal vec3  unit, from the second body to the first
+---@field point1 vec3  witness points, world
+---@field point2 vec3
+---@field offset1 vec3  the same less the bodies' positions
+---@field offset2 vec3
+---@field stiffness number  m; small: the normal is soft
+---@field path "closed form"|"newton"|"gjk"|"fallback"
+---@field status string  "ok", or what to know about the answer
 
 ---@class impact.body
 ---@field name string  unique in the scene
@@ -104,6 +131,12 @@ core.layer()
 ---@field has fun(part: "cvode"|"ccd"): boolean  whether this build holds the part
 ---@field sphere fun(radius: number|{radius: number}): impact.shape
 ---@field plane fun(bounds?: {width?: number, depth?: number}): impact.shape
+---@field ellipsoid fun(axes: {a: number, b: number, c: number}): impact.shape
+---@field superquadric fun(axes: {a: number, b: number, c: number, r?: number, s?: number, t?: number}): impact.shape
+---@field superellipsoid fun(axes: {a: number, b: number, c: number, eps1?: number, eps2?: number}): impact.shape
+---@field shape table  the five above, by the same names
+---@field gap fun(first: impact.solid, second: impact.solid): impact.contact?, string?
+---@field toi fun(first: impact.solid, second: impact.solid, t_max: number): number?, impact.contact|string
 ---@field body fun(definition: impact.body): impact.body
 ---@field wind fun(definition: impact.wind): impact.wind
 ---@field attraction fun(definition?: impact.attraction): impact.attraction

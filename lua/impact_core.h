@@ -14,6 +14,7 @@
 IMPACT_API int luaopen_impact_core(lua_State *L);
 
 void impact_lua_open_shape(lua_State *L);
+void impact_lua_open_gap(lua_State *L);
 void impact_lua_open_body(lua_State *L);
 void impact_lua_open_force(lua_State *L);
 void impact_lua_open_scene(lua_State *L);

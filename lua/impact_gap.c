@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The gap of two bodies, and when they first touch.
+ */
+#include "impact_core.h"
+
+static void read_solid(const quat_lua_reader *reader, impact_solid *solid)
+{
+    lua_State *L = reader->L;
+    quat_lua_need(reader, "shape");
+    lua_getfield(L, reader->index, "shape");
+    const impact_shape *shape = luaL_testudata(L, -1, IMPACT_LUA_SHAPE);
+    if (!shape) quat_lua_reader_error(reader, "shape must be a shape such as impact.sphere(0.3), got a %s", luaL_typename(L, -1));
+    solid->shape = *shape;
+    lua_pop(L, 1);
+    solid->position = quat_lua_get_vec3(reader, "position", (qvec3){0, 0, 0});
+    const quat q = quat_lua_get_quat(reader, "orientation", quat_identity());
+    if (quat_normalize(q, &solid->orientation) != QUAT_OK) quat_lua_reader_error(reader, "orientation is zero");
+}
+
+static const char *const path_words[] = {
+    [IMPACT_PATH_NONE] = "none", [IMPACT_PATH_CLOSED_FORM] = "closed form", [IMPACT_PATH_NEWTON] = "newton",
+    [IMPACT_PATH_GJK] = "gjk",   [IMPACT_PATH_FALLBACK] = "fallback",
+};
+
+static void set_number(lua_State *L, const char *key, double value)
+{
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, key);
+}
+
+static void set_vec3(lua_State *L, const char *key, qvec3 value)
+{
+    quat_lua_push_vec3(L, value);
+    lua_setfield(L, -2, key);
+}
+
+static void push_contact(lua_State *L, const impact_contact *c, impact_status status)
+{
+    lua_createtable(L, 0, 12);
+    set_number(L, "gap", c->gap);
+    set_number(L, "lower", c->lower);
+    set_number(L, "upper", c->upper);
+    set_number(L, "stiffness", c->stiffness);
+    set_vec3(L, "normal", c->normal);
+    set_vec3(L, "point1", c->point1);
+    set_vec3(L, "point2", c->point2);
+    set_vec3(L, "offset1", c->offset1);
+    set_vec3(L, "offset2", c->offset2);
+    lua_pushstring(L, path_words[c->path]);
+    lua_setfield(L, -2, "path");
+    lua_pushstring(L, impact_status_string(status));
+    lua_setfield(L, -2, "status");
+}
+
+/* gap(A, B): {gap=, normal=, point1=, point2=, ...}, or nil, message */
+static int gap(lua_State *L)
+{
+    static const char *const keys[] = {"name", "shape", "position", "orientation", NULL};
+    impact_solid body[2];
+    for (int i = 0; i < 2; i++) {
+        const quat_lua_reader reader = quat_lua_read(L, i + 1, i == 0 ? "first body" : "second body", NULL, keys);
+        read_solid(&reader, &body[i]);
+    }
+    impact_contact contact;
+    const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
+    if (status < 0) return quat_lua_failure(L, impact_status_string(status));
+    push_contact(L, &contact, status);
+    return 1;
+}
+
+/* toi(A, B, t_max): time, contact; or nil, message when they do not meet by then */
+static int toi(lua_State *L)
+{
+    static const char *const keys[] = {"name", "shape", "position", "orientation", "velocity", "acceleration", "omega", NULL};
+    const qvec3 zero = {0, 0, 0};
+    impact_solid body[2];
+    impact_motion motion[2];
+    for (int i = 0; i < 2; i++) {
+        const quat_lua_reader reader = quat_lua_read(L, i + 1, i == 0 ? "first body" : "second body", NULL, keys);
+        read_solid(&reader, &body[i]);
+        motion[i].velocity = quat_lua_get_vec3(&reader, "velocity", zero);
+        motion[i].acceleration = quat_lua_get_vec3(&reader, "acceleration", zero);
+        motion[i].omega = quat_lua_get_vec3(&reader, "omega", zero);
+    }
+    const double t_max = quat_lua_arg_number(L, 3, "t_max", QUAT_LUA_NOT_NEGATIVE);
+    double time;
+    impact_contact contact;
+    const impact_status status = impact_toi(&body[0], &motion[0], &body[1], &motion[1], t_max, &time, &contact);
+    if (status != IMPACT_OK) return quat_lua_failure(L, impact_status_string(status));
+    lua_pushnumber(L, time);
+    push_contact(L, &contact, status);
+    return 2;
+}
+
+void impact_lua_open_gap(lua_State *L)
+{
+    static const luaL_Reg functions[] = {{"gap", gap}, {"toi", toi}, {NULL, NULL}};
+    luaL_setfuncs(L, functions, 0);
+}
