@@ -140,7 +140,7 @@ static impact_status run(impact_scene *scene, double t_end)
     if (!isfinite(t_end)) return IMPACT_EDOMAIN;
     const double due = ceil(scene->t * scene->sampler.rate);
     if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
-    impact_status status = impact_scene_settle(scene, -1);
+    impact_status status = impact_scene_settle(scene);
     while (status == IMPACT_OK && scene->t < t_end) {
         if (all_at_rest(scene)) return IMPACT_AT_REST;
         if (scene->event_count >= scene->max_events) {

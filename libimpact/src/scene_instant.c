@@ -208,11 +208,10 @@ static impact_status strike(impact_scene *scene, const meeting *m)
 }
 
 /* The first touching pair that approaches in earnest, or -1. Held contacts that barely do are put right by projection. */
-static int find_approach(impact_scene *scene, int first, meeting *m)
+static int find_approach(impact_scene *scene, meeting *m)
 {
     const double slow = scene->world.slip_speed;
-    for (int k = first >= 0 ? -1 : 0; k < scene->world.pair_count; k++) {
-        const int p = k < 0 ? first : k;
+    for (int p = 0; p < scene->world.pair_count; p++) {
         if (!meets(scene, p, m)) continue;
         const bool held = impact_is_held(&scene->world.pairs[p]);
         if (m->velocity < -slow && !(held && dies_out(scene, m, m->velocity))) return p;
@@ -320,13 +319,13 @@ static void remember(impact_scene *scene)
     for (int p = 0; p < scene->world.pair_count; p++) scene->modes[p] = scene->world.pairs[p].mode;
 }
 
-static impact_status strike_all(impact_scene *scene, int first)
+static impact_status strike_all(impact_scene *scene)
 {
     enum { MAX_IMPACTS = 100000 };
     meeting m;
     impact_status status = load_with_reactions(scene);
     for (int count = 0; status == IMPACT_OK; count++) {
-        const int p = find_approach(scene, first, &m);
+        const int p = find_approach(scene, &m);
         if (p < 0) return IMPACT_OK;
         if (count > 0) scene->world.usage.impacts_simultaneous++;
         if (count == MAX_IMPACTS) {
@@ -336,16 +335,15 @@ static impact_status strike_all(impact_scene *scene, int first)
         }
         status = strike(scene, &m);
         if (status == IMPACT_OK) status = load_with_reactions(scene);
-        first = -1;
     }
     return status;
 }
 
-impact_status impact_scene_settle(impact_scene *scene, int pair)
+impact_status impact_scene_settle(impact_scene *scene)
 {
     remember(scene);
     const double energy = impact_scene_total_energy(scene);
-    impact_status status = strike_all(scene, pair);
+    impact_status status = strike_all(scene);
     if (status == IMPACT_OK) {
         choose_modes(scene);
         status = hold(scene);
@@ -362,7 +360,7 @@ static impact_status arrive(impact_scene *scene, int p)
     impact_pair *pair = &world->pairs[p];
     impact_contact contact;
     impact_world_gap(world, pair, scene->states, &contact);
-    if (impact_world_inside_bounds(world, pair, scene->states, &contact) >= 0) return impact_scene_settle(scene, p);
+    if (impact_world_inside_bounds(world, pair, scene->states, &contact) >= 0) return impact_scene_settle(scene);
     pair->beyond = true;
     return IMPACT_OK;
 }
