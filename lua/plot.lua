@@ -334,7 +334,7 @@ local function put_axes(out, panel, three)
   local steps = {}
   for i, axis in ipairs { "x", "y", "z" } do
     if i < 3 or three then
-      steps[i] = put_range(out, panel, i, axis, three, i == 1 and not three and not panel.equal, three and 4 or i == 1 and 7 or 5)
+      steps[i] = put_range(out, panel, i, axis, three, i == 1 and not three and not panel.equal, three and 4 or i == 1 and not panel.equal and 7 or 5)
     end
   end
   local legend = panel.legend or "top right"
