@@ -70,7 +70,7 @@ static int take_value(impact_runner *runner, const char *option, const char *val
     if (strcmp(option, "--max-time") == 0)
         runner->max_time = number;
     else
-        runner->max_memory = (size_t)(number * 1048576.0);
+        runner->max_megabytes = number, runner->max_memory = (size_t)(number * 1048576.0);
     return -1;
 }
 
@@ -152,20 +152,19 @@ static int complain(impact_runner *runner, int code, const char *message)
     return code;
 }
 
-/* The error on top of the stack, of a protected call that ended with status. */
-static int complain_of(lua_State *L, impact_runner *runner, int status)
+/* What went wrong, in words: a limit that was reached, or else the code given. */
+static int complain_limits(impact_runner *runner, int code, const char *text)
 {
     char message[120];
     if (impact_runner_time_is_over()) {
         snprintf(message, sizeof message, "time limit of %g s reached", runner->max_time);
         return complain(runner, IMPACT_EXIT_LIMIT, message);
     }
-    if (status == LUA_ERRMEM) {
-        snprintf(message, sizeof message, "memory limit of %g MB reached", (double)runner->max_memory / 1048576.0);
+    if (text && strstr(text, "not enough memory")) {
+        snprintf(message, sizeof message, "memory limit of %g MB reached", runner->max_megabytes);
         return complain(runner, IMPACT_EXIT_LIMIT, runner->memory_refused ? message : "not enough memory");
     }
-    const char *text = lua_tostring(L, -1);
-    return complain(runner, IMPACT_EXIT_SCRIPT, text ? text : "the script raised an error that is not a text");
+    return complain(runner, code, text);
 }
 
 /* ---- a scene ---- */
@@ -207,8 +206,7 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
         return IMPACT_EXIT_OK;
     }
     const char *kind = lua_tostring(L, -1), *message = lua_tostring(L, -2);
-    if (impact_runner_time_is_over()) return complain_of(L, runner, LUA_ERRRUN);
-    return complain(runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
+    return complain_limits(runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
 }
 
 /* The picture of a scene with a plot; an exit code. *drawn tells whether there is one. */
@@ -225,11 +223,10 @@ static int draw_scene(lua_State *L, int scene, impact_runner *runner, const char
         return IMPACT_EXIT_OK;
     case IMPACT_DRAW_REFUSED:
         snprintf(text, sizeof text, "%s: the plot of scene '%s': %s", runner->script, name, message);
-        return complain(runner, IMPACT_EXIT_SCRIPT, text);
+        return complain_limits(runner, IMPACT_EXIT_SCRIPT, text);
     default:
-        if (impact_runner_time_is_over()) return complain_of(L, runner, LUA_ERRRUN);
         snprintf(text, sizeof text, "no picture: %s", message);
-        return complain(runner, IMPACT_EXIT_OUTPUT, text);
+        return complain_limits(runner, IMPACT_EXIT_OUTPUT, text);
     }
 }
 
@@ -292,11 +289,13 @@ static int run_script(impact_runner *runner)
                         runner->memory_refused ? "the memory limit is too small to start" : "not enough memory");
     lua_pushcfunction(L, work);
     lua_pushlightuserdata(L, runner);
-    const int status = lua_pcall(L, 1, 1, 0);
-    if (status == LUA_OK)
+    if (lua_pcall(L, 1, 1, 0) == LUA_OK) {
         code = (int)lua_tointeger(L, -1);
-    else
-        code = complain_of(L, runner, status);
+    } else {
+        const char *text = lua_tostring(L, -1);
+        code =
+            complain_limits(runner, IMPACT_EXIT_SCRIPT, text ? text : "the script raised an error that is not a text");
+    }
     lua_close(L);
     return code;
 }

@@ -27,9 +27,10 @@ typedef struct impact_runner {
     const char *script;
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
-    double max_time;   /* s; 0: no limit */
-    size_t max_memory; /* bytes; 0: no limit */
-    size_t memory;     /* bytes the Lua state holds */
+    double max_time;      /* s; 0: no limit */
+    double max_megabytes; /* as given, and: */
+    size_t max_memory;    /* bytes; 0: no limit */
+    size_t memory;        /* bytes the Lua state holds */
     bool memory_refused;
     int folder; /* descriptor of the output folder, or -1 */
     bool progress_shown;

@@ -124,6 +124,8 @@ end
 limited("local t = {} while true do t[#t + 1] = ('x'):rep(1e5) .. #t end", "--max-memory 20", "memory limit of 20 MB reached")
 limited("local s = ('x'):rep(1e9)", "--max-memory 20", "memory limit of 20 MB reached")
 limited("return 1", "--max-memory 0.001", "the memory limit is too small to start")
+limited("local impact = require 'impact' impact.scene { duration = 1e4, output_rate = 1e3, bodies = { impact.body { name = 'b', " ..
+  "shape = impact.sphere(1) } } }:run { record = true }", "--max-memory 2", "memory limit of 2 MB reached")
 succeeds("assert(not pcall(string.rep, 'x', 1e9))", "--max-memory 20")
 local over = "time limit of 0.2 s reached"
 limited("while true do end", "--max-time 0.2", over)
