@@ -78,15 +78,17 @@ function portrait.planar(scene, body, other)
   local inner = { qw = {}, qy = {} }
   for i = 1, #after.t do inner.qw[i], inner.qy[i] = 0.94 * after.qw[i], 0.94 * after.qy[i] end
   local last = #before.t
-  local function least(column) return math.min(0, math.floor(column * 10) / 10) - 0.1 end
+  local whole = false
+  for i = 1, #track.t do whole = whole or track.qw[i] < 0 or track.qy[i] < -0.05 end
+  local axis = { whole and -1.1 or -0.1, 1.1 } -- the whole circle, or the quarter that holds the motion
   local arc = plot.panel {
     title = "orientation on the circle q₀² + q₂² = 1",
     xlabel = "q₀",
     ylabel = "q₂",
     equal = true,
-    legend = "bottom left",
-    xrange = { least(math.min(table.unpack(track.qw))), 1.1 },
-    yrange = { least(math.min(table.unpack(track.qy))), 1.1 },
+    legend = whole and "center" or "bottom left",
+    xrange = axis,
+    yrange = axis,
     box = { 0.06, 0.405, 0.403, 0.885 },
     plot.line { circle[1], circle[2], color = "grey", width = 1 },
     plot.line { before.qw, before.qy, color = "blue", width = 3, label = "before the " .. other },

@@ -61,10 +61,13 @@ static double positive(const char *text)
     return *text && !*end && value > 0 && isfinite(value) ? value : NAN;
 }
 
-/* Takes an option with a value; an exit code, or -1. */
-static int take_value(impact_runner *runner, const char *option, const char *value)
+/* Takes an option with a value, which loses the slashes at its end; an exit code, or -1. */
+static int take_value(impact_runner *runner, const char *option, char *value)
 {
-    if (strcmp(option, "--out") == 0) return runner->directory = value, -1;
+    if (strcmp(option, "--out") == 0) {
+        for (size_t end = strlen(value); end > 1 && value[end - 1] == '/'; end--) value[end - 1] = 0;
+        return runner->directory = value, -1;
+    }
     const double number = positive(value);
     if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
     if (strcmp(option, "--max-time") == 0)
@@ -75,7 +78,7 @@ static int take_value(impact_runner *runner, const char *option, const char *val
 }
 
 /* The option with a value that the word is, alone or as OPTION=VALUE; NULL: none. */
-static const char *option_of(const char *word, const char **value)
+static const char *option_of(char *word, char **value)
 {
     static const char *const options[] = {"--out", "--max-memory", "--max-time"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
@@ -91,7 +94,8 @@ static const char *option_of(const char *word, const char **value)
 static int read_command(int count, char **words, impact_runner *runner)
 {
     for (int i = 1; i < count; i++) {
-        const char *word = words[i], *value = NULL, *option = option_of(word, &value);
+        char *word = words[i], *value = NULL;
+        const char *option = option_of(word, &value);
         if (option) {
             if (!value && i + 1 < count) value = words[++i];
             if (!value || !*value) return wrong_usage("%s needs a value", option);

@@ -14,6 +14,7 @@ local function shell(command)
 end
 
 runner.folder = folder
+runner.program = program
 runner.quote = quote
 runner.shell = shell
 

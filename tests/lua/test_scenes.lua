@@ -70,4 +70,12 @@ runner.shell(string.format("cd %s && mkdir again", runner.quote(runner.folder)))
 check.equal(runner.command(string.format("%s --out again --quiet", runner.quote(scenes .. "/sphere_wall.lua"))), 0)
 check.equal(runner.read("again/sphere_wall.csv"), runner.read("sphere_wall.csv"))
 
+-- Without gnuplot: the CSV files, one line that says so, and success.
+runner.shell(string.format("cd %s && PATH=/nonexistent %s %s --out bare// --quiet 2>stderr.txt; echo $? >code.txt",
+  runner.quote(runner.folder), runner.quote(runner.program), runner.quote(scenes .. "/sphere_wall.lua")))
+check.equal(runner.read("code.txt"), "0\n")
+check.equal(runner.read("stderr.txt"), "impact: gnuplot is not installed: no picture is drawn; the CSV files are complete\n")
+check.equal(runner.read("bare/sphere_wall.csv"), runner.read("sphere_wall.csv"))
+check.truth(not runner.exists("bare/sphere_wall.png") and not runner.exists("bare/sphere_wall.png.part"), "no picture, no part of one")
+
 check.report("scenes")
