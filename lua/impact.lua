@@ -147,6 +147,7 @@ for name, value in pairs(core) do
   if name ~= "layer" and name ~= "scene_methods" then impact[name] = value end
 end
 
+---@class impact.scene
 local methods = core.scene_methods
 local recorded_track = methods.track
 

@@ -10,7 +10,9 @@ static void read_solid(const quat_lua_reader *reader, impact_solid *solid)
     quat_lua_need(reader, "shape");
     lua_getfield(L, reader->index, "shape");
     const impact_shape *shape = luaL_testudata(L, -1, IMPACT_LUA_SHAPE);
-    if (!shape) quat_lua_reader_error(reader, "shape must be a shape such as impact.sphere(0.3), got a %s", luaL_typename(L, -1));
+    if (!shape)
+        quat_lua_reader_error(reader, "shape must be a shape such as impact.sphere(0.3), got a %s",
+                              luaL_typename(L, -1));
     solid->shape = *shape;
     lua_pop(L, 1);
     solid->position = quat_lua_get_vec3(reader, "position", (qvec3){0, 0, 0});
@@ -72,7 +74,8 @@ static int gap(lua_State *L)
 /* toi(A, B, t_max): time, contact; or nil, message when they do not meet by then */
 static int toi(lua_State *L)
 {
-    static const char *const keys[] = {"name", "shape", "position", "orientation", "velocity", "acceleration", "omega", NULL};
+    static const char *const keys[] = {"name",     "shape",        "position", "orientation",
+                                       "velocity", "acceleration", "omega",    NULL};
     const qvec3 zero = {0, 0, 0};
     impact_solid body[2];
     impact_motion motion[2];

@@ -5,8 +5,8 @@
  */
 #include "impact_scene.h"
 
+#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- calling the script ---- */
@@ -234,11 +234,28 @@ static bool keep_event(impact_lua_scene *self, const impact_event *event)
 
 /* ---- the recorder: CSV, rows kept, the script's functions, the host ---- */
 
+/* Tells the host how far the run is; false when it is to end. */
+static bool tell_host(impact_lua_scene *self, double t, double t_end)
+{
+    if (!self->host || !self->host->progress || self->host->progress(self->host->context, t, t_end)) return true;
+    self->ended_by_host = true;
+    return false;
+}
+
+static bool csv_fails(impact_lua_scene *self)
+{
+    self->csv_failed = true;
+    self->csv_errno = errno;
+    return false;
+}
+
 static bool on_sample(void *context, const impact_sample *sample)
 {
     impact_lua_scene *self = context;
     if (self->failed || self->stopped) return false;
-    if (self->has_csv && !self->csv.sample(self->csv.context, sample)) return self->csv_failed = true, false;
+    /* Long flights in closed form are all samples and no progress. */
+    if (++self->samples_told % 1024 == 0 && !tell_host(self, sample->t, self->t_end)) return false;
+    if (self->has_csv && !self->csv.sample(self->csv.context, sample)) return csv_fails(self);
     if (self->record && !keep_sample(self, sample)) return self->record_failed = true, false;
     return !self->sample_slot || call_script(self, call_with_sample, self->sample_slot, sample);
 }
@@ -247,7 +264,7 @@ static bool on_event(void *context, const impact_event *event)
 {
     impact_lua_scene *self = context;
     if (self->failed || self->stopped) return false;
-    if (self->has_csv && !self->csv.event(self->csv.context, event)) return self->csv_failed = true, false;
+    if (self->has_csv && !self->csv.event(self->csv.context, event)) return csv_fails(self);
     if (self->record && !keep_event(self, event)) return self->record_failed = true, false;
     return !self->event_slot || call_script(self, call_with_event, self->event_slot, event);
 }
@@ -267,8 +284,7 @@ static bool on_progress(void *context, double t, double t_end)
     impact_lua_scene *self = context;
     const double times[2] = {t, t_end};
     if (self->failed || self->stopped) return false;
-    if (self->host && self->host->progress && !self->host->progress(self->host->context, t, t_end))
-        return self->ended_by_host = true, false;
+    if (!tell_host(self, t, t_end)) return false;
     return !self->progress_slot || call_script(self, call_with_times, self->progress_slot, times);
 }
 
@@ -336,7 +352,8 @@ static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, impact_
     }
     lua_pushnil(L);
     if (good || self->csv_failed) {
-        lua_pushstring(L, message[0] ? message : "cannot write the rows");
+        if (self->csv_failed) snprintf(message, sizeof message, "cannot write the rows: %s", strerror(self->csv_errno));
+        lua_pushstring(L, message);
         lua_pushliteral(L, "output");
     } else {
         const char *why =
@@ -360,6 +377,8 @@ static int run(lua_State *L, double t_end, int options_index)
     luaL_checkstack(L, 24, NULL);
     const quat_lua_reader options = quat_lua_read(L, options_index, "run", NULL, keys);
     self->host = impact_lua_get_host(L);
+    self->t_end = t_end;
+    self->samples_told = 0;
     self->record = quat_lua_get_boolean(&options, "record", false);
     self->sample_slot = function_slot(&options, "on_sample");
     self->event_slot = function_slot(&options, "on_event");

@@ -5,7 +5,6 @@
 #include "impact_scene.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- the host ---- */

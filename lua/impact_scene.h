@@ -45,6 +45,9 @@ typedef struct impact_lua_scene {
     bool failed;  /* a function of the script raised an error; it is at error_slot */
     bool stopped; /* a function of the script answered false */
     bool csv_failed, record_failed, ended_by_host;
+    int csv_errno;
+    double t_end;
+    unsigned long samples_told;
     bool record;
     bool has_csv;
     impact_recorder csv;

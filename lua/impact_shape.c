@@ -79,7 +79,8 @@ static int shape_superquadric(lua_State *L)
     static const char *const keys[] = {"a", "b", "c", "r", "s", "t", NULL};
     const quat_lua_reader reader = quat_lua_read(L, 1, "superquadric", NULL, keys);
     const double a = semi_axis(&reader, "a"), b = semi_axis(&reader, "b"), c = semi_axis(&reader, "c");
-    const double r = quat_lua_get_number(&reader, "r", QUAT_LUA_FINITE, 2), s = quat_lua_get_number(&reader, "s", QUAT_LUA_FINITE, 2),
+    const double r = quat_lua_get_number(&reader, "r", QUAT_LUA_FINITE, 2),
+                 s = quat_lua_get_number(&reader, "s", QUAT_LUA_FINITE, 2),
                  t = quat_lua_get_number(&reader, "t", QUAT_LUA_FINITE, 2);
     return push_good(&reader, (impact_shape){IMPACT_SUPERQUADRIC, a, b, c, r, s, t});
 }
@@ -121,14 +122,16 @@ static int shape_support(lua_State *L)
 /* shape:point(u, v), shape:normal(u, v) */
 static int shape_point(lua_State *L)
 {
-    const double u = quat_lua_arg_number(L, 2, "u", QUAT_LUA_FINITE), v = quat_lua_arg_number(L, 3, "v", QUAT_LUA_FINITE);
+    const double u = quat_lua_arg_number(L, 2, "u", QUAT_LUA_FINITE),
+                 v = quat_lua_arg_number(L, 3, "v", QUAT_LUA_FINITE);
     quat_lua_push_vec3(L, impact_shape_point(self(L), u, v));
     return 1;
 }
 
 static int shape_normal(lua_State *L)
 {
-    const double u = quat_lua_arg_number(L, 2, "u", QUAT_LUA_FINITE), v = quat_lua_arg_number(L, 3, "v", QUAT_LUA_FINITE);
+    const double u = quat_lua_arg_number(L, 2, "u", QUAT_LUA_FINITE),
+                 v = quat_lua_arg_number(L, 3, "v", QUAT_LUA_FINITE);
     quat_lua_push_vec3(L, impact_shape_normal(self(L), u, v));
     return 1;
 }
@@ -219,8 +222,12 @@ static int shape_tostring(lua_State *L)
 
 void impact_lua_open_shape(lua_State *L)
 {
-    static const luaL_Reg methods[] = {{"support", shape_support}, {"point", shape_point},           {"normal", shape_normal},
-                                       {"inside", shape_inside},   {"curvatures", shape_curvatures}, {"mesh", shape_mesh},
+    static const luaL_Reg methods[] = {{"support", shape_support},
+                                       {"point", shape_point},
+                                       {"normal", shape_normal},
+                                       {"inside", shape_inside},
+                                       {"curvatures", shape_curvatures},
+                                       {"mesh", shape_mesh},
                                        {NULL, NULL}};
     static const luaL_Reg functions[] = {{"sphere", shape_sphere},
                                          {"plane", shape_plane},

@@ -136,6 +136,8 @@ if require "impact".has "cvode" then
     "forces = { impact.force { law = function(t, b) return { -b.position.x, 0, 0 } end } }, " ..
     "bodies = { impact.body { name = 'ball', shape = impact.sphere(1), position = { 1, 0, 0 } } } }", "--max-time 0.2", over)
 end
+limited("local impact = require 'impact' return impact.scene { name = 'long', duration = 1e7, output_rate = 1000, " ..
+  "bodies = { impact.body { name = 'ball', shape = impact.sphere(1) } } }", "--max-time 0.2", over)
 local stuck = "time limit reached, and the script did not stop"
 limited("setmetatable({}, { __gc = function() while true do end end }) collectgarbage()", "--max-time 0.2", stuck)
 limited("string.find(('a'):rep(400), ('.-'):rep(12) .. 'b')", "--max-time 0.2", stuck)
