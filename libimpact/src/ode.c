@@ -80,6 +80,8 @@ static int roots(sunrealtype t, N_Vector y, sunrealtype *value, void *context)
 
 static bool valid(const impact_ode_def *def)
 {
+    for (int i = 0; def->absolute_tolerances && i < def->size; i++)
+        if (!(def->absolute_tolerances[i] >= 0)) return false;
     return def->size >= 1 && def->roots >= 0 && def->rhs && (def->roots == 0 || def->root_functions) &&
            def->relative_tolerance > 0 && def->absolute_tolerance >= 0 && def->max_steps >= 0;
 }
@@ -176,6 +178,11 @@ static void add_counts(const impact_ode *ode, impact_ode_counts *total)
 
 impact_status impact_ode_start(impact_ode *ode, double t, const double *y)
 {
+    ode->message[0] = '\0';
+    if (!isfinite(t)) {
+        snprintf(ode->message, sizeof ode->message, "start at t = %g", t);
+        return IMPACT_EDOMAIN;
+    }
     for (int i = 0; i < ode->def.size; i++)
         if (!isfinite(y[i])) {
             snprintf(ode->message, sizeof ode->message, "start at t = %.17g: component %d is %g", t, i, y[i]);
@@ -197,6 +204,11 @@ impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double 
 {
     *found = false;
     if (roots_found) memset(roots_found, 0, sizeof *roots_found * (size_t)ode->def.roots);
+    if (ode->step_begin == ode->step_end && ode->step_end == t_stop) { /* no way to go, which CVODE would refuse */
+        *t = t_stop;
+        memcpy(y, N_VGetArrayPointer(ode->y), sizeof(double) * (size_t)ode->def.size);
+        return IMPACT_OK;
+    }
     if (CVodeSetStopTime(ode->cvode, t_stop) != CV_SUCCESS) return IMPACT_EINTEGRATOR;
     const int result = CVode(ode->cvode, t_stop, ode->y, t, CV_ONE_STEP);
     if (result < 0) {

@@ -41,11 +41,11 @@ typedef struct impact_ode_counts {
     long steps, rhs_calls, root_calls, error_test_failures, starts;
 } impact_ode_counts;
 
-/* Copies the definition; *ode is NULL on failure. */
+/* Copies the definition; *ode is NULL on failure. IMPACT_EARGUMENT: a number out of its range, or a function that is missing. */
 IMPACT_API impact_status impact_ode_create(const impact_ode_def *def, impact_ode **ode);
 IMPACT_API void impact_ode_destroy(impact_ode *ode); /* NULL is fine */
 
-/* (Re)starts at (t, y[n]); keeps the workspace. */
+/* (Re)starts at (t, y[n]); keeps the workspace. IMPACT_EDOMAIN, with a message, when a number is not finite. */
 IMPACT_API impact_status impact_ode_start(impact_ode *ode, double t, const double *y);
 
 /* Bounds the step from now on; 0: no bound. */
@@ -68,7 +68,7 @@ IMPACT_API void impact_ode_last_step(const impact_ode *ode, double *begin, doubl
 
 /* Totals since creation. */
 IMPACT_API impact_ode_counts impact_ode_count(const impact_ode *ode);
-/* The last failure in words, with numbers; "" when there was none. */
+/* The last failure since the last start in words, with numbers; "" when there was none. */
 IMPACT_API const char *impact_ode_message(const impact_ode *ode);
 
 #ifdef __cplusplus
