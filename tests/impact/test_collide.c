@@ -10,6 +10,8 @@
 #include <string.h>
 
 #include <impact/collide.h>
+#include "generators/collide_cases.h"
+#include "generators/collide_scenes.h"
 
 static void assert_near(double got, double wanted, double tolerance)
 {
@@ -161,12 +163,146 @@ static void separating_bodies_stay_as_they_are(void **state)
     assert_near(o.energy_after, o.energy_before, 0);
 }
 
+/* ---- invariance ---- */
+
+static impact_collision rotated(impact_collision c, quat q)
+{
+    c.normal = quat_rotate(q, c.normal);
+    for (int i = 0; i < 2; i++) {
+        impact_collider *b = &c.body[i];
+        b->orientation = quat_mul(q, b->orientation);
+        b->offset = quat_rotate(q, b->offset);
+        b->velocity = quat_rotate(q, b->velocity);
+        b->omega = quat_rotate(q, b->omega);
+    }
+    return c;
+}
+
+static impact_collision swapped(impact_collision c)
+{
+    const impact_collider first = c.body[0];
+    c.body[0] = c.body[1];
+    c.body[1] = first;
+    c.normal = qvec3_neg(c.normal);
+    return c;
+}
+
+/* Lengths by 2^7, times by 2^-3, masses by 2^-11. */
+static impact_collision other_units(impact_collision c)
+{
+    for (int i = 0; i < 2; i++) {
+        impact_collider *b = &c.body[i];
+        b->mass *= 0x1p-11;
+        b->moments = qvec3_scale(b->moments, 0x1p3);
+        b->offset = qvec3_scale(b->offset, 0x1p7);
+        b->velocity = qvec3_scale(b->velocity, 0x1p10);
+        b->omega = qvec3_scale(b->omega, 0x1p3);
+    }
+    return c;
+}
+
+static void rotating_swapping_and_scaling(void **state)
+{
+    (void)state;
+    const quat q = {0.5, -0.5, 0.1, 0.7};
+    for (int class_ = 0; class_ < CASE_CLASSES; class_++)
+        for (uint64_t i = 0; i < 500; i++) {
+            const impact_collision c = case_make((case_class)class_, 53, i);
+            impact_outcome o, other;
+            assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+            /* Rounding of the turned inputs, times the conditioning; slim bodies take up their slimness too. */
+            const double allowed = 1e-12 + 100 * 0x1p-52 * o.conditioning;
+
+            const impact_collision r = rotated(c, q);
+            assert_int_equal(impact_collide(&r, &other), IMPACT_OK);
+            const qvec3 rv[2] = {quat_rotate(q, o.velocity[0]), quat_rotate(q, o.velocity[1])};
+            const qvec3 rw[2] = {quat_rotate(q, o.omega[0]), quat_rotate(q, o.omega[1])};
+            const double off = case_error(&r, other.velocity, other.omega, rv, rw);
+            if (!(off < allowed))
+                fail_msg("%s %d rotated: off by %.3g, allowed %.3g", case_name((case_class)class_), (int)i, off,
+                         allowed);
+
+            const impact_collision s = swapped(c);
+            assert_int_equal(impact_collide(&s, &other), IMPACT_OK);
+            const qvec3 sv[2] = {o.velocity[1], o.velocity[0]}, sw[2] = {o.omega[1], o.omega[0]};
+            assert_true(case_error(&s, other.velocity, other.omega, sv, sw) < allowed);
+            assert_int_equal(other.compressions, o.compressions);
+
+            const impact_collision k = other_units(c);
+            assert_int_equal(impact_collide(&k, &other), IMPACT_OK);
+            const qvec3 kv[2] = {qvec3_scale(o.velocity[0], 0x1p10), qvec3_scale(o.velocity[1], 0x1p10)};
+            const qvec3 kw[2] = {qvec3_scale(o.omega[0], 0x1p3), qvec3_scale(o.omega[1], 0x1p3)};
+            assert_true(case_error(&k, other.velocity, other.omega, kv, kw) < allowed);
+            assert_near(other.energy_after, o.energy_after * 0x1p9,
+                        1e-12 * o.energy_before * 0x1p9 * (1 + o.conditioning));
+        }
+}
+
+/* Each body's change of momentum and angular momentum is the impulse and its moment. */
+static void momentum_is_the_impulse(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < 2000; i++) {
+        const impact_collision c = case_make(CASE_PLAIN, 59, i);
+        impact_outcome o;
+        assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+        for (int b = 0; b < 2; b++) {
+            const impact_collider *body = &c.body[b];
+            if (isinf(body->mass)) continue;
+            const qvec3 p = b == 0 ? o.impulse : qvec3_neg(o.impulse), j = body->moments;
+            const double rounding = 1e-14 * (body->mass + qvec3_norm(p));
+            assert_near3(qvec3_scale(qvec3_sub(o.velocity[b], body->velocity), body->mass), p, rounding);
+            const qvec3 dw = quat_rotate_inverse(body->orientation, qvec3_sub(o.omega[b], body->omega));
+            const qvec3 dl = quat_rotate(body->orientation, (qvec3){j.x * dw.x, j.y * dw.y, j.z * dw.z});
+            assert_near3(dl, qvec3_cross(body->offset, p), rounding);
+        }
+    }
+}
+
+/* Two equal solid spheres, oblique: M = diag(7/2, 7/2, 1) 2/m. */
+static void two_spheres_by_hand(void **state)
+{
+    (void)state;
+    for (int sticks = 0; sticks < 2; sticks++) {
+        const impact_collision c = scene_two_spheres(sticks);
+        const impact_collider *one = &c.body[0], *two = &c.body[1];
+        impact_outcome o;
+        assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+        const qvec3 n = c.normal, u1 = qvec3_add(one->velocity, qvec3_cross(one->omega, one->offset));
+        const qvec3 u = qvec3_sub(u1, qvec3_add(two->velocity, qvec3_cross(two->omega, two->offset)));
+        const double uz = qvec3_dot(u, n), p = -uz * 2 * 1.3;
+        const qvec3 ut = qvec3_axpy(-uz, n, u);
+        const double s = qvec3_norm(ut), most = 0.25 * p, stop = s * 2 * 2 / 7;
+        assert_int_equal(stop < most, sticks);
+        const qvec3 P = qvec3_axpy(-fmin(stop, most) / s, ut, qvec3_scale(n, p));
+        assert_near3(o.impulse, P, 1e-14);
+        assert_near3(o.velocity[0], qvec3_axpy(0.25, P, one->velocity), 1e-14);
+        assert_near3(o.omega[1], qvec3_axpy(-1 / 0.144, qvec3_cross(two->offset, P), two->omega), 1e-13);
+    }
+}
+
+static void words_for_all(void **state)
+{
+    (void)state;
+    assert_string_equal(impact_law_name(IMPACT_STRONGE), "stronge");
+    assert_string_equal(impact_solver_name(IMPACT_SOLVER_CLOSED_FORM), "closed form");
+    assert_string_equal(impact_phase_name(IMPACT_REVERSAL), "reversal");
+    assert_string_equal(impact_phase_name((impact_phase)77), "unknown");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sphere_slides),      cmocka_unit_test(sphere_sticks_below_its_angle),
-        cmocka_unit_test(rebound_off_a_wall), cmocka_unit_test(plastic_and_smooth),
-        cmocka_unit_test(bad_input_is_named), cmocka_unit_test(separating_bodies_stay_as_they_are),
+        cmocka_unit_test(sphere_slides),
+        cmocka_unit_test(sphere_sticks_below_its_angle),
+        cmocka_unit_test(rebound_off_a_wall),
+        cmocka_unit_test(plastic_and_smooth),
+        cmocka_unit_test(bad_input_is_named),
+        cmocka_unit_test(separating_bodies_stay_as_they_are),
+        cmocka_unit_test(rotating_swapping_and_scaling),
+        cmocka_unit_test(momentum_is_the_impulse),
+        cmocka_unit_test(two_spheres_by_hand),
+        cmocka_unit_test(words_for_all),
     };
     return cmocka_run_group_tests_name("impact collide", tests, NULL, NULL);
 }
