@@ -173,7 +173,7 @@ static void report(const impact_collision *collision, const impact_ready ready[2
     double px = course->px, py = course->py;
     /* Friction's direction rounds: the cone is kept to the last bit. */
     const double across2 = px * px + py * py, most = course->mu * course->p;
-    if (across2 > most * most) {
+    if (!collision->friction_law && across2 > most * most) {
         const double f = most / sqrt(across2) * (1 - 1e-16);
         px *= f;
         py *= f;

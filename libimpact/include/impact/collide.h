@@ -52,7 +52,8 @@ typedef struct impact_collision {
     int series_order;                  /* Taylor series: 8 ... 32; 0: 22 */
     impact_friction_law *friction_law; /* in place of `friction`, by CVODE; NULL: constant friction */
     void *friction_context;
-    double tangential_compliance; /* eta^2 = normal over tangential stiffness of the contact, by CVODE and Stronge's law; 0: rigid */
+    double
+        tangential_compliance; /* eta^2 = normal over tangential stiffness of the contact, by CVODE and Stronge's law; 0: rigid */
     impact_collide_workspace *workspace; /* for CVODE; NULL: one is made for the call (it allocates), Adams at 1e-12 */
 } impact_collision;
 
@@ -69,21 +70,22 @@ typedef enum impact_phase {
 enum { IMPACT_MAX_PHASES = 16 };
 
 typedef struct impact_outcome {
-    qvec3 velocity[2], omega[2];  /* after the impact, world */
-    qvec3 impulse;                /* on body 1, N s, world; body 2 gets the negative */
-    double impulse_normal;        /* along the normal, N s, > 0 */
-    double impulse_tangential;    /* magnitude across it, N s; at most mu times impulse_normal */
+    qvec3 velocity[2], omega[2];        /* after the impact, world */
+    qvec3 impulse;                      /* on body 1, N s, world; body 2 gets the negative */
+    double impulse_normal;              /* along the normal, N s, > 0 */
+    double impulse_tangential;          /* magnitude across it, N s; at most mu times impulse_normal */
     double normal_before, normal_after; /* u_z, normal relative velocity at the contact, m/s; before < 0 */
-    double compression_impulse;   /* p_c, N s, summed over compressions */
-    double work_compression, work_restitution, work_friction; /* J: <= 0, >= 0, <= 0; their sum is the change of energy */
+    double compression_impulse;         /* p_c, N s, summed over compressions */
+    double work_compression, work_restitution,
+        work_friction;                  /* J: <= 0, >= 0, <= 0; their sum is the change of energy */
     double energy_before, energy_after; /* kinetic, J, of the bodies that move */
-    int compressions;             /* how many times the contact was compressed */
+    int compressions;                   /* how many times the contact was compressed */
     int phase_count;
     unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order */
-    impact_solver solver;         /* the one that answered */
-    double conditioning;          /* of the contact's inverse mass matrix M: largest over smallest eigenvalue; 1 is best */
-    bool jammed;                  /* friction drove the contact on into compression: u_z fell while it was < 0 */
-    bool energy_rose;             /* Newton's law only (or a restitution above 1): it can */
+    impact_solver solver;                    /* the one that answered */
+    double conditioning; /* of the contact's inverse mass matrix M: largest over smallest eigenvalue; 1 is best */
+    bool jammed;         /* friction drove the contact on into compression: u_z fell while it was < 0 */
+    bool energy_rose;    /* Newton's law only (or a restitution above 1): it can */
 } impact_outcome;
 
 /* One word for each: "poisson", "closed form", "slip-c" ...; "unknown" for any other value. */
@@ -95,8 +97,13 @@ IMPACT_API const char *impact_phase_name(impact_phase phase);
  * with the thing and its value in message[size], cut to fit; size 0: no message. */
 IMPACT_API impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size);
 
+/* Moments and orientation for an impact_collider from an inertia tensor about the centre in world axes, kg m^2, symmetric to 1e-9 of
+ * its largest entry and positive definite. IMPACT_EARGUMENT otherwise, IMPACT_EDOMAIN for a NaN or infinity: *orientation = 1. */
+IMPACT_API impact_status impact_principal_axes(const qmat3 *tensor, qvec3 *moments, quat *orientation);
+
 /* A workspace for CVODE's road, of the method and relative tolerance given (1e-14 ... 1e-2). IMPACT_EABSENT in a build without CVODE. */
-IMPACT_API impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance, impact_collide_workspace **workspace);
+IMPACT_API impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance,
+                                                         impact_collide_workspace **workspace);
 IMPACT_API void impact_collide_workspace_destroy(impact_collide_workspace *workspace); /* NULL is fine */
 /* CVODE's work since the workspace was made. */
 IMPACT_API impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace);
@@ -109,8 +116,8 @@ IMPACT_API impact_status impact_collide(const impact_collision *collision, impac
  * has). The answers are the same bits for any number of threads. Returns the first failure, else IMPACT_OK; separating pairs are no
  * failure. A workspace given in a collision serves as a pattern: each thread makes its own of the same method and tolerance.
  * Friction laws are called from several threads at once. IMPACT_EARGUMENT: threads out of range. */
-IMPACT_API impact_status impact_collide_many(const impact_collision *collisions, size_t count, int threads, impact_outcome *outcomes,
-                                             impact_status *statuses);
+IMPACT_API impact_status impact_collide_many(const impact_collision *collisions, size_t count, int threads,
+                                             impact_outcome *outcomes, impact_status *statuses);
 
 /* ---- sliding itself, as data for plotting ---- */
 

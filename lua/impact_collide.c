@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * impact.collide{}, and impact.flow: one impact and its sliding from Lua.
+ */
+#include "impact_collide.h"
+
+#include <string.h>
+
+const char *const impact_lua_laws[] = {"poisson", "newton", "stronge", NULL};
+const char *const impact_lua_solvers[] = {"auto", "closed_form", "series", "cvode", NULL};
+
+/* ---- reading ---- */
+
+static bool is_matrix(lua_State *L, int index)
+{
+    const bool rows = lua_rawgeti(L, index, 1) == LUA_TTABLE;
+    lua_pop(L, 1);
+    return rows;
+}
+
+static void read_tensor(const quat_lua_reader *reader, const char *key, int index, qmat3 *tensor)
+{
+    lua_State *L = reader->L;
+    for (int i = 0; i < 3; i++) {
+        if (lua_rawgeti(L, index, i + 1) != LUA_TTABLE)
+            quat_lua_reader_error(reader, "%s: row %d is missing", key, i + 1);
+        for (int j = 0; j < 3; j++) {
+            int is_number;
+            lua_rawgeti(L, -1, j + 1);
+            tensor->m[i][j] = lua_tonumberx(L, -1, &is_number);
+            if (!is_number || !isfinite(tensor->m[i][j]))
+                quat_lua_reader_error(reader, "%s: entry (%d, %d) must be a finite number", key, i + 1, j + 1);
+            lua_pop(L, 1);
+        }
+        lua_pop(L, 1);
+    }
+}
+
+void impact_lua_read_inertia(const quat_lua_reader *reader, const char *key, qvec3 *moments, quat *orientation)
+{
+    static const char *const keys[] = {"moments", "orientation", NULL};
+    lua_State *L = reader->L;
+    const int index = lua_gettop(L);
+    if (lua_type(L, index) != LUA_TTABLE)
+        quat_lua_reader_error(reader, "%s must be a 3 x 3 table or {moments=, orientation=}, got a %s", key,
+                              luaL_typename(L, index));
+    if (is_matrix(L, index)) {
+        qmat3 tensor;
+        read_tensor(reader, key, index, &tensor);
+        if (impact_principal_axes(&tensor, moments, orientation) != IMPACT_OK)
+            quat_lua_reader_error(reader, "%s must be symmetric and positive definite", key);
+        return;
+    }
+    const quat_lua_reader inner = quat_lua_read(L, index, key, reader->where, keys);
+    quat_lua_need(&inner, "moments");
+    *moments = quat_lua_get_vec3(&inner, "moments", *moments);
+    *orientation = quat_lua_get_quat(&inner, "orientation", quat_identity());
+    if (quat_normalize(*orientation, orientation) != QUAT_OK)
+        quat_lua_reader_error(&inner, "orientation has no direction");
+}
+
+static void read_collider(const quat_lua_reader *reader, int number, impact_collider *body)
+{
+    static const char *const names[2][5] = {{"m1", "J1", "r1", "v1", "w1"}, {"m2", "J2", "r2", "v2", "w2"}};
+    static const qvec3 zero = {0, 0, 0};
+    const char *const *key = names[number];
+    lua_State *L = reader->L;
+    *body = (impact_collider){.orientation = {1, 0, 0, 0}};
+    body->mass = quat_lua_get_number(reader, key[0], QUAT_LUA_POSITIVE_OR_INF, INFINITY);
+    body->offset = quat_lua_get_vec3(reader, key[2], zero);
+    body->velocity = quat_lua_get_vec3(reader, key[3], zero);
+    body->omega = quat_lua_get_vec3(reader, key[4], zero);
+    if (isinf(body->mass)) return;
+    quat_lua_need(reader, key[1]);
+    lua_getfield(L, reader->index, key[1]);
+    impact_lua_read_inertia(reader, key[1], &body->moments, &body->orientation);
+    lua_pop(L, 1);
+}
+
+/* ---- friction laws ---- */
+
+typedef struct law_call {
+    lua_State *L;
+    int function; /* stack index */
+    bool failed;  /* the error's message is then on top of the stack */
+} law_call;
+
+static double call_law(double speed, void *context)
+{
+    law_call *call = context;
+    lua_State *L = call->L;
+    if (call->failed) return NAN;
+    lua_pushvalue(L, call->function);
+    lua_pushnumber(L, speed);
+    if (lua_pcall(L, 1, 1, 0) != LUA_OK) {
+        call->failed = true;
+        return NAN;
+    }
+    int is_number;
+    const double mu = lua_tonumberx(L, -1, &is_number);
+    if (!is_number || !(mu >= 0 && isfinite(mu))) {
+        lua_pop(L, 1);
+        lua_pushfstring(L, "mu(%f) must be a number >= 0", speed);
+        call->failed = true;
+        return NAN;
+    }
+    lua_pop(L, 1);
+    return mu;
+}
+
+/* ---- results ---- */
+
+static void set_number(lua_State *L, const char *key, double value)
+{
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, key);
+}
+
+static void set_vec3(lua_State *L, const char *key, qvec3 value)
+{
+    quat_lua_push_vec3(L, value);
+    lua_setfield(L, -2, key);
+}
+
+static void push_outcome(lua_State *L, const impact_outcome *o, impact_status status)
+{
+    lua_createtable(L, 0, 20);
+    set_vec3(L, "v1", o->velocity[0]);
+    set_vec3(L, "w1", o->omega[0]);
+    set_vec3(L, "v2", o->velocity[1]);
+    set_vec3(L, "w2", o->omega[1]);
+    set_vec3(L, "impulse", o->impulse);
+    set_number(L, "impulse_normal", o->impulse_normal);
+    set_number(L, "impulse_tangential", o->impulse_tangential);
+    set_number(L, "compression_impulse", o->compression_impulse);
+    set_number(L, "normal_before", o->normal_before);
+    set_number(L, "normal_after", o->normal_after);
+    set_number(L, "energy_before", o->energy_before);
+    set_number(L, "energy_after", o->energy_after);
+    set_number(L, "conditioning", o->conditioning);
+    lua_createtable(L, 0, 3);
+    set_number(L, "compression", o->work_compression);
+    set_number(L, "restitution", o->work_restitution);
+    set_number(L, "friction", o->work_friction);
+    lua_setfield(L, -2, "work");
+    lua_createtable(L, o->phase_count, 0);
+    for (int i = 0; i < o->phase_count; i++) {
+        lua_pushstring(L, impact_phase_name((impact_phase)o->phases[i]));
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "phases");
+    lua_pushinteger(L, o->compressions);
+    lua_setfield(L, -2, "compressions");
+    lua_pushboolean(L, o->energy_rose);
+    lua_setfield(L, -2, "energy_rose");
+    lua_pushboolean(L, o->jammed);
+    lua_setfield(L, -2, "jammed");
+    lua_pushstring(L, impact_solver_name(o->solver));
+    lua_setfield(L, -2, "solver");
+    lua_pushstring(L, status == IMPACT_SEPARATING ? "separating" : "ok");
+    lua_setfield(L, -2, "status");
+}
+
+/* ---- the door ---- */
+
+static const char *const collide_keys[] = {"m1",
+                                           "J1",
+                                           "r1",
+                                           "v1",
+                                           "w1",
+                                           "m2",
+                                           "J2",
+                                           "r2",
+                                           "v2",
+                                           "w2",
+                                           "n",
+                                           "mu",
+                                           "eps",
+                                           "law",
+                                           "solver",
+                                           "order",
+                                           "any_restitution",
+                                           "compliance",
+                                           "tolerance",
+                                           "method",
+                                           NULL};
+
+/* The keys that every kind of call has but mu. */
+static void read_collision(const quat_lua_reader *reader, impact_collision *c)
+{
+    *c = (impact_collision){.normal = {0, 0, 1}};
+    for (int i = 0; i < 2; i++) read_collider(reader, i, &c->body[i]);
+    quat_lua_need(reader, "m1");
+    quat_lua_need(reader, "n");
+    c->normal = quat_lua_get_vec3(reader, "n", c->normal);
+    c->any_restitution = quat_lua_get_boolean(reader, "any_restitution", false);
+    c->restitution =
+        quat_lua_get_number(reader, "eps", c->any_restitution ? QUAT_LUA_NOT_NEGATIVE : QUAT_LUA_FRACTION, 0);
+    c->law = (impact_law)quat_lua_get_choice(reader, "law", impact_lua_laws, IMPACT_POISSON);
+    c->solver = (impact_solver)quat_lua_get_choice(reader, "solver", impact_lua_solvers, IMPACT_SOLVER_AUTO);
+    c->series_order = (int)quat_lua_get_integer(reader, "order", 8, 32, 0);
+    c->tangential_compliance = quat_lua_get_number(reader, "compliance", QUAT_LUA_NOT_NEGATIVE, 0);
+}
+
+/* A workspace as asked for by tolerance and method, closed with the value on the stack. */
+typedef struct workspace_box {
+    impact_collide_workspace *workspace;
+} workspace_box;
+
+static const char workspace_kind[] = "impact.collide_workspace";
+
+static int close_box(lua_State *L)
+{
+    workspace_box *box = luaL_checkudata(L, 1, workspace_kind);
+    impact_collide_workspace_destroy(box->workspace);
+    box->workspace = NULL;
+    return 0;
+}
+
+static impact_status make_box(lua_State *L, const quat_lua_reader *reader, impact_collision *c)
+{
+    static const char *const methods[] = {"adams", "bdf", NULL};
+    const double tolerance = quat_lua_get_number(reader, "tolerance", QUAT_LUA_POSITIVE, 1e-12);
+    const int method = quat_lua_get_choice(reader, "method", methods, IMPACT_ODE_ADAMS);
+    if (!(tolerance >= 1e-14 && tolerance <= 1e-2)) quat_lua_reader_error(reader, "tolerance must be in [1e-14, 1e-2]");
+    if (!quat_lua_has(reader, "tolerance") && !quat_lua_has(reader, "method")) return IMPACT_OK;
+    workspace_box *box = lua_newuserdatauv(L, sizeof *box, 0);
+    box->workspace = NULL;
+    luaL_setmetatable(L, workspace_kind);
+    const impact_status status = impact_collide_workspace_create((impact_ode_method)method, tolerance, &box->workspace);
+    c->workspace = box->workspace;
+    return status;
+}
+
+/* collide{m1=, J1=, r1=, v1=, w1=, m2=, ..., n=, mu=, eps=, law=, solver=}: a table, or nil and why there is no answer. */
+static int collide(lua_State *L)
+{
+    const quat_lua_reader reader = quat_lua_read(L, 1, "collision", NULL, collide_keys);
+    impact_collision c;
+    read_collision(&reader, &c);
+    impact_status status = make_box(L, &reader, &c);
+    if (status != IMPACT_OK) return quat_lua_failure(L, impact_status_string(status));
+    lua_getfield(L, 1, "mu");
+    law_call call = {.L = L, .function = lua_gettop(L)};
+    if (lua_isfunction(L, -1)) {
+        c.friction_law = call_law;
+        c.friction_context = &call;
+        luaL_checkstack(L, 8, "friction law");
+    } else {
+        c.friction = quat_lua_get_number(&reader, "mu", QUAT_LUA_NOT_NEGATIVE, 0);
+    }
+    char message[200];
+    if (impact_collide_check(&c, message, sizeof message) != IMPACT_OK)
+        return quat_lua_reader_error(&reader, "%s", message);
+    impact_outcome o;
+    status = impact_collide(&c, &o);
+    if (call.failed) return quat_lua_reader_error(&reader, "mu: %s", lua_tostring(L, -1));
+    if (status < 0) return quat_lua_failure(L, impact_status_string(status));
+    push_outcome(L, &o, status);
+    return 1;
+}
+
+/* ---- the flow ---- */
+
+static void push_directions(lua_State *L, const impact_flow *flow)
+{
+    impact_flow_direction directions[4];
+    const int n = impact_flow_directions(flow, directions);
+    lua_createtable(L, n, 0);
+    for (int i = 0; i < n; i++) {
+        lua_createtable(L, 0, 4);
+        set_number(L, "theta", directions[i].theta);
+        set_number(L, "rate", directions[i].rate);
+        set_number(L, "climb", directions[i].climb);
+        set_number(L, "pull", directions[i].pull);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
+static void push_points(lua_State *L, const impact_flow_point *points, int count)
+{
+    static const char *const names[] = {"p", "ux", "uy", "uz", "s", "theta", "px", "py"};
+    for (int k = 0; k < 8; k++) {
+        lua_createtable(L, count, 0);
+        for (int i = 0; i < count; i++) {
+            const impact_flow_point *at = &points[i];
+            const double values[] = {at->p,     at->velocity[0], at->velocity[1], at->velocity[2],
+                                     at->speed, at->theta,       at->impulse[0],  at->impulse[1]};
+            lua_pushnumber(L, values[k]);
+            lua_rawseti(L, -2, i + 1);
+        }
+        lua_setfield(L, -2, names[k]);
+    }
+    lua_createtable(L, count, 0);
+    for (int i = 0; i < count; i++) {
+        lua_pushboolean(L, points[i].stick);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "stick");
+}
+
+/* flow{a=, b=, c=, d=, m=, mu=, u={ux, uy, uz}, p_end=, count=}, or the keys of collide with p_end and count. */
+static int flow(lua_State *L)
+{
+    static const char *const plain_keys[] = {"a", "b", "c", "d", "m", "mu", "u", "p_end", "count", NULL};
+    static const char *const collision_keys[] = {"m1", "J1", "r1", "v1", "w1",    "m2",    "J2", "r2",
+                                                 "v2", "w2", "n",  "mu", "p_end", "count", NULL};
+    luaL_checktype(L, 1, LUA_TTABLE);
+    lua_getfield(L, 1, "a");
+    const bool plain = !lua_isnil(L, -1);
+    lua_pop(L, 1);
+    const quat_lua_reader reader = quat_lua_read(L, 1, "flow", NULL, plain ? plain_keys : collision_keys);
+    impact_flow data = {.t1 = {1, 0, 0}, .t2 = {0, 1, 0}, .n = {0, 0, 1}};
+    double u[3];
+    if (plain) {
+        data.a = quat_lua_get_number(&reader, "a", QUAT_LUA_POSITIVE, 1);
+        data.b = quat_lua_get_number(&reader, "b", QUAT_LUA_POSITIVE, 1);
+        data.c = quat_lua_get_number(&reader, "c", QUAT_LUA_FINITE, 0);
+        data.d = quat_lua_get_number(&reader, "d", QUAT_LUA_FINITE, 0);
+        data.m = quat_lua_get_number(&reader, "m", QUAT_LUA_POSITIVE, 1);
+        quat_lua_need(&reader, "u");
+        const qvec3 v = quat_lua_get_vec3(&reader, "u", (qvec3){0, 0, 0});
+        u[0] = v.x, u[1] = v.y, u[2] = v.z;
+    } else {
+        impact_collision c;
+        char message[200];
+        read_collision(&reader, &c);
+        if (impact_collide_check(&c, message, sizeof message) != IMPACT_OK)
+            return quat_lua_reader_error(&reader, "%s", message);
+        impact_flow_make(&c, &data, u);
+    }
+    data.friction = quat_lua_get_number(&reader, "mu", QUAT_LUA_NOT_NEGATIVE, 0);
+    quat_lua_need(&reader, "p_end");
+    const double p_end = quat_lua_get_number(&reader, "p_end", QUAT_LUA_POSITIVE, 1);
+    const int count = (int)quat_lua_get_integer(&reader, "count", 2, 1000000, 200);
+    if (data.c * data.c / data.a + data.d * data.d / data.b >= data.m)
+        return quat_lua_reader_error(&reader, "M must be positive definite: c^2/a + d^2/b < m");
+    impact_flow_point *points = lua_newuserdatauv(L, sizeof *points * (size_t)count, 0);
+    const impact_status status = impact_flow_sample(&data, u, p_end, count, points);
+    if (status != IMPACT_OK) return quat_lua_failure(L, impact_status_string(status));
+    lua_createtable(L, 0, 20);
+    push_points(L, points, count);
+    push_directions(L, &data);
+    lua_setfield(L, -2, "directions");
+    set_vec3(L, "t1", data.t1);
+    set_vec3(L, "t2", data.t2);
+    set_vec3(L, "normal", data.n);
+    set_number(L, "a", data.a);
+    set_number(L, "b", data.b);
+    set_number(L, "c", data.c);
+    set_number(L, "d", data.d);
+    set_number(L, "m", data.m);
+    return 1;
+}
+
+void impact_lua_open_collide(lua_State *L)
+{
+    static const luaL_Reg functions[] = {
+        {"collide", collide}, {"collide_many", impact_lua_collide_many}, {"flow", flow}, {NULL, NULL}};
+    static const luaL_Reg box_methods[] = {{"__gc", close_box}, {"__close", close_box}, {NULL, NULL}};
+    luaL_newmetatable(L, workspace_kind);
+    luaL_setfuncs(L, box_methods, 0);
+    lua_pop(L, 1);
+    luaL_setfuncs(L, functions, 0);
+}
