@@ -78,6 +78,10 @@ impact_status impact_csv_open(const char *samples_path, const char *events_path,
                               unsigned long message_size)
 {
     *out = NULL;
+    if (samples_path && events_path && strcmp(samples_path, events_path) == 0) {
+        if (message) snprintf(message, message_size, "%s: samples and events need a file each", samples_path);
+        return IMPACT_EARGUMENT;
+    }
     impact_csv *csv = calloc(1, sizeof *csv);
     if (!csv) return IMPACT_ENOMEM;
     const bool samples = open_part(&csv->samples, samples_path, "t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n");
@@ -100,8 +104,12 @@ static bool put_number(FILE *file, double value, char end)
 {
     char text[32];
     snprintf(text, sizeof text, "%.17g", value + 0.0);
-    for (char *c = text; *c; c++)
-        if (*c == ',') *c = '.';
+    char *point = text + strspn(text, "+-0123456789einfa");
+    const size_t size = strcspn(point, "0123456789e"); /* of the locale's decimal point, which may be several bytes */
+    if (size > 0) {
+        memmove(point + 1, point + size, strlen(point + size) + 1);
+        *point = '.';
+    }
     return fputs(text, file) >= 0 && putc(end, file) != EOF;
 }
 

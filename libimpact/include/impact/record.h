@@ -63,7 +63,8 @@ typedef struct impact_recorder {
  * events:  t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,energy_before,energy_after */
 typedef struct impact_csv impact_csv;
 
-/* Either path may be NULL. IMPACT_ESINK when a file cannot be opened: message (may be NULL) names it and says why. */
+/* Either path may be NULL. IMPACT_ESINK when a file cannot be opened: message (may be NULL) names it and says why.
+ * IMPACT_EARGUMENT when both are the same. */
 IMPACT_API impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **csv,
                                          char *message, unsigned long message_size);
 /* A recorder over it (no progress function); valid until the close. */
