@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <impact/gap.h>
 #include "../tests/contact_random.h"
 #include "peers_gap.h"
 
@@ -34,15 +33,6 @@ static double quantile(double *values, int count, double q)
     return values[(int)(q * (count - 1))];
 }
 
-static double size_of(const impact_shape *s) { return fmax(s->a, fmax(s->b, s->c)); }
-
-static qvec3 support(const impact_solid *body, qvec3 n)
-{
-    qvec3 x;
-    impact_shape_support(&body->shape, quat_rotate_inverse(body->orientation, n), &x);
-    return quat_rotate(body->orientation, x);
-}
-
 /* Separated pairs (relative gap 1e-4 to 1) or, overlap true, overlaps of depth 1e-9 to 1e-4 of the thinnest axis. */
 static void make_pairs(gap_case *cases, int family, bool overlap)
 {
@@ -54,12 +44,16 @@ static void make_pairs(gap_case *cases, int family, bool overlap)
             c->body[k].shape = random_shape(&random, family);
             c->body[k].orientation = random_rotation(&random);
             c->body[k].position = (qvec3){0, 0, 0};
-            size = fmax(size, size_of(&c->body[k].shape));
+            size = fmax(size, contact_size(&c->body[k].shape));
             thin = fmin(thin, fmin(c->body[k].shape.a, fmin(c->body[k].shape.b, c->body[k].shape.c)));
         }
         c->normal = random_direction(&random);
         c->gap = overlap ? -thin * random_log(&random, 1e-9, 1e-4) : size * random_log(&random, 1e-4, 1);
-        const qvec3 x1 = support(&c->body[0], qvec3_neg(c->normal)), x2 = support(&c->body[1], c->normal);
+        if (overlap && !contact_is_deepest(c->body, c->normal, c->gap)) { /* no truth to be had: draw again */
+            i--;
+            continue;
+        }
+        const qvec3 x1 = contact_support(&c->body[0], qvec3_neg(c->normal)), x2 = contact_support(&c->body[1], c->normal);
         c->body[0].position = qvec3_axpy(c->gap, c->normal, qvec3_sub(x2, x1));
         c->reach = size + qvec3_norm(c->body[0].position);
         c->cache = (impact_gap_cache){true, qvec3_axpy(1e-3, random_direction(&random), c->normal)};

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <impact/gap.h>
 #include "../tests/contact_random.h"
 
 enum { BINS = 400, MIXTURE = RANDOM_FAMILIES, FAMILIES = RANDOM_FAMILIES + 1, SIGNS = 3 };
@@ -63,34 +62,6 @@ static void merge(errors *into, const errors *from)
     into->worst = fmax(into->worst, from->worst);
 }
 
-static double size_of(const impact_shape *s) { return fmax(s->a, fmax(s->b, s->c)); }
-
-static qvec3 support(const impact_solid *body, qvec3 n)
-{
-    qvec3 x;
-    impact_shape_support(&body->shape, quat_rotate_inverse(body->orientation, n), &x);
-    return quat_rotate(body->orientation, x);
-}
-
-/* Whether g has a local maximum at the normal when the gap is the given negative one: H_A + H_B + gap I positive across it. */
-static bool is_deepest(const impact_solid body[2], qvec3 n, double gap)
-{
-    double W[3][3] = {{0}};
-    for (int k = 0; k < 2; k++) {
-        const qmat3 H = impact_shape_support_hessian(&body[k].shape, quat_rotate_inverse(body[k].orientation, k ? n : qvec3_neg(n)));
-        const qmat3 R = quat_to_matrix(body[k].orientation);
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                for (int a = 0; a < 3; a++)
-                    for (int b = 0; b < 3; b++) W[i][j] += R.m[i][a] * H.m[a][b] * R.m[j][b];
-    }
-    /* eigenvalues 0, r1, r2: trace and sum of principal minors */
-    const double trace = W[0][0] + W[1][1] + W[2][2];
-    const double minors = W[0][0] * W[1][1] - W[0][1] * W[1][0] + W[1][1] * W[2][2] - W[1][2] * W[2][1] + W[2][2] * W[0][0] -
-                          W[2][0] * W[0][2];
-    return isfinite(trace) && minors / trace > -4 * gap;
-}
-
 static void one_pair(random_stream *random, int family, tally tallies[SIGNS])
 {
     impact_solid body[2] = {{.position = {0, 0, 0}}, {.position = {0, 0, 0}}};
@@ -99,15 +70,15 @@ static void one_pair(random_stream *random, int family, tally tallies[SIGNS])
         body[k].orientation = random_rotation(random);
     }
     const qvec3 normal = random_direction(random);
-    const double size = fmax(size_of(&body[0].shape), size_of(&body[1].shape));
+    const double size = fmax(contact_size(&body[0].shape), contact_size(&body[1].shape));
     const double kind = random_unit(random);
     const int sign = kind < 0.6 ? 0 : kind < 0.8 ? 1 : 2;
     /* shallow: to 1e-4 of the smallest semi-axis, beyond which the construction is no more the deepest normal */
     double thin = size;
     for (int k = 0; k < 2; k++) thin = fmin(thin, fmin(body[k].shape.a, fmin(body[k].shape.b, body[k].shape.c)));
     const double gap = sign == 0 ? size * random_log(random, 1e-9, 100) : sign == 1 ? 0 : -thin * random_log(random, 1e-12, 1e-4);
-    if (gap < 0 && !is_deepest(body, normal, gap)) return; /* another normal is the nearer way out: no truth to be had */
-    body[0].position = qvec3_axpy(gap, normal, qvec3_sub(support(&body[1], normal), support(&body[0], qvec3_neg(normal))));
+    if (gap < 0 && !contact_is_deepest(body, normal, gap)) return; /* another normal is the nearer way out: no truth to be had */
+    body[0].position = qvec3_axpy(gap, normal, qvec3_sub(contact_support(&body[1], normal), contact_support(&body[0], qvec3_neg(normal))));
 
     impact_contact contact;
     const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);

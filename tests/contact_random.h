@@ -7,7 +7,7 @@
 #define CONTACT_RANDOM_H
 
 #include <stdint.h>
-#include <impact/shape.h>
+#include <impact/gap.h>
 #include <quat/rotation.h>
 
 typedef struct random_stream {
@@ -112,6 +112,35 @@ static inline impact_shape random_smooth_shape(random_stream *random, bool neste
     if (nested) impact_shape_superellipsoid(a, b, c, 2 / t, 2 / r, &shape);
     else impact_shape_superquadric(a, b, c, r, s, t, &shape);
     return shape;
+}
+
+static inline double contact_size(const impact_shape *s) { return fmax(s->a, fmax(s->b, s->c)); }
+
+/* Where the body reaches farthest along n, less its position. */
+static inline qvec3 contact_support(const impact_solid *body, qvec3 n)
+{
+    qvec3 x;
+    impact_shape_support(&body->shape, quat_rotate_inverse(body->orientation, n), &x);
+    return quat_rotate(body->orientation, x);
+}
+
+/* Whether g has a local maximum at the normal when the gap is the given negative one: H_A + H_B + gap I positive across it. */
+static inline bool contact_is_deepest(const impact_solid body[2], qvec3 n, double gap)
+{
+    double W[3][3] = {{0}};
+    for (int k = 0; k < 2; k++) {
+        const qmat3 H = impact_shape_support_hessian(&body[k].shape, quat_rotate_inverse(body[k].orientation, k ? n : qvec3_neg(n)));
+        const qmat3 R = quat_to_matrix(body[k].orientation);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                for (int a = 0; a < 3; a++)
+                    for (int b = 0; b < 3; b++) W[i][j] += R.m[i][a] * H.m[a][b] * R.m[j][b];
+    }
+    /* eigenvalues 0, r1, r2: trace and sum of principal minors */
+    const double trace = W[0][0] + W[1][1] + W[2][2];
+    const double minors = W[0][0] * W[1][1] - W[0][1] * W[1][0] + W[1][1] * W[2][2] - W[1][2] * W[2][1] + W[2][2] * W[0][0] -
+                          W[2][0] * W[0][2];
+    return isfinite(trace) && minors / trace > -4 * gap;
 }
 
 #endif

@@ -37,23 +37,32 @@ static double unit_scale(const impact_shape *shape)
     return ldexp(1, -ilogb(fmax(shape->a, fmax(shape->b, shape->c))));
 }
 
+/* From the body's support h and point (less its position) along -normal. */
+static void on_plane(const impact_solid *body, const impact_solid *plane, qvec3 normal, double h, qvec3 offset, impact_contact *contact)
+{
+    const qvec3 d = qvec3_sub(body->position, plane->position);
+    const double gap = qvec3_dot(normal, d) - h;
+    const qvec3 foot = qvec3_axpy(-gap, normal, qvec3_add(d, offset));
+    closed_form(body, plane, gap, normal, offset, foot, INFINITY, contact);
+}
+
 /* body is body 1: the gap is its lowest point's height, by the support function. */
-static impact_status body_plane(const impact_solid *body, quat body_orientation, const impact_solid *plane, quat plane_orientation,
+static void body_plane(const impact_solid *body, quat body_orientation, const impact_solid *plane, quat plane_orientation,
                                 impact_contact *contact)
 {
-    const double scale = unit_scale(&body->shape);
     const qvec3 normal = quat_rotate(plane_orientation, (qvec3){0, 0, 1});
-    const double down[3] = {-normal.x, -normal.y, -normal.z};
+    if (body->shape.kind == IMPACT_SPHERE) {
+        on_plane(body, plane, normal, body->shape.a, qvec3_scale(normal, -body->shape.a), contact);
+        return;
+    }
+    const double scale = unit_scale(&body->shape), down[3] = {-normal.x, -normal.y, -normal.z};
     impact_form form;
     impact_surface surface;
     double x[3];
     impact_form_make(&body->shape, scale, body_orientation, &form);
     const double h = impact_form_support_world(&form, down, x, &surface) / scale;
     const qvec3 offset = {x[0] / scale, x[1] / scale, x[2] / scale};
-    const double gap = qvec3_dot(normal, qvec3_sub(body->position, plane->position)) - h;
-    const qvec3 foot = qvec3_axpy(-gap, normal, qvec3_add(qvec3_sub(body->position, plane->position), offset));
-    closed_form(body, plane, gap, normal, offset, foot, INFINITY, contact);
-    return IMPACT_OK;
+    on_plane(body, plane, normal, h, offset, contact);
 }
 
 static impact_contact swapped(impact_contact c)
@@ -129,11 +138,14 @@ impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, i
     const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
     if (plane1 && plane2) return IMPACT_EARGUMENT;
     if (body1->shape.kind == IMPACT_SPHERE && body2->shape.kind == IMPACT_SPHERE) return sphere_sphere(body1, body2, contact);
-    if (plane2) return body_plane(body1, q1, body2, q2, contact);
+    if (plane2) {
+        body_plane(body1, q1, body2, q2, contact);
+        return IMPACT_OK;
+    }
     if (plane1) {
-        status = body_plane(body2, q2, body1, q1, contact);
+        body_plane(body2, q2, body1, q1, contact);
         *contact = swapped(*contact);
-        return status;
+        return IMPACT_OK;
     }
     return smooth_pair(body1, q1, body2, q2, cache, contact);
 }

@@ -10,19 +10,31 @@
  * have several local answers. */
 static const double deep_part = 0.05;
 
+enum { SEED_STEPS = 4 };
+
 typedef struct search {
     const impact_pair *pair;
     impact_meeting best; /* the highest local maximum so far */
     impact_gap_path path;
     bool found;
     double thin;         /* smallest semi-axis */
+    bool sharp;          /* both bodies have edges or vertices: every overlap counts as deep */
     double low, low_n[3]; /* the largest g met, and where */
 } search;
 
+/* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
+static const double sharp_exponent = 1.3;
+
+static bool is_sharp(const impact_form *form)
+{
+    return form->p[0] < sharp_exponent || form->p[1] < sharp_exponent || form->p[2] < sharp_exponent;
+}
+
 static bool done(const search *s)
 {
+    if (!s->found) return false;
     const double depth = -s->best.gap, radius = s->best.stiffness + depth;
-    return s->found && (depth <= 1e-13 * s->pair->reach || depth <= deep_part * fmin(s->thin, radius));
+    return depth <= 1e-13 * s->pair->reach || (!s->sharp && depth <= deep_part * fmin(s->thin, radius));
 }
 
 static double distance_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -43,6 +55,51 @@ static void centre_line(const impact_pair *pair, double n[3])
 {
     const double distance = distance_of(pair->c);
     for (int i = 0; i < 3; i++) n[i] = distance > 0 ? pair->c[i] / distance : i == 2;
+}
+
+/* M = R diag(axis^2) R^T, the ellipsoid a body is taken for here. */
+static void add_ellipsoid(const impact_form *form, double scale, double M[3][3])
+{
+    for (int k = 0; k < 3; k++) {
+        const double square = scale * form->axis[k] * form->axis[k];
+        for (int i = 0; i < 3; i++)
+            for (int j = i; j < 3; j++) M[i][j] += square * form->rotation[i][k] * form->rotation[j][k];
+    }
+}
+
+static double ellipsoid_height(const impact_form *form, const double n[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const double w = form->axis[k] * (form->rotation[0][k] * n[0] + form->rotation[1][k] * n[1] + form->rotation[2][k] * n[2]);
+        sum += w * w;
+    }
+    return sqrt(sum);
+}
+
+/* n = M^-1 c normalised, by cofactors; M symmetric and positive, its upper half filled. */
+static bool solve_for_normal(double M[3][3], const double c[3], double n[3])
+{
+    const double a = M[1][1] * M[2][2] - M[1][2] * M[1][2], b = M[0][2] * M[1][2] - M[0][1] * M[2][2],
+                 d = M[0][1] * M[1][2] - M[0][2] * M[1][1], e = M[0][0] * M[2][2] - M[0][2] * M[0][2],
+                 f = M[0][1] * M[0][2] - M[0][0] * M[1][2], g = M[0][0] * M[1][1] - M[0][1] * M[0][1];
+    const double x[3] = {a * c[0] + b * c[1] + d * c[2], b * c[0] + e * c[1] + f * c[2], d * c[0] + f * c[1] + g * c[2]};
+    const double length = distance_of(x);
+    if (!(length > 0) || !(x[0] * c[0] + x[1] * c[1] + x[2] * c[2] > 0)) return false;
+    for (int i = 0; i < 3; i++) n[i] = x[i] / length;
+    return true;
+}
+
+/* The normal for the bodies' ellipsoids: fixed points of n ~ (M_A/h_A + M_B/h_B + g I)^-1 c, from the centre line. */
+static void ellipsoid_seed(const impact_pair *pair, int steps, double n[3])
+{
+    for (int k = 0; k < steps; k++) {
+        const double h[2] = {ellipsoid_height(&pair->form[0], n), ellipsoid_height(&pair->form[1], n)};
+        const double g = fmax(0, n[0] * pair->c[0] + n[1] * pair->c[1] + n[2] * pair->c[2] - h[0] - h[1]);
+        double M[3][3] = {{g, 0, 0}, {0, g, 0}, {0, 0, g}};
+        for (int i = 0; i < 2; i++) add_ellipsoid(&pair->form[i], 1 / h[i], M);
+        if (!solve_for_normal(M, pair->c, n)) return;
+    }
 }
 
 /* Distance of the bodies, then of the bodies shrunk until they are apart, each to a few digits and then polished. */
@@ -114,14 +171,18 @@ static impact_status bracket(search *s, double upper, impact_meeting *meeting)
 
 impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting, impact_gap_path *path)
 {
-    search s = {.pair = pair, .low = -INFINITY, .thin = INFINITY};
+    search s = {.pair = pair, .low = -INFINITY, .thin = INFINITY, .sharp = is_sharp(&pair->form[0]) && is_sharp(&pair->form[1])};
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) s.thin = fmin(s.thin, pair->form[k].axis[i]);
     double n[3], upper = distance_of(pair->c);
     centre_line(pair, n);
-    bool over = (cached && try_from(&s, cached, NULL, IMPACT_PATH_NEWTON)) || try_from(&s, n, NULL, IMPACT_PATH_NEWTON);
+    bool over = cached && try_from(&s, cached, NULL, IMPACT_PATH_NEWTON);
+    if (!over) {
+        ellipsoid_seed(pair, SEED_STEPS, n);
+        over = try_from(&s, n, NULL, IMPACT_PATH_NEWTON);
+    }
     over = over || (impact_gap_harvest(pair, false, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK));
-    over = over || try_simplex(&s, &upper) || try_homotopy(&s);
+    over = over || try_simplex(&s, &upper) || (!s.found && try_homotopy(&s));
     if (!over) over = impact_gap_harvest(pair, true, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK);
     over = over || try_axes(&s);
     *path = s.found ? s.path : IMPACT_PATH_FALLBACK;

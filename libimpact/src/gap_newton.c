@@ -320,8 +320,8 @@ static void newton_step(const impact_pair *pair, const iterate *it, double step[
         for (int j = 0; j < 2; j++) step[k][j] = x[2 * k + j] * scale[2 * k + j];
 }
 
-static const double longest_step = 0.5, finest_step = 1e-9;
-enum { MAX_ITERATIONS = 25 };
+static const double longest_step = 0.5, finest_step = 1e-10;
+enum { MAX_ITERATIONS = 16, MORE_ITERATIONS = 8 }; /* more when the steps have become small */
 
 /* Moves both points, halving the step until it stays on the surfaces. */
 static bool advance(const impact_pair *pair, const iterate *it, double step[2][2], impact_surface s[2], double *taken)
@@ -477,10 +477,11 @@ bool impact_gap_newton(const impact_pair *pair, const double n[3], const double 
     start(pair, n, x, s);
     double last = INFINITY;
     int settled = 0; /* how often it has: while the bracket is wider than rounding, a few more steps may close it */
-    for (int i = 0; i < MAX_ITERATIONS; i++) {
+    for (int i = 0, end = MAX_ITERATIONS; i < end; i++) {
         iterate it;
         if (!look(pair, s, &it)) return settled > 0;
-        if (last < finest_step || i == MAX_ITERATIONS - 1) {
+        if (i == MAX_ITERATIONS - 1 && last < 1e-2) end += MORE_ITERATIONS;
+        if (last < finest_step || i == end - 1) {
             impact_meeting now;
             if (judge(pair, &it, &now)) {
                 if (settled++ == 0 || now.upper - now.lower < meeting->upper - meeting->lower) *meeting = now;
