@@ -258,6 +258,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
 {
     enum { MAX_STILL = 1000 };
     int still = 0;
+    bool passed = false; /* the last step ended at a root that is no event */
     double tau = motion->sliding ? 0 : *t;
     const double stop = motion->sliding ? 1000 * (t_end - *t) + 1000 : t_end;
     *end = (impact_end){IMPACT_END_TIME, 0};
@@ -265,7 +266,8 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         const double tau_before = tau;
         bool found;
         impact_status status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
-        if (motion->message[0] != '\0') return IMPACT_EDOMAIN; /* a load was refused */
+        if (motion->message[0] != '\0') return IMPACT_EDOMAIN;        /* a load was refused */
+        if (status == IMPACT_EINTEGRATOR && passed) return IMPACT_OK; /* another root close by: begin anew from here */
         if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);
         if (status == IMPACT_OK && end->kind == IMPACT_END_GAP) status = polish_gap(motion, end->index, &tau, y);
         if (status != IMPACT_OK) return fail(motion, status);
@@ -285,6 +287,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME || tau == stop) return status;
         if (end_onsets(motion) || (motion->stiff && slowest_slip(motion) > 1e-2 * motion->slip_scale)) return IMPACT_OK;
         still = tau > tau_before ? 0 : still + 1;
+        passed = found;
     }
     snprintf(motion->message, sizeof motion->message,
              "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);

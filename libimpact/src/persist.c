@@ -4,10 +4,9 @@
  *   held:    d2(gap)/dt2 = n . u' + n' . u = 0
  *   rolling: u' = 0
  *   sliding: tangential force = -friction pressure u_t/|u_t|
- * and u' = bias + K (reactions), linear. All held contacts are solved together, one unknown for a sliding contact and three for
- * a rolling one; where the reactions are not unique (hyperstatic), redundant unknowns are zero.
+ * and u' = bias + K (reactions), linear: see persist_system.
  */
-#include "persist.h"
+#include "persist_system.h"
 #include "world_gap.h"
 
 #include <stdlib.h>
@@ -27,7 +26,9 @@ impact_status impact_persist_reserve(impact_persist *persist, const impact_world
     if (right) persist->right = right;
     int *order = realloc(persist->order, n * sizeof *order);
     if (order) persist->order = order;
-    if (!touches || !matrix || !right || !order) return IMPACT_ENOMEM;
+    int *island = realloc(persist->island, (size_t)held * sizeof *island);
+    if (island) persist->island = island;
+    if (!touches || !matrix || !right || !order || !island) return IMPACT_ENOMEM;
     persist->capacity = held;
     return IMPACT_OK;
 }
@@ -38,6 +39,7 @@ void impact_persist_free(impact_persist *persist)
     free(persist->matrix);
     free(persist->right);
     free(persist->order);
+    free(persist->island);
     *persist = (impact_persist){0};
 }
 
@@ -56,13 +58,6 @@ static qvec3 curve(const impact_body *body, const impact_state *state, qvec3 out
                                          h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
 }
 
-/* An orthonormal tangent, and the other is normal x it. */
-static qvec3 tangent_of(qvec3 n)
-{
-    const qvec3 t = fabs(n.x) < 0.6 ? (qvec3){0, n.z, -n.y} : (qvec3){-n.z, 0, n.x};
-    return qvec3_scale(t, 1 / qvec3_norm(t));
-}
-
 /* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each surface the
  * point of outward normal m moves by r' = w x r + W (m' - w x m), W the support function's Hessian; that both points stay together
  * gives (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n). A plane's normal stays (W2 is infinite). */
@@ -76,7 +71,7 @@ static void contact_rates(const impact_world *world, impact_touch *touch, const 
     touch->normal_rate = *rate2 = (qvec3){0, 0, 0};
     if (b2->shape.kind != IMPACT_PLANE) {
         const qvec3 w2 = b2->is_static ? (qvec3){0, 0, 0} : impact_omega(b2, s2), turn2 = qvec3_cross(w2, n);
-        const qvec3 t1 = tangent_of(n), t2 = qvec3_cross(n, t1);
+        const qvec3 t1 = impact_tangent(n), t2 = qvec3_cross(n, t1);
         const qvec3 c1 = qvec3_add(curve(b1, s1, out1, t1), curve(b2, s2, n, t1));
         const qvec3 c2 = qvec3_add(curve(b1, s1, out1, t2), curve(b2, s2, n, t2));
         const qvec3 moves = qvec3_add(touch->slip, qvec3_add(curve(b1, s1, out1, turn1), curve(b2, s2, n, turn2)));
@@ -130,110 +125,6 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
     return touch;
 }
 
-/* ---- the linear system ---- */
-
-/* Change of touch a's relative acceleration (or velocity) for a force (or impulse) f on body 1 of touch b. */
-static qvec3 response(const impact_world *world, const impact_state *states, const impact_touch *a,
-                      const impact_touch *b, qvec3 f)
-{
-    const int bodies[2] = {b->body1, b->body2};
-    const qvec3 arms[2] = {b->r1, b->r2};
-    qvec3 change = {0, 0, 0};
-    for (int k = 0; k < 2; k++) {
-        const impact_body *body = &world->bodies[bodies[k]];
-        if (body->is_static) continue;
-        const qvec3 force = k == 0 ? f : qvec3_neg(f);
-        const qvec3 da = qvec3_scale(force, body->inverse_mass);
-        const qvec3 dalpha = impact_inverse_inertia(body, states[bodies[k]].q, qvec3_cross(arms[k], force));
-        if (bodies[k] == a->body1) change = qvec3_add(change, qvec3_add(da, qvec3_cross(dalpha, a->r1)));
-        if (bodies[k] == a->body2) change = qvec3_sub(change, qvec3_add(da, qvec3_cross(dalpha, a->r2)));
-    }
-    return change;
-}
-
-static int unknowns_of(const impact_touch *touch) { return touch->mode == IMPACT_ROLL ? 3 : 1; }
-
-/* Row i of a touch: which component of u' it fixes. */
-static qvec3 row_direction(const impact_touch *touch, int i)
-{
-    if (i == 0) return touch->normal;
-    const qvec3 t = tangent_of(touch->normal);
-    return i == 1 ? t : qvec3_cross(touch->normal, t);
-}
-
-/* Column i: which force its unknown stands for; with friction, a sliding contact's pressure brings its friction along. */
-static qvec3 column_direction(const impact_touch *touch, int i, bool with_friction)
-{
-    if (touch->mode == IMPACT_SLIDE && with_friction)
-        return qvec3_axpy(-touch->friction, touch->direction, touch->normal);
-    return row_direction(touch, i);
-}
-
-/* Gauss with complete pivoting; unknowns whose pivots vanish are set to zero. x comes in right. */
-static void solve_linear(double *a, double *right, int *order, int n)
-{
-    for (int i = 0; i < n; i++) order[i] = i;
-    double first = 0;
-    int rank = 0;
-    for (; rank < n; rank++) {
-        int row = rank, column = rank;
-        for (int i = rank; i < n; i++)
-            for (int j = rank; j < n; j++)
-                if (fabs(a[i * n + j]) > fabs(a[row * n + column])) row = i, column = j;
-        const double pivot = a[row * n + column];
-        if (rank == 0) first = fabs(pivot);
-        if (fabs(pivot) <= 1e-12 * first) break;
-        for (int j = 0; j < n; j++) {
-            const double swap = a[rank * n + j];
-            a[rank * n + j] = a[row * n + j], a[row * n + j] = swap;
-        }
-        const double swap = right[rank];
-        right[rank] = right[row], right[row] = swap;
-        for (int i = 0; i < n; i++) {
-            const double other = a[i * n + rank];
-            a[i * n + rank] = a[i * n + column], a[i * n + column] = other;
-        }
-        const int which = order[rank];
-        order[rank] = order[column], order[column] = which;
-        for (int i = rank + 1; i < n; i++) {
-            const double factor = a[i * n + rank] / pivot;
-            if (factor == 0) continue;
-            for (int j = rank; j < n; j++) a[i * n + j] -= factor * a[rank * n + j];
-            right[i] -= factor * right[rank];
-        }
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        if (i >= rank) {
-            right[i] = 0;
-            continue;
-        }
-        for (int j = i + 1; j < rank; j++) right[i] -= a[i * n + j] * right[j];
-        right[i] /= a[i * n + i];
-    }
-    for (int i = 0; i < n; i++) a[order[i]] = right[i]; /* the matrix is spent: its first row serves */
-    for (int i = 0; i < n; i++) right[i] = a[i];
-}
-
-/* Fills the matrix for the touches as they are; returns its size. */
-static int build_matrix(impact_persist *persist, const impact_world *world, const impact_state *states,
-                        bool with_friction)
-{
-    int n = 0;
-    for (int c = 0; c < persist->count; c++) n += unknowns_of(&persist->touches[c]);
-    int column = 0;
-    for (int b = 0; b < persist->count; b++)
-        for (int j = 0; j < unknowns_of(&persist->touches[b]); j++, column++) {
-            const qvec3 f = column_direction(&persist->touches[b], j, with_friction);
-            int row = 0;
-            for (int a = 0; a < persist->count; a++) {
-                const qvec3 change = response(world, states, &persist->touches[a], &persist->touches[b], f);
-                for (int i = 0; i < unknowns_of(&persist->touches[a]); i++, row++)
-                    persist->matrix[row * n + column] = qvec3_dot(row_direction(&persist->touches[a], i), change);
-            }
-        }
-    return n;
-}
-
 static void find_touches(impact_persist *persist, impact_world *world, const impact_state *states,
                          const impact_load *loads)
 {
@@ -242,17 +133,7 @@ static void find_touches(impact_persist *persist, impact_world *world, const imp
         if (impact_is_held(&world->pairs[p])) persist->touches[c++] = impact_persist_touch(world, p, states, loads);
 }
 
-/* Adds the unknowns x up to each touch's force. */
-static void collect_forces(impact_persist *persist, const double *x, bool with_friction)
-{
-    for (int c = 0; c < persist->count; c++) {
-        impact_touch *touch = &persist->touches[c];
-        touch->pressure = x[0];
-        touch->force = (qvec3){0, 0, 0};
-        for (int i = 0; i < unknowns_of(touch); i++)
-            touch->force = qvec3_axpy(*x++, column_direction(touch, i, with_friction), touch->force);
-    }
-}
+/* ---- reactions ---- */
 
 /* What the reactions leave of each touch's tangential acceleration, and how far its friction is from the cone. */
 static void finish_touches(impact_persist *persist, const impact_world *world, const impact_state *states)
@@ -261,7 +142,9 @@ static void finish_touches(impact_persist *persist, const impact_world *world, c
         impact_touch *touch = &persist->touches[a];
         qvec3 rate = touch->bias;
         for (int b = 0; b < persist->count; b++)
-            rate = qvec3_add(rate, response(world, states, touch, &persist->touches[b], persist->touches[b].force));
+            if (persist->island[a] == persist->island[b])
+                rate = qvec3_add(rate, impact_system_response(world, states, touch, &persist->touches[b],
+                                                              persist->touches[b].force));
         touch->slip_rate = qvec3_axpy(-qvec3_dot(rate, touch->normal), touch->normal, rate);
         const qvec3 tangential = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
         touch->margin = touch->friction * touch->pressure - qvec3_norm(tangential);
@@ -270,16 +153,11 @@ static void finish_touches(impact_persist *persist, const impact_world *world, c
 
 static void solve_reactions(impact_persist *persist, const impact_world *world, const impact_state *states)
 {
-    const int n = build_matrix(persist, world, states, true);
-    int row = 0;
     for (int c = 0; c < persist->count; c++) {
-        const impact_touch *touch = &persist->touches[c];
-        persist->right[row++] = -qvec3_dot(touch->normal, touch->bias) - qvec3_dot(touch->normal_rate, touch->slip);
-        for (int i = 1; i < unknowns_of(touch); i++)
-            persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->bias);
+        impact_touch *touch = &persist->touches[c];
+        touch->wanted = qvec3_neg(qvec3_axpy(qvec3_dot(touch->normal_rate, touch->slip), touch->normal, touch->bias));
     }
-    solve_linear(persist->matrix, persist->right, persist->order, n);
-    collect_forces(persist, persist->right, true);
+    impact_system_solve(persist, world, states, true);
     finish_touches(persist, world, states);
 }
 
@@ -307,10 +185,10 @@ static void secular(double a11, double a12, double a22, double b1, double b2, do
  * own. Turns the touch's direction there, with the pressure as it is; returns by how much. */
 static double turn_onset(const impact_world *world, const impact_state *states, impact_touch *touch)
 {
-    const qvec3 t1 = tangent_of(touch->normal), t2 = qvec3_cross(touch->normal, t1);
+    const qvec3 t1 = impact_tangent(touch->normal), t2 = qvec3_cross(touch->normal, t1);
     const double grip = touch->friction * touch->pressure;
-    const qvec3 k1 = response(world, states, touch, touch, qvec3_scale(t1, grip));
-    const qvec3 k2 = response(world, states, touch, touch, qvec3_scale(t2, grip));
+    const qvec3 k1 = impact_system_response(world, states, touch, touch, qvec3_scale(t1, grip));
+    const qvec3 k2 = impact_system_response(world, states, touch, touch, qvec3_scale(t2, grip));
     const double a11 = qvec3_dot(t1, k1), a12 = qvec3_dot(t1, k2), a22 = qvec3_dot(t2, k2);
     const double x = qvec3_dot(t1, touch->direction), y = qvec3_dot(t2, touch->direction);
     const double b1 = qvec3_dot(t1, touch->slip_rate) + a11 * x + a12 * y,
@@ -356,7 +234,8 @@ double impact_persist_own_acceleration(const impact_persist *persist, const impa
 {
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
-        if (touch->pair == pair) return qvec3_dot(touch->normal, response(world, states, touch, touch, touch->force));
+        if (touch->pair == pair)
+            return qvec3_dot(touch->normal, impact_system_response(world, states, touch, touch, touch->force));
     }
     return 0;
 }
@@ -394,16 +273,11 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
     enum { SWEEPS = 3 }; /* contacts that share a body disturb each other by the square of their gaps */
     for (int sweep = 0; sweep < (persist->count > 1 ? SWEEPS : 1); sweep++) close_gaps(world, states);
     find_touches(persist, world, states, loads);
-    const int n = build_matrix(persist, world, states, false);
-    int row = 0;
     for (int c = 0; c < persist->count; c++) {
-        const impact_touch *touch = &persist->touches[c];
-        persist->right[row++] = -impact_world_approach(world, touch, states);
-        for (int i = 1; i < unknowns_of(touch); i++)
-            persist->right[row++] = -qvec3_dot(row_direction(touch, i), touch->slip);
+        impact_touch *touch = &persist->touches[c];
+        touch->wanted = qvec3_neg(qvec3_axpy(impact_world_approach(world, touch, states), touch->normal, touch->slip));
     }
-    solve_linear(persist->matrix, persist->right, persist->order, n);
-    collect_forces(persist, persist->right, false);
+    impact_system_solve(persist, world, states, false);
     for (int c = 0; c < persist->count; c++)
         apply_impulse(world, states, &persist->touches[c], persist->touches[c].force);
 }
@@ -439,7 +313,7 @@ static qvec3 against_friction(const impact_touch *touch)
 {
     const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
     const double size = qvec3_norm(friction);
-    return size > 0 ? qvec3_scale(friction, -1 / size) : tangent_of(touch->normal);
+    return size > 0 ? qvec3_scale(friction, -1 / size) : impact_tangent(touch->normal);
 }
 
 static double force_scale(const impact_persist *persist)

@@ -21,6 +21,7 @@ typedef struct impact_touch {
     bool onset;        /* sliding from rest, too slow for a direction of its own */
     qvec3 direction;   /* unit of slip; at the onset, of its acceleration */
     qvec3 bias;        /* relative acceleration of the contact points without reactions, m/s^2 */
+    qvec3 wanted;      /* change of the relative acceleration (or velocity) that the reactions are to make */
     /* solved for: */
     double pressure; /* normal force, N */
     qvec3 force;     /* on body 1, N */
@@ -35,6 +36,7 @@ typedef struct impact_persist {
     impact_touch *touches;
     double *matrix, *right; /* (3 capacity)^2 and 3 capacity */
     int *order;             /* 3 capacity */
+    int *island;            /* capacity; touches of the same number share bodies */
 } impact_persist;
 
 /* Room for every pair of the world that is held now; the geometry of none. */

@@ -221,6 +221,7 @@ static int find_approach(impact_scene *scene, meeting *m)
 
 /* ---- which contacts are held ---- */
 
+/* Tentative modes: what touches and does not leave is held; those that would pull are opened again when the reactions are known. */
 static void choose_modes(impact_scene *scene)
 {
     impact_world *world = &scene->world;
@@ -228,8 +229,7 @@ static void choose_modes(impact_scene *scene)
         meeting m;
         impact_pair *pair = &world->pairs[p];
         if (!meets(scene, p, &m)) continue;
-        const bool stays = m.acceleration < 0 ? dies_out(scene, &m, m.velocity)
-                                              : impact_is_held(pair) && m.velocity <= world->slip_speed;
+        const bool stays = m.acceleration < 0 ? dies_out(scene, &m, m.velocity) : m.velocity <= world->slip_speed;
         const bool slides = m.touch.speed > world->slip_speed || (impact_is_held(pair) && m.touch.onset);
         pair->mode = !stays ? IMPACT_OPEN : slides ? IMPACT_SLIDE : IMPACT_ROLL;
         pair->onset = slides && m.touch.onset && m.touch.speed < world->onset_speed;
