@@ -7,7 +7,7 @@ case $1 in
 quat) allowed="$system" ;;
 quat_gsl) allowed="$system|libquat|libgsl|libgslcblas" ;;
 # libmpi: a SUNDIALS 7 that was built with MPI asks for it
-impact) allowed="$system|libquat|libsundials_[a-z]*|libccd|libmpi" ;;
+impact) allowed="$system|libpthread|libquat|libsundials_[a-z]*|libccd|libmpi" ;;
 esac
 needed=$(readelf --dynamic --wide "$2" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
 echo "$2 needs: ${needed//$'\n'/ }"
