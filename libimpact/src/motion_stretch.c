@@ -256,13 +256,14 @@ static impact_status fail(impact_motion *motion, impact_status status)
 static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, impact_state *states,
                                impact_sampler *sampler, impact_end *end)
 {
-    enum { MAX_STILL = 1000 };
+    enum { MAX_STILL = 1000, MAX_STEPS = 2000000 };
+    const double t_start = *t;
     int still = 0;
     bool passed = false; /* the last step ended at a root that is no event */
     double tau = motion->sliding ? 0 : *t;
     const double stop = motion->sliding ? 1000 * (t_end - *t) + 1000 : t_end;
     *end = (impact_end){IMPACT_END_TIME, 0};
-    while (still < MAX_STILL) {
+    for (long step = 0; still < MAX_STILL && step < MAX_STEPS; step++) {
         const double tau_before = tau;
         bool found;
         impact_status status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
@@ -289,8 +290,13 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         still = tau > tau_before ? 0 : still + 1;
         passed = found;
     }
-    snprintf(motion->message, sizeof motion->message,
-             "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
+    if (still >= MAX_STILL)
+        snprintf(motion->message, sizeof motion->message,
+                 "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
+    else
+        snprintf(motion->message, sizeof motion->message,
+                 "%d steps from t = %.17g came to t = %.17g only: the motion is too rough (a face that rocks?)",
+                 MAX_STEPS, t_start, *t);
     return IMPACT_EUNSETTLED;
 }
 

@@ -45,13 +45,17 @@ void impact_persist_free(impact_persist *persist)
 
 /* ---- geometry ---- */
 
+/* Where an exponent is over 2 the surface is flat along its axis at 0: there the radius of curvature stands for its neighbourhood's. */
+static double off_zero(double component) { return copysign(fmax(fabs(component), 1e-9), component); }
+
 /* What a body's surface does at the contact: the Hessian of its support function there, in the world, whose eigenvalues are the radii of
  * curvature, applied to a tangential vector. */
 static qvec3 curve(const impact_body *body, const impact_state *state, qvec3 outward, qvec3 v)
 {
     if (body->shape.kind == IMPACT_SPHERE)
         return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
-    const qmat3 h = impact_shape_support_hessian(&body->shape, quat_rotate_inverse(state->q, outward));
+    const qvec3 d = quat_rotate_inverse(state->q, outward);
+    const qmat3 h = impact_shape_support_hessian(&body->shape, (qvec3){off_zero(d.x), off_zero(d.y), off_zero(d.z)});
     const qvec3 b = quat_rotate_inverse(state->q, v);
     return quat_rotate(state->q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
                                          h.m[1][0] * b.x + h.m[1][1] * b.y + h.m[1][2] * b.z,
