@@ -13,6 +13,7 @@ enum { ROOT_UZ, ROOT_CLIMB, ROOT_END, ROOT_STOP, ROOTS };
 
 struct impact_collide_workspace {
     impact_ode *ode;
+    impact_compliant *compliant; /* made when first needed */
     double tolerance;
     impact_ode_method method;
     /* The impact at hand; the integrals in y count from the last start. */
@@ -106,6 +107,7 @@ void impact_collide_workspace_destroy(impact_collide_workspace *workspace)
 {
     if (!workspace) return;
     impact_ode_destroy(workspace->ode);
+    impact_compliant_destroy(workspace->compliant);
     free(workspace);
 }
 
@@ -233,7 +235,10 @@ impact_status impact_cvode_solve(impact_course *course, const impact_collision *
     ws->law_context = collision->friction_context;
     ws->speed = speed;
     ws->log_stop = log(1e-3 * ws->tolerance * (course->s > 0 ? fmin(course->s, 1) : 1));
-    impact_status status = follow(course, ws);
+    impact_status status =
+        collision->tangential_compliance > 0
+            ? impact_compliant_solve(course, collision->tangential_compliance, ws->tolerance, &ws->compliant)
+            : follow(course, ws);
     if (status == IMPACT_OK && !course->ended) status = IMPACT_EUNSETTLED;
     ws->course = NULL;
     if (!collision->workspace) impact_collide_workspace_destroy(ws);

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What impact_collide takes, and in which words it refuses the rest.
+ */
+#include "collide_series.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static impact_status refuse(char *message, size_t size, impact_status status, const char *format, ...)
+{
+    if (size > 0) {
+        va_list values;
+        va_start(values, format);
+        vsnprintf(message, size, format, values);
+        va_end(values);
+    }
+    return status;
+}
+
+static bool finite3(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+static impact_status check_vector(const char *name, int number, qvec3 v, char *message, size_t size)
+{
+    if (finite3(v)) return IMPACT_OK;
+    return refuse(message, size, IMPACT_EDOMAIN, "body %d: %s is (%g, %g, %g), must be finite", number, name, v.x, v.y,
+                  v.z);
+}
+
+static impact_status check_body(const impact_collider *body, int number, char *message, size_t size)
+{
+    impact_status status = check_vector("offset", number, body->offset, message, size);
+    if (status == IMPACT_OK) status = check_vector("velocity", number, body->velocity, message, size);
+    if (status == IMPACT_OK) status = check_vector("omega", number, body->omega, message, size);
+    if (status != IMPACT_OK) return status;
+    if (isnan(body->mass)) return refuse(message, size, IMPACT_EDOMAIN, "body %d: mass is NaN", number);
+    if (!(body->mass > 0))
+        return refuse(message, size, IMPACT_EARGUMENT, "body %d: mass is %g, must be > 0", number, body->mass);
+    if (isinf(body->mass)) return IMPACT_OK;
+    const qvec3 j = body->moments;
+    status = check_vector("moments", number, j, message, size);
+    if (status != IMPACT_OK) return status;
+    if (!(j.x > 0 && j.y > 0 && j.z > 0))
+        return refuse(message, size, IMPACT_EARGUMENT, "body %d: moments are (%g, %g, %g), must be > 0", number, j.x,
+                      j.y, j.z);
+    const quat q = body->orientation;
+    const double n2 = quat_dot(q, q);
+    if (!isfinite(n2))
+        return refuse(message, size, IMPACT_EDOMAIN,
+                      "body %d: orientation is (%g, %g, %g, %g), must be a finite unit quaternion", number, q.w, q.x,
+                      q.y, q.z);
+    if (!(fabs(n2 - 1) <= 1e-6))
+        return refuse(message, size, IMPACT_EARGUMENT, "body %d: orientation has length %.17g, must be 1", number,
+                      sqrt(n2));
+    return IMPACT_OK;
+}
+
+/* What goes with a given order of the series, with a friction law, with compliance. */
+static impact_status check_extras(const impact_collision *collision, char *message, size_t size)
+{
+    const int order = collision->series_order;
+    if (order != 0 && (order < 8 || order > IMPACT_SERIES_MOST))
+        return refuse(message, size, IMPACT_EARGUMENT, "series_order is %d, must be 8 to %d, or 0", order,
+                      IMPACT_SERIES_MOST);
+    const double soft = collision->tangential_compliance;
+    if (!isfinite(soft))
+        return refuse(message, size, IMPACT_EDOMAIN, "tangential_compliance is %g, must be finite", soft);
+    if (!(soft >= 0)) return refuse(message, size, IMPACT_EARGUMENT, "tangential_compliance is %g, must be >= 0", soft);
+    const bool cvode = collision->solver == IMPACT_SOLVER_AUTO || collision->solver == IMPACT_SOLVER_CVODE;
+    if ((soft > 0 || collision->friction_law) && !cvode)
+        return refuse(message, size, IMPACT_EARGUMENT, "solver is %s, but %s needs cvode",
+                      impact_solver_name(collision->solver), soft > 0 ? "tangential_compliance" : "a friction law");
+    if (soft > 0 && collision->law != IMPACT_STRONGE)
+        return refuse(message, size, IMPACT_EARGUMENT, "law is %s, but tangential_compliance needs stronge",
+                      impact_law_name(collision->law));
+    if (soft > 0 && (collision->restitution > 1 || collision->friction_law))
+        return refuse(message, size, IMPACT_EARGUMENT,
+                      "tangential_compliance takes constant friction and a restitution of at most 1");
+    return IMPACT_OK;
+}
+
+static impact_status check_contact(const impact_collision *collision, char *message, size_t size)
+{
+    const qvec3 n = collision->normal;
+    if (!finite3(n))
+        return refuse(message, size, IMPACT_EDOMAIN, "normal is (%g, %g, %g), must be finite", n.x, n.y, n.z);
+    if (n.x == 0 && n.y == 0 && n.z == 0)
+        return refuse(message, size, IMPACT_EARGUMENT, "normal is (0, 0, 0), must have a direction");
+    if (!isfinite(collision->friction))
+        return refuse(message, size, IMPACT_EDOMAIN, "friction is %g, must be finite", collision->friction);
+    if (!(collision->friction >= 0))
+        return refuse(message, size, IMPACT_EARGUMENT, "friction is %g, must be >= 0", collision->friction);
+    const double eps = collision->restitution;
+    if (!isfinite(eps)) return refuse(message, size, IMPACT_EDOMAIN, "restitution is %g, must be finite", eps);
+    if (!(eps >= 0 && (eps <= 1 || collision->any_restitution)))
+        return refuse(message, size, IMPACT_EARGUMENT, "restitution is %g, must be in [0, 1]", eps);
+    if ((int)collision->law < IMPACT_POISSON || collision->law > IMPACT_STRONGE)
+        return refuse(message, size, IMPACT_EARGUMENT, "law is %d, must be one of impact_law", (int)collision->law);
+    if ((int)collision->solver < IMPACT_SOLVER_AUTO || collision->solver > IMPACT_SOLVER_CVODE)
+        return refuse(message, size, IMPACT_EARGUMENT, "solver is %d, must be one of impact_solver",
+                      (int)collision->solver);
+    return check_extras(collision, message, size);
+}
+
+impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size)
+{
+    if (size > 0) message[0] = '\0';
+    for (int i = 0; i < 2; i++) {
+        const impact_status status = check_body(&collision->body[i], i + 1, message, size);
+        if (status != IMPACT_OK) return status;
+    }
+    if (isinf(collision->body[0].mass) && isinf(collision->body[1].mass))
+        return refuse(message, size, IMPACT_EARGUMENT, "both bodies are static (mass inf): one must move");
+    return check_contact(collision, message, size);
+}
