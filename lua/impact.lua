@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --- Rigid bodies that hit each other: `local impact = require "impact"`. The guide is docs/scene.md.
 
+require "quat" -- gives the orientations that come back their methods
 local core = require "impact.core"
 core.layer()
 

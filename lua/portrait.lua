@@ -212,4 +212,51 @@ function portrait.pair(scene, left, right)
   }
 end
 
+-- ---- scenes seen in space ----
+
+--- v turned by the quaternion q.
+local function turn(q, x, y, z)
+  local tx, ty, tz = 2 * (q.y * z - q.z * y), 2 * (q.z * x - q.x * z), 2 * (q.x * y - q.y * x)
+  return x + q.w * tx + q.y * tz - q.z * ty, y + q.w * ty + q.z * tx - q.x * tz, z + q.w * tz + q.x * ty - q.y * tx
+end
+
+--- A surface of rows i = 0..m, j = 0..n whose points f(i/m, j/n) stand in a body's frame; in the world by its state.
+local function placed(state, m, n, f)
+  local x, y, z = {}, {}, {}
+  for i = 0, m do
+    x[i + 1], y[i + 1], z[i + 1] = {}, {}, {}
+    for j = 0, n do
+      local px, py, pz = turn(state.orientation, f(i / m, j / n))
+      x[i + 1][j + 1], y[i + 1][j + 1], z[i + 1][j + 1] =
+        px + state.position[1], py + state.position[2], pz + state.position[3]
+    end
+  end
+  return x, y, z
+end
+
+--- A ball at a state (scene:state), in eight patches of two colours, so that its turning shows: a list of plot items.
+---@return plot.item[]
+function portrait.ball(state, radius, color1, color2)
+  local items = {}
+  for patch = 0, 7 do
+    local quarter, lower = patch % 4, patch // 4
+    local x, y, z = placed(state, 5, 5, function(u, v)
+      local longitude, latitude = (quarter + u) * math.pi / 2, (v - lower) * math.pi / 2
+      return radius * math.cos(latitude) * math.cos(longitude), radius * math.cos(latitude) * math.sin(longitude),
+        radius * math.sin(latitude)
+    end)
+    items[#items + 1] = plot.surface { x, y, z, color = (quarter + lower) % 2 == 0 and color1 or color2, opacity = 1 }
+  end
+  return items
+end
+
+--- A sheet of a plane at its state, from low to high along its own axes: one plot item.
+---@return plot.item
+function portrait.sheet(state, low, high, color, opacity)
+  local x, y, z = placed(state, 8, 8, function(u, v)
+    return low[1] + u * (high[1] - low[1]), low[2] + v * (high[2] - low[2]), 0
+  end)
+  return plot.surface { x, y, z, color = color, opacity = opacity }
+end
+
 return portrait

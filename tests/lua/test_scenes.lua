@@ -1,10 +1,10 @@
 -- SPDX-License-Identifier: MIT
---- The example scenes against the rows committed beside them, a tolerance per column; arg[3] is the folder of the scenes.
+--- The example scenes and figures against the rows committed beside them, a tolerance per column; arg[3] is the examples' folder.
 --- After a change that is meant to move them: impact SCENE.lua --out examples/scenes/expected, without the picture.
 local check = require "check"
 local runner = require "runner"
 runner.clean()
-local scenes = arg[3]
+local scenes, figures = arg[3] .. "/scenes", arg[3] .. "/figures"
 
 -- What the integrator's tolerance of 1e-13 leaves room for, many times over; another compiler moves the last digits only.
 local tolerances = {
@@ -35,8 +35,8 @@ local function rows(path)
   return list
 end
 
-local function compare(name)
-  local wanted, got = rows(scenes .. "/expected/" .. name), rows(runner.folder .. "/" .. name)
+local function compare(folder, name)
+  local wanted, got = rows(folder .. "/expected/" .. name), rows(runner.folder .. "/" .. name)
   local header = wanted[1]
   check.equal(table.concat(got[1], ","), table.concat(header, ","))
   check.equal(#got, #wanted)
@@ -61,8 +61,16 @@ for _, name in ipairs { "sphere_wall", "sphere_wall_rolling", "sphere_wall_spin"
   for _, line in ipairs { "events", "energy", "used", "not used", "wrote" } do
     check.truth(out:find("\n  " .. line .. " +"), "the summary's line on " .. line)
   end
-  compare(name .. ".csv")
-  compare(name .. "_events.csv")
+  compare(scenes, name .. ".csv")
+  compare(scenes, name .. "_events.csv")
+end
+
+for _, name in ipairs { "fig15", "fig16" } do
+  local code, out, said = runner.command(string.format("%s --out .", runner.quote(figures .. "/" .. name .. ".lua")))
+  check.equal(code, 0)
+  check.equal(said, "")
+  check.truth(out ~= "" or (runner.read(name .. ".png") or ""):sub(1, 4) == "\137PNG", "the picture of " .. name)
+  compare(figures, name .. ".csv")
 end
 
 -- A second run, at another time and place, is the same to the bit.
