@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <impact/toi.h>
 #include "../tests/contact_random.h"
 #include "peers_gap.h"
 
@@ -107,9 +108,71 @@ static void measure(const char *family, const char *kind, const char *name, gap_
     fflush(stdout);
 }
 
-int main(void)
+/* Time of impact of tumbling bodies that fly at each other; the error is the gap left at the time found. */
+static void measure_toi(void)
 {
     static gap_case cases[PAIRS];
+    static double times[REPEATS], left[PAIRS];
+    for (int family = 0; family < RANDOM_FAMILIES; family++) {
+        random_stream random = {(uint64_t)family + 200};
+        make_pairs(cases, family, false);
+        static impact_motion motion[PAIRS][2];
+        for (int i = 0; i < PAIRS; i++) {
+            cases[i].body[0].position = qvec3_scale(random_direction(&random), 4);
+            for (int k = 0; k < 2; k++) motion[i][k] = (impact_motion){.omega = qvec3_scale(random_direction(&random), 3)};
+            motion[i][0].velocity = qvec3_scale(cases[i].body[0].position, -0.25);
+        }
+        int met = 0;
+        for (int repeat = 0; repeat < 3; repeat++) {
+            met = 0;
+            const double start = now();
+            for (int i = 0; i < PAIRS; i++) {
+                double time;
+                impact_contact c;
+                const impact_status status = impact_toi(&cases[i].body[0], &motion[i][0], &cases[i].body[1], &motion[i][1], 4, &time, &c);
+                if (status == IMPACT_OK) left[met++] = fabs(c.gap) / fmax(contact_size(&cases[i].body[0].shape), contact_size(&cases[i].body[1].shape));
+            }
+            times[repeat] = (now() - start) / PAIRS * 1e6;
+        }
+        const double time = quantile(times, 3, 0.5), p50 = quantile(left, met, 0.5), p99 = quantile(left, met, 0.99);
+        printf("%s,toi,impact toi,0,%.3g,%.2g,%.2g,%.2g,nan,%.4f\n", random_family_name(family), time, p50, p99, left[met - 1],
+               1 - (double)met / PAIRS);
+    }
+}
+
+static void measure_peers(const char *family, const char *kind, const gap_peer *peer, int number, bool overlap, const gap_case *cases)
+{
+    for (; peer->method; peer++) {
+        if (peer->overlap_only && !overlap) continue;
+        if (peer->separated_ellipsoids_only && (overlap || number > RANDOM_ELLIPSOID)) continue;
+        measure(family, kind, peer->name, peer->method, peer->setting, cases);
+    }
+}
+
+/* The ellipsoid pairs for peers_gap.py: a b c, x y z, w i j k of both bodies, the gap, the normal, L + |c|. */
+static void print_cases(void)
+{
+    static gap_case cases[PAIRS];
+    make_pairs(cases, RANDOM_ELLIPSOID, false);
+    for (int i = 0; i < PAIRS; i++) {
+        for (int k = 0; k < 2; k++) {
+            const impact_solid *b = &cases[i].body[k];
+            printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,", b->shape.a, b->shape.b, b->shape.c, b->position.x,
+                   b->position.y, b->position.z, b->orientation.w, b->orientation.x, b->orientation.y, b->orientation.z);
+        }
+        const qvec3 n = cases[i].normal;
+        printf("%.17g,%.17g,%.17g,%.17g,%.17g\n", cases[i].gap, n.x, n.y, n.z, cases[i].reach);
+    }
+}
+
+/* bench_gap [--cases]: --cases prints the ellipsoid pairs and measures nothing. */
+int main(int argc, char **argv)
+{
+    static gap_case cases[PAIRS];
+    if (argc > 1 && strcmp(argv[1], "--cases") == 0) {
+        print_cases();
+        return 0;
+    }
     printf("family,kind,method,setting,time_us,gap_p50,gap_p99,gap_worst,normal_p50,unanswered\n");
     for (int overlap = 0; overlap < 2; overlap++)
         for (int family = 0; family < RANDOM_FAMILIES; family++) {
@@ -117,9 +180,11 @@ int main(void)
             make_pairs(cases, family, overlap);
             measure(name, kind, "impact cold", ours_cold, 0, cases);
             measure(name, kind, "impact warm", ours_warm, 0, cases);
-            for (int p = 0; gap_peers[p].method; p++)
-                if (!gap_peers[p].overlap_only || overlap) measure(name, kind, gap_peers[p].name, gap_peers[p].method, gap_peers[p].setting, cases);
+            measure_peers(name, kind, gap_peers_ccd, family, overlap, cases);
+            measure_peers(name, kind, gap_peers_fcl, family, overlap, cases);
         }
-    if (!gap_peers[0].method) printf("# libccd is not installed: its rows are skipped\n");
+    measure_toi();
+    if (!gap_peers_ccd[0].method) printf("# libccd is not installed: its rows are skipped\n");
+    if (!gap_peers_fcl[0].method) printf("# FCL is not installed: its rows are skipped\n");
     return 0;
 }

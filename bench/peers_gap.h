@@ -7,6 +7,10 @@
 
 #include <impact/gap.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct gap_case {
     impact_solid body[2];
     double gap, reach; /* the truth; L + |c| */
@@ -21,9 +25,14 @@ typedef struct gap_peer {
     const char *name;
     gap_method *method; /* NULL ends the list */
     double setting;
-    bool overlap_only;
+    bool overlap_only, separated_ellipsoids_only;
 } gap_peer;
 
-extern const gap_peer gap_peers[];
+/* Empty where the peer is not installed. */
+extern const gap_peer gap_peers_ccd[], gap_peers_fcl[];
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

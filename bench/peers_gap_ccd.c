@@ -69,10 +69,11 @@ static bool mpr(const gap_case *c, double setting, double *gap, qvec3 *normal)
     return answer(status, depth, direction, gap, normal);
 }
 
-const gap_peer gap_peers[] = {
-    {"libccd GJK", gjk, 0, false},     {"libccd EPA", epa, 1e-4, true}, {"libccd EPA", epa, 1e-6, true}, {"libccd EPA", epa, 1e-8, true},
-    {"libccd MPR", mpr, 1e-4, true}, {"libccd MPR", mpr, 1e-6, true}, {"libccd MPR", mpr, 1e-8, true}, {NULL, NULL, 0, false},
+const gap_peer gap_peers_ccd[] = {
+    {"libccd GJK", gjk, 0, false, false},   {"libccd EPA", epa, 1e-4, true, false}, {"libccd EPA", epa, 1e-6, true, false},
+    {"libccd EPA", epa, 1e-8, true, false}, {"libccd MPR", mpr, 1e-4, true, false}, {"libccd MPR", mpr, 1e-6, true, false},
+    {"libccd MPR", mpr, 1e-8, true, false}, {NULL, NULL, 0, false, false},
 };
 #else
-const gap_peer gap_peers[] = {{NULL, NULL, 0, false}};
+const gap_peer gap_peers_ccd[] = {{NULL, NULL, 0, false, false}};
 #endif

@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * Conservative advancement of second order. From a state with gap g > 0 and normal n, let m = R^T n be the normal in a
- * body's axes and m' its rate. Over [0, T] the normal stays within w^2 T^2/2 of m + m' t, so, with r the body's radius,
+ * Conservative advancement of high order. From a state with gap g > 0 and normal n, let m = R^T n be the normal in a
+ * body's axes, m' its rate, p its part across the axis of spin, w the spin and r the body's radius. Over [0, T]
  *
- *     h(m(t)) <= h(m + m' t) + r w^2 t^2/2,
+ *     m(t) = m + m' t - p w^2 t^2/2 + rest,  |rest| <= |p| (w^3 t^3/6 + w^4 t^4/24),
  *
- * and h is convex. Hence psi(T) = n.(c + v T + min(0, a) T^2/2) - sum [h(m + m' T) + r w^2 T^2/2] is concave, psi(0) = g, and
- * psi(T) >= 0 proves that there is no contact in [0, T]. Steps to the zero of psi converge quadratically, never past contact.
+ * and the support function h is convex and subadditive, so that
+ *
+ *     psi(T) = g + n.v T + min(0, n.a) T^2/2 - sum [h(m + m' T) - h(m) + h(-p) w^2 T^2/2 + r |rest|]
+ *
+ * is concave and psi(T) >= 0 proves that there is no contact in [0, T]. So does, for far bodies, the same with their bounding
+ * balls. Steps to the zero of psi converge quadratically and never pass the contact.
  */
 #include <impact/toi.h>
 #include <quat/rotation.h>
 #include "support.h"
 
-enum { MAX_STEPS = 2000, MAX_TRIES = 40 };
+enum { MAX_STEPS = 2000, MAX_TRIES = 8 };
 
 impact_solid impact_motion_at(const impact_solid *body, const impact_motion *motion, double t)
 {
@@ -28,7 +32,11 @@ impact_solid impact_motion_at(const impact_solid *body, const impact_motion *mot
 
 /* What psi is made of. */
 typedef struct proof {
-    double gap, speed, brake; /* n.c - h - h; n.v; min(0, n.a) less r w^2 of both */
+    double gap, apart;       /* n.c - h - h; n.c less the bounding balls' radii */
+    double speed;            /* n.v */
+    double pull;             /* min(0, n.a) */
+    double second, rest3, rest4; /* sums of h(-p) w^2, r |p| w^3, r |p| w^4 */
+    double slope;            /* psi'(0) */
     bool turns[2];
     impact_form form[2];
     double m[2][3], rate[2][3], h[2];
@@ -46,25 +54,34 @@ static double outer_radius(const impact_shape *shape)
     return hypot(round, boxy);
 }
 
+static void store(qvec3 v, double out[3]) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
+
 static void turn(proof *p, int k, const impact_solid *body, qvec3 omega, qvec3 outward)
 {
-    const double w2 = qvec3_dot(omega, omega);
-    p->turns[k] = w2 > 0 && body->shape.kind != IMPACT_PLANE && body->shape.kind != IMPACT_SPHERE;
+    const double w = qvec3_norm(omega);
+    p->turns[k] = w > 0 && body->shape.kind != IMPACT_PLANE && body->shape.kind != IMPACT_SPHERE;
     if (!p->turns[k]) return;
     quat unit;
     quat_normalize(body->orientation, &unit);
-    const qvec3 m = quat_rotate_inverse(unit, outward), rate = quat_rotate_inverse(unit, qvec3_cross(outward, omega));
-    p->m[k][0] = m.x, p->m[k][1] = m.y, p->m[k][2] = m.z;
-    p->rate[k][0] = rate.x, p->rate[k][1] = rate.y, p->rate[k][2] = rate.z;
     impact_form_make(&body->shape, 1, unit, &p->form[k]);
+    store(quat_rotate_inverse(unit, outward), p->m[k]);
+    store(quat_rotate_inverse(unit, qvec3_cross(outward, omega)), p->rate[k]);
+    const qvec3 part = qvec3_axpy(-qvec3_dot(outward, omega) / (w * w), omega, outward);
+    double back[3], point[3], normal[3];
+    store(quat_rotate_inverse(unit, qvec3_neg(part)), back);
     impact_surface s;
+    const double across = qvec3_norm(part), radius = outer_radius(&body->shape);
+    if (across > 0) p->second += w * w * impact_form_support(&p->form[k], back, &s);
+    p->rest3 += radius * across * w * w * w;
+    p->rest4 += radius * across * w * w * w * w;
     p->h[k] = impact_form_support(&p->form[k], p->m[k], &s);
-    p->brake -= outer_radius(&body->shape) * w2;
+    impact_surface_point(&p->form[k], &s, point, normal);
+    for (int i = 0; i < 3; i++) p->slope -= p->rate[k][i] * point[i];
 }
 
 static double psi(const proof *p, double T)
 {
-    double value = p->gap + T * (p->speed + 0.5 * T * p->brake);
+    double value = p->gap + T * (p->speed + T * (0.5 * (p->pull - p->second) - T * (p->rest3 / 6 + T * p->rest4 / 24)));
     for (int k = 0; k < 2; k++) {
         if (!p->turns[k]) continue;
         double d[3];
@@ -75,21 +92,34 @@ static double psi(const proof *p, double T)
     return value;
 }
 
-/* A step with psi >= 0, near the largest up to limit: psi is concave and positive at 0, so a chord's zero lies below the root. */
+/* First T > 0 at which gap + slope T - bend T^2/2 is zero; infinite when there is none. gap > 0, bend >= 0. */
+static double first_zero(double gap, double slope, double bend)
+{
+    const double root = sqrt(slope * slope + 2 * bend * gap);
+    if (slope < 0) return 2 * gap / (root - slope);
+    return bend > 0 ? (slope + root) / bend : INFINITY;
+}
+
+/* A step with psi >= 0, near the largest up to limit. psi lies below its tangent's parabola, whose zero is so beyond psi's; and
+ * above its chords, whose zeros come before it. */
 static double safe_step(const proof *p, double limit)
 {
-    double low = 0, at_low = p->gap, high = limit, at_high = psi(p, limit);
-    if (at_high >= 0) return limit;
-    for (int k = 0; k < MAX_TRIES; k++) {
+    const double balls = p->apart > 0 ? fmin(limit, first_zero(p->apart, p->speed, -p->pull)) : 0;
+    double low = 0, at_low = p->gap, high = fmin(limit, first_zero(p->gap, p->slope, p->second - p->pull));
+    if (balls >= high) return balls;
+    double at_high = psi(p, high);
+    if (at_high >= 0) return high;
+    for (int k = 0; k < MAX_TRIES && at_low > 0.1 * p->gap; k++) {
         const double chord = low + (high - low) * (at_low / (at_low - at_high)), at_chord = psi(p, chord);
-        if (at_chord < 0) return k > 0 ? low : chord * (1 - 1e-15); /* rounding: the root is reached */
+        if (!(at_chord > 0 && chord > low)) return k > 0 ? fmax(low, balls) : chord * (1 - 1e-15); /* rounding: the zero is reached */
         low = chord, at_low = at_chord;
-        if (at_low <= 0.05 * p->gap) return low;
-        const double beyond = low + 0.5 * (high - low), at_beyond = psi(p, beyond);
-        if (at_beyond < 0) high = beyond, at_high = at_beyond;
-        else low = beyond, at_low = at_beyond;
+        if (at_low > 0.5 * p->gap) { /* the far end is too far for its chord */
+            const double middle = 0.5 * (low + high), at_middle = psi(p, middle);
+            if (at_middle < 0) high = middle, at_high = at_middle;
+            else low = middle, at_low = at_middle;
+        }
     }
-    return low;
+    return fmax(low, balls);
 }
 
 static bool all_finite(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
@@ -114,7 +144,10 @@ static proof gather(const impact_solid body[2], const impact_motion *const motio
 {
     const qvec3 n = contact->normal, a = qvec3_sub(motion[0]->acceleration, motion[1]->acceleration);
     const qvec3 v = qvec3_axpy(t, a, qvec3_sub(motion[0]->velocity, motion[1]->velocity));
-    proof p = {.gap = contact->lower, .speed = qvec3_dot(n, v), .brake = fmin(0, qvec3_dot(n, a))};
+    proof p = {.gap = contact->lower, .speed = qvec3_dot(n, v), .pull = fmin(0, qvec3_dot(n, a)), .slope = qvec3_dot(n, v)};
+    p.apart = -1;
+    if (body[0].shape.kind != IMPACT_PLANE && body[1].shape.kind != IMPACT_PLANE)
+        p.apart = qvec3_dot(n, qvec3_sub(body[0].position, body[1].position)) - outer_radius(&body[0].shape) - outer_radius(&body[1].shape);
     turn(&p, 0, &body[0], motion[0]->omega, qvec3_neg(n));
     turn(&p, 1, &body[1], motion[1]->omega, n);
     return p;
