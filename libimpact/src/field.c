@@ -8,28 +8,11 @@ static bool acts_on(const impact_field *field, const impact_world *world, int bo
 
 /* ---- wind ---- */
 
-/* Distance along the tube's axis, and from it. */
-static void tube_coordinates(const impact_force_def *def, qvec3 x, double *along, double *across)
-{
-    const qvec3 d = qvec3_sub(x, def->origin);
-    const double s = qvec3_dot(d, def->direction);
-    *along = fabs(s);
-    *across = qvec3_norm(qvec3_axpy(-s, def->direction, d));
-}
-
 static qvec3 wind(const impact_force_def *def, qvec3 x)
 {
-    double along, across;
-    tube_coordinates(def, x, &along, &across);
+    const double along = fabs(qvec3_dot(qvec3_sub(x, def->origin), def->direction));
     const double fall = def->falloff_power == 0 ? 1 : pow(1 + along / def->falloff_length, -def->falloff_power);
     return qvec3_scale(def->direction, def->strength * fall);
-}
-
-static double wind_edge(const impact_force_def *def, qvec3 x)
-{
-    double along, across;
-    tube_coordinates(def, x, &along, &across);
-    return fmin(def->reach - along, def->radius - across);
 }
 
 /* ---- attraction: the slot of bodies i < j is i + j (j - 1)/2 ---- */
@@ -42,12 +25,10 @@ static double attraction(const impact_force_def *def, double m1, double m2, doub
 /* Zero at the reach; at infinity when that is possible; else at 1 m. */
 static double attraction_potential(const impact_force_def *def, double m1, double m2, double distance)
 {
-    const double k = def->constant * m1 * m2;
-    const double zero = isfinite(def->reach) ? def->reach : 1;
-    if (def->power == 1) return k * log(distance / zero);
-    const double e = 1 - def->power;
-    const double at_zero = isfinite(def->reach) || e > 0 ? pow(zero, e) : 0;
-    return k * (pow(distance, e) - at_zero) / e;
+    const double k = def->constant * m1 * m2, e = 1 - def->power;
+    if (e < 0 && !isfinite(def->reach)) return k * pow(distance, e) / e;
+    const double zero = isfinite(def->reach) ? def->reach : 1, ratio = log(distance / zero);
+    return k * pow(zero, e) * (e == 0 ? ratio : expm1(e * ratio) / e);
 }
 
 static void add_attraction(const impact_world *world, const impact_field *field, const impact_state *states,
@@ -163,35 +144,98 @@ int impact_field_edge_count(const impact_world *world)
     return count;
 }
 
-/* > 0 inside the reach; +1 where there is no edge. */
-static double edge_value(const impact_world *world, const impact_field *field, const impact_state *states, int slot)
+/* value > 0 inside the reach, its rate, and the speed across or along it. */
+typedef struct field_edge {
+    double value, rate, speed;
+} field_edge;
+
+static const field_edge no_edge = {1, -1, 0};
+
+static field_edge wind_edge(const impact_force_def *def, const impact_state *state)
+{
+    const qvec3 d = qvec3_sub(state->x, def->origin);
+    const double s = qvec3_dot(d, def->direction), v = qvec3_dot(state->v, def->direction);
+    const qvec3 p = qvec3_axpy(-s, def->direction, d);
+    const double across = qvec3_norm(p), speed = qvec3_norm(state->v);
+    const field_edge end = {def->reach - fabs(s), s < 0 ? v : -v, speed};
+    const field_edge side = {def->radius - across, across > 0 ? -qvec3_dot(p, state->v) / across : 0, speed};
+    return end.value < side.value ? end : side;
+}
+
+static field_edge edge_of(const impact_world *world, const impact_field *field, const impact_state *states, int slot)
 {
     if (field->def.kind == IMPACT_FORCE_WIND)
         return acts_on(field, world, slot) && (isfinite(field->def.reach) || isfinite(field->def.radius))
-                   ? wind_edge(&field->def, states[slot].x)
-                   : 1;
-    if (!isfinite(field->def.reach)) return 1;
+                   ? wind_edge(&field->def, &states[slot])
+                   : no_edge;
+    if (!isfinite(field->def.reach)) return no_edge;
     int j = 1, first = 0;
     while (slot >= first + j) first += j++;
     const int i = slot - first;
-    if (world->bodies[i].is_static || world->bodies[j].is_static) return 1;
-    return field->def.reach - qvec3_norm(qvec3_sub(states[j].x, states[i].x));
+    if (world->bodies[i].is_static || world->bodies[j].is_static) return no_edge;
+    const qvec3 d = qvec3_sub(states[j].x, states[i].x), v = qvec3_sub(states[j].v, states[i].v);
+    const double distance = qvec3_norm(d);
+    return (field_edge){field->def.reach - distance, -qvec3_dot(d, v) / distance, qvec3_norm(v)};
 }
 
 void impact_field_edges(const impact_world *world, const impact_state *states, double *value)
 {
     for (int k = 0; k < world->field_count; k++)
         for (int slot = 0; slot < world->fields[k].slots; slot++) {
-            const double edge = edge_value(world, &world->fields[k], states, slot);
-            *value++ = world->fields[k].inside[slot] ? edge : -edge;
+            const field_edge e = edge_of(world, &world->fields[k], states, slot);
+            const double sign = world->fields[k].inside[slot] ? 1 : -1;
+            *value++ = sign * e.value;
+            *value++ = impact_still_rate(world, e.speed) - sign * e.rate;
         }
+}
+
+double impact_field_edge(const impact_world *world, const impact_state *states, int number)
+{
+    int k = 0;
+    while (number >= world->fields[k].slots) number -= world->fields[k++].slots;
+    const double value = edge_of(world, &world->fields[k], states, number).value;
+    return world->fields[k].inside[number] ? value : -value;
+}
+
+/* Half of the way across, at the speed given or from rest at the acceleration given. */
+static double half_crossing_time(double across, qvec3 velocity, qvec3 acceleration)
+{
+    return 0.5 * across / (qvec3_norm(velocity) + sqrt(qvec3_norm(acceleration) * across));
+}
+
+static qvec3 acceleration_of(const impact_world *world, const impact_load *loads, int body)
+{
+    return qvec3_scale(loads[body].force, world->bodies[body].inverse_mass);
+}
+
+double impact_field_step_limit(const impact_world *world, const impact_state *states, const impact_load *loads)
+{
+    double limit = INFINITY;
+    for (int k = 0; k < world->field_count; k++) {
+        const impact_field *field = &world->fields[k];
+        const bool wind = field->def.kind == IMPACT_FORCE_WIND;
+        const double across = wind ? fmin(field->def.reach, field->def.radius) : field->def.reach;
+        if (!isfinite(across)) continue;
+        for (int i = 0; wind && i < field->slots; i++)
+            if (field->inside[i] && acts_on(field, world, i))
+                limit = fmin(limit, half_crossing_time(across, states[i].v, acceleration_of(world, loads, i)));
+        for (int j = 1, slot = 0; !wind && slot < field->slots; j++)
+            for (int i = 0; i < j; i++, slot++)
+                if (field->inside[slot] && !world->bodies[i].is_static && !world->bodies[j].is_static)
+                    limit = fmin(limit, half_crossing_time(across, qvec3_sub(states[j].v, states[i].v),
+                                                           qvec3_sub(acceleration_of(world, loads, j),
+                                                                     acceleration_of(world, loads, i))));
+    }
+    return limit;
 }
 
 void impact_field_locate(impact_world *world, const impact_state *states)
 {
     for (int k = 0; k < world->field_count; k++)
-        for (int slot = 0; slot < world->fields[k].slots; slot++)
-            world->fields[k].inside[slot] = edge_value(world, &world->fields[k], states, slot) >= 0;
+        for (int slot = 0; slot < world->fields[k].slots; slot++) {
+            const field_edge e = edge_of(world, &world->fields[k], states, slot);
+            world->fields[k].inside[slot] = e.value > 0 || (e.value == 0 && e.rate >= 0);
+        }
 }
 
 void impact_field_cross(impact_world *world, int edge, int *field, int *body)

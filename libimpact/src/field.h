@@ -19,9 +19,12 @@ bool impact_field_loads(const impact_world *world, double t, const impact_state 
 /* Potential energy of gravity and attraction, J. */
 double impact_field_potential(const impact_world *world, const impact_state *states);
 
-/* How many edges the fields have; their values, each > 0 on the side where the motion now is. */
+/* How many edges the fields have; for each its value, > 0 on the side where the motion now is, and minus the value's rate; one's value. */
 int impact_field_edge_count(const impact_world *world);
 void impact_field_edges(const impact_world *world, const impact_state *states, double *value);
+double impact_field_edge(const impact_world *world, const impact_state *states, int edge);
+/* A step, s, so short that no body within an edge can leave and come back in it unseen; infinite when there are none. */
+double impact_field_step_limit(const impact_world *world, const impact_state *states, const impact_load *loads);
 /* Sets every inside flag from where the bodies are. */
 void impact_field_locate(impact_world *world, const impact_state *states);
 /* Edge was crossed: turns its flag, and tells whose edge it is. */

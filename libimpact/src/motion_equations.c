@@ -107,19 +107,28 @@ int impact_motion_rates(double tau, const double *y, double *rate, void *context
 
 /* ---- roots: every one falls through zero when its event comes ---- */
 
-/* The gap with its slack, and minus its rate. Far apart, of the bounding balls: positive either way. */
+double impact_motion_speed(const impact_body *body, const impact_state *state)
+{
+    return qvec3_norm(state->v) + body->radius * qvec3_norm(impact_omega(body, state));
+}
+
+/* The gap with its slack, and minus its rate. Far apart, of the bounding balls, or of the bounding ball and the plane. */
 static void open_pair_roots(impact_world *world, impact_pair *pair, const impact_state *states, double *value)
 {
+    const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const double bound = impact_world_distance_bound(world, pair, states);
-    if (bound > world->bodies[pair->body1].radius) {
+    const double speed = impact_motion_speed(b1, &states[pair->body1]) +
+                         (b2->is_static ? 0 : impact_motion_speed(b2, &states[pair->body2]));
+    const double still = impact_still_rate(world, speed);
+    if (bound > b1->radius) {
         value[0] = pair->beyond ? -bound : bound;
-        value[1] = 1;
+        value[1] = pair->beyond ? 1 : still - impact_world_distance_bound_rate(world, pair, states);
         return;
     }
     impact_contact contact;
     impact_world_gap(world, pair, states, &contact);
     value[0] = pair->beyond ? -contact.gap : contact.gap + pair->slack;
-    value[1] = pair->beyond ? 1 : -impact_world_gap_rate(world, pair, states, &contact);
+    value[1] = pair->beyond ? 1 : still - impact_world_gap_rate(world, pair, states, &contact);
 }
 
 static void held_pair_roots(impact_world *world, const impact_touch *touch, const impact_state *states, double *value)
@@ -131,12 +140,6 @@ static void held_pair_roots(impact_world *world, const impact_touch *touch, cons
                                           : touch->speed - world->slip_speed;
     value[2] = impact_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
-}
-
-/* How fast any point of the body moves, m/s. */
-double impact_motion_speed(const impact_body *body, const impact_state *state)
-{
-    return qvec3_norm(state->v) + body->radius * qvec3_norm(impact_omega(body, state));
 }
 
 int impact_motion_root_values(double tau, const double *y, double *value, void *context)
@@ -157,7 +160,7 @@ int impact_motion_root_values(double tau, const double *y, double *value, void *
             open_pair_roots(world, &world->pairs[p], states, value);
     }
     impact_field_edges(world, states, value);
-    value += impact_field_edge_count(world);
+    value += ROOTS_PER_EDGE * impact_field_edge_count(world);
     for (int i = 0; i < world->body_count; i++)
         value[i] = motion->resting[i] ? 1 : impact_motion_speed(&world->bodies[i], &states[i]) - motion->rest_speed;
     return 0;

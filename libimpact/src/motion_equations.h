@@ -7,7 +7,7 @@
 
 #include "motion.h"
 
-enum { Y_TIME, Y_FORCE_WORK, Y_DAMPING, Y_SLIDING, Y_BODIES, Y_PER_BODY = 13, ROOTS_PER_PAIR = 3 };
+enum { Y_TIME, Y_FORCE_WORK, Y_DAMPING, Y_SLIDING, Y_BODIES, Y_PER_BODY = 13, ROOTS_PER_PAIR = 3, ROOTS_PER_EDGE = 2 };
 
 /* Between the bodies' states and the integrated state y; static bodies' states are left as they are. */
 void impact_motion_pack(const impact_motion *motion, double t, const impact_state *states, double *y);
@@ -20,8 +20,9 @@ double impact_motion_clock(const impact_motion *motion);
 double impact_motion_speed(const impact_body *body, const impact_state *state);
 
 /* For impact_ode: the rates of y, and the root functions: ROOTS_PER_PAIR for each pair (open: its gap and slack, minus its gap's
- * rate; held: its pressure, what is left of its mode, its distance from the plane's bounds), one for each edge of a field, one for each
- * body (its speed over the rest speed). Every one falls through zero when its event comes. */
+ * rate; held: its pressure, what is left of its mode, its distance from the plane's bounds), ROOTS_PER_EDGE for each edge of a field
+ * (its value, minus the value's rate), one for each body (its speed over the rest speed). Every one falls through zero when its event
+ * comes; a rate's root is where a value that fell and rose within one step is lowest. */
 int impact_motion_rates(double tau, const double *y, double *rate, void *motion);
 int impact_motion_root_values(double tau, const double *y, double *value, void *motion);
 

@@ -16,7 +16,7 @@ static impact_status allocate_state(impact_motion *motion)
     int moving = 0;
     for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
     motion->size = Y_BODIES + Y_PER_BODY * moving;
-    motion->roots = ROOTS_PER_PAIR * world->pair_count + impact_field_edge_count(world) + world->body_count;
+    motion->roots = ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * impact_field_edge_count(world) + world->body_count;
     motion->kept = calloc((size_t)motion->size, sizeof *motion->kept);
     motion->found = calloc((size_t)motion->roots, sizeof *motion->found);
     motion->y = calloc((size_t)motion->size, sizeof *motion->y);
@@ -104,18 +104,20 @@ static double slip_scale(const impact_motion *motion, const impact_state *states
     return fmax(scale, motion->world->slip_speed);
 }
 
-/* The function of the interpolated state whose zero is looked for in the last step: the clock against a time, or a pair's gap. */
+/* The function of the interpolated state whose zero is looked for in the last step. */
 typedef struct last_step_function {
-    int pair; /* or -1: the clock */
-    double t;
+    enum { CLOCK, PAIR_GAP, FIELD_EDGE } kind;
+    int index; /* pair or edge */
+    double t;  /* the clock's zero */
 } last_step_function;
 
 static double last_step_value(impact_motion *motion, last_step_function f, const double *y)
 {
-    if (f.pair < 0) return y[Y_TIME] - f.t;
-    impact_contact contact;
+    if (f.kind == CLOCK) return y[Y_TIME] - f.t;
     impact_motion_unpack(motion, y, motion->scratch);
-    impact_world_gap(motion->world, &motion->world->pairs[f.pair], motion->scratch, &contact);
+    if (f.kind == FIELD_EDGE) return impact_field_edge(motion->world, motion->scratch, f.index);
+    impact_contact contact;
+    impact_world_gap(motion->world, &motion->world->pairs[f.index], motion->scratch, &contact);
     return contact.gap;
 }
 
@@ -155,7 +157,7 @@ static impact_status interpolate_time(impact_motion *motion, double t, double *y
     if (!motion->sliding) return impact_ode_interpolate(motion->ode, t, 0, y);
     double low, high, tau;
     impact_ode_last_step(motion->ode, &low, &high);
-    return find_in_last_step(motion, (last_step_function){-1, t}, low, high, &tau, y);
+    return find_in_last_step(motion, (last_step_function){.kind = CLOCK, .t = t}, low, high, &tau, y);
 }
 
 /* The event that a root stands for; how deep a gap's closest approach is tells whether its rate's root is one. */
@@ -171,34 +173,43 @@ static impact_end end_of_root(const impact_motion *motion, int root)
         return (impact_end){pair->mode == IMPACT_ROLL ? IMPACT_END_SLIP : IMPACT_END_STICK, p};
     }
     root -= ROOTS_PER_PAIR * world->pair_count;
-    const int edges = impact_field_edge_count(world);
-    if (root < edges) return (impact_end){IMPACT_END_EDGE, root};
+    const int edges = ROOTS_PER_EDGE * impact_field_edge_count(world);
+    if (root < edges) return (impact_end){IMPACT_END_EDGE, root / ROOTS_PER_EDGE};
     return (impact_end){IMPACT_END_SLOW, root - edges};
 }
 
-/* A root of an open pair's gap rate: the gap is smallest here. If it is below its slack, both its zeros lie in the step. */
-static bool is_closest_approach(const impact_motion *motion, int root)
+/* Whether a root is that of a value's rate: the value is lowest here. If it is below its slack, both its zeros lie in the step. */
+static bool is_lowest_point(const impact_motion *motion, int root, last_step_function *value, double *slack)
 {
-    return root < ROOTS_PER_PAIR * motion->world->pair_count && root % ROOTS_PER_PAIR == 1 &&
-           !impact_is_held(&motion->world->pairs[root / ROOTS_PER_PAIR]);
+    const impact_world *world = motion->world;
+    const int pair = root / ROOTS_PER_PAIR, edge_root = root - ROOTS_PER_PAIR * world->pair_count;
+    if (edge_root < 0) {
+        *value = (last_step_function){.kind = PAIR_GAP, .index = pair};
+        *slack = world->pairs[pair].slack;
+        return root % ROOTS_PER_PAIR == 1 && !impact_is_held(&world->pairs[pair]);
+    }
+    *value = (last_step_function){.kind = FIELD_EDGE, .index = edge_root / ROOTS_PER_EDGE};
+    *slack = 0;
+    return edge_root % ROOTS_PER_EDGE == 1 && value->index < impact_field_edge_count(world);
 }
 
-/* Looks through the roots found at *tau for the event that ends the stretch; a gap's zero that the step hid moves *tau and y back to it. */
+/* Looks through the roots found at *tau for the event that ends the stretch; a zero that the step hid moves *tau and y back to it. */
 static impact_status pick_event(impact_motion *motion, double tau_before, double *tau, double *y, impact_end *end)
 {
     for (int root = 0; root < motion->roots; root++) {
+        last_step_function value;
+        double slack;
         if (motion->found[root] == 0) continue;
-        if (!is_closest_approach(motion, root)) {
+        if (!is_lowest_point(motion, root, &value, &slack)) {
             if (end->kind != IMPACT_END_TIME) continue;
             *end = end_of_root(motion, root);
             motion->found[root] = 0;
             continue;
         }
-        const int pair = root / ROOTS_PER_PAIR;
-        if (last_step_value(motion, (last_step_function){pair, 0}, y) >= -motion->world->pairs[pair].slack) continue;
-        *end = (impact_end){IMPACT_END_GAP, pair};
+        if (last_step_value(motion, value, y) >= -slack) continue;
+        *end = (impact_end){value.kind == PAIR_GAP ? IMPACT_END_GAP : IMPACT_END_EDGE, value.index};
         memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
-        return find_in_last_step(motion, (last_step_function){pair, 0}, tau_before, *tau, tau, y);
+        return find_in_last_step(motion, value, tau_before, *tau, tau, y);
     }
     return IMPACT_OK;
 }
@@ -207,8 +218,9 @@ bool impact_motion_also_crossed(impact_motion *motion, impact_end *end)
 {
     const int first = ROOTS_PER_PAIR * motion->world->pair_count, edges = impact_field_edge_count(motion->world);
     for (int edge = 0; motion->found && edge < edges; edge++) {
-        if (motion->found[first + edge] == 0) continue;
-        motion->found[first + edge] = 0;
+        int *found = &motion->found[first + ROOTS_PER_EDGE * edge];
+        if (*found == 0) continue;
+        *found = 0;
         *end = (impact_end){IMPACT_END_EDGE, edge};
         return true;
     }
@@ -252,6 +264,13 @@ static impact_status fail(impact_motion *motion, impact_status status)
     return status;
 }
 
+static impact_status limit_step(impact_motion *motion, const double *y)
+{
+    impact_motion_unpack(motion, y, motion->scratch);
+    const double limit = impact_field_step_limit(motion->world, motion->scratch, motion->loads);
+    return impact_ode_limit_step(motion->ode, isfinite(limit) ? limit : 0);
+}
+
 /* Steps until an event or t_end; y at the end is the state at *t. */
 static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, impact_state *states,
                                impact_sampler *sampler, impact_end *end)
@@ -266,7 +285,9 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
     for (long step = 0; still < MAX_STILL && step < MAX_STEPS; step++) {
         const double tau_before = tau;
         bool found;
-        impact_status status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
+        impact_status status = limit_step(motion, y);
+        if (status == IMPACT_OK)
+            status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
         if (motion->message[0] != '\0') return IMPACT_EDOMAIN;        /* a load was refused */
         if (status == IMPACT_EINTEGRATOR && passed) return IMPACT_OK; /* another root close by: begin anew from here */
         if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);

@@ -101,4 +101,10 @@ static inline impact_solid impact_solid_of(const impact_body *body, const impact
     return (impact_solid){body->shape, state->x, state->q};
 }
 
+/* A rate, of motion at this speed, up to which a distance does not open, m/s: what only rounding moves stays where it is. */
+static inline double impact_still_rate(const impact_world *world, double speed)
+{
+    return world->slip_speed + 1e-9 * speed;
+}
+
 #endif

@@ -50,6 +50,15 @@ double impact_world_distance_bound(const impact_world *world, const impact_pair 
     return qvec3_norm(d) - b1->radius - b2->radius;
 }
 
+double impact_world_distance_bound_rate(const impact_world *world, const impact_pair *pair, const impact_state *states)
+{
+    const qvec3 v = qvec3_sub(states[pair->body1].v, states[pair->body2].v);
+    if (world->bodies[pair->body2].shape.kind == IMPACT_PLANE)
+        return qvec3_dot(quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1}), v);
+    const qvec3 d = qvec3_sub(states[pair->body1].x, states[pair->body2].x);
+    return qvec3_dot(d, v) / qvec3_norm(d);
+}
+
 double impact_world_inside_bounds(const impact_world *world, const impact_pair *pair, const impact_state *states,
                                   const impact_contact *contact)
 {

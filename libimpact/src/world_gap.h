@@ -26,6 +26,9 @@ double impact_world_touching_distance(const impact_world *world, const impact_pa
 /* A lower bound of the gap without a query, from the bounding balls; -inf when there is none. */
 double impact_world_distance_bound(const impact_world *world, const impact_pair *pair, const impact_state *states);
 
+/* Its rate, m/s. */
+double impact_world_distance_bound_rate(const impact_world *world, const impact_pair *pair, const impact_state *states);
+
 /* Whether the contact lies within the bounds of the pair's plane (always, for other shapes); > 0 inside, m. */
 double impact_world_inside_bounds(const impact_world *world, const impact_pair *pair, const impact_state *states,
                                   const impact_contact *contact);
