@@ -316,24 +316,30 @@ end
 local event_kinds = { "impact", "contact", "slip", "stick", "liftoff", "force", "rest" }
 
 local parts = {
-  { "ballistic_flights", "flight in closed form", "stretches" },
-  { "integrators", "CVODE for the motion", "integrators" },
-  { "gap_closed_form", "gaps in closed form", "queries" },
-  { "gap_newton", "gaps by Newton", "queries" },
-  { "gap_gjk", "gaps by GJK", "queries" },
-  { "gap_fallback", "gaps by the fallback", "queries" },
-  { "impacts_closed_form", "impacts in closed form", "impacts" },
-  { "impacts_series", "impacts by series", "impacts" },
-  { "impacts_cvode", "impacts by CVODE", "impacts" },
+  { "ballistic_flights", "flight in closed form", "stretch", "stretches" },
+  { "integrators", "CVODE for the motion", "integrator", "integrators" },
+  { "gap_closed_form", "gaps in closed form", "query", "queries" },
+  { "gap_newton", "gaps by Newton", "query", "queries" },
+  { "gap_gjk", "gaps by GJK", "query", "queries" },
+  { "gap_fallback", "gaps by the fallback", "query", "queries" },
+  { "impacts_closed_form", "impacts in closed form", "impact", "impacts" },
+  { "impacts_series", "impacts by series", "impact", "impacts" },
+  { "impacts_cvode", "impacts by CVODE", "impact", "impacts" },
 }
 
+--- The account, without the terms that are zero.
 local function energy_line(energy)
-  local balance = energy.start + energy.force_work - energy.damping_loss - energy.sliding_loss - energy.impact_loss -
-      energy.kinetic - energy.potential
-  return string.format(
-    "%.6g J at the start %+.6g by forces %+.6g by damping %+.6g by sliding %+.6g by impacts = %.6g J now (off by %.1g J)",
-    energy.start, energy.force_work, -energy.damping_loss, -energy.sliding_loss, -energy.impact_loss,
-    energy.kinetic + energy.potential, math.abs(balance))
+  local now = energy.kinetic + energy.potential
+  local terms = {
+    { energy.force_work, "forces" }, { -energy.damping_loss, "damping" }, { -energy.sliding_loss, "sliding" },
+    { -energy.impact_loss, "impacts" },
+  }
+  local balance, line = energy.start - now, string.format("%.6g J at the start", energy.start)
+  for _, term in ipairs(terms) do
+    balance = balance + term[1]
+    if term[1] ~= 0 then line = line .. string.format(", %+.6g by %s", term[1], term[2]) end
+  end
+  return string.format("%s: %.6g J now (off by %.1g J)", line, now, math.abs(balance))
 end
 
 --- What happened, in a few lines: why it ended, events by kind, the energy account, what was used and what was not.
@@ -348,7 +354,7 @@ function methods:summary(reason)
   for _, part in ipairs(parts) do
     local count = usage[part[1]]
     if count > 0 then
-      used[#used + 1] = string.format("%s (%d %s)", part[2], count, part[3])
+      used[#used + 1] = string.format("%s (%d %s)", part[2], count, count == 1 and part[3] or part[4])
     else
       unused[#unused + 1] = part[2]
     end

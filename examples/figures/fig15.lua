@@ -56,5 +56,5 @@ local finish = drawing("c) the end")
 keep()
 
 assert(csv.save("fig15", columns, states))
-local drawn, why = plot.save(plot.figure { title = "A sphere, a floor and a wall", size = { 1500, 520 }, grid = { 3, 1 }, start, wall, finish }, "fig15")
+local drawn, why = plot.save(plot.figure { title = "A sphere, a floor and a wall", size = { 1500, 460 }, grid = { 3, 1 }, start, wall, finish }, "fig15")
 if not drawn then print("fig15: " .. why) end
