@@ -11,6 +11,7 @@
 #include "toi.h"
 #include "collide.h"
 #include "ode.h"
+#include "flight.h"
 #include "force.h"
 #include "record.h"
 #include "scene.h"
