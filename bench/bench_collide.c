@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bench_collide: error against run time of one impact.
+ *
+ * CSV rows: class, solver, parameter, impacts, failures (no answer, or off by more than 1e-3), median and worst error of the velocities
+ * against the 128-bit closed hodograph (without libquadmath: against the series of order 30), median time of one call in
+ * microseconds, and that time over the series' own in the same class.
+ * Classes: how the impact goes (slip, stick, reversal, jam, recompression), the scenes S1, S2, S5 that other programs are compared on,
+ * and S5e, 300 random ellipsoids on a plane. `p_z`: what integration over the normal impulse itself does, by CVODE.
+ */
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include "../tests/generators/collide_cases.h"
+#include "../tests/generators/collide_scenes.h"
+#ifdef HAVE_QUADMATH
+#include "../tests/generators/collide_oracle.h"
+#endif
+
+enum { MOST = 300, EACH = 24, REPEATS = 7, THREADS = 4 };
+
+/* Impacts of one class with their right answers. */
+typedef struct group {
+    const char *name;
+    int count;
+    impact_collision c[MOST];
+    qvec3 v[MOST][2], w[MOST][2];
+    bool known[MOST];
+    double series_time;
+} group;
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* ---- right answers ---- */
+
+/* Round bodies struck centrally: M = diag(l, l, w), by hand in long double; Poisson. */
+static bool by_hand(const impact_collision *c, qvec3 v[2], qvec3 w[2])
+{
+    long double n[3] = {c->normal.x, c->normal.y, c->normal.z}, u[3] = {0, 0, 0}, inverse = 0, l = 0;
+    const long double length = sqrtl(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3; k++) n[k] /= length;
+    for (int b = 0; b < 2; b++) {
+        const impact_collider *body = &c->body[b];
+        const long double sign = b == 0 ? 1 : -1, r[3] = {body->offset.x, body->offset.y, body->offset.z};
+        const long double o[3] = {body->omega.x, body->omega.y, body->omega.z};
+        u[0] += sign * (body->velocity.x + o[1] * r[2] - o[2] * r[1]);
+        u[1] += sign * (body->velocity.y + o[2] * r[0] - o[0] * r[2]);
+        u[2] += sign * (body->velocity.z + o[0] * r[1] - o[1] * r[0]);
+        if (isinf(body->mass)) continue;
+        if (body->moments.x != body->moments.y || body->moments.y != body->moments.z) return false;
+        inverse += 1 / (long double)body->mass;
+        l += 1 / (long double)body->mass + (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) / body->moments.x;
+    }
+    const long double uz = u[0] * n[0] + u[1] * n[1] + u[2] * n[2],
+                      p = -uz / inverse * (1 + (long double)c->restitution);
+    long double t[3], s = 0, P[3];
+    for (int k = 0; k < 3; k++) t[k] = u[k] - uz * n[k], s += t[k] * t[k];
+    s = sqrtl(s);
+    const long double grip = s > 0 ? fminl(c->friction * p, s / l) / s : 0;
+    for (int k = 0; k < 3; k++) P[k] = p * n[k] - grip * t[k];
+    for (int b = 0; b < 2; b++) {
+        const impact_collider *body = &c->body[b];
+        v[b] = body->velocity;
+        w[b] = body->omega;
+        if (isinf(body->mass)) continue;
+        const long double sign = b == 0 ? 1 : -1, f = sign / body->mass, g = sign / body->moments.x;
+        const long double r[3] = {body->offset.x, body->offset.y, body->offset.z};
+        v[b] = (qvec3){(double)(v[b].x + f * P[0]), (double)(v[b].y + f * P[1]), (double)(v[b].z + f * P[2])};
+        w[b] = (qvec3){(double)(w[b].x + g * (r[1] * P[2] - r[2] * P[1])),
+                       (double)(w[b].y + g * (r[2] * P[0] - r[0] * P[2])),
+                       (double)(w[b].z + g * (r[0] * P[1] - r[1] * P[0]))};
+    }
+    return true;
+}
+
+static bool right_answer(const impact_collision *c, qvec3 v[2], qvec3 w[2])
+{
+    if (by_hand(c, v, w)) return true;
+#ifdef HAVE_QUADMATH
+    oracle_outcome o;
+    if (!oracle_collide(c, &o)) return false;
+#else
+    impact_outcome o;
+    impact_collision fine = *c;
+    fine.series_order = 30;
+    if (impact_collide(&fine, &o) != IMPACT_OK) return false;
+#endif
+    for (int b = 0; b < 2; b++) {
+        v[b] = o.velocity[b];
+        w[b] = o.omega[b];
+    }
+    return true;
+}
+
+typedef struct share {
+    pthread_t thread;
+    group *g;
+    int first;
+} share;
+
+static void *answer_share(void *context)
+{
+    const share *s = context;
+    group *g = s->g;
+    for (int i = s->first; i < g->count; i += THREADS) g->known[i] = right_answer(&g->c[i], g->v[i], g->w[i]);
+    return NULL;
+}
+
+static void answer_all(group *g)
+{
+    share shares[THREADS];
+    for (int i = 0; i < THREADS; i++) {
+        shares[i] = (share){.g = g, .first = i};
+        if (pthread_create(&shares[i].thread, NULL, answer_share, &shares[i]) != 0) exit(1);
+    }
+    for (int i = 0; i < THREADS; i++) pthread_join(shares[i].thread, NULL);
+}
+
+/* ---- running ---- */
+
+typedef bool solver(const impact_collision *c, impact_outcome *o, void *context);
+
+static bool by_library(const impact_collision *c, impact_outcome *o, void *context)
+{
+    const impact_collision *how = context;
+    impact_collision k = *c;
+    k.solver = how->solver;
+    k.series_order = how->series_order;
+    k.workspace = how->workspace;
+    return impact_collide(&k, o) == IMPACT_OK;
+}
+
+static double run(group *g, const char *name, const char *parameter, solver *solve, void *context, bool slow)
+{
+    double errors[MOST], times[MOST];
+    int failures = 0, count = 0, timed = 0;
+    for (int i = 0; i < g->count; i++) {
+        if (!g->known[i]) continue;
+        impact_outcome o;
+        double best = INFINITY;
+        bool answered = true;
+        for (int r = 0; r < (slow ? 2 : REPEATS); r++) {
+            const int loops = slow ? 1 : 20;
+            const double from = seconds();
+            for (int k = 0; k < loops; k++) answered = solve(&g->c[i], &o, context);
+            best = fmin(best, (seconds() - from) / loops);
+        }
+        times[timed++] = best;
+        const double error = answered ? case_error(&g->c[i], o.velocity, o.omega, g->v[i], g->w[i]) : INFINITY;
+        if (!(error < 1e-3))
+            failures++;
+        else
+            errors[count++] = error;
+    }
+    if (timed == 0) return 0;
+    qsort(errors, (size_t)count, sizeof *errors, ascending);
+    qsort(times, (size_t)timed, sizeof *times, ascending);
+    const double time = times[timed / 2];
+    if (g->series_time == 0) g->series_time = time;
+    printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g\n", g->name, name, parameter, timed, failures,
+           count ? errors[count / 2] : NAN, count ? errors[count - 1] : NAN, 1e6 * time, time / g->series_time);
+    fflush(stdout);
+    return time;
+}
+
+/* ---- integration over p itself ---- */
+
+typedef struct naive {
+    impact_ode *ode;
+    double M[3][3], mu;
+} naive;
+
+static int naive_rates(double p, const double *u, double *rate, void *context)
+{
+    (void)p;
+    const naive *nv = context;
+    const double s = sqrt(u[0] * u[0] + u[1] * u[1]), g[3] = {-nv->mu * u[0] / s, -nv->mu * u[1] / s, 1};
+    for (int i = 0; i < 3; i++) rate[i] = nv->M[i][0] * g[0] + nv->M[i][1] * g[1] + nv->M[i][2] * g[2];
+    rate[3] = g[0];
+    rate[4] = g[1];
+    return isfinite(rate[0] + rate[1] + rate[2]) ? 0 : 1;
+}
+
+static int naive_roots(double p, const double *u, double *value, void *context)
+{
+    (void)p, (void)context;
+    value[0] = u[2];
+    return 0;
+}
+
+/* Compression to uz = 0 and restitution to (1 + eps) p_c, Poisson, with the thesis' equation as it stands. */
+static bool over_p(const impact_collision *c, impact_outcome *o, void *context)
+{
+    naive *nv = context;
+    impact_flow f;
+    double u[3];
+    if (impact_flow_make(c, &f, u) != IMPACT_OK) return false;
+    const double M[3][3] = {{f.a, 0, f.c}, {0, f.b, f.d}, {f.c, f.d, f.m}};
+    memcpy(nv->M, M, sizeof M);
+    nv->mu = c->friction;
+    double y[5] = {u[0], u[1], u[2], 0, 0}, p = 0;
+    bool found;
+    if (impact_ode_start(nv->ode, 0, y) != IMPACT_OK) return false;
+    if (impact_ode_advance(nv->ode, 100 * fabs(u[2]) / f.m, &p, y, NULL, &found) != IMPACT_OK || !found) return false;
+    const double p_end = (1 + c->restitution) * p;
+    if (p_end > p) {
+        if (impact_ode_start(nv->ode, p, y) != IMPACT_OK) return false;
+        do {
+            if (impact_ode_advance(nv->ode, p_end, &p, y, NULL, &found) != IMPACT_OK) return false;
+        } while (p < p_end);
+    }
+    const qvec3 P = qvec3_add(qvec3_scale(f.n, p), qvec3_axpy(y[3], f.t1, qvec3_scale(f.t2, y[4])));
+    for (int b = 0; b < 2; b++) {
+        const impact_collider *body = &c->body[b];
+        o->velocity[b] = body->velocity;
+        o->omega[b] = body->omega;
+        if (isinf(body->mass)) continue;
+        const double sign = b == 0 ? 1 : -1;
+        o->velocity[b] = qvec3_axpy(sign / body->mass, P, body->velocity);
+        const qvec3 l = quat_rotate_inverse(body->orientation, qvec3_cross(body->offset, P)), j = body->moments;
+        o->omega[b] =
+            qvec3_axpy(sign, quat_rotate(body->orientation, (qvec3){l.x / j.x, l.y / j.y, l.z / j.z}), body->omega);
+    }
+    return true;
+}
+
+/* ---- the table of one class ---- */
+
+static void run_cvode(group *g, impact_ode_method method, const char *name)
+{
+    static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+    for (int i = 0; i < 5; i++) {
+        impact_collision how = {.solver = IMPACT_SOLVER_CVODE};
+        if (impact_collide_workspace_create(method, tolerances[i], &how.workspace) != IMPACT_OK) return;
+        char parameter[32];
+        snprintf(parameter, sizeof parameter, "rtol %g", tolerances[i]);
+        run(g, name, parameter, by_library, &how, true);
+        impact_collide_workspace_destroy(how.workspace);
+    }
+}
+
+static void run_over_p(group *g)
+{
+    static const double tolerances[] = {1e-4, 1e-8};
+    for (int i = 0; i < 2; i++) {
+        naive nv = {0};
+        const impact_ode_def def = {.size = 5,
+                                    .roots = 1,
+                                    .rhs = naive_rates,
+                                    .root_functions = naive_roots,
+                                    .context = &nv,
+                                    .method = IMPACT_ODE_ADAMS,
+                                    .relative_tolerance = tolerances[i],
+                                    .absolute_tolerance = 1e-3 * tolerances[i],
+                                    .max_steps = 5000};
+        if (impact_ode_create(&def, &nv.ode) != IMPACT_OK) return;
+        char parameter[32];
+        snprintf(parameter, sizeof parameter, "rtol %g", tolerances[i]);
+        run(g, "p_z", parameter, over_p, &nv, true);
+        impact_ode_destroy(nv.ode);
+    }
+}
+
+static void run_series(group *g)
+{
+    static const int orders[] = {0, 12, 16, 20, 24, 28, 32};
+    for (int i = 0; i < 7; i++) {
+        impact_collision how = {.solver = IMPACT_SOLVER_SERIES, .series_order = orders[i]};
+        char parameter[32];
+        snprintf(parameter, sizeof parameter, orders[i] ? "order %d" : "default", orders[i]);
+        run(g, "series", parameter, by_library, &how, false);
+    }
+}
+
+static void run_class(group *g)
+{
+    answer_all(g);
+    run_series(g);
+    run_cvode(g, IMPACT_ODE_ADAMS, "cvode adams");
+    run_cvode(g, IMPACT_ODE_BDF, "cvode bdf");
+    run_over_p(g);
+}
+
+static void run_scene(group *g)
+{
+    impact_collision how = {.solver = IMPACT_SOLVER_AUTO};
+    answer_all(g);
+    run(g, "auto", "", by_library, &how, false);
+}
+
+/* ---- the classes ---- */
+
+static bool has_phase(const impact_outcome *o, impact_phase one, impact_phase other)
+{
+    for (int i = 0; i < o->phase_count; i++)
+        if (o->phases[i] == one || o->phases[i] == other) return true;
+    return false;
+}
+
+typedef bool kind(const impact_outcome *o);
+static bool slips(const impact_outcome *o)
+{
+    return !has_phase(o, IMPACT_STICK_C, IMPACT_STICK_R) && !has_phase(o, IMPACT_REVERSAL, IMPACT_REVERSAL);
+}
+static bool sticks(const impact_outcome *o) { return has_phase(o, IMPACT_STICK_C, IMPACT_STICK_R); }
+static bool reverses(const impact_outcome *o) { return has_phase(o, IMPACT_REVERSAL, IMPACT_REVERSAL); }
+static bool jams(const impact_outcome *o) { return o->jammed; }
+static bool again(const impact_outcome *o) { return o->compressions > 1; }
+
+/* EACH impacts of one kind, Poisson's law. */
+static void gather(group *g, const char *name, case_class class_, kind *wanted)
+{
+    memset(g, 0, sizeof *g);
+    g->name = name;
+    for (uint64_t i = 0; g->count < EACH && i < 3000000; i++) {
+        impact_collision c = case_make(class_, 97, i);
+        c.law = IMPACT_POISSON;
+        impact_outcome o;
+        if (impact_collide(&c, &o) == IMPACT_OK && o.solver == IMPACT_SOLVER_SERIES && wanted(&o)) g->c[g->count++] = c;
+    }
+}
+
+static void one_scene(group *g, const char *name, impact_collision c)
+{
+    memset(g, 0, sizeof *g);
+    g->name = name;
+    g->count = 1;
+    g->c[0] = c;
+    run_scene(g);
+}
+
+static void random_ellipsoids(group *g)
+{
+    memset(g, 0, sizeof *g);
+    g->name = "S5e";
+    uint64_t state = 2026;
+    while (g->count < MOST) {
+        double x[10];
+        for (int i = 0; i < 10; i++) x[i] = 2 * case_random(&state) - 1;
+        const quat q = {x[0], x[1], x[2], x[3]};
+        quat unit;
+        if (quat_dot(q, q) > 1 || quat_dot(q, q) < 0.01 || quat_normalize(q, &unit) != QUAT_OK) continue;
+        const impact_collision c =
+            scene_ellipsoid_at(unit, (qvec3){2 * x[4], 2 * x[5], -3}, (qvec3){3 * x[6], 3 * x[7], 3 * x[8]});
+        impact_outcome o;
+        if (impact_collide(&c, &o) == IMPACT_OK) g->c[g->count++] = c;
+    }
+    run_scene(g);
+}
+
+/* Closed forms and the array call: nanoseconds for one sphere impact. */
+static void array_call(void)
+{
+    enum { COUNT = 200000 };
+    impact_collision *c = calloc(COUNT, sizeof *c);
+    impact_outcome *o = calloc(COUNT, sizeof *o);
+    if (!c || !o) exit(1);
+    for (int i = 0; i < COUNT; i++) c[i] = case_make(CASE_SPHERE, 101, (uint64_t)i);
+    const int threads[] = {1, 2, 4};
+    double single = 0;
+    for (int t = 0; t < 3; t++) {
+        double best = INFINITY;
+        for (int r = 0; r < 5; r++) {
+            const double from = seconds();
+            impact_collide_many(c, COUNT, threads[t], o, NULL);
+            best = fmin(best, (seconds() - from) / COUNT);
+        }
+        if (t == 0) single = best;
+        printf("array of spheres,closed form,%d threads,%d,0,,,%.3g,%.3g\n", threads[t], COUNT, 1e6 * best,
+               best / single);
+    }
+    free(c);
+    free(o);
+}
+
+int main(void)
+{
+    static group g;
+    printf("class,solver,parameter,impacts,failures,error_median,error_worst,us_median,time_over_series\n");
+    one_scene(&g, "S1a", scene_sphere(false));
+    one_scene(&g, "S1b", scene_sphere(true));
+    one_scene(&g, "S2a", scene_two_spheres(false));
+    one_scene(&g, "S2b", scene_two_spheres(true));
+    one_scene(&g, "S5a", scene_ellipsoid(0));
+    one_scene(&g, "S5b", scene_ellipsoid(1));
+    random_ellipsoids(&g);
+    array_call();
+    gather(&g, "slip", CASE_PLAIN, slips);
+    run_class(&g);
+    gather(&g, "stick", CASE_PLAIN, sticks);
+    run_class(&g);
+    gather(&g, "reversal", CASE_ROD, reverses);
+    run_class(&g);
+    gather(&g, "jam", CASE_WILD, jams);
+    run_class(&g);
+    gather(&g, "recompression", CASE_WILD, again);
+    run_class(&g);
+    return 0;
+}
