@@ -85,6 +85,26 @@ int quat_lua_failure(lua_State *L, const char *message)
     return 2;
 }
 
+/* Pushes table[key] without metamethods, so that reading a table runs nothing of the script's. */
+static int raw_field(lua_State *L, int table, const char *key)
+{
+    table = lua_absindex(L, table);
+    lua_pushstring(L, key);
+    return lua_rawget(L, table);
+}
+
+int quat_lua_quietly(lua_State *L, lua_CFunction work)
+{
+    const bool running = lua_gc(L, LUA_GCISRUNNING) == 1;
+    const int count = lua_gettop(L);
+    lua_gc(L, LUA_GCSTOP);
+    lua_pushcfunction(L, work);
+    lua_insert(L, 1);
+    const int status = lua_pcall(L, count, LUA_MULTRET, 0);
+    if (running) lua_gc(L, LUA_GCRESTART);
+    return status == LUA_OK ? lua_gettop(L) : lua_error(L);
+}
+
 /* ---- one value, of an argument (reader NULL) or of a key ---- */
 
 /* The value at index in words for an error, at most a few dozen characters. */
@@ -188,7 +208,7 @@ static bool components_at(lua_State *L, int index, const char *letters, double *
     const bool by_place = lua_rawlen(L, index) > 0;
     for (int i = 0; i < count; i++) {
         const char letter[2] = {letters[i], 0};
-        const int type = by_place ? lua_rawgeti(L, index, i + 1) : lua_getfield(L, index, letter);
+        const int type = by_place ? lua_rawgeti(L, index, i + 1) : raw_field(L, index, letter);
         values[i] = lua_tonumber(L, -1);
         lua_pop(L, 1);
         if (type != LUA_TNUMBER || !isfinite(values[i])) return false;
@@ -320,16 +340,22 @@ quat_lua_reader quat_lua_read(lua_State *L, int index, const char *kind, const c
         quat_lua_reader_error(&reader, "a table of its values is needed, got %s",
                               describe(L, index, text, sizeof text));
     luaL_checkstack(L, 4, NULL);
-    if (lua_getfield(L, reader.index, "name") == LUA_TSTRING) reader.name = lua_tostring(L, -1);
+    if (raw_field(L, reader.index, "name") == LUA_TSTRING) reader.name = lua_tostring(L, -1);
     lua_pop(L, 1);
     for (lua_pushnil(L); lua_next(L, reader.index); lua_pop(L, 1))
         if (lua_type(L, -2) != LUA_TSTRING || !is_among(lua_tostring(L, -2), keys)) unknown_key(&reader, keys);
     return reader;
 }
 
+int quat_lua_push(const quat_lua_reader *reader, const char *key)
+{
+    luaL_checkstack(reader->L, 2, NULL);
+    return raw_field(reader->L, reader->index, key);
+}
+
 bool quat_lua_has(const quat_lua_reader *reader, const char *key)
 {
-    const bool has = lua_getfield(reader->L, reader->index, key) != LUA_TNIL;
+    const bool has = quat_lua_push(reader, key) != LUA_TNIL;
     lua_pop(reader->L, 1);
     return has;
 }
@@ -342,8 +368,7 @@ void quat_lua_need(const quat_lua_reader *reader, const char *key)
 /* Pushes the key's value; false (and nothing pushed) when it is absent. */
 static bool push_field(const quat_lua_reader *reader, const char *key)
 {
-    luaL_checkstack(reader->L, 2, NULL);
-    if (lua_getfield(reader->L, reader->index, key) != LUA_TNIL) return true;
+    if (quat_lua_push(reader, key) != LUA_TNIL) return true;
     lua_pop(reader->L, 1);
     return false;
 }
@@ -411,6 +436,7 @@ quat quat_lua_get_quat(const quat_lua_reader *reader, const char *key, quat fall
 /* v.x, v.y, v.z of a vector table; nothing else. */
 static int vec3_index(lua_State *L)
 {
+    luaL_checktype(L, 1, LUA_TTABLE);
     const char *key = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
     if (key[0] >= 'x' && key[0] <= 'z' && key[1] == 0)
         lua_rawgeti(L, 1, key[0] - 'x' + 1);
@@ -423,6 +449,7 @@ static int vec3_tostring(lua_State *L)
 {
     char text[120];
     double v[3];
+    luaL_checktype(L, 1, LUA_TTABLE);
     for (int i = 0; i < 3; i++) {
         lua_rawgeti(L, 1, i + 1);
         v[i] = lua_tonumber(L, -1);

@@ -51,6 +51,10 @@ int quat_lua_error(lua_State *L, const char *format, ...) __attribute__((format(
 /* Returns nil, message to the script: `return quat_lua_failure(L, quat_status_string(status))`. */
 int quat_lua_failure(lua_State *L, const char *message);
 
+/* Runs work on the arguments on the stack with the collector at rest: no finaliser of the script's runs, and no string of a table
+ * that is being read goes away. `return quat_lua_quietly(L, work)`. */
+int quat_lua_quietly(lua_State *L, lua_CFunction work);
+
 /* ---- arguments of functions, by position; name is the argument's name in the error ---- */
 
 double quat_lua_arg_number(lua_State *L, int arg, const char *name, quat_lua_range range);
@@ -82,6 +86,8 @@ quat_lua_reader quat_lua_read(lua_State *L, int index, const char *kind, const c
 /* Raises "file:line: body 'coin': message". */
 int quat_lua_reader_error(const quat_lua_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Pushes the key's value, without metamethods; its type. */
+int quat_lua_push(const quat_lua_reader *reader, const char *key);
 /* Each reads one key; an absent key (nil) gives the fallback. */
 bool quat_lua_has(const quat_lua_reader *reader, const char *key);
 double quat_lua_get_number(const quat_lua_reader *reader, const char *key, quat_lua_range range, double fallback);

@@ -69,7 +69,7 @@ static void read_shape(const quat_lua_reader *reader, impact_body_def *def)
 {
     lua_State *L = reader->L;
     quat_lua_need(reader, "shape");
-    lua_getfield(L, reader->index, "shape");
+    quat_lua_push(reader, "shape");
     const impact_shape *shape = luaL_testudata(L, -1, IMPACT_LUA_SHAPE);
     if (!shape)
         quat_lua_reader_error(reader, "shape must be a shape such as impact.sphere(0.3), got a %s",
@@ -121,8 +121,7 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
     def->angular_damping = quat_lua_get_number(&reader, "angular_damping", QUAT_LUA_BELOW_ONE, def->angular_damping);
 }
 
-/* body{name=, shape=, ...}: the same table, checked. */
-static int body_new(lua_State *L)
+static int read_new(lua_State *L)
 {
     impact_body_def def;
     lua_settop(L, 1);
@@ -130,6 +129,9 @@ static int body_new(lua_State *L)
     impact_lua_mark(L, 1, BODY);
     return 1;
 }
+
+/* body{name=, shape=, ...}: the same table, checked. */
+static int body_new(lua_State *L) { return quat_lua_quietly(L, read_new); }
 
 void impact_lua_open_body(lua_State *L)
 {

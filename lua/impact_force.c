@@ -39,7 +39,7 @@ static void read_attraction(const quat_lua_reader *reader, impact_force_def *def
 static void read_custom(const quat_lua_reader *reader)
 {
     quat_lua_need(reader, "law");
-    if (lua_getfield(reader->L, reader->index, "law") != LUA_TFUNCTION)
+    if (quat_lua_push(reader, "law") != LUA_TFUNCTION)
         quat_lua_reader_error(reader, "law must be a function(t, body), got a %s", luaL_typename(reader->L, -1));
     lua_pop(reader->L, 1);
 }
@@ -82,9 +82,13 @@ static int make(lua_State *L, impact_force_kind kind)
     return 1;
 }
 
-static int force_wind(lua_State *L) { return make(L, IMPACT_FORCE_WIND); }
-static int force_attraction(lua_State *L) { return make(L, IMPACT_FORCE_ATTRACTION); }
-static int force_custom(lua_State *L) { return make(L, IMPACT_FORCE_CUSTOM); }
+static int new_wind(lua_State *L) { return make(L, IMPACT_FORCE_WIND); }
+static int new_attraction(lua_State *L) { return make(L, IMPACT_FORCE_ATTRACTION); }
+static int new_custom(lua_State *L) { return make(L, IMPACT_FORCE_CUSTOM); }
+
+static int force_wind(lua_State *L) { return quat_lua_quietly(L, new_wind); }
+static int force_attraction(lua_State *L) { return quat_lua_quietly(L, new_attraction); }
+static int force_custom(lua_State *L) { return quat_lua_quietly(L, new_custom); }
 
 void impact_lua_open_force(lua_State *L)
 {

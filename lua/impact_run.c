@@ -20,15 +20,16 @@ typedef struct law_call {
     qvec3 *force, *torque;
 } law_call;
 
-static void set_vec3(lua_State *L, int table, const char *key, const qvec3 *v)
+/* state[key] = the entry's own vector at place, with the components of v. */
+static void set_vec3(lua_State *L, int entry, int state, int place, const char *key, const qvec3 *v)
 {
     const double component[3] = {v->x, v->y, v->z};
-    lua_getfield(L, table, key);
+    lua_rawgeti(L, entry, place);
     for (int i = 0; i < 3; i++) {
         lua_pushnumber(L, component[i]);
         lua_rawseti(L, -2, i + 1);
     }
-    lua_pop(L, 1);
+    lua_setfield(L, state, key);
 }
 
 /* A vector that a law returned; nil is zero. The law's entry is at index 2. */
@@ -44,31 +45,32 @@ static qvec3 returned_vec3(lua_State *L, int index, const char *what)
         lua_pop(L, 1);
     }
     if (good) return (qvec3){v[0], v[1], v[2]};
-    lua_rawgeti(L, 2, 4);
-    lua_rawgeti(L, 2, 5);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_WHERE);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_NAME);
     lua_pushfstring(L, "%sforce '%s': the %s must be a vector {x, y, z} of finite numbers", lua_tostring(L, -2),
                     lua_tostring(L, -1), what);
     lua_error(L);
     return (qvec3){0, 0, 0};
 }
 
-/* Protected: (law_call *, {function, state, orientation, where, name}) */
+/* Protected: (law_call *, the law's entry) */
 static int call_law(lua_State *L)
 {
     const law_call *call = lua_touserdata(L, 1);
     luaL_checkstack(L, 12, NULL);
-    lua_rawgeti(L, 2, 2);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_STATE);
     const int state = lua_gettop(L);
-    lua_rawgeti(L, 2, 3);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_ORIENTATION);
     *(quat *)lua_touserdata(L, -1) = *call->orientation;
+    lua_setfield(L, state, "orientation");
     lua_pushstring(L, call->body);
     lua_setfield(L, state, "name");
     lua_pushnumber(L, call->mass);
     lua_setfield(L, state, "mass");
-    set_vec3(L, state, "position", call->position);
-    set_vec3(L, state, "velocity", call->velocity);
-    set_vec3(L, state, "omega", call->omega);
-    lua_rawgeti(L, 2, 1);
+    set_vec3(L, 2, state, IMPACT_LUA_LAW_POSITION, "position", call->position);
+    set_vec3(L, 2, state, IMPACT_LUA_LAW_VELOCITY, "velocity", call->velocity);
+    set_vec3(L, 2, state, IMPACT_LUA_LAW_OMEGA, "omega", call->omega);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_FUNCTION);
     lua_pushnumber(L, call->t);
     lua_pushvalue(L, state);
     lua_call(L, 2, 2);
@@ -293,7 +295,7 @@ static bool on_progress(void *context, double t, double t_end)
 /* The slot of an option that must be a function; 0 when it is absent. */
 static int function_slot(const quat_lua_reader *options, const char *key)
 {
-    if (lua_getfield(options->L, options->index, key) == LUA_TNIL) return 0;
+    if (quat_lua_push(options, key) == LUA_TNIL) return 0;
     if (!lua_isfunction(options->L, -1))
         quat_lua_reader_error(options, "%s must be a function, got a %s", key, luaL_typename(options->L, -1));
     return lua_gettop(options->L);
@@ -307,6 +309,7 @@ static impact_csv *open_csv(const quat_lua_reader *options, const impact_lua_hos
 {
     lua_State *L = options->L;
     impact_csv *csv = NULL;
+    quat_lua_push(options, "csv"); /* stays on the stack, and so the name stays */
     const char *name = quat_lua_get_string(options, "csv", "");
     const bool plain = is_plain(name);
     if (host && host->confined && !plain)

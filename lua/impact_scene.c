@@ -35,7 +35,7 @@ static const char *const solver_words[] = {"auto", "closed_form", "series", "cvo
 static int push_list(const quat_lua_reader *reader, const char *key)
 {
     lua_State *L = reader->L;
-    if (lua_getfield(L, reader->index, key) == LUA_TNIL) return 0;
+    if (quat_lua_push(reader, key) == LUA_TNIL) return 0;
     if (!lua_istable(L, -1)) quat_lua_reader_error(reader, "%s must be a list, got a %s", key, luaL_typename(L, -1));
     const lua_Unsigned length = lua_rawlen(L, -1);
     lua_Unsigned count = 0;
@@ -71,31 +71,29 @@ static const impact_body_def *read_bodies(const quat_lua_reader *reader, impact_
     return bodies;
 }
 
-/* An entry of the table of laws: {function, state, orientation, where, name}. The force's table is on top, its place below it. */
+/* An entry of the table of laws: see impact_lua_law. The force's table is on top, its place below it. */
 static void push_law(lua_State *L, const impact_force_def *force)
 {
-    static const char *const vectors[] = {"position", "velocity", "omega"};
     const int table = lua_gettop(L);
-    lua_createtable(L, 5, 0);
-    lua_getfield(L, table, "law");
-    lua_rawseti(L, -2, 1);
+    lua_createtable(L, IMPACT_LUA_LAW_SIZE, 0);
+    lua_pushliteral(L, "law");
+    lua_rawget(L, table);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_FUNCTION);
     lua_newtable(L);
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_STATE);
+    for (int vector = IMPACT_LUA_LAW_POSITION; vector <= IMPACT_LUA_LAW_OMEGA; vector++) {
         quat_lua_push_vec3(L, (qvec3){0, 0, 0});
-        lua_setfield(L, -2, vectors[i]);
+        lua_rawseti(L, -2, vector);
     }
     quat_lua_push_quat(L, quat_identity());
-    lua_pushvalue(L, -1);
-    lua_setfield(L, -3, "orientation");
-    lua_rawseti(L, -3, 3);
-    lua_rawseti(L, -2, 2);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_ORIENTATION);
     if (!impact_lua_push_position(L, table)) {
         lua_pop(L, 1);
         lua_pushliteral(L, "");
     }
-    lua_rawseti(L, -2, 4);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_WHERE);
     lua_pushstring(L, force->name);
-    lua_rawseti(L, -2, 5);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_NAME);
 }
 
 /* laws: the stack place of the table of laws. */
@@ -157,7 +155,7 @@ static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
 {
     static const char *const keys[] = {"friction", "restitution", NULL};
     lua_State *L = reader->L;
-    if (lua_getfield(L, reader->index, "rules") != LUA_TNIL) {
+    if (quat_lua_push(reader, "rules") != LUA_TNIL) {
         const quat_lua_reader rules = quat_lua_read(L, -1, "rules", reader->where, keys);
         def->friction_rule =
             (impact_pair_rule)quat_lua_get_choice(&rules, "friction", rule_words, (int)def->friction_rule);
@@ -171,7 +169,7 @@ static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
 
 static void read_plot(const quat_lua_reader *reader)
 {
-    const int type = lua_getfield(reader->L, reader->index, "plot");
+    const int type = quat_lua_push(reader, "plot");
     if (type != LUA_TNIL && type != LUA_TFUNCTION)
         quat_lua_reader_error(reader, "plot must be a function(scene) that returns a figure, got a %s",
                               lua_typename(reader->L, type));
@@ -206,7 +204,8 @@ static impact_scene_def read_scene(lua_State *L, int index, impact_lua_scene *se
 /* Raises with the place of the body that the message speaks of, when it speaks of one; else with the scene's. */
 static int refuse_scene(lua_State *L, const impact_scene_def *def, const char *message)
 {
-    lua_getfield(L, 1, "bodies");
+    lua_pushliteral(L, "bodies");
+    lua_rawget(L, 1);
     for (int i = 0; i < def->body_count; i++) {
         char start[96];
         snprintf(start, sizeof start, "body '%s'", def->bodies[i].name);
@@ -220,7 +219,7 @@ static int refuse_scene(lua_State *L, const impact_scene_def *def, const char *m
     return quat_lua_error(L, "%s", message);
 }
 
-static int scene_new(lua_State *L)
+static int make_scene(lua_State *L)
 {
     char message[400] = "";
     lua_settop(L, 1);
@@ -242,6 +241,8 @@ static int scene_new(lua_State *L)
     lua_settop(L, 2);
     return 1;
 }
+
+static int scene_new(lua_State *L) { return quat_lua_quietly(L, make_scene); }
 
 /* ---- asking ---- */
 

@@ -26,10 +26,24 @@ typedef struct impact_lua_rows {
     size_t event_count, event_capacity;
 } impact_lua_rows;
 
-/* One custom force's law; it stands in the userdata under IMPACT_LUA_LAWS. */
+/* The places of an entry of the table of laws. The script sees the state; what is written into it at each call stands beside it, so
+ * that the script cannot take it away. */
+enum {
+    IMPACT_LUA_LAW_FUNCTION = 1,
+    IMPACT_LUA_LAW_STATE,
+    IMPACT_LUA_LAW_POSITION,
+    IMPACT_LUA_LAW_VELOCITY,
+    IMPACT_LUA_LAW_OMEGA,
+    IMPACT_LUA_LAW_ORIENTATION,
+    IMPACT_LUA_LAW_WHERE,
+    IMPACT_LUA_LAW_NAME,
+    IMPACT_LUA_LAW_SIZE = IMPACT_LUA_LAW_NAME
+};
+
+/* The context of one custom force. */
 typedef struct impact_lua_law {
     struct impact_lua_scene *owner;
-    int index; /* in the table of laws: {function, state, orientation's userdata, where, name} */
+    int index; /* in the table of laws */
 } impact_lua_law;
 
 typedef struct impact_lua_scene {

@@ -109,6 +109,47 @@ for _, wrong in ipairs {
 end
 check.truth(runner.shell("find " .. runner.quote(here) .. " . -maxdepth 2 -name 'pwned*' 2>/dev/null | grep -q .") ~= 0, "nothing ran")
 
+-- A script that tampers with what it is handed gets an error at most.
+succeeds(scene .. [[
+local v = scene:state("ball").position
+local meta = getmetatable(v)
+assert(not pcall(meta.__index, 5, "x") and not pcall(meta.__tostring, nil) and not pcall(meta.__index))
+for _, object in ipairs { scene, impact.sphere(1), require("quat").new(1, 0, 0, 0) } do
+  for key, method in pairs(getmetatable(object)) do
+    if type(method) == "function" then pcall(method) pcall(method, {}) pcall(method, 3, 4) pcall(method, io.stdout) pcall(method, v, v) end
+  end
+end
+for _, method in pairs(getmetatable(scene).__index) do pcall(method) pcall(method, {}) pcall(method, v) pcall(method, impact.sphere(1)) end
+]])
+succeeds(scene .. [[
+-- Names that come from metamethods, or go away while they are read.
+local body = setmetatable({ shape = impact.sphere(1) }, { __index = function(_, key) return key == "name" and ("x"):rep(100) or nil end })
+assert(not pcall(impact.body, body))
+for i = 1, 200 do
+  local t = { name = "name" .. i, shape = impact.sphere(1) }
+  setmetatable({}, { __gc = function() t.name = nil collectgarbage() end })
+  pcall(impact.body, t)
+  pcall(impact.scene, { name = "s" .. i, duration = 1, bodies = { t } })
+end]])
+if require "impact".has "cvode" then
+  succeeds(scene .. [[
+local seen
+local law = function(t, state)
+  seen = state
+  state.position, state.velocity, state.omega, state.orientation, state.name = nil, 3, "x", false, {}
+  setmetatable(state, { __newindex = function() end })
+end
+local tampered = impact.scene { duration = 0.1, forces = { impact.force { law = law } },
+  bodies = { impact.body { name = "ball", shape = impact.sphere(1) } } }
+assert(tampered:run() == "end of time" and seen)]])
+end
+succeeds([[
+-- Our own functions, called out of turn.
+for name, opener in pairs(package.preload) do pcall(opener) pcall(opener, name) pcall(opener, "quat.plot") pcall(opener, {}) end
+local core = require "impact.core"
+core.layer()
+for _, f in pairs(core) do if type(f) == "function" then pcall(f) pcall(f, {}) pcall(f, 3) pcall(f, core) pcall(f, nil, {}) end end]])
+
 -- With --trust, the script is Lua as usual.
 succeeds("assert(os.execute and io.popen and debug.getinfo and string.dump) assert(load(string.dump(function() return 5 end))() == 5)", "--trust")
 succeeds("local f = assert(io.open('secret')) assert(f:read('a') == 'secret')", "--trust")
