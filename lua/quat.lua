@@ -1,28 +1,131 @@
 -- SPDX-License-Identifier: MIT
 --- Quaternions: `local quat = require "quat"`. Loads libquat and libm; the rooms that need GSL load when first used.
-
----@class quat
----@field w number
----@field x number
----@field y number
----@field z number
+---
+--- Conventions as in C: w first, Hamilton product, right-handed active rotations from body to world; p * q applies q first,
+--- then p; radians. Functions on rotations normalise what they are given. Misuse raises an error with the argument's name;
+--- an expected failure returns nil and a message; where the answer is one of several, the reason comes after the results.
 
 ---@class vec3  {x, y, z}; also v.x, v.y, v.z
 ---@field x number
 ---@field y number
 ---@field z number
 
+---@alias rotation quat | number[] | { w: number, x: number, y: number, z: number }
+---@alias vector vec3 | number[] | { x: number, y: number, z: number }
+---@alias frame "world" | "body"
+
+--- Also every function of quatlib whose first parameter is a quaternion: q:conj(), q:rotate(v), p:slerp(q, t) ...
+---@class quat
+---@field w number
+---@field x number
+---@field y number
+---@field z number
+---@operator add(quat | number): quat
+---@operator sub(quat | number): quat
+---@operator mul(quat | number): quat
+---@operator div(quat | number): quat
+---@operator pow(quat | number): quat
+---@operator unm: quat
+---@field components fun(self: quat): number, number, number, number
+---@field vector fun(self: quat): vec3
+---@field conj fun(self: quat): quat
+---@field norm fun(self: quat): number
+---@field dot fun(self: quat, q: rotation): number
+---@field mul_compensated fun(self: quat, q: rotation): quat  every component rounded once
+---@field inverse fun(self: quat): quat?, string?
+---@field normalize fun(self: quat): quat?, string?
+---@field div_left fun(self: quat, p: rotation): quat?, string?  (1/self) p
+---@field exp fun(self: quat): quat?, string?
+---@field log fun(self: quat): quat?, string?
+---@field sqrt fun(self: quat): quat?, string?
+---@field pow fun(self: quat, exponent: number | rotation): quat?, string?
+---@field distance fun(self: quat, q: rotation): number  angle between points of S^3, 0 ... pi
+---@field rotation_distance fun(self: quat, q: rotation): number  angle of the rotation from one to the other, 0 ... pi
+---@field angle fun(self: quat): number  rotation angle, 0 ... pi
+---@field nearest fun(self: quat, reference: rotation): quat  self or -self
+---@field near fun(self: quat, q: rotation, tolerance: number): boolean  as points of R^4
+---@field same_rotation fun(self: quat, q: rotation, angle: number): boolean
+---@field rotate fun(self: quat, v: vector): vec3
+---@field rotate_inverse fun(self: quat, v: vector): vec3
+---@field rotate_list fun(self: quat, vectors: vector[] | number[]): vec3[] | number[]  list of vectors, or flat x, y, z, x ...
+---@field rotate_inverse_list fun(self: quat, vectors: vector[] | number[]): vec3[] | number[]
+---@field to_rotation_vector fun(self: quat): vec3
+---@field to_axis_angle fun(self: quat): vec3?, number | string, string?
+---@field to_matrix fun(self: quat): number[][]  three rows
+---@field to_euler fun(self: quat, sequence: string): number?, number | string, number?, string?
+---@field swing_twist fun(self: quat, axis: vector): quat, quat, string?  swing, twist
+---@field step fun(self: quat, omega: vector, dt: number, frame?: frame): quat  after dt seconds at constant omega
+---@field derivative fun(self: quat, omega: vector, frame?: frame): quat
+---@field omega fun(self: quat, dq: rotation, frame?: frame): vec3
+---@field integrate fun(self: quat, omega: (fun(t: number): vector), t0: number, t1: number, steps: integer, frame?: frame, method?: "magnus4" | "cf4"): quat
+---@field slerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
+---@field nlerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
+---@field slerp_omega fun(self: quat, q: rotation): vec3  radians per unit of t, world axes
+---@field slerp_list fun(self: quat, q: rotation, t: number[]): quat[]
+
+---@class motion  x -> R x + s, a unit dual quaternion
+---@operator mul(motion): motion
+---@field inverse fun(self: motion): motion
+---@field apply fun(self: motion, x: vector): vec3
+---@field apply_inverse fun(self: motion, x: vector): vec3
+---@field rotation fun(self: motion): quat
+---@field shift fun(self: motion): vec3
+---@field log fun(self: motion): vec3, vec3  rotation vector and translation rate
+---@field sclerp fun(self: motion, q: motion, t: number): motion
+---@field to_screw fun(self: motion): vec3?, vec3 | string, number?, number?, string?  axis, point, angle, slide
+
+---@class rotation_spline  twice continuously differentiable
+---@field at fun(self: rotation_spline, t: number): quat
+---@field state fun(self: rotation_spline, t: number): quat, vec3, vec3  orientation, angular velocity and acceleration (world)
+---@field length fun(self: rotation_spline, t?: number): number  angle turned through until t, or in all
+---@field time_at fun(self: rotation_spline, length: number): number
+---@field close fun(self: rotation_spline)
+
+---@class spline_definition
+---@field times number[]
+---@field keys rotation[]
+---@field ends? "natural" | "clamped" | "periodic"
+---@field omega_first? vector
+---@field omega_last? vector
+
 local core = require "quat.core"
 core.layer()
 
----@class quatlib
----@field new fun(w: number, x: number, y: number, z: number): quat
+---@class quatlib : quat
+---@field new (fun(w: number, x: number, y: number, z: number): quat) | fun(q: rotation): quat
+---@field identity fun(): quat
+---@field pure fun(v: vector): quat
+---@field random fun(generator?: fun(): number): quat  uniform; the generator returns numbers in [0, 1)
+---@field reflect fun(normal: vector, v: vector): vec3
+---@field from_reflections fun(n1: vector, n2: vector): quat
+---@field from_rotation_vector fun(r: vector): quat
+---@field from_axis_angle fun(axis: vector, angle: number): quat?, string?
+---@field from_matrix fun(matrix: number[][]): quat?, string?
+---@field from_matrix_nearest fun(matrix: number[][]): quat?, number | string, string?  q, distance
+---@field from_euler fun(sequence: string, a: number, b: number, c: number): quat?, string?  "ZYX" intrinsic, "zyx" extrinsic
+---@field from_two_vectors fun(a: vector, b: vector): quat?, string?
+---@field from_axes fun(x: vector, y: vector): quat?, string?
+---@field squad fun(p: rotation, a: rotation, b: rotation, q: rotation, t: number): quat
+---@field squad_control fun(before: rotation, q: rotation, after: rotation): quat
+---@field squad_omega fun(p: rotation, a: rotation, b: rotation, q: rotation, t: number): vec3
+---@field spline fun(definition: spline_definition): rotation_spline?, string?
+---@field mul_list fun(p: rotation[], q: rotation[]): quat[]
+---@field normalize_list fun(q: rotation[]): quat[]
+---@field compose_list fun(q: rotation[]): quat  q[1] q[2] ...
+---@field unflip fun(q: rotation[]): quat[], integer, integer  the list made continuous, signs changed, monodromy
+---@field mean fun(q: rotation[], weights?: number[]): quat?, string?
+---@field mean_karcher fun(q: rotation[], weights?: number[]): quat?, number | string, string?  mean, root mean square angle
+---@field align fun(a: vector[], b: vector[], weights?: number[]): quat?, number | string, string?  b = R a: R, residual
+---@field align_points fun(a: vector[], b: vector[], weights?: number[]): quat?, vec3 | string, number?, string?
+---@field motion fun(q: rotation, shift: vector): motion
+---@field screw fun(axis: vector, point: vector, angle: number, slide: number): motion?, string?
+---@field motion_exp fun(rotation: vector, translation: vector): motion
 local quat = {}
 for name, value in pairs(core) do
   if name ~= "layer" then quat[name] = value end
 end
 
--- quat.average, quat.curve ...: the rooms of quat.gsl, where the build holds them.
+-- quat.curve, quat.surface ...: the rooms of quat.gsl, where the build holds them.
 setmetatable(quat, {
   __index = function(self, key)
     local found, gsl = pcall(require, "quat.gsl")

@@ -4,13 +4,118 @@
  */
 #include "quat_core.h"
 
+#include <stdio.h>
+
 int luaopen_quat_core(lua_State *L)
 {
-    static void (*const rooms[])(lua_State *) = {quat_lua_open_quat};
+    static void (*const rooms[])(lua_State *) = {quat_lua_open_quat,   quat_lua_open_rotation, quat_lua_open_interpolate,
+                                                 quat_lua_open_spline, quat_lua_open_array,    quat_lua_open_dual};
     luaL_checkversion(L); /* header against library */
     lua_newtable(L);
     lua_pushcfunction(L, quat_lua_layer);
     lua_setfield(L, -2, "layer");
     for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) rooms[i](L);
     return 1;
+}
+
+void quat_lua_add_methods(lua_State *L, const luaL_Reg functions[])
+{
+    luaL_setfuncs(L, functions, 0);
+    luaL_newmetatable(L, QUAT_LUA_QUAT);
+    luaL_getsubtable(L, -1, "methods");
+    luaL_setfuncs(L, functions, 0);
+    lua_pop(L, 2);
+}
+
+int quat_lua_result_on_top(lua_State *L, quat_status status)
+{
+    if (status < 0) return quat_lua_failure(L, quat_status_string(status));
+    if (status == QUAT_OK) return 1;
+    lua_pushstring(L, quat_status_string(status));
+    return 2;
+}
+
+int quat_lua_result(lua_State *L, quat_status status, quat q)
+{
+    quat_lua_push_quat(L, q);
+    return quat_lua_result_on_top(L, status);
+}
+
+/* ---- lists ---- */
+
+/* The length of the list at arg. */
+static size_t list_length(lua_State *L, int arg, const char *name, size_t least)
+{
+    if (lua_type(L, arg) != LUA_TTABLE) quat_lua_error(L, "argument '%s' must be a list, got a %s", name, luaL_typename(L, arg));
+    const size_t n = lua_rawlen(L, arg);
+    if (n < least) quat_lua_error(L, "argument '%s' must be a list of at least %d elements, got %d", name, (int)least, (int)n);
+    return n;
+}
+
+static void *buffer(lua_State *L, size_t n, size_t size) { return lua_newuserdatauv(L, (n ? n : 1) * size, 0); }
+
+/* Pushes element i and gives it a name for errors. */
+static int push_element(lua_State *L, int arg, const char *name, size_t i, char *text, size_t size)
+{
+    lua_rawgeti(L, arg, (lua_Integer)i + 1);
+    snprintf(text, size, "%s[%zu]", name, i + 1);
+    return lua_gettop(L);
+}
+
+quat *quat_lua_arg_quats(lua_State *L, int arg, const char *name, size_t least, size_t *n)
+{
+    char text[64];
+    *n = list_length(L, arg, name, least);
+    quat *const q = buffer(L, *n, sizeof *q);
+    for (size_t i = 0; i < *n; i++) {
+        q[i] = quat_lua_arg_quat(L, push_element(L, arg, name, i, text, sizeof text), text);
+        lua_pop(L, 1);
+    }
+    return q;
+}
+
+qvec3 *quat_lua_arg_vec3s(lua_State *L, int arg, const char *name, size_t least, size_t *n)
+{
+    char text[64];
+    *n = list_length(L, arg, name, least);
+    qvec3 *const v = buffer(L, *n, sizeof *v);
+    for (size_t i = 0; i < *n; i++) {
+        v[i] = quat_lua_arg_vec3(L, push_element(L, arg, name, i, text, sizeof text), text);
+        lua_pop(L, 1);
+    }
+    return v;
+}
+
+double *quat_lua_arg_numbers(lua_State *L, int arg, const char *name, size_t least, size_t *n)
+{
+    *n = list_length(L, arg, name, least);
+    double *const x = buffer(L, *n, sizeof *x);
+    for (size_t i = 0; i < *n; i++) {
+        int is_number;
+        lua_rawgeti(L, arg, (lua_Integer)i + 1);
+        x[i] = lua_tonumberx(L, -1, &is_number);
+        if (!is_number || !isfinite(x[i])) quat_lua_error(L, "argument '%s[%d]' must be a finite number", name, (int)i + 1);
+        lua_pop(L, 1);
+    }
+    return x;
+}
+
+double *quat_lua_arg_weights(lua_State *L, int arg, size_t n)
+{
+    if (lua_isnoneornil(L, arg)) return NULL;
+    size_t count;
+    double *const w = quat_lua_arg_numbers(L, arg, "weights", 0, &count);
+    if (count != n) quat_lua_error(L, "argument 'weights' must have %d elements, one for each, got %d", (int)n, (int)count);
+    for (size_t i = 0; i < n; i++)
+        if (w[i] < 0) quat_lua_error(L, "argument 'weights[%d]' must not be negative, got %g", (int)i + 1, w[i]);
+    return w;
+}
+
+void quat_lua_push_quats(lua_State *L, size_t n, const quat q[])
+{
+    lua_createtable(L, (int)n, 0);
+    for (size_t i = 0; i < n; i++) {
+        quat_lua_push_quat(L, q[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
 }

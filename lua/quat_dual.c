@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rigid motions in Lua: dual quaternions as a userdata, m1 * m2 applying m2 first.
+ */
+#include "quat_core.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <quat/dual.h>
+
+#define DUAL "quat.dual"
+
+static qdual motion(lua_State *L, int index, const char *name)
+{
+    const qdual *const p = luaL_testudata(L, index, DUAL);
+    if (!p) quat_lua_error(L, "argument '%s' must be a motion, got a %s", name, luaL_typename(L, index));
+    return *p;
+}
+
+static int give(lua_State *L, qdual p)
+{
+    qdual *const place = lua_newuserdatauv(L, sizeof p, 0);
+    *place = p;
+    luaL_setmetatable(L, DUAL);
+    return 1;
+}
+
+static int vector(lua_State *L, qvec3 v)
+{
+    quat_lua_push_vec3(L, v);
+    return 1;
+}
+
+/* motion(q, shift): x -> q x q* + shift. */
+static int l_motion(lua_State *L)
+{
+    quat q;
+    if (quat_normalize(quat_lua_arg_quat(L, 1, "q"), &q) != QUAT_OK) return quat_lua_error(L, "argument 'q' must not be zero");
+    return give(L, quat_dual_from(q, quat_lua_arg_vec3(L, 2, "shift")));
+}
+
+static int l_screw(lua_State *L)
+{
+    qdual p;
+    const qvec3 axis = quat_lua_arg_vec3(L, 1, "axis"), point = quat_lua_arg_vec3(L, 2, "point");
+    const double angle = quat_lua_arg_number(L, 3, "angle", QUAT_LUA_FINITE), slide = quat_lua_arg_number(L, 4, "slide", QUAT_LUA_FINITE);
+    const quat_status status = quat_dual_from_screw(axis, point, angle, slide, &p);
+    return status < 0 ? quat_lua_failure(L, quat_status_string(status)) : give(L, p);
+}
+
+static int l_motion_exp(lua_State *L)
+{
+    const qtwist twist = {quat_lua_arg_vec3(L, 1, "rotation"), quat_lua_arg_vec3(L, 2, "translation")};
+    return give(L, quat_dual_exp(twist));
+}
+
+static int meta_mul(lua_State *L) { return give(L, quat_dual_mul(motion(L, 1, "left"), motion(L, 2, "right"))); }
+
+static int meta_eq(lua_State *L)
+{
+    const qdual *const p = luaL_testudata(L, 1, DUAL), *const q = luaL_testudata(L, 2, DUAL);
+    lua_pushboolean(L, p && q && quat_equal(p->real, q->real) && quat_equal(p->dual, q->dual));
+    return 1;
+}
+
+static int meta_tostring(lua_State *L)
+{
+    const qdual p = motion(L, 1, "motion");
+    const qvec3 s = quat_dual_shift(p);
+    char text[240];
+    snprintf(text, sizeof text, "motion: turn (%.14g, %.14g, %.14g, %.14g), shift (%.14g, %.14g, %.14g)", p.real.w, p.real.x, p.real.y,
+             p.real.z, s.x, s.y, s.z);
+    lua_pushstring(L, text);
+    return 1;
+}
+
+static int l_inverse(lua_State *L) { return give(L, quat_dual_conj(motion(L, 1, "motion"))); }
+static int l_apply(lua_State *L) { return vector(L, quat_dual_apply(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x"))); }
+static int l_apply_inverse(lua_State *L)
+{
+    return vector(L, quat_dual_apply_inverse(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x")));
+}
+static int l_shift(lua_State *L) { return vector(L, quat_dual_shift(motion(L, 1, "motion"))); }
+
+static int l_rotation(lua_State *L)
+{
+    quat_lua_push_quat(L, motion(L, 1, "motion").real);
+    return 1;
+}
+
+static int l_log(lua_State *L)
+{
+    const qtwist twist = quat_dual_log(motion(L, 1, "motion"));
+    quat_lua_push_vec3(L, twist.rotation);
+    quat_lua_push_vec3(L, twist.translation);
+    return 2;
+}
+
+static int l_sclerp(lua_State *L)
+{
+    const qdual p = motion(L, 1, "p"), q = motion(L, 2, "q");
+    return give(L, quat_dual_sclerp(p, q, quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE)));
+}
+
+/* axis, point, angle, slide [, reason] */
+static int l_to_screw(lua_State *L)
+{
+    qvec3 axis, point;
+    double angle, slide;
+    const quat_status status = quat_dual_to_screw(motion(L, 1, "motion"), &axis, &point, &angle, &slide);
+    if (status < 0) return quat_lua_failure(L, quat_status_string(status));
+    quat_lua_push_vec3(L, axis);
+    quat_lua_push_vec3(L, point);
+    lua_pushnumber(L, angle);
+    lua_pushnumber(L, slide);
+    if (status == QUAT_OK) return 4;
+    lua_pushstring(L, quat_status_string(status));
+    return 5;
+}
+
+void quat_lua_open_dual(lua_State *L)
+{
+    static const luaL_Reg meta[] = {{"__mul", meta_mul}, {"__eq", meta_eq}, {"__tostring", meta_tostring}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"inverse", l_inverse}, {"apply", l_apply}, {"apply_inverse", l_apply_inverse},
+                                       {"shift", l_shift}, {"rotation", l_rotation}, {"log", l_log}, {"sclerp", l_sclerp},
+                                       {"to_screw", l_to_screw}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"motion", l_motion}, {"screw", l_screw}, {"motion_exp", l_motion_exp}, {NULL, NULL}};
+    luaL_newmetatable(L, DUAL);
+    luaL_setfuncs(L, meta, 0);
+    lua_newtable(L);
+    luaL_setfuncs(L, methods, 0);
+    lua_setfield(L, -2, "__index");
+    lua_pop(L, 1);
+    luaL_setfuncs(L, functions, 0);
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Interpolation between two and four rotations in Lua.
+ */
+#include "quat_core.h"
+
+#include <quat/interpolate.h>
+
+static quat unit(lua_State *L, int index, const char *name)
+{
+    quat q;
+    if (quat_normalize(quat_lua_arg_quat(L, index, name), &q) != QUAT_OK) quat_lua_error(L, "argument '%s' must not be zero", name);
+    return q;
+}
+
+/* One of the two forms of f(p, q, t [, "short" | "as_given"]). */
+static int between(lua_State *L, quat (*rotations)(quat, quat, double), quat (*points)(quat, quat, double))
+{
+    static const char *const ways[] = {"short", "as_given", NULL};
+    const quat p = unit(L, 1, "p"), q = unit(L, 2, "q");
+    const double t = quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE);
+    const bool given = !lua_isnoneornil(L, 4) && quat_lua_arg_choice(L, 4, "way", ways) == 1;
+    quat_lua_push_quat(L, given ? points(p, q, t) : rotations(p, q, t));
+    return 1;
+}
+
+static int l_slerp(lua_State *L) { return between(L, quat_slerp, quat_slerp_as_given); }
+static int l_nlerp(lua_State *L) { return between(L, quat_nlerp, quat_nlerp_as_given); }
+
+static int l_slerp_omega(lua_State *L)
+{
+    quat_lua_push_vec3(L, quat_slerp_omega(unit(L, 1, "p"), unit(L, 2, "q")));
+    return 1;
+}
+
+static int l_squad(lua_State *L)
+{
+    const quat p = unit(L, 1, "p"), a = unit(L, 2, "a"), b = unit(L, 3, "b"), q = unit(L, 4, "q");
+    quat_lua_push_quat(L, quat_squad(p, a, b, q, quat_lua_arg_number(L, 5, "t", QUAT_LUA_FINITE)));
+    return 1;
+}
+
+static int l_squad_control(lua_State *L)
+{
+    quat_lua_push_quat(L, quat_squad_control(unit(L, 1, "before"), unit(L, 2, "q"), unit(L, 3, "after")));
+    return 1;
+}
+
+static int l_squad_omega(lua_State *L)
+{
+    const quat p = unit(L, 1, "p"), a = unit(L, 2, "a"), b = unit(L, 3, "b"), q = unit(L, 4, "q");
+    quat_lua_push_vec3(L, quat_squad_omega(p, a, b, q, quat_lua_arg_number(L, 5, "t", QUAT_LUA_FINITE)));
+    return 1;
+}
+
+void quat_lua_open_interpolate(lua_State *L)
+{
+    static const luaL_Reg methods[] = {{"slerp", l_slerp}, {"nlerp", l_nlerp}, {"slerp_omega", l_slerp_omega}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {
+        {"squad", l_squad}, {"squad_control", l_squad_control}, {"squad_omega", l_squad_omega}, {NULL, NULL}};
+    luaL_setfuncs(L, functions, 0);
+    quat_lua_add_methods(L, methods);
+}

@@ -1,0 +1,188 @@
+-- SPDX-License-Identifier: MIT
+--- The quat module: every function once with a value known by hand, and how it speaks of misuse and failure.
+local check = require "check"
+local quat = require "quat"
+
+local pi, h = math.pi, math.sqrt(0.5)
+local x, y, z = { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }
+
+local function same(q, w, a, b, c, tolerance)
+  check.truth(quat.near(q, { w, a, b, c }, tolerance or 1e-15), tostring(q))
+end
+local function vector(v, a, b, c, tolerance)
+  for i, want in ipairs { a, b, c } do check.close(v[i], want, tolerance or 1e-15) end
+end
+
+-- Algebra: Hamilton's products, by hand.
+local one, i, j, k = quat.identity(), quat.new(0, 1, 0, 0), quat.new(0, 0, 1, 0), quat.new(0, 0, 0, 1)
+check.equal(i * j, k)
+check.equal(j * i, -k)
+check.equal(i * i, -one)
+check.equal(quat.new(1, 2, 3, 4) * quat.new(5, 6, 7, 8), quat.new(-60, 12, 30, 24))
+check.equal(quat.new(1, 2, 3, 4) + 1, quat.new(2, 2, 3, 4))
+check.equal(1 - quat.new(1, 2, 3, 4), quat.new(0, -2, -3, -4))
+check.equal(2 * i, i * 2)
+check.truth(i ~= j)
+check.equal(tostring(quat.new(1, -2, 0.5, 0)), "(1, -2, 0.5, 0)")
+same(i / j, 0, 0, 0, -1)
+same(1 / i, 0, -1, 0, 0)
+same(i ^ 2, -1, 0, 0, 0)
+same(i ^ i, math.exp(-pi / 2), 0, 0, 0)
+same(quat.new(1, 2, 3, 4):conj(), 1, -2, -3, -4)
+check.equal(quat.new(2, 4, 4, 8):norm(), 10)
+check.equal(i:dot({ 1, 2, 3, 4 }), 2)
+same(quat.new(0, 0, 2, 0):inverse(), 0, 0, -0.5, 0)
+same(quat.new(0, 0, 1e-310, 0):normalize(), 0, 0, 1, 0)
+same(j:div_left(i), 0, 0, 0, 1)
+same(quat.new(0, pi / 2, 0, 0):exp(), 0, 1, 0, 0)
+same(i:log(), 0, pi / 2, 0, 0)
+same(quat.new(-4, 0, 0, 0):sqrt(), 0, 2, 0, 0)
+same(i:pow(0.5), h, h, 0, 0)
+same(i:mul_compensated(i), -1, 0, 0, 0)
+same(quat.pure({ 1, 2, 3 }), 0, 1, 2, 3)
+check.equal(select("#", one:components()), 4)
+vector(quat.new(1, 2, 3, 4):vector(), 2, 3, 4)
+local zero = quat.new(0, 0, 0, 0)
+check.equal(select(2, zero:inverse()), "zero, infinite or NaN where a finite, non-zero value is needed")
+check.equal(zero:normalize(), nil)
+check.equal(select(2, quat.new(-1, 0, 0, 0):log()), "the answer is not unique; one was chosen")
+
+-- Distances.
+check.close(one:distance(i), pi / 2, 1e-15)
+check.close(one:distance(-one), pi, 1e-15)
+check.equal(one:rotation_distance(-one), 0)
+check.truth(one:same_rotation(-one, 0))
+check.close(i:angle(), pi, 1e-15)
+check.equal((-i):nearest(i), i)
+local state = 7
+local q = quat.random(function()
+  state = state * 16807 % 2147483647
+  return state / 2147483647
+end)
+check.close(q:norm(), 1, 1e-15)
+check.close(quat.random():norm(), 1, 1e-15)
+
+-- Rotations.
+local about_z = quat.from_axis_angle({ 0, 0, 2 }, pi / 2)
+vector(about_z:rotate(x), 0, 1, 0)
+vector(about_z:rotate_inverse(y), 1, 0, 0)
+vector(quat.reflect(x, { 1, 2, 3 }), -1, 2, 3)
+same(quat.from_reflections(x, { 1, 1, 0 }), h, 0, 0, h)
+same(quat.from_rotation_vector({ 0, 0, pi / 2 }), h, 0, 0, h)
+vector(about_z:to_rotation_vector(), 0, 0, pi / 2)
+local axis, angle = about_z:to_axis_angle()
+vector(axis, 0, 0, 1)
+check.close(angle, pi / 2, 1e-15)
+local m = about_z:to_matrix()
+check.close(m[2][1], 1, 1e-15)
+same(quat.from_matrix(m), h, 0, 0, h)
+m[1][1] = m[1][1] + 1e-3
+local near, distance = quat.from_matrix_nearest(m)
+check.close(near:rotation_distance(about_z), 5e-4, 1e-6)
+check.close(distance, 1e-3 / math.sqrt(2), 1e-6)
+same(quat.from_euler("ZYX", pi / 2, 0, 0), h, 0, 0, h)
+local a, b, c, reason = quat.new(h, 0, h, 0):to_euler("ZYX")
+check.close(b, pi / 2, 1e-15)
+check.equal(a + c, 0)
+check.equal(reason, "the answer is not unique; one was chosen")
+same(quat.from_two_vectors(x, y), h, 0, 0, h)
+same(quat.from_axes(y, { -1, 0, 0 }), h, 0, 0, h)
+local swing, twist = (quat.from_rotation_vector({ 0.3, 0, 0 }) * about_z):swing_twist(z)
+same(twist, h, 0, 0, h)
+check.close(swing:angle(), 0.3, 1e-15)
+same(one:step({ 0, 0, pi }, 0.5), h, 0, 0, h)
+same(one:derivative({ 0, 0, 2 }), 0, 0, 0, 1)
+vector(one:omega({ 0, 0, 0, 1 }), 0, 0, 2)
+same(one:integrate(function(t) return { 0, 0, t } end, 0, math.sqrt(pi), 7), h, 0, 0, h)
+same(one:integrate(function(t) return { 0, 0, t } end, 0, math.sqrt(pi), 7, "body", "cf4"), h, 0, 0, h)
+
+-- Interpolation.
+same(one:slerp(about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
+same(one:slerp(-about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
+same(one:slerp(-about_z, 0.5, "as_given"), math.cos(3 * pi / 8), 0, 0, -math.sin(3 * pi / 8))
+same(one:nlerp(about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
+vector(one:slerp_omega(about_z), 0, 0, pi / 2)
+same(quat.squad(one, one, about_z, about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
+same(quat.squad_control(about_z:conj(), one, about_z), 1, 0, 0, 0)
+check.close(quat.squad_omega(one, one, about_z, about_z, 0.5)[3], pi / 2, 1e-14)
+local turns = {}
+for n = 0, 4 do turns[n + 1] = quat.from_rotation_vector({ 0, 0, n * pi / 2 }) end
+local spline = quat.spline { times = { 0, 1, 2, 3, 4 }, keys = turns, ends = "periodic" }
+same(spline:at(0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
+local at, omega, acceleration = spline:state(2.25)
+vector(omega, 0, 0, pi / 2, 1e-13)
+vector(acceleration, 0, 0, 0, 1e-12)
+check.close(spline:length(), 2 * pi, 1e-13)
+check.close(spline:time_at(pi), 2, 1e-13)
+check.close(at:norm(), 1, 1e-15)
+spline:close()
+check.raises("argument 'spline' has been closed", spline.at, spline, 1)
+do
+  local closed <close> = quat.spline { times = { 0, 1 }, keys = { one, about_z } }
+  same(closed:at(2), h, 0, 0, h)
+end
+
+-- Lists.
+local turned = about_z:rotate_list { x, { x = 0, y = 1, z = 0 } }
+vector(turned[1], 0, 1, 0)
+vector(turned[2], -1, 0, 0)
+local flat = about_z:rotate_list { 1, 0, 0, 0, 1, 0 }
+check.equal(#flat, 6)
+check.close(flat[2], 1, 1e-15)
+vector(about_z:rotate_inverse_list({ y })[1], 1, 0, 0)
+check.equal(#about_z:rotate_list {}, 0)
+check.equal(quat.mul_list({ i, j }, { j, k })[2], i)
+check.equal(quat.normalize_list({ { 0, 3, 0, 0 } })[1], i)
+check.equal(quat.compose_list { i, j, k }, -one)
+same(one:slerp_list(about_z, { 0, 0.5, 1 })[2], math.cos(pi / 8), 0, 0, math.sin(pi / 8))
+local curve, changed, monodromy = quat.unflip { one, about_z, i * i }
+check.equal(changed, 1)
+check.equal(monodromy, 1)
+check.equal(curve[3], one)
+same(quat.mean { one, about_z }, math.cos(pi / 8), 0, 0, math.sin(pi / 8))
+same(quat.mean({ one, about_z }, { 0, 2 }), h, 0, 0, h)
+local mean, spread = quat.mean_karcher { one, -about_z }
+check.close(spread, pi / 4, 1e-14)
+check.close(mean:angle(), pi / 4, 1e-14)
+local aligned, residual = quat.align({ x, y }, { y, { -1, 0, 0 } })
+same(aligned, h, 0, 0, h)
+check.close(residual, 0, 1e-15)
+local fit, shift = quat.align_points({ x, y, z }, { { 5, 1, 0 }, { 4, 0, 0 }, { 5, 0, 1 } })
+same(fit, h, 0, 0, h, 1e-14)
+vector(shift, 5, 0, 0, 1e-14)
+check.equal(select(3, quat.align({ x }, { x })), "the answer is not unique; one was chosen")
+
+-- Rigid motions.
+local lift = quat.motion(about_z, { 0, 0, 3 })
+vector(lift:apply { 1, 0, 0 }, 0, 1, 3)
+vector((lift * lift):apply { 1, 0, 0 }, -1, 0, 6)
+vector((lift * lift:inverse()):apply { 1, 2, 3 }, 1, 2, 3)
+vector(lift:apply_inverse { 0, 1, 3 }, 1, 0, 0)
+vector(lift:shift(), 0, 0, 3)
+same(lift:rotation(), h, 0, 0, h)
+local line, point, turn, slide = quat.screw(z, x, pi / 2, 2):to_screw()
+vector(line, 0, 0, 1)
+vector(point, 1, 0, 0)
+check.close(turn, pi / 2, 1e-15)
+check.close(slide, 2, 1e-15)
+vector(quat.motion({ 1, 0, 0, 0 }, { 0, 0, 0 }):sclerp(lift, 0.5):shift(), 0, 0, 1.5)
+local rate, flow = lift:log()
+vector(quat.motion_exp(rate, flow):apply { 1, 0, 0 }, 0, 1, 3)
+check.truth(tostring(lift):find("shift (0, 0, 3)", 1, true), tostring(lift))
+
+-- Misuse names the argument.
+check.raises("argument 'v' must be a vector {x, y, z} of finite numbers, got nothing", one.rotate, one)
+check.raises("argument 'q' must not be zero", quat.rotate, zero, x)
+check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got ZZX",
+  quat.from_euler, "ZZX", 1, 2, 3)
+check.raises("argument 'vectors[2]' must be a vector {x, y, z} of finite numbers, got the string 'y'", one.rotate_list, one, { x, "y" })
+check.raises("argument 'vectors' must hold three numbers for each vector, got 4 numbers", one.rotate_list, one, { 1, 2, 3, 4 })
+check.raises("argument 'weights' must have 2 elements, one for each, got 1", quat.mean, { one, i }, { 1 })
+check.raises("argument 'weights[2]' must not be negative, got -1", quat.mean, { one, i }, { 1, -1 })
+check.raises("argument 'omega' must be a function of time, got a number", one.integrate, one, 3, 0, 1, 10)
+check.raises("argument 'generator()' must be a number in [0, 1), got 1", quat.random, function() return 1 end)
+check.raises("division of quaternions: zero, infinite or NaN where a finite, non-zero value is needed", function() return one / zero end)
+check.raises("spline: 2 times but 3 keys", quat.spline, { times = { 0, 1 }, keys = { one, i, j } })
+check.raises("argument 'p' must be a motion, got a table", lift.sclerp, {}, lift, 0)
+
+check.report("quat")
