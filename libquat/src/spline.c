@@ -270,6 +270,21 @@ static double gauss(const key *k, double a, double b)
     return half * sum;
 }
 
+/* Halves a ... b until the halves agree with the whole: near a standstill |speed| has a kink, which only small pieces see past. */
+static double halved(const key *k, double a, double b, double whole, double tolerance, int depth)
+{
+    const double middle = 0.5 * (a + b), left = gauss(k, a, middle), right = gauss(k, middle, b);
+    if (depth == 0 || fabs(left + right - whole) <= tolerance) return left + right;
+    return halved(k, a, middle, left, tolerance, depth - 1) + halved(k, middle, b, right, tolerance, depth - 1);
+}
+
+/* The integral of the speed over a ... b, to rounding. */
+static double arc(const key *k, double a, double b)
+{
+    const double whole = gauss(k, a, b);
+    return halved(k, a, b, whole, 4e-15 * whole, 24);
+}
+
 enum { parts = 16 };
 
 /* The angle turned through from the key to time s after it. */
@@ -278,10 +293,10 @@ static double part_length(const key *k, double s)
     const double h = (k[1].t - k[0].t) / parts;
     double sum = 0, at = 0;
     for (int i = 1; i < parts && i * h < s; i++) {
-        sum += gauss(k, at, i * h);
+        sum += arc(k, at, i * h);
         at = i * h;
     }
-    return sum + gauss(k, at, s);
+    return sum + arc(k, at, s);
 }
 
 quat_status quat_spline_new(size_t n, const double t[], const quat q[], quat_spline_end end, qvec3 omega_first, qvec3 omega_last,

@@ -14,6 +14,7 @@ typedef struct oscillator {
     double refuse_from;      /* t */
     int refusal;             /* what the right-hand side answers from there on */
     double refuse_root_from; /* t */
+    int roots;
 } oscillator;
 
 static int swing(double t, const double *y, double *rate, void *context)
@@ -29,15 +30,14 @@ static int swing(double t, const double *y, double *rate, void *context)
 static int swing_roots(double t, const double *y, double *value, void *context)
 {
     const oscillator *o = context;
-    value[0] = y[0];
-    value[1] = y[1];
-    value[2] = 2 + y[0];
+    const double all[3] = {y[0], y[1], 2 + y[0]};
+    memcpy(value, all, sizeof *all * (size_t)o->roots);
     return t > o->refuse_root_from;
 }
 
 static impact_ode_def swing_def(oscillator *o, int roots)
 {
-    *o = (oscillator){INFINITY, 0, INFINITY};
+    *o = (oscillator){INFINITY, 0, INFINITY, roots};
     return (impact_ode_def){.size = 2,
                             .roots = roots,
                             .rhs = swing,
@@ -264,7 +264,7 @@ static void refused_functions_end_with_words(void **state)
         assert_true(strlen(impact_ode_message(ode)) > 10);
         assert_true(t <= 1.2);
         /* It can be started again. */
-        o = (oscillator){INFINITY, 0, INFINITY};
+        o = (oscillator){INFINITY, 0, INFINITY, o.roots};
         assert_int_equal(impact_ode_start(ode, 0, (double[]){1, 0}), IMPACT_OK);
         assert_string_equal(impact_ode_message(ode), "");
         assert_int_equal(impact_ode_advance(ode, 1.5, &t, y, NULL, &found), IMPACT_OK);
