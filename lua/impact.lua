@@ -126,6 +126,74 @@ core.layer()
 ---@field events fun(self): table[]  of a recorded run
 ---@field close fun(self)
 
+---@alias impact.inertia number[][]|{moments: vec, orientation?: quat|number[]}  world tensor, or principal moments and their axes
+
+---@class impact.collision
+---@field m1 number  kg; math.huge: static
+---@field J1? impact.inertia  kg m^2; needed when m1 is finite
+---@field r1? vec  contact point less centre of mass, m
+---@field v1? vec  m/s
+---@field w1? vec  rad/s
+---@field m2? number  absent: static
+---@field J2? impact.inertia
+---@field r2? vec
+---@field v2? vec
+---@field w2? vec
+---@field n vec  from body 2 to body 1
+---@field mu? number|fun(speed: number): number
+---@field eps? number  in [0, 1]
+---@field law? "poisson"|"newton"|"stronge"
+---@field solver? "auto"|"closed_form"|"series"|"cvode"
+---@field order? integer  of the series, 8 to 32
+---@field any_restitution? boolean  lets eps be above 1
+---@field compliance? number  eta^2, tangential compliance; with law = "stronge"
+---@field tolerance? number  of CVODE, 1e-14 to 1e-2
+---@field method? "adams"|"bdf"  of CVODE
+
+---@class impact.outcome
+---@field v1 vec3
+---@field w1 vec3
+---@field v2 vec3
+---@field w2 vec3
+---@field impulse vec3  on body 1, N s
+---@field impulse_normal number
+---@field impulse_tangential number
+---@field compression_impulse number
+---@field normal_before number  m/s, < 0
+---@field normal_after number
+---@field energy_before number  J
+---@field energy_after number
+---@field work {compression: number, restitution: number, friction: number}  J
+---@field phases string[]  "slip-c", "stick-c", "reversal", "slip-r", "stick-r"
+---@field compressions integer
+---@field conditioning number
+---@field energy_rose boolean
+---@field jammed boolean
+---@field solver string
+---@field status "ok"|"separating"
+
+--- The keys of impact.collision (mu a number; not compliance, tolerance, method), each one value for all or a list: numbers, vectors, or
+--- one flat list of 3 count numbers.
+---@class impact.collisions
+---@field count integer
+---@field threads? integer  1 by default; 0: as many as the machine has
+
+---@class impact.flow_columns
+---@field p number[]  N s
+---@field ux number[]  m/s, along t1
+---@field uy number[]
+---@field uz number[]
+---@field s number[]
+---@field theta number[]
+---@field px number[]  N s
+---@field py number[]
+---@field stick boolean[]
+---@field directions {theta: number, rate: number, climb: number, pull: number}[]  those that do not turn
+---@field a number  the inverse mass, 1/kg, in the frame (t1, t2, normal); also b, c, d, m
+---@field t1 vec3
+---@field t2 vec3
+---@field normal vec3
+
 ---@class impactlib
 ---@field version string
 ---@field defaults table  what the library takes for absent keys: gravity, output_rate, tolerance, density, friction ...
@@ -139,6 +207,9 @@ core.layer()
 ---@field gap fun(first: impact.solid, second: impact.solid): impact.contact?, string?
 ---@field toi fun(first: impact.solid, second: impact.solid, t_max: number): number?, impact.contact|string
 ---@field body fun(definition: impact.body): impact.body
+---@field collide fun(collision: impact.collision): impact.outcome?, string?  one impact; or nil and why there is no answer
+---@field collide_many fun(collisions: impact.collisions): table  columns v1, w1, v2, w2, impulse (flat), energy_before, energy_after, normal_after, status
+---@field flow fun(flow: table): impact.flow_columns?, string?  {a=, b=, c=, d=, m=, mu=, u=, p_end=, count=}, or a collision with p_end and count
 ---@field wind fun(definition: impact.wind): impact.wind
 ---@field attraction fun(definition?: impact.attraction): impact.attraction
 ---@field force fun(definition: impact.force): impact.force

@@ -39,15 +39,19 @@ static double bisect(angle_function *f, const impact_frame *frame, double mu, do
 
 static bool unlike(double a, double b) { return (a < 0) != (b < 0); }
 
+/* Keeps the directions in order of theta. */
 static int add_direction(const impact_frame *frame, const impact_flow *flow, double theta,
                          impact_flow_direction *directions, int n)
 {
     if (n == 4) return n;
     const impact_line line = impact_course_sliding(frame, flow->friction, cos(theta), sin(theta));
-    directions[n] = (impact_flow_direction){.theta = theta < turn ? theta : 0,
-                                            .rate = line.R * flow->m,
-                                            .climb = line.Z * flow->m,
-                                            .pull = pull_at(frame, flow->friction, theta) * flow->m};
+    const double wrapped = theta < turn ? theta : theta - turn;
+    int at = n;
+    for (; at > 0 && directions[at - 1].theta > wrapped; at--) directions[at] = directions[at - 1];
+    directions[at] = (impact_flow_direction){.theta = wrapped,
+                                             .rate = line.R * flow->m,
+                                             .climb = line.Z * flow->m,
+                                             .pull = pull_at(frame, flow->friction, theta) * flow->m};
     return n + 1;
 }
 
@@ -71,8 +75,9 @@ int impact_flow_directions(const impact_flow *flow, impact_flow_direction direct
     const double size = fabs(frame.c) + fabs(frame.d) + mu * fabs(frame.a - frame.b);
     if (size <= 4 * DBL_EPSILON * (1 + mu * (frame.a + frame.b))) return 0;
     int n = 0;
+    /* Cells begin off the axes, where directions like to lie. */
     for (int i = 0; i < CELLS; i++) {
-        const double low = turn * i / CELLS, high = turn * (i + 1) / CELLS;
+        const double low = turn * (i + 0.37123) / CELLS, high = turn * (i + 1.37123) / CELLS;
         const double T_low = turning_at(&frame, mu, low), T_high = turning_at(&frame, mu, high);
         if (unlike(T_low, T_high)) {
             n = add_direction(&frame, flow, bisect(turning_at, &frame, mu, low, high), directions, n);

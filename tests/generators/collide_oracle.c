@@ -193,7 +193,9 @@ static bool make_arc(arc *ar, const problem *pr)
     ar->s0 = hypotq(pr->u[X], pr->u[Y]);
     ar->theta0 = atan2q(pr->u[Y], pr->u[X]);
     const real T0 = crealq(T_of(pr, ar->theta0));
-    if (T0 == 0 || !find_roots(ar)) return false;
+    /* On an invariant direction (a planar impact) the arc has no length. */
+    const real size = fabsq(pr->c) + fabsq(pr->d) + pr->mu * (pr->a + pr->b);
+    if (fabsq(T0) < 1e-20Q * size || !find_roots(ar)) return false;
     ar->sign = T0 > 0 ? 1 : -1;
     ar->span = 10;
     for (int n = 0; n < 4; n++) {

@@ -111,6 +111,20 @@ static void directions_four_or_two(void **state)
     assert_true(four > 500 && two > 500);
 }
 
+/* On the axes, where c = d = 0. */
+static void directions_on_the_axes(void **state)
+{
+    (void)state;
+    const impact_flow flow = {.a = 4, .b = 1, .m = 2, .friction = 0.5};
+    impact_flow_direction found[4];
+    assert_int_equal(impact_flow_directions(&flow, found), 4);
+    for (int k = 0; k < 4; k++) {
+        assert_true(fabs(sin(2 * found[k].theta)) < 1e-14);
+        assert_true(k == 0 || found[k].theta > found[k - 1].theta);
+        assert_true((found[k].pull < 0) == (fabs(cos(found[k].theta)) < 0.5));
+    }
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -135,6 +149,7 @@ int main(void)
         cmocka_unit_test(non_expansive_and_few_turns),
         cmocka_unit_test(elementary_when_a_is_b),
         cmocka_unit_test(directions_four_or_two),
+        cmocka_unit_test(directions_on_the_axes),
         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests_name("impact collide_flow", tests, NULL, NULL);
