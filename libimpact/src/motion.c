@@ -67,8 +67,14 @@ impact_status impact_motion_emit(impact_motion *motion, impact_sampler *sampler,
 void impact_motion_set_slack(impact_motion *motion, const impact_state *states)
 {
     impact_world *world = motion->world;
-    for (int p = 0; p < world->pair_count; p++)
-        world->pairs[p].slack = impact_world_touching_distance(world, &world->pairs[p], states);
+    for (int p = 0; p < world->pair_count; p++) {
+        impact_pair *pair = &world->pairs[p];
+        pair->slack = impact_world_touching_distance(world, pair, states);
+        if (impact_is_held(pair) || pair->beyond || impact_world_distance_bound(world, pair, states) > 0) continue;
+        impact_contact contact;
+        impact_world_gap(world, pair, states, &contact);
+        pair->slack += fmax(0, -contact.gap); /* one that just lifted off may stand a rounding below zero */
+    }
 }
 
 static bool is_ballistic(const impact_motion *motion, const impact_state *states)
