@@ -67,7 +67,8 @@ end
 
 -- Each figure, and the rows it gives.
 for name, lists in pairs {
-  fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig15 = { "fig15" }, fig16 = { "fig16" }, hodograph = { "hodograph" },
+  fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig10 = { "fig10" }, fig11 = { "fig11" }, fig15 = { "fig15" },
+  fig16 = { "fig16" }, hodograph = { "hodograph" },
 } do
   local code, out, said = runner.command(string.format("%s --out .", runner.quote(figures .. "/" .. name .. ".lua")))
   check.equal(code, 0)
