@@ -7,7 +7,9 @@ impact_force_def impact_default_force_def(impact_force_kind kind)
 {
     return (impact_force_def){
         .kind = kind,
-        .name = kind == IMPACT_FORCE_WIND ? "wind" : kind == IMPACT_FORCE_ATTRACTION ? "attraction" : "force",
+        .name = kind == IMPACT_FORCE_WIND         ? "wind"
+                : kind == IMPACT_FORCE_ATTRACTION ? "attraction"
+                                                  : "force",
         .direction = {1, 0, 0},
         .reach = INFINITY,
         .radius = INFINITY,

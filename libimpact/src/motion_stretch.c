@@ -16,7 +16,8 @@ static impact_status allocate_state(impact_motion *motion)
     int moving = 0;
     for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
     motion->size = Y_BODIES + Y_PER_BODY * moving;
-    motion->roots = ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * impact_field_edge_count(world) + world->body_count;
+    motion->roots =
+        ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * impact_field_edge_count(world) + world->body_count;
     motion->kept = calloc((size_t)motion->size, sizeof *motion->kept);
     motion->found = calloc((size_t)motion->roots, sizeof *motion->found);
     motion->y = calloc((size_t)motion->size, sizeof *motion->y);
@@ -286,8 +287,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         const double tau_before = tau;
         bool found;
         impact_status status = limit_step(motion, y);
-        if (status == IMPACT_OK)
-            status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
+        if (status == IMPACT_OK) status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
         if (motion->message[0] != '\0') return IMPACT_EDOMAIN;        /* a load was refused */
         if (status == IMPACT_EINTEGRATOR && passed) return IMPACT_OK; /* another root close by: begin anew from here */
         if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);

@@ -24,8 +24,8 @@ static long double ballistic(double x, double v, double g, double dt)
 /* v turned about the unit axis by the angle: Rodrigues' formula, in long double. */
 static qvec3 rodrigues(qvec3 v, qvec3 omega, double dt)
 {
-    const long double w = sqrtl((long double)omega.x * omega.x + (long double)omega.y * omega.y +
-                                (long double)omega.z * omega.z);
+    const long double w =
+        sqrtl((long double)omega.x * omega.x + (long double)omega.y * omega.y + (long double)omega.z * omega.z);
     const long double c = cosl(w * dt), s = sinl(w * dt);
     const long double k[3] = {omega.x / w, omega.y / w, omega.z / w}, u[3] = {v.x, v.y, v.z};
     const long double dot = k[0] * u[0] + k[1] * u[1] + k[2] * u[2];
@@ -52,8 +52,8 @@ static void centre_and_turn_against_long_double(void **state)
         const qvec3 gravity = random_vector(&random, 1e-3, 1e3);
         const double dt = any_sign(&random, random_log(&random, 1e-9, 1e2));
         const impact_flight end = impact_flight_after(start, gravity, dt);
-        const double x_scale = qvec3_norm(start.position) + fabs(dt) * qvec3_norm(start.velocity) +
-                               dt * dt * qvec3_norm(gravity);
+        const double x_scale =
+            qvec3_norm(start.position) + fabs(dt) * qvec3_norm(start.velocity) + dt * dt * qvec3_norm(gravity);
         const double v_scale = qvec3_norm(start.velocity) + fabs(dt) * qvec3_norm(gravity);
         assert_close_at_scale(end.position.x, ballistic(start.position.x, start.velocity.x, gravity.x, dt), x_scale);
         assert_close_at_scale(end.position.y, ballistic(start.position.y, start.velocity.y, gravity.y, dt), x_scale);
@@ -157,13 +157,13 @@ static void fall_time_against_bisection(void **state)
 static void fall_time_where_something_is_zero(void **state)
 {
     (void)state;
-    assert_true(impact_flight_fall_time(0, -1, 5) == 0);           /* falls at once */
+    assert_true(impact_flight_fall_time(0, -1, 5) == 0); /* falls at once */
     assert_true(impact_flight_fall_time(0, 0, -5) == 0);
-    assert_true(isinf(impact_flight_fall_time(0, 0, 0)));          /* stays */
-    assert_true(isinf(impact_flight_fall_time(0, 0, 5)));          /* opens */
+    assert_true(isinf(impact_flight_fall_time(0, 0, 0))); /* stays */
+    assert_true(isinf(impact_flight_fall_time(0, 0, 5))); /* opens */
     assert_true(isinf(impact_flight_fall_time(0, 2, 0)));
-    assert_true(impact_flight_fall_time(0, 2, -8) == 0.5);         /* opens, and falls later */
-    assert_true(impact_flight_fall_time(-0.1, 2, -8) == 0.5);      /* a rounding below zero is zero */
+    assert_true(impact_flight_fall_time(0, 2, -8) == 0.5);    /* opens, and falls later */
+    assert_true(impact_flight_fall_time(-0.1, 2, -8) == 0.5); /* a rounding below zero is zero */
     assert_true(impact_flight_fall_time(-0.1, -2, 8) == 0);
     assert_true(isinf(impact_flight_fall_time(3, 0, 0)));
     assert_true(impact_flight_fall_time(3, -2, 0) == 1.5);
@@ -183,7 +183,8 @@ static void fall_time_scales_with_the_units(void **state)
         const double a = random_unit(&random), b = 2 * random_unit(&random) - 1, c = 2 * random_unit(&random) - 1;
         const int length = (int)(random_bits(&random) % 201) - 100, time = (int)(random_bits(&random) % 101) - 50;
         const double one = impact_flight_fall_time(a, b, c);
-        const double other = impact_flight_fall_time(ldexp(a, length), ldexp(b, length - time), ldexp(c, length - 2 * time));
+        const double other =
+            impact_flight_fall_time(ldexp(a, length), ldexp(b, length - time), ldexp(c, length - 2 * time));
         assert_true(isinf(one) ? isinf(other) : other == ldexp(one, time));
     }
 }
@@ -191,12 +192,9 @@ static void fall_time_scales_with_the_units(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(centre_and_turn_against_long_double),
-        cmocka_unit_test(forth_and_back_and_in_two_pieces),
-        cmocka_unit_test(no_time_and_no_turning_change_nothing),
-        cmocka_unit_test(fall_time_against_bisection),
-        cmocka_unit_test(fall_time_where_something_is_zero),
-        cmocka_unit_test(fall_time_scales_with_the_units),
+        cmocka_unit_test(centre_and_turn_against_long_double),   cmocka_unit_test(forth_and_back_and_in_two_pieces),
+        cmocka_unit_test(no_time_and_no_turning_change_nothing), cmocka_unit_test(fall_time_against_bisection),
+        cmocka_unit_test(fall_time_where_something_is_zero),     cmocka_unit_test(fall_time_scales_with_the_units),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

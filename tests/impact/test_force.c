@@ -9,7 +9,8 @@
 
 static const double mass = 4, radius = 0.3;
 
-static impact_scene_def scene_of(const impact_body_def *bodies, int body_count, const impact_force_def *force, double duration)
+static impact_scene_def scene_of(const impact_body_def *bodies, int body_count, const impact_force_def *force,
+                                 double duration)
 {
     impact_scene_def def = impact_default_scene_def();
     def.gravity = (qvec3){0, 0, 0};
@@ -40,10 +41,12 @@ static impact_sample run_scene(const impact_scene_def *def, scene_log *log, impa
     impact_sample end;
     impact_scene_body(scene, 0, &end);
     *energy = impact_scene_energy(scene);
-    const double wanted = energy->start + energy->force_work - energy->damping_loss - energy->sliding_loss - energy->impact_loss;
+    const double wanted =
+        energy->start + energy->force_work - energy->damping_loss - energy->sliding_loss - energy->impact_loss;
     /* No step adds more than its tolerance. */
     const double steps = 10.0 + (double)impact_scene_usage(scene).integrator_steps;
-    assert_near(energy->kinetic + energy->potential, wanted, def->tolerance * steps * (fabs(energy->start) + energy->kinetic + 1));
+    assert_near(energy->kinetic + energy->potential, wanted,
+                def->tolerance * steps * (fabs(energy->start) + energy->kinetic + 1));
     free_log(&own);
     impact_scene_destroy(scene);
     return end;
@@ -131,7 +134,8 @@ static void wind_turns_back_what_comes_against_it(void **state)
         impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND);
         wind.strength = strength;
         wind.reach = reach;
-        const double a = strength / mass, deepest = speed * speed / (2 * a), slowed = sqrt(fmax(0, speed * speed - 4 * a * reach));
+        const double a = strength / mass, deepest = speed * speed / (2 * a),
+                     slowed = sqrt(fmax(0, speed * speed - 4 * a * reach));
         const bool back = deepest < 2 * reach;
         if (fabs(deepest - 2 * reach) < 0.1) continue;
         const double within = back ? 2 * speed / a : (speed - slowed) / a;
@@ -152,7 +156,8 @@ static void wind_turns_back_what_comes_against_it(void **state)
 static void a_force_may_have_one_body(void **state)
 {
     (void)state;
-    impact_body_def bodies[2] = {small_ball((qvec3){0, 0, 0}, (qvec3){0, 0, 0}), small_ball((qvec3){0, 1, 0}, (qvec3){0, 0, 0})};
+    impact_body_def bodies[2] = {small_ball((qvec3){0, 0, 0}, (qvec3){0, 0, 0}),
+                                 small_ball((qvec3){0, 1, 0}, (qvec3){0, 0, 0})};
     bodies[1].name = "other";
     impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND);
     wind.strength = 8;
@@ -178,7 +183,8 @@ static long double integral_of_force(double k, double power, double from, double
     long double sum = 0;
     for (int i = 0; i < PIECES; i++) {
         const long double a = from * powl((long double)to / from, (long double)i / PIECES);
-        const long double b = from * powl((long double)to / from, (i + 1.0L) / PIECES), middle = (a + b) / 2, half = (b - a) / 2;
+        const long double b = from * powl((long double)to / from, (i + 1.0L) / PIECES), middle = (a + b) / 2,
+                          half = (b - a) / 2;
         for (int p = 0; p < 3; p++)
             for (int sign = -1; sign <= (p ? 1 : -1); sign += 2)
                 sum += w[p] * half * k * powl(middle + sign * x[p] * half, -(long double)power);
@@ -198,7 +204,8 @@ static void attractions_potential_is_the_integral_of_its_force(void **state)
         const double reach = i & 8 ? INFINITY : random_log(&random, 1, 10), G = random_log(&random, 1e-3, 1e3);
         const double a = random_log(&random, 0.1, 0.9), b = random_log(&random, 0.1, 0.9);
         const qvec3 axis = random_direction(&random);
-        impact_body_def bodies[2] = {small_ball((qvec3){1, 2, 3}, (qvec3){0, 0, 0}), small_ball(qvec3_axpy(a, axis, (qvec3){1, 2, 3}), (qvec3){0, 0, 0})};
+        impact_body_def bodies[2] = {small_ball((qvec3){1, 2, 3}, (qvec3){0, 0, 0}),
+                                     small_ball(qvec3_axpy(a, axis, (qvec3){1, 2, 3}), (qvec3){0, 0, 0})};
         bodies[1].name = "other";
         bodies[1].mass = 2.5;
         impact_force_def attraction = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
@@ -218,7 +225,8 @@ static void attractions_potential_is_the_integral_of_its_force(void **state)
         const double far = impact_field_potential(&scene->world, scene->states);
         const double wanted = (double)integral_of_force(k, power, distance, b);
         assert_near(far - near, wanted, 4e-15 * (fabs(near) + fabs(far) + fabs(wanted)));
-        if (isfinite(reach)) assert_near(near, -(double)integral_of_force(k, power, distance, reach), 4e-14 * fabs(near));
+        if (isfinite(reach))
+            assert_near(near, -(double)integral_of_force(k, power, distance, reach), 4e-14 * fabs(near));
         impact_scene_destroy(scene);
     }
 }
@@ -251,7 +259,8 @@ static void attraction_ends_at_its_reach(void **state)
 {
     (void)state;
     const double k = mass * mass, reach = 2, speed = 3;
-    impact_body_def bodies[2] = {small_ball((qvec3){-0.5, 0, 0}, (qvec3){-speed, 0, 0}), small_ball((qvec3){0.5, 0, 0}, (qvec3){speed, 0, 0})};
+    impact_body_def bodies[2] = {small_ball((qvec3){-0.5, 0, 0}, (qvec3){-speed, 0, 0}),
+                                 small_ball((qvec3){0.5, 0, 0}, (qvec3){speed, 0, 0})};
     bodies[1].name = "other";
     impact_force_def attraction = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
     attraction.constant = 1;
@@ -280,7 +289,8 @@ static void attraction_keeps_momentum(void **state)
     for (int round = 0; round < 5; round++) {
         impact_body_def bodies[N];
         for (int i = 0; i < N; i++) {
-            bodies[i] = small_ball(qvec3_scale(random_direction(&random), 1.0 + i), qvec3_scale(random_direction(&random), 0.5));
+            bodies[i] = small_ball(qvec3_scale(random_direction(&random), 1.0 + i),
+                                   qvec3_scale(random_direction(&random), 0.5));
             bodies[i].name = names[i];
             bodies[i].mass = random_log(&random, 0.1, 10);
         }
@@ -295,7 +305,8 @@ static void attraction_keeps_momentum(void **state)
         for (int i = 0; i < N; i++) {
             impact_sample s;
             impact_scene_body(scene, i, &s);
-            const qvec3 after = qvec3_scale(s.velocity, bodies[i].mass), before = qvec3_scale(bodies[i].velocity, bodies[i].mass);
+            const qvec3 after = qvec3_scale(s.velocity, bodies[i].mass),
+                        before = qvec3_scale(bodies[i].velocity, bodies[i].mass);
             p = qvec3_add(p, qvec3_sub(after, before));
             l = qvec3_add(l, qvec3_sub(qvec3_cross(s.position, after), qvec3_cross(bodies[i].position, before)));
         }
@@ -314,7 +325,8 @@ typedef struct spring {
 } spring;
 
 /* A spring to the origin, and a torque against the turn about z. */
-static bool pull_back(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque, void *context)
+static bool pull_back(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
+                      void *context)
 {
     (void)t, (void)body, (void)v, (void)w;
     assert_true(m == mass && qvec3_norm(*force) == 0 && qvec3_norm(*torque) == 0);
@@ -350,7 +362,8 @@ static void a_spring_swings(void **state)
     }
 }
 
-static bool push_in_time(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque, void *context)
+static bool push_in_time(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
+                         void *context)
 {
     (void)body, (void)x, (void)q, (void)v, (void)w, (void)torque, (void)context;
     force->y = m * cos(t);
@@ -370,7 +383,8 @@ static void a_force_may_know_the_time(void **state)
     assert_near3(end.velocity, (qvec3){1, sin(5), 0}, 1e-11);
 }
 
-static bool refuse(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque, void *context)
+static bool refuse(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
+                   void *context)
 {
     (void)body, (void)m, (void)x, (void)q, (void)v, (void)w, (void)force, (void)torque, (void)context;
     return t < 0.5;
@@ -415,7 +429,8 @@ static void damping_decays(void **state)
 static void defaults_are_newtons_and_still_air(void **state)
 {
     (void)state;
-    const impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND), pull = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
+    const impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND),
+                           pull = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
     assert_true(wind.strength == 0 && isinf(wind.reach) && isinf(wind.radius) && wind.falloff_power == 0 && !wind.body);
     assert_true(pull.constant == 6.67430e-11 && pull.power == 2 && isinf(pull.reach));
     assert_string_equal(impact_default_force_def(IMPACT_FORCE_CUSTOM).name, "force");

@@ -124,13 +124,15 @@ static const char *skip_header(const char *text, const char *wanted)
 }
 
 static const char samples_header[] = "t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
-static const char events_header[] = "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
-                                    "energy_before,energy_after\n";
+static const char events_header[] =
+    "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
+    "energy_before,energy_after\n";
 
 /* Any finite double; now and then one of the ends of their range. */
 static double any_double(random_stream *random)
 {
-    static const double ends[] = {0, -0.0, 0x1p-1074, -0x1p-1022, 1.7976931348623157e308, -1.7976931348623157e308, 0.1, 1e23};
+    static const double ends[] = {0,   -0.0, 0x1p-1074, -0x1p-1022, 1.7976931348623157e308, -1.7976931348623157e308,
+                                  0.1, 1e23};
     if (random_bits(random) % 8 == 0) return ends[random_bits(random) % (sizeof ends / sizeof *ends)];
     for (;;) {
         const uint64_t bits = random_bits(random);
@@ -145,7 +147,8 @@ static qvec3 any_vector(random_stream *random)
     return (qvec3){any_double(random), any_double(random), any_double(random)};
 }
 
-static const char *const names[] = {"ball", "a,b", "say \"hi\"", "two\nlines", "\"", ",", "kula på golv", "cr\rlf", " blank "};
+static const char *const names[] = {"ball", "a,b",          "say \"hi\"", "two\nlines", "\"",
+                                    ",",    "kula på golv", "cr\rlf",     " blank "};
 
 static impact_sample any_sample(random_stream *random)
 {
@@ -178,16 +181,18 @@ static impact_event any_event(random_stream *random)
 
 static void check_sample_row(const char **text, const impact_sample *s)
 {
-    const double values[13] = {s->position.x, s->position.y, s->position.z, s->orientation.w, s->orientation.x, s->orientation.y,
-                               s->orientation.z, s->velocity.x, s->velocity.y, s->velocity.z, s->omega.x, s->omega.y, s->omega.z};
+    const double values[13] = {s->position.x,    s->position.y,    s->position.z, s->orientation.w, s->orientation.x,
+                               s->orientation.y, s->orientation.z, s->velocity.x, s->velocity.y,    s->velocity.z,
+                               s->omega.x,       s->omega.y,       s->omega.z};
     *text = expect_numbers(expect_word(expect_number(*text, s->t), s->name), values, 13);
     assert_true((*text)[-1] == '\n');
 }
 
 static void check_event_row(const char **text, const impact_event *e)
 {
-    const double values[10] = {e->point.x, e->point.y, e->point.z, e->normal.x, e->normal.y, e->normal.z, e->impulse_normal,
-                               e->impulse_tangential, e->normal_before, e->normal_after};
+    const double values[10] = {e->point.x,       e->point.y,     e->point.z,        e->normal.x,
+                               e->normal.y,      e->normal.z,    e->impulse_normal, e->impulse_tangential,
+                               e->normal_before, e->normal_after};
     const char *row = expect_word(expect_number(*text, e->t), impact_event_name(e->kind));
     row = expect_numbers(expect_word(expect_word(row, e->name1), e->name2), values, 10);
     row = expect_number(expect_number(expect_word(row, e->phases), e->energy_before), e->energy_after);
@@ -239,7 +244,8 @@ static void every_bit_comes_back(void **state)
 static void a_decimal_comma_changes_nothing(void **state)
 {
     (void)state;
-    static const char *const locales[] = {"sv_SE.utf8", "de_DE.utf8", "fr_FR.utf8", "sv_SE", "de_DE", "fr_FR", "ps_AF.utf8"};
+    static const char *const locales[] = {"sv_SE.utf8", "de_DE.utf8", "fr_FR.utf8", "sv_SE",
+                                          "de_DE",      "fr_FR",      "ps_AF.utf8"};
     bool any = false;
     for (size_t i = 0; i < sizeof locales / sizeof *locales; i++) {
         if (!setlocale(LC_NUMERIC, locales[i])) continue;
@@ -275,7 +281,8 @@ static void either_file_may_be_left_out(void **state)
     (void)state;
     for (int k = 0; k < 3; k++) {
         impact_csv *csv;
-        assert_int_equal(impact_csv_open(k & 1 ? samples_path : NULL, k & 2 ? events_path : NULL, &csv, NULL, 0), IMPACT_OK);
+        assert_int_equal(impact_csv_open(k & 1 ? samples_path : NULL, k & 2 ? events_path : NULL, &csv, NULL, 0),
+                         IMPACT_OK);
         write_rows(csv, 3);
         keep_csv(csv);
         assert_true(exists(samples_path) == ((k & 1) != 0) && exists(events_path) == ((k & 2) != 0));

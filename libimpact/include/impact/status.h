@@ -26,10 +26,10 @@ typedef enum impact_status {
     IMPACT_EARGUMENT = -1,  /* a value out of its range: the message names it */
     IMPACT_EDOMAIN = -2,    /* a NaN or infinity where a finite value is needed */
     IMPACT_ENOMEM = -3,
-    IMPACT_EABSENT = -4,    /* the part was left out of this build */
-    IMPACT_EINTEGRATOR = -5,/* CVODE failed: the message says how */
-    IMPACT_EUNSETTLED = -6, /* no answer within the allowed work */
-    IMPACT_ESINK = -7       /* the recorder's sink refused a row */
+    IMPACT_EABSENT = -4,     /* the part was left out of this build */
+    IMPACT_EINTEGRATOR = -5, /* CVODE failed: the message says how */
+    IMPACT_EUNSETTLED = -6,  /* no answer within the allowed work */
+    IMPACT_ESINK = -7        /* the recorder's sink refused a row */
 } impact_status;
 
 /* One short English sentence for a status; never NULL. */
