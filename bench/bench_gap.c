@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * bench_gap: time per query of our ways and of libccd's, on the pairs of the campaign, with each way's error beside it.
- * CSV: family, method, setting, time in us (median of repeats of a batch), error of the gap relative to L + |c| (p50, p99,
- * worst), error of the normal in rad (p50), share of the pairs not answered or answered as touching where they are apart.
+ * CSV: family, method, setting, time in us (median of repeats of a batch), error of the gap relative to L + |c| (p50,
+ * p99, worst), error of the normal in rad (p50), share of the pairs not answered or answered as touching where they are
+ * apart.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,7 +55,8 @@ static void make_pairs(gap_case *cases, int family, bool overlap)
             i--;
             continue;
         }
-        const qvec3 x1 = contact_support(&c->body[0], qvec3_neg(c->normal)), x2 = contact_support(&c->body[1], c->normal);
+        const qvec3 x1 = contact_support(&c->body[0], qvec3_neg(c->normal)),
+                    x2 = contact_support(&c->body[1], c->normal);
         c->body[0].position = qvec3_axpy(c->gap, c->normal, qvec3_sub(x2, x1));
         c->reach = size + qvec3_norm(c->body[0].position);
         c->cache = (impact_gap_cache){true, qvec3_axpy(1e-3, random_direction(&random), c->normal)};
@@ -82,7 +84,8 @@ static bool ours_warm(const gap_case *c, double setting, double *gap, qvec3 *nor
     return status == IMPACT_OK;
 }
 
-static void measure(const char *family, const char *kind, const char *name, gap_method *method, double setting, const gap_case *cases)
+static void measure(const char *family, const char *kind, const char *name, gap_method *method, double setting,
+                    const gap_case *cases)
 {
     static double times[REPEATS], gaps[PAIRS], normals[PAIRS];
     int answered = 0;
@@ -102,7 +105,8 @@ static void measure(const char *family, const char *kind, const char *name, gap_
         if (!isnan(gap)) gaps[gap_count++] = fabs(gap - cases[i].gap) / cases[i].reach;
         if (!isnan(normal.x)) normals[normal_count++] = qvec3_norm(qvec3_sub(normal, cases[i].normal));
     }
-    const double time = quantile(times, REPEATS, 0.5), p50 = quantile(gaps, gap_count, 0.5), p99 = quantile(gaps, gap_count, 0.99);
+    const double time = quantile(times, REPEATS, 0.5), p50 = quantile(gaps, gap_count, 0.5),
+                 p99 = quantile(gaps, gap_count, 0.99);
     printf("%s,%s,%s,%g,%.3g,%.2g,%.2g,%.2g,%.2g,%.4f\n", family, kind, name, setting, time, p50, p99,
            gap_count ? gaps[gap_count - 1] : NAN, quantile(normals, normal_count, 0.5), 1 - (double)answered / PAIRS);
     fflush(stdout);
@@ -119,7 +123,8 @@ static void measure_toi(void)
         static impact_motion motion[PAIRS][2];
         for (int i = 0; i < PAIRS; i++) {
             cases[i].body[0].position = qvec3_scale(random_direction(&random), 4);
-            for (int k = 0; k < 2; k++) motion[i][k] = (impact_motion){.omega = qvec3_scale(random_direction(&random), 3)};
+            for (int k = 0; k < 2; k++)
+                motion[i][k] = (impact_motion){.omega = qvec3_scale(random_direction(&random), 3)};
             motion[i][0].velocity = qvec3_scale(cases[i].body[0].position, -0.25);
         }
         int met = 0;
@@ -129,18 +134,22 @@ static void measure_toi(void)
             for (int i = 0; i < PAIRS; i++) {
                 double time;
                 impact_contact c;
-                const impact_status status = impact_toi(&cases[i].body[0], &motion[i][0], &cases[i].body[1], &motion[i][1], 4, &time, &c);
-                if (status == IMPACT_OK) left[met++] = fabs(c.gap) / fmax(contact_size(&cases[i].body[0].shape), contact_size(&cases[i].body[1].shape));
+                const impact_status status =
+                    impact_toi(&cases[i].body[0], &motion[i][0], &cases[i].body[1], &motion[i][1], 4, &time, &c);
+                if (status == IMPACT_OK)
+                    left[met++] = fabs(c.gap) /
+                                  fmax(contact_size(&cases[i].body[0].shape), contact_size(&cases[i].body[1].shape));
             }
             times[repeat] = (now() - start) / PAIRS * 1e6;
         }
         const double time = quantile(times, 3, 0.5), p50 = quantile(left, met, 0.5), p99 = quantile(left, met, 0.99);
-        printf("%s,toi,impact toi,0,%.3g,%.2g,%.2g,%.2g,nan,%.4f\n", random_family_name(family), time, p50, p99, left[met - 1],
-               1 - (double)met / PAIRS);
+        printf("%s,toi,impact toi,0,%.3g,%.2g,%.2g,%.2g,nan,%.4f\n", random_family_name(family), time, p50, p99,
+               left[met - 1], 1 - (double)met / PAIRS);
     }
 }
 
-static void measure_peers(const char *family, const char *kind, const gap_peer *peer, int number, bool overlap, const gap_case *cases)
+static void measure_peers(const char *family, const char *kind, const gap_peer *peer, int number, bool overlap,
+                          const gap_case *cases)
 {
     for (; peer->method; peer++) {
         if (peer->overlap_only && !overlap) continue;
@@ -157,8 +166,9 @@ static void print_cases(void)
     for (int i = 0; i < PAIRS; i++) {
         for (int k = 0; k < 2; k++) {
             const impact_solid *b = &cases[i].body[k];
-            printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,", b->shape.a, b->shape.b, b->shape.c, b->position.x,
-                   b->position.y, b->position.z, b->orientation.w, b->orientation.x, b->orientation.y, b->orientation.z);
+            printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,", b->shape.a, b->shape.b, b->shape.c,
+                   b->position.x, b->position.y, b->position.z, b->orientation.w, b->orientation.x, b->orientation.y,
+                   b->orientation.z);
         }
         const qvec3 n = cases[i].normal;
         printf("%.17g,%.17g,%.17g,%.17g,%.17g\n", cases[i].gap, n.x, n.y, n.z, cases[i].reach);

@@ -70,8 +70,9 @@ static bool mpr(const gap_case *c, double setting, double *gap, qvec3 *normal)
 }
 
 const gap_peer gap_peers_ccd[] = {
-    {"libccd GJK", gjk, 0, false, false},   {"libccd EPA", epa, 1e-4, true, false}, {"libccd EPA", epa, 1e-6, true, false},
-    {"libccd EPA", epa, 1e-8, true, false}, {"libccd MPR", mpr, 1e-4, true, false}, {"libccd MPR", mpr, 1e-6, true, false},
+    {"libccd GJK", gjk, 0, false, false},   {"libccd EPA", epa, 1e-4, true, false},
+    {"libccd EPA", epa, 1e-6, true, false}, {"libccd EPA", epa, 1e-8, true, false},
+    {"libccd MPR", mpr, 1e-4, true, false}, {"libccd MPR", mpr, 1e-6, true, false},
     {"libccd MPR", mpr, 1e-8, true, false}, {NULL, NULL, 0, false, false},
 };
 #else

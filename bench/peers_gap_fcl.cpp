@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// FCL as a peer, for its ellipsoids where they are apart (where they overlap its assertions abort the process): distance
-// and normal by its own GJK and by the one it takes from libccd.
+// FCL as a peer, for its ellipsoids where they are apart (where they overlap its assertions abort the process):
+// distance and normal by its own GJK and by the one it takes from libccd.
 #include "peers_gap.h"
 
 #ifdef HAVE_FCL
@@ -42,8 +42,10 @@ static bool by_libccd(const gap_case *c, double setting, double *gap, qvec3 *nor
 }
 
 extern "C" const gap_peer gap_peers_fcl[] = {
-    {"FCL (its GJK)", independent, 1e-6, false, true}, {"FCL (its GJK)", independent, 1e-12, false, true},
-    {"FCL (libccd)", by_libccd, 1e-6, false, true},    {"FCL (libccd)", by_libccd, 1e-10, false, true},
+    {"FCL (its GJK)", independent, 1e-6, false, true},
+    {"FCL (its GJK)", independent, 1e-12, false, true},
+    {"FCL (libccd)", by_libccd, 1e-6, false, true},
+    {"FCL (libccd)", by_libccd, 1e-10, false, true},
     {nullptr, nullptr, 0, false, false},
 };
 #else

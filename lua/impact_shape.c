@@ -162,7 +162,8 @@ static void push_grid(lua_State *L, const qvec3 *v, lua_Integer count)
     }
 }
 
-/* shape:mesh(nu, nv): points, normals; row j = 0 .. nv (v from -pi/2 to pi/2) of i = 0 .. nu - 1 (u from -pi), one after the other */
+/* shape:mesh(nu, nv): points, normals; row j = 0 .. nv (v from -pi/2 to pi/2) of i = 0 .. nu - 1 (u from -pi), one
+ * after the other */
 static int shape_mesh(lua_State *L)
 {
     const impact_shape *shape = self(L);

@@ -87,17 +87,24 @@ static inline impact_shape random_shape(random_stream *random, int family)
         break;
     }
     case RANDOM_MIXED:
-        impact_shape_superquadric(a, b, c, 1.3 * pow(10 / 1.3, f[0]), 1.3 * pow(10 / 1.3, f[1]), 1.3 * pow(10 / 1.3, f[2]), &shape);
+        impact_shape_superquadric(a, b, c, 1.3 * pow(10 / 1.3, f[0]), 1.3 * pow(10 / 1.3, f[1]),
+                                  1.3 * pow(10 / 1.3, f[2]), &shape);
         break;
     case RANDOM_CYLINDER: impact_shape_superquadric(a, a, c, 2, 2, 4 * pow(25, f[0]), &shape); break;
     case RANDOM_OCTAHEDRAL: /* some exactly 1 */
         impact_shape_superquadric(a, b, c, 1 + 0.3 * fmax(0, 2 * f[0] - 1), 1 + 0.3 * fmax(0, 2 * f[1] - 1),
                                   1 + 0.3 * fmax(0, 2 * f[2] - 1), &shape);
         break;
-    case RANDOM_BOXY: impact_shape_superquadric(a, b, c, 10 * pow(10, f[0]), 10 * pow(10, f[1]), 10 * pow(10, f[2]), &shape); break;
-    case RANDOM_EXTREME: impact_shape_superquadric(a, b, c, pow(1000, f[0]), pow(1000, f[1]), pow(1000, f[2]), &shape); break;
+    case RANDOM_BOXY:
+        impact_shape_superquadric(a, b, c, 10 * pow(10, f[0]), 10 * pow(10, f[1]), 10 * pow(10, f[2]), &shape);
+        break;
+    case RANDOM_EXTREME:
+        impact_shape_superquadric(a, b, c, pow(1000, f[0]), pow(1000, f[1]), pow(1000, f[2]), &shape);
+        break;
     case RANDOM_BARR: impact_shape_superellipsoid(a, b, c, 0.2 * pow(8, f[0]), 0.2 * pow(8, f[1]), &shape); break;
-    case RANDOM_BARR_EXTREME: impact_shape_superellipsoid(a, b, c, 0.02 * pow(100, f[0]), 0.02 * pow(100, f[1]), &shape); break;
+    case RANDOM_BARR_EXTREME:
+        impact_shape_superellipsoid(a, b, c, 0.02 * pow(100, f[0]), 0.02 * pow(100, f[1]), &shape);
+        break;
     default: break;
     }
     return shape;
@@ -108,9 +115,12 @@ static inline impact_shape random_smooth_shape(random_stream *random, bool neste
 {
     impact_shape shape = random_shape(random, RANDOM_SPHERE);
     const double a = 0.5 + random_unit(random), b = 0.5 + random_unit(random), c = 0.5 + random_unit(random);
-    const double r = 1.5 + 2.5 * random_unit(random), s = 1.5 + 2.5 * random_unit(random), t = 1.5 + 2.5 * random_unit(random);
-    if (nested) impact_shape_superellipsoid(a, b, c, 2 / t, 2 / r, &shape);
-    else impact_shape_superquadric(a, b, c, r, s, t, &shape);
+    const double r = 1.5 + 2.5 * random_unit(random), s = 1.5 + 2.5 * random_unit(random),
+                 t = 1.5 + 2.5 * random_unit(random);
+    if (nested)
+        impact_shape_superellipsoid(a, b, c, 2 / t, 2 / r, &shape);
+    else
+        impact_shape_superquadric(a, b, c, r, s, t, &shape);
     return shape;
 }
 
@@ -124,12 +134,14 @@ static inline qvec3 contact_support(const impact_solid *body, qvec3 n)
     return quat_rotate(body->orientation, x);
 }
 
-/* Whether g has a local maximum at the normal when the gap is the given negative one: H_A + H_B + gap I positive across it. */
+/* Whether g has a local maximum at the normal when the gap is the given negative one: H_A + H_B + gap I positive across
+ * it. */
 static inline bool contact_is_deepest(const impact_solid body[2], qvec3 n, double gap)
 {
     double W[3][3] = {{0}};
     for (int k = 0; k < 2; k++) {
-        const qmat3 H = impact_shape_support_hessian(&body[k].shape, quat_rotate_inverse(body[k].orientation, k ? n : qvec3_neg(n)));
+        const qmat3 H = impact_shape_support_hessian(&body[k].shape,
+                                                     quat_rotate_inverse(body[k].orientation, k ? n : qvec3_neg(n)));
         const qmat3 R = quat_to_matrix(body[k].orientation);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
@@ -138,8 +150,8 @@ static inline bool contact_is_deepest(const impact_solid body[2], qvec3 n, doubl
     }
     /* eigenvalues 0, r1, r2: trace and sum of principal minors */
     const double trace = W[0][0] + W[1][1] + W[2][2];
-    const double minors = W[0][0] * W[1][1] - W[0][1] * W[1][0] + W[1][1] * W[2][2] - W[1][2] * W[2][1] + W[2][2] * W[0][0] -
-                          W[2][0] * W[0][2];
+    const double minors = W[0][0] * W[1][1] - W[0][1] * W[1][0] + W[1][1] * W[2][2] - W[1][2] * W[2][1] +
+                          W[2][2] * W[0][0] - W[2][0] * W[0][2];
     return isfinite(trace) && minors / trace > -4 * gap;
 }
 

@@ -6,17 +6,31 @@
 static impact_contact no_contact(void)
 {
     const qvec3 nan = {NAN, NAN, NAN};
-    return (impact_contact){.gap = NAN, .normal = nan, .point1 = nan, .point2 = nan, .offset1 = nan, .offset2 = nan,
-                            .stiffness = NAN, .lower = NAN, .upper = NAN, .path = IMPACT_PATH_NONE};
+    return (impact_contact){.gap = NAN,
+                            .normal = nan,
+                            .point1 = nan,
+                            .point2 = nan,
+                            .offset1 = nan,
+                            .offset2 = nan,
+                            .stiffness = NAN,
+                            .lower = NAN,
+                            .upper = NAN,
+                            .path = IMPACT_PATH_NONE};
 }
 
 /* Fills the contact from the gap, the normal (2 to 1) and the witness offsets. */
 static void closed_form(const impact_solid *body1, const impact_solid *body2, double gap, qvec3 normal, qvec3 offset1,
                         qvec3 offset2, double stiffness, impact_contact *contact)
 {
-    *contact = (impact_contact){.gap = gap, .normal = normal,
-                                .point1 = qvec3_add(body1->position, offset1), .point2 = qvec3_add(body2->position, offset2),
-                                .offset1 = offset1, .offset2 = offset2, .stiffness = stiffness, .lower = gap, .upper = gap,
+    *contact = (impact_contact){.gap = gap,
+                                .normal = normal,
+                                .point1 = qvec3_add(body1->position, offset1),
+                                .point2 = qvec3_add(body2->position, offset2),
+                                .offset1 = offset1,
+                                .offset2 = offset2,
+                                .stiffness = stiffness,
+                                .lower = gap,
+                                .upper = gap,
                                 .path = IMPACT_PATH_CLOSED_FORM};
 }
 
@@ -38,7 +52,8 @@ static double unit_scale(const impact_shape *shape)
 }
 
 /* From the body's support h and point (less its position) along -normal. */
-static void on_plane(const impact_solid *body, const impact_solid *plane, qvec3 normal, double h, qvec3 offset, impact_contact *contact)
+static void on_plane(const impact_solid *body, const impact_solid *plane, qvec3 normal, double h, qvec3 offset,
+                     impact_contact *contact)
 {
     const qvec3 d = qvec3_sub(body->position, plane->position);
     const double gap = qvec3_dot(normal, d) - h;
@@ -47,8 +62,8 @@ static void on_plane(const impact_solid *body, const impact_solid *plane, qvec3 
 }
 
 /* body is body 1: the gap is its lowest point's height, by the support function. */
-static void body_plane(const impact_solid *body, quat body_orientation, const impact_solid *plane, quat plane_orientation,
-                                impact_contact *contact)
+static void body_plane(const impact_solid *body, quat body_orientation, const impact_solid *plane,
+                       quat plane_orientation, impact_contact *contact)
 {
     const qvec3 normal = quat_rotate(plane_orientation, (qvec3){0, 0, 1});
     if (body->shape.kind == IMPACT_SPHERE) {
@@ -75,7 +90,8 @@ static impact_contact swapped(impact_contact c)
 }
 
 /* Scaled to a largest semi-axis in [1, 2). */
-static void make_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale, impact_pair *pair)
+static void make_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale,
+                      impact_pair *pair)
 {
     impact_form_make(&body2->shape, scale, q2, &pair->form[0]);
     impact_form_make(&body1->shape, scale, q1, &pair->form[1]);
@@ -87,8 +103,8 @@ static void make_pair(const impact_solid *body1, quat q1, const impact_solid *bo
     pair->reach = pair->size + sqrt(pair->c[0] * pair->c[0] + pair->c[1] * pair->c[1] + pair->c[2] * pair->c[2]);
 }
 
-static impact_status smooth_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, impact_gap_cache *cache,
-                                 impact_contact *contact)
+static impact_status smooth_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2,
+                                 impact_gap_cache *cache, impact_contact *contact)
 {
     const double scale = fmin(unit_scale(&body1->shape), unit_scale(&body2->shape));
     impact_pair pair;
@@ -128,7 +144,8 @@ static impact_status check(const impact_solid *body, quat *unit)
     return impact_shape_check(&body->shape, NULL, 0);
 }
 
-impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache, impact_contact *contact)
+impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
+                         impact_contact *contact)
 {
     *contact = no_contact();
     quat q1, q2;
@@ -137,7 +154,8 @@ impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, i
     if (status != IMPACT_OK) return status;
     const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
     if (plane1 && plane2) return IMPACT_EARGUMENT;
-    if (body1->shape.kind == IMPACT_SPHERE && body2->shape.kind == IMPACT_SPHERE) return sphere_sphere(body1, body2, contact);
+    if (body1->shape.kind == IMPACT_SPHERE && body2->shape.kind == IMPACT_SPHERE)
+        return sphere_sphere(body1, body2, contact);
     if (plane2) {
         body_plane(body1, q1, body2, q2, contact);
         return IMPACT_OK;

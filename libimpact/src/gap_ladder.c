@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * The ways to the gap, cheapest first. A gap >= 0 that Newton settles is the gap: g has no other local maximum. A negative one
- * is a local maximum; where it is deep, others are looked for.
+ * The ways to the gap, cheapest first. A gap >= 0 that Newton settles is the gap: g has no other local maximum. A
+ * negative one is a local maximum; where it is deep, others are looked for.
  */
 #include "gap_solver.h"
 #include <string.h>
 
-/* Deeper than this part of the smallest semi-axis, or of the smallest radius of both surfaces together at the contact, an overlap may
- * have several local answers. */
+/* Deeper than this part of the smallest semi-axis, or of the smallest radius of both surfaces together at the contact,
+ * an overlap may have several local answers. */
 static const double deep_part = 0.05;
 
 enum { SEED_STEPS = 4 };
@@ -17,8 +17,8 @@ typedef struct search {
     impact_meeting best; /* the highest local maximum so far */
     impact_gap_path path;
     bool found;
-    double thin;         /* smallest semi-axis */
-    bool sharp;          /* both bodies have edges or vertices: every overlap counts as deep */
+    double thin;          /* smallest semi-axis */
+    bool sharp;           /* both bodies have edges or vertices: every overlap counts as deep */
     double low, low_n[3]; /* the largest g met, and where */
 } search;
 
@@ -71,7 +71,8 @@ static double ellipsoid_height(const impact_form *form, const double n[3])
 {
     double sum = 0;
     for (int k = 0; k < 3; k++) {
-        const double w = form->axis[k] * (form->rotation[0][k] * n[0] + form->rotation[1][k] * n[1] + form->rotation[2][k] * n[2]);
+        const double w =
+            form->axis[k] * (form->rotation[0][k] * n[0] + form->rotation[1][k] * n[1] + form->rotation[2][k] * n[2]);
         sum += w * w;
     }
     return sqrt(sum);
@@ -83,7 +84,8 @@ static bool solve_for_normal(double M[3][3], const double c[3], double n[3])
     const double a = M[1][1] * M[2][2] - M[1][2] * M[1][2], b = M[0][2] * M[1][2] - M[0][1] * M[2][2],
                  d = M[0][1] * M[1][2] - M[0][2] * M[1][1], e = M[0][0] * M[2][2] - M[0][2] * M[0][2],
                  f = M[0][1] * M[0][2] - M[0][0] * M[1][2], g = M[0][0] * M[1][1] - M[0][1] * M[0][1];
-    const double x[3] = {a * c[0] + b * c[1] + d * c[2], b * c[0] + e * c[1] + f * c[2], d * c[0] + f * c[1] + g * c[2]};
+    const double x[3] = {a * c[0] + b * c[1] + d * c[2], b * c[0] + e * c[1] + f * c[2],
+                         d * c[0] + f * c[1] + g * c[2]};
     const double length = distance_of(x);
     if (!(length > 0) || !(x[0] * c[0] + x[1] * c[1] + x[2] * c[2] > 0)) return false;
     for (int i = 0; i < 3; i++) n[i] = x[i] / length;
@@ -110,7 +112,8 @@ static bool try_simplex(search *s, double *upper)
         double n[3], x[2][3], low, high;
         centre_line(s->pair, n);
         for (size_t j = 0; j < sizeof tolerance / sizeof *tolerance; j++) {
-            const bool apart = impact_gap_simplex(s->pair, shrink[i], tolerance[j], 20 << j, n, x, &low, &high) == IMPACT_SIMPLEX_APART;
+            const bool apart = impact_gap_simplex(s->pair, shrink[i], tolerance[j], 20 << j, n, x, &low, &high) ==
+                               IMPACT_SIMPLEX_APART;
             const double g = impact_pair_gap(s->pair, n, NULL);
             if (g > s->low) {
                 s->low = g;
@@ -169,9 +172,13 @@ static impact_status bracket(search *s, double upper, impact_meeting *meeting)
     return IMPACT_BRACKET;
 }
 
-impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting, impact_gap_path *path)
+impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting,
+                                impact_gap_path *path)
 {
-    search s = {.pair = pair, .low = -INFINITY, .thin = INFINITY, .sharp = is_sharp(&pair->form[0]) && is_sharp(&pair->form[1])};
+    search s = {.pair = pair,
+                .low = -INFINITY,
+                .thin = INFINITY,
+                .sharp = is_sharp(&pair->form[0]) && is_sharp(&pair->form[1])};
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) s.thin = fmin(s.thin, pair->form[k].axis[i]);
     double n[3], upper = distance_of(pair->c);

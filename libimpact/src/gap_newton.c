@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Mixed primal/dual Newton. Unknowns are two surface points, each with its normal. Around a point, two of its axis pairs
- * (u, e) are free and the third, the one of the largest mass u e, follows from the surface's equation; of a free pair the
- * gentler half moves: u where de/du = (p - 1) |u|^(p-2) <= 1, else e. Solved: the normals oppose (2 equations, in
- * gnomonic coordinates about their bisector) and the points' difference is along them (2 equations).
+ * Mixed primal/dual Newton. Unknowns are two surface points, each with its normal. Around a point, two of its axis
+ * pairs (u, e) are free and the third, the one of the largest mass u e, follows from the surface's equation; of a free
+ * pair the gentler half moves: u where de/du = (p - 1) |u|^(p-2) <= 1, else e. Solved: the normals oppose (2 equations,
+ * in gnomonic coordinates about their bisector) and the points' difference is along them (2 equations).
  */
 #include "gap_solver.h"
 #include <string.h>
@@ -35,10 +35,7 @@ typedef struct chart {
     bool primal[2];
 } chart;
 
-static double exponent(const impact_form *form, int i)
-{
-    return form->nested && i < 2 ? form->p[0] : form->p[i];
-}
+static double exponent(const impact_form *form, int i) { return form->nested && i < 2 ? form->p[0] : form->p[i]; }
 
 /* de/du of a pair; infinite at u = 0 of p < 2. */
 static double steepness(double p, double u, double e)
@@ -61,15 +58,16 @@ static void motion(const impact_form *form, const impact_surface *s, int i, bool
 }
 
 /* The pivot pair k answers du_i of pair i on the constraint sum m |u|^p = const. */
-static void pivot_motion(const impact_form *form, const impact_surface *s, int i, int k, double du, double de, double *duk, double *dek)
+static void pivot_motion(const impact_form *form, const impact_surface *s, int i, int k, double du, double de,
+                         double *duk, double *dek)
 {
     const double pk = exponent(form, k), change = s->e[i] * du + s->u[i] * de;
     *duk = -change / (pk * s->e[k]);
     *dek = pk == 2 ? *duk : (pk - 1) * s->e[k] / s->u[k] * *duk;
 }
 
-static void plain_chart(const impact_form *form, const impact_surface *s, double x[3], double N[3], double P[2][3], double Q[2][3],
-                        chart *c)
+static void plain_chart(const impact_form *form, const impact_surface *s, double x[3], double N[3], double P[2][3],
+                        double Q[2][3], chart *c)
 {
     int k = heavier(s, 0, 1) ? 0 : 1;
     if (heavier(s, 2, k)) k = 2;
@@ -91,8 +89,8 @@ static void plain_chart(const impact_form *form, const impact_surface *s, double
     }
 }
 
-static void nested_chart(const impact_form *form, const impact_surface *s, double x[3], double N[3], double P[2][3], double Q[2][3],
-                         chart *c)
+static void nested_chart(const impact_form *form, const impact_surface *s, double x[3], double N[3], double P[2][3],
+                         double Q[2][3], chart *c)
 {
     const double K = s->u[IMPACT_SECTION], eK = s->e[IMPACT_SECTION];
     impact_surface_point(form, s, x, N);
@@ -122,8 +120,10 @@ static void nested_chart(const impact_form *form, const impact_surface *s, doubl
 static void make_chart(const impact_form *form, const impact_surface *s, chart *c)
 {
     double x[3], N[3], P[2][3], Q[2][3];
-    if (form->nested) nested_chart(form, s, x, N, P, Q, c);
-    else plain_chart(form, s, x, N, P, Q, c);
+    if (form->nested)
+        nested_chart(form, s, x, N, P, Q, c);
+    else
+        plain_chart(form, s, x, N, P, Q, c);
     to_world(form->rotation, x, c->x);
     to_world(form->rotation, N, c->N);
     for (int j = 0; j < 2; j++) {
@@ -134,7 +134,10 @@ static void make_chart(const impact_form *form, const impact_surface *s, chart *
 
 /* ---- moving a surface point ---- */
 
-static double signed_root(double value, double power) { return value == 0 ? 0 : copysign(pow(fabs(value), power), value); }
+static double signed_root(double value, double power)
+{
+    return value == 0 ? 0 : copysign(pow(fabs(value), power), value);
+}
 
 static double clamp_unit(double value) { return value > 1 ? 1 : value < -1 ? -1 : value; }
 
@@ -157,12 +160,16 @@ static void move_pair(double p, bool primal, double step, double *u, double *e)
         const double slope = steepness(p, *u, *e), other = primal ? slope * step : step / slope;
         primal = !primal;
         const double sum = clamp_unit(*u + *e + step + other);
-        if (primal) *u = sum, *e = signed_root(*u, p - 1);
-        else *e = sum, *u = signed_root(*e, 1 / (p - 1));
+        if (primal)
+            *u = sum, *e = signed_root(*u, p - 1);
+        else
+            *e = sum, *u = signed_root(*e, 1 / (p - 1));
         return;
     }
-    if (primal) *u = moved, *e = signed_root(moved, p - 1);
-    else *e = moved, *u = signed_root(moved, 1 / (p - 1));
+    if (primal)
+        *u = moved, *e = signed_root(moved, p - 1);
+    else
+        *e = moved, *u = signed_root(moved, 1 / (p - 1));
 }
 
 /* Gives the pivot the mass the others leave; false when they leave too little of it. */
@@ -260,9 +267,9 @@ static void across(const double n[3], double t[2][3])
 
 typedef struct iterate {
     chart chart[2];
-    double m[3], t[2][3];        /* bisector of the normals, and across it */
-    double y[2][2], along[2];    /* gnomonic coordinates of both normals; their length along m */
-    double v[3], vm, vt[2];      /* x_B + c - x_A and its parts */
+    double m[3], t[2][3];     /* bisector of the normals, and across it */
+    double y[2][2], along[2]; /* gnomonic coordinates of both normals; their length along m */
+    double v[3], vm, vt[2];   /* x_B + c - x_A and its parts */
 } iterate;
 
 /* False when the normals do not face each other. */
@@ -365,8 +372,8 @@ double impact_pair_gap(const impact_pair *pair, const double n[3], double x[2][3
     return dot(n, pair->c) - h;
 }
 
-/* H = P Q^-1 across m, for N scaled to length 1 along m. A flat surface has no finite H: its radii are then capped softly at 1e3
- * sizes, H (1 + cap H)^-1. */
+/* H = P Q^-1 across m, for N scaled to length 1 along m. A flat surface has no finite H: its radii are then capped
+ * softly at 1e3 sizes, H (1 + cap H)^-1. */
 static void add_radii(const impact_pair *pair, const iterate *it, int k, double W[2][2])
 {
     double P[2][2], Q[2][2];
@@ -416,7 +423,8 @@ static bool holds(const impact_pair *pair, const iterate *it, int k, double part
     return impact_form_inside(form, body) <= 1 + 4e-15 * steepest * pair->size / thin;
 }
 
-/* Whether the bodies are seen to have a point in common: a witness point in the other body, or the one midway in both. */
+/* Whether the bodies are seen to have a point in common: a witness point in the other body, or the one midway in both.
+ */
 static bool share_a_point(const impact_pair *pair, const iterate *it)
 {
     return (holds(pair, it, 0, 0.5) && holds(pair, it, 1, 0.5)) || holds(pair, it, 1, 0) || holds(pair, it, 0, 1);
@@ -436,7 +444,8 @@ static bool judge(const impact_pair *pair, const iterate *it, impact_meeting *me
     return true;
 }
 
-/* Takes the gentler half of each pair from the point x (body axes) where the surface point came from the normal alone. */
+/* Takes the gentler half of each pair from the point x (body axes) where the surface point came from the normal alone.
+ */
 static void use_point(const impact_form *form, const double x[3], impact_surface *s)
 {
     int pivot = 0;

@@ -15,7 +15,8 @@ typedef struct simplex {
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/* Shares of the point of the affine hull of the chosen vertices nearest to the origin; false unless all are positive. */
+/* Shares of the point of the affine hull of the chosen vertices nearest to the origin; false unless all are positive.
+ */
 static bool hull_shares(const simplex *s, const int *index, int count, double *share)
 {
     double a[3][4], edge[3][3];

@@ -20,32 +20,34 @@ typedef struct impact_pair {
 
 typedef struct impact_meeting {
     double gap;
-    double n[3];    /* unit, A to B */
-    double x[2][3]; /* witness points relative to the centres, world axes */
-    double stiffness; /* smallest eigenvalue of H_A + H_B + gap I across n */
+    double n[3];         /* unit, A to B */
+    double x[2][3];      /* witness points relative to the centres, world axes */
+    double stiffness;    /* smallest eigenvalue of H_A + H_B + gap I across n */
     double lower, upper; /* bracket of the gap; upper is certain for separated bodies only */
 } impact_meeting;
 
 /* g(n), n unit; x (NULL: not wanted) are the support points. */
 double impact_pair_gap(const impact_pair *pair, const double n[3], double x[2][3]);
 
-/* Mixed primal/dual Newton from the unit seed n, and from points near the witness points (x; NULL: the support points): true when it settled on the global maximum of g (gap >= 0) or on a local one
- * that two overlapping bodies have; *meeting is then the answer. */
+/* Mixed primal/dual Newton from the unit seed n, and from points near the witness points (x; NULL: the support points):
+ * true when it settled on the global maximum of g (gap >= 0) or on a local one that two overlapping bodies have;
+ * *meeting is then the answer. */
 bool impact_gap_newton(const impact_pair *pair, const double n[3], const double (*x)[3], impact_meeting *meeting);
 
 typedef enum impact_simplex_end { IMPACT_SIMPLEX_APART, IMPACT_SIMPLEX_OVERLAP } impact_simplex_end;
 
 /* Distance of the bodies shrunk by the factor shrink, from the unit seed n, until the bracket is within tolerance of
- * size + distance, or for so many steps. n: the best normal met; x: the nearest points, on the bodies' own scale and relative to
- * their centres; *lower, *upper: the bracket of the shrunk bodies' distance. */
+ * size + distance, or for so many steps. n: the best normal met; x: the nearest points, on the bodies' own scale and
+ * relative to their centres; *lower, *upper: the bracket of the shrunk bodies' distance. */
 impact_simplex_end impact_gap_simplex(const impact_pair *pair, double shrink, double tolerance, int steps, double n[3],
                                       double x[2][3], double *lower, double *upper);
 
-/* libccd's way: the normal with the largest g among all the directions that its intersection test (deep: its penetration
- * search) asks for. False when this build has no libccd or nothing was met. */
+/* libccd's way: the normal with the largest g among all the directions that its intersection test (deep: its
+ * penetration search) asks for. False when this build has no libccd or nothing was met. */
 bool impact_gap_harvest(const impact_pair *pair, bool deep, double n[3]);
 
 /* All the ways in order, from a cached normal (NULL: none). */
-impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting, impact_gap_path *path);
+impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting,
+                                impact_gap_path *path);
 
 #endif

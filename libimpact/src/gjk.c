@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * gjk: libccd as a source of seeds; the only file that names it. libccd stops near 1e-4 rad and misses shallow contacts, so
- * its answers are not used: its support callback notes the best of all the directions it asks for.
+ * gjk: libccd as a source of seeds; the only file that names it. libccd stops near 1e-4 rad and misses shallow
+ * contacts, so its answers are not used: its support callback notes the best of all the directions it asks for.
  *
  * libccd sees one body, c + B - A, against a point at the origin: along d that body reaches -g(-d).
  */

@@ -4,7 +4,8 @@
 
 static const double max_exponent = 1e6;
 
-static impact_status say(impact_status status, char *message, size_t size, const char *name, double value, const char *complaint)
+static impact_status say(impact_status status, char *message, size_t size, const char *name, double value,
+                         const char *complaint)
 {
     if (message && size > 0) snprintf(message, size, "%s = %.17g %s", name, value, complaint);
     return status;

@@ -47,7 +47,8 @@ qvec3 impact_shape_inertia(const impact_shape *shape)
 {
     if (shape->kind == IMPACT_PLANE) return (qvec3){INFINITY, INFINITY, INFINITY};
     const qvec3 mean = mean_squares(shape);
-    const double x2 = mean.x * shape->a * shape->a, y2 = mean.y * shape->b * shape->b, z2 = mean.z * shape->c * shape->c;
+    const double x2 = mean.x * shape->a * shape->a, y2 = mean.y * shape->b * shape->b,
+                 z2 = mean.z * shape->c * shape->c;
     return (qvec3){y2 + z2, z2 + x2, x2 + y2};
 }
 
@@ -63,8 +64,7 @@ typedef struct terms {
 static double mass_at(const terms *t, double log_slope)
 {
     double mass = 0;
-    for (int i = 0; i < t->count; i++)
-        mass += exp((log(t->square[i] * t->power[i]) - log_slope) / (1 - t->power[i]));
+    for (int i = 0; i < t->count; i++) mass += exp((log(t->square[i] * t->power[i]) - log_slope) / (1 - t->power[i]));
     return mass;
 }
 
@@ -79,8 +79,10 @@ static double log_slope_of(const terms *t, double mass)
     }
     for (int k = 0; k < 200 && high - low > 1e-15 * (fabs(low) + fabs(high)); k++) {
         const double middle = 0.5 * (low + high);
-        if (mass_at(t, middle) > mass) low = middle;
-        else high = middle;
+        if (mass_at(t, middle) > mass)
+            low = middle;
+        else
+            high = middle;
     }
     return 0.5 * (low + high);
 }
@@ -110,15 +112,19 @@ static double best_with(const terms *t, double square, double power)
     double low = 0, high = 1;
     for (int k = 0; k < 100; k++) { /* where the slope is largest */
         const double a = low + (high - low) * 0.381966011250105, b = low + (high - low) * 0.618033988749895;
-        if (slope_at(t, square, power, a) < slope_at(t, square, power, b)) low = a;
-        else high = b;
+        if (slope_at(t, square, power, a) < slope_at(t, square, power, b))
+            low = a;
+        else
+            high = b;
     }
     if (!(slope_at(t, square, power, low) > 0)) return 0;
     high = 1;
     for (int k = 0; k < 60; k++) {
         const double middle = 0.5 * (low + high);
-        if (middle >= 1 || slope_at(t, square, power, middle) < 0) high = middle;
-        else low = middle;
+        if (middle >= 1 || slope_at(t, square, power, middle) < 0)
+            high = middle;
+        else
+            low = middle;
     }
     return square * pow(low, power) + concave_best(t, 1 - low);
 }

@@ -67,7 +67,8 @@ qvec3 impact_shape_normal(const impact_shape *shape, double u, double v)
     const double r = 2 - 2 / shape->r, s = 2 - 2 / shape->s, t = 2 - 2 / shape->t;
     const double kx = nested ? 1 : shape->r, ky = nested ? 1 : shape->s, kz = nested ? 1 : shape->t;
     qvec3 n = {kx * signed_power(cv, nested ? t : r) * signed_power(cu, r) / shape->a,
-               ky * signed_power(cv, nested ? t : s) * signed_power(su, s) / shape->b, kz * signed_power(sv, t) / shape->c};
+               ky * signed_power(cv, nested ? t : s) * signed_power(su, s) / shape->b,
+               kz * signed_power(sv, t) / shape->c};
     const double largest = fmax(fabs(n.x), fmax(fabs(n.y), fabs(n.z)));
     n = qvec3_scale(n, 1 / largest);
     return qvec3_scale(n, 1 / sqrt(qvec3_dot(n, n)));
@@ -96,8 +97,8 @@ void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double 
     const qmat3 H = impact_shape_support_hessian(shape, qvec3_scale(direction, 1 / length));
     /* H has the eigenvalues 0, rho1, rho2: their sum is the trace, their product the sum of the principal minors. */
     const double trace = H.m[0][0] + H.m[1][1] + H.m[2][2];
-    const double minors = H.m[0][0] * H.m[1][1] - H.m[0][1] * H.m[1][0] + H.m[1][1] * H.m[2][2] - H.m[1][2] * H.m[2][1] +
-                          H.m[2][2] * H.m[0][0] - H.m[2][0] * H.m[0][2];
+    const double minors = H.m[0][0] * H.m[1][1] - H.m[0][1] * H.m[1][0] + H.m[1][1] * H.m[2][2] -
+                          H.m[1][2] * H.m[2][1] + H.m[2][2] * H.m[0][0] - H.m[2][0] * H.m[0][2];
     if (!isfinite(trace)) {
         const double rest = (isinf(H.m[0][0]) ? 0 : H.m[0][0]) + (isinf(H.m[1][1]) ? 0 : H.m[1][1]) +
                             (isinf(H.m[2][2]) ? 0 : H.m[2][2]);

@@ -214,8 +214,7 @@ double impact_form_inside(const impact_form *form, const double x[3])
 {
     double term[3];
     for (int i = 0; i < 3; i++) term[i] = fabs(x[i] / form->axis[i]);
-    if (!form->nested)
-        return pow(term[0], form->p[0]) + pow(term[1], form->p[1]) + pow(term[2], form->p[2]);
+    if (!form->nested) return pow(term[0], form->p[0]) + pow(term[1], form->p[1]) + pow(term[2], form->p[2]);
     const double larger = fmax(term[0], term[1]);
     double section = 0;
     if (larger > 0)
@@ -239,8 +238,10 @@ static void sharp_hessian(const double d[3], const double qm[3], double lambda, 
     }
 }
 
-/* lambda [diag(q_i m_i/d_i^2 sum_{j != i} q_j m_j / S) - off-diagonal q_i m_i q_j m_j/(d_i d_j S)], m = u^p, S = sum q m. */
-static void independent_hessian(const impact_form *form, const double d[3], const impact_surface *s, double h, double H[3][3])
+/* lambda [diag(q_i m_i/d_i^2 sum_{j != i} q_j m_j / S) - off-diagonal q_i m_i q_j m_j/(d_i d_j S)], m = u^p, S = sum q
+ * m. */
+static void independent_hessian(const impact_form *form, const double d[3], const impact_surface *s, double h,
+                                double H[3][3])
 {
     double qm[3], sum = 0, stationary = 1;
     int sharp = -1;
@@ -268,14 +269,18 @@ static void independent_hessian(const impact_form *form, const double d[3], cons
             }
             const double others = (qm[(i + 1) % 3] + qm[(i + 2) % 3]) / sum;
             /* m/d^2 = A u e/d^2 ... with d = 0: A^2 u^(2-p)/(p lambda) */
-            if (d[i] != 0) H[i][i] = lambda * qm[i] / (d[i] * d[i]) * others;
-            else if (form->p[i] == 2) H[i][i] = form->axis[i] * form->axis[i] / (2 * lambda);
-            else H[i][i] = form->p[i] < 2 ? 0 : INFINITY;
+            if (d[i] != 0)
+                H[i][i] = lambda * qm[i] / (d[i] * d[i]) * others;
+            else if (form->p[i] == 2)
+                H[i][i] = form->axis[i] * form->axis[i] / (2 * lambda);
+            else
+                H[i][i] = form->p[i] < 2 ? 0 : INFINITY;
         }
 }
 
 /* h = dual norm t of (k, w_z), k = dual norm r of (w_x, w_y): the Hessian by the chain rule. */
-static void nested_hessian(const impact_form *form, const double d[3], const impact_surface *s, double h, double H[3][3])
+static void nested_hessian(const impact_form *form, const double d[3], const impact_surface *s, double h,
+                           double H[3][3])
 {
     const double r = form->p[0], t = form->p[IMPACT_SECTION];
     const double eK = s->e[IMPACT_SECTION], ez = fabs(s->e[2]), k = eK * h; /* e = w/h */
@@ -307,6 +312,8 @@ void impact_form_hessian(const impact_form *form, const double d[3], double H[3]
 {
     impact_surface s;
     const double h = impact_form_support(form, d, &s);
-    if (form->nested) nested_hessian(form, d, &s, h, H);
-    else independent_hessian(form, d, &s, h, H);
+    if (form->nested)
+        nested_hessian(form, d, &s, h, H);
+    else
+        independent_hessian(form, d, &s, h, H);
 }

@@ -2,9 +2,9 @@
  *
  * support (internal): bodies prepared for the gap's solvers, and points of their surfaces with normals.
  *
- * A surface point is kept as pairs (u, e = |u|^(p-1) sgn u), one per axis: u is gentle on faces, e on edges, and together
- * they hold the point, x_i = A_i u_i, and its normal, N_i ~ p_i e_i / A_i. A superellipsoid has a fourth pair, the
- * radius k of its section: x = a k u_0, y = b k u_1 with u_0^r + u_1^r = 1, k^t + u_2^t = 1.
+ * A surface point is kept as pairs (u, e = |u|^(p-1) sgn u), one per axis: u is gentle on faces, e on edges, and
+ * together they hold the point, x_i = A_i u_i, and its normal, N_i ~ p_i e_i / A_i. A superellipsoid has a fourth pair,
+ * the radius k of its section: x = a k u_0, y = b k u_1 with u_0^r + u_1^r = 1, k^t + u_2^t = 1.
  */
 #ifndef IMPACT_SUPPORT_H
 #define IMPACT_SUPPORT_H
@@ -14,11 +14,11 @@
 enum { IMPACT_AXES = 3, IMPACT_SECTION = 3 };
 
 typedef struct impact_form {
-    bool nested;         /* superellipsoid */
-    bool round;          /* every exponent is 2 */
-    bool uniform;        /* every exponent is p[0] */
+    bool nested;  /* superellipsoid */
+    bool round;   /* every exponent is 2 */
+    bool uniform; /* every exponent is p[0] */
     double axis[3];
-    double p[4];         /* p[IMPACT_SECTION] is t of a superellipsoid */
+    double p[4];           /* p[IMPACT_SECTION] is t of a superellipsoid */
     double rotation[3][3]; /* body to world */
 } impact_form;
 

@@ -9,8 +9,8 @@
  *
  *     psi(T) = g + n.v T + min(0, n.a) T^2/2 - sum [h(m + m' T) - h(m) + h(-p) w^2 T^2/2 + r |rest|]
  *
- * is concave and psi(T) >= 0 proves that there is no contact in [0, T]. So does, for far bodies, the same with their bounding
- * balls. Steps to the zero of psi converge quadratically and never pass the contact.
+ * is concave and psi(T) >= 0 proves that there is no contact in [0, T]. So does, for far bodies, the same with their
+ * bounding balls. Steps to the zero of psi converge quadratically and never pass the contact.
  */
 #include <impact/toi.h>
 #include <quat/rotation.h>
@@ -32,11 +32,11 @@ impact_solid impact_motion_at(const impact_solid *body, const impact_motion *mot
 
 /* What psi is made of. */
 typedef struct proof {
-    double gap, apart;       /* n.c - h - h; n.c less the bounding balls' radii */
-    double speed;            /* n.v */
-    double pull;             /* min(0, n.a) */
+    double gap, apart;           /* n.c - h - h; n.c less the bounding balls' radii */
+    double speed;                /* n.v */
+    double pull;                 /* min(0, n.a) */
     double second, rest3, rest4; /* sums of h(-p) w^2, r |p| w^3, r |p| w^4 */
-    double slope;            /* psi'(0) */
+    double slope;                /* psi'(0) */
     bool turns[2];
     impact_form form[2];
     double m[2][3], rate[2][3], h[2];
@@ -48,8 +48,10 @@ static double outer_radius(const impact_shape *shape)
     const double axis[3] = {shape->a, shape->b, shape->c}, p[3] = {shape->r, shape->s, shape->t};
     double round = 0, boxy = 0;
     for (int i = 0; i < 3; i++) {
-        if (p[i] <= 2) round = fmax(round, axis[i]);
-        else boxy = hypot(boxy, axis[i]);
+        if (p[i] <= 2)
+            round = fmax(round, axis[i]);
+        else
+            boxy = hypot(boxy, axis[i]);
     }
     return hypot(round, boxy);
 }
@@ -100,8 +102,8 @@ static double first_zero(double gap, double slope, double bend)
     return bend > 0 ? (slope + root) / bend : INFINITY;
 }
 
-/* A step with psi >= 0, near the largest up to limit. psi lies below its tangent's parabola, whose zero is so beyond psi's; and
- * above its chords, whose zeros come before it. */
+/* A step with psi >= 0, near the largest up to limit. psi lies below its tangent's parabola, whose zero is so beyond
+ * psi's; and above its chords, whose zeros come before it. */
 static double safe_step(const proof *p, double limit)
 {
     const double balls = p->apart > 0 ? fmin(limit, first_zero(p->apart, p->speed, -p->pull)) : 0;
@@ -111,12 +113,15 @@ static double safe_step(const proof *p, double limit)
     if (at_high >= 0) return high;
     for (int k = 0; k < MAX_TRIES && at_low > 0.1 * p->gap; k++) {
         const double chord = low + (high - low) * (at_low / (at_low - at_high)), at_chord = psi(p, chord);
-        if (!(at_chord > 0 && chord > low)) return k > 0 ? fmax(low, balls) : chord * (1 - 1e-15); /* rounding: the zero is reached */
+        if (!(at_chord > 0 && chord > low))
+            return k > 0 ? fmax(low, balls) : chord * (1 - 1e-15); /* rounding: the zero is reached */
         low = chord, at_low = at_chord;
         if (at_low > 0.5 * p->gap) { /* the far end is too far for its chord */
             const double middle = 0.5 * (low + high), at_middle = psi(p, middle);
-            if (at_middle < 0) high = middle, at_high = at_middle;
-            else low = middle, at_low = at_middle;
+            if (at_middle < 0)
+                high = middle, at_high = at_middle;
+            else
+                low = middle, at_low = at_middle;
         }
     }
     return fmax(low, balls);
@@ -131,7 +136,8 @@ static bool still(const impact_motion *m)
 
 static impact_status check(const impact_solid *body, const impact_motion *motion)
 {
-    if (!all_finite(motion->velocity) || !all_finite(motion->acceleration) || !all_finite(motion->omega)) return IMPACT_EDOMAIN;
+    if (!all_finite(motion->velocity) || !all_finite(motion->acceleration) || !all_finite(motion->omega))
+        return IMPACT_EDOMAIN;
     return body->shape.kind == IMPACT_PLANE && !still(motion) ? IMPACT_EARGUMENT : IMPACT_OK;
 }
 
@@ -140,21 +146,24 @@ static double length_of(const impact_solid *body)
     return body->shape.kind == IMPACT_PLANE ? 0 : fmax(body->shape.a, fmax(body->shape.b, body->shape.c));
 }
 
-static proof gather(const impact_solid body[2], const impact_motion *const motion[2], const impact_contact *contact, double t)
+static proof gather(const impact_solid body[2], const impact_motion *const motion[2], const impact_contact *contact,
+                    double t)
 {
     const qvec3 n = contact->normal, a = qvec3_sub(motion[0]->acceleration, motion[1]->acceleration);
     const qvec3 v = qvec3_axpy(t, a, qvec3_sub(motion[0]->velocity, motion[1]->velocity));
-    proof p = {.gap = contact->lower, .speed = qvec3_dot(n, v), .pull = fmin(0, qvec3_dot(n, a)), .slope = qvec3_dot(n, v)};
+    proof p = {
+        .gap = contact->lower, .speed = qvec3_dot(n, v), .pull = fmin(0, qvec3_dot(n, a)), .slope = qvec3_dot(n, v)};
     p.apart = -1;
     if (body[0].shape.kind != IMPACT_PLANE && body[1].shape.kind != IMPACT_PLANE)
-        p.apart = qvec3_dot(n, qvec3_sub(body[0].position, body[1].position)) - outer_radius(&body[0].shape) - outer_radius(&body[1].shape);
+        p.apart = qvec3_dot(n, qvec3_sub(body[0].position, body[1].position)) - outer_radius(&body[0].shape) -
+                  outer_radius(&body[1].shape);
     turn(&p, 0, &body[0], motion[0]->omega, qvec3_neg(n));
     turn(&p, 1, &body[1], motion[1]->omega, n);
     return p;
 }
 
-impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1, const impact_solid *body2, const impact_motion *motion2,
-                         double t_max, double *time, impact_contact *contact)
+impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1, const impact_solid *body2,
+                         const impact_motion *motion2, double t_max, double *time, impact_contact *contact)
 {
     *time = NAN;
     const impact_motion *const motion[2] = {motion1, motion2};

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * gap_oracle: reference gaps in 113-bit arithmetic, by another road than the library's: Newton on the Karush-Kuhn-Tucker
- * equations in the points alone,
+ * gap_oracle: reference gaps in 113-bit arithmetic, by another road than the library's: Newton on the
+ * Karush-Kuhn-Tucker equations in the points alone,
  *
  *     x2 - x1 = nu grad f1(x1),  grad f1(x1) + mu grad f2(x2) = 0,  f1(x1) = f2(x2) = 1,
  *
- * followed along a path: from a pair whose answer is known by construction (chosen normal), body 1 is carried in small steps to
- * a place chosen at random.
+ * followed along a path: from a pair whose answer is known by construction (chosen normal), body 1 is carried in small
+ * steps to a place chosen at random.
  *
  * cc -O2 gap_oracle.c -lquadmath -o gap_oracle && ./gap_oracle > ../data/gap_oracle.csv
- * Rows: kind a b c r s t  x y z  w i j k of body 1 and of body 2; gap; normal (2 to 1); witness points less their body's position.
+ * Rows: kind a b c r s t  x y z  w i j k of body 1 and of body 2; gap; normal (2 to 1); witness points less their
+ * body's position.
  */
 #include <quadmath.h>
 #include <stdint.h>
@@ -192,8 +193,10 @@ static void surface_point(const body *b, real x[3])
     for (int k = 0; k < 130; k++) {
         const real middle = (low + high) / 2;
         for (int i = 0; i < 3; i++) x[i] = middle * d[i];
-        if (world_left_hand_side(b, x, g, H) < 1) low = middle;
-        else high = middle;
+        if (world_left_hand_side(b, x, g, H) < 1)
+            low = middle;
+        else
+            high = middle;
     }
 }
 

@@ -24,7 +24,8 @@ void *__wrap_realloc(void *block, size_t size) { return allocations++, __real_re
 
 static void near(double got, double wanted, double tolerance)
 {
-    if (!(fabs(got - wanted) <= tolerance)) fail_msg("wanted %.17g, got %.17g, off by %g of %g", wanted, got, got - wanted, tolerance);
+    if (!(fabs(got - wanted) <= tolerance))
+        fail_msg("wanted %.17g, got %.17g, off by %g of %g", wanted, got, got - wanted, tolerance);
 }
 
 static impact_solid superquadric(double a, double b, double c, double r, double s, double t, qvec3 position)
@@ -50,7 +51,8 @@ static void expect_gap(const impact_solid *body1, const impact_solid *body2, dou
 {
     impact_contact c;
     const impact_status status = impact_gap(body1, body2, NULL, &c);
-    if (status != IMPACT_OK) fail_msg("status %d, gap %g in [%g, %g], wanted %g", status, c.gap, c.lower, c.upper, wanted);
+    if (status != IMPACT_OK)
+        fail_msg("status %d, gap %g in [%g, %g], wanted %g", status, c.gap, c.lower, c.upper, wanted);
     near(c.gap, wanted, 1e-14 * reach_of(body1, body2));
 }
 
@@ -98,7 +100,8 @@ static void agrees_with_the_oracle(void **state)
 static void normal_points_from_body_2_to_body_1(void **state)
 {
     (void)state;
-    const impact_solid low = superquadric(1, 2, 3, 2, 2, 2, (qvec3){0, 0, 0}), high = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0, 0, 6});
+    const impact_solid low = superquadric(1, 2, 3, 2, 2, 2, (qvec3){0, 0, 0}),
+                       high = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0, 0, 6});
     impact_contact c;
     assert_int_equal(impact_gap(&high, &low, NULL, &c), IMPACT_OK);
     near(c.normal.z, 1, 1e-15);
@@ -125,7 +128,8 @@ static void random_pair(random_stream *random, int family, double gap, impact_so
     *normal = random_direction(random);
     qvec3 x[2];
     for (int k = 0; k < 2; k++) {
-        impact_shape_support(&body[k].shape, quat_rotate_inverse(body[k].orientation, qvec3_scale(*normal, k ? 1 : -1)), &x[k]);
+        impact_shape_support(&body[k].shape, quat_rotate_inverse(body[k].orientation, qvec3_scale(*normal, k ? 1 : -1)),
+                             &x[k]);
         x[k] = quat_rotate(body[k].orientation, x[k]);
     }
     const double size = fmax(contact_size(&body[0].shape), contact_size(&body[1].shape));
@@ -144,11 +148,13 @@ static void truth_by_construction(void **state)
         impact_contact c;
         const impact_status status = impact_gap(&body[0], &body[1], NULL, &c);
         if (status == IMPACT_BRACKET) {
-            assert_true(c.lower <= gap * fmax(contact_size(&body[0].shape), contact_size(&body[1].shape)) && c.upper >= c.lower);
+            assert_true(c.lower <= gap * fmax(contact_size(&body[0].shape), contact_size(&body[1].shape)) &&
+                        c.upper >= c.lower);
             continue;
         }
         assert_int_equal(status, IMPACT_OK);
-        near(c.gap, gap * fmax(contact_size(&body[0].shape), contact_size(&body[1].shape)), 1e-13 * reach_of(&body[0], &body[1]));
+        near(c.gap, gap * fmax(contact_size(&body[0].shape), contact_size(&body[1].shape)),
+             1e-13 * reach_of(&body[0], &body[1]));
         /* the witness points are that far apart, along the normal */
         const qvec3 v = qvec3_sub(qvec3_add(qvec3_sub(body[0].position, body[1].position), c.offset1), c.offset2);
         const double reach = reach_of(&body[0], &body[1]);
@@ -217,13 +223,15 @@ static void rate_is_the_derivative(void **state)
             for (int j = 0; j < 2; j++) {
                 moved[j] = body[j];
                 moved[j].position = qvec3_axpy(offset[i] * h, v[j], body[j].position);
-                moved[j].orientation = quat_mul(quat_from_rotation_vector(qvec3_scale(w[j], offset[i] * h)), body[j].orientation);
+                moved[j].orientation =
+                    quat_mul(quat_from_rotation_vector(qvec3_scale(w[j], offset[i] * h)), body[j].orientation);
             }
             impact_gap(&moved[0], &moved[1], NULL, &c);
             gaps[i] = c.gap;
         }
         assert_int_equal(impact_gap(&body[0], &body[1], NULL, &c), IMPACT_OK);
-        near(impact_gap_rate(&c, v[0], w[0], v[1], w[1]), (gaps[0] - 8 * gaps[1] + 8 * gaps[2] - gaps[3]) / (12 * h), 2e-9);
+        near(impact_gap_rate(&c, v[0], w[0], v[1], w[1]), (gaps[0] - 8 * gaps[1] + 8 * gaps[2] - gaps[3]) / (12 * h),
+             2e-9);
     }
 }
 
@@ -341,7 +349,8 @@ static void parallel_flat_faces(void **state)
 static void steep_exponents(void **state)
 {
     (void)state;
-    impact_solid a = superquadric(1, 1, 1, 1000, 1000, 1000, (qvec3){0, 0, 0}), b = superquadric(1, 1, 1, 1000, 1000, 1000, (qvec3){0, 0, 4});
+    impact_solid a = superquadric(1, 1, 1, 1000, 1000, 1000, (qvec3){0, 0, 0}),
+                 b = superquadric(1, 1, 1, 1000, 1000, 1000, (qvec3){0, 0, 4});
     quat_from_axis_angle((qvec3){1, 1, 0}, 0.6, &b.orientation);
     impact_contact c;
     assert_int_equal(impact_gap(&b, &a, NULL, &c), IMPACT_OK);
@@ -351,7 +360,8 @@ static void steep_exponents(void **state)
 static void concentric_and_deep(void **state)
 {
     (void)state;
-    const impact_solid a = superquadric(1, 2, 3, 2, 2, 2, (qvec3){0, 0, 0}), b = superquadric(0.5, 0.5, 0.5, 2, 2, 2, (qvec3){0, 0, 0});
+    const impact_solid a = superquadric(1, 2, 3, 2, 2, 2, (qvec3){0, 0, 0}),
+                       b = superquadric(0.5, 0.5, 0.5, 2, 2, 2, (qvec3){0, 0, 0});
     impact_contact c;
     impact_status status = impact_gap(&b, &a, NULL, &c);
     assert_int_equal(status, IMPACT_DEEP);
@@ -360,7 +370,8 @@ static void concentric_and_deep(void **state)
     const impact_solid same = ball(1, (qvec3){0, 0, 0});
     assert_int_equal(impact_gap(&same, &same, NULL, &c), IMPACT_DEEP);
     near(c.gap, -2, 0);
-    const impact_solid deep = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0.1, 0.2, 1.2}), block = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0, 0, 0});
+    const impact_solid deep = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0.1, 0.2, 1.2}),
+                       block = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0, 0, 0});
     status = impact_gap(&deep, &block, NULL, &c);
     assert_int_equal(status, IMPACT_DEEP);
     assert_true(c.gap < -0.75 && c.gap > -0.85 && c.normal.z > 0.9);
@@ -369,7 +380,8 @@ static void concentric_and_deep(void **state)
 static void needles_and_discs(void **state)
 {
     (void)state;
-    const impact_solid needle = superquadric(1e-6, 1e-6, 1, 2, 2, 2, (qvec3){0, 0, 0}), disc = superquadric(1, 1, 1e-6, 2, 2, 2, (qvec3){0, 0, 2});
+    const impact_solid needle = superquadric(1e-6, 1e-6, 1, 2, 2, 2, (qvec3){0, 0, 0}),
+                       disc = superquadric(1, 1, 1e-6, 2, 2, 2, (qvec3){0, 0, 2});
     expect_gap(&disc, &needle, 1 - 1e-6);
     impact_solid beside = superquadric(1e-6, 1e-6, 1, 2, 2, 2, (qvec3){3e-6, 0, 0});
     expect_gap(&beside, &needle, 1e-6);
@@ -384,7 +396,8 @@ static void needles_and_discs(void **state)
 static void far_apart_and_far_away(void **state)
 {
     (void)state;
-    impact_solid a = superquadric(1, 2, 3, 3, 2, 4, (qvec3){0, 0, 0}), b = superquadric(1, 1, 1, 2, 2, 2, (qvec3){1e8, 0, 0});
+    impact_solid a = superquadric(1, 2, 3, 3, 2, 4, (qvec3){0, 0, 0}),
+                 b = superquadric(1, 1, 1, 2, 2, 2, (qvec3){1e8, 0, 0});
     expect_gap(&b, &a, 1e8 - 2);
     a.position = (qvec3){1e8, -1e8, 1e8};
     b.position = (qvec3){1e8 + 3, -1e8, 1e8};
@@ -400,7 +413,8 @@ static void tiny_and_huge(void **state)
     static const double scales[] = {1e-9, 1e-150, 1e150};
     for (int i = 0; i < 3; i++) {
         const double s = scales[i];
-        const impact_solid a = superquadric(s, 2 * s, 3 * s, 3, 2, 4, (qvec3){0, 0, 0}), b = superquadric(s, s, s, 2, 1.5, 9, (qvec3){4 * s, 0, 0});
+        const impact_solid a = superquadric(s, 2 * s, 3 * s, 3, 2, 4, (qvec3){0, 0, 0}),
+                           b = superquadric(s, s, s, 2, 1.5, 9, (qvec3){4 * s, 0, 0});
         expect_gap(&b, &a, 2 * s);
     }
 }

@@ -13,7 +13,8 @@ static const double pi = 3.14159265358979323846;
 static void near_relative(double got, double wanted, double tolerance)
 {
     if (!(fabs(got - wanted) <= tolerance * fabs(wanted)))
-        fail_msg("wanted %.17g, got %.17g, error/tolerance %g", wanted, got, fabs(got - wanted) / fabs(wanted) / tolerance);
+        fail_msg("wanted %.17g, got %.17g, error/tolerance %g", wanted, got,
+                 fabs(got - wanted) / fabs(wanted) / tolerance);
 }
 
 static impact_shape superquadric(double a, double b, double c, double r, double s, double t)
@@ -38,7 +39,8 @@ static void refusals(void **state)
     assert_int_equal(impact_shape_superellipsoid(1, 1, 1, 2.5, 1, &shape), IMPACT_EARGUMENT);
     assert_int_equal(impact_shape_superellipsoid(1, 1, 1, 0, 1, &shape), IMPACT_EARGUMENT);
     assert_int_equal(impact_shape_superellipsoid(1, 1, 1, NAN, 1, &shape), IMPACT_EDOMAIN);
-    assert_memory_equal(&shape, &before, sizeof shape);
+    assert_true(shape.kind == before.kind && shape.a == before.a && shape.b == before.b && shape.c == before.c);
+    assert_true(shape.r == before.r && shape.s == before.s && shape.t == before.t);
 
     char message[80];
     const impact_shape bad = {IMPACT_SUPERQUADRIC, 1, 1, 1, 0.5, 2, 2};
@@ -103,8 +105,8 @@ static void smallest_ball(void **state)
         }
         (void)best;
         if (!(farthest <= radius * (1 + 4e-15) && farthest >= radius * (1 - 1e-3)))
-            fail_msg("ball %.17g, farthest point %.17g, exponents %g %g %g, axes %g %g %g", radius, farthest, shape.r, shape.s,
-                     shape.t, shape.a, shape.b, shape.c);
+            fail_msg("ball %.17g, farthest point %.17g, exponents %g %g %g, axes %g %g %g", radius, farthest, shape.r,
+                     shape.s, shape.t, shape.a, shape.b, shape.c);
     }
 }
 
@@ -121,7 +123,8 @@ static void support_identities(void **state)
         const double worth = fmax(fabs(d.x) * shape.a, fmax(fabs(d.y) * shape.b, fabs(d.z) * shape.c));
         assert_true(h >= worth * (1 - 1e-15)); /* the semi-axes' ends are in the shape */
         if (!(fabs(qvec3_dot(d, x) - h) <= 3e-15 * size))
-            fail_msg("d.x - h = %g of %g, exponents %.17g %.17g %.17g", qvec3_dot(d, x) - h, size, shape.r, shape.s, shape.t);
+            fail_msg("d.x - h = %g of %g, exponents %.17g %.17g %.17g", qvec3_dot(d, x) - h, size, shape.r, shape.s,
+                     shape.t);
         near_relative(impact_shape_support(&shape, qvec3_scale(d, 8), NULL), 8 * h, 1e-15);
         impact_shape_support(&shape, other, &y);
         assert_true(qvec3_dot(d, y) <= h + 3e-15 * size);
@@ -152,7 +155,8 @@ static void hessian_is_the_derivative(void **state)
                            H.m[2][0] * e.x + H.m[2][1] * e.y + H.m[2][2] * e.z};
         const double scale = fabs(H.m[0][0]) + fabs(H.m[1][1]) + fabs(H.m[2][2]);
         if (!(qvec3_norm(qvec3_sub(got, wanted)) <= 2e-7 * scale))
-            fail_msg("Hessian off by %g of %g: exponents %g %g %g", qvec3_norm(qvec3_sub(got, wanted)), scale, shape.r, shape.s, shape.t);
+            fail_msg("Hessian off by %g of %g: exponents %g %g %g", qvec3_norm(qvec3_sub(got, wanted)), scale, shape.r,
+                     shape.s, shape.t);
     }
 }
 

@@ -29,7 +29,8 @@ static const impact_motion at_rest = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 static void spheres_meet_in_closed_form(void **state)
 {
     (void)state;
-    const impact_solid a = solid(sphere(1), (qvec3){-5, 0.6, 0}, quat_identity()), b = solid(sphere(0.5), (qvec3){0, 0, 0}, quat_identity());
+    const impact_solid a = solid(sphere(1), (qvec3){-5, 0.6, 0}, quat_identity()),
+                       b = solid(sphere(0.5), (qvec3){0, 0, 0}, quat_identity());
     const impact_motion m = {{2, 0, 0}, {0, 0, 0}, {3, 4, 5}};
     double t;
     impact_contact contact;
@@ -50,7 +51,8 @@ static void falling_on_a_plane(void **state)
     (void)state;
     impact_shape plane;
     impact_shape_plane(INFINITY, INFINITY, &plane);
-    const impact_solid floor = solid(plane, (qvec3){0, 0, 0}, quat_identity()), ball = solid(sphere(0.3), (qvec3){0, 0, 1.3}, quat_identity());
+    const impact_solid floor = solid(plane, (qvec3){0, 0, 0}, quat_identity()),
+                       ball = solid(sphere(0.3), (qvec3){0, 0, 1.3}, quat_identity());
     const impact_motion fall = {{0, 0, 0}, {0, 0, -9.80665}, {0, 0, 0}}, moving = {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     double t;
     assert_int_equal(impact_toi(&ball, &fall, &floor, &at_rest, 10, &t, NULL), IMPACT_OK);
@@ -80,7 +82,8 @@ static void nothing_is_missed(void **state)
     const double half_width = 1e-3 * sqrt(0.75); /* the rod's half width at 0.5 */
     assert_true(t < angle / 100 && t > (angle - 1.1 * (half_width + radius) / 0.5) / 100);
     const impact_motion shot = {{1e6, 0, 0}, {0, 0, 0}, {0, 0, 0}}; /* two bullets through each other within 4 ns */
-    const impact_solid left = solid(sphere(1e-3), (qvec3){-1e3, 0, 0}, quat_identity()), right = solid(sphere(1e-3), (qvec3){0, 1.9e-3, 0}, quat_identity());
+    const impact_solid left = solid(sphere(1e-3), (qvec3){-1e3, 0, 0}, quat_identity()),
+                       right = solid(sphere(1e-3), (qvec3){0, 1.9e-3, 0}, quat_identity());
     assert_int_equal(impact_toi(&left, &shot, &right, &at_rest, 1, &t, NULL), IMPACT_OK);
     near(t, (1e3 - sqrt(4e-6 - 1.9e-3 * 1.9e-3)) / 1e6, 1e-15);
 }
@@ -118,10 +121,13 @@ static void first_contact_of_random_pairs(void **state)
         double t;
         impact_contact contact;
         const impact_status status = impact_toi(&a, &ma, &b, &mb, 6, &t, &contact);
-        if (!(status == IMPACT_OK || status == IMPACT_NO_CONTACT)) fail_msg("status %d at t = %g, gap %g", status, t, contact.gap);
+        if (!(status == IMPACT_OK || status == IMPACT_NO_CONTACT))
+            fail_msg("status %d at t = %g, gap %g", status, t, contact.gap);
         if (status == IMPACT_OK) {
             met++;
-            if (!(fabs(contact.gap) <= 1e-15 * (1 + 1))) fail_msg("%s: gap %g in [%g, %g] by path %d at contact, t %.17g", random_family_name(family), contact.gap, contact.lower, contact.upper, contact.path, t);
+            if (!(fabs(contact.gap) <= 1e-15 * (1 + 1)))
+                fail_msg("%s: gap %g in [%g, %g] by path %d at contact, t %.17g", random_family_name(family),
+                         contact.gap, contact.lower, contact.upper, contact.path, t);
         }
         for (int i = 0; i < 40; i++) {
             const double s = t * i / 40;
@@ -137,7 +143,8 @@ static void first_contact_of_random_pairs(void **state)
 static void bad_input(void **state)
 {
     (void)state;
-    const impact_solid a = solid(sphere(1), (qvec3){-5, 0, 0}, quat_identity()), b = solid(sphere(1), (qvec3){0, 0, 0}, quat_identity());
+    const impact_solid a = solid(sphere(1), (qvec3){-5, 0, 0}, quat_identity()),
+                       b = solid(sphere(1), (qvec3){0, 0, 0}, quat_identity());
     const impact_motion bad = {{NAN, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     double t;
     assert_int_equal(impact_toi(&a, &bad, &b, &at_rest, 1, &t, NULL), IMPACT_EDOMAIN);
@@ -153,8 +160,11 @@ static void bad_input(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(spheres_meet_in_closed_form),   cmocka_unit_test(falling_on_a_plane), cmocka_unit_test(nothing_is_missed),
-        cmocka_unit_test(first_contact_of_random_pairs), cmocka_unit_test(bad_input),
+        cmocka_unit_test(spheres_meet_in_closed_form),
+        cmocka_unit_test(falling_on_a_plane),
+        cmocka_unit_test(nothing_is_missed),
+        cmocka_unit_test(first_contact_of_random_pairs),
+        cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,23 +35,29 @@ typedef struct impact_gap_cache {
 } impact_gap_cache;
 
 typedef struct impact_contact {
-    double gap;      /* m; > 0 separated, < 0 overlapping */
-    qvec3 normal;    /* unit, world, from body 2 to body 1 */
+    double gap;             /* m; > 0 separated, < 0 overlapping */
+    qvec3 normal;           /* unit, world, from body 2 to body 1 */
     qvec3 point1, point2;   /* witness points, world, m */
     qvec3 offset1, offset2; /* the same relative to each body's position, exact when bodies are far from the origin */
-    double stiffness;       /* smallest eigenvalue of the gap's Hessian in the tangent plane, m; small: the witness points are soft */
-    double lower, upper;    /* bracket of the gap, m; equal to gap when settled */
+    double stiffness; /* smallest eigenvalue of the gap's Hessian in the tangent plane, m; small: the witness points are
+                         soft */
+    double lower, upper; /* bracket of the gap, m; equal to gap when settled */
     impact_gap_path path;
 } impact_contact;
 
-/* The gap of two solids. Every pair of shapes but two planes (IMPACT_EARGUMENT). IMPACT_OK; IMPACT_SOFT, IMPACT_DEEP or
- * IMPACT_BRACKET with an answer; a negative status leaves every number of *contact NaN. */
+/* The gap of two solids: any shapes but two planes (IMPACT_EARGUMENT, as for a shape that impact_shape_check refuses).
+ * cache may be NULL. IMPACT_OK: settled, the bracket closed to 2e-14 (L + |c|) or better, L the largest semi-axis and c
+ * between the positions. With an answer too: IMPACT_DEEP, the nearest way out that was found, where an overlap may have
+ * several (deeper than 5 % of the smallest semi-axis or of the radii at the contact, or both bodies with edges);
+ * IMPACT_BRACKET, the gap lies in [lower, upper]. IMPACT_EDOMAIN: a position that is not finite, an orientation that is
+ * zero or not finite. A negative status leaves every number of *contact NaN. Method: docs/gap.md. */
 IMPACT_API impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                                     impact_contact *contact);
 
 /* d(gap)/dt in m/s for the bodies' velocities (m/s, world, of the positions) and angular velocities (rad/s, world):
  * exactly normal . (u1 - u2), u the velocities of the witness points. */
-IMPACT_API double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2, qvec3 omega2);
+IMPACT_API double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2,
+                                  qvec3 omega2);
 
 #ifdef __cplusplus
 }

@@ -14,32 +14,36 @@ extern "C" {
 #endif
 
 typedef enum impact_shape_kind {
-    IMPACT_SPHERE,         /* |x| <= a */
-    IMPACT_PLANE,          /* the half-space z <= 0; outward normal +z; static only */
-    IMPACT_SUPERQUADRIC,   /* |x/a|^r + |y/b|^s + |z/c|^t <= 1, r, s, t >= 1 */
-    IMPACT_SUPERELLIPSOID  /* (|x/a|^r + |y/b|^r)^(t/r) + |z/c|^t <= 1, s = r; Barr: r = 2/eps2, t = 2/eps1 */
+    IMPACT_SPHERE,        /* |x| <= a */
+    IMPACT_PLANE,         /* the half-space z <= 0; outward normal +z; static only */
+    IMPACT_SUPERQUADRIC,  /* |x/a|^r + |y/b|^s + |z/c|^t <= 1, r, s, t >= 1 */
+    IMPACT_SUPERELLIPSOID /* (|x/a|^r + |y/b|^r)^(t/r) + |z/c|^t <= 1, s = r; Barr: r = 2/eps2, t = 2/eps1 */
 } impact_shape_kind;
 
 /* A plain value; make it with the functions below, which check what they are given. */
 typedef struct impact_shape {
     impact_shape_kind kind;
-    double a, b, c; /* semi-axes, m; sphere: all the radius; plane: half-extents of its bounds along x and y (infinite: none), c = 0 */
+    double a, b, c; /* semi-axes, m; sphere: all the radius; plane: half-extents of its bounds along x and y (infinite:
+                       none), c = 0 */
     double r, s, t; /* exponents; 2 where the kind has none */
 } impact_shape;
 
-/* Each returns IMPACT_OK; IMPACT_EDOMAIN for a NaN or infinity, IMPACT_EARGUMENT for an axis <= 0 or an exponent < 1 (not convex);
- * on failure *shape is untouched. impact_shape_check puts the reason into words. */
+/* Each returns IMPACT_OK; IMPACT_EDOMAIN for a NaN or infinity, IMPACT_EARGUMENT for an axis <= 0 or an exponent < 1
+ * (not convex); on failure *shape is untouched. impact_shape_check puts the reason into words. */
 IMPACT_API impact_status impact_shape_sphere(double radius, impact_shape *shape);
 IMPACT_API impact_status impact_shape_plane(double half_x, double half_y, impact_shape *shape);
 IMPACT_API impact_status impact_shape_ellipsoid(double a, double b, double c, impact_shape *shape);
 /* Semi-axes a, b, c in m; exponents r, s, t in [1, 1e6]. */
 IMPACT_API impact_status impact_shape_superquadric(double a, double b, double c, double r, double s, double t,
                                                    impact_shape *shape);
-/* Barr's superellipsoid: eps1 shapes the profile along z, eps2 the section across it; both in (0, 2], 1 for an ellipsoid. */
-IMPACT_API impact_status impact_shape_superellipsoid(double a, double b, double c, double eps1, double eps2, impact_shape *shape);
+/* Barr's superellipsoid: eps1 shapes the profile along z, eps2 the section across it; both in (0, 2], 1 for an
+ * ellipsoid. */
+IMPACT_API impact_status impact_shape_superellipsoid(double a, double b, double c, double eps1, double eps2,
+                                                     impact_shape *shape);
 
-/* The status the constructors would give these numbers. When it is negative and message is not NULL, up to size bytes of a
- * sentence naming the number, such as "exponent r = 0.5 < 1 is not convex", are written; "" when the shape is good. */
+/* The status the constructors would give these numbers. When it is negative and message is not NULL, up to size bytes
+ * of a sentence naming the number, such as "exponent r = 0.5 < 1 is not convex", are written; "" when the shape is
+ * good. */
 IMPACT_API impact_status impact_shape_check(const impact_shape *shape, char *message, size_t size);
 
 /* Volume in m^3; infinite for a plane. */
@@ -51,13 +55,14 @@ IMPACT_API qvec3 impact_shape_inertia(const impact_shape *shape);
 /* Radius of the smallest ball about the centre that holds the shape; infinite for a plane. */
 IMPACT_API double impact_shape_bounding_radius(const impact_shape *shape);
 
-/* Support function h = max direction . x over the shape, and where it is reached (*point may be NULL). direction: body frame,
- * finite, of any length but 0 (h scales with it). Where a whole edge or face answers, one of its points is given. Planes: h is
- * infinite and *point NaN unless direction is along +z. */
+/* Support function h = max direction . x over the shape, and where it is reached (*point may be NULL). direction: body
+ * frame, finite, of any length but 0 (h scales with it). Where a whole edge or face answers, one of its points is
+ * given. Planes: h is infinite and *point NaN unless direction is along +z. */
 IMPACT_API double impact_shape_support(const impact_shape *shape, qvec3 direction, qvec3 *point);
 
-/* Hessian of h at a unit direction, m: symmetric, positive semidefinite, its null vector the direction; its other eigenvalues are
- * the surface's principal radii of curvature there. Infinite or NaN entries where the surface is flat; zero at a vertex. */
+/* Hessian of h at a unit direction, m: symmetric, positive semidefinite, its null vector the direction; its other
+ * eigenvalues are the surface's principal radii of curvature there. Infinite or NaN entries where the surface is flat;
+ * zero at a vertex. */
 IMPACT_API qmat3 impact_shape_support_hessian(const impact_shape *shape, qvec3 direction);
 
 /* Surface point at the angles u in [-pi, pi), v in [-pi/2, pi/2] (Barr 1981; thesis appendix B). Sphere: an ordinary
@@ -70,12 +75,12 @@ IMPACT_API qvec3 impact_shape_normal(const impact_shape *shape, double u, double
 /* Below 1 inside, 1 on the surface, above 1 outside: the shape's left-hand side at x (body frame). Plane: 1 + z. */
 IMPACT_API double impact_shape_inside(const impact_shape *shape, qvec3 x);
 
-/* Principal curvatures (1/m, >= 0, k1 >= k2) at the surface point whose outward normal is along direction. 0 where flat,
- * infinite on edges and vertices. */
+/* Principal curvatures (1/m, >= 0, k1 >= k2) at the surface point whose outward normal is along direction. 0 where
+ * flat, infinite on edges and vertices. */
 IMPACT_API void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double *k1, double *k2);
 
-/* Points (and outward normals when not NULL) of the grid u_i = -pi + 2 pi i/nu (i < nu), v_j = -pi/2 + pi j/nv (j <= nv);
- * element j nu + i. IMPACT_EARGUMENT for nu < 3 or nv < 2. */
+/* Points (and outward normals when not NULL) of the grid u_i = -pi + 2 pi i/nu (i < nu), v_j = -pi/2 + pi j/nv (j <=
+ * nv); element j nu + i. IMPACT_EARGUMENT for nu < 3 or nv < 2. */
 IMPACT_API impact_status impact_shape_mesh(const impact_shape *shape, int nu, int nv, qvec3 *points, qvec3 *normals);
 
 #ifdef __cplusplus

@@ -11,7 +11,8 @@
 extern "C" {
 #endif
 
-/* position(t) = position + velocity t + acceleration t^2/2; orientation(t) = exp(omega t) orientation, omega in world axes. */
+/* position(t) = position + velocity t + acceleration t^2/2; orientation(t) = exp(omega t) orientation, omega in world
+ * axes. */
 typedef struct impact_motion {
     qvec3 velocity;     /* m/s, of the position */
     qvec3 acceleration; /* m/s^2, constant */
@@ -21,10 +22,11 @@ typedef struct impact_motion {
 /* The body at time t of its motion. */
 IMPACT_API impact_solid impact_motion_at(const impact_solid *body, const impact_motion *motion, double t);
 
-/* First contact in [0, t_max], t_max finite and >= 0. Planes stand still (their motion must be zero). Every step is one in which contact is
- * proved impossible, so that none is missed, however thin or fast the bodies. contact (NULL: not wanted): the contact at *time.
- * IMPACT_OK: *time is when the gap reaches zero, to rounding; 0 when the bodies touch or overlap at the start. IMPACT_NO_CONTACT: *time =
- * t_max. IMPACT_EUNSETTLED: too many steps (a long near-contact); there is none before *time. Other negative statuses: *time is NaN. */
+/* First contact in [0, t_max], t_max finite and >= 0. Planes stand still (their motion must be zero). Every step is one
+ * in which contact is proved impossible, so that none is missed, however thin or fast the bodies. contact (NULL: not
+ * wanted): the contact at *time. IMPACT_OK: *time is when the gap reaches zero, to rounding; 0 when the bodies touch or
+ * overlap at the start. IMPACT_NO_CONTACT: *time = t_max. IMPACT_EUNSETTLED: too many steps (a long near-contact);
+ * there is none before *time. Other negative statuses: *time is NaN. */
 IMPACT_API impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1, const impact_solid *body2,
                                     const impact_motion *motion2, double t_max, double *time, impact_contact *contact);
 
