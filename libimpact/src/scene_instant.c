@@ -271,8 +271,7 @@ static bool comes_to_rest(const impact_scene *scene, int body)
     for (int c = 0; c < scene->motion.persist.count; c++) {
         const impact_touch *touch = &scene->motion.persist.touches[c];
         if (touch->body1 != body && touch->body2 != body) continue;
-        held = touch->mode == IMPACT_ROLL;
-        if (!held) return false;
+        held = true;
         const qvec3 f = touch->body1 == body ? touch->force : qvec3_neg(touch->force);
         force = qvec3_add(force, f);
         torque = qvec3_add(torque, qvec3_cross(touch->body1 == body ? touch->r1 : touch->r2, f));

@@ -1,0 +1,675 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Held contacts: their reactions against Newton and Euler in long double and against finite differences of the gap, rolls and slides
+ * with closed forms, several contacts at once, and random bodies dropped on a plane.
+ */
+#include "scene_internal.h"
+#include "contact_random.h"
+#include "scene_log.h"
+
+static const double mass = 4, radius = 0.3, gravity = 9.81;
+
+/* What a step may add to any number of a body's, relative to it: CVODE holds the root mean square of one body's 17 to the tolerance. */
+static const double step_error = 4.2e-13;
+
+/* ---- reactions at one instant ---- */
+
+static qvec3 random_vector(random_stream *random, double low, double high)
+{
+    return qvec3_scale(random_direction(random), random_log(random, low, high));
+}
+
+static impact_body_def ellipsoid_body(const char *name, double a, double b, double c, quat orientation)
+{
+    impact_body_def body = impact_default_body_def();
+    body.name = name;
+    body.mass = mass;
+    body.orientation = orientation;
+    impact_shape_ellipsoid(a, b, c, &body.shape);
+    return body;
+}
+
+static impact_scene_def scene_of(const impact_body_def *bodies, int count, double duration)
+{
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, -gravity};
+    def.bodies = bodies;
+    def.body_count = count;
+    def.duration = duration;
+    return def;
+}
+
+/* The only pair's reactions in the mode given, as the scene's states are. */
+static impact_touch solve_touch(impact_scene *scene, impact_mode mode)
+{
+    impact_persist *persist = &scene->motion.persist;
+    scene->world.pairs[0].mode = mode;
+    assert_int_equal(impact_persist_reserve(persist, &scene->world), IMPACT_OK);
+    assert_true(impact_field_loads(&scene->world, 0, scene->states, scene->motion.loads));
+    impact_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
+    assert_int_equal(persist->count, 1);
+    return persist->touches[0];
+}
+
+static void turn_at(impact_scene *scene, int body, qvec3 omega)
+{
+    scene->states[body].momentum = impact_inertia(&scene->world.bodies[body], scene->states[body].q, omega);
+}
+
+typedef long double real;
+
+/* Long double vectors and 3 x 3 systems for the second formulation. */
+static void cross(const real a[3], const real b[3], real c[3])
+{
+    const real r[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    for (int i = 0; i < 3; i++) c[i] = r[i];
+}
+
+static real dot(const real a[3], const real b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void to_real(qvec3 v, real r[3]) { r[0] = v.x, r[1] = v.y, r[2] = v.z; }
+
+static real det3(real m[3][3])
+{
+    real c[3];
+    cross(m[1], m[2], c);
+    return dot(m[0], c);
+}
+
+static void solve3(real m[3][3], const real right[3], real x[3])
+{
+    const real d = det3(m);
+    for (int k = 0; k < 3; k++) {
+        real n[3][3];
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) n[i][j] = j == k ? right[i] : m[i][j];
+        x[k] = det3(n) / d;
+    }
+}
+
+/* An ellipsoid on the floor z = 0: columns of e are its axes. */
+typedef struct spinner {
+    real axes[3], e[3][3], moments[3], w[3];
+} spinner;
+
+/* Its axes after it has turned by the vector w s. */
+static void turned_axes(const spinner *b, real s, real e[3][3])
+{
+    real k[3];
+    const real w = sqrtl(dot(b->w, b->w)), c = cosl(w * s), n = sinl(w * s);
+    for (int i = 0; i < 3; i++) k[i] = b->w[i] / w;
+    for (int a = 0; a < 3; a++) {
+        real axis[3], across[3];
+        for (int i = 0; i < 3; i++) axis[i] = b->e[i][a];
+        cross(k, axis, across);
+        const real along = dot(k, axis);
+        for (int i = 0; i < 3; i++) e[i][a] = axis[i] * c + across[i] * n + k[i] * along * (1 - c);
+    }
+}
+
+/* Contact point from the centre, -h grad; returns the centre's height. */
+static real lowest_point(const spinner *b, real s, real r[3])
+{
+    real e[3][3], h2 = 0;
+    turned_axes(b, s, e);
+    for (int a = 0; a < 3; a++) h2 += b->axes[a] * b->axes[a] * e[2][a] * e[2][a];
+    const real h = sqrtl(h2);
+    for (int i = 0; i < 3; i++) {
+        r[i] = 0;
+        for (int a = 0; a < 3; a++) r[i] -= e[i][a] * b->axes[a] * b->axes[a] * e[2][a] / h;
+    }
+    return h;
+}
+
+/* J^+-1 v. */
+static void inertia(const spinner *b, bool inverse, const real v[3], real out[3])
+{
+    real local[3] = {0, 0, 0};
+    for (int a = 0; a < 3; a++)
+        for (int i = 0; i < 3; i++) local[a] += b->e[i][a] * v[i];
+    for (int i = 0; i < 3; i++) {
+        out[i] = 0;
+        for (int a = 0; a < 3; a++)
+            out[i] += b->e[i][a] * (inverse ? local[a] / b->moments[a] : local[a] * b->moments[a]);
+    }
+}
+
+/* Rolling: v = -w x r all the time, m v' = F + m g, J w' + w x J w = r x F. For w': J w' + m r x (w' x r) = -w x J w - m r x (w x r' + g). */
+static void rolling_force(const spinner *b, real force[3])
+{
+    const real h = 1e-4L, g[3] = {0, 0, -(real)gravity};
+    real r[3], rate[3], a[3], near[2][3], far[2][3], right[3], jw[3], m[3][3], alpha[3];
+    lowest_point(b, 0, r);
+    for (int k = 0; k < 2; k++) {
+        lowest_point(b, k ? h : -h, near[k]);
+        lowest_point(b, k ? 2 * h : -2 * h, far[k]);
+    }
+    for (int i = 0; i < 3; i++) rate[i] = (8 * (near[1][i] - near[0][i]) - (far[1][i] - far[0][i])) / (12 * h);
+    inertia(b, false, b->w, jw);
+    cross(b->w, jw, right);
+    cross(b->w, rate, a);
+    for (int i = 0; i < 3; i++) a[i] += g[i];
+    real moved[3];
+    cross(r, a, moved);
+    for (int i = 0; i < 3; i++) right[i] = -right[i] - mass * moved[i];
+    for (int k = 0; k < 3; k++) {
+        real unit[3] = {k == 0, k == 1, k == 2}, j[3], c[3];
+        inertia(b, false, unit, j);
+        cross(unit, r, c);
+        cross(r, c, c);
+        for (int i = 0; i < 3; i++) m[i][k] = j[i] + mass * c[i];
+    }
+    solve3(m, right, alpha);
+    cross(alpha, r, force);
+    for (int i = 0; i < 3; i++) force[i] = -mass * (force[i] + a[i]);
+}
+
+/* Sliding: F = N (n - mu s/|s|) with N so that the height keeps to that of the lowest point: z'' = h'', h'' being that of turning at
+ * w alone, less (r x n) . w'. */
+static void sliding_force(const spinner *b, const real slip[3], real mu, real force[3])
+{
+    const real h = 4e-4L, n[3] = {0, 0, 1};
+    real r[3], unused[3], f[3], jw[3], gyro[3], arm[3], turn[3], lever[3];
+    const real now = lowest_point(b, 0, r), s = sqrtl(dot(slip, slip));
+    const real weights[3] = {270.0L / 180, -27.0L / 180, 2.0L / 180}; /* of the sixth order */
+    real second = -490.0L / 180 * now;
+    for (int k = 1; k <= 3; k++)
+        second += weights[k - 1] * (lowest_point(b, k * h, unused) + lowest_point(b, -k * h, unused));
+    second /= h * h;
+    for (int i = 0; i < 3; i++) f[i] = n[i] - mu * slip[i] / s;
+    inertia(b, false, b->w, jw);
+    cross(b->w, jw, gyro);
+    inertia(b, true, gyro, gyro);
+    cross(r, f, arm);
+    inertia(b, true, arm, turn);
+    cross(r, n, lever);
+    const real pressure = (second + gravity + dot(lever, gyro)) / (1 / (real)mass + dot(lever, turn));
+    for (int i = 0; i < 3; i++) force[i] = pressure * f[i];
+}
+
+static void reactions_by_newton_and_euler(void **state)
+{
+    (void)state;
+    random_stream random = {11};
+    for (int k = 0; k < 4000; k++) {
+        const bool slides = k & 1;
+        const double a = random_log(&random, 0.2, 1), b = random_log(&random, 0.2, 1), c = random_log(&random, 0.2, 1),
+                     mu = 0.3;
+        impact_body_def bodies[2] = {ellipsoid_body("egg", a, b, c, random_rotation(&random)),
+                                     plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 0)};
+        bodies[0].friction = mu;
+        bodies[0].position.z = 2;
+        const impact_scene_def def = scene_of(bodies, 2, 1);
+        impact_scene *scene = make_scene(&def);
+        impact_state *s = &scene->states[0];
+        const qvec3 w = random_vector(&random, 0.05, 5);
+        spinner twin = {.axes = {a, b, c}};
+        to_real(w, twin.w);
+        for (int axis = 0; axis < 3; axis++) {
+            real e[3];
+            to_real(quat_rotate(s->q, (qvec3){axis == 0, axis == 1, axis == 2}), e);
+            for (int i = 0; i < 3; i++) twin.e[i][axis] = e[i];
+        }
+        const qvec3 moments = scene->world.bodies[0].moments;
+        to_real(moments, twin.moments);
+        real r[3], wanted[3];
+        s->x.z = (double)lowest_point(&twin, 0, r);
+        turn_at(scene, 0, w);
+        const qvec3 arm = {(double)r[0], (double)r[1], (double)r[2]}, rolling = qvec3_neg(qvec3_cross(w, arm));
+        const double angle = 6.3 * random_unit(&random), speed = slides ? random_log(&random, 1e-3, 10) : 0;
+        const qvec3 slip = {speed * cos(angle), speed * sin(angle), 0};
+        s->v = qvec3_add(rolling, slip);
+        const impact_touch touch = solve_touch(scene, slides ? IMPACT_SLIDE : IMPACT_ROLL);
+        assert_near3(touch.slip, slip, 1e-14 * (1 + qvec3_norm(s->v)));
+        real u[3];
+        to_real(touch.slip, u);
+        if (slides)
+            sliding_force(&twin, u, mu, wanted);
+        else
+            rolling_force(&twin, wanted);
+        const qvec3 force = {(double)wanted[0], (double)wanted[1], (double)wanted[2]};
+        const double scale = mass * (gravity + qvec3_dot(w, w));
+        assert_near3(touch.force, force, 2e-11 * scale);
+        assert_near(touch.pressure, (double)wanted[2], 2e-11 * scale);
+        if (slides) { /* friction opposes slip */
+            const qvec3 tangential = {touch.force.x, touch.force.y, 0};
+            assert_near(qvec3_dot(tangential, slip), -mu * touch.pressure * speed, 1e-12 * scale * speed);
+        }
+        impact_scene_destroy(scene);
+    }
+}
+
+/* Both bodies after dt, as the loads and reactions move them. */
+static void move(const impact_scene *scene, const impact_load *loads, double dt, impact_state *moved)
+{
+    for (int i = 0; i < scene->world.body_count; i++) {
+        const impact_body *body = &scene->world.bodies[i];
+        const impact_state *s = &scene->states[i];
+        moved[i] = *s;
+        if (body->is_static) continue;
+        const qvec3 acceleration = qvec3_scale(loads[i].force, body->inverse_mass), w = impact_omega(body, s);
+        const qvec3 alpha = impact_inverse_inertia(body, s->q, qvec3_sub(loads[i].torque, qvec3_cross(w, s->momentum)));
+        moved[i].x = qvec3_axpy(dt, qvec3_axpy(0.5 * dt, acceleration, s->v), s->x);
+        moved[i].v = qvec3_axpy(dt, acceleration, s->v);
+        moved[i].q = quat_mul(quat_from_rotation_vector(qvec3_scale(qvec3_axpy(0.5 * dt, alpha, w), dt)), s->q);
+        moved[i].momentum = impact_inertia(body, moved[i].q, qvec3_axpy(dt, alpha, w));
+    }
+}
+
+/* Relative velocity of the contact points, at the contact as it then is. */
+static qvec3 contact_velocity(impact_scene *scene, const impact_state *states, double *rate)
+{
+    impact_world *world = &scene->world;
+    impact_pair *pair = &world->pairs[0];
+    const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const impact_solid solid1 = impact_solid_of(b1, s1), solid2 = impact_solid_of(b2, s2);
+    impact_contact contact;
+    assert_true(impact_gap(&solid1, &solid2, NULL, &contact) >= 0);
+    const qvec3 u1 = qvec3_add(s1->v, qvec3_cross(impact_omega(b1, s1), contact.offset1));
+    const qvec3 u2 =
+        b2->is_static ? (qvec3){0, 0, 0} : qvec3_add(s2->v, qvec3_cross(impact_omega(b2, s2), contact.offset2));
+    *rate = qvec3_dot(contact.normal, qvec3_sub(u1, u2));
+    return qvec3_sub(u1, u2);
+}
+
+/* Any smooth bodies, on each other or on a plane, touching, rolling or sliding: with the reactions that were solved for, the contact
+ * velocity (rolling) or the gap's rate (sliding) stays what it is, by finite differences of the gap's contact points. */
+static void reactions_keep_the_contact(void **state)
+{
+    (void)state;
+    random_stream random = {12};
+    for (int k = 0; k < 3000; k++) {
+        const bool slides = k & 1, on_plane = k % 4 >= 2;
+        impact_body_def bodies[2] = {ellipsoid_body("one", 1, 1, 1, random_rotation(&random)),
+                                     ellipsoid_body("two", 1, 1, 1, random_rotation(&random))};
+        for (int i = 0; i < 2; i++)
+            impact_shape_ellipsoid(random_log(&random, 0.4, 1), random_log(&random, 0.4, 1),
+                                   random_log(&random, 0.4, 1), &bodies[i].shape);
+        if (k % 3 == 0) impact_shape_sphere(random_log(&random, 0.4, 1), &bodies[0].shape);
+        if (k % 7 == 0) bodies[1].is_static = true;
+        if (on_plane) impact_shape_plane(INFINITY, INFINITY, &bodies[1].shape), bodies[1].is_static = true;
+        bodies[1].mass = 2;
+        bodies[0].friction = bodies[1].friction = 0.5;
+        bodies[0].position =
+            on_plane ? quat_rotate(bodies[1].orientation, (qvec3){0, 0, 3}) : qvec3_scale(random_direction(&random), 3);
+        const impact_scene_def def = scene_of(bodies, 2, 1);
+        impact_scene *scene = make_scene(&def);
+        impact_state *s = scene->states;
+        impact_contact contact;
+        for (int i = 0; i < 3; i++) { /* together */
+            const impact_solid one = impact_solid_of(&scene->world.bodies[0], &s[0]),
+                               two = impact_solid_of(&scene->world.bodies[1], &s[1]);
+            assert_true(impact_gap(&one, &two, NULL, &contact) >= 0);
+            s[0].x = qvec3_axpy(-contact.gap, contact.normal, s[0].x);
+        }
+        for (int i = 0; i < 2; i++) turn_at(scene, i, random_vector(&random, 0.05, 1));
+        if (!scene->world.bodies[1].is_static)
+            s[1].v = random_vector(&random, 0.1, 1);
+        else
+            s[1].momentum = (qvec3){0, 0, 0};
+        double rate;
+        const qvec3 u = contact_velocity(scene, s, &rate);
+        s[0].v = qvec3_sub(s[0].v, u);
+        if (slides) s[0].v = qvec3_add(s[0].v, qvec3_cross(contact.normal, random_vector(&random, 0.1, 1)));
+        solve_touch(scene, slides ? IMPACT_SLIDE : IMPACT_ROLL);
+        impact_load loads[2] = {scene->motion.loads[0], scene->motion.loads[1]};
+        impact_persist_add_reactions(&scene->motion.persist, loads);
+        const double h = 3e-4;
+        qvec3 velocity[4];
+        double rates[4];
+        for (int i = 0; i < 4; i++) {
+            impact_state moved[2];
+            move(scene, loads, h * (const double[]){-2, -1, 1, 2}[i], moved);
+            velocity[i] = contact_velocity(scene, moved, &rates[i]);
+        }
+        const qvec3 change =
+            qvec3_sub(qvec3_scale(qvec3_sub(velocity[2], velocity[1]), 8), qvec3_sub(velocity[3], velocity[0]));
+        assert_near((8 * (rates[2] - rates[1]) - (rates[3] - rates[0])) / (12 * h), 0, 2e-7);
+        if (!slides) assert_near(qvec3_norm(change) / (12 * h), 0, 2e-7);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* ---- rolling off a fixed ball ---- */
+
+typedef struct roll_off {
+    scene_log log;
+    double start; /* cosine of the angle from the top, at the start */
+} roll_off;
+
+/* From rest near the top of a ball of radius 1. */
+static roll_off run_roll_off(double friction)
+{
+    const double angle = 0.1, reach = 1 + radius;
+    impact_body_def bodies[2] = {ball_body("hill", (qvec3){0, 0, 0}, 1, 0),
+                                 ball_body("ball", (qvec3){0, 0, 0}, friction, 0)};
+    impact_shape_sphere(1, &bodies[0].shape);
+    bodies[0].is_static = true;
+    bodies[1].position = (qvec3){reach * sin(angle) * 0.6, reach * sin(angle) * 0.8, reach * cos(angle)};
+    const impact_scene_def def = scene_of(bodies, 2, 2);
+    impact_scene *scene = make_scene(&def);
+    roll_off result = {.start = cos(angle)};
+    const impact_recorder recorder = log_recorder(&result.log);
+    if (impact_scene_run(scene, &recorder) != IMPACT_OK) fail_msg("%s", impact_scene_message(scene));
+    const impact_energy energy = impact_scene_energy(scene);
+    assert_near(energy.kinetic + energy.potential, energy.start - energy.sliding_loss, 1e-9);
+    impact_scene_destroy(scene);
+    return result;
+}
+
+/* Cosine of the angle from the top at the event. */
+static double height_at(const roll_off *r, impact_event_kind kind)
+{
+    const int i = find_event(&r->log, kind, NULL, 0);
+    assert_true(i >= 0);
+    return r->log.events[i].normal.z;
+}
+
+static void a_ball_without_friction_leaves_a_ball_at_two_thirds(void **state)
+{
+    (void)state;
+    roll_off r = run_roll_off(0);
+    assert_near(height_at(&r, IMPACT_EVENT_LIFTOFF), 2.0 / 3 * r.start, 1e-10);
+    free_log(&r.log);
+}
+
+/* N = m g (cos - 10/7 (cos0 - cos)), friction 2/7 m g sin: it leaves at 10/17 cos0, sliding just before however strong the friction. */
+static void a_rolling_ball_leaves_a_ball_at_ten_seventeenths(void **state)
+{
+    (void)state;
+    for (double friction = 1e4; friction < 1e9; friction *= 100) {
+        roll_off r = run_roll_off(friction);
+        const double wanted = 10.0 / 17 * r.start;
+        assert_near(height_at(&r, IMPACT_EVENT_LIFTOFF), wanted, 2 / friction + 1e-9);
+        assert_true(height_at(&r, IMPACT_EVENT_SLIP) >= wanted - 1e-9);
+        free_log(&r.log);
+    }
+}
+
+/* With less friction it slides when 2/7 sin = mu (17/7 cos - 10/7 cos0), and leaves later. */
+static void a_rolling_ball_slides_before_it_leaves(void **state)
+{
+    (void)state;
+    for (int k = 1; k <= 8; k++) {
+        const double mu = 0.1 * k;
+        roll_off r = run_roll_off(mu);
+        double low = 0.1, high = acos(10.0 / 17 * r.start);
+        for (int i = 0; i < 100; i++) {
+            const double middle = 0.5 * (low + high);
+            *(2 * sin(middle) < mu * (17 * cos(middle) - 10 * r.start) ? &low : &high) = middle;
+        }
+        assert_near(height_at(&r, IMPACT_EVENT_SLIP), cos(low), 1e-10);
+        const double leaves = height_at(&r, IMPACT_EVENT_LIFTOFF);
+        assert_true(leaves < cos(low) && leaves < 2.0 / 3 * r.start && leaves > 0.5);
+        free_log(&r.log);
+    }
+}
+
+/* ---- rolling ellipsoids ---- */
+
+static impact_body_def rolling_egg(random_stream *random, qvec3 w)
+{
+    impact_body_def body = ellipsoid_body("egg", 0.2 + 0.2 * random_unit(random), 0.2 + 0.2 * random_unit(random),
+                                          0.2 + 0.2 * random_unit(random), random_rotation(random));
+    qvec3 lowest;
+    body.position.z =
+        impact_shape_support(&body.shape, quat_rotate_inverse(body.orientation, (qvec3){0, 0, -1}), &lowest);
+    body.omega = w;
+    body.velocity = qvec3_neg(qvec3_cross(w, quat_rotate(body.orientation, lowest)));
+    body.friction = 1000;
+    return body;
+}
+
+static void rolling_keeps_energy_and_the_contact_point_at_rest(void **state)
+{
+    (void)state;
+    random_stream random = {13};
+    for (int k = 0; k < 12; k++) {
+        const impact_body_def bodies[2] = {rolling_egg(&random, random_vector(&random, 0.1, 3)),
+                                           plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 0)};
+        impact_scene_def def = scene_of(bodies, 2, 3);
+        def.output_rate = 50;
+        impact_scene *scene = make_scene(&def);
+        scene_log log = {0};
+        const impact_recorder recorder = log_recorder(&log);
+        if (impact_scene_run(scene, &recorder) != IMPACT_OK) fail_msg("%s", impact_scene_message(scene));
+        assert_int_equal(find_event(&log, IMPACT_EVENT_LIFTOFF, NULL, 0), -1);
+        for (int i = 0; i < log.sample_count; i++) {
+            const impact_sample *s = &log.samples[i];
+            qvec3 lowest;
+            const qvec3 down = quat_rotate_inverse(s->orientation, (qvec3){0, 0, -1});
+            assert_near(s->position.z, impact_shape_support(&bodies[0].shape, down, &lowest), 1e-14);
+            assert_near3(qvec3_add(s->velocity, qvec3_cross(s->omega, quat_rotate(s->orientation, lowest))),
+                         (qvec3){0, 0, 0}, 1e-13);
+        }
+        const impact_energy energy = impact_scene_energy(scene);
+        const double steps = (double)impact_scene_usage(scene).integrator_steps;
+        assert_near((energy.kinetic + energy.potential) / energy.start, 1, steps * step_error);
+        assert_true(energy.sliding_loss == 0);
+        free_log(&log);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* ---- slides with closed forms ---- */
+
+/* On an incline too steep for its friction, a ball that rolls across it slides straight down while it goes on across: the slip it gains
+ * points down. */
+static void slip_from_rest_goes_down_the_incline(void **state)
+{
+    (void)state;
+    random_stream random = {14};
+    for (int k = 0; k < 20; k++) {
+        const double slope = 0.5 + 0.5 * random_unit(&random),
+                     mu = 2.0 / 7 * tan(slope) * (0.2 + 0.7 * random_unit(&random));
+        const double across = k % 4 == 0 ? 0 : random_log(&random, 0.01, 3), turn = 6.3 * random_unit(&random), t = 1.5;
+        const quat tilt =
+            quat_mul((quat){cos(turn / 2), 0, 0, sin(turn / 2)}, (quat){cos(slope / 2), 0, sin(slope / 2), 0});
+        const qvec3 n = quat_rotate(tilt, (qvec3){0, 0, 1}), down = quat_rotate(tilt, (qvec3){1, 0, 0}),
+                    side = qvec3_cross(n, down);
+        impact_body_def bodies[2] = {plane_body("incline", (qvec3){0, 0, 0}, tilt, 1, 0),
+                                     ball_body("ball", qvec3_scale(n, radius), mu, 0)};
+        bodies[1].velocity = qvec3_scale(side, across);
+        bodies[1].omega = qvec3_scale(qvec3_cross(n, side), across / radius);
+        const impact_scene_def def = scene_of(bodies, 2, t);
+        impact_scene *scene = make_scene(&def);
+        if (impact_scene_run(scene, NULL) != IMPACT_OK) fail_msg("%s", impact_scene_message(scene));
+        const double a = gravity * (sin(slope) - mu * cos(slope)), spin = 2.5 * mu * gravity * cos(slope) / radius;
+        impact_sample end;
+        impact_scene_body(scene, 1, &end);
+        assert_near3(end.velocity, qvec3_axpy(a * t, down, bodies[1].velocity), 1e-9);
+        assert_near3(end.position,
+                     qvec3_axpy(0.5 * a * t * t, down, qvec3_axpy(t, bodies[1].velocity, bodies[1].position)), 1e-9);
+        assert_near3(end.omega, qvec3_axpy(spin * t, qvec3_cross(n, down), bodies[1].omega), 1e-8);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* A ball that turns about the normal pivots for ever; friction takes nothing. */
+static void pivoting_goes_on(void **state)
+{
+    (void)state;
+    for (int moves = 0; moves < 2; moves++) {
+        impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 0),
+                                     ball_body("ball", (qvec3){0, 0, radius}, 0.5, 0)};
+        bodies[1].omega = (qvec3){0, moves ? 1 / radius : 0, 7};
+        bodies[1].velocity = (qvec3){moves, 0, 0};
+        const impact_scene_def def = scene_of(bodies, 2, 20);
+        impact_scene *scene = make_scene(&def);
+        assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+        impact_sample end;
+        impact_scene_body(scene, 1, &end);
+        assert_near3(end.omega, bodies[1].omega, 1e-10);
+        assert_near3(end.position, (qvec3){20.0 * moves, 0, radius}, 1e-9);
+        const quat turned = quat_from_rotation_vector(qvec3_scale(bodies[1].omega, 20));
+        assert_near3(quat_rotate(end.orientation, (qvec3){0, 0.6, 0.8}), quat_rotate(turned, (qvec3){0, 0.6, 0.8}),
+                     2e-11 * 20 * qvec3_norm(bodies[1].omega)); /* of the angle it has turned through */
+        impact_scene_destroy(scene);
+    }
+}
+
+/* ---- several contacts ---- */
+
+/* A ball that spins in the corner of a floor and a wall and slides on both: N1 = m g/(1 + mu^2), N2 = mu N1, and it stops after
+ * t = 2/5 R w/(g mu (1 + mu)/(1 + mu^2)). */
+static void spin_in_a_corner_dies_out(void **state)
+{
+    (void)state;
+    for (int k = 1; k <= 6; k++) {
+        const double mu = 0.15 * k, w = 20;
+        impact_body_def bodies[3] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 0),
+                                     plane_body("wall", (qvec3){radius, 0, 0}, (quat){1, 0, -1, 0}, 1, 0),
+                                     ball_body("ball", (qvec3){0, 0, radius}, mu, 0)};
+        bodies[2].omega = (qvec3){0, w, 0};
+        const impact_scene_def def = scene_of(bodies, 3, 30);
+        impact_scene *scene = make_scene(&def);
+        scene_log log = {0};
+        const impact_recorder recorder = log_recorder(&log);
+        const impact_status status = impact_scene_run(scene, &recorder);
+        if (status != IMPACT_AT_REST) fail_msg("status %d: %s", status, impact_scene_message(scene));
+        const double t = 0.4 * radius * w / (gravity * mu * (1 + mu) / (1 + mu * mu));
+        const int rest = find_event(&log, IMPACT_EVENT_REST, NULL, 0);
+        assert_true(rest >= 0);
+        assert_near(log.events[rest].t, t, 1e-9);
+        impact_sample end;
+        impact_scene_body(scene, 2, &end);
+        assert_near3(end.position, (qvec3){0, 0, radius}, 1e-12);
+        const impact_energy energy = impact_scene_energy(scene);
+        assert_near(energy.sliding_loss, 0.2 * mass * radius * radius * w * w, 1e-9);
+        free_log(&log);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* Spinning about any axis and thrown into the corner, it comes to rest, or pivots: what no friction without moment can stop. */
+static void thrown_into_a_corner_it_settles(void **state)
+{
+    (void)state;
+    random_stream random = {15};
+    for (int k = 0; k < 15; k++) {
+        impact_body_def bodies[3] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 1),
+                                     plane_body("wall", (qvec3){radius, 0, 0}, (quat){1, 0, -1, 0}, 1, 1),
+                                     ball_body("ball", (qvec3){-0.2, 0, radius + 0.3}, 0.6, 0.4)};
+        bodies[2].velocity = (qvec3){1 + random_unit(&random), random_unit(&random) - 0.5, 0};
+        bodies[2].omega = random_vector(&random, 1, 20);
+        const impact_scene_def def = scene_of(bodies, 3, 5);
+        impact_scene *scene = make_scene(&def);
+        const impact_status status = impact_scene_run(scene, NULL);
+        if (status < 0) fail_msg("%s", impact_scene_message(scene));
+        impact_sample end;
+        impact_scene_body(scene, 2, &end);
+        assert_true(end.position.z >= radius - 1e-12 && end.position.x <= 1e-12);
+        const impact_energy energy = impact_scene_energy(scene);
+        assert_near(energy.kinetic + energy.potential, energy.start - energy.sliding_loss - energy.impact_loss,
+                    1e-8 * energy.start);
+        assert_true(energy.sliding_loss >= 0 && energy.impact_loss >= 0);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* More contacts than the balance of forces can tell apart: nothing moves. */
+static void hyperstatic_contacts_rest(void **state)
+{
+    (void)state;
+    const double r = radius, h = sqrt(4 * r * r - 4.0 / 3 * r * r); /* of a ball on three that touch */
+    const qvec3 below[3] = {{r, -r / sqrt(3), r}, {-r, -r / sqrt(3), r}, {0, 2 * r / sqrt(3), r}};
+    impact_body_def bodies[8] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 0)};
+    /* A ball between a floor, two walls that face each other, and one behind. */
+    bodies[1] = plane_body("left", (qvec3){-r, 0, 0}, (quat){1, 0, 1, 0}, 1, 0);
+    bodies[2] = plane_body("right", (qvec3){r, 0, 0}, (quat){1, 0, -1, 0}, 1, 0);
+    bodies[3] = plane_body("back", (qvec3){0, r, 0}, (quat){1, 1, 0, 0}, 1, 0);
+    bodies[4] = ball_body("ball", (qvec3){0, 0, r}, 0.5, 0);
+    for (int tilted = 0; tilted < 2; tilted++) {
+        impact_scene_def def = scene_of(bodies, 5, 1);
+        if (tilted) def.gravity = (qvec3){1, 2, -9};
+        impact_scene *scene = make_scene(&def);
+        const impact_status status = impact_scene_run(scene, NULL);
+        if (status != IMPACT_AT_REST) fail_msg("box %d: status %d: %s", tilted, status, impact_scene_message(scene));
+        assert_true(impact_scene_time(scene) == 0);
+        impact_scene_destroy(scene);
+    }
+    /* A pyramid of four balls with friction enough. */
+    static const char *const names[3] = {"a", "b", "c"};
+    for (int i = 0; i < 3; i++) bodies[1 + i] = ball_body(names[i], below[i], 1, 0);
+    bodies[4] = ball_body("top", (qvec3){0, 0, r + h}, 1, 0);
+    const impact_scene_def def = scene_of(bodies, 5, 1);
+    impact_scene *scene = make_scene(&def);
+    const impact_status status = impact_scene_run(scene, NULL);
+    if (status < 0) fail_msg("pyramid: status %d: %s", status, impact_scene_message(scene));
+    impact_sample top;
+    impact_scene_body(scene, 4, &top);
+    assert_near3(top.position, bodies[4].position, 1e-9);
+    impact_scene_destroy(scene);
+}
+
+/* ---- ellipsoids dropped on a plane ---- */
+
+typedef struct watch {
+    impact_shape shape;
+    double deepest;
+} watch;
+
+static bool watch_depth(void *context, const impact_sample *s)
+{
+    watch *w = context;
+    const double h = impact_shape_support(&w->shape, quat_rotate_inverse(s->orientation, (qvec3){0, 0, -1}), NULL);
+    w->deepest = fmax(w->deepest, h - s->position.z);
+    return true;
+}
+
+static void dropped_ellipsoids_gain_nothing(void **state)
+{
+    (void)state;
+    random_stream random = {16};
+    for (int k = 0; k < 40; k++) {
+        impact_body_def bodies[2] = {ellipsoid_body("egg", random_log(&random, 0.1, 0.5), random_log(&random, 0.1, 0.5),
+                                                    random_log(&random, 0.1, 0.5), random_rotation(&random)),
+                                     plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 1)};
+        bodies[0].position.z = 0.6 + 0.4 * random_unit(&random);
+        bodies[0].velocity = random_vector(&random, 0.1, 2);
+        bodies[0].omega = random_vector(&random, 0.1, 10);
+        bodies[0].friction = k % 5 == 0 ? 0 : random_log(&random, 0.05, 1);
+        bodies[0].restitution = k % 7 == 0 ? 0 : 0.7 * random_unit(&random);
+        impact_scene_def def = scene_of(bodies, 2, 2);
+        def.output_rate = 200;
+        def.law = k & 1 ? IMPACT_STRONGE : IMPACT_POISSON;
+        impact_scene *scene = make_scene(&def);
+        watch w = {.shape = bodies[0].shape};
+        const impact_recorder recorder = {.context = &w, .sample = watch_depth};
+        const impact_status status = impact_scene_run(scene, &recorder);
+        if (status < 0) fail_msg("egg %d at t = %.17g: %s", k, impact_scene_time(scene), impact_scene_message(scene));
+        const impact_energy energy = impact_scene_energy(scene);
+        if (fabs(energy.kinetic + energy.potential + energy.sliding_loss + energy.impact_loss - energy.start) >
+            1e-8 * energy.start)
+            fail_msg("egg %d: %.3g J of %.3g appeared", k,
+                     energy.kinetic + energy.potential + energy.sliding_loss + energy.impact_loss - energy.start,
+                     energy.start);
+        assert_true(energy.sliding_loss >= 0 && energy.impact_loss >= 0);
+        assert_at_most(w.deepest, 1e-9);
+        impact_scene_destroy(scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest instants[] = {
+        cmocka_unit_test(reactions_by_newton_and_euler),
+        cmocka_unit_test(reactions_keep_the_contact),
+        cmocka_unit_test(hyperstatic_contacts_rest),
+    };
+    const struct CMUnitTest integrated[] = {
+        cmocka_unit_test(a_ball_without_friction_leaves_a_ball_at_two_thirds),
+        cmocka_unit_test(a_rolling_ball_leaves_a_ball_at_ten_seventeenths),
+        cmocka_unit_test(a_rolling_ball_slides_before_it_leaves),
+        cmocka_unit_test(rolling_keeps_energy_and_the_contact_point_at_rest),
+        cmocka_unit_test(slip_from_rest_goes_down_the_incline),
+        cmocka_unit_test(pivoting_goes_on),
+        cmocka_unit_test(spin_in_a_corner_dies_out),
+        cmocka_unit_test(thrown_into_a_corner_it_settles),
+        cmocka_unit_test(dropped_ellipsoids_gain_nothing),
+    };
+    const int failed = cmocka_run_group_tests(instants, NULL, NULL);
+    if (!impact_has(IMPACT_PART_CVODE)) return failed;
+    return failed + cmocka_run_group_tests(integrated, NULL, NULL);
+}
