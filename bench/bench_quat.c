@@ -126,8 +126,14 @@ static void run_copy(bench_case which, size_t n)
 static void fetch(bench_case which, size_t n, double *out)
 {
     const size_t bytes = n * (size_t)bench_width(which) * sizeof(double);
-    if (which == BENCH_COMPOSE) memcpy(out, &product, sizeof product);
-    else memcpy(out, bench_width(which) == 4 ? (void *)out_q : bench_width(which) == 3 ? (void *)out_v : (void *)out_m, bytes);
+    if (which == BENCH_COMPOSE)
+        memcpy(out, &product, sizeof product);
+    else
+        memcpy(out,
+               bench_width(which) == 4   ? (void *)out_q
+               : bench_width(which) == 3 ? (void *)out_v
+                                         : (void *)out_m,
+               bytes);
 }
 
 static void fetch_soa(bench_case which, size_t n, double *out)
@@ -219,7 +225,8 @@ static double worst_error(const bench_input *in, bench_case which, const double 
             opposite = fmaxl(opposite, fabsl(g + want[j]));
         }
         /* as rotations q and -q are one; a matrix has three columns of length 1 */
-        const long double off = width == 4 && which != BENCH_PRODUCT && which != BENCH_NORMALIZE ? fminl(same, opposite) : same;
+        const long double off =
+            width == 4 && which != BENCH_PRODUCT && which != BENCH_NORMALIZE ? fminl(same, opposite) : same;
         worst = fmaxl(worst, off / sqrtl(width == 9 ? 1 : size));
     }
     return (double)(worst * 0x1p53L);
@@ -298,8 +305,8 @@ static void compete(bench_case which, const bench_input *in, const bench_contest
         if (fastest < DBL_MAX) printf("%.3f", median[c] / fastest);
         printf(",%.3g,%.12g\n", error, sum);
         if (copy < DBL_MAX && !moves_only)
-            printf("%s_to_copy,%zu,%s,%s,%.3f,%.3f,%.3g,%.12g\n", names[which], n, all[c]->name, all[c]->type, median[c],
-                   median[c] / copy, error, sum);
+            printf("%s_to_copy,%zu,%s,%s,%.3f,%.3f,%.3g,%.12g\n", names[which], n, all[c]->name, all[c]->type,
+                   median[c], median[c] / copy, error, sum);
     }
     free(out);
     fflush(stdout);
@@ -312,8 +319,10 @@ int main(void)
     for (size_t i = 0; i < sizeof own / sizeof *own; i++) all[count++] = &own[i];
     const bench_contestant *const peers[] = {&bench_eigen, &bench_glm, &bench_cglm};
     for (size_t i = 0; i < sizeof peers / sizeof *peers; i++) {
-        if (peers[i]->type) all[count++] = peers[i];
-        else fprintf(stderr, "bench_quat: %s is not installed and is skipped\n", peers[i]->name);
+        if (peers[i]->type)
+            all[count++] = peers[i];
+        else
+            fprintf(stderr, "bench_quat: %s is not installed and is skipped\n", peers[i]->name);
     }
     printf("case,n,library,type,ns,ratio,error_u,checksum\n");
     const size_t sizes[] = {few, many};

@@ -37,8 +37,8 @@ typedef struct bench_input {
 
 typedef struct bench_contestant {
     const char *name, *type;
-    void (*load)(const bench_input *input);          /* not timed */
-    void (*run)(bench_case which, size_t n);         /* timed */
+    void (*load)(const bench_input *input);                 /* not timed */
+    void (*run)(bench_case which, size_t n);                /* timed */
     void (*fetch)(bench_case which, size_t n, double *out); /* not timed */
     int (*can)(bench_case which);
     int peer; /* 1: another library, in double: what the ratio is against */

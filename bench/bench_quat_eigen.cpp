@@ -5,7 +5,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-namespace {
+namespace
+{
 
 using Quat = Eigen::Quaterniond;
 template <class T> using Array = std::vector<T, Eigen::aligned_allocator<T>>;

@@ -6,7 +6,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
-namespace {
+namespace
+{
 
 std::vector<glm::dquat> p, q, out_q;
 std::vector<glm::dvec3> v, out_v;

@@ -12,7 +12,8 @@
 static quat unit(lua_State *L, int index, const char *name)
 {
     quat q;
-    if (quat_normalize(quat_lua_arg_quat(L, index, name), &q) != QUAT_OK) quat_lua_error(L, "argument '%s' must not be zero", name);
+    if (quat_normalize(quat_lua_arg_quat(L, index, name), &q) != QUAT_OK)
+        quat_lua_error(L, "argument '%s' must not be zero", name);
     return q;
 }
 
@@ -21,13 +22,15 @@ static quat *units(lua_State *L, int index, const char *name, size_t least, size
 {
     size_t bad;
     quat *const q = quat_lua_arg_quats(L, index, name, least, n);
-    if (quat_normalize_array(*n, q, q, &bad) != QUAT_OK) quat_lua_error(L, "argument '%s[%d]' must not be zero", name, (int)bad + 1);
+    if (quat_normalize_array(*n, q, q, &bad) != QUAT_OK)
+        quat_lua_error(L, "argument '%s[%d]' must not be zero", name, (int)bad + 1);
     return q;
 }
 
 static void same_length(lua_State *L, size_t n, size_t other, const char *name)
 {
-    if (n != other) quat_lua_error(L, "argument '%s' must have %d elements like the first, got %d", name, (int)n, (int)other);
+    if (n != other)
+        quat_lua_error(L, "argument '%s' must have %d elements like the first, got %d", name, (int)n, (int)other);
 }
 
 static int rotate_list(lua_State *L, bool inverse)
@@ -42,7 +45,9 @@ static int rotate_list(lua_State *L, bool inverse)
     }
     if (flat) {
         double *const x = quat_lua_arg_numbers(L, 2, "vectors", 0, &n);
-        if (n % 3 != 0) return quat_lua_error(L, "argument 'vectors' must hold three numbers for each vector, got %d numbers", (int)n);
+        if (n % 3 != 0)
+            return quat_lua_error(L, "argument 'vectors' must hold three numbers for each vector, got %d numbers",
+                                  (int)n);
         quat_rotate_array(q, n / 3, (const qvec3 *)(const void *)x, (qvec3 *)(void *)x);
         lua_createtable(L, (int)n, 0);
         for (size_t i = 0; i < n; i++) {
@@ -186,12 +191,19 @@ static int l_align_points(lua_State *L)
 
 void quat_lua_open_array(lua_State *L)
 {
-    static const luaL_Reg methods[] = {{"rotate_list", l_rotate_list}, {"rotate_inverse_list", l_rotate_inverse_list},
-                                       {"slerp_list", l_slerp_list}, {NULL, NULL}};
-    static const luaL_Reg functions[] = {{"mul_list", l_mul_list}, {"normalize_list", l_normalize_list},
-                                         {"compose_list", l_compose_list}, {"unflip", l_unflip}, {"mean", l_mean},
-                                         {"mean_karcher", l_mean_karcher}, {"align", l_align},
-                                         {"align_points", l_align_points}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"rotate_list", l_rotate_list},
+                                       {"rotate_inverse_list", l_rotate_inverse_list},
+                                       {"slerp_list", l_slerp_list},
+                                       {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"mul_list", l_mul_list},
+                                         {"normalize_list", l_normalize_list},
+                                         {"compose_list", l_compose_list},
+                                         {"unflip", l_unflip},
+                                         {"mean", l_mean},
+                                         {"mean_karcher", l_mean_karcher},
+                                         {"align", l_align},
+                                         {"align_points", l_align_points},
+                                         {NULL, NULL}};
     luaL_setfuncs(L, functions, 0);
     quat_lua_add_methods(L, methods);
 }

@@ -8,8 +8,9 @@
 
 int luaopen_quat_core(lua_State *L)
 {
-    static void (*const rooms[])(lua_State *) = {quat_lua_open_quat,   quat_lua_open_rotation, quat_lua_open_interpolate,
-                                                 quat_lua_open_spline, quat_lua_open_array,    quat_lua_open_dual};
+    static void (*const rooms[])(lua_State *) = {quat_lua_open_quat,        quat_lua_open_rotation,
+                                                 quat_lua_open_interpolate, quat_lua_open_spline,
+                                                 quat_lua_open_array,       quat_lua_open_dual};
     luaL_checkversion(L); /* header against library */
     lua_newtable(L);
     lua_pushcfunction(L, quat_lua_layer);
@@ -46,9 +47,11 @@ int quat_lua_result(lua_State *L, quat_status status, quat q)
 /* The length of the list at arg. */
 static size_t list_length(lua_State *L, int arg, const char *name, size_t least)
 {
-    if (lua_type(L, arg) != LUA_TTABLE) quat_lua_error(L, "argument '%s' must be a list, got a %s", name, luaL_typename(L, arg));
+    if (lua_type(L, arg) != LUA_TTABLE)
+        quat_lua_error(L, "argument '%s' must be a list, got a %s", name, luaL_typename(L, arg));
     const size_t n = lua_rawlen(L, arg);
-    if (n < least) quat_lua_error(L, "argument '%s' must be a list of at least %d elements, got %d", name, (int)least, (int)n);
+    if (n < least)
+        quat_lua_error(L, "argument '%s' must be a list of at least %d elements, got %d", name, (int)least, (int)n);
     return n;
 }
 
@@ -94,7 +97,8 @@ double *quat_lua_arg_numbers(lua_State *L, int arg, const char *name, size_t lea
         int is_number;
         lua_rawgeti(L, arg, (lua_Integer)i + 1);
         x[i] = lua_tonumberx(L, -1, &is_number);
-        if (!is_number || !isfinite(x[i])) quat_lua_error(L, "argument '%s[%d]' must be a finite number", name, (int)i + 1);
+        if (!is_number || !isfinite(x[i]))
+            quat_lua_error(L, "argument '%s[%d]' must be a finite number", name, (int)i + 1);
         lua_pop(L, 1);
     }
     return x;
@@ -105,7 +109,8 @@ double *quat_lua_arg_weights(lua_State *L, int arg, size_t n)
     if (lua_isnoneornil(L, arg)) return NULL;
     size_t count;
     double *const w = quat_lua_arg_numbers(L, arg, "weights", 0, &count);
-    if (count != n) quat_lua_error(L, "argument 'weights' must have %d elements, one for each, got %d", (int)n, (int)count);
+    if (count != n)
+        quat_lua_error(L, "argument 'weights' must have %d elements, one for each, got %d", (int)n, (int)count);
     for (size_t i = 0; i < n; i++)
         if (w[i] < 0) quat_lua_error(L, "argument 'weights[%d]' must not be negative, got %g", (int)i + 1, w[i]);
     return w;

@@ -35,7 +35,8 @@ static int vector(lua_State *L, qvec3 v)
 static int l_motion(lua_State *L)
 {
     quat q;
-    if (quat_normalize(quat_lua_arg_quat(L, 1, "q"), &q) != QUAT_OK) return quat_lua_error(L, "argument 'q' must not be zero");
+    if (quat_normalize(quat_lua_arg_quat(L, 1, "q"), &q) != QUAT_OK)
+        return quat_lua_error(L, "argument 'q' must not be zero");
     return give(L, quat_dual_from(q, quat_lua_arg_vec3(L, 2, "shift")));
 }
 
@@ -43,7 +44,8 @@ static int l_screw(lua_State *L)
 {
     qdual p;
     const qvec3 axis = quat_lua_arg_vec3(L, 1, "axis"), point = quat_lua_arg_vec3(L, 2, "point");
-    const double angle = quat_lua_arg_number(L, 3, "angle", QUAT_LUA_FINITE), slide = quat_lua_arg_number(L, 4, "slide", QUAT_LUA_FINITE);
+    const double angle = quat_lua_arg_number(L, 3, "angle", QUAT_LUA_FINITE),
+                 slide = quat_lua_arg_number(L, 4, "slide", QUAT_LUA_FINITE);
     const quat_status status = quat_dual_from_screw(axis, point, angle, slide, &p);
     return status < 0 ? quat_lua_failure(L, quat_status_string(status)) : give(L, p);
 }
@@ -68,14 +70,17 @@ static int meta_tostring(lua_State *L)
     const qdual p = motion(L, 1, "motion");
     const qvec3 s = quat_dual_shift(p);
     char text[240];
-    snprintf(text, sizeof text, "motion: turn (%.14g, %.14g, %.14g, %.14g), shift (%.14g, %.14g, %.14g)", p.real.w, p.real.x, p.real.y,
-             p.real.z, s.x, s.y, s.z);
+    snprintf(text, sizeof text, "motion: turn (%.14g, %.14g, %.14g, %.14g), shift (%.14g, %.14g, %.14g)", p.real.w,
+             p.real.x, p.real.y, p.real.z, s.x, s.y, s.z);
     lua_pushstring(L, text);
     return 1;
 }
 
 static int l_inverse(lua_State *L) { return give(L, quat_dual_conj(motion(L, 1, "motion"))); }
-static int l_apply(lua_State *L) { return vector(L, quat_dual_apply(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x"))); }
+static int l_apply(lua_State *L)
+{
+    return vector(L, quat_dual_apply(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x")));
+}
 static int l_apply_inverse(lua_State *L)
 {
     return vector(L, quat_dual_apply_inverse(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x")));
@@ -120,11 +125,14 @@ static int l_to_screw(lua_State *L)
 
 void quat_lua_open_dual(lua_State *L)
 {
-    static const luaL_Reg meta[] = {{"__mul", meta_mul}, {"__eq", meta_eq}, {"__tostring", meta_tostring}, {NULL, NULL}};
-    static const luaL_Reg methods[] = {{"inverse", l_inverse}, {"apply", l_apply}, {"apply_inverse", l_apply_inverse},
-                                       {"shift", l_shift}, {"rotation", l_rotation}, {"log", l_log}, {"sclerp", l_sclerp},
-                                       {"to_screw", l_to_screw}, {NULL, NULL}};
-    static const luaL_Reg functions[] = {{"motion", l_motion}, {"screw", l_screw}, {"motion_exp", l_motion_exp}, {NULL, NULL}};
+    static const luaL_Reg meta[] = {
+        {"__mul", meta_mul}, {"__eq", meta_eq}, {"__tostring", meta_tostring}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {
+        {"inverse", l_inverse}, {"apply", l_apply},       {"apply_inverse", l_apply_inverse},
+        {"shift", l_shift},     {"rotation", l_rotation}, {"log", l_log},
+        {"sclerp", l_sclerp},   {"to_screw", l_to_screw}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {
+        {"motion", l_motion}, {"screw", l_screw}, {"motion_exp", l_motion_exp}, {NULL, NULL}};
     luaL_newmetatable(L, DUAL);
     luaL_setfuncs(L, meta, 0);
     lua_newtable(L);

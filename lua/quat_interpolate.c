@@ -9,7 +9,8 @@
 static quat unit(lua_State *L, int index, const char *name)
 {
     quat q;
-    if (quat_normalize(quat_lua_arg_quat(L, index, name), &q) != QUAT_OK) quat_lua_error(L, "argument '%s' must not be zero", name);
+    if (quat_normalize(quat_lua_arg_quat(L, index, name), &q) != QUAT_OK)
+        quat_lua_error(L, "argument '%s' must not be zero", name);
     return q;
 }
 
@@ -55,7 +56,8 @@ static int l_squad_omega(lua_State *L)
 
 void quat_lua_open_interpolate(lua_State *L)
 {
-    static const luaL_Reg methods[] = {{"slerp", l_slerp}, {"nlerp", l_nlerp}, {"slerp_omega", l_slerp_omega}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {
+        {"slerp", l_slerp}, {"nlerp", l_nlerp}, {"slerp_omega", l_slerp_omega}, {NULL, NULL}};
     static const luaL_Reg functions[] = {
         {"squad", l_squad}, {"squad_control", l_squad_control}, {"squad_omega", l_squad_omega}, {NULL, NULL}};
     luaL_setfuncs(L, functions, 0);

@@ -13,7 +13,8 @@ static quat arg(lua_State *L, int index, const char *name) { return quat_lua_arg
 static quat unit_arg(lua_State *L, int index, const char *name)
 {
     quat unit;
-    if (quat_normalize(arg(L, index, name), &unit) != QUAT_OK) quat_lua_error(L, "argument '%s' must not be zero", name);
+    if (quat_normalize(arg(L, index, name), &unit) != QUAT_OK)
+        quat_lua_error(L, "argument '%s' must not be zero", name);
     return unit;
 }
 
@@ -34,8 +35,10 @@ static int number(lua_State *L, double x)
 static int l_new(lua_State *L)
 {
     if (lua_gettop(L) == 1) return give(L, arg(L, 1, "q"));
-    const double w = quat_lua_arg_number(L, 1, "w", QUAT_LUA_FINITE), x = quat_lua_arg_number(L, 2, "x", QUAT_LUA_FINITE);
-    const double y = quat_lua_arg_number(L, 3, "y", QUAT_LUA_FINITE), z = quat_lua_arg_number(L, 4, "z", QUAT_LUA_FINITE);
+    const double w = quat_lua_arg_number(L, 1, "w", QUAT_LUA_FINITE),
+                 x = quat_lua_arg_number(L, 2, "x", QUAT_LUA_FINITE);
+    const double y = quat_lua_arg_number(L, 3, "y", QUAT_LUA_FINITE),
+                 z = quat_lua_arg_number(L, 4, "z", QUAT_LUA_FINITE);
     return give(L, quat_make(w, x, y, z));
 }
 
@@ -204,7 +207,8 @@ static int l_nearest(lua_State *L) { return give(L, quat_nearest(arg(L, 1, "q"),
 
 static int l_near(lua_State *L)
 {
-    lua_pushboolean(L, quat_near(arg(L, 1, "p"), arg(L, 2, "q"), quat_lua_arg_number(L, 3, "tolerance", QUAT_LUA_NOT_NEGATIVE)));
+    lua_pushboolean(
+        L, quat_near(arg(L, 1, "p"), arg(L, 2, "q"), quat_lua_arg_number(L, 3, "tolerance", QUAT_LUA_NOT_NEGATIVE)));
     return 1;
 }
 
@@ -235,20 +239,36 @@ static int l_random(lua_State *L)
     } else {
         lua_settop(L, 1);
     }
-    if (!lua_isfunction(L, -1)) return quat_lua_error(L, "argument 'generator' must be a function, got a %s", luaL_typename(L, -1));
+    if (!lua_isfunction(L, -1))
+        return quat_lua_error(L, "argument 'generator' must be a function, got a %s", luaL_typename(L, -1));
     return give(L, quat_random(uniform, L));
 }
 
 void quat_lua_open_quat(lua_State *L)
 {
-    static const luaL_Reg meta[] = {{"__tostring", meta_tostring}, {"__add", meta_add}, {"__sub", meta_sub}, {"__mul", meta_mul},
-                                    {"__div", meta_div}, {"__unm", meta_unm}, {"__pow", meta_pow}, {"__eq", meta_eq}, {NULL, NULL}};
-    static const luaL_Reg methods[] = {{"components", l_components}, {"vector", l_vector}, {"conj", l_conj}, {"norm", l_norm},
-                                       {"dot", l_dot}, {"mul_compensated", l_mul_compensated}, {"inverse", l_inverse},
-                                       {"normalize", l_normalize}, {"div_left", l_div_left}, {"exp", l_exp}, {"log", l_log},
-                                       {"sqrt", l_sqrt}, {"pow", l_pow}, {"distance", l_distance},
-                                       {"rotation_distance", l_rotation_distance}, {"angle", l_angle}, {"nearest", l_nearest},
-                                       {"near", l_near}, {"same_rotation", l_same_rotation}, {NULL, NULL}};
+    static const luaL_Reg meta[] = {{"__tostring", meta_tostring}, {"__add", meta_add}, {"__sub", meta_sub},
+                                    {"__mul", meta_mul},           {"__div", meta_div}, {"__unm", meta_unm},
+                                    {"__pow", meta_pow},           {"__eq", meta_eq},   {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"components", l_components},
+                                       {"vector", l_vector},
+                                       {"conj", l_conj},
+                                       {"norm", l_norm},
+                                       {"dot", l_dot},
+                                       {"mul_compensated", l_mul_compensated},
+                                       {"inverse", l_inverse},
+                                       {"normalize", l_normalize},
+                                       {"div_left", l_div_left},
+                                       {"exp", l_exp},
+                                       {"log", l_log},
+                                       {"sqrt", l_sqrt},
+                                       {"pow", l_pow},
+                                       {"distance", l_distance},
+                                       {"rotation_distance", l_rotation_distance},
+                                       {"angle", l_angle},
+                                       {"nearest", l_nearest},
+                                       {"near", l_near},
+                                       {"same_rotation", l_same_rotation},
+                                       {NULL, NULL}};
     static const luaL_Reg functions[] = {
         {"new", l_new}, {"identity", l_identity}, {"pure", l_pure}, {"random", l_random}, {NULL, NULL}};
     luaL_newmetatable(L, QUAT_LUA_QUAT);

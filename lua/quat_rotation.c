@@ -35,7 +35,10 @@ static int l_rotate_inverse(lua_State *L)
 {
     return vector(L, quat_rotate_inverse(rotation(L, 1, "q"), quat_lua_arg_vec3(L, 2, "v")));
 }
-static int l_reflect(lua_State *L) { return vector(L, quat_reflect(direction(L, 1, "normal"), quat_lua_arg_vec3(L, 2, "v"))); }
+static int l_reflect(lua_State *L)
+{
+    return vector(L, quat_reflect(direction(L, 1, "normal"), quat_lua_arg_vec3(L, 2, "v")));
+}
 static int l_from_reflections(lua_State *L)
 {
     quat_lua_push_quat(L, quat_from_reflections(direction(L, 1, "n1"), direction(L, 2, "n2")));
@@ -92,7 +95,8 @@ static qmat3 matrix(lua_State *L, int index)
     size_t n;
     const qvec3 *const rows = quat_lua_arg_vec3s(L, index, "matrix", 3, &n);
     if (n != 3) quat_lua_error(L, "argument 'matrix' must have 3 rows, got %d", (int)n);
-    const qmat3 m = {{{rows[0].x, rows[0].y, rows[0].z}, {rows[1].x, rows[1].y, rows[1].z}, {rows[2].x, rows[2].y, rows[2].z}}};
+    const qmat3 m = {
+        {{rows[0].x, rows[0].y, rows[0].z}, {rows[1].x, rows[1].y, rows[1].z}, {rows[2].x, rows[2].y, rows[2].z}}};
     return m;
 }
 
@@ -126,8 +130,11 @@ static quat_euler sequence(lua_State *L, int index)
     quat_euler s;
     const char *const name = lua_type(L, index) == LUA_TSTRING ? lua_tostring(L, index) : NULL;
     if (quat_euler_from_name(name, &s) != QUAT_OK)
-        quat_lua_error(L, "argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours "
-                          "alike, got %s", name ? name : luaL_typename(L, index));
+        quat_lua_error(
+            L,
+            "argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours "
+            "alike, got %s",
+            name ? name : luaL_typename(L, index));
     return s;
 }
 
@@ -135,7 +142,8 @@ static int l_from_euler(lua_State *L)
 {
     quat q;
     const quat_euler s = sequence(L, 1);
-    const double angles[3] = {quat_lua_arg_number(L, 2, "a", QUAT_LUA_FINITE), quat_lua_arg_number(L, 3, "b", QUAT_LUA_FINITE),
+    const double angles[3] = {quat_lua_arg_number(L, 2, "a", QUAT_LUA_FINITE),
+                              quat_lua_arg_number(L, 3, "b", QUAT_LUA_FINITE),
                               quat_lua_arg_number(L, 4, "c", QUAT_LUA_FINITE)};
     const quat_status status = quat_from_euler(angles, s, &q);
     return quat_lua_result(L, status, q);
@@ -233,8 +241,10 @@ static int l_integrate(lua_State *L)
 {
     static const char *const methods[] = {"magnus4", "cf4", NULL};
     quat q = rotation(L, 1, "q");
-    if (!lua_isfunction(L, 2)) return quat_lua_error(L, "argument 'omega' must be a function of time, got a %s", luaL_typename(L, 2));
-    const double t0 = quat_lua_arg_number(L, 3, "t0", QUAT_LUA_FINITE), t1 = quat_lua_arg_number(L, 4, "t1", QUAT_LUA_FINITE);
+    if (!lua_isfunction(L, 2))
+        return quat_lua_error(L, "argument 'omega' must be a function of time, got a %s", luaL_typename(L, 2));
+    const double t0 = quat_lua_arg_number(L, 3, "t0", QUAT_LUA_FINITE),
+                 t1 = quat_lua_arg_number(L, 4, "t1", QUAT_LUA_FINITE);
     const lua_Integer n = quat_lua_arg_integer(L, 5, "steps", 1, 1000000000);
     const quat_frame axes = frame(L, 6);
     const bool magnus = lua_isnoneornil(L, 7) || quat_lua_arg_choice(L, 7, "method", methods) == 0;
@@ -250,16 +260,28 @@ static int l_integrate(lua_State *L)
 
 void quat_lua_open_rotation(lua_State *L)
 {
-    static const luaL_Reg methods[] = {{"rotate", l_rotate}, {"rotate_inverse", l_rotate_inverse},
-                                       {"to_rotation_vector", l_to_rotation_vector}, {"to_axis_angle", l_to_axis_angle},
-                                       {"to_matrix", l_to_matrix}, {"to_euler", l_to_euler}, {"swing_twist", l_swing_twist},
-                                       {"step", l_step}, {"derivative", l_derivative}, {"omega", l_omega},
-                                       {"integrate", l_integrate}, {NULL, NULL}};
-    static const luaL_Reg functions[] = {{"reflect", l_reflect}, {"from_reflections", l_from_reflections},
-                                         {"from_rotation_vector", l_from_rotation_vector}, {"from_axis_angle", l_from_axis_angle},
-                                         {"from_matrix", l_from_matrix}, {"from_matrix_nearest", l_from_matrix_nearest},
-                                         {"from_euler", l_from_euler}, {"from_two_vectors", l_from_two_vectors},
-                                         {"from_axes", l_from_axes}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"rotate", l_rotate},
+                                       {"rotate_inverse", l_rotate_inverse},
+                                       {"to_rotation_vector", l_to_rotation_vector},
+                                       {"to_axis_angle", l_to_axis_angle},
+                                       {"to_matrix", l_to_matrix},
+                                       {"to_euler", l_to_euler},
+                                       {"swing_twist", l_swing_twist},
+                                       {"step", l_step},
+                                       {"derivative", l_derivative},
+                                       {"omega", l_omega},
+                                       {"integrate", l_integrate},
+                                       {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"reflect", l_reflect},
+                                         {"from_reflections", l_from_reflections},
+                                         {"from_rotation_vector", l_from_rotation_vector},
+                                         {"from_axis_angle", l_from_axis_angle},
+                                         {"from_matrix", l_from_matrix},
+                                         {"from_matrix_nearest", l_from_matrix_nearest},
+                                         {"from_euler", l_from_euler},
+                                         {"from_two_vectors", l_from_two_vectors},
+                                         {"from_axes", l_from_axes},
+                                         {NULL, NULL}};
     luaL_setfuncs(L, functions, 0);
     quat_lua_add_methods(L, methods);
 }

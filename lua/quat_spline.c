@@ -29,7 +29,8 @@ static int l_spline(lua_State *L)
         quat_lua_need(&reader, "omega_first");
         quat_lua_need(&reader, "omega_last");
     }
-    const qvec3 first = quat_lua_get_vec3(&reader, "omega_first", zero), last = quat_lua_get_vec3(&reader, "omega_last", zero);
+    const qvec3 first = quat_lua_get_vec3(&reader, "omega_first", zero),
+                last = quat_lua_get_vec3(&reader, "omega_last", zero);
     size_t n, count;
     lua_getfield(L, 1, "times");
     const double *const t = quat_lua_arg_numbers(L, lua_gettop(L), "times", 2, &n);
@@ -43,9 +44,10 @@ static int l_spline(lua_State *L)
     const quat_status status = quat_spline_new(n, t, q, (quat_spline_end)end, first, last, place);
     if (status == QUAT_NOT_CONVERGED || status == QUAT_ENOMEM) return quat_lua_failure(L, quat_status_string(status));
     if (status == QUAT_EARGUMENT)
-        return quat_lua_reader_error(&reader, end == QUAT_SPLINE_PERIODIC
-                                                  ? "times must increase, and the last of at least 3 keys must be the first again"
-                                                  : "times must increase");
+        return quat_lua_reader_error(
+            &reader, end == QUAT_SPLINE_PERIODIC
+                         ? "times must increase, and the last of at least 3 keys must be the first again"
+                         : "times must increase");
     if (status != QUAT_OK) return quat_lua_reader_error(&reader, "keys must not be zero");
     return 1;
 }
@@ -59,7 +61,8 @@ static int l_at(lua_State *L)
 static int l_state(lua_State *L)
 {
     qvec3 omega, acceleration;
-    quat_lua_push_quat(L, quat_spline_state(spline(L), quat_lua_arg_number(L, 2, "t", QUAT_LUA_FINITE), &omega, &acceleration));
+    quat_lua_push_quat(
+        L, quat_spline_state(spline(L), quat_lua_arg_number(L, 2, "t", QUAT_LUA_FINITE), &omega, &acceleration));
     quat_lua_push_vec3(L, omega);
     quat_lua_push_vec3(L, acceleration);
     return 3;
@@ -88,8 +91,8 @@ static int l_close(lua_State *L)
 
 void quat_lua_open_spline(lua_State *L)
 {
-    static const luaL_Reg methods[] = {
-        {"at", l_at}, {"state", l_state}, {"length", l_length}, {"time_at", l_time_at}, {"close", l_close}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"at", l_at},           {"state", l_state}, {"length", l_length},
+                                       {"time_at", l_time_at}, {"close", l_close}, {NULL, NULL}};
     static const luaL_Reg functions[] = {{"spline", l_spline}, {NULL, NULL}};
     luaL_newmetatable(L, SPLINE);
     lua_newtable(L);

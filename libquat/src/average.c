@@ -94,8 +94,8 @@ static double largest_component(size_t n, const qvec3 a[], qvec3 centre)
 static double scale_near(double x) { return x > 0 && isfinite(x) ? ldexp(1, -ilogb(x) > 1000 ? 1000 : -ilogb(x)) : 1; }
 
 /* The two sets about their centres: the profile matrix sum w b a^T, its best rotation and what is left. */
-static quat_status align_centred(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], double heaviest, qvec3 ca,
-                                 qvec3 cb, quat *q, double *residual)
+static quat_status align_centred(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], double heaviest,
+                                 qvec3 ca, qvec3 cb, quat *q, double *residual)
 {
     const double sa = scale_near(largest_component(n, a, ca)), sb = scale_near(largest_component(n, b, cb));
     qmat3 m = {{{0}}};

@@ -67,7 +67,8 @@ void quat_mul_array(size_t n, const quat p[], const quat q[], quat out[])
     for (size_t i = 0; i < n; i++) {
         four wxyz, r;
         memcpy(&wxyz, &q[i], sizeof wxyz);
-        const four xwzy = __builtin_shufflevector(wxyz, wxyz, 1, 0, 3, 2), yzwx = __builtin_shufflevector(wxyz, wxyz, 2, 3, 0, 1);
+        const four xwzy = __builtin_shufflevector(wxyz, wxyz, 1, 0, 3, 2),
+                   yzwx = __builtin_shufflevector(wxyz, wxyz, 2, 3, 0, 1);
         const four zyxw = __builtin_shufflevector(wxyz, wxyz, 3, 2, 1, 0);
         const four x = (four)((four_bits)(p[i].x * xwzy) ^ sign_x), y = (four)((four_bits)(p[i].y * yzwx) ^ sign_y);
         const four z = (four)((four_bits)(p[i].z * zyxw) ^ sign_z);

@@ -12,7 +12,8 @@ static bool decode(quat_euler sequence, axes *a)
 {
     const unsigned code = (unsigned)sequence;
     *a = (axes){(int)(code >> 4 & 3), (int)(code >> 2 & 3), (int)(code & 3), (code & 0x40) != 0};
-    return code < 0x80 && a->first < 3 && a->middle < 3 && a->third < 3 && a->first != a->middle && a->middle != a->third;
+    return code < 0x80 && a->first < 3 && a->middle < 3 && a->third < 3 && a->first != a->middle &&
+           a->middle != a->third;
 }
 
 quat_status quat_euler_from_name(const char *name, quat_euler *sequence)
@@ -87,8 +88,10 @@ quat_status quat_to_euler(quat q, quat_euler sequence, double angles[3])
     /* at lock one of the two is free: choose it such that the third letter's angle, plus + minus (extrinsic) or
      * plus - minus (intrinsic), is zero */
     const double side = e.extrinsic ? 1 : -1;
-    if (c == 0 && d == 0) minus = -side * plus;
-    else if (lock) plus = -side * minus;
+    if (c == 0 && d == 0)
+        minus = -side * plus;
+    else if (lock)
+        plus = -side * minus;
     double before = wrapped(plus - minus), after = wrapped(plus + minus);
     if (!proper) after = wrapped(sign * after);
     angles[0] = e.extrinsic ? before : after;

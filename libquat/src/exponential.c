@@ -44,7 +44,10 @@ static inline quat_dd over(double s, length a)
 }
 
 /* scale.hi + scale.lo times the component x, rounded once. */
-static inline double times(quat_dd scale, double x) { return scale.hi * x + (fma(scale.hi, x, -(scale.hi * x)) + scale.lo * x); }
+static inline double times(quat_dd scale, double x)
+{
+    return scale.hi * x + (fma(scale.hi, x, -(scale.hi * x)) + scale.lo * x);
+}
 
 /* Below this the second term of both series is less than a rounding error. */
 static const double tiny_angle = 1e-8;

@@ -27,8 +27,8 @@ quat quat_step_cf4(quat q, qvec3 omega1, qvec3 omega2, double h, quat_frame fram
     return turn(turn(q, first, frame), second, frame);
 }
 
-quat_status quat_integrate(quat_omega omega, void *context, quat_frame frame, quat_method method, double t0, double t1, size_t n,
-                           quat q, quat *result)
+quat_status quat_integrate(quat_omega omega, void *context, quat_frame frame, quat_method method, double t0, double t1,
+                           size_t n, quat q, quat *result)
 {
     if (quat_normalize(q, result) != QUAT_OK || !isfinite(t0) || !isfinite(t1)) return QUAT_EDOMAIN;
     if (n == 0 || (frame != QUAT_WORLD && frame != QUAT_BODY) || (method != QUAT_MAGNUS4 && method != QUAT_CF4))
@@ -36,7 +36,8 @@ quat_status quat_integrate(quat_omega omega, void *context, quat_frame frame, qu
     const double h = (t1 - t0) / (double)n;
     for (size_t i = 0; i < n; i++) {
         const double start = t0 + (double)i * h;
-        const qvec3 omega1 = omega(start + (0.5 - sqrt3 / 6) * h, context), omega2 = omega(start + (0.5 + sqrt3 / 6) * h, context);
+        const qvec3 omega1 = omega(start + (0.5 - sqrt3 / 6) * h, context),
+                    omega2 = omega(start + (0.5 + sqrt3 / 6) * h, context);
         if (!qvec3_isfinite(omega1) || !qvec3_isfinite(omega2)) return QUAT_EDOMAIN;
         const quat next = method == QUAT_CF4 ? quat_step_cf4(*result, omega1, omega2, h, frame)
                                              : quat_step_magnus4(*result, omega1, omega2, h, frame);

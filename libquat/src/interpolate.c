@@ -34,8 +34,10 @@ QUAT_FMA_CLONES
 static quat great_circle(quat p, quat q, double t)
 {
     quat sum = quat_add(p, q), difference = quat_sub(q, p);
-    if (quat_dot(p, q) < 0) sum = perpendicular(sum, difference);
-    else difference = perpendicular(difference, sum);
+    if (quat_dot(p, q) < 0)
+        sum = perpendicular(sum, difference);
+    else
+        difference = perpendicular(difference, sum);
     const double long_sum = quat_norm(sum), long_difference = quat_norm(difference);
     if (long_difference == 0 && !isnan(t)) return p;
     const quat middle = long_sum > 0 ? quat_scale(sum, 1 / long_sum) : quat_mul(p, quat_make(0, 1, 0, 0));
@@ -118,7 +120,8 @@ qvec3 quat_squad_omega(quat p, quat a, quat b, quat q, double t)
     const qmat34 dlog = quat_log_jacobian(between);
     double dl[3];
     for (int i = 0; i < 3; i++)
-        dl[i] = dlog.m[i][0] * d_between.w + dlog.m[i][1] * d_between.x + dlog.m[i][2] * d_between.y + dlog.m[i][3] * d_between.z;
+        dl[i] = dlog.m[i][0] * d_between.w + dlog.m[i][1] * d_between.x + dlog.m[i][2] * d_between.y +
+                dlog.m[i][3] * d_between.z;
     const double k = 2 * t * (1 - t), dk = 2 - 4 * t;
     const qvec3 dv = qvec3_axpy(k, qvec3_make(dl[0], dl[1], dl[2]), qvec3_scale(l, dk));
     /* (P e)' (P e)* = P' P* + P (e' e*) P*, and 2 e' e* = J_left(2kL) (2kL)' */

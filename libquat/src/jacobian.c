@@ -73,7 +73,8 @@ qmat34 quat_log_jacobian(quat q)
 /* 1 + b [r]x + c [r]x^2 */
 static qmat3 series(qvec3 r, double b, double c)
 {
-    const double xx = r.x * r.x, yy = r.y * r.y, zz = r.z * r.z, xy = c * r.x * r.y, xz = c * r.x * r.z, yz = c * r.y * r.z;
+    const double xx = r.x * r.x, yy = r.y * r.y, zz = r.z * r.z, xy = c * r.x * r.y, xz = c * r.x * r.z,
+                 yz = c * r.y * r.z;
     return (qmat3){{{1 - c * (yy + zz), xy - b * r.z, xz + b * r.y},
                     {xy + b * r.z, 1 - c * (xx + zz), yz - b * r.x},
                     {xz - b * r.y, yz + b * r.x, 1 - c * (xx + yy)}}};
@@ -98,7 +99,8 @@ qmat3 quat_rotation_vector_jacobian_left_inverse(qvec3 r)
     if (a < 0.5) {
         /* the Bernoulli numbers of x cot x */
         c = 1.0 / 12 +
-            a2 * (1.0 / 720 + a2 * (1.0 / 30240 + a2 * (1.0 / 1209600 + a2 * (1.0 / 47900160 + a2 * (691.0 / 1307674368000)))));
+            a2 * (1.0 / 720 +
+                  a2 * (1.0 / 30240 + a2 * (1.0 / 1209600 + a2 * (1.0 / 47900160 + a2 * (691.0 / 1307674368000)))));
     } else {
         c = (1 - 0.5 * a * cos(0.5 * a) / sin(0.5 * a)) / a2;
     }

@@ -13,8 +13,10 @@ static inline double quat_atan_series(double x)
 {
     const double x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
     const double c0 = 0x1p+0 + -0x1.555555555552bp-2 * x, c2 = 0x1.9999999993e7bp-3 + -0x1.2492492229a26p-3 * x;
-    const double c4 = 0x1.c71c70b8df71dp-4 + -0x1.745cf436e5409p-4 * x, c6 = 0x1.3b10cb9e6d103p-4 + -0x1.10e871e23fdedp-4 * x;
-    const double c8 = 0x1.dee1777d6f8bp-5 + -0x1.9c0abd56141f8p-5 * x, c10 = 0x1.35e6d565cf39bp-5 + -0x1.2146b7b09aeb1p-6 * x;
+    const double c4 = 0x1.c71c70b8df71dp-4 + -0x1.745cf436e5409p-4 * x,
+                 c6 = 0x1.3b10cb9e6d103p-4 + -0x1.10e871e23fdedp-4 * x;
+    const double c8 = 0x1.dee1777d6f8bp-5 + -0x1.9c0abd56141f8p-5 * x,
+                 c10 = 0x1.35e6d565cf39bp-5 + -0x1.2146b7b09aeb1p-6 * x;
     return ((c0 + c2 * x2) + (c4 + c6 * x2) * x4) + (c8 + c10 * x2) * x8;
 }
 

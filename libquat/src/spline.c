@@ -123,7 +123,8 @@ static void add_end_derivatives(const quat_spline *s, size_t i, row *r)
 {
     const key *const k = &s->keys[i];
     const double h = k[1].t - k[0].t;
-    const qmat3 j = quat_rotation_vector_jacobian_right(k->turn), ji = quat_rotation_vector_jacobian_right_inverse(k->turn);
+    const qmat3 j = quat_rotation_vector_jacobian_right(k->turn),
+                ji = quat_rotation_vector_jacobian_right_inverse(k->turn);
     r->lower = scaled(&j, 2 / h);
     const qvec3 bent = bending(k->turn, k->rate);
     for (int c = 0; c < 3; c++) {
@@ -198,8 +199,10 @@ static void solve_periodic(const quat_spline *s, row *rows)
     const size_t m = s->n - 1;
     for (size_t i = 0; i < m; i++) fill_row(s, (i + m - 1) % m, i, true, true, &rows[i]);
     rows[1].side = rows[1].lower;
-    if (m > 2) rows[m - 1].side = rows[m - 1].upper;
-    else for (int i = 0; i < 9; i++) rows[1].side.m[i / 3][i % 3] += rows[1].upper.m[i / 3][i % 3];
+    if (m > 2)
+        rows[m - 1].side = rows[m - 1].upper;
+    else
+        for (int i = 0; i < 9; i++) rows[1].side.m[i / 3][i % 3] += rows[1].upper.m[i / 3][i % 3];
     row *const r = &rows[0];
     eliminate(rows, 1, m - 1);
     const qmat3 u = qmat3_mul(&r->upper, &rows[1].side), l = qmat3_mul(&r->lower, &rows[m - 1].side);
@@ -221,8 +224,10 @@ static quat_status find_rates(quat_spline *s, row *rows)
     for (int round = 0; round < 50; round++) {
         double change = 0, size = 0;
         set_rates(s);
-        if (periodic) solve_periodic(s, rows);
-        else solve_open(s, rows, first, last);
+        if (periodic)
+            solve_periodic(s, rows);
+        else
+            solve_open(s, rows, first, last);
         for (size_t i = first; i <= last; i++) {
             s->keys[i].omega = qvec3_add(s->keys[i].omega, rows[i].right);
             change = fmax(change, qvec3_norm(rows[i].right));
@@ -270,37 +275,30 @@ static double gauss(const key *k, double a, double b)
     return half * sum;
 }
 
-/* Halves a ... b until the halves agree with the whole: near a standstill |speed| has a kink, which only small pieces see past. */
-static double halved(const key *k, double a, double b, double whole, double tolerance, int depth)
+/* The integral over a ... b, halved until halving changes nothing: the speed has a kink where it passes through zero. */
+static double adaptive(const key *k, double a, double b, double whole, double tolerance, int depth)
 {
-    const double middle = 0.5 * (a + b), left = gauss(k, a, middle), right = gauss(k, middle, b);
+    const double m = 0.5 * (a + b), left = gauss(k, a, m), right = gauss(k, m, b);
     if (depth == 0 || fabs(left + right - whole) <= tolerance) return left + right;
-    return halved(k, a, middle, left, tolerance, depth - 1) + halved(k, middle, b, right, tolerance, depth - 1);
+    return adaptive(k, a, m, left, tolerance, depth - 1) + adaptive(k, m, b, right, tolerance, depth - 1);
 }
-
-/* The integral of the speed over a ... b, to rounding. */
-static double arc(const key *k, double a, double b)
-{
-    const double whole = gauss(k, a, b);
-    return halved(k, a, b, whole, 4e-15 * whole, 24);
-}
-
-enum { parts = 16 };
 
 /* The angle turned through from the key to time s after it. */
 static double part_length(const key *k, double s)
 {
-    const double h = (k[1].t - k[0].t) / parts;
-    double sum = 0, at = 0;
-    for (int i = 1; i < parts && i * h < s; i++) {
-        sum += arc(k, at, i * h);
-        at = i * h;
+    enum { parts = 4, depth = 40 };
+    const double tolerance =
+        1e-15 * (qvec3_norm(k->turn) + (qvec3_norm(k->omega) + qvec3_norm(k->rate)) * (k[1].t - k[0].t));
+    double sum = 0;
+    for (int i = 0; i < parts; i++) {
+        const double a = s * i / parts, b = s * (i + 1) / parts;
+        sum += adaptive(k, a, b, gauss(k, a, b), tolerance, depth);
     }
-    return sum + arc(k, at, s);
+    return sum;
 }
 
-quat_status quat_spline_new(size_t n, const double t[], const quat q[], quat_spline_end end, qvec3 omega_first, qvec3 omega_last,
-                            quat_spline **spline)
+quat_status quat_spline_new(size_t n, const double t[], const quat q[], quat_spline_end end, qvec3 omega_first,
+                            qvec3 omega_last, quat_spline **spline)
 {
     *spline = NULL;
     if (end != QUAT_SPLINE_NATURAL && end != QUAT_SPLINE_CLAMPED && end != QUAT_SPLINE_PERIODIC) return QUAT_EARGUMENT;
@@ -343,8 +341,10 @@ static const key *segment(const quat_spline *s, double t)
     size_t low = 0, high = s->n - 1;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        if (s->keys[middle].t <= t) low = middle;
-        else high = middle;
+        if (s->keys[middle].t <= t)
+            low = middle;
+        else
+            high = middle;
     }
     return &s->keys[low];
 }
@@ -410,8 +410,10 @@ double quat_spline_time_at(const quat_spline *spline, double length)
     for (int round = 0; round < 100 && high - low > 4 * DBL_EPSILON * (fabs(k->t) + high); round++) {
         const double off = k->length + part_length(k, s) - length;
         if (off == 0) break;
-        if (off > 0) high = s;
-        else low = s;
+        if (off > 0)
+            high = s;
+        else
+            low = s;
         const double v = speed(k, s), next = v > 0 ? s - off / v : low;
         const bool good = next > low && next < high;
         if (good && fabs(next - s) <= 2 * DBL_EPSILON * (fabs(k->t) + high)) return k->t + next;

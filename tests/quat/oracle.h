@@ -49,10 +49,7 @@ static inline wquat wide_mul(wquat p, wquat q)
 }
 static inline wide wide_vnorm(wquat q) { return sqrtf128(q.x * q.x + q.y * q.y + q.z * q.z); }
 static inline wquat wide_inverse(wquat q) { return wide_scale(wide_conj(q), 1 / wide_dot(q, q)); }
-static inline wquat wide_rotate(wquat q, wquat v)
-{
-    return wide_mul(wide_mul(q, v), wide_conj(q));
-}
+static inline wquat wide_rotate(wquat q, wquat v) { return wide_mul(wide_mul(q, v), wide_conj(q)); }
 static inline wquat wide_exp(wquat q)
 {
     const wide n = wide_vnorm(q), e = expf128(q.w), s = n == 0 ? e : e * sinf128(n) / n;
@@ -78,10 +75,7 @@ static inline wquat wide_log(wquat q)
     const wide l = size > 0.9 && size < 1.1 ? log1pf128(wide_norm2_minus_one(q)) / 2 : logf128(size);
     return (wquat){l, s * q.x, s * q.y, s * q.z};
 }
-static inline wquat wide_pow(wquat q, wide t)
-{
-    return wide_exp(wide_scale(wide_log(q), t));
-}
+static inline wquat wide_pow(wquat q, wide t) { return wide_exp(wide_scale(wide_log(q), t)); }
 /* Along the great circle through p and q as they are given, both made exactly unit. */
 static inline wquat wide_slerp(wquat p, wquat q, wide t)
 {
@@ -97,7 +91,8 @@ static inline wquat wide_slerp(wquat p, wquat q, wide t)
 static inline double wide_error(wquat got, wquat want)
 {
     const wquat e = wide_sub(got, want);
-    const wide size = wide_norm(want), off = fmaxf128(fmaxf128(fabsf128(e.w), fabsf128(e.x)), fmaxf128(fabsf128(e.y), fabsf128(e.z)));
+    const wide size = wide_norm(want),
+               off = fmaxf128(fmaxf128(fabsf128(e.w), fabsf128(e.x)), fmaxf128(fabsf128(e.y), fabsf128(e.z)));
     if (off == 0) return 0;
     return (double)(off / size / ROUNDING);
 }
@@ -168,10 +163,10 @@ static inline void worse(double *worst, double error)
 {
     if (!(error <= *worst)) *worst = error;
 }
-#define assert_bound(name, worst, bound)                                                                                \
+#define assert_bound(name, worst, bound)                                                                               \
     do {                                                                                                               \
         const double worst_ = (worst), bound_ = (bound);                                                               \
-        if (getenv("QUAT_TEST_SHOW")) printf("%-44s %10.3g  (bound %g)\n", name, worst_, bound_);                       \
+        if (getenv("QUAT_TEST_SHOW")) printf("%-44s %10.3g  (bound %g)\n", name, worst_, bound_);                      \
         if (!(worst_ <= bound_))                                                                                       \
             fail_msg("%s: wanted at most %g, got %g, ratio %g", name, bound_, worst_, worst_ / bound_);                \
     } while (0)

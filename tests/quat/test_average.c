@@ -10,7 +10,8 @@ enum { most = 40 };
 static void cloud(random_state *r, size_t n, quat c, double spread, quat q[], double w[])
 {
     for (size_t i = 0; i < n; i++) {
-        quat_normalize(quat_mul(c, quat_exp_pure(qvec3_scale(random_direction(r), 0.5 * spread * random_uniform(r)))), &q[i]);
+        quat_normalize(quat_mul(c, quat_exp_pure(qvec3_scale(random_direction(r), 0.5 * spread * random_uniform(r)))),
+                       &q[i]);
         if (random_uniform(r) < 0.5) q[i] = quat_neg(q[i]);
         w[i] = random_between(r, 0.1, 2);
     }
@@ -42,7 +43,8 @@ static void markley_mean_is_the_best(void **state)
         const wide best = markley(n, q, w, m);
         for (int k = 0; k < 6; k++) {
             quat other;
-            quat_normalize(quat_mul(m, quat_exp_pure(qvec3_scale(random_direction(&r), random_scale(&r, -7, 0)))), &other);
+            quat_normalize(quat_mul(m, quat_exp_pure(qvec3_scale(random_direction(&r), random_scale(&r, -7, 0)))),
+                           &other);
             assert_true(markley(n, q, w, other) <= best * (1 + 1e-15));
         }
         /* gradient on the sphere: sum w (q.q_i) q_i is along q */
@@ -80,7 +82,8 @@ static void karcher_mean_balances(void **state)
         wide square = 0;
         double total = 0;
         for (size_t i = 0; i < n; i++) {
-            wquat l = wide_log(wide_mul(wide_conj(wide_unit(wide_quat(m))), wide_unit(wide_quat(quat_nearest(q[i], m)))));
+            wquat l =
+                wide_log(wide_mul(wide_conj(wide_unit(wide_quat(m))), wide_unit(wide_quat(quat_nearest(q[i], m)))));
             l.w = 0;
             sum = wide_add(sum, wide_scale(l, w[i]));
             square += w[i] * wide_dot(l, l);
@@ -89,7 +92,8 @@ static void karcher_mean_balances(void **state)
         worse(&balance, (double)wide_norm(sum) / total);
         assert_true(fabs(spread - 2 * sqrt((double)square / total)) < 1e-14);
         /* of two, the middle of the great circle */
-        const quat a = random_unit(&r), b = quat_mul(a, quat_exp_pure(qvec3_scale(random_direction(&r), random_between(&r, 0, 0.7))));
+        const quat a = random_unit(&r),
+                   b = quat_mul(a, quat_exp_pure(qvec3_scale(random_direction(&r), random_between(&r, 0, 0.7))));
         const quat two[2] = {a, quat_neg(b)}, half = quat_mul(a, quat_pow_unit(quat_mul(quat_conj(a), b), 0.5));
         assert_int_equal(quat_mean_karcher(2, two, NULL, &m, NULL), QUAT_OK);
         worse(&middle, quat_rotation_distance(m, half));
@@ -153,7 +157,8 @@ static void what_is_not_unique_is_said(void **state)
     double residual;
     const quat opposite[2] = {{1, 0, 0, 0}, {0, 1, 0, 0}};
     assert_int_equal(quat_mean(2, opposite, NULL, &m), QUAT_NOT_UNIQUE);
-    const qvec3 line[2] = {{1, 0, 0}, {-2, 0, 0}}, plane[2] = {{1, 0, 0}, {0, 1, 0}}, turned[2] = {{0, 1, 0}, {-1, 0, 0}};
+    const qvec3 line[2] = {{1, 0, 0}, {-2, 0, 0}}, plane[2] = {{1, 0, 0}, {0, 1, 0}},
+                turned[2] = {{0, 1, 0}, {-1, 0, 0}};
     assert_int_equal(quat_align(2, line, line, NULL, &m, &residual), QUAT_NOT_UNIQUE);
     assert_true(residual < 1e-15);
     assert_int_equal(quat_align(2, plane, turned, NULL, &m, &residual), QUAT_OK); /* two directions are enough */

@@ -109,7 +109,8 @@ static void normalise_arrays(void **state)
     random_state r = {62};
     quat a[count], one;
     for (int round = 0; round < 2; round++) {
-        for (int i = 0; i < count; i++) a[i] = quat_scale(q[i], round ? random_scale(&r, -308, 307) : random_scale(&r, -9, 9));
+        for (int i = 0; i < count; i++)
+            a[i] = quat_scale(q[i], round ? random_scale(&r, -308, 307) : random_scale(&r, -9, 9));
         size_t bad = 0;
         assert_int_equal(quat_normalize_array(count, a, out, &bad), QUAT_OK);
         assert_int_equal(bad, count);

@@ -5,8 +5,9 @@
 
 static const double pi = 3.14159265358979323846;
 
-static const char *const names[24] = {"XYZ", "XZY", "YZX", "YXZ", "ZXY", "ZYX", "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ",
-                                      "xyz", "xzy", "yzx", "yxz", "zxy", "zyx", "xyx", "xzx", "yxy", "yzy", "zxz", "zyz"};
+static const char *const names[24] = {"XYZ", "XZY", "YZX", "YXZ", "ZXY", "ZYX", "XYX", "XZX",
+                                      "YXY", "YZY", "ZXZ", "ZYZ", "xyz", "xzy", "yzx", "yxz",
+                                      "zxy", "zyx", "xyx", "xzx", "yxy", "yzy", "zxz", "zyz"};
 
 static quat_euler sequence(int i)
 {
@@ -138,8 +139,10 @@ static void bad_input_is_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_24_sequences_are_what_their_names_say), cmocka_unit_test(there_and_back_everywhere),
-        cmocka_unit_test(exact_lock_is_said), cmocka_unit_test(bad_input_is_named),
+        cmocka_unit_test(the_24_sequences_are_what_their_names_say),
+        cmocka_unit_test(there_and_back_everywhere),
+        cmocka_unit_test(exact_lock_is_said),
+        cmocka_unit_test(bad_input_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

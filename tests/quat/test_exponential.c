@@ -139,7 +139,8 @@ static void powers(void **state)
         assert_true(quat_pow_quat(q, u, &p) >= 0);
         worse(&quaternion, error_of(p, wide_exp(wide_mul(wide_log(wide_quat(q)), wide_quat(u)))));
         const double a = random_between(&r, -2, 2);
-        worse(&sum, quat_norm(quat_sub(quat_mul(quat_pow_unit(u, t), quat_pow_unit(u, a)), quat_pow_unit(u, t + a))) / ROUNDING);
+        worse(&sum, quat_norm(quat_sub(quat_mul(quat_pow_unit(u, t), quat_pow_unit(u, a)), quat_pow_unit(u, t + a))) /
+                        ROUNDING);
     }
     assert_bound("q^t, |t| <= 3, u", real, 25); /* conditioned by t times the logarithm, up to 3 (pi + ln 10) */
     assert_bound("q^t of units, u", unit, 20);
@@ -185,8 +186,12 @@ static void powers_at_their_edges(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exp_of_pure_is_right_for_every_angle), cmocka_unit_test(exp_is_right), cmocka_unit_test(log_is_right),
-        cmocka_unit_test(log_at_its_edges), cmocka_unit_test(exp_and_log_undo_each_other), cmocka_unit_test(powers),
+        cmocka_unit_test(exp_of_pure_is_right_for_every_angle),
+        cmocka_unit_test(exp_is_right),
+        cmocka_unit_test(log_is_right),
+        cmocka_unit_test(log_at_its_edges),
+        cmocka_unit_test(exp_and_log_undo_each_other),
+        cmocka_unit_test(powers),
         cmocka_unit_test(powers_at_their_edges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -92,7 +92,7 @@ static void bad_input_is_named(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(fourth_order_to_rounding), cmocka_unit_test(steady_turning_is_exact),
-                                       cmocka_unit_test(bad_input_is_named)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(fourth_order_to_rounding),
+                                       cmocka_unit_test(steady_turning_is_exact), cmocka_unit_test(bad_input_is_named)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,7 +97,10 @@ static void slerp_keeps_its_identities(void **state)
 
 /* ---- angular velocities, against differences in quadruple precision ---- */
 
-static wquat wide_nlerp(wquat p, wquat q, wide t) { return wide_unit(wide_add(wide_scale(p, 1 - t), wide_scale(q, t))); }
+static wquat wide_nlerp(wquat p, wquat q, wide t)
+{
+    return wide_unit(wide_add(wide_scale(p, 1 - t), wide_scale(q, t)));
+}
 static wquat wide_squad(wquat p, wquat a, wquat b, wquat q, wide t)
 {
     return wide_slerp(wide_slerp(p, q, t), wide_slerp(a, b, t), 2 * t * (1 - t));
@@ -142,7 +145,8 @@ static void squad_joins_smoothly(void **state)
         quat k[4];
         k[0] = random_unit(&r);
         for (int i = 1; i < 4; i++) k[i] = at_angle(&r, k[i - 1], random_between(&r, 0, 1));
-        const quat a0 = quat_squad_control(k[0], k[0], k[1]), a1 = quat_squad_control(k[0], k[1], k[2]), a2 = quat_squad_control(k[1], k[2], k[3]);
+        const quat a0 = quat_squad_control(k[0], k[0], k[1]), a1 = quat_squad_control(k[0], k[1], k[2]),
+                   a2 = quat_squad_control(k[1], k[2], k[3]);
         const qvec3 left = quat_squad_omega(k[0], a0, a1, k[1], 1), right = quat_squad_omega(k[1], a1, a2, k[2], 0);
         worse(&worst, qvec3_norm(qvec3_sub(left, right)));
     }
@@ -177,8 +181,9 @@ static void unflip_follows_a_curve(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slerp_is_within_its_bar), cmocka_unit_test(ends_are_exact), cmocka_unit_test(slerp_keeps_its_identities),
-        cmocka_unit_test(angular_velocities),      cmocka_unit_test(squad_joins_smoothly), cmocka_unit_test(unflip_follows_a_curve),
+        cmocka_unit_test(slerp_is_within_its_bar),    cmocka_unit_test(ends_are_exact),
+        cmocka_unit_test(slerp_keeps_its_identities), cmocka_unit_test(angular_velocities),
+        cmocka_unit_test(squad_joins_smoothly),       cmocka_unit_test(unflip_follows_a_curve),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

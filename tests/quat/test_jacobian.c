@@ -15,14 +15,19 @@ static wquat difference(map f, wquat at, int j, const wquat *context)
 {
     const wquat step = {j == 0 ? h : 0, j == 1 ? h : 0, j == 2 ? h : 0, j == 3 ? h : 0};
     const wquat near = wide_sub(f(wide_add(at, step), context), f(wide_sub(at, step), context));
-    const wquat far = wide_sub(f(wide_add(at, wide_scale(step, 2)), context), f(wide_sub(at, wide_scale(step, 2)), context));
+    const wquat far =
+        wide_sub(f(wide_add(at, wide_scale(step, 2)), context), f(wide_sub(at, wide_scale(step, 2)), context));
     return wide_scale(wide_sub(wide_scale(near, 8), far), 1 / (12 * h));
 }
 
 static wquat sandwich(wquat q, const wquat *v) { return wide_mul(wide_mul(q, *v), wide_conj(q)); }
 static wquat multiply_left(wquat q, const wquat *p) { return wide_mul(*p, q); }
 static wquat multiply_right(wquat p, const wquat *q) { return wide_mul(p, *q); }
-static wquat exponential(wquat v, const wquat *unused) { (void)unused; return wide_exp(v); }
+static wquat exponential(wquat v, const wquat *unused)
+{
+    (void)unused;
+    return wide_exp(v);
+}
 static wquat logarithm(wquat q, const wquat *unused)
 {
     (void)unused;
@@ -81,7 +86,8 @@ static void rotation_vector_jacobians_give_the_angular_velocity(void **state)
     random_state r = {42};
     double world = 0, body = 0, inverse = 0;
     for (int n = 0; n < 20000; n++) {
-        const qvec3 v = qvec3_scale(random_direction(&r), n % 3 ? random_between(&r, 0, 6) : random_scale(&r, -9, 0.5)), d = random_direction(&r);
+        const qvec3 v = qvec3_scale(random_direction(&r), n % 3 ? random_between(&r, 0, 6) : random_scale(&r, -9, 0.5)),
+                    d = random_direction(&r);
         const wquat context[2] = {wide_vec(v), wide_vec(d)}, zero = {0, 0, 0, 0};
         const wquat q = turned(zero, context), dq = difference(turned, zero, 0, context);
         const wquat ww = wide_scale(wide_mul(dq, wide_conj(q)), 2), wb = wide_scale(wide_mul(wide_conj(q), dq), 2);
@@ -89,8 +95,10 @@ static void rotation_vector_jacobians_give_the_angular_velocity(void **state)
         const qmat3 left_inverse = quat_rotation_vector_jacobian_left_inverse(v);
         const qmat3 right_inverse = quat_rotation_vector_jacobian_right_inverse(v);
         const qvec3 omega_world = qmat3_apply(&left, d), omega_body = qmat3_apply(&right, d);
-        worse(&world, error_of_vector(omega_world, wide_sub(ww, (wquat){ww.w, 0, 0, 0})) * ROUNDING * qvec3_norm(omega_world));
-        worse(&body, error_of_vector(omega_body, wide_sub(wb, (wquat){wb.w, 0, 0, 0})) * ROUNDING * qvec3_norm(omega_body));
+        worse(&world,
+              error_of_vector(omega_world, wide_sub(ww, (wquat){ww.w, 0, 0, 0})) * ROUNDING * qvec3_norm(omega_world));
+        worse(&body,
+              error_of_vector(omega_body, wide_sub(wb, (wquat){wb.w, 0, 0, 0})) * ROUNDING * qvec3_norm(omega_body));
         worse(&inverse, qvec3_norm(qvec3_sub(qmat3_apply(&left_inverse, omega_world), d)));
         worse(&inverse, qvec3_norm(qvec3_sub(qmat3_apply(&right_inverse, omega_body), d)));
     }

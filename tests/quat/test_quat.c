@@ -30,7 +30,8 @@ static void algebra_keeps_its_identities(void **state)
         worse(&associate, quat_norm(quat_sub(quat_mul(quat_mul(p, q), s), quat_mul(p, quat_mul(q, s)))) /
                               (size * quat_norm(s)) / ROUNDING);
         assert_true(quat_equal(quat_conj(quat_mul(p, q)), quat_mul(quat_conj(q), quat_conj(p))) ||
-                    quat_norm(quat_sub(quat_conj(quat_mul(p, q)), quat_mul(quat_conj(q), quat_conj(p)))) <= 4 * ROUNDING * size);
+                    quat_norm(quat_sub(quat_conj(quat_mul(p, q)), quat_mul(quat_conj(q), quat_conj(p)))) <=
+                        4 * ROUNDING * size);
         quat inv, d;
         assert_int_equal(quat_inverse(q, &inv), QUAT_OK);
         worse(&inverse, error_of(inv, wide_inverse(wide_quat(q))));
@@ -106,13 +107,15 @@ static void normalise_is_right_at_every_scale(void **state)
         if (quat_equal(q, quat_make(0, 0, 0, 0))) continue;
         assert_int_equal(quat_normalize(q, &unit), QUAT_OK);
         worse(&worst, error_of(unit, wide_unit(wide_quat(q))));
-        if (quat_norm2(q) > 1e-280 && quat_norm2(q) < 1e280) worse(&quick, error_of(quat_unit(q), wide_unit(wide_quat(q))));
+        if (quat_norm2(q) > 1e-280 && quat_norm2(q) < 1e280)
+            worse(&quick, error_of(quat_unit(q), wide_unit(wide_quat(q))));
         if (quat_norm(q) > 1e-300) worse(&norm, error_of_scalar(quat_norm(q), wide_norm(wide_quat(q))));
     }
     assert_bound("normalise error, u", worst, 1.01);
     assert_bound("quick normalise error, u", quick, 3.5);
     assert_bound("norm error, u", norm, 2.5);
-    const double edges[] = {4.9406564584124654e-324, 1e-310, 2.2250738585072014e-308, 1e-160, 1e160, 1.7976931348623157e308};
+    const double edges[] = {4.9406564584124654e-324, 1e-310, 2.2250738585072014e-308, 1e-160, 1e160,
+                            1.7976931348623157e308};
     for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
         const double e = edges[i];
         quat unit;
@@ -147,7 +150,8 @@ static void bad_input_is_named(void **state)
     assert_int_equal(qvec3_normalize(qvec3_make(0, 0, 0), &v), QUAT_EDOMAIN);
     assert_int_equal(qvec3_normalize(qvec3_make(0, 1e-320, 0), &v), QUAT_OK);
     assert_true(v.y == 1);
-    for (int s = QUAT_ERANGE; s <= QUAT_NOT_CONVERGED; s++) assert_string_not_equal(quat_status_string((quat_status)s), "unknown status");
+    for (int s = QUAT_ERANGE; s <= QUAT_NOT_CONVERGED; s++)
+        assert_string_not_equal(quat_status_string((quat_status)s), "unknown status");
     assert_string_equal(quat_status_string((quat_status)-99), "unknown status");
 }
 
@@ -196,7 +200,8 @@ static void distances_are_right_for_every_angle(void **state)
     assert_true(quat_rotation_distance(q, quat_neg(q)) == 0);
     assert_true(quat_same_rotation(q, quat_neg(q), 0) && !quat_near(q, quat_neg(q), 1.9) && quat_near(q, q, 0));
     assert_true(quat_equal(quat_nearest(quat_neg(q), q), q) && quat_equal(quat_nearest(q, q), q));
-    assert_true(isnan(quat_distance(quat_make(NAN, 0, 0, 0), q)) && isnan(quat_rotation_distance(q, quat_make(NAN, 0, 0, 0))));
+    assert_true(isnan(quat_distance(quat_make(NAN, 0, 0, 0), q)) &&
+                isnan(quat_rotation_distance(q, quat_make(NAN, 0, 0, 0))));
     assert_false(quat_same_rotation(q, quat_make(NAN, 0, 0, 0), 10));
     assert_true(quat_angle(quat_make(0, 0, 0, 0)) == 0 && quat_angle(quat_make(-2, 0, 0, 0)) == 0);
 }
@@ -233,7 +238,8 @@ static void random_rotations_are_uniform(void **state)
 static void matrices_multiply(void **state)
 {
     (void)state;
-    const qmat3 a = {{{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}}, t = qmat3_transpose(&a), p = qmat3_mul(&a, &t), one = qmat3_identity();
+    const qmat3 a = {{{1, 2, 3}, {4, 5, 6}, {7, 8, 10}}}, t = qmat3_transpose(&a), p = qmat3_mul(&a, &t),
+                one = qmat3_identity();
     assert_true(p.m[0][0] == 14 && p.m[0][1] == 32 && p.m[1][2] == 128 && p.m[2][2] == 213);
     assert_true(qmat3_det(&a) == -3 && qmat3_det(&one) == 1);
     const qvec3 v = qmat3_apply(&a, qvec3_make(1, 0, -1));
@@ -243,11 +249,16 @@ static void matrices_multiply(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(units_multiply_as_hamilton_wrote), cmocka_unit_test(algebra_keeps_its_identities),
-        cmocka_unit_test(product_is_within_its_bar),        cmocka_unit_test(compensated_product_keeps_small_parts),
-        cmocka_unit_test(normalise_is_right_at_every_scale), cmocka_unit_test(bad_input_is_named),
-        cmocka_unit_test(drift_is_held),                    cmocka_unit_test(distances_are_right_for_every_angle),
-        cmocka_unit_test(random_rotations_are_uniform),     cmocka_unit_test(matrices_multiply),
+        cmocka_unit_test(units_multiply_as_hamilton_wrote),
+        cmocka_unit_test(algebra_keeps_its_identities),
+        cmocka_unit_test(product_is_within_its_bar),
+        cmocka_unit_test(compensated_product_keeps_small_parts),
+        cmocka_unit_test(normalise_is_right_at_every_scale),
+        cmocka_unit_test(bad_input_is_named),
+        cmocka_unit_test(drift_is_held),
+        cmocka_unit_test(distances_are_right_for_every_angle),
+        cmocka_unit_test(random_rotations_are_uniform),
+        cmocka_unit_test(matrices_multiply),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

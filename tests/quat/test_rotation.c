@@ -44,7 +44,8 @@ static void rotate_is_within_its_bar(void **state)
         const double size = qvec3_norm(v);
         worse(&worst, error_of_vector(quat_rotate(q, v), wide_rotate(wide_unit(wide_quat(q)), wide_vec(v))));
         worse(&length, fabs(qvec3_norm(quat_rotate(q, v)) / size - 1));
-        worse(&compose, qvec3_norm(qvec3_sub(quat_rotate(quat_mul(p, q), v), quat_rotate(p, quat_rotate(q, v)))) / size);
+        worse(&compose,
+              qvec3_norm(qvec3_sub(quat_rotate(quat_mul(p, q), v), quat_rotate(p, quat_rotate(q, v)))) / size);
         worse(&there_and_back, qvec3_norm(qvec3_sub(quat_rotate_inverse(q, quat_rotate(q, v)), v)) / size);
         assert_true(qvec3_norm(qvec3_sub(quat_rotate(q, v), quat_rotate(quat_neg(q), v))) == 0);
     }
@@ -190,7 +191,8 @@ static void noisy_matrices_give_the_nearest_rotation(void **state)
     }
     assert_bound("nearest to an exact rotation, rad", exact, 3e-15);
     assert_bound("R^T m symmetric", stationary, 1e-14);
-    const qmat3 zero = {{{0}}}, mirror = {{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}}, line = {{{1, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    const qmat3 zero = {{{0}}}, mirror = {{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}},
+                line = {{{1, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
     quat q;
     double distance;
     assert_int_equal(quat_from_matrix_nearest(&zero, &q, &distance), QUAT_EDOMAIN);
@@ -241,7 +243,8 @@ static void frames(void **state)
         quat found;
         /* y askew in the plane of x and y: near parallel costs digits by 1/angle */
         const double along = random_between(&r, -3, 3);
-        assert_int_equal(quat_from_axes(qvec3_scale(x, random_scale(&r, -200, 200)), qvec3_axpy(along, x, y), &found), QUAT_OK);
+        assert_int_equal(quat_from_axes(qvec3_scale(x, random_scale(&r, -200, 200)), qvec3_axpy(along, x, y), &found),
+                         QUAT_OK);
         worse(&worst, quat_rotation_distance(found, q));
         assert_int_equal(quat_from_frame(x, y, z, &found), QUAT_OK);
         worse(&whole, quat_rotation_distance(found, q));
@@ -294,7 +297,8 @@ static void angular_velocity(void **state)
         const wquat behind = wide_mul(wide_exp(wide_scale(wide_vec(omega), -h / 2)), wide_quat(q));
         const wquat slope = wide_scale(wide_sub(ahead, behind), 1 / (2 * h));
         worse(&derivative, error_of(quat_derivative_world(q, omega), slope));
-        worse(&step, error_of(quat_step_world(q, omega, dt), wide_mul(wide_exp(wide_scale(wide_vec(omega), (wide)dt / 2)), wide_quat(q))));
+        worse(&step, error_of(quat_step_world(q, omega, dt),
+                              wide_mul(wide_exp(wide_scale(wide_vec(omega), (wide)dt / 2)), wide_quat(q))));
         /* body and world say the same */
         const qvec3 body = quat_rotate_inverse(q, omega);
         worse(&frames_agree, quat_norm(quat_sub(quat_step_body(q, body, dt), quat_step_world(q, omega, dt))));
@@ -310,11 +314,16 @@ static void angular_velocity(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(conventions),           cmocka_unit_test(rotate_is_within_its_bar),
-        cmocka_unit_test(two_reflections_are_a_rotation), cmocka_unit_test(axes_angles_and_vectors),
-        cmocka_unit_test(matrices_there_and_back), cmocka_unit_test(noisy_matrices_give_the_nearest_rotation),
-        cmocka_unit_test(two_vectors),           cmocka_unit_test(frames),
-        cmocka_unit_test(swing_and_twist),       cmocka_unit_test(angular_velocity),
+        cmocka_unit_test(conventions),
+        cmocka_unit_test(rotate_is_within_its_bar),
+        cmocka_unit_test(two_reflections_are_a_rotation),
+        cmocka_unit_test(axes_angles_and_vectors),
+        cmocka_unit_test(matrices_there_and_back),
+        cmocka_unit_test(noisy_matrices_give_the_nearest_rotation),
+        cmocka_unit_test(two_vectors),
+        cmocka_unit_test(frames),
+        cmocka_unit_test(swing_and_twist),
+        cmocka_unit_test(angular_velocity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,12 +30,13 @@ QUAT_API quat_status quat_mean_karcher(size_t n, const quat q[], const double we
  * may have any length. *residual (may be NULL) gets the root mean square of |b_i - R a_i|, weighted. QUAT_NOT_UNIQUE
  * when the vectors do not fix the rotation (all parallel, for instance); QUAT_EARGUMENT for n = 0; QUAT_EDOMAIN for
  * infinite or NaN vectors, bad weights and sets of zeros only; *q = 1 and *residual = NaN then. */
-QUAT_API quat_status quat_align(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], quat *q, double *residual);
+QUAT_API quat_status quat_align(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], quat *q,
+                                double *residual);
 
 /* Kabsch (1976): the rigid motion b = R(q) a + shift that fits two sets of points best. Centroids are taken off first;
  * otherwise as quat_align, and QUAT_NOT_UNIQUE also when all points coincide (q = 1 then). */
-QUAT_API quat_status quat_align_points(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], quat *q, qvec3 *shift,
-                                       double *residual);
+QUAT_API quat_status quat_align_points(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], quat *q,
+                                       qvec3 *shift, double *residual);
 
 #ifdef __cplusplus
 }

@@ -41,7 +41,10 @@ static inline qdual quat_dual_add(qdual p, qdual q)
 {
     return quat_dual_make(quat_add(p.real, q.real), quat_add(p.dual, q.dual));
 }
-static inline qdual quat_dual_scale(qdual p, double s) { return quat_dual_make(quat_scale(p.real, s), quat_scale(p.dual, s)); }
+static inline qdual quat_dual_scale(qdual p, double s)
+{
+    return quat_dual_make(quat_scale(p.real, s), quat_scale(p.dual, s));
+}
 static inline qdual quat_dual_mul(qdual p, qdual q)
 {
     return quat_dual_make(quat_mul(p.real, q.real), quat_add(quat_mul(p.real, q.dual), quat_mul(p.dual, q.real)));

@@ -129,8 +129,9 @@ static inline double quat_dot(quat p, quat q) { return (p.w * q.w + p.x * q.x) +
  * smaller errors than four terms in a row. */
 static inline quat quat_mul(quat p, quat q)
 {
-    return quat_make((p.w * q.w - p.x * q.x) - (p.y * q.y + p.z * q.z), (p.w * q.x + p.x * q.w) + (p.y * q.z - p.z * q.y),
-                     (p.w * q.y - p.x * q.z) + (p.y * q.w + p.z * q.x), (p.w * q.z + p.x * q.y) + (p.z * q.w - p.y * q.x));
+    return quat_make(
+        (p.w * q.w - p.x * q.x) - (p.y * q.y + p.z * q.z), (p.w * q.x + p.x * q.w) + (p.y * q.z - p.z * q.y),
+        (p.w * q.y - p.x * q.z) + (p.y * q.w + p.z * q.x), (p.w * q.z + p.x * q.y) + (p.z * q.w - p.y * q.x));
 }
 
 /* p q with every component as if summed in three times the precision and rounded once (Ogita, Rump and Oishi 2005,

@@ -123,15 +123,9 @@ QUAT_API quat_status quat_swing_twist(quat q, qvec3 axis, quat *swing, quat *twi
 /* ---- angular velocity (rad/s) ---- */
 
 /* dq/dt of unit q turning at omega in world axes: (0, omega) q / 2. */
-static inline quat quat_derivative_world(quat q, qvec3 omega)
-{
-    return quat_scale(quat_mul(quat_pure(omega), q), 0.5);
-}
+static inline quat quat_derivative_world(quat q, qvec3 omega) { return quat_scale(quat_mul(quat_pure(omega), q), 0.5); }
 /* The same with omega in body axes: q (0, omega) / 2. */
-static inline quat quat_derivative_body(quat q, qvec3 omega)
-{
-    return quat_scale(quat_mul(q, quat_pure(omega)), 0.5);
-}
+static inline quat quat_derivative_body(quat q, qvec3 omega) { return quat_scale(quat_mul(q, quat_pure(omega)), 0.5); }
 /* The angular velocity in world axes of unit q with derivative dq: the vector part of 2 dq q*. */
 static inline qvec3 quat_omega_world(quat q, quat dq) { return quat_vector(quat_scale(quat_mul(dq, quat_conj(q)), 2)); }
 /* The same in body axes: the vector part of 2 q* dq. */
