@@ -136,10 +136,16 @@ static void slerp_block(size_t n, const quat *p, const quat *q, const double *t,
     for (size_t i = 0; i < n; i++) {
         double x, y;
         quat_slerp_weights(s2[i], 2 * t[i] - 1, &x, &y);
+        a[i] = x;
+        b[i] = side[i] * y;
+        inner[i] = 0.5;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (t[i] > 0 && t[i] < 1) continue;
         /* the ends are exact: weights 1 and 0, and no correction of the length */
-        inner[i] = t[i] > 0 && t[i] < 1 ? 0.5 : t[i] >= 0 && t[i] <= 1 ? 0 : NAN;
-        a[i] = t[i] == 0 ? 1 : t[i] == 1 ? 0 : x;
-        b[i] = side[i] * (t[i] == 0 ? 0 : t[i] == 1 ? 1 : y);
+        a[i] = t[i] == 0;
+        b[i] = side[i] * (t[i] == 1);
+        inner[i] = t[i] == 0 || t[i] == 1 ? 0 : NAN;
     }
     for (size_t i = 0; i < n; i++) {
         const quat r = quat_axpy(b[i], q[i], quat_scale(p[i], a[i]));
