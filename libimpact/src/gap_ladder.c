@@ -142,6 +142,33 @@ static bool try_axes(search *s)
     return false;
 }
 
+/* Steps of many lengths up g's slope from the best normal met: for two vertices in touch, whose g is flat at 0. */
+static bool try_slope(search *s)
+{
+    for (int round = 0; round < 8; round++) {
+        double x[2][3], v[3], along = 0, best[3], highest = s->low;
+        impact_pair_gap(s->pair, s->low_n, x);
+        for (int i = 0; i < 3; i++) v[i] = s->pair->c[i] + x[1][i] - x[0][i];
+        for (int i = 0; i < 3; i++) along += v[i] * s->low_n[i];
+        for (int i = 0; i < 3; i++) v[i] -= along * s->low_n[i];
+        const double slope = distance_of(v);
+        if (!(slope > 0)) return false;
+        for (double step = 1; step > 1e-7; step /= 2) {
+            double n[3];
+            for (int i = 0; i < 3; i++) n[i] = s->low_n[i] + step * v[i] / slope;
+            const double length = distance_of(n);
+            for (int i = 0; i < 3; i++) n[i] /= length;
+            const double g = impact_pair_gap(s->pair, n, NULL);
+            if (g > highest) highest = g, memcpy(best, n, sizeof best);
+        }
+        if (!(highest > s->low)) return false;
+        s->low = highest;
+        memcpy(s->low_n, best, sizeof best);
+        if (try_from(s, best, NULL, IMPACT_PATH_FALLBACK)) return true;
+    }
+    return false;
+}
+
 /* All exponents go from 2 to their own along p_t - 1 = (p - 1)^t, each stage seeding the next. */
 static bool try_homotopy(search *s)
 {
@@ -160,16 +187,16 @@ static bool try_homotopy(search *s)
     return try_from(s, n, NULL, IMPACT_PATH_FALLBACK);
 }
 
-/* No way settled: the best that is known for certain. */
-static impact_status bracket(search *s, double upper, impact_meeting *meeting)
+/* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies. */
+static impact_status bracket(const search *s, double upper, impact_meeting *meeting)
 {
-    double x[2][3];
+    double v[3];
     memcpy(meeting->n, s->low_n, sizeof meeting->n);
-    meeting->lower = meeting->gap = impact_pair_gap(s->pair, meeting->n, x);
-    memcpy(meeting->x, x, sizeof meeting->x);
-    meeting->upper = fmax(upper, meeting->lower);
+    meeting->lower = meeting->gap = impact_pair_gap(s->pair, meeting->n, meeting->x);
+    for (int i = 0; i < 3; i++) v[i] = s->pair->c[i] + meeting->x[1][i] - meeting->x[0][i];
+    meeting->upper = fmax(fmin(upper, distance_of(v)), meeting->lower);
     meeting->stiffness = 0;
-    return IMPACT_BRACKET;
+    return meeting->upper - meeting->lower <= 2e-14 * s->pair->reach ? IMPACT_OK : IMPACT_BRACKET;
 }
 
 impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting,
@@ -189,7 +216,7 @@ impact_status impact_gap_settle(const impact_pair *pair, const double *cached, i
         over = try_from(&s, n, NULL, IMPACT_PATH_NEWTON);
     }
     over = over || (impact_gap_harvest(pair, false, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK));
-    over = over || try_simplex(&s, &upper) || (!s.found && try_homotopy(&s));
+    over = over || try_simplex(&s, &upper) || (!s.found && (try_slope(&s) || try_homotopy(&s)));
     if (!over) over = impact_gap_harvest(pair, true, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK);
     over = over || try_axes(&s);
     *path = s.found ? s.path : IMPACT_PATH_FALLBACK;
