@@ -117,6 +117,19 @@ static void report(const impact_collision *collision, const impact_ready ready[2
     }
 }
 
+static double sum_of_sizes(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
+
+/* A tangential velocity below this is what is left of larger ones that cancel: the contact rolls, and starts from u_t = 0. */
+static double rounding_of_velocity(const impact_collision *collision)
+{
+    double sum = 0;
+    for (int i = 0; i < 2; i++) {
+        const impact_collider *body = &collision->body[i];
+        sum += sum_of_sizes(body->velocity) + sum_of_sizes(body->omega) * sum_of_sizes(body->offset);
+    }
+    return 0x1p-52 * sum;
+}
+
 static impact_status fail(const impact_collision *collision, impact_outcome *outcome, impact_status status)
 {
     unchanged(collision, outcome, NAN);
@@ -164,7 +177,9 @@ impact_status impact_collide(const impact_collision *collision, impact_outcome *
     }
     const double speed = -approach;
     impact_course course;
-    impact_course_start(&course, &frame, collision, qvec3_dot(u, frame.t1) / speed, qvec3_dot(u, frame.t2) / speed);
+    double ux = qvec3_dot(u, frame.t1), uy = qvec3_dot(u, frame.t2);
+    if (fabs(ux) + fabs(uy) <= rounding_of_velocity(collision)) ux = uy = 0;
+    impact_course_start(&course, &frame, collision, ux / speed, uy / speed);
     status = solve(collision, &course, speed, outcome);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
     report(collision, ready, &course, speed, outcome);
