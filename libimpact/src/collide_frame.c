@@ -25,6 +25,8 @@ void impact_frame_ready(const impact_collider *body, impact_ready *ready)
     const qvec3 j = body->moments;
     ready->inverse_mass = 1 / body->mass;
     ready->inverse_moments = (qvec3){1 / j.x, 1 / j.y, 1 / j.z};
+    ready->root =
+        (qvec3){sqrt(ready->inverse_moments.x), sqrt(ready->inverse_moments.y), sqrt(ready->inverse_moments.z)};
     ready->round = j.x == j.y && j.y == j.z;
     const quat q = body->orientation;
     const double f = 1 / sqrt(quat_dot(q, q));
@@ -57,8 +59,8 @@ static column make_column(const impact_collision *collision, const impact_ready 
         if (ready[i].inverse_mass == 0) continue;
         qvec3 x = qvec3_cross(collision->body[i].offset, e);
         if (!ready[i].round) x = impact_frame_to_body(ready[i].orientation, x);
-        const qvec3 w = ready[i].inverse_moments;
-        r.angular[i] = (qvec3){sqrt(w.x) * x.x, sqrt(w.y) * x.y, sqrt(w.z) * x.z};
+        const qvec3 w = ready[i].root;
+        r.angular[i] = (qvec3){w.x * x.x, w.y * x.y, w.z * x.z};
     }
     return r;
 }
@@ -70,22 +72,23 @@ static qvec3 across(qvec3 n)
     return (qvec3){1 + sign * n.x * n.x * f, sign * n.x * n.y * f, -sign * n.x};
 }
 
-/* Largest over smallest root of l^3 - trace l^2 + second l - det, to a few digits: Newton is monotone from outside. */
+/* Largest over smallest root of l^3 - trace l^2 + second l - det, to 1 %: the harmonic sum det / second and the trace are
+ * within a factor 3 of them, and Newton from there is monotone. */
 static double conditioning(double trace, double second, double det)
 {
-    double low = 0, high = trace;
-    for (int i = 0; i < 40; i++) {
+    double low = det / second, high = trace;
+    for (int i = 0; i < 16; i++) {
         const double value = ((low - trace) * low + second) * low - det, slope = (3 * low - 2 * trace) * low + second;
         const double step = slope > 0 ? -value / slope : 0;
         low += step;
-        if (!(step > 1e-3 * low)) break;
+        if (!(step > 2e-3 * low)) break;
     }
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < 16; i++) {
         const double value = ((high - trace) * high + second) * high - det,
                      slope = (3 * high - 2 * trace) * high + second;
         const double step = slope > 0 ? value / slope : 0;
         high -= step;
-        if (!(step > 1e-3 * high)) break;
+        if (!(step > 2e-3 * high)) break;
     }
     return fmax(high / low, 1);
 }

@@ -10,7 +10,7 @@
 /* One body made ready: inverses and unit orientation; a static body has inverse_mass 0. */
 typedef struct impact_ready {
     double inverse_mass;
-    qvec3 inverse_moments;
+    qvec3 inverse_moments, root; /* 1 / J and its square root */
     quat orientation;
     bool round; /* three equal moments (or static): the orientation does not matter */
 } impact_ready;

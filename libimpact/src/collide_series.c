@@ -81,14 +81,19 @@ static double integral(const double *coefficient, int order, double t)
 
 /* ---- one step and the events in it ---- */
 
+/* The integrals from 0 to t that the course is kept by: side by side, since each alone is a chain of dependent operations. */
+typedef struct totals {
+    double p, work, friction, px, py;
+} totals;
+
 typedef struct step {
     impact_course *course;
     impact_taylor taylor;
     double uz0;                           /* uz at tau = 0 */
     double power[IMPACT_SERIES_MOST + 1]; /* uz s, the rate of the normal work */
     bool has_power;
-    double at;                        /* where the course stands in this step */
-    double p, work, friction, px, py; /* integrals from 0 to `at` */
+    double at;   /* where the course stands in this step */
+    totals done; /* from 0 to `at` */
 } step;
 
 static double uz_at(const step *st, double t) { return st->uz0 + integral(st->taylor.climb, st->taylor.order, t); }
@@ -167,25 +172,35 @@ static double find_root(step *st, target what, double wanted, double low, double
     return t;
 }
 
+static totals totals_at(step *st, double t)
+{
+    if (!st->has_power) make_power(st);
+    const impact_taylor *ty = &st->taylor;
+    totals sum = {0, 0, 0, 0, 0};
+    for (int k = ty->order; k >= 0; k--) {
+        const double f = inverse[k + 1];
+        sum.p = sum.p * t + ty->s[k] * f;
+        sum.work = sum.work * t + st->power[k] * f;
+        sum.friction = sum.friction * t + ty->squared[k] * f;
+        sum.px = sum.px * t + ty->x[k] * f;
+        sum.py = sum.py * t + ty->y[k] * f;
+    }
+    const double slide = -st->course->mu * t;
+    return (totals){sum.p * t, sum.work * t, sum.friction * slide, sum.px * slide, sum.py * slide};
+}
+
 /* Moves the course on to tau = t within one phase. */
 static void move_to(step *st, double t)
 {
     impact_course *course = st->course;
     if (!(t > st->at)) return;
-    const impact_taylor *ty = &st->taylor;
-    const int n = ty->order;
     impact_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
-    const double p = integral(ty->s, n, t), work = work_at(st, t), friction = -course->mu * integral(ty->squared, n, t);
-    const double px = -course->mu * integral(ty->x, n, t), py = -course->mu * integral(ty->y, n, t);
-    impact_course_book(course, p - st->p, work - st->work, friction - st->friction);
-    course->px += px - st->px;
-    course->py += py - st->py;
+    const totals to = totals_at(st, t);
+    impact_course_book(course, to.p - st->done.p, to.work - st->done.work, to.friction - st->done.friction);
+    course->px += to.px - st->done.px;
+    course->py += to.py - st->done.py;
     impact_course_reach(course, uz_at(st, t));
-    st->p = p;
-    st->work = work;
-    st->friction = friction;
-    st->px = px;
-    st->py = py;
+    st->done = to;
     st->at = t;
 }
 
@@ -195,8 +210,8 @@ static bool end_by(step *st, double to, double *where)
     const impact_course *course = st->course;
     switch (course->law) {
     case IMPACT_POISSON: {
-        const double wanted = st->p + impact_course_left_poisson(course);
-        if (wanted <= st->p) {
+        const double wanted = st->done.p + impact_course_left_poisson(course);
+        if (wanted <= st->done.p) {
             *where = st->at;
             return true;
         }
@@ -220,8 +235,8 @@ static bool end_by(step *st, double to, double *where)
             *where = st->at;
             return true;
         }
-        if (work_at(st, to) < st->work + more) return false;
-        *where = find_root(st, TARGET_WORK, st->work + more, st->at, to);
+        if (work_at(st, to) < st->done.work + more) return false;
+        *where = find_root(st, TARGET_WORK, st->done.work + more, st->at, to);
         return true;
     }
     }
@@ -368,7 +383,12 @@ bool impact_series_solve(impact_course *course, int order)
             if (result == STRIDE_TAKEN) break;
             if (result == STRIDE_EVENT) events = event;
         }
-        step st = {.course = course, .uz0 = course->uz};
+        step st; /* large: only what is not computed is set */
+        st.course = course;
+        st.uz0 = course->uz;
+        st.has_power = false;
+        st.at = 0;
+        st.done = (totals){0, 0, 0, 0, 0};
         impact_taylor_make(&st.taylor, frame, mu, course->ux, course->uy, course->s, order);
         follow_step(&st);
     }
