@@ -61,6 +61,7 @@
 ---@field slerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
 ---@field nlerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
 ---@field slerp_omega fun(self: quat, q: rotation): vec3  radians per unit of t, world axes
+---@field nlerp_omega fun(self: quat, q: rotation, t: number): vec3
 ---@field slerp_list fun(self: quat, q: rotation, t: number[]): quat[]
 
 ---@class motion  x -> R x + s, a unit dual quaternion
@@ -105,6 +106,7 @@ core.layer()
 ---@field from_euler fun(sequence: string, a: number, b: number, c: number): quat?, string?  "ZYX" intrinsic, "zyx" extrinsic
 ---@field from_two_vectors fun(a: vector, b: vector): quat?, string?
 ---@field from_axes fun(x: vector, y: vector): quat?, string?
+---@field from_frame fun(x: vector, y: vector, z: vector): quat?, string?  nearest to the frame with these axes
 ---@field squad fun(p: rotation, a: rotation, b: rotation, q: rotation, t: number): quat
 ---@field squad_control fun(before: rotation, q: rotation, after: rotation): quat
 ---@field squad_omega fun(p: rotation, a: rotation, b: rotation, q: rotation, t: number): vec3
@@ -120,6 +122,7 @@ core.layer()
 ---@field motion fun(q: rotation, shift: vector): motion
 ---@field screw fun(axis: vector, point: vector, angle: number, slide: number): motion?, string?
 ---@field motion_exp fun(rotation: vector, translation: vector): motion
+---@field blend fun(motions: motion[], weights?: number[]): motion?, string?
 local quat = {}
 for name, value in pairs(core) do
   if name ~= "layer" then quat[name] = value end

@@ -107,6 +107,25 @@ static int l_sclerp(lua_State *L)
     return give(L, quat_dual_sclerp(p, q, quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE)));
 }
 
+/* blend(motions [, weights]) */
+static int l_blend(lua_State *L)
+{
+    qdual blend;
+    lua_settop(L, 2); /* before buffers take the places of absent arguments */
+    if (lua_type(L, 1) != LUA_TTABLE)
+        return quat_lua_error(L, "argument 'motions' must be a list, got a %s", luaL_typename(L, 1));
+    const size_t n = lua_rawlen(L, 1);
+    if (n == 0) return quat_lua_error(L, "argument 'motions' must not be empty");
+    qdual *const p = lua_newuserdatauv(L, n * sizeof *p, 0);
+    for (size_t i = 0; i < n; i++) {
+        lua_rawgeti(L, 1, (lua_Integer)i + 1);
+        p[i] = motion(L, lua_gettop(L), "motions");
+        lua_pop(L, 1);
+    }
+    const quat_status status = quat_dual_blend(n, p, quat_lua_arg_weights(L, 2, n), &blend);
+    return status < 0 ? quat_lua_failure(L, quat_status_string(status)) : give(L, blend);
+}
+
 /* axis, point, angle, slide [, reason] */
 static int l_to_screw(lua_State *L)
 {
@@ -132,7 +151,7 @@ void quat_lua_open_dual(lua_State *L)
         {"shift", l_shift},     {"rotation", l_rotation}, {"log", l_log},
         {"sclerp", l_sclerp},   {"to_screw", l_to_screw}, {NULL, NULL}};
     static const luaL_Reg functions[] = {
-        {"motion", l_motion}, {"screw", l_screw}, {"motion_exp", l_motion_exp}, {NULL, NULL}};
+        {"motion", l_motion}, {"screw", l_screw}, {"motion_exp", l_motion_exp}, {"blend", l_blend}, {NULL, NULL}};
     luaL_newmetatable(L, DUAL);
     luaL_setfuncs(L, meta, 0);
     lua_newtable(L);

@@ -34,6 +34,13 @@ static int l_slerp_omega(lua_State *L)
     return 1;
 }
 
+static int l_nlerp_omega(lua_State *L)
+{
+    const quat p = unit(L, 1, "p"), q = unit(L, 2, "q");
+    quat_lua_push_vec3(L, quat_nlerp_omega(p, q, quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE)));
+    return 1;
+}
+
 static int l_squad(lua_State *L)
 {
     const quat p = unit(L, 1, "p"), a = unit(L, 2, "a"), b = unit(L, 3, "b"), q = unit(L, 4, "q");
@@ -56,8 +63,11 @@ static int l_squad_omega(lua_State *L)
 
 void quat_lua_open_interpolate(lua_State *L)
 {
-    static const luaL_Reg methods[] = {
-        {"slerp", l_slerp}, {"nlerp", l_nlerp}, {"slerp_omega", l_slerp_omega}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"slerp", l_slerp},
+                                       {"nlerp", l_nlerp},
+                                       {"slerp_omega", l_slerp_omega},
+                                       {"nlerp_omega", l_nlerp_omega},
+                                       {NULL, NULL}};
     static const luaL_Reg functions[] = {
         {"squad", l_squad}, {"squad_control", l_squad_control}, {"squad_omega", l_squad_omega}, {NULL, NULL}};
     luaL_setfuncs(L, functions, 0);

@@ -179,6 +179,14 @@ static int l_from_axes(lua_State *L)
     return quat_lua_result(L, status, q);
 }
 
+static int l_from_frame(lua_State *L)
+{
+    quat q;
+    const qvec3 x = quat_lua_arg_vec3(L, 1, "x"), y = quat_lua_arg_vec3(L, 2, "y");
+    const quat_status status = quat_from_frame(x, y, quat_lua_arg_vec3(L, 3, "z"), &q);
+    return quat_lua_result(L, status, q);
+}
+
 /* swing, twist [, reason] */
 static int l_swing_twist(lua_State *L)
 {
@@ -281,6 +289,7 @@ void quat_lua_open_rotation(lua_State *L)
                                          {"from_euler", l_from_euler},
                                          {"from_two_vectors", l_from_two_vectors},
                                          {"from_axes", l_from_axes},
+                                         {"from_frame", l_from_frame},
                                          {NULL, NULL}};
     luaL_setfuncs(L, functions, 0);
     quat_lua_add_methods(L, methods);
