@@ -4,10 +4,6 @@
  */
 #include "impact_collide.h"
 
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 static const char *const keys[] = {"count", "threads", "m1", "J1", "r1",  "v1",  "w1",     "m2",    "J2", "r2",
                                    "v2",    "w2",      "n",  "mu", "eps", "law", "solver", "order", NULL};
 
@@ -137,107 +133,109 @@ static void inertia_of(const quat_lua_reader *reader, const char *key, const ine
     lua_pop(reader->L, 1);
 }
 
-static void read_all(const quat_lua_reader *reader, impact_collision *c, lua_Integer count)
-{
-    static const char *const names[2][5] = {{"m1", "J1", "r1", "v1", "w1"}, {"m2", "J2", "r2", "v2", "w2"}};
-    column mass[2], offset[2], velocity[2], omega[2];
+/* All keys, opened; `law` ... are the same for all. */
+typedef struct batch {
+    column mass[2], offset[2], velocity[2], omega[2], normal, mu, eps;
     inertia j[2];
-    for (int b = 0; b < 2; b++) {
-        mass[b] = open_numbers(reader, names[b][0], INFINITY, count);
-        j[b] = open_inertia(reader, names[b][1]);
-        offset[b] = open_vectors(reader, names[b][2], count);
-        velocity[b] = open_vectors(reader, names[b][3], count);
-        omega[b] = open_vectors(reader, names[b][4], count);
+    impact_law law;
+    impact_solver solver;
+    int order, threads;
+} batch;
+
+static const char *const body_keys[2][5] = {{"m1", "J1", "r1", "v1", "w1"}, {"m2", "J2", "r2", "v2", "w2"}};
+
+static void open_all(const quat_lua_reader *reader, batch *b, lua_Integer count)
+{
+    for (int i = 0; i < 2; i++) {
+        b->mass[i] = open_numbers(reader, body_keys[i][0], INFINITY, count);
+        b->j[i] = open_inertia(reader, body_keys[i][1]);
+        b->offset[i] = open_vectors(reader, body_keys[i][2], count);
+        b->velocity[i] = open_vectors(reader, body_keys[i][3], count);
+        b->omega[i] = open_vectors(reader, body_keys[i][4], count);
     }
-    const column normal = open_vectors(reader, "n", count), mu = open_numbers(reader, "mu", 0, count),
-                 eps = open_numbers(reader, "eps", 0, count);
-    const impact_law law = (impact_law)quat_lua_get_choice(reader, "law", impact_lua_laws, IMPACT_POISSON);
-    const impact_solver solver =
-        (impact_solver)quat_lua_get_choice(reader, "solver", impact_lua_solvers, IMPACT_SOLVER_AUTO);
-    const int order = (int)quat_lua_get_integer(reader, "order", 8, 32, 0);
-    for (lua_Integer i = 0; i < count; i++) {
-        impact_collision *k = &c[i];
-        *k = (impact_collision){.law = law, .solver = solver, .series_order = order};
-        for (int b = 0; b < 2; b++) {
-            k->body[b].mass = number_of(reader, &mass[b], i);
-            inertia_of(reader, names[b][1], &j[b], i, &k->body[b]);
-            k->body[b].offset = vector_of(reader, &offset[b], i);
-            k->body[b].velocity = vector_of(reader, &velocity[b], i);
-            k->body[b].omega = vector_of(reader, &omega[b], i);
+    b->normal = open_vectors(reader, "n", count);
+    b->mu = open_numbers(reader, "mu", 0, count);
+    b->eps = open_numbers(reader, "eps", 0, count);
+    b->law = (impact_law)quat_lua_get_choice(reader, "law", impact_lua_laws, IMPACT_POISSON);
+    b->solver = (impact_solver)quat_lua_get_choice(reader, "solver", impact_lua_solvers, IMPACT_SOLVER_AUTO);
+    b->order = (int)quat_lua_get_integer(reader, "order", 8, 32, 0);
+    b->threads = (int)quat_lua_get_integer(reader, "threads", 0, 256, 1);
+}
+
+static void read_one(const quat_lua_reader *reader, const batch *b, lua_Integer row, impact_collision *c)
+{
+    *c = (impact_collision){.law = b->law, .solver = b->solver, .series_order = b->order};
+    for (int i = 0; i < 2; i++) {
+        impact_collider *body = &c->body[i];
+        body->mass = number_of(reader, &b->mass[i], row);
+        inertia_of(reader, body_keys[i][1], &b->j[i], row, body);
+        body->offset = vector_of(reader, &b->offset[i], row);
+        body->velocity = vector_of(reader, &b->velocity[i], row);
+        body->omega = vector_of(reader, &b->omega[i], row);
+    }
+    c->normal = vector_of(reader, &b->normal, row);
+    c->friction = number_of(reader, &b->mu, row);
+    c->restitution = number_of(reader, &b->eps, row);
+    char message[200];
+    if (impact_collide_check(c, message, sizeof message) != IMPACT_OK)
+        quat_lua_reader_error(reader, "impact %lld: %s", (long long)row + 1, message);
+}
+
+/* ---- results: columns, filled block by block ---- */
+
+enum { VECTORS = 5, NUMBERS = 3, COLUMNS = VECTORS + NUMBERS + 1 };
+
+static const char *const column_keys[COLUMNS] = {
+    "v1", "w1", "v2", "w2", "impulse", "energy_before", "energy_after", "normal_after", "status"};
+
+static void fill(lua_State *L, int first_column, const impact_outcome *o, impact_status status, lua_Integer row)
+{
+    const qvec3 vectors[VECTORS] = {o->velocity[0], o->omega[0], o->velocity[1], o->omega[1], o->impulse};
+    const double numbers[NUMBERS] = {o->energy_before, o->energy_after, o->normal_after};
+    for (int k = 0; k < VECTORS; k++) {
+        const double x[3] = {vectors[k].x, vectors[k].y, vectors[k].z};
+        for (int i = 0; i < 3; i++) {
+            lua_pushnumber(L, x[i]);
+            lua_rawseti(L, first_column + k, 3 * row + i + 1);
         }
-        k->normal = vector_of(reader, &normal, i);
-        k->friction = number_of(reader, &mu, i);
-        k->restitution = number_of(reader, &eps, i);
     }
-}
-
-static void push_vectors(lua_State *L, const char *key, const impact_outcome *o, lua_Integer count, size_t place)
-{
-    lua_createtable(L, (int)(3 * count), 0);
-    for (lua_Integer i = 0; i < count; i++) {
-        qvec3 v;
-        memcpy(&v, (const char *)&o[i] + place, sizeof v);
-        const double x[3] = {v.x, v.y, v.z};
-        for (int k = 0; k < 3; k++) {
-            lua_pushnumber(L, x[k]);
-            lua_rawseti(L, -2, 3 * i + k + 1);
-        }
+    for (int k = 0; k < NUMBERS; k++) {
+        lua_pushnumber(L, numbers[k]);
+        lua_rawseti(L, first_column + VECTORS + k, row + 1);
     }
-    lua_setfield(L, -2, key);
-}
-
-static void push_numbers(lua_State *L, const char *key, const impact_outcome *o, lua_Integer count, size_t place)
-{
-    lua_createtable(L, (int)count, 0);
-    for (lua_Integer i = 0; i < count; i++) {
-        double x;
-        memcpy(&x, (const char *)&o[i] + place, sizeof x);
-        lua_pushnumber(L, x);
-        lua_rawseti(L, -2, i + 1);
-    }
-    lua_setfield(L, -2, key);
-}
-
-static void push_all(lua_State *L, const impact_outcome *o, const impact_status *statuses, lua_Integer count)
-{
-    lua_createtable(L, 0, 12);
-    push_vectors(L, "v1", o, count, offsetof(impact_outcome, velocity));
-    push_vectors(L, "v2", o, count, offsetof(impact_outcome, velocity) + sizeof(qvec3));
-    push_vectors(L, "w1", o, count, offsetof(impact_outcome, omega));
-    push_vectors(L, "w2", o, count, offsetof(impact_outcome, omega) + sizeof(qvec3));
-    push_vectors(L, "impulse", o, count, offsetof(impact_outcome, impulse));
-    push_numbers(L, "energy_before", o, count, offsetof(impact_outcome, energy_before));
-    push_numbers(L, "energy_after", o, count, offsetof(impact_outcome, energy_after));
-    push_numbers(L, "normal_after", o, count, offsetof(impact_outcome, normal_after));
-    lua_createtable(L, (int)count, 0);
-    for (lua_Integer i = 0; i < count; i++) {
-        lua_pushstring(L, statuses[i] == IMPACT_OK           ? "ok"
-                          : statuses[i] == IMPACT_SEPARATING ? "separating"
-                                                             : impact_status_string(statuses[i]));
-        lua_rawseti(L, -2, i + 1);
-    }
-    lua_setfield(L, -2, "status");
+    lua_pushstring(L, status == IMPACT_OK           ? "ok"
+                      : status == IMPACT_SEPARATING ? "separating"
+                                                    : impact_status_string(status));
+    lua_rawseti(L, first_column + COLUMNS - 1, row + 1);
 }
 
 int impact_lua_collide_many(lua_State *L)
 {
+    enum { BLOCK = 16384 };
     const quat_lua_reader reader = quat_lua_read(L, 1, "collisions", NULL, keys);
     quat_lua_need(&reader, "count");
     quat_lua_need(&reader, "m1");
     quat_lua_need(&reader, "n");
     const lua_Integer count = quat_lua_get_integer(&reader, "count", 1, 100000000, 0);
-    const int threads = (int)quat_lua_get_integer(&reader, "threads", 0, 256, 1);
-    luaL_checkstack(L, 40, "collide_many");
+    luaL_checkstack(L, 60, "collide_many");
+    batch b;
+    open_all(&reader, &b, count);
     /* Blocks of Lua's own: nothing leaks when reading raises. */
-    impact_collision *c = lua_newuserdatauv(L, sizeof *c * (size_t)count, 0);
-    read_all(&reader, c, count);
-    char message[200];
-    for (lua_Integer i = 0; i < count; i++)
-        if (impact_collide_check(&c[i], message, sizeof message) != IMPACT_OK)
-            return quat_lua_reader_error(&reader, "impact %lld: %s", (long long)i + 1, message);
-    impact_outcome *o = lua_newuserdatauv(L, sizeof *o * (size_t)count, 0);
-    impact_status *statuses = lua_newuserdatauv(L, sizeof *statuses * (size_t)count, 0);
-    impact_collide_many(c, (size_t)count, threads, o, statuses);
-    push_all(L, o, statuses, count);
+    impact_collision *c = lua_newuserdatauv(L, sizeof *c * BLOCK, 0);
+    impact_outcome *o = lua_newuserdatauv(L, sizeof *o * BLOCK, 0);
+    impact_status *statuses = lua_newuserdatauv(L, sizeof *statuses * BLOCK, 0);
+    const int first_column = lua_gettop(L) + 1;
+    for (int k = 0; k < COLUMNS; k++) lua_createtable(L, (int)(k < VECTORS ? 3 * count : count), 0);
+    for (lua_Integer from = 0; from < count; from += BLOCK) {
+        const lua_Integer n = count - from < BLOCK ? count - from : BLOCK;
+        for (lua_Integer i = 0; i < n; i++) read_one(&reader, &b, from + i, &c[i]);
+        impact_collide_many(c, (size_t)n, b.threads, o, statuses);
+        for (lua_Integer i = 0; i < n; i++) fill(L, first_column, &o[i], statuses[i], from + i);
+    }
+    lua_createtable(L, 0, COLUMNS);
+    for (int k = 0; k < COLUMNS; k++) {
+        lua_pushvalue(L, first_column + k);
+        lua_setfield(L, -2, column_keys[k]);
+    }
     return 1;
 }
