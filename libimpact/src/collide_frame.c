@@ -77,18 +77,17 @@ static qvec3 across(qvec3 n)
 static double conditioning(double trace, double second, double det)
 {
     double low = det / second, high = trace;
+    /* Both at once: each alone is a chain of divisions. */
     for (int i = 0; i < 16; i++) {
-        const double value = ((low - trace) * low + second) * low - det, slope = (3 * low - 2 * trace) * low + second;
-        const double step = slope > 0 ? -value / slope : 0;
-        low += step;
-        if (!(step > 2e-3 * low)) break;
-    }
-    for (int i = 0; i < 16; i++) {
-        const double value = ((high - trace) * high + second) * high - det,
-                     slope = (3 * high - 2 * trace) * high + second;
-        const double step = slope > 0 ? value / slope : 0;
-        high -= step;
-        if (!(step > 2e-3 * high)) break;
+        const double low_value = ((low - trace) * low + second) * low - det,
+                     low_slope = (3 * low - 2 * trace) * low + second;
+        const double high_value = ((high - trace) * high + second) * high - det,
+                     high_slope = (3 * high - 2 * trace) * high + second;
+        const double up = low_slope > 0 ? -low_value / low_slope : 0,
+                     down = high_slope > 0 ? high_value / high_slope : 0;
+        low += up;
+        high -= down;
+        if (!(up > 2e-3 * low || down > 2e-3 * high)) break;
     }
     return fmax(high / low, 1);
 }
