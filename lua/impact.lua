@@ -17,6 +17,7 @@ core.layer()
 ---@field point fun(self, u: number, v: number): vec3  on the surface, u in [-pi, pi), v in [-pi/2, pi/2]
 ---@field normal fun(self, u: number, v: number): vec3  the outward unit normal there
 ---@field inside fun(self, x: vec): number  below 1 inside, 1 on the surface
+---@field hessian fun(self, direction: vec): number[][]  of the support function at the unit of direction, rows, m
 ---@field curvatures fun(self, direction: vec): number, number  1/m, larger first, where the normal is along direction
 ---@field mesh fun(self, nu: integer, nv: integer): vec3[], vec3[]  points and normals, nv + 1 rows of nu
 

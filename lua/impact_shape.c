@@ -143,6 +143,23 @@ static int shape_inside(lua_State *L)
     return 1;
 }
 
+/* shape:hessian(direction): the support function's at the unit of direction, three rows of three */
+static int shape_hessian(lua_State *L)
+{
+    const qvec3 d = arg_direction(L);
+    const qmat3 H = impact_shape_support_hessian(self(L), qvec3_scale(d, 1 / qvec3_norm(d)));
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; i++) {
+        lua_createtable(L, 3, 0);
+        for (int j = 0; j < 3; j++) {
+            lua_pushnumber(L, H.m[i][j]);
+            lua_rawseti(L, -2, j + 1);
+        }
+        lua_rawseti(L, -2, i + 1);
+    }
+    return 1;
+}
+
 /* shape:curvatures(direction): k1, k2 where the outward normal is along direction */
 static int shape_curvatures(lua_State *L)
 {
@@ -223,13 +240,9 @@ static int shape_tostring(lua_State *L)
 
 void impact_lua_open_shape(lua_State *L)
 {
-    static const luaL_Reg methods[] = {{"support", shape_support},
-                                       {"point", shape_point},
-                                       {"normal", shape_normal},
-                                       {"inside", shape_inside},
-                                       {"curvatures", shape_curvatures},
-                                       {"mesh", shape_mesh},
-                                       {NULL, NULL}};
+    static const luaL_Reg methods[] = {
+        {"support", shape_support},       {"point", shape_point}, {"normal", shape_normal},   {"inside", shape_inside},
+        {"curvatures", shape_curvatures}, {"mesh", shape_mesh},   {"hessian", shape_hessian}, {NULL, NULL}};
     static const luaL_Reg functions[] = {{"sphere", shape_sphere},
                                          {"plane", shape_plane},
                                          {"ellipsoid", shape_ellipsoid},

@@ -116,6 +116,21 @@ static void normal_points_from_body_2_to_body_1(void **state)
     near(impact_gap_rate(&c, (qvec3){0, 0, -2}, (qvec3){0, 0, 7}, (qvec3){0, 0, 0.5}, (qvec3){0, 0, 1}), 2.5, 1e-15);
 }
 
+/* The smallest eigenvalue of H1 + H2 + gap I: of spheres r1 + r2 + gap, of ellipsoids at their tips a^2/c and alike. */
+static void stiffness_of_known_contacts(void **state)
+{
+    (void)state;
+    const impact_solid round1 = superquadric(1, 1, 1, 2, 2, 2, (qvec3){0, 3, 4}),
+                       round2 = superquadric(2, 2, 2, 2, 2, 2, (qvec3){0, 0, 0});
+    impact_contact c;
+    assert_int_equal(impact_gap(&round1, &round2, NULL, &c), IMPACT_OK);
+    near(c.stiffness, 1 + 2 + 2, 1e-14);
+    const impact_solid tip = superquadric(1, 2, 3, 2, 2, 2, (qvec3){0, 0, 7}),
+                       low = superquadric(3, 1, 2, 2, 2, 2, (qvec3){0, 0, 0});
+    assert_int_equal(impact_gap(&tip, &low, NULL, &c), IMPACT_OK);
+    near(c.stiffness, 4.0 / 3 + 1.0 / 2 + 2, 1e-14); /* along y; along x it is 1/3 + 9/2 + 2 */
+}
+
 /* ---- identities over random pairs ---- */
 
 static void random_pair(random_stream *random, int family, double gap, impact_solid body[2], qvec3 *normal)
@@ -474,6 +489,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(agrees_with_the_oracle),
         cmocka_unit_test(normal_points_from_body_2_to_body_1),
+        cmocka_unit_test(stiffness_of_known_contacts),
         cmocka_unit_test(truth_by_construction),
         cmocka_unit_test(swapping_rotating_shifting_and_scaling),
         cmocka_unit_test(rate_is_the_derivative),

@@ -17,6 +17,10 @@ check.close(box:normal(0, 0).x, 1, 1e-15)
 local k1, k2 = impact.ellipsoid({ a = 1, b = 2, c = 3 }):curvatures { 0, 0, 1 }
 check.close(k1, 3, 1e-14)
 check.close(k2, 0.75, 1e-14)
+local H = impact.ellipsoid({ a = 1, b = 2, c = 3 }):hessian { 0, 0, 7 }
+check.close(H[1][1], 1 / 3, 1e-15)
+check.close(H[2][2], 4 / 3, 1e-15)
+check.close(H[3][3], 0, 1e-15)
 local points, normals = box:mesh(12, 6)
 check.equal(#points, 84)
 check.equal(#normals, 84)
