@@ -44,7 +44,7 @@ static double column_dot(const column *p, const column *q)
            (qvec3_dot(p->angular[0], q->angular[0]) + qvec3_dot(p->angular[1], q->angular[1]));
 }
 
-static column column_mix(double x, const column *p, double y, const column *q)
+static inline column column_mix(double x, const column *p, double y, const column *q)
 {
     column r;
     r.linear = qvec3_axpy(y, q->linear, qvec3_scale(p->linear, x));
@@ -128,7 +128,7 @@ void impact_frame_make(const impact_collision *collision, const impact_ready rea
     /* One-sided Jacobi: turn t1, t2 until their columns are orthogonal to rounding. */
     for (int sweep = 0; sweep < 3; sweep++) {
         const double xx = column_dot(&x, &x), yy = column_dot(&y, &y), xy = column_dot(&x, &y);
-        if (fabs(xy) <= DBL_EPSILON * sqrt(xx * yy)) break;
+        if (xy * xy <= 16 * DBL_EPSILON * DBL_EPSILON * (xx * yy)) break;
         const double zeta = (yy - xx) / (2 * xy);
         const double t = copysign(1 / (fabs(zeta) + sqrt(1 + zeta * zeta)), zeta);
         const double cs = 1 / sqrt(1 + t * t), sn = cs * t;
@@ -141,14 +141,15 @@ void impact_frame_make(const impact_collision *collision, const impact_ready rea
     }
     const double a = column_dot(&x, &x), b = column_dot(&y, &y), m = column_dot(&z, &z);
     const double c = column_dot(&x, &z), d = column_dot(&y, &z);
-    /* What the x and y columns leave of z; twice, since once is not enough (Giraud et al. 2005). */
-    column rest = z;
-    for (int pass = 0; pass < 2; pass++) {
-        const double cx = column_dot(&x, &rest) / a, dy = column_dot(&y, &rest) / b;
-        rest = column_mix(1, &rest, -cx, &x);
-        rest = column_mix(1, &rest, -dy, &y);
+    /* What the x and y columns leave of z; a second time where the first left little, since it is then rough (Giraud et al. 2005). */
+    column rest = column_mix(1, &z, -c / a, &x);
+    rest = column_mix(1, &rest, -d / b, &y);
+    double k = column_dot(&rest, &rest);
+    if (k < 0.25 * m) {
+        rest = column_mix(1, &rest, -column_dot(&x, &rest) / a, &x);
+        rest = column_mix(1, &rest, -column_dot(&y, &rest) / b, &y);
+        k = column_dot(&rest, &rest);
     }
-    const double k = column_dot(&rest, &rest);
     frame->t1 = t1;
     frame->t2 = t2;
     frame->a = a / m;
