@@ -73,7 +73,7 @@ void impact_motion_set_slack(impact_motion *motion, const impact_state *states)
         if (impact_is_held(pair) || pair->beyond || impact_world_distance_bound(world, pair, states) > 0) continue;
         impact_contact contact;
         impact_world_gap(world, pair, states, &contact);
-        pair->slack += fmax(0, -contact.gap); /* one that just lifted off may stand a rounding below zero */
+        pair->slack += fmax(0, -contact.gap); /* of bodies that began with an overlap */
     }
 }
 

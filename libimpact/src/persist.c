@@ -256,6 +256,15 @@ static void apply_impulse(const impact_world *world, impact_state *states, const
     s2->momentum = qvec3_sub(s2->momentum, qvec3_cross(touch->r2, impulse));
 }
 
+void impact_persist_close_gap(impact_world *world, impact_pair *pair, const impact_contact *contact,
+                              impact_state *states)
+{
+    const double w1 = world->bodies[pair->body1].inverse_mass, w2 = world->bodies[pair->body2].inverse_mass;
+    impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    s1->x = qvec3_axpy(-contact->gap * w1 / (w1 + w2), contact->normal, s1->x);
+    s2->x = qvec3_axpy(contact->gap * w2 / (w1 + w2), contact->normal, s2->x);
+}
+
 static void close_gaps(impact_world *world, impact_state *states)
 {
     for (int p = 0; p < world->pair_count; p++) {
@@ -263,10 +272,7 @@ static void close_gaps(impact_world *world, impact_state *states)
         if (!impact_is_held(pair)) continue;
         impact_contact contact;
         impact_world_gap(world, pair, states, &contact);
-        const double w1 = world->bodies[pair->body1].inverse_mass, w2 = world->bodies[pair->body2].inverse_mass;
-        impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
-        s1->x = qvec3_axpy(-contact.gap * w1 / (w1 + w2), contact.normal, s1->x);
-        s2->x = qvec3_axpy(contact.gap * w2 / (w1 + w2), contact.normal, s2->x);
+        impact_persist_close_gap(world, pair, &contact, states);
     }
 }
 

@@ -60,6 +60,10 @@ impact_touch impact_persist_touch(impact_world *world, int pair, const impact_st
 /* Lets the touch's pair slide from rest, against the friction as solved for. */
 void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch);
 
+/* Moves the pair's bodies along the normal so that the gap is zero. */
+void impact_persist_close_gap(impact_world *world, impact_pair *pair, const impact_contact *contact,
+                              impact_state *states);
+
 /* Puts positions and velocities back on the held contacts exactly. */
 void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states,
                             const impact_load *loads);

@@ -126,10 +126,16 @@ static bool meets(impact_scene *scene, int p, meeting *m)
     return true;
 }
 
-/* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies together. */
+/* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies together. Bounces
+ * that are met a rounding d late gain what they fall by it, and never rise less than d e^2/(1 - e^2): that counts as rest too. */
 static bool dies_out(const impact_scene *scene, const meeting *m, double speed)
 {
-    return m->acceleration < 0 && speed * speed < -2 * m->acceleration * scene->rest_height;
+    enum { MOST = 10 };
+    const impact_pair *pair = &scene->world.pairs[m->touch.pair];
+    const double late = impact_world_touching_distance(&scene->world, pair, scene->states);
+    const double gain = 1 / (1 - pair->restitution * pair->restitution);
+    const double height = fmax(scene->rest_height, late * fmin(gain, MOST));
+    return m->acceleration < 0 && speed * speed < -2 * m->acceleration * height;
 }
 
 /* ---- one impact ---- */
@@ -359,9 +365,12 @@ static impact_status arrive(impact_scene *scene, int p)
     impact_pair *pair = &world->pairs[p];
     impact_contact contact;
     impact_world_gap(world, pair, scene->states, &contact);
-    if (impact_world_inside_bounds(world, pair, scene->states, &contact) >= 0) return impact_scene_settle(scene);
-    pair->beyond = true;
-    return IMPACT_OK;
+    if (impact_world_inside_bounds(world, pair, scene->states, &contact) < 0) {
+        pair->beyond = true;
+        return IMPACT_OK;
+    }
+    if (contact.gap < 0) impact_persist_close_gap(world, pair, &contact, scene->states); /* a rounding; many would sum up */
+    return impact_scene_settle(scene);
 }
 
 /* The contact changes its mode, and the rest follows. */
