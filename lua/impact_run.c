@@ -332,11 +332,12 @@ static const char *outcome(const impact_lua_scene *self, impact_status status)
     case IMPACT_OK: return "end of time";
     case IMPACT_AT_REST: return "at rest";
     case IMPACT_EVENT_LIMIT: return "event limit";
+    case IMPACT_SOFT: return "inaccurate";
     default: return "stopped";
     }
 }
 
-/* Returns the reason it ended, or nil, message, "run" or "output". */
+/* Returns the reason it ended, with a message when that is "inaccurate"; or nil, message, "run" or "output". */
 static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, impact_status status)
 {
     char message[400] = "";
@@ -351,7 +352,9 @@ static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, impact_
     if (self->record_failed) return quat_lua_error(L, "not enough memory to record the run");
     if (good && closed >= 0) {
         lua_pushstring(L, outcome(self, status));
-        return 1;
+        if (status != IMPACT_SOFT) return 1;
+        lua_pushstring(L, impact_scene_message(self->scene));
+        return 2;
     }
     lua_pushnil(L);
     if (good || self->csv_failed) {

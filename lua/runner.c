@@ -33,7 +33,8 @@ static void usage(FILE *file)
           "  2  the command line is wrong\n"
           "  3  the run failed\n"
           "  4  an output could not be written\n"
-          "  5  --max-memory or --max-time was reached\n",
+          "  5  --max-memory or --max-time was reached\n"
+          "  6  done, but the energy account does not close: do not trust the digits\n",
           file);
 }
 
@@ -206,8 +207,10 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
     lua_call(L, 2, 3);
     clear_progress(runner);
     if (!lua_isnil(L, -3)) {
+        const char *doubt = lua_tostring(L, -2);
+        if (doubt) fprintf(stderr, "impact: %s\n", doubt);
         lua_pop(L, 2);
-        return IMPACT_EXIT_OK;
+        return doubt ? IMPACT_EXIT_INACCURATE : IMPACT_EXIT_OK;
     }
     const char *kind = lua_tostring(L, -1), *message = lua_tostring(L, -2);
     return complain_limits(runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
@@ -257,13 +260,13 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     lua_call(L, 1, 1);
     const bool plot = lua_toboolean(L, -1);
     lua_pop(L, 1);
-    int code = run_scene(L, scene, runner, name, plot);
-    if (code != IMPACT_EXIT_OK) return code;
+    const int ran = run_scene(L, scene, runner, name, plot);
+    if (ran != IMPACT_EXIT_OK && ran != IMPACT_EXIT_INACCURATE) return ran;
     const int reason = lua_gettop(L);
-    if (plot) code = draw_scene(L, scene, runner, name, &drawn);
+    const int drew = plot ? draw_scene(L, scene, runner, name, &drawn) : IMPACT_EXIT_OK;
     lua_settop(L, reason);
     if (!runner->quiet) summarise(L, scene, runner, name, drawn);
-    return code;
+    return drew != IMPACT_EXIT_OK ? drew : ran;
 }
 
 /* Protected: (runner) -> exit code */

@@ -20,7 +20,8 @@ enum {
     IMPACT_EXIT_USAGE = 2,
     IMPACT_EXIT_RUN = 3,
     IMPACT_EXIT_OUTPUT = 4,
-    IMPACT_EXIT_LIMIT = 5
+    IMPACT_EXIT_LIMIT = 5,
+    IMPACT_EXIT_INACCURATE = 6
 };
 
 typedef struct impact_runner {

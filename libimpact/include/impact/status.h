@@ -19,7 +19,7 @@ typedef enum impact_status {
     IMPACT_AT_REST = 2,     /* every body has come to rest */
     IMPACT_EVENT_LIMIT = 3, /* the scene's event limit was reached */
     IMPACT_SEPARATING = 4,  /* the bodies separate: no impact, velocities unchanged */
-    IMPACT_SOFT = 5,        /* answered, ill-conditioned: see the conditioning */
+    IMPACT_SOFT = 5,        /* answered, but do not trust the digits: see the conditioning, or the message */
     IMPACT_BRACKET = 6,     /* not settled to full accuracy; a bracket is given */
     IMPACT_DEEP = 7,        /* deep overlap: one of several local answers */
     IMPACT_NO_CONTACT = 8,  /* no contact within the interval asked for */
