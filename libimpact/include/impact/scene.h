@@ -65,7 +65,8 @@ typedef struct impact_scene_def {
     impact_solver solver; /* of impacts */
 
     double tolerance;   /* relative, of the motion's integration */
-    double rest_height; /* m: a bounce that would rise less than this is the last, and the contact is held */
+    double rest_height; /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the
+                          * contact is held */
     double rest_speed;  /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
     long max_events;    /* IMPACT_EVENT_LIMIT after so many */
 } impact_scene_def;
