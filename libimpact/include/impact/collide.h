@@ -24,8 +24,10 @@ typedef struct impact_collider {
     qvec3 omega;      /* rad/s, world */
 } impact_collider;
 
+/* When restitution ends: at eps times the impulse of compression; at u_z = -eps u_z(0); at eps^2 times the work of loading. */
 typedef enum impact_law { IMPACT_POISSON, IMPACT_NEWTON, IMPACT_STRONGE } impact_law;
 
+/* AUTO: closed form where the sliding direction does not turn, else the series; CVODE where only that can. */
 typedef enum impact_solver {
     IMPACT_SOLVER_AUTO,
     IMPACT_SOLVER_CLOSED_FORM,
@@ -52,8 +54,8 @@ typedef struct impact_collision {
     int series_order;                  /* Taylor series: 8 ... 32; 0: 22 */
     impact_friction_law *friction_law; /* in place of `friction`, by CVODE; NULL: constant friction */
     void *friction_context;
-    double
-        tangential_compliance; /* eta^2 = normal over tangential stiffness of the contact, by CVODE and Stronge's law; 0: rigid */
+    /* eta^2, normal over tangential stiffness of the contact: by CVODE (always BDF), Stronge's law; 0: rigid. */
+    double tangential_compliance;
     impact_collide_workspace *workspace; /* for CVODE; NULL: one is made for the call (it allocates), Adams at 1e-12 */
 } impact_collision;
 
@@ -76,12 +78,12 @@ typedef struct impact_outcome {
     double impulse_tangential;          /* magnitude across it, N s; at most mu times impulse_normal */
     double normal_before, normal_after; /* u_z, normal relative velocity at the contact, m/s; before < 0 */
     double compression_impulse;         /* p_c, N s, summed over compressions */
-    double work_compression, work_restitution,
-        work_friction;                  /* J: <= 0, >= 0, <= 0; their sum is the change of energy */
+    /* J: <= 0, >= 0, <= 0; their sum is the change of energy. A compliant contact's spring counts with friction. */
+    double work_compression, work_restitution, work_friction;
     double energy_before, energy_after; /* kinetic, J, of the bodies that move */
     int compressions;                   /* how many times the contact was compressed */
     int phase_count;
-    unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order */
+    unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order; what does not fit is left out */
     impact_solver solver;                    /* the one that answered */
     double conditioning; /* of the contact's inverse mass matrix M: largest over smallest eigenvalue; 1 is best */
     bool jammed;         /* friction drove the contact on into compression: u_z fell while it was < 0 */
@@ -108,8 +110,11 @@ IMPACT_API void impact_collide_workspace_destroy(impact_collide_workspace *works
 /* CVODE's work since the workspace was made. */
 IMPACT_API impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace);
 
-/* Solves one impact. IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome: nothing changed);
- * negative: the outcome holds the velocities given and NaN elsewhere. */
+/* Solves one impact (docs/collide.md). IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome: nothing changed);
+ * negative: the outcome holds the velocities given and NaN elsewhere: as impact_collide_check; IMPACT_EARGUMENT also where a closed form
+ * was asked for and there is none; IMPACT_EABSENT for CVODE in a build without it; IMPACT_EINTEGRATOR, IMPACT_EUNSETTLED, IMPACT_ENOMEM.
+ * A tangential velocity that is rounding of the velocities given counts as none. Sources: Mirtich & Canny 1995; Stronge 2000; the series
+ * after Jorba & Zou 2005. */
 IMPACT_API impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome);
 
 /* Solves count impacts into outcomes[count] and, when wanted, statuses[count], on so many threads (1 ... 256; 0: as many as the machine
