@@ -369,7 +369,8 @@ static impact_status arrive(impact_scene *scene, int p)
         pair->beyond = true;
         return IMPACT_OK;
     }
-    if (contact.gap < 0) impact_persist_close_gap(world, pair, &contact, scene->states); /* a rounding; many would sum up */
+    if (contact.gap < 0)
+        impact_persist_close_gap(world, pair, &contact, scene->states); /* a rounding; many would sum up */
     return impact_scene_settle(scene);
 }
 

@@ -64,11 +64,12 @@ typedef struct impact_scene_def {
     impact_law law;
     impact_solver solver; /* of impacts */
 
-    double tolerance;   /* relative, of the motion's integration */
-    double rest_height; /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the
+    double tolerance; /* relative, of the motion's integration */
+    double
+        rest_height; /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the
                           * contact is held */
-    double rest_speed;  /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
-    long max_events;    /* IMPACT_EVENT_LIMIT after so many */
+    double rest_speed; /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
+    long max_events;   /* IMPACT_EVENT_LIMIT after so many */
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis), Poisson's law,
