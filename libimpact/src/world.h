@@ -43,8 +43,8 @@ typedef struct impact_pair {
     double friction, restitution;
     impact_mode mode;
     bool beyond; /* IMPACT_OPEN: body 1 passed beside the bounds of the plane and is behind it */
-    double
-        slack; /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
+    /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
+    double slack;
     bool onset;      /* IMPACT_SLIDE: from rest, and slower than the world's onset_speed yet */
     qvec3 direction; /* IMPACT_SLIDE, onset: about where the slip goes */
     impact_gap_cache cache;

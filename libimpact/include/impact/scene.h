@@ -65,9 +65,9 @@ typedef struct impact_scene_def {
     impact_solver solver; /* of impacts */
 
     double tolerance; /* relative, of the motion's integration */
-    double
-        rest_height; /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the
-                          * contact is held */
+    /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the contact is
+     * held */
+    double rest_height;
     double rest_speed; /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
     long max_events;   /* IMPACT_EVENT_LIMIT after so many */
 } impact_scene_def;
@@ -106,8 +106,8 @@ typedef struct impact_usage {
     long integrator_starts, integrator_steps, integrator_rhs_calls;
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode; /* impacts, by solver */
-    long
-        impacts_simultaneous; /* of these, answers to another impact in the same instant, taken in the order of the definition */
+    /* of these, answers to another impact in the same instant, taken in the order of the definition */
+    long impacts_simultaneous;
     long events[IMPACT_EVENT_REST + 1]; /* by kind */
     long samples;
 } impact_usage;
