@@ -509,6 +509,39 @@ static void pivoting_goes_on(void **state)
     }
 }
 
+/* Painleve (1895): a rod that slides towards its lean is pressed into the floor by its own friction where mu > K_zz/K_xz, K the inverse
+ * mass of its lower end: no force holds it, and an impact without approach stops the slip. Below that, and away from its lean, it slides. */
+static void a_rod_that_jams_is_stopped_by_an_impact(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 12; k++) {
+        const double lean = 0.9, mu = 0.25 * (1 + k / 2), speed = k & 1 ? 3 : -3;
+        impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 0),
+                                     ellipsoid_body("rod", 1, 0.02, 0.02, (quat){cos(lean / 2), 0, sin(lean / 2), 0})};
+        qvec3 low;
+        const qvec3 down = quat_rotate_inverse(bodies[1].orientation, (qvec3){0, 0, -1});
+        bodies[1].position.z = impact_shape_support(&bodies[1].shape, down, &low);
+        bodies[1].velocity.x = speed;
+        bodies[1].friction = mu;
+        const qvec3 r = quat_rotate(bodies[1].orientation, low);
+        const double inertia = impact_shape_inertia(&bodies[1].shape).y; /* of a unit mass */
+        const bool jams = 1 + r.x * r.x / inertia + mu * copysign(1, speed) * r.x * r.z / inertia < 0;
+        const impact_scene_def def = scene_of(bodies, 2, 0.05);
+        impact_scene *scene = make_scene(&def);
+        scene_log log = {0};
+        const impact_recorder recorder = log_recorder(&log);
+        if (impact_scene_run(scene, &recorder) != IMPACT_OK) fail_msg("%s", impact_scene_message(scene));
+        assert_int_equal(log.events[0].kind, jams ? IMPACT_EVENT_IMPACT : IMPACT_EVENT_CONTACT);
+        if (jams) {
+            assert_string_equal(log.phases[0], "slip-c stick-c");
+            assert_at_most(log.events[0].t, 1e-5);
+            assert_true(log.events[0].energy_after < log.events[0].energy_before - 0.1);
+        }
+        free_log(&log);
+        impact_scene_destroy(scene);
+    }
+}
+
 /* ---- several contacts ---- */
 
 /* A ball that spins in the corner of a floor and a wall and slides on both: N1 = m g/(1 + mu^2), N2 = mu N1, and it stops after
@@ -693,6 +726,7 @@ int main(void)
         cmocka_unit_test(rolling_keeps_energy_and_the_contact_point_at_rest),
         cmocka_unit_test(slip_from_rest_goes_down_the_incline),
         cmocka_unit_test(pivoting_goes_on),
+        cmocka_unit_test(a_rod_that_jams_is_stopped_by_an_impact),
         cmocka_unit_test(spin_in_a_corner_dies_out),
         cmocka_unit_test(thrown_into_a_corner_it_settles),
         cmocka_unit_test(dropped_ellipsoids_gain_nothing),
