@@ -157,7 +157,7 @@ static impact_status run(impact_scene *scene, double t_end)
  * along an axis (exponents over 2) can pass that spot faster than the integrator sees. */
 static impact_status check_account(impact_scene *scene, impact_status status)
 {
-    const double tolerance = 1e-7;
+    const double tolerance = 1e-8 + 1e3 * scene->motion.tolerance;
     const impact_energy e = impact_scene_energy(scene);
     const double losses = e.damping_loss + e.sliding_loss + e.impact_loss, now = e.kinetic + e.potential;
     const double off = now - (e.start + e.force_work - losses);

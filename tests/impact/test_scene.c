@@ -607,7 +607,7 @@ static void an_account_that_does_not_close_is_told(void **state)
     if (status == IMPACT_SOFT)
         assert_non_null(strstr(impact_scene_message(scene), "the energy account is off by"));
     else
-        assert_at_most(fabs(off), 1e-7 * e.start);
+        assert_at_most(fabs(off), 1.1e-8 * e.start);
     impact_scene_destroy(scene);
 }
 
