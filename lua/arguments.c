@@ -108,8 +108,39 @@ int quat_lua_quietly(lua_State *L, lua_CFunction work)
 /* ---- one value, of an argument (reader NULL) or of a key ---- */
 
 /* The value at index in words for an error, at most a few dozen characters. */
+/* Numbers as they stand in a short table, by place or by letter, or in a quaternion; false when it is none of these. */
+static bool describe_numbers(lua_State *L, int index, char *text, size_t size)
+{
+    static const char *const letters[] = {"w", "x", "y", "z"};
+    const quat *q = luaL_testudata(L, index, QUAT_LUA_QUAT);
+    if (q) {
+        snprintf(text, size, "(%g, %g, %g, %g)", q->w, q->x, q->y, q->z);
+        return true;
+    }
+    if (!lua_istable(L, index)) return false;
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 2, NULL);
+    const lua_Unsigned length = lua_rawlen(L, index);
+    size_t used = (size_t)snprintf(text, size, "{");
+    int count = 0;
+    for (int i = 0; i < 4 && length <= 4; i++) {
+        const int type = length > 0 ? lua_rawgeti(L, index, i + 1) : raw_field(L, index, letters[i]);
+        const double value = lua_tonumber(L, -1);
+        lua_pop(L, 1);
+        if (type == LUA_TNIL) continue;
+        if (type != LUA_TNUMBER) return false;
+        const char *separator = count++ > 0 ? ", " : "";
+        if (used < size)
+            used += (size_t)snprintf(text + used, size - used, length > 0 ? "%s%s%.6g" : "%s%s = %.6g", separator,
+                                     length > 0 ? "" : letters[i], isnan(value) ? (double)NAN : value);
+    }
+    if (used < size) snprintf(text + used, size - used, "}");
+    return count > 0;
+}
+
 static const char *describe(lua_State *L, int index, char *text, size_t size)
 {
+    if (describe_numbers(L, index, text, size)) return text;
     switch (lua_type(L, index)) {
     case LUA_TNUMBER:
         if (lua_isinteger(L, index))
@@ -130,7 +161,7 @@ static const char *describe(lua_State *L, int index, char *text, size_t size)
 
 static int refuse(lua_State *L, const quat_lua_reader *reader, const char *key, int index, const char *wanted)
 {
-    char text[80];
+    char text[120];
     describe(L, index, text, sizeof text);
     if (reader) return quat_lua_reader_error(reader, "%s must be %s, got %s", key, wanted, text);
     return quat_lua_error(L, "argument '%s' must be %s, got %s", key, wanted, text);

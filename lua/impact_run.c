@@ -32,6 +32,9 @@ static void set_vec3(lua_State *L, int entry, int state, int place, const char *
     lua_setfield(L, state, key);
 }
 
+/* The sign of a NaN means nothing, and is not shown. */
+static double positive_nan(double x) { return isnan(x) ? (double)NAN : x; }
+
 /* A vector that a law returned; nil is zero. The law's entry is at index 2. */
 static qvec3 returned_vec3(lua_State *L, int index, const char *what)
 {
@@ -47,8 +50,13 @@ static qvec3 returned_vec3(lua_State *L, int index, const char *what)
     if (good) return (qvec3){v[0], v[1], v[2]};
     lua_rawgeti(L, 2, IMPACT_LUA_LAW_WHERE);
     lua_rawgeti(L, 2, IMPACT_LUA_LAW_NAME);
-    lua_pushfstring(L, "%sforce '%s': the %s must be a vector {x, y, z} of finite numbers", lua_tostring(L, -2),
-                    lua_tostring(L, -1), what);
+    char got[100];
+    if (lua_istable(L, index))
+        snprintf(got, sizeof got, "{%.6g, %.6g, %.6g}", positive_nan(v[0]), positive_nan(v[1]), positive_nan(v[2]));
+    else
+        snprintf(got, sizeof got, "a %s", luaL_typename(L, index));
+    lua_pushfstring(L, "%sforce '%s': the %s must be a vector {x, y, z} of finite numbers, got %s", lua_tostring(L, -2),
+                    lua_tostring(L, -1), what, got);
     lua_error(L);
     return (qvec3){0, 0, 0};
 }

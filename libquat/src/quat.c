@@ -19,43 +19,6 @@ const char *quat_status_string(quat_status status)
     return "unknown status";
 }
 
-/* ---- vectors and matrices ---- */
-
-double qvec3_norm(qvec3 a) { return quat_norm(quat_pure(a)); }
-
-quat_status qvec3_normalize(qvec3 a, qvec3 *unit)
-{
-    quat q;
-    const quat_status status = quat_normalize(quat_pure(a), &q);
-    *unit = status == QUAT_OK ? quat_vector(q) : qvec3_make(0, 0, 1);
-    return status;
-}
-
-qmat3 qmat3_mul(const qmat3 *a, const qmat3 *b)
-{
-    qmat3 r;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            r.m[i][j] = a->m[i][0] * b->m[0][j] + a->m[i][1] * b->m[1][j] + a->m[i][2] * b->m[2][j];
-    return r;
-}
-
-qmat3 qmat3_transpose(const qmat3 *a)
-{
-    qmat3 r;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) r.m[i][j] = a->m[j][i];
-    return r;
-}
-
-double qmat3_det(const qmat3 *a)
-{
-    const qvec3 r0 = {a->m[0][0], a->m[0][1], a->m[0][2]};
-    const qvec3 r1 = {a->m[1][0], a->m[1][1], a->m[1][2]};
-    const qvec3 r2 = {a->m[2][0], a->m[2][1], a->m[2][2]};
-    return qvec3_dot(r0, qvec3_cross(r1, r2));
-}
-
 /* ---- lengths ---- */
 
 double quat_norm(quat q)

@@ -96,7 +96,7 @@ static void time_stepping(void **state)
         c.friction = 0.05 + c.friction;
         c.tangential_compliance = 0.5 + (double)(i % 5) / 3;
         impact_outcome o;
-        qvec3 P;
+        qvec3 P = {NAN, NAN, NAN};
         assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
         assert_true(by_small_steps(&c, &P, 2e-5));
         const double off = qvec3_norm(qvec3_sub(P, o.impulse)) / qvec3_norm(P);

@@ -2,10 +2,7 @@
 # SPDX-License-Identifier: MIT
 # symbols.sh NAME SHARED STATIC: the shared library shows, and the archive defines, our prefixes only.
 set -euo pipefail
-case $1 in
-quat*) prefix='^(quat|qvec3|qmat3)_' ;;
-*) prefix="^${1}_" ;;
-esac
+prefix="^${1%%_*}_"
 bad=0
 check() { # check FILE NM-FLAG...
     local file=$1 names strangers

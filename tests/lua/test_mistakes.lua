@@ -43,8 +43,8 @@ refused(scene("mass = 1,"), "script.lua:2: body 'coin': shape is missing")
 refused(scene("shape = 3,"), "script.lua:2: body 'coin': shape must be a shape such as impact.sphere(0.3), got a number")
 refused(scene("shape = impact.sphere(-0.1),"), "script.lua:3: argument 'radius' must be a positive number, got -0.1")
 refused(scene(good .. "density = 3,"), "script.lua:2: body 'coin': give mass or density, not both")
-refused(scene(good .. "velocity = { 1, 2 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got a table")
-refused(scene(good .. "velocity = { 1, 2, 0/0 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got a table")
+refused(scene(good .. "velocity = { 1, 2 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got {1, 2}")
+refused(scene(good .. "velocity = { 1, 2, 0/0 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got {1, 2, nan}")
 refused(scene(good .. "omega = 3,"), "script.lua:2: body 'coin': omega must be a vector {x, y, z} of finite numbers, got 3")
 refused(scene(good .. "orientation = { 0, 0, 0, 0 },"), "script.lua:2: body 'coin': orientation must not be zero")
 refused(scene(good .. "normal = { 0, 0, 1 },"), "script.lua:2: body 'coin': normal is for planes; give orientation")
@@ -123,7 +123,7 @@ local code, _, said
 if require "impact".has "cvode" then
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) error('no') end } },"), "script.lua:7: no")
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) return { 0, 0, 0/0 } end } },"),
-    "script.lua:7: force 'pull': the force must be a vector {x, y, z} of finite numbers")
+    "script.lua:7: force 'pull': the force must be a vector {x, y, z} of finite numbers, got {0, 0, nan}")
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t, b) return { 0, 0, b.posision.x } end } },"),
     "script.lua:7: attempt to index a nil value (field 'posision')")
   code, _, said = runner.script(scene(good, "forces = { impact.force { law = function(t) return { 1e308 * math.sin(1e6 * t), 1e308, 1e308 } end } },"))

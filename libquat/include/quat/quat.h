@@ -72,11 +72,6 @@ static inline qvec3 qvec3_cross(qvec3 a, qvec3 b)
 }
 /* True when no component is infinite or NaN. */
 static inline bool qvec3_isfinite(qvec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
-/* Length without overflow or underflow; inf for an infinite component, else NaN for a NaN. */
-QUAT_API double qvec3_norm(qvec3 a);
-/* a/|a| at every finite, non-zero scale. Zero, infinite and NaN give QUAT_EDOMAIN and *unit = (0, 0, 1). */
-QUAT_API quat_status qvec3_normalize(qvec3 a, qvec3 *unit);
-
 /* ---- matrices ---- */
 
 static inline qmat3 qmat3_identity(void)
@@ -92,9 +87,27 @@ static inline qvec3 qmat3_apply(const qmat3 *m, qvec3 v)
                       m->m[2][0] * v.x + m->m[2][1] * v.y + m->m[2][2] * v.z);
 }
 /* The matrix product a b. */
-QUAT_API qmat3 qmat3_mul(const qmat3 *a, const qmat3 *b);
-QUAT_API qmat3 qmat3_transpose(const qmat3 *a);
-QUAT_API double qmat3_det(const qmat3 *a);
+static inline qmat3 qmat3_mul(const qmat3 *a, const qmat3 *b)
+{
+    qmat3 r = *a;
+    int i, j;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++) r.m[i][j] = a->m[i][0] * b->m[0][j] + a->m[i][1] * b->m[1][j] + a->m[i][2] * b->m[2][j];
+    return r;
+}
+static inline qmat3 qmat3_transpose(const qmat3 *a)
+{
+    const qmat3 r = {{{a->m[0][0], a->m[1][0], a->m[2][0]},
+                      {a->m[0][1], a->m[1][1], a->m[2][1]},
+                      {a->m[0][2], a->m[1][2], a->m[2][2]}}};
+    return r;
+}
+static inline double qmat3_det(const qmat3 *a)
+{
+    return qvec3_dot(
+        qvec3_make(a->m[0][0], a->m[0][1], a->m[0][2]),
+        qvec3_cross(qvec3_make(a->m[1][0], a->m[1][1], a->m[1][2]), qvec3_make(a->m[2][0], a->m[2][1], a->m[2][2])));
+}
 
 /* ---- building and taking apart ---- */
 
@@ -150,6 +163,17 @@ static inline bool quat_isfinite(quat q) { return isfinite(q.w) && isfinite(q.x)
 /* q/|q| at every finite, non-zero scale, every component to one rounding unit of the whole. Zero, infinite and NaN give
  * QUAT_EDOMAIN and *unit = 1. */
 QUAT_API quat_status quat_normalize(quat q, quat *unit);
+
+/* Length without overflow or underflow; inf for an infinite component, else NaN for a NaN. */
+static inline double qvec3_norm(qvec3 a) { return quat_norm(quat_make(0, a.x, a.y, a.z)); }
+/* a/|a| at every finite, non-zero scale. Zero, infinite and NaN give QUAT_EDOMAIN and *unit = (0, 0, 1). */
+static inline quat_status qvec3_normalize(qvec3 a, qvec3 *unit)
+{
+    quat q;
+    const quat_status status = quat_normalize(quat_make(0, a.x, a.y, a.z), &q);
+    *unit = status == QUAT_OK ? qvec3_make(q.x, q.y, q.z) : qvec3_make(0, 0, 1);
+    return status;
+}
 
 /* q times 1/|q|, inline and unchecked: to 3.5 rounding units for |q| between 1e-140 and 1e140, anything outside. */
 static inline quat quat_unit(quat q) { return quat_scale(q, 1 / sqrt(quat_norm2(q))); }
