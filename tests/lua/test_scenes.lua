@@ -89,10 +89,10 @@ for name, lists in pairs {
   fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig10 = { "fig10" }, fig11 = { "fig11" }, fig13 = { "fig13" },
   fig15 = { "fig15" }, fig16 = { "fig16" }, hodograph = { "hodograph" },
 } do
-  local code, out, said = runner.command(string.format("%s --out .", runner.quote(figures .. "/" .. name .. ".lua")))
+  local code, _, said = runner.command(string.format("%s --out .", runner.quote(figures .. "/" .. name .. ".lua")))
   check.equal(code, 0)
-  check.equal(said, "")
-  check.truth(out ~= "" or (runner.read(name .. ".png") or ""):sub(1, 4) == "\137PNG", "the picture of " .. name)
+  check.truth(said == "" or said:find("gnuplot is not installed", 1, true), "no complaint but of a missing gnuplot: " .. said)
+  check.truth(said ~= "" or (runner.read(name .. ".png") or ""):sub(1, 4) == "\137PNG", "the picture of " .. name)
   for _, list in ipairs(lists) do compare(figures, list .. ".csv") end
 end
 
