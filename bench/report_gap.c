@@ -5,8 +5,9 @@
  *
  * report_gap [--pairs N] [--seed S] [--threads T] [--family NAME]
  * CSV: one row per family of pairs and sign of the gap; errors relative to L + |c|, normals in rad, of the answers with
- * status ok. flagged: another status (a bracket, or deep). wrong: status ok and off by more than 1e-13. nearer:
- * overlaps whose nearest way out is another than the one constructed.
+ * status ok, nan where there was none. flagged: another status (a bracket, or deep). wrong: status ok and off by more
+ * than 1e-13. nearer: overlaps whose nearest way out is another than the one constructed. skipped: constructions dropped
+ * before the gap was asked for, their truth not being known; not among the pairs.
  */
 #include <pthread.h>
 #include <stdio.h>
@@ -27,7 +28,7 @@ typedef struct errors {
 
 typedef struct tally {
     errors gap, normal;
-    long pairs, flagged, wrong, nearer, paths[IMPACT_PATH_FALLBACK + 1];
+    long pairs, flagged, wrong, nearer, skipped, paths[IMPACT_PATH_FALLBACK + 1];
 } tally;
 
 typedef struct job {
@@ -50,6 +51,7 @@ static void note(errors *e, double error)
 static double quantile(const errors *e, double q)
 {
     long seen = 0;
+    if (e->count == 0) return NAN;
     for (int i = 0; i < BINS; i++) {
         seen += e->bin[i];
         if ((double)seen >= q * (double)e->count) return i == 0 ? 0 : pow(10, (i + 1) / 20.0 - 19);
@@ -89,14 +91,16 @@ static void one_pair(random_stream *random, int family, tally tallies[SIGNS])
     const double gap = sign == 0   ? size * random_log(random, 1e-9, 100)
                        : sign == 1 ? 0
                                    : -thin * random_log(random, 1e-12, 1e-4);
-    if (gap < 0 && !contact_is_deepest(body, normal, gap))
-        return; /* another normal is the nearer way out: no truth to be had */
+    tally *t = &tallies[sign];
+    if (gap < 0 && !contact_is_deepest(body, normal, gap)) {
+        t->skipped++; /* another normal is the nearer way out: no truth to be had */
+        return;
+    }
     body[0].position = qvec3_axpy(
         gap, normal, qvec3_sub(contact_support(&body[1], normal), contact_support(&body[0], qvec3_neg(normal))));
 
     impact_contact contact;
     const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
-    tally *t = &tallies[sign];
     t->pairs++;
     t->paths[contact.path]++;
     if (status != IMPACT_OK) {
@@ -142,11 +146,12 @@ static void *work(void *argument)
 
 static void print(const tally *t, const char *family, const char *sign)
 {
-    if (t->pairs == 0) return;
-    printf("%s,%s,%ld,%.2g,%.2g,%.2g,%.2g,%.2g,%ld,%ld,%ld,%ld,%ld,%ld,%ld\n", family, sign, t->pairs,
-           quantile(&t->gap, 0.5), quantile(&t->gap, 0.99), t->gap.worst, quantile(&t->normal, 0.5),
-           quantile(&t->normal, 0.99), t->flagged, t->wrong, t->nearer, t->paths[IMPACT_PATH_CLOSED_FORM],
-           t->paths[IMPACT_PATH_NEWTON], t->paths[IMPACT_PATH_GJK], t->paths[IMPACT_PATH_FALLBACK]);
+    if (t->pairs + t->skipped == 0) return;
+    printf("%s,%s,%ld,%.2g,%.2g,%.2g,%.2g,%.2g,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%ld\n", family, sign, t->pairs,
+           quantile(&t->gap, 0.5), quantile(&t->gap, 0.99), t->gap.count ? t->gap.worst : NAN,
+           quantile(&t->normal, 0.5), quantile(&t->normal, 0.99), t->flagged, t->wrong, t->nearer, t->skipped,
+           t->paths[IMPACT_PATH_CLOSED_FORM], t->paths[IMPACT_PATH_NEWTON], t->paths[IMPACT_PATH_GJK],
+           t->paths[IMPACT_PATH_FALLBACK]);
 }
 
 static void add(tally *into, const tally *from)
@@ -157,6 +162,7 @@ static void add(tally *into, const tally *from)
     into->flagged += from->flagged;
     into->wrong += from->wrong;
     into->nearer += from->nearer;
+    into->skipped += from->skipped;
     for (int i = 0; i <= IMPACT_PATH_FALLBACK; i++) into->paths[i] += from->paths[i];
 }
 
@@ -195,8 +201,8 @@ int main(int argc, char **argv)
         if (pthread_create(&jobs[k].thread, NULL, work, &jobs[k]) != 0) return 1;
     }
     for (long k = 0; k < threads; k++) pthread_join(jobs[k].thread, NULL);
-    printf("family,kind,pairs,gap_p50,gap_p99,gap_worst,normal_p50,normal_p99,flagged,wrong,nearer,closed_form,newton,"
-           "gjk,fallback\n");
+    printf("family,kind,pairs,gap_p50,gap_p99,gap_worst,normal_p50,normal_p99,flagged,wrong,nearer,skipped,closed_form,"
+           "newton,gjk,fallback\n");
     for (int f = 0; f < FAMILIES; f++)
         for (int sign = 0; sign < SIGNS; sign++) {
             tally *first = &jobs[0].tally[f][sign];
