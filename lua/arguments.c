@@ -317,14 +317,19 @@ static int distance(const char *a, const char *b)
     return d[m][n];
 }
 
-/* The key that was probably meant: at most a third of its letters wrong; NULL when none is near. */
+/* Whether the word is nothing but that letter, held too long: "rr" for "r". */
+static bool is_run(const char *word, const char *letter) { return *word && word[strspn(word, letter)] == '\0'; }
+
+/* The key that was probably meant: at most a third of its letters wrong, of a single letter its repeats; NULL when none
+ * is near. */
 static const char *nearest(const char *given, const char *const keys[])
 {
     const char *best = NULL;
     int best_distance = INT_MAX;
     for (int i = 0; keys[i]; i++) {
         const int d = distance(given, keys[i]);
-        if (d < best_distance && 3 * d <= (int)strlen(keys[i]) + 1) best = keys[i], best_distance = d;
+        const bool near = strlen(keys[i]) == 1 ? is_run(given, keys[i]) : 3 * d <= (int)strlen(keys[i]) + 1;
+        if (d < best_distance && near) best = keys[i], best_distance = d;
     }
     return best;
 }

@@ -55,6 +55,13 @@ static void push_contact(lua_State *L, const impact_contact *c, impact_status st
     lua_setfield(L, -2, "status");
 }
 
+static const char no_gap[] = "two planes have no gap: one of the bodies must have another shape";
+
+static bool both_planes(const impact_solid body[2])
+{
+    return body[0].shape.kind == IMPACT_PLANE && body[1].shape.kind == IMPACT_PLANE;
+}
+
 /* gap(A, B): {gap=, normal=, point1=, point2=, ...}, or nil, message */
 static int gap(lua_State *L)
 {
@@ -64,6 +71,7 @@ static int gap(lua_State *L)
         const quat_lua_reader reader = quat_lua_read(L, i + 1, i == 0 ? "first body" : "second body", NULL, keys);
         read_solid(&reader, &body[i]);
     }
+    if (both_planes(body)) return quat_lua_failure(L, no_gap);
     impact_contact contact;
     const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
     if (status < 0) return quat_lua_failure(L, impact_status_string(status));
@@ -87,6 +95,7 @@ static int toi(lua_State *L)
         motion[i].omega = quat_lua_get_vec3(&reader, "omega", zero);
     }
     const double t_max = quat_lua_arg_number(L, 3, "t_max", QUAT_LUA_NOT_NEGATIVE);
+    if (both_planes(body)) return quat_lua_failure(L, no_gap);
     double time;
     impact_contact contact;
     const impact_status status = impact_toi(&body[0], &motion[0], &body[1], &motion[1], t_max, &time, &contact);
