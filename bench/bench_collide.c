@@ -4,7 +4,8 @@
  *
  * CSV rows: class, solver, parameter, impacts, failures (no answer, or off by more than 1e-3), median and worst error of the velocities
  * against the 128-bit closed hodograph (without libquadmath: against the series of order 30), median time of one call in
- * microseconds, and that time over the series' own in the same class.
+ * microseconds, that time over the series' own in the same class, and the median and largest condition number of M of the
+ * class: an error of eps_machine times it is the input's rounding.
  * Classes: how the impact goes (slip, stick, reversal, jam, recompression), the scenes S1, S2, S5 that other programs are compared on,
  * and S5e, 300 random ellipsoids on a plane. `p_z`: what integration over the normal impulse itself does, by CVODE.
  */
@@ -28,7 +29,7 @@ typedef struct group {
     impact_collision c[MOST];
     qvec3 v[MOST][2], w[MOST][2];
     bool known[MOST];
-    double series_time;
+    double series_time, conditioning_median, conditioning_largest;
 } group;
 
 static double seconds(void)
@@ -119,6 +120,20 @@ static void *answer_share(void *context)
     return NULL;
 }
 
+/* Of the impacts whose right answer is known, as `run` has it. */
+static void condition(group *g)
+{
+    double conditioning[MOST];
+    int count = 0;
+    for (int i = 0; i < g->count; i++) {
+        impact_outcome o;
+        if (g->known[i] && impact_collide(&g->c[i], &o) == IMPACT_OK) conditioning[count++] = o.conditioning;
+    }
+    qsort(conditioning, (size_t)count, sizeof *conditioning, ascending);
+    g->conditioning_median = count ? conditioning[count / 2] : NAN;
+    g->conditioning_largest = count ? conditioning[count - 1] : NAN;
+}
+
 static void answer_all(group *g)
 {
     share shares[THREADS];
@@ -127,6 +142,7 @@ static void answer_all(group *g)
         if (pthread_create(&shares[i].thread, NULL, answer_share, &shares[i]) != 0) exit(1);
     }
     for (int i = 0; i < THREADS; i++) pthread_join(shares[i].thread, NULL);
+    condition(g);
 }
 
 /* ---- running ---- */
@@ -170,8 +186,9 @@ static double run(group *g, const char *name, const char *parameter, solver *sol
     qsort(times, (size_t)timed, sizeof *times, ascending);
     const double time = times[timed / 2];
     if (g->series_time == 0) g->series_time = time;
-    printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g\n", g->name, name, parameter, timed, failures,
-           count ? errors[count / 2] : NAN, count ? errors[count - 1] : NAN, 1e6 * time, time / g->series_time);
+    printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g,%.3g,%.3g\n", g->name, name, parameter, timed, failures,
+           count ? errors[count / 2] : NAN, count ? errors[count - 1] : NAN, 1e6 * time, time / g->series_time,
+           g->conditioning_median, g->conditioning_largest);
     fflush(stdout);
     return time;
 }
@@ -379,7 +396,7 @@ static void array_call(void)
             best = fmin(best, (seconds() - from) / COUNT);
         }
         if (t == 0) single = best;
-        printf("array of spheres,closed form,%d threads,%d,0,,,%.3g,%.3g\n", threads[t], COUNT, 1e6 * best,
+        printf("array of spheres,closed form,%d threads,%d,0,,,%.3g,%.3g,,\n", threads[t], COUNT, 1e6 * best,
                best / single);
     }
     free(c);
@@ -389,7 +406,8 @@ static void array_call(void)
 int main(void)
 {
     static group g;
-    printf("class,solver,parameter,impacts,failures,error_median,error_worst,us_median,time_over_series\n");
+    printf("class,solver,parameter,impacts,failures,error_median,error_worst,us_median,time_over_series,"
+           "conditioning_median,conditioning_largest\n");
     one_scene(&g, "S1a", scene_sphere(false));
     one_scene(&g, "S1b", scene_sphere(true));
     one_scene(&g, "S2a", scene_two_spheres(false));
