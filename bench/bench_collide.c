@@ -5,7 +5,7 @@
  * CSV rows: class, solver, parameter, impacts, failures (no answer, or off by more than 1e-3), median and worst error of the velocities
  * against the 128-bit closed hodograph (without libquadmath: against the series of order 30), median time of one call in
  * microseconds, that time over the series' own in the same class, and the median and largest condition number of M of the
- * class: an error of eps_machine times it is the input's rounding.
+ * class, by which rounding of the input can grow.
  * Classes: how the impact goes (slip, stick, reversal, jam, recompression), the scenes S1, S2, S5 that other programs are compared on,
  * and S5e, 300 random ellipsoids on a plane. `p_z`: what integration over the normal impulse itself does, by CVODE.
  */
