@@ -39,6 +39,8 @@
 ---@field log fun(self: quat): quat?, string?
 ---@field sqrt fun(self: quat): quat?, string?
 ---@field pow fun(self: quat, exponent: number | rotation): quat?, string?
+---@field log_unit fun(self: quat): vec3  half the rotation vector, length 0 ... pi, along this side of S^3
+---@field pow_unit fun(self: quat, exponent: number): quat
 ---@field distance fun(self: quat, q: rotation): number  angle between points of S^3, 0 ... pi
 ---@field rotation_distance fun(self: quat, q: rotation): number  angle of the rotation from one to the other, 0 ... pi
 ---@field angle fun(self: quat): number  rotation angle, 0 ... pi
@@ -49,6 +51,8 @@
 ---@field rotate_inverse fun(self: quat, v: vector): vec3
 ---@field rotate_list fun(self: quat, vectors: vector[] | number[]): vec3[] | number[]  list of vectors, or flat x, y, z, x ...
 ---@field rotate_inverse_list fun(self: quat, vectors: vector[] | number[]): vec3[] | number[]
+---@field rotate_soa fun(self: quat, x: number[], y: number[], z: number[]): number[], number[], number[]
+---@field rotate_strided fun(self: quat, data: number[], layout: layout): number[]  a copy, its points rotated
 ---@field to_rotation_vector fun(self: quat): vec3
 ---@field to_axis_angle fun(self: quat): vec3?, number | string, string?
 ---@field to_matrix fun(self: quat): number[][]  three rows
@@ -60,9 +64,20 @@
 ---@field integrate fun(self: quat, omega: (fun(t: number): vector), t0: number, t1: number, steps: integer, frame?: frame, method?: "magnus4" | "cf4"): quat
 ---@field slerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
 ---@field nlerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
----@field slerp_omega fun(self: quat, q: rotation): vec3  radians per unit of t, world axes
+---@field slerp_omega fun(self: quat, q: rotation, way?: "short" | "as_given"): vec3  radians per unit of t, world axes
 ---@field nlerp_omega fun(self: quat, q: rotation, t: number): vec3
 ---@field slerp_list fun(self: quat, q: rotation, t: number[]): quat[]
+---@field left_matrix fun(self: quat): number[][]  4 x 4: d(self q)/dq
+---@field right_matrix fun(self: quat): number[][]  4 x 4: d(p self)/dp
+---@field rotate_jacobian fun(self: quat, v: vector): number[][]  3 x 4: d(q v q*)/dq
+---@field log_jacobian fun(self: quat): number[][]?, string?  3 x 4: d(log_unit)/dq
+
+--- Component c (0, 1, 2) of point i (from 0) is at data[first + i point + c component]; strides of either sign.
+---@class layout
+---@field count integer  points
+---@field first? integer  1
+---@field point? integer  3
+---@field component? integer  1
 
 ---@class motion  x -> R x + s, a unit dual quaternion
 ---@operator mul(motion): motion
@@ -71,6 +86,7 @@
 ---@field apply_inverse fun(self: motion, x: vector): vec3
 ---@field rotation fun(self: motion): quat
 ---@field shift fun(self: motion): vec3
+---@field parts fun(self: motion): quat, quat  real, dual
 ---@field log fun(self: motion): vec3, vec3  rotation vector and translation rate
 ---@field sclerp fun(self: motion, q: motion, t: number): motion
 ---@field to_screw fun(self: motion): vec3?, vec3 | string, number?, number?, string?  axis, point, angle, slide
@@ -96,6 +112,7 @@ core.layer()
 ---@field new (fun(w: number, x: number, y: number, z: number): quat) | fun(q: rotation): quat
 ---@field identity fun(): quat
 ---@field pure fun(v: vector): quat
+---@field exp_pure fun(v: vector): quat  exp(0, v), the rotation by 2|v| about v
 ---@field random fun(generator?: fun(): number): quat  uniform; the generator returns numbers in [0, 1)
 ---@field reflect fun(normal: vector, v: vector): vec3
 ---@field from_reflections fun(n1: vector, n2: vector): quat
@@ -111,6 +128,10 @@ core.layer()
 ---@field squad_control fun(before: rotation, q: rotation, after: rotation): quat
 ---@field squad_omega fun(p: rotation, a: rotation, b: rotation, q: rotation, t: number): vec3
 ---@field spline fun(definition: spline_definition): rotation_spline?, string?
+---@field rotate_each fun(q: rotation[], vectors: vector[]): vec3[]  the i-th vector by the i-th rotation
+---@field to_matrix_list fun(q: rotation[]): number[][][]
+---@field from_matrix_list fun(matrices: number[][][]): quat[]?, string?
+---@field slerp_each fun(p: rotation[], q: rotation[], t: number[]): quat[]  0 <= t <= 1, the short way
 ---@field mul_list fun(p: rotation[], q: rotation[]): quat[]
 ---@field normalize_list fun(q: rotation[]): quat[]
 ---@field compose_list fun(q: rotation[]): quat  q[1] q[2] ...
@@ -119,7 +140,11 @@ core.layer()
 ---@field mean_karcher fun(q: rotation[], weights?: number[]): quat?, number | string, string?  mean, root mean square angle
 ---@field align fun(a: vector[], b: vector[], weights?: number[]): quat?, number | string, string?  b = R a: R, residual
 ---@field align_points fun(a: vector[], b: vector[], weights?: number[]): quat?, vec3 | string, number?, string?
+---@field exp_jacobian fun(v: vector): number[][]  4 x 3: d exp(0, v)/dv
+---@field rotation_vector_jacobian fun(r: vector, side?: "left" | "right"): number[][]  dr/dt to omega, world (left) or body
+---@field rotation_vector_jacobian_inverse fun(r: vector, side?: "left" | "right"): number[][]?, string?
 ---@field motion fun(q: rotation, shift: vector): motion
+---@field motion_from_parts fun(real: rotation, dual: rotation): motion?, string?  normalised
 ---@field screw fun(axis: vector, point: vector, angle: number, slide: number): motion?, string?
 ---@field motion_exp fun(rotation: vector, translation: vector): motion
 ---@field blend fun(motions: motion[], weights?: number[]): motion?, string?

@@ -5,12 +5,13 @@
 #include "quat_core.h"
 
 #include <stdio.h>
+#include <quat/batch.h>
 
 int luaopen_quat_core(lua_State *L)
 {
-    static void (*const rooms[])(lua_State *) = {quat_lua_open_quat,        quat_lua_open_rotation,
-                                                 quat_lua_open_interpolate, quat_lua_open_spline,
-                                                 quat_lua_open_array,       quat_lua_open_dual};
+    static void (*const rooms[])(lua_State *) = {
+        quat_lua_open_quat,  quat_lua_open_rotation, quat_lua_open_interpolate, quat_lua_open_spline,
+        quat_lua_open_array, quat_lua_open_average,  quat_lua_open_dual,        quat_lua_open_jacobian};
     luaL_checkversion(L); /* header against library */
     lua_newtable(L);
     lua_pushcfunction(L, quat_lua_layer);
@@ -28,18 +29,83 @@ void quat_lua_add_methods(lua_State *L, const luaL_Reg functions[])
     lua_pop(L, 2);
 }
 
-int quat_lua_result_on_top(lua_State *L, quat_status status)
+/* ---- results ---- */
+
+int quat_lua_results(lua_State *L, quat_status status, int count)
 {
     if (status < 0) return quat_lua_failure(L, quat_status_string(status));
-    if (status == QUAT_OK) return 1;
+    if (status == QUAT_OK) return count;
     lua_pushstring(L, quat_status_string(status));
-    return 2;
+    return count + 1;
 }
 
 int quat_lua_result(lua_State *L, quat_status status, quat q)
 {
     quat_lua_push_quat(L, q);
-    return quat_lua_result_on_top(L, status);
+    return quat_lua_results(L, status, 1);
+}
+
+int quat_lua_give_vec3(lua_State *L, qvec3 v)
+{
+    quat_lua_push_vec3(L, v);
+    return 1;
+}
+
+void quat_lua_push_matrix(lua_State *L, int rows, int columns, const double m[])
+{
+    lua_createtable(L, rows, 0);
+    for (int i = 0; i < rows; i++) {
+        quat_lua_push_numbers(L, (size_t)columns, m + (ptrdiff_t)i * columns);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
+void quat_lua_push_numbers(lua_State *L, size_t n, const double x[])
+{
+    lua_createtable(L, (int)n, 0);
+    for (size_t i = 0; i < n; i++) {
+        lua_pushnumber(L, x[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+void quat_lua_push_vec3s(lua_State *L, size_t n, const qvec3 v[])
+{
+    lua_createtable(L, (int)n, 0);
+    for (size_t i = 0; i < n; i++) {
+        quat_lua_push_vec3(L, v[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+void quat_lua_push_quats(lua_State *L, size_t n, const quat q[])
+{
+    lua_createtable(L, (int)n, 0);
+    for (size_t i = 0; i < n; i++) {
+        quat_lua_push_quat(L, q[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* ---- arguments ---- */
+
+quat quat_lua_arg_unit(lua_State *L, int arg, const char *name)
+{
+    quat unit;
+    if (quat_normalize(quat_lua_arg_quat(L, arg, name), &unit) != QUAT_OK)
+        quat_lua_error(L, "argument '%s' must not be zero", name);
+    return unit;
+}
+
+qmat3 quat_lua_arg_matrix(lua_State *L, int arg, const char *name)
+{
+    size_t n;
+    const qvec3 *const rows = quat_lua_arg_vec3s(L, arg, name, 3, &n);
+    if (n != 3) quat_lua_error(L, "argument '%s' must have 3 rows, got %d", name, (int)n);
+    const qmat3 m = {
+        {{rows[0].x, rows[0].y, rows[0].z}, {rows[1].x, rows[1].y, rows[1].z}, {rows[2].x, rows[2].y, rows[2].z}}};
+    lua_pop(L, 1); /* the buffer */
+    return m;
 }
 
 /* ---- lists ---- */
@@ -89,6 +155,15 @@ qvec3 *quat_lua_arg_vec3s(lua_State *L, int arg, const char *name, size_t least,
     return v;
 }
 
+quat *quat_lua_arg_units(lua_State *L, int arg, const char *name, size_t least, size_t *n)
+{
+    size_t bad;
+    quat *const q = quat_lua_arg_quats(L, arg, name, least, n);
+    if (quat_normalize_array(*n, q, q, &bad) != QUAT_OK)
+        quat_lua_error(L, "argument '%s[%d]' must not be zero", name, (int)bad + 1);
+    return q;
+}
+
 double *quat_lua_arg_numbers(lua_State *L, int arg, const char *name, size_t least, size_t *n)
 {
     *n = list_length(L, arg, name, least);
@@ -116,11 +191,8 @@ double *quat_lua_arg_weights(lua_State *L, int arg, size_t n)
     return w;
 }
 
-void quat_lua_push_quats(lua_State *L, size_t n, const quat q[])
+void quat_lua_same_length(lua_State *L, size_t n, size_t other, const char *name)
 {
-    lua_createtable(L, (int)n, 0);
-    for (size_t i = 0; i < n; i++) {
-        quat_lua_push_quat(L, q[i]);
-        lua_rawseti(L, -2, (lua_Integer)i + 1);
-    }
+    if (n != other)
+        quat_lua_error(L, "argument '%s' must have %d elements like the first, got %d", name, (int)n, (int)other);
 }

@@ -15,23 +15,45 @@ void quat_lua_open_rotation(lua_State *L);
 void quat_lua_open_interpolate(lua_State *L);
 void quat_lua_open_spline(lua_State *L);
 void quat_lua_open_array(lua_State *L);
+void quat_lua_open_average(lua_State *L);
+void quat_lua_open_jacobian(lua_State *L);
 void quat_lua_open_dual(lua_State *L);
 
 /* Adds functions (ended by {NULL, NULL}) to the module's table on top of the stack and to the methods of quaternions. */
 void quat_lua_add_methods(lua_State *L, const luaL_Reg functions[]);
 
-/* Returns q to the script; with a failure nil and a message; with a reason for success q and the reason. */
+/* ---- results ---- */
+
+/* Returns the `count` values on top of the stack to the script; with a failure nil and a message instead; with a reason
+ * for success the reason after them. */
+int quat_lua_results(lua_State *L, quat_status status, int count);
+/* The same for one quaternion. */
 int quat_lua_result(lua_State *L, quat_status status, quat q);
-/* The same for a result that is already on top of the stack. */
-int quat_lua_result_on_top(lua_State *L, quat_status status);
+/* Returns one vector to the script. */
+int quat_lua_give_vec3(lua_State *L, qvec3 v);
+/* A matrix as a list of rows, each a list of numbers; a row-major array. */
+void quat_lua_push_matrix(lua_State *L, int rows, int columns, const double m[]);
+void quat_lua_push_numbers(lua_State *L, size_t n, const double x[]);
+void quat_lua_push_vec3s(lua_State *L, size_t n, const qvec3 v[]);
+void quat_lua_push_quats(lua_State *L, size_t n, const quat q[]);
+
+/* ---- arguments ---- */
+
+/* A quaternion that stands for a rotation, normalised: anything but zero. */
+quat quat_lua_arg_unit(lua_State *L, int arg, const char *name);
+/* Three rows of three finite numbers. */
+qmat3 quat_lua_arg_matrix(lua_State *L, int arg, const char *name);
 
 /* Lists, read into a buffer that Lua collects: n elements of the list at arg. The list is pinned by the buffer's place on
  * the stack; at least `least` elements are asked for. */
 quat *quat_lua_arg_quats(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 qvec3 *quat_lua_arg_vec3s(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 double *quat_lua_arg_numbers(lua_State *L, int arg, const char *name, size_t least, size_t *n);
+/* The same, normalised. */
+quat *quat_lua_arg_units(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 /* NULL for nil or none, else n numbers that are not negative. */
 double *quat_lua_arg_weights(lua_State *L, int arg, size_t n);
-void quat_lua_push_quats(lua_State *L, size_t n, const quat q[]);
+/* Raises an error unless the list called `name` is as long as the first one, n. */
+void quat_lua_same_length(lua_State *L, size_t n, size_t other, const char *name);
 
 #endif

@@ -25,18 +25,10 @@ static int give(lua_State *L, qdual p)
     return 1;
 }
 
-static int vector(lua_State *L, qvec3 v)
-{
-    quat_lua_push_vec3(L, v);
-    return 1;
-}
-
 /* motion(q, shift): x -> q x q* + shift. */
 static int l_motion(lua_State *L)
 {
-    quat q;
-    if (quat_normalize(quat_lua_arg_quat(L, 1, "q"), &q) != QUAT_OK)
-        return quat_lua_error(L, "argument 'q' must not be zero");
+    const quat q = quat_lua_arg_unit(L, 1, "q");
     return give(L, quat_dual_from(q, quat_lua_arg_vec3(L, 2, "shift")));
 }
 
@@ -47,6 +39,15 @@ static int l_screw(lua_State *L)
     const double angle = quat_lua_arg_number(L, 3, "angle", QUAT_LUA_FINITE),
                  slide = quat_lua_arg_number(L, 4, "slide", QUAT_LUA_FINITE);
     const quat_status status = quat_dual_from_screw(axis, point, angle, slide, &p);
+    return status < 0 ? quat_lua_failure(L, quat_status_string(status)) : give(L, p);
+}
+
+/* motion_from_parts(real, dual): the unit dual quaternion nearest in direction. */
+static int l_motion_from_parts(lua_State *L)
+{
+    qdual p;
+    const quat real = quat_lua_arg_quat(L, 1, "real");
+    const quat_status status = quat_dual_normalize(quat_dual_make(real, quat_lua_arg_quat(L, 2, "dual")), &p);
     return status < 0 ? quat_lua_failure(L, quat_status_string(status)) : give(L, p);
 }
 
@@ -79,18 +80,26 @@ static int meta_tostring(lua_State *L)
 static int l_inverse(lua_State *L) { return give(L, quat_dual_conj(motion(L, 1, "motion"))); }
 static int l_apply(lua_State *L)
 {
-    return vector(L, quat_dual_apply(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x")));
+    return quat_lua_give_vec3(L, quat_dual_apply(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x")));
 }
 static int l_apply_inverse(lua_State *L)
 {
-    return vector(L, quat_dual_apply_inverse(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x")));
+    return quat_lua_give_vec3(L, quat_dual_apply_inverse(motion(L, 1, "motion"), quat_lua_arg_vec3(L, 2, "x")));
 }
-static int l_shift(lua_State *L) { return vector(L, quat_dual_shift(motion(L, 1, "motion"))); }
+static int l_shift(lua_State *L) { return quat_lua_give_vec3(L, quat_dual_shift(motion(L, 1, "motion"))); }
 
 static int l_rotation(lua_State *L)
 {
     quat_lua_push_quat(L, motion(L, 1, "motion").real);
     return 1;
+}
+
+static int l_parts(lua_State *L)
+{
+    const qdual p = motion(L, 1, "motion");
+    quat_lua_push_quat(L, p.real);
+    quat_lua_push_quat(L, p.dual);
+    return 2;
 }
 
 static int l_log(lua_State *L)
@@ -132,26 +141,30 @@ static int l_to_screw(lua_State *L)
     qvec3 axis, point;
     double angle, slide;
     const quat_status status = quat_dual_to_screw(motion(L, 1, "motion"), &axis, &point, &angle, &slide);
-    if (status < 0) return quat_lua_failure(L, quat_status_string(status));
     quat_lua_push_vec3(L, axis);
     quat_lua_push_vec3(L, point);
     lua_pushnumber(L, angle);
     lua_pushnumber(L, slide);
-    if (status == QUAT_OK) return 4;
-    lua_pushstring(L, quat_status_string(status));
-    return 5;
+    return quat_lua_results(L, status, 4);
 }
 
 void quat_lua_open_dual(lua_State *L)
 {
     static const luaL_Reg meta[] = {
         {"__mul", meta_mul}, {"__eq", meta_eq}, {"__tostring", meta_tostring}, {NULL, NULL}};
-    static const luaL_Reg methods[] = {
-        {"inverse", l_inverse}, {"apply", l_apply},       {"apply_inverse", l_apply_inverse},
-        {"shift", l_shift},     {"rotation", l_rotation}, {"log", l_log},
-        {"sclerp", l_sclerp},   {"to_screw", l_to_screw}, {NULL, NULL}};
-    static const luaL_Reg functions[] = {
-        {"motion", l_motion}, {"screw", l_screw}, {"motion_exp", l_motion_exp}, {"blend", l_blend}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"inverse", l_inverse},
+                                       {"apply", l_apply},
+                                       {"apply_inverse", l_apply_inverse},
+                                       {"shift", l_shift},
+                                       {"rotation", l_rotation},
+                                       {"parts", l_parts},
+                                       {"log", l_log},
+                                       {"sclerp", l_sclerp},
+                                       {"to_screw", l_to_screw},
+                                       {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"motion", l_motion}, {"motion_from_parts", l_motion_from_parts},
+                                         {"screw", l_screw},   {"motion_exp", l_motion_exp},
+                                         {"blend", l_blend},   {NULL, NULL}};
     luaL_newmetatable(L, DUAL);
     luaL_setfuncs(L, meta, 0);
     lua_newtable(L);

@@ -6,22 +6,19 @@
 
 #include <quat/interpolate.h>
 
-static quat unit(lua_State *L, int index, const char *name)
+/* The last argument, "short" unless given. */
+static bool as_given(lua_State *L, int index)
 {
-    quat q;
-    if (quat_normalize(quat_lua_arg_quat(L, index, name), &q) != QUAT_OK)
-        quat_lua_error(L, "argument '%s' must not be zero", name);
-    return q;
+    static const char *const ways[] = {"short", "as_given", NULL};
+    return !lua_isnoneornil(L, index) && quat_lua_arg_choice(L, index, "way", ways) == 1;
 }
 
 /* One of the two forms of f(p, q, t [, "short" | "as_given"]). */
 static int between(lua_State *L, quat (*rotations)(quat, quat, double), quat (*points)(quat, quat, double))
 {
-    static const char *const ways[] = {"short", "as_given", NULL};
-    const quat p = unit(L, 1, "p"), q = unit(L, 2, "q");
+    const quat p = quat_lua_arg_unit(L, 1, "p"), q = quat_lua_arg_unit(L, 2, "q");
     const double t = quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE);
-    const bool given = !lua_isnoneornil(L, 4) && quat_lua_arg_choice(L, 4, "way", ways) == 1;
-    quat_lua_push_quat(L, given ? points(p, q, t) : rotations(p, q, t));
+    quat_lua_push_quat(L, as_given(L, 4) ? points(p, q, t) : rotations(p, q, t));
     return 1;
 }
 
@@ -30,35 +27,36 @@ static int l_nlerp(lua_State *L) { return between(L, quat_nlerp, quat_nlerp_as_g
 
 static int l_slerp_omega(lua_State *L)
 {
-    quat_lua_push_vec3(L, quat_slerp_omega(unit(L, 1, "p"), unit(L, 2, "q")));
-    return 1;
+    const quat p = quat_lua_arg_unit(L, 1, "p"), q = quat_lua_arg_unit(L, 2, "q");
+    return quat_lua_give_vec3(L, as_given(L, 3) ? quat_slerp_as_given_omega(p, q) : quat_slerp_omega(p, q));
 }
 
 static int l_nlerp_omega(lua_State *L)
 {
-    const quat p = unit(L, 1, "p"), q = unit(L, 2, "q");
-    quat_lua_push_vec3(L, quat_nlerp_omega(p, q, quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE)));
-    return 1;
+    const quat p = quat_lua_arg_unit(L, 1, "p"), q = quat_lua_arg_unit(L, 2, "q");
+    return quat_lua_give_vec3(L, quat_nlerp_omega(p, q, quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE)));
 }
 
 static int l_squad(lua_State *L)
 {
-    const quat p = unit(L, 1, "p"), a = unit(L, 2, "a"), b = unit(L, 3, "b"), q = unit(L, 4, "q");
+    const quat p = quat_lua_arg_unit(L, 1, "p"), a = quat_lua_arg_unit(L, 2, "a"), b = quat_lua_arg_unit(L, 3, "b"),
+               q = quat_lua_arg_unit(L, 4, "q");
     quat_lua_push_quat(L, quat_squad(p, a, b, q, quat_lua_arg_number(L, 5, "t", QUAT_LUA_FINITE)));
     return 1;
 }
 
 static int l_squad_control(lua_State *L)
 {
-    quat_lua_push_quat(L, quat_squad_control(unit(L, 1, "before"), unit(L, 2, "q"), unit(L, 3, "after")));
+    quat_lua_push_quat(L, quat_squad_control(quat_lua_arg_unit(L, 1, "before"), quat_lua_arg_unit(L, 2, "q"),
+                                             quat_lua_arg_unit(L, 3, "after")));
     return 1;
 }
 
 static int l_squad_omega(lua_State *L)
 {
-    const quat p = unit(L, 1, "p"), a = unit(L, 2, "a"), b = unit(L, 3, "b"), q = unit(L, 4, "q");
-    quat_lua_push_vec3(L, quat_squad_omega(p, a, b, q, quat_lua_arg_number(L, 5, "t", QUAT_LUA_FINITE)));
-    return 1;
+    const quat p = quat_lua_arg_unit(L, 1, "p"), a = quat_lua_arg_unit(L, 2, "a"), b = quat_lua_arg_unit(L, 3, "b"),
+               q = quat_lua_arg_unit(L, 4, "q");
+    return quat_lua_give_vec3(L, quat_squad_omega(p, a, b, q, quat_lua_arg_number(L, 5, "t", QUAT_LUA_FINITE)));
 }
 
 void quat_lua_open_interpolate(lua_State *L)

@@ -10,14 +10,6 @@
 
 static quat arg(lua_State *L, int index, const char *name) { return quat_lua_arg_quat(L, index, name); }
 
-static quat unit_arg(lua_State *L, int index, const char *name)
-{
-    quat unit;
-    if (quat_normalize(arg(L, index, name), &unit) != QUAT_OK)
-        quat_lua_error(L, "argument '%s' must not be zero", name);
-    return unit;
-}
-
 static int give(lua_State *L, quat q)
 {
     if (!isfinite(q.w) || !isfinite(q.x) || !isfinite(q.y) || !isfinite(q.z)) /* of finite operands: an overflow */
@@ -58,11 +50,7 @@ static int l_components(lua_State *L)
     return 4;
 }
 
-static int l_vector(lua_State *L)
-{
-    quat_lua_push_vec3(L, quat_vector(arg(L, 1, "q")));
-    return 1;
-}
+static int l_vector(lua_State *L) { return quat_lua_give_vec3(L, quat_vector(arg(L, 1, "q"))); }
 
 /* q.w, q.x, q.y, q.z, or a method. */
 static int meta_index(lua_State *L)
@@ -146,19 +134,19 @@ static int l_norm(lua_State *L) { return number(L, quat_norm(arg(L, 1, "q"))); }
 static int l_dot(lua_State *L) { return number(L, quat_dot(arg(L, 1, "p"), arg(L, 2, "q"))); }
 static int l_mul_compensated(lua_State *L) { return give(L, quat_mul_compensated(arg(L, 1, "p"), arg(L, 2, "q"))); }
 
-static int l_inverse(lua_State *L)
+/* One of the functions of one quaternion that can fail. */
+static int of_one(lua_State *L, quat_status (*function)(quat, quat *))
 {
     quat r;
-    const quat_status status = quat_inverse(arg(L, 1, "q"), &r);
+    const quat_status status = function(arg(L, 1, "q"), &r);
     return quat_lua_result(L, status, r);
 }
 
-static int l_normalize(lua_State *L)
-{
-    quat r;
-    const quat_status status = quat_normalize(arg(L, 1, "q"), &r);
-    return quat_lua_result(L, status, r);
-}
+static int l_inverse(lua_State *L) { return of_one(L, quat_inverse); }
+static int l_normalize(lua_State *L) { return of_one(L, quat_normalize); }
+static int l_exp(lua_State *L) { return of_one(L, quat_exp); }
+static int l_log(lua_State *L) { return of_one(L, quat_log); }
+static int l_sqrt(lua_State *L) { return of_one(L, quat_sqrt); }
 
 static int l_div_left(lua_State *L)
 {
@@ -167,25 +155,13 @@ static int l_div_left(lua_State *L)
     return quat_lua_result(L, status, r);
 }
 
-static int l_exp(lua_State *L)
+/* On the unit sphere: exp_pure(v), q:log_unit(), q:pow_unit(t). */
+static int l_exp_pure(lua_State *L) { return give(L, quat_exp_pure(quat_lua_arg_vec3(L, 1, "v"))); }
+static int l_log_unit(lua_State *L) { return quat_lua_give_vec3(L, quat_log_unit(quat_lua_arg_unit(L, 1, "q"))); }
+static int l_pow_unit(lua_State *L)
 {
-    quat r;
-    const quat_status status = quat_exp(arg(L, 1, "q"), &r);
-    return quat_lua_result(L, status, r);
-}
-
-static int l_log(lua_State *L)
-{
-    quat r;
-    const quat_status status = quat_log(arg(L, 1, "q"), &r);
-    return quat_lua_result(L, status, r);
-}
-
-static int l_sqrt(lua_State *L)
-{
-    quat r;
-    const quat_status status = quat_sqrt(arg(L, 1, "q"), &r);
-    return quat_lua_result(L, status, r);
+    const quat q = quat_lua_arg_unit(L, 1, "q");
+    return give(L, quat_pow_unit(q, quat_lua_arg_number(L, 2, "exponent", QUAT_LUA_FINITE)));
 }
 
 static int l_pow(lua_State *L)
@@ -200,10 +176,13 @@ static int l_pow(lua_State *L)
 
 /* ---- distances ---- */
 
-static int l_distance(lua_State *L) { return number(L, quat_distance(unit_arg(L, 1, "p"), unit_arg(L, 2, "q"))); }
+static int l_distance(lua_State *L)
+{
+    return number(L, quat_distance(quat_lua_arg_unit(L, 1, "p"), quat_lua_arg_unit(L, 2, "q")));
+}
 static int l_rotation_distance(lua_State *L)
 {
-    return number(L, quat_rotation_distance(unit_arg(L, 1, "p"), unit_arg(L, 2, "q")));
+    return number(L, quat_rotation_distance(quat_lua_arg_unit(L, 1, "p"), quat_lua_arg_unit(L, 2, "q")));
 }
 static int l_angle(lua_State *L) { return number(L, quat_angle(arg(L, 1, "q"))); }
 static int l_nearest(lua_State *L) { return give(L, quat_nearest(arg(L, 1, "q"), arg(L, 2, "reference"))); }
@@ -217,7 +196,7 @@ static int l_near(lua_State *L)
 
 static int l_same_rotation(lua_State *L)
 {
-    const quat p = unit_arg(L, 1, "p"), q = unit_arg(L, 2, "q");
+    const quat p = quat_lua_arg_unit(L, 1, "p"), q = quat_lua_arg_unit(L, 2, "q");
     lua_pushboolean(L, quat_same_rotation(p, q, quat_lua_arg_number(L, 3, "angle", QUAT_LUA_NOT_NEGATIVE)));
     return 1;
 }
@@ -265,6 +244,8 @@ void quat_lua_open_quat(lua_State *L)
                                        {"log", l_log},
                                        {"sqrt", l_sqrt},
                                        {"pow", l_pow},
+                                       {"log_unit", l_log_unit},
+                                       {"pow_unit", l_pow_unit},
                                        {"distance", l_distance},
                                        {"rotation_distance", l_rotation_distance},
                                        {"angle", l_angle},
@@ -272,8 +253,8 @@ void quat_lua_open_quat(lua_State *L)
                                        {"near", l_near},
                                        {"same_rotation", l_same_rotation},
                                        {NULL, NULL}};
-    static const luaL_Reg functions[] = {
-        {"new", l_new}, {"identity", l_identity}, {"pure", l_pure}, {"random", l_random}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"new", l_new},           {"identity", l_identity}, {"pure", l_pure},
+                                         {"exp_pure", l_exp_pure}, {"random", l_random},     {NULL, NULL}};
     luaL_newmetatable(L, QUAT_LUA_QUAT);
     luaL_setfuncs(L, meta, 0);
     luaL_getsubtable(L, -1, "methods");

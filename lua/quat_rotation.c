@@ -8,20 +8,6 @@
 #include <quat/integrate.h>
 #include <quat/rotation.h>
 
-static quat rotation(lua_State *L, int index, const char *name)
-{
-    quat unit;
-    if (quat_normalize(quat_lua_arg_quat(L, index, name), &unit) != QUAT_OK)
-        quat_lua_error(L, "argument '%s' must not be zero", name);
-    return unit;
-}
-
-static int vector(lua_State *L, qvec3 v)
-{
-    quat_lua_push_vec3(L, v);
-    return 1;
-}
-
 static qvec3 direction(lua_State *L, int index, const char *name)
 {
     qvec3 n;
@@ -30,14 +16,17 @@ static qvec3 direction(lua_State *L, int index, const char *name)
     return n;
 }
 
-static int l_rotate(lua_State *L) { return vector(L, quat_rotate(rotation(L, 1, "q"), quat_lua_arg_vec3(L, 2, "v"))); }
+static int l_rotate(lua_State *L)
+{
+    return quat_lua_give_vec3(L, quat_rotate(quat_lua_arg_unit(L, 1, "q"), quat_lua_arg_vec3(L, 2, "v")));
+}
 static int l_rotate_inverse(lua_State *L)
 {
-    return vector(L, quat_rotate_inverse(rotation(L, 1, "q"), quat_lua_arg_vec3(L, 2, "v")));
+    return quat_lua_give_vec3(L, quat_rotate_inverse(quat_lua_arg_unit(L, 1, "q"), quat_lua_arg_vec3(L, 2, "v")));
 }
 static int l_reflect(lua_State *L)
 {
-    return vector(L, quat_reflect(direction(L, 1, "normal"), quat_lua_arg_vec3(L, 2, "v")));
+    return quat_lua_give_vec3(L, quat_reflect(direction(L, 1, "normal"), quat_lua_arg_vec3(L, 2, "v")));
 }
 static int l_from_reflections(lua_State *L)
 {
@@ -50,7 +39,10 @@ static int l_from_rotation_vector(lua_State *L)
     quat_lua_push_quat(L, quat_from_rotation_vector(quat_lua_arg_vec3(L, 1, "r")));
     return 1;
 }
-static int l_to_rotation_vector(lua_State *L) { return vector(L, quat_to_rotation_vector(rotation(L, 1, "q"))); }
+static int l_to_rotation_vector(lua_State *L)
+{
+    return quat_lua_give_vec3(L, quat_to_rotation_vector(quat_lua_arg_unit(L, 1, "q")));
+}
 
 static int l_from_axis_angle(lua_State *L)
 {
@@ -65,45 +57,24 @@ static int l_to_axis_angle(lua_State *L)
     qvec3 axis;
     double angle;
     const quat_status status = quat_to_axis_angle(quat_lua_arg_quat(L, 1, "q"), &axis, &angle);
-    if (status < 0) return quat_lua_failure(L, quat_status_string(status));
     quat_lua_push_vec3(L, axis);
     lua_pushnumber(L, angle);
-    if (status == QUAT_OK) return 2;
-    lua_pushstring(L, quat_status_string(status));
-    return 3;
+    return quat_lua_results(L, status, 2);
 }
 
 /* ---- matrices: three rows of three ---- */
 
 static int l_to_matrix(lua_State *L)
 {
-    const qmat3 m = quat_to_matrix(rotation(L, 1, "q"));
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; i++) {
-        lua_createtable(L, 3, 0);
-        for (int j = 0; j < 3; j++) {
-            lua_pushnumber(L, m.m[i][j]);
-            lua_rawseti(L, -2, j + 1);
-        }
-        lua_rawseti(L, -2, i + 1);
-    }
+    const qmat3 m = quat_to_matrix(quat_lua_arg_unit(L, 1, "q"));
+    quat_lua_push_matrix(L, 3, 3, m.m[0]);
     return 1;
-}
-
-static qmat3 matrix(lua_State *L, int index)
-{
-    size_t n;
-    const qvec3 *const rows = quat_lua_arg_vec3s(L, index, "matrix", 3, &n);
-    if (n != 3) quat_lua_error(L, "argument 'matrix' must have 3 rows, got %d", (int)n);
-    const qmat3 m = {
-        {{rows[0].x, rows[0].y, rows[0].z}, {rows[1].x, rows[1].y, rows[1].z}, {rows[2].x, rows[2].y, rows[2].z}}};
-    return m;
 }
 
 static int l_from_matrix(lua_State *L)
 {
     quat q;
-    const qmat3 m = matrix(L, 1);
+    const qmat3 m = quat_lua_arg_matrix(L, 1, "matrix");
     const quat_status status = quat_from_matrix(&m, &q);
     return quat_lua_result(L, status, q);
 }
@@ -113,14 +84,11 @@ static int l_from_matrix_nearest(lua_State *L)
 {
     quat q;
     double distance;
-    const qmat3 m = matrix(L, 1);
+    const qmat3 m = quat_lua_arg_matrix(L, 1, "matrix");
     const quat_status status = quat_from_matrix_nearest(&m, &q, &distance);
-    if (status < 0) return quat_lua_failure(L, quat_status_string(status));
     quat_lua_push_quat(L, q);
     lua_pushnumber(L, distance);
-    if (status == QUAT_OK) return 2;
-    lua_pushstring(L, quat_status_string(status));
-    return 3;
+    return quat_lua_results(L, status, 2);
 }
 
 /* ---- Euler angles ---- */
@@ -154,11 +122,8 @@ static int l_to_euler(lua_State *L)
     double angles[3];
     const quat q = quat_lua_arg_quat(L, 1, "q");
     const quat_status status = quat_to_euler(q, sequence(L, 2), angles);
-    if (status < 0) return quat_lua_failure(L, quat_status_string(status));
     for (int i = 0; i < 3; i++) lua_pushnumber(L, angles[i]);
-    if (status == QUAT_OK) return 3;
-    lua_pushstring(L, quat_status_string(status));
-    return 4;
+    return quat_lua_results(L, status, 3);
 }
 
 /* ---- from vectors ---- */
@@ -191,13 +156,11 @@ static int l_from_frame(lua_State *L)
 static int l_swing_twist(lua_State *L)
 {
     quat swing, twist;
-    const quat q = rotation(L, 1, "q");
+    const quat q = quat_lua_arg_unit(L, 1, "q");
     const quat_status status = quat_swing_twist(q, direction(L, 2, "axis"), &swing, &twist);
     quat_lua_push_quat(L, swing);
     quat_lua_push_quat(L, twist);
-    if (status == QUAT_OK) return 2;
-    lua_pushstring(L, quat_status_string(status));
-    return 3;
+    return quat_lua_results(L, status, 2);
 }
 
 /* ---- angular velocity ---- */
@@ -211,7 +174,7 @@ static quat_frame frame(lua_State *L, int index)
 
 static int l_step(lua_State *L)
 {
-    const quat q = rotation(L, 1, "q");
+    const quat q = quat_lua_arg_unit(L, 1, "q");
     const qvec3 omega = quat_lua_arg_vec3(L, 2, "omega");
     const double dt = quat_lua_arg_number(L, 3, "dt", QUAT_LUA_FINITE);
     quat_lua_push_quat(L, frame(L, 4) == QUAT_BODY ? quat_step_body(q, omega, dt) : quat_step_world(q, omega, dt));
@@ -220,7 +183,7 @@ static int l_step(lua_State *L)
 
 static int l_derivative(lua_State *L)
 {
-    const quat q = rotation(L, 1, "q");
+    const quat q = quat_lua_arg_unit(L, 1, "q");
     const qvec3 omega = quat_lua_arg_vec3(L, 2, "omega");
     quat_lua_push_quat(L, frame(L, 3) == QUAT_BODY ? quat_derivative_body(q, omega) : quat_derivative_world(q, omega));
     return 1;
@@ -228,8 +191,8 @@ static int l_derivative(lua_State *L)
 
 static int l_omega(lua_State *L)
 {
-    const quat q = rotation(L, 1, "q"), dq = quat_lua_arg_quat(L, 2, "dq");
-    return vector(L, frame(L, 3) == QUAT_BODY ? quat_omega_body(q, dq) : quat_omega_world(q, dq));
+    const quat q = quat_lua_arg_unit(L, 1, "q"), dq = quat_lua_arg_quat(L, 2, "dq");
+    return quat_lua_give_vec3(L, frame(L, 3) == QUAT_BODY ? quat_omega_body(q, dq) : quat_omega_world(q, dq));
 }
 
 /* The script's function at time t. */
@@ -248,7 +211,7 @@ static qvec3 omega_at(lua_State *L, int function, double t)
 static int l_integrate(lua_State *L)
 {
     static const char *const methods[] = {"magnus4", "cf4", NULL};
-    quat q = rotation(L, 1, "q");
+    quat q = quat_lua_arg_unit(L, 1, "q");
     if (!lua_isfunction(L, 2))
         return quat_lua_error(L, "argument 'omega' must be a function of time, got a %s", luaL_typename(L, 2));
     const double t0 = quat_lua_arg_number(L, 3, "t0", QUAT_LUA_FINITE),

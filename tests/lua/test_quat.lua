@@ -38,6 +38,9 @@ same(quat.new(0, pi / 2, 0, 0):exp(), 0, 1, 0, 0)
 same(i:log(), 0, pi / 2, 0, 0)
 same(quat.new(-4, 0, 0, 0):sqrt(), 0, 2, 0, 0)
 same(i:pow(0.5), h, h, 0, 0)
+same(quat.exp_pure({ 0, pi / 2, 0 }), 0, 0, 1, 0)
+vector(quat.new(0, 0, -3, 0):log_unit(), 0, -pi / 2, 0)
+same(i:pow_unit(1.5), -h, h, 0, 0)
 same(i:mul_compensated(i), -1, 0, 0, 0)
 same(quat.pure({ 1, 2, 3 }), 0, 1, 2, 3)
 check.equal(select("#", one:components()), 4)
@@ -103,6 +106,7 @@ same(one:slerp(-about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
 same(one:slerp(-about_z, 0.5, "as_given"), math.cos(3 * pi / 8), 0, 0, -math.sin(3 * pi / 8))
 same(one:nlerp(about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
 vector(one:slerp_omega(about_z), 0, 0, pi / 2)
+vector(one:slerp_omega(-about_z, "as_given"), 0, 0, -3 * pi / 2)
 vector(one:nlerp_omega(about_z, 0.5), 0, 0, 4 * math.tan(pi / 8))
 same(quat.squad(one, one, about_z, about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
 same(quat.squad_control(about_z:conj(), one, about_z), 1, 0, 0, 0)
@@ -133,6 +137,28 @@ check.equal(#flat, 6)
 check.close(flat[2], 1, 1e-15)
 vector(about_z:rotate_inverse_list({ y })[1], 1, 0, 0)
 check.equal(#about_z:rotate_list {}, 0)
+local xs, ys, zs = about_z:rotate_soa({ 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 })
+vector(xs, 0, -1, 0)
+vector(ys, 1, 0, 0)
+vector(zs, 0, 0, 1)
+-- Rows t, x, y, z, tag; columns; and backwards: what is no point stays.
+local rows = about_z:rotate_strided({ 9, 1, 0, 0, 7, 8, 0, 1, 0, 6 }, { count = 2, first = 2, point = 5 })
+for n, want in ipairs { 9, 0, 1, 0, 7, 8, -1, 0, 0, 6 } do check.close(rows[n], want, 1e-15) end
+local columns = about_z:rotate_strided({ 1, 0, 0, 1, 0, 5 }, { count = 2, point = 1, component = 2 })
+for n, want in ipairs { 0, -1, 1, 0, 0, 5 } do check.close(columns[n], want, 1e-15) end
+local backwards = about_z:rotate_strided({ 0, 0, 1, 0, 1, 0 }, { count = 2, first = 6, point = -3, component = -1 })
+for n, want in ipairs { 0, 1, 0, 0, 0, -1 } do check.close(backwards[n], want, 1e-15) end
+check.equal(#one:rotate_strided({}, { count = 0 }), 0)
+vector(quat.rotate_each({ about_z, one }, { x, y })[1], 0, 1, 0)
+vector(quat.rotate_each({ about_z, one }, { x, y })[2], 0, 1, 0)
+local matrices = quat.to_matrix_list { one, about_z }
+check.close(matrices[2][2][1], 1, 1e-15)
+same(quat.from_matrix_list(matrices)[2], h, 0, 0, h)
+check.equal(select(2, quat.from_matrix_list { matrices[1], { { -1, 0, 0 }, { 0, 1e300, 0 }, { 0, 0, 1 } } }),
+  "matrices[2]: zero, infinite or NaN where a finite, non-zero value is needed")
+local between = quat.slerp_each({ one, one }, { about_z, -about_z }, { 0, 0.5 })
+same(between[1], 1, 0, 0, 0)
+same(between[2], math.cos(pi / 8), 0, 0, math.sin(pi / 8))
 check.equal(quat.mul_list({ i, j }, { j, k })[2], i)
 check.equal(quat.normalize_list({ { 0, 3, 0, 0 } })[1], i)
 check.equal(quat.compose_list { i, j, k }, -one)
@@ -154,6 +180,31 @@ same(fit, h, 0, 0, h, 1e-14)
 vector(shift, 5, 0, 0, 1e-14)
 check.equal(select(3, quat.align({ x }, { x })), "the answer is not unique; one was chosen")
 
+-- Derivatives.
+local function apply(rows_of, numbers)
+  local out = {}
+  for n, row in ipairs(rows_of) do
+    out[n] = 0
+    for c, value in ipairs(row) do out[n] = out[n] + value * numbers[c] end
+  end
+  return out
+end
+local p1, q1 = quat.new(1, 2, 3, 4), quat.new(5, 6, 7, 8)
+check.equal(quat.new(apply(p1:left_matrix(), { q1:components() })), p1 * q1)
+check.equal(quat.new(apply(q1:right_matrix(), { p1:components() })), p1 * q1)
+local turning = about_z:rotate_jacobian { 1, 2, 3 }
+check.equal(#turning, 3)
+vector(apply(turning, { about_z:components() }), -4, 2, 6) -- homogeneous of degree two
+check.equal(#quat.exp_jacobian { 0, 0, 0 }, 4)
+local back_again = apply(about_z:log_jacobian(), apply(quat.exp_jacobian { 0, 0, pi / 4 }, { 1, 2, 3 }))
+vector(back_again, 1, 2, 3, 1e-14)
+local r1 = { 0.3, -0.7, 0.2 }
+vector(apply(quat.rotation_vector_jacobian(r1), apply(quat.rotation_vector_jacobian_inverse(r1), { 1, 2, 3 })), 1, 2, 3, 1e-14)
+local body = apply(quat.rotation_vector_jacobian(r1, "right"), { 1, 2, 3 })
+local world = apply(quat.rotation_vector_jacobian(r1, "left"), { 1, 2, 3 })
+vector(quat.from_rotation_vector(r1):rotate(body), world[1], world[2], world[3], 1e-14)
+check.equal(select(2, quat.new(-1, 0, 0, 0):log_jacobian()), "the derivative does not exist here")
+
 -- Rigid motions.
 local lift = quat.motion(about_z, { 0, 0, 3 })
 vector(lift:apply { 1, 0, 0 }, 0, 1, 3)
@@ -171,6 +222,10 @@ vector(quat.motion({ 1, 0, 0, 0 }, { 0, 0, 0 }):sclerp(lift, 0.5):shift(), 0, 0,
 vector(quat.blend({ lift, quat.motion(about_z, { 3, 0, 0 }) }, { 1, 2 }):shift(), 2, 0, 1)
 local rate, flow = lift:log()
 vector(quat.motion_exp(rate, flow):apply { 1, 0, 0 }, 0, 1, 3)
+local real, dual = lift:parts()
+check.equal(quat.motion_from_parts(real, dual), lift)
+vector(quat.motion_from_parts(real * 2, dual * 2):shift(), 0, 0, 3)
+check.equal(quat.motion_from_parts(zero, one), nil)
 check.truth(tostring(lift):find("shift (0, 0, 3)", 1, true), tostring(lift))
 
 -- Misuse names the argument.
@@ -182,6 +237,16 @@ check.raises("argument 'vectors[2]' must be a vector {x, y, z} of finite numbers
 check.raises("argument 'vectors' must hold three numbers for each vector, got 4 numbers", one.rotate_list, one, { 1, 2, 3, 4 })
 check.raises("argument 'weights' must have 2 elements, one for each, got 1", quat.mean, { one, i }, { 1 })
 check.raises("argument 'weights[2]' must not be negative, got -1", quat.mean, { one, i }, { 1, -1 })
+check.raises("argument 'y' must have 2 elements like the first, got 1", one.rotate_soa, one, { 1, 2 }, { 3 }, { 4, 5 })
+check.raises("layout: reaches from data[1] to data[6], but data has 5 numbers", one.rotate_strided, one, { 1, 2, 3, 4, 5 }, { count = 2 })
+check.raises("layout: reaches from data[-1] to data[1], but data has 3 numbers", one.rotate_strided, one, { 1, 2, 3 },
+  { count = 1, component = -1 })
+check.raises("layout: count is missing", one.rotate_strided, one, {}, {})
+check.raises("unknown key 'stride' in layout", one.rotate_strided, one, {}, { count = 0, stride = 3 })
+check.raises("argument 't[1]' must be a number from 0 to 1, got 1.5", quat.slerp_each, { one }, { one }, { 1.5 })
+check.raises("argument 'matrices[1]' must have 3 rows, got 4", quat.from_matrix_list, { { x, y, z, x } })
+check.raises("argument 'q[2]' must not be zero", quat.rotate_each, { one, zero }, { x, y })
+check.raises("argument 'side' must be one of 'left', 'right', got the string 'up'", quat.rotation_vector_jacobian, x, "up")
 check.raises("argument 'omega' must be a function of time, got a number", one.integrate, one, 3, 0, 1, 10)
 check.raises("argument 'generator()' must be a number in [0, 1), got 1", quat.random, function() return 1 end)
 check.raises("division of quaternions: zero, infinite or NaN where a finite, non-zero value is needed", function() return one / zero end)
