@@ -54,8 +54,8 @@ void quat_rotate_each(size_t n, const quat q[], const qvec3 v[], qvec3 out[])
     for (size_t i = 0; i < n; i++) out[i] = quat_rotate(q[i], v[i]);
 }
 
-#if defined(__SSE2__)
-/* One quaternion in a register of four (two of two without AVX): the same products and sums as quat_mul's. */
+#ifdef QUAT_HAS_CLONES
+/* One quaternion in a register of four, where the loader may find one: the same products and sums as quat_mul's. */
 typedef double four __attribute__((vector_size(32)));
 typedef long long four_bits __attribute__((vector_size(32)));
 

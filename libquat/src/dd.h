@@ -10,6 +10,7 @@
 
 /* Not clang: up to 17 it gives the clones names of their own and leaves the function itself undefined. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+#define QUAT_HAS_CLONES
 #define QUAT_FMA_CLONES __attribute__((target_clones("fma", "default")))
 #define QUAT_AVX2_CLONES __attribute__((target_clones("avx2", "default")))
 #else
