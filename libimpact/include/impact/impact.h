@@ -12,6 +12,7 @@
 #include "collide.h"
 #include "ode.h"
 #include "flight.h"
+#include "tumble.h"
 #include "force.h"
 #include "record.h"
 #include "scene.h"
