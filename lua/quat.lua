@@ -12,7 +12,9 @@
 
 ---@alias rotation quat | number[] | { w: number, x: number, y: number, z: number }
 ---@alias vector vec3 | number[] | { x: number, y: number, z: number }
+---@alias point number[] | { x: number, y: number }  {x, y}
 ---@alias frame "world" | "body"
+---@alias pole "south" | "north"
 
 --- Also every function of quatlib whose first parameter is a quaternion: q:conj(), q:rotate(v), p:slerp(q, t) ...
 ---@class quat
@@ -67,6 +69,11 @@
 ---@field slerp_omega fun(self: quat, q: rotation, way?: "short" | "as_given"): vec3  radians per unit of t, world axes
 ---@field nlerp_omega fun(self: quat, q: rotation, t: number): vec3
 ---@field slerp_list fun(self: quat, q: rotation, t: number[]): quat[]
+---@field stereographic fun(self: quat, pole?: pole): vec3?, string?  from "south" (-1) unless told; the pole: infinite, and a reason
+---@field orthographic fun(self: quat): vec3?, integer | string  vector part and sign of w
+---@field hopf fun(self: quat): vec3  the point of S^2 below: where z is turned to
+---@field hopf_angle fun(self: quat): number  on its fibre, -pi ... pi
+---@field roll fun(self: quat, dx: number, dy: number): quat  a unit ball under a hand that goes (dx, dy)
 ---@field left_matrix fun(self: quat): number[][]  4 x 4: d(self q)/dq
 ---@field right_matrix fun(self: quat): number[][]  4 x 4: d(p self)/dp
 ---@field rotate_jacobian fun(self: quat, v: vector): number[][]  3 x 4: d(q v q*)/dq
@@ -140,6 +147,33 @@ core.layer()
 ---@field mean_karcher fun(q: rotation[], weights?: number[]): quat?, number | string, string?  mean, root mean square angle
 ---@field align fun(a: vector[], b: vector[], weights?: number[]): quat?, number | string, string?  b = R a: R, residual
 ---@field align_points fun(a: vector[], b: vector[], weights?: number[]): quat?, vec3 | string, number?, string?
+---@field from_stereographic fun(image: vector, pole?: pole): quat
+---@field stereographic_sphere fun(p: vector, pole?: pole): number[]?, string?  {x, y}; from "north" unless told
+---@field from_stereographic_sphere fun(image: point, pole?: pole): vec3
+---@field stereographic_circle fun(p: point, pole?: pole): number?, string?
+---@field from_stereographic_circle fun(image: number, pole?: pole): number[]
+---@field from_orthographic fun(image: vector, half: integer): quat?, string?  half: -1, 0, 1
+---@field orthographic_sphere fun(p: vector): number[]?, integer | string
+---@field from_orthographic_sphere fun(image: point, half: integer): vec3?, string?
+---@field orthographic_circle fun(p: point): number?, integer | string
+---@field from_orthographic_circle fun(image: number, half: integer): number[]?, string?
+---@field stereographic_list fun(q: rotation[], pole?: pole): vec3[]?, string?
+---@field from_stereographic_list fun(images: vector[], pole?: pole): quat[]
+---@field orthographic_list fun(q: rotation[]): vec3[]?, integer[] | string
+---@field from_orthographic_list fun(images: vector[], halves: integer[]): quat[]?, string?
+---@field hopf_fibre fun(p: vector, t: number): quat?, string?  the point at angle t above p
+---@field belt_twist fun(angle: number, t: number): quat  a belt along y, t = 0 ... 1
+---@field belt_untwist fun(s: number, t: number): quat  the twist of 4 pi undone, s = 0 ... 1, its ends held
+---@field belt_centre fun(s: number, t: number): vec3
+---@field belt_frames fun(s: number, n: integer): quat[], vec3[]  at n places along the belt
+---@field spinor_arrows fun(angle: number): number[]  each no longer than pi; back after 2 pi
+---@field spinor_place fun(angle: number): number
+---@field band fun(twist: number, u: number): quat  a ring of one turn, u = 0 ... 1 once round
+---@field loop_sign fun(q: rotation[]): integer  1 or -1
+---@field roll_path fun(start: rotation, hand: point[]): quat[]
+---@field roll_circle fun(radius: number, angle: number): quat
+---@field roll_loop fun(radius: number): vec3  the net turn of one round, a rotation vector
+---@field chain fun(start: rotation, turns: vector[], parts: integer, frame?: frame): quat[]
 ---@field exp_jacobian fun(v: vector): number[][]  4 x 3: d exp(0, v)/dv
 ---@field rotation_vector_jacobian fun(r: vector, side?: "left" | "right"): number[][]  dr/dt to omega, world (left) or body
 ---@field rotation_vector_jacobian_inverse fun(r: vector, side?: "left" | "right"): number[][]?, string?

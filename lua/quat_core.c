@@ -10,8 +10,9 @@
 int luaopen_quat_core(lua_State *L)
 {
     static void (*const rooms[])(lua_State *) = {
-        quat_lua_open_quat,  quat_lua_open_rotation, quat_lua_open_interpolate, quat_lua_open_spline,
-        quat_lua_open_array, quat_lua_open_average,  quat_lua_open_dual,        quat_lua_open_jacobian};
+        quat_lua_open_quat,    quat_lua_open_rotation, quat_lua_open_interpolate, quat_lua_open_spline,
+        quat_lua_open_array,   quat_lua_open_average,  quat_lua_open_dual,        quat_lua_open_jacobian,
+        quat_lua_open_project, quat_lua_open_sequence};
     luaL_checkversion(L); /* header against library */
     lua_newtable(L);
     lua_pushcfunction(L, quat_lua_layer);
@@ -49,6 +50,12 @@ int quat_lua_give_vec3(lua_State *L, qvec3 v)
 {
     quat_lua_push_vec3(L, v);
     return 1;
+}
+
+void quat_lua_push_vec2(lua_State *L, qvec2 v)
+{
+    const double x[2] = {v.x, v.y};
+    quat_lua_push_numbers(L, 2, x);
 }
 
 void quat_lua_push_matrix(lua_State *L, int rows, int columns, const double m[])
@@ -97,6 +104,31 @@ quat quat_lua_arg_unit(lua_State *L, int arg, const char *name)
     return unit;
 }
 
+void quat_lua_arg_image(lua_State *L, int arg, const char *name, int n, double x[])
+{
+    static const char *const letters[] = {"x", "y", "z"};
+    bool good = lua_type(L, arg) == LUA_TTABLE;
+    for (int i = 0; i < n && good; i++) {
+        if (lua_rawgeti(L, arg, i + 1) == LUA_TNIL) {
+            lua_pop(L, 1);
+            lua_pushstring(L, letters[i]);
+            lua_rawget(L, arg);
+        }
+        x[i] = lua_tonumber(L, -1);
+        good = lua_type(L, -1) == LUA_TNUMBER && !isnan(x[i]);
+        lua_pop(L, 1);
+    }
+    if (!good) quat_lua_error(L, "argument '%s' must be a point {%s} of numbers", name, n == 2 ? "x, y" : "x, y, z");
+}
+
+qvec2 quat_lua_arg_vec2(lua_State *L, int arg, const char *name)
+{
+    double x[2] = {0, 0};
+    quat_lua_arg_image(L, arg, name, 2, x);
+    if (!isfinite(x[0]) || !isfinite(x[1])) quat_lua_error(L, "argument '%s' must be finite", name);
+    return qvec2_make(x[0], x[1]);
+}
+
 qmat3 quat_lua_arg_matrix(lua_State *L, int arg, const char *name)
 {
     size_t n;
@@ -141,6 +173,18 @@ quat *quat_lua_arg_quats(lua_State *L, int arg, const char *name, size_t least, 
         lua_pop(L, 1);
     }
     return q;
+}
+
+qvec2 *quat_lua_arg_vec2s(lua_State *L, int arg, const char *name, size_t least, size_t *n)
+{
+    char text[64];
+    *n = list_length(L, arg, name, least);
+    qvec2 *const v = buffer(L, *n, sizeof *v);
+    for (size_t i = 0; i < *n; i++) {
+        v[i] = quat_lua_arg_vec2(L, push_element(L, arg, name, i, text, sizeof text), text);
+        lua_pop(L, 1);
+    }
+    return v;
 }
 
 qvec3 *quat_lua_arg_vec3s(lua_State *L, int arg, const char *name, size_t least, size_t *n)

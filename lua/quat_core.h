@@ -17,6 +17,8 @@ void quat_lua_open_spline(lua_State *L);
 void quat_lua_open_array(lua_State *L);
 void quat_lua_open_average(lua_State *L);
 void quat_lua_open_jacobian(lua_State *L);
+void quat_lua_open_project(lua_State *L);
+void quat_lua_open_sequence(lua_State *L);
 void quat_lua_open_dual(lua_State *L);
 
 /* Adds functions (ended by {NULL, NULL}) to the module's table on top of the stack and to the methods of quaternions. */
@@ -31,6 +33,8 @@ int quat_lua_results(lua_State *L, quat_status status, int count);
 int quat_lua_result(lua_State *L, quat_status status, quat q);
 /* Returns one vector to the script. */
 int quat_lua_give_vec3(lua_State *L, qvec3 v);
+/* A point of the plane, {x, y}. */
+void quat_lua_push_vec2(lua_State *L, qvec2 v);
 /* A matrix as a list of rows, each a list of numbers; a row-major array. */
 void quat_lua_push_matrix(lua_State *L, int rows, int columns, const double m[]);
 void quat_lua_push_numbers(lua_State *L, size_t n, const double x[]);
@@ -41,12 +45,17 @@ void quat_lua_push_quats(lua_State *L, size_t n, const quat q[]);
 
 /* A quaternion that stands for a rotation, normalised: anything but zero. */
 quat quat_lua_arg_unit(lua_State *L, int arg, const char *name);
+/* n <= 3 numbers, {x, y, z} or {x=, y=, z=} or the first n of them; infinite ones pass, NaN does not. */
+void quat_lua_arg_image(lua_State *L, int arg, const char *name, int n, double x[]);
+/* {x, y} or {x=, y=}, both finite. */
+qvec2 quat_lua_arg_vec2(lua_State *L, int arg, const char *name);
 /* Three rows of three finite numbers. */
 qmat3 quat_lua_arg_matrix(lua_State *L, int arg, const char *name);
 
 /* Lists, read into a buffer that Lua collects: n elements of the list at arg. The list is pinned by the buffer's place on
  * the stack; at least `least` elements are asked for. */
 quat *quat_lua_arg_quats(lua_State *L, int arg, const char *name, size_t least, size_t *n);
+qvec2 *quat_lua_arg_vec2s(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 qvec3 *quat_lua_arg_vec3s(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 double *quat_lua_arg_numbers(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 /* The same, normalised. */

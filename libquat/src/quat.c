@@ -10,6 +10,7 @@ const char *quat_status_string(quat_status status)
     case QUAT_OK: return "ok";
     case QUAT_NOT_UNIQUE: return "the answer is not unique; one was chosen";
     case QUAT_NOT_CONVERGED: return "the iteration did not converge; the last iterate is returned";
+    case QUAT_AT_INFINITY: return "the image is the point at infinity";
     case QUAT_EDOMAIN: return "zero, infinite or NaN where a finite, non-zero value is needed";
     case QUAT_EARGUMENT: return "argument out of range";
     case QUAT_ENOMEM: return "out of memory";

@@ -29,6 +29,10 @@ typedef struct qvec3 {
     double x, y, z;
 } qvec3;
 
+typedef struct qvec2 {
+    double x, y;
+} qvec2;
+
 /* Row-major: m[row][column]; a rotation matrix maps column vectors, v_world = m v_body. */
 typedef struct qmat3 {
     double m[3][3];
@@ -39,6 +43,7 @@ typedef enum quat_status {
     QUAT_OK = 0,
     QUAT_NOT_UNIQUE = 1,    /* the answer is one of several; a documented one was chosen */
     QUAT_NOT_CONVERGED = 2, /* the last iterate is returned */
+    QUAT_AT_INFINITY = 3,   /* the image is the point at infinity, or farther than the largest double */
     QUAT_EDOMAIN = -1,      /* zero, infinite or NaN where a finite, non-zero value is needed */
     QUAT_EARGUMENT = -2,    /* a count, a selector or a pointer out of its range */
     QUAT_ENOMEM = -3,
@@ -60,6 +65,11 @@ static inline qvec3 qvec3_add(qvec3 a, qvec3 b) { return qvec3_make(a.x + b.x, a
 static inline qvec3 qvec3_sub(qvec3 a, qvec3 b) { return qvec3_make(a.x - b.x, a.y - b.y, a.z - b.z); }
 static inline qvec3 qvec3_neg(qvec3 a) { return qvec3_make(-a.x, -a.y, -a.z); }
 static inline qvec3 qvec3_scale(qvec3 a, double s) { return qvec3_make(a.x * s, a.y * s, a.z * s); }
+static inline qvec2 qvec2_make(double x, double y)
+{
+    const qvec2 r = {x, y};
+    return r;
+}
 /* a + s b */
 static inline qvec3 qvec3_axpy(double s, qvec3 b, qvec3 a)
 {
