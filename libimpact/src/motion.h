@@ -55,10 +55,12 @@ typedef struct impact_motion {
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
     int *found;
     impact_state *scratch, *sampled;
-    bool sliding;      /* the integration variable is not time: see motion.c */
-    bool after_onset;  /* the last stretch was the onset of some slip */
-    bool stiff;        /* this one follows it */
-    double slip_scale; /* m/s */
+    bool sliding;       /* slip slows the clock: see motion_equations.c */
+    bool creeping;      /* contacts that move fast over flat places do */
+    bool after_onset;   /* the last stretch was the onset of some slip */
+    bool stiff;         /* this one follows it */
+    double slip_scale;  /* m/s */
+    double creep_scale; /* 1/s */
 } impact_motion;
 
 impact_status impact_motion_open(impact_motion *motion, impact_world *world, double tolerance, double rest_speed);

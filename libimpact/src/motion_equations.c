@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves). While a contact slides, time is not the
+ * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves, the place of each contact that is carried). While a contact slides, time is not the
  * variable of integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever faster.
  * In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign can flip.
  * Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the direction is bound to the
  * acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t.
+ * Over a flat place of a surface the contact point runs without bound, and with it the reactions: u' of persist_spot slows the clock
+ * alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
  */
 #include "motion_equations.h"
+#include "persist_spot.h"
 #include "world_gap.h"
 
 #include <string.h>
@@ -28,6 +31,11 @@ void impact_motion_pack(const impact_motion *motion, double t, const impact_stat
         memcpy(b, values, sizeof values);
         b += Y_PER_BODY;
     }
+    for (int p = 0; p < motion->world->pair_count; p++) {
+        const impact_pair *pair = &motion->world->pairs[p];
+        if (!impact_spot_suits(motion->world, pair)) continue;
+        for (int k = 0; k < Y_PER_SPOT; k++) *b++ = pair->carried ? pair->spot[k] : 0;
+    }
 }
 
 /* Static bodies' states are left as they are. */
@@ -43,14 +51,22 @@ void impact_motion_unpack(const impact_motion *motion, const double *y, impact_s
         s->momentum = (qvec3){b[10], b[11], b[12]};
         b += Y_PER_BODY;
     }
+    for (int p = 0; p < motion->world->pair_count; p++) {
+        impact_pair *pair = &motion->world->pairs[p];
+        if (!impact_spot_suits(motion->world, pair)) continue;
+        if (pair->carried) memcpy(pair->spot, b, sizeof pair->spot);
+        b += Y_PER_SPOT;
+    }
 }
 
 /* dt/dtau. */
 double impact_motion_clock(const impact_motion *motion)
 {
-    if (!motion->sliding) return 1;
     double slowness = 1;
-    for (int c = 0; c < motion->persist.count; c++)
+    for (int c = 0; c < motion->persist.count && motion->creeping; c++)
+        if (motion->persist.touches[c].carried)
+            slowness = hypot(slowness, motion->persist.touches[c].creep / motion->creep_scale);
+    for (int c = 0; c < motion->persist.count && motion->sliding; c++)
         if (motion->persist.touches[c].mode == IMPACT_SLIDE && !motion->persist.touches[c].onset)
             slowness += motion->slip_scale / motion->persist.touches[c].speed;
     return 1 / slowness;
@@ -77,12 +93,23 @@ static void body_rates(const impact_body *body, const impact_state *s, qvec3 for
     for (int k = 0; k < Y_PER_BODY; k++) rate[k] = clock * values[k];
 }
 
+/* Of the contacts that are carried, in the order of their pairs, as the touches are. */
+static void spot_rates(const impact_motion *motion, double clock, double *rate)
+{
+    const impact_world *world = motion->world;
+    for (int p = 0, c = 0; p < world->pair_count; p++) {
+        const impact_touch *touch = impact_is_held(&world->pairs[p]) ? &motion->persist.touches[c++] : NULL;
+        if (!impact_spot_suits(world, &world->pairs[p])) continue;
+        for (int k = 0; k < Y_PER_SPOT; k++) *rate++ = touch && touch->carried ? clock * touch->spot_rate[k] : 0;
+    }
+}
+
 int impact_motion_rates(double tau, const double *y, double *rate, void *context)
 {
     impact_motion *motion = context;
     impact_world *world = motion->world;
     impact_motion_unpack(motion, y, motion->scratch);
-    if (!impact_motion_load(motion, motion->sliding ? y[Y_TIME] : tau, motion->scratch)) return -1;
+    if (!impact_motion_load(motion, impact_motion_clocked(motion) ? y[Y_TIME] : tau, motion->scratch)) return -1;
     rate[Y_FORCE_WORK] = rate[Y_DAMPING] = rate[Y_SLIDING] = 0;
     for (int i = 0; i < world->body_count; i++) {
         rate[Y_FORCE_WORK] += motion->loads[i].work_rate;
@@ -102,6 +129,7 @@ int impact_motion_rates(double tau, const double *y, double *rate, void *context
         body_rates(&world->bodies[i], &motion->scratch[i], motion->loads[i].force, motion->loads[i].torque, clock, b);
         b += Y_PER_BODY;
     }
+    spot_rates(motion, clock, b);
     return 0;
 }
 
@@ -149,7 +177,7 @@ int impact_motion_root_values(double tau, const double *y, double *value, void *
     impact_state *states = motion->scratch;
     impact_motion_unpack(motion, y, states);
     if (motion->persist.count > 0) {
-        if (!impact_motion_load(motion, motion->sliding ? y[Y_TIME] : tau, states)) return -1;
+        if (!impact_motion_load(motion, impact_motion_clocked(motion) ? y[Y_TIME] : tau, states)) return -1;
         impact_persist_solve(&motion->persist, world, states, motion->loads);
     }
     for (int p = 0, c = 0; p < world->pair_count; p++, value += ROOTS_PER_PAIR) {

@@ -7,11 +7,24 @@
 
 #include "motion.h"
 
-enum { Y_TIME, Y_FORCE_WORK, Y_DAMPING, Y_SLIDING, Y_BODIES, Y_PER_BODY = 13, ROOTS_PER_PAIR = 3, ROOTS_PER_EDGE = 2 };
+enum {
+    Y_TIME,
+    Y_FORCE_WORK,
+    Y_DAMPING,
+    Y_SLIDING,
+    Y_BODIES,
+    Y_PER_BODY = 13,
+    Y_PER_SPOT = 3,
+    ROOTS_PER_PAIR = 3,
+    ROOTS_PER_EDGE = 2
+};
 
 /* Between the bodies' states and the integrated state y; static bodies' states are left as they are. */
 void impact_motion_pack(const impact_motion *motion, double t, const impact_state *states, double *y);
 void impact_motion_unpack(const impact_motion *motion, const double *y, impact_state *states);
+
+/* Whether the variable of integration is not time. */
+static inline bool impact_motion_clocked(const impact_motion *motion) { return motion->sliding || motion->creeping; }
 
 /* dt/dtau, for the touches as they stand. */
 double impact_motion_clock(const impact_motion *motion);

@@ -3,11 +3,14 @@
  * One stretch of integration: which variable and method it needs, its steps, its samples, and the event at its end.
  */
 #include "motion_equations.h"
+#include "persist_spot.h"
 #include "world_gap.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define CREEP_FACTOR 1.0
 
 static impact_status allocate_state(impact_motion *motion)
 {
@@ -15,7 +18,9 @@ static impact_status allocate_state(impact_motion *motion)
     if (motion->y) return IMPACT_OK;
     int moving = 0;
     for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
-    motion->size = Y_BODIES + Y_PER_BODY * moving;
+    int spots = 0;
+    for (int p = 0; p < world->pair_count; p++) spots += impact_spot_suits(world, &world->pairs[p]);
+    motion->size = Y_BODIES + Y_PER_BODY * moving + Y_PER_SPOT * spots;
     motion->roots =
         ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * impact_field_edge_count(world) + world->body_count;
     motion->kept = calloc((size_t)motion->size, sizeof *motion->kept);
@@ -105,6 +110,21 @@ static double slip_scale(const impact_motion *motion, const impact_state *states
     return fmax(scale, motion->world->slip_speed);
 }
 
+/* How fast a carried contact may move over its surface before it slows the clock, 1/s: as the body itself moves, about; 0: none is. */
+static double creep_scale(const impact_motion *motion, const impact_state *states)
+{
+    double scale = 0;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (!touch->carried) continue;
+        const impact_body *body = &motion->world->bodies[touch->body1];
+        const double fall = qvec3_norm(motion->loads[touch->body1].force) * body->inverse_mass;
+        const double rate = qvec3_norm(impact_omega(body, &states[touch->body1])) + sqrt(fall / body->radius);
+        scale = fmax(scale, CREEP_FACTOR * rate);
+    }
+    return scale;
+}
+
 /* The function of the interpolated state whose zero is looked for in the last step. */
 typedef struct last_step_function {
     enum { CLOCK, PAIR_GAP, FIELD_EDGE } kind;
@@ -155,7 +175,7 @@ static impact_status find_in_last_step(impact_motion *motion, last_step_function
 /* The state of the last step at time t. */
 static impact_status interpolate_time(impact_motion *motion, double t, double *y)
 {
-    if (!motion->sliding) return impact_ode_interpolate(motion->ode, t, 0, y);
+    if (!impact_motion_clocked(motion)) return impact_ode_interpolate(motion->ode, t, 0, y);
     double low, high, tau;
     impact_ode_last_step(motion->ode, &low, &high);
     return find_in_last_step(motion, (last_step_function){.kind = CLOCK, .t = t}, low, high, &tau, y);
@@ -280,8 +300,9 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
     const double t_start = *t;
     int still = 0;
     bool passed = false; /* the last step ended at a root that is no event */
-    double tau = motion->sliding ? 0 : *t;
-    const double stop = motion->sliding ? 1000 * (t_end - *t) + 1000 : t_end;
+    const bool clocked = impact_motion_clocked(motion);
+    double tau = clocked ? 0 : *t;
+    const double stop = clocked ? 1000 * (t_end - *t) + 1000 : t_end;
     *end = (impact_end){IMPACT_END_TIME, 0};
     for (long step = 0; still < MAX_STILL && step < MAX_STEPS; step++) {
         const double tau_before = tau;
@@ -293,7 +314,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);
         if (status == IMPACT_OK && end->kind == IMPACT_END_GAP) status = polish_gap(motion, end->index, &tau, y);
         if (status != IMPACT_OK) return fail(motion, status);
-        if (!motion->sliding) y[Y_TIME] = tau;
+        if (!clocked) y[Y_TIME] = tau;
         if (y[Y_TIME] > t_end) {
             status = interpolate_time(motion, t_end, y);
             if (status != IMPACT_OK) return fail(motion, status);
@@ -330,6 +351,8 @@ static impact_status choose_road(impact_motion *motion, const impact_state *stat
     motion->stiff = motion->after_onset && slowest < 1e-2 * motion->slip_scale;
     motion->after_onset = any_onset(motion);
     motion->sliding = isfinite(slowest) && !motion->stiff;
+    motion->creep_scale = creep_scale(motion, states);
+    motion->creeping = motion->creep_scale > 0;
     return choose_integrator(motion, motion->stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
 }
 
@@ -342,7 +365,7 @@ impact_status impact_motion_integrate(impact_motion *motion, double *t, double t
     impact_status status = choose_road(motion, states);
     if (status != IMPACT_OK) return status;
     impact_motion_pack(motion, *t, states, motion->y);
-    status = impact_ode_start(motion->ode, motion->sliding ? 0 : *t, motion->y);
+    status = impact_ode_start(motion->ode, impact_motion_clocked(motion) ? 0 : *t, motion->y);
     if (status != IMPACT_OK) return fail(motion, status);
     status = integrate(motion, t, t_end, motion->y, states, sampler, end);
     impact_motion_unpack(motion, motion->y, states);

@@ -6,15 +6,33 @@
  *   sliding: tangential force = -friction pressure u_t/|u_t|
  * and u' = bias + K (reactions), linear: see persist_system.
  */
+#include "persist_spot.h"
 #include "persist_system.h"
 #include "world_gap.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-impact_status impact_persist_reserve(impact_persist *persist, const impact_world *world)
+/* The carried contact's place begins where the orientation puts it. */
+static void place_spot(impact_world *world, impact_pair *pair, const impact_state *states)
+{
+    const qvec3 n = quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1});
+    const qvec3 outward = quat_rotate_inverse(states[pair->body1].q, qvec3_neg(n));
+    impact_spot_find(&world->bodies[pair->body1].shape, outward, pair->spot);
+    pair->carried = true;
+}
+
+impact_status impact_persist_reserve(impact_persist *persist, impact_world *world, const impact_state *states)
 {
     int held = 0;
-    for (int p = 0; p < world->pair_count; p++) held += impact_is_held(&world->pairs[p]);
+    for (int p = 0; p < world->pair_count; p++) {
+        impact_pair *pair = &world->pairs[p];
+        held += impact_is_held(pair);
+        if (!impact_is_held(pair))
+            pair->carried = false;
+        else if (!pair->carried && impact_spot_suits(world, pair))
+            place_spot(world, pair, states);
+    }
     persist->count = held;
     if (held <= persist->capacity) return IMPACT_OK;
     const size_t n = 3 * (size_t)held;
@@ -100,13 +118,45 @@ static qvec3 free_acceleration(const impact_body *body, const impact_state *stat
     return qvec3_add(qvec3_add(a, qvec3_cross(alpha, r)), qvec3_cross(omega, r_rate));
 }
 
+/* A carried contact moves over body 1 as its spot does; the plane's normal stays. */
+static void carried_rates(const impact_world *world, impact_touch *touch, const impact_state *states,
+                          const impact_spot *spot, qvec3 *rate1)
+{
+    const impact_body *b1 = &world->bodies[touch->body1];
+    const impact_state *s1 = &states[touch->body1];
+    const qvec3 omega = impact_omega(b1, s1), turn = qvec3_cross(quat_rotate_inverse(s1->q, omega), spot->normal);
+    const impact_spot_rate rate = impact_spot_move(&b1->shape, spot, qvec3_neg(turn));
+    memcpy(touch->spot_rate, rate.s, sizeof rate.s);
+    touch->creep = rate.creep;
+    *rate1 = qvec3_add(qvec3_cross(omega, touch->r1), quat_rotate(s1->q, rate.point_rate));
+}
+
+/* The contact of a plane with the spot of body 1 that is carried along. */
+static impact_contact carried_contact(const impact_world *world, const impact_pair *pair, const impact_state *states,
+                                      impact_spot *spot)
+{
+    const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    impact_contact contact = {.normal = quat_rotate(s2->q, (qvec3){0, 0, 1})};
+    *spot = impact_spot_at(&world->bodies[pair->body1].shape, pair->spot);
+    contact.offset1 = quat_rotate(s1->q, spot->point);
+    contact.offset2 = qvec3_add(qvec3_sub(s1->x, s2->x), contact.offset1);
+    contact.gap = qvec3_dot(contact.normal, contact.offset2);
+    contact.offset2 = qvec3_axpy(-contact.gap, contact.normal, contact.offset2);
+    return contact;
+}
+
 impact_touch impact_persist_touch(impact_world *world, int p, const impact_state *states, const impact_load *loads)
 {
     impact_pair *pair = &world->pairs[p];
     const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const bool carried = impact_is_held(pair) && pair->carried;
     impact_contact contact;
-    impact_world_gap(world, pair, states, &contact);
+    impact_spot spot;
+    if (carried)
+        contact = carried_contact(world, pair, states, &spot);
+    else
+        impact_world_gap(world, pair, states, &contact);
     impact_touch touch = {.pair = p,
                           .body1 = pair->body1,
                           .body2 = pair->body2,
@@ -114,7 +164,8 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
                           .friction = pair->friction,
                           .normal = contact.normal,
                           .r1 = contact.offset1,
-                          .r2 = contact.offset2};
+                          .r2 = contact.offset2,
+                          .carried = carried};
     const qvec3 u1 = qvec3_add(s1->v, qvec3_cross(impact_omega(b1, s1), touch.r1));
     const qvec3 u2 = b2->is_static ? (qvec3){0, 0, 0} : qvec3_add(s2->v, qvec3_cross(impact_omega(b2, s2), touch.r2));
     const qvec3 u = qvec3_sub(u1, u2);
@@ -122,8 +173,11 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
     touch.speed = qvec3_norm(touch.slip);
     touch.onset = pair->mode == IMPACT_SLIDE && pair->onset;
     touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
-    qvec3 rate1, rate2;
-    contact_rates(world, &touch, states, &rate1, &rate2);
+    qvec3 rate1, rate2 = {0, 0, 0};
+    if (carried)
+        carried_rates(world, &touch, states, &spot, &rate1);
+    else
+        contact_rates(world, &touch, states, &rate1, &rate2);
     touch.bias = qvec3_sub(free_acceleration(b1, s1, &loads[pair->body1], touch.r1, rate1),
                            free_acceleration(b2, s2, &loads[pair->body2], touch.r2, rate2));
     return touch;
@@ -265,13 +319,29 @@ void impact_persist_close_gap(impact_world *world, impact_pair *pair, const impa
     s2->x = qvec3_axpy(contact->gap * w2 / (w1 + w2), contact->normal, s2->x);
 }
 
+/* Turns body 1 so that the plane's normal stands where the carried contact is: what the integration's tolerance left between them. */
+static void align(const impact_pair *pair, impact_state *states, const impact_spot *spot)
+{
+    impact_state *s1 = &states[pair->body1];
+    const qvec3 down = quat_rotate(states[pair->body2].q, (qvec3){0, 0, -1});
+    const qvec3 turn = qvec3_cross(quat_rotate(s1->q, spot->normal), down);
+    quat_normalize(quat_mul(quat_from_rotation_vector(turn), s1->q), &s1->q);
+}
+
 static void close_gaps(impact_world *world, impact_state *states)
 {
     for (int p = 0; p < world->pair_count; p++) {
         impact_pair *pair = &world->pairs[p];
         if (!impact_is_held(pair)) continue;
         impact_contact contact;
-        impact_world_gap(world, pair, states, &contact);
+        impact_spot spot;
+        if (pair->carried) {
+            spot = impact_spot_at(&world->bodies[pair->body1].shape, pair->spot);
+            align(pair, states, &spot);
+            contact = carried_contact(world, pair, states, &spot);
+        } else {
+            impact_world_gap(world, pair, states, &contact);
+        }
         impact_persist_close_gap(world, pair, &contact, states);
     }
 }
@@ -355,7 +425,7 @@ static void stop_slow_slides(impact_persist *persist, impact_world *world, const
 impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states,
                                      const impact_load *loads)
 {
-    impact_status status = impact_persist_reserve(persist, world);
+    impact_status status = impact_persist_reserve(persist, world, states);
     stop_slow_slides(persist, world, states, loads);
     for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 4 * world->pair_count + 8; round++) {
         impact_persist_solve(persist, world, states, loads);
@@ -363,7 +433,7 @@ impact_status impact_persist_resolve(impact_persist *persist, impact_world *worl
         const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale);
         if (pull >= 0) {
             world->pairs[persist->touches[pull].pair].mode = IMPACT_OPEN;
-            status = impact_persist_reserve(persist, world);
+            status = impact_persist_reserve(persist, world, states);
         } else if (grip >= 0) {
             impact_persist_begin_slide(&world->pairs[persist->touches[grip].pair], &persist->touches[grip]);
         } else {

@@ -13,15 +13,18 @@ typedef struct impact_touch {
     int pair, body1, body2;
     impact_mode mode;
     double friction;
-    qvec3 normal;      /* from body 2 to body 1 */
-    qvec3 r1, r2;      /* contact point from each centre */
-    qvec3 normal_rate; /* d(normal)/dt as the contact moves, 1/s */
-    qvec3 slip;        /* tangential velocity of body 1's contact point over body 2's, m/s */
-    double speed;      /* |slip| */
-    bool onset;        /* sliding from rest, too slow for a direction of its own */
-    qvec3 direction;   /* unit of slip; at the onset, of its acceleration */
-    qvec3 bias;        /* relative acceleration of the contact points without reactions, m/s^2 */
-    qvec3 wanted;      /* change of the relative acceleration (or velocity) that the reactions are to make */
+    qvec3 normal;        /* from body 2 to body 1 */
+    qvec3 r1, r2;        /* contact point from each centre */
+    qvec3 normal_rate;   /* d(normal)/dt as the contact moves, 1/s */
+    bool carried;        /* the contact point's place on body 1 is integrated along (persist_spot) */
+    double spot_rate[3]; /* carried: its rate, 1/s */
+    double creep;        /* carried: how fast the contact moves over the surface, in semi-axes, 1/s */
+    qvec3 slip;          /* tangential velocity of body 1's contact point over body 2's, m/s */
+    double speed;        /* |slip| */
+    bool onset;          /* sliding from rest, too slow for a direction of its own */
+    qvec3 direction;     /* unit of slip; at the onset, of its acceleration */
+    qvec3 bias;          /* relative acceleration of the contact points without reactions, m/s^2 */
+    qvec3 wanted;        /* change of the relative acceleration (or velocity) that the reactions are to make */
     /* solved for: */
     double pressure; /* normal force, N */
     qvec3 force;     /* on body 1, N */
@@ -39,8 +42,8 @@ typedef struct impact_persist {
     int *island;            /* capacity; touches of the same number share bodies */
 } impact_persist;
 
-/* Room for every pair of the world that is held now; the geometry of none. */
-impact_status impact_persist_reserve(impact_persist *persist, const impact_world *world);
+/* Room for every pair of the world that is held now; the place of contact of those newly held that carry it. */
+impact_status impact_persist_reserve(impact_persist *persist, impact_world *world, const impact_state *states);
 void impact_persist_free(impact_persist *persist);
 
 /* Geometry and reactions of every held contact under the loads. */

@@ -91,7 +91,7 @@ static impact_status load(impact_scene *scene)
 static impact_status load_with_reactions(impact_scene *scene)
 {
     impact_persist *persist = &scene->motion.persist;
-    impact_status status = impact_persist_reserve(persist, &scene->world);
+    impact_status status = impact_persist_reserve(persist, &scene->world, scene->states);
     if (status == IMPACT_OK) status = load(scene);
     if (status != IMPACT_OK || persist->count == 0) return status;
     impact_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
@@ -304,7 +304,7 @@ static impact_status bring_to_rest(impact_scene *scene)
 static impact_status hold(impact_scene *scene)
 {
     impact_motion *motion = &scene->motion;
-    impact_status status = impact_persist_reserve(&motion->persist, &scene->world);
+    impact_status status = impact_persist_reserve(&motion->persist, &scene->world, scene->states);
     if (status == IMPACT_OK) status = load(scene);
     if (status != IMPACT_OK) return status;
     impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);

@@ -47,6 +47,8 @@ typedef struct impact_pair {
     double slack;
     bool onset;      /* IMPACT_SLIDE: from rest, and slower than the world's onset_speed yet */
     qvec3 direction; /* IMPACT_SLIDE, onset: about where the slip goes */
+    bool carried;    /* held: the contact's place on body 1 is integrated along (persist_spot) */
+    double spot[3];  /* carried: that place */
     impact_gap_cache cache;
 } impact_pair;
 

@@ -587,13 +587,13 @@ static void a_build_without_cvode_says_so(void **state)
     free(s);
 }
 
-/* A surface that is flat along an axis passes that spot faster than the integrator sees: the run says so itself. */
+/* A superellipsoid that is flat along an axis passes that spot faster than the integrator sees: the run says so itself. */
 static void an_account_that_does_not_close_is_told(void **state)
 {
     (void)state;
     impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 0.5, 1),
                                  ball_body("die", (qvec3){0, 0, 1}, 0.5, 0.8)};
-    assert_int_equal(impact_shape_superquadric(0.1, 0.2, 0.15, 4, 4, 4, &bodies[1].shape), IMPACT_OK);
+    assert_int_equal(impact_shape_superellipsoid(0.1, 0.2, 0.15, 0.5, 0.8, &bodies[1].shape), IMPACT_OK);
     bodies[1].omega = (qvec3){1, 2, 3};
     impact_scene_def def = impact_default_scene_def();
     def.bodies = bodies;

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * persist_spot: where a held contact stands on a surface that is flat or sharp along an axis, in coordinates that move gently. Internal.
+ *
+ * A superquadric's contact point is no smooth function of its orientation where an exponent p is over 2: with
+ * e = |u|^(p-1) sgn u, u = x/a, it is e that follows the normal, and u = |e|^(1/(p-1)) sgn e. So the spot is not solved from the
+ * orientation but integrated along, as s = u + e on each axis: both u and e are functions of s of slope at most 1.
+ */
+#ifndef IMPACT_PERSIST_SPOT_H
+#define IMPACT_PERSIST_SPOT_H
+
+#include "world.h"
+
+typedef struct impact_spot {
+    double u[3], e[3];
+    double slope[3]; /* de/du = (p-1) |u|^(p-2); never 0 */
+    qvec3 point;     /* on the surface, from the centre, m, body axes */
+    qvec3 normal;    /* outward unit, body axes */
+} impact_spot;
+
+/* How the spot moves as the body's normal at the contact turns. */
+typedef struct impact_spot_rate {
+    double s[3];
+    double creep;     /* |u'|, 1/s: grows without bound towards a flat point */
+    qvec3 point_rate; /* m/s, body axes */
+} impact_spot_rate;
+
+/* Whether the pair's contact is integrated along while it is held: a superquadric with an exponent other than 2, on a plane. */
+bool impact_spot_suits(const impact_world *world, const impact_pair *pair);
+
+/* The spot of the outward normal given, body axes. */
+void impact_spot_find(const impact_shape *shape, qvec3 normal, double s[3]);
+
+/* s need not be quite on the surface. */
+impact_spot impact_spot_at(const impact_shape *shape, const double s[3]);
+
+impact_spot_rate impact_spot_move(const impact_shape *shape, const impact_spot *spot, qvec3 normal_rate);
+
+#endif
