@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "collide_cases.h"
 
+#include <quat/rotation.h>
+
 const char *case_name(case_class class_)
 {
-    static const char *const names[CASE_CLASSES] = {"plain", "wild", "rod", "tangent", "rest", "planar", "sphere"};
+    static const char *const names[CASE_CLASSES] = {"plain",  "wild",   "rod",    "tangent",   "rest",
+                                                    "planar", "sphere", "smooth", "isotropic", "tilted"};
     return names[class_];
 }
 
@@ -77,6 +80,35 @@ static void set_contact_velocity(impact_collision *c, qvec3 u)
         c->body[1].velocity = qvec3_sub(c->body[1].velocity, more);
 }
 
+/* Two bodies of three equal moments J = y^2 m, struck off centre along x and along y: M_tt is the same both ways, to the last bit for
+ * powers of two. */
+static void isotropic(impact_collision *c, uint64_t *g)
+{
+    static const double powers[] = {0.25, 0.5, 1, 2, 4};
+    double size[4];
+    for (int i = 0; i < 4; i++) size[i] = powers[(int)(5 * case_random(g))];
+    const double x = size[0], y = size[1], m = size[2], j = size[3];
+    const qvec3 offset[2] = {{x, 0, -floor(16 * case_random(g)) / 8}, {0, y, floor(16 * case_random(g)) / 8}};
+    const double moment[2] = {j * x * x, j * y * y};
+    c->normal = (qvec3){0, 0, 1};
+    for (int i = 0; i < 2; i++)
+        c->body[i] =
+            (impact_collider){m, {moment[i], moment[i], moment[i]}, {1, 0, 0, 0}, offset[i], in_ball(g), in_ball(g)};
+}
+
+/* The whole scene turned; the normal stays of about its length. */
+static void turn_all(impact_collision *c, quat q)
+{
+    c->normal = quat_rotate(q, c->normal);
+    for (int i = 0; i < 2; i++) {
+        impact_collider *body = &c->body[i];
+        body->orientation = quat_mul(q, body->orientation);
+        body->offset = quat_rotate(q, body->offset);
+        body->velocity = quat_rotate(q, body->velocity);
+        body->omega = quat_rotate(q, body->omega);
+    }
+}
+
 static void make_bodies(impact_collision *c, case_class class_, uint64_t *g)
 {
     const bool one_static = case_random(g) < 0.4;
@@ -94,7 +126,8 @@ static void make_bodies(impact_collision *c, case_class class_, uint64_t *g)
         c->body[1] = ellipsoid(g, decades(g, -1, 3), some_axes(g, 1), false);
         c->friction = decades(g, -1, 1);
         break;
-    case CASE_PLANAR: {
+    case CASE_PLANAR:
+    case CASE_TILTED: {
         c->body[0] = ellipsoid(g, 1, some_axes(g, 1), false);
         c->body[1] = ellipsoid(g, decades(g, -1, 1), some_axes(g, 1), false);
         c->friction = decades(g, -1.5, 1);
@@ -113,6 +146,7 @@ static void make_bodies(impact_collision *c, case_class class_, uint64_t *g)
             c->body[i].offset = qvec3_scale(c->normal, (i == 0 ? -r : r) / sqrt(qvec3_dot(c->normal, c->normal)));
         }
         break;
+    case CASE_ISOTROPIC: isotropic(c, g); return;
     default:
         c->body[0] = ellipsoid(g, 1, some_axes(g, 0.5), false);
         c->body[1] = ellipsoid(g, decades(g, -1, 1), some_axes(g, 0.5), false);
@@ -127,11 +161,11 @@ impact_collision case_make(case_class class_, uint64_t seed, uint64_t index)
              *g = &state;
     impact_collision c = {.law = (impact_law)(index % 3)};
     c.normal = in_ball(g);
-    if (class_ == CASE_PLANAR) c.normal.y = 0;
+    if (class_ == CASE_PLANAR || class_ == CASE_TILTED) c.normal.y = 0;
     c.friction = case_random(g);
     const double pick = case_random(g);
     c.restitution = pick < 0.1 ? 0 : pick < 0.2 ? 1 : case_random(g);
-    if (class_ != CASE_WILD && case_random(g) < 0.02) c.friction = 0;
+    if (class_ == CASE_SMOOTH || (class_ != CASE_WILD && case_random(g) < 0.02)) c.friction = 0;
     make_bodies(&c, class_, g);
     const double n2 = qvec3_dot(c.normal, c.normal);
     qvec3 u = contact_velocity(&c);
@@ -145,6 +179,7 @@ impact_collision case_make(case_class class_, uint64_t seed, uint64_t index)
     }
     if (class_ == CASE_REST) tangent = qvec3_scale(tangent, case_random(g) < 0.5 ? 0 : 1e-16);
     set_contact_velocity(&c, qvec3_add(normal_part, tangent));
+    if (class_ == CASE_TILTED || (class_ == CASE_ISOTROPIC && case_random(g) < 0.5)) turn_all(&c, any_turn(g));
     return c;
 }
 

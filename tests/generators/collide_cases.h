@@ -16,6 +16,9 @@ typedef enum case_class {
     CASE_REST,    /* u_t = 0, or nothing but rounding */
     CASE_PLANAR,  /* everything in one plane */
     CASE_SPHERE,
+    CASE_SMOOTH,    /* mu = 0 */
+    CASE_ISOTROPIC, /* a = b, c and d not 0: exactly, or after a turn to rounding */
+    CASE_TILTED,    /* planar ones turned any way: in one plane but for rounding */
     CASE_CLASSES
 } case_class;
 

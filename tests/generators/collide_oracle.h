@@ -2,7 +2,7 @@
  *
  * One frictional impact in 128-bit arithmetic by the closed hodograph, sharing no formula with the library's solvers beyond the
  * equation of motion itself: M from its definition, s(theta) as a product of powers of sines, p and the work of friction by
- * tanh-sinh quadrature over theta, the normal work from the energy. gcc with libquadmath.
+ * quadrature over theta, the normal work from the energy; what slides straight, or not at all, in closed form. gcc with libquadmath.
  */
 #ifndef COLLIDE_ORACLE_H
 #define COLLIDE_ORACLE_H
@@ -15,11 +15,11 @@ typedef struct oracle_outcome {
     int compressions;
     bool stuck;    /* u_t came to 0 */
     bool reversed; /* and slid on at once */
-    bool jammed;   /* Z < 0 somewhere on the way in compression */
+    bool jammed;   /* u_z fell somewhere in compression */
     double turned; /* angle through which the sliding direction turned, rad */
 } oracle_outcome;
 
-/* False: the case is outside of the oracle (a double root of T, a = b). */
+/* False: two roots of T coincide to within 1e-8 rad, which is outside of the oracle. */
 bool oracle_collide(const impact_collision *collision, oracle_outcome *outcome);
 
 #endif
