@@ -34,7 +34,7 @@ names=(quat impact)
 [ ! -f "$libdir/pkgconfig/quat_gsl.pc" ] || names+=(quat_gsl)
 for name in "${names[@]}"; do
     ask --cflags --libs "$name"
-    "$cc" -o "shared_$name" "$here/outside/with_${name%_gsl}.c" "${flags[@]}" -Wl,-rpath,"$libdir"
+    "$cc" -o "shared_$name" "$here/outside/with_$name.c" "${flags[@]}" -Wl,-rpath,"$libdir"
     "./shared_$name"
 done
 # Pay only for what is used.
@@ -49,7 +49,7 @@ find static_only -name 'lib*.so*' -delete
 only=$(dirname "$(find "$work/static_only" -name libquat.a)")/pkgconfig
 for name in "${names[@]}"; do
     PKG_CONFIG_PATH=$only ask --static --cflags --libs "$name"
-    "$cc" -o "static_$name" "$here/outside/with_${name%_gsl}.c" "${flags[@]}"
+    "$cc" -o "static_$name" "$here/outside/with_$name.c" "${flags[@]}"
     "./static_$name"
 done
 if ldd static_impact | grep -E '^\s*lib(quat|impact)'; then

@@ -1,0 +1,312 @@
+/* SPDX-License-Identifier: MIT */
+#include <quat/curve.h>
+
+#include <float.h>
+#include <quat/rotation.h>
+#include "curve.h"
+#include "difference.h"
+#include "quadrature.h"
+
+static const qvec3 zero = {0, 0, 0};
+
+/* ---- through samples ---- */
+
+enum { window = 8 };
+
+/* The first of the samples whose polynomial holds at t; for a closed curve it may lie before 0. */
+static ptrdiff_t window_start(const quat_samples *s, double t, size_t count)
+{
+    size_t low = 0, high = s->n - 1;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (s->t[middle] <= t)
+            low = middle;
+        else
+            high = middle;
+    }
+    const ptrdiff_t start = (ptrdiff_t)low - (ptrdiff_t)(count / 2) + 1;
+    if (s->closed) return start;
+    return start < 0 ? 0 : start > (ptrdiff_t)(s->n - count) ? (ptrdiff_t)(s->n - count) : start;
+}
+
+static bool sampled(double t, qvec3 d[4], void *context)
+{
+    const quat_samples *s = context;
+    const size_t around = s->n - 1, count = s->closed       ? (around < window ? around : window)
+                                            : s->n < window ? s->n
+                                                            : window;
+    const double period = s->t[s->n - 1] - s->t[0];
+    double node[QUAT_DIFFERENCE_NODES], weights[4][QUAT_DIFFERENCE_NODES];
+    qvec3 x[window];
+    const ptrdiff_t start = window_start(s, t, count);
+    for (size_t i = 0; i < count; i++) {
+        ptrdiff_t k = start + (ptrdiff_t)i;
+        double turns = 0;
+        if (s->closed && k < 0) k += (ptrdiff_t)around, turns = -1;
+        if (s->closed && k >= (ptrdiff_t)around) k -= (ptrdiff_t)around, turns = 1;
+        node[i] = s->t[k] - t + turns * period;
+        x[i] = s->x[k];
+    }
+    quat_difference_weights((int)count, node, 3, weights);
+    for (int k = 0; k < 4; k++) {
+        d[k] = zero;
+        for (size_t i = 0; i < count; i++) d[k] = qvec3_axpy(weights[k][i], x[i], d[k]);
+    }
+    return true;
+}
+
+quat_status quat_curve_from_samples(const quat_samples *samples, quat_curve *curve)
+{
+    const quat_curve none = {0};
+    double size = 0;
+    *curve = none;
+    if (!samples || samples->n < 4 || !samples->t || !samples->x) return QUAT_EARGUMENT;
+    const size_t last = samples->n - 1;
+    for (size_t i = 0; i <= last; i++) {
+        if (!isfinite(samples->t[i]) || !qvec3_isfinite(samples->x[i])) return QUAT_EDOMAIN;
+        if (i > 0 && !(samples->t[i] > samples->t[i - 1])) return QUAT_EARGUMENT;
+        size = fmax(size, qvec3_norm(samples->x[i]));
+    }
+    if (samples->closed && qvec3_norm(qvec3_sub(samples->x[last], samples->x[0])) > 1e-9 * size) return QUAT_EDOMAIN;
+    curve->at = sampled;
+    curve->context = (void *)samples;
+    curve->start = samples->t[0];
+    curve->end = samples->t[last];
+    curve->closed = samples->closed;
+    curve->known = 3;
+    return QUAT_OK;
+}
+
+/* ---- at a point ---- */
+
+bool quat_curve_is_good(const quat_curve *curve)
+{
+    return curve && curve->at && isfinite(curve->end - curve->start) && curve->start < curve->end &&
+           curve->known >= 0 && curve->known <= 3;
+}
+
+/* t in start ... end: as it is, or for a closed curve by whole periods. */
+static double home(const quat_curve *curve, double t)
+{
+    if (!curve->closed || (t >= curve->start && t <= curve->end)) return t;
+    const double period = curve->end - curve->start;
+    t -= period * floor((t - curve->start) / period);
+    return t < curve->start ? curve->start : t > curve->end ? curve->end : t;
+}
+
+static bool ask(const quat_curve *curve, double t, qvec3 d[4])
+{
+    if (!curve->at(home(curve, t), d, curve->context)) return false;
+    for (int k = 0; k <= curve->known; k++)
+        if (!qvec3_isfinite(d[k])) return false;
+    return true;
+}
+
+static bool highest_known(double t, qvec3 *x, void *context)
+{
+    const quat_curve *curve = context;
+    qvec3 d[4];
+    if (!ask(curve, t, d)) return false;
+    *x = d[curve->known];
+    return true;
+}
+
+static bool derivatives(const quat_curve *curve, double t, int order, qvec3 d[4], double error[4])
+{
+    const int known = curve->known;
+    if (!ask(curve, t, d)) return false;
+    for (int k = 0; k <= known; k++) error[k] = 2 * DBL_EPSILON * qvec3_norm(d[k]);
+    if (known >= order) return true;
+    return quat_differentiate(highest_known, (void *)curve, t, curve->closed ? -INFINITY : curve->start,
+                              curve->closed ? INFINITY : curve->end, curve->end - curve->start, order - known,
+                              d + known + 1, error + known + 1, NULL);
+}
+
+quat_status quat_curve_derivatives(const quat_curve *curve, double t, int order, qvec3 d[4], double error[4])
+{
+    double own[4];
+    double *const e = error ? error : own;
+    for (int k = 0; k < 4; k++) d[k] = zero, e[k] = 0;
+    if (!quat_curve_is_good(curve) || order < 0 || order > 3) return QUAT_EARGUMENT;
+    if (!isfinite(t) || (!curve->closed && (t < curve->start || t > curve->end))) return QUAT_EDOMAIN;
+    if (derivatives(curve, t, order, d, e)) return QUAT_OK;
+    for (int k = 0; k < 4; k++) d[k] = zero, e[k] = 0;
+    return QUAT_EDOMAIN;
+}
+
+quat_status quat_curve_tangent(const quat_curve *curve, double t, qvec3 *position, qvec3 *tangent)
+{
+    qvec3 d[4];
+    double error[4];
+    const quat_status status = quat_curve_derivatives(curve, t, 1, d, error);
+    *position = d[0];
+    if (status != QUAT_OK) return status;
+    if (qvec3_norm(d[1]) <= 4 * error[1]) return QUAT_EDOMAIN;
+    return qvec3_normalize(d[1], tangent);
+}
+
+quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve_point *point)
+{
+    const quat_curve_point none = {.frame = {1, 0, 0, 0}};
+    qvec3 d[4], tangent, normal;
+    double e[4];
+    *point = none;
+    const quat_status status = quat_curve_derivatives(curve, t, 3, d, e);
+    point->position = d[0];
+    if (status != QUAT_OK) return status;
+    const double speed = qvec3_norm(d[1]);
+    if (speed <= 4 * e[1]) return QUAT_EDOMAIN;
+    const qvec3 cross = qvec3_cross(d[1], d[2]);
+    const double turn = qvec3_norm(cross), turn_error = speed * e[2] + qvec3_norm(d[2]) * e[1],
+                 cube = speed * speed * speed;
+    point->speed = speed;
+    point->curvature_error = turn_error / cube + 3 * (turn / cube) * (e[1] / speed);
+    qvec3_normalize(d[1], &tangent);
+    if (turn <= 4 * turn_error) {
+        quat_from_two_vectors(qvec3_make(1, 0, 0), tangent, &point->frame);
+        return QUAT_NOT_UNIQUE;
+    }
+    point->curvature = turn / cube;
+    point->torsion = qvec3_dot(cross, d[3]) / turn / turn;
+    point->torsion_error = e[3] / turn + (qvec3_norm(d[3]) / turn + 2 * fabs(point->torsion)) * (turn_error / turn);
+    qvec3_normalize(qvec3_cross(cross, d[1]), &normal);
+    return quat_from_axes(tangent, normal, &point->frame);
+}
+
+/* ---- arc length ---- */
+
+typedef struct walk {
+    const quat_curve *curve;
+    bool failed, inflection;
+} walk;
+
+static double speed_at(double t, void *context)
+{
+    walk *w = context;
+    qvec3 d[4];
+    double e[4];
+    if (w->failed || !derivatives(w->curve, t, 1, d, e)) {
+        w->failed = true;
+        return 0;
+    }
+    return qvec3_norm(d[1]);
+}
+
+static quat_status check_ends(const quat_curve *curve, double a, double b)
+{
+    if (!quat_curve_is_good(curve)) return QUAT_EARGUMENT;
+    if (!isfinite(a) || !isfinite(b)) return QUAT_EDOMAIN;
+    if (!curve->closed && (fmin(a, b) < curve->start || fmax(a, b) > curve->end)) return QUAT_EDOMAIN;
+    return QUAT_OK;
+}
+
+quat_status quat_curve_length(const quat_curve *curve, double a, double b, double *length)
+{
+    walk w = {curve, false, false};
+    *length = 0;
+    quat_status status = check_ends(curve, a, b);
+    if (status != QUAT_OK) return status;
+    status = quat_quadrature(speed_at, &w, a, b, 1e-13, length);
+    if (!w.failed) return status;
+    *length = 0;
+    return QUAT_EDOMAIN;
+}
+
+/* The t whose distance along the curve from `from` is `distance`, between from and high. */
+static quat_status advance(const quat_curve *curve, double from, double distance, double high, double guess, double *t)
+{
+    double low = from, at = from, length = 0, x = fmin(fmax(guess, low), high);
+    for (int round = 0; round < 100; round++) {
+        walk w = {curve, false, false};
+        double piece;
+        const quat_status status = quat_curve_length(curve, at, x, &piece);
+        if (status < 0) return status;
+        length += piece;
+        at = x;
+        const double off = length - distance, speed = speed_at(x, &w);
+        if (w.failed) return QUAT_EDOMAIN;
+        if (off > 0)
+            high = x;
+        else
+            low = x;
+        *t = x;
+        if (fabs(off) <= 4 * DBL_EPSILON * distance || high - low <= 2 * DBL_EPSILON * fmax(fabs(low), fabs(high)))
+            return QUAT_OK;
+        double next = x - off / speed;
+        if (!(next > low && next < high)) next = low + (high - low) / 2;
+        if (next == x) return QUAT_OK;
+        x = next;
+    }
+    return QUAT_NOT_CONVERGED;
+}
+
+quat_status quat_curve_at_length(const quat_curve *curve, double length, double *t)
+{
+    double whole;
+    *t = curve ? curve->start : 0;
+    if (!quat_curve_is_good(curve)) return QUAT_EARGUMENT;
+    const quat_status status = quat_curve_length(curve, curve->start, curve->end, &whole);
+    if (status < 0) return status;
+    if (!(length >= -1e-9 * whole && length <= whole * (1 + 1e-9))) return QUAT_EDOMAIN;
+    if (length <= 0) return status;
+    *t = curve->end;
+    if (length >= whole) return status;
+    const double guess = curve->start + (curve->end - curve->start) * (length / whole);
+    return advance(curve, curve->start, length, curve->end, guess, t);
+}
+
+quat_status quat_curve_even(const quat_curve *curve, size_t n, double t[])
+{
+    double whole;
+    if (!quat_curve_is_good(curve) || n < 2) return QUAT_EARGUMENT;
+    quat_status status = quat_curve_length(curve, curve->start, curve->end, &whole);
+    if (status < 0) return status;
+    t[0] = curve->start;
+    for (size_t i = 1; i + 1 < n; i++) {
+        const double step = whole / (double)(n - 1), before = i > 1 ? t[i - 2] : t[0];
+        double guess = t[i - 1] + (i > 1 ? t[i - 1] - before : (curve->end - curve->start) / (double)(n - 1));
+        const quat_status found = advance(curve, t[i - 1], step, curve->end, guess, &t[i]);
+        if (found < 0) return found;
+        if (found != QUAT_OK) status = found;
+    }
+    t[n - 1] = curve->end;
+    return status;
+}
+
+static bool bend(walk *w, double t, quat_curve_point *point)
+{
+    const quat_status status = w->failed ? QUAT_EDOMAIN : quat_curve_at(w->curve, t, point);
+    w->failed = w->failed || status < 0;
+    w->inflection = w->inflection || status == QUAT_NOT_UNIQUE;
+    return !w->failed;
+}
+
+static double curvature_at(double t, void *context)
+{
+    quat_curve_point point;
+    return bend(context, t, &point) ? point.curvature * point.speed : 0;
+}
+
+static double torsion_at(double t, void *context)
+{
+    quat_curve_point point;
+    return bend(context, t, &point) ? point.torsion * point.speed : 0;
+}
+
+quat_status quat_curve_total(const quat_curve *curve, quat_curve_totals *totals)
+{
+    const quat_curve_totals none = {0, 0, 0};
+    walk w = {curve, false, false};
+    *totals = none;
+    if (!quat_curve_is_good(curve)) return QUAT_EARGUMENT;
+    const double tolerance = curve->known >= 3 ? 1e-12 : 1e-8;
+    const quat_status s1 = quat_curve_length(curve, curve->start, curve->end, &totals->length),
+                      s2 = quat_quadrature(curvature_at, &w, curve->start, curve->end, tolerance, &totals->curvature),
+                      s3 = quat_quadrature(torsion_at, &w, curve->start, curve->end, tolerance, &totals->torsion);
+    if (s1 < 0 || w.failed) {
+        *totals = none;
+        return s1 < 0 ? s1 : QUAT_EDOMAIN;
+    }
+    if (w.inflection) return QUAT_NOT_UNIQUE;
+    return s1 != QUAT_OK || s2 != QUAT_OK || s3 != QUAT_OK ? QUAT_NOT_CONVERGED : QUAT_OK;
+}

@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: MIT */
+#include "gauss.h"
+
+#include <float.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <quat/rotation.h>
+
+static const qvec3 z_axis = {0, 0, 1};
+
+/* ---- the mesh ---- */
+
+static double half_cotangent(qvec3 corner, qvec3 a, qvec3 b)
+{
+    const qvec3 u = qvec3_sub(a, corner), v = qvec3_sub(b, corner);
+    const double sine = qvec3_norm(qvec3_cross(u, v)), cosine = qvec3_dot(u, v);
+    return sine > 1e-12 * fabs(cosine) ? cosine / sine / 2 : 0; /* a triangle without area has no say */
+}
+
+static void weigh(const qvec3 x[], size_t m, const size_t triangle[][3], double weight[][3])
+{
+    for (size_t i = 0; i < m; i++)
+        for (int c = 0; c < 3; c++) {
+            const size_t *const t = triangle[i];
+            weight[i][c] = half_cotangent(x[t[c]], x[t[(c + 1) % 3]], x[t[(c + 2) % 3]]);
+        }
+}
+
+/* ---- a start ---- */
+
+/* The frame of the normal of `to` with the least turning from the frame `from`, on its side of S^3. */
+static quat_status carry(quat from, quat to, quat *q)
+{
+    quat turn;
+    const quat_status status = quat_from_two_vectors(quat_rotate(from, z_axis), quat_rotate(to, z_axis), &turn);
+    *q = quat_nearest(quat_renormalize(quat_mul(turn, from)), from);
+    return status;
+}
+
+enum { unseen, now, before };
+
+/* From node 0 outward, ring after ring of neighbours: each frame carried from the neighbour it is reached by, or with
+ * `signs` only turned to its side of S^3. */
+static quat_status walk(const quat_mesh *mesh, quat q[], bool signs, char seen[])
+{
+    size_t count = 1, last = 0;
+    quat_status worst = QUAT_OK;
+    memset(seen, unseen, mesh->n);
+    seen[0] = before;
+    while (count > last && count < mesh->n) {
+        last = count;
+        for (size_t i = 0; i < mesh->m; i++)
+            for (int c = 0; c < 6; c++) {
+                const size_t from = mesh->triangle[i][c % 3], to = mesh->triangle[i][(c + 1 + c / 3) % 3];
+                if (seen[from] != before || seen[to] != unseen) continue;
+                const quat_status status = signs ? QUAT_OK : carry(q[from], q[to], &q[to]);
+                if (signs) q[to] = quat_nearest(q[to], q[from]);
+                if (status != QUAT_OK) worst = status;
+                seen[to] = now;
+                count++;
+            }
+        for (size_t i = 0; i < mesh->n; i++)
+            if (seen[i] == now) seen[i] = before;
+    }
+    return count < mesh->n ? QUAT_EARGUMENT : worst;
+}
+
+/* Normals away from the opposite of their mean have one shortest rotation from it each: a field without whirls. Elsewhere
+ * frames are carried along edges. All are turned together about their normals so that q[0] stays. */
+static quat_status start(const quat_mesh *mesh, quat q[], char seen[])
+{
+    qvec3 mean = {0, 0, 0};
+    quat middle;
+    const quat anchor = q[0];
+    bool near = true;
+    for (size_t i = 0; i < mesh->n; i++) mean = qvec3_add(mean, quat_rotate(q[i], z_axis));
+    near = qvec3_norm(mean) > 1e-6 * (double)mesh->n && qvec3_normalize(mean, &mean) == QUAT_OK;
+    for (size_t i = 0; i < mesh->n && near; i++) near = qvec3_dot(mean, quat_rotate(q[i], z_axis)) > -0.9;
+    if (!near) return walk(mesh, q, false, seen);
+    const quat_status parts = walk(mesh, q, true, seen);
+    if (parts != QUAT_OK) return parts;
+    quat_from_two_vectors(z_axis, mean, &middle);
+    for (size_t i = 0; i < mesh->n; i++) carry(middle, q[i], &q[i]);
+    const quat s = quat_mul(quat_conj(q[0]), anchor);
+    const double angle = 2 * atan2(s.z, s.w);
+    for (size_t i = 0; i < mesh->n; i++) q[i] = quat_gauge_turn(q[i], angle);
+    return QUAT_OK;
+}
+
+/* ---- least length ---- */
+
+/* The edge opposite corner c of triangle i. */
+static void edge(const quat_mesh *mesh, size_t i, int c, size_t *a, size_t *b)
+{
+    *a = mesh->triangle[i][(c + 1) % 3];
+    *b = mesh->triangle[i][(c + 2) % 3];
+}
+
+static double energy_of(const quat_mesh *mesh, const quat q[])
+{
+    double sum = 0;
+    size_t a, b;
+    for (size_t i = 0; i < mesh->m; i++)
+        for (int c = 0; c < 3; c++) {
+            edge(mesh, i, c, &a, &b);
+            sum += mesh->weight[i][c] * quat_norm2(quat_sub(quat_nearest(q[b], q[a]), q[a]));
+        }
+    return sum;
+}
+
+/* With s = q_a* q_b and the angle D = phi_b - phi_a, |q_a - q_b|^2 = 2 - 2 (s.w cos D/2 - s.z sin D/2): slope s.z, second
+ * derivative s.w/2. */
+static double slopes(const quat_mesh *mesh, const quat q[], double g[])
+{
+    double size = 0;
+    size_t a, b;
+    memset(g, 0, mesh->n * sizeof *g);
+    for (size_t i = 0; i < mesh->m; i++)
+        for (int c = 0; c < 3; c++) {
+            edge(mesh, i, c, &a, &b);
+            const quat s = quat_mul(quat_conj(q[a]), quat_nearest(q[b], q[a]));
+            const double push = mesh->weight[i][c] * s.z;
+            g[a] -= push;
+            g[b] += push;
+            size += fabs(mesh->weight[i][c]);
+        }
+    return size;
+}
+
+/* out = H x; with `above`, negative weights (obtuse corners) are left out, so that H is semidefinite and an upper bound. */
+static void apply(const quat_mesh *mesh, const quat q[], bool above, const double x[], double out[])
+{
+    size_t a, b;
+    memset(out, 0, mesh->n * sizeof *out);
+    for (size_t i = 0; i < mesh->m; i++)
+        for (int c = 0; c < 3; c++) {
+            if (above && mesh->weight[i][c] <= 0) continue;
+            edge(mesh, i, c, &a, &b);
+            const double h = mesh->weight[i][c] * fabs(quat_dot(q[a], q[b])) / 2 * (x[b] - x[a]);
+            out[a] -= h;
+            out[b] += h;
+        }
+}
+
+static double dot(size_t n, const double a[], const double b[])
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* x = -H^-1 g by conjugate gradients; false when H is not definite. work: 3 n numbers. */
+static bool newton_step(const quat_mesh *mesh, const quat q[], bool above, const double g[], double x[], double work[])
+{
+    const size_t n = mesh->n;
+    double *const r = work, *const p = r + n, *const hp = p + n;
+    memset(x, 0, n * sizeof *x);
+    for (size_t i = 0; i < n; i++) p[i] = r[i] = -g[i];
+    double rr = dot(n, r, r);
+    const double enough = rr * 1e-20;
+    for (size_t round = 0; round < 4 * n && rr > enough; round++) {
+        apply(mesh, q, above, p, hp);
+        const double curve = dot(n, p, hp);
+        if (!(curve > 0)) return false;
+        const double step = rr / curve, old = rr;
+        for (size_t i = 0; i < n; i++) x[i] += step * p[i], r[i] -= step * hp[i];
+        rr = dot(n, r, r);
+        for (size_t i = 0; i < n; i++) p[i] = r[i] + rr / old * p[i];
+    }
+    return true;
+}
+
+/* work: 5 n numbers. */
+static quat_status lower_length(const quat_mesh *mesh, quat q[], double work[], quat trial[], size_t *rounds)
+{
+    const size_t n = mesh->n;
+    double *const g = work, *const x = g + n, energy = energy_of(mesh, q);
+    for (*rounds = 0; *rounds < 200; ++*rounds) {
+        double most = 0, step = 1, next = INFINITY;
+        const double size = slopes(mesh, q, g);
+        for (size_t i = 0; i < n; i++) most = fmax(most, fabs(g[i]));
+        if (most <= 1e-14 * size) return QUAT_OK;
+        if (!newton_step(mesh, q, false, g, x, x + n)) newton_step(mesh, q, true, g, x, x + n);
+        for (int half = 0; half < 30; half++, step /= 2) {
+            for (size_t i = 0; i < n; i++) trial[i] = quat_renormalize(quat_gauge_turn(q[i], step * (x[i] - x[0])));
+            next = energy_of(mesh, trial);
+            if (next <= energy + 64 * DBL_EPSILON * fabs(energy)) break;
+        }
+        if (!(next <= energy + 64 * DBL_EPSILON * fabs(energy))) return QUAT_OK; /* as low as rounding lets it come */
+        memcpy(q, trial, n * sizeof *q);
+        energy = next;
+    }
+    return QUAT_NOT_CONVERGED;
+}
+
+/* ---- the whole ---- */
+
+static quat_status check(size_t n, const qvec3 x[], size_t m, const size_t corner[], quat q[])
+{
+    if (n == 0 || m == 0 || !x || !q || !corner) return QUAT_EARGUMENT;
+    if (n > SIZE_MAX / 256 || m > SIZE_MAX / 256) return QUAT_ENOMEM;
+    for (size_t i = 0; i < 3 * m; i++)
+        if (corner[i] >= n) return QUAT_EARGUMENT;
+    for (size_t i = 0; i < n; i++)
+        if (!qvec3_isfinite(x[i]) || quat_normalize(q[i], &q[i]) != QUAT_OK) return QUAT_EDOMAIN;
+    return QUAT_OK;
+}
+
+static size_t torn_edges(const quat_mesh *mesh, const quat q[])
+{
+    size_t a, b, count = 0;
+    for (size_t i = 0; i < mesh->m; i++)
+        for (int c = 0; c < 3; c++) {
+            edge(mesh, i, c, &a, &b);
+            count += quat_dot(q[a], q[b]) < 0;
+        }
+    return count;
+}
+
+quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t triangles[], quat_gauge gauge,
+                               quat q[], quat_gauge_report *report)
+{
+    quat_gauge_report own;
+    const quat_gauge_report none = {0, 0, 0, 0};
+    if (!report) report = &own;
+    *report = none;
+    if ((unsigned)gauge > QUAT_MINIMAL_AREA) return QUAT_EARGUMENT;
+    quat_status status = check(n, x, m, triangles, q);
+    if (status != QUAT_OK) return status;
+    char *const memory = malloc(m * 3 * sizeof(double) + n * (5 * sizeof(double) + sizeof(quat) + 1));
+    if (!memory) return QUAT_ENOMEM;
+    quat *const trial = (quat *)(void *)memory;
+    double *const work = (double *)(trial + n);
+    double(*const weight)[3] = (double(*)[3])(work + 5 * n);
+    char *const seen = (char *)(weight + m);
+    const size_t(*const triangle)[3] = (const size_t(*)[3])triangles;
+    const quat_mesh mesh = {n, m, triangle, (const double(*)[3])weight};
+    weigh(x, m, triangle, weight);
+    status = start(&mesh, q, seen);
+    if (status >= 0) {
+        quat_status least = QUAT_OK;
+        if (gauge != QUAT_SHORTEST) least = lower_length(&mesh, q, work, trial, &report->rounds);
+        if (gauge == QUAT_MINIMAL_AREA) {
+            const quat_status area = quat_gauge_lower_area(&mesh, q, work, trial, &report->rounds);
+            if (area != QUAT_OK) least = area;
+        }
+        if (least != QUAT_OK) status = least;
+        if (gauge != QUAT_SHORTEST) walk(&mesh, q, true, seen);
+        report->energy = energy_of(&mesh, q);
+        report->area = quat_gauge_area(&mesh, q, NULL);
+        report->torn = torn_edges(&mesh, q);
+    }
+    free(memory);
+    return status;
+}
+
+/* ---- between two ---- */
+
+quat_status quat_transition(size_t n, const quat q1[], const quat q2[], double angle[], double *turns, double *off)
+{
+    const double two_pi = 6.28318530717958648;
+    double first = 0, last = 0, worst = 0;
+    if (turns) *turns = 0;
+    if (off) *off = 0;
+    if (n < 1 || !q1 || !q2) return QUAT_EARGUMENT;
+    for (size_t i = 0; i < n; i++) {
+        quat a, b;
+        if (quat_normalize(q1[i], &a) != QUAT_OK || quat_normalize(q2[i], &b) != QUAT_OK) return QUAT_EDOMAIN;
+        const quat s = quat_mul(quat_conj(b), a);
+        const double side = 2 * atan2(hypot(s.x, s.y), hypot(s.w, s.z));
+        double phi = 2 * atan2(s.z, s.w);
+        phi -= two_pi * nearbyint((phi - last) / two_pi);
+        worst = fmax(worst, side);
+        if (i == 0) first = phi;
+        if (angle) angle[i] = phi;
+        last = phi;
+    }
+    if (off) *off = worst;
+    if (worst > 1e-6) return QUAT_EDOMAIN;
+    if (turns) *turns = (last - first) / two_pi;
+    return QUAT_OK;
+}

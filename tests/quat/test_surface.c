@@ -1,0 +1,617 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The room surface against the classical formulas (LN - M^2)/(EG - F^2) ... in quadruple precision and against closed forms,
+ * neither of which knows of frames.
+ */
+#include "oracle.h"
+
+#include <gsl/gsl_errno.h>
+#include <quat/family.h>
+#include <quat/rotation.h>
+#include "near.h"
+
+static const double pi = 3.14159265358979324;
+
+/* ---- the oracle ---- */
+
+static wquat wide_cross(wquat a, wquat b)
+{
+    return (wquat){0, a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+static wquat xyz(wide x, wide y, wide z) { return (wquat){0, x, y, z}; }
+
+typedef struct classical {
+    wide K, H; /* H with the sign of dN */
+    wquat normal;
+} classical;
+
+/* From x_u, x_v, x_uu, x_uv, x_vv. */
+static classical from_derivatives(wquat u, wquat v, wquat uu, wquat uv, wquat vv)
+{
+    const wquat n = wide_unit(wide_cross(u, v));
+    const wide E = wide_dot(u, u), F = wide_dot(u, v), G = wide_dot(v, v), L = wide_dot(uu, n), M = wide_dot(uv, n),
+               N = wide_dot(vv, n), g = E * G - F * F;
+    return (classical){(L * N - M * M) / g, -(E * N - 2 * F * M + G * L) / (2 * g), n};
+}
+
+static classical wide_ellipsoid(wide a, wide b, wide c, wide u, wide v)
+{
+    const wide cu = cosf128(u), su = sinf128(u), cv = cosf128(v), sv = sinf128(v);
+    return from_derivatives(xyz(-a * cv * su, b * cv * cu, 0), xyz(-a * sv * cu, -b * sv * su, c * cv),
+                            xyz(-a * cv * cu, -b * cv * su, 0), xyz(a * sv * su, -b * sv * cu, 0),
+                            xyz(-a * cv * cu, -b * cv * su, -c * sv));
+}
+
+/* K = a^2 b^2 c^2/(...)^2, from the implicit equation: another road. */
+static wide ellipsoid_gauss(wide a, wide b, wide c, wide u, wide v)
+{
+    const wide x = cosf128(v) * cosf128(u) / a, y = cosf128(v) * sinf128(u) / b, z = sinf128(v) / c,
+               s = x * x + y * y + z * z;
+    return 1 / (a * a * b * b * c * c * s * s);
+}
+
+static double off(double got, wide want, wide scale) { return (double)(fabsf128((wide)got - want) / scale); }
+
+/* The worst of K and of H, against the size of the curvatures there. */
+static void judge(const quat_surface_point *p, classical want, double worst[3])
+{
+    const quat_curvature *c = &p->curvature;
+    const wide k = fmaxf128(fabsf128(c->principal[0]), fabsf128(c->principal[1]));
+    worse(&worst[0], off(c->gauss, want.K, k * k));
+    worse(&worst[1], off(c->mean, want.H, k));
+    worse(&worst[2], (double)wide_norm(wide_sub(wide_vec(quat_rotate(p->frame, qvec3_make(0, 0, 1))), want.normal)));
+}
+
+/* ---- at a point ---- */
+
+static void ellipsoids_in_quad(void **state)
+{
+    (void)state;
+    random_state r = {401};
+    double worst[3] = {0}, closed = 0;
+    for (int round = 0; round < 30000; round++) {
+        const double a = random_scale(&r, -2, 2), b = a * random_between(&r, 0.3, 3),
+                     c = a * random_between(&r, 0.3, 3);
+        const double u = random_between(&r, 0, 2 * pi), v = random_between(&r, -1.57, 1.57);
+        quat_family family;
+        quat_surface s;
+        quat_surface_point p;
+        assert_int_equal(quat_ellipsoid(a, b, c, &family, &s), QUAT_OK);
+        assert_true(quat_surface_at(&s, u, v, &p) >= 0);
+        judge(&p, wide_ellipsoid(a, b, c, u, v), worst);
+        worse(&closed, off(p.curvature.gauss, ellipsoid_gauss(a, b, c, u, v), ellipsoid_gauss(a, b, c, u, v)));
+    }
+    assert_bound("ellipsoid: K", worst[0], 1e-13);
+    assert_bound("ellipsoid: H", worst[1], 1e-13);
+    assert_bound("ellipsoid: normal", worst[2], 1e-13);
+    assert_bound("ellipsoid: K relative, closed form", closed, 1e-13);
+}
+
+static void closed_forms(void **state)
+{
+    (void)state;
+    random_state r = {402};
+    double torus = 0, sphere = 0, minimal = 0, saddle = 0, flat = 0, directions = 0;
+    for (int round = 0; round < 20000; round++) {
+        quat_family f;
+        quat_surface s;
+        quat_surface_point p;
+        const double R = random_scale(&r, -2, 2), small = R * random_between(&r, 0.05, 0.8),
+                     u = random_between(&r, 0, 2 * pi), v = random_between(&r, 0, 2 * pi),
+                     w = random_between(&r, -1, 1);
+        assert_int_equal(quat_torus(R, small, &f, &s), QUAT_OK);
+        assert_true(quat_surface_at(&s, u, v, &p) >= 0);
+        const wide ring = R + small * cosf128(v), k1 = 1 / (wide)small, k2 = cosf128(v) / ring;
+        worse(&torus, off(p.curvature.gauss, k1 * k2, k1 * k1));
+        worse(&torus, off(p.curvature.mean, (k1 + k2) / 2, k1));
+        worse(&torus, off(p.curvature.principal[0], k1, k1));
+        worse(&torus, off(p.curvature.principal[1], k2, k1));
+        /* the meridian is the direction of most curvature */
+        const qvec3 meridian = {-sin(v) * cos(u), -sin(v) * sin(u), cos(v)};
+        worse(&directions, 1 - fabs(qvec3_dot(meridian, p.curvature.direction[0])));
+        worse(&directions, fabs(qvec3_dot(meridian, p.curvature.direction[1])));
+
+        quat_ellipsoid(R, R, R, &f, &s);
+        assert_true(quat_surface_at(&s, u, 1.5 * w, &p) >= 0);
+        worse(&sphere, fabs(p.curvature.gauss * R * R - 1));
+        worse(&sphere, fabs(p.curvature.mean * R - 1)); /* positive: the normal is outward */
+
+        quat_catenoid(R, 2 * R, &f, &s);
+        assert_true(quat_surface_at(&s, u, w * R, &p) >= 0);
+        const wide c = coshl(w), k = 1 / ((wide)R * c * c);
+        worse(&minimal, off(p.curvature.gauss, -k * k, k * k));
+        worse(&minimal, off(p.curvature.mean, 0, k));
+        quat_helicoid(R, 1, 2 * R, &f, &s);
+        assert_true(quat_surface_at(&s, u - pi, w * R, &p) >= 0);
+        const wide kh = (wide)R / ((wide)R * R + (wide)(w * R) * (w * R));
+        worse(&minimal, off(p.curvature.gauss, -kh * kh, kh * kh));
+        worse(&minimal, off(p.curvature.mean, 0, kh));
+
+        quat_saddle(R, 2 * R, &f, &s);
+        assert_true(quat_surface_at(&s, w * R, (u / pi - 1) * R, &p) >= 0);
+        const wide x = w, y = (wide)((u / pi - 1) * R) / R, q = 1 + x * x + y * y;
+        worse(&saddle, off(p.curvature.gauss, -1 / ((wide)R * R * q * q), 1 / ((wide)R * R * q * q)));
+        worse(&saddle, off(p.curvature.mean, (x * x - y * y) / (2 * R * q * sqrtf128(q)), 1 / (R * q)));
+
+        quat_plane(R, R, &f, &s);
+        assert_int_equal(quat_surface_at(&s, w * R, 0.5 * R, &p), QUAT_NOT_UNIQUE);
+        worse(&flat, fabs(p.curvature.gauss) + fabs(p.curvature.mean));
+    }
+    assert_bound("torus", torus, 1e-13);
+    assert_bound("torus: principal directions", directions, 1e-13);
+    assert_bound("sphere", sphere, 1e-13);
+    assert_bound("catenoid and helicoid", minimal, 1e-13);
+    assert_bound("saddle", saddle, 1e-13);
+    assert_bound("plane", flat, 0);
+}
+
+/* ---- invariance ---- */
+
+typedef struct sheared {
+    quat_surface inner;
+    quat turn;
+    qvec3 shift;
+    double m[2][2], wobble; /* the torus' angles: m (s, t), and a ripple on the first */
+} sheared;
+
+static bool shear(double s, double t, qvec3 d[6], void *context)
+{
+    const sheared *g = context;
+    qvec3 x[6];
+    const double(*const m)[2] = g->m, u = m[0][0] * s + m[0][1] * t + g->wobble * sin(s), v = m[1][0] * s + m[1][1] * t;
+    const double us = m[0][0] + g->wobble * cos(s), ut = m[0][1], vs = m[1][0], vt = m[1][1], uss = -g->wobble * sin(s);
+    g->inner.at(u, v, x, g->inner.context);
+    d[0] = x[0];
+    d[1] = qvec3_axpy(us, x[1], qvec3_scale(x[2], vs));
+    d[2] = qvec3_axpy(ut, x[1], qvec3_scale(x[2], vt));
+    d[3] = qvec3_axpy(uss, x[1], qvec3_axpy(us * us, x[3], qvec3_axpy(2 * us * vs, x[4], qvec3_scale(x[5], vs * vs))));
+    d[4] = qvec3_axpy(us * ut, x[3], qvec3_axpy(us * vt + ut * vs, x[4], qvec3_scale(x[5], vs * vt)));
+    d[5] = qvec3_axpy(ut * ut, x[3], qvec3_axpy(2 * ut * vt, x[4], qvec3_scale(x[5], vt * vt)));
+    for (int i = 0; i < 6; i++) d[i] = quat_rotate(g->turn, d[i]);
+    d[0] = qvec3_add(d[0], g->shift);
+    return true;
+}
+
+static void nothing_depends_on_place_parameter_or_gauge(void **state)
+{
+    (void)state;
+    random_state r = {403};
+    double worst = 0, gauge = 0, asymmetry = 0, direction = 0;
+    for (int round = 0; round < 100000; round++) {
+        quat_family f;
+        sheared g = {.turn = random_unit(&r),
+                     .shift = random_direction(&r),
+                     .wobble = random_between(&r, -0.3, 0.3),
+                     .m = {{1, random_between(&r, -0.5, 0.5)}, {random_between(&r, -0.5, 0.5), 1}}};
+        quat_surface_point here, there;
+        quat_torus(2, 1, &f, &g.inner);
+        const quat_surface s = {shear, &g, -10, 10, -10, 10, false, false, 2};
+        const double t1 = random_between(&r, 0, 6), t2 = random_between(&r, 0, 6);
+        assert_true(quat_surface_at(&s, t1, t2, &there) >= 0);
+        quat_surface inner = g.inner;
+        assert_true(quat_surface_at(&inner, g.m[0][0] * t1 + g.m[0][1] * t2 + g.wobble * sin(t1),
+                                    g.m[1][0] * t1 + g.m[1][1] * t2, &here) >= 0);
+        const quat_curvature *a = &here.curvature, *b = &there.curvature;
+        worse(&worst, fabs(a->gauss - b->gauss));
+        worse(&worst, fabs(a->mean - b->mean));
+        worse(&asymmetry, b->asymmetry);
+        worse(&direction, 1 - fabs(qvec3_dot(quat_rotate(g.turn, a->direction[0]), b->direction[0])));
+        /* any angle about the normal, varying at any rate */
+        quat_curvature c;
+        quat q = there.frame;
+        qvec3 ra = there.a, rb = there.b;
+        quat_regauge(random_between(&r, -9, 9), random_between(&r, -3, 3), random_between(&r, -3, 3), &q, &ra, &rb);
+        assert_true(quat_curvature_of_frame(q, ra, rb, there.xu, there.xv, &c) >= 0);
+        worse(&gauge, fabs(b->gauss - c.gauss));
+        worse(&gauge, fabs(b->mean - c.mean));
+        worse(&gauge, 1 - fabs(qvec3_dot(b->direction[0], c.direction[0])));
+        worse(&gauge, fabs(c.asymmetry));
+    }
+    assert_bound("K and H after motion and new parameters", worst, 1e-13);
+    assert_bound("principal direction", direction, 1e-13);
+    assert_bound("asymmetry of dN", asymmetry, 1e-13);
+    assert_bound("K, H, direction in another gauge", gauge, 1e-13);
+}
+
+/* q_u = q (0, a)/2 by differences of the frame itself. */
+static void rates_are_the_frames(void **state)
+{
+    (void)state;
+    random_state r = {404};
+    double rates = 0, integrable = 0;
+    for (int round = 0; round < 2000; round++) {
+        quat_family f;
+        quat_surface s;
+        quat_surface_point p, before, after;
+        const double u = random_between(&r, 0.5, 5.5), v = random_between(&r, -1.2, 1.2), h = 1e-5;
+        quat_ellipsoid(1, 2, 1.5, &f, &s);
+        quat_surface_at(&s, u, v, &p);
+        for (int along_v = 0; along_v < 2; along_v++) {
+            quat_surface_at(&s, along_v ? u : u - h, along_v ? v - h : v, &before);
+            quat_surface_at(&s, along_v ? u : u + h, along_v ? v + h : v, &after);
+            const quat slope =
+                quat_scale(quat_sub(quat_nearest(after.frame, p.frame), quat_nearest(before.frame, p.frame)), 0.5 / h);
+            worse(&rates, qvec3_norm(qvec3_sub(quat_omega_body(p.frame, slope), along_v ? p.b : p.a)));
+        }
+        double residual;
+        if (round % 20 == 0) {
+            assert_int_equal(quat_surface_integrability(&s, u, v, &residual), QUAT_OK);
+            worse(&integrable, residual);
+        }
+    }
+    assert_bound("rates against differences", rates, 1e-8);
+    assert_bound("a_v - b_u - a x b", integrable, 1e-10);
+}
+
+/* ---- differences ---- */
+
+static bool veil(double u, double v, qvec3 d[6], void *context)
+{
+    const quat_surface *inner = context;
+    return inner->at(u, v, d, inner->context);
+}
+
+static void fewer_derivatives(void **state)
+{
+    (void)state;
+    const double bar[2] = {1e-9, 1e-11};
+    for (int known = 1; known >= 0; known--) {
+        double worst = 0, honest = 0;
+        for (int which = 0; which < 3; which++) {
+            quat_family f;
+            quat_surface s;
+            if (which == 0) quat_torus(2, 1, &f, &s);
+            if (which == 1) quat_ellipsoid(1, 2, 1.5, &f, &s);
+            if (which == 2) quat_saddle(1, 1, &f, &s);
+            quat_surface poorer = s;
+            poorer.at = veil, poorer.context = &s, poorer.known = known;
+            for (int i = 0; i <= 20; i++)
+                for (int j = 0; j <= 10; j++) {
+                    quat_surface_point full, p;
+                    const double u = fmin(s.u0 + (s.u1 - s.u0) * i / 20, s.u1),
+                                 v = s.v0 + (s.v1 - s.v0) * (0.05 + 0.09 * j);
+                    assert_true(quat_surface_at(&s, u, v, &full) >= 0 && quat_surface_at(&poorer, u, v, &p) >= 0);
+                    const double off_k = fabs(p.curvature.gauss - full.curvature.gauss),
+                                 off_h = fabs(p.curvature.mean - full.curvature.mean);
+                    worse(&worst, fmax(off_k, off_h));
+                    worse(&honest, off_h / (p.error + full.error));
+                }
+        }
+        char name[80];
+        snprintf(name, sizeof name, "K and H, derivatives known to order %d", known);
+        assert_bound(name, worst, bar[known]);
+        assert_bound("error by its estimate", honest, 3);
+    }
+}
+
+/* ---- over the surface ---- */
+
+static void gauss_and_bonnet(void **state)
+{
+    (void)state;
+    quat_family f;
+    quat_surface s;
+    quat_surface_totals t;
+    double worst = 0;
+    quat_ellipsoid(2, 2, 2, &f, &s);
+    assert_int_equal(quat_surface_total(&s, 1e-12, &t), QUAT_OK);
+    worse(&worst, fabs(t.gauss - 4 * pi) + fabs(t.area / (16 * pi) - 1) + fabs(t.mean / (8 * pi) - 1) +
+                      fabs(t.bending - 4 * pi));
+    quat_ellipsoid(1, 2, 3, &f, &s);
+    assert_int_equal(quat_surface_total(&s, 1e-11, &t), QUAT_OK);
+    worse(&worst, fabs(t.gauss - 4 * pi));
+    assert_true(t.bending > 4 * pi);
+    quat_torus(sqrt(2), 1, &f, &s);
+    assert_int_equal(quat_surface_total(&s, 1e-12, &t), QUAT_OK);
+    worse(&worst,
+          fabs(t.gauss) + fabs(t.area / (4 * pi * pi * sqrt(2)) - 1) + fabs(t.bending - 2 * pi * pi)); /* Clifford's */
+    quat_superellipsoid(1, 1.5, 2, 1, 1, &f, &s);
+    assert_int_equal(quat_surface_total(&s, 1e-11, &t), QUAT_OK);
+    worse(&worst, fabs(t.gauss - 4 * pi));
+    assert_bound("Gauss and Bonnet, areas, Willmore", worst, 1e-10);
+    quat_ellipsoid(1, 1, 1e4, &f, &s);
+    assert_int_equal(quat_surface_total(&s, 1e-12, &t),
+                     QUAT_NOT_CONVERGED); /* a needle: the poles ask for more points */
+}
+
+/* ---- Gauss maps ---- */
+
+enum { rings = 24, spokes = 48, cap_nodes = 1 + rings * spokes, cap_triangles = spokes * (2 * rings - 1) };
+
+typedef struct cap {
+    qvec3 x[cap_nodes];
+    quat q[cap_nodes];
+    size_t triangle[cap_triangles][3];
+} cap;
+
+/* The half of the unit sphere about sign z, as rings about its pole. Normals outward. */
+static void make_cap(int sign, cap *c)
+{
+    size_t m = 0;
+    c->x[0] = qvec3_make(0, 0, sign);
+    for (int i = 1; i <= rings; i++)
+        for (int j = 0; j < spokes; j++) {
+            const double polar = pi / 2 * i / rings, around = 2 * pi * j / spokes;
+            c->x[1 + (i - 1) * spokes + j] =
+                qvec3_make(sin(polar) * cos(around), sin(polar) * sin(around), sign * cos(polar));
+        }
+    for (size_t j = 0; j < spokes; j++) {
+        const size_t next = (j + 1) % spokes;
+        const size_t first[3] = {0, 1 + j, 1 + next};
+        for (int k = 0; k < 3; k++) c->triangle[m][k] = first[k];
+        m++;
+        for (size_t i = 1; i < rings; i++) {
+            const size_t a = 1 + (i - 1) * spokes + j, b = 1 + (i - 1) * spokes + next, d = a + spokes, e = b + spokes;
+            const size_t two[2][3] = {{a, d, e}, {a, e, b}};
+            for (int h = 0; h < 2; h++, m++)
+                for (int k = 0; k < 3; k++) c->triangle[m][k] = two[h][k];
+        }
+    }
+    assert_int_equal(m, cap_triangles);
+    const quat pole = sign > 0 ? quat_identity() : quat_make(0, 1, 0, 0);
+    c->q[0] = pole;
+    for (size_t i = 1; i < cap_nodes; i++) quat_from_two_vectors(qvec3_make(0, 0, 1), c->x[i], &c->q[i]);
+    /* any frames with these normals will do */
+    random_state r = {405};
+    for (size_t i = 1; i < cap_nodes; i++) {
+        const double angle = random_between(&r, -9, 9);
+        c->q[i] = quat_mul(c->q[i], quat_make(cos(angle), 0, 0, sin(angle)));
+    }
+}
+
+/* Of a half sphere the best frames are the shortest rotations from its pole, which fill a cap of radius pi/4 of a great
+ * sphere of S^3: totally geodesic, met by the circles of frames at right angles to its edge, area 2 pi (1 - cos pi/4). */
+static void half_spheres(void **state)
+{
+    (void)state;
+    static cap north, south;
+    const double want = 2 * pi * (1 - sqrt(0.5)),
+                 polygon = pow(2 * pi / spokes, 2) / 6; /* what a polygon lacks of a circle */
+    double length = 0, area = 0, energy[3];
+    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
+        quat_gauge_report report;
+        make_cap(1, &north);
+        assert_int_equal(quat_choose_frames(cap_nodes, north.x, cap_triangles, north.triangle[0], (quat_gauge)gauge,
+                                            north.q, &report),
+                         QUAT_OK);
+        assert_int_equal(report.torn, 0);
+        energy[gauge] = report.energy;
+        double worst = 0;
+        for (size_t i = 0; i < cap_nodes; i++) {
+            quat shortest;
+            quat_from_two_vectors(qvec3_make(0, 0, 1), north.x[i], &shortest);
+            worse(&worst, quat_rotation_distance(shortest, north.q[i]));
+        }
+        if (gauge == QUAT_MINIMAL_LENGTH) length = worst;
+        if (gauge == QUAT_MINIMAL_AREA) area = worst;
+        if (gauge != QUAT_SHORTEST)
+            assert_bound("area of a half sphere's Gauss map", fabs(report.area - want) / want, polygon);
+    }
+    const double least = energy[QUAT_MINIMAL_LENGTH] * (1 - 1e-13);
+    assert_true(least <= energy[QUAT_SHORTEST] && least <= energy[QUAT_MINIMAL_AREA]);
+    assert_bound("least length against the shortest rotations", length, 1e-9);
+    assert_bound("least area against them", area, 1e-9);
+
+    quat_gauge_report report;
+    make_cap(-1, &south);
+    /* the southern triangles look inward; the frames do not mind */
+    assert_int_equal(
+        quat_choose_frames(cap_nodes, south.x, cap_triangles, south.triangle[0], QUAT_MINIMAL_LENGTH, south.q, &report),
+        QUAT_OK);
+    quat q1[spokes + 1], q2[spokes + 1];
+    double angle[spokes + 1], turns, apart;
+    for (size_t j = 0; j <= spokes; j++) {
+        q1[j] = north.q[1 + (rings - 1) * spokes + j % spokes];
+        q2[j] = south.q[1 + (rings - 1) * spokes + j % spokes];
+    }
+    assert_int_equal(quat_transition(spokes + 1, q1, q2, angle, &turns, &apart), QUAT_OK);
+    assert_bound("winding of the sphere's transition + 2", fabs(turns + 2), 1e-14);
+    assert_bound("normals along the seam", apart, 1e-14);
+    double even = 0;
+    for (size_t j = 0; j <= spokes; j++) worse(&even, fabs(angle[j] - angle[0] + 4 * pi * (double)j / spokes));
+    assert_bound("its angle against a straight line", even, 1e-9);
+}
+
+/* Numbered from a node on the rim instead of the pole: the least frames are the same again, but for one angle common to all. */
+static void the_start_does_not_matter(void **state)
+{
+    (void)state;
+    static cap c, turned;
+    make_cap(1, &c);
+    for (size_t i = 0; i < cap_nodes; i++) turned.x[i] = c.x[cap_nodes - 1 - i], turned.q[i] = c.q[cap_nodes - 1 - i];
+    for (size_t i = 0; i < cap_triangles; i++)
+        for (int k = 0; k < 3; k++) turned.triangle[i][k] = cap_nodes - 1 - c.triangle[i][k];
+    double off_by[3] = {0}, energy[3];
+    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
+        quat_gauge_report report;
+        quat common = {0, 0, 0, 0};
+        assert_int_equal(quat_choose_frames(cap_nodes, turned.x, cap_triangles, turned.triangle[0], (quat_gauge)gauge,
+                                            turned.q, &report),
+                         QUAT_OK);
+        energy[gauge] = report.energy;
+        for (size_t i = 0; i < cap_nodes; i++) {
+            quat shortest;
+            quat_from_two_vectors(qvec3_make(0, 0, 1), turned.x[i], &shortest);
+            const quat s = quat_mul(quat_conj(shortest), turned.q[i]);
+            if (i == 0) common = s;
+            worse(&off_by[gauge], quat_rotation_distance(common, s));
+        }
+    }
+    if (getenv("QUAT_TEST_SHOW"))
+        printf("from the rim: energy %g by shortest rotations, %g least\n", energy[0], energy[1]);
+    assert_true(energy[QUAT_MINIMAL_LENGTH] <= energy[QUAT_SHORTEST] * (1 + 1e-13));
+    assert_bound("least length from the rim, rad", off_by[QUAT_MINIMAL_LENGTH], 1e-9);
+    assert_bound("least area from the rim, rad", off_by[QUAT_MINIMAL_AREA], 1e-6);
+}
+
+/* A square of the saddle: each strategy is the best by its own measure, whatever frames come in. */
+static void least_area(void **state)
+{
+    (void)state;
+    enum { n = 17 };
+    static qvec3 x[n * n];
+    static quat q[n * n];
+    static size_t triangle[2 * (n - 1) * (n - 1)][3];
+    size_t m = 0;
+    quat_family f;
+    quat_surface s;
+    double area[3], energy[3];
+    quat_saddle(1, 2, &f, &s);
+    for (size_t i = 0; i < n * n; i++) {
+        quat_surface_point p;
+        assert_true(
+            quat_surface_at(&s, -2 + 4.0 * (double)(i / n) / (n - 1), -2 + 4.0 * (double)(i % n) / (n - 1), &p) >= 0);
+        x[i] = p.position, q[i] = p.frame;
+    }
+    for (size_t i = 0; i + n < n * n; i++) {
+        if (i % n == n - 1) continue;
+        const size_t two[2][3] = {{i, i + n, i + n + 1}, {i, i + n + 1, i + 1}};
+        for (int h = 0; h < 2; h++, m++)
+            for (int k = 0; k < 3; k++) triangle[m][k] = two[h][k];
+    }
+    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
+        quat_gauge_report report;
+        const quat_status status = quat_choose_frames(n * n, x, m, triangle[0], (quat_gauge)gauge, q, &report);
+        assert_int_equal(status, QUAT_OK);
+        assert_int_equal(report.torn, 0);
+        area[gauge] = report.area, energy[gauge] = report.energy;
+        if (getenv("QUAT_TEST_SHOW"))
+            printf("saddle, gauge %d: energy %.9f, area %.9f, %zu rounds\n", gauge, report.energy, report.area,
+                   report.rounds);
+    }
+    assert_true(energy[QUAT_MINIMAL_LENGTH] < energy[QUAT_SHORTEST] &&
+                energy[QUAT_MINIMAL_LENGTH] < energy[QUAT_MINIMAL_AREA]);
+    assert_true(area[QUAT_MINIMAL_AREA] < area[QUAT_MINIMAL_LENGTH]);
+    random_state r = {407};
+    for (int round = 0; round < 3; round++) {
+        static quat other[n * n];
+        quat_gauge_report report;
+        for (size_t i = 0; i < n * n; i++) {
+            const double angle = i > 0 ? random_between(&r, -9, 9) : 0;
+            other[i] = quat_mul(q[i], quat_make(cos(angle), 0, 0, sin(angle)));
+        }
+        assert_int_equal(quat_choose_frames(n * n, x, m, triangle[0], QUAT_MINIMAL_AREA, other, &report), QUAT_OK);
+        assert_bound("area found again", fabs(report.area / area[QUAT_MINIMAL_AREA] - 1), 1e-12);
+        double worst = 0;
+        for (size_t i = 0; i < n * n; i++) worse(&worst, quat_rotation_distance(other[i], q[i]));
+        assert_bound("frames found again, rad", worst, 1e-6);
+    }
+}
+
+static void a_flat_patch_costs_nothing(void **state)
+{
+    (void)state;
+    enum { n = 9 };
+    qvec3 x[n * n];
+    quat q[n * n];
+    size_t triangle[2 * (n - 1) * (n - 1)][3], m = 0;
+    random_state r = {406};
+    for (size_t i = 0; i < n * n; i++) {
+        const double angle = random_between(&r, -9, 9);
+        x[i] = qvec3_make((double)(i % n), (double)i / n, 0); /* slanted */
+        q[i] = quat_make(cos(angle), 0, 0, sin(angle));
+    }
+    for (size_t i = 0; i + n < n * n; i++) {
+        if (i % n == n - 1) continue;
+        const size_t two[2][3] = {{i, i + 1, i + n + 1}, {i, i + n + 1, i + n}};
+        for (int h = 0; h < 2; h++, m++)
+            for (int k = 0; k < 3; k++) triangle[m][k] = two[h][k];
+    }
+    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
+        quat_gauge_report report;
+        const quat first = q[0];
+        assert_int_equal(quat_choose_frames(n * n, x, m, triangle[0], (quat_gauge)gauge, q, &report), QUAT_OK);
+        assert_true(fabs(report.energy) < 1e-25 && report.area < 1e-25 && report.torn == 0);
+        for (size_t i = 0; i < n * n; i++) assert_true(quat_distance(q[i], first) < 1e-14);
+    }
+}
+
+/* ---- bad input ---- */
+
+static bool nowhere(double u, double v, qvec3 d[6], void *context)
+{
+    (void)u, (void)v, (void)d, (void)context;
+    return false;
+}
+static bool a_line(double u, double v, qvec3 d[6], void *context)
+{
+    (void)context;
+    d[0] = qvec3_make(u + v, 0, 0);
+    d[1] = d[2] = qvec3_make(1, 0, 0);
+    d[3] = d[4] = d[5] = qvec3_make(0, 0, 0);
+    return true;
+}
+
+static int handled;
+static void count_call(const char *reason, const char *file, int line, int error)
+{
+    (void)reason, (void)file, (void)line, (void)error;
+    handled++;
+}
+
+static void bad_input_has_a_status(void **state)
+{
+    (void)state;
+    quat_family f;
+    quat_surface s;
+    quat_surface_point p;
+    quat_surface_totals t;
+    double residual;
+    const quat_surface none = {nowhere, NULL, 0, 1, 0, 1, false, false, 2},
+                       thin = {a_line, NULL, 0, 1, 0, 1, false, false, 2},
+                       guessed = {a_line, NULL, 0, 1, 0, 1, false, false, 0}, empty = {0};
+    assert_int_equal(quat_surface_at(&none, 0.5, 0.5, &p), QUAT_EDOMAIN);
+    assert_int_equal(quat_surface_at(&thin, 0.5, 0.5, &p), QUAT_EDOMAIN);
+    assert_near3(p.position, qvec3_make(1, 0, 0), 0);
+    assert_int_equal(quat_surface_at(&guessed, 0.5, 0.5, &p), QUAT_EDOMAIN);
+    assert_int_equal(quat_surface_at(&empty, 0.5, 0.5, &p), QUAT_EARGUMENT);
+    assert_int_equal(quat_surface_at(&thin, 0.5, 1.5, &p), QUAT_EDOMAIN);
+    assert_int_equal(quat_surface_at(&thin, NAN, 0.5, &p), QUAT_EDOMAIN);
+    assert_int_equal(quat_surface_integrability(&none, 0.5, 0.5, &residual), QUAT_EDOMAIN);
+    assert_int_equal(quat_surface_total(&none, 1e-10, &t), QUAT_EDOMAIN);
+    assert_int_equal(quat_surface_total(&none, 0, &t), QUAT_EARGUMENT);
+    quat_ellipsoid(1, 1, 1, &f, &s);
+    assert_int_equal(quat_surface_at(&s, 1, pi / 2, &p), QUAT_EDOMAIN); /* the pole */
+    assert_near3(p.position, qvec3_make(0, 0, 1), 1e-16);
+    assert_true(quat_surface_at(&s, 1, pi / 2 - 1e-6, &p) >= 0);
+    assert_near(p.curvature.gauss, 1, 1e-13);
+    assert_int_equal(quat_superellipsoid(1, 1, 1, 0.5, 0.5, &f, &s), QUAT_OK);
+    assert_int_equal(quat_surface_at(&s, 1, 0, &p), QUAT_EDOMAIN); /* no second derivative on the equator */
+    assert_true(quat_surface_at(&s, 1, 0.5, &p) >= 0);
+    assert_int_equal(quat_superellipsoid(1, 1, 1, 0, 1, &f, &s), QUAT_EDOMAIN);
+    assert_int_equal(quat_surface_at(&s, 1, 0.5, &p), QUAT_EARGUMENT);
+
+    const qvec3 x[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}};
+    const size_t one[3] = {0, 1, 2}, out[3] = {0, 1, 4};
+    quat q[4] = {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}};
+    assert_int_equal(quat_choose_frames(3, x, 1, one, QUAT_MINIMAL_AREA, q, NULL), QUAT_OK);
+    assert_int_equal(quat_choose_frames(3, x, 1, out, QUAT_SHORTEST, q, NULL), QUAT_EARGUMENT);
+    assert_int_equal(quat_choose_frames(3, x, 0, one, QUAT_SHORTEST, q, NULL), QUAT_EARGUMENT);
+    assert_int_equal(quat_choose_frames(3, x, 1, one, (quat_gauge)7, q, NULL), QUAT_EARGUMENT);
+    assert_int_equal(quat_choose_frames(4, x, 1, one, QUAT_SHORTEST, q, NULL), QUAT_EDOMAIN);
+    q[3] = quat_identity();
+    assert_int_equal(quat_choose_frames(4, x, 1, one, QUAT_SHORTEST, q, NULL), QUAT_EARGUMENT); /* in two parts */
+    q[1] = quat_make(0, 1, 0, 0); /* the normal turned over */
+    assert_int_equal(quat_choose_frames(3, x, 1, one, QUAT_SHORTEST, q, NULL), QUAT_NOT_UNIQUE);
+    assert_int_equal(quat_transition(0, q, q, NULL, NULL, NULL), QUAT_EARGUMENT);
+    const quat up = {1, 0, 0, 0}, tipped = {1, 0.1, 0, 0};
+    assert_int_equal(quat_transition(1, &up, &tipped, NULL, NULL, NULL), QUAT_EDOMAIN);
+    assert_int_equal(handled, 0); /* GSL's handler was never called, which by default ends the program */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(ellipsoids_in_quad),
+                                       cmocka_unit_test(closed_forms),
+                                       cmocka_unit_test(nothing_depends_on_place_parameter_or_gauge),
+                                       cmocka_unit_test(rates_are_the_frames),
+                                       cmocka_unit_test(fewer_derivatives),
+                                       cmocka_unit_test(gauss_and_bonnet),
+                                       cmocka_unit_test(half_spheres),
+                                       cmocka_unit_test(the_start_does_not_matter),
+                                       cmocka_unit_test(least_area),
+                                       cmocka_unit_test(a_flat_patch_costs_nothing),
+                                       cmocka_unit_test(bad_input_has_a_status)};
+    gsl_set_error_handler(count_call);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
