@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene_internal.h"
 #include "scene_check.h"
+#include "scene_crowd.h"
 #include "world_gap.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static bool emit_samples(void *context, double t, const impact_state *states)
+bool impact_scene_emit(void *context, double t, const impact_state *states)
 {
     impact_scene *scene = context;
     const impact_recorder *recorder = scene->recorder;
@@ -75,13 +76,15 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
     scene->rest_height = def->rest_height;
     scene->rest_speed = def->rest_speed;
     scene->max_events = def->max_events;
-    scene->sampler = (impact_sampler){.rate = def->output_rate, .emit = emit_samples, .pulse = pulse, .context = scene};
+    scene->sampler =
+        (impact_sampler){.rate = def->output_rate, .emit = impact_scene_emit, .pulse = pulse, .context = scene};
     status = impact_scene_build(scene, def);
     if (status == IMPACT_OK) {
         impact_field_locate(&scene->world, scene->states);
         scene->energy_start = impact_scene_total_energy(scene);
         status = check_overlaps(scene, message, message_size);
     }
+    if (status == IMPACT_OK) status = impact_scene_crowd_open(scene);
     if (status != IMPACT_OK) {
         impact_scene_destroy(scene);
         return status;
@@ -93,6 +96,7 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
 void impact_scene_destroy(impact_scene *scene)
 {
     if (!scene) return;
+    impact_scene_crowd_close(scene);
     impact_scene_unbuild(scene);
     free(scene);
 }
@@ -114,7 +118,7 @@ static impact_status advance(impact_scene *scene, double t_end)
     enum { MAX_STALLS = 10000 };
     const double t_before = scene->t;
     impact_end end;
-    impact_sampler silent = {.pulse = pulse, .context = scene};
+    impact_sampler silent = {.pulse = scene->sampler.pulse, .context = scene};
     const bool samples = scene->recorder && scene->recorder->sample;
     scene->stop = IMPACT_OK;
     impact_status status = impact_motion_advance(&scene->motion, &scene->t, t_end, scene->states,
@@ -134,13 +138,9 @@ static impact_status advance(impact_scene *scene, double t_end)
     return IMPACT_EUNSETTLED;
 }
 
-static impact_status run(impact_scene *scene, double t_end)
+impact_status impact_scene_go_on(impact_scene *scene, double t_end)
 {
-    scene->message[0] = '\0';
-    if (!isfinite(t_end)) return IMPACT_EDOMAIN;
-    const double due = ceil(scene->t * scene->sampler.rate);
-    if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
-    impact_status status = impact_scene_settle(scene);
+    impact_status status = IMPACT_OK;
     while (status == IMPACT_OK && scene->t < t_end) {
         if (all_at_rest(scene)) return IMPACT_AT_REST;
         if (scene->event_count >= scene->max_events) {
@@ -148,9 +148,22 @@ static impact_status run(impact_scene *scene, double t_end)
                      scene->t);
             return IMPACT_EVENT_LIMIT;
         }
-        status = pulse(scene, scene->t) ? advance(scene, t_end) : scene->stop;
+        if (!scene->sampler.pulse(scene->sampler.context, scene->t)) return scene->stop;
+        status = scene->crowd ? impact_scene_crowd_advance(scene, t_end) : advance(scene, t_end);
     }
     return status;
+}
+
+static impact_status run(impact_scene *scene, double t_end)
+{
+    scene->message[0] = '\0';
+    if (!isfinite(t_end)) return IMPACT_EDOMAIN;
+    const double due = ceil(scene->t * scene->sampler.rate);
+    if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
+    impact_status status = scene->crowd ? impact_scene_crowd_deliver(scene) : IMPACT_OK;
+    if (status == IMPACT_OK) status = impact_scene_settle(scene);
+    if (status == IMPACT_OK && scene->crowd) impact_scene_crowd_begin(scene);
+    return status == IMPACT_OK ? impact_scene_go_on(scene, t_end) : status;
 }
 
 /* The run's check on itself: the energy that is there against the energy that was given and taken. Held contacts of superellipsoids,

@@ -39,9 +39,11 @@ static impact_status record(impact_scene *scene, const impact_event *event)
     scene->event_count++;
     if (!scene->recorder) return IMPACT_OK;
     const int other = event->kind == IMPACT_EVENT_FORCE ? -1 : event->body2;
+    scene->beside_event = true;
     const bool taken = record_rows(scene, event->body1, scene->before) && record_rows(scene, other, scene->before) &&
                        (!scene->recorder->event || scene->recorder->event(scene->recorder->context, event)) &&
                        record_rows(scene, event->body1, scene->states) && record_rows(scene, other, scene->states);
+    scene->beside_event = false;
     memcpy(scene->before, scene->states, sizeof *scene->states * (size_t)scene->world.body_count);
     return taken ? IMPACT_OK : IMPACT_ESINK;
 }

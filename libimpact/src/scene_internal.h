@@ -24,12 +24,19 @@ struct impact_scene {
     const impact_recorder *recorder; /* of the run under way */
     impact_status stop;              /* why the recorder stopped the run */
     double energy_start, impact_loss;
+    bool beside_event;                /* the rows that go to the recorder now stand beside an event */
+    struct impact_scene_crowd *crowd; /* of many bodies, that are moved in groups; NULL: all at once */
     char message[512];
 };
 
 /* The world of a definition that impact_scene_check has passed. */
 impact_status impact_scene_build(impact_scene *scene, const impact_scene_def *def);
 void impact_scene_unbuild(impact_scene *scene);
+
+/* On to the time t_end, as far as it goes: IMPACT_OK there, IMPACT_AT_REST, or why not. */
+impact_status impact_scene_go_on(impact_scene *scene, double t_end);
+/* Puts every body's row into the recorder; for the sampler. */
+bool impact_scene_emit(void *scene, double t, const impact_state *states);
 
 /* Kinetic + potential, J. */
 double impact_scene_total_energy(const impact_scene *scene);
