@@ -22,6 +22,7 @@ void impact_motion_close(impact_motion *motion)
     impact_ode_destroy(motion->adams);
     impact_ode_destroy(motion->bdf);
     impact_persist_free(&motion->persist);
+    free(motion->flyers);
     free(motion->resting);
     free(motion->loads);
     free(motion->sampled);
@@ -77,23 +78,17 @@ void impact_motion_set_slack(impact_motion *motion, const impact_state *states)
     }
 }
 
-static bool is_ballistic(const impact_motion *motion, const impact_state *states)
+/* Nothing but uniform gravity acts. */
+static bool is_ballistic(const impact_motion *motion)
 {
-    const impact_world *world = motion->world;
-    if (motion->persist.count > 0 || impact_field_any(world)) return false;
-    for (int i = 0; i < world->body_count; i++) {
-        const impact_body *body = &world->bodies[i];
-        const bool turns = states[i].momentum.x != 0 || states[i].momentum.y != 0 || states[i].momentum.z != 0;
-        if (!body->is_static && turns && !(body->spherical && body->shape.kind == IMPACT_SPHERE)) return false;
-    }
-    return true;
+    return motion->persist.count == 0 && !impact_field_any(motion->world);
 }
 
 impact_status impact_motion_advance(impact_motion *motion, double *t, double t_end, impact_state *states,
                                     impact_sampler *sampler, impact_end *end)
 {
     motion->message[0] = '\0';
-    if (is_ballistic(motion, states)) return impact_motion_fly(motion, t, t_end, states, sampler, end);
+    if (is_ballistic(motion)) return impact_motion_fly(motion, t, t_end, states, sampler, end);
     if (!impact_motion_load(motion, *t, states)) return IMPACT_EDOMAIN;
     return impact_motion_integrate(motion, t, t_end, states, sampler, end);
 }

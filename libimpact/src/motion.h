@@ -48,6 +48,8 @@ typedef struct impact_motion {
     impact_works works;
     char message[256];
 
+    struct impact_flyer *flyers; /* bodies in closed form; absent until they are */
+
     /* the integrator's side; absent until it is needed */
     impact_ode *ode;         /* the one at work: adams or bdf */
     impact_ode *adams, *bdf; /* for smooth motion; for the slow slip after an onset, which is stiff */
