@@ -3,94 +3,47 @@
  * report_collide: the campaign of the room collide over random impacts of every class.
  *
  * report_collide [--impacts N] [--seed S] [--threads T] [--cvode N] [--oracle N]
- * CSV, one row per class: how many impacts, how many failed (a status below 0, or a NaN), what happened in them; the worst energy
- * gain over the energy before (Poisson and Stronge), the worst distance outside of the friction cone over |P|, the median and worst
- * disagreement with CVODE at 1e-12 on N impacts, the median and worst error against the 128-bit oracle on N impacts (in units of
- * eps cond too), and the time of one call
- * in microseconds (the mean leaves out what took above 200: another program had the core). Every figure but the times depends on the seed alone, not on the threads.
+ * N impacts in all, the classes in turn, on so many threads (by itself as many as there are cores); one in a hundred is solved by CVODE
+ * at 1e-12 too and one in five hundred by the 128-bit oracle, or about as many as --cvode and --oracle say. How far it is and how
+ * long it will yet take goes to stderr. Every figure but the times depends on N and the seed alone.
+ *
+ * Three tables, CSV:
+ * 1. per class: how many impacts, how many failed (a status below 0, or a NaN), what happened in them; the worst energy gain over the
+ *    energy before (Poisson and Stronge), the worst distance outside of the friction cone over |P|, Newton's gains, and the time of
+ *    one call in microseconds (the mean leaves out what took above 200: another program had the core);
+ * 2. per class and independent solver: quantiles of the error of the velocities, plain and in units of eps cond(M); how many the
+ *    other solver could not answer, and how many are off by more than 1e-12 and more than 10 eps cond;
+ * 3. the worst of each class against the oracle: beside the error of ours, data_error is how far the exact answer itself moves when
+ *    the inputs change by at most one unit in the last place, the largest of 24 such changes.
  */
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include "../tests/generators/collide_cases.h"
+#include <unistd.h>
+#include "report_collide_tally.h"
 #ifdef HAVE_QUADMATH
 #include "../tests/generators/collide_oracle.h"
 #endif
 
-enum { BINS = 400, PER_DECADE = 16 };
+enum { CHUNK = 2000, MOST_THREADS = 256 };
 
-/* Bins of a sixteenth of a decade from 1e-19. */
-typedef struct spread {
-    long count, bin[BINS];
-    double worst;
-} spread;
-
-typedef struct tally {
-    long impacts, failures, slips, sticks, reversals, jams, again, newton_gains;
-    double gain, cone;
-    spread cvode, oracle, oracle_scaled, time;
-    long cvode_failures;
-    double time_sum; /* of the calls that nothing interrupted */
-    long time_count;
-} tally;
+typedef struct campaign {
+    long each; /* impacts of a class */
+    uint64_t seed;
+    long cvode, oracle; /* every so many impacts of a class; 0: none */
+    atomic_long chunk;  /* the next to be taken */
+    atomic_long done;   /* impacts */
+} campaign;
 
 typedef struct job {
     pthread_t thread;
-    int number, threads;
-    long impacts, cvode, oracle;
-    uint64_t seed;
+    campaign *all;
     tally tally[CASE_CLASSES];
     impact_collide_workspace *workspace;
 } job;
-
-static void note(spread *s, double value)
-{
-    int bin = value > 0 ? (int)(PER_DECADE * (log10(value) + 19)) : 0;
-    bin = bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
-    s->bin[bin]++;
-    s->count++;
-    if (!(value <= s->worst)) s->worst = value;
-}
-
-static double quantile(const spread *s, double q)
-{
-    long seen = 0;
-    for (int i = 0; i < BINS; i++) {
-        seen += s->bin[i];
-        if (seen > 0 && (double)seen >= q * (double)s->count) return i == 0 ? 0 : pow(10, (i + 1.0) / PER_DECADE - 19);
-    }
-    return s->count ? s->worst : NAN;
-}
-
-static void merge_spread(spread *into, const spread *from)
-{
-    for (int i = 0; i < BINS; i++) into->bin[i] += from->bin[i];
-    into->count += from->count;
-    if (!(from->worst <= into->worst)) into->worst = from->worst;
-}
-
-static void merge(tally *into, const tally *from)
-{
-    into->impacts += from->impacts;
-    into->failures += from->failures;
-    into->slips += from->slips;
-    into->sticks += from->sticks;
-    into->reversals += from->reversals;
-    into->jams += from->jams;
-    into->again += from->again;
-    into->newton_gains += from->newton_gains;
-    into->gain = fmax(into->gain, from->gain);
-    into->cone = fmax(into->cone, from->cone);
-    into->cvode_failures += from->cvode_failures;
-    into->time_sum += from->time_sum;
-    into->time_count += from->time_count;
-    merge_spread(&into->cvode, &from->cvode);
-    merge_spread(&into->oracle, &from->oracle);
-    merge_spread(&into->oracle_scaled, &from->oracle_scaled);
-    merge_spread(&into->time, &from->time);
-}
 
 static double seconds(void)
 {
@@ -98,6 +51,8 @@ static double seconds(void)
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
+
+/* ---- one impact ---- */
 
 static bool all_finite(const impact_outcome *o)
 {
@@ -110,106 +65,192 @@ static bool all_finite(const impact_outcome *o)
                     o->normal_after);
 }
 
-/* How far the impulse stands outside of the friction cone, over |P|. */
-static double outside_cone(const impact_collision *c, const impact_outcome *o)
-{
-    const double n = qvec3_norm(c->normal), p = qvec3_dot(o->impulse, c->normal) / n;
-    const qvec3 t = qvec3_axpy(-p / n, c->normal, o->impulse);
-    return (qvec3_norm(t) - c->friction * p) / (qvec3_norm(o->impulse) * sqrt(1 + c->friction * c->friction));
-}
-
-static void count_phases(tally *t, const impact_outcome *o)
-{
-    bool stick = false, reversal = false;
-    for (int i = 0; i < o->phase_count; i++) {
-        stick = stick || o->phases[i] == IMPACT_STICK_C || o->phases[i] == IMPACT_STICK_R;
-        reversal = reversal || o->phases[i] == IMPACT_REVERSAL;
-    }
-    t->slips += !stick && !reversal;
-    t->sticks += stick;
-    t->reversals += reversal;
-    t->jams += o->jammed;
-    t->again += o->compressions > 1;
-}
-
 static void against_cvode(job *j, tally *t, impact_collision c, const impact_outcome *o)
 {
     impact_outcome other;
     c.solver = IMPACT_SOLVER_CVODE;
     c.workspace = j->workspace;
-    if (impact_collide(&c, &other) != IMPACT_OK) {
-        t->cvode_failures++;
-        return;
-    }
-    note(&t->cvode, case_error(&c, o->velocity, o->omega, other.velocity, other.omega));
+    if (impact_collide(&c, &other) != IMPACT_OK)
+        t->cvode.refused++;
+    else
+        comparison_note(&t->cvode, case_error(&c, o->velocity, o->omega, other.velocity, other.omega), o->conditioning);
 }
 
-static void against_oracle(tally *t, const impact_collision *c, const impact_outcome *o)
+static void against_oracle(tally *t, long index, const impact_collision *c, const impact_outcome *o)
 {
 #ifdef HAVE_QUADMATH
     oracle_outcome wanted;
-    if (!oracle_collide(c, &wanted)) return;
-    const double error = case_error(c, o->velocity, o->omega, wanted.velocity, wanted.omega);
-    note(&t->oracle, error);
-    note(&t->oracle_scaled, error / (0x1p-52 * o->conditioning));
+    if (!oracle_collide(c, &wanted))
+        t->oracle.refused++;
+    else
+        tally_oracle(t, index, case_error(c, o->velocity, o->omega, wanted.velocity, wanted.omega), o->conditioning);
 #else
-    (void)t, (void)c, (void)o;
+    (void)t, (void)index, (void)c, (void)o;
 #endif
 }
 
 static void one(job *j, case_class class_, long index)
 {
+    const campaign *all = j->all;
     tally *t = &j->tally[class_];
-    const impact_collision c = case_make(class_, j->seed, (uint64_t)index);
+    const impact_collision c = case_make(class_, all->seed, (uint64_t)index);
     impact_outcome o;
     const double from = seconds();
     const impact_status status = impact_collide(&c, &o);
-    const double time = seconds() - from;
-    note(&t->time, time);
-    if (time < 2e-4) {
-        t->time_sum += time;
-        t->time_count++;
-    }
+    tally_time(t, seconds() - from);
     t->impacts++;
     if (status != IMPACT_OK || !all_finite(&o)) {
         t->failures++;
         fprintf(stderr, "%s %ld: %s\n", case_name(class_), index, impact_status_string(status));
         return;
     }
-    count_phases(t, &o);
-    const double gain = (o.energy_after - o.energy_before) / o.energy_before;
-    if (c.law == IMPACT_NEWTON)
-        t->newton_gains += o.energy_rose;
-    else
-        t->gain = fmax(t->gain, gain);
-    t->cone = fmax(t->cone, outside_cone(&c, &o));
-    if (j->workspace && j->cvode > 0 && index % j->cvode == 0) against_cvode(j, t, c, &o);
-    if (j->oracle > 0 && index % j->oracle == 0) against_oracle(t, &c, &o);
+    tally_outcome(t, &c, &o);
+    if (j->workspace && all->cvode > 0 && index % all->cvode == 0) against_cvode(j, t, c, &o);
+    if (all->oracle > 0 && index % all->oracle == 0) against_oracle(t, index, &c, &o);
 }
 
+/* ---- all of them ---- */
+
+/* Chunks go from class to class, so that what remains costs about what was done. */
 static void *work(void *context)
 {
     job *j = context;
+    campaign *all = j->all;
+    const long chunks = (all->each + CHUNK - 1) / CHUNK * CASE_CLASSES;
     impact_collide_workspace_create(IMPACT_ODE_ADAMS, 1e-12, &j->workspace);
-    for (int k = 0; k < CASE_CLASSES; k++) {
-        j->tally[k].gain = j->tally[k].cone = -INFINITY;
-        for (long i = j->number; i < j->impacts / CASE_CLASSES; i += j->threads) one(j, (case_class)k, i);
+    for (int k = 0; k < CASE_CLASSES; k++) tally_start(&j->tally[k]);
+    for (long chunk; (chunk = atomic_fetch_add(&all->chunk, 1)) < chunks;) {
+        const long from = chunk / CASE_CLASSES * CHUNK, to = from + CHUNK < all->each ? from + CHUNK : all->each;
+        for (long i = from; i < to; i++) {
+            one(j, (case_class)(chunk % CASE_CLASSES), i);
+            atomic_fetch_add_explicit(&all->done, 1, memory_order_relaxed);
+        }
     }
     impact_collide_workspace_destroy(j->workspace);
     return NULL;
 }
 
-static void print_row(const char *name, const tally *t)
+/* A line every second on a terminal, else one every 15 s, until all is done. */
+static void show_progress(campaign *all)
 {
-    printf("%s,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%.2g,%.2g,%ld,", name, t->impacts, t->failures, t->slips, t->sticks,
-           t->reversals, t->jams, t->again, t->gain, t->cone, t->newton_gains);
-    printf("%ld,%ld,%.2g,%.2g,", t->cvode.count, t->cvode_failures, quantile(&t->cvode, 0.5), t->cvode.worst);
-    printf("%ld,%.2g,%.2g,%.2g,", t->oracle.count, quantile(&t->oracle, 0.5), t->oracle.worst, t->oracle_scaled.worst);
-    printf("%.2g,%.2g,%.2g,%.2g\n", 1e6 * t->time_sum / (double)t->time_count, 1e6 * quantile(&t->time, 0.5),
-           1e6 * quantile(&t->time, 0.99), 1e6 * t->time.worst);
+    const bool terminal = isatty(STDERR_FILENO);
+    const long impacts = all->each * CASE_CLASSES;
+    const double start = seconds(), every = terminal ? 1 : 15;
+    double last = start;
+    for (long done; (done = atomic_load(&all->done)) < impacts;) {
+        nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
+        const double now = seconds();
+        if (now - last < every || done == 0) continue;
+        last = now;
+        const double left = (now - start) * (double)(impacts - done) / (double)done;
+        fprintf(stderr, "%s%ld of %ld impacts, about %.0f s left   %s", terminal ? "\r" : "", done, impacts, left,
+                terminal ? "" : "\n");
+    }
+    if (terminal) fprintf(stderr, "\r%60s\r", "");
 }
 
-/* The number after the option's name, or -1. */
+/* ---- the data's own error ---- */
+
+#ifdef HAVE_QUADMATH
+static void nudge(double *value, uint64_t *g) { *value *= 1 + floor(3 * case_random(g) - 1) * 0x1p-52; }
+
+static void nudge3(qvec3 *v, uint64_t *g)
+{
+    nudge(&v->x, g);
+    nudge(&v->y, g);
+    nudge(&v->z, g);
+}
+
+static impact_collision nudged(impact_collision c, uint64_t *g)
+{
+    for (int i = 0; i < 2; i++) {
+        impact_collider *body = &c.body[i];
+        if (isinf(body->mass)) continue;
+        nudge(&body->mass, g);
+        nudge3(&body->moments, g);
+        nudge3(&body->offset, g);
+        nudge3(&body->velocity, g);
+        nudge3(&body->omega, g);
+        nudge(&body->orientation.w, g);
+        nudge(&body->orientation.x, g);
+        nudge(&body->orientation.y, g);
+        nudge(&body->orientation.z, g);
+    }
+    nudge3(&c.normal, g);
+    nudge(&c.friction, g);
+    if (c.restitution < 1) nudge(&c.restitution, g);
+    return c;
+}
+
+/* How far the exact answer moves when the inputs change by at most one unit in the last place. */
+static double data_error(const impact_collision *c)
+{
+    oracle_outcome exact, moved;
+    uint64_t g = 1;
+    double worst = 0;
+    if (!oracle_collide(c, &exact)) return NAN;
+    for (int i = 0; i < 24; i++) {
+        const impact_collision other = nudged(*c, &g);
+        if (oracle_collide(&other, &moved))
+            worst = fmax(worst, case_error(c, moved.velocity, moved.omega, exact.velocity, exact.omega));
+    }
+    return worst;
+}
+
+static void print_worst_row(case_class class_, uint64_t seed, const worst_row *row)
+{
+    const impact_collision c = case_make(class_, seed, (uint64_t)row->index);
+    impact_outcome o;
+    impact_collide(&c, &o);
+    const double data = data_error(&c);
+    printf("%s,%ld,%.2g,%.2g,%.2g,%.2g,%.2g,%s,%s,", case_name(class_), row->index, row->error,
+           row->error / (0x1p-52 * row->conditioning), row->conditioning, data, row->error / data,
+           impact_law_name(c.law), impact_solver_name(o.solver));
+    for (int i = 0; i < o.phase_count; i++)
+        printf("%s%s", i > 0 ? " " : "", impact_phase_name((impact_phase)o.phases[i]));
+    printf("\n");
+}
+
+static void print_worst(case_class class_, uint64_t seed, const tally *t)
+{
+    for (int i = 0; i < WORST; i++)
+        if (t->by_error[i].error > 0) print_worst_row(class_, seed, &t->by_error[i]);
+    for (int i = 0; i < WORST; i++) {
+        bool printed = !(t->by_scaled[i].error > 0);
+        for (int k = 0; k < WORST; k++) printed = printed || t->by_scaled[i].index == t->by_error[k].index;
+        if (!printed) print_worst_row(class_, seed, &t->by_scaled[i]);
+    }
+}
+#endif
+
+/* ---- the tables ---- */
+
+static void print_tables(const tally each[CASE_CLASSES], uint64_t seed)
+{
+    static tally total;
+    tally_start(&total);
+    for (int k = 0; k < CASE_CLASSES; k++) tally_merge(&total, &each[k]);
+    print_course_heading();
+    for (int k = 0; k < CASE_CLASSES; k++) print_course(case_name((case_class)k), &each[k]);
+    print_course("all", &total);
+    printf("\n");
+    print_comparison_heading();
+    for (int k = 0; k < CASE_CLASSES; k++) print_comparison(case_name((case_class)k), "oracle", &each[k].oracle);
+    print_comparison("all", "oracle", &total.oracle);
+    for (int k = 0; k < CASE_CLASSES; k++) print_comparison(case_name((case_class)k), "cvode", &each[k].cvode);
+    print_comparison("all", "cvode", &total.cvode);
+#ifdef HAVE_QUADMATH
+    printf("\nclass,index,error,eps_cond,conditioning,data_error,error_over_data,law,solver,phases\n");
+    fflush(stdout);
+    for (int k = 0; k < CASE_CLASSES; k++) print_worst((case_class)k, seed, &each[k]);
+#else
+    (void)seed;
+#endif
+}
+
+/* ---- the door ---- */
+
+/* The number after the option's name, or -1; the fallback where it is not given. */
 static long option(int argc, char **argv, const char *name, long fallback)
 {
     for (int i = 1; i + 1 < argc; i += 2)
@@ -233,37 +274,43 @@ static bool known(int argc, char **argv)
     return true;
 }
 
-static job jobs[64];
+/* About `wanted` of the impacts of all classes: every so many of a class, and no multiple of 3, since the laws come in turn. */
+static long stride(long impacts, long wanted)
+{
+    const long every = wanted > 0 ? (impacts + wanted - 1) / wanted : 0;
+    return every > 0 && every % 3 == 0 ? every + 1 : every;
+}
 
 int main(int argc, char **argv)
 {
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     const long impacts = option(argc, argv, "--impacts", 1000000), seed = option(argc, argv, "--seed", 1);
-    const long threads = option(argc, argv, "--threads", 4), cvode = option(argc, argv, "--cvode", 7000);
-    const long oracle = option(argc, argv, "--oracle", 140);
-    if (!known(argc, argv) || impacts < CASE_CLASSES || seed < 0 || threads < 1 || threads > 64 || cvode < 0 ||
-        oracle < 0) {
-        fprintf(stderr, "report_collide [--impacts N] [--seed S] [--threads 1 ... 64] [--cvode N] [--oracle N]\n");
+    const long threads = option(argc, argv, "--threads", cores < 1 ? 1 : cores < MOST_THREADS ? cores : MOST_THREADS);
+    const long cvode = option(argc, argv, "--cvode", impacts / 100),
+               oracle = option(argc, argv, "--oracle", impacts / 500);
+    if (!known(argc, argv) || impacts < CASE_CLASSES || seed < 0 || threads < 1 || threads > MOST_THREADS ||
+        cvode < 0 || oracle < 0) {
+        fprintf(stderr, "report_collide [--impacts N >= %d] [--seed S] [--threads 1 ... %d] [--cvode N] [--oracle N]\n",
+                CASE_CLASSES, MOST_THREADS);
         return 2;
     }
+    campaign all = {.each = impacts / CASE_CLASSES, .seed = (uint64_t)seed};
+    all.cvode = stride(impacts, cvode);
+    all.oracle = stride(impacts, oracle);
+    job *jobs = calloc((size_t)threads, sizeof *jobs);
+    if (!jobs) return 1;
     for (int i = 0; i < threads; i++) {
-        jobs[i] = (job){.number = i, .threads = (int)threads, .impacts = impacts, .seed = (uint64_t)seed};
-        /* Every n-th impact, so that about so many are compared in all. */
-        jobs[i].cvode = cvode > 0 ? (impacts + cvode - 1) / cvode : 0;
-        jobs[i].oracle = oracle > 0 ? (impacts + oracle - 1) / oracle : 0;
+        jobs[i].all = &all;
         if (pthread_create(&jobs[i].thread, NULL, work, &jobs[i]) != 0) return 1;
     }
-    printf("class,impacts,failures,slip,stick,reversal,jam,recompression,worst_gain,worst_cone,newton_gains,"
-           "cvode_compared,cvode_failures,cvode_median,cvode_worst,oracle_compared,oracle_median,oracle_worst,oracle_"
-           "worst_eps_cond,"
-           "us_mean,us_p50,us_p99,us_max\n");
-    static tally total;
-    total.gain = total.cone = -INFINITY;
+    show_progress(&all);
     for (int i = 0; i < threads; i++) pthread_join(jobs[i].thread, NULL);
+    long failures = 0;
     for (int k = 0; k < CASE_CLASSES; k++) {
-        for (int i = 1; i < threads; i++) merge(&jobs[0].tally[k], &jobs[i].tally[k]);
-        print_row(case_name((case_class)k), &jobs[0].tally[k]);
-        merge(&total, &jobs[0].tally[k]);
+        for (int i = 1; i < threads; i++) tally_merge(&jobs[0].tally[k], &jobs[i].tally[k]);
+        failures += jobs[0].tally[k].failures;
     }
-    print_row("all", &total);
-    return total.failures > 0;
+    print_tables(jobs[0].tally, all.seed);
+    free(jobs);
+    return failures > 0;
 }
