@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "arguments.h"
 
-#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include "guess.h"
 
 /* ---- errors ---- */
 
@@ -295,45 +295,6 @@ int quat_lua_arg_choice(lua_State *L, int arg, const char *name, const char *con
 
 /* ---- tables ---- */
 
-static int least(int a, int b) { return a < b ? a : b; }
-
-/* Edit distance with swaps of neighbours (optimal string alignment); words over 31 letters count as far. */
-static int distance(const char *a, const char *b)
-{
-    enum { LONGEST = 31 };
-    int d[LONGEST + 1][LONGEST + 1];
-    const int m = (int)strlen(a), n = (int)strlen(b);
-    if (m > LONGEST || n > LONGEST) return INT_MAX;
-    for (int i = 0; i <= m; i++) d[i][0] = i;
-    for (int j = 0; j <= n; j++) d[0][j] = j;
-    for (int i = 1; i <= m; i++) {
-        for (int j = 1; j <= n; j++) {
-            const int change = a[i - 1] != b[j - 1];
-            d[i][j] = least(least(d[i - 1][j] + 1, d[i][j - 1] + 1), d[i - 1][j - 1] + change);
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                d[i][j] = least(d[i][j], d[i - 2][j - 2] + 1);
-        }
-    }
-    return d[m][n];
-}
-
-/* Whether the word is nothing but that letter, held too long: "rr" for "r". */
-static bool is_run(const char *word, const char *letter) { return *word && word[strspn(word, letter)] == '\0'; }
-
-/* The key that was probably meant: at most a third of its letters wrong, of a single letter its repeats; NULL when none
- * is near. */
-static const char *nearest(const char *given, const char *const keys[])
-{
-    const char *best = NULL;
-    int best_distance = INT_MAX;
-    for (int i = 0; keys[i]; i++) {
-        const int d = distance(given, keys[i]);
-        const bool near = strlen(keys[i]) == 1 ? is_run(given, keys[i]) : 3 * d <= (int)strlen(keys[i]) + 1;
-        if (d < best_distance && near) best = keys[i], best_distance = d;
-    }
-    return best;
-}
-
 static bool is_among(const char *given, const char *const keys[])
 {
     for (int i = 0; keys[i]; i++)
@@ -352,7 +313,7 @@ static int unknown_key(const quat_lua_reader *reader, const char *const keys[])
     else
         quat_lua_where(L);
     if (lua_type(L, -3) == LUA_TSTRING) {
-        const char *given = lua_tostring(L, -3), *meant = nearest(given, keys);
+        const char *given = lua_tostring(L, -3), *meant = quat_lua_guess(given, keys);
         lua_pushfstring(L, "unknown key '%s' in %s%s%s%s%s", given, reader->kind, space, quote, owner, quote);
         if (meant)
             lua_pushfstring(L, " (did you mean '%s'?)", meant);
@@ -465,57 +426,4 @@ quat quat_lua_get_quat(const quat_lua_reader *reader, const char *key, quat fall
     const quat value = quat_at(reader->L, reader, key, -1);
     lua_pop(reader->L, 1);
     return value;
-}
-
-/* ---- results ---- */
-
-/* v.x, v.y, v.z of a vector table; nothing else. */
-static int vec3_index(lua_State *L)
-{
-    luaL_checktype(L, 1, LUA_TTABLE);
-    const char *key = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
-    if (key[0] >= 'x' && key[0] <= 'z' && key[1] == 0)
-        lua_rawgeti(L, 1, key[0] - 'x' + 1);
-    else
-        lua_pushnil(L);
-    return 1;
-}
-
-static int vec3_tostring(lua_State *L)
-{
-    char text[120];
-    double v[3];
-    luaL_checktype(L, 1, LUA_TTABLE);
-    for (int i = 0; i < 3; i++) {
-        lua_rawgeti(L, 1, i + 1);
-        v[i] = lua_tonumber(L, -1);
-    }
-    snprintf(text, sizeof text, "(%.14g, %.14g, %.14g)", v[0], v[1], v[2]);
-    lua_pushstring(L, text);
-    return 1;
-}
-
-void quat_lua_push_vec3(lua_State *L, qvec3 v)
-{
-    const double component[3] = {v.x, v.y, v.z};
-    luaL_checkstack(L, 4, NULL);
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; i++) {
-        lua_pushnumber(L, component[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-    if (luaL_newmetatable(L, QUAT_LUA_VEC3)) {
-        static const luaL_Reg methods[] = {{"__index", vec3_index}, {"__tostring", vec3_tostring}, {NULL, NULL}};
-        luaL_setfuncs(L, methods, 0);
-    }
-    lua_setmetatable(L, -2);
-}
-
-void quat_lua_push_quat(lua_State *L, quat q)
-{
-    luaL_checkstack(L, 3, NULL);
-    quat *place = lua_newuserdatauv(L, sizeof q, 0);
-    *place = q;
-    luaL_newmetatable(L, QUAT_LUA_QUAT); /* filled by quat.core, whichever comes first */
-    lua_setmetatable(L, -2);
 }

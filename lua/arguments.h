@@ -9,7 +9,7 @@
  *      A room that needs GSL goes to the module quat.gsl instead: add_lua_module(quat gsl SOURCES ... LIBRARIES quat::quat_gsl_static)
  *      with its own luaopen_quat_gsl; quat.lua and the runner load it when a script first uses one of its names.
  *   3. Read with the functions below. Misuse raises an error that names the argument; an expected failure returns nil, message
- *      (quat_lua_failure). Vectors and quaternions go back with quat_lua_push_vec3 and quat_lua_push_quat.
+ *      (quat_lua_failure). Results go back with what results.h has.
  *   4. Sugar in Lua and the LuaLS annotations go to lua/quat.lua or lua/impact.lua.
  * Never let a Lua error pass through C code that is not ours (CVODE, GSL, libccd): call back with lua_pcall.
  */
@@ -20,15 +20,11 @@
 #include <lauxlib.h>
 #include <lua.h>
 #include <quat/quat.h>
+#include "results.h"
 
 #if LUA_VERSION_NUM != 504
 #error "the Lua face is written for Lua 5.4"
 #endif
-
-/* The metatable name of a quaternion userdata, which holds one `quat`. */
-#define QUAT_LUA_QUAT "quat.quat"
-/* The metatable name of the vectors we hand out: tables {x, y, z} that also answer to .x .y .z. */
-#define QUAT_LUA_VEC3 "quat.vec3"
 
 /* What a number must be; NaN never passes. */
 typedef enum quat_lua_range {
@@ -101,10 +97,5 @@ qvec3 quat_lua_get_vec3(const quat_lua_reader *reader, const char *key, qvec3 fa
 quat quat_lua_get_quat(const quat_lua_reader *reader, const char *key, quat fallback);
 /* Raises "body 'coin': mass is missing" when the key is absent. */
 void quat_lua_need(const quat_lua_reader *reader, const char *key);
-
-/* ---- results ---- */
-
-void quat_lua_push_vec3(lua_State *L, qvec3 v);
-void quat_lua_push_quat(lua_State *L, quat q); /* a quat userdata; `require "quat"` gives it its methods */
 
 #endif

@@ -110,38 +110,26 @@ static double call_law(double speed, void *context)
 
 /* ---- results ---- */
 
-static void set_number(lua_State *L, const char *key, double value)
-{
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, key);
-}
-
-static void set_vec3(lua_State *L, const char *key, qvec3 value)
-{
-    quat_lua_push_vec3(L, value);
-    lua_setfield(L, -2, key);
-}
-
 static void push_outcome(lua_State *L, const impact_outcome *o, impact_status status)
 {
     lua_createtable(L, 0, 20);
-    set_vec3(L, "v1", o->velocity[0]);
-    set_vec3(L, "w1", o->omega[0]);
-    set_vec3(L, "v2", o->velocity[1]);
-    set_vec3(L, "w2", o->omega[1]);
-    set_vec3(L, "impulse", o->impulse);
-    set_number(L, "impulse_normal", o->impulse_normal);
-    set_number(L, "impulse_tangential", o->impulse_tangential);
-    set_number(L, "compression_impulse", o->compression_impulse);
-    set_number(L, "normal_before", o->normal_before);
-    set_number(L, "normal_after", o->normal_after);
-    set_number(L, "energy_before", o->energy_before);
-    set_number(L, "energy_after", o->energy_after);
-    set_number(L, "conditioning", o->conditioning);
+    quat_lua_set_vec3(L, "v1", o->velocity[0]);
+    quat_lua_set_vec3(L, "w1", o->omega[0]);
+    quat_lua_set_vec3(L, "v2", o->velocity[1]);
+    quat_lua_set_vec3(L, "w2", o->omega[1]);
+    quat_lua_set_vec3(L, "impulse", o->impulse);
+    quat_lua_set_number(L, "impulse_normal", o->impulse_normal);
+    quat_lua_set_number(L, "impulse_tangential", o->impulse_tangential);
+    quat_lua_set_number(L, "compression_impulse", o->compression_impulse);
+    quat_lua_set_number(L, "normal_before", o->normal_before);
+    quat_lua_set_number(L, "normal_after", o->normal_after);
+    quat_lua_set_number(L, "energy_before", o->energy_before);
+    quat_lua_set_number(L, "energy_after", o->energy_after);
+    quat_lua_set_number(L, "conditioning", o->conditioning);
     lua_createtable(L, 0, 3);
-    set_number(L, "compression", o->work_compression);
-    set_number(L, "restitution", o->work_restitution);
-    set_number(L, "friction", o->work_friction);
+    quat_lua_set_number(L, "compression", o->work_compression);
+    quat_lua_set_number(L, "restitution", o->work_restitution);
+    quat_lua_set_number(L, "friction", o->work_friction);
     lua_setfield(L, -2, "work");
     lua_createtable(L, o->phase_count, 0);
     for (int i = 0; i < o->phase_count; i++) {
@@ -149,16 +137,11 @@ static void push_outcome(lua_State *L, const impact_outcome *o, impact_status st
         lua_rawseti(L, -2, i + 1);
     }
     lua_setfield(L, -2, "phases");
-    lua_pushinteger(L, o->compressions);
-    lua_setfield(L, -2, "compressions");
-    lua_pushboolean(L, o->energy_rose);
-    lua_setfield(L, -2, "energy_rose");
-    lua_pushboolean(L, o->jammed);
-    lua_setfield(L, -2, "jammed");
-    lua_pushstring(L, impact_solver_name(o->solver));
-    lua_setfield(L, -2, "solver");
-    lua_pushstring(L, status == IMPACT_SEPARATING ? "separating" : "ok");
-    lua_setfield(L, -2, "status");
+    quat_lua_set_integer(L, "compressions", o->compressions);
+    quat_lua_set_boolean(L, "energy_rose", o->energy_rose);
+    quat_lua_set_boolean(L, "jammed", o->jammed);
+    quat_lua_set_string(L, "solver", impact_solver_name(o->solver));
+    quat_lua_set_string(L, "status", status == IMPACT_SEPARATING ? "separating" : "ok");
 }
 
 /* ---- the door ---- */
@@ -269,10 +252,10 @@ static void push_directions(lua_State *L, const impact_flow *flow)
     lua_createtable(L, n, 0);
     for (int i = 0; i < n; i++) {
         lua_createtable(L, 0, 4);
-        set_number(L, "theta", directions[i].theta);
-        set_number(L, "rate", directions[i].rate);
-        set_number(L, "climb", directions[i].climb);
-        set_number(L, "pull", directions[i].pull);
+        quat_lua_set_number(L, "theta", directions[i].theta);
+        quat_lua_set_number(L, "rate", directions[i].rate);
+        quat_lua_set_number(L, "climb", directions[i].climb);
+        quat_lua_set_number(L, "pull", directions[i].pull);
         lua_rawseti(L, -2, i + 1);
     }
 }
@@ -342,14 +325,14 @@ static int flow(lua_State *L)
     push_points(L, points, count);
     push_directions(L, &data);
     lua_setfield(L, -2, "directions");
-    set_vec3(L, "t1", data.t1);
-    set_vec3(L, "t2", data.t2);
-    set_vec3(L, "normal", data.n);
-    set_number(L, "a", data.a);
-    set_number(L, "b", data.b);
-    set_number(L, "c", data.c);
-    set_number(L, "d", data.d);
-    set_number(L, "m", data.m);
+    quat_lua_set_vec3(L, "t1", data.t1);
+    quat_lua_set_vec3(L, "t2", data.t2);
+    quat_lua_set_vec3(L, "normal", data.n);
+    quat_lua_set_number(L, "a", data.a);
+    quat_lua_set_number(L, "b", data.b);
+    quat_lua_set_number(L, "c", data.c);
+    quat_lua_set_number(L, "d", data.d);
+    quat_lua_set_number(L, "m", data.m);
     return 1;
 }
 

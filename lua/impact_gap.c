@@ -25,34 +25,20 @@ static const char *const path_words[] = {
     [IMPACT_PATH_GJK] = "gjk",   [IMPACT_PATH_FALLBACK] = "fallback",
 };
 
-static void set_number(lua_State *L, const char *key, double value)
-{
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, key);
-}
-
-static void set_vec3(lua_State *L, const char *key, qvec3 value)
-{
-    quat_lua_push_vec3(L, value);
-    lua_setfield(L, -2, key);
-}
-
 static void push_contact(lua_State *L, const impact_contact *c, impact_status status)
 {
     lua_createtable(L, 0, 12);
-    set_number(L, "gap", c->gap);
-    set_number(L, "lower", c->lower);
-    set_number(L, "upper", c->upper);
-    set_number(L, "stiffness", c->stiffness);
-    set_vec3(L, "normal", c->normal);
-    set_vec3(L, "point1", c->point1);
-    set_vec3(L, "point2", c->point2);
-    set_vec3(L, "offset1", c->offset1);
-    set_vec3(L, "offset2", c->offset2);
-    lua_pushstring(L, path_words[c->path]);
-    lua_setfield(L, -2, "path");
-    lua_pushstring(L, impact_status_string(status));
-    lua_setfield(L, -2, "status");
+    quat_lua_set_number(L, "gap", c->gap);
+    quat_lua_set_number(L, "lower", c->lower);
+    quat_lua_set_number(L, "upper", c->upper);
+    quat_lua_set_number(L, "stiffness", c->stiffness);
+    quat_lua_set_vec3(L, "normal", c->normal);
+    quat_lua_set_vec3(L, "point1", c->point1);
+    quat_lua_set_vec3(L, "point2", c->point2);
+    quat_lua_set_vec3(L, "offset1", c->offset1);
+    quat_lua_set_vec3(L, "offset2", c->offset2);
+    quat_lua_set_string(L, "path", path_words[c->path]);
+    quat_lua_set_string(L, "status", impact_status_string(status));
 }
 
 static const char no_gap[] = "two planes have no gap: one of the bodies must have another shape";

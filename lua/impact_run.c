@@ -115,52 +115,31 @@ void impact_lua_push_sample(lua_State *L, const impact_sample *sample)
 {
     luaL_checkstack(L, 6, NULL);
     lua_createtable(L, 0, 6);
-    lua_pushnumber(L, sample->t);
-    lua_setfield(L, -2, "t");
-    lua_pushstring(L, sample->name);
-    lua_setfield(L, -2, "body");
-    quat_lua_push_vec3(L, sample->position);
-    lua_setfield(L, -2, "position");
-    quat_lua_push_quat(L, sample->orientation);
-    lua_setfield(L, -2, "orientation");
-    quat_lua_push_vec3(L, sample->velocity);
-    lua_setfield(L, -2, "velocity");
-    quat_lua_push_vec3(L, sample->omega);
-    lua_setfield(L, -2, "omega");
+    quat_lua_set_number(L, "t", sample->t);
+    quat_lua_set_string(L, "body", sample->name);
+    quat_lua_set_vec3(L, "position", sample->position);
+    quat_lua_set_quat(L, "orientation", sample->orientation);
+    quat_lua_set_vec3(L, "velocity", sample->velocity);
+    quat_lua_set_vec3(L, "omega", sample->omega);
 }
 
 static void push_event(lua_State *L, const impact_event *event, const char *phases)
 {
-    const struct {
-        const char *key;
-        double value;
-    } numbers[] = {
-        {"t", event->t},
-        {"impulse_n", event->impulse_normal},
-        {"impulse_t", event->impulse_tangential},
-        {"un_before", event->normal_before},
-        {"un_after", event->normal_after},
-        {"energy_before", event->energy_before},
-        {"energy_after", event->energy_after},
-    };
     luaL_checkstack(L, 6, NULL);
     lua_createtable(L, 0, 13);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        lua_pushnumber(L, numbers[i].value);
-        lua_setfield(L, -2, numbers[i].key);
-    }
-    lua_pushstring(L, impact_event_name(event->kind));
-    lua_setfield(L, -2, "event");
-    lua_pushstring(L, event->name1);
-    lua_setfield(L, -2, "body1");
-    lua_pushstring(L, event->name2);
-    lua_setfield(L, -2, "body2");
-    lua_pushstring(L, phases);
-    lua_setfield(L, -2, "phases");
-    quat_lua_push_vec3(L, event->point);
-    lua_setfield(L, -2, "point");
-    quat_lua_push_vec3(L, event->normal);
-    lua_setfield(L, -2, "normal");
+    quat_lua_set_number(L, "t", event->t);
+    quat_lua_set_number(L, "impulse_n", event->impulse_normal);
+    quat_lua_set_number(L, "impulse_t", event->impulse_tangential);
+    quat_lua_set_number(L, "un_before", event->normal_before);
+    quat_lua_set_number(L, "un_after", event->normal_after);
+    quat_lua_set_number(L, "energy_before", event->energy_before);
+    quat_lua_set_number(L, "energy_after", event->energy_after);
+    quat_lua_set_string(L, "event", impact_event_name(event->kind));
+    quat_lua_set_string(L, "body1", event->name1);
+    quat_lua_set_string(L, "body2", event->name2);
+    quat_lua_set_string(L, "phases", phases);
+    quat_lua_set_vec3(L, "point", event->point);
+    quat_lua_set_vec3(L, "normal", event->normal);
 }
 
 /* Protected: (function, row) -> whether to go on. */
