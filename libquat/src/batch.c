@@ -5,6 +5,9 @@
 #include "dd.h"
 #include "length_kernel.h"
 #include "slerp_kernel.h"
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+#endif
 
 /* Vectors of four on machines with AVX2, of two elsewhere: without FMA the bits are the same. */
 
@@ -83,28 +86,58 @@ void quat_mul_array(size_t n, const quat p[], const quat q[], quat out[])
 }
 #endif
 
-/* All of a block at once; those outside the range of the kernel again, one by one. */
-QUAT_FMA_CLONES
-static size_t normalize_block(size_t n, const quat *q, quat *out, double *n2)
+#if defined(__x86_64__) && defined(__GNUC__)
+/* quat_divide_by_length, step by step, of four neighbours in registers w, x, y and z. Stops at the first four of which
+ * one is outside its range, and says how many were done. */
+__attribute__((target("avx,fma"))) static size_t divide_fours(size_t n, const quat q[], quat out[])
 {
-    size_t outside = 0;
-    for (size_t i = 0; i < n; i++) {
-        n2[i] = quat_norm2(q[i]);
-        outside += !(n2[i] >= 1e-280 && n2[i] <= 1e280);
+    const __m256d half = _mm256_set1_pd(-0.5);
+    size_t i = 0;
+    for (; i + 4 <= n; i += 4) {
+        const __m256d wx02 = _mm256_loadu2_m128d(&q[i + 2].w, &q[i].w);
+        const __m256d wx13 = _mm256_loadu2_m128d(&q[i + 3].w, &q[i + 1].w);
+        const __m256d yz02 = _mm256_loadu2_m128d(&q[i + 2].y, &q[i].y);
+        const __m256d yz13 = _mm256_loadu2_m128d(&q[i + 3].y, &q[i + 1].y);
+        __m256d w = _mm256_unpacklo_pd(wx02, wx13), x = _mm256_unpackhi_pd(wx02, wx13);
+        __m256d y = _mm256_unpacklo_pd(yz02, yz13), z = _mm256_unpackhi_pd(yz02, yz13);
+
+        const __m256d n2 = (w * w + x * x) + (y * y + z * z), r = 1 / _mm256_sqrt_pd(n2);
+        if (_mm256_movemask_pd((__m256d)((n2 >= 1e-280) & (n2 <= 1e280))) != 15) break;
+        const __m256d uw = w * r, ux = x * r, uy = y * r, uz = z * r;
+        const __m256d lw = _mm256_fmsub_pd(w, r, uw), lx = _mm256_fmsub_pd(x, r, ux);
+        const __m256d ly = _mm256_fmsub_pd(y, r, uy), lz = _mm256_fmsub_pd(z, r, uz);
+        const __m256d excess = _mm256_fmadd_pd(uw, uw, _mm256_fmadd_pd(ux, ux, half)) +
+                               _mm256_fmadd_pd(uy, uy, _mm256_fmadd_pd(uz, uz, half));
+        const __m256d c = half * excess - (_mm256_fmadd_pd(uw, lw, ux * lx) + _mm256_fmadd_pd(uy, ly, uz * lz));
+        w = uw + _mm256_fmadd_pd(c, uw, lw), x = ux + _mm256_fmadd_pd(c, ux, lx);
+        y = uy + _mm256_fmadd_pd(c, uy, ly), z = uz + _mm256_fmadd_pd(c, uz, lz);
+
+        _mm256_storeu2_m128d(&out[i + 2].w, &out[i].w, _mm256_unpacklo_pd(w, x));
+        _mm256_storeu2_m128d(&out[i + 3].w, &out[i + 1].w, _mm256_unpackhi_pd(w, x));
+        _mm256_storeu2_m128d(&out[i + 2].y, &out[i].y, _mm256_unpacklo_pd(y, z));
+        _mm256_storeu2_m128d(&out[i + 3].y, &out[i + 1].y, _mm256_unpackhi_pd(y, z));
     }
-    if (outside) return outside;
-    for (size_t i = 0; i < n; i++) out[i] = quat_divide_by_length(q[i]);
+    return i;
+}
+
+static size_t divide_quickly(size_t n, const quat q[], quat out[])
+{
+    return __builtin_cpu_supports("avx") && __builtin_cpu_supports("fma") ? divide_fours(n, q, out) : 0;
+}
+#else
+static size_t divide_quickly(size_t n, const quat q[], quat out[])
+{
+    (void)n, (void)q, (void)out;
     return 0;
 }
+#endif
 
 quat_status quat_normalize_array(size_t n, const quat q[], quat out[], size_t *first_bad)
 {
     size_t bad = n;
-    for (size_t start = 0; start < n; start += block) {
-        double n2[block];
-        const size_t end = n - start < block ? n : start + block;
-        if (normalize_block(end - start, q + start, out + start, n2) == 0) continue;
-        for (size_t i = start; i < end; i++)
+    for (size_t i = 0; i < n;) {
+        const size_t done = divide_quickly(n - i, q + i, out + i), end = n - i - done < 4 ? n : i + done + 4;
+        for (i += done; i < end; i++)
             if (quat_normalize(q[i], &out[i]) != QUAT_OK && bad == n) bad = i;
     }
     if (first_bad) *first_bad = bad;

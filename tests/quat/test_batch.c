@@ -111,20 +111,34 @@ static void normalise_arrays(void **state)
     (void)state;
     random_state r = {62};
     quat a[count], one;
-    for (int round = 0; round < 2; round++) {
-        for (int i = 0; i < count; i++)
-            a[i] = quat_scale(q[i], round ? random_scale(&r, -308, 307) : random_scale(&r, -9, 9));
-        size_t bad = 0;
-        assert_int_equal(quat_normalize_array(count, a, out, &bad), QUAT_OK);
-        assert_int_equal(bad, count);
+    double worst = 0;
+    for (int round = 0; round < 120;
+         round++) { /* of ordinary size, of any size, and some of any size among the ordinary */
         for (int i = 0; i < count; i++) {
-            assert_int_equal(quat_normalize(a[i], &one), QUAT_OK);
-            assert_true(quat_equal(out[i], one));
+            const bool any = round % 3 == 1 || (round % 3 == 2 && random_uniform(&r) < 0.05);
+            a[i] = quat_scale(random_any(&r), any ? random_scale(&r, -308, 307) : random_scale(&r, -9, 9));
+            if (quat_equal(a[i], quat_make(0, 0, 0, 0))) a[i].y = 1;
         }
+        size_t bad = 0;
+        const size_t n = count - (size_t)(round % 7);
+        out[n < count ? n : 0] = quat_make(7, 7, 7, 7);
+        assert_int_equal(quat_normalize_array(n, a, out, &bad), QUAT_OK);
+        assert_int_equal(bad, n);
+        assert_true(n == count || out[n].w == 7);
+        for (size_t i = 0; i < n; i++) {
+            assert_int_equal(quat_normalize(a[i], &one), QUAT_OK);
+            assert_true(same_bits(&out[i], &one, sizeof one));
+            worse(&worst, error_of(out[i], wide_unit(wide_quat(a[i]))));
+        }
+        assert_int_equal(quat_normalize_array(count, a, out, NULL), QUAT_OK);
+        assert_int_equal(quat_normalize_array(count, a, a, NULL), QUAT_OK); /* in place */
+        assert_true(same_bits(a, out, sizeof a));
     }
+    assert_bound("normalise, 1.2e5 in arrays, u", worst, 1.01);
+    memcpy(a, q, sizeof a);
+    size_t bad = 0;
     a[400] = quat_make(0, 0, 0, 0);
     a[700] = quat_make(NAN, 0, 0, 0);
-    size_t bad = 0;
     assert_int_equal(quat_normalize_array(count, a, out, &bad), QUAT_EDOMAIN);
     assert_int_equal(bad, 400);
     assert_true(quat_equal(out[400], quat_identity()) && quat_equal(out[700], quat_identity()));
