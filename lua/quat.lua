@@ -112,6 +112,73 @@
 ---@field omega_first? vector
 ---@field omega_last? vector
 
+---@class curve_point
+---@field position vec3
+---@field speed number
+---@field curvature number
+---@field torsion number
+---@field curvature_error number  an estimate
+---@field torsion_error number
+---@field frame quat  x tangent, y principal normal, z binormal
+
+--- A space curve. Its functions return nil and a message where it has no value; errors in its `at` come through.
+---@class curve
+---@field range fun(self: curve): number, number, boolean  start, end, closed
+---@field at fun(self: curve, t: number): curve_point?, string?
+---@field derivatives fun(self: curve, t: number, order: integer): vec3[]?, string?  {x, x', ...}
+---@field length fun(self: curve, a?: number, b?: number): number?, string?
+---@field at_length fun(self: curve, length: number): number?, string?
+---@field even fun(self: curve, n: integer): number[]?, string?  n values of t at equal distances
+---@field total fun(self: curve): { length: number, curvature: number, torsion: number }?, string?
+---@field frames fun(self: curve, options: { n?: integer, times?: number[], framing?: "minimal" | "frenet" | "closed", first?: rotation }): quat[]?, { holonomy: number, monodromy: integer, inflections: integer } | string, string?
+
+---@class curvelib
+---@field new fun(definition: { at: (fun(t: number): ...: vector), start: number, finish: number, closed?: boolean, derivatives?: integer }): curve  at returns x and as many derivatives as it says
+---@field samples fun(definition: { times: number[], points: vector[], closed?: boolean }): curve
+---@field circle fun(r: number): curve
+---@field ellipse fun(a: number, b: number): curve
+---@field helix fun(r: number, h: number, turns: number): curve  h is the rise of a turn
+---@field torus_knot fun(R: number, r: number, p: integer, q: integer): curve
+---@field trefoil fun(a: number): curve
+---@field viviani fun(a: number): curve
+---@field cubic fun(a: number, planar?: boolean): curve
+
+---@class surface_point
+---@field position vec3
+---@field xu vec3
+---@field xv vec3
+---@field frame quat  x along x_u, z the normal
+---@field a vec3  q_u = q (0, a)/2
+---@field b vec3  q_v = q (0, b)/2
+---@field first number[]  E, F, G
+---@field second number[]  L, M, N
+---@field area number  |x_u x x_v|
+---@field gauss number  K
+---@field mean number  H, with the sign of dN: +1/R for a sphere with its normal outward
+---@field principal number[]  the larger first
+---@field directions vec3[]
+---@field error number  of the principal curvatures, an estimate
+
+--- A parametric surface, as a curve.
+---@class surface
+---@field range fun(self: surface): number, number, number, number, boolean, boolean  u0, u1, v0, v1, closed_u, closed_v
+---@field at fun(self: surface, u: number, v: number): surface_point?, string?
+---@field integrability fun(self: surface, u: number, v: number): number?, string?  |a_v - b_u - a x b|
+---@field total fun(self: surface, tolerance?: number): { area: number, gauss: number, mean: number, bending: number }?, string?
+
+---@class surfacelib
+---@field new fun(definition: { at: (fun(u: number, v: number): ...: vector), u0: number, u1: number, v0: number, v1: number, closed_u?: boolean, closed_v?: boolean, derivatives?: integer }): surface  at returns x; x_u, x_v; x_uu, x_uv, x_vv
+---@field plane fun(a: number, b: number): surface
+---@field sphere fun(r: number): surface
+---@field ellipsoid fun(a: number, b: number, c: number): surface
+---@field torus fun(R: number, r: number): surface
+---@field saddle fun(a: number, size: number): surface
+---@field catenoid fun(a: number, height: number): surface
+---@field helicoid fun(a: number, turns: number, width: number): surface
+---@field superellipsoid fun(a: number, b: number, c: number, e: number, f: number): surface
+---@field choose_frames fun(mesh: { positions: vector[], frames: rotation[], triangles: integer[][], gauge?: "shortest" | "length" | "area" }): quat[]?, { energy: number, area: number, rounds: integer, torn: integer } | string, string?
+---@field transition fun(q1: rotation[], q2: rotation[]): number?, number[] | string  turns, angles
+
 local core = require "quat.core"
 core.layer()
 
@@ -182,14 +249,17 @@ core.layer()
 ---@field screw fun(axis: vector, point: vector, angle: number, slide: number): motion?, string?
 ---@field motion_exp fun(rotation: vector, translation: vector): motion
 ---@field blend fun(motions: motion[], weights?: number[]): motion?, string?
+---@field curve? curvelib  nil in a build without GSL
+---@field surface? surfacelib
 local quat = {}
 for name, value in pairs(core) do
   if name ~= "layer" then quat[name] = value end
 end
 
--- quat.curve, quat.surface ...: the rooms of quat.gsl, where the build holds them.
+-- quat.curve and quat.surface are in quat.gsl, where the build holds it; it loads when one of them is first used.
 setmetatable(quat, {
   __index = function(self, key)
+    if key ~= "curve" and key ~= "surface" then return nil end
     local found, gsl = pcall(require, "quat.gsl")
     if not found or type(gsl) ~= "table" then return nil end
     local value = gsl[key]
