@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bench_engines: whole engines side by side on scenes with a known answer.
+ *
+ *   S1 a spinning sphere meets a plane, S2 two spheres meet obliquely (a: slide throughout, b: come to stick), S3 ten bounces,
+ *   S4 free tumbling near the unstable axis for 100 s, S5 an ellipsoid meets a plane (a: the slip turns by 97 degrees, b: it ends)
+ *
+ * CSV: scene, engine, step in s (0: none), error, time in us (median), that time over ours. The error is, for one impact, that of
+ * the velocities, sqrt(sum |dv|^2 + rho^2 |dw|^2) relative to their own; for S3 the worst relative error of a height; for S4 the
+ * worst angle in rad at t = 1 ... 100 s. The right answers: S1, S2, S5 by the 128-bit oracle, S3 (height eps^(2 k)), and S4 by a
+ * Taylor series in long double. Other engines solve an impact by Newton's law with the last direction of slip: on S5 no step helps
+ * them.
+ */
+#include <impact/impact.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include "../tests/generators/collide_cases.h"
+#include "../tests/generators/collide_scenes.h"
+#include "peers_engines.h"
+#ifdef HAVE_QUADMATH
+#include "../tests/generators/collide_oracle.h"
+#endif
+
+enum { REPEATS = 101, LONG_REPEATS = 5 };
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, int count)
+{
+    qsort(values, (size_t)count, sizeof *values, ascending);
+    return values[count / 2];
+}
+
+/* ---- our answers ---- */
+
+static bool our_impact(const impact_collision *c, double step, qvec3 v[2], qvec3 w[2], double *seconds)
+{
+    (void)step;
+    impact_outcome o;
+    const double from = engine_clock();
+    const bool done = impact_collide(c, &o) == IMPACT_OK;
+    *seconds = engine_clock() - from;
+    for (int b = 0; b < 2; b++) v[b] = o.velocity[b], w[b] = o.omega[b];
+    return done;
+}
+
+typedef struct bounce_log {
+    const bounce_case *c;
+    double *height;
+    int count;
+} bounce_log;
+
+static bool log_bounce(void *context, const impact_event *event)
+{
+    bounce_log *log = context;
+    if (event->kind == IMPACT_EVENT_IMPACT && log->count < BOUNCES)
+        log->height[log->count++] = event->normal_after * event->normal_after / (2 * log->c->gravity);
+    return true;
+}
+
+static bool run_scene(const impact_scene_def *def, const impact_recorder *recorder, double *seconds)
+{
+    impact_scene *scene;
+    if (impact_scene_create(def, &scene, NULL, 0) != IMPACT_OK) return false;
+    const double from = engine_clock();
+    const impact_status status = impact_scene_run(scene, recorder);
+    *seconds = engine_clock() - from;
+    impact_scene_destroy(scene);
+    return status >= 0;
+}
+
+static bool our_bounce(const bounce_case *c, double step, double height[BOUNCES], double *seconds)
+{
+    (void)step;
+    impact_body_def bodies[2] = {impact_default_body_def(), impact_default_body_def()};
+    bodies[0].name = "floor", bodies[0].is_static = true, bodies[0].restitution = 1;
+    bodies[1].name = "ball", bodies[1].mass = c->mass, bodies[1].restitution = c->restitution;
+    bodies[1].position = (qvec3){0, 0, c->height + c->radius};
+    if (impact_shape_plane(INFINITY, INFINITY, &bodies[0].shape) != IMPACT_OK) return false;
+    if (impact_shape_sphere(c->radius, &bodies[1].shape) != IMPACT_OK) return false;
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, -c->gravity};
+    def.duration = c->duration;
+    def.output_rate = 0;
+    def.bodies = bodies, def.body_count = 2;
+    bounce_log log = {c, height, 0};
+    const impact_recorder recorder = {.context = &log, .event = log_bounce};
+    return run_scene(&def, &recorder, seconds) && log.count == BOUNCES;
+}
+
+static bool log_turn(void *context, const impact_sample *sample)
+{
+    const int second = (int)lrint(sample->t);
+    if (second >= 1 && second <= TURNS) ((quat *)context)[second - 1] = sample->orientation;
+    return true;
+}
+
+static bool our_tumble(const tumble_case *c, double step, quat q[TURNS], double *seconds)
+{
+    (void)step;
+    impact_body_def body = impact_default_body_def();
+    body.name = "body", body.mass = c->mass, body.moments = c->moments, body.omega = c->omega;
+    if (impact_shape_sphere(0.1, &body.shape) != IMPACT_OK) return false;
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, 0};
+    def.duration = TURNS;
+    def.output_rate = 1;
+    def.bodies = &body, def.body_count = 1;
+    const impact_recorder recorder = {.context = q, .sample = log_turn};
+    return run_scene(&def, &recorder, seconds);
+}
+
+static const engine ours = {"libimpact", 0, our_impact, our_bounce, our_tumble};
+
+/* ---- right answers ---- */
+
+/* Euler's equations and q' = q (0, omega)/2 in body axes, by Taylor series of order 24 over steps of 1/20 s. */
+static void right_turns(const tumble_case *c, quat q[TURNS])
+{
+    enum { ORDER = 24, STEPS = 20 };
+    const long double j[3] = {c->moments.x, c->moments.y, c->moments.z}, h = 1.0L / STEPS;
+    long double w[3] = {c->omega.x, c->omega.y, c->omega.z}, r[4] = {1, 0, 0, 0};
+    for (int step = 1; step <= TURNS * STEPS; step++) {
+        long double a[ORDER + 1][3], b[ORDER + 1][4];
+        for (int i = 0; i < 3; i++) a[0][i] = w[i];
+        for (int i = 0; i < 4; i++) b[0][i] = r[i];
+        for (int n = 0; n < ORDER; n++) {
+            for (int i = 0; i < 3; i++) a[n + 1][i] = 0;
+            for (int i = 0; i < 4; i++) b[n + 1][i] = 0;
+            for (int k = 0; k <= n; k++) {
+                const long double *x = a[n - k], *p = b[k];
+                for (int i = 0; i < 3; i++) {
+                    const int m = (i + 1) % 3, l = (i + 2) % 3;
+                    a[n + 1][i] += (j[m] - j[l]) / j[i] * a[k][m] * x[l];
+                }
+                b[n + 1][0] -= (p[1] * x[0] + p[2] * x[1] + p[3] * x[2]) / 2;
+                b[n + 1][1] += (p[0] * x[0] + p[2] * x[2] - p[3] * x[1]) / 2;
+                b[n + 1][2] += (p[0] * x[1] + p[3] * x[0] - p[1] * x[2]) / 2;
+                b[n + 1][3] += (p[0] * x[2] + p[1] * x[1] - p[2] * x[0]) / 2;
+            }
+            for (int i = 0; i < 3; i++) a[n + 1][i] /= n + 1;
+            for (int i = 0; i < 4; i++) b[n + 1][i] /= n + 1;
+        }
+        for (int i = 0; i < 3; i++) w[i] = 0;
+        for (int i = 0; i < 4; i++) r[i] = 0;
+        for (int n = ORDER; n >= 0; n--) {
+            for (int i = 0; i < 3; i++) w[i] = a[n][i] + h * w[i];
+            for (int i = 0; i < 4; i++) r[i] = b[n][i] + h * r[i];
+        }
+        if (step % STEPS == 0) q[step / STEPS - 1] = (quat){(double)r[0], (double)r[1], (double)r[2], (double)r[3]};
+    }
+}
+
+/* ---- the table ---- */
+
+static double our_time; /* of the scene at hand, s */
+
+static void print_row(const char *scene, const engine *e, double error, double time)
+{
+    if (e == &ours) our_time = time;
+    printf("%s,%s,%g,%.2g,%.3g,%.3g\n", scene, e->name, e->step, error, 1e6 * time, time / our_time);
+    fflush(stdout);
+}
+
+static void row_impact(const char *scene, const engine *e, const impact_collision *c)
+{
+    qvec3 v[2], w[2];
+    double times[REPEATS], error = NAN;
+    for (int i = 0; i < REPEATS; i++)
+        if (!e->impact(c, e->step, v, w, &times[i])) return;
+#ifdef HAVE_QUADMATH
+    oracle_outcome right;
+    if (oracle_collide(c, &right)) error = case_error(c, v, w, right.velocity, right.omega);
+#endif
+    print_row(scene, e, error, median(times, REPEATS));
+}
+
+static void row_bounce(const engine *e, const bounce_case *c)
+{
+    double height[BOUNCES], times[LONG_REPEATS], worst = 0;
+    for (int i = 0; i < LONG_REPEATS; i++)
+        if (!e->bounce(c, e->step, height, &times[i])) return;
+    for (int k = 0; k < BOUNCES; k++) {
+        const double right = c->height * pow(c->restitution, 2 * (k + 1));
+        worst = fmax(worst, fabs(height[k] / right - 1));
+    }
+    print_row("S3", e, worst, median(times, LONG_REPEATS));
+}
+
+static void row_tumble(const engine *e, const tumble_case *c, const quat right[TURNS])
+{
+    quat q[TURNS];
+    double times[LONG_REPEATS], worst = 0;
+    for (int i = 0; i < LONG_REPEATS; i++)
+        if (!e->tumble(c, e->step, q, &times[i])) return;
+    for (int k = 0; k < TURNS; k++) worst = fmax(worst, quat_rotation_distance(q[k], right[k]));
+    print_row("S4", e, worst, median(times, LONG_REPEATS));
+}
+
+typedef struct scene {
+    const char *name;
+    impact_collision collision;
+} scene;
+
+int main(void)
+{
+    const scene impacts[] = {{"S1a", scene_sphere(false)},      {"S1b", scene_sphere(true)},
+                             {"S2a", scene_two_spheres(false)}, {"S2b", scene_two_spheres(true)},
+                             {"S5a", scene_ellipsoid(0)},       {"S5b", scene_ellipsoid(1)}};
+    const bounce_case bounces = {0.3, 4, 1, 9.80665, 0.8, 3.7};
+    const tumble_case turns = {4, {0.104, 0.08, 0.04}, {0.05, 5, 0.05}};
+    const engine *const lists[] = {engines_ode, engines_bullet};
+    quat right[TURNS];
+    right_turns(&turns, right);
+    printf("scene,engine,step,error,us,time_over_ours\n");
+    for (int i = 0; i < (int)(sizeof impacts / sizeof *impacts); i++) {
+        row_impact(impacts[i].name, &ours, &impacts[i].collision);
+        for (int l = 0; l < 2; l++) /* the step does not matter here: the first of each engine */
+            if (lists[l]->name) row_impact(impacts[i].name, lists[l], &impacts[i].collision);
+    }
+    row_bounce(&ours, &bounces);
+    for (int l = 0; l < 2; l++)
+        for (const engine *e = lists[l]; e->name; e++) row_bounce(e, &bounces);
+    row_tumble(&ours, &turns, right);
+    for (int l = 0; l < 2; l++)
+        for (const engine *e = lists[l]; e->name; e++) row_tumble(e, &turns, right);
+    return 0;
+}
