@@ -2,11 +2,11 @@
  *
  * bench_collide: error against run time of one impact.
  *
- * CSV rows: class, solver, parameter, impacts, failures (no answer, or off by more than 1e-3), median and worst error of the velocities
- * against the 128-bit closed hodograph (without libquadmath: against the series of order 30), median time of one call in
+ * CSV rows (drawn by draw_collide.lua): class, solver, parameter, impacts, failures (no answer, or off by more than 1e-3), median and worst error of the velocities
+ * against the 128-bit oracle (without libquadmath: against the series of order 30), median time of one call in
  * microseconds, that time over the series' own in the same class, and the median and largest condition number of M of the
  * class, by which rounding of the input can grow.
- * Classes: how the impact goes (slip, stick, reversal, jam, recompression), the scenes S1, S2, S5 that other programs are compared on,
+ * Classes: how the impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones), the scenes S1, S2, S5 that other programs are compared on,
  * and S5e, 300 random ellipsoids on a plane. `p_z`: what integration over the normal impulse itself does, by CVODE.
  */
 #include <pthread.h>
@@ -47,49 +47,8 @@ static int ascending(const void *a, const void *b)
 
 /* ---- right answers ---- */
 
-/* Round bodies struck centrally: M = diag(l, l, w), by hand in long double; Poisson. */
-static bool by_hand(const impact_collision *c, qvec3 v[2], qvec3 w[2])
-{
-    long double n[3] = {c->normal.x, c->normal.y, c->normal.z}, u[3] = {0, 0, 0}, inverse = 0, l = 0;
-    const long double length = sqrtl(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int k = 0; k < 3; k++) n[k] /= length;
-    for (int b = 0; b < 2; b++) {
-        const impact_collider *body = &c->body[b];
-        const long double sign = b == 0 ? 1 : -1, r[3] = {body->offset.x, body->offset.y, body->offset.z};
-        const long double o[3] = {body->omega.x, body->omega.y, body->omega.z};
-        u[0] += sign * (body->velocity.x + o[1] * r[2] - o[2] * r[1]);
-        u[1] += sign * (body->velocity.y + o[2] * r[0] - o[0] * r[2]);
-        u[2] += sign * (body->velocity.z + o[0] * r[1] - o[1] * r[0]);
-        if (isinf(body->mass)) continue;
-        if (body->moments.x != body->moments.y || body->moments.y != body->moments.z) return false;
-        inverse += 1 / (long double)body->mass;
-        l += 1 / (long double)body->mass + (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) / body->moments.x;
-    }
-    const long double uz = u[0] * n[0] + u[1] * n[1] + u[2] * n[2],
-                      p = -uz / inverse * (1 + (long double)c->restitution);
-    long double t[3], s = 0, P[3];
-    for (int k = 0; k < 3; k++) t[k] = u[k] - uz * n[k], s += t[k] * t[k];
-    s = sqrtl(s);
-    const long double grip = s > 0 ? fminl(c->friction * p, s / l) / s : 0;
-    for (int k = 0; k < 3; k++) P[k] = p * n[k] - grip * t[k];
-    for (int b = 0; b < 2; b++) {
-        const impact_collider *body = &c->body[b];
-        v[b] = body->velocity;
-        w[b] = body->omega;
-        if (isinf(body->mass)) continue;
-        const long double sign = b == 0 ? 1 : -1, f = sign / body->mass, g = sign / body->moments.x;
-        const long double r[3] = {body->offset.x, body->offset.y, body->offset.z};
-        v[b] = (qvec3){(double)(v[b].x + f * P[0]), (double)(v[b].y + f * P[1]), (double)(v[b].z + f * P[2])};
-        w[b] = (qvec3){(double)(w[b].x + g * (r[1] * P[2] - r[2] * P[1])),
-                       (double)(w[b].y + g * (r[2] * P[0] - r[0] * P[2])),
-                       (double)(w[b].z + g * (r[0] * P[1] - r[1] * P[0]))};
-    }
-    return true;
-}
-
 static bool right_answer(const impact_collision *c, qvec3 v[2], qvec3 w[2])
 {
-    if (by_hand(c, v, w)) return true;
 #ifdef HAVE_QUADMATH
     oracle_outcome o;
     if (!oracle_collide(c, &o)) return false;
@@ -271,8 +230,8 @@ static void run_cvode(group *g, impact_ode_method method, const char *name)
 
 static void run_over_p(group *g)
 {
-    static const double tolerances[] = {1e-4, 1e-8};
-    for (int i = 0; i < 2; i++) {
+    static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+    for (int i = 0; i < 5; i++) {
         naive nv = {0};
         const impact_ode_def def = {.size = 5,
                                     .roots = 1,
@@ -306,6 +265,18 @@ static void run_class(group *g)
 {
     answer_all(g);
     run_series(g);
+    run_cvode(g, IMPACT_ODE_ADAMS, "cvode adams");
+    run_cvode(g, IMPACT_ODE_BDF, "cvode bdf");
+    run_over_p(g);
+}
+
+/* Where there is a closed form, beside the others. */
+static void run_straight(group *g)
+{
+    impact_collision how = {.solver = IMPACT_SOLVER_CLOSED_FORM};
+    answer_all(g);
+    run_series(g);
+    run(g, "closed form", "", by_library, &how, false);
     run_cvode(g, IMPACT_ODE_ADAMS, "cvode adams");
     run_cvode(g, IMPACT_ODE_BDF, "cvode bdf");
     run_over_p(g);
@@ -347,6 +318,20 @@ static void gather(group *g, const char *name, case_class class_, kind *wanted)
         c.law = IMPACT_POISSON;
         impact_outcome o;
         if (impact_collide(&c, &o) == IMPACT_OK && o.solver == IMPACT_SOLVER_SERIES && wanted(&o)) g->c[g->count++] = c;
+    }
+}
+
+/* Half of them spheres, half planar, all with some sliding. */
+static void gather_straight(group *g)
+{
+    memset(g, 0, sizeof *g);
+    g->name = "straight";
+    for (uint64_t i = 0; g->count < EACH; i++) {
+        impact_collision c = case_make(g->count < EACH / 2 ? CASE_SPHERE : CASE_PLANAR, 97, i);
+        c.law = IMPACT_POISSON;
+        impact_outcome o;
+        if (c.friction > 0 && impact_collide(&c, &o) == IMPACT_OK && o.solver == IMPACT_SOLVER_CLOSED_FORM)
+            g->c[g->count++] = c;
     }
 }
 
@@ -416,6 +401,8 @@ int main(void)
     one_scene(&g, "S5b", scene_ellipsoid(1));
     random_ellipsoids(&g);
     array_call();
+    gather_straight(&g);
+    run_straight(&g);
     gather(&g, "slip", CASE_PLAIN, slips);
     run_class(&g);
     gather(&g, "stick", CASE_PLAIN, sticks);

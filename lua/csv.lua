@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: MIT
 --- Columns of numbers as CSV files: `local csv = require "quat.csv"`.
 
-local format, concat = string.format, table.concat
-local error, ipairs, type, pcall, require, io, os = error, ipairs, type, pcall, require, io, os
+local format, gmatch, match, sub, concat = string.format, string.gmatch, string.match, string.sub, table.concat
+local error, ipairs, tonumber, type, pcall, require, io, os = error, ipairs, tonumber, type, pcall, require, io, os
 
 local csv = {}
 
@@ -28,6 +28,45 @@ function csv.text(names, columns)
     lines[#lines + 1] = concat(cells, ",")
   end
   return concat(lines, "\n") .. "\n"
+end
+
+--- One line's cells, as text.
+local function cells_of(line)
+  local cells, at = {}, 1
+  repeat
+    local quoted, behind = match(line, '^"([^"]*)"()', at)
+    while quoted and sub(line, behind, behind) == '"' do -- a doubled quote stands for one
+      local more, next_behind = match(line, '^"([^"]*)"()', behind)
+      if not more then break end
+      quoted, behind = quoted .. '"' .. more, next_behind
+    end
+    if not quoted then quoted, behind = match(line, "^([^,]*)()", at) end
+    cells[#cells + 1] = quoted
+    at = sub(line, behind, behind) == "," and behind + 1 or nil
+  until not at
+  return cells
+end
+
+--- The rows of a CSV text below its header, each a table by the header's names; what reads as a number is one, lines that begin with
+--- "#" are left out. No cell may hold a line's end.
+---@param text string
+---@return table<string, number|string>[]
+function csv.rows(text)
+  local names, rows
+  for line in gmatch(text, "[^\r\n]+") do
+    if sub(line, 1, 1) ~= "#" then
+      local cells = cells_of(line)
+      if not names then
+        names = cells
+      else
+        local row = {}
+        for i, name in ipairs(names) do row[name] = tonumber(cells[i]) or cells[i] end
+        rows[#rows + 1] = row
+      end
+      rows = rows or {}
+    end
+  end
+  return rows or {}
 end
 
 --- Writes the whole file or none: NAME is NAME.csv in the runner's output folder, or where the name says in a stock Lua.

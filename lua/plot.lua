@@ -35,7 +35,7 @@ local cycle = { "blue", "red", "green", "orange", "purple", "teal" }
 local panel_keys = {
   title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = "string",
   xrange = "table", yrange = "table", zrange = "table", view = "table", at = "table", frame = "boolean", box = "table",
-  three = "boolean", zoom = "number",
+  three = "boolean", zoom = "number", xlog = "boolean", ylog = "boolean",
 }
 local figure_keys = { title = "string", subtitle = "string", size = "table", grid = "table" }
 local item_keys = {
@@ -96,7 +96,8 @@ plot.text = maker "text"
 plot.mark = maker "mark"
 
 --- A panel of items: title, xlabel, ylabel, zlabel, equal (the same scale on all axes), legend ("top left" ..., "center", "row", "none"), xrange,
---- yrange, zrange ({least, most}), view ({about x, about z}, degrees), zoom, frame (axes drawn), three (three-dimensional; by itself
+--- yrange, zrange ({least, most}), xlog, ylog (logarithmic axes, flat panels only: a mark at every decade, what is not positive is
+--- left out), view ({about x, about z}, degrees), zoom, frame (axes drawn), three (three-dimensional; by itself
 --- when an item has a z), at ({column, row[, columns, rows]} in the figure's grid), box ({left, bottom, right, top} of the axes,
 --- as parts of the figure, instead of at).
 ---@return plot.panel
@@ -273,11 +274,12 @@ local function is_three(panel)
   return false
 end
 
---- The least and the most of what a panel's items hold along an axis (1, 2 or 3); nil when there is nothing.
-local function extent(panel, axis, three)
+--- The least and the most of what a panel's items hold along an axis (1, 2 or 3), of the positive values only where so asked; nil
+--- when there is nothing.
+local function extent(panel, axis, three, positive)
   local least, most
   local function take(value)
-    if type(value) == "number" and value == value and value ~= huge and value ~= -huge then
+    if type(value) == "number" and value == value and value ~= huge and value ~= -huge and (not positive or value > 0) then
       least, most = min(least or value, value), max(most or value, value)
     end
   end
@@ -302,9 +304,22 @@ local function nice_step(span, parts)
   return (rest < 1.5 and 1 or rest < 3.5 and 2 or rest < 7.5 and 5 or 10) * power
 end
 
+--- The same of a logarithmic axis, in whole decades; a mark at each, or at every other one where there are many.
+local function put_decades(out, panel, axis, name)
+  local asked = panel[name .. "range"]
+  local least, most
+  if asked then least, most = asked[1], asked[2] else least, most = extent(panel, axis, false, true) end
+  if not least or least <= 0 then least, most = 1, 10 end
+  local low, high = floor(log(least, 10) + 1e-9), ceil(log(most, 10) - 1e-9)
+  if high == low then high = low + 1 end
+  out[#out + 1] = format("set logscale %s; set %srange [1e%d:1e%d]; set format %s '1e%%T'", name, name, low, high, name)
+  return high - low > 10 and 100 or 10
+end
+
 --- Range and marks of an axis: as asked, or as the data; `tight` keeps the data's own ends.
 local function put_range(out, panel, axis, name, three, tight, parts)
   local asked = panel[name .. "range"]
+  if panel[name .. "log"] then return put_decades(out, panel, axis, name) end
   local least, most
   if asked then least, most = asked[1], asked[2] else least, most = extent(panel, axis, three) end
   if not least or not (number(least) ~= "NaN" and number(most) ~= "NaN") then least, most = 0, 1 end
@@ -331,6 +346,7 @@ local function put_axes(out, panel, three)
     local label = panel[axis .. "label"]
     if label then add("set %slabel %s font ',11' tc rgb '#2d3748'", axis, quote(label)) end
   end
+  add("unset logscale; set format '%% h'")
   local steps = {}
   for i, axis in ipairs { "x", "y", "z" } do
     if i < 3 or three then

@@ -47,4 +47,15 @@ check.raises("unknown key 'radus' in sphere (did you mean 'radius'?)", impact.sp
 check.raises("unknown key [1] in plane (its values have names)", impact.plane, { 3, 3 })
 check.raises("argument 'part' must be one of 'cvode', 'ccd', got the string 'gsl'", impact.has, "gsl")
 
+-- Tables of numbers, and logarithmic axes.
+local csv, plot = require "quat.csv", require "quat.plot"
+local rows = csv.rows('t,name,x\n# a remark\n1,"a, b ""c""",2.5e-3\n2,plain,nan\n')
+check.equal(#rows, 2)
+check.equal(rows[1].name, 'a, b "c"')
+check.equal(rows[1].x + rows[2].t, 2.0025)
+check.equal(rows[2].x, "nan")
+local logs = plot.gnuplot(plot.figure { plot.panel { xlog = true, ylog = true, plot.line { { 0.02, 300 }, { 0, 5e-9 } } } })
+check.truth(logs:find("set logscale x; set xrange [1e-2:1e3]", 1, true), "whole decades")
+check.truth(logs:find("set yrange [1e-9:1e-8]", 1, true), "zero is left out of a logarithmic axis")
+
 check.report("modules")
