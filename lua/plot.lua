@@ -35,13 +35,13 @@ local cycle = { "blue", "red", "green", "orange", "purple", "teal" }
 local panel_keys = {
   title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = "string",
   xrange = "table", yrange = "table", zrange = "table", view = "table", at = "table", frame = "boolean", box = "table",
-  three = "boolean", zoom = "number", xlog = "boolean", ylog = "boolean",
+  three = "boolean", zoom = "number", magnify = "number", xlog = "boolean", ylog = "boolean",
 }
 local figure_keys = { title = "string", subtitle = "string", size = "table", grid = "table" }
 local item_keys = {
   line = { label = "string", color = "string", width = "number", dash = "boolean", fill = "boolean", opacity = "number" },
-  points = { label = "string", color = "string", size = "number", shape = "string" },
-  arrows = { label = "string", color = "string", width = "number", head = "number" },
+  points = { label = "string", color = "string", size = "number", shape = "string", front = "boolean" },
+  arrows = { label = "string", color = "string", width = "number", head = "number", front = "boolean" },
   surface = { label = "string", color = "string", opacity = "number", lines = "boolean", value = "table", range = "table" },
   text = { color = "string", at = "table", align = "string", size = "number" },
   mark = { label = "string", color = "string", x = "number", y = "number", dash = "boolean" },
@@ -78,10 +78,11 @@ end
 --- Also: label, color (a name of plot.colors or "#rrggbb"), width, dash, fill and opacity (a filled polygon, flat panels only).
 ---@type fun(description: table): plot.item
 plot.line = maker "line"
---- Points at {x, y[, z]}: label, color, size, shape ("dot", "circle", "square", "triangle", "cross", "star").
+--- Points at {x, y[, z]}: label, color, size, shape ("dot", "circle", "square", "triangle", "cross", "star"),
+--- front (not hidden by surfaces).
 ---@type fun(description: table): plot.item
 plot.points = maker "points"
---- Arrows from {x, y, dx, dy} or {x, y, z, dx, dy, dz}: label, color, width, head.
+--- Arrows from {x, y, dx, dy} or {x, y, z, dx, dy, dz}: label, color, width, head (0 for none), front (not hidden by surfaces).
 ---@type fun(description: table): plot.item
 plot.arrows = maker "arrows"
 --- A surface through {x, y, z}, each a list of rows of equal length: color, or value (rows of numbers to colour by) and
@@ -97,7 +98,7 @@ plot.mark = maker "mark"
 
 --- A panel of items: title, xlabel, ylabel, zlabel, equal (the same scale on all axes), legend ("top left" ..., "center", "row", "none"), xrange,
 --- yrange, zrange ({least, most}), xlog, ylog (logarithmic axes, flat panels only: a mark at every decade, what is not positive is
---- left out), view ({about x, about z}, degrees), zoom, frame (axes drawn), three (three-dimensional; by itself
+--- left out), view ({about x, about z}, degrees), zoom (equal axes in space: magnify), frame (axes drawn), three (three-dimensional; by itself
 --- when an item has a z), at ({column, row[, columns, rows]} in the figure's grid), box ({left, bottom, right, top} of the axes,
 --- as parts of the figure, instead of at).
 ---@return plot.panel
@@ -207,18 +208,24 @@ function clauses.line(out, name, item, three, fallback)
     item.dash and "(7,4)" or "solid", quote(with_opacity(color(item.color, fallback), item.opacity)), title_of(item))
 end
 
+local function shape_of(item)
+  return shapes[item.shape or "dot"] or error(format("points: unknown shape '%s'", tostring(item.shape)), 0)
+end
+
 function clauses.points(out, name, item, three, fallback)
   data_block(out, name, columns_of(item, three and 3 or 2))
-  local shape = shapes[item.shape or "dot"]
-  if not shape then error(format("points: unknown shape '%s'", tostring(item.shape)), 0) end
-  return format("%s using 1:2%s with points pt %d ps %s lw 1.5 lc rgb %s %s", name, three and ":3" or "", shape,
+  return format("%s using 1:2%s with points pt %d ps %s lw 1.5 lc rgb %s %s", name, three and ":3" or "", shape_of(item),
     number(item.size or 1), quote(color(item.color, fallback)), title_of(item))
+end
+
+local function head_of(item)
+  return item.head == 0 and "nohead" or format("filled head size graph %s,20,60", number(item.head or 0.02))
 end
 
 function clauses.arrows(out, name, item, three, fallback)
   data_block(out, name, columns_of(item, three and 6 or 4))
-  return format("%s using 1:2:3:4%s with vectors filled head size graph %s,20,60 lw %s lc rgb %s %s", name,
-    three and ":5:6" or "", number(item.head or 0.02), number(item.width or 1.5), quote(color(item.color, fallback)), title_of(item))
+  return format("%s using 1:2:3:4%s with vectors %s lw %s lc rgb %s %s", name, three and ":5:6" or "", head_of(item),
+    number(item.width or 1.5), quote(color(item.color, fallback)), title_of(item))
 end
 
 function clauses.surface(out, name, item, _, fallback)
@@ -241,6 +248,25 @@ local function put_text(out, item, three)
   out[#out + 1] = format("set label %s at %s %s front font ',%s' tc rgb %s", quote(item[1]),
     position(item.at or { 0, 0, 0 }, three), aligns[item.align or "left"] or "left", number(item.size or 11),
     quote(color(item.color, "dark")))
+end
+
+--- Points and arrows as objects of their own, which gnuplot draws over the surfaces.
+local function put_front(out, item, three)
+  local n = three and 3 or 2
+  local columns = columns_of(item, item.kind == "points" and n or 2 * n)
+  local shade = quote(color(item.color, "dark"))
+  for i = 1, #columns[1] do
+    local from, to = {}, {}
+    for c = 1, n do from[c], to[c] = columns[c][i], columns[c][i] + (columns[n + c] or columns[c])[i] end
+    local at = position(from, three)
+    if at:find "NaN" or position(to, three):find "NaN" then -- the pen is lifted
+    elseif item.kind == "points" then
+      out[#out + 1] = format("set label '' at %s point pt %d ps %s lw 1.5 lc rgb %s front", at, shape_of(item), number(item.size or 1), shade)
+    else
+      out[#out + 1] = format("set arrow from %s to %s front %s lw %s lc rgb %s", at, position(to, three), head_of(item),
+        number(item.width or 1.5), shade)
+    end
+  end
 end
 
 local function put_mark(out, item)
@@ -378,11 +404,26 @@ local function put_axes(out, panel, three)
   end
 end
 
+--- With equal axes in space gnuplot's zoom does nothing: the panel is made larger instead, beyond its place, and its title put by hand.
+local function put_zoomed(out, panel, left, bottom, width, height)
+  local add = function(...) out[#out + 1] = format(...) end
+  local zoom = panel.magnify
+  add("set origin %s,%s; set size %s,%s", number(left + (1 - zoom) * width / 2), number(bottom + (1 - zoom) * height / 2),
+    number(zoom * width), number(zoom * height))
+  add("set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0")
+  if panel.title then
+    add("unset title; set label %s at screen %s,%s center font ',12' tc rgb '#1a202c'", quote(panel.title), number(left + width / 2),
+      number(bottom + 0.96 * height))
+  end
+end
+
 --- Where the panel's axes stand: its box, or its cell of the figure's grid.
 local function put_place(out, panel, place, top, three)
   local add = function(...) out[#out + 1] = format(...) end
+  local zoomed = three and panel.magnify
   if panel.box then
     local b = panel.box
+    if zoomed then return put_zoomed(out, panel, b[1], b[2], b[3] - b[1], b[4] - b[2]) end
     add("set lmargin at screen %s; set bmargin at screen %s; set rmargin at screen %s; set tmargin at screen %s",
       number(b[1]), number(b[2]), number(b[3]), number(b[4]))
     add("set origin 0,0; set size 1,1")
@@ -391,6 +432,7 @@ local function put_place(out, panel, place, top, three)
   local left, width = (place.column - 1) / place.columns, place.wide / place.columns
   local height = top * place.high / place.rows
   local bottom = top - top * (place.row - 1) / place.rows - height
+  if zoomed then return put_zoomed(out, panel, left, bottom, width, height) end
   add("set origin %s,%s; set size %s,%s", number(left), number(bottom), number(width), number(height))
   if three then
     add("set lmargin 2; set rmargin 2; set tmargin 2; set bmargin 1")
@@ -401,14 +443,16 @@ end
 
 local function put_panel(out, panel, number_of, place, top)
   local three = is_three(panel)
-  put_place(out, panel, place, top, three)
   put_axes(out, panel, three)
+  put_place(out, panel, place, top, three)
   local parts, colored = {}, 0
   for i, item in ipairs(panel) do
     if item.kind == "text" then
       put_text(out, item, three)
     elseif item.kind == "mark" then
       put_mark(out, item)
+    elseif item.front then
+      put_front(out, item, three)
     else
       if not item.color then colored = colored + 1 end
       local name = format("$panel%d_%d", number_of, i)

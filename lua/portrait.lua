@@ -259,4 +259,38 @@ function portrait.sheet(state, low, high, color, opacity)
   return plot.surface { x, y, z, color = color, opacity = opacity }
 end
 
+--- The direction towards the eye of a panel's view {about x, about z}, degrees: what faces it is in front.
+function portrait.eye(view)
+  local a, b = math.rad(view[1]), math.rad(view[2])
+  return { math.sin(a) * math.sin(b), -math.sin(a) * math.cos(b), math.cos(a) }
+end
+
+--- A ribbon through `places` with the orientations `frames` (quaternions): x across it, z its normal; one colour for each side.
+--- shape: {half_width, thickness, front, back}; a list of plot items.
+---@return plot.item[]
+function portrait.ribbon(frames, places, shape)
+  local items = {}
+  for side = 1, -1, -2 do
+    local x, y, z = {}, {}, {}
+    for i = 1, #frames do
+      local q, p, n = frames[i], places[i], #x + 1
+      local ax, ay, az = turn(q, 1, 0, 0)
+      local nx, ny, nz = turn(q, 0, 0, 0.5 * side * shape.thickness)
+      x[n], y[n], z[n] = {}, {}, {}
+      for j = -1, 1 do
+        local w = j * shape.half_width
+        x[n][j + 2], y[n][j + 2], z[n][j + 2] = p[1] + w * ax + nx, p[2] + w * ay + ny, p[3] + w * az + nz
+      end
+    end
+    items[#items + 1] = plot.surface { x, y, z, color = side > 0 and shape.front or shape.back, opacity = 1 }
+    -- Its rims: what is seen of it edge-on.
+    for j = 1, 3, 2 do
+      local rim = { {}, {}, {}, color = side > 0 and shape.front or shape.back, width = 1.2 }
+      for i = 1, #x do rim[1][i], rim[2][i], rim[3][i] = x[i][j], y[i][j], z[i][j] end
+      items[#items + 1] = plot.line(rim)
+    end
+  end
+  return items
+end
+
 return portrait

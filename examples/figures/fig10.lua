@@ -9,26 +9,40 @@ local plot = require "quat.plot"
 local csv = require "quat.csv"
 local portrait = require "impact.portrait"
 
-local function turn(x, y, degrees)
-  return quat.from_axis_angle({ x, y, 0 }, math.rad(degrees))
-end
+local turns = { { 0, -math.pi / 2, 0 }, { math.pi / 2, 0, 0 }, { 0, math.pi / 2, 0 } }
+local titles = { "start", "−90° about y", "then 90° about x", "then 90° about y" }
+local orientations = quat.chain({ 1, 0, 0, 0 }, turns, 1)
 
-local steps = {
-  { "start", quat.new(1, 0, 0, 0) }, { "-90° about y", turn(0, 1, -90) }, { "90° about x", turn(1, 0, 90) }, { "90° about y", turn(0, 1, 90) },
-}
 local columns = { {}, {}, {}, {}, {} }
-local figure = { title = "Three turns about horizontal axes, and one about the vertical", size = { 1600, 520 }, grid = { 4, 1 } }
-local q = quat.new(1, 0, 0, 0)
-for n, step in ipairs(steps) do
-  q = step[2] * q
+local figure = {
+  title = "Three turns about horizontal axes are one about the vertical, by −90°", size = { 1600, 560 }, grid = { 4, 1 },
+}
+local view = { 65, 30 }
+local eye = portrait.eye(view)
+for n, q in ipairs(orientations) do
   for i, value in ipairs { n - 1, q.w, q.x, q.y, q.z } do columns[i][n] = value end
   local state = { position = { 0, 0, 0 }, orientation = q }
   local panel = {
-    title = step[1], equal = true, legend = "none", view = { 65, 30 }, zoom = 1.2, frame = false,
-    xrange = { -1.2, 1.2 }, yrange = { -1.2, 1.2 }, zrange = { -1.2, 1.2 },
+    title = titles[n], equal = true, legend = "none", view = view, magnify = 1.55, frame = false,
+    xrange = { -1.7, 1.7 }, yrange = { -1.7, 1.7 }, zrange = { -1.5, 1.5 },
     portrait.sheet(state, { -1.2, -1.2 }, { 1.2, 1.2 }, "teal", 0.35),
   }
-  for _, item in ipairs(portrait.ball(state, 1, "red", "blue")) do panel[#panel + 1] = item end
+  for _, item in ipairs(portrait.ball(state, 1, "#dd6b20", "#2b6cb0")) do panel[#panel + 1] = item end
+  -- The axis of the turn that led here; at the end that of all three.
+  local axis = turns[n - 1]
+  if axis then
+    local x, y = axis[1] ~= 0 and 1 or 0, axis[2] ~= 0 and 1 or 0
+    local near = eye[1] * x + eye[2] * y > 0 and 1 or -1
+    for side = -1, 1, 2 do
+      panel[#panel + 1] = plot.arrows { { side * x }, { side * y }, { 0 }, { 0.7 * side * x }, { 0.7 * side * y }, { 0 }, color = "dark",
+        width = 2.5, head = 0, front = side == near }
+    end
+    panel[#panel + 1] = plot.text { x == 1 and "x" or "y", at = { 1.9 * x, 1.9 * y, 0 }, size = 13, align = "center" }
+  end
+  if n == #orientations then
+    panel[#panel + 1] = plot.line { { 0, 0 }, { 0, 0 }, { -1.5, 1.5 }, color = "purple", width = 2.5, dash = true }
+    panel[#panel + 1] = plot.text { "in all: −90° about z", at = { 0, 0, 1.65 }, align = "center", size = 12, color = "purple" }
+  end
   figure[n] = plot.panel(panel)
 end
 

@@ -10,7 +10,7 @@ local scenes, figures = arg[3] .. "/scenes", arg[3] .. "/figures"
 local tolerances = {
   t = 1e-10, x = 1e-9, y = 1e-9, z = 1e-9, qw = 1e-9, qx = 1e-9, qy = 1e-9, qz = 1e-9, vx = 1e-8, vy = 1e-8, vz = 1e-8,
   wx = 1e-8, wy = 1e-8, wz = 1e-8, image = 1e-12, image_x = 1e-12, image_y = 1e-12, back = 1e-12, px = 1e-9, py = 1e-9, pz = 1e-9, nx = 1e-9, ny = 1e-9, nz = 1e-9, impulse_n = 1e-8,
-  impulse_t = 1e-8, p = 1e-12, ux = 1e-12, uy = 1e-12, uz = 1e-12, s = 1e-12, gap = 1e-12, ax = 1e-12, ay = 1e-12, az = 1e-12, bx = 1e-12, by = 1e-12, bz = 1e-12, un_before = 1e-8, un_after = 1e-8, energy_before = 1e-7, energy_after = 1e-7,
+  turn = 1e-12, radius = 1e-12, place = 1e-12, impulse_t = 1e-8, p = 1e-12, ux = 1e-12, uy = 1e-12, uz = 1e-12, s = 1e-12, gap = 1e-12, ax = 1e-12, ay = 1e-12, az = 1e-12, bx = 1e-12, by = 1e-12, bz = 1e-12, un_before = 1e-8, un_after = 1e-8, energy_before = 1e-7, energy_after = 1e-7,
 }
 
 local function cells(line)
@@ -86,7 +86,7 @@ end
 
 -- Each figure, and the rows it gives.
 for name, lists in pairs {
-  fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig10 = { "fig10" }, fig11 = { "fig11" }, fig13 = { "fig13" },
+  fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig06 = { "fig06" }, fig07 = { "fig07" }, untwist = { "untwist" }, hopf = { "hopf" }, fig10 = { "fig10" }, fig11 = { "fig11" }, fig13 = { "fig13" },
   fig15 = { "fig15" }, fig16 = { "fig16" }, hodograph = { "hodograph" },
 } do
   local code, _, said = runner.command(string.format("%s --out .", runner.quote(figures .. "/" .. name .. ".lua")))
