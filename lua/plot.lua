@@ -35,7 +35,7 @@ local cycle = { "blue", "red", "green", "orange", "purple", "teal" }
 local panel_keys = {
   title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = "string",
   xrange = "table", yrange = "table", zrange = "table", view = "table", at = "table", frame = "boolean", box = "table",
-  three = "boolean", zoom = "number", magnify = "number", xlog = "boolean", ylog = "boolean",
+  three = "boolean", zoom = "number", xlog = "boolean", ylog = "boolean",
 }
 local figure_keys = { title = "string", subtitle = "string", size = "table", grid = "table" }
 local item_keys = {
@@ -98,7 +98,7 @@ plot.mark = maker "mark"
 
 --- A panel of items: title, xlabel, ylabel, zlabel, equal (the same scale on all axes), legend ("top left" ..., "center", "row", "none"), xrange,
 --- yrange, zrange ({least, most}), xlog, ylog (logarithmic axes, flat panels only: a mark at every decade, what is not positive is
---- left out), view ({about x, about z}, degrees), zoom (equal axes in space: magnify), frame (axes drawn), three (three-dimensional; by itself
+--- left out), view ({about x, about z}, degrees), zoom, frame (axes drawn), three (three-dimensional; by itself
 --- when an item has a z), at ({column, row[, columns, rows]} in the figure's grid), box ({left, bottom, right, top} of the axes,
 --- as parts of the figure, instead of at).
 ---@return plot.panel
@@ -404,35 +404,21 @@ local function put_axes(out, panel, three)
   end
 end
 
---- With equal axes in space gnuplot's zoom does nothing: the panel is made larger instead, beyond its place, and its title put by hand.
-local function put_zoomed(out, panel, left, bottom, width, height)
-  local add = function(...) out[#out + 1] = format(...) end
-  local zoom = panel.magnify
-  add("set origin %s,%s; set size %s,%s", number(left + (1 - zoom) * width / 2), number(bottom + (1 - zoom) * height / 2),
-    number(zoom * width), number(zoom * height))
-  add("set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0")
-  if panel.title then
-    add("unset title; set label %s at screen %s,%s center font ',12' tc rgb '#1a202c'", quote(panel.title), number(left + width / 2),
-      number(bottom + 0.96 * height))
-  end
-end
-
 --- Where the panel's axes stand: its box, or its cell of the figure's grid.
 local function put_place(out, panel, place, top, three)
   local add = function(...) out[#out + 1] = format(...) end
-  local zoomed = three and panel.magnify
-  if panel.box then
-    local b = panel.box
-    if zoomed then return put_zoomed(out, panel, b[1], b[2], b[3] - b[1], b[4] - b[2]) end
+  local left, width = (place.column - 1) / place.columns, place.wide / place.columns
+  local height = top * place.high / place.rows
+  local bottom = top - top * (place.row - 1) / place.rows - height
+  local b = panel.box
+  if b and not (three and panel.zoom) then
     add("set lmargin at screen %s; set bmargin at screen %s; set rmargin at screen %s; set tmargin at screen %s",
       number(b[1]), number(b[2]), number(b[3]), number(b[4]))
     add("set origin 0,0; set size 1,1")
     return
+  elseif b then -- margins on the screen would undo gnuplot's zoom
+    left, bottom, width, height = b[1], b[2], b[3] - b[1], b[4] - b[2]
   end
-  local left, width = (place.column - 1) / place.columns, place.wide / place.columns
-  local height = top * place.high / place.rows
-  local bottom = top - top * (place.row - 1) / place.rows - height
-  if zoomed then return put_zoomed(out, panel, left, bottom, width, height) end
   add("set origin %s,%s; set size %s,%s", number(left), number(bottom), number(width), number(height))
   if three then
     add("set lmargin 2; set rmargin 2; set tmargin 2; set bmargin 1")

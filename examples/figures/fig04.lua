@@ -51,7 +51,7 @@ for i = 1, 20 do
 end
 local space = {
   title = "b) the sphere from (0, 0, 1) on the plane z = 0",
-  equal = true, legend = "none", view = { 66, 30 }, magnify = 1.75, frame = false, box = { 0.55, 0.0, 1, 0.985 },
+  equal = true, legend = "none", view = { 66, 30 }, zoom = 1.75, frame = false, box = { 0.55, 0.0, 1, 0.985 },
   xrange = { -2.2, 2.2 }, yrange = { -2.2, 2.2 }, zrange = { -1, 1 },
   plot.surface { u, v, w, color = "#f6c28b", opacity = 0.55 },
   plot.surface { x, y, z, color = "#8fb8de", opacity = 0.45 },

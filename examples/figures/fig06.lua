@@ -38,7 +38,7 @@ for n = 1, segments do
 end
 
 local band = {
-  title = "a strip of 2 × 16, twisted by π and bent by 2π", equal = true, legend = "none", frame = false, view = view, magnify = 1.95,
+  title = "a strip of 2 × 16, twisted by π and bent by 2π", equal = true, legend = "none", frame = false, view = view, zoom = 2.2,
   xrange = { -3.4, 3.4 }, yrange = { -3.4, 3.4 }, zrange = { -1.4, 1.4 }, box = { 0.0, 0.02, 0.55, 0.88 },
 }
 for _, item in ipairs(portrait.ribbon(frames, places,

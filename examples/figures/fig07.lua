@@ -32,7 +32,7 @@ local function belt(row, angle)
   local frames, places = {}, {}
   for i = 0, 96 do frames[i + 1], places[i + 1] = quat.belt_twist(angle, i / 96), { 0, i / 12, 0 } end
   local panel = {
-    equal = true, legend = "none", frame = false, view = { 66, 74 }, magnify = 2, box = box(row, 0.01, 0.45),
+    equal = true, legend = "none", frame = false, view = { 66, 74 }, zoom = 4.9, box = box(row, 0.01, 0.45),
     xrange = { -1.1, 1.1 }, yrange = { 0, 8 }, zrange = { -1.1, 1.1 },
   }
   for _, item in ipairs(portrait.ribbon(frames, places,
@@ -61,7 +61,7 @@ local function disc(row, name, angle)
   end
   panel[#panel + 1] = plot.points { { at }, { #arrows > 2 and -0.45 or 0 }, color = "dark", size = 1.3 }
   for n = -1, 1, 2 do
-    panel[#panel + 1] = plot.text { n < 0 and "−π" or "π", at = { n * (pi + 0.35), -0.75 }, align = "center", size = 10 }
+    panel[#panel + 1] = plot.text { n < 0 and "−π" or "π", at = { n * (pi + 0.4), -1.2 }, align = "center", size = 10 }
   end
   if row == 1 then panel[#panel + 1] = plot.text { "ring: the axis not turned", at = { 0.5, pi + 0.25 }, size = 10, color = "red" } end
   panel[#panel + 1] = plot.text { name, at = { -6.6 * pi, 1.05 * pi }, size = 14 }

@@ -23,7 +23,7 @@ for n, q in ipairs(orientations) do
   for i, value in ipairs { n - 1, q.w, q.x, q.y, q.z } do columns[i][n] = value end
   local state = { position = { 0, 0, 0 }, orientation = q }
   local panel = {
-    title = titles[n], equal = true, legend = "none", view = view, magnify = 1.55, frame = false,
+    title = titles[n], equal = true, legend = "none", view = view, zoom = 1.7, frame = false,
     xrange = { -1.7, 1.7 }, yrange = { -1.7, 1.7 }, zrange = { -1.5, 1.5 },
     portrait.sheet(state, { -1.2, -1.2 }, { 1.2, 1.2 }, "teal", 0.35),
   }

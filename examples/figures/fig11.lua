@@ -39,7 +39,7 @@ local drawn, why = plot.save(plot.figure {
   title = "The ball trick: circles of the hand turn the ball the other way", size = { 1400, 680 },
   plot.panel {
     title = "its orientation (q₁, q₂, q₃) during ten circles of the hand", xlabel = "q₁", ylabel = "q₂", zlabel = "q₃", legend = "none",
-    view = { 68, 35 }, equal = true, magnify = 0.93, box = { 0.02, 0.0, 0.5, 0.9 },
+    view = { 68, 35 }, equal = true, zoom = 0.93, box = { 0.02, 0.0, 0.5, 0.9 },
     xrange = { -0.1, 0.3 }, yrange = { -0.2, 0.2 }, zrange = { -0.6, 0 },
     plot.line { columns[3], columns[4], columns[5], color = "blue", width = 2 },
     plot.points { { 0 }, { 0 }, { 0 }, color = "dark", size = 1.8, shape = "circle" },

@@ -31,11 +31,11 @@ end
 local view = { 66, 30 }
 local eye = portrait.eye(view)
 local base = {
-  title = "points of S²", equal = true, legend = "none", frame = false, view = view, magnify = 1.3, box = { 0.0, 0.02, 0.36, 0.9 },
+  title = "points of S²", equal = true, legend = "none", frame = false, view = view, zoom = 1.4, box = { 0.0, 0.02, 0.36, 0.9 },
   xrange = { -1.1, 1.1 }, yrange = { -1.1, 1.1 }, zrange = { -1.1, 1.1 },
 }
 local above = {
-  title = "and the circles of S³ above them, from −1", equal = true, legend = "none", frame = false, view = { 62, 25 }, magnify = 1.7,
+  title = "and the circles of S³ above them, from −1", equal = true, legend = "none", frame = false, view = { 62, 25 }, zoom = 1.85,
   box = { 0.36, 0.0, 1, 0.92 }, xrange = { -2.6, 2.6 }, yrange = { -2.6, 2.6 }, zrange = { -2, 2 },
 }
 local x, y, z = {}, {}, {}

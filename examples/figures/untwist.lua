@@ -22,7 +22,7 @@ local function belt(n, s)
   local frames, places = quat.belt_frames(s, count + 1)
   local column, row = (n - 1) % 4, (n - 1) // 4
   local panel = {
-    title = string.format("s = %.2f", s), equal = true, legend = "none", frame = false, view = { 62, 62 }, magnify = 2.5,
+    title = string.format("s = %.2f", s), equal = true, legend = "none", frame = false, view = { 62, 62 }, zoom = 3.2,
     xrange = { -0.35, 0.65 }, yrange = { -0.28, 1.1 }, zrange = { -0.35, 0.35 },
     box = { 0.0 + 0.247 * column, 0.66 - 0.29 * row, 0.25 + 0.247 * column, 0.935 - 0.29 * row },
   }
@@ -54,7 +54,7 @@ end
 
 local curves = {
   title = "the curves q(t), as (q₁, q₂, q₃)", xlabel = "q₁", ylabel = "q₂", zlabel = "q₃", equal = true, legend = "none", view = { 66, 32 },
-  magnify = 1.5, box = { 0.02, 0.0, 0.48, 0.36 }, xrange = { -1, 1 }, yrange = { -1, 1 }, zrange = { -1, 0.2 },
+  zoom = 1.65, box = { 0.02, 0.0, 0.48, 0.36 }, xrange = { -1, 1 }, yrange = { -1, 1 }, zrange = { -1, 0.2 },
 }
 local scalar = {
   title = "and q₀ along the belt", xlabel = "t", ylabel = "q₀", legend = "none", box = { 0.58, 0.075, 0.96, 0.325 }, xrange = { 0, 1 },
