@@ -427,6 +427,21 @@ local function put_place(out, panel, place, top, three)
   end
 end
 
+--- The colours' range, and their key: a bar below the panel's axes.
+local function put_colors(out, panel, range, place, top)
+  local add = function(...) out[#out + 1] = format(...) end
+  add("set cbrange [%s:%s]", range and number(range[1]) or "*", range and number(range[2]) or "*")
+  add("set cbtics %s out nomirror scale 0.4 font ',9' tc rgb '#2d3748'",
+    range and number(nice_step(range[2] - range[1], 4)) or "autofreq")
+  local left, bottom, width, height = (place.column - 1) / place.columns, 0, place.wide / place.columns, top * place.high / place.rows
+  bottom = top - top * (place.row - 1) / place.rows - height
+  if panel.box then
+    left, bottom, width, height = panel.box[1], panel.box[2], panel.box[3] - panel.box[1], panel.box[4] - panel.box[2]
+  end
+  add("set colorbox horizontal user origin %s,%s size %s,%s noborder", number(left + 0.28 * width),
+    number(bottom + 0.1 * height), number(0.44 * width), number(0.02 * height))
+end
+
 local function put_panel(out, panel, number_of, place, top)
   local three = is_three(panel)
   put_axes(out, panel, three)
@@ -444,9 +459,8 @@ local function put_panel(out, panel, number_of, place, top)
       local name = format("$panel%d_%d", number_of, i)
       parts[#parts + 1] = clauses[item.kind](out, name, item, three, cycle[(colored - 1) % #cycle + 1])
       if item.value then
-        out[#out + 1] = "set palette defined (0 '#2b6cb0', 0.5 '#f7fafc', 1 '#c53030'); set colorbox"
-        out[#out + 1] = item.range and format("set cbrange [%s:%s]", number(item.range[1]), number(item.range[2])) or
-            "set cbrange [*:*]"
+        out[#out + 1] = "set palette defined (0 '#2b6cb0', 0.5 '#f7fafc', 1 '#c53030')"
+        put_colors(out, panel, item.range, place, top)
       end
     end
   end
