@@ -99,7 +99,6 @@ static void knots_in_quad(void **state)
         const apparatus want = frenet(d);
         /* curvature's own scale is |x''|/|x'|^2: where the curve is nearly straight its digits are lost to the cross product */
         const wide bend = wide_norm(d[2]) / (want.speed * want.speed), weak = want.curvature / bend;
-        if (weak < 0.05) continue;
         worse(&speed, off(point.speed, want.speed, want.speed));
         worse(&curvature, off(point.curvature, want.curvature, bend));
         worse(&torsion, off(point.torsion, want.torsion,
