@@ -200,6 +200,12 @@ impact_status impact_ode_limit_step(impact_ode *ode, double max_step)
     return CVodeSetMaxStep(ode->cvode, max_step) == CV_SUCCESS ? IMPACT_OK : IMPACT_EARGUMENT;
 }
 
+impact_status impact_ode_set_tolerance(impact_ode *ode, double relative, double absolute)
+{
+    if (ode->tolerances || !(relative >= 0 && absolute >= 0 && relative < 1)) return IMPACT_EARGUMENT;
+    return CVodeSStolerances(ode->cvode, relative, absolute) == CV_SUCCESS ? IMPACT_OK : IMPACT_EARGUMENT;
+}
+
 impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found, bool *found)
 {
     *found = false;

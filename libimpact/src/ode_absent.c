@@ -19,6 +19,12 @@ impact_status impact_ode_start(impact_ode *ode, double t, const double *y)
     return IMPACT_EABSENT;
 }
 
+impact_status impact_ode_set_tolerance(impact_ode *ode, double relative, double absolute)
+{
+    (void)ode, (void)relative, (void)absolute;
+    return IMPACT_EABSENT;
+}
+
 impact_status impact_ode_limit_step(impact_ode *ode, double max_step)
 {
     (void)ode, (void)max_step;

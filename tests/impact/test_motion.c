@@ -404,6 +404,31 @@ static void tumbling_in_a_box(void **state)
     impact_scene_destroy(scene);
 }
 
+/* A hundred orbits under Newton's attraction, a thousand seconds: the energy, and where they end. */
+static void orbits_keep_their_energy(void **state)
+{
+    (void)state;
+    const double mu = 4 * 9.8696044010893586188 / 100; /* a period of 10 s at a half axis of 1 m */
+    for (int k = 0; k < 3; k++) {
+        const double eccentricity = 0.3 * k, r = 1 + eccentricity, v = sqrt(mu * (1 - eccentricity) / r);
+        impact_body_def bodies[2] = {small_ball("a", 1e-3, (qvec3){-0.5 * r, 0, 0}, (qvec3){0, -0.5 * v, 0}),
+                                     small_ball("b", 1e-3, (qvec3){0.5 * r, 0, 0}, (qvec3){0, 0.5 * v, 0})};
+        impact_force_def attraction = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
+        attraction.constant = mu / 2;
+        impact_scene_def def = scene_of(bodies, 2, 1000);
+        def.forces = &attraction;
+        def.force_count = 1;
+        impact_scene *scene = make_scene(&def);
+        if (impact_scene_run(scene, NULL) != IMPACT_OK) fail_msg("%s", impact_scene_message(scene));
+        const impact_energy energy = impact_scene_energy(scene);
+        assert_near((energy.kinetic + energy.potential) / energy.start, 1, 1e-9);
+        impact_sample end;
+        impact_scene_body(scene, 0, &end);
+        assert_near3(end.position, bodies[0].position, 1e-6);
+        impact_scene_destroy(scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -419,6 +444,7 @@ int main(void)
     };
     const struct CMUnitTest integrated[] = {
         cmocka_unit_test(touching_is_not_striking),
+        cmocka_unit_test(orbits_keep_their_energy),
     };
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     if (!impact_has(IMPACT_PART_CVODE)) return failed;

@@ -192,6 +192,30 @@ static void steps_keep_their_limit_and_never_pass_the_stop(void **state)
     impact_ode_destroy(ode);
 }
 
+/* A looser one takes fewer steps and errs more; what cannot be is refused. */
+static void another_tolerance_from_the_next_start_on(void **state)
+{
+    (void)state;
+    oscillator o;
+    const impact_ode_def def = swing_def(&o, 0);
+    impact_ode *ode = start_swing(&def);
+    double t, y[2];
+    const double start[2] = {1, 0};
+    bool found;
+    assert_int_equal(impact_ode_advance(ode, 20, &t, y, NULL, &found), IMPACT_OK);
+    const long close = impact_ode_count(ode).steps;
+    assert_near(y[0], cos(20), 1e-10);
+    assert_int_equal(impact_ode_set_tolerance(ode, 1e-6, 1e-8), IMPACT_OK);
+    assert_int_equal(impact_ode_start(ode, 0, start), IMPACT_OK);
+    assert_int_equal(impact_ode_advance(ode, 20, &t, y, NULL, &found), IMPACT_OK);
+    assert_true(2 * (impact_ode_count(ode).steps - close) < close);
+    assert_near(y[0], cos(20), 1e-3);
+    assert_true(fabs(y[0] - cos(20)) > 1e-8);
+    assert_int_equal(impact_ode_set_tolerance(ode, -1, 1), IMPACT_EARGUMENT);
+    assert_int_equal(impact_ode_set_tolerance(ode, 1e-6, NAN), IMPACT_EARGUMENT);
+    impact_ode_destroy(ode);
+}
+
 /* To where it stands already, before the first step and after it. */
 static void no_way_to_go_is_no_failure(void **state)
 {
@@ -346,6 +370,7 @@ int main(void)
         cmocka_unit_test(restarts_with_the_workspace_it_has),
         cmocka_unit_test(interpolates_inside_the_last_step),
         cmocka_unit_test(steps_keep_their_limit_and_never_pass_the_stop),
+        cmocka_unit_test(another_tolerance_from_the_next_start_on),
         cmocka_unit_test(no_way_to_go_is_no_failure),
         cmocka_unit_test(robertson_over_eleven_decades),
         cmocka_unit_test(refused_functions_end_with_words),

@@ -64,7 +64,7 @@ typedef struct impact_scene_def {
     impact_law law;
     impact_solver solver; /* of impacts */
 
-    double tolerance; /* relative, of the motion's integration */
+    double tolerance; /* relative, of the motion's integration; a thirtieth of it where no contact is held */
     /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the contact is
      * held */
     double rest_height;
