@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <quat/exponential.h>
 #include <quat/sequence.h>
+#include "dd.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -8,12 +9,14 @@ typedef struct circle {
     double cosine, sine;
 } circle;
 
-/* cos and sin of `turns` half turns, exact at every quarter. */
+/* cos and sin of `turns` half turns, exact at every quarter; pi in twice the precision, so that they are rounded once. */
 static circle half_turns(double turns)
 {
-    const double r = remainder(turns, 2), quarter = floor(2 * r + 0.5), f = pi * (r - 0.5 * quarter);
-    const double c = cos(f), s = sin(f);
-    if (isnan(f)) return (circle){f, f};
+    const double r = remainder(turns, 2), quarter = floor(2 * r + 0.5), rest = r - 0.5 * quarter;
+    const quat_dd f = quat_two_prod(pi, rest);
+    const double lo = f.lo + 0x1.1a62633145c07p-53 * rest, cosine = cos(f.hi), sine = sin(f.hi);
+    const double c = cosine - lo * sine, s = sine + lo * cosine;
+    if (isnan(f.hi)) return (circle){f.hi, f.hi};
     switch ((int)quarter & 3) {
     case 0: return (circle){c, s};
     case 1: return (circle){-s, c};
@@ -30,13 +33,15 @@ quat quat_belt_twist(double angle, double t)
     return quat_make(cos(half), 0, sin(half), 0);
 }
 
-/* The product written out: with c, s of pi t and C, D of pi s/2 it is 1 + 2 s C (...), so that both ends are exact. */
+/* The product written out: with c, s of pi t and C, D of pi s/2 it is 1 + 2 s C (-s C + c D i + c C j - s D k), so that
+ * both ends are exact. Where s C is near 1 the scalar part is better summed as c^2 - s^2 cos(pi s). */
 quat quat_belt_untwist(double s, double t)
 {
     const circle along = half_turns(t), aside = half_turns(0.5 * s);
-    const double k = 2 * along.sine * aside.cosine;
-    return quat_make(1 - along.sine * aside.cosine * k, k * along.cosine * aside.sine, k * along.cosine * aside.cosine,
-                     -k * along.sine * aside.sine);
+    const double m = along.sine * aside.cosine, k = 2 * m;
+    const double w =
+        m * m < 0.5 ? 1 - k * m : along.cosine * along.cosine - along.sine * along.sine * half_turns(s).cosine;
+    return quat_make(w, k * along.cosine * aside.sine, k * along.cosine * aside.cosine, -k * along.sine * aside.sine);
 }
 
 /* q y q* is, with a, b = cos, sin of pi s and f = 2 pi t,
