@@ -67,7 +67,7 @@
 ---@field slerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
 ---@field nlerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
 ---@field slerp_omega fun(self: quat, q: rotation, way?: "short" | "as_given"): vec3  radians per unit of t, world axes
----@field nlerp_omega fun(self: quat, q: rotation, t: number): vec3
+---@field nlerp_omega fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): vec3
 ---@field slerp_list fun(self: quat, q: rotation, t: number[]): quat[]
 ---@field stereographic fun(self: quat, pole?: pole): vec3?, string?  from "south" (-1) unless told; the pole: infinite, and a reason
 ---@field orthographic fun(self: quat): vec3?, integer | string  vector part and sign of w

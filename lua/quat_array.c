@@ -137,11 +137,7 @@ static int l_from_matrix_list(lua_State *L)
         lua_pop(L, 1);
     }
     const quat_status status = quat_from_matrix_array(n, m, q, &bad);
-    if (status < 0) {
-        lua_pushnil(L);
-        lua_pushfstring(L, "matrices[%d]: %s", (int)bad + 1, quat_status_string(status));
-        return 2;
-    }
+    if (status < 0) return quat_lua_element_failure(L, "matrices", bad, status);
     quat_lua_push_quats(L, n, q);
     return 1;
 }

@@ -31,6 +31,8 @@ void quat_lua_add_methods(lua_State *L, const luaL_Reg functions[]);
 int quat_lua_results(lua_State *L, quat_status status, int count);
 /* The same for one quaternion. */
 int quat_lua_result(lua_State *L, quat_status status, quat q);
+/* Returns nil and "name[i + 1]: why" to the script, for the element i of a list. */
+int quat_lua_element_failure(lua_State *L, const char *name, size_t i, quat_status status);
 /* Returns one vector to the script. */
 int quat_lua_give_vec3(lua_State *L, qvec3 v);
 /* A point of the plane, {x, y}. */

@@ -34,7 +34,8 @@ static int l_slerp_omega(lua_State *L)
 static int l_nlerp_omega(lua_State *L)
 {
     const quat p = quat_lua_arg_unit(L, 1, "p"), q = quat_lua_arg_unit(L, 2, "q");
-    return quat_lua_give_vec3(L, quat_nlerp_omega(p, q, quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE)));
+    const double t = quat_lua_arg_number(L, 3, "t", QUAT_LUA_FINITE);
+    return quat_lua_give_vec3(L, as_given(L, 4) ? quat_nlerp_as_given_omega(p, q, t) : quat_nlerp_omega(p, q, t));
 }
 
 static int l_squad(lua_State *L)

@@ -131,14 +131,6 @@ static int l_from_orthographic_circle(lua_State *L)
 
 /* ---- lists ---- */
 
-/* nil and "q[3]: why" when a list holds something that has no image. */
-static int element_failure(lua_State *L, const char *name, size_t i, quat_status status)
-{
-    lua_pushnil(L);
-    lua_pushfstring(L, "%s[%d]: %s", name, (int)i + 1, quat_status_string(status));
-    return 2;
-}
-
 static int l_stereographic_list(lua_State *L)
 {
     size_t n, first;
@@ -147,7 +139,7 @@ static int l_stereographic_list(lua_State *L)
     const quat *const q = quat_lua_arg_quats(L, 1, "q", 0, &n);
     qvec3 *const image = lua_newuserdatauv(L, (n + 1) * sizeof *image, 0);
     const quat_status status = quat_stereographic_array(n, q, pole, image, &first);
-    if (status < 0) return element_failure(L, "q", first, status);
+    if (status < 0) return quat_lua_element_failure(L, "q", first, status);
     quat_lua_push_vec3s(L, n, image);
     return quat_lua_results(L, status, 1);
 }
@@ -181,7 +173,7 @@ static int l_orthographic_list(lua_State *L)
     qvec3 *const image = lua_newuserdatauv(L, (n + 1) * sizeof *image, 0);
     int *const half = lua_newuserdatauv(L, (n + 1) * sizeof *half, 0);
     const quat_status status = quat_orthographic_array(n, q, image, half, &first);
-    if (status < 0) return element_failure(L, "q", first, status);
+    if (status < 0) return quat_lua_element_failure(L, "q", first, status);
     quat_lua_push_vec3s(L, n, image);
     lua_createtable(L, (int)n, 0);
     for (size_t i = 0; i < n; i++) {
@@ -206,7 +198,7 @@ static int l_from_orthographic_list(lua_State *L)
         half[i] = (int)given[i];
     }
     const quat_status status = quat_from_orthographic_array(n, image, half, q, &first);
-    if (status < 0) return element_failure(L, "images", first, status);
+    if (status < 0) return quat_lua_element_failure(L, "images", first, status);
     quat_lua_push_quats(L, n, q);
     return 1;
 }

@@ -23,6 +23,13 @@ int quat_lua_result(lua_State *L, quat_status status, quat q)
     return quat_lua_results(L, status, 1);
 }
 
+int quat_lua_element_failure(lua_State *L, const char *name, size_t i, quat_status status)
+{
+    lua_pushnil(L);
+    lua_pushfstring(L, "%s[%d]: %s", name, (int)i + 1, quat_status_string(status));
+    return 2;
+}
+
 int quat_lua_give_vec3(lua_State *L, qvec3 v)
 {
     quat_lua_push_vec3(L, v);

@@ -83,12 +83,14 @@ qvec3 quat_slerp_as_given_omega(quat p, quat q)
 qvec3 quat_slerp_omega(quat p, quat q) { return quat_slerp_as_given_omega(p, quat_nearest(q, p)); }
 
 /* With s = (1 - t) p + t q the radial part of s' drops out: 2 vec(s' s*)/|s|^2, s' s* = (q - p) s*. */
-qvec3 quat_nlerp_omega(quat p, quat q, double t)
+qvec3 quat_nlerp_as_given_omega(quat p, quat q, double t)
 {
-    const quat near = quat_nearest(q, p), s = quat_axpy(t, near, quat_scale(p, 1 - t));
-    const quat turn = quat_mul_compensated(quat_sub(near, p), quat_conj(s));
+    const quat s = quat_axpy(t, q, quat_scale(p, 1 - t));
+    const quat turn = quat_mul_compensated(quat_sub(q, p), quat_conj(s));
     return qvec3_scale(quat_vector(turn), 2 / quat_norm2(s));
 }
+
+qvec3 quat_nlerp_omega(quat p, quat q, double t) { return quat_nlerp_as_given_omega(p, quat_nearest(q, p), t); }
 
 /* ---- squad ---- */
 

@@ -117,7 +117,7 @@ static void angular_velocities(void **state)
     (void)state;
     random_state r = {54};
     const wide h = 1e-10;
-    double slerp = 0, nlerp = 0, squad = 0;
+    double slerp = 0, nlerp = 0, given = 0, squad = 0;
     for (int n = 0; n < 5000; n++) {
         const quat p = random_unit(&r), q = quat_nearest(random_unit(&r), p);
         const quat a = at_angle(&r, p, random_between(&r, 0, 0.5)), b = at_angle(&r, q, random_between(&r, 0, 0.5));
@@ -127,12 +127,17 @@ static void angular_velocities(void **state)
         wquat w = wide_omega(wide_slerp(wp, wq, l), wide_slerp(wp, wq, t), wide_slerp(wp, wq, m), h);
         worse(&slerp, (double)wide_norm(wide_sub(wide_vec(quat_slerp_omega(p, n % 2 ? q : quat_neg(q))), w)));
         w = wide_omega(wide_nlerp(wp, wq, l), wide_nlerp(wp, wq, t), wide_nlerp(wp, wq, m), h);
-        worse(&nlerp, (double)wide_norm(wide_sub(wide_vec(quat_nlerp_omega(p, q, t)), w)));
+        worse(&nlerp, (double)wide_norm(wide_sub(wide_vec(quat_nlerp_omega(p, n % 2 ? q : quat_neg(q), t)), w)));
+        const quat far = at_angle(&r, p, random_between(&r, 1.6, 3));
+        const wquat wf = wide_quat(far);
+        w = wide_omega(wide_nlerp(wp, wf, l), wide_nlerp(wp, wf, t), wide_nlerp(wp, wf, m), h);
+        worse(&given, (double)(wide_norm(wide_sub(wide_vec(quat_nlerp_as_given_omega(p, far, t)), w)) / wide_norm(w)));
         w = wide_omega(wide_squad(wp, wa, wb, wq, l), wide_squad(wp, wa, wb, wq, t), wide_squad(wp, wa, wb, wq, m), h);
         worse(&squad, (double)wide_norm(wide_sub(wide_vec(quat_squad_omega(p, a, b, q, t)), w)));
     }
     assert_bound("angular velocity of slerp", slerp, 1e-14);
     assert_bound("angular velocity of nlerp", nlerp, 1e-14);
+    assert_bound("angular velocity of nlerp as given, relative", given, 1e-13);
     assert_bound("angular velocity of squad", squad, 1e-13);
 }
 

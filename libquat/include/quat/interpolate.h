@@ -34,6 +34,7 @@ QUAT_API quat quat_slerp_as_given(quat p, quat q, double t);
 QUAT_API qvec3 quat_slerp_omega(quat p, quat q);
 QUAT_API qvec3 quat_slerp_as_given_omega(quat p, quat q);
 QUAT_API qvec3 quat_nlerp_omega(quat p, quat q, double t);
+QUAT_API qvec3 quat_nlerp_as_given_omega(quat p, quat q, double t);
 
 /* ---- between four ---- */
 
