@@ -5,63 +5,38 @@
 #include "collide_cvode.h"
 #include "collide_series.h"
 
-const char *impact_law_name(impact_law law)
-{
-    switch (law) {
-    case IMPACT_POISSON: return "poisson";
-    case IMPACT_NEWTON: return "newton";
-    case IMPACT_STRONGE: return "stronge";
-    }
-    return "unknown";
-}
-
-const char *impact_solver_name(impact_solver solver)
-{
-    switch (solver) {
-    case IMPACT_SOLVER_AUTO: return "auto";
-    case IMPACT_SOLVER_CLOSED_FORM: return "closed form";
-    case IMPACT_SOLVER_SERIES: return "series";
-    case IMPACT_SOLVER_CVODE: return "cvode";
-    }
-    return "unknown";
-}
-
-const char *impact_phase_name(impact_phase phase)
-{
-    switch (phase) {
-    case IMPACT_SLIP_C: return "slip-c";
-    case IMPACT_STICK_C: return "stick-c";
-    case IMPACT_SLIP_R: return "slip-r";
-    case IMPACT_STICK_R: return "stick-r";
-    case IMPACT_REVERSAL: return "reversal";
-    }
-    return "unknown";
-}
-
 /* ---- from the caller's units to scaled ones and back ---- */
 
 static double energy(const impact_collider *body, const impact_ready *ready, qvec3 velocity, qvec3 omega)
 {
     if (ready->inverse_mass == 0) return 0;
-    const qvec3 j = body->moments, w = ready->round ? omega : impact_frame_to_body(ready->orientation, omega);
+    const qvec3 j = body->moments, w = impact_ready_local(ready, omega);
     return 0.5 * (body->mass * qvec3_dot(velocity, velocity) + (j.x * w.x * w.x + j.y * w.y * w.y + j.z * w.z * w.z));
+}
+
+static double energy_before(const impact_collision *collision, const impact_ready ready[2])
+{
+    const impact_collider *one = &collision->body[0], *two = &collision->body[1];
+    return energy(one, &ready[0], one->velocity, one->omega) + energy(two, &ready[1], two->velocity, two->omega);
 }
 
 static void push(const impact_collider *body, const impact_ready *ready, qvec3 impulse, qvec3 *velocity, qvec3 *omega)
 {
-    *velocity = body->velocity;
-    *omega = body->omega;
-    if (ready->inverse_mass == 0) return;
+    const qvec3 turn = qvec3_cross(ready->offset, impact_ready_local(ready, impulse));
     *velocity = qvec3_axpy(ready->inverse_mass, impulse, body->velocity);
-    qvec3 l = qvec3_cross(body->offset, impulse);
-    const qvec3 w = ready->inverse_moments;
-    if (ready->round) {
-        *omega = qvec3_axpy(w.x, l, body->omega);
-        return;
+    *omega = qvec3_add(body->omega, impact_ready_world(ready, impact_ready_spin(ready, turn)));
+}
+
+/* The velocities after the outcome's impulse, and the energies. */
+static void apply(const impact_collision *collision, const impact_ready ready[2], impact_outcome *outcome)
+{
+    outcome->energy_before = energy_before(collision, ready);
+    outcome->energy_after = 0;
+    for (int i = 0; i < 2; i++) {
+        const qvec3 impulse = i == 0 ? outcome->impulse : qvec3_neg(outcome->impulse);
+        push(&collision->body[i], &ready[i], impulse, &outcome->velocity[i], &outcome->omega[i]);
+        outcome->energy_after += energy(&collision->body[i], &ready[i], outcome->velocity[i], outcome->omega[i]);
     }
-    l = impact_frame_to_body(ready->orientation, l);
-    *omega =
-        qvec3_add(body->omega, impact_frame_to_world(ready->orientation, (qvec3){w.x * l.x, w.y * l.y, w.z * l.z}));
 }
 
 static void unchanged(const impact_collision *collision, impact_outcome *outcome, double value)
@@ -107,14 +82,7 @@ static void report(const impact_collision *collision, const impact_ready ready[2
     for (int i = 0; i < course->phase_count; i++) outcome->phases[i] = course->phases[i];
     outcome->conditioning = frame->conditioning;
     outcome->energy_rose = course->work_c + course->work_r + course->work_f > -1e-12 * course->work_c;
-    outcome->energy_before = outcome->energy_after = 0;
-    for (int i = 0; i < 2; i++) {
-        const impact_collider *body = &collision->body[i];
-        push(body, &ready[i], i == 0 ? outcome->impulse : qvec3_neg(outcome->impulse), &outcome->velocity[i],
-             &outcome->omega[i]);
-        outcome->energy_before += energy(body, &ready[i], body->velocity, body->omega);
-        outcome->energy_after += energy(body, &ready[i], outcome->velocity[i], outcome->omega[i]);
-    }
+    apply(collision, ready, outcome);
 }
 
 static double sum_of_sizes(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
@@ -160,7 +128,7 @@ impact_status impact_collide(const impact_collision *collision, impact_outcome *
     impact_status status = impact_collide_check(collision, NULL, 0);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
     impact_ready ready[2];
-    for (int i = 0; i < 2; i++) impact_frame_ready(&collision->body[i], &ready[i]);
+    for (int i = 0; i < 2; i++) impact_ready_make(&collision->body[i], &ready[i]);
     impact_frame frame;
     impact_frame_make(collision, ready, &frame);
     const qvec3 u = impact_frame_velocity(collision);

@@ -257,7 +257,7 @@ impact_status impact_flow_make(const impact_collision *collision, impact_flow *f
     if (status != IMPACT_OK) return status;
     impact_ready ready[2];
     impact_frame frame;
-    for (int i = 0; i < 2; i++) impact_frame_ready(&collision->body[i], &ready[i]);
+    for (int i = 0; i < 2; i++) impact_ready_make(&collision->body[i], &ready[i]);
     impact_frame_make(collision, ready, &frame);
     const double m = frame.scale;
     *flow = (impact_flow){.t1 = frame.t1,
