@@ -3,6 +3,7 @@
  * The door of the room: scales, picks a solver, and turns a finished course into an outcome.
  */
 #include "collide_cvode.h"
+#include "collide_direct.h"
 #include "collide_series.h"
 
 /* ---- from the caller's units to scaled ones and back ---- */
@@ -123,30 +124,47 @@ static impact_status solve(const impact_collision *collision, impact_course *cou
     return impact_series_solve(course, order) ? IMPACT_OK : IMPACT_EUNSETTLED;
 }
 
+/* Nothing happens, and says so. */
+static void separate(const impact_collision *collision, const impact_ready ready[2], double approach,
+                     impact_outcome *outcome)
+{
+    unchanged(collision, outcome, 0);
+    outcome->energy_before = outcome->energy_after = energy_before(collision, ready);
+    outcome->normal_before = outcome->normal_after = approach;
+}
+
+static bool may_be_direct(const impact_collision *collision)
+{
+    const bool closed = collision->solver == IMPACT_SOLVER_AUTO || collision->solver == IMPACT_SOLVER_CLOSED_FORM;
+    const bool compliant = collision->tangential_compliance > 0 && collision->friction > 0;
+    return closed && !compliant && !collision->friction_law;
+}
+
 impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome)
 {
     impact_status status = impact_collide_check(collision, NULL, 0);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
     impact_ready ready[2];
     for (int i = 0; i < 2; i++) impact_ready_make(&collision->body[i], &ready[i]);
+    const qvec3 n = impact_frame_normal(collision), u = impact_frame_velocity(collision);
+    const double approach = qvec3_dot(u, n), rounding = rounding_of_velocity(collision);
+    if (!isfinite(approach)) return fail(collision, outcome, IMPACT_EDOMAIN);
+    if (approach < 0 && may_be_direct(collision) &&
+        impact_direct_solve(collision, ready, n, u, approach, rounding, outcome)) {
+        apply(collision, ready, outcome);
+        return IMPACT_OK;
+    }
     impact_frame frame;
-    impact_frame_make(collision, ready, &frame);
-    const qvec3 u = impact_frame_velocity(collision);
-    const double approach = qvec3_dot(u, frame.n);
+    impact_frame_make(n, ready, &frame);
     if (!(approach < 0)) {
-        unchanged(collision, outcome, 0);
-        for (int i = 0; i < 2; i++)
-            outcome->energy_before +=
-                energy(&collision->body[i], &ready[i], collision->body[i].velocity, collision->body[i].omega);
-        outcome->energy_after = outcome->energy_before;
-        outcome->normal_before = outcome->normal_after = approach;
+        separate(collision, ready, approach, outcome);
         outcome->conditioning = frame.conditioning;
-        return isfinite(approach) ? IMPACT_SEPARATING : fail(collision, outcome, IMPACT_EDOMAIN);
+        return IMPACT_SEPARATING;
     }
     const double speed = -approach;
-    impact_course course;
     double ux = qvec3_dot(u, frame.t1), uy = qvec3_dot(u, frame.t2);
-    if (fabs(ux) + fabs(uy) <= rounding_of_velocity(collision)) ux = uy = 0;
+    if (fabs(ux) + fabs(uy) <= rounding) ux = uy = 0;
+    impact_course course;
     impact_course_start(&course, &frame, collision, ux / speed, uy / speed);
     status = solve(collision, &course, speed, outcome);
     if (status != IMPACT_OK) return fail(collision, outcome, status);

@@ -258,7 +258,7 @@ impact_status impact_flow_make(const impact_collision *collision, impact_flow *f
     impact_ready ready[2];
     impact_frame frame;
     for (int i = 0; i < 2; i++) impact_ready_make(&collision->body[i], &ready[i]);
-    impact_frame_make(collision, ready, &frame);
+    impact_frame_make(impact_frame_normal(collision), ready, &frame);
     const double m = frame.scale;
     *flow = (impact_flow){.t1 = frame.t1,
                           .t2 = frame.t2,

@@ -66,9 +66,8 @@ qvec3 impact_frame_normal(const impact_collision *collision)
     return (qvec3){given.x / length, given.y / length, given.z / length};
 }
 
-void impact_frame_make(const impact_collision *collision, const impact_ready ready[2], impact_frame *frame)
+void impact_frame_make(qvec3 n, const impact_ready ready[2], impact_frame *frame)
 {
-    const qvec3 n = impact_frame_normal(collision);
     const double w = ready[0].inverse_mass + ready[1].inverse_mass;
     qvec3 t1 = across(n), t2 = qvec3_cross(n, t1);
     arms x = make_arms(ready, t1), y = make_arms(ready, t2);

@@ -16,7 +16,8 @@ typedef struct impact_frame {
     double conditioning; /* largest over smallest eigenvalue of M */
 } impact_frame;
 
-void impact_frame_make(const impact_collision *collision, const impact_ready ready[2], impact_frame *frame);
+/* n: unit normal. */
+void impact_frame_make(qvec3 n, const impact_ready ready[2], impact_frame *frame);
 
 /* The collision's normal at unit length. */
 qvec3 impact_frame_normal(const impact_collision *collision);

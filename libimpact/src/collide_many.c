@@ -40,25 +40,24 @@ typedef struct own_workspace {
     impact_collide_workspace *workspace;
 } own_workspace;
 
-static impact_status borrow(own_workspace *own, impact_collision *c)
+/* By CVODE, as the collision has it or with this thread's own workspace in place of the pattern. */
+static impact_status by_cvode(own_workspace *own, impact_collision c, impact_outcome *outcome)
 {
-    if (c->solver != IMPACT_SOLVER_CVODE && !c->friction_law && !(c->tangential_compliance > 0)) return IMPACT_OK;
-    if (!own->workspace || own->pattern != c->workspace) {
+    if (!own->workspace || own->pattern != c.workspace) {
         impact_collide_workspace_destroy(own->workspace);
-        own->pattern = c->workspace;
-        const impact_status status = impact_cvode_workspace_like(c->workspace, &own->workspace);
-        if (status != IMPACT_OK) return status;
+        own->pattern = c.workspace;
+        /* Without one, the call says what is wrong. */
+        if (impact_cvode_workspace_like(c.workspace, &own->workspace) != IMPACT_OK) own->workspace = NULL;
     }
-    c->workspace = own->workspace;
-    return IMPACT_OK;
+    c.workspace = own->workspace;
+    return impact_collide(&c, outcome);
 }
 
 static void one(batch *b, size_t i, own_workspace *own)
 {
-    impact_collision c = b->collisions[i];
-    impact_status status = borrow(own, &c);
-    if (status != IMPACT_OK) c.workspace = NULL;
-    status = impact_collide(&c, &b->outcomes[i]);
+    const impact_collision *c = &b->collisions[i];
+    const bool cvode = c->solver == IMPACT_SOLVER_CVODE || c->friction_law || c->tangential_compliance > 0;
+    const impact_status status = cvode ? by_cvode(own, *c, &b->outcomes[i]) : impact_collide(c, &b->outcomes[i]);
     if (b->statuses) b->statuses[i] = status;
     if (status < 0) note_failure(b, i, status);
 }

@@ -57,7 +57,7 @@ static bool by_small_steps(const impact_collision *c, qvec3 *impulse, double dt)
     impact_ready ready[2];
     impact_frame m;
     for (int i = 0; i < 2; i++) impact_ready_make(&c->body[i], &ready[i]);
-    impact_frame_make(c, ready, &m);
+    impact_frame_make(impact_frame_normal(c), ready, &m);
     const qvec3 u0 = impact_frame_velocity(c);
     const double start[3] = {qvec3_dot(u0, m.t1), qvec3_dot(u0, m.t2), qvec3_dot(u0, m.n)},
                  k = 1 / c->tangential_compliance;

@@ -15,7 +15,7 @@ static bool frame_of(const impact_collision *c, impact_frame *f)
 {
     impact_ready ready[2];
     for (int k = 0; k < 2; k++) impact_ready_make(&c->body[k], &ready[k]);
-    impact_frame_make(c, ready, f);
+    impact_frame_make(impact_frame_normal(c), ready, f);
     return f->conditioning < 1e6;
 }
 

@@ -39,7 +39,7 @@ static void frame_is_principal(void **state)
             impact_ready ready[2];
             impact_frame f;
             for (int k = 0; k < 2; k++) impact_ready_make(&c.body[k], &ready[k]);
-            impact_frame_make(&c, ready, &f);
+            impact_frame_make(impact_frame_normal(&c), ready, &f);
             const double big = f.scale * (f.a + f.b + 1) * 1e-13;
             assert_true(fabs(qvec3_dot(f.t1, f.t2)) < 1e-15 && fabs(qvec3_dot(f.t1, f.n)) < 1e-15 &&
                         fabs(qvec3_dot(f.t2, f.n)) < 1e-15);
@@ -67,7 +67,7 @@ static void frame_on_paper(void **state)
     impact_ready ready[2];
     impact_frame f;
     for (int k = 0; k < 2; k++) impact_ready_make(&c.body[k], &ready[k]);
-    impact_frame_make(&c, ready, &f);
+    impact_frame_make(impact_frame_normal(&c), ready, &f);
     assert_true(fabs(f.scale - 2) < 1e-15 && fabs(f.a * f.b - 0.5) < 1e-15 && fabs(f.a + f.b - 1.5) < 1e-15 &&
                 f.c == 0 && f.d == 0);
     assert_true(fabs(f.conditioning - 2) < 0.02);
