@@ -8,36 +8,49 @@
 
 /* ---- from the caller's units to scaled ones and back ---- */
 
-static double energy(const impact_collider *body, const impact_ready *ready, qvec3 velocity, qvec3 omega)
+/* omega: local axes. */
+static inline double energy(const impact_collider *body, qvec3 velocity, qvec3 omega)
 {
-    if (ready->inverse_mass == 0) return 0;
-    const qvec3 j = body->moments, w = impact_ready_local(ready, omega);
-    return 0.5 * (body->mass * qvec3_dot(velocity, velocity) + (j.x * w.x * w.x + j.y * w.y * w.y + j.z * w.z * w.z));
+    const qvec3 j = body->moments;
+    return 0.5 * (body->mass * qvec3_dot(velocity, velocity) +
+                  (j.x * omega.x * omega.x + j.y * omega.y * omega.y + j.z * omega.z * omega.z));
 }
 
 static double energy_before(const impact_collision *collision, const impact_ready ready[2])
 {
-    const impact_collider *one = &collision->body[0], *two = &collision->body[1];
-    return energy(one, &ready[0], one->velocity, one->omega) + energy(two, &ready[1], two->velocity, two->omega);
+    double sum = 0;
+    for (int i = 0; i < 2; i++) {
+        const impact_collider *body = &collision->body[i];
+        if (ready[i].inverse_mass != 0) sum += energy(body, body->velocity, impact_ready_local(&ready[i], body->omega));
+    }
+    return sum;
 }
 
-static void push(const impact_collider *body, const impact_ready *ready, qvec3 impulse, qvec3 *velocity, qvec3 *omega)
+/* The velocities of one body after an impulse, and its energies. */
+static inline void push(const impact_collider *body, const impact_ready *ready, qvec3 impulse, int i,
+                        impact_outcome *outcome)
 {
+    if (ready->inverse_mass == 0) {
+        outcome->velocity[i] = body->velocity;
+        outcome->omega[i] = body->omega;
+        return;
+    }
     const qvec3 turn = qvec3_cross(ready->offset, impact_ready_local(ready, impulse));
-    *velocity = qvec3_axpy(ready->inverse_mass, impulse, body->velocity);
-    *omega = qvec3_add(body->omega, impact_ready_world(ready, impact_ready_spin(ready, turn)));
+    const qvec3 spin = impact_ready_spin(ready, turn), before = impact_ready_local(ready, body->omega);
+    const qvec3 velocity = qvec3_axpy(ready->inverse_mass, impulse, body->velocity);
+    outcome->energy_before += energy(body, body->velocity, before);
+    outcome->energy_after += energy(body, velocity, qvec3_add(before, spin));
+    outcome->velocity[i] = velocity;
+    outcome->omega[i] = qvec3_add(body->omega, impact_ready_world(ready, spin));
 }
 
-/* The velocities after the outcome's impulse, and the energies. */
+/* What the outcome's impulse does to both. */
 static void apply(const impact_collision *collision, const impact_ready ready[2], impact_outcome *outcome)
 {
-    outcome->energy_before = energy_before(collision, ready);
-    outcome->energy_after = 0;
-    for (int i = 0; i < 2; i++) {
-        const qvec3 impulse = i == 0 ? outcome->impulse : qvec3_neg(outcome->impulse);
-        push(&collision->body[i], &ready[i], impulse, &outcome->velocity[i], &outcome->omega[i]);
-        outcome->energy_after += energy(&collision->body[i], &ready[i], outcome->velocity[i], outcome->omega[i]);
-    }
+    const qvec3 impulse = outcome->impulse;
+    outcome->energy_before = outcome->energy_after = 0;
+    push(&collision->body[0], &ready[0], impulse, 0, outcome);
+    push(&collision->body[1], &ready[1], qvec3_neg(impulse), 1, outcome);
 }
 
 static void unchanged(const impact_collision *collision, impact_outcome *outcome, double value)

@@ -33,59 +33,61 @@ static double along_normal(const impact_ready ready[2], qvec3 n)
     return w;
 }
 
-static void add_phase(impact_outcome *outcome, impact_phase phase)
+/* The impulse of friction on the tangential velocity t: how large, its work, and whether it stops it, in compression or at all. */
+typedef struct friction {
+    double impulse, work;
+    bool holds, holds_soon;
+} friction;
+
+static friction rub(double mu, double p, double p_c, double s, double l)
 {
-    outcome->phases[outcome->phase_count++] = (unsigned char)phase;
+    const double stop = s / l;
+    friction f = {0, 0, stop < mu * p, stop < mu * p_c};
+    /* The direction rounds: the cone is kept to the last bit. */
+    f.impulse = f.holds ? stop : mu * p * (1 - DBL_EPSILON);
+    f.work = -f.impulse * (s - 0.5 * f.impulse * l);
+    return f;
 }
 
-/* What friction does to the tangential velocity t, |t| = s: its impulse, into the outcome, and how far it goes. */
-static void rub(impact_outcome *outcome, const impact_collision *collision, qvec3 t, double s, double l)
+static int list_phases(const friction *f, bool slides, bool back, unsigned char *phases)
 {
-    const double mu = collision->friction, p = outcome->impulse_normal, stop = s / l;
-    const bool back = collision->restitution > 0, holds = stop < mu * p,
-               soon = stop < mu * outcome->compression_impulse;
-    if (s > 0) {
-        /* The direction rounds: the cone is kept to the last bit. */
-        const double f = holds ? stop : mu * p * (1 - DBL_EPSILON);
-        outcome->impulse_tangential = f;
-        outcome->impulse = qvec3_axpy(-f / s, t, outcome->impulse);
-        outcome->work_friction = -f * (s - 0.5 * f * l);
-        add_phase(outcome, IMPACT_SLIP_C);
-    }
-    if (soon) add_phase(outcome, IMPACT_STICK_C);
-    if (back && !soon) add_phase(outcome, IMPACT_SLIP_R);
-    if (back && holds) add_phase(outcome, IMPACT_STICK_R);
+    int n = 0;
+    if (slides) phases[n++] = IMPACT_SLIP_C;
+    if (f->holds_soon) phases[n++] = IMPACT_STICK_C;
+    if (back && !f->holds_soon) phases[n++] = IMPACT_SLIP_R;
+    if (back && f->holds) phases[n++] = IMPACT_STICK_R;
+    return n;
 }
 
 bool impact_direct_solve(const impact_collision *collision, const impact_ready ready[2], qvec3 n, qvec3 u,
                          double approach, double rounding, impact_outcome *outcome)
 {
     const bool smooth = collision->friction == 0;
-    double w = ready[0].inverse_mass + ready[1].inverse_mass, l = 0;
+    double w = ready[0].inverse_mass + ready[1].inverse_mass, l = 1;
     if (smooth)
         w = along_normal(ready, n);
     else if (!central(ready, n, &l))
         return false;
     const double eps = collision->restitution, speed = -approach, p_c = speed / w, p = (1 + eps) * p_c;
-    *outcome = (impact_outcome){.impulse = qvec3_scale(n, p),
-                                .impulse_normal = p,
-                                .normal_before = approach,
-                                .normal_after = eps * speed,
-                                .compression_impulse = p_c,
-                                .work_compression = -0.5 * speed * p_c,
-                                .work_restitution = 0.5 * eps * eps * speed * p_c,
-                                .compressions = 1,
-                                .solver = IMPACT_SOLVER_CLOSED_FORM,
-                                .conditioning = smooth ? 1 : l / w};
-    if (smooth) {
-        add_phase(outcome, IMPACT_SLIP_C);
-        if (eps > 0) add_phase(outcome, IMPACT_SLIP_R);
-    } else {
-        const qvec3 t = qvec3_axpy(-approach, n, u);
-        const double s = sqrt(qvec3_dot(t, t));
-        rub(outcome, collision, t, s > rounding ? s : 0, l);
-    }
-    outcome->energy_rose = outcome->work_compression + outcome->work_restitution + outcome->work_friction >
-                           -1e-12 * outcome->work_compression;
+    const double work = 0.5 * speed * p_c, back = eps * eps * work;
+    const qvec3 normal = qvec3_scale(n, p), t = qvec3_axpy(speed, n, u);
+    const double length = sqrt(qvec3_dot(t, t)), s = length > rounding ? length : 0;
+    const friction f = rub(collision->friction, p, p_c, s, l);
+    const bool rubs = s > 0 && !smooth;
+    outcome->impulse = rubs ? qvec3_axpy(-f.impulse / s, t, normal) : normal;
+    outcome->impulse_normal = p;
+    outcome->impulse_tangential = rubs ? f.impulse : 0;
+    outcome->normal_before = approach;
+    outcome->normal_after = eps * speed;
+    outcome->compression_impulse = p_c;
+    outcome->work_compression = -work;
+    outcome->work_restitution = back;
+    outcome->work_friction = rubs ? f.work : 0;
+    outcome->compressions = 1;
+    outcome->phase_count = list_phases(&f, smooth || s > 0, eps > 0, outcome->phases);
+    outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
+    outcome->conditioning = smooth ? 1 : l / w;
+    outcome->jammed = false;
+    outcome->energy_rose = back - work + outcome->work_friction > 1e-12 * work;
     return true;
 }
