@@ -8,6 +8,7 @@
 #include <setjmp.h>
 #include <cmocka.h>
 #include <quat/euler.h>
+#include <quat/project.h>
 #include <quat/rotation.h>
 
 static const quat i = {0, 1, 0, 0}, j = {0, 0, 1, 0}, k = {0, 0, 0, 1};
@@ -98,6 +99,19 @@ static void capital_letters_turn_about_the_bodys_axes(void **state)
     assert_quat(q, quat_mul(rz, quat_mul(ry, rx)));
 }
 
+static void projections_of_s3_are_from_minus_one(void **state)
+{
+    (void)state;
+    qvec3 image;
+    double line;
+    assert_int_equal(quat_stereographic(quat_identity(), QUAT_SOUTH_POLE, &image), QUAT_OK);
+    assert_vec3(image, qvec3_make(0, 0, 0));
+    assert_int_equal(quat_stereographic(quat_make(-0.6, 0.8, 0, 0), QUAT_SOUTH_POLE, &image), QUAT_OK);
+    assert_vec3(image, qvec3_make(2, 0, 0));
+    assert_int_equal(quat_stereographic_circle(qvec2_make(0.8, 0.6), QUAT_NORTH_POLE, &line), QUAT_OK);
+    assert_true(fabs(line - 2) < 1e-15);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -108,6 +122,7 @@ int main(void)
         cmocka_unit_test(matrix_columns_are_the_body_axes),
         cmocka_unit_test(rotations_are_blind_to_the_sign),
         cmocka_unit_test(angular_velocity_is_in_world_axes),
+        cmocka_unit_test(projections_of_s3_are_from_minus_one),
         cmocka_unit_test(capital_letters_turn_about_the_bodys_axes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
