@@ -118,7 +118,7 @@ static bool derivatives(const quat_curve *curve, double t, int order, qvec3 d[4]
     for (int k = 0; k <= known; k++) error[k] = 2 * DBL_EPSILON * qvec3_norm(d[k]);
     if (known >= order) return true;
     return quat_differentiate(highest_known, (void *)curve, t, curve->closed ? -INFINITY : curve->start,
-                              curve->closed ? INFINITY : curve->end, curve->end - curve->start, order - known,
+                              curve->closed ? INFINITY : curve->end, curve->end - curve->start, 0, order - known,
                               d + known + 1, error + known + 1, NULL);
 }
 

@@ -56,8 +56,20 @@ static double truncation(qvec3 five, qvec3 seven, qvec3 nine)
     return first > last ? last * (last / first) : last;
 }
 
-bool quat_differentiate(quat_line f, void *context, double t, double low, double high, double span, int orders,
-                        qvec3 d[], double error[], double *step)
+bool quat_differentiate_once(quat_line f, void *context, double t, double low, double high, double step, qvec3 *d)
+{
+    double at[nodes], node[nodes], weights[2][nodes];
+    qvec3 x[nodes];
+    place(t, step, low, high, at, node);
+    quat_difference_weights(nodes, node, 1, weights);
+    for (int i = 0; i < nodes; i++)
+        if (!f(at[i], &x[i], context)) return false;
+    *d = qvec3_scale(combine(nodes, weights[1], x), 1 / step);
+    return true;
+}
+
+bool quat_differentiate(quat_line f, void *context, double t, double low, double high, double span, double noise,
+                        int orders, qvec3 d[], double error[], double *step)
 {
     double h = (isfinite(high - low) ? high - low : span) / 24;
     for (int k = 0; k < orders; k++) error[k] = INFINITY;
@@ -80,12 +92,12 @@ bool quat_differentiate(quat_line f, void *context, double t, double low, double
             const double cut = truncation(combine(5, w5[k], x), combine(7, w7[k], x), nine) / power;
             double rounding = 0;
             for (int i = 0; i < nodes; i++) rounding += fabs(w9[k][i]);
-            rounding *= 4 * DBL_EPSILON * size / power; /* f's own rounding included */
+            rounding *= (4 * DBL_EPSILON * size + noise) / power; /* f's own rounding included */
             rounded = rounded && cut <= rounding;
             if (cut + rounding < error[k - 1]) {
                 error[k - 1] = cut + rounding;
                 d[k - 1] = qvec3_scale(nine, 1 / power);
-                if (step && k == orders) *step = h;
+                if (step && k == 1) *step = h;
             }
         }
         if (rounded) break;

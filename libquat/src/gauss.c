@@ -228,11 +228,11 @@ quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t
     if ((unsigned)gauge > QUAT_MINIMAL_AREA) return QUAT_EARGUMENT;
     quat_status status = check(n, x, m, triangles, q);
     if (status != QUAT_OK) return status;
-    char *const memory = malloc(m * 3 * sizeof(double) + n * (5 * sizeof(double) + sizeof(quat) + 1));
+    char *const memory = malloc(m * 3 * sizeof(double) + n * (6 * sizeof(double) + sizeof(quat) + 1));
     if (!memory) return QUAT_ENOMEM;
     quat *const trial = (quat *)(void *)memory;
     double *const work = (double *)(trial + n);
-    double(*const weight)[3] = (double(*)[3])(work + 5 * n);
+    double(*const weight)[3] = (double(*)[3])(work + 6 * n);
     char *const seen = (char *)(weight + m);
     const size_t(*const triangle)[3] = (const size_t(*)[3])triangles;
     const quat_mesh mesh = {n, m, triangle, (const double(*)[3])weight};
@@ -248,7 +248,7 @@ quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t
         if (least != QUAT_OK) status = least;
         if (gauge != QUAT_SHORTEST) walk(&mesh, q, true, seen);
         report->energy = energy_of(&mesh, q);
-        report->area = quat_gauge_area(&mesh, q, NULL);
+        report->area = quat_gauge_area(&mesh, q);
         report->torn = torn_edges(&mesh, q);
     }
     free(memory);

@@ -39,6 +39,7 @@ typedef struct line {
     double u, v;
     bool along_v;
     int which;
+    double step; /* along u, for first_along */
 } line;
 
 static bool along(double t, qvec3 *x, void *context)
@@ -50,44 +51,47 @@ static bool along(double t, qvec3 *x, void *context)
     return true;
 }
 
-static bool differentiate(const quat_surface *s, double u, double v, bool along_v, int which, int orders, qvec3 d[],
-                          double error[])
+/* The derivatives of f along the line, which ends where the surface does. */
+static bool follow(quat_line f, line *l, double noise, int orders, qvec3 d[], double error[], double *step)
 {
-    line l = {s, u, v, along_v, which};
-    const bool closed = along_v ? s->closed_v : s->closed_u;
-    const double low = along_v ? s->v0 : s->u0, high = along_v ? s->v1 : s->u1;
-    return quat_differentiate(along, &l, along_v ? v : u, closed ? -INFINITY : low, closed ? INFINITY : high,
-                              high - low, orders, d, error, NULL);
+    const quat_surface *s = l->surface;
+    const bool closed = l->along_v ? s->closed_v : s->closed_u;
+    const double low = l->along_v ? s->v0 : s->u0, high = l->along_v ? s->v1 : s->u1;
+    return quat_differentiate(f, l, l->along_v ? l->v : l->u, closed ? -INFINITY : low, closed ? INFINITY : high,
+                              high - low, noise, orders, d, error, step);
 }
 
 /* x_u along v, for the mixed derivative. */
 static bool first_along(double v, qvec3 *xu, void *context)
 {
     const line *l = context;
-    double error;
-    return differentiate(l->surface, l->u, v, false, 0, 1, xu, &error);
+    const quat_surface *s = l->surface;
+    line in_u = {s, l->u, v, false, 0, 0};
+    return quat_differentiate_once(along, &in_u, l->u, s->closed_u ? -INFINITY : s->u0, s->closed_u ? INFINITY : s->u1,
+                                   l->step, xu);
 }
 
 static bool from_positions(const quat_surface *s, double u, double v, qvec3 d[6], double error[6])
 {
-    qvec3 along_u[2], along_v[2];
+    qvec3 by_u[2], by_v[2];
     double eu[2], ev[2];
-    line l = {s, u, v, true, 0};
-    if (!differentiate(s, u, v, false, 0, 2, along_u, eu) || !differentiate(s, u, v, true, 0, 2, along_v, ev))
-        return false;
-    d[1] = along_u[0], d[2] = along_v[0], d[3] = along_u[1], d[5] = along_v[1];
+    line in_u = {s, u, v, false, 0, 0}, in_v = {s, u, v, true, 0, 0};
+    if (!follow(along, &in_u, 0, 2, by_u, eu, &in_v.step) || !follow(along, &in_v, 0, 2, by_v, ev, NULL)) return false;
+    d[1] = by_u[0], d[2] = by_v[0], d[3] = by_u[1], d[5] = by_v[1];
     error[1] = eu[0], error[2] = ev[0], error[3] = eu[1], error[5] = ev[1];
-    if (!quat_differentiate(first_along, &l, v, s->closed_v ? -INFINITY : s->v0, s->closed_v ? INFINITY : s->v1,
-                            s->v1 - s->v0, 1, &d[4], &error[4], NULL))
-        return false;
-    error[4] += eu[0] * (error[2] + DBL_EPSILON) / DBL_EPSILON / (1 + qvec3_norm(d[0]));
-    return true;
+    return follow(first_along, &in_v, eu[0], 1, &d[4], &error[4], NULL);
+}
+
+static bool differentiate(const quat_surface *s, double u, double v, bool along_v, int which, qvec3 *d, double *error)
+{
+    line l = {s, u, v, along_v, which, 0};
+    return follow(along, &l, 0, 1, d, error, NULL);
 }
 
 static bool from_tangents(const quat_surface *s, double u, double v, qvec3 d[6], double error[6])
 {
-    return differentiate(s, u, v, false, 1, 1, &d[3], &error[3]) &&
-           differentiate(s, u, v, true, 1, 1, &d[4], &error[4]) && differentiate(s, u, v, true, 2, 1, &d[5], &error[5]);
+    return differentiate(s, u, v, false, 1, &d[3], &error[3]) && differentiate(s, u, v, true, 1, &d[4], &error[4]) &&
+           differentiate(s, u, v, true, 2, &d[5], &error[5]);
 }
 
 static quat_status derivatives(const quat_surface *s, double u, double v, qvec3 d[6], double error[6])
@@ -225,11 +229,8 @@ quat_status quat_surface_integrability(const quat_surface *s, double u, double v
     *residual = 0;
     const quat_status status = quat_surface_at(s, u, v, &p);
     if (status < 0) return status;
-    line in_v = {s, u, v, true, 0}, in_u = {s, u, v, false, 0};
-    if (!quat_differentiate(rate_along, &in_v, v, s->closed_v ? -INFINITY : s->v0, s->closed_v ? INFINITY : s->v1,
-                            s->v1 - s->v0, 1, &av, &error, NULL) ||
-        !quat_differentiate(rate_along, &in_u, u, s->closed_u ? -INFINITY : s->u0, s->closed_u ? INFINITY : s->u1,
-                            s->u1 - s->u0, 1, &bu, &error, NULL))
+    line in_v = {s, u, v, true, 0, 0}, in_u = {s, u, v, false, 0, 0};
+    if (!follow(rate_along, &in_v, 0, 1, &av, &error, NULL) || !follow(rate_along, &in_u, 0, 1, &bu, &error, NULL))
         return QUAT_EDOMAIN;
     const qvec3 r = qvec3_sub(qvec3_sub(av, bu), qvec3_cross(p.a, p.b));
     *residual = fmax(fabs(r.x), fmax(fabs(r.y), fabs(r.z)));
