@@ -17,9 +17,10 @@ static inline length length_of(double x, double y, double z)
     return (length){n, lo, lowest};
 }
 
-/* cos a and sin a. Where one of them vanishes, at pi/2 and pi, the distance from there has all its digits first. */
+/* cos a and sin a, each with what its rounding lost. Where one of them vanishes, at pi/2 and pi, the distance from there
+ * has all its digits first. */
 typedef struct circle {
-    double cosine, sine;
+    quat_dd cosine, sine;
 } circle;
 
 static inline circle circle_of(length a)
@@ -29,18 +30,30 @@ static inline circle circle_of(length a)
         const double x = a.hi - k * half_pi[0]; /* exact so near */
         if (fabs(x) > 1e-3) continue;
         const double terms[5] = {x, a.lo, -k * half_pi[1], a.lowest, -k * half_pi[2]};
-        const double d = quat_sum3(5, terms).hi;
-        return k == 1 ? (circle){-sin(d), cos(d)} : (circle){-cos(d), -sin(d)};
+        const quat_dd d = quat_sum3(5, terms);
+        const double c = cos(d.hi), s = sin(d.hi);
+        return k == 1 ? (circle){{-s, -d.lo * c}, {c, -d.lo * s}} : (circle){{-c, d.lo * s}, {-s, -d.lo * c}};
     }
     const double c = cos(a.hi), s = sin(a.hi);
-    return (circle){c - a.lo * s, s + a.lo * c};
+    return (circle){{c, -a.lo * s}, {s, a.lo * c}};
 }
 
-/* s/a with its own rounding error, so that what is multiplied by it is rounded once. */
-static inline quat_dd over(double s, length a)
+/* a b, and s/a, to twice the precision but for a unit or two. */
+static inline quat_dd product(quat_dd a, quat_dd b)
 {
-    const double f = s / a.hi;
-    return (quat_dd){f, (fma(-f, a.hi, s) - f * a.lo) / a.hi};
+    const quat_dd p = quat_two_prod(a.hi, b.hi);
+    return (quat_dd){p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi)};
+}
+static inline quat_dd over(quat_dd s, length a)
+{
+    const double f = s.hi / a.hi;
+    return (quat_dd){f, (fma(-f, a.hi, s.hi) + (s.lo - f * a.lo)) / a.hi};
+}
+
+static inline quat_dd root_of(quat_dd a)
+{
+    const double r = sqrt(a.hi);
+    return (quat_dd){r, r > 0 ? (fma(-r, r, a.hi) + a.lo) / (2 * r) : 0};
 }
 
 /* scale.hi + scale.lo times the component x, rounded once. */
@@ -49,30 +62,58 @@ static inline double times(quat_dd scale, double x)
     return scale.hi * x + (fma(scale.hi, x, -(scale.hi * x)) + scale.lo * x);
 }
 
-/* Below this the second term of both series is less than a rounding error. */
+/* e^w = (hi + lo) 2^exponent to 0.1 units, for |w| < 1000. With |r| <= ln(2)/2 the cubic term and those after it, the
+ * only ones that are rounded, are small. */
+QUAT_FMA_CLONES
+static quat_dd exponential_of(double w, int *exponent)
+{
+    static const double ln2[2] = {0x1.62e42fefa38p-1, 0x1.ef35793c7673p-45}; /* k ln2[0] is exact, and so is r's head */
+    const double k = nearbyint(w * 0x1.71547652b82fep+0);
+    const quat_dd tail = quat_two_prod(-k, ln2[1]), r = quat_two_sum(w - k * ln2[0], tail.hi);
+    double cubic = 1;
+    for (int j = 15; j > 3; j--) cubic = 1 + r.hi * cubic / j;
+    cubic *= r.hi * r.hi * r.hi / 6;
+    const quat_dd linear = quat_two_sum(1, r.hi), square = quat_two_prod(0.5 * r.hi, r.hi);
+    const quat_dd sum = quat_two_sum(linear.hi, square.hi);
+    const double rest = (r.lo + tail.lo) * sum.hi + (linear.lo + square.lo + sum.lo);
+    *exponent = (int)k;
+    return quat_two_sum(sum.hi, cubic + rest);
+}
+
+/* Below this the third terms of both series vanish. */
 static const double tiny_angle = 1e-8;
 
 /* scale times exp(0, v). */
 QUAT_FMA_CLONES
-static quat scaled_exp_pure(double scale, qvec3 v)
+static quat scaled_exp_pure(quat_dd scale, qvec3 v)
 {
     const double largest = fmax(fmax(fabs(v.x), fabs(v.y)), fabs(v.z));
     if (largest < tiny_angle) {
         const double n2 = qvec3_dot(v, v);
-        return quat_make(scale * (1 - n2 / 2), scale * v.x, scale * v.y, scale * v.z);
+        const quat_dd c = product(scale, (quat_dd){1, -n2 / 2}), s = product(scale, (quat_dd){1, -n2 / 6});
+        return quat_make(c.hi + c.lo, times(s, v.x), times(s, v.y), times(s, v.z));
     }
     if (!qvec3_isfinite(v)) return quat_make(NAN, NAN, NAN, NAN);
     if (largest > 1e140) {
-        const double n = qvec3_norm(v), s = isfinite(n) ? scale * (sin(n) / n) : NAN;
-        return quat_make(isfinite(n) ? scale * cos(n) : NAN, s * v.x, s * v.y, s * v.z);
+        const double n = qvec3_norm(v), s = isfinite(n) ? scale.hi * (sin(n) / n) : NAN;
+        return quat_make(isfinite(n) ? scale.hi * cos(n) : NAN, s * v.x, s * v.y, s * v.z);
     }
     const length a = length_of(v.x, v.y, v.z);
     const circle k = circle_of(a);
-    const quat_dd sinc = over(k.sine, a), p = quat_two_prod(scale, sinc.hi), f = {p.hi, p.lo + scale * sinc.lo};
-    return quat_make(scale * k.cosine, times(f, v.x), times(f, v.y), times(f, v.z));
+    const quat_dd c = product(scale, k.cosine), s = product(scale, over(k.sine, a));
+    return quat_make(c.hi + c.lo, times(s, v.x), times(s, v.y), times(s, v.z));
 }
 
-quat quat_exp_pure(qvec3 v) { return scaled_exp_pure(1, v); }
+quat quat_exp_pure(qvec3 v) { return scaled_exp_pure((quat_dd){1, 0}, v); }
+
+/* The vector part of a prescaled s, times 2^-exponent: it may be so small that its square would vanish. */
+static inline length length_of_vector(quat s, quat *v, int *exponent)
+{
+    *exponent = ilogb(fmax(fmax(fabs(s.x), fabs(s.y)), fabs(s.z)));
+    if (*exponent > -400) *exponent = 0;
+    *v = quat_ldexp(quat_make(0, s.x, s.y, s.z), -*exponent);
+    return length_of(v->x, v->y, v->z);
+}
 
 /* The v of quat_log_unit for a prescaled s. */
 QUAT_FMA_CLONES
@@ -80,16 +121,13 @@ static qvec3 log_scaled(quat s)
 {
     const double largest = fmax(fmax(fabs(s.x), fabs(s.y)), fabs(s.z));
     if (largest == 0) return qvec3_make(s.w < 0 ? 3.14159265358979323846 : 0 * s.x, s.y, s.z);
-    /* the vector part may be so small that its square vanishes: scale it once more by itself */
-    int exponent = ilogb(largest);
-    if (exponent > -400) exponent = 0;
-    const quat v = quat_ldexp(quat_make(0, s.x, s.y, s.z), -exponent);
-    const length n = length_of(v.x, v.y, v.z);
+    int exponent;
+    quat v;
+    const length n = length_of_vector(s, &v, &exponent);
     /* atan2 of hi + lo: d atan2(n, w)/dn = w/(n^2 + w^2) */
     const double y = ldexp(n.hi, exponent), angle = atan2(y, s.w);
     const double angle_lo = ldexp(n.lo, exponent) * s.w / (y * y + s.w * s.w);
-    quat_dd k = over(angle, n);
-    k.lo += angle_lo / n.hi;
+    const quat_dd k = over((quat_dd){angle, angle_lo}, n);
     return qvec3_make(times(k, v.x), times(k, v.y), times(k, v.z));
 }
 
@@ -100,13 +138,17 @@ qvec3 quat_log_unit(quat q)
     return log_scaled(quat_prescale(q, &exponent));
 }
 
+/* ln(DBL_MAX): beyond it e^w overflows. */
+static const double largest_logarithm = 0x1.62e42fefa39efp+9;
+
 quat_status quat_exp(quat q, quat *result)
 {
     *result = quat_identity();
     if (!quat_isfinite(q)) return QUAT_EDOMAIN;
-    const double e = exp(q.w);
-    if (!isfinite(e) || !isfinite(qvec3_norm(quat_vector(q)))) return QUAT_ERANGE;
-    *result = scaled_exp_pure(e, quat_vector(q));
+    if (q.w > largest_logarithm || !isfinite(qvec3_norm(quat_vector(q)))) return QUAT_ERANGE;
+    int exponent;
+    const quat_dd e = exponential_of(fmax(q.w, -800), &exponent);
+    *result = quat_ldexp(scaled_exp_pure(e, quat_vector(q)), exponent);
     return QUAT_OK;
 }
 
@@ -172,6 +214,25 @@ quat_status quat_pow_quat(quat p, quat q, quat *result)
     return status < 0 ? status : logarithm;
 }
 
+/* The root of a prescaled s with a vector part, w >= 0. Where s.w < 0 it would cancel in w, and the vector part comes first. */
+QUAT_FMA_CLONES
+static quat root_scaled(quat s)
+{
+    const double c[4] = {s.w, s.x, s.y, s.z};
+    const quat_dd n = root_of(quat_dot4_plus(0, c, c)), sum = quat_two_sum(n.hi, fabs(s.w));
+    const quat_dd b = root_of((quat_dd){0.5 * sum.hi, 0.5 * (sum.lo + n.lo)});
+    const length half = {b.hi, b.lo, 0};
+    if (s.w >= 0) {
+        const quat_dd k = over((quat_dd){0.5, 0}, half);
+        return quat_make(b.hi + b.lo, times(k, s.x), times(k, s.y), times(k, s.z));
+    }
+    int exponent;
+    quat v;
+    const length a = length_of_vector(s, &v, &exponent);
+    const quat_dd w = over((quat_dd){0.5 * a.hi, 0.5 * a.lo}, half), k = over(b, a);
+    return quat_make(ldexp(w.hi + w.lo, exponent), times(k, v.x), times(k, v.y), times(k, v.z));
+}
+
 quat_status quat_sqrt(quat q, quat *root)
 {
     *root = quat_identity();
@@ -182,17 +243,10 @@ quat_status quat_sqrt(quat q, quat *root)
         s = quat_scale(s, 2);
         exponent -= 1;
     }
-    const double n = quat_norm(s), v = qvec3_norm(quat_vector(s));
-    if (v == 0) {
-        *root = s.w < 0 ? quat_make(0, sqrt(-s.w), 0, 0) : quat_make(sqrt(s.w), s.x, s.y, s.z);
-    } else if (s.w >= 0) {
-        const double w = sqrt(0.5 * (n + s.w));
-        *root = quat_make(w, s.x / (2 * w), s.y / (2 * w), s.z / (2 * w));
-    } else {
-        /* n + w would cancel: the vector part first */
-        const double b = sqrt(0.5 * (n - s.w));
-        *root = quat_make(v / (2 * b), b * (s.x / v), b * (s.y / v), b * (s.z / v));
-    }
-    *root = quat_ldexp(*root, exponent / 2);
-    return v == 0 && s.w < 0 ? QUAT_NOT_UNIQUE : QUAT_OK;
+    if (s.x == 0 && s.y == 0 && s.z == 0)
+        s = s.w < 0 ? quat_make(0, sqrt(-s.w), 0, 0) : quat_make(sqrt(s.w), s.x, s.y, s.z);
+    else
+        s = root_scaled(s);
+    *root = quat_ldexp(s, exponent / 2);
+    return quat_equal(q, quat_make(q.w, 0, 0, 0)) && q.w < 0 ? QUAT_NOT_UNIQUE : QUAT_OK;
 }

@@ -50,22 +50,48 @@ static inline wquat wide_mul(wquat p, wquat q)
 static inline wide wide_vnorm(wquat q) { return sqrtf128(q.x * q.x + q.y * q.y + q.z * q.z); }
 static inline wquat wide_inverse(wquat q) { return wide_scale(wide_conj(q), 1 / wide_dot(q, q)); }
 static inline wquat wide_rotate(wquat q, wquat v) { return wide_mul(wide_mul(q, v), wide_conj(q)); }
-static inline wquat wide_exp(wquat q)
+/* The sum of n terms as if in twice the 113 bits (Knuth). */
+static inline wide wide_sum(int n, const wide *terms)
 {
-    const wide n = wide_vnorm(q), e = expf128(q.w), s = n == 0 ? e : e * sinf128(n) / n;
-    return (wquat){e * cosf128(n), s * q.x, s * q.y, s * q.z};
-}
-/* |q|^2 - 1: the squares of doubles are exact in 113 bits, the roundings of their sum are caught (Knuth). */
-static inline wide wide_norm2_minus_one(wquat q)
-{
-    const wide terms[4] = {q.w * q.w, q.x * q.x, q.y * q.y, q.z * q.z};
-    wide sum = -1, lost = 0;
-    for (int i = 0; i < 4; i++) {
+    wide sum = 0, lost = 0;
+    for (int i = 0; i < n; i++) {
         const wide s = sum + terms[i], t = s - sum;
         lost += (sum - (s - t)) + (terms[i] - t);
         sum = s;
     }
     return sum + lost;
+}
+/* |q|^2 - 1: the squares of doubles are exact in 113 bits. */
+static inline wide wide_norm2_minus_one(wquat q)
+{
+    const wide terms[5] = {-1, q.w * q.w, q.x * q.x, q.y * q.y, q.z * q.z};
+    return wide_sum(5, terms);
+}
+/* |v| - k pi/2 = (|v|^2 - (k pi/2)^2)/(|v| + k pi/2) for |v| close to it, where even 113 bits of |v| are too few. */
+static inline wide wide_beyond(wquat q, int k)
+{
+    const wide half_pi = (wide)0x1.921fb54442d18p+0 + (wide)0x1.1a62633145c07p-54;
+    static const double half_pi_squared[4] = {0x1.3bd3cc9be45dep+1, 0x1.692b71366cc04p-53, 0x1.8358e10acd480p-107,
+                                              -0x1.f2f5dd7997ddfp-162};
+    wide terms[7] = {q.x * q.x, q.y * q.y, q.z * q.z};
+    for (int i = 0; i < 4; i++) terms[3 + i] = -(wide)(k * k) * half_pi_squared[i];
+    return wide_sum(7, terms) / (wide_vnorm(q) + k * half_pi);
+}
+static inline wquat wide_exp(wquat q)
+{
+    const wide n = wide_vnorm(q), e = expf128(q.w), half_pi = (wide)0x1.921fb54442d18p+0 + (wide)0x1.1a62633145c07p-54;
+    wide c = cosf128(n), s = sinf128(n);
+    if (fabsf128(n - half_pi) < 1e-9) {
+        const wide d = wide_beyond(q, 1);
+        c = -sinf128(d);
+        s = cosf128(d);
+    } else if (fabsf128(n - 2 * half_pi) < 1e-9) {
+        const wide d = wide_beyond(q, 2);
+        c = -cosf128(d);
+        s = -sinf128(d);
+    }
+    s = n == 0 ? e : e * s / n;
+    return (wquat){e * c, s * q.x, s * q.y, s * q.z};
 }
 static inline wquat wide_log(wquat q)
 {
