@@ -9,6 +9,15 @@
 ---@field x number
 ---@field y number
 ---@field z number
+---@operator add(vector): vec3
+---@operator sub(vector): vec3
+---@operator unm: vec3
+---@operator mul(number): vec3
+---@operator div(number): vec3
+---@field dot fun(self: vec3, w: vector): number
+---@field cross fun(self: vec3, w: vector): vec3
+---@field norm fun(self: vec3): number
+---@field normalize fun(self: vec3): vec3?, string?
 
 ---@alias rotation quat | number[] | { w: number, x: number, y: number, z: number }
 ---@alias vector vec3 | number[] | { x: number, y: number, z: number }
@@ -185,6 +194,7 @@ core.layer()
 ---@class quatlib : quat
 ---@field new (fun(w: number, x: number, y: number, z: number): quat) | fun(q: rotation): quat
 ---@field identity fun(): quat
+---@field vec3 (fun(x: number, y: number, z: number): vec3) | fun(v: vector): vec3
 ---@field pure fun(v: vector): quat
 ---@field exp_pure fun(v: vector): quat  exp(0, v), the rotation by 2|v| about v
 ---@field random fun(generator?: fun(): number): quat  uniform; the generator returns numbers in [0, 1)

@@ -3,15 +3,19 @@
 
 #include <stdio.h>
 
-/* v.x, v.y, v.z of a vector table; nothing else. */
+/* v.x, v.y, v.z of a vector table, and the methods that quat.core gives to vectors. */
 static int vec3_index(lua_State *L)
 {
     luaL_checktype(L, 1, LUA_TTABLE);
     const char *key = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
-    if (key[0] >= 'x' && key[0] <= 'z' && key[1] == 0)
+    if (key[0] >= 'x' && key[0] <= 'z' && key[1] == 0) {
         lua_rawgeti(L, 1, key[0] - 'x' + 1);
-    else
+    } else if (luaL_getmetafield(L, 1, "methods") == LUA_TTABLE) {
+        lua_pushvalue(L, 2);
+        lua_rawget(L, -2);
+    } else {
         lua_pushnil(L);
+    }
     return 1;
 }
 

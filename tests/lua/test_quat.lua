@@ -50,6 +50,22 @@ check.equal(select(2, zero:inverse()), "zero, infinite or NaN where a finite, no
 check.equal(zero:normalize(), nil)
 check.equal(select(2, quat.new(-1, 0, 0, 0):log()), "the answer is not unique; one was chosen")
 
+-- Vectors.
+local v1, v2 = quat.vec3(1, 2, 3), quat.vec3 { x = 4, y = 5, z = 6 }
+vector(v1 + v2, 5, 7, 9)
+vector(v1 - { 1, 1, 1 }, 0, 1, 2)
+vector({ 1, 1, 1 } - v1, 0, -1, -2)
+vector(-v1, -1, -2, -3)
+vector(2 * v1 / 4, 0.5, 1, 1.5)
+vector(v1 * 2, 2, 4, 6)
+check.equal(v1:dot(v2), 32)
+vector(v1:cross(v2), -3, 6, -3)
+check.equal(quat.vec3(2, 3, 6):norm(), 7)
+vector(quat.vec3(0, 3e-310, 4e-310):normalize(), 0, 0.6, 0.8)
+check.equal(quat.vec3(0, 0, 0):normalize(), nil)
+vector(quat.identity():rotate(v1):cross(v1), 0, 0, 0)
+check.equal(v1.w, nil)
+
 -- Distances.
 check.close(one:distance(i), pi / 2, 1e-15)
 check.close(one:distance(-one), pi, 1e-15)
@@ -298,6 +314,12 @@ same(thirds[16], h, 0, 0, -h)
 same(quat.chain(one, { { 0, pi / 2, 0 }, { pi / 2, 0, 0 }, { 0, -pi / 2, 0 } }, 1, "body")[4], h, 0, 0, -h)
 
 -- Misuse names the argument.
+check.raises("a vector is multiplied by a number; of two vectors take v:dot(w) or v:cross(w)", function() return v1 * v2 end)
+check.raises("division of a vector by zero", function() return v1 / 0 end)
+check.raises("argument 'right' must be a vector {x, y, z} of finite numbers, got 1", function() return v1 + 1 end)
+check.raises("argument 'z' must be a finite number, got nothing", quat.vec3, 1, 2)
+check.raises("the result is (inf, 0.000000, 0.000000): the result is larger than the largest double",
+  function() return quat.vec3(1e308, 0, 0) * 10 end)
 check.raises("argument 'pole' must be one of 'south', 'north', got the string 'west'", one.stereographic, one, "west")
 check.raises("argument 'image' must be a point {x, y, z} of numbers", quat.from_stereographic, { 1, 2 })
 check.raises("argument 'p' must be a point {x, y} of numbers", quat.stereographic_circle, { 1, 0 / 0 })
