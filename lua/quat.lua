@@ -174,6 +174,7 @@
 ---@field at fun(self: surface, u: number, v: number): surface_point?, string?
 ---@field integrability fun(self: surface, u: number, v: number): number?, string?  |a_v - b_u - a x b|
 ---@field total fun(self: surface, tolerance?: number): { area: number, gauss: number, mean: number, bending: number }?, string?
+---@field patch fun(self: surface, options: { rows: integer, columns: integer, u0?: number, u1?: number, v0?: number, v1?: number }): { positions: vec3[], frames: quat[], triangles: integer[][] }?, string?  a mesh for choose_frames
 
 ---@class surfacelib
 ---@field new fun(definition: { at: (fun(u: number, v: number): ...: vector), u0: number, u1: number, v0: number, v1: number, closed_u?: boolean, closed_v?: boolean, derivatives?: integer }): surface  at returns x; x_u, x_v; x_uu, x_uv, x_vv

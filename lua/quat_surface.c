@@ -225,6 +225,54 @@ static int l_total(lua_State *L)
 
 /* ---- frames over a mesh ---- */
 
+static void push_triangles(lua_State *L, size_t m, const size_t corner[])
+{
+    lua_createtable(L, (int)m, 0);
+    for (size_t i = 0; i < m; i++) {
+        lua_createtable(L, 3, 0);
+        for (size_t c = 0; c < 3; c++) {
+            lua_pushinteger(L, (lua_Integer)corner[3 * i + c] + 1);
+            lua_rawseti(L, -2, (lua_Integer)c + 1);
+        }
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* surface:patch{rows = , columns = [, u0 = , u1 = , v0 = , v1 = ]} -> {positions = , frames = , triangles = } */
+static int l_patch(lua_State *L)
+{
+    static const char *const keys[] = {"rows", "columns", "u0", "u1", "v0", "v1", NULL};
+    quat_lua_call call;
+    const quat_surface *const s = &((const lua_surface *)luaL_checkudata(L, 1, SURFACE))->surface;
+    const quat_lua_reader reader = quat_lua_read(L, 2, "patch", NULL, keys);
+    quat_lua_need(&reader, "rows");
+    quat_lua_need(&reader, "columns");
+    const size_t rows = (size_t)quat_lua_get_integer(&reader, "rows", 2, 2000, 2),
+                 columns = (size_t)quat_lua_get_integer(&reader, "columns", 2, 2000, 2),
+                 m = 2 * (rows - 1) * (columns - 1);
+    const double u0 = quat_lua_get_number(&reader, "u0", QUAT_LUA_FINITE, s->u0),
+                 u1 = quat_lua_get_number(&reader, "u1", QUAT_LUA_FINITE, s->u1),
+                 v0 = quat_lua_get_number(&reader, "v0", QUAT_LUA_FINITE, s->v0),
+                 v1 = quat_lua_get_number(&reader, "v1", QUAT_LUA_FINITE, s->v1);
+    if (!(u0 < u1)) return quat_lua_reader_error(&reader, "u1 must be greater than u0");
+    if (!(v0 < v1)) return quat_lua_reader_error(&reader, "v1 must be greater than v0");
+    qvec3 *const x = lua_newuserdatauv(L, rows * columns * sizeof *x, 0);
+    quat *const q = lua_newuserdatauv(L, rows * columns * sizeof *q, 0);
+    size_t *const corner = lua_newuserdatauv(L, 3 * m * sizeof *corner, 0);
+    const quat_surface surface = begin(L, &call);
+    const quat_status status = quat_surface_patch(&surface, u0, u1, v0, v1, rows, columns, x, q, corner);
+    quat_lua_call_end(&call);
+    if (status < 0) return quat_lua_results(L, status, 0);
+    lua_createtable(L, 0, 3);
+    quat_lua_push_vec3s(L, rows * columns, x);
+    lua_setfield(L, -2, "positions");
+    quat_lua_push_quats(L, rows * columns, q);
+    lua_setfield(L, -2, "frames");
+    push_triangles(L, m, corner);
+    lua_setfield(L, -2, "triangles");
+    return 1;
+}
+
 static size_t *corners(lua_State *L, int list, size_t nodes, size_t *m)
 {
     if (lua_type(L, list) != LUA_TTABLE || lua_rawlen(L, list) < 1)
@@ -296,8 +344,8 @@ static int l_transition(lua_State *L)
 
 void quat_lua_open_surface(lua_State *L)
 {
-    static const luaL_Reg methods[] = {
-        {"range", l_range}, {"at", l_at}, {"integrability", l_integrability}, {"total", l_total}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"range", l_range}, {"at", l_at},       {"integrability", l_integrability},
+                                       {"total", l_total}, {"patch", l_patch}, {NULL, NULL}};
     static const luaL_Reg functions[] = {{"new", l_new},
                                          {"plane", l_plane},
                                          {"sphere", l_sphere},

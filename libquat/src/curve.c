@@ -156,6 +156,7 @@ quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve_point *p
     if (status != QUAT_OK) return status;
     const double speed = qvec3_norm(d[1]);
     if (speed <= 4 * e[1]) return QUAT_EDOMAIN;
+    if (!(speed >= 1e-100) || fmax(speed, fmax(qvec3_norm(d[2]), qvec3_norm(d[3]))) > 1e100) return QUAT_ERANGE;
     const qvec3 cross = qvec3_cross(d[1], d[2]);
     const double turn = qvec3_norm(cross), turn_error = speed * e[2] + qvec3_norm(d[2]) * e[1],
                  cube = speed * speed * speed;

@@ -191,6 +191,10 @@ quat_status quat_surface_at(const quat_surface *surface, double u, double v, qua
     if (status != QUAT_OK) return status;
     const double area = span(d[1], d[2]);
     if (area == 0 || qvec3_norm(d[1]) <= 4 * e[1] || qvec3_norm(d[2]) <= 4 * e[2]) return QUAT_EDOMAIN;
+    for (int i = 1; i <= 2; i++)
+        if (!(qvec3_norm(d[i]) >= 1e-100 && qvec3_norm(d[i]) <= 1e100)) return QUAT_ERANGE;
+    for (int i = 3; i < 6; i++)
+        if (qvec3_norm(d[i]) > 1e100) return QUAT_ERANGE;
     p->xu = d[1];
     p->xv = d[2];
     p->area = area;
@@ -204,6 +208,30 @@ quat_status quat_surface_at(const quat_surface *surface, double u, double v, qua
     p->b = rate(p, t1, t2, n, d[4], d[5]);
     p->error = error_of(p, e, d);
     return quat_curvature_of_frame(p->frame, p->a, p->b, p->xu, p->xv, &p->curvature);
+}
+
+/* ---- a patch ---- */
+
+quat_status quat_surface_patch(const quat_surface *surface, double u0, double u1, double v0, double v1, size_t rows,
+                               size_t columns, qvec3 x[], quat q[], size_t triangles[])
+{
+    if (rows < 2 || columns < 2 || !(u0 < u1) || !(v0 < v1)) return QUAT_EARGUMENT;
+    for (size_t i = 0; i < rows; i++)
+        for (size_t j = 0; j < columns; j++) {
+            quat_surface_point p;
+            const double u = i + 1 < rows ? u0 + (u1 - u0) * ((double)i / (double)(rows - 1)) : u1,
+                         v = j + 1 < columns ? v0 + (v1 - v0) * ((double)j / (double)(columns - 1)) : v1;
+            const quat_status status = quat_surface_at(surface, u, v, &p);
+            if (status < 0) return status;
+            x[i * columns + j] = p.position;
+            q[i * columns + j] = p.frame;
+        }
+    for (size_t i = 0; i + 1 < rows; i++)
+        for (size_t j = 0; j + 1 < columns; j++) {
+            const size_t a = i * columns + j, corner[6] = {a, a + columns, a + columns + 1, a, a + columns + 1, a + 1};
+            for (int k = 0; k < 6; k++) *triangles++ = corner[k];
+        }
+    return QUAT_OK;
 }
 
 /* ---- integrability ---- */

@@ -87,6 +87,18 @@ end)
 check.truth(not ok and caught == thrown, "the same error object")
 check.raises("surface: v0 is missing", quat.surface.new, { at = helix, u0 = 0, u1 = 1 })
 
+-- A patch of a surface as a mesh, and its frames of least length.
+local mesh = quat.surface.saddle(1, 2):patch { rows = 9, columns = 7, u0 = -1, u1 = 1 }
+check.equal(#mesh.positions, 63)
+check.equal(#mesh.triangles, 96)
+check.close(mesh.positions[63].x, 1, 0)
+check.close(mesh.positions[63].y, 2, 0)
+mesh.gauge = "length"
+local smooth, energy = quat.surface.choose_frames(mesh)
+mesh.gauge = "shortest"
+check.truth(#smooth == 63 and energy.energy < select(2, quat.surface.choose_frames(mesh)).energy, "less than the start")
+check.equal(quat.surface.sphere(1):patch { rows = 3, columns = 3 }, nil) -- its poles
+
 -- An octant of the sphere, one triangle: least length and its transition to the same frames turned.
 local x = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }
 local q = {}

@@ -532,6 +532,14 @@ static void bad_input_has_a_status(void **state)
     assert_int_equal(quat_torus_knot(1, 2, 2, 3, &family, &made), QUAT_EDOMAIN);
     assert_int_equal(quat_ellipse(-1, 1, &family, &made), QUAT_EDOMAIN);
     assert_int_equal(quat_curve_at(&made, 0, &point), QUAT_EARGUMENT);
+    for (double size = 1e-300; size < 1e301; size *= 1e25) { /* a value or a status at every size */
+        quat_ellipse(size, size, &family, &made);
+        const quat_status status = quat_curve_at(&made, 1, &point);
+        assert_true(status >= 0 || status == QUAT_ERANGE);
+        if (status >= 0) assert_near(point.curvature * size, 1, 1e-14);
+        if (size > 1e-90 && size < 1e90) assert_int_equal(status, QUAT_OK);
+        assert_true(isfinite(point.curvature) && isfinite(point.torsion) && isfinite(point.torsion_error));
+    }
     assert_int_equal(handled, 0); /* GSL's handler was never called, which by default ends the program */
 }
 

@@ -145,6 +145,74 @@ static void closed_forms(void **state)
     assert_bound("plane", flat, 0);
 }
 
+/* sign(w) |w|^e and its derivatives, for w'' = -w. */
+static void wide_power(wide w, wide slope, wide e, wide out[3])
+{
+    const wide size = fabsf128(w), top = expf128(e * logf128(size)) * (w < 0 ? -1 : 1);
+    out[0] = top;
+    out[1] = e * top / w * slope;
+    out[2] = e * (e - 1) * top / (w * w) * slope * slope - e * top;
+}
+
+static void superellipsoids_in_quad(void **state)
+{
+    (void)state;
+    random_state r = {408};
+    double worst[3] = {0};
+    for (int round = 0; round < 20000; round++) {
+        const double a = random_between(&r, 0.5, 2), b = random_between(&r, 0.5, 2), c = random_between(&r, 0.5, 2),
+                     e = random_between(&r, 0.1, 3), f = random_between(&r, 0.1, 3), u = random_between(&r, 0, 2 * pi),
+                     v = random_between(&r, -1.5, 1.5);
+        quat_family family;
+        quat_surface s;
+        quat_surface_point p;
+        wide cu[3], su[3], cv[3], sv[3];
+        wide_power(cosf128(u), -sinf128(u), f, cu);
+        wide_power(sinf128(u), cosf128(u), f, su);
+        wide_power(cosf128(v), -sinf128(v), e, cv);
+        wide_power(sinf128(v), cosf128(v), e, sv);
+        assert_int_equal(quat_superellipsoid(a, b, c, e, f, &family, &s), QUAT_OK);
+        assert_true(quat_surface_at(&s, u, v, &p) >= 0);
+        /* near a seam the angles of doubles no longer say where they are: a cosine has lost its digits */
+        if (fabs(sin(2 * u)) < 0.02 || fabs(sin(2 * v)) < 0.02) continue;
+        judge(&p,
+              from_derivatives(
+                  xyz(a * cv[0] * cu[1], b * cv[0] * su[1], 0), xyz(a * cv[1] * cu[0], b * cv[1] * su[0], c * sv[1]),
+                  xyz(a * cv[0] * cu[2], b * cv[0] * su[2], 0), xyz(a * cv[1] * cu[1], b * cv[1] * su[1], 0),
+                  xyz(a * cv[2] * cu[0], b * cv[2] * su[0], c * sv[2])),
+              worst);
+    }
+    assert_bound("superellipsoid: K", worst[0], 1e-13);
+    assert_bound("superellipsoid: H", worst[1], 1e-13);
+    assert_bound("superellipsoid: normal", worst[2], 1e-13);
+}
+
+/* The thesis' equations 23 and 24 as they should read, for unit and perpendicular tangents: the part along N of q_u (1/q)_v is
+ * -K/4, that of q (0, x) (1/q)_u + q (0, y) (1/q)_v is -H. */
+static void equations_23_and_24(void **state)
+{
+    (void)state;
+    random_state r = {409};
+    double worst = 0;
+    for (int round = 0; round < 100000; round++) {
+        quat_family f;
+        quat_surface s;
+        quat_surface_point p;
+        quat_torus(2, 1, &f, &s);
+        assert_true(quat_surface_at(&s, random_between(&r, 0, 2 * pi), random_between(&r, 0, 2 * pi), &p) >= 0);
+        quat q = p.frame;
+        qvec3 a = qvec3_scale(p.a, 1 / qvec3_norm(p.xu)), b = qvec3_scale(p.b, 1 / qvec3_norm(p.xv));
+        const qvec3 n = quat_rotate(q, qvec3_make(0, 0, 1));
+        const quat qu = quat_scale(quat_mul(q, quat_pure(a)), 0.5), qv = quat_scale(quat_mul(q, quat_pure(b)), 0.5);
+        const quat k = quat_mul(qu, quat_conj(qv)),
+                   h = quat_add(quat_mul(quat_mul(q, quat_make(0, 1, 0, 0)), quat_conj(qu)),
+                                quat_mul(quat_mul(q, quat_make(0, 0, 1, 0)), quat_conj(qv)));
+        worse(&worst, fabs(qvec3_dot(quat_vector(k), n) + p.curvature.gauss / 4));
+        worse(&worst, fabs(qvec3_dot(quat_vector(h), n) + p.curvature.mean));
+    }
+    assert_bound("equations 23 and 24", worst, 1e-14);
+}
+
 /* ---- invariance ---- */
 
 typedef struct sheared {
@@ -452,23 +520,12 @@ static void least_area(void **state)
     static qvec3 x[n * n];
     static quat q[n * n];
     static size_t triangle[2 * (n - 1) * (n - 1)][3];
-    size_t m = 0;
+    const size_t m = 2 * (n - 1) * (n - 1);
     quat_family f;
     quat_surface s;
     double area[3], energy[3];
     quat_saddle(1, 2, &f, &s);
-    for (size_t i = 0; i < n * n; i++) {
-        quat_surface_point p;
-        assert_true(
-            quat_surface_at(&s, -2 + 4.0 * (double)(i / n) / (n - 1), -2 + 4.0 * (double)(i % n) / (n - 1), &p) >= 0);
-        x[i] = p.position, q[i] = p.frame;
-    }
-    for (size_t i = 0; i + n < n * n; i++) {
-        if (i % n == n - 1) continue;
-        const size_t two[2][3] = {{i, i + n, i + n + 1}, {i, i + n + 1, i + 1}};
-        for (int h = 0; h < 2; h++, m++)
-            for (int k = 0; k < 3; k++) triangle[m][k] = two[h][k];
-    }
+    assert_int_equal(quat_surface_patch(&s, -2, 2, -2, 2, n, n, x, q, triangle[0]), QUAT_OK);
     for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
         quat_gauge_report report;
         const quat_status status = quat_choose_frames(n * n, x, m, triangle[0], (quat_gauge)gauge, q, &report);
@@ -581,6 +638,18 @@ static void bad_input_has_a_status(void **state)
     assert_int_equal(quat_superellipsoid(1, 1, 1, 0, 1, &f, &s), QUAT_EDOMAIN);
     assert_int_equal(quat_surface_at(&s, 1, 0.5, &p), QUAT_EARGUMENT);
 
+    for (double size = 1e-300; size < 1e301; size *= 1e25) { /* a value or a status at every size */
+        quat_ellipsoid(size, size, size, &f, &s);
+        const quat_status status = quat_surface_at(&s, 1, 0.5, &p);
+        assert_true(status >= 0 || status == QUAT_ERANGE || status == QUAT_EDOMAIN);
+        if (status >= 0) assert_near(p.curvature.mean * size, 1, 1e-14);
+        if (size > 1e-90 && size < 1e90) assert_true(status >= 0);
+        assert_true(isfinite(p.curvature.gauss) && isfinite(p.area) && isfinite(p.error));
+    }
+    quat_ellipsoid(1, 1, 1, &f, &s);
+    assert_int_equal(quat_surface_patch(&s, 0, 1, 0, 1, 1, 2, NULL, NULL, NULL), QUAT_EARGUMENT);
+    assert_int_equal(quat_surface_patch(&s, 0, 1, 1, 1, 2, 2, NULL, NULL, NULL), QUAT_EARGUMENT);
+
     const qvec3 x[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}};
     const size_t one[3] = {0, 1, 2}, out[3] = {0, 1, 4};
     quat q[4] = {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}};
@@ -603,6 +672,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(ellipsoids_in_quad),
                                        cmocka_unit_test(closed_forms),
+                                       cmocka_unit_test(superellipsoids_in_quad),
+                                       cmocka_unit_test(equations_23_and_24),
                                        cmocka_unit_test(nothing_depends_on_place_parameter_or_gauge),
                                        cmocka_unit_test(rates_are_the_frames),
                                        cmocka_unit_test(fewer_derivatives),

@@ -65,7 +65,7 @@ typedef struct quat_curve_point {
 /* The Frenet apparatus at t. QUAT_NOT_UNIQUE at an inflection, where the curvature vanishes within four times its
  * error: curvature and torsion are 0 then, and the frame is the shortest rotation that carries x to the tangent.
  * QUAT_EDOMAIN besides where the speed is 0 within its error; all zero then, frame = 1, but for the position if there
- * is one. Other errors as above. */
+ * is one. QUAT_ERANGE: a derivative above 1e100 or a speed below 1e-100, where products overflow or vanish. Other errors as above. */
 QUAT_API quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve_point *point);
 
 /* ---- arc length ---- */
@@ -112,7 +112,8 @@ QUAT_API quat_status quat_curve_frames(const quat_curve *curve, quat_framing fra
                                        const double t[], quat q[], quat_framing_report *report);
 
 /* One step of the double reflection: the frame at (x1, unit tangent1) of the frame q at x0, whose tangent is its x axis.
- * QUAT_EDOMAIN and *next = q when x0 = x1 or the tangent is zero, infinite or NaN. */
+ * QUAT_EDOMAIN and *next = q when x0 = x1, when the tangent is zero, infinite or NaN, and when it is the mirror image of
+ * the other in the chord's plane (a cusp between the two). */
 QUAT_API quat_status quat_frame_step(quat q, qvec3 x0, qvec3 x1, qvec3 tangent1, quat *next);
 
 #ifdef __cplusplus

@@ -64,8 +64,8 @@ typedef struct quat_surface_point {
 
 /* Everything at (u, v), through the frame's rates. QUAT_NOT_UNIQUE at an umbilic. QUAT_EDOMAIN: outside an open range,
  * infinite or NaN; no value; a degenerate point (x_u x x_v = 0 to rounding, such as the pole of a sphere's angles): all
- * zero then, frame = 1, but for the position if there is one. QUAT_EARGUMENT: a surface without a function, empty or infinite
- * ranges, `known` outside 0 ... 2. With differences of x alone, errors of about 1e-10 of the curvature's size. */
+ * zero then, frame = 1, but for the position if there is one. QUAT_ERANGE: lengths outside 1e-100 ... 1e100, where products overflow or
+ * vanish. QUAT_EARGUMENT: a surface without a function, empty or infinite ranges, `known` outside 0 ... 2. With differences of x alone, errors of about 1e-10 of the curvature's size. */
 QUAT_API quat_status quat_surface_at(const quat_surface *surface, double u, double v, quat_surface_point *point);
 
 /* The largest component of a_v - b_u - a x b for the coordinate gauge, with a_v and b_u by differences: 0 for the frames of
@@ -96,7 +96,8 @@ QUAT_API quat_status quat_surface_total(const quat_surface *surface, double tole
  *   QUAT_MINIMAL_LENGTH  least sum over the triangles' edges of cot(opposite angle)/2 |q_i - q_j|^2: a discrete Dirichlet
  *                        energy, which approaches the integral of |q_1|^2 + |q_2|^2, the squared stretch on S^3 in two
  *                        perpendicular directions, over the patch
- *   QUAT_MINIMAL_AREA    from there on, least sum of the areas of the triangles q_i q_j q_k in R^4 */
+ *   QUAT_MINIMAL_AREA    from there on, least sum of the areas of the triangles q_i q_j q_k in R^4; where that gains less
+ *                        than 1e-9 of it, as before. A local minimum, flat: its frames are found to about 1e-6 rad */
 typedef enum quat_gauge { QUAT_SHORTEST, QUAT_MINIMAL_LENGTH, QUAT_MINIMAL_AREA } quat_gauge;
 
 typedef struct quat_gauge_report {
@@ -115,6 +116,13 @@ typedef struct quat_gauge_report {
  * any work, also for what GSL takes for itself. */
 QUAT_API quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t triangles[], quat_gauge gauge,
                                         quat q[], quat_gauge_report *report);
+
+/* A rectangle of a surface as a mesh for quat_choose_frames: rows x columns nodes (at least 2 each), u along the rows, at equal
+ * steps from u0 to u1 and v0 to v1; node [i * columns + j] with position x[] and coordinate frame q[], and 2 (rows - 1)
+ * (columns - 1) triangles, three indices each. QUAT_EARGUMENT for fewer nodes or an empty rectangle; QUAT_EDOMAIN where
+ * quat_surface_at has it: keep off the poles. */
+QUAT_API quat_status quat_surface_patch(const quat_surface *surface, double u0, double u1, double v0, double v1,
+                                        size_t rows, size_t columns, qvec3 x[], quat q[], size_t triangles[]);
 
 /* How two Gauss maps of the same normals differ along a seam of n points: s = q2* q1 = exp(k angle/2), the angle of q1's
  * frame in q2's. (t = q1 q2*, the thesis' form, turns about the normal, which moves; s stays on one fixed circle.)
