@@ -5,7 +5,8 @@
 ---
 --- The belt is nowhere stretched: its centre line is the integral of q y q*. Its left end is held; the right one goes round a loop and
 --- never turns, since q_s(1) = 1 for every s. Below, the curves in S^3 as (q1, q2, q3): loops from 1 to 1 that shrink to a point.
---- untwist.csv holds, for each frame, the orientation in the middle, the turn of the free end, and its place.
+--- untwist.csv holds, for each frame, the orientation in the middle, the turn of the free end, and its place; untwist_frames.csv the
+--- whole motion, 17 frames along the belt at 17 stages.
 local quat = require "quat"
 local plot = require "quat.plot"
 local csv = require "quat.csv"
@@ -77,6 +78,15 @@ scalar[#scalar + 1] = plot.text { "s = 1", at = { 0.5, 1.13 }, align = "center",
 figure[#figure + 1] = plot.panel(curves)
 figure[#figure + 1] = plot.panel(scalar)
 
+local motion = { {}, {}, {}, {}, {}, {}, {}, {}, {}, {} }
+for stage = 0, 16 do
+  local frames, places = quat.belt_frames(stage / 16, 17)
+  for i, q in ipairs(frames) do
+    local p = places[i]
+    for c, value in ipairs { 17 * stage + i, stage / 16, (i - 1) / 16, q.w, q.x, q.y, q.z, p.x, p.y, p.z } do table.insert(motion[c], value) end
+  end
+end
+assert(csv.save("untwist_frames", { "row", "s", "along", "qw", "qx", "qy", "qz", "x", "y", "z" }, motion))
 assert(csv.save("untwist", { "s", "qw", "qx", "qy", "qz", "turn", "x", "y", "z" }, columns))
 local drawn, why = plot.save(plot.figure(figure), "untwist")
 if not drawn then print("untwist: " .. why) end

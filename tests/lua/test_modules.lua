@@ -54,6 +54,13 @@ check.equal(#rows, 2)
 check.equal(rows[1].name, 'a, b "c"')
 check.equal(rows[1].x + rows[2].t, 2.0025)
 check.equal(rows[2].x, "nan")
+-- In front of surfaces: objects of their own, none where the pen is lifted; and a zoom in a box, which margins on the screen would undo.
+local front = plot.gnuplot(plot.figure { plot.panel { three = true, box = { 0.1, 0.2, 0.6, 0.7 }, zoom = 2,
+  plot.points { { 1, 0 / 0 }, { 2, 0 }, { 3, 0 }, front = true }, plot.arrows { { 0 }, { 0 }, { 0 }, { 1 }, { 2 }, { 3 }, front = true, head = 0 } } })
+check.equal(select(2, front:gsub("set label '' at ", "")), 1)
+check.truth(front:find("set label '' at 1,2,3 point pt 7", 1, true), "a point in front")
+check.truth(front:find("set arrow from 0,0,0 to 1,2,3 front nohead", 1, true), "an arrow in front, without a head")
+check.truth(front:find("set origin 0.1,0.2; set size 0.5,0.5", 1, true), "a zoomed box")
 local logs = plot.gnuplot(plot.figure { plot.panel { xlog = true, ylog = true, plot.line { { 0.02, 300 }, { 0, 5e-9 } } } })
 check.truth(logs:find("set logscale x; set xrange [1e-2:1e3]", 1, true), "whole decades")
 check.truth(logs:find("set yrange [1e-9:1e-8]", 1, true), "zero is left out of a logarithmic axis")
