@@ -14,16 +14,23 @@
 void impact_course_start(impact_course *course, const impact_frame *frame, const impact_collision *collision, double ux,
                          double uy)
 {
-    *course = (impact_course){.frame = frame,
-                              .mu = collision->friction,
-                              .eps = collision->restitution,
-                              .law = collision->law,
-                              .ux = ux,
-                              .uy = uy,
-                              .s = hypot(ux, uy),
-                              .uz = -1,
-                              .compressing = true,
-                              .compressions = 1};
+    const double s2 = ux * ux + uy * uy;
+    course->frame = frame;
+    course->mu = collision->friction;
+    course->eps = collision->restitution;
+    course->law = collision->law;
+    course->ux = ux;
+    course->uy = uy;
+    course->s = s2 < DBL_MAX ? sqrt(s2) : hypot(ux, uy);
+    course->uz = -1;
+    course->px = course->py = course->p = 0;
+    course->work_low = course->above = 0;
+    course->work_c = course->work_r = course->work_f = 0;
+    course->p_c = course->p_r = 0;
+    course->compressing = true;
+    course->ended = course->jammed = false;
+    course->compressions = 1;
+    course->phase_count = 0;
 }
 
 void impact_course_phase(impact_course *course, impact_phase phase)
@@ -76,7 +83,7 @@ double impact_course_left_stronge(const impact_course *course)
 static double left_on_line(const impact_course *course, double Z)
 {
     switch (course->law) {
-    case IMPACT_POISSON: return fmax(impact_course_left_poisson(course), 0);
+    case IMPACT_POISSON: return impact_larger(impact_course_left_poisson(course), 0);
     case IMPACT_NEWTON: {
         const double more = impact_course_target_newton(course) - course->uz;
         if (more <= 0) return 0;
@@ -103,7 +110,7 @@ static void line_piece(impact_course *course, const impact_line *line, double dp
                        line->stick ? 0 : -course->mu * dp * (course->s + 0.5 * ds));
     course->px += line->gx * dp;
     course->py += line->gy * dp;
-    course->s = fmax(course->s + ds, 0);
+    course->s = impact_larger(course->s + ds, 0);
     impact_course_reach(course, course->uz + dz);
 }
 
@@ -153,7 +160,7 @@ double impact_course_turning(const impact_frame *frame, double mu, double x, dou
 
 bool impact_course_is_straight(const impact_frame *frame, double mu, double x, double y)
 {
-    const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
+    const double rate = fabs(frame->c) + fabs(frame->d) + mu * impact_larger(frame->a, frame->b);
     return fabs(impact_course_turning(frame, mu, x, y)) <= 1e-15 * rate;
 }
 
@@ -173,7 +180,7 @@ static double restart_speed(const impact_frame *frame, double mu, double *x, dou
     const double f = 1 / sqrt(*x * *x + *y * *y);
     *x *= f;
     *y *= f;
-    return fmax(lambda, 0);
+    return impact_larger(lambda, 0);
 }
 
 impact_line impact_course_from_rest(const impact_frame *frame, double mu)

@@ -38,24 +38,21 @@ static qvec3 across(qvec3 n)
     return (qvec3){1 + sign * n.x * n.x * f, sign * n.x * n.y * f, -sign * n.x};
 }
 
-/* The largest root of l^3 - e1 l^2 + e2 l - e3, all three real and positive, to 1 %: Newton from Laguerre's and Samuelson's bound,
- * which is above it by at most a third, comes down from there. */
+/* The largest root of l^3 - e1 l^2 + e2 l - e3, all three real and positive, to 0.1 %: e1/3 + 2q cos(phi/3), and of cos(phi) =
+ * 2y^2 - 1 it is cos(phi/3) = cos(2/3 acos y), nearly a parabola in y. */
 static double largest_root(double e1, double e2, double e3)
 {
-    double l = (e1 + 2 * sqrt(fmax(e1 * e1 - 3 * e2, 0))) / 3;
-    for (int i = 0; i < 8; i++) {
-        const double value = ((l - e1) * l + e2) * l - e3, slope = (3 * l - 2 * e1) * l + e2;
-        if (!(value > 4e-3 * l * slope)) break;
-        l -= value / slope;
-    }
-    return l;
+    const double d = impact_larger(e1 * e1 - 3 * e2, 1e-30 * e1 * e1), q = sqrt(d);
+    const double cosine = (e1 * (2 * e1 * e1 - 9 * e2) + 27 * e3) / (2 * d * q);
+    const double y = sqrt(impact_smaller(impact_larger(0.5 + 0.5 * cosine, 0), 1));
+    return (e1 + 2 * q * (0.500734 + y * (0.562841 - 0.064169 * y))) / 3;
 }
 
 /* Largest over smallest root: that is the largest root times that of the reversed polynomial. */
 static double conditioning(double trace, double second, double det)
 {
     const double f = 1 / det;
-    return fmax(largest_root(trace, second, det) * largest_root(second * f, trace * f, f), 1);
+    return impact_larger(largest_root(trace, second, det) * largest_root(second * f, trace * f, f), 1);
 }
 
 qvec3 impact_frame_normal(const impact_collision *collision)
@@ -72,14 +69,14 @@ void impact_frame_make(qvec3 n, const impact_ready ready[2], impact_frame *frame
     qvec3 t1 = across(n), t2 = qvec3_cross(n, t1);
     arms x = make_arms(ready, t1), y = make_arms(ready, t2);
     const arms z = make_arms(ready, n);
+    const double m = w + arms_dot(ready, &z, &z), f = 1 / m;
     double a = w + arms_dot(ready, &x, &x), b = w + arms_dot(ready, &y, &y);
     /* One-sided Jacobi: turn t1, t2 until M_xy is rounding. */
     for (int sweep = 0; sweep < 3; sweep++) {
         const double xy = arms_dot(ready, &x, &y);
         if (xy * xy <= 16 * DBL_EPSILON * DBL_EPSILON * (a * b)) break;
-        const double zeta = (b - a) / (2 * xy);
-        const double t = copysign(1 / (fabs(zeta) + sqrt(1 + zeta * zeta)), zeta);
-        const double cs = 1 / sqrt(1 + t * t), sn = cs * t;
+        const double h = (b - a) * f, g = 2 * xy * f, r = fabs(h) + sqrt(h * h + g * g);
+        const double shrink = 1 / sqrt(r * r + g * g), cs = r * shrink, sn = copysign(g * shrink, g * h);
         const arms old = x;
         const qvec3 old_t1 = t1;
         x = arms_mix(cs, &old, -sn, &y);
@@ -89,7 +86,6 @@ void impact_frame_make(qvec3 n, const impact_ready ready[2], impact_frame *frame
         a = w + arms_dot(ready, &x, &x);
         b = w + arms_dot(ready, &y, &y);
     }
-    const double m = w + arms_dot(ready, &z, &z), f = 1 / m;
     const double c = arms_dot(ready, &x, &z), d = arms_dot(ready, &y, &z);
     /* What the best alpha t1 + beta t2 leaves of n: at the least, rounding of alpha and beta counts but squared. */
     const double alpha = -c / a, beta = -d / b;

@@ -86,7 +86,8 @@ void impact_ready_make(const impact_collider *body, impact_ready *ready)
     ready->axis[0] = (qvec3){((ww - zz) + (xx - yy)) * f, (xy + wz) * g, (xz - wy) * g};
     ready->axis[1] = (qvec3){(xy - wz) * g, ((ww - zz) - (xx - yy)) * f, (yz + wx) * g};
     ready->axis[2] = (qvec3){(xz + wy) * g, (yz - wx) * g, ((ww + zz) - (xx + yy)) * f};
-    const double least = fmin(fmin(j.x, j.y), j.z), most = fmax(fmax(j.x, j.y), j.z);
+    const double least = impact_smaller(impact_smaller(j.x, j.y), j.z),
+                 most = impact_larger(impact_larger(j.x, j.y), j.z);
     if (most > slim * least) {
         const qvec3 fine = qvec3_scale(slim_offset(q, body->offset), f);
         /* Beyond 1e300 doubling overflows. */

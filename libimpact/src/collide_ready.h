@@ -16,6 +16,10 @@ typedef struct impact_ready {
     qvec3 axis[3]; /* principal axes, world; not set for a round body */
 } impact_ready;
 
+/* In line, where fmax and fmin are calls; a NaN is not minded. */
+static inline double impact_larger(double a, double b) { return a > b ? a : b; }
+static inline double impact_smaller(double a, double b) { return a < b ? a : b; }
+
 void impact_ready_make(const impact_collider *body, impact_ready *ready);
 
 /* World vector to local axes and back. */

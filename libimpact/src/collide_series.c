@@ -23,8 +23,8 @@ static double step_length(const impact_taylor *taylor)
     const int n = taylor->order;
     double h = INFINITY;
     for (int k = n - 1; k <= n; k++) {
-        const double size = fmax(fmax(fabs(taylor->x[k]), fabs(taylor->y[k])), fabs(taylor->s[k]));
-        if (size > 0) h = fmin(h, exp(log(taylor->s[0] / size * 0x1p-60) / k));
+        const double size = impact_larger(impact_larger(fabs(taylor->x[k]), fabs(taylor->y[k])), fabs(taylor->s[k]));
+        if (size > 0) h = impact_smaller(h, exp(log(taylor->s[0] / size * 0x1p-60) / k));
     }
     return h;
 }
@@ -61,7 +61,7 @@ void impact_taylor_make(impact_taylor *taylor, const impact_frame *frame, double
     }
     for (int k = 0; k <= order; k++) taylor->climb[k] = v[k] - mu * (c * x[k] + d * y[k]);
     /* A straight slip at constant speed would have no end. */
-    taylor->h = fmin(step_length(taylor), 100 / (fabs(c) + fabs(d) + fmax(ma, mb)));
+    taylor->h = impact_smaller(step_length(taylor), 100 / (fabs(c) + fabs(d) + impact_larger(ma, mb)));
 }
 
 static double value(const double *coefficient, int order, double t)
@@ -366,7 +366,7 @@ bool impact_series_solve(impact_course *course, int order)
 {
     const impact_frame *frame = course->frame;
     if (course->mu == 0) return impact_course_closed_form(course);
-    const double mu = course->mu, small = 1e-17 * fmin(course->s, 1);
+    const double mu = course->mu, small = 1e-17 * impact_smaller(course->s, 1);
     int events = -1;
     for (int steps = 0; steps < 400 && course->s > 0 && !course->ended; steps++) {
         const double x = course->ux / course->s, y = course->uy / course->s;

@@ -60,8 +60,8 @@ static void make_recurrence(recurrence *q, double mu, double a, double b, double
     q->R[3] = 2 * d + 4 * h;
     q->R[4] = -c - mu * a;
     /* Fujiwara's bound for the roots of T~ / t; the factor 1 + t^2 is regular but for t = +-i. */
-    const double root = 2 * fmax(fmax(fabs(T2 / T1), sqrt(fabs(T3 / T1))), cbrt(fabs(T4 / T1) / 2));
-    q->reach = 1 / fmax(root, 1);
+    const double root = 2 * impact_larger(impact_larger(fabs(T2 / T1), sqrt(fabs(T3 / T1))), cbrt(fabs(T4 / T1) / 2));
+    q->reach = 1 / impact_larger(root, 1);
 }
 
 /* The next coefficient of f for right-hand side -G_k. */
