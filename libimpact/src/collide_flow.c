@@ -153,49 +153,36 @@ static void from_rest(sampler *sm)
         along_line(sm, &line, sm->frame->c / line.R, sm->frame->d / line.R);
 }
 
-static double integral_at(const double *c, int order, double t)
-{
-    double sum = c[order] / (order + 1);
-    for (int k = order - 1; k >= 0; k--) sum = sum * t + c[k] / (k + 1);
-    return sum * t;
-}
-
-static double value_at(const double *c, int order, double t)
-{
-    double sum = c[order];
-    for (int k = order - 1; k >= 0; k--) sum = sum * t + c[k];
-    return sum;
-}
-
 /* Puts the points within one Taylor step, and moves to its end. */
 static void through_step(sampler *sm, const impact_taylor *ty)
 {
     const int n = ty->order;
-    const double h = ty->h, mu = sm->flow->friction, dp = integral_at(ty->s, n, h);
+    const double h = ty->h, mu = sm->flow->friction, dp = impact_taylor_integral(ty->s, n, h);
     double t = 0;
     while (sm->next < sm->count && wanted_p(sm) <= sm->p + dp) {
         const double p = wanted_p(sm);
         double low = t, high = h;
         for (int i = 0; i < 60; i++) {
-            const double f = sm->p + integral_at(ty->s, n, t) - p;
+            const double f = sm->p + impact_taylor_integral(ty->s, n, t) - p;
             if (f > 0)
                 high = t;
             else
                 low = t;
-            double to = t - f / value_at(ty->s, n, t);
+            double to = t - f / impact_taylor_value(ty->s, n, t);
             if (!(to >= low && to <= high)) to = 0.5 * (low + high);
             const double move = fabs(to - t);
             t = to;
             if (move <= 2 * DBL_EPSILON * t) break;
         }
-        put(sm, value_at(ty->x, n, t), value_at(ty->y, n, t), p, sm->px - mu * integral_at(ty->x, n, t),
-            sm->py - mu * integral_at(ty->y, n, t), false);
+        put(sm, impact_taylor_value(ty->x, n, t), impact_taylor_value(ty->y, n, t), p,
+            sm->px - mu * impact_taylor_integral(ty->x, n, t), sm->py - mu * impact_taylor_integral(ty->y, n, t),
+            false);
     }
-    sm->px -= mu * integral_at(ty->x, n, h);
-    sm->py -= mu * integral_at(ty->y, n, h);
+    sm->px -= mu * impact_taylor_integral(ty->x, n, h);
+    sm->py -= mu * impact_taylor_integral(ty->y, n, h);
     sm->p += dp;
-    sm->x = value_at(ty->x, n, h);
-    sm->y = value_at(ty->y, n, h);
+    sm->x = impact_taylor_value(ty->x, n, h);
+    sm->y = impact_taylor_value(ty->y, n, h);
     sm->s = sqrt(sm->x * sm->x + sm->y * sm->y);
 }
 

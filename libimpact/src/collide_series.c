@@ -15,7 +15,7 @@ static const double inverse[] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4
                                  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13,
                                  1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20,
                                  1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24, 1.0 / 25, 1.0 / 26, 1.0 / 27,
-                                 1.0 / 28, 1.0 / 29, 1.0 / 30, 1.0 / 31, 1.0 / 32, 1.0 / 33};
+                                 1.0 / 28, 1.0 / 29, 1.0 / 30, 1.0 / 31, 1.0 / 32, 1.0 / 33, 1.0 / 34};
 
 /* The largest h for which the last two terms stay below 2^-60 of s. */
 static double step_length(const impact_taylor *taylor)
@@ -34,49 +34,58 @@ void impact_taylor_make(impact_taylor *taylor, const impact_frame *frame, double
 {
     double *x = taylor->x, *y = taylor->y, *v = taylor->s;
     const double ma = mu * frame->a, mb = mu * frame->b, c = frame->c, d = frame->d, half = 0.5 / s;
+    impact_pair u[IMPACT_SERIES_ROOM]; /* x and y */
+    const impact_pair pull = {c, d}, drag = {ma, mb};
     taylor->order = order;
+    u[0] = (impact_pair){ux, uy};
     x[0] = ux;
     y[0] = uy;
     v[0] = s;
     taylor->squared[0] = s * s;
     for (int k = 0; k < order; k++) {
         const int n = k + 1;
-        x[n] = (c * v[k] - ma * x[k]) * inverse[n];
-        y[n] = (d * v[k] - mb * y[k]) * inverse[n];
+        u[n] = (pull * v[k] - drag * u[k]) * inverse[n];
+        x[n] = u[n][0];
+        y[n] = u[n][1];
         /* s^2 = x^2 + y^2, term n; every product but the middle one stands twice. */
-        double q = 0, r = 0;
+        impact_pair q = {0, 0};
+        double r = 0;
         for (int i = 1; 2 * i < n; i++) {
-            q += x[i] * x[n - i] + y[i] * y[n - i];
+            q += u[i] * u[n - i];
             r += v[i] * v[n - i];
         }
-        q += x[0] * x[n] + y[0] * y[n];
-        q *= 2;
+        q = 2 * (q + u[0] * u[n]);
         r *= 2;
         if (n % 2 == 0) {
-            q += x[n / 2] * x[n / 2] + y[n / 2] * y[n / 2];
+            q += u[n / 2] * u[n / 2];
             r += v[n / 2] * v[n / 2];
         }
-        taylor->squared[n] = q;
-        v[n] = (q - r) * half;
+        taylor->squared[n] = q[0] + q[1];
+        v[n] = (q[0] + q[1] - r) * half;
     }
+    x[order + 1] = y[order + 1] = v[order + 1] = taylor->squared[order + 1] = taylor->climb[order + 1] = 0;
     for (int k = 0; k <= order; k++) taylor->climb[k] = v[k] - mu * (c * x[k] + d * y[k]);
     /* A straight slip at constant speed would have no end. */
     taylor->h = impact_smaller(step_length(taylor), 100 / (fabs(c) + fabs(d) + impact_larger(ma, mb)));
 }
 
-static double value(const double *coefficient, int order, double t)
+/* Even and odd terms side by side. */
+double impact_taylor_value(const double *coefficient, int order, double t)
 {
-    double sum = coefficient[order];
-    for (int k = order - 1; k >= 0; k--) sum = sum * t + coefficient[k];
-    return sum;
+    const double t2 = t * t;
+    int k = order - order % 2;
+    impact_pair sum = IMPACT_PAIR(coefficient + k);
+    for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMPACT_PAIR(coefficient + k);
+    return sum[0] + t * sum[1];
 }
 
-/* Integral from 0 to t. */
-static double integral(const double *coefficient, int order, double t)
+double impact_taylor_integral(const double *coefficient, int order, double t)
 {
-    double sum = coefficient[order] * inverse[order + 1];
-    for (int k = order - 1; k >= 0; k--) sum = sum * t + coefficient[k] * inverse[k + 1];
-    return sum * t;
+    const double t2 = t * t;
+    int k = order - order % 2;
+    impact_pair sum = IMPACT_PAIR(coefficient + k) * IMPACT_PAIR(inverse + k + 1);
+    for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMPACT_PAIR(coefficient + k) * IMPACT_PAIR(inverse + k + 1);
+    return (sum[0] + t * sum[1]) * t;
 }
 
 /* ---- one step and the events in it ---- */
@@ -89,33 +98,39 @@ typedef struct totals {
 typedef struct step {
     impact_course *course;
     impact_taylor taylor;
-    double uz0;                           /* uz at tau = 0 */
-    double power[IMPACT_SERIES_MOST + 1]; /* uz s, the rate of the normal work */
+    double uz0;                       /* uz at tau = 0 */
+    double power[IMPACT_SERIES_ROOM]; /* uz s, the rate of the normal work */
     bool has_power;
     double at;   /* where the course stands in this step */
     totals done; /* from 0 to `at` */
 } step;
 
-static double uz_at(const step *st, double t) { return st->uz0 + integral(st->taylor.climb, st->taylor.order, t); }
+static double uz_at(const step *st, double t)
+{
+    return st->uz0 + impact_taylor_integral(st->taylor.climb, st->taylor.order, t);
+}
 
 static void make_power(step *st)
 {
     const int order = st->taylor.order;
-    double uz[IMPACT_SERIES_MOST + 1];
+    const double *s = st->taylor.s;
+    double *power = st->power, uz[IMPACT_SERIES_ROOM];
     uz[0] = st->uz0;
-    for (int k = 1; k <= order; k++) uz[k] = st->taylor.climb[k - 1] * inverse[k];
-    for (int k = 0; k <= order; k++) {
-        double sum = 0;
-        for (int i = 0; i <= k; i++) sum += uz[i] * st->taylor.s[k - i];
-        st->power[k] = sum;
+    for (int k = 0; k <= order; k++) uz[k + 1] = st->taylor.climb[k] * inverse[k + 1];
+    for (int k = 0; k <= order; k += 2) {
+        impact_pair sum = {0, uz[k + 1] * s[0]};
+        for (int i = 0; i <= k; i++) sum += uz[i] * IMPACT_PAIR(s + k - i);
+        power[k] = sum[0];
+        power[k + 1] = sum[1];
     }
+    power[order + 1] = 0;
     st->has_power = true;
 }
 
 static double work_at(step *st, double t)
 {
     if (!st->has_power) make_power(st);
-    return integral(st->power, st->taylor.order, t);
+    return impact_taylor_integral(st->power, st->taylor.order, t);
 }
 
 /* What a root is looked for of. */
@@ -126,13 +141,13 @@ static double target_value(step *st, target what, double t, double wanted, doubl
     const impact_taylor *ty = &st->taylor;
     const int n = ty->order;
     switch (what) {
-    case TARGET_UZ: *slope = value(ty->climb, n, t); return uz_at(st, t) - wanted;
-    case TARGET_P: *slope = value(ty->s, n, t); return integral(ty->s, n, t) - wanted;
-    case TARGET_WORK: *slope = value(st->power, n, t); return work_at(st, t) - wanted;
+    case TARGET_UZ: *slope = impact_taylor_value(ty->climb, n, t); return uz_at(st, t) - wanted;
+    case TARGET_P: *slope = impact_taylor_value(ty->s, n, t); return impact_taylor_integral(ty->s, n, t) - wanted;
+    case TARGET_WORK: *slope = impact_taylor_value(st->power, n, t); return work_at(st, t) - wanted;
     case TARGET_CLIMB:
         *slope = 0;
         for (int k = n; k >= 1; k--) *slope = *slope * t + k * ty->climb[k];
-        return value(ty->climb, n, t) - wanted;
+        return impact_taylor_value(ty->climb, n, t) - wanted;
     case TARGET_CROSS: {
         const double c = st->course->frame->c, d = st->course->frame->d;
         double sum = 0, rate = 0;
@@ -176,17 +191,16 @@ static totals totals_at(step *st, double t)
 {
     if (!st->has_power) make_power(st);
     const impact_taylor *ty = &st->taylor;
-    totals sum = {0, 0, 0, 0, 0};
+    double work = 0;
+    impact_pair slide = {0, 0}, speed = {0, 0};
     for (int k = ty->order; k >= 0; k--) {
         const double f = inverse[k + 1];
-        sum.p = sum.p * t + ty->s[k] * f;
-        sum.work = sum.work * t + st->power[k] * f;
-        sum.friction = sum.friction * t + ty->squared[k] * f;
-        sum.px = sum.px * t + ty->x[k] * f;
-        sum.py = sum.py * t + ty->y[k] * f;
+        slide = slide * t + (impact_pair){ty->x[k], ty->y[k]} * f;
+        speed = speed * t + (impact_pair){ty->s[k], ty->squared[k]} * f;
+        work = work * t + st->power[k] * f;
     }
-    const double slide = -st->course->mu * t;
-    return (totals){sum.p * t, sum.work * t, sum.friction * slide, sum.px * slide, sum.py * slide};
+    const double rub = -st->course->mu * t;
+    return (totals){speed[0] * t, work * t, speed[1] * rub, slide[0] * rub, slide[1] * rub};
 }
 
 /* Moves the course on to tau = t within one phase. */
@@ -215,7 +229,7 @@ static bool end_by(step *st, double to, double *where)
             *where = st->at;
             return true;
         }
-        if (integral(st->taylor.s, st->taylor.order, to) < wanted) return false;
+        if (impact_taylor_integral(st->taylor.s, st->taylor.order, to) < wanted) return false;
         *where = find_root(st, TARGET_P, wanted, st->at, to);
         return true;
     }
@@ -246,7 +260,7 @@ static bool end_by(step *st, double to, double *where)
 /* The sense of uz on a piece where it is monotone; at a turn, uz itself is rounding. */
 static bool climbs(const step *st, double to)
 {
-    return value(st->taylor.climb, st->taylor.order, 0.5 * (st->at + to)) > 0;
+    return impact_taylor_value(st->taylor.climb, st->taylor.order, 0.5 * (st->at + to)) > 0;
 }
 
 /* Follows the course to tau = to through its events; uz is monotone on the way. */
@@ -285,7 +299,8 @@ static bool stopped(const step *st, double at) { return st->course->ended || st-
 static void split_at_climb(step *st, double to)
 {
     const int n = st->taylor.order;
-    const double low = value(st->taylor.climb, n, st->at), high = value(st->taylor.climb, n, to);
+    const double low = impact_taylor_value(st->taylor.climb, n, st->at),
+                 high = impact_taylor_value(st->taylor.climb, n, to);
     if ((low > 0 && high < 0) || (low < 0 && high > 0)) {
         const double split = find_root(st, TARGET_CLIMB, 0, st->at, to);
         monotone_piece(st, split);
@@ -299,7 +314,8 @@ static void follow_step(step *st)
     impact_course *course = st->course;
     const impact_frame *frame = course->frame;
     const int n = st->taylor.order;
-    const double h = st->taylor.h, x = value(st->taylor.x, n, h), y = value(st->taylor.y, n, h);
+    const double h = st->taylor.h, x = impact_taylor_value(st->taylor.x, n, h),
+                 y = impact_taylor_value(st->taylor.y, n, h);
     const double before = frame->c * course->uy - frame->d * course->ux, after = frame->c * y - frame->d * x;
     if ((before > 0 && after < 0) || (before < 0 && after > 0)) {
         const double split = find_root(st, TARGET_CROSS, 0, 0, h);
@@ -308,8 +324,8 @@ static void follow_step(step *st)
     } else {
         split_at_climb(st, h);
     }
-    course->ux = st->at == h ? x : value(st->taylor.x, n, st->at);
-    course->uy = st->at == h ? y : value(st->taylor.y, n, st->at);
+    course->ux = st->at == h ? x : impact_taylor_value(st->taylor.x, n, st->at);
+    course->uy = st->at == h ? y : impact_taylor_value(st->taylor.y, n, st->at);
     course->s = sqrt(course->ux * course->ux + course->uy * course->uy);
 }
 

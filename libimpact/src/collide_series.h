@@ -9,14 +9,26 @@
 
 enum { IMPACT_SERIES_ORDER = 22, IMPACT_SERIES_MOST = 32 };
 
+/* Two numbers worked on at once; IMPACT_PAIR reads two that stand side by side. */
+typedef double impact_pair __attribute__((vector_size(16)));
+typedef double impact_pair_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
+#define IMPACT_PAIR(from) ((impact_pair) * (const impact_pair_anywhere *)(from))
+
+/* Coefficients to the order, and a zero after the last. */
+enum { IMPACT_SERIES_ROOM = IMPACT_SERIES_MOST + 2 };
+
 /* One Taylor step from the state of a course: coefficients of tau^k. The integrals (uz, p, work ...) start at 0 for tau = 0. */
 typedef struct impact_taylor {
     int order;
-    double h; /* how far the series may be used */
-    double x[IMPACT_SERIES_MOST + 1], y[IMPACT_SERIES_MOST + 1], s[IMPACT_SERIES_MOST + 1]; /* u_t and |u_t| */
-    double squared[IMPACT_SERIES_MOST + 1]; /* s^2, the rate of friction's work */
-    double climb[IMPACT_SERIES_MOST + 1];   /* d uz / d tau */
+    double h;                                                                   /* how far the series may be used */
+    double x[IMPACT_SERIES_ROOM], y[IMPACT_SERIES_ROOM], s[IMPACT_SERIES_ROOM]; /* u_t and |u_t| */
+    double squared[IMPACT_SERIES_ROOM];                                         /* s^2, the rate of friction's work */
+    double climb[IMPACT_SERIES_ROOM];                                           /* d uz / d tau */
 } impact_taylor;
+
+/* The polynomial at t, and its integral from 0 to t. */
+double impact_taylor_value(const double *coefficient, int order, double t);
+double impact_taylor_integral(const double *coefficient, int order, double t);
 
 /* Fills a step of the given order; u_t != 0. */
 void impact_taylor_make(impact_taylor *taylor, const impact_frame *frame, double mu, double ux, double uy, double s,
