@@ -165,11 +165,31 @@ void print_comparison_heading(void)
            "eps_cond_p90,eps_cond_p99,eps_cond_p999,eps_cond_worst\n");
 }
 
-void print_comparison(const char *name, const char *with, const comparison *c)
+void print_comparison(const char *name, const char *with, const comparison *c, bool judged)
 {
-    printf("%s,%s,%ld,%ld,%ld", name, with, c->error.count, c->refused, c->above_bar);
+    printf("%s,%s,%ld,%ld,", name, with, c->error.count, c->refused);
+    if (judged) printf("%ld", c->above_bar);
     for (int i = 0; i < 4; i++) printf(",%.2g", spread_quantile(&c->error, parts[i]));
     printf(",%.2g", c->error.worst);
     for (int i = 0; i < 4; i++) printf(",%.2g", spread_quantile(&c->scaled, parts[i]));
     printf(",%.2g\n", c->scaled.worst);
+}
+
+void print_summary(const tally *total)
+{
+    const comparison *oracle = &total->oracle, *cvode = &total->cvode;
+    printf("\n# %ld impacts: %ld failures; energy gained at most %.2g of what there was (Poisson, Stronge); impulse "
+           "outside of the "
+           "cone by at most %.2g of itself\n",
+           total->impacts, total->failures, total->gain, total->cone);
+    printf("# %ld against the 128-bit oracle: median error %.2g, worst %.2g, worst in eps cond %.2g; beyond both 1e-12 "
+           "and 10 eps "
+           "cond: %ld\n",
+           oracle->error.count, spread_quantile(&oracle->error, 0.5), oracle->error.worst, oracle->scaled.worst,
+           oracle->above_bar);
+    printf("# %ld against CVODE at 1e-12: median difference %.2g, worst %.2g; CVODE gave up on %ld\n",
+           cvode->error.count, spread_quantile(&cvode->error, 0.5), cvode->error.worst, cvode->refused);
+    printf("# time of one call, us: mean %.2g, p50 %.2g, p99 %.2g, max %.2g\n",
+           1e6 * total->time_sum / (double)total->time_count, 1e6 * spread_quantile(&total->time, 0.5),
+           1e6 * spread_quantile(&total->time, 0.99), 1e6 * total->time.worst);
 }

@@ -23,7 +23,7 @@ double spread_quantile(const spread *s, double part);
 typedef struct comparison {
     spread error, scaled;
     long refused;   /* the other has no answer */
-    long above_bar; /* more than 1e-12 and more than 10 eps cond */
+    long above_bar; /* off by more than 1e-12 and more than 10 eps cond */
 } comparison;
 
 void comparison_note(comparison *c, double error, double conditioning);
@@ -54,6 +54,8 @@ void tally_oracle(tally *t, long index, double error, double conditioning);
 void print_course_heading(void);
 void print_course(const char *name, const tally *t);
 void print_comparison_heading(void);
-void print_comparison(const char *name, const char *with, const comparison *c);
+/* judged: whether the other solver is right beyond doubt, so that what is above the bar can be told. */
+void print_comparison(const char *name, const char *with, const comparison *c, bool judged);
+void print_summary(const tally *total);
 
 #endif
