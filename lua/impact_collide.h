@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The Lua face of one impact and of many: what the two share.
+ * The Lua face of one impact, of many and of the sliding in one: what they share.
  */
 #ifndef IMPACT_LUA_COLLIDE_H
 #define IMPACT_LUA_COLLIDE_H
@@ -13,6 +13,12 @@ extern const char *const impact_lua_solvers[];
 
 /* Reads an inertia at the top of the stack: {{,,},{,,},{,,}}, a world tensor, or {moments=, orientation=}. Raises with the key. */
 void impact_lua_read_inertia(const quat_lua_reader *reader, const char *key, qvec3 *moments, quat *orientation);
+
+/* Reads the keys that every kind of call has, mu not among them. Raises with the key. */
+void impact_lua_read_collision(const quat_lua_reader *reader, impact_collision *c);
+
+/* impact.flow{} */
+int impact_lua_flow(lua_State *L);
 
 /* impact.collide_many{} */
 int impact_lua_collide_many(lua_State *L);
