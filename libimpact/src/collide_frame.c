@@ -7,28 +7,50 @@
 
 #include <float.h>
 
-/* r x e for both bodies, local axes. */
-typedef struct arms {
-    qvec3 of[2];
-} arms;
+/* A vector for each body, side by side. */
+typedef struct vectors {
+    impact_pair x, y, z;
+} vectors;
 
-static inline arms make_arms(const impact_ready ready[2], qvec3 e)
+typedef struct both {
+    vectors axis[3], offset, inverse_moments;
+} both;
+
+static inline vectors side_by_side(qvec3 one, qvec3 two)
 {
-    return (arms){{qvec3_cross(ready[0].offset, impact_ready_local(&ready[0], e)),
-                   qvec3_cross(ready[1].offset, impact_ready_local(&ready[1], e))}};
+    return (vectors){{one.x, two.x}, {one.y, two.y}, {one.z, two.z}};
+}
+
+static inline both make_both(const impact_ready *one, const impact_ready *two)
+{
+    both r;
+    for (int i = 0; i < 3; i++) r.axis[i] = side_by_side(one->axis[i], two->axis[i]);
+    r.offset = side_by_side(one->offset, two->offset);
+    r.inverse_moments = side_by_side(one->inverse_moments, two->inverse_moments);
+    return r;
+}
+
+/* r x e, local axes. */
+static inline vectors make_arms(const both *bodies, qvec3 e)
+{
+    const vectors *axis = bodies->axis, *r = &bodies->offset;
+    const impact_pair x = axis[0].x * e.x + axis[0].y * e.y + axis[0].z * e.z;
+    const impact_pair y = axis[1].x * e.x + axis[1].y * e.y + axis[1].z * e.z;
+    const impact_pair z = axis[2].x * e.x + axis[2].y * e.y + axis[2].z * e.z;
+    return (vectors){r->y * z - r->z * y, r->z * x - r->x * z, r->x * y - r->y * x};
 }
 
 /* sum p.J^-1 q */
-static inline double arms_dot(const impact_ready ready[2], const arms *p, const arms *q)
+static inline double arms_dot(const both *bodies, const vectors *p, const vectors *q)
 {
-    return qvec3_dot(p->of[0], impact_ready_spin(&ready[0], q->of[0])) +
-           qvec3_dot(p->of[1], impact_ready_spin(&ready[1], q->of[1]));
+    const vectors *w = &bodies->inverse_moments;
+    const impact_pair sum = p->x * (w->x * q->x) + p->y * (w->y * q->y) + p->z * (w->z * q->z);
+    return sum[0] + sum[1];
 }
 
-static inline arms arms_mix(double x, const arms *p, double y, const arms *q)
+static inline vectors arms_mix(double x, const vectors *p, double y, const vectors *q)
 {
-    return (arms){
-        {qvec3_axpy(y, q->of[0], qvec3_scale(p->of[0], x)), qvec3_axpy(y, q->of[1], qvec3_scale(p->of[1], x))}};
+    return (vectors){x * p->x + y * q->x, x * p->y + y * q->y, x * p->z + y * q->z};
 }
 
 /* A unit vector across n, without a branch that jumps near the poles (Duff et al. 2017). */
@@ -40,7 +62,7 @@ static qvec3 across(qvec3 n)
 
 /* The largest root of l^3 - e1 l^2 + e2 l - e3, all three real and positive, to 0.1 %: e1/3 + 2q cos(phi/3), and of cos(phi) =
  * 2y^2 - 1 it is cos(phi/3) = cos(2/3 acos y), nearly a parabola in y. */
-static double largest_root(double e1, double e2, double e3)
+static inline double largest_root(double e1, double e2, double e3)
 {
     const double d = impact_larger(e1 * e1 - 3 * e2, 1e-30 * e1 * e1), q = sqrt(d);
     const double cosine = (e1 * (2 * e1 * e1 - 9 * e2) + 27 * e3) / (2 * d * q);
@@ -67,30 +89,31 @@ void impact_frame_make(qvec3 n, const impact_ready ready[2], impact_frame *frame
 {
     const double w = ready[0].inverse_mass + ready[1].inverse_mass;
     qvec3 t1 = across(n), t2 = qvec3_cross(n, t1);
-    arms x = make_arms(ready, t1), y = make_arms(ready, t2);
-    const arms z = make_arms(ready, n);
-    const double m = w + arms_dot(ready, &z, &z), f = 1 / m;
-    double a = w + arms_dot(ready, &x, &x), b = w + arms_dot(ready, &y, &y);
+    const both bodies = make_both(&ready[0], &ready[1]);
+    vectors x = make_arms(&bodies, t1), y = make_arms(&bodies, t2);
+    const vectors z = make_arms(&bodies, n);
+    const double m = w + arms_dot(&bodies, &z, &z), f = 1 / m;
+    double a = w + arms_dot(&bodies, &x, &x), b = w + arms_dot(&bodies, &y, &y);
     /* One-sided Jacobi: turn t1, t2 until M_xy is rounding. */
     for (int sweep = 0; sweep < 3; sweep++) {
-        const double xy = arms_dot(ready, &x, &y);
+        const double xy = arms_dot(&bodies, &x, &y);
         if (xy * xy <= 16 * DBL_EPSILON * DBL_EPSILON * (a * b)) break;
         const double h = (b - a) * f, g = 2 * xy * f, r = fabs(h) + sqrt(h * h + g * g);
         const double shrink = 1 / sqrt(r * r + g * g), cs = r * shrink, sn = copysign(g * shrink, g * h);
-        const arms old = x;
+        const vectors old = x;
         const qvec3 old_t1 = t1;
         x = arms_mix(cs, &old, -sn, &y);
         y = arms_mix(sn, &old, cs, &y);
         t1 = qvec3_axpy(-sn, t2, qvec3_scale(old_t1, cs));
         t2 = qvec3_axpy(sn, old_t1, qvec3_scale(t2, cs));
-        a = w + arms_dot(ready, &x, &x);
-        b = w + arms_dot(ready, &y, &y);
+        a = w + arms_dot(&bodies, &x, &x);
+        b = w + arms_dot(&bodies, &y, &y);
     }
-    const double c = arms_dot(ready, &x, &z), d = arms_dot(ready, &y, &z);
+    const double c = arms_dot(&bodies, &x, &z), d = arms_dot(&bodies, &y, &z);
     /* What the best alpha t1 + beta t2 leaves of n: at the least, rounding of alpha and beta counts but squared. */
     const double alpha = -c / a, beta = -d / b;
-    const arms least = arms_mix(alpha, &x, beta, &y), rest = arms_mix(1, &z, 1, &least);
-    const double k = w * (1 + (alpha * alpha + beta * beta)) + arms_dot(ready, &rest, &rest);
+    const vectors least = arms_mix(alpha, &x, beta, &y), rest = arms_mix(1, &z, 1, &least);
+    const double k = w * (1 + (alpha * alpha + beta * beta)) + arms_dot(&bodies, &rest, &rest);
     *frame = (impact_frame){
         .t1 = t1, .t2 = t2, .n = n, .a = a * f, .b = b * f, .c = c * f, .d = d * f, .k = k * f, .scale = m};
     const double A = frame->a, B = frame->b, K = frame->k;

@@ -65,6 +65,9 @@ void impact_ready_make(const impact_collider *body, impact_ready *ready)
 {
     ready->offset = body->offset;
     ready->round = true;
+    ready->axis[0] = (qvec3){1, 0, 0};
+    ready->axis[1] = (qvec3){0, 1, 0};
+    ready->axis[2] = (qvec3){0, 0, 1};
     if (isinf(body->mass)) {
         ready->inverse_mass = 0;
         ready->inverse_moments = (qvec3){0, 0, 0};

@@ -7,13 +7,16 @@
 
 #include <impact/collide.h>
 
-/* A static body has inverse_mass 0, inverse_moments 0, and is round. Local axes are the principal ones; of a round body, the world's. */
+/* Two numbers worked on at once. */
+typedef double impact_pair __attribute__((vector_size(16)));
+
+/* A static body has inverse_mass 0, inverse_moments 0, and is round. Local axes: `axis`. */
 typedef struct impact_ready {
     double inverse_mass;
     qvec3 inverse_moments;
     qvec3 offset;  /* contact point, local axes */
     bool round;    /* three equal moments (or static): the orientation does not matter */
-    qvec3 axis[3]; /* principal axes, world; not set for a round body */
+    qvec3 axis[3]; /* principal axes, world; of a round body, the world's */
 } impact_ready;
 
 /* In line, where fmax and fmin are calls; a NaN is not minded. */

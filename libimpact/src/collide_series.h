@@ -9,8 +9,7 @@
 
 enum { IMPACT_SERIES_ORDER = 22, IMPACT_SERIES_MOST = 32 };
 
-/* Two numbers worked on at once; IMPACT_PAIR reads two that stand side by side. */
-typedef double impact_pair __attribute__((vector_size(16)));
+/* IMPACT_PAIR reads two numbers that stand side by side. */
 typedef double impact_pair_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
 #define IMPACT_PAIR(from) ((impact_pair) * (const impact_pair_anywhere *)(from))
 
