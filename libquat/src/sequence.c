@@ -9,7 +9,7 @@ typedef struct circle {
     double cosine, sine;
 } circle;
 
-/* cos and sin of `turns` half turns, exact at every quarter; pi in twice the precision, so that they are rounded once. */
+/* cos and sin of `turns` half turns, exact at every quarter; pi in twice the precision: they are rounded once. */
 static circle half_turns(double turns)
 {
     const double r = remainder(turns, 2), quarter = floor(2 * r + 0.5), rest = r - 0.5 * quarter;

@@ -41,8 +41,8 @@ QUAT_API qvec2 quat_from_stereographic_circle(double image, quat_pole pole);
 
 /* ---- orthographic: straight down, the thesis' square-root method ---- */
 
-/* The vector part of q/|q|, a point of the unit ball, and in *half (may be NULL) the sign of w, which the image does not
- * hold: 1, -1, or 0 on the boundary. QUAT_EDOMAIN, *image = 0 and *half = 0 for zero, infinite and NaN. */
+/* The vector part of q/|q|, a point of the unit ball, and in *half (may be NULL) the sign of w, which the image does
+ * not hold: 1, -1, or 0 on the boundary. QUAT_EDOMAIN, *image = 0 and *half = 0 for zero, infinite and NaN. */
 QUAT_API quat_status quat_orthographic(quat q, qvec3 *image, int *half);
 /* The unit quaternion (w, image) with w = half sqrt((1 - n)(1 + n)), n = |image|. The root is right to 2 rounding units
  * for the image as it is given; an image that was itself rounded knows w to 1e-16/w only. half = 0 asks for a point of
@@ -70,7 +70,7 @@ QUAT_API quat_status quat_from_orthographic_array(size_t n, const qvec3 image[],
 
 /* ---- Hopf (1931): each point of S^2 has a great circle of S^3 above it ---- */
 
-/* The point of S^2 below unit q: q k q*, where the rotation carries the z axis; q exp(k t) has the same one for all t. */
+/* The point of S^2 below unit q: q k q*, where the rotation carries the z axis; the same for q exp(k t), whatever t. */
 static inline qvec3 quat_hopf(quat q) { return quat_rotate(q, qvec3_make(0, 0, 1)); }
 /* The point of the fibre over p (any finite non-zero length) at angle t (rad): q0 exp(k t), q0 the shortest rotation
  * from z to p; t = 0 ... 2 pi goes round once. Over -z every q0 is as short: j is taken, and the status is

@@ -24,8 +24,8 @@ QUAT_API quat quat_belt_twist(double angle, double t);
  * NaN. There is no such family for 2 pi, whose ends are 1 and -1. */
 QUAT_API quat quat_belt_untwist(double s, double t);
 /* Where the centre line of that belt runs: the integral of q y q* from 0 to t, for a belt of length 1 that is nowhere
- * stretched or sheared. Its free end, (sin(pi s) (1 - cos(pi s))/2, cos(pi s)^2, 0), goes round a loop from (0, 1, 0) and
- * back without ever turning. Any s and t; NaN for infinite and NaN. */
+ * stretched or sheared. Its free end, (sin(pi s) (1 - cos(pi s))/2, cos(pi s)^2, 0), goes round a loop from (0, 1, 0)
+ * and back without ever turning. Any s and t; NaN for infinite and NaN. */
 QUAT_API qvec3 quat_belt_centre(double s, double t);
 /* Frames and places at n evenly spaced t from 0 to 1 (n = 1: t = 0); either array may be NULL. */
 QUAT_API void quat_belt_frames(double s, size_t n, quat q[], qvec3 centre[]);
@@ -34,11 +34,11 @@ QUAT_API void quat_belt_frames(double s, size_t n, quat q[], qvec3 centre[]);
 
 /* A twist by `angle` as arrows on a disc of radius pi (thesis, figures 7 to 9): one arrow for each turn by pi and one
  * for what is left, each no longer than pi; after 2 pi they point back. arrows[] gets the signed lengths of the first
- * `most` of them (may be NULL for most = 0); returns how many there are: 0 for angle 0, 2 for 2 pi, 4 for 4 pi. Their sum
- * is quat_spinor_place(angle). 0 for infinite and NaN. */
+ * `most` of them (may be NULL for most = 0); returns how many there are: 0 for angle 0, 2 for 2 pi, 4 for 4 pi. Their
+ * sum is quat_spinor_place(angle). 0 for infinite and NaN. */
 QUAT_API size_t quat_spinor_arrows(double angle, size_t most, double arrows[]);
-/* Where the arrows end: with the sign of `angle`, twice the distance on S^3 from 1 to the twist's quaternion: 0 at 0 and
- * at 4 pi, on the disc's rim at pi and 3 pi, farthest at 2 pi. NaN for infinite and NaN. */
+/* Where the arrows end: with the sign of `angle`, twice the distance on S^3 from 1 to the twist's quaternion: 0 at 0
+ * and at 4 pi, on the disc's rim at pi and 3 pi, farthest at 2 pi. NaN for infinite and NaN. */
 QUAT_API double quat_spinor_place(double angle);
 
 /* ---- bands ---- */
@@ -47,8 +47,9 @@ QUAT_API double quat_spinor_place(double angle);
  * band (outward at u = 0), y along it, z its normal; u = 1 is once round. exp(pi u k) exp(twist u j/2): for twist = pi,
  * Moebius' band, one round turns the normal over, two bring it back with q = -1, and only four bring back q. */
 QUAT_API quat quat_band(double twist, double u);
-/* The sign with which a curve given by n points, each within a right angle of the next up to sign, comes back to its
- * first point: what quat_unflip reports, without changing the curve. 1 for n < 2. */
+/* The sign with which a curve given by n points comes back to its first one: what quat_unflip reports, without
+ * changing the curve. Neighbours may have either sign, but must be so close that the curve goes by less than a right
+ * angle on S^3 (half a turn) from one to the next. 1 for n < 2. */
 QUAT_API int quat_loop_sign(size_t n, const quat q[]);
 
 /* ---- a unit ball rolled under a flat hand; the hand's way counts from the ball's centre ---- */
@@ -57,8 +58,8 @@ QUAT_API int quat_loop_sign(size_t n, const quat q[]);
 QUAT_API quat quat_roll(quat q, double dx, double dy);
 /* The orientations along the hand's places, joined by straight strokes: out[0] = start (unit), n of them. */
 QUAT_API void quat_roll_path(quat start, size_t n, const qvec2 hand[], quat out[]);
-/* From 1, when the hand has gone round a circle of this radius by `angle` (positive: counter-clockwise seen from above),
- * from (radius, 0) on: exp(k angle/2) exp(-(k + radius i) angle/2), exact where strokes are a polygon. */
+/* From 1, when the hand has gone round a circle of this radius by `angle` (positive: counter-clockwise seen from
+ * above), from (radius, 0) on: exp(k angle/2) exp(-(k + radius i) angle/2), exact where strokes are a polygon. */
 QUAT_API quat quat_roll_circle(double radius, double angle);
 /* What one round counter-clockwise has turned the ball by, as a rotation vector: 2 pi (sqrt(1 + radius^2) - 1) about
  * (-radius, 0, -1): clockwise, though the ball was never turned about z. To 8 rounding units at every radius. */
@@ -66,10 +67,11 @@ QUAT_API qvec3 quat_roll_loop(double radius);
 
 /* ---- chains ---- */
 
-/* Rotation vectors turns[0], turns[1] ... one after the other from `start`, each in `parts` equal steps: a curve in S^3
- * of legs parts + 1 points, continuous whatever the angles (turns longer than 2 pi go round). With QUAT_WORLD each turn
- * is about world axes, with QUAT_BODY about the body's own. QUAT_EARGUMENT for parts = 0 and an unknown frame; QUAT_EDOMAIN for a
- * start that cannot be normalised and for infinite or NaN turns; every out[] is 1 then (out[0] alone for parts = 0). */
+/* Rotation vectors turns[0], turns[1] ... one after the other from `start`, each in `parts` equal steps: a curve in
+ * S^3 of legs parts + 1 points, continuous whatever the angles (turns longer than 2 pi go round). With QUAT_WORLD each
+ * turn is about world axes, with QUAT_BODY about the body's own. QUAT_EARGUMENT for parts = 0 and an unknown frame;
+ * QUAT_EDOMAIN for a start that cannot be normalised and for infinite or NaN turns; every out[] is 1 then (out[0]
+ * alone for parts = 0). */
 QUAT_API quat_status quat_chain(quat start, size_t legs, const qvec3 turns[], quat_frame frame, size_t parts,
                                 quat out[]);
 
