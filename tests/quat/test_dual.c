@@ -88,7 +88,7 @@ static void screw_interpolation(void **state)
     (void)state;
     random_state r = {93};
     double half = 0, moved = 0, unit = 0;
-    for (int n = 0; n < 50000; n++) {
+    for (int n = 0; n < 100000; n++) {
         const qdual p = quat_dual_from(random_unit(&r), qvec3_scale(random_direction(&r), 2));
         const qdual q = quat_dual_from(random_unit(&r), qvec3_scale(random_direction(&r), 2));
         const double t = random_uniform(&r);
@@ -121,7 +121,7 @@ static void normalise_and_blend(void **state)
     (void)state;
     random_state r = {94};
     qdual unit, p[3];
-    for (int n = 0; n < 10000; n++) {
+    for (int n = 0; n < 100000; n++) {
         const qdual any = {quat_scale(random_unit(&r), random_scale(&r, -100, 100)), random_any(&r)};
         assert_int_equal(quat_dual_normalize(any, &unit), QUAT_OK);
         assert_true(fabs(quat_norm(unit.real) - 1) < 1e-15);

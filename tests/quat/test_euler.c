@@ -42,7 +42,7 @@ static void the_24_sequences_are_what_their_names_say(void **state)
     (void)state;
     random_state r = {31};
     double worst = 0;
-    for (int n = 0; n < 60000; n++) {
+    for (int n = 0; n < 100000; n++) {
         const double angles[3] = {random_between(&r, -7, 7), random_between(&r, -7, 7), random_between(&r, -7, 7)};
         quat q;
         assert_int_equal(quat_from_euler(angles, sequence(n % 24), &q), QUAT_OK);

@@ -56,7 +56,7 @@ static void steady_turning_is_exact(void **state)
     (void)state;
     random_state r = {81};
     double worst = 0;
-    for (int n = 0; n < 20000; n++) {
+    for (int n = 0; n < 100000; n++) {
         const quat q = random_unit(&r);
         const qvec3 w = qvec3_scale(random_direction(&r), random_between(&r, 0, 5));
         const double h = random_between(&r, -1, 1);

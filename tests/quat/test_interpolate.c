@@ -52,7 +52,7 @@ static void ends_are_exact(void **state)
 {
     (void)state;
     random_state r = {52};
-    for (int n = 0; n < 20000; n++) {
+    for (int n = 0; n < 100000; n++) {
         const quat p = random_unit(&r), q = random_unit(&r), near = quat_nearest(q, p);
         assert_true(quat_equal(quat_slerp(p, q, 0), p) && quat_equal(quat_slerp(p, q, 1), near));
         assert_true(quat_equal(quat_slerp_as_given(p, q, 0), p) && quat_equal(quat_slerp_as_given(p, q, 1), q));
@@ -141,12 +141,47 @@ static void angular_velocities(void **state)
     assert_bound("angular velocity of squad", squad, 1e-13);
 }
 
+static double apart(qvec3 a, qvec3 b) { return qvec3_norm(qvec3_sub(a, b)); }
+
+static void angular_velocities_keep_their_identities(void **state)
+{
+    (void)state;
+    random_state r = {57};
+    double slerp = 0, nlerp = 0, plain = 0, turned = 0, reversed = 0;
+    for (int n = 0; n < 100000; n++) {
+        const quat p = random_unit(&r), g = random_unit(&r);
+        const quat q = at_angle(&r, p, n % 4 ? random_between(&r, 0, 0.5 * pi - 1e-3) : random_scale(&r, -12, 0));
+        const quat a = at_angle(&r, p, random_between(&r, 0, 0.5)), b = at_angle(&r, q, random_between(&r, 0, 0.5));
+        const double t = n % 3 ? random_uniform(&r) : nasty_t(&r, n);
+        /* steady: slerp = exp(omega t/2) p */
+        const qvec3 steady = quat_slerp_omega(p, q);
+        const quat there = quat_mul(quat_exp_pure(qvec3_scale(steady, 0.5 * t)), p);
+        worse(&slerp, quat_norm(quat_sub(there, quat_slerp(p, q, t))));
+        /* 2 (q - p) s* over |s|^2, s = (1 - t) p + t q */
+        const wquat d = wide_sub(wide_quat(q), wide_quat(p)), s = wide_add(wide_quat(p), wide_scale(d, t));
+        const wquat w = wide_scale(wide_mul(d, wide_conj(s)), 2 / wide_dot(s, s));
+        worse(&nlerp, (double)wide_vnorm(wide_sub(wide_vec(quat_nlerp_omega(p, q, t)), w)));
+        /* a squad without bend is a slerp; turning everything turns it; backwards it runs the other way */
+        const qvec3 bent = quat_squad_omega(p, a, b, q, t);
+        worse(&plain, apart(quat_squad_omega(p, p, q, q, t), steady));
+        const qvec3 left = quat_squad_omega(quat_mul(g, p), quat_mul(g, a), quat_mul(g, b), quat_mul(g, q), t);
+        const qvec3 right = quat_squad_omega(quat_mul(p, g), quat_mul(a, g), quat_mul(b, g), quat_mul(q, g), t);
+        worse(&turned, fmax(apart(left, quat_rotate(g, bent)), apart(right, bent)));
+        worse(&reversed, qvec3_norm(qvec3_add(quat_squad_omega(q, b, a, p, 1 - t), bent)));
+    }
+    assert_bound("slerp = exp(omega t/2) p", slerp, 3e-15);
+    assert_bound("angular velocity of nlerp, 1e5", nlerp, 1e-14);
+    assert_bound("that of a squad without bend is slerp's", plain, 1e-14);
+    assert_bound("squad's turns with everything", turned, 1e-13);
+    assert_bound("and is reversed with the order", reversed, 1e-13);
+}
+
 static void squad_joins_smoothly(void **state)
 {
     (void)state;
     random_state r = {55};
     double worst = 0;
-    for (int n = 0; n < 3000; n++) {
+    for (int n = 0; n < 100000; n++) {
         quat k[4];
         k[0] = random_unit(&r);
         for (int i = 1; i < 4; i++) k[i] = at_angle(&r, k[i - 1], random_between(&r, 0, 1));
@@ -161,9 +196,9 @@ static void squad_joins_smoothly(void **state)
 static void unflip_follows_a_curve(void **state)
 {
     (void)state;
-    enum { count = 400 };
+    enum { count = 100000 };
     random_state r = {56};
-    quat q[count], clean[count];
+    static quat q[count], clean[count];
     for (int turns = 1; turns <= 2; turns++) {
         size_t flipped = 0;
         for (int i = 0; i < count; i++) {
@@ -186,9 +221,13 @@ static void unflip_follows_a_curve(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slerp_is_within_its_bar),    cmocka_unit_test(ends_are_exact),
-        cmocka_unit_test(slerp_keeps_its_identities), cmocka_unit_test(angular_velocities),
-        cmocka_unit_test(squad_joins_smoothly),       cmocka_unit_test(unflip_follows_a_curve),
+        cmocka_unit_test(slerp_is_within_its_bar),
+        cmocka_unit_test(ends_are_exact),
+        cmocka_unit_test(slerp_keeps_its_identities),
+        cmocka_unit_test(angular_velocities),
+        cmocka_unit_test(angular_velocities_keep_their_identities),
+        cmocka_unit_test(squad_joins_smoothly),
+        cmocka_unit_test(unflip_follows_a_curve),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

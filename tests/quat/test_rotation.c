@@ -169,7 +169,7 @@ static void noisy_matrices_give_the_nearest_rotation(void **state)
     (void)state;
     random_state r = {25};
     double exact = 0, stationary = 0;
-    for (int n = 0; n < 20000; n++) {
+    for (int n = 0; n < 100000; n++) {
         const quat q = random_unit(&r);
         qmat3 m = quat_to_matrix(q);
         quat found;
@@ -236,7 +236,7 @@ static void frames(void **state)
     (void)state;
     random_state r = {27};
     double worst = 0, whole = 0;
-    for (int n = 0; n < 50000; n++) {
+    for (int n = 0; n < 100000; n++) {
         const quat q = random_unit(&r);
         const qvec3 x = quat_rotate(q, qvec3_make(1, 0, 0)), y = quat_rotate(q, qvec3_make(0, 1, 0));
         const qvec3 z = quat_rotate(q, qvec3_make(0, 0, 1));
