@@ -101,6 +101,7 @@ core.layer()
 ---@field pairs? {bodies: string[], friction?: number, restitution?: number}[]
 ---@field law? "poisson"|"newton"|"stronge"
 ---@field solver? "auto"|"closed_form"|"series"|"cvode"
+---@field compliance? number  eta^2 of every contact, with law = "stronge"; 0: rigid
 ---@field tolerance? number
 ---@field rest_height? number  m
 ---@field rest_speed? number  m/s

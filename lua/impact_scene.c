@@ -165,6 +165,7 @@ static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
     lua_pop(L, 1);
     def->law = (impact_law)quat_lua_get_choice(reader, "law", law_words, (int)def->law);
     def->solver = (impact_solver)quat_lua_get_choice(reader, "solver", solver_words, (int)def->solver);
+    def->compliance = quat_lua_get_number(reader, "compliance", QUAT_LUA_NOT_NEGATIVE, def->compliance);
 }
 
 static void read_plot(const quat_lua_reader *reader)
@@ -180,8 +181,8 @@ static void read_plot(const quat_lua_reader *reader)
 static impact_scene_def read_scene(lua_State *L, int index, impact_lua_scene *self, int laws)
 {
     static const char *const keys[] = {
-        "name", "gravity", "duration",  "output_rate", "bodies",     "forces",     "pairs", "rules",
-        "law",  "solver",  "tolerance", "rest_height", "rest_speed", "max_events", "plot",  NULL};
+        "name",   "gravity",   "duration",    "output_rate", "bodies",     "forces", "pairs",      "rules", "law",
+        "solver", "tolerance", "rest_height", "rest_speed",  "max_events", "plot",   "compliance", NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     def.name = quat_lua_get_string(&reader, "name", def.name ? def.name : "scene");

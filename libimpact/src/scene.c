@@ -72,6 +72,7 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
     if (!scene) return IMPACT_ENOMEM;
     scene->duration = def->duration;
     scene->law = def->law;
+    scene->compliance = def->compliance;
     scene->solver = def->solver;
     scene->rest_height = def->rest_height;
     scene->rest_speed = def->rest_speed;

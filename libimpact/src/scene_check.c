@@ -153,6 +153,10 @@ impact_status impact_scene_check(const impact_scene_def *def, char *message, uns
     require(&c, isfinite(def->duration) && def->duration > 0, "duration", def->duration, "must be positive and finite");
     require(&c, isfinite(def->output_rate) && def->output_rate >= 0, "output_rate", def->output_rate,
             "must be >= 0 and finite");
+    require(&c, isfinite(def->compliance) && def->compliance >= 0, "compliance", def->compliance,
+            "must be >= 0 and finite");
+    require(&c, def->compliance == 0 || def->law == IMPACT_STRONGE, "compliance", def->compliance,
+            "needs Stronge's law");
     require(&c, def->tolerance >= 1e-15 && def->tolerance <= 1e-2, "tolerance", def->tolerance,
             "must lie in [1e-15, 1e-2]");
     require(&c, isfinite(def->rest_height) && def->rest_height > 0, "rest_height", def->rest_height,

@@ -185,7 +185,8 @@ static impact_status strike(impact_scene *scene, const meeting *m)
         .friction = touch->friction,
         .restitution = dies_out(scene, m, restitution * m->velocity) ? 0 : restitution,
         .law = scene->law,
-        .solver = scene->solver};
+        .solver = scene->solver,
+        .tangential_compliance = scene->compliance};
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);
     if (status != IMPACT_OK) {

@@ -16,6 +16,7 @@ struct impact_scene {
     impact_mode *modes;   /* as the pairs' modes were then */
     double t, duration;
     impact_law law;
+    double compliance;
     impact_solver solver;
     double rest_height, rest_speed;
     long max_events, event_count;

@@ -570,6 +570,11 @@ static void bad_definitions_are_named(void **state)
     def.duration = -1;
     expect_refusal(&def, "scene 'scene': duration = -1: must be positive and finite");
     def.duration = 1;
+    def.compliance = 3.5;
+    expect_refusal(&def, "scene 'scene': compliance = 3.5: needs Stronge's law");
+    def.compliance = NAN;
+    expect_refusal(&def, "scene 'scene': compliance = nan: must be >= 0 and finite");
+    def.compliance = 0;
     const impact_pair_def pair = {"coin", "flor", 0.5, NAN};
     def.pairs = &pair;
     def.pair_count = 1;

@@ -63,6 +63,7 @@ typedef struct impact_scene_def {
     impact_pair_rule friction_rule, restitution_rule;
     impact_law law;
     impact_solver solver; /* of impacts */
+    double compliance;    /* of every contact, eta^2: see impact_collision; > 0 with Stronge's law only; 0: rigid */
 
     double tolerance; /* relative, of the motion's integration; a thirtieth of it where no contact is held */
     /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the contact is

@@ -1,0 +1,109 @@
+-- SPDX-License-Identifier: MIT
+--- Example scenes whose motion is known in closed form, against it; arg[1] is the examples' folder.
+local check = require "check"
+local impact = require "impact"
+local quat = require "quat"
+
+local function example(name) return dofile(string.format("%s/scenes/%s.lua", arg[1], name)) end
+
+--- The same scene with other values.
+local function variant(scene, changes)
+  local definition = {}
+  for key, value in pairs(scene:definition()) do definition[key] = value end
+  for key, value in pairs(changes) do definition[key] = value end
+  return impact.scene(definition)
+end
+
+local function impacts(scene)
+  local list = {}
+  for _, event in ipairs(scene:events()) do
+    if event.event == "impact" then list[#list + 1] = event end
+  end
+  return list
+end
+
+-- ---- the bouncing ball: ten bounces and the end of all ----
+do
+  local r, h, e, g = 0.1, 1, 0.8, 9.81
+  local t0 = math.sqrt(2 * h / g)
+  local the_end = t0 * (1 + e) / (1 - e)
+  local function bounce(n) return t0 * (1 + 2 * e * (1 - e ^ n) / (1 - e)) end
+  local scene = example "bouncing_ball"
+  check.equal(scene:run { record = true }, "at rest")
+  local list = impacts(scene)
+  for n = 0, 9 do
+    check.close(list[n + 1].t, bounce(n), 1e-12)
+    check.close(list[n + 1].un_after, g * t0 * e ^ (n + 1), 1e-12)
+    check.close(list[n + 1].t + 2 * list[n + 1].un_after / (g * (1 - e)), the_end, 1e-12)
+  end
+  -- The last impact is held; what would have followed takes 2 e v/(g (1 - e)).
+  local last = list[#list]
+  check.close(last.t - 2 * e * last.un_before / (g * (1 - e)), the_end, 1e-10)
+  check.truth(the_end - last.t < 1e-5, "bounces are followed to 1e-12 m")
+  local tops = example "bouncing_ball"
+  for n = 0, 9 do
+    check.truth(tops:run_to(bounce(n) + e ^ (n + 1) * t0))
+    local state = tops:state "ball"
+    check.close(state.position[3], r + h * e ^ (2 * (n + 1)), 1e-12)
+    check.close(state.velocity[3], 0, 1e-11)
+  end
+  check.equal(scene:usage().integrators, 0)
+end
+
+-- ---- the T-handle: a thousand turn-overs ----
+do
+  local short = example "t_handle"
+  local half = short:duration() / 4
+  local scene = variant(short, { duration = 1001 * half })
+  local start = scene:energy().kinetic
+  for k = 1, 1000 do
+    check.truth(scene:run_to(k * half))
+    local state = scene:state "handle"
+    local inside = quat.rotate(quat.conj(state.orientation), state.omega)
+    local sign = k % 2 == 0 and 1 or -1
+    check.close(inside[1], 0.01, 1e-10)
+    check.close(inside[2], sign * 10, 1e-12)
+    check.close(inside[3], 0, 1e-10)
+    -- The momentum stands still: I w, turned back into the laboratory.
+    local L = quat.rotate(state.orientation, { inside[1], 2 * inside[2], 3 * inside[3] })
+    check.close(math.sqrt((L[1] - 0.01) ^ 2 + (L[2] - 20) ^ 2 + L[3] ^ 2), 0, 20 * 1e-14)
+    check.close(scene:energy().kinetic / start, 1, 1e-13)
+  end
+  check.equal(scene:usage().integrators, 0)
+end
+
+-- ---- Garwin's superball: each impact by CVODE at 1e-12, some 1e-11 each ----
+do
+  local theta, r = math.acos(3 / 7), 0.025
+  local scene = example "superball"
+  check.equal(scene:run { record = true }, "end of time")
+  local track, n = scene:track "ball", 0
+  for i = 2, #track.t do
+    if track.vz[i] ~= track.vz[i - 1] then
+      n = n + 1
+      check.close(track.vx[i], math.cos(n * theta), 1e-9)
+      check.close((n % 2 == 0 and 1 or -1) * r * track.wy[i], -math.sqrt(5 / 2) * math.sin(n * theta), 1e-9)
+    end
+  end
+  check.equal(n, 8)
+  check.equal(#impacts(scene), 8)
+
+  -- On one wall: after every second bounce velocity and spin are what they were.
+  local bodies = {}
+  for i, body in ipairs(scene:definition().bodies) do
+    if i ~= 2 then bodies[#bodies + 1] = body end
+  end
+  local floor = variant(scene, { gravity = { 0, 0, -9.81 }, bodies = bodies, duration = 4, output_rate = 0 })
+  check.equal(floor:run { record = true }, "end of time")
+  track, n = floor:track "ball", 0
+  for i = 2, #track.t, 2 do
+    if math.abs(track.vz[i] - track.vz[i - 1]) > 1 then
+      n = n + 1
+      check.close(track.vx[i], n % 2 == 0 and 1 or 3 / 7, 1e-9)
+      check.close(r * track.wy[i], n % 2 == 0 and 0 or 10 / 7, 1e-9)
+    end
+  end
+  check.truth(n >= 4, "it bounces")
+end
+
+check.report("showcases")
