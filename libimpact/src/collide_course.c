@@ -161,7 +161,7 @@ double impact_course_turning(const impact_frame *frame, double mu, double x, dou
 bool impact_course_is_straight(const impact_frame *frame, double mu, double x, double y)
 {
     const double rate = fabs(frame->c) + fabs(frame->d) + mu * impact_larger(frame->a, frame->b);
-    return fabs(impact_course_turning(frame, mu, x, y)) <= 1e-15 * rate;
+    return fabs(impact_course_turning(frame, mu, x, y)) <= 2e-15 * rate;
 }
 
 /* The root lambda > 0 of |(mu M_tt + lambda)^-1 M_tz| = 1: Newton on 1/|.| - 1, convex and rising, from the left (More & Sorensen 1983). */
