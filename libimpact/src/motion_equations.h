@@ -14,6 +14,7 @@ enum {
     Y_SLIDING,
     Y_BODIES,
     Y_PER_BODY = 13,
+    Y_VELOCITY = 7,
     Y_PER_SPOT = 3,
     ROOTS_PER_PAIR = 3,
     ROOTS_PER_EDGE = 2

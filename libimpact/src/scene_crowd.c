@@ -23,8 +23,7 @@ typedef struct party {
     impact_scene scene;
     struct impact_scene_crowd *owner;
     int group;
-    int *body, *pair; /* their indices in the whole scene */
-    impact_state *probe;
+    int *body, *pair;  /* their indices in the whole scene */
     double *top_speed; /* of each body, m/s */
     impact_recorder recorder;
     impact_status status;
@@ -96,6 +95,18 @@ static bool within(const party *p, const impact_state *states)
     return true;
 }
 
+/* The same of the integrated state. */
+static bool integrated_within(const party *p)
+{
+    const double *v = p->scene.motion.y ? p->scene.motion.y + Y_BODIES + Y_VELOCITY : NULL;
+    for (int i = 0; v && i < p->scene.world.body_count; i++) {
+        if (p->scene.world.bodies[i].is_static) continue;
+        if (qvec3_norm((qvec3){v[0], v[1], v[2]}) > p->top_speed[i]) return false;
+        v += Y_PER_BODY;
+    }
+    return true;
+}
+
 /* Before every stretch of a group's motion, and at every step of its integrator. */
 static bool party_pulse(void *context, double t)
 {
@@ -103,11 +114,7 @@ static bool party_pulse(void *context, double t)
     impact_scene_crowd *crowd = p->owner;
     const impact_recorder *recorder = crowd->scene->recorder;
     crowd->escaped = crowd->escaped || !within(p, p->scene.states);
-    if (p->scene.motion.y) {
-        memcpy(p->probe, p->scene.states, sizeof *p->probe * (size_t)p->scene.world.body_count);
-        impact_motion_unpack(&p->scene.motion, p->scene.motion.y, p->probe);
-        crowd->escaped = crowd->escaped || !within(p, p->probe);
-    }
+    crowd->escaped = crowd->escaped || !integrated_within(p);
     if (recorder && recorder->progress)
         crowd->stopped =
             crowd->stopped || !recorder->progress(recorder->context, fmin(t, crowd->scene->t), crowd->scene->duration);
@@ -129,7 +136,6 @@ static void free_party(party *p)
     free(p->scene.modes);
     free(p->body);
     free(p->pair);
-    free(p->probe);
     free(p->top_speed);
     free(p);
 }
@@ -153,10 +159,9 @@ static impact_status allocate_party(party *p, int bodies, int pairs)
     p->scene.modes = calloc(m, sizeof *p->scene.modes);
     p->body = calloc(n, sizeof *p->body);
     p->pair = calloc(m, sizeof *p->pair);
-    p->probe = calloc(n, sizeof *p->probe);
     p->top_speed = calloc(n, sizeof *p->top_speed);
     return world->bodies && world->pairs && p->scene.states && p->scene.before && p->scene.modes && p->body &&
-                   p->pair && p->probe && p->top_speed
+                   p->pair && p->top_speed
                ? IMPACT_OK
                : IMPACT_ENOMEM;
 }
