@@ -303,8 +303,8 @@ static impact_status bring_to_rest(impact_scene *scene)
     return IMPACT_OK;
 }
 
-/* From tentative modes to consistent ones, with the constraints exact. */
-static impact_status hold(impact_scene *scene)
+/* Puts the constraints of the contacts that are held in order, and opens those that would pull. */
+static impact_status make_consistent(impact_scene *scene)
 {
     impact_motion *motion = &scene->motion;
     impact_status status = impact_persist_reserve(&motion->persist, &scene->world, scene->states);
@@ -317,6 +317,45 @@ static impact_status hold(impact_scene *scene)
     if (status == IMPACT_EUNSETTLED)
         snprintf(scene->message, sizeof scene->message, "no consistent set of contact forces found at t = %.17g",
                  scene->t);
+    return status;
+}
+
+/* The first open pair that touches, is all but still along the normal, and is pressed together by the loads and the reactions; or -1. */
+static int find_pressed(impact_scene *scene, meeting *m)
+{
+    impact_world *world = &scene->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        impact_pair *pair = &world->pairs[p];
+        if (impact_is_held(pair) || pair->settled || !meets(scene, p, m)) continue;
+        const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+        const double push1 = qvec3_norm(scene->motion.loads[pair->body1].force) * b1->inverse_mass,
+                     push2 = qvec3_norm(scene->motion.loads[pair->body2].force) * b2->inverse_mass;
+        const double pressed = -1e-9 * (push1 + push2);
+        if (m->acceleration < pressed && dies_out(scene, m, m->velocity)) return p;
+    }
+    return -1;
+}
+
+/* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other contacts have changed
+ * their modes, is held again at once: it would come back in less than can be told from rounding, and again and again. Each pair is given
+ * one such chance in an instant. opened: the pair that has just lifted off, or -1. */
+static impact_status hold(impact_scene *scene, int opened)
+{
+    impact_world *world = &scene->world;
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].settled = p == opened;
+    impact_status status = make_consistent(scene);
+    while (status == IMPACT_OK) {
+        meeting m;
+        status = load_with_reactions(scene);
+        const int p = status == IMPACT_OK ? find_pressed(scene, &m) : -1;
+        if (p < 0) break;
+        impact_pair *pair = &world->pairs[p];
+        pair->settled = true;
+        pair->onset = false;
+        pair->mode = m.touch.speed > world->slip_speed ? IMPACT_SLIDE : IMPACT_ROLL;
+        status = make_consistent(scene);
+    }
+    if (status == IMPACT_OK) status = load(scene);
     if (status == IMPACT_OK) status = record_changes(scene);
     return status == IMPACT_OK ? bring_to_rest(scene) : status;
 }
@@ -354,7 +393,7 @@ impact_status impact_scene_settle(impact_scene *scene)
     impact_status status = strike_all(scene);
     if (status == IMPACT_OK) {
         choose_modes(scene);
-        status = hold(scene);
+        status = hold(scene, -1);
     }
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
@@ -385,7 +424,7 @@ static impact_status change_mode(impact_scene *scene, int p, impact_mode mode)
     pair->mode = mode;
     pair->onset = false;
     const double energy = impact_scene_total_energy(scene);
-    const impact_status status = hold(scene);
+    const impact_status status = hold(scene, mode == IMPACT_OPEN ? p : -1);
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
 }
@@ -400,7 +439,7 @@ static impact_status begin_slide(impact_scene *scene, int p)
     impact_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
     for (int c = 0; c < persist->count; c++)
         if (persist->touches[c].pair == p) impact_persist_begin_slide(&scene->world.pairs[p], &persist->touches[c]);
-    return hold(scene);
+    return hold(scene, -1);
 }
 
 static impact_status cross_edge(impact_scene *scene, int edge)
@@ -411,7 +450,7 @@ static impact_status cross_edge(impact_scene *scene, int edge)
     impact_event event = event_of_body(scene, IMPACT_EVENT_FORCE, body);
     event.name2 = scene->world.fields[field].name;
     const impact_status status = record(scene, &event);
-    return status == IMPACT_OK ? hold(scene) : status;
+    return status == IMPACT_OK ? hold(scene, -1) : status;
 }
 
 impact_status impact_scene_handle(impact_scene *scene, impact_end end)
@@ -427,7 +466,7 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_SLIP: return begin_slide(scene, end.index);
     case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);
     case IMPACT_END_EDGE: return cross_edge(scene, end.index);
-    case IMPACT_END_SLOW: remember(scene); return hold(scene);
+    case IMPACT_END_SLOW: remember(scene); return hold(scene, -1);
     }
     return IMPACT_OK;
 }
