@@ -67,7 +67,8 @@ double impact_motion_clock(const impact_motion *motion)
         if (motion->persist.touches[c].carried)
             slowness = hypot(slowness, motion->persist.touches[c].creep / motion->creep_scale);
     for (int c = 0; c < motion->persist.count && motion->sliding; c++)
-        if (motion->persist.touches[c].mode == IMPACT_SLIDE && !motion->persist.touches[c].onset)
+        if (motion->persist.touches[c].mode == IMPACT_SLIDE && !motion->persist.touches[c].onset &&
+            motion->persist.touches[c].friction > 0)
             slowness += motion->slip_scale / motion->persist.touches[c].speed;
     return 1 / slowness;
 }
@@ -164,6 +165,7 @@ static void held_pair_roots(impact_world *world, const impact_touch *touch, cons
     const impact_contact contact = {.offset2 = touch->r2};
     value[0] = touch->pressure;
     value[1] = touch->mode == IMPACT_ROLL ? touch->margin
+               : touch->friction == 0     ? 1 /* slip neither begins nor ends */
                : touch->onset             ? touch->drive - (1 - 1e-9)
                                           : touch->speed - world->slip_speed;
     value[2] = impact_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);

@@ -78,7 +78,7 @@ static double slowest_slip(const impact_motion *motion)
     double slowest = INFINITY;
     for (int c = 0; c < motion->persist.count; c++) {
         const impact_touch *touch = &motion->persist.touches[c];
-        if (touch->mode == IMPACT_SLIDE && !touch->onset) slowest = fmin(slowest, touch->speed);
+        if (touch->mode == IMPACT_SLIDE && !touch->onset && touch->friction > 0) slowest = fmin(slowest, touch->speed);
     }
     return slowest;
 }

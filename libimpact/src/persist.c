@@ -406,7 +406,7 @@ static double force_scale(const impact_persist *persist)
 void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch)
 {
     pair->mode = IMPACT_SLIDE;
-    pair->onset = true;
+    pair->onset = pair->friction > 0;
     pair->direction = against_friction(touch);
 }
 
@@ -417,7 +417,7 @@ static void stop_slow_slides(impact_persist *persist, impact_world *world, const
     find_touches(persist, world, states, loads);
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
-        if (touch->mode == IMPACT_SLIDE && touch->speed <= world->slip_speed && !touch->onset)
+        if (touch->mode == IMPACT_SLIDE && touch->friction > 0 && touch->speed <= world->slip_speed && !touch->onset)
             world->pairs[touch->pair].mode = IMPACT_ROLL;
     }
 }

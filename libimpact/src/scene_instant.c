@@ -3,9 +3,11 @@
  * What happens at one instant: impacts, one after another, until no touching pair approaches; then the contacts that are held.
  */
 #include "scene_internal.h"
+#include "scene_together.h"
 #include "world_gap.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- rows ---- */
@@ -216,19 +218,72 @@ static impact_status strike(impact_scene *scene, const meeting *m)
     return record(scene, &event);
 }
 
-/* The first touching pair that approaches in earnest, or -1. Held contacts that barely do are put right by projection. */
-static int find_approach(impact_scene *scene, meeting *m)
+/* The first touching pair that approaches in earnest, or -1. Those that barely do are put right by projection where they are held, or
+ * (answering) will be: what answers another impact so softly would not rise again. */
+static int find_approach(impact_scene *scene, bool answering, meeting *m)
 {
     const double slow = scene->world.slip_speed;
     for (int p = 0; p < scene->world.pair_count; p++) {
         if (!meets(scene, p, m)) continue;
-        const bool held = impact_is_held(&scene->world.pairs[p]);
+        const bool held = answering || impact_is_held(&scene->world.pairs[p]);
         if (m->velocity < -slow && !(held && dies_out(scene, m, m->velocity))) return p;
     }
     return -1;
 }
 
+/* ---- many impacts in one instant ---- */
+
+/* All touching pairs answer together what is left of the instant's impacts, without restitution. */
+static impact_status strike_together(impact_scene *scene)
+{
+    impact_world *world = &scene->world;
+    impact_share *shares = calloc((size_t)world->pair_count + 1, sizeof *shares);
+    if (!shares) return IMPACT_ENOMEM;
+    int count = 0;
+    meeting m;
+    for (int p = 0; p < world->pair_count; p++)
+        if (meets(scene, p, &m)) shares[count++].touch = m.touch;
+    double energy = impact_scene_total_energy(scene);
+    impact_answer_together(world, scene->states, shares, count);
+    impact_status status = IMPACT_OK;
+    for (int c = 0; status == IMPACT_OK && c < count; c++) {
+        const impact_share *share = &shares[c];
+        if (!(share->normal > 0)) continue;
+        impact_event event = event_of_touch(scene, IMPACT_EVENT_IMPACT, &share->touch);
+        event.phases = "together";
+        event.impulse_normal = share->normal;
+        event.impulse_tangential = qvec3_norm(qvec3_axpy(-share->normal, share->touch.normal, share->impulse));
+        event.normal_before = qvec3_dot(share->touch.normal, share->before);
+        event.normal_after = qvec3_dot(share->touch.normal, share->after);
+        event.energy_before = energy;
+        event.energy_after = energy += share->work;
+        scene->motion.resting[share->touch.body1] = scene->motion.resting[share->touch.body2] = false;
+        world->usage.impacts_together++;
+        status = record(scene, &event);
+    }
+    free(shares);
+    return status;
+}
+
+/* Whether the impacts of this instant have gone round among the pairs that struck often enough, and lose energy as they go. */
+static bool goes_round(const impact_scene *scene, int impacts)
+{
+    int struck = 0;
+    bool elastic = true;
+    for (int p = 0; p < scene->world.pair_count; p++) {
+        struck += scene->world.pairs[p].struck;
+        elastic = elastic && (!scene->world.pairs[p].struck || scene->world.pairs[p].restitution == 1);
+    }
+    return !elastic && impacts > struck * (struck + 10);
+}
+
 /* ---- which contacts are held ---- */
+
+/* What has no friction slides even where it stands still. */
+static impact_mode held_mode(const impact_touch *touch, bool slides)
+{
+    return slides || touch->friction == 0 ? IMPACT_SLIDE : IMPACT_ROLL;
+}
 
 /* Tentative modes: what touches and does not leave is held; those that would pull are opened again when the reactions are known. */
 static void choose_modes(impact_scene *scene)
@@ -240,7 +295,7 @@ static void choose_modes(impact_scene *scene)
         if (!meets(scene, p, &m)) continue;
         const bool stays = m.acceleration < 0 ? dies_out(scene, &m, m.velocity) : m.velocity <= world->slip_speed;
         const bool slides = m.touch.speed > world->slip_speed || (impact_is_held(pair) && m.touch.onset);
-        pair->mode = !stays ? IMPACT_OPEN : slides ? IMPACT_SLIDE : IMPACT_ROLL;
+        pair->mode = stays ? held_mode(&m.touch, slides) : IMPACT_OPEN;
         pair->onset = slides && m.touch.onset && m.touch.speed < world->onset_speed;
     }
 }
@@ -260,7 +315,8 @@ static impact_status record_changes(impact_scene *scene)
         if (now == scene->modes[p]) continue;
         const impact_touch touch = impact_persist_touch(world, p, scene->states, scene->motion.loads);
         impact_event event = event_of_touch(scene, change_of_mode(scene->modes[p], now), &touch);
-        event.phases = now == IMPACT_SLIDE ? "slide" : now == IMPACT_ROLL ? "roll" : "";
+        const bool stands = touch.friction == 0 && touch.speed <= world->slip_speed;
+        event.phases = now == IMPACT_OPEN ? "" : now == IMPACT_ROLL || stands ? "roll" : "slide";
         scene->motion.resting[touch.body1] = scene->motion.resting[touch.body2] = false;
         const impact_status status = record(scene, &event);
         if (status != IMPACT_OK) return status;
@@ -338,13 +394,13 @@ static int find_pressed(impact_scene *scene, meeting *m)
 
 /* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other contacts have changed
  * their modes, is held again at once: it would come back in less than can be told from rounding, and again and again. Each pair is given
- * one such chance in an instant. opened: the pair that has just lifted off, or -1. */
-static impact_status hold(impact_scene *scene, int opened)
+ * one such chance in an instant. opened: the pair that has just lifted off, or -1; rejoin: whether to look for such pairs. */
+static impact_status hold(impact_scene *scene, int opened, bool rejoin)
 {
     impact_world *world = &scene->world;
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].settled = p == opened;
     impact_status status = make_consistent(scene);
-    while (status == IMPACT_OK) {
+    while (rejoin && status == IMPACT_OK) {
         meeting m;
         status = load_with_reactions(scene);
         const int p = status == IMPACT_OK ? find_pressed(scene, &m) : -1;
@@ -352,7 +408,7 @@ static impact_status hold(impact_scene *scene, int opened)
         impact_pair *pair = &world->pairs[p];
         pair->settled = true;
         pair->onset = false;
-        pair->mode = m.touch.speed > world->slip_speed ? IMPACT_SLIDE : IMPACT_ROLL;
+        pair->mode = held_mode(&m.touch, m.touch.speed > world->slip_speed);
         status = make_consistent(scene);
     }
     if (status == IMPACT_OK) status = load(scene);
@@ -366,22 +422,37 @@ static void remember(impact_scene *scene)
     for (int p = 0; p < scene->world.pair_count; p++) scene->modes[p] = scene->world.pairs[p].mode;
 }
 
+/* One impact after another, in the order of the pairs, until no touching pair approaches. Restitution that has gone round among the
+ * same few pairs time and again is spent: the rest of it is answered by all together. */
 static impact_status strike_all(impact_scene *scene)
 {
     enum { MAX_IMPACTS = 100000 };
+    impact_world *world = &scene->world;
     meeting m;
+    bool fresh = true; /* the loads know of the last impact */
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].struck = false;
     impact_status status = load_with_reactions(scene);
     for (int count = 0; status == IMPACT_OK; count++) {
-        const int p = find_approach(scene, &m);
-        if (p < 0) return IMPACT_OK;
-        if (count > 0) scene->world.usage.impacts_simultaneous++;
+        int p = find_approach(scene, count > 0, &m);
+        if (p < 0 && !fresh) {
+            status = load_with_reactions(scene);
+            p = status == IMPACT_OK ? find_approach(scene, count > 0, &m) : -1;
+            fresh = true;
+        }
+        if (p < 0) return status;
+        if (goes_round(scene, count)) {
+            status = strike_together(scene);
+            return status == IMPACT_OK ? load_with_reactions(scene) : status;
+        }
+        if (count > 0) world->usage.impacts_simultaneous++;
         if (count == MAX_IMPACTS) {
             snprintf(scene->message, sizeof scene->message, "%d impacts in the one instant t = %.17g brought no end",
                      count, scene->t);
             return IMPACT_EUNSETTLED;
         }
         status = strike(scene, &m);
-        if (status == IMPACT_OK) status = load_with_reactions(scene);
+        world->pairs[p].struck = true;
+        fresh = false;
     }
     return status;
 }
@@ -393,7 +464,7 @@ impact_status impact_scene_settle(impact_scene *scene)
     impact_status status = strike_all(scene);
     if (status == IMPACT_OK) {
         choose_modes(scene);
-        status = hold(scene, -1);
+        status = hold(scene, -1, false);
     }
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
@@ -424,7 +495,7 @@ static impact_status change_mode(impact_scene *scene, int p, impact_mode mode)
     pair->mode = mode;
     pair->onset = false;
     const double energy = impact_scene_total_energy(scene);
-    const impact_status status = hold(scene, mode == IMPACT_OPEN ? p : -1);
+    const impact_status status = hold(scene, mode == IMPACT_OPEN ? p : -1, true);
     scene->impact_loss += energy - impact_scene_total_energy(scene);
     return status;
 }
@@ -439,7 +510,7 @@ static impact_status begin_slide(impact_scene *scene, int p)
     impact_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
     for (int c = 0; c < persist->count; c++)
         if (persist->touches[c].pair == p) impact_persist_begin_slide(&scene->world.pairs[p], &persist->touches[c]);
-    return hold(scene, -1);
+    return hold(scene, -1, true);
 }
 
 static impact_status cross_edge(impact_scene *scene, int edge)
@@ -450,7 +521,7 @@ static impact_status cross_edge(impact_scene *scene, int edge)
     impact_event event = event_of_body(scene, IMPACT_EVENT_FORCE, body);
     event.name2 = scene->world.fields[field].name;
     const impact_status status = record(scene, &event);
-    return status == IMPACT_OK ? hold(scene, -1) : status;
+    return status == IMPACT_OK ? hold(scene, -1, true) : status;
 }
 
 impact_status impact_scene_handle(impact_scene *scene, impact_end end)
@@ -466,7 +537,7 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_SLIP: return begin_slide(scene, end.index);
     case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);
     case IMPACT_END_EDGE: return cross_edge(scene, end.index);
-    case IMPACT_END_SLOW: remember(scene); return hold(scene, -1);
+    case IMPACT_END_SLOW: remember(scene); return hold(scene, -1, true);
     }
     return IMPACT_OK;
 }

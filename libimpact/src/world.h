@@ -49,6 +49,7 @@ typedef struct impact_pair {
     qvec3 direction; /* IMPACT_SLIDE, onset: about where the slip goes */
     bool carried;    /* held: the contact's place on body 1 is integrated along (persist_spot) */
     double spot[3];  /* carried: that place */
+    bool struck;     /* scratch: exchanged an impulse in this instant */
     bool settled;    /* scratch: had its chance to be held again in this instant */
     impact_gap_cache cache;
 } impact_pair;
