@@ -97,6 +97,13 @@ static void every_layout_gives_the_same(void **state)
     quat_rotate_soa(q[0], count, soa, soa + count, soa + 2 * count, moved, moved + count, moved + 2 * count);
     for (int i = 0; i < count; i++)
         assert_true(moved[i] == w[i].x && moved[count + i] == w[i].y && moved[2 * count + i] == w[i].z);
+    const quat_strided in_place = {soa, 1, count};
+    memcpy(padded, soa, sizeof soa);
+    quat_rotate_strided(q[0], count, in_place, in_place);
+    assert_true(same_bits(soa, moved, sizeof soa));
+    memcpy(soa, padded, sizeof soa);
+    memset(padded, 0, sizeof padded);
+    quat_rotate_strided(q[0], 0, (quat_strided){NULL, 1, 1}, (quat_strided){NULL, 1, 1});
     /* backwards, z y x, five apart */
     const quat_strided in = {soa, 1, count}, back = {padded + 5 * (count - 1) + 2, -5, -1};
     quat_rotate_strided(q[0], count, in, back);
