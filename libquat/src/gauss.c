@@ -66,26 +66,62 @@ static quat_status walk(const quat_mesh *mesh, quat q[], bool signs, char seen[]
     return count < mesh->n ? QUAT_EARGUMENT : worst;
 }
 
-/* Normals away from the opposite of their mean have one shortest rotation from it each: a field without whirls. Elsewhere
- * frames are carried along edges. All are turned together about their normals so that q[0] stays. */
-static quat_status start(const quat_mesh *mesh, quat q[], char seen[])
+/* Triangles around which the frames turn once more than their normals do. */
+static size_t whirls(const quat_mesh *mesh, const quat q[])
 {
-    qvec3 mean = {0, 0, 0};
+    size_t count = 0;
+    for (size_t i = 0; i < mesh->m; i++) {
+        double angle = 0;
+        for (int c = 0; c < 3; c++) {
+            const quat from = q[mesh->triangle[i][c]], to = q[mesh->triangle[i][(c + 1) % 3]];
+            const quat s = quat_mul(quat_conj(from), quat_nearest(to, from));
+            angle += 2 * atan2(s.z, s.w);
+        }
+        count += fabs(angle) > 3.14159265358979324;
+    }
+    return count;
+}
+
+/* The mean of the normals over the area of the patch. */
+static bool mean_normal(const quat_mesh *mesh, const qvec3 x[], const quat q[], qvec3 *mean)
+{
+    qvec3 sum = {0, 0, 0};
+    double area = 0;
+    for (size_t i = 0; i < mesh->m; i++) {
+        const size_t *const t = mesh->triangle[i];
+        const double twice = qvec3_norm(qvec3_cross(qvec3_sub(x[t[1]], x[t[0]]), qvec3_sub(x[t[2]], x[t[0]])));
+        for (int c = 0; c < 3; c++) sum = qvec3_axpy(twice / 3, quat_rotate(q[t[c]], z_axis), sum);
+        area += twice;
+    }
+    return qvec3_norm(sum) > 1e-6 * area && qvec3_normalize(sum, mean) == QUAT_OK;
+}
+
+/* Every node's shortest rotation from a frame of the mean normal, turned together about the normals so that q[0] stays: a
+ * field without whirls unless the patch covers the opposite of the mean. False when there is none. */
+static bool from_the_mean(const quat_mesh *mesh, const qvec3 x[], const quat given[], quat q[])
+{
+    qvec3 mean;
     quat middle;
-    const quat anchor = q[0];
-    bool near = true;
-    for (size_t i = 0; i < mesh->n; i++) mean = qvec3_add(mean, quat_rotate(q[i], z_axis));
-    near = qvec3_norm(mean) > 1e-6 * (double)mesh->n && qvec3_normalize(mean, &mean) == QUAT_OK;
-    for (size_t i = 0; i < mesh->n && near; i++) near = qvec3_dot(mean, quat_rotate(q[i], z_axis)) > -0.9;
-    if (!near) return walk(mesh, q, false, seen);
-    const quat_status parts = walk(mesh, q, true, seen);
-    if (parts != QUAT_OK) return parts;
+    if (!mean_normal(mesh, x, given, &mean)) return false;
     quat_from_two_vectors(z_axis, mean, &middle);
-    for (size_t i = 0; i < mesh->n; i++) carry(middle, q[i], &q[i]);
-    const quat s = quat_mul(quat_conj(q[0]), anchor);
+    for (size_t i = 0; i < mesh->n; i++)
+        if (carry(middle, given[i], &q[i]) != QUAT_OK) return false;
+    const quat s = quat_mul(quat_conj(q[0]), given[0]);
     const double angle = 2 * atan2(s.z, s.w);
     for (size_t i = 0; i < mesh->n; i++) q[i] = quat_gauge_turn(q[i], angle);
-    return QUAT_OK;
+    return true;
+}
+
+/* The better of two starts, by their whirls. */
+static quat_status start(const quat_mesh *mesh, const qvec3 x[], quat q[], quat trial[], char seen[])
+{
+    const bool has_mean = from_the_mean(mesh, x, q, trial);
+    const size_t far = has_mean ? whirls(mesh, trial) : SIZE_MAX;
+    const quat_status status = walk(mesh, q, far == 0, seen);
+    if (status < 0) return status;
+    if (far > 0 && (!has_mean || whirls(mesh, q) <= far)) return status;
+    memcpy(q, trial, mesh->n * sizeof *q);
+    return walk(mesh, q, true, seen);
 }
 
 /* ---- least length ---- */
@@ -237,7 +273,7 @@ quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t
     const size_t(*const triangle)[3] = (const size_t(*)[3])triangles;
     const quat_mesh mesh = {n, m, triangle, (const double(*)[3])weight};
     weigh(x, m, triangle, weight);
-    status = start(&mesh, q, seen);
+    status = start(&mesh, x, q, trial, seen);
     if (status >= 0) {
         quat_status least = QUAT_OK;
         if (gauge != QUAT_SHORTEST) least = lower_length(&mesh, q, work, trial, &report->rounds);

@@ -79,7 +79,7 @@ static bool descend(gsl_multimin_fdfminimizer *search, gsl_multimin_function_fdf
 {
     double since = INFINITY; /* the area at the last restart */
     gsl_multimin_fdfminimizer_set(search, f, zero, 0.1, 0.1);
-    for (size_t round = 0; round < 3000; round++, ++*rounds) {
+    for (size_t round = 0; round < 600; round++, ++*rounds) {
         if (gsl_multimin_test_gradient(search->gradient, 1e-8 * scale / sqrt((double)f->n)) == GSL_SUCCESS) return true;
         if (gsl_multimin_fdfminimizer_iterate(search) == GSL_SUCCESS) continue;
         /* no way down along BFGS' direction: once more from steepest descent, while that gains anything */

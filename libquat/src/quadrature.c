@@ -26,7 +26,7 @@ static double refine(search *s, double a, double b, int depth)
 
 quat_status quat_quadrature(quat_integrand f, void *context, double a, double b, double tolerance, double *integral)
 {
-    search s = {.f = {f, context}, .left = 20000};
+    search s = {.f = {f, context}, .left = 4000};
     double whole, error, size, spread;
     *integral = 0;
     if (a == b) return QUAT_OK;

@@ -3,6 +3,8 @@
 local check = require "check"
 local quat = require "quat"
 local pi = math.pi
+check.equal(quat.no_such_room, nil)
+check.equal(package.loaded["quat.gsl"], nil) -- not before it is used
 
 -- ---- curves ----
 
@@ -45,6 +47,8 @@ end
 points[65] = points[1]
 check.close(quat.curve.samples { times = times, points = points, closed = true }:at(1).curvature, 1, 1e-8)
 collectgarbage()
+
+check.truth(package.loaded["quat.gsl"], "loaded when used")
 
 -- Errors of the function come through as they are; nil is no value.
 local function broken(f) return quat.curve.new { at = f, start = 0, finish = 1 } end

@@ -82,7 +82,7 @@ typedef struct quat_surface_totals {
     double bending; /* integral of H^2: 4 pi or more for a closed surface (Willmore) */
 } quat_surface_totals;
 
-/* Product rules of 16, 32 ... 512 points each way until two in a row agree to `tolerance` (relative; at least 1e-14): Gauss-
+/* Product rules of 16, 32 ... 512 points each way (128 when x alone is known) until two in a row agree to `tolerance` (relative; at least 1e-14): Gauss-
  * Legendre across an open range, equal steps around a closed one. Degenerate edges (poles) do no harm; they are not
  * asked. QUAT_NOT_CONVERGED with the last values otherwise. */
 QUAT_API quat_status quat_surface_total(const quat_surface *surface, double tolerance, quat_surface_totals *totals);
@@ -91,8 +91,8 @@ QUAT_API quat_status quat_surface_total(const quat_surface *surface, double tole
 
 /* Over each point of a patch lies a circle of frames, q exp(k phi/2), that share the normal q k q*. A quaternion Gauss map
  * takes one from each. Which one:
- *   QUAT_SHORTEST        the shortest rotations from a frame of the mean normal; when a normal points within 26 degrees of
- *                        the opposite way, carried from node 0 along edges of the mesh, ring after ring
+ *   QUAT_SHORTEST        the shortest rotations from a frame of the normals' mean over the area; or, when the patch covers the opposite of
+ *                        that and it gives fewer whirls, frames carried from node 0 along edges, ring after ring
  *   QUAT_MINIMAL_LENGTH  least sum over the triangles' edges of cot(opposite angle)/2 |q_i - q_j|^2: a discrete Dirichlet
  *                        energy, which approaches the integral of |q_1|^2 + |q_2|^2, the squared stretch on S^3 in two
  *                        perpendicular directions, over the patch
