@@ -71,7 +71,8 @@ bool impact_direct_solve(const impact_collision *collision, const impact_ready r
     const double eps = collision->restitution, speed = -approach, p_c = speed / w, p = (1 + eps) * p_c;
     const double work = 0.5 * speed * p_c, back = eps * eps * work;
     const qvec3 normal = qvec3_scale(n, p), t = qvec3_axpy(speed, n, u);
-    const double length = sqrt(qvec3_dot(t, t)), s = length > rounding ? length : 0;
+    const double t2 = qvec3_dot(t, t), length = t2 > DBL_MIN && t2 < DBL_MAX ? sqrt(t2) : qvec3_norm(t);
+    const double s = length > rounding ? length : 0;
     const friction f = rub(collision->friction, p, p_c, s, l);
     const bool rubs = s > 0 && !smooth;
     outcome->impulse = rubs ? qvec3_axpy(-f.impulse / s, t, normal) : normal;

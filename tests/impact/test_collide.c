@@ -61,6 +61,24 @@ static void sphere_slides(void **state)
     assert_false(o.energy_rose);
 }
 
+static void sphere_at_any_speed(void **state)
+{
+    (void)state;
+    /* Velocities so large or small that their squares are not numbers: the answer keeps its bits, and so does friction. */
+    const impact_collision c = sphere_on_plane((qvec3){4, 1, -2}, (qvec3){1, -2, 5}, 0.25, 0.3);
+    impact_outcome o, far;
+    assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double f = sign < 0 ? 0x1p-530 : 0x1p530;
+        impact_collision d = c;
+        d.body[0].velocity = qvec3_scale(c.body[0].velocity, f);
+        d.body[0].omega = qvec3_scale(c.body[0].omega, f);
+        assert_int_equal(impact_collide(&d, &far), IMPACT_OK);
+        assert_near3(qvec3_scale(far.velocity[0], 1 / f), o.velocity[0], 1e-15);
+        assert_near3(qvec3_scale(far.omega[0], 1 / f), o.omega[0], 1e-14);
+    }
+}
+
 static void sphere_sticks_below_its_angle(void **state)
 {
     (void)state;
@@ -294,6 +312,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sphere_slides),
+        cmocka_unit_test(sphere_at_any_speed),
         cmocka_unit_test(sphere_sticks_below_its_angle),
         cmocka_unit_test(rebound_off_a_wall),
         cmocka_unit_test(plastic_and_smooth),
