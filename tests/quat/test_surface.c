@@ -451,6 +451,10 @@ static void half_spheres(void **state)
             worse(&worst, quat_rotation_distance(shortest, north.q[i]));
         }
         if (gauge == QUAT_MINIMAL_LENGTH) length = worst;
+        /* 2 pi times the integral of sin x (1/4 + 1/(4 cos^2 x/2)) */
+        const double stretch = 2 * pi * (0.25 + log(2) / 2);
+        if (gauge == QUAT_MINIMAL_LENGTH)
+            assert_bound("squared stretch of it", fabs(report.energy / stretch - 1), polygon);
         if (gauge == QUAT_MINIMAL_AREA) area = worst;
         if (gauge != QUAT_SHORTEST)
             assert_bound("area of a half sphere's Gauss map", fabs(report.area - want) / want, polygon);
