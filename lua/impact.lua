@@ -49,8 +49,10 @@ core.layer()
 ---@field mass? number  kg
 ---@field density? number  kg/m^3, instead of mass
 ---@field moments? vec  principal moments, kg m^2; of the uniform solid by default
----@field position? vec  m
+---@field position? vec  of the centre of mass, m
 ---@field orientation? quat|number[]  body to world, {w, x, y, z}
+---@field shape_position? vec  where the shape's centre stands in the body's frame, m
+---@field shape_orientation? quat|number[]  the shape's axes to the body's principal ones
 ---@field normal? vec  for planes, instead of orientation: where the free side is
 ---@field velocity? vec  m/s
 ---@field omega? vec  rad/s, world

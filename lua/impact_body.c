@@ -95,9 +95,24 @@ static void read_orientation(const quat_lua_reader *reader, impact_body_def *def
 
 void impact_lua_read_body(lua_State *L, int index, const char *where, impact_body_def *def)
 {
-    static const char *const keys[] = {
-        "name",   "shape",    "static", "mass",     "density",     "moments",        "position",        "orientation",
-        "normal", "velocity", "omega",  "friction", "restitution", "linear_damping", "angular_damping", NULL};
+    static const char *const keys[] = {"name",
+                                       "shape",
+                                       "static",
+                                       "mass",
+                                       "density",
+                                       "moments",
+                                       "position",
+                                       "orientation",
+                                       "normal",
+                                       "velocity",
+                                       "omega",
+                                       "friction",
+                                       "restitution",
+                                       "linear_damping",
+                                       "angular_damping",
+                                       "shape_position",
+                                       "shape_orientation",
+                                       NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "body", where, keys);
     *def = impact_default_body_def();
     quat_lua_need(&reader, "name");
@@ -113,6 +128,8 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
     def->moments = quat_lua_get_vec3(&reader, "moments", def->moments);
     def->position = quat_lua_get_vec3(&reader, "position", def->position);
     read_orientation(&reader, def);
+    def->shape_position = quat_lua_get_vec3(&reader, "shape_position", def->shape_position);
+    def->shape_orientation = quat_lua_get_quat(&reader, "shape_orientation", def->shape_orientation);
     def->velocity = quat_lua_get_vec3(&reader, "velocity", def->velocity);
     def->omega = quat_lua_get_vec3(&reader, "omega", def->omega);
     def->friction = quat_lua_get_number(&reader, "friction", QUAT_LUA_NOT_NEGATIVE, def->friction);

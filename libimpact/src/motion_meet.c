@@ -47,7 +47,7 @@ void impact_flyer_board(impact_flyer *flyer, const impact_body *body, const impa
     const double mean = body->moments.x;
     const qvec3 moments = body->spherical ? (qvec3){mean, mean, mean} : body->moments;
     impact_tumble_make(moments, state->q, state->momentum, &flyer->tumble);
-    flyer->turns = body->shape.kind != IMPACT_SPHERE;
+    flyer->turns = !impact_is_ball(body);
     if (flyer->turns) flyer->jolt = find_jolt(&flyer->tumble);
 }
 
@@ -68,7 +68,7 @@ impact_state impact_flyer_at(const impact_flyer *flyer, const impact_body *body,
 
 /* One turning body's part of it. */
 typedef struct turning {
-    const impact_shape *shape;
+    const impact_body *body;
     qvec3 m, rate;
     double h;
 } turning;
@@ -87,7 +87,7 @@ static void add_turning(proof *p, const impact_body *body, const impact_flyer *f
 {
     if (!flyer->turns) return;
     turning *b = &p->body[p->count++];
-    b->shape = &body->shape;
+    b->body = body;
     b->m = quat_rotate_inverse(state->q, towards);
     const qvec3 momentum = quat_rotate_inverse(state->q, state->momentum), i = body->inverse_moments;
     const qvec3 omega = {momentum.x * i.x, momentum.y * i.y, momentum.z * i.z};
@@ -95,10 +95,10 @@ static void add_turning(proof *p, const impact_body *body, const impact_flyer *f
     b->rate = qvec3_cross(b->m, omega);
     const qvec3 second = qvec3_add(qvec3_cross(b->rate, omega), qvec3_cross(b->m, spin_up));
     qvec3 point;
-    b->h = impact_shape_support(b->shape, b->m, &point);
+    b->h = impact_world_support(body, b->m, &point);
     p->slope -= qvec3_dot(b->rate, point);
     p->spread += body->radius * qvec3_norm(second);
-    if (qvec3_norm(second) > 0) p->bend += impact_shape_support(b->shape, second, NULL);
+    if (qvec3_norm(second) > 0) p->bend += impact_world_support(body, second, &point);
     p->jolt += body->radius * flyer->jolt;
 }
 
@@ -109,7 +109,7 @@ static double psi(const proof *p, double T, double *derivative)
     for (int k = 0; k < p->count; k++) {
         qvec3 point;
         value -=
-            impact_shape_support(p->body[k].shape, qvec3_axpy(T, p->body[k].rate, p->body[k].m), &point) - p->body[k].h;
+            impact_world_support(p->body[k].body, qvec3_axpy(T, p->body[k].rate, p->body[k].m), &point) - p->body[k].h;
         d -= qvec3_dot(p->body[k].rate, point);
     }
     *derivative = d;

@@ -17,8 +17,9 @@
 static void place_spot(impact_world *world, impact_pair *pair, const impact_state *states)
 {
     const qvec3 n = quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1});
-    const qvec3 outward = quat_rotate_inverse(states[pair->body1].q, qvec3_neg(n));
-    impact_spot_find(&world->bodies[pair->body1].shape, outward, pair->spot);
+    const impact_body *body = &world->bodies[pair->body1];
+    const qvec3 outward = quat_rotate_inverse(impact_shape_axes(body, &states[pair->body1]), qvec3_neg(n));
+    impact_spot_find(&body->shape, outward, pair->spot);
     pair->carried = true;
 }
 
@@ -72,12 +73,13 @@ static qvec3 curve(const impact_body *body, const impact_state *state, qvec3 out
 {
     if (body->shape.kind == IMPACT_SPHERE)
         return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
-    const qvec3 d = quat_rotate_inverse(state->q, outward);
+    const quat q = impact_shape_axes(body, state);
+    const qvec3 d = quat_rotate_inverse(q, outward);
     const qmat3 h = impact_shape_support_hessian(&body->shape, (qvec3){off_zero(d.x), off_zero(d.y), off_zero(d.z)});
-    const qvec3 b = quat_rotate_inverse(state->q, v);
-    return quat_rotate(state->q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
-                                         h.m[1][0] * b.x + h.m[1][1] * b.y + h.m[1][2] * b.z,
-                                         h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
+    const qvec3 b = quat_rotate_inverse(q, v);
+    return quat_rotate(q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
+                                  h.m[1][0] * b.x + h.m[1][1] * b.y + h.m[1][2] * b.z,
+                                  h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
 }
 
 /* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each surface the
@@ -124,21 +126,23 @@ static void carried_rates(const impact_world *world, impact_touch *touch, const 
 {
     const impact_body *b1 = &world->bodies[touch->body1];
     const impact_state *s1 = &states[touch->body1];
-    const qvec3 omega = impact_omega(b1, s1), turn = qvec3_cross(quat_rotate_inverse(s1->q, omega), spot->normal);
+    const quat q = impact_shape_axes(b1, s1);
+    const qvec3 omega = impact_omega(b1, s1), turn = qvec3_cross(quat_rotate_inverse(q, omega), spot->normal);
     const impact_spot_rate rate = impact_spot_move(&b1->shape, spot, qvec3_neg(turn));
     memcpy(touch->spot_rate, rate.s, sizeof rate.s);
     touch->creep = rate.creep;
-    *rate1 = qvec3_add(qvec3_cross(omega, touch->r1), quat_rotate(s1->q, rate.point_rate));
+    *rate1 = qvec3_add(qvec3_cross(omega, touch->r1), quat_rotate(q, rate.point_rate));
 }
 
 /* The contact of a plane with the spot of body 1 that is carried along. */
 static impact_contact carried_contact(const impact_world *world, const impact_pair *pair, const impact_state *states,
                                       impact_spot *spot)
 {
+    const impact_body *b1 = &world->bodies[pair->body1];
     const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     impact_contact contact = {.normal = quat_rotate(s2->q, (qvec3){0, 0, 1})};
-    *spot = impact_spot_at(&world->bodies[pair->body1].shape, pair->spot);
-    contact.offset1 = quat_rotate(s1->q, spot->point);
+    *spot = impact_spot_at(&b1->shape, pair->spot);
+    contact.offset1 = qvec3_add(impact_shape_offset(b1, s1), quat_rotate(impact_shape_axes(b1, s1), spot->point));
     contact.offset2 = qvec3_add(qvec3_sub(s1->x, s2->x), contact.offset1);
     contact.gap = qvec3_dot(contact.normal, contact.offset2);
     contact.offset2 = qvec3_axpy(-contact.gap, contact.normal, contact.offset2);
@@ -320,11 +324,12 @@ void impact_persist_close_gap(impact_world *world, impact_pair *pair, const impa
 }
 
 /* Turns body 1 so that the plane's normal stands where the carried contact is: what the integration's tolerance left between them. */
-static void align(const impact_pair *pair, impact_state *states, const impact_spot *spot)
+static void align(const impact_world *world, const impact_pair *pair, impact_state *states, const impact_spot *spot)
 {
     impact_state *s1 = &states[pair->body1];
     const qvec3 down = quat_rotate(states[pair->body2].q, (qvec3){0, 0, -1});
-    const qvec3 turn = qvec3_cross(quat_rotate(s1->q, spot->normal), down);
+    const quat q = impact_shape_axes(&world->bodies[pair->body1], s1);
+    const qvec3 turn = qvec3_cross(quat_rotate(q, spot->normal), down);
     quat_normalize(quat_mul(quat_from_rotation_vector(turn), s1->q), &s1->q);
 }
 
@@ -337,7 +342,7 @@ static void close_gaps(impact_world *world, impact_state *states)
         impact_spot spot;
         if (pair->carried) {
             spot = impact_spot_at(&world->bodies[pair->body1].shape, pair->spot);
-            align(pair, states, &spot);
+            align(world, pair, states, &spot);
             contact = carried_contact(world, pair, states, &spot);
         } else {
             impact_world_gap(world, pair, states, &contact);
@@ -431,7 +436,7 @@ impact_status impact_persist_resolve(impact_persist *persist, impact_world *worl
         impact_persist_solve(persist, world, states, loads);
         const double scale = force_scale(persist);
         const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale);
-        if (pull >= 0) {
+        if (pull >= 0 && !(persist->redundant && grip >= 0)) {
             world->pairs[persist->touches[pull].pair].mode = IMPACT_OPEN;
             status = impact_persist_reserve(persist, world, states);
         } else if (grip >= 0) {

@@ -39,6 +39,7 @@ typedef struct impact_persist {
     impact_touch *touches;
     double *matrix, *right; /* (3 capacity)^2 and 3 capacity */
     int *order;             /* 3 capacity */
+    bool redundant;         /* more contacts were solved for than the balance of forces can tell apart */
     int *island;            /* capacity; touches of the same number share bodies */
 } impact_persist;
 
@@ -71,7 +72,8 @@ void impact_persist_close_gap(impact_world *world, impact_pair *pair, const impa
 void impact_persist_project(impact_persist *persist, impact_world *world, impact_state *states,
                             const impact_load *loads);
 
-/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and slide what must. */
+/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and
+ * slide what must. Where reactions are not unique friction gives way first: what pulls is sure only once they are. */
 impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states,
                                      const impact_load *loads);
 

@@ -47,8 +47,8 @@ static qvec3 column_direction(const impact_touch *touch, int i, bool with_fricti
     return row_direction(touch, i);
 }
 
-/* Gauss with complete pivoting; unknowns whose pivots vanish are set to zero. x comes in right. */
-static void solve_linear(double *a, double *right, int *order, int n)
+/* Gauss with complete pivoting; unknowns whose pivots vanish are set to zero. x comes in right. Returns the rank. */
+static int solve_linear(double *a, double *right, int *order, int n)
 {
     for (int i = 0; i < n; i++) order[i] = i;
     double first = 0;
@@ -90,6 +90,7 @@ static void solve_linear(double *a, double *right, int *order, int n)
     }
     for (int i = 0; i < n; i++) a[order[i]] = right[i]; /* the matrix is spent: its first row serves */
     for (int i = 0; i < n; i++) right[i] = a[i];
+    return rank;
 }
 
 /* ---- islands ---- */
@@ -140,7 +141,7 @@ static void solve_island(impact_persist *persist, const impact_world *world, con
         for (int i = 0; persist->island[c] == island && i < unknowns_of(&persist->touches[c]); i++)
             build_column(persist, world, states, island, c, column_direction(&persist->touches[c], i, with_friction),
                          column++, n);
-    solve_linear(persist->matrix, persist->right, persist->order, n);
+    if (solve_linear(persist->matrix, persist->right, persist->order, n) < n) persist->redundant = true;
     const double *x = persist->right;
     for (int c = 0; c < persist->count; c++) {
         impact_touch *touch = &persist->touches[c];
@@ -156,6 +157,7 @@ void impact_system_solve(impact_persist *persist, const impact_world *world, con
                          bool with_friction)
 {
     find_islands(persist, world);
+    persist->redundant = false;
     for (int c = 0; c < persist->count; c++)
         if (persist->island[c] == c) solve_island(persist, world, states, with_friction, c);
 }

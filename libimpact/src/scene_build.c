@@ -32,13 +32,16 @@ static bool build_body(const impact_body_def *def, impact_body *body, impact_sta
                           .shape = def->shape,
                           .is_static = def->is_static,
                           .mass = INFINITY,
-                          .radius = impact_shape_bounding_radius(&def->shape),
+                          .radius = impact_shape_bounding_radius(&def->shape) + qvec3_norm(def->shape_position),
+                          .offset = def->shape_position,
                           .friction = def->friction,
                           .restitution = def->restitution,
                           .linear_rate = -log1p(-def->linear_damping),
                           .angular_rate = -log1p(-def->angular_damping)};
     *state = (impact_state){.x = def->position};
     quat_normalize(def->orientation, &state->q);
+    quat_normalize(def->shape_orientation, &body->turn);
+    body->shifted = impact_scene_shape_stands_aside(def);
     if (body->is_static) return body->name != NULL;
     body->mass = isnan(def->mass) ? def->density * impact_shape_volume(&def->shape) : def->mass;
     body->moments = isnan(def->moments.x) ? qvec3_scale(impact_shape_inertia(&def->shape), body->mass) : def->moments;

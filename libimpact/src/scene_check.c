@@ -63,6 +63,13 @@ static void check_mass(check *c, const impact_body_def *body)
                 "is larger than the other two together: no rigid body has such moments");
 }
 
+bool impact_scene_shape_stands_aside(const impact_body_def *body)
+{
+    const qvec3 p = body->shape_position;
+    const quat q = body->shape_orientation;
+    return p.x != 0 || p.y != 0 || p.z != 0 || q.x != 0 || q.y != 0 || q.z != 0;
+}
+
 static void check_body(check *c, const impact_body_def *body)
 {
     require_vector(c, body->position, "position");
@@ -72,6 +79,14 @@ static void check_body(check *c, const impact_body_def *body)
     const double size = body->orientation.w + body->orientation.x + body->orientation.y + body->orientation.z;
     require(c, quat_normalize(body->orientation, &unit) == QUAT_OK, "orientation", size,
             "must be a finite quaternion that is not zero");
+    require_vector(c, body->shape_position, "shape_position");
+    require_words(c, quat_normalize(body->shape_orientation, &unit) == QUAT_OK,
+                  "shape_orientation must be a finite quaternion that is not zero");
+    const bool aside = impact_scene_shape_stands_aside(body);
+    require_words(c, !aside || body->shape.kind != IMPACT_PLANE,
+                  "a plane takes no shape_position or shape_orientation");
+    require_words(c, !aside || body->is_static || !isnan(body->moments.x),
+                  "give moments: its shape stands aside of the centre of mass or of the principal axes");
     check_mass(c, body);
     require(c, isfinite(body->friction) && body->friction >= 0, "friction", body->friction, "must be >= 0 and finite");
     require(c, body->restitution >= 0 && body->restitution <= 1, "restitution", body->restitution,

@@ -28,6 +28,7 @@ impact_body_def impact_default_body_def(void)
         .density = 1000,
         .moments = {NAN, NAN, NAN},
         .orientation = {1, 0, 0, 0},
+        .shape_orientation = {1, 0, 0, 0},
         .friction = 0.5,
         .restitution = 0.5,
     };

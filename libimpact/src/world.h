@@ -26,7 +26,10 @@ typedef struct impact_body {
     bool spherical; /* three equal principal moments: omega is parallel to the angular momentum */
     double mass, inverse_mass;
     qvec3 moments, inverse_moments;
-    double radius; /* of the bounding ball */
+    double radius; /* of the bounding ball about the centre of mass */
+    bool shifted;  /* the shape stands aside of the body's frame: */
+    qvec3 offset;  /* its centre, body axes */
+    quat turn;     /* its axes to the body's */
     double friction, restitution;
     double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
 } impact_body;
@@ -100,9 +103,28 @@ static inline qvec3 impact_omega(const impact_body *body, const impact_state *st
     return impact_inverse_inertia(body, state->q, state->momentum);
 }
 
+/* The shape's axes to the world's. */
+static inline quat impact_shape_axes(const impact_body *body, const impact_state *state)
+{
+    return body->shifted ? quat_mul(state->q, body->turn) : state->q;
+}
+
+/* The shape's centre from the body's, world. */
+static inline qvec3 impact_shape_offset(const impact_body *body, const impact_state *state)
+{
+    return body->shifted ? quat_rotate(state->q, body->offset) : (qvec3){0, 0, 0};
+}
+
+/* A ball whose turning does not move its surface. */
+static inline bool impact_is_ball(const impact_body *body)
+{
+    return body->shape.kind == IMPACT_SPHERE && !body->shifted;
+}
+
 static inline impact_solid impact_solid_of(const impact_body *body, const impact_state *state)
 {
-    return (impact_solid){body->shape, state->x, state->q};
+    return (impact_solid){body->shape, qvec3_add(state->x, impact_shape_offset(body, state)),
+                          impact_shape_axes(body, state)};
 }
 
 /* A rate, of motion at this speed, up to which a distance does not open, m/s: what only rounding moves stays where it is. */

@@ -5,9 +5,12 @@
 impact_status impact_world_gap(impact_world *world, impact_pair *pair, const impact_state *states,
                                impact_contact *contact)
 {
-    const impact_solid solid1 = impact_solid_of(&world->bodies[pair->body1], &states[pair->body1]);
-    const impact_solid solid2 = impact_solid_of(&world->bodies[pair->body2], &states[pair->body2]);
+    const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const impact_solid solid1 = impact_solid_of(b1, s1), solid2 = impact_solid_of(b2, s2);
     const impact_status status = impact_gap(&solid1, &solid2, &pair->cache, contact);
+    contact->offset1 = qvec3_add(contact->offset1, impact_shape_offset(b1, s1));
+    contact->offset2 = qvec3_add(contact->offset2, impact_shape_offset(b2, s2));
     switch (contact->path) {
     case IMPACT_PATH_CLOSED_FORM: world->usage.gap_closed_form++; break;
     case IMPACT_PATH_NEWTON: world->usage.gap_newton++; break;
@@ -16,6 +19,14 @@ impact_status impact_world_gap(impact_world *world, impact_pair *pair, const imp
     case IMPACT_PATH_NONE: break;
     }
     return status;
+}
+
+double impact_world_support(const impact_body *body, qvec3 direction, qvec3 *point)
+{
+    if (!body->shifted) return impact_shape_support(&body->shape, direction, point);
+    const double h = impact_shape_support(&body->shape, quat_rotate_inverse(body->turn, direction), point);
+    *point = qvec3_add(body->offset, quat_rotate(body->turn, *point));
+    return h + qvec3_dot(direction, body->offset);
 }
 
 static qvec3 omega_of(const impact_world *world, const impact_state *states, int body)

@@ -13,6 +13,9 @@ struct impact_touch;
 impact_status impact_world_gap(impact_world *world, impact_pair *pair, const impact_state *states,
                                impact_contact *contact);
 
+/* The support function of the body's surface about its centre of mass, in its own axes: see impact_shape_support. */
+double impact_world_support(const impact_body *body, qvec3 direction, qvec3 *point);
+
 /* d(gap)/dt at a contact of the pair. */
 double impact_world_gap_rate(const impact_world *world, const impact_pair *pair, const impact_state *states,
                              const impact_contact *contact);

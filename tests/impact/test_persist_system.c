@@ -232,6 +232,8 @@ static qvec3 contact_velocity(impact_scene *scene, const impact_state *states, d
     const impact_solid solid1 = impact_solid_of(b1, s1), solid2 = impact_solid_of(b2, s2);
     impact_contact contact;
     assert_true(impact_gap(&solid1, &solid2, NULL, &contact) >= 0);
+    contact.offset1 = qvec3_add(contact.offset1, impact_shape_offset(b1, s1));
+    contact.offset2 = qvec3_add(contact.offset2, impact_shape_offset(b2, s2));
     const qvec3 u1 = qvec3_add(s1->v, qvec3_cross(impact_omega(b1, s1), contact.offset1));
     const qvec3 u2 =
         b2->is_static ? (qvec3){0, 0, 0} : qvec3_add(s2->v, qvec3_cross(impact_omega(b2, s2), contact.offset2));
@@ -239,7 +241,7 @@ static qvec3 contact_velocity(impact_scene *scene, const impact_state *states, d
     return qvec3_sub(u1, u2);
 }
 
-/* Any smooth bodies, on each other or on a plane, touching, rolling or sliding: with the reactions that were solved for, the contact
+/* Any smooth bodies, their centres of mass anywhere in them, on each other or on a plane, touching, rolling or sliding: with the reactions that were solved for, the contact
  * velocity (rolling) or the gap's rate (sliding) stays what it is, by finite differences of the gap's contact points. */
 static void reactions_keep_the_contact(void **state)
 {
@@ -255,6 +257,11 @@ static void reactions_keep_the_contact(void **state)
         if (k % 3 == 0) impact_shape_sphere(random_log(&random, 0.4, 1), &bodies[0].shape);
         if (k % 7 == 0) bodies[1].is_static = true;
         if (on_plane) impact_shape_plane(INFINITY, INFINITY, &bodies[1].shape), bodies[1].is_static = true;
+        for (int i = 0; i < (on_plane ? 1 : 2) && k % 5 < 2; i++) {
+            bodies[i].shape_position = random_vector(&random, 0.01, 0.2);
+            bodies[i].shape_orientation = random_rotation(&random);
+            bodies[i].moments = (qvec3){1, 0.8, 0.6};
+        }
         bodies[1].mass = 2;
         bodies[0].friction = bodies[1].friction = 0.5;
         bodies[0].position =

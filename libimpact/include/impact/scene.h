@@ -19,12 +19,16 @@ extern "C" {
 typedef struct impact_body_def {
     const char *name; /* unique in the scene, not empty */
     impact_shape shape;
-    bool is_static;     /* never moves; planes must be static */
-    double mass;        /* kg; NaN: density times the shape's volume. Ignored for static bodies */
-    double density;     /* kg/m^3; used when mass is NaN */
-    qvec3 moments;      /* principal moments about the centre, kg m^2, along the body axes; NaN: of the uniform solid */
-    qvec3 position;     /* m */
-    quat orientation;   /* body to world; normalised */
+    bool is_static;   /* never moves; planes must be static */
+    double mass;      /* kg; NaN: density times the shape's volume. Ignored for static bodies */
+    double density;   /* kg/m^3; used when mass is NaN */
+    qvec3 moments;    /* principal moments about the centre, kg m^2, along the body axes; NaN: of the uniform solid */
+    qvec3 position;   /* of the centre of mass, m */
+    quat orientation; /* body to world; normalised */
+    /* Where the shape's centre and axes stand in the body's frame, which is that of its centre of mass and principal moments: m, and
+     * shape to body, normalised. With anything but 0 and 1 the moments must be given. Not for planes. */
+    qvec3 shape_position;
+    quat shape_orientation;
     qvec3 velocity;     /* m/s */
     qvec3 omega;        /* rad/s, world */
     double friction;    /* >= 0; joined with the other body's by the scene's rule */
