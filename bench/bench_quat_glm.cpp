@@ -1,86 +1,35 @@
 // SPDX-License-Identifier: MIT
-#include "bench_quat.h"
+#include "bench_quat_peer.h"
 
 #ifdef HAVE_GLM
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <vector>
 
 namespace
 {
 
-std::vector<glm::dquat> p, q, out_q;
-std::vector<glm::dvec3> v, out_v;
-std::vector<glm::dmat3> m, out_m;
-std::vector<double> t;
-glm::dquat product;
+struct Ops {
+    using Quat = glm::dquat;
+    using Vec = glm::dvec3;
+    using Mat = glm::dmat3;
 
-void load(const bench_input *in)
-{
-    p.clear(), q.clear(), v.clear(), m.clear(), t.clear();
-    for (std::size_t i = 0; i < in->n; i++) {
-        const double *a = in->p + 4 * i, *b = in->q + 4 * i, *c = in->m + 9 * i;
-        p.emplace_back(a[0], a[1], a[2], a[3]);
-        q.emplace_back(b[0], b[1], b[2], b[3]);
-        v.emplace_back(in->v[3 * i], in->v[3 * i + 1], in->v[3 * i + 2]);
-        t.push_back(in->t[i]);
-        m.emplace_back(c[0], c[3], c[6], c[1], c[4], c[7], c[2], c[5], c[8]); // by columns
-    }
-    out_q.resize(in->n), out_v.resize(in->n), out_m.resize(in->n);
-}
+    static Quat identity() { return Quat(1, 0, 0, 0); }
+    static Quat quat(const double *a) { return Quat(a[0], a[1], a[2], a[3]); }
+    static Mat mat(const double *c) { return Mat(c[0], c[3], c[6], c[1], c[4], c[7], c[2], c[5], c[8]); } // by columns
+    static void put(const Quat &r, double *out) { out[0] = r.w, out[1] = r.x, out[2] = r.y, out[3] = r.z; }
+    static double at(const Mat &r, int row, int column) { return r[column][row]; }
 
-void run(bench_case which, std::size_t n)
-{
-    switch (which) {
-    case BENCH_PRODUCT:
-        for (std::size_t i = 0; i < n; i++) out_q[i] = p[i] * q[i];
-        break;
-    case BENCH_COMPOSE: {
-        glm::dquat r(1, 0, 0, 0);
-        for (std::size_t i = 0; i < n; i++) r = r * q[i];
-        product = r;
-        break;
-    }
-    case BENCH_NORMALIZE:
-        for (std::size_t i = 0; i < n; i++) out_q[i] = glm::normalize(p[i]);
-        break;
-    case BENCH_ROTATE:
-        for (std::size_t i = 0; i < n; i++) out_v[i] = q[i] * v[i];
-        break;
-    case BENCH_ROTATE_ARRAY: {
-        const glm::dmat3 r = glm::mat3_cast(q[0]);
-        for (std::size_t i = 0; i < n; i++) out_v[i] = r * v[i];
-        break;
-    }
-    case BENCH_SLERP:
-        for (std::size_t i = 0; i < n; i++) out_q[i] = glm::slerp(p[i], q[i], t[i]);
-        break;
-    case BENCH_TO_MATRIX:
-        for (std::size_t i = 0; i < n; i++) out_m[i] = glm::mat3_cast(q[i]);
-        break;
-    case BENCH_FROM_MATRIX:
-        for (std::size_t i = 0; i < n; i++) out_q[i] = glm::quat_cast(m[i]);
-        break;
-    default: break;
-    }
-}
-
-void fetch(bench_case which, std::size_t n, double *out)
-{
-    const auto put = [&](const glm::dquat &r) { *out++ = r.w, *out++ = r.x, *out++ = r.y, *out++ = r.z; };
-    if (which == BENCH_COMPOSE) return put(product);
-    for (std::size_t i = 0; i < n; i++) {
-        if (bench_width(which) == 4) put(out_q[i]);
-        for (int j = 0; bench_width(which) == 3 && j < 3; j++) *out++ = out_v[i][j];
-        for (int j = 0; bench_width(which) == 9 && j < 9; j++) *out++ = out_m[i][j % 3][j / 3];
-    }
-}
-
-int can(bench_case) { return 1; }
+    static Quat normalized(const Quat &a) { return glm::normalize(a); }
+    static Mat to_matrix(const Quat &a) { return glm::mat3_cast(a); }
+    static Quat from_matrix(const Mat &r) { return glm::quat_cast(r); }
+    static void apply(const Mat &r, const Vec &a, Vec &out) { out = r * a; }
+    static Quat slerp(const Quat &a, const Quat &b, double t) { return glm::slerp(a, b, t); }
+};
+using Glm = Peer<Ops>;
 
 } // namespace
 
-const bench_contestant bench_glm = {"GLM", "double", load, run, fetch, can, 1};
+const bench_contestant bench_glm = {"GLM", "double", Glm::load, Glm::run, Glm::fetch, Glm::can, 1};
 #else
 const bench_contestant bench_glm = {"GLM", nullptr, nullptr, nullptr, nullptr, nullptr, 1};
 #endif
