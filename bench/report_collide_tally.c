@@ -14,7 +14,7 @@ void spread_note(spread *s, double value)
     bin = bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
     s->bin[bin]++;
     s->count++;
-    if (!(value <= s->worst)) s->worst = value;
+    if (!(value <= s->worst) && !isnan(s->worst)) s->worst = value; /* a NaN stays */
 }
 
 double spread_quantile(const spread *s, double part)
@@ -32,16 +32,18 @@ static void merge_spread(spread *into, const spread *from)
 {
     for (int i = 0; i < BINS; i++) into->bin[i] += from->bin[i];
     into->count += from->count;
-    if (!(from->worst <= into->worst)) into->worst = from->worst;
+    if (!(from->worst <= into->worst) && !isnan(into->worst)) into->worst = from->worst;
 }
 
 /* ---- comparisons ---- */
+
+bool above_bar(double error, double conditioning) { return !(error <= fmax(1e-12, 10 * eps * conditioning)); }
 
 void comparison_note(comparison *c, double error, double conditioning)
 {
     spread_note(&c->error, error);
     spread_note(&c->scaled, error / (eps * conditioning));
-    c->above_bar += !(error <= fmax(1e-12, 10 * eps * conditioning));
+    c->above_bar += above_bar(error, conditioning);
 }
 
 static void merge_comparison(comparison *into, const comparison *from)
@@ -50,6 +52,7 @@ static void merge_comparison(comparison *into, const comparison *from)
     merge_spread(&into->scaled, &from->scaled);
     into->refused += from->refused;
     into->above_bar += from->above_bar;
+    into->above_data += from->above_data;
 }
 
 static double scaled(const worst_row *row) { return row->error > 0 ? row->error / row->conditioning : 0; }
@@ -160,7 +163,8 @@ static const double parts[] = {0.5, 0.9, 0.99, 0.999};
 
 void print_comparison_heading(void)
 {
-    printf("class,against,compared,refused,above_1e-12_and_10_eps_cond,error_p50,error_p90,error_p99,error_p999,error_"
+    printf("class,against,compared,refused,above_1e-12_and_10_eps_cond,and_10_data_error,error_p50,error_p90,error_p99,"
+           "error_p999,error_"
            "worst,eps_cond_p50,"
            "eps_cond_p90,eps_cond_p99,eps_cond_p999,eps_cond_worst\n");
 }
@@ -168,7 +172,10 @@ void print_comparison_heading(void)
 void print_comparison(const char *name, const char *with, const comparison *c, bool judged)
 {
     printf("%s,%s,%ld,%ld,", name, with, c->error.count, c->refused);
-    if (judged) printf("%ld", c->above_bar);
+    if (judged)
+        printf("%ld,%ld", c->above_bar, c->above_data);
+    else
+        printf(",");
     for (int i = 0; i < 4; i++) printf(",%.2g", spread_quantile(&c->error, parts[i]));
     printf(",%.2g", c->error.worst);
     for (int i = 0; i < 4; i++) printf(",%.2g", spread_quantile(&c->scaled, parts[i]));
@@ -184,9 +191,9 @@ void print_summary(const tally *total)
            total->impacts, total->failures, total->gain, total->cone);
     printf("# %ld against the 128-bit oracle: median error %.2g, worst %.2g, worst in eps cond %.2g; beyond both 1e-12 "
            "and 10 eps "
-           "cond: %ld\n",
+           "cond: %ld, of these beyond ten times the data's own error: %ld\n",
            oracle->error.count, spread_quantile(&oracle->error, 0.5), oracle->error.worst, oracle->scaled.worst,
-           oracle->above_bar);
+           oracle->above_bar, oracle->above_data);
     printf("# %ld against CVODE at 1e-12: median difference %.2g, worst %.2g; CVODE gave up on %ld\n",
            cvode->error.count, spread_quantile(&cvode->error, 0.5), cvode->error.worst, cvode->refused);
     printf("# time of one call, us: mean %.2g, p50 %.2g, p99 %.2g, max %.2g\n",

@@ -22,10 +22,12 @@ double spread_quantile(const spread *s, double part);
 /* Errors against another solver; scaled: in units of eps cond(M). */
 typedef struct comparison {
     spread error, scaled;
-    long refused;   /* the other has no answer */
-    long above_bar; /* off by more than 1e-12 and more than 10 eps cond */
+    long refused;    /* the other has no answer */
+    long above_bar;  /* off by more than 1e-12 and more than 10 eps cond */
+    long above_data; /* and by more than ten times what the data's own last bits make */
 } comparison;
 
+bool above_bar(double error, double conditioning);
 void comparison_note(comparison *c, double error, double conditioning);
 
 /* One impact whose error is among the worst of its class. */

@@ -125,7 +125,7 @@ static void look(const arc *ar, real x, arc_place *at)
         complex_real ratio;
         if (n == ar->end && 4 * way > ar->span) {
             /* sin(left / 2) / sin(span / 2), however small `left` is. */
-            const real sinc = left > 0 ? sinq(left / 2) / left : 0.5Q;
+            const real sinc = left > 1e-30Q ? sinq(left / 2) / left : 0.5Q;
             ratio = log_left + logq(sinc * ar->span / sinq(ar->span / 2));
         } else {
             ratio = log_ratio(ar, n, sn * sn, 2 * sn * cs);
