@@ -81,11 +81,12 @@ static void range(double a, double b, double c, double T, double *low, double *h
 
 static void static_box(const impact_body *body, const impact_state *state, impact_crowd_body *b)
 {
+    const impact_solid solid = impact_solid_of(body, state);
     double x[3];
-    store(state->x, x);
+    store(solid.position, x);
     for (int i = 0; i < 3; i++) {
-        const qvec3 axis = {i == 0, i == 1, i == 2}, d = quat_rotate_inverse(state->q, axis);
-        const double reach = impact_shape_support(&body->shape, d, NULL) + rounding(body, state);
+        const qvec3 axis = {i == 0, i == 1, i == 2}, d = quat_rotate_inverse(solid.orientation, axis);
+        const double reach = impact_shape_support(&solid.shape, d, NULL) + rounding(body, state);
         b->low[i] = x[i] - reach, b->high[i] = x[i] + reach;
     }
 }

@@ -354,22 +354,21 @@ static double rest_time(const impact_scene_crowd *crowd, double t_end)
 /* The time in which a body goes some part of its radius, more where few can meet. */
 static double choose_while(impact_scene_crowd *crowd)
 {
-    const double least = 0.05, most = 4;
+    const double least = 0.01, most = 4;
     const impact_scene *scene = crowd->scene;
     double radius = 0, square = 0;
-    int moving = 0, held = 0;
+    int moving = 0;
     for (int i = 0; i < scene->world.body_count; i++) {
         if (scene->world.bodies[i].is_static) continue;
         moving++;
-        held += crowd->held[i] > 0;
         radius += scene->world.bodies[i].radius;
         square += qvec3_dot(scene->states[i].v, scene->states[i].v);
     }
     radius /= moving;
     const double natural = radius / (sqrt(square / moving) + sqrt(qvec3_norm(scene->world.gravity) * radius) + 1e-300);
-    const int busy = 6 * crowd->crowd.meetings;
-    if (busy > 2 * moving) crowd->while_time *= 0.7;
-    if (busy < moving) crowd->while_time *= 1.4;
+    const int busy = 15 * crowd->crowd.meetings; /* a fifteenth as many meetings as bodies costs least: bench_crowd */
+    if (busy > moving) crowd->while_time *= 0.7;
+    if (2 * busy < moving) crowd->while_time *= 1.4;
     crowd->while_time = fmin(fmax(crowd->while_time, least * natural), most * natural);
     return crowd->while_time;
 }

@@ -294,7 +294,7 @@ static bool goes_round(const impact_scene *scene, int impacts)
         struck += scene->world.pairs[p].struck;
         elastic = elastic && (!scene->world.pairs[p].struck || scene->world.pairs[p].restitution == 1);
     }
-    return !elastic && impacts > struck * (struck + 10);
+    return !elastic && impacts > 10 * struck;
 }
 
 /* ---- which contacts are held ---- */

@@ -245,6 +245,73 @@ static void the_same_bits_on_every_run(void **state)
     free(s);
 }
 
+/* ---- chains and clamps ---- */
+
+/* Balls that touch, on a line: impacts one after another, in the order of the pairs, so that the last alone flies off. */
+static void a_cradle_of_touching_balls(void **state)
+{
+    (void)state;
+    for (int apart = 0; apart < 2; apart++) {
+        box_scene *s = make_box(0, 0, 0);
+        for (int i = 0; i < 6; i++) {
+            const qvec3 x = {2 * radius * i * (apart ? 1.001 : 1) - (i == 0 ? 0.5 : 0), 0, 0};
+            s->bodies[i] = small_ball(s, i, x, 0.3, 1);
+        }
+        s->bodies[0].velocity = (qvec3){2, 0, 0};
+        s->def.body_count = 6;
+        s->def.gravity = (qvec3){0, 0, 0};
+        s->def.duration = 1;
+        scene_log log = run_box(s, IMPACT_OK, NULL);
+        int impacts = 0;
+        for (int i = 0; i < log.event_count; i++) {
+            if (log.events[i].kind != IMPACT_EVENT_IMPACT) continue;
+            assert_int_equal(log.events[i].body1, impacts);
+            assert_int_equal(log.events[i].body2, impacts + 1);
+            impacts++;
+        }
+        assert_int_equal(impacts, 5);
+        for (int i = 0; i < log.sample_count; i++)
+            if (log.samples[i].t > 0.9)
+                assert_near3(log.samples[i].velocity, (qvec3){log.samples[i].body == 5 ? 2 : 0, 0, 0}, 1e-15);
+        free_log(&log);
+        free(s);
+    }
+}
+
+/* Five balls in a shaft as wide as two and a bit: the lower ones are clamped between floor, walls and those above. Impacts go round among
+ * them, end together, and all come to rest; no row gains energy beyond rounding. */
+static void clamped_balls_come_to_rest(void **state)
+{
+    (void)state;
+    const double restitutions[3] = {0, 0.3, 0.5}, half = 0.25, r = 0.1;
+    const qvec3 at[5] = {
+        {-0.14, 0, 0.15}, {0.13, 0, 0.2}, {0.01, 0.003, 0.5}, {-0.02, -0.005, 0.8}, {0.02, -0.005, 1.1}};
+    for (int k = 0; k < 3; k++) {
+        box_scene *s = make_box(5, 0, restitutions[k]);
+        s->bodies[1].position.x = -half, s->bodies[2].position.x = half;
+        s->bodies[3].position.y = -0.11, s->bodies[4].position.y = 0.11;
+        for (int i = 0; i < 5; i++) {
+            s->bodies[WALLS + i] = small_ball(s, WALLS + i, at[i], 0, restitutions[k]);
+            impact_shape_sphere(r, &s->bodies[WALLS + i].shape);
+        }
+        s->def.duration = 4;
+        impact_energy energy;
+        scene_log log = run_box(s, IMPACT_AT_REST, &energy);
+        int together = 0;
+        for (int i = 0; i < log.event_count; i++) {
+            together += strcmp(log.phases[i], "together") == 0;
+            if (i > 0 && strcmp(log.phases[i], "together") != 0)
+                assert_at_most(log.events[i].energy_after, log.events[i].energy_before + 1e-11);
+            assert_true(log.events[i].impulse_normal >= 0);
+        }
+        assert_true(together > 0);
+        assert_near(energy.kinetic + energy.potential + energy.impact_loss + energy.sliding_loss, energy.start, 1e-8);
+        assert_near(energy.kinetic, 0, 1e-15);
+        free_log(&log);
+        free(s);
+    }
+}
+
 /* ---- stopping ---- */
 
 typedef struct stopper {
@@ -307,6 +374,8 @@ int main(void)
         cmocka_unit_test(in_groups_as_together),
         cmocka_unit_test(the_rows_are_in_order_and_account_for_the_energy),
         cmocka_unit_test(nothing_overlaps),
+        cmocka_unit_test(a_cradle_of_touching_balls),
+        cmocka_unit_test(clamped_balls_come_to_rest),
         cmocka_unit_test(the_same_bits_on_every_run),
     };
     const int failed = cmocka_run_group_tests(closed_forms, NULL, NULL);
