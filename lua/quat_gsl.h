@@ -12,8 +12,8 @@ QUAT_API int luaopen_quat_gsl(lua_State *L);
 void quat_lua_open_curve(lua_State *L);
 void quat_lua_open_surface(lua_State *L);
 
-/* A function of the script's while C asks it for vectors. It runs under lua_pcall, so that its errors do not pass through
- * the library: the first is kept on top of the stack until quat_lua_call_end raises it. */
+/* A function of the script's while C asks it for vectors. It runs under lua_pcall, so that its errors do not pass
+ * through the library: the first is kept on top of the stack until quat_lua_call_end raises it. */
 typedef struct quat_lua_call {
     lua_State *L;
     int function; /* its place on the stack */

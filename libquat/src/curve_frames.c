@@ -11,8 +11,8 @@ quat_status quat_frame_step(quat q, qvec3 x0, qvec3 x1, qvec3 tangent1, quat *ne
     *next = q;
     if (qvec3_normalize(qvec3_sub(x1, x0), &chord) != QUAT_OK) return QUAT_EDOMAIN;
     if (qvec3_normalize(tangent1, &t1) != QUAT_OK) return QUAT_EDOMAIN;
-    /* The tangent mirrored in the chord's bisecting plane, then onto the next tangent; of the frame's own x axis, so that
-     * nothing adds up. */
+    /* The tangent mirrored in the chord's bisecting plane, then onto the next tangent; of the frame's own x axis, so
+     * that nothing adds up. */
     const qvec3 mirrored = quat_reflect(chord, quat_rotate(q, x_axis));
     if (qvec3_normalize(qvec3_sub(t1, mirrored), &bisector) != QUAT_OK) return QUAT_EDOMAIN;
     *next = quat_nearest(quat_renormalize(quat_mul(quat_from_reflections(chord, bisector), q)), q);

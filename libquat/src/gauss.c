@@ -96,8 +96,8 @@ static bool mean_normal(const quat_mesh *mesh, const qvec3 x[], const quat q[], 
     return qvec3_norm(sum) > 1e-6 * area && qvec3_normalize(sum, mean) == QUAT_OK;
 }
 
-/* Every node's shortest rotation from a frame of the mean normal, turned together about the normals so that q[0] stays: a
- * field without whirls unless the patch covers the opposite of the mean. False when there is none. */
+/* Every node's shortest rotation from a frame of the mean normal, turned together about the normals so that q[0] stays:
+ * a field without whirls unless the patch covers the opposite of the mean. False when there is none. */
 static bool from_the_mean(const quat_mesh *mesh, const qvec3 x[], const quat given[], quat q[])
 {
     qvec3 mean;
@@ -145,8 +145,8 @@ static double energy_of(const quat_mesh *mesh, const quat q[])
     return sum;
 }
 
-/* With s = q_a* q_b and the angle D = phi_b - phi_a, |q_a - q_b|^2 = 2 - 2 (s.w cos D/2 - s.z sin D/2): slope s.z, second
- * derivative s.w/2. */
+/* With s = q_a* q_b and the angle D = phi_b - phi_a, |q_a - q_b|^2 = 2 - 2 (s.w cos D/2 - s.z sin D/2): slope s.z,
+ * second derivative s.w/2. */
 static double slopes(const quat_mesh *mesh, const quat q[], double g[])
 {
     double size = 0;
@@ -164,7 +164,8 @@ static double slopes(const quat_mesh *mesh, const quat q[], double g[])
     return size;
 }
 
-/* out = H x; with `above`, negative weights (obtuse corners) are left out, so that H is semidefinite and an upper bound. */
+/* out = H x; with `above`, negative weights (obtuse corners) are left out, so that H is semidefinite and an upper
+ * bound. */
 static void apply(const quat_mesh *mesh, const quat q[], bool above, const double x[], double out[])
 {
     size_t a, b;

@@ -22,8 +22,8 @@ static inline quat quat_gauge_turn(quat q, double angle)
 /* The sum of the triangles' areas. */
 double quat_gauge_area(const quat_mesh *mesh, const quat q[]);
 
-/* Lowers the area from q on, in place, by GSL's BFGS over the nodes' angles: the areas are rounded off where they vanish, less
- * and less. Left as they are when that gains less than 1e-9. work holds 6 n numbers, trial n frames. */
+/* Lowers the area from q on, in place, by GSL's BFGS over the nodes' angles: the areas are rounded off where they
+ * vanish, less and less. Left as they are when that gains less than 1e-9. work holds 6 n numbers, trial n frames. */
 quat_status quat_gauge_lower_area(const quat_mesh *mesh, quat q[], double work[], quat trial[], size_t *rounds);
 
 #endif

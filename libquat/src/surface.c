@@ -161,8 +161,8 @@ void quat_regauge(double angle, double angle_u, double angle_v, quat *q, qvec3 *
     b->z += angle_v;
 }
 
-/* The rate of the frame T1 = x_u/|x_u|, N: a second derivative x_u' = x_uu or x_uv, and x_v' = x_uv or x_vv, along which
- * the parameter grows. N'.x_u = -N.x_u' and N'.x_v = -N.x_v'. */
+/* The rate of the frame T1 = x_u/|x_u|, N: a second derivative x_u' = x_uu or x_uv, and x_v' = x_uv or x_vv, along
+ * which the parameter grows. N'.x_u = -N.x_u' and N'.x_v = -N.x_v'. */
 static qvec3 rate(const quat_surface_point *p, qvec3 t1, qvec3 t2, qvec3 n, qvec3 xu_rate, qvec3 xv_rate)
 {
     const double eu = qvec3_dot(p->xu, t1), ev = qvec3_dot(p->xv, t1), gv = qvec3_dot(p->xv, t2);

@@ -97,7 +97,8 @@ static void knots_in_quad(void **state)
         assert_int_equal(quat_curve_at(&curve, t, &point), QUAT_OK);
         knot(R, small, p, q, t, d);
         const apparatus want = frenet(d);
-        /* curvature's own scale is |x''|/|x'|^2: where the curve is nearly straight its digits are lost to the cross product */
+        /* curvature's own scale is |x''|/|x'|^2: where the curve is nearly straight its digits are lost to the cross
+         * product */
         const wide bend = wide_norm(d[2]) / (want.speed * want.speed), weak = want.curvature / bend;
         worse(&speed, off(point.speed, want.speed, want.speed));
         worse(&curvature, off(point.curvature, want.curvature, bend));

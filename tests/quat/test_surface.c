@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The room surface against the classical formulas (LN - M^2)/(EG - F^2) ... in quadruple precision and against closed forms,
- * neither of which knows of frames.
+ * The room surface against the classical formulas (LN - M^2)/(EG - F^2) ... in quadruple precision and against closed
+ * forms, neither of which knows of frames.
  */
 #include "oracle.h"
 
@@ -187,8 +187,8 @@ static void superellipsoids_in_quad(void **state)
     assert_bound("superellipsoid: normal", worst[2], 1e-13);
 }
 
-/* The thesis' equations 23 and 24 as they should read, for unit and perpendicular tangents: the part along N of q_u (1/q)_v is
- * -K/4, that of q (0, x) (1/q)_u + q (0, y) (1/q)_v is -H. */
+/* The thesis' equations 23 and 24 as they should read, for unit and perpendicular tangents: the part along N of q_u
+ * (1/q)_v is -K/4, that of q (0, x) (1/q)_u + q (0, y) (1/q)_v is -H. */
 static void equations_23_and_24(void **state)
 {
     (void)state;
@@ -382,217 +382,6 @@ static void gauss_and_bonnet(void **state)
                      QUAT_NOT_CONVERGED); /* a needle: the poles ask for more points */
 }
 
-/* ---- Gauss maps ---- */
-
-enum { rings = 24, spokes = 48, cap_nodes = 1 + rings * spokes, cap_triangles = spokes * (2 * rings - 1) };
-
-typedef struct cap {
-    qvec3 x[cap_nodes];
-    quat q[cap_nodes];
-    size_t triangle[cap_triangles][3];
-} cap;
-
-/* The unit sphere within the angle `reach` of sign z, as rings about its pole. Normals outward. */
-static void make_cap(int sign, double reach, cap *c)
-{
-    size_t m = 0;
-    c->x[0] = qvec3_make(0, 0, sign);
-    for (int i = 1; i <= rings; i++)
-        for (int j = 0; j < spokes; j++) {
-            const double polar = reach * i / rings, around = 2 * pi * j / spokes;
-            c->x[1 + (i - 1) * spokes + j] =
-                qvec3_make(sin(polar) * cos(around), sin(polar) * sin(around), sign * cos(polar));
-        }
-    for (size_t j = 0; j < spokes; j++) {
-        const size_t next = (j + 1) % spokes;
-        const size_t first[3] = {0, 1 + j, 1 + next};
-        for (int k = 0; k < 3; k++) c->triangle[m][k] = first[k];
-        m++;
-        for (size_t i = 1; i < rings; i++) {
-            const size_t a = 1 + (i - 1) * spokes + j, b = 1 + (i - 1) * spokes + next, d = a + spokes, e = b + spokes;
-            const size_t two[2][3] = {{a, d, e}, {a, e, b}};
-            for (int h = 0; h < 2; h++, m++)
-                for (int k = 0; k < 3; k++) c->triangle[m][k] = two[h][k];
-        }
-    }
-    assert_int_equal(m, cap_triangles);
-    const quat pole = sign > 0 ? quat_identity() : quat_make(0, 1, 0, 0);
-    c->q[0] = pole;
-    for (size_t i = 1; i < cap_nodes; i++) quat_from_two_vectors(qvec3_make(0, 0, 1), c->x[i], &c->q[i]);
-    /* any frames with these normals will do */
-    random_state r = {405};
-    for (size_t i = 1; i < cap_nodes; i++) {
-        const double angle = random_between(&r, -9, 9);
-        c->q[i] = quat_mul(c->q[i], quat_make(cos(angle), 0, 0, sin(angle)));
-    }
-}
-
-/* Of a half sphere the best frames are the shortest rotations from its pole, which fill a cap of radius pi/4 of a great
- * sphere of S^3: totally geodesic, met by the circles of frames at right angles to its edge, area 2 pi (1 - cos pi/4). */
-static void half_spheres(void **state)
-{
-    (void)state;
-    static cap north, south;
-    const double want = 2 * pi * (1 - sqrt(0.5)),
-                 polygon = pow(2 * pi / spokes, 2) / 6; /* what a polygon lacks of a circle */
-    double length = 0, area = 0, energy[3];
-    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
-        quat_gauge_report report;
-        make_cap(1, pi / 2, &north);
-        assert_int_equal(quat_choose_frames(cap_nodes, north.x, cap_triangles, north.triangle[0], (quat_gauge)gauge,
-                                            north.q, &report),
-                         QUAT_OK);
-        assert_int_equal(report.torn, 0);
-        energy[gauge] = report.energy;
-        double worst = 0;
-        for (size_t i = 0; i < cap_nodes; i++) {
-            quat shortest;
-            quat_from_two_vectors(qvec3_make(0, 0, 1), north.x[i], &shortest);
-            worse(&worst, quat_rotation_distance(shortest, north.q[i]));
-        }
-        if (gauge == QUAT_MINIMAL_LENGTH) length = worst;
-        /* 2 pi times the integral of sin x (1/4 + 1/(4 cos^2 x/2)) */
-        const double stretch = 2 * pi * (0.25 + log(2) / 2);
-        if (gauge == QUAT_MINIMAL_LENGTH)
-            assert_bound("squared stretch of it", fabs(report.energy / stretch - 1), polygon);
-        if (gauge == QUAT_MINIMAL_AREA) area = worst;
-        if (gauge != QUAT_SHORTEST)
-            assert_bound("area of a half sphere's Gauss map", fabs(report.area - want) / want, polygon);
-    }
-    const double least = energy[QUAT_MINIMAL_LENGTH] * (1 - 1e-13);
-    assert_true(least <= energy[QUAT_SHORTEST] && least <= energy[QUAT_MINIMAL_AREA]);
-    assert_bound("least length against the shortest rotations", length, 1e-9);
-    assert_bound("least area against them", area, 1e-9);
-
-    quat_gauge_report report;
-    make_cap(-1, pi / 2, &south);
-    /* the southern triangles look inward; the frames do not mind */
-    assert_int_equal(
-        quat_choose_frames(cap_nodes, south.x, cap_triangles, south.triangle[0], QUAT_MINIMAL_LENGTH, south.q, &report),
-        QUAT_OK);
-    quat q1[spokes + 1], q2[spokes + 1];
-    double angle[spokes + 1], turns, apart;
-    for (size_t j = 0; j <= spokes; j++) {
-        q1[j] = north.q[1 + (rings - 1) * spokes + j % spokes];
-        q2[j] = south.q[1 + (rings - 1) * spokes + j % spokes];
-    }
-    assert_int_equal(quat_transition(spokes + 1, q1, q2, angle, &turns, &apart), QUAT_OK);
-    assert_bound("winding of the sphere's transition + 2", fabs(turns + 2), 1e-14);
-    assert_bound("normals along the seam", apart, 1e-14);
-    double even = 0;
-    for (size_t j = 0; j <= spokes; j++) worse(&even, fabs(angle[j] - angle[0] + 4 * pi * (double)j / spokes));
-    assert_bound("its angle against a straight line", even, 1e-9);
-}
-
-/* Numbered from a node on the rim instead of the pole: the least frames are the same again, but for one angle common to all. */
-static void from_the_rim(double reach)
-{
-    static cap c, turned;
-    make_cap(1, reach, &c);
-    for (size_t i = 0; i < cap_nodes; i++) turned.x[i] = c.x[cap_nodes - 1 - i], turned.q[i] = c.q[cap_nodes - 1 - i];
-    for (size_t i = 0; i < cap_triangles; i++)
-        for (int k = 0; k < 3; k++) turned.triangle[i][k] = cap_nodes - 1 - c.triangle[i][k];
-    double off_by[3] = {0}, energy[3];
-    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
-        quat_gauge_report report;
-        quat common = {0, 0, 0, 0};
-        assert_int_equal(quat_choose_frames(cap_nodes, turned.x, cap_triangles, turned.triangle[0], (quat_gauge)gauge,
-                                            turned.q, &report),
-                         QUAT_OK);
-        energy[gauge] = report.energy;
-        for (size_t i = 0; i < cap_nodes; i++) {
-            quat shortest;
-            quat_from_two_vectors(qvec3_make(0, 0, 1), turned.x[i], &shortest);
-            const quat s = quat_mul(quat_conj(shortest), turned.q[i]);
-            if (i == 0) common = s;
-            worse(&off_by[gauge], quat_rotation_distance(common, s));
-        }
-    }
-    if (getenv("QUAT_TEST_SHOW"))
-        printf("from the rim: energy %g by shortest rotations, %g least\n", energy[0], energy[1]);
-    assert_true(energy[QUAT_MINIMAL_LENGTH] <= energy[QUAT_SHORTEST] * (1 + 1e-13));
-    assert_bound("least length from the rim, rad", off_by[QUAT_MINIMAL_LENGTH], 1e-9);
-    assert_bound("least area from the rim, rad", off_by[QUAT_MINIMAL_AREA], 1e-6);
-}
-
-static void the_start_does_not_matter(void **state)
-{
-    (void)state;
-    from_the_rim(pi / 2);
-    from_the_rim(3.05); /* all but a disc of 5 degrees, where frames carried along edges would whirl */
-}
-
-/* A square of the saddle: each strategy is the best by its own measure, whatever frames come in. */
-static void least_area(void **state)
-{
-    (void)state;
-    enum { n = 17 };
-    static qvec3 x[n * n];
-    static quat q[n * n];
-    static size_t triangle[2 * (n - 1) * (n - 1)][3];
-    const size_t m = 2 * (n - 1) * (n - 1);
-    quat_family f;
-    quat_surface s;
-    double area[3], energy[3];
-    quat_saddle(1, 2, &f, &s);
-    assert_int_equal(quat_surface_patch(&s, -2, 2, -2, 2, n, n, x, q, triangle[0]), QUAT_OK);
-    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
-        quat_gauge_report report;
-        const quat_status status = quat_choose_frames(n * n, x, m, triangle[0], (quat_gauge)gauge, q, &report);
-        assert_int_equal(status, QUAT_OK);
-        assert_int_equal(report.torn, 0);
-        area[gauge] = report.area, energy[gauge] = report.energy;
-        if (getenv("QUAT_TEST_SHOW"))
-            printf("saddle, gauge %d: energy %.9f, area %.9f, %zu rounds\n", gauge, report.energy, report.area,
-                   report.rounds);
-    }
-    assert_true(energy[QUAT_MINIMAL_LENGTH] < energy[QUAT_SHORTEST] &&
-                energy[QUAT_MINIMAL_LENGTH] < energy[QUAT_MINIMAL_AREA]);
-    assert_true(area[QUAT_MINIMAL_AREA] < area[QUAT_MINIMAL_LENGTH]);
-    random_state r = {407};
-    for (int round = 0; round < 3; round++) {
-        static quat other[n * n];
-        quat_gauge_report report;
-        for (size_t i = 0; i < n * n; i++) {
-            const double angle = i > 0 ? random_between(&r, -9, 9) : 0;
-            other[i] = quat_mul(q[i], quat_make(cos(angle), 0, 0, sin(angle)));
-        }
-        assert_int_equal(quat_choose_frames(n * n, x, m, triangle[0], QUAT_MINIMAL_AREA, other, &report), QUAT_OK);
-        assert_bound("area found again", fabs(report.area / area[QUAT_MINIMAL_AREA] - 1), 1e-12);
-        double worst = 0;
-        for (size_t i = 0; i < n * n; i++) worse(&worst, quat_rotation_distance(other[i], q[i]));
-        assert_bound("frames found again, rad", worst, 1e-6);
-    }
-}
-
-static void a_flat_patch_costs_nothing(void **state)
-{
-    (void)state;
-    enum { n = 9 };
-    qvec3 x[n * n];
-    quat q[n * n];
-    size_t triangle[2 * (n - 1) * (n - 1)][3], m = 0;
-    random_state r = {406};
-    for (size_t i = 0; i < n * n; i++) {
-        const double angle = random_between(&r, -9, 9);
-        x[i] = qvec3_make((double)(i % n), (double)i / n, 0); /* slanted */
-        q[i] = quat_make(cos(angle), 0, 0, sin(angle));
-    }
-    for (size_t i = 0; i + n < n * n; i++) {
-        if (i % n == n - 1) continue;
-        const size_t two[2][3] = {{i, i + 1, i + n + 1}, {i, i + n + 1, i + n}};
-        for (int h = 0; h < 2; h++, m++)
-            for (int k = 0; k < 3; k++) triangle[m][k] = two[h][k];
-    }
-    for (int gauge = QUAT_SHORTEST; gauge <= QUAT_MINIMAL_AREA; gauge++) {
-        quat_gauge_report report;
-        const quat first = q[0];
-        assert_int_equal(quat_choose_frames(n * n, x, m, triangle[0], (quat_gauge)gauge, q, &report), QUAT_OK);
-        assert_true(fabs(report.energy) < 1e-25 && report.area < 1e-25 && report.torn == 0);
-        for (size_t i = 0; i < n * n; i++) assert_true(quat_distance(q[i], first) < 1e-14);
-    }
-}
-
 /* ---- bad input ---- */
 
 static bool nowhere(double u, double v, qvec3 d[6], void *context)
@@ -660,21 +449,6 @@ static void bad_input_has_a_status(void **state)
     assert_int_equal(quat_surface_patch(&s, 0, 1, 0, 1, 1, 2, NULL, NULL, NULL), QUAT_EARGUMENT);
     assert_int_equal(quat_surface_patch(&s, 0, 1, 1, 1, 2, 2, NULL, NULL, NULL), QUAT_EARGUMENT);
 
-    const qvec3 x[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 5, 5}};
-    const size_t one[3] = {0, 1, 2}, out[3] = {0, 1, 4};
-    quat q[4] = {{1, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}};
-    assert_int_equal(quat_choose_frames(3, x, 1, one, QUAT_MINIMAL_AREA, q, NULL), QUAT_OK);
-    assert_int_equal(quat_choose_frames(3, x, 1, out, QUAT_SHORTEST, q, NULL), QUAT_EARGUMENT);
-    assert_int_equal(quat_choose_frames(3, x, 0, one, QUAT_SHORTEST, q, NULL), QUAT_EARGUMENT);
-    assert_int_equal(quat_choose_frames(3, x, 1, one, (quat_gauge)7, q, NULL), QUAT_EARGUMENT);
-    assert_int_equal(quat_choose_frames(4, x, 1, one, QUAT_SHORTEST, q, NULL), QUAT_EDOMAIN);
-    q[3] = quat_identity();
-    assert_int_equal(quat_choose_frames(4, x, 1, one, QUAT_SHORTEST, q, NULL), QUAT_EARGUMENT); /* in two parts */
-    q[1] = quat_make(0, 1, 0, 0); /* the normal turned over */
-    assert_int_equal(quat_choose_frames(3, x, 1, one, QUAT_SHORTEST, q, NULL), QUAT_NOT_UNIQUE);
-    assert_int_equal(quat_transition(0, q, q, NULL, NULL, NULL), QUAT_EARGUMENT);
-    const quat up = {1, 0, 0, 0}, tipped = {1, 0.1, 0, 0};
-    assert_int_equal(quat_transition(1, &up, &tipped, NULL, NULL, NULL), QUAT_EDOMAIN);
     assert_int_equal(handled, 0); /* GSL's handler was never called, which by default ends the program */
 }
 
@@ -688,10 +462,6 @@ int main(void)
                                        cmocka_unit_test(rates_are_the_frames),
                                        cmocka_unit_test(fewer_derivatives),
                                        cmocka_unit_test(gauss_and_bonnet),
-                                       cmocka_unit_test(half_spheres),
-                                       cmocka_unit_test(the_start_does_not_matter),
-                                       cmocka_unit_test(least_area),
-                                       cmocka_unit_test(a_flat_patch_costs_nothing),
                                        cmocka_unit_test(bad_input_has_a_status)};
     gsl_set_error_handler(count_call);
     return cmocka_run_group_tests(tests, NULL, NULL);

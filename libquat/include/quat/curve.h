@@ -38,19 +38,19 @@ typedef struct quat_samples {
     bool closed;
 } quat_samples;
 
-/* The curve through the samples: between t[i] and t[i+1] the polynomial through the eight nearest points (four or more, when
- * there are no eight). Continuous, with derivatives that jump at the samples by what the interpolation errs: O(h^8) in
- * position, O(h^(8-k)) in derivative k. *samples must outlive the curve. QUAT_EARGUMENT for fewer than 4 samples and for
- * t that do not increase; QUAT_EDOMAIN for infinite or NaN values, and for a closed curve that does not end where it
- * starts, to 1e-9 of its size. */
+/* The curve through the samples: between t[i] and t[i+1] the polynomial through the eight nearest points (four or more,
+ * when there are no eight). Continuous, with derivatives that jump at the samples by what the interpolation errs:
+ * O(h^8) in position, O(h^(8-k)) in derivative k. *samples must outlive the curve. QUAT_EARGUMENT for fewer than 4
+ * samples and for t that do not increase; QUAT_EDOMAIN for infinite or NaN values, and for a closed curve that does not
+ * end where it starts, to 1e-9 of its size. */
 QUAT_API quat_status quat_curve_from_samples(const quat_samples *samples, quat_curve *curve);
 
 /* ---- at a point ---- */
 
-/* d[0] = x(t) and its derivatives up to `order` (0 ... 3). error[k] (error may be NULL) estimates the error of d[k]: rounding,
- * and for differences what the best step leaves; about 1e-13, 1e-11, 1e-9 of the curve's size for k = 1, 2, 3 when
- * only x is known. QUAT_EARGUMENT: a curve without a function, bad ends or `known`, bad order. QUAT_EDOMAIN: t outside
- * an open curve, infinite or NaN; no value. *d is zero then. */
+/* d[0] = x(t) and its derivatives up to `order` (0 ... 3). error[k] (error may be NULL) estimates the error of d[k]:
+ * rounding, and for differences what the best step leaves; about 1e-13, 1e-11, 1e-9 of the curve's size for k = 1, 2, 3
+ * when only x is known. QUAT_EARGUMENT: a curve without a function, bad ends or `known`, bad order. QUAT_EDOMAIN: t
+ * outside an open curve, infinite or NaN; no value. *d is zero then. */
 QUAT_API quat_status quat_curve_derivatives(const quat_curve *curve, double t, int order, qvec3 d[4], double error[4]);
 
 typedef struct quat_curve_point {
@@ -65,7 +65,8 @@ typedef struct quat_curve_point {
 /* The Frenet apparatus at t. QUAT_NOT_UNIQUE at an inflection, where the curvature vanishes within four times its
  * error: curvature and torsion are 0 then, and the frame is the shortest rotation that carries x to the tangent.
  * QUAT_EDOMAIN besides where the speed is 0 within its error; all zero then, frame = 1, but for the position if there
- * is one. QUAT_ERANGE: a derivative above 1e100 or a speed below 1e-100, where products overflow or vanish. Other errors as above. */
+ * is one. QUAT_ERANGE: a derivative above 1e100 or a speed below 1e-100, where products overflow or vanish. Other
+ * errors as above. */
 QUAT_API quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve_point *point);
 
 /* ---- arc length ---- */
@@ -80,8 +81,8 @@ QUAT_API quat_status quat_curve_at_length(const quat_curve *curve, double length
 /* n >= 2 values of t at equal distances along the curve, from start to end. */
 QUAT_API quat_status quat_curve_even(const quat_curve *curve, size_t n, double t[]);
 
-/* Integrals along the curve: length, of the curvature (2 pi or more for a closed curve, more than 4 pi for a knot; Fenchel,
- * Fary, Milnor) and of the torsion. QUAT_NOT_UNIQUE when an inflection was met: the torsion counts as 0 there. */
+/* Integrals along the curve: length, of the curvature (2 pi or more for a closed curve, more than 4 pi for a knot;
+ * Fenchel, Fary, Milnor) and of the torsion. QUAT_NOT_UNIQUE when an inflection was met: the torsion counts as 0 there. */
 typedef struct quat_curve_totals {
     double length, curvature, torsion;
 } quat_curve_totals;
@@ -103,17 +104,17 @@ typedef struct quat_framing_report {
 } quat_framing_report;
 
 /* Frames at n >= 2 increasing t[i], or at equal steps from start to end when t is NULL. Minimal frames start from the
- * Frenet frame, or from *first (may be NULL), swung so that its x axis is the tangent, and go by the double reflection of
- * Wang, Juettler, Zheng and Liu (2008): error O(h^4) over the curve. Holonomy and monodromy need t from start to end.
- * Frenet frames at an inflection are carried on from the sample before.
- * QUAT_NOT_UNIQUE when inflections were met. QUAT_EARGUMENT: n, t, `framing`, or QUAT_CLOSED for an open curve or t that do
- * not go from start to end. QUAT_EDOMAIN: no tangent somewhere, two samples at one place. */
+ * Frenet frame, or from *first (may be NULL), swung so that its x axis is the tangent, and go by the double reflection
+ * of Wang, Juettler, Zheng and Liu (2008): error O(h^4) over the curve. Holonomy and monodromy need t from start to
+ * end. Frenet frames at an inflection are carried on from the sample before. QUAT_NOT_UNIQUE when inflections were met.
+ * QUAT_EARGUMENT: n, t, `framing`, or QUAT_CLOSED for an open curve or t that do not go from start to end.
+ * QUAT_EDOMAIN: no tangent somewhere, two samples at one place. */
 QUAT_API quat_status quat_curve_frames(const quat_curve *curve, quat_framing framing, const quat *first, size_t n,
                                        const double t[], quat q[], quat_framing_report *report);
 
-/* One step of the double reflection: the frame at (x1, unit tangent1) of the frame q at x0, whose tangent is its x axis.
- * QUAT_EDOMAIN and *next = q when x0 = x1, when the tangent is zero, infinite or NaN, and when it is the mirror image of
- * the other in the chord's plane (a cusp between the two). */
+/* One step of the double reflection: the frame at (x1, unit tangent1) of the frame q at x0, whose tangent is its x
+ * axis. QUAT_EDOMAIN and *next = q when x0 = x1, when the tangent is zero, infinite or NaN, and when it is the mirror
+ * image of the other in the chord's plane (a cusp between the two). */
 QUAT_API quat_status quat_frame_step(quat q, qvec3 x0, qvec3 x1, qvec3 tangent1, quat *next);
 
 #ifdef __cplusplus

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * family: curves and surfaces given by formulas, with all the derivatives that curve.h and surface.h ask for. In the library
- * quat_gsl. Lengths in the caller's unit, angles in radians.
+ * family: curves and surfaces given by formulas, with all the derivatives that curve.h and surface.h ask for. In the
+ * library quat_gsl. Lengths in the caller's unit, angles in radians.
  *
  * Each function fills *family, which holds the numbers and must outlive the curve or surface made with it. Statuses:
- * QUAT_EDOMAIN for a length that is not positive and finite or another number that is not finite, QUAT_EARGUMENT for bad
- * counts; the curve or surface is then empty, and every function of it returns QUAT_EARGUMENT.
+ * QUAT_EDOMAIN for a length that is not positive and finite or another number that is not finite, QUAT_EARGUMENT for
+ * bad counts; the curve or surface is then empty, and every function of it returns QUAT_EARGUMENT.
  */
 #ifndef QUAT_FAMILY_H
 #define QUAT_FAMILY_H
@@ -32,18 +32,17 @@ QUAT_API quat_status quat_helix(double r, double h, double turns, quat_family *f
 QUAT_API quat_status quat_torus_knot(double R, double r, int p, int q, quat_family *family, quat_curve *curve);
 /* a (sin t + 2 sin 2t, cos t - 2 cos 2t, -sin 3t): the trefoil. */
 QUAT_API quat_status quat_trefoil(double a, quat_family *family, quat_curve *curve);
-/* a (cos t, sin t cos t, sin^2 t) ...: Viviani's curve a (1 + cos t, sin t, 2 sin(t/2)), t = 0 ... 4 pi, on the sphere of
- * radius 2a; closed. */
+/* Viviani's curve a (1 + cos t, sin t, 2 sin(t/2)), t = 0 ... 4 pi, on the sphere of radius 2a; closed. */
 QUAT_API quat_status quat_viviani(double a, quat_family *family, quat_curve *curve);
-/* a (t, t^2, t^3), t = -1 ... 1; open, without inflection. With a plane's cubic a (t, t^3, 0) (planar true) there is one at 0. */
+/* a (t, t^2, t^3), t = -1 ... 1, without inflection; `planar`: a (t, t^3, 0), with one at 0. Open. */
 QUAT_API quat_status quat_cubic(double a, bool planar, quat_family *family, quat_curve *curve);
 
 /* ---- surfaces ---- */
 
 /* (u, v, 0) over |u| <= a, |v| <= b. Normal +z. */
 QUAT_API quat_status quat_plane(double a, double b, quat_family *family, quat_surface *surface);
-/* (a cos v cos u, b cos v sin u, c sin v), u = 0 ... 2 pi closed, v = -pi/2 ... pi/2; a sphere for a = b = c. The poles are
- * degenerate. Normal outward. */
+/* (a cos v cos u, b cos v sin u, c sin v), u = 0 ... 2 pi closed, v = -pi/2 ... pi/2; a sphere for a = b = c. The poles
+ * are degenerate. Normal outward. */
 QUAT_API quat_status quat_ellipsoid(double a, double b, double c, quat_family *family, quat_surface *surface);
 /* ((R + r cos v) cos u, (R + r cos v) sin u, r sin v), both closed over 0 ... 2 pi, r < R. Normal outward. */
 QUAT_API quat_status quat_torus(double R, double r, quat_family *family, quat_surface *surface);
@@ -53,9 +52,9 @@ QUAT_API quat_status quat_saddle(double a, double size, quat_family *family, qua
 QUAT_API quat_status quat_catenoid(double a, double height, quat_family *family, quat_surface *surface);
 /* (v cos u, v sin u, a u), |u| <= pi turns, |v| <= width; H = 0. */
 QUAT_API quat_status quat_helicoid(double a, double turns, double width, quat_family *family, quat_surface *surface);
-/* (a C(v, e) C(u, f), b C(v, e) S(u, f), c S(v, e)) with C(t, e) = cos t |cos t|^(e-1) and S alike: a superellipsoid with
- * exponents e and f in 0.05 ... 4, over the ellipsoid's ranges; (1, 1) is the ellipsoid. Where a sine or cosine is 0 and its exponent is
- * neither 1, 2 nor above 2 the second derivatives do not exist: no value there. */
+/* (a C(v, e) C(u, f), b C(v, e) S(u, f), c S(v, e)) with C(t, e) = cos t |cos t|^(e-1) and S alike: a superellipsoid
+ * with exponents e and f in 0.05 ... 4, over the ellipsoid's ranges; (1, 1) is the ellipsoid. Where a sine or cosine is
+ * 0 and its exponent is neither 1, 2 nor above 2 the second derivatives do not exist: no value there. */
 QUAT_API quat_status quat_superellipsoid(double a, double b, double c, double e, double f, quat_family *family,
                                          quat_surface *surface);
 
