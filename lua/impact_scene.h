@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene userdata, shared by impact_scene.c (making it, asking it) and impact_run.c (running it).
+ * The scene userdata, and the files that work on it: impact_scene.c (making it, asking it) stands on impact_scene_read.c (its
+ * definition), impact_run.c (running it), impact_rows.c (what comes out) and impact_law.c (forces of the script).
  */
 #ifndef IMPACT_LUA_SCENE_H
 #define IMPACT_LUA_SCENE_H
@@ -68,20 +69,39 @@ typedef struct impact_lua_scene {
     const impact_lua_host *host;
 } impact_lua_scene;
 
-/* The scene at index 1; an error when it is none or is running. */
-impact_lua_scene *impact_lua_check_scene(lua_State *L);
+/* ---- impact_law.c ---- */
 
+/* Pushes the entry of a custom force in the table of laws. The force's table is on top of the stack, its place below it. */
+void impact_lua_push_law(lua_State *L, const impact_force_def *force);
 /* The force function that calls a script's law. */
 impact_force_function impact_lua_call_law;
+/* Keeps the error on top of the stack for the end of the run; false. */
+bool impact_lua_script_fails(impact_lua_scene *self);
 
-/* run(options), run_to(t, options), track(body), events() */
-int impact_lua_scene_run(lua_State *L);
-int impact_lua_scene_run_to(lua_State *L);
-int impact_lua_scene_track(lua_State *L);
-int impact_lua_scene_events(lua_State *L);
-void impact_lua_free_rows(lua_State *L, impact_lua_rows *rows);
+/* ---- impact_rows.c ---- */
 
 /* Pushes {t=, body=, position=, orientation=, velocity=, omega=}. */
 void impact_lua_push_sample(lua_State *L, const impact_sample *sample);
+void impact_lua_push_event(lua_State *L, const impact_event *event, const char *phases);
+
+/* False: out of memory. */
+bool impact_lua_keep_sample(lua_State *L, impact_lua_rows *rows, const impact_sample *sample);
+bool impact_lua_keep_event(lua_State *L, impact_lua_rows *rows, const impact_event *event);
+void impact_lua_free_rows(lua_State *L, impact_lua_rows *rows);
+
+/* Pushes {t=, x=, ... wz=}, columns of the rows kept of one body; the list of the events kept. */
+void impact_lua_push_track(lua_State *L, const impact_lua_rows *rows, int body);
+void impact_lua_push_events(lua_State *L, const impact_lua_rows *rows);
+
+/* ---- impact_scene_read.c ---- */
+
+/* The definition in the table at index. What it points to stays on the stack, and must until the scene is made; laws: the stack
+ * place of the table of laws, which is filled. */
+impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws);
+
+/* ---- impact_run.c ---- */
+
+/* Runs to t_end, with the table of options at options_index: returns what run returns to the script. The scene is at index 1. */
+int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index);
 
 #endif

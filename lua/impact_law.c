@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The laws of custom forces: functions of the script, called from inside CVODE. Each call is protected: an error is kept, and the run
+ * stops in order.
+ */
+#include "impact_scene.h"
+
+#include <stdio.h>
+
+void impact_lua_push_law(lua_State *L, const impact_force_def *force)
+{
+    const int table = lua_gettop(L);
+    lua_createtable(L, IMPACT_LUA_LAW_SIZE, 0);
+    lua_pushliteral(L, "law");
+    lua_rawget(L, table);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_FUNCTION);
+    lua_newtable(L);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_STATE);
+    for (int vector = IMPACT_LUA_LAW_POSITION; vector <= IMPACT_LUA_LAW_OMEGA; vector++) {
+        quat_lua_push_vec3(L, (qvec3){0, 0, 0});
+        lua_rawseti(L, -2, vector);
+    }
+    quat_lua_push_quat(L, quat_identity());
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_ORIENTATION);
+    if (!impact_lua_push_position(L, table)) {
+        lua_pop(L, 1);
+        lua_pushliteral(L, "");
+    }
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_WHERE);
+    lua_pushstring(L, force->name);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_NAME);
+}
+
+typedef struct law_call {
+    double t;
+    const char *body;
+    double mass;
+    const qvec3 *position, *velocity, *omega;
+    const quat *orientation;
+    qvec3 *force, *torque;
+} law_call;
+
+/* state[key] = the entry's own vector at place, with the components of v. */
+static void set_vec3(lua_State *L, int entry, int state, int place, const char *key, const qvec3 *v)
+{
+    const double component[3] = {v->x, v->y, v->z};
+    lua_rawgeti(L, entry, place);
+    for (int i = 0; i < 3; i++) {
+        lua_pushnumber(L, component[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, state, key);
+}
+
+/* The sign of a NaN means nothing, and is not shown. */
+static double positive_nan(double x) { return isnan(x) ? (double)NAN : x; }
+
+/* A vector that a law returned; nil is zero. The law's entry is at index 2. */
+static qvec3 returned_vec3(lua_State *L, int index, const char *what)
+{
+    double v[3] = {0, 0, 0};
+    if (lua_isnil(L, index)) return (qvec3){0, 0, 0};
+    bool good = lua_istable(L, index);
+    for (int i = 0; good && i < 3; i++) {
+        lua_rawgeti(L, index, i + 1);
+        v[i] = lua_tonumber(L, -1);
+        good = lua_type(L, -1) == LUA_TNUMBER && isfinite(v[i]);
+        lua_pop(L, 1);
+    }
+    if (good) return (qvec3){v[0], v[1], v[2]};
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_WHERE);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_NAME);
+    char got[100];
+    if (lua_istable(L, index))
+        snprintf(got, sizeof got, "{%.6g, %.6g, %.6g}", positive_nan(v[0]), positive_nan(v[1]), positive_nan(v[2]));
+    else
+        snprintf(got, sizeof got, "a %s", luaL_typename(L, index));
+    lua_pushfstring(L, "%sforce '%s': the %s must be a vector {x, y, z} of finite numbers, got %s", lua_tostring(L, -2),
+                    lua_tostring(L, -1), what, got);
+    lua_error(L);
+    return (qvec3){0, 0, 0};
+}
+
+/* Protected: (law_call *, the law's entry) */
+static int call_law(lua_State *L)
+{
+    const law_call *call = lua_touserdata(L, 1);
+    luaL_checkstack(L, 12, NULL);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_STATE);
+    const int state = lua_gettop(L);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_ORIENTATION);
+    *(quat *)lua_touserdata(L, -1) = *call->orientation;
+    lua_setfield(L, state, "orientation");
+    lua_pushstring(L, call->body);
+    lua_setfield(L, state, "name");
+    lua_pushnumber(L, call->mass);
+    lua_setfield(L, state, "mass");
+    set_vec3(L, 2, state, IMPACT_LUA_LAW_POSITION, "position", call->position);
+    set_vec3(L, 2, state, IMPACT_LUA_LAW_VELOCITY, "velocity", call->velocity);
+    set_vec3(L, 2, state, IMPACT_LUA_LAW_OMEGA, "omega", call->omega);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_FUNCTION);
+    lua_pushnumber(L, call->t);
+    lua_pushvalue(L, state);
+    lua_call(L, 2, 2);
+    const int result = lua_gettop(L) - 1;
+    *call->force = returned_vec3(L, result, "force");
+    *call->torque = returned_vec3(L, result + 1, "torque");
+    return 0;
+}
+
+bool impact_lua_script_fails(impact_lua_scene *self)
+{
+    lua_replace(self->L, self->error_slot);
+    self->failed = true;
+    return false;
+}
+
+bool impact_lua_call_law(double t, int body, double mass, qvec3 position, quat orientation, qvec3 velocity, qvec3 omega,
+                         qvec3 *force, qvec3 *torque, void *context)
+{
+    const impact_lua_law *law = context;
+    impact_lua_scene *self = law->owner;
+    lua_State *L = self->L;
+    impact_sample sample;
+    if (!L || self->failed || !lua_checkstack(L, 8) || impact_scene_body(self->scene, body, &sample) < 0) return false;
+    law_call call = {t, sample.name, mass, &position, &velocity, &omega, &orientation, force, torque};
+    lua_pushcfunction(L, call_law);
+    lua_pushlightuserdata(L, &call);
+    lua_rawgeti(L, self->laws_slot, law->index);
+    if (lua_pcall(L, 2, 0, 0) == LUA_OK) return true;
+    return impact_lua_script_fails(self);
+}
