@@ -80,6 +80,12 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
     scene->sampler =
         (impact_sampler){.rate = def->output_rate, .emit = impact_scene_emit, .pulse = pulse, .context = scene};
     status = impact_scene_build(scene, def);
+    if (status == IMPACT_OK && def->compliance > 0) { /* impacts are few: as exactly as can be */
+        status = impact_collide_workspace_create(IMPACT_ODE_BDF, 1e-14, &scene->springs);
+        if (status == IMPACT_EABSENT && message)
+            snprintf(message, message_size,
+                     "compliance needs CVODE, and this build has none (IMPACT_WITH_CVODE is off)");
+    }
     if (status == IMPACT_OK) {
         impact_field_locate(&scene->world, scene->states);
         scene->energy_start = impact_scene_total_energy(scene);

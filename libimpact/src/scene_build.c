@@ -131,6 +131,7 @@ void impact_scene_unbuild(impact_scene *scene)
 {
     impact_world *world = &scene->world;
     impact_motion_close(&scene->motion);
+    impact_collide_workspace_destroy(scene->springs);
     for (int i = 0; i < world->body_count; i++) free(world->bodies[i].name);
     for (int k = 0; k < world->field_count; k++) {
         free(world->fields[k].name);

@@ -208,7 +208,8 @@ static impact_status strike(impact_scene *scene, const meeting *m)
         .restitution = dies_out(scene, m, restitution * m->velocity) ? 0 : restitution,
         .law = scene->law,
         .solver = scene->solver,
-        .tangential_compliance = scene->compliance};
+        .tangential_compliance = scene->compliance,
+        .workspace = scene->springs};
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);
     if (status != IMPACT_OK) {

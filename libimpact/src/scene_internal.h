@@ -17,6 +17,7 @@ struct impact_scene {
     double t, duration;
     impact_law law;
     double compliance;
+    impact_collide_workspace *springs; /* solves impacts with compliance; absent without it */
     impact_solver solver;
     double rest_height, rest_speed;
     long max_events, event_count;

@@ -72,7 +72,7 @@ do
   check.equal(scene:usage().integrators, 0)
 end
 
--- ---- Garwin's superball: each impact by CVODE at 1e-12, some 1e-11 each ----
+-- ---- Garwin's superball: each impact by CVODE at 1e-14 ----
 do
   local theta, r = math.acos(3 / 7), 0.025
   local scene = example "superball"
@@ -81,8 +81,8 @@ do
   for i = 2, #track.t do
     if track.vz[i] ~= track.vz[i - 1] then
       n = n + 1
-      check.close(track.vx[i], math.cos(n * theta), 1e-9)
-      check.close((n % 2 == 0 and 1 or -1) * r * track.wy[i], -math.sqrt(5 / 2) * math.sin(n * theta), 1e-9)
+      check.close(track.vx[i], math.cos(n * theta), 1e-11)
+      check.close((n % 2 == 0 and 1 or -1) * r * track.wy[i], -math.sqrt(5 / 2) * math.sin(n * theta), 1e-11)
     end
   end
   check.equal(n, 8)
@@ -99,8 +99,8 @@ do
   for i = 2, #track.t, 2 do
     if math.abs(track.vz[i] - track.vz[i - 1]) > 1 then
       n = n + 1
-      check.close(track.vx[i], n % 2 == 0 and 1 or 3 / 7, 1e-9)
-      check.close(r * track.wy[i], n % 2 == 0 and 0 or 10 / 7, 1e-9)
+      check.close(track.vx[i], n % 2 == 0 and 1 or 3 / 7, 1e-11)
+      check.close(r * track.wy[i], n % 2 == 0 and 0 or 10 / 7, 1e-11)
     end
   end
   check.truth(n >= 4, "it bounces")
