@@ -109,6 +109,7 @@ typedef struct meeting {
     impact_touch touch;
     double velocity;     /* d(gap)/dt, m/s */
     double acceleration; /* d2(gap)/dt2 under the loads and the other contacts' reactions, m/s^2 */
+    double own;          /* what the pair's own reaction adds to it */
 } meeting;
 
 /* Fills the meeting of a held pair, or of an open one that touches within its plane's bounds; false otherwise. */
@@ -125,19 +126,21 @@ static bool meets(impact_scene *scene, int p, meeting *m)
         return false;
     m->touch = impact_persist_touch(world, p, scene->states, scene->motion.loads);
     m->velocity = impact_world_approach(world, &m->touch, scene->states);
-    m->acceleration = qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip) -
-                      impact_persist_own_acceleration(&scene->motion.persist, world, scene->states, p);
+    m->own = impact_persist_own_acceleration(&scene->motion.persist, world, scene->states, p);
+    m->acceleration =
+        qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip) - m->own;
     return true;
 }
 
 /* The acceleration that presses two bodies together and goes on doing so: about edges and over faces the normal turns fast, but not for
- * long. Surfaces rounder than a thousandth of the body press no more than this. */
+ * long. Surfaces rounder than a thousandth of the body press no more than this. The loads hold the pair's own reaction, which its
+ * acceleration does not. */
 static double lasting_press(const impact_scene *scene, const meeting *m)
 {
     const double roundest = 1e-3;
     const int body[2] = {m->touch.body1, m->touch.body2};
     const impact_state *states = scene->states;
-    double speed = qvec3_norm(qvec3_sub(states[body[0]].v, states[body[1]].v)), pull = 0, radius = INFINITY;
+    double speed = qvec3_norm(qvec3_sub(states[body[0]].v, states[body[1]].v)), pull = fabs(m->own), radius = INFINITY;
     for (int k = 0; k < 2; k++) {
         const impact_body *b = &scene->world.bodies[body[k]];
         const impact_load *l = &scene->motion.loads[body[k]];
