@@ -2,6 +2,7 @@
  *
  * Parametric surfaces in Lua, and the choice of frames over a mesh.
  */
+#include "quat_call.h"
 #include "quat_gsl.h"
 
 #include <quat/family.h>
