@@ -113,7 +113,7 @@ typedef struct impact_usage {
     long impacts_closed_form, impacts_series, impacts_cvode; /* impacts, by solver */
     /* of these, answers to another impact in the same instant, taken in the order of the definition */
     long impacts_simultaneous;
-    long impacts_together; /* impulses that many pairs exchanged together, where answers would not end */
+    long impacts_together;              /* impulses that many pairs exchanged together, where answers would not end */
     long events[IMPACT_EVENT_REST + 1]; /* by kind */
     long samples;
 } impact_usage;
