@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * bench_flight: torque-free rotation of bodies with three different moments, in closed form and by CVODE's Adams methods at several
- * tolerances, over stretches of several angles: error against run time.
- * CSV: method, tolerance, angle (of the fastest moment's |L|/I, rad), time in us (median over the bodies of the median of repeats), error
- * of the orientation in rad (p50, worst) against Taylor series in 128-bit arithmetic (nan without libquadmath), and a checksum.
- * "closed form": made and asked once; "closed form, again": asked once more.
+ * bench_flight: torque-free rotation of bodies with three different moments, in closed form and by CVODE's Adams
+ * methods at several tolerances, over stretches of several angles: error against run time. CSV: method, tolerance,
+ * angle (of the fastest moment's |L|/I, rad), time in us (median over the bodies of the median of repeats), error of
+ * the orientation in rad (p50, worst) against Taylor series in 128-bit arithmetic (nan without libquadmath), and a
+ * checksum. "closed form": made and asked once; "closed form, again": asked once more.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * report_motion: what a thousand seconds of motion in a conservative field do to its energy, and where the answer is known to the place.
- * CSV: dE the change of the energy relative to the energy at the start; place the distance from where the orbit began, in half axes, after
- * a hundred periods; steps of the integrator.
+ * report_motion: what a thousand seconds of motion in a conservative field do to its energy, and where the answer is
+ * known to the place. CSV: dE the change of the energy relative to the energy at the start; place the distance from
+ * where the orbit began, in half axes, after a hundred periods; steps of the integrator.
  */
 #include <stdio.h>
 #include <impact/impact.h>
@@ -48,7 +48,8 @@ static void row(const char *name, double parameter, double change, double place,
     printf("%s,%g,%.2e,%.2e,%ld\n", name, parameter, change, place, impact_scene_usage(scene).integrator_steps);
 }
 
-/* Two bodies under G m1 m2/r^2, from where they are farthest apart; after a hundred periods of 10 s they are there again. */
+/* Two bodies under G m1 m2/r^2, from where they are farthest apart; after a hundred periods of 10 s they are there
+ * again. */
 static void kepler(double eccentricity)
 {
     const double pi = 3.14159265358979323846, period = 10, mu = 4 * pi * pi / (period * period), m[2] = {3, 1};

@@ -67,7 +67,8 @@ static void at_circular(const impact_elliptic *e, double u, double *sn, double *
     *dn = e->dn * theta3 / theta4;
 }
 
-/* What the series at imaginary arguments are made of: with v = scale |u| and q' the nome, exp(-v) and q' exp(2 v), each at most 1. */
+/* What the series at imaginary arguments are made of: with v = scale |u| and q' the nome, exp(-v) and q' exp(2 v),
+ * each at most 1. */
 typedef struct fading {
     double fall, rise;
 } fading;
@@ -128,7 +129,8 @@ double impact_elliptic_inverse(double sn, double cn, double dn) { return sn * im
 
 /* ---- the phase ---- */
 
-/* theta_4(z + i zeta, q^2) = 1 + 2 sum (-1)^n q^(2 n^2) cos(2 n (z + i zeta)); q exp(2 zeta) = exp(-pi w/K), exp(-2 zeta) = exp(-pi y/K). */
+/* theta_4(z + i zeta, q^2) = 1 + 2 sum (-1)^n q^(2 n^2) cos(2 n (z + i zeta)); q exp(2 zeta) = exp(-pi w/K), exp(-2
+ * zeta) = exp(-pi y/K). */
 static void make_circular(const impact_elliptic *e, double y, double w, impact_elliptic_phase *p)
 {
     const double up = exp(-2 * e->scale * w), down = exp(-2 * e->scale * y), q = up * down;
@@ -145,8 +147,8 @@ static void make_circular(const impact_elliptic *e, double y, double w, impact_e
     p->slope = e->scale * rate / cosines;
 }
 
-/* The same is, but for a linear part and a real factor, theta_2(a - i b, q") = 2 q"^(1/4) sum q"^(n (n + 1)) cos((2 n + 1)(a - i b)) with
- * a = pi y/(4 K'), b = pi u/(4 K'), q" = exp(-pi K/(2 K')). */
+/* The same is, but for a linear part and a real factor, theta_2(a - i b, q") = 2 q"^(1/4) sum q"^(n (n + 1)) cos((2
+ * n + 1)(a - i b)) with a = pi y/(4 K'), b = pi u/(4 K'), q" = exp(-pi K/(2 K')). */
 static void make_hyperbolic(const impact_elliptic *e, double y, impact_elliptic_phase *p)
 {
     const double a = 0.5 * e->scale * y, nome = sqrt(e->odd[1]);

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * elliptic: Jacobi's functions sn, cn, dn, and the periodic part of an elliptic integral of the third kind, by theta series. Internal.
+ * elliptic: Jacobi's functions sn, cn, dn, and the periodic part of an elliptic integral of the third kind, by theta
+ * series. Internal.
  *
- * With K, K' the complete integrals and q = exp(-pi K'/K), the series go in powers of q; where q > 0.1, Jacobi's imaginary
- * transformation (DLMF 20.7.30-33) turns them into series in exp(-pi K/K') < 0.014. So a handful of terms gives every digit for every
- * modulus, m = 1 among them, where the functions are tanh and sech.
+ * With K, K' the complete integrals and q = exp(-pi K'/K), the series go in powers of q; where q > 0.1, Jacobi's
+ * imaginary transformation (DLMF 20.7.30-33) turns them into series in exp(-pi K/K') < 0.014. So a handful of terms
+ * gives every digit for every modulus, m = 1 among them, where the functions are tanh and sech.
  */
 #ifndef IMPACT_ELLIPTIC_H
 #define IMPACT_ELLIPTIC_H

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Flight in closed form: uniform gravity and nothing held. The centre falls, the body tumbles; pairs are asked when they meet.
+ * Flight in closed form: uniform gravity and nothing held. The centre falls, the body tumbles; pairs are asked when
+ * they meet.
  */
 #include "motion.h"
 #include "motion_meet.h"

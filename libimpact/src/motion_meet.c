@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Conservative advancement. From a time at which the gap is g, with normal n, let m = R^T n be that normal in the axes of a body, m' and
- * m'' its rates there, h the support function, r the bounding radius and j >= |m'''| for the whole flight. As h is convex and subadditive,
+ * Conservative advancement. From a time at which the gap is g, with normal n, let m = R^T n be that normal in the axes
+ * of a body, m' and m'' its rates there, h the support function, r the bounding radius and j >= |m'''| for the whole
+ * flight. As h is convex and subadditive,
  *
  *     psi(T) = g + n.v T + min(0, n.a) T^2/2 - sum over the bodies [h(m + m' T) - h(m) + h(m'') T^2/2 + r j T^3/6]
  *
- * (m towards the other body) is concave and never more than the gap T later: psi(T) >= 0 proves that there is no contact until then. The
- * steps to the zero of psi converge quadratically and never pass the contact. toi.c does the same where omega is constant.
+ * (m towards the other body) is concave and never more than the gap T later: psi(T) >= 0 proves that there is no
+ * contact until then. The steps to the zero of psi converge quadratically and never pass the contact. toi.c does the
+ * same where omega is constant.
  */
 #include "motion_meet.h"
 #include "world_gap.h"
@@ -116,8 +118,8 @@ static double psi(const proof *p, double T, double *derivative)
     return value;
 }
 
-/* The largest T <= limit, or next to it, with psi(T) >= 0. Newton's iteration comes down on the zero of the concave psi from the right; a
- * chord over its last half leads to before it. */
+/* The largest T <= limit, or next to it, with psi(T) >= 0. Newton's iteration comes down on the zero of the concave
+ * psi from the right; a chord over its last half leads to before it. */
 static double safe_step(const proof *p, double limit)
 {
     enum { TRIES = 60 };
@@ -140,8 +142,8 @@ static double safe_step(const proof *p, double limit)
 
 /* ---- far away: bounding balls ---- */
 
-/* Nothing can happen before this: of two bodies that fall alike, which move in a straight line to each other; of a body and a plane.
- * The balls are a little too large, so that the time is never late. */
+/* Nothing can happen before this: of two bodies that fall alike, which move in a straight line to each other; of a
+ * body and a plane. The balls are a little too large, so that the time is never late. */
 static double balls_meet(const impact_world *world, const impact_pair *pair, const impact_state *states)
 {
     const double larger = 1e-6;
@@ -183,7 +185,8 @@ static bool turns(const impact_pair *pair, const impact_flyer *flyers)
     return flyers[pair->body1].turns || flyers[pair->body2].turns;
 }
 
-/* A step over which the gap cannot fall to zero; of bodies that do not turn, the one in which the parabola along the normal does. */
+/* A step over which the gap cannot fall to zero; of bodies that do not turn, the one in which the parabola along the
+ * normal does. */
 static double step_before(const impact_world *world, const impact_pair *pair, const impact_flyer *flyers,
                           const impact_state *states, const impact_contact *contact, double gap, double limit)
 {
@@ -199,7 +202,8 @@ static double step_before(const impact_world *world, const impact_pair *pair, co
     return safe_step(&p, limit);
 }
 
-/* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its tangents. */
+/* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its
+ * tangents. */
 static double step_behind(const impact_world *world, const impact_pair *pair, const impact_flyer *flyers,
                           const impact_state *states, const impact_contact *contact)
 {

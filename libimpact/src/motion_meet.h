@@ -31,7 +31,8 @@ typedef struct impact_meeting_time {
     bool touches; /* false: a near miss so long that it is looked at again from here */
 } impact_meeting_time;
 
-/* When the pair's gap falls to zero (beyond a plane's bounds: when it rises to zero). scratch: a state for each body. */
+/* When the pair's gap falls to zero (beyond a plane's bounds: when it rises to zero). scratch: a state for each
+ * body. */
 impact_meeting_time impact_motion_meet(impact_world *world, impact_pair *pair, const impact_flyer *flyers,
                                        impact_state *scratch, double horizon);
 

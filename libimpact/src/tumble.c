@@ -1,17 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * Axes 1, 2, 3: moments I1, I2, I3 in order of size, rising or falling, so that the direction l of the momentum circles axis 3, l3 > 0.
- * With the shares
+ * Axes 1, 2, 3: moments I1, I2, I3 in order of size, rising or falling, so that the direction l of the momentum circles
+ * axis 3, l3 > 0. With the shares
  *
  *     rho = I1 (I3 - I2)/(I2 (I3 - I1)),   sigma = I3 (I2 - I1)/(I2 (I3 - I1)) = 1 - rho,   rho l3^2 >= sigma l1^2,
- *     l = (A cn, +-B sn, C dn),   A^2 = l1^2 + rho l2^2,   B^2 = A^2/rho,   C^2 = l3^2 + sigma l2^2,   m = sigma A^2/(rho C^2),
+ *     l = (A cn, +-B sn, C dn),   A^2 = l1^2 + rho l2^2,   B^2 = A^2/rho,   C^2 = l3^2 + sigma l2^2,
+ *     m = sigma A^2/(rho C^2),
  *
- * of the argument u = u0 + rate t. Let S be the minimal rotation that takes l to axis 3; then R(t) = R(0) S(0)^-1 Rz(chi) S(t) with
+ * of the argument u = u0 + rate t. Let S be the minimal rotation that takes l to axis 3; then R(t) = R(0) S(0)^-1
+ * Rz(chi) S(t) with
  *
  *     chi' = |L| (l3/I3 + (l1^2/I1 + l2^2/I2)/(1 + l3)) = |L|/I3 + const/(1 + C dn u),
  *
- * which has no singularity. 1 + C dn u is |theta_4(pi (u + i y)/(2 K), q^2)|^2 but for a factor and another, real, theta function, where
- * sn(y, k') = sqrt(rho); so chi is a linear part and twice that theta function's argument, as Jacobi found for Cayley's parameters.
+ * which has no singularity. 1 + C dn u is |theta_4(pi (u + i y)/(2 K), q^2)|^2 but for a factor and another, real,
+ * theta function, where sn(y, k') = sqrt(rho); so chi is a linear part and twice that theta function's argument, as
+ * Jacobi found for Cayley's parameters.
  */
 #include <impact/tumble.h>
 #include <quat/rotation.h>
@@ -47,7 +50,8 @@ static quat onto_third(const double l[3])
     return (quat){lift / norm, l[1] / norm, -l[0] / norm, 0};
 }
 
-/* The amplitudes, moduli and rates, from the momentum's size and its direction l along axes 1, 2, 3; false: omega is constant. */
+/* The amplitudes, moduli and rates, from the momentum's size and its direction l along axes 1, 2, 3; false: omega is
+ * constant. */
 static bool find_motion(impact_tumble *tumble, double size, const double I[3], double rho, double sigma,
                         const double l[3])
 {

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * Torque-free rotation and elliptic functions in 128-bit arithmetic, by other ways than the library's: Taylor series of Euler's
- * equations and of the quaternion's; the textbook's period, 4 K/omega_p from energy and momentum; sn, cn, dn by the descending Landen
- * transformation; theta functions by their defining series. gcc with libquadmath.
+ * Torque-free rotation and elliptic functions in 128-bit arithmetic, by other ways than the library's: Taylor series of
+ * Euler's equations and of the quaternion's; the textbook's period, 4 K/omega_p from energy and momentum; sn, cn, dn by
+ * the descending Landen transformation; theta functions by their defining series. gcc with libquadmath.
  */
 #ifndef TUMBLE_ORACLE_H
 #define TUMBLE_ORACLE_H
 
 #include <quat/quat.h>
 
-/* The orientation after t, its sign continuous but for whole periods, which are not integrated: each turns the body by the same angle
- * about the momentum as the first does. */
+/* The orientation after t, its sign continuous but for whole periods, which are not integrated: each turns the body
+ * by the same angle about the momentum as the first does. */
 quat oracle_tumble(qvec3 moments, quat orientation, qvec3 momentum, double t);
 
-/* How far rounded data carry: the sum over the moments and the momentum's body components of the changes that one rounding (2^-53) of
- * each makes in the orientation after t. */
+/* How far rounded data carry: the sum over the moments and the momentum's body components of the changes that one
+ * rounding (2^-53) of each makes in the orientation after t. */
 double oracle_tumble_sensitivity(qvec3 moments, quat orientation, qvec3 momentum, double t);
 
 /* 4 K/omega_p. */

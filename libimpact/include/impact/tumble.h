@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * tumble: torque-free rotation of a rigid body with any principal moments, in closed form: Jacobi's elliptic functions for the angular
- * velocity, a theta series for the angle about the angular momentum. Method, sources and accuracy: docs/flight.md.
+ * tumble: torque-free rotation of a rigid body with any principal moments, in closed form: Jacobi's elliptic functions
+ * for the angular velocity, a theta series for the angle about the angular momentum. Method, sources and accuracy:
+ * docs/flight.md.
  */
 #ifndef IMPACT_TUMBLE_H
 #define IMPACT_TUMBLE_H
@@ -27,8 +28,8 @@ typedef struct impact_elliptic_phase {
     double linear, sine[IMPACT_THETA_TERMS], cosine[IMPACT_THETA_TERMS];
 } impact_elliptic_phase;
 
-/* A torque-free rotation, ready to be asked for any time. A plain value; its first three numbers may be read, the others are the
- * room's own. */
+/* A torque-free rotation, ready to be asked for any time. A plain value; its first three numbers may be read, the
+ * others are the room's own. */
 typedef struct impact_tumble {
     quat orientation; /* at t = 0, body to world, unit */
     qvec3 momentum;   /* angular, about the centre, world, kg m^2/s: kept for ever */
@@ -48,21 +49,21 @@ typedef struct impact_tumble {
     impact_elliptic_phase phase;
 } impact_tumble;
 
-/* moments: each finite and > 0; equal ones and nearly equal ones are fine. orientation: normalised on use. momentum: finite, world; zero
- * stays where it is. IMPACT_EDOMAIN: a NaN or infinity, or a zero orientation; IMPACT_EARGUMENT: a moment <= 0. *tumble is then
- * unchanged. A momentum exactly on the separatrix or on an axis of spin is followed there: it is for rounding to decide whether a body
- * spun about its middle axis ever turns over. */
+/* moments: each finite and > 0; equal ones and nearly equal ones are fine. orientation: normalised on use. momentum:
+ * finite, world; zero stays where it is. IMPACT_EDOMAIN: a NaN or infinity, or a zero orientation; IMPACT_EARGUMENT:
+ * a moment <= 0. *tumble is then unchanged. A momentum exactly on the separatrix or on an axis of spin is followed
+ * there: it is for rounding to decide whether a body spun about its middle axis ever turns over. */
 IMPACT_API impact_status impact_tumble_make(qvec3 moments, quat orientation, qvec3 momentum, impact_tumble *tumble);
 
-/* The orientation after t seconds, of any sign and size: unit, its sign continuous in t. The error is a few roundings, and a few of the
- * angle turned through: 1e-16 |omega t|. NaN only for a t that is not finite. */
+/* The orientation after t seconds, of any sign and size: unit, its sign continuous in t. The error is a few
+ * roundings, and a few of the angle turned through: 1e-16 |omega t|. NaN only for a t that is not finite. */
 IMPACT_API quat impact_tumble_at(const impact_tumble *tumble, double t);
 
 /* The angular velocity then, rad/s, world. */
 IMPACT_API qvec3 impact_tumble_omega(const impact_tumble *tumble, double t);
 
-/* The period of the angular velocity in the body's axes, s: infinite where it is constant, and on the separatrix. A body that turns over
- * (Dzhanibekov, Poinsot) does so twice in it. */
+/* The period of the angular velocity in the body's axes, s: infinite where it is constant, and on the separatrix. A
+ * body that turns over (Dzhanibekov, Poinsot) does so twice in it. */
 IMPACT_API double impact_tumble_period(const impact_tumble *tumble);
 
 #ifdef __cplusplus
