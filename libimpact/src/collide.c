@@ -6,6 +6,9 @@
 #include "collide_direct.h"
 #include "collide_series.h"
 
+/* Condition of M from which the last rounding is mended. */
+static const double ill_conditioned = 100;
+
 /* ---- from the caller's units to scaled ones and back ---- */
 
 /* omega: local axes. */
@@ -53,6 +56,34 @@ static void apply(const impact_collision *collision, const impact_ready ready[2]
     push(&collision->body[1], &ready[1], qvec3_neg(impulse), 1, outcome);
 }
 
+/* M^-1 times a change of the contact's velocity. */
+static qvec3 impulse_for(const impact_frame *frame, qvec3 du)
+{
+    const double ux = qvec3_dot(du, frame->t1), uy = qvec3_dot(du, frame->t2), uz = qvec3_dot(du, frame->n);
+    const double z = (uz - frame->c / frame->a * ux - frame->d / frame->b * uy) / frame->k;
+    const double x = (ux - frame->c * z) / frame->a, y = (uy - frame->d * z) / frame->b;
+    return qvec3_scale(qvec3_axpy(x, frame->t1, qvec3_axpy(y, frame->t2, qvec3_scale(frame->n, z))), 1 / frame->scale);
+}
+
+/* A contact that sticks must end with u = (0, 0, uz). Where M is ill-conditioned, rounding of the impulse turns the bodies by more than
+ * that allows: what is missing is given to their velocities, not to the impulse, which is right to its own rounding. */
+static void refine(const impact_collision *collision, const impact_ready ready[2], const impact_frame *frame, double uz,
+                   impact_outcome *outcome)
+{
+    impact_collision after = *collision;
+    for (int i = 0; i < 2; i++) {
+        after.body[i].velocity = outcome->velocity[i];
+        after.body[i].omega = outcome->omega[i];
+    }
+    const qvec3 missing = qvec3_axpy(uz, frame->n, qvec3_neg(impact_frame_velocity(&after)));
+    const double before = outcome->energy_before;
+    const qvec3 impulse = impulse_for(frame, missing);
+    outcome->energy_after = 0;
+    push(&after.body[0], &ready[0], impulse, 0, outcome);
+    push(&after.body[1], &ready[1], qvec3_neg(impulse), 1, outcome);
+    outcome->energy_before = before;
+}
+
 static void unchanged(const impact_collision *collision, impact_outcome *outcome, double value)
 {
     *outcome = (impact_outcome){.impulse = {value, value, value}};
@@ -97,6 +128,9 @@ static void report(const impact_collision *collision, const impact_ready ready[2
     outcome->conditioning = frame->conditioning;
     outcome->energy_rose = course->work_c + course->work_r + course->work_f > -1e-12 * course->work_c;
     apply(collision, ready, outcome);
+    const impact_phase last = course->phase_count > 0 ? course->phases[course->phase_count - 1] : IMPACT_SLIP_C;
+    const bool sticks = (last == IMPACT_STICK_C || last == IMPACT_STICK_R) && outcome->solver != IMPACT_SOLVER_CVODE;
+    if (sticks && frame->conditioning > ill_conditioned) refine(collision, ready, frame, course->uz * speed, outcome);
 }
 
 static double sum_of_sizes(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }

@@ -308,11 +308,37 @@ static void words_for_all(void **state)
     assert_string_equal(impact_phase_name((impact_phase)77), "unknown");
 }
 
+/* However ill-conditioned M is, a contact that sticks ends with u = uz n, to the rounding of the velocities it is made of. */
+static void what_sticks_is_at_rest(void **state)
+{
+    (void)state;
+    int stuck = 0;
+    for (uint64_t i = 0; i < 6000; i++) {
+        const impact_collision c = case_make(CASE_WILD, 31, i);
+        impact_outcome o;
+        assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+        const int last = o.phases[o.phase_count - 1];
+        if (last != IMPACT_STICK_C && last != IMPACT_STICK_R) continue;
+        qvec3 u = {0, 0, 0};
+        double size = 0;
+        for (int b = 0; b < 2; b++) {
+            const qvec3 r = c.body[b].offset, spin = qvec3_cross(o.omega[b], r);
+            u = qvec3_axpy(b == 0 ? 1 : -1, qvec3_add(o.velocity[b], spin), u);
+            size += qvec3_norm(o.velocity[b]) + qvec3_norm(o.omega[b]) * qvec3_norm(r);
+        }
+        const qvec3 wanted = qvec3_scale(c.normal, o.normal_after / qvec3_norm(c.normal));
+        assert_true(qvec3_norm(qvec3_sub(u, wanted)) < 100 * 0x1p-52 * (size - o.normal_before));
+        stuck++;
+    }
+    assert_true(stuck > 1000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sphere_slides),
         cmocka_unit_test(sphere_at_any_speed),
+        cmocka_unit_test(what_sticks_is_at_rest),
         cmocka_unit_test(sphere_sticks_below_its_angle),
         cmocka_unit_test(rebound_off_a_wall),
         cmocka_unit_test(plastic_and_smooth),
