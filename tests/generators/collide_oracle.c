@@ -298,7 +298,8 @@ static bool follow_arc(run *rn)
     }
     while (!rn->ended) {
         const bool stops_there = ar->gamma_end > 0;
-        const real next = stops_there ? INFINITY : fmaxq(x, -20) + 4;
+        const real next = stops_there ? INFINITY : fmaxq(fmaxq(x, -20) + 4, 1.5Q * x);
+        if (!stops_there && next > 1e15Q) return false;
         if (!arc_extend(ar, next)) return false;
         piece(rn, x, stops_there ? ar->edge[ar->edges - 1].x : next, stops_there);
         if (stops_there) break;

@@ -19,7 +19,7 @@ typedef struct oracle_outcome {
     double turned; /* angle through which the sliding direction turned, rad */
 } oracle_outcome;
 
-/* False: two roots of T coincide to within 1e-8 rad, which is outside of the oracle. */
+/* False: two roots of T coincide to within 1e-8 rad, or sliding neither stops nor goes on; this is outside of the oracle. */
 bool oracle_collide(const impact_collision *collision, oracle_outcome *outcome);
 
 #endif
