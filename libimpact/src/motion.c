@@ -65,6 +65,7 @@ impact_status impact_motion_emit(impact_motion *motion, impact_sampler *sampler,
     }
     return sampler->emit(sampler->context, t, motion->sampled) ? IMPACT_OK : IMPACT_STOPPED;
 }
+
 void impact_motion_set_slack(impact_motion *motion, const impact_state *states)
 {
     impact_world *world = motion->world;
@@ -78,8 +79,7 @@ void impact_motion_set_slack(impact_motion *motion, const impact_state *states)
     }
 }
 
-/* Nothing but uniform gravity acts. */
-static bool is_ballistic(const impact_motion *motion)
+bool impact_motion_is_ballistic(const impact_motion *motion)
 {
     return motion->persist.count == 0 && !impact_field_any(motion->world);
 }
@@ -88,7 +88,7 @@ impact_status impact_motion_advance(impact_motion *motion, double *t, double t_e
                                     impact_sampler *sampler, impact_end *end)
 {
     motion->message[0] = '\0';
-    if (is_ballistic(motion)) return impact_motion_fly(motion, t, t_end, states, sampler, end);
+    if (impact_motion_is_ballistic(motion)) return impact_motion_fly(motion, t, t_end, states, sampler, end);
     if (!impact_motion_load(motion, *t, states)) return IMPACT_EDOMAIN;
     return impact_motion_integrate(motion, t, t_end, states, sampler, end);
 }

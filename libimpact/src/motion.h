@@ -87,6 +87,8 @@ double impact_motion_sample_time(const impact_sampler *sampler);
 /* Emits one, with the held contacts put back exactly. */
 impact_status impact_motion_emit(impact_motion *motion, impact_sampler *sampler, double t, const impact_state *states);
 
+/* Nothing but uniform gravity acts, and nothing is held: the motion is in closed form. */
+bool impact_motion_is_ballistic(const impact_motion *motion);
 /* Sets every pair's slack for the stretch that begins. */
 void impact_motion_set_slack(impact_motion *motion, const impact_state *states);
 

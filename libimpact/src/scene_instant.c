@@ -159,7 +159,9 @@ static bool dies_out(const impact_scene *scene, const meeting *m, double speed)
 {
     enum { MOST = 10 };
     const impact_pair *pair = &scene->world.pairs[m->touch.pair];
-    const double late = impact_world_touching_distance(&scene->world, pair, scene->states);
+    double late = impact_world_touching_distance(&scene->world, pair, scene->states);
+    if (!impact_motion_is_ballistic(&scene->motion))
+        late = fmax(late, scene->motion.tolerance * impact_world_reach(&scene->world, pair, scene->states));
     const double gain = 1 / (1 - pair->restitution * pair->restitution);
     const double height = fmax(scene->rest_height, late * fmin(gain, MOST));
     return m->acceleration < 0 && speed * speed < 2 * lasting_press(scene, m) * height;

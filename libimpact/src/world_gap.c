@@ -47,9 +47,14 @@ double impact_world_approach(const impact_world *world, const impact_touch *touc
     return impact_world_gap_rate(world, &world->pairs[touch->pair], states, &contact);
 }
 
+double impact_world_reach(const impact_world *world, const impact_pair *pair, const impact_state *states)
+{
+    return qvec3_norm(states[pair->body1].x) + world->bodies[pair->body1].radius;
+}
+
 double impact_world_touching_distance(const impact_world *world, const impact_pair *pair, const impact_state *states)
 {
-    return 1e-12 * (qvec3_norm(states[pair->body1].x) + world->bodies[pair->body1].radius);
+    return 1e-12 * impact_world_reach(world, pair, states);
 }
 
 double impact_world_distance_bound(const impact_world *world, const impact_pair *pair, const impact_state *states)

@@ -23,6 +23,9 @@ double impact_world_gap_rate(const impact_world *world, const impact_pair *pair,
 /* Normal relative velocity at a touch, m/s; < 0: approaching. */
 double impact_world_approach(const impact_world *world, const struct impact_touch *touch, const impact_state *states);
 
+/* m: how far body 1 reaches from the origin: places are known relative to it. */
+double impact_world_reach(const impact_world *world, const impact_pair *pair, const impact_state *states);
+
 /* Gaps of the pair up to this are rounding, m. */
 double impact_world_touching_distance(const impact_world *world, const impact_pair *pair, const impact_state *states);
 

@@ -217,6 +217,32 @@ static void uses_only_what_it_needs(void **state)
     free_log(&log);
 }
 
+/* Bounces that the integrator cannot tell from its own error are not followed: a loose tolerance makes a run shorter, not longer. */
+static void a_loose_tolerance_costs_less(void **state)
+{
+    (void)state;
+    long steps = 0;
+    qvec3 end = {0, 0, 0};
+    for (int digits = 13; digits >= 2; digits--) {
+        thesis_scene *s = make_thesis_scene(false);
+        s->def.tolerance = pow(10, -digits);
+        impact_scene *scene = make_scene(&s->def);
+        const impact_status status = impact_scene_run(scene, NULL);
+        assert_true(status == IMPACT_OK || status == IMPACT_SOFT);
+        impact_sample ball;
+        assert_int_equal(impact_scene_body(scene, BALL, &ball), IMPACT_OK);
+        const long now = impact_scene_usage(scene).integrator_steps;
+        if (digits < 13) {
+            assert_true(now < steps);
+            assert_near3(ball.position, end, 10 * s->def.tolerance);
+        } else
+            end = ball.position;
+        steps = now;
+        impact_scene_destroy(scene);
+        free(s);
+    }
+}
+
 static void the_same_bits_on_every_run(void **state)
 {
     (void)state;
@@ -415,6 +441,7 @@ int main(void)
         cmocka_unit_test(comes_back_sliding_and_rolling),
         cmocka_unit_test(samples_stand_on_the_grid_and_beside_events),
         cmocka_unit_test(uses_only_what_it_needs),
+        cmocka_unit_test(a_loose_tolerance_costs_less),
         cmocka_unit_test(the_same_bits_on_every_run),
         cmocka_unit_test(in_pieces_as_in_one),
         cmocka_unit_test(stops_when_asked),

@@ -70,8 +70,8 @@ typedef struct impact_scene_def {
     double compliance;    /* of every contact, eta^2: see impact_collision; > 0 with Stronge's law only; 0: rigid */
 
     double tolerance; /* relative, of the motion's integration; a thirtieth of it where no contact is held */
-    /* m: a bounce that would rise less than this, or than a few roundings of the gap, is the last: the contact is
-     * held */
+    /* m: a bounce that would rise less than this, than a few roundings of the gap, or than the integrator can tell, is the last: the
+     * contact is held */
     double rest_height;
     double rest_speed; /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
     long max_events;   /* IMPACT_EVENT_LIMIT after so many */
