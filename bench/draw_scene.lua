@@ -30,7 +30,7 @@ for number, scene in ipairs(scenes) do
   end
   local panel = {
     title = scene[2], xlabel = "time of the run, ms", ylabel = "relative error", xlog = true, ylog = true,
-    xrange = { 1, 100 }, yrange = { 1e-15, 1e-2 }, legend = number == 1 and "bottom left" or "none",
+    xrange = { 0.1, 100 }, yrange = { 1e-15, 1e-2 }, legend = number == 1 and "bottom left" or "none",
     plot.line { x, position, color = "blue", width = 1.6 },
     plot.points { x, position, color = "blue", label = "position", size = 1.1 },
     plot.line { x, velocity, color = "orange", width = 1.2, dash = true },
