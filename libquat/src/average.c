@@ -27,8 +27,9 @@ quat_status quat_mean(size_t n, const quat q[], const double weights[], quat *me
     if (n == 0) return QUAT_EARGUMENT;
     if (!largest_weight(n, weights, &largest)) return QUAT_EDOMAIN;
     for (size_t i = 0; i < n; i++) {
-        if (!quat_isfinite(q[i])) return QUAT_EDOMAIN;
-        const double c[4] = {q[i].w, q[i].x, q[i].y, q[i].z}, w = weight(weights, i, largest);
+        quat unit;
+        if (quat_normalize(q[i], &unit) != QUAT_OK) return QUAT_EDOMAIN;
+        const double c[4] = {unit.w, unit.x, unit.y, unit.z}, w = weight(weights, i, largest);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++) m[j][k] += w * c[j] * c[k];
     }
@@ -42,6 +43,7 @@ quat_status quat_mean(size_t n, const quat q[], const double weights[], quat *me
 /* The rotation vector (half of it: the logarithm on S^3) from mean to q, the short way, in the mean's own axes. */
 static qvec3 half_turn_to(quat mean, quat q)
 {
+    quat_normalize(q, &q);
     return quat_log_unit(quat_mul_compensated(quat_conj(mean), quat_nearest(q, mean)));
 }
 
@@ -108,14 +110,15 @@ static quat_status align_centred(size_t n, const qvec3 a[], const qvec3 b[], con
     }
     const quat_status status = quat_attitude(&m, q);
     if (residual) {
+        const double s = fmin(sa, sb);
         double sum = 0, total = 0;
         for (size_t i = 0; i < n; i++) {
             const double w = weight(weights, i, heaviest);
-            const qvec3 off = qvec3_sub(qvec3_sub(b[i], cb), quat_rotate(*q, qvec3_sub(a[i], ca)));
-            sum = hypot(sum, sqrt(w) * qvec3_norm(off));
+            const qvec3 u = qvec3_scale(qvec3_sub(a[i], ca), s), v = qvec3_scale(qvec3_sub(b[i], cb), s);
+            sum = hypot(sum, sqrt(w) * qvec3_norm(qvec3_sub(v, quat_rotate(*q, u))));
             total += w;
         }
-        *residual = sum / sqrt(total);
+        *residual = sum / sqrt(total) / s;
     }
     return status;
 }
@@ -156,8 +159,13 @@ quat_status quat_align_points(size_t n, const qvec3 a[], const qvec3 b[], const 
     if (n == 0) return QUAT_EARGUMENT;
     if (!largest_weight(n, weights, &heaviest) || !finite_sets(n, a, b)) return QUAT_EDOMAIN;
     const qvec3 ca = centroid(n, a, weights, heaviest), cb = centroid(n, b, weights, heaviest);
-    if (!qvec3_isfinite(ca) || !qvec3_isfinite(cb)) return QUAT_ERANGE;
+    const double size = fmax(largest_component(n, a, ca), largest_component(n, b, cb));
+    if (!qvec3_isfinite(ca) || !qvec3_isfinite(cb) || isinf(size)) return QUAT_ERANGE;
     const quat_status status = align_centred(n, a, b, weights, heaviest, ca, cb, q, residual);
     *shift = qvec3_sub(cb, quat_rotate(*q, ca));
-    return status < 0 ? QUAT_NOT_UNIQUE : status;
+    if (qvec3_isfinite(*shift)) return status < 0 ? QUAT_NOT_UNIQUE : status;
+    *q = quat_identity();
+    *shift = qvec3_make(0, 0, 0);
+    if (residual) *residual = NAN;
+    return QUAT_ERANGE;
 }

@@ -20,9 +20,9 @@ quat_status quat_dual_normalize(qdual p, qdual *unit)
     quat r;
     *unit = quat_dual_identity();
     if (!quat_isfinite(p.dual) || quat_normalize(p.real, &r) != QUAT_OK) return QUAT_EDOMAIN;
-    const quat d = quat_scale(p.dual, 1 / quat_norm(p.real));
-    if (!quat_isfinite(d)) return QUAT_EDOMAIN;
-    *unit = quat_dual_make(r, quat_axpy(-quat_dot(r, d), r, d));
+    const quat d = quat_scale(p.dual, 1 / quat_norm(p.real)), across = quat_axpy(-quat_dot(r, d), r, d);
+    if (!quat_isfinite(across)) return QUAT_ERANGE;
+    *unit = quat_dual_make(r, across);
     return QUAT_OK;
 }
 
@@ -52,8 +52,12 @@ qdual quat_dual_sclerp(qdual p, qdual q, double t)
 quat_status quat_dual_to_screw(qdual p, qvec3 *axis, qvec3 *point, double *angle, double *slide)
 {
     qdual unit;
-    const quat_status status = quat_dual_normalize(p, &unit);
-    const qtwist twist = quat_dual_log(unit);
+    quat_status status = quat_dual_normalize(p, &unit);
+    qtwist twist = quat_dual_log(unit);
+    if (!isfinite(qvec3_norm(twist.translation))) {
+        status = QUAT_ERANGE;
+        twist = quat_dual_log(quat_dual_identity());
+    }
     *point = qvec3_make(0, 0, 0);
     *angle = qvec3_norm(twist.rotation);
     if (qvec3_normalize(twist.rotation, axis) == QUAT_OK) {
@@ -75,9 +79,10 @@ quat_status quat_dual_from_screw(qvec3 axis, qvec3 point, double angle, double s
     qvec3 n;
     *p = quat_dual_identity();
     if (qvec3_normalize(axis, &n) != QUAT_OK || quat_from_axis_angle(n, angle, &q) != QUAT_OK) return QUAT_EDOMAIN;
-    const qvec3 shift = qvec3_axpy(slide, n, qvec3_sub(point, quat_rotate(q, point)));
-    if (!qvec3_isfinite(shift)) return QUAT_EDOMAIN;
-    *p = quat_dual_from(q, shift);
+    if (!qvec3_isfinite(point) || !isfinite(slide)) return QUAT_EDOMAIN;
+    const qdual motion = quat_dual_from(q, qvec3_axpy(slide, n, qvec3_sub(point, quat_rotate(q, point))));
+    if (!quat_isfinite(motion.dual)) return QUAT_ERANGE;
+    *p = motion;
     return QUAT_OK;
 }
 

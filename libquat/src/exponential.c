@@ -35,7 +35,9 @@ static inline circle circle_of(length a)
         return k == 1 ? (circle){{-s, -d.lo * c}, {c, -d.lo * s}} : (circle){{-c, d.lo * s}, {-s, -d.lo * c}};
     }
     const double c = cos(a.hi), s = sin(a.hi);
-    return (circle){{c, -a.lo * s}, {s, a.lo * c}};
+    if (fabs(a.lo) < 1e-9) return (circle){{c, -a.lo * s}, {s, a.lo * c}};
+    const double lo = sin(a.lo), half = sin(0.5 * a.lo), less = 2 * half * half; /* angles past 1e7 */
+    return (circle){{c, -lo * s - less * c}, {s, lo * c - less * s}};
 }
 
 /* a b, and s/a, to twice the precision but for a unit or two. */
@@ -197,7 +199,9 @@ quat_status quat_pow(quat q, double t, quat *result)
         *result = quat_make(fmod(t, 2) == 0 ? scale : -scale, 0, 0, 0);
         return QUAT_OK;
     }
-    *result = quat_scale(quat_pow_unit(q, t), scale);
+    const quat power = quat_scale(quat_pow_unit(q, t), scale);
+    if (!quat_isfinite(power)) return QUAT_ERANGE;
+    *result = power;
     return negative ? QUAT_NOT_UNIQUE : QUAT_OK;
 }
 

@@ -41,6 +41,7 @@ quat_status quat_integrate(quat_omega omega, void *context, quat_frame frame, qu
         if (!qvec3_isfinite(omega1) || !qvec3_isfinite(omega2)) return QUAT_EDOMAIN;
         const quat next = method == QUAT_CF4 ? quat_step_cf4(*result, omega1, omega2, h, frame)
                                              : quat_step_magnus4(*result, omega1, omega2, h, frame);
+        if (!quat_isfinite(next)) return QUAT_ERANGE;
         *result = quat_renormalize(next);
     }
     return QUAT_OK;

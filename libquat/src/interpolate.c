@@ -2,6 +2,7 @@
 #include <quat/interpolate.h>
 #include <quat/exponential.h>
 #include <quat/jacobian.h>
+#include <float.h>
 #include "dd.h"
 #include "slerp_kernel.h"
 
@@ -12,7 +13,7 @@ quat quat_nlerp_as_given(quat p, quat q, double t)
     if (t == 0) return p;
     if (t == 1) return q;
     const quat sum = quat_axpy(t, q, quat_scale(p, 1 - t));
-    if (isnan(quat_norm2(sum))) return sum;
+    if (!quat_isfinite(sum)) return quat_make(NAN, NAN, NAN, NAN);
     quat unit;
     return quat_normalize(sum, &unit) == QUAT_OK ? unit : p;
 }
@@ -40,7 +41,7 @@ static quat great_circle(quat p, quat q, double t)
         difference = perpendicular(difference, sum);
     const double long_sum = quat_norm(sum), long_difference = quat_norm(difference);
     if (long_difference == 0 && !isnan(t)) return p;
-    const quat middle = long_sum > 0 ? quat_scale(sum, 1 / long_sum) : quat_mul(p, quat_make(0, 1, 0, 0));
+    const quat middle = long_sum > DBL_MIN ? quat_scale(sum, 1 / long_sum) : quat_mul(p, quat_make(0, 1, 0, 0));
     const double angle = (2 * t - 1) * atan2(long_difference, long_sum);
     if (isnan(angle)) return quat_make(NAN, NAN, NAN, NAN);
     return quat_axpy(sin(angle) / long_difference, difference, quat_scale(middle, cos(angle)));

@@ -84,7 +84,7 @@ qmat3 quat_rotation_vector_jacobian_left(qvec3 r)
 {
     const double a = qvec3_norm(r), a2 = a * a;
     /* (1 - cos a)/a^2 = (sin(a/2)/(a/2))^2/2, never by the difference */
-    const double s = a == 0 ? 1 : sin(0.5 * a) / (0.5 * a), b = 0.5 * s * s;
+    const double s = a < 1e-8 ? 1 : sin(0.5 * a) / (0.5 * a), b = 0.5 * s * s;
     const double c = a < 0.5 ? (1 - a2 / 20 * (1 - a2 / 42 * (1 - a2 / 72 * (1 - a2 / 110 * (1 - a2 / 156))))) / 6
                              : (1 - sin(a) / a) / a2;
     return series(r, b, c);

@@ -14,7 +14,7 @@ const char *quat_status_string(quat_status status)
     case QUAT_EARGUMENT: return "argument out of range";
     case QUAT_ENOMEM: return "out of memory";
     case QUAT_EABSENT: return "this part was left out of the build";
-    case QUAT_ERANGE: return "the result is larger than the largest double";
+    case QUAT_ERANGE: return "the result or a number on the way to it is too large or too small";
     }
     return "unknown status";
 }

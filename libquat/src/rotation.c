@@ -95,9 +95,10 @@ quat_status quat_from_frame(qvec3 x, qvec3 y, qvec3 z, quat *q)
 quat_status quat_swing_twist(quat q, qvec3 axis, quat *swing, quat *twist)
 {
     qvec3 n;
-    *swing = q;
     *twist = quat_identity();
-    if (qvec3_normalize(axis, &n) != QUAT_OK || !quat_isfinite(q)) return QUAT_EDOMAIN;
+    const quat_status status = quat_normalize(q, swing);
+    if (status != QUAT_OK || qvec3_normalize(axis, &n) != QUAT_OK) return QUAT_EDOMAIN;
+    q = *swing;
     const double along = qvec3_dot(quat_vector(q), n);
     quat t;
     if (quat_normalize(quat_from_parts(q.w, qvec3_scale(n, along)), &t) != QUAT_OK) return QUAT_NOT_UNIQUE;

@@ -242,6 +242,16 @@ static quat_status find_rates(quat_spline *s, row *rows)
 
 /* ---- making one ---- */
 
+/* Times between keys (s) whose squares stay in range, and the angle that one segment may whirl through: as many steps as
+ * radians, at least, are needed for its length. */
+static const double shortest = 1e-100, longest = 1e100, wildest = 1e5;
+
+/* A bound of the angle of the segment after k. */
+static double whirl(const key *k)
+{
+    return qvec3_norm(k->turn) + (qvec3_norm(k->omega) + qvec3_norm(k->rate)) * (k[1].t - k[0].t);
+}
+
 static quat_status copy_keys(quat_spline *s, const double t[], const quat q[])
 {
     for (size_t i = 0; i < s->n; i++) {
@@ -250,6 +260,7 @@ static quat_status copy_keys(quat_spline *s, const double t[], const quat q[])
         if (!isfinite(t[i]) || quat_normalize(q[i], &k->q) != QUAT_OK) return QUAT_EDOMAIN;
         if (i == 0) continue;
         if (!(t[i] > t[i - 1])) return QUAT_EARGUMENT;
+        if (!(t[i] - t[i - 1] >= shortest && t[i] - t[i - 1] <= longest)) return QUAT_ERANGE;
         k->q = quat_nearest(k->q, k[-1].q);
         k[-1].turn = quat_to_rotation_vector(quat_mul_compensated(quat_conj(k[-1].q), k->q));
     }
@@ -287,8 +298,7 @@ static double adaptive(const key *k, double a, double b, double whole, double to
 static double part_length(const key *k, double s)
 {
     enum { parts = 4, depth = 40 };
-    const double tolerance =
-        1e-15 * (qvec3_norm(k->turn) + (qvec3_norm(k->omega) + qvec3_norm(k->rate)) * (k[1].t - k[0].t));
+    const double tolerance = 1e-15 * whirl(k);
     double sum = 0;
     for (int i = 0; i < parts; i++) {
         const double a = s * i / parts, b = s * (i + 1) / parts;
@@ -320,11 +330,15 @@ quat_status quat_spline_new(size_t n, const double t[], const quat q[], quat_spl
     }
     if (status == QUAT_OK) status = find_rates(s, rows);
     free(rows);
+    if (status == QUAT_OK) {
+        set_rates(s);
+        for (size_t i = 0; i + 1 < n; i++)
+            if (!(whirl(&s->keys[i]) <= wildest)) status = QUAT_ERANGE;
+    }
     if (status != QUAT_OK) {
         free(s);
         return status;
     }
-    set_rates(s);
     for (size_t i = 1; i < n; i++)
         s->keys[i].length = s->keys[i - 1].length + part_length(&s->keys[i - 1], s->keys[i].t - s->keys[i - 1].t);
     *spline = s;

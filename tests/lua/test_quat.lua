@@ -318,7 +318,7 @@ check.raises("a vector is multiplied by a number; of two vectors take v:dot(w) o
 check.raises("division of a vector by zero", function() return v1 / 0 end)
 check.raises("argument 'right' must be a vector {x, y, z} of finite numbers, got 1", function() return v1 + 1 end)
 check.raises("argument 'z' must be a finite number, got nothing", quat.vec3, 1, 2)
-check.raises("the result is (inf, 0.000000, 0.000000): the result is larger than the largest double",
+check.raises("the result is (inf, 0.000000, 0.000000): the result or a number on the way to it is too large or too small",
   function() return quat.vec3(1e308, 0, 0) * 10 end)
 check.raises("argument 'pole' must be one of 'south', 'north', got the string 'west'", one.stereographic, one, "west")
 check.raises("argument 'image' must be a point {x, y, z} of numbers", quat.from_stereographic, { 1, 2 })

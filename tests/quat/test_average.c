@@ -199,6 +199,10 @@ static void bad_input_is_named(void **state)
     assert_int_equal(quat_mean(2, q, NULL, &m), QUAT_EDOMAIN);
     assert_int_equal(quat_mean(1, q, negative + 1, &m), QUAT_EDOMAIN);
     assert_int_equal(quat_mean(1, q, none, &m), QUAT_EDOMAIN);
+    const quat long_and_short[2] = {{1e-200, 0, 0, 0}, {0.8e200, 0.6e200, 0, 0}}, nothing = {0, 0, 0, 0};
+    assert_int_equal(quat_mean(1, &nothing, NULL, &m), QUAT_EDOMAIN);
+    assert_int_equal(quat_mean_karcher(2, long_and_short, NULL, &m, &residual), QUAT_OK); /* lengths do not count */
+    assert_true(fabs(quat_angle(m) - acos(0.8)) < 1e-15 && fabs(residual - acos(0.8)) < 1e-15);
     assert_int_equal(quat_mean_karcher(1, q, nan, &m, &residual), QUAT_EDOMAIN);
     assert_true(quat_equal(m, quat_identity()) && isnan(residual));
     assert_int_equal(quat_align(0, v, v, NULL, &m, &residual), QUAT_EARGUMENT);
@@ -207,6 +211,12 @@ static void bad_input_is_named(void **state)
     assert_true(isnan(residual));
     assert_int_equal(quat_align_points(2, v, zero, NULL, &m, &shift, NULL), QUAT_EDOMAIN);
     assert_int_equal(quat_align_points(2, zero, zero, negative, &m, &shift, NULL), QUAT_EDOMAIN);
+    const qvec3 apart[2] = {{1.7e308, 0, 0}, {-1.7e308, 0, 0}};
+    assert_int_equal(quat_align_points(2, apart, apart, NULL, &m, &shift, &residual), QUAT_ERANGE);
+    assert_true(quat_equal(m, quat_identity()) && qvec3_norm(shift) == 0 && isnan(residual));
+    const qvec3 large[2] = {{1e308, 0, 0}, {0, 1e308, 0}}, turned[2] = {{0, 1e308, 0}, {-1e308, 0, 0}};
+    assert_int_equal(quat_align(2, large, turned, NULL, &m, &residual), QUAT_OK);
+    assert_true(quat_near(m, quat_make(sqrt(0.5), 0, 0, sqrt(0.5)), 1e-15) && residual < 1e293);
 }
 
 int main(void)

@@ -146,6 +146,16 @@ static void normalise_and_blend(void **state)
     assert_int_equal(quat_dual_blend(1, &bad, NULL, &unit), QUAT_EDOMAIN);
     assert_int_equal(quat_dual_from_screw(qvec3_make(0, 0, 0), qvec3_make(0, 0, 0), 1, 0, &unit), QUAT_EDOMAIN);
     assert_int_equal(quat_dual_from_screw(qvec3_make(0, 0, 1), qvec3_make(0, NAN, 0), 1, 0, &unit), QUAT_EDOMAIN);
+    /* finite, but too far */
+    const qdual far = {{0.5, 0.5, 0.5, 0.5}, {0, 1.7e308, 1.7e308, -1.7e308}},
+                near_zero = {{1e-300, 0, 0, 0}, {0, 1e10, 0, 0}};
+    qvec3 axis, point;
+    double angle, slide;
+    assert_int_equal(quat_dual_to_screw(far, &axis, &point, &angle, &slide), QUAT_ERANGE);
+    assert_true(axis.z == 1 && qvec3_norm(point) == 0 && angle == 0 && slide == 0);
+    assert_int_equal(quat_dual_normalize(near_zero, &unit), QUAT_ERANGE);
+    assert_int_equal(quat_dual_from_screw(qvec3_make(0, 0, 1), qvec3_make(1.7e308, 0, 0), 3, 1, &unit), QUAT_ERANGE);
+    assert_true(quat_equal(unit.real, quat_identity()));
 }
 
 int main(void)

@@ -21,15 +21,18 @@ static void exp_of_pure_is_right_for_every_angle(void **state)
 {
     (void)state;
     random_state r = {11};
-    double parts = 0, large = 0;
+    double parts = 0, large = 0, huge = 0;
     for (int n = 0; n < 150000; n++) {
         const qvec3 v = qvec3_scale(random_direction(&r), nasty_angle(&r, n));
         worse(&parts, error_of_parts(quat_exp_pure(v), wide_exp(wide_vec(v))));
         const qvec3 turns = qvec3_scale(random_direction(&r), random_scale(&r, 0, 7));
         worse(&large, error_of_parts(quat_exp_pure(turns), wide_exp(wide_vec(turns))));
+        const qvec3 many = qvec3_scale(random_direction(&r), random_scale(&r, 7, 15));
+        worse(&huge, error_of(quat_exp_pure(many), wide_exp(wide_vec(many))));
     }
     assert_bound("exp of a pure quaternion, each part, u", parts, 3);
     assert_bound("the same, angles to 1e7, u", large, 3);
+    assert_bound("the whole, angles to 1e15, u", huge, 3);
     assert_true(quat_equal(quat_exp_pure(qvec3_make(0, 0, 0)), quat_identity()));
     /* sin of the double next to pi, 1.2246467991473532e-16 (pi - fl(pi), known to all digits) */
     const quat near = quat_exp_pure(qvec3_make(0, pi, 0));
@@ -202,6 +205,9 @@ static void powers_at_their_edges(void **state)
     assert_int_equal(quat_pow(zero, 0, &p), QUAT_OK);
     assert_true(quat_equal(p, quat_identity()));
     assert_int_equal(quat_pow(zero, -1, &p), QUAT_EDOMAIN);
+    assert_int_equal(quat_pow(quat_make(0.6, 0.8, 0, 0), 1.7e308, &p), QUAT_OK); /* some unit quaternion */
+    assert_int_equal(quat_pow(quat_make(-0.6, 0.8, 0, 0), 1.7e308, &p), QUAT_ERANGE);
+    assert_true(quat_equal(p, quat_identity()));
     assert_int_equal(quat_pow(minus, 3, &p), QUAT_OK);
     assert_true(quat_equal(p, quat_make(-8, 0, 0, 0)));
     assert_int_equal(quat_pow(minus, 2, &p), QUAT_OK);

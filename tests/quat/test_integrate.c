@@ -74,6 +74,12 @@ static qvec3 broken(double t, void *context)
     return qvec3_make(1, t < 0.5 ? 0 : NAN, 0);
 }
 
+static qvec3 fast(double t, void *context)
+{
+    (void)context;
+    return qvec3_make(t < 50 ? 1 : 1e308, 0, 0);
+}
+
 static void bad_input_is_named(void **state)
 {
     (void)state;
@@ -88,6 +94,9 @@ static void bad_input_is_named(void **state)
     assert_true(quat_equal(q, one));
     assert_int_equal(quat_integrate(broken, NULL, QUAT_WORLD, QUAT_MAGNUS4, 0, 1, 10, one, &q), QUAT_EDOMAIN);
     assert_true(quat_near(q, quat_exp_pure(qvec3_make(0.25, 0, 0)), 1e-15)); /* as far as it came */
+    assert_int_equal(quat_integrate(fast, NULL, QUAT_BODY, QUAT_CF4, 0, 100, 10, one, &q), QUAT_ERANGE);
+    assert_true(quat_near(q, quat_exp_pure(qvec3_make(25, 0, 0)), 1e-14));
+    assert_int_equal(quat_integrate(omega, &c, QUAT_WORLD, QUAT_MAGNUS4, -1.7e308, 1.7e308, 2, one, &q), QUAT_EDOMAIN);
 }
 
 int main(void)

@@ -68,6 +68,11 @@ static void ends_are_exact(void **state)
     assert_true(quat_equal(quat_nlerp_as_given(one, minus, 0.5), one));
     assert_true(isnan(quat_slerp(one, quat_make(NAN, 0, 0, 0), 0.5).w) && isnan(quat_slerp(one, minus, NAN).w));
     assert_true(isnan(quat_nlerp(one, quat_make(NAN, 0, 0, 0), 0.5).w));
+    assert_true(isnan(quat_nlerp(one, quat_make(INFINITY, 0, 0, 0), 0.5).w));
+    assert_true(isnan(quat_nlerp(quat_make(0.5, 0.5, 0.5, 0.5), quat_make(0.8, 0.6, 0, 0), INFINITY).w));
+    /* opposite but for components whose squares and inverses leave the range of doubles */
+    const quat almost = {-1, 3e-309, 0, 2e-310};
+    assert_true(quat_near(quat_slerp_as_given(one, almost, 0.5), quat_make(0, 1, 0, 0), 1e-16));
     /* 90 degrees about z in three parts of 30 */
     const quat h = {sqrt(0.5), 0, 0, sqrt(0.5)};
     assert_true(quat_near(quat_slerp(one, h, 1.0 / 3), quat_make(cos(pi / 12), 0, 0, sin(pi / 12)), 2e-16));

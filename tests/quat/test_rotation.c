@@ -146,6 +146,12 @@ static void matrices_there_and_back(void **state)
     assert_int_equal(quat_from_matrix(&bad, &q), QUAT_EDOMAIN);
     assert_int_equal(quat_from_matrix(&worse_one, &q), QUAT_EDOMAIN);
     assert_true(quat_equal(q, quat_identity()));
+    const qmat3 nothing = {{{0}}}, small = {{{1e-20, 0, 0}, {0, 1e-20, 0}, {0, 0, 1e-20}}};
+    const qmat3 large = {{{1e150, 0, 0}, {0, 1e150, 0}, {0, 0, 1e150}}};
+    assert_int_equal(quat_from_matrix(&nothing, &q), QUAT_EDOMAIN);
+    assert_int_equal(quat_from_matrix(&small, &q), QUAT_EDOMAIN);
+    assert_int_equal(quat_from_matrix(&large, &q), QUAT_EDOMAIN);
+    assert_true(quat_equal(q, quat_identity()));
     /* the four half turns and the identity, exactly */
     const qmat3 about_x = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}}, about_y = {{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
     assert_int_equal(quat_from_matrix(&about_x, &q), QUAT_OK);
@@ -278,6 +284,13 @@ static void swing_and_twist(void **state)
     assert_int_equal(quat_swing_twist(quat_make(0, 1, 0, 0), qvec3_make(0, 0, 1), &swing, &twist), QUAT_NOT_UNIQUE);
     assert_true(quat_equal(twist, quat_identity()) && quat_equal(swing, quat_make(0, 1, 0, 0)));
     assert_int_equal(quat_swing_twist(quat_identity(), qvec3_make(0, 0, 0), &swing, &twist), QUAT_EDOMAIN);
+    const quat bad[3] = {{0, 0, 0, 0}, {NAN, 0, 0, 1}, {1, INFINITY, 0, 0}};
+    for (int n = 0; n < 3; n++) {
+        assert_int_equal(quat_swing_twist(bad[n], qvec3_make(0, 0, 1), &swing, &twist), QUAT_EDOMAIN);
+        assert_true(quat_equal(swing, quat_identity()) && quat_equal(twist, quat_identity()));
+    }
+    assert_int_equal(quat_swing_twist(quat_make(1e308, 0, 0, 1e308), qvec3_make(0, 0, 1), &swing, &twist), QUAT_OK);
+    assert_true(quat_near(twist, quat_make(sqrt(0.5), 0, 0, sqrt(0.5)), 2e-16));
 }
 
 /* ---- angular velocity ---- */

@@ -198,6 +198,14 @@ static void outside_and_bad_input(void **state)
     assert_int_equal(quat_spline_new(3, t, bad, QUAT_SPLINE_NATURAL, zero, zero, &s), QUAT_EDOMAIN);
     assert_int_equal(quat_spline_new(3, t, q, QUAT_SPLINE_CLAMPED, qvec3_make(INFINITY, 0, 0), zero, &s), QUAT_EDOMAIN);
     assert_null(s);
+    /* no hang and no NaN where times lie too close, too far or too unevenly, and where the ends turn too fast */
+    const double close[3] = {0, 1e-310, 1}, far[3] = {-1.7e308, 0, 1.7e308}, uneven[3] = {0, 1e-12, 1};
+    const qvec3 quick = {0, 1e12, 1e12};
+    assert_int_equal(quat_spline_new(2, close, q, QUAT_SPLINE_CLAMPED, zero, zero, &s), QUAT_ERANGE);
+    assert_int_equal(quat_spline_new(3, far, q, QUAT_SPLINE_NATURAL, zero, zero, &s), QUAT_ERANGE);
+    assert_int_equal(quat_spline_new(3, uneven, q, QUAT_SPLINE_NATURAL, zero, zero, &s), QUAT_ERANGE);
+    assert_int_equal(quat_spline_new(2, t, q, QUAT_SPLINE_CLAMPED, quick, zero, &s), QUAT_ERANGE);
+    assert_null(s);
 }
 
 int main(void)

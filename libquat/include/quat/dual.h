@@ -62,7 +62,8 @@ static inline qvec3 quat_dual_apply_inverse(qdual p, qvec3 x)
 }
 
 /* The unit dual quaternion nearest in direction: real part of length 1, dual part perpendicular to it. QUAT_EDOMAIN and
- * *unit = 1 when the real part cannot be normalised or the dual part is infinite or NaN. */
+ * *unit = 1 when the real part cannot be normalised or the dual part is infinite or NaN, QUAT_ERANGE and *unit = 1 when
+ * the dual part overflows. */
 QUAT_API quat_status quat_dual_normalize(qdual p, qdual *unit);
 
 /* exp and log between twists and unit dual quaternions; the log takes the short way (rotation of at most pi; p and -p are
@@ -77,9 +78,10 @@ QUAT_API qdual quat_dual_sclerp(qdual p, qdual q, double t);
 /* Chasles: every motion turns by `angle` (0 ... pi) about the line through `point` (its nearest to the origin) along the
  * unit `axis`, and slides by `slide` along it. A pure shift gives angle 0, the axis along it and QUAT_NOT_UNIQUE (any
  * point will do; the origin is given); the identity gives axis z and slide 0 as well. QUAT_EDOMAIN, with the
- * identity's values, when p cannot be normalised. */
+ * identity's values, when p cannot be normalised, QUAT_ERANGE when the slide overflows. */
 QUAT_API quat_status quat_dual_to_screw(qdual p, qvec3 *axis, qvec3 *point, double *angle, double *slide);
-/* The reverse. QUAT_EDOMAIN and *p = 1 for an axis that cannot be normalised and for infinite and NaN. */
+/* The reverse. QUAT_EDOMAIN and *p = 1 for an axis that cannot be normalised and for infinite and NaN, QUAT_ERANGE and
+ * *p = 1 when the motion overflows. */
 QUAT_API quat_status quat_dual_from_screw(qvec3 axis, qvec3 point, double angle, double slide, qdual *p);
 
 /* Weighted blend of n motions (dual quaternion linear blending): the normalised sum, every p[i] with the sign that is

@@ -4,7 +4,8 @@
  *
  * With q = r (cos a + n sin a), r = |q|, n a unit vector, 0 <= a <= pi: log q = ln r + a n, and every other function
  * here follows from it. The scalar and the vector part of exp and log are each right to a few units in the last place,
- * also where they are tiny: near |v| = pi, near |q| = 1, for angles down to the smallest double.
+ * also where they are tiny: near |v| = pi, near |q| = 1, for angles down to the smallest double. Past |v| = 1e7 it is
+ * exp as a whole that is so.
  */
 #ifndef QUAT_EXPONENTIAL_H
 #define QUAT_EXPONENTIAL_H
@@ -32,7 +33,7 @@ QUAT_API quat_status quat_exp(quat q, quat *result);
 QUAT_API quat_status quat_log(quat q, quat *result);
 
 /* q^t = |q|^t (cos ta + n sin ta), t real. 0^t is 0 for t > 0 and 1 for t = 0. QUAT_EDOMAIN (*result = 1) for infinite
- * or NaN arguments and for 0^t, t < 0; QUAT_ERANGE (*result = 1) when |q|^t overflows; QUAT_NOT_UNIQUE for negative
+ * or NaN arguments and for 0^t, t < 0; QUAT_ERANGE (*result = 1) when |q|^t or ta overflows; QUAT_NOT_UNIQUE for negative
  * real q and t not an integer, with n = (1, 0, 0). */
 QUAT_API quat_status quat_pow(quat q, double t, quat *result);
 

@@ -30,7 +30,8 @@ QUAT_API quat quat_step_cf4(quat q, qvec3 omega1, qvec3 omega2, double h, quat_f
 
 /* q at t1 from q at t0, in n equal steps (t1 < t0 goes back). Global error O(h^4). The result is unit to a few rounding
  * units for any n. QUAT_EARGUMENT for n = 0 or an unknown method or frame; QUAT_EDOMAIN for a q that cannot be
- * normalised, infinite or NaN times, and when omega returns infinite or NaN: *result is then q as last reached. */
+ * normalised, infinite or NaN times, and when omega returns infinite or NaN; QUAT_ERANGE when a step's angle overflows:
+ * *result is then q as last reached. */
 QUAT_API quat_status quat_integrate(quat_omega omega, void *context, quat_frame frame, quat_method method, double t0,
                                     double t1, size_t n, quat q, quat *result);
 

@@ -5,7 +5,8 @@
  *
  * Each comes in two forms. The plain one interpolates *rotations*: it takes the short way, from p to q or -q. The one
  * called as_given interpolates *points of S^3*: from p to q even if -q is nearer. t runs from 0 (p) to 1 (q), both
- * exact; outside, the great circle goes on. NaN in, NaN out.
+ * exact; outside, the great circle goes on. Infinite and NaN come out as NaN, but for an end that is not asked for: the
+ * result at t = 0 is p whatever q, at t = 1 q whatever p.
  */
 #ifndef QUAT_INTERPOLATE_H
 #define QUAT_INTERPOLATE_H
@@ -44,7 +45,8 @@ QUAT_API quat quat_squad(quat p, quat a, quat b, quat q, double t);
 /* The control point at key q between its neighbours: q exp(-(log(q* before) + log(q* after))/4). Keys first made
  * continuous by quat_unflip. At an end, give q itself for the neighbour that is not there. */
 QUAT_API quat quat_squad_control(quat before, quat q, quat after);
-/* The angular velocity of quat_squad, radians per unit of t, world axes; by the chain rule, not by differences. */
+/* The angular velocity of quat_squad, radians per unit of t, world axes; by the chain rule, not by differences. NaN
+ * where the two inner great circles are at opposite points of S^3: squad jumps there. */
 QUAT_API qvec3 quat_squad_omega(quat p, quat a, quat b, quat q, double t);
 
 /* ---- recorded curves ---- */

@@ -48,7 +48,7 @@ typedef enum quat_status {
     QUAT_EARGUMENT = -2,    /* a count, a selector or a pointer out of its range */
     QUAT_ENOMEM = -3,
     QUAT_EABSENT = -4, /* the part was left out of this build */
-    QUAT_ERANGE = -5   /* the result is larger than the largest double */
+    QUAT_ERANGE = -5   /* the result or a number on the way to it is too large or too small for a double */
 } quat_status;
 
 /* One short English sentence for a status; never NULL. */

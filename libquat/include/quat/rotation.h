@@ -74,7 +74,8 @@ static inline qmat3 quat_to_matrix(quat q)
 
 /* The unit quaternion of a rotation matrix m, w >= 0: the longest row of 4 q q^T (Shepperd 1978), normalised, so that
  * the result is a unit quaternion whatever the noise in m. QUAT_EDOMAIN and *q = 1 when m has an infinite or NaN
- * element, or none but zeros. For a matrix that is off by more than rounding, quat_from_matrix_nearest. */
+ * element or one beyond 1e140, and when it is zero or vanishes beside 1. For a matrix that is off by more than
+ * rounding, quat_from_matrix_nearest. */
 static inline quat_status quat_from_matrix(const qmat3 *m, quat *q)
 {
     const double a = m->m[0][0], b = m->m[1][1], c = m->m[2][2];
@@ -86,7 +87,7 @@ static inline quat_status quat_from_matrix(const qmat3 *m, quat *q)
     const unsigned x = xx > ww, z = zz > yy, second = (zz > yy ? zz : yy) > (xx > ww ? xx : ww);
     const double *const r = rows[(x & ~(0u - second)) | ((2 + z) & (0u - second))];
     const double n2 = (r[0] * r[0] + r[1] * r[1]) + (r[2] * r[2] + r[3] * r[3]);
-    if (!(n2 >= 1e-280 && n2 <= 1e280)) {
+    if (!(n2 > 1 && n2 <= 1e280)) { /* 4 or more for a rotation, 1 for zeros */
         *q = quat_identity();
         return QUAT_EDOMAIN;
     }
@@ -96,9 +97,9 @@ static inline quat_status quat_from_matrix(const qmat3 *m, quat *q)
 }
 
 /* The rotation nearest to m in the Frobenius norm, w >= 0: the polar factor, as the leading eigenvector of Bar-Itzhack's
- * (2000) symmetric 4 x 4 matrix, by Jacobi's method. *distance (may be NULL) gets |R - m|_F. QUAT_NOT_UNIQUE when
- * several rotations are equally near (rank below 2, or a reflection with equal singular values); QUAT_EDOMAIN, *q = 1
- * and *distance = NaN for a zero, infinite or NaN m. */
+ * (2000) symmetric 4 x 4 matrix, by Jacobi's method. *distance (may be NULL) gets |R - m|_F, infinite when that
+ * overflows. QUAT_NOT_UNIQUE when several rotations are equally near (rank below 2, or a reflection with equal singular
+ * values); QUAT_EDOMAIN, *q = 1 and *distance = NaN for a zero, infinite or NaN m. */
 QUAT_API quat_status quat_from_matrix_nearest(const qmat3 *m, quat *q, double *distance);
 
 /* ---- from vectors ---- */
@@ -115,9 +116,9 @@ QUAT_API quat_status quat_from_axes(qvec3 x, qvec3 y, quat *q);
 /* The rotation nearest to the frame with columns x, y, z, as quat_from_matrix_nearest; exact frames give their own. */
 QUAT_API quat_status quat_from_frame(qvec3 x, qvec3 y, qvec3 z, quat *q);
 
-/* q = swing twist: the twist turns about `axis` (body; any non-zero length), the swing about an axis perpendicular to
- * it. The twist has w >= 0. A q that turns `axis` to its opposite leaves the twist open: twist = 1, swing = q and
- * QUAT_NOT_UNIQUE. QUAT_EDOMAIN, *swing = q and *twist = 1 for a zero, infinite or NaN axis. */
+/* q/|q| = swing twist: the twist turns about `axis` (body; any non-zero length), the swing about an axis perpendicular
+ * to it. The twist has w >= 0. A q that turns `axis` to its opposite leaves the twist open: twist = 1, swing = q/|q| and
+ * QUAT_NOT_UNIQUE. QUAT_EDOMAIN with the same values for a zero, infinite or NaN axis, and with swing = 1 for such a q. */
 QUAT_API quat_status quat_swing_twist(quat q, qvec3 axis, quat *swing, quat *twist);
 
 /* ---- angular velocity (rad/s) ---- */
