@@ -213,6 +213,7 @@ core.layer()
 ---@field body fun(definition: impact.body): impact.body
 ---@field collide fun(collision: impact.collision): impact.outcome?, string?  one impact; or nil and why there is no answer
 ---@field collide_many fun(collisions: impact.collisions): table  columns v1, w1, v2, w2, impulse (flat), energy_before, energy_after, normal_after, status
+---@field collide_sensitivity fun(collision: impact.collision): number?, string?  relative change of the velocities after over that of the data; times 2^-52: what the data's rounding leaves open
 ---@field flow fun(flow: table): impact.flow_columns?, string?  {a=, b=, c=, d=, m=, mu=, u=, p_end=, count=}, or a collision with p_end and count
 ---@field wind fun(definition: impact.wind): impact.wind
 ---@field attraction fun(definition?: impact.attraction): impact.attraction

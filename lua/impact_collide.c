@@ -212,26 +212,35 @@ static impact_status make_box(lua_State *L, const quat_lua_reader *reader, impac
     return status;
 }
 
+/* Reads all of a collision; *call, if it has a friction law, serves that from then on. Raises with the key; a status below 0 where there
+ * is no workspace to be had. */
+static impact_status read_whole(lua_State *L, const quat_lua_reader *reader, law_call *call, impact_collision *c)
+{
+    impact_lua_read_collision(reader, c);
+    const impact_status status = make_box(L, reader, c);
+    if (status != IMPACT_OK) return status;
+    lua_getfield(L, 1, "mu");
+    *call = (law_call){.L = L, .function = lua_gettop(L)};
+    if (lua_isfunction(L, -1)) {
+        c->friction_law = call_law;
+        c->friction_context = call;
+        luaL_checkstack(L, 8, "friction law");
+    } else {
+        c->friction = quat_lua_get_number(reader, "mu", QUAT_LUA_NOT_NEGATIVE, 0);
+    }
+    char message[200];
+    if (impact_collide_check(c, message, sizeof message) != IMPACT_OK) quat_lua_reader_error(reader, "%s", message);
+    return IMPACT_OK;
+}
+
 /* collide{m1=, J1=, r1=, v1=, w1=, m2=, ..., n=, mu=, eps=, law=, solver=}: a table, or nil and why there is no answer. */
 static int collide(lua_State *L)
 {
     const quat_lua_reader reader = quat_lua_read(L, 1, "collision", NULL, collide_keys);
     impact_collision c;
-    impact_lua_read_collision(&reader, &c);
-    impact_status status = make_box(L, &reader, &c);
+    law_call call;
+    impact_status status = read_whole(L, &reader, &call, &c);
     if (status != IMPACT_OK) return quat_lua_failure(L, impact_status_string(status));
-    lua_getfield(L, 1, "mu");
-    law_call call = {.L = L, .function = lua_gettop(L)};
-    if (lua_isfunction(L, -1)) {
-        c.friction_law = call_law;
-        c.friction_context = &call;
-        luaL_checkstack(L, 8, "friction law");
-    } else {
-        c.friction = quat_lua_get_number(&reader, "mu", QUAT_LUA_NOT_NEGATIVE, 0);
-    }
-    char message[200];
-    if (impact_collide_check(&c, message, sizeof message) != IMPACT_OK)
-        return quat_lua_reader_error(&reader, "%s", message);
     impact_outcome o;
     status = impact_collide(&c, &o);
     if (call.failed) return quat_lua_reader_error(&reader, "mu: %s", lua_tostring(L, -1));
@@ -240,10 +249,32 @@ static int collide(lua_State *L)
     return 1;
 }
 
+/* collide_sensitivity{...}, as collide: a number, or nil and why there is none. */
+static int sensitivity(lua_State *L)
+{
+    const quat_lua_reader reader = quat_lua_read(L, 1, "collision", NULL, collide_keys);
+    impact_collision c;
+    law_call call;
+    const impact_status status = read_whole(L, &reader, &call, &c);
+    if (status != IMPACT_OK) return quat_lua_failure(L, impact_status_string(status));
+    const double answer = impact_collide_sensitivity(&c);
+    if (call.failed) return quat_lua_reader_error(&reader, "mu: %s", lua_tostring(L, -1));
+    if (isnan(answer)) {
+        impact_outcome o;
+        const impact_status why = impact_collide(&c, &o);
+        return quat_lua_failure(L, why < 0 ? impact_status_string(why) : "an impact with nearby data has no answer");
+    }
+    lua_pushnumber(L, answer);
+    return 1;
+}
+
 void impact_lua_open_collide(lua_State *L)
 {
-    static const luaL_Reg functions[] = {
-        {"collide", collide}, {"collide_many", impact_lua_collide_many}, {"flow", impact_lua_flow}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"collide", collide},
+                                         {"collide_many", impact_lua_collide_many},
+                                         {"collide_sensitivity", sensitivity},
+                                         {"flow", impact_lua_flow},
+                                         {NULL, NULL}};
     static const luaL_Reg box_methods[] = {{"__gc", close_box}, {"__close", close_box}, {NULL, NULL}};
     luaL_newmetatable(L, workspace_kind);
     luaL_setfuncs(L, box_methods, 0);

@@ -1,5 +1,5 @@
 -- SPDX-License-Identifier: MIT
--- impact.collide, impact.collide_many and impact.flow from Lua.
+-- impact.collide, impact.collide_many, impact.collide_sensitivity and impact.flow from Lua.
 local impact = require "impact"
 local check = require "check"
 
@@ -44,6 +44,23 @@ end
 do
   local o = assert(impact.collide(with { v1 = { 0, 0, 2 } }))
   check.truth(o.status == "separating" and o.v1.z == 2)
+end
+
+-- A ball that falls straight follows its data twice at most; what nearly stops follows them by what is left of its velocity.
+do
+  local falls = with { v1 = { 0, 0, -1 }, w1 = { 0, 0, 0 }, eps = 0.5 }
+  local sensitivity = assert(impact.collide_sensitivity(falls))
+  check.truth(sensitivity > 1.99 and sensitivity < 4.01, tostring(sensitivity))
+  local stops = with { J1 = { moments = { 4, 4, 4 } }, v1 = { 1e-6, -0.75, -1 }, w1 = { 0, 0, 0 }, r1 = { 0, -0.6, -0.8 }, n = { 0, 0.6, 0.8 }, mu = 0, eps = 0 }
+  sensitivity = assert(impact.collide_sensitivity(stops))
+  check.truth(sensitivity > 1e5 and sensitivity < 1e7, tostring(sensitivity))
+  check.truth(assert(impact.collide_sensitivity(with { mu = function() return 0.25 end })) > 0.1)
+  local ok, message = pcall(impact.collide_sensitivity, with { frition = 1 })
+  check.truth(not ok and tostring(message):find("unknown key 'frition'", 1, true), tostring(message))
+  ok, message = pcall(impact.collide_sensitivity, with { mu = function() error "worn out" end })
+  check.truth(not ok and tostring(message):find("worn out", 1, true), tostring(message))
+  local answer, why = impact.collide_sensitivity(with { solver = "closed_form", r1 = { 0.1, 0.2, -0.3 } })
+  check.truth(answer == nil and type(why) == "string", tostring(why))
 end
 
 -- Mistakes are named.
