@@ -248,10 +248,12 @@ static impact_status strike(impact_scene *scene, const meeting *m)
  * (answering) will be: what answers another impact so softly would not rise again. */
 static int find_approach(impact_scene *scene, bool answering, meeting *m)
 {
-    const double slow = scene->world.slip_speed;
     for (int p = 0; p < scene->world.pair_count; p++) {
         if (!meets(scene, p, m)) continue;
-        const bool held = answering || impact_is_held(&scene->world.pairs[p]);
+        const bool open = !impact_is_held(&scene->world.pairs[p]), held = answering || !open;
+        /* what is open and pressed together would fall through, however loose the tolerance */
+        const double slow = open && m->acceleration < 0 ? fmin(scene->world.slip_speed, 1e-2 * scene->rest_speed)
+                                                        : scene->world.slip_speed;
         if (m->velocity < -slow && !(held && dies_out(scene, m, m->velocity))) return p;
     }
     return -1;

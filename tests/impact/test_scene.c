@@ -243,6 +243,36 @@ static void a_loose_tolerance_costs_less(void **state)
     }
 }
 
+/* The tolerance says from which speed on slip is slip, but not which impacts are impacts: in flight there is nothing to tolerate. */
+static void a_loose_tolerance_lets_nothing_fall_through(void **state)
+{
+    (void)state;
+    double loss = 0;
+    for (int digits = 13; digits >= 2; digits--) {
+        impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 1),
+                                     ball_body("egg", (qvec3){0, 0, 1}, 0.5, 0.5)};
+        impact_shape_ellipsoid(0.1, 0.13, 0.07, &bodies[1].shape);
+        bodies[1].velocity = (qvec3){1, 0, 0};
+        bodies[1].omega = (qvec3){1, 2, 3};
+        bodies[1].mass = 1;
+        bodies[1].moments = (qvec3){NAN, NAN, NAN};
+        impact_scene_def def = impact_default_scene_def();
+        def.duration = 2;
+        def.bodies = bodies;
+        def.body_count = 2;
+        def.max_events = 100; /* it takes 19 */
+        def.tolerance = pow(10, -digits);
+        impact_scene *scene = make_scene(&def);
+        assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+        const double now = impact_scene_energy(scene).impact_loss;
+        if (digits < 13)
+            assert_near(now, loss, 1e-9);
+        else
+            loss = now;
+        impact_scene_destroy(scene);
+    }
+}
+
 static void the_same_bits_on_every_run(void **state)
 {
     (void)state;
@@ -442,6 +472,7 @@ int main(void)
         cmocka_unit_test(samples_stand_on_the_grid_and_beside_events),
         cmocka_unit_test(uses_only_what_it_needs),
         cmocka_unit_test(a_loose_tolerance_costs_less),
+        cmocka_unit_test(a_loose_tolerance_lets_nothing_fall_through),
         cmocka_unit_test(the_same_bits_on_every_run),
         cmocka_unit_test(in_pieces_as_in_one),
         cmocka_unit_test(stops_when_asked),
