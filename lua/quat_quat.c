@@ -71,6 +71,12 @@ static int meta_index(lua_State *L)
     return 1;
 }
 
+static int meta_newindex(lua_State *L)
+{
+    return quat_lua_error(L, "'%s' cannot be set: quaternions do not change; make another with quat.new",
+                          luaL_tolstring(L, 2, NULL));
+}
+
 static int meta_tostring(lua_State *L)
 {
     const quat *const q = luaL_checkudata(L, 1, QUAT_LUA_QUAT);
@@ -228,9 +234,10 @@ static int l_random(lua_State *L)
 
 void quat_lua_open_quat(lua_State *L)
 {
-    static const luaL_Reg meta[] = {{"__tostring", meta_tostring}, {"__add", meta_add}, {"__sub", meta_sub},
-                                    {"__mul", meta_mul},           {"__div", meta_div}, {"__unm", meta_unm},
-                                    {"__pow", meta_pow},           {"__eq", meta_eq},   {NULL, NULL}};
+    static const luaL_Reg meta[] = {
+        {"__tostring", meta_tostring}, {"__add", meta_add}, {"__sub", meta_sub}, {"__mul", meta_mul},
+        {"__div", meta_div},           {"__unm", meta_unm}, {"__pow", meta_pow}, {"__eq", meta_eq},
+        {"__newindex", meta_newindex}, {NULL, NULL}};
     static const luaL_Reg methods[] = {{"components", l_components},
                                        {"vector", l_vector},
                                        {"conj", l_conj},

@@ -102,7 +102,7 @@ static quat_euler sequence(lua_State *L, int index)
             L,
             "argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours "
             "alike, got %s",
-            name ? name : luaL_typename(L, index));
+            lua_isnoneornil(L, index) ? "nothing" : luaL_tolstring(L, index, NULL));
     return s;
 }
 

@@ -112,9 +112,9 @@ void quat_mul_array(size_t n, const quat p[], const quat q[], quat out[])
 }
 #endif
 
-/* q/|q| for |q|^2 in the range of doubles, with less to do than quat_normalize has and as right. The quotient u = q r keeps what its rounding lost, and its
- * length is put right by c = (1 - |u|^2)/2, summed in halves so small that each rounding on the way is a quarter of a
- * unit. Half a unit in all, and half for the result. */
+/* q/|q| for |q|^2 in the range of doubles, with less to do than quat_normalize has and as right. The quotient u = q r
+ * keeps what its rounding lost, and its length is put right by c = (1 - |u|^2)/2, summed in halves so small that each
+ * rounding on the way is a quarter of a unit. Half a unit in all, and half for the result. */
 QUAT_FMA_CLONES
 static quat divide_by_length(quat q)
 {

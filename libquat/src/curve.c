@@ -208,20 +208,23 @@ quat_status quat_curve_length(const quat_curve *curve, double a, double b, doubl
     quat_status status = check_ends(curve, a, b);
     if (status != QUAT_OK) return status;
     status = quat_quadrature(speed_at, &w, a, b, 1e-13, length);
-    if (!w.failed) return status;
+    if (!w.failed && isfinite(*length)) return status;
     *length = 0;
-    return QUAT_EDOMAIN;
+    return w.failed ? QUAT_EDOMAIN : QUAT_ERANGE;
 }
 
-/* The t whose distance along the curve from `from` is `distance`, between from and high. */
+/* The t whose distance along the curve from `from` is `distance`, between from and high. Lengths that do not converge
+ * take long and help little: after a few of them that is that. */
 static quat_status advance(const quat_curve *curve, double from, double distance, double high, double guess, double *t)
 {
     double low = from, at = from, length = 0, x = fmin(fmax(guess, low), high);
-    for (int round = 0; round < 100; round++) {
+    int rough = 0;
+    for (int round = 0; round < 100 && rough < 4; round++) {
         walk w = {curve, false, false};
         double piece;
         const quat_status status = quat_curve_length(curve, at, x, &piece);
         if (status < 0) return status;
+        rough += status != QUAT_OK;
         length += piece;
         at = x;
         const double off = length - distance, speed = speed_at(x, &w);
@@ -232,10 +235,10 @@ static quat_status advance(const quat_curve *curve, double from, double distance
             low = x;
         *t = x;
         if (fabs(off) <= 4 * DBL_EPSILON * distance || high - low <= 2 * DBL_EPSILON * fmax(fabs(low), fabs(high)))
-            return QUAT_OK;
+            return rough ? QUAT_NOT_CONVERGED : QUAT_OK;
         double next = x - off / speed;
         if (!(next > low && next < high)) next = low + (high - low) / 2;
-        if (next == x) return QUAT_OK;
+        if (next == x) return rough ? QUAT_NOT_CONVERGED : QUAT_OK;
         x = next;
     }
     return QUAT_NOT_CONVERGED;
@@ -263,14 +266,17 @@ quat_status quat_curve_even(const quat_curve *curve, size_t n, double t[])
     quat_status status = quat_curve_length(curve, curve->start, curve->end, &whole);
     if (status < 0) return status;
     t[0] = curve->start;
-    for (size_t i = 1; i + 1 < n; i++) {
+    size_t i;
+    quat_status found = QUAT_OK;
+    for (i = 1; i + 1 < n && found == QUAT_OK; i++) {
         const double step = whole / (double)(n - 1), before = i > 1 ? t[i - 2] : t[0];
         double guess = t[i - 1] + (i > 1 ? t[i - 1] - before : (curve->end - curve->start) / (double)(n - 1));
-        const quat_status found = advance(curve, t[i - 1], step, curve->end, guess, &t[i]);
+        found = advance(curve, t[i - 1], step, curve->end, guess, &t[i]);
         if (found < 0) return found;
         if (found != QUAT_OK) status = found;
     }
-    t[n - 1] = curve->end;
+    const double last = t[i - 1], step = (curve->end - last) / (double)(n - i);
+    for (size_t k = i; k < n; k++) t[k] = k + 1 < n ? last + (double)(k - i + 1) * step : curve->end;
     return status;
 }
 

@@ -17,8 +17,8 @@ static inline length length_of(double x, double y, double z)
     return (length){n, lo, lowest};
 }
 
-/* cos a and sin a, each with what its rounding lost. Where one of them vanishes, at pi/2 and pi, the distance from there
- * has all its digits first. */
+/* cos a and sin a, each with what its rounding lost. Where one of them vanishes, at pi/2 and pi, the distance from
+ * there has all its digits first. */
 typedef struct circle {
     quat_dd cosine, sine;
 } circle;
@@ -218,7 +218,8 @@ quat_status quat_pow_quat(quat p, quat q, quat *result)
     return status < 0 ? status : logarithm;
 }
 
-/* The root of a prescaled s with a vector part, w >= 0. Where s.w < 0 it would cancel in w, and the vector part comes first. */
+/* The root of a prescaled s with a vector part, w >= 0. Where s.w < 0 it would cancel in w, and the vector part comes
+ * first. */
 QUAT_FMA_CLONES
 static quat root_scaled(quat s)
 {

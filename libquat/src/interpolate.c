@@ -22,7 +22,8 @@ quat quat_nlerp(quat p, quat q, double t) { return quat_nlerp_as_given(p, quat_n
 
 /* ---- slerp ---- */
 
-/* d - g (d.g)/(g.g): what of d is perpendicular to g. d may be tiny and g not: the dot product in twice the precision. */
+/* d - g (d.g)/(g.g): what of d is perpendicular to g. d may be tiny and g not: the dot product in twice the
+ * precision. */
 static inline quat perpendicular(quat d, quat g)
 {
     const double a[4] = {d.w, d.x, d.y, d.z}, b[4] = {g.w, g.x, g.y, g.z};

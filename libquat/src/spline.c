@@ -242,8 +242,8 @@ static quat_status find_rates(quat_spline *s, row *rows)
 
 /* ---- making one ---- */
 
-/* Times between keys (s) whose squares stay in range, and the angle that one segment may whirl through: as many steps as
- * radians, at least, are needed for its length. */
+/* Times between keys (s) whose squares stay in range, and the angle that one segment may whirl through: as many steps
+ * as radians, at least, are needed for its length. */
 static const double shortest = 1e-100, longest = 1e100, wildest = 1e5;
 
 /* A bound of the angle of the segment after k. */
@@ -286,7 +286,8 @@ static double gauss(const key *k, double a, double b)
     return half * sum;
 }
 
-/* The integral over a ... b, halved until halving changes nothing: the speed has a kink where it passes through zero. */
+/* The integral over a ... b, halved until halving changes nothing: the speed has a kink where it passes through
+ * zero. */
 static double adaptive(const key *k, double a, double b, double whole, double tolerance, int depth)
 {
     const double m = 0.5 * (a + b), left = gauss(k, a, m), right = gauss(k, m, b);

@@ -121,10 +121,9 @@ quat_status quat_curvature_of_frame(quat q, qvec3 a, qvec3 b, qvec3 xu, qvec3 xv
 {
     const quat_curvature none = {0};
     *c = none;
+    if (!qvec3_isfinite(xu) || !qvec3_isfinite(xv) || !qvec3_isfinite(a) || !qvec3_isfinite(b)) return QUAT_EDOMAIN;
+    if (quat_normalize(q, &q) != QUAT_OK || span(xu, xv) == 0) return QUAT_EDOMAIN;
     const qvec3 t1 = quat_rotate(q, qvec3_make(1, 0, 0)), t2 = quat_rotate(q, qvec3_make(0, 1, 0));
-    if (!qvec3_isfinite(xu) || !qvec3_isfinite(xv) || !qvec3_isfinite(a) || !qvec3_isfinite(b) || !quat_isfinite(q))
-        return QUAT_EDOMAIN;
-    if (span(xu, xv) == 0) return QUAT_EDOMAIN;
     const double j11 = qvec3_dot(xu, t1), j12 = qvec3_dot(xv, t1), j21 = qvec3_dot(xu, t2), j22 = qvec3_dot(xv, t2);
     const double det = j11 * j22 - j12 * j21;
     if (det == 0) return QUAT_EDOMAIN;
@@ -142,7 +141,10 @@ quat_status quat_curvature_of_frame(quat q, qvec3 a, qvec3 b, qvec3 xu, qvec3 xv
     const double angle = umbilic ? 0 : atan2(off, half) / 2;
     c->direction[0] = qvec3_axpy(sin(angle), t2, qvec3_scale(t1, cos(angle)));
     c->direction[1] = qvec3_axpy(-sin(angle), t1, qvec3_scale(t2, cos(angle)));
-    return umbilic ? QUAT_NOT_UNIQUE : QUAT_OK;
+    if (isfinite(c->gauss) && isfinite(c->principal[0] - c->principal[1]) && isfinite(c->asymmetry) && isfinite(det))
+        return umbilic ? QUAT_NOT_UNIQUE : QUAT_OK;
+    *c = none;
+    return QUAT_ERANGE;
 }
 
 /* A vector of the body in axes turned by `angle` about z. */
@@ -187,7 +189,7 @@ quat_status quat_surface_at(const quat_surface *surface, double u, double v, qua
     double e[6];
     *p = none;
     const quat_status status = derivatives(surface, u, v, d, e);
-    p->position = d[0];
+    if (qvec3_isfinite(d[0])) p->position = d[0];
     if (status != QUAT_OK) return status;
     const double area = span(d[1], d[2]);
     if (area == 0 || qvec3_norm(d[1]) <= 4 * e[1] || qvec3_norm(d[2]) <= 4 * e[2]) return QUAT_EDOMAIN;

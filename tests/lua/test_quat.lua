@@ -333,6 +333,11 @@ check.raises("argument 'v' must be a vector {x, y, z} of finite numbers, got not
 check.raises("argument 'q' must not be zero", quat.rotate, zero, x)
 check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got ZZX",
   quat.from_euler, "ZZX", 1, 2, 3)
+check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got 3",
+  quat.from_euler, 3, 1, 2, 3)
+check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got nothing",
+  one.to_euler, one)
+check.raises("'w' cannot be set: quaternions do not change; make another with quat.new", function() quat.new(1, 2, 3, 4).w = 5 end)
 check.raises("argument 'vectors[2]' must be a vector {x, y, z} of finite numbers, got the string 'y'", one.rotate_list, one, { x, "y" })
 check.raises("argument 'vectors' must hold three numbers for each vector, got 4 numbers", one.rotate_list, one, { 1, 2, 3, 4 })
 check.raises("argument 'weights' must have 2 elements, one for each, got 1", quat.mean, { one, i }, { 1 })

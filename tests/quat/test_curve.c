@@ -504,6 +504,13 @@ static void bad_input_has_a_status(void **state)
     assert_int_equal(quat_curve_length(&still, 0, INFINITY, &l), QUAT_EDOMAIN);
     assert_int_equal(quat_curve_length(&noisy, -1, 1, &l), QUAT_NOT_CONVERGED);
     assert_true(isfinite(l));
+    const double half = 0.5 * l;
+    double even[9];
+    assert_int_equal(quat_curve_at_length(&noisy, half, &l), QUAT_NOT_CONVERGED); /* and before long */
+    assert_true(l > -1 && l < 1);
+    assert_int_equal(quat_curve_even(&noisy, 9, even), QUAT_NOT_CONVERGED);
+    for (int i = 1; i < 9; i++) assert_true(even[i] > even[i - 1]);
+    assert_true(even[0] == -1 && even[8] == 1);
     assert_int_equal(quat_curve_at_length(&still, 1, &l), QUAT_EDOMAIN);
     assert_int_equal(quat_curve_even(&none, 3, t), QUAT_EDOMAIN);
     assert_int_equal(quat_curve_total(&none, &totals), QUAT_EDOMAIN);

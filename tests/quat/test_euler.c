@@ -109,6 +109,14 @@ static void exact_lock_is_said(void **state)
     assert_true(a[2] == 0 && a[1] == 0.5 * pi && a[0] == 0);
     assert_int_equal(quat_to_euler(quat_make(0.5, 0.5, 0.5, -0.5), QUAT_EULER_ZYX, a), QUAT_NOT_UNIQUE);
     assert_true(a[2] == 0 && off_by(quat_make(0.5, 0.5, 0.5, -0.5), "ZYX", a) < 2e-15);
+    /* the matrix there holds the sum or the difference only: entry (2,1) of R_x(a) R_y(+-90) R_z(c) is +-sin(a +- c), not
+     * the thesis' half of it and more */
+    for (int side = -1; side <= 1; side += 2) {
+        const double angles[3] = {0.3, side * 0.5 * pi, 0.9};
+        quat q;
+        assert_int_equal(quat_from_euler(angles, QUAT_EULER_XYZ, &q), QUAT_OK);
+        assert_true(fabs(quat_to_matrix(q).m[1][0] - side * sin(0.3 + side * 0.9)) < 1e-15);
+    }
     for (int i = 0; i < 24; i++) {
         const quat q = {0.5, 0.5, 0.5, 0.5}, half = {0, 1, 0, 0};
         quat_to_euler(q, sequence(i), a);

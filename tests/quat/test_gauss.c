@@ -107,6 +107,15 @@ static void half_spheres(void **state)
     assert_int_equal(quat_transition(spokes + 1, q1, q2, angle, &turns, &apart), QUAT_OK);
     assert_bound("winding of the sphere's transition + 2", fabs(turns + 2), 1e-14);
     assert_bound("normals along the seam", apart, 1e-14);
+    /* s = q2* q1 stays on one circle; the thesis' t = q1 q2* turns about the normal, and that goes round */
+    double fixed = 0, moving = 0;
+    for (size_t j = 0; j <= spokes; j++) {
+        const quat s = quat_mul(quat_conj(q2[j]), q1[j]), t = quat_mul(q1[j], quat_conj(q2[j]));
+        worse(&fixed, hypot(s.x, s.y));
+        worse(&moving, qvec3_norm(qvec3_cross(quat_vector(t), quat_rotate(q1[j], qvec3_make(0, 0, 1)))));
+    }
+    assert_bound("s off its circle about z", fixed, 1e-14);
+    assert_bound("axis of q1 q2* against the normal", moving, 1e-14);
     double even = 0;
     for (size_t j = 0; j <= spokes; j++) worse(&even, fabs(angle[j] - angle[0] + 4 * pi * (double)j / spokes));
     assert_bound("its angle against a straight line", even, 1e-9);

@@ -416,6 +416,13 @@ static void bad_input_has_a_status(void **state)
     const quat_surface none = {nowhere, NULL, 0, 1, 0, 1, false, false, 2},
                        thin = {a_line, NULL, 0, 1, 0, 1, false, false, 2},
                        guessed = {a_line, NULL, 0, 1, 0, 1, false, false, 0}, empty = {0};
+    quat_curvature c;
+    const qvec3 x = {1, 0, 0}, y = {0, 1, 0}, wild = {0, 1e308, 0}, tiny = {1e-120, 0, 0};
+    assert_int_equal(quat_curvature_of_frame(quat_make(0, 0, 0, 0), x, y, x, y, &c), QUAT_EDOMAIN);
+    assert_int_equal(quat_curvature_of_frame(quat_identity(), x, y, x, x, &c), QUAT_EDOMAIN);
+    assert_int_equal(quat_curvature_of_frame(quat_identity(), wild, wild, tiny, qvec3_scale(y, 1e-200), &c),
+                     QUAT_ERANGE);
+    assert_true(c.gauss == 0 && c.mean == 0 && c.principal[0] == 0);
     assert_int_equal(quat_surface_at(&none, 0.5, 0.5, &p), QUAT_EDOMAIN);
     assert_int_equal(quat_surface_at(&thin, 0.5, 0.5, &p), QUAT_EDOMAIN);
     assert_near3(p.position, qvec3_make(1, 0, 0), 0);

@@ -14,10 +14,11 @@
 extern "C" {
 #endif
 
-/* The mean of n rotations (q/|q| counts) that minimises sum w |R(q) - R(q_i)|_F^2: the leading eigenvector of sum w q q^T
- * (Markley, Cheng, Crassidis, Oshman 2007), w >= 0. weights may be NULL (all 1). QUAT_NOT_UNIQUE when the two largest
- * eigenvalues agree to rounding (two opposite half turns, for instance). QUAT_EARGUMENT for n = 0; QUAT_EDOMAIN for a
- * quaternion that cannot be normalised, for negative, infinite or NaN weights, and when all weights are 0; *mean = 1 then. */
+/* The mean of n rotations (q/|q| counts) that minimises sum w |R(q) - R(q_i)|_F^2: the leading eigenvector of the sum of
+ * w q q^T (Markley, Cheng, Crassidis, Oshman 2007), w >= 0. weights may be NULL (all 1). QUAT_NOT_UNIQUE when the two
+ * largest eigenvalues agree to rounding (two opposite half turns, for instance). QUAT_EARGUMENT for n = 0; QUAT_EDOMAIN
+ * for a quaternion that cannot be normalised, for negative, infinite or NaN weights, and when all weights are 0;
+ * *mean = 1 then. */
 QUAT_API quat_status quat_mean(size_t n, const quat q[], const double weights[], quat *mean);
 
 /* The Karcher mean: minimises the weighted sum of squared rotation angles. Newton-like iteration q exp(average of the
@@ -27,16 +28,16 @@ QUAT_API quat_status quat_mean(size_t n, const quat q[], const double weights[],
 QUAT_API quat_status quat_mean_karcher(size_t n, const quat q[], const double weights[], quat *mean, double *spread);
 
 /* Wahba's (1965) problem: the q that minimises sum w |b_i - R(q) a_i|^2, by Davenport's q-method; w >= 0. The vectors
- * may have any length. *residual (may be NULL) gets the root mean square of |b_i - R a_i|, weighted; infinite
- * when that overflows. QUAT_NOT_UNIQUE
- * when the vectors do not fix the rotation (all parallel, for instance); QUAT_EARGUMENT for n = 0; QUAT_EDOMAIN for
- * infinite or NaN vectors, bad weights and sets of zeros only; *q = 1 and *residual = NaN then. */
+ * may have any length. *residual (may be NULL) gets the root mean square of |b_i - R a_i|, weighted; infinite when
+ * that overflows. QUAT_NOT_UNIQUE when the vectors do not fix the rotation (all parallel, for instance); QUAT_EARGUMENT
+ * for n = 0; QUAT_EDOMAIN for infinite or NaN vectors, bad weights and sets of zeros only; *q = 1 and *residual = NaN
+ * then. */
 QUAT_API quat_status quat_align(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], quat *q,
                                 double *residual);
 
 /* Kabsch (1976): the rigid motion b = R(q) a + shift that fits two sets of points best. Centroids are taken off first;
- * otherwise as quat_align, QUAT_NOT_UNIQUE also when all points coincide (q = 1 then), and QUAT_ERANGE with *q = 1, *shift = 0
- * and *residual = NaN when differences of points or the shift overflow. */
+ * otherwise as quat_align, QUAT_NOT_UNIQUE also when all points coincide (q = 1 then), and QUAT_ERANGE with *q = 1,
+ * *shift = 0 and *residual = NaN when differences of points or the shift overflow. */
 QUAT_API quat_status quat_align_points(size_t n, const qvec3 a[], const qvec3 b[], const double weights[], quat *q,
                                        qvec3 *shift, double *residual);
 

@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/* ---- many vectors by one rotation; the matrix of unit q is made once, so the last bits differ from quat_rotate ---- */
+/* ---- many vectors by one rotation: the matrix of unit q is made once, the last bits differ from quat_rotate's ---- */
 
 /* out[i] = q in[i] q*, points one after the other (x y z x y z ...). */
 QUAT_API void quat_rotate_array(quat q, size_t n, const qvec3 in[], qvec3 out[]);
@@ -38,9 +38,9 @@ QUAT_API void quat_rotate_strided(quat q, size_t n, quat_strided in, quat_stride
 QUAT_API void quat_rotate_each(size_t n, const quat q[], const qvec3 v[], qvec3 out[]);
 /* out[i] = p[i] q[i]. */
 QUAT_API void quat_mul_array(size_t n, const quat p[], const quat q[], quat out[]);
-/* out[i] = q[i]/|q[i]|, as right as quat_normalize's and quicker; the last bits may differ. QUAT_OK, or QUAT_EDOMAIN when
- * some cannot be normalised: those become 1, and *first_bad (may be NULL) is the index of the first; n when there is
- * none. */
+/* out[i] = q[i]/|q[i]|, as right as quat_normalize's and quicker; the last bits may differ. QUAT_OK, or QUAT_EDOMAIN
+ * when some cannot be normalised: those become 1, and *first_bad (may be NULL) is the index of the first; n when there
+ * is none. */
 QUAT_API quat_status quat_normalize_array(size_t n, const quat q[], quat out[], size_t *first_bad);
 /* out[i] = quat_to_matrix(q[i]). */
 QUAT_API void quat_to_matrix_array(size_t n, const quat q[], qmat3 out[]);

@@ -72,17 +72,19 @@ QUAT_API quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve
 /* ---- arc length ---- */
 
 /* The length from t = a to t = b, negative for b < a: adaptive Gauss-Kronrod over the speed, to about 1e-13 of it.
- * QUAT_NOT_CONVERGED with the best value when that is not reached (a speed with poles, or noise). Other statuses as
- * quat_curve_derivatives', *length = 0. */
+ * QUAT_NOT_CONVERGED with the best value when that is not reached (a speed with poles, or noise). QUAT_ERANGE when it
+ * overflows; other statuses as quat_curve_derivatives'; *length = 0 then. */
 QUAT_API quat_status quat_curve_length(const quat_curve *curve, double a, double b, double *length);
 /* The t at `length` along the curve from its start: Newton's method, kept in a bracket. QUAT_EDOMAIN for a length
- * outside 0 ... the whole (by more than 1e-9 of it). */
+ * outside 0 ... the whole (by more than 1e-9 of it), QUAT_NOT_CONVERGED as for lengths. */
 QUAT_API quat_status quat_curve_at_length(const quat_curve *curve, double length, double *t);
-/* n >= 2 values of t at equal distances along the curve, from start to end. */
+/* n >= 2 values of t at equal distances along the curve, from start to end. QUAT_NOT_CONVERGED where a length is that:
+ * the rest are then at equal steps of t. Other statuses as quat_curve_length's, and QUAT_EARGUMENT for n < 2. */
 QUAT_API quat_status quat_curve_even(const quat_curve *curve, size_t n, double t[]);
 
 /* Integrals along the curve: length, of the curvature (2 pi or more for a closed curve, more than 4 pi for a knot;
- * Fenchel, Fary, Milnor) and of the torsion. QUAT_NOT_UNIQUE when an inflection was met: the torsion counts as 0 there. */
+ * Fenchel, Fary, Milnor) and of the torsion. QUAT_NOT_UNIQUE when an inflection was met: the torsion counts as 0
+ * there. */
 typedef struct quat_curve_totals {
     double length, curvature, torsion;
 } quat_curve_totals;

@@ -16,8 +16,8 @@ typedef struct qdual {
     quat real, dual;
 } qdual;
 
-/* A motion's logarithm: turning by `rotation` (rotation vector, rad) while moving at the rate `translation` of the body's
- * point that is at the origin at the start; both over one unit of time, at constant rate. */
+/* A motion's logarithm: turning by `rotation` (rotation vector, rad) while moving at the rate `translation` of the
+ * body's point that is at the origin at the start; both over one unit of time, at constant rate. */
 typedef struct qtwist {
     qvec3 rotation, translation;
 } qtwist;
@@ -66,8 +66,8 @@ static inline qvec3 quat_dual_apply_inverse(qdual p, qvec3 x)
  * the dual part overflows. */
 QUAT_API quat_status quat_dual_normalize(qdual p, qdual *unit);
 
-/* exp and log between twists and unit dual quaternions; the log takes the short way (rotation of at most pi; p and -p are
- * the same motion). shift = J_left(rotation) translation (jacobian.h). Right at vanishing rotation too. */
+/* exp and log between twists and unit dual quaternions; the log takes the short way (rotation of at most pi; p and -p
+ * are the same motion). shift = J_left(rotation) translation (jacobian.h). Right at vanishing rotation too. */
 QUAT_API qdual quat_dual_exp(qtwist twist);
 QUAT_API qtwist quat_dual_log(qdual p);
 
@@ -75,9 +75,9 @@ QUAT_API qtwist quat_dual_log(qdual p);
  * about, and slides along, one axis. t = 0 gives p and t = 1 gives q (or -q) exactly. */
 QUAT_API qdual quat_dual_sclerp(qdual p, qdual q, double t);
 
-/* Chasles: every motion turns by `angle` (0 ... pi) about the line through `point` (its nearest to the origin) along the
- * unit `axis`, and slides by `slide` along it. A pure shift gives angle 0, the axis along it and QUAT_NOT_UNIQUE (any
- * point will do; the origin is given); the identity gives axis z and slide 0 as well. QUAT_EDOMAIN, with the
+/* Chasles: every motion turns by `angle` (0 ... pi) about the line through `point` (its nearest to the origin) along
+ * the unit `axis`, and slides by `slide` along it. A pure shift gives angle 0, the axis along it and QUAT_NOT_UNIQUE
+ * (any point will do; the origin is given); the identity gives axis z and slide 0 as well. QUAT_EDOMAIN, with the
  * identity's values, when p cannot be normalised, QUAT_ERANGE when the slide overflows. */
 QUAT_API quat_status quat_dual_to_screw(qdual p, qvec3 *axis, qvec3 *point, double *angle, double *slide);
 /* The reverse. QUAT_EDOMAIN and *p = 1 for an axis that cannot be normalised and for infinite and NaN, QUAT_ERANGE and

@@ -33,8 +33,8 @@ QUAT_API quat_status quat_exp(quat q, quat *result);
 QUAT_API quat_status quat_log(quat q, quat *result);
 
 /* q^t = |q|^t (cos ta + n sin ta), t real. 0^t is 0 for t > 0 and 1 for t = 0. QUAT_EDOMAIN (*result = 1) for infinite
- * or NaN arguments and for 0^t, t < 0; QUAT_ERANGE (*result = 1) when |q|^t or ta overflows; QUAT_NOT_UNIQUE for negative
- * real q and t not an integer, with n = (1, 0, 0). */
+ * or NaN arguments and for 0^t, t < 0; QUAT_ERANGE (*result = 1) when |q|^t or ta overflows; QUAT_NOT_UNIQUE for
+ * negative real q and t not an integer, with n = (1, 0, 0). */
 QUAT_API quat_status quat_pow(quat q, double t, quat *result);
 
 /* q^t for unit q and finite t, a unit quaternion: the rotation repeated t times, along q's own side of S^3. */

@@ -172,9 +172,9 @@ static inline quat quat_mul(quat p, quat q)
 #endif
 
 /* p q with every component as if summed in three times the precision and rounded once (Ogita, Rump and Oishi 2005,
- * algorithm DotK with K = 3, by FMA): for differences such as the vector part of p (1/p), all of which is rounding. The same bits on every
- * machine, since fma() is correctly rounded with and without the instruction. Products that leave 1e-290 ... 1e290
- * may lose the compensation. */
+ * algorithm DotK with K = 3, by FMA): for differences such as the vector part of p (1/p), all of which is rounding. The
+ * same bits on every machine, since fma() is correctly rounded with and without the instruction. Products that leave
+ * 1e-290 ... 1e290 may lose the compensation. */
 QUAT_API quat quat_mul_compensated(quat p, quat q);
 
 /* |q|^2; overflows and underflows as the sum does. */

@@ -96,17 +96,17 @@ static inline quat_status quat_from_matrix(const qmat3 *m, quat *q)
     return QUAT_OK;
 }
 
-/* The rotation nearest to m in the Frobenius norm, w >= 0: the polar factor, as the leading eigenvector of Bar-Itzhack's
- * (2000) symmetric 4 x 4 matrix, by Jacobi's method. *distance (may be NULL) gets |R - m|_F, infinite when that
- * overflows. QUAT_NOT_UNIQUE when several rotations are equally near (rank below 2, or a reflection with equal singular
- * values); QUAT_EDOMAIN, *q = 1 and *distance = NaN for a zero, infinite or NaN m. */
+/* The rotation nearest to m in the Frobenius norm, w >= 0: the polar factor, as the leading eigenvector of
+ * Bar-Itzhack's (2000) symmetric 4 x 4 matrix, by Jacobi's method. *distance (may be NULL) gets |R - m|_F, infinite
+ * when that overflows. QUAT_NOT_UNIQUE when several rotations are equally near (rank below 2, or a reflection with
+ * equal singular values); QUAT_EDOMAIN, *q = 1 and *distance = NaN for a zero, infinite or NaN m. */
 QUAT_API quat_status quat_from_matrix_nearest(const qmat3 *m, quat *q, double *distance);
 
 /* ---- from vectors ---- */
 
-/* The shortest rotation that carries the direction of a to that of b (any finite non-zero lengths). Opposite directions:
- * a half turn about a x e, e the coordinate axis least along a, and QUAT_NOT_UNIQUE. QUAT_EDOMAIN and *q = 1 for zero,
- * infinite and NaN. */
+/* The shortest rotation that carries the direction of a to that of b (any finite non-zero lengths). Opposite
+ * directions: a half turn about a x e, e the coordinate axis least along a, and QUAT_NOT_UNIQUE. QUAT_EDOMAIN and
+ * *q = 1 for zero, infinite and NaN. */
 QUAT_API quat_status quat_from_two_vectors(qvec3 a, qvec3 b, quat *q);
 
 /* The rotation whose body x axis is along x and whose y axis is in the half plane of x and y (Gram-Schmidt); w >= 0.
@@ -117,8 +117,9 @@ QUAT_API quat_status quat_from_axes(qvec3 x, qvec3 y, quat *q);
 QUAT_API quat_status quat_from_frame(qvec3 x, qvec3 y, qvec3 z, quat *q);
 
 /* q/|q| = swing twist: the twist turns about `axis` (body; any non-zero length), the swing about an axis perpendicular
- * to it. The twist has w >= 0. A q that turns `axis` to its opposite leaves the twist open: twist = 1, swing = q/|q| and
- * QUAT_NOT_UNIQUE. QUAT_EDOMAIN with the same values for a zero, infinite or NaN axis, and with swing = 1 for such a q. */
+ * to it. The twist has w >= 0. A q that turns `axis` to its opposite leaves the twist open: twist = 1, swing = q/|q|
+ * and QUAT_NOT_UNIQUE. QUAT_EDOMAIN with the same values for a zero, infinite or NaN axis, and with swing = 1 for such
+ * a q. */
 QUAT_API quat_status quat_swing_twist(quat q, qvec3 axis, quat *swing, quat *twist);
 
 /* ---- angular velocity (rad/s) ---- */
@@ -132,7 +133,8 @@ static inline qvec3 quat_omega_world(quat q, quat dq) { return quat_vector(quat_
 /* The same in body axes: the vector part of 2 q* dq. */
 static inline qvec3 quat_omega_body(quat q, quat dq) { return quat_vector(quat_scale(quat_mul(quat_conj(q), dq), 2)); }
 
-/* q after time dt (s) of turning at a constant omega in world axes: exp(omega dt/2) q. For varying omega, integrate.h. */
+/* q after time dt (s) of turning at a constant omega in world axes: exp(omega dt/2) q. For varying omega,
+ * integrate.h. */
 static inline quat quat_step_world(quat q, qvec3 omega, double dt)
 {
     return quat_mul(quat_from_rotation_vector(qvec3_scale(omega, dt)), q);

@@ -28,9 +28,10 @@ typedef enum quat_spline_end {
  * rotations: successive ones are joined the short way, and the curve on S^3 starts at q[0] as given. omega_first and
  * omega_last (rad/s, world axes) count for clamped ends only. All data is copied; *spline is the caller's to free.
  * QUAT_EARGUMENT: n, the end condition, times that do not increase, a periodic last key that is not the first (to 1e-9
- * rad). QUAT_EDOMAIN: a key that cannot be normalised; infinite or NaN times or velocities. QUAT_ENOMEM.
- * QUAT_ERANGE: times less than 1e-100 or more than 1e100 apart; a spline that whirls, 1e5 rad or more from one key to
- * the next (clamped too fast, or times too uneven). QUAT_NOT_CONVERGED: keys so far apart (near pi) that no smooth spline was found. *spline = NULL unless QUAT_OK. */
+ * rad). QUAT_EDOMAIN: a key that cannot be normalised; infinite or NaN times or velocities. QUAT_ENOMEM. QUAT_ERANGE:
+ * times less than 1e-100 or more than 1e100 apart; a spline that whirls, 1e5 rad or more from one key to the next
+ * (clamped too fast, or times too uneven). QUAT_NOT_CONVERGED: keys so far apart (near pi) that no smooth spline was
+ * found. *spline = NULL unless QUAT_OK. */
 QUAT_API quat_status quat_spline_new(size_t n, const double t[], const quat q[], quat_spline_end end, qvec3 omega_first,
                                      qvec3 omega_last, quat_spline **spline);
 /* Frees the spline; NULL is allowed. */

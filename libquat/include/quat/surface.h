@@ -46,7 +46,8 @@ typedef struct quat_curvature {
 
 /* The curvature from a frame q in any gauge, its rates a and b, and the tangents x_u and x_v. QUAT_NOT_UNIQUE at an
  * umbilic (principal curvatures equal to rounding): the directions are T1 and T2 then. QUAT_EDOMAIN and all zero when
- * x_u and x_v are parallel, one is zero or 1e15 times the other, or for infinite and NaN. */
+ * x_u and x_v are parallel, one is zero or 1e15 times the other, for infinite and NaN and a q that cannot be
+ * normalised; QUAT_ERANGE and all zero when products overflow. */
 QUAT_API quat_status quat_curvature_of_frame(quat q, qvec3 a, qvec3 b, qvec3 xu, qvec3 xv, quat_curvature *curvature);
 
 /* The frame turned by `angle` about N, where the angle grows at angle_u and angle_v: q exp(k angle/2) and its rates. */
@@ -100,7 +101,7 @@ QUAT_API quat_status quat_surface_total(const quat_surface *surface, double tole
  *                        Dirichlet energy, which approaches the integral of |q_1|^2 + |q_2|^2, the squared stretch on
  *                        S^3 in two perpendicular directions, over the patch
  *   QUAT_MINIMAL_AREA    from there on, least sum of the areas of the triangles q_i q_j q_k in R^4; where that gains
- *                        less than 1e-9 of it, as before. A local minimum, flat: its frames are found to about 1e-6 rad */
+ *                        less than 1e-9 of it, as before. A local minimum, flat: frames to about 1e-6 rad */
 typedef enum quat_gauge { QUAT_SHORTEST, QUAT_MINIMAL_LENGTH, QUAT_MINIMAL_AREA } quat_gauge;
 
 typedef struct quat_gauge_report {
