@@ -403,17 +403,18 @@ local parts = {
   { "impacts_cvode", "impacts by CVODE", "impact", "impacts" },
 }
 
---- The account, without the terms that are zero.
+--- The account, without the terms that are zero but for the integrator's crumbs.
 local function energy_line(energy)
   local now = energy.kinetic + energy.potential
   local terms = {
     { energy.force_work, "forces" }, { -energy.damping_loss, "damping" }, { -energy.sliding_loss, "sliding" },
     { -energy.impact_loss, "impacts" },
   }
+  local crumb = 1e-16 * math.max(math.abs(energy.start), energy.kinetic, math.abs(energy.potential))
   local balance, line = energy.start - now, string.format("%.6g J at the start", energy.start)
   for _, term in ipairs(terms) do
     balance = balance + term[1]
-    if term[1] ~= 0 then line = line .. string.format(", %+.6g by %s", term[1], term[2]) end
+    if math.abs(term[1]) > crumb then line = line .. string.format(", %+.6g by %s", term[1], term[2]) end
   end
   return string.format("%s: %.6g J now (off by %.1g J)", line, now, math.abs(balance))
 end

@@ -34,7 +34,8 @@ static void usage(FILE *file)
           "  3  the run failed\n"
           "  4  an output could not be written\n"
           "  5  --max-memory or --max-time was reached\n"
-          "  6  done, but the energy account does not close: do not trust the digits\n",
+          "  6  done, but the energy account does not close: do not trust the digits\n"
+          "  130  interrupted (Ctrl-C)\n",
           file);
 }
 
@@ -134,7 +135,7 @@ static void clear_progress(impact_runner *runner)
 static bool on_progress(void *context, double t, double t_end)
 {
     impact_runner *runner = context;
-    if (impact_runner_time_is_over()) return false;
+    if (impact_runner_time_is_over() || impact_runner_is_interrupted()) return false;
     if (runner->quiet || !isatty(STDERR_FILENO)) return true;
     const double now = impact_runner_now();
     if (now - runner->started < 0.5 || now - runner->progress_at < 0.1) return true;
@@ -161,6 +162,7 @@ static int complain(impact_runner *runner, int code, const char *message)
 static int complain_limits(impact_runner *runner, int code, const char *text)
 {
     char message[120];
+    if (impact_runner_is_interrupted()) return complain(runner, IMPACT_EXIT_INTERRUPTED, "interrupted");
     if (impact_runner_time_is_over()) {
         snprintf(message, sizeof message, "time limit of %g s reached", runner->max_time);
         return complain(runner, IMPACT_EXIT_LIMIT, message);

@@ -21,7 +21,8 @@ enum {
     IMPACT_EXIT_RUN = 3,
     IMPACT_EXIT_OUTPUT = 4,
     IMPACT_EXIT_LIMIT = 5,
-    IMPACT_EXIT_INACCURATE = 6
+    IMPACT_EXIT_INACCURATE = 6,
+    IMPACT_EXIT_INTERRUPTED = 130 /* as a shell tells it */
 };
 
 typedef struct impact_runner {
@@ -45,9 +46,10 @@ typedef struct impact_runner {
 /* A lua_Alloc whose context is the runner. */
 void *impact_runner_allocate(void *context, void *block, size_t old_size, size_t new_size);
 /* Starts the clock of --max-time: when it is over, Lua code and runs are stopped; what cannot be stopped so is ended with the
- * process, IMPACT_EXIT_LIMIT, a second later. */
+ * process, IMPACT_EXIT_LIMIT, a second later. SIGINT and SIGTERM stop them too; another, a second later, ends the process. */
 void impact_runner_start_clock(lua_State *L, const impact_runner *runner);
 bool impact_runner_time_is_over(void);
+bool impact_runner_is_interrupted(void);
 double impact_runner_now(void); /* s, monotonic */
 
 /* ---- runner_files.c: nothing here follows a link out of the folder ---- */

@@ -51,17 +51,36 @@ static void on_alarm(int signal_number)
 
 bool impact_runner_time_is_over(void) { return time_is_over != 0; }
 
-/* Inherited by coroutines. Once time is over it fires at every instruction, so that no pcall can hold it. */
+static volatile sig_atomic_t interrupted = 0;
+
+/* The first one stops in order; another, a second later, ends the process: some senders tell both it and its group. */
+static void on_interrupt(int signal_number)
+{
+    static volatile time_t first = 0;
+    (void)signal_number;
+    if (!interrupted) first = time(NULL);
+    if (interrupted && time(NULL) - first > 1) _exit(IMPACT_EXIT_INTERRUPTED);
+    interrupted = 1;
+}
+
+bool impact_runner_is_interrupted(void) { return interrupted != 0; }
+
+/* Inherited by coroutines. Once it is to end it fires at every instruction, so that no pcall can hold it. */
 static void on_count(lua_State *L, lua_Debug *info)
 {
     (void)info;
-    if (!time_is_over) return;
+    if (!time_is_over && !interrupted) return;
     lua_sethook(L, on_count, LUA_MASKCOUNT, 1);
-    luaL_error(L, "time limit reached");
+    luaL_error(L, interrupted ? "interrupted" : "time limit reached");
 }
 
 void impact_runner_start_clock(lua_State *L, const impact_runner *runner)
 {
+    const struct sigaction interrupt = {.sa_handler = on_interrupt};
+    struct sigaction before; /* nohup and background jobs ignore it */
+    if (sigaction(SIGINT, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGINT, &interrupt, NULL);
+    sigaction(SIGTERM, &interrupt, NULL);
+    lua_sethook(L, on_count, LUA_MASKCOUNT, 1000);
     if (!(runner->max_time > 0)) return;
     const struct sigaction action = {.sa_handler = on_alarm};
     const double whole = (double)(long)runner->max_time;
@@ -70,5 +89,4 @@ void impact_runner_start_clock(lua_State *L, const impact_runner *runner)
     if (timer.it_value.tv_sec == 0 && timer.it_value.tv_usec == 0) timer.it_value.tv_usec = 1;
     sigaction(SIGALRM, &action, NULL);
     setitimer(ITIMER_REAL, &timer, NULL);
-    lua_sethook(L, on_count, LUA_MASKCOUNT, 1000);
 }

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define MOST_SAMPLES 1e15 /* each then has its own number in a double */
+
 /* Where the message goes, and whose value is being looked at. */
 typedef struct check {
     char *message;
@@ -168,6 +170,8 @@ impact_status impact_scene_check(const impact_scene_def *def, char *message, uns
     require(&c, isfinite(def->duration) && def->duration > 0, "duration", def->duration, "must be positive and finite");
     require(&c, isfinite(def->output_rate) && def->output_rate >= 0, "output_rate", def->output_rate,
             "must be >= 0 and finite");
+    require(&c, def->output_rate * def->duration <= MOST_SAMPLES, "output_rate", def->output_rate,
+            "with this duration makes more than 1e15 samples");
     require(&c, isfinite(def->compliance) && def->compliance >= 0, "compliance", def->compliance,
             "must be >= 0 and finite");
     require(&c, def->compliance == 0 || def->law == IMPACT_STRONGE, "compliance", def->compliance,

@@ -220,7 +220,9 @@ static impact_status strike(impact_scene *scene, const meeting *m)
     if (status != IMPACT_OK) {
         snprintf(scene->message, sizeof scene->message, "impact of '%s' and '%s' at t = %.17g: %s",
                  world->bodies[touch->body1].name, world->bodies[touch->body2].name, scene->t,
-                 impact_status_string(status));
+                 status == IMPACT_EARGUMENT && scene->solver == IMPACT_SOLVER_CLOSED_FORM
+                     ? "it has no closed form, and the scene asks for no other solver"
+                     : impact_status_string(status));
         return status < 0 ? status : IMPACT_EUNSETTLED;
     }
     impact_event event = event_of_touch(scene, IMPACT_EVENT_IMPACT, touch);

@@ -55,4 +55,13 @@ function runner.script(text, options)
   return runner.command("script.lua --out o " .. (options or ""))
 end
 
+--- The same, told to end after a while.
+function runner.terminated(text, seconds)
+  shell("rm -rf " .. quote(folder .. "/o"))
+  runner.write("script.lua", text)
+  local code = shell(string.format("cd %s && { env -u LD_PRELOAD %s script.lua --out o >stdout.txt 2>stderr.txt </dev/null & " ..
+    "sleep %g; kill -TERM $!; wait $!; }", quote(folder), quote(program), seconds))
+  return code, runner.read("stdout.txt"), runner.read("stderr.txt")
+end
+
 return runner

@@ -183,4 +183,14 @@ local stuck = "time limit reached, and the script did not stop"
 limited("setmetatable({}, { __gc = function() while true do end end }) collectgarbage()", "--max-time 0.2", stuck)
 limited("string.find(('a'):rep(400), ('.-'):rep(12) .. 'b')", "--max-time 0.2", stuck)
 
+-- A run that is told to end does so in order, and leaves no file.
+local long = "local impact = require 'impact' return impact.scene { name = 'long', duration = 1e7, output_rate = 1000, " ..
+  "bodies = { impact.body { name = 'ball', shape = impact.sphere(1) } } }"
+for _, text in ipairs { long, "while true do pcall(coroutine.wrap(function() while true do end end)) end" } do
+  local code, _, said = runner.terminated(text, 0.5)
+  check.equal(code, 130)
+  check.equal(said, "impact: interrupted\n")
+  check.truth(runner.shell("ls " .. runner.quote(here) .. "/o/*.csv* >/dev/null 2>&1") ~= 0, "no file is left")
+end
+
 check.report("sandbox")

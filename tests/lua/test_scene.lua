@@ -152,6 +152,17 @@ do
   check.equal(scene:state("ball").omega[2], 2)
 end
 
+-- What a solver cannot do is told in words.
+do
+  local scene = impact.scene { duration = 2, solver = "closed_form", bodies = {
+    impact.body { name = "floor", shape = impact.plane() },
+    impact.body { name = "egg", shape = impact.ellipsoid { a = 0.1, b = 0.13, c = 0.07 }, position = { 0, 0, 1 }, omega = { 9, 2, 3 } },
+  } }
+  local reason, message = scene:run()
+  check.equal(reason, nil)
+  check.truth(message:find("it has no closed form, and the scene asks for no other solver", 1, true), message)
+end
+
 -- A table may change after the scene is made: the scene has copied it. Bodies may be used again.
 do
   local ball = impact.body { name = "ball", shape = impact.sphere(0.1), mass = 1 }
@@ -159,6 +170,8 @@ do
   ball.position = { 5, 0, 0 }
   check.equal(scene:state("ball").position.x, 0)
   check.equal(impact.scene({ duration = 1, bodies = { ball } }):state("ball").position.x, 5)
+  check.raises("scene 'scene': output_rate = 1.0000000000000001e+300: with this duration makes more than 1e15 samples", impact.scene,
+    { duration = 1, output_rate = 1e300, bodies = { ball } })
   ball.mass = -1
   check.raises("body 'ball': mass must be a positive number, got -1", impact.scene, { duration = 1, bodies = { ball } })
 end
