@@ -163,11 +163,12 @@ static void open_pair_roots(impact_world *world, impact_pair *pair, const impact
 static void held_pair_roots(impact_world *world, const impact_touch *touch, const impact_state *states, double *value)
 {
     const impact_contact contact = {.offset2 = touch->r2};
-    value[0] = touch->pressure;
-    value[1] = touch->mode == IMPACT_ROLL ? touch->margin
-               : touch->friction == 0     ? 1 /* slip neither begins nor ends */
-               : touch->onset             ? touch->drive - (1 - 1e-9)
-                                          : touch->speed - world->slip_speed;
+    value[0] = touch->still ? 1 : touch->pressure;
+    value[1] = touch->still                 ? 1
+               : touch->mode == IMPACT_ROLL ? touch->margin
+               : touch->friction == 0       ? 1 /* slip neither begins nor ends */
+               : touch->onset               ? touch->drive - (1 - 1e-9)
+                                            : touch->speed - world->slip_speed;
     value[2] = impact_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
 }

@@ -169,7 +169,8 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
                           .normal = contact.normal,
                           .r1 = contact.offset1,
                           .r2 = contact.offset2,
-                          .carried = carried};
+                          .carried = carried,
+                          .still = impact_is_held(pair) && pair->still};
     const qvec3 u1 = qvec3_add(s1->v, qvec3_cross(impact_omega(b1, s1), touch.r1));
     const qvec3 u2 = b2->is_static ? (qvec3){0, 0, 0} : qvec3_add(s2->v, qvec3_cross(impact_omega(b2, s2), touch.r2));
     const qvec3 u = qvec3_sub(u1, u2);
@@ -284,6 +285,10 @@ void impact_persist_add_reactions(const impact_persist *persist, impact_load *lo
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
         impact_load *l1 = &loads[touch->body1], *l2 = &loads[touch->body2];
+        if (touch->still) {
+            l1->force = l1->torque = l2->force = l2->torque = (qvec3){0, 0, 0};
+            continue;
+        }
         l1->force = qvec3_add(l1->force, touch->force);
         l1->torque = qvec3_add(l1->torque, qvec3_cross(touch->r1, touch->force));
         l2->force = qvec3_sub(l2->force, touch->force);
@@ -374,7 +379,7 @@ static int worst_pull(const impact_persist *persist, double scale)
 {
     int worst = -1;
     for (int c = 0; c < persist->count; c++)
-        if (persist->touches[c].pressure < -1e-12 * scale &&
+        if (!persist->touches[c].still && persist->touches[c].pressure < -1e-12 * scale &&
             (worst < 0 || persist->touches[c].pressure < persist->touches[worst].pressure))
             worst = c;
     return worst;
@@ -386,7 +391,7 @@ static int worst_grip(const impact_persist *persist, double scale)
     int worst = -1;
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
-        if (touch->mode == IMPACT_ROLL && touch->margin < -1e-12 * scale &&
+        if (!touch->still && touch->mode == IMPACT_ROLL && touch->margin < -1e-12 * scale &&
             (worst < 0 || touch->margin < persist->touches[worst].margin))
             worst = c;
     }

@@ -22,6 +22,7 @@ typedef struct impact_touch {
     qvec3 slip;          /* tangential velocity of body 1's contact point over body 2's, m/s */
     double speed;        /* |slip| */
     bool onset;          /* sliding from rest, too slow for a direction of its own */
+    bool still;          /* as its pair: the force is the pair's reaction */
     qvec3 direction;     /* unit of slip; at the onset, of its acceleration */
     qvec3 bias;          /* relative acceleration of the contact points without reactions, m/s^2 */
     qvec3 wanted;        /* change of the relative acceleration (or velocity) that the reactions are to make */
@@ -30,6 +31,7 @@ typedef struct impact_touch {
     qvec3 force;     /* on body 1, N */
     double margin;   /* rolling: friction x pressure - |tangential force|, N */
     double drive;    /* at the onset: friction needed to hold the contact over what there is; below 1 it sticks again */
+    bool redundant;  /* its reaction is not unique */
     qvec3 slip_rate; /* tangential relative acceleration of the contact points, m/s^2 */
 } impact_touch;
 
@@ -51,7 +53,7 @@ void impact_persist_free(impact_persist *persist);
 void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states,
                           const impact_load *loads);
 
-/* Adds the reactions that were solved for to the loads of their bodies. */
+/* Adds the reactions that were solved for to the loads of their bodies; what is still has no load left. */
 void impact_persist_add_reactions(const impact_persist *persist, impact_load *loads);
 
 /* The part of a held pair's d2(gap)/dt2 that its own reaction, as solved for, makes; 0 for a pair that is not held. */

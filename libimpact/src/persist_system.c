@@ -141,16 +141,25 @@ static void solve_island(impact_persist *persist, const impact_world *world, con
         for (int i = 0; persist->island[c] == island && i < unknowns_of(&persist->touches[c]); i++)
             build_column(persist, world, states, island, c, column_direction(&persist->touches[c], i, with_friction),
                          column++, n);
-    if (solve_linear(persist->matrix, persist->right, persist->order, n) < n) persist->redundant = true;
+    const bool redundant = solve_linear(persist->matrix, persist->right, persist->order, n) < n;
+    persist->redundant = persist->redundant || redundant;
     const double *x = persist->right;
     for (int c = 0; c < persist->count; c++) {
         impact_touch *touch = &persist->touches[c];
         if (persist->island[c] != island) continue;
+        touch->redundant = redundant;
         touch->pressure = x[0];
         touch->force = (qvec3){0, 0, 0};
         for (int i = 0; i < unknowns_of(touch); i++)
             touch->force = qvec3_axpy(*x++, column_direction(touch, i, with_friction), touch->force);
     }
+}
+
+/* What is still keeps its reaction, and needs no impulse. */
+static void recall(impact_touch *touch, const impact_world *world, bool with_friction)
+{
+    touch->force = with_friction ? world->pairs[touch->pair].reaction : (qvec3){0, 0, 0};
+    touch->pressure = qvec3_dot(touch->normal, touch->force);
 }
 
 void impact_system_solve(impact_persist *persist, const impact_world *world, const impact_state *states,
@@ -159,5 +168,8 @@ void impact_system_solve(impact_persist *persist, const impact_world *world, con
     find_islands(persist, world);
     persist->redundant = false;
     for (int c = 0; c < persist->count; c++)
-        if (persist->island[c] == c) solve_island(persist, world, states, with_friction, c);
+        if (persist->island[c] == c && !persist->touches[c].still)
+            solve_island(persist, world, states, with_friction, c);
+    for (int c = 0; c < persist->count; c++)
+        if (persist->touches[c].still) recall(&persist->touches[c], world, with_friction);
 }

@@ -16,7 +16,7 @@ qvec3 impact_system_response(const impact_world *world, const impact_state *stat
 
 /* Finds each touch's force (or impulse) and pressure, so that its relative acceleration (or velocity) changes by what is wanted: along
  * the normal, and for a rolling contact across it too. with_friction: a sliding contact's pressure brings its friction along. Where the
- * reactions are not unique, redundant ones are zero. */
+ * reactions are not unique, redundant ones are zero. What is still keeps its reaction, and no impulse. */
 void impact_system_solve(impact_persist *persist, const impact_world *world, const impact_state *states,
                          bool with_friction);
 

@@ -3,6 +3,7 @@
  * What happens at one instant: impacts, one after another, until no touching pair approaches; then the contacts that are held.
  */
 #include "scene_internal.h"
+#include "persist_still.h"
 #include "scene_together.h"
 #include "world_gap.h"
 
@@ -227,6 +228,7 @@ static impact_status strike(impact_scene *scene, const meeting *m)
     }
     impact_event event = event_of_touch(scene, IMPACT_EVENT_IMPACT, touch);
     const int bodies[2] = {touch->body1, touch->body2};
+    impact_persist_stir(world);
     for (int k = 0; k < 2; k++) {
         const impact_body *body = &world->bodies[bodies[k]];
         impact_state *state = &scene->states[bodies[k]];
@@ -274,6 +276,7 @@ static impact_status strike_together(impact_scene *scene)
     for (int p = 0; p < world->pair_count; p++)
         if (meets(scene, p, &m)) shares[count++].touch = m.touch;
     double energy = impact_scene_total_energy(scene);
+    impact_persist_stir(world);
     impact_answer_together(world, scene->states, shares, count);
     impact_status status = IMPACT_OK;
     for (int c = 0; status == IMPACT_OK && c < count; c++) {
@@ -366,6 +369,7 @@ static bool comes_to_rest(const impact_scene *scene, int body)
     for (int c = 0; c < scene->motion.persist.count; c++) {
         const impact_touch *touch = &scene->motion.persist.touches[c];
         if (touch->body1 != body && touch->body2 != body) continue;
+        if (touch->still) return true;
         held = true;
         const qvec3 f = touch->body1 == body ? touch->force : qvec3_neg(touch->force);
         force = qvec3_add(force, f);
@@ -393,11 +397,15 @@ static impact_status bring_to_rest(impact_scene *scene)
 static impact_status make_consistent(impact_scene *scene)
 {
     impact_motion *motion = &scene->motion;
+    impact_persist_stir(&scene->world);
     impact_status status = impact_persist_reserve(&motion->persist, &scene->world, scene->states);
     if (status == IMPACT_OK) status = load(scene);
     if (status != IMPACT_OK) return status;
     impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);
     status = load(scene);
+    if (status == IMPACT_OK)
+        status =
+            impact_persist_find_still(&motion->persist, &scene->world, scene->states, motion->loads, scene->rest_speed);
     if (status == IMPACT_OK)
         status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads);
     if (status == IMPACT_EUNSETTLED)

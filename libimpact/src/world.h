@@ -52,6 +52,8 @@ typedef struct impact_pair {
     qvec3 direction; /* IMPACT_SLIDE, onset: about where the slip goes */
     bool carried;    /* held: the contact's place on body 1 is integrated along (persist_spot) */
     double spot[3];  /* carried: that place */
+    bool still;      /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
+    qvec3 reaction;  /* still, or was: on body 1, N */
     bool struck;     /* scratch: exchanged an impulse in this instant */
     bool settled;    /* scratch: had its chance to be held again in this instant */
     impact_gap_cache cache;

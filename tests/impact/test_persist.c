@@ -289,12 +289,21 @@ static void hyperstatic_contacts_rest(void **state)
     bodies[2] = plane_body("right", (qvec3){r, 0, 0}, (quat){1, 0, -1, 0}, 1, 0);
     bodies[3] = plane_body("back", (qvec3){0, r, 0}, (quat){1, 1, 0, 0}, 1, 0);
     bodies[4] = ball_body("ball", (qvec3){0, 0, r}, 0.5, 0);
-    for (int tilted = 0; tilted < 2; tilted++) {
-        impact_scene_def def = scene_of(bodies, 5, 1);
-        if (tilted) def.gravity = (qvec3){1, 2, -9};
+    random_stream random = {17};
+    for (int k = 0; k < 42; k++) {
+        const quat turn = k < 2 ? quat_identity() : random_rotation(&random);
+        impact_body_def turned[5];
+        for (int i = 0; i < 5; i++) {
+            turned[i] = bodies[i];
+            quat_normalize(bodies[i].orientation, &turned[i].orientation);
+            turned[i].position = quat_rotate(turn, bodies[i].position);
+            turned[i].orientation = quat_mul(turn, turned[i].orientation);
+        }
+        impact_scene_def def = scene_of(turned, 5, 1);
+        def.gravity = quat_rotate(turn, k > 0 ? (qvec3){1, 2, -9} : def.gravity);
         impact_scene *scene = make_scene(&def);
         const impact_status status = impact_scene_run(scene, NULL);
-        if (status != IMPACT_AT_REST) fail_msg("box %d: status %d: %s", tilted, status, impact_scene_message(scene));
+        if (status != IMPACT_AT_REST) fail_msg("turn %d: status %d: %s", k, status, impact_scene_message(scene));
         assert_true(impact_scene_time(scene) == 0);
         impact_scene_destroy(scene);
     }

@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Rest needs reactions that balance the loads, not that they be unique. They are looked for by Gauss's sweeps over the contacts, each
+ * solved against the others as they are, as scene_together does with impulses: f_n >= 0, a_n >= 0, f_n a_n = 0, |f_t| <= mu f_n and
+ * f_t against a_t (Moreau 1988). The sweeps begin without reactions, so that contacts are pressed by the loads alone: of a ball that just
+ * fits between two walls friction gives way, though walls that squeezed it could hold it.
+ */
+#include "persist_still.h"
+#include "persist_system.h"
+
+#include <stdlib.h>
+
+/* What the loads and the reactions so far do to each body. */
+typedef struct body_rate {
+    qvec3 linear, angular; /* m/s^2, 1/s^2 */
+} body_rate;
+
+/* Of a contact to its own force, 1/kg. */
+typedef struct contact_response {
+    double along, across;
+} contact_response;
+
+typedef struct workspace {
+    body_rate *rates;            /* per body */
+    contact_response *responses; /* per touch */
+    impact_pair *before;         /* the pairs as they were */
+} workspace;
+
+static bool is_slow(const impact_world *world, const impact_state *states, int i, double rest_speed)
+{
+    const impact_body *body = &world->bodies[i];
+    return body->is_static ||
+           qvec3_norm(states[i].v) + body->radius * qvec3_norm(impact_omega(body, &states[i])) <= rest_speed;
+}
+
+static bool pair_is_slow(const impact_world *world, const impact_state *states, const impact_pair *pair,
+                         double rest_speed)
+{
+    return is_slow(world, states, pair->body1, rest_speed) && is_slow(world, states, pair->body2, rest_speed);
+}
+
+/* ---- sweeps ---- */
+
+static void push(const impact_world *world, const impact_state *states, const impact_touch *touch, qvec3 f,
+                 body_rate *rates)
+{
+    const int bodies[2] = {touch->body1, touch->body2};
+    const qvec3 arms[2] = {touch->r1, touch->r2};
+    for (int k = 0; k < 2; k++) {
+        const impact_body *body = &world->bodies[bodies[k]];
+        if (body->is_static) continue;
+        const qvec3 own = k == 0 ? f : qvec3_neg(f);
+        body_rate *rate = &rates[bodies[k]];
+        rate->linear = qvec3_axpy(body->inverse_mass, own, rate->linear);
+        rate->angular =
+            qvec3_add(rate->angular, impact_inverse_inertia(body, states[bodies[k]].q, qvec3_cross(arms[k], own)));
+    }
+}
+
+static qvec3 acceleration(const impact_touch *touch, const body_rate *rates)
+{
+    const body_rate *one = &rates[touch->body1], *two = &rates[touch->body2]; /* zero of a static body */
+    return qvec3_sub(qvec3_add(one->linear, qvec3_cross(one->angular, touch->r1)),
+                     qvec3_add(two->linear, qvec3_cross(two->angular, touch->r2)));
+}
+
+/* Response of a contact to its own force: along the normal, and no less than the most across it. */
+static contact_response own_response(const impact_world *world, const impact_state *states, const impact_touch *touch)
+{
+    const qvec3 t = impact_tangent(touch->normal), axes[3] = {touch->normal, t, qvec3_cross(touch->normal, t)};
+    const bool round = world->bodies[touch->body1].spherical && world->bodies[touch->body2].spherical;
+    double own[3];
+    for (int i = 0; i < 3; i++)
+        own[i] = qvec3_dot(axes[i], impact_system_response(world, states, touch, touch, axes[i]));
+    return (contact_response){own[0], round ? fmax(own[1], own[2]) * (1 + 1e-12) : own[1] + own[2]};
+}
+
+/* The bodies' greatest acceleration, any point's. */
+static double greatest(const impact_persist *persist, const impact_world *world, int island, const body_rate *rates)
+{
+    double most = 0;
+    for (int c = 0; c < persist->count; c++) {
+        if (persist->island[c] != island) continue;
+        const int bodies[2] = {persist->touches[c].body1, persist->touches[c].body2};
+        for (int k = 0; k < 2; k++)
+            if (!world->bodies[bodies[k]].is_static)
+                most = fmax(most, qvec3_norm(rates[bodies[k]].linear) +
+                                      world->bodies[bodies[k]].radius * qvec3_norm(rates[bodies[k]].angular));
+    }
+    return most;
+}
+
+/* Gives the touch the pressure under which its bodies do not approach, then the friction that does most against their slip. Returns by
+ * how much accelerations changed. */
+static double improve(const impact_world *world, const impact_state *states, impact_touch *touch,
+                      contact_response response, body_rate *rates)
+{
+    const qvec3 n = touch->normal;
+    const double pressure = fmax(0, touch->pressure - qvec3_dot(n, acceleration(touch, rates)) / response.along);
+    const double pushed = pressure - touch->pressure;
+    push(world, states, touch, qvec3_scale(n, pushed), rates);
+    const qvec3 rubs = qvec3_axpy(-touch->pressure, n, touch->force), slip = acceleration(touch, rates);
+    qvec3 wanted = qvec3_axpy(-1 / response.across, qvec3_axpy(-qvec3_dot(n, slip), n, slip), rubs);
+    const double size = qvec3_norm(wanted), most = touch->friction * pressure;
+    if (size > most) wanted = qvec3_scale(wanted, most / size);
+    push(world, states, touch, qvec3_sub(wanted, rubs), rates);
+    touch->pressure = pressure;
+    touch->force = qvec3_axpy(pressure, n, wanted);
+    return fabs(pushed) * response.along + qvec3_norm(qvec3_sub(wanted, rubs)) * response.across;
+}
+
+/* The reaction that the touch's pair remembers, if that still is one. */
+static qvec3 last_reaction(const impact_world *world, const impact_touch *touch)
+{
+    const qvec3 f = world->pairs[touch->pair].reaction;
+    const double pressure = qvec3_dot(touch->normal, f), rubs = qvec3_norm(qvec3_axpy(-pressure, touch->normal, f));
+    return pressure >= 0 && rubs <= touch->friction * pressure + 1e-13 * pressure ? f : (qvec3){0, 0, 0};
+}
+
+/* Gives the island's touches reactions to begin with, those they had or none; returns the acceleration that they leave. */
+static double begin(impact_persist *persist, const impact_world *world, const impact_state *states, int island,
+                    bool anew, workspace *work)
+{
+    for (int c = 0; c < persist->count; c++) {
+        impact_touch *touch = &persist->touches[c];
+        if (persist->island[c] != island) continue;
+        const qvec3 before = anew ? touch->force : (qvec3){0, 0, 0};
+        touch->force = anew ? (qvec3){0, 0, 0} : last_reaction(world, touch);
+        touch->pressure = qvec3_dot(touch->normal, touch->force);
+        work->responses[c] = own_response(world, states, touch);
+        push(world, states, touch, qvec3_sub(touch->force, before), work->rates);
+    }
+    return greatest(persist, world, island, work->rates);
+}
+
+typedef enum answer {
+    UNKNOWN,  /* the sweeps did not settle */
+    BALANCED, /* the bodies have no acceleration */
+    MOVES     /* the sweeps settled on some */
+} answer;
+
+/* Looks for the reactions of the island's touches: those that they had, if they balance the loads, or else from none at all. */
+static answer sweep(impact_persist *persist, const impact_world *world, const impact_state *states, int island,
+                    workspace *work, double load)
+{
+    enum { SWEEPS = 20000, CHECK = 50 };
+    const double balanced = 1e-10 * load, settled = 1e-13 * load, progress = 0.98;
+    if (begin(persist, world, states, island, false, work) <= balanced) return BALANCED;
+    begin(persist, world, states, island, true, work);
+    double before = INFINITY;
+    for (int k = 1; k <= SWEEPS; k++) {
+        double change = 0;
+        for (int c = 0; c < persist->count; c++)
+            if (persist->island[c] == island)
+                change = fmax(change, improve(world, states, &persist->touches[c], work->responses[c], work->rates));
+        if (change <= settled) return greatest(persist, world, island, work->rates) <= balanced ? BALANCED : MOVES;
+        if (k % CHECK != 0) continue;
+        if (change > progress * before) return UNKNOWN;
+        before = change;
+    }
+    return UNKNOWN;
+}
+
+/* ---- islands ---- */
+
+/* Whether the island's bodies are all slow, and its reactions not unique. */
+static bool can_be_still(const impact_persist *persist, const impact_world *world, const impact_state *states,
+                         int island, double rest_speed)
+{
+    bool redundant = false;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (persist->island[c] != island) continue;
+        if (!pair_is_slow(world, states, &world->pairs[touch->pair], rest_speed)) return false;
+        redundant = redundant || touch->redundant;
+    }
+    return redundant;
+}
+
+static void make_still(impact_persist *persist, impact_world *world, int island)
+{
+    for (int c = 0; c < persist->count; c++) {
+        if (persist->island[c] != island) continue;
+        impact_pair *pair = &world->pairs[persist->touches[c].pair];
+        pair->still = true;
+        pair->reaction = persist->touches[c].force;
+    }
+}
+
+/* Of an island that moves: what nothing presses, and parts, is open. */
+static void open_parting(impact_persist *persist, impact_world *world, int island, const workspace *work, double load)
+{
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (persist->island[c] == island && touch->pressure == 0 &&
+            qvec3_dot(touch->normal, acceleration(touch, work->rates)) > 1e-9 * load)
+            world->pairs[touch->pair].mode = IMPACT_OPEN;
+    }
+}
+
+static void begin_rates(const impact_world *world, const impact_state *states, const impact_load *loads,
+                        body_rate *rates)
+{
+    for (int i = 0; i < world->body_count; i++) {
+        const impact_body *body = &world->bodies[i];
+        rates[i] = (body_rate){{0, 0, 0}, {0, 0, 0}};
+        if (body->is_static) continue;
+        rates[i].linear = qvec3_scale(loads[i].force, body->inverse_mass);
+        rates[i].angular = impact_inverse_inertia(body, states[i].q, loads[i].torque);
+    }
+}
+
+static void settle(impact_persist *persist, impact_world *world, const impact_state *states, int island,
+                   workspace *work)
+{
+    const double load = greatest(persist, world, island, work->rates);
+    const answer found = sweep(persist, world, states, island, work, load);
+    if (found == BALANCED) make_still(persist, world, island);
+    if (found == MOVES) open_parting(persist, world, island, work, load);
+}
+
+/* Solves for the reactions as if everything slow stuck, and finds the islands; which of them are still. */
+static void find(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads,
+                 double rest_speed, workspace *work)
+{
+    for (int p = 0; p < world->pair_count; p++) {
+        impact_pair *pair = &world->pairs[p];
+        work->before[p] = *pair;
+        if (!impact_is_held(pair) || pair->friction == 0) continue;
+        if (!pair_is_slow(world, states, pair, rest_speed)) continue;
+        pair->mode = IMPACT_ROLL;
+        pair->onset = false;
+    }
+    impact_persist_solve(persist, world, states, loads);
+    begin_rates(world, states, loads, work->rates);
+    for (int c = 0; c < persist->count; c++)
+        if (persist->island[c] == c && can_be_still(persist, world, states, c, rest_speed))
+            settle(persist, world, states, c, work);
+    for (int p = 0; p < world->pair_count; p++) {
+        impact_pair *pair = &world->pairs[p];
+        if (pair->still || !impact_is_held(pair)) continue;
+        pair->mode = work->before[p].mode;
+        pair->onset = work->before[p].onset;
+    }
+}
+
+void impact_persist_stir(impact_world *world)
+{
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].still = false;
+}
+
+impact_status impact_persist_find_still(impact_persist *persist, impact_world *world, const impact_state *states,
+                                        const impact_load *loads, double rest_speed)
+{
+    bool any = false;
+    impact_persist_stir(world);
+    for (int p = 0; p < world->pair_count; p++)
+        any = any || (impact_is_held(&world->pairs[p]) && pair_is_slow(world, states, &world->pairs[p], rest_speed));
+    if (!any || world->field_count > 0) return IMPACT_OK;
+    workspace work = {.rates = malloc((size_t)world->body_count * sizeof *work.rates),
+                      .responses = malloc((size_t)persist->count * sizeof *work.responses),
+                      .before = malloc((size_t)world->pair_count * sizeof *work.before)};
+    const bool room = work.rates && work.responses && work.before;
+    if (room) find(persist, world, states, loads, rest_speed, &work);
+    free(work.rates);
+    free(work.responses);
+    free(work.before);
+    return room ? IMPACT_OK : IMPACT_ENOMEM;
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * persist_still: bodies that stand still on more contacts than the balance of forces can tell apart. Internal.
+ */
+#ifndef IMPACT_PERSIST_STILL_H
+#define IMPACT_PERSIST_STILL_H
+
+#include "persist.h"
+
+/* Of the bodies that hang together by held contacts, all slower than rest_speed (m/s), whose reactions are not unique: where some
+ * reactions within their cones balance the loads, their pairs are still (see impact_pair), with such reactions; the modes of the others
+ * are left as they were. Nothing is still where other forces than gravity and damping act: the balance would not last. The persist has
+ * room for what is held (impact_persist_reserve). */
+impact_status impact_persist_find_still(impact_persist *persist, impact_world *world, const impact_state *states,
+                                        const impact_load *loads, double rest_speed);
+
+/* Nothing is still any more, until it is found again. */
+void impact_persist_stir(impact_world *world);
+
+#endif
