@@ -104,7 +104,7 @@ static void make_pair(const impact_solid *body1, quat q1, const impact_solid *bo
 }
 
 static impact_status smooth_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2,
-                                 impact_gap_cache *cache, impact_contact *contact)
+                                 impact_gap_cache *cache, bool glance, impact_contact *contact)
 {
     const double scale = fmin(unit_scale(&body1->shape), unit_scale(&body2->shape));
     impact_pair pair;
@@ -112,8 +112,12 @@ static impact_status smooth_pair(const impact_solid *body1, quat q1, const impac
     impact_meeting meeting;
     impact_gap_path path;
     const double cached[3] = {cache ? cache->normal.x : 0, cache ? cache->normal.y : 0, cache ? cache->normal.z : 0};
-    const impact_status status = impact_gap_settle(&pair, cache && cache->valid ? cached : NULL, &meeting, &path);
-    if (status < 0) return status;
+    const double *const seed = cache && cache->valid ? cached : NULL;
+    impact_status status = IMPACT_OK;
+    if (!glance)
+        status = impact_gap_settle(&pair, seed, &meeting, &path);
+    else if (!impact_gap_first(&pair, seed, &meeting, &path))
+        return IMPACT_BRACKET;
     const double back = 1 / scale;
     const qvec3 normal = {meeting.n[0], meeting.n[1], meeting.n[2]};
     const qvec3 offset1 = {meeting.x[1][0] * back, meeting.x[1][1] * back, meeting.x[1][2] * back};
@@ -144,8 +148,8 @@ static impact_status check(const impact_solid *body, quat *unit)
     return impact_shape_check(&body->shape, NULL, 0);
 }
 
-impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
-                         impact_contact *contact)
+static impact_status solve(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache, bool glance,
+                           impact_contact *contact)
 {
     *contact = no_contact();
     quat q1, q2;
@@ -165,7 +169,19 @@ impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, i
         *contact = swapped(*contact);
         return IMPACT_OK;
     }
-    return smooth_pair(body1, q1, body2, q2, cache, contact);
+    return smooth_pair(body1, q1, body2, q2, cache, glance, contact);
+}
+
+impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
+                         impact_contact *contact)
+{
+    return solve(body1, body2, cache, false, contact);
+}
+
+impact_status impact_gap_glance(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
+                                impact_contact *contact)
+{
+    return solve(body1, body2, cache, true, contact);
 }
 
 double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2, qvec3 omega2)

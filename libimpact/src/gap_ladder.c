@@ -199,6 +199,18 @@ static impact_status bracket(const search *s, double upper, impact_meeting *meet
     return meeting->upper - meeting->lower <= 2e-14 * s->pair->reach ? IMPACT_OK : IMPACT_BRACKET;
 }
 
+bool impact_gap_first(const impact_pair *pair, const double *cached, impact_meeting *meeting, impact_gap_path *path)
+{
+    double n[3];
+    *path = IMPACT_PATH_NEWTON;
+    if (cached && impact_gap_newton(pair, cached, NULL, meeting)) return true;
+    centre_line(pair, n);
+    ellipsoid_seed(pair, SEED_STEPS, n);
+    if (impact_gap_newton(pair, n, NULL, meeting)) return true;
+    *path = IMPACT_PATH_GJK;
+    return impact_gap_harvest(pair, false, n) && impact_gap_newton(pair, n, NULL, meeting);
+}
+
 impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting,
                                 impact_gap_path *path)
 {

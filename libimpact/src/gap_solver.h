@@ -50,4 +50,12 @@ bool impact_gap_harvest(const impact_pair *pair, bool deep, double n[3]);
 impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting,
                                 impact_gap_path *path);
 
+/* Only the cheap ways: false when they do not settle. An overlap's answer is then any local one. */
+bool impact_gap_first(const impact_pair *pair, const double *cached, impact_meeting *meeting, impact_gap_path *path);
+
+/* impact_gap for callers that want but the sign of an overlap: its answer is any local one (IMPACT_OK), and what the
+ * cheap ways do not settle is IMPACT_BRACKET with no contact filled. */
+impact_status impact_gap_glance(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
+                                impact_contact *contact);
+
 #endif

@@ -140,6 +140,38 @@ static void first_contact_of_random_pairs(void **state)
     assert_true(met > 500);
 }
 
+/* Needles, thrown past and at each other with slow and fast spins: never unsettled, and no contact before the first. The
+ * gap left is that of the time's last digit. */
+static void any_spin(void **state)
+{
+    (void)state;
+    random_stream random = {7};
+    int met = 0;
+    for (int k = 0; k < 1500; k++) {
+        const impact_solid a = random_solid(&random, k % RANDOM_FAMILIES, 2),
+                           b = random_solid(&random, (k / RANDOM_FAMILIES) % RANDOM_FAMILIES, 0);
+        impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        ma.velocity = qvec3_scale(ma.velocity, 3);
+        ma.omega = qvec3_scale(ma.omega, random_log(&random, 0.01, 20));
+        mb.omega = qvec3_scale(mb.omega, random_log(&random, 0.01, 20));
+        double t;
+        impact_contact contact;
+        const impact_status status = impact_toi(&a, &ma, &b, &mb, 2, &t, &contact);
+        if (!(status == IMPACT_OK || status == IMPACT_NO_CONTACT))
+            fail_msg("%d: status %d at t = %g, gap %g", k, status, t, contact.gap);
+        met += status == IMPACT_OK && t > 0;
+        if (status == IMPACT_OK && t > 0) near(contact.gap, 0, 2e-15 * (1 + qvec3_norm(ma.omega)));
+        for (int i = 0; i < 30; i++) {
+            const double s = i < 15 ? t * random_unit(&random) : t * (1 - random_log(&random, 1e-9, 0.1));
+            const impact_solid at = impact_motion_at(&a, &ma, s), bt = impact_motion_at(&b, &mb, s);
+            impact_contact before;
+            assert_true(impact_gap(&at, &bt, NULL, &before) >= 0);
+            if (t > 0 && !(before.upper > 0)) fail_msg("%d: gap %g at %g, before %g", k, before.gap, s, t);
+        }
+    }
+    assert_true(met > 500);
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -164,6 +196,7 @@ int main(void)
         cmocka_unit_test(falling_on_a_plane),
         cmocka_unit_test(nothing_is_missed),
         cmocka_unit_test(first_contact_of_random_pairs),
+        cmocka_unit_test(any_spin),
         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -22,11 +22,11 @@ typedef struct impact_motion {
 /* The body at time t of its motion. */
 IMPACT_API impact_solid impact_motion_at(const impact_solid *body, const impact_motion *motion, double t);
 
-/* First contact in [0, t_max], t_max finite and >= 0. Planes stand still (their motion must be zero). Every step is one
- * in which contact is proved impossible, so that none is missed, however thin or fast the bodies. contact (NULL: not
- * wanted): the contact at *time. IMPACT_OK: *time is when the gap reaches zero, to rounding; 0 when the bodies touch or
- * overlap at the start. IMPACT_NO_CONTACT: *time = t_max. IMPACT_EUNSETTLED: too many steps (a long near-contact);
- * there is none before *time. Other negative statuses: *time is NaN. */
+/* First contact in [0, t_max], t_max finite and >= 0. Planes stand still (their motion must be zero). All that is
+ * passed over is proved free of contact, so that none is missed, however thin or fast the bodies. contact (NULL: not
+ * wanted): the contact at *time. IMPACT_OK: *time is when the gap reaches zero, to the gap's or the time's rounding; 0
+ * when the bodies touch or overlap at the start. IMPACT_NO_CONTACT: *time = t_max. IMPACT_EUNSETTLED: too many steps (a
+ * long near-contact); there is none before *time. Other negative statuses: *time is NaN. */
 IMPACT_API impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1, const impact_solid *body2,
                                     const impact_motion *motion2, double t_max, double *time, impact_contact *contact);
 
