@@ -78,7 +78,9 @@ quat_status quat_from_axes(qvec3 x, qvec3 y, quat *q)
     qvec3 ex, ey, ez;
     *q = quat_identity();
     if (qvec3_normalize(x, &ex) != QUAT_OK || qvec3_normalize(y, &ey) != QUAT_OK) return QUAT_EDOMAIN;
-    if (qvec3_normalize(qvec3_cross(ex, ey), &ez) != QUAT_OK) return QUAT_EDOMAIN;
+    const qvec3 cross = qvec3_cross(ex, ey);
+    if (qvec3_norm(cross) <= 0x1p-51) return QUAT_EDOMAIN; /* parallel as far as ex and ey, rounded, can tell */
+    qvec3_normalize(cross, &ez);
     /* nearly parallel x and y leave the cross product askew: square it up once */
     qvec3_normalize(qvec3_axpy(-qvec3_dot(ex, ez), ex, ez), &ez);
     ey = qvec3_cross(ez, ex);

@@ -241,7 +241,7 @@ static void frames(void **state)
 {
     (void)state;
     random_state r = {27};
-    double worst = 0, whole = 0;
+    double worst = 0, whole = 0, askew = 0;
     for (int n = 0; n < 100000; n++) {
         const quat q = random_unit(&r);
         const qvec3 x = quat_rotate(q, qvec3_make(1, 0, 0)), y = quat_rotate(q, qvec3_make(0, 1, 0));
@@ -252,10 +252,17 @@ static void frames(void **state)
         assert_int_equal(quat_from_axes(qvec3_scale(x, random_scale(&r, -200, 200)), qvec3_axpy(along, x, y), &found),
                          QUAT_OK);
         worse(&worst, quat_rotation_distance(found, q));
+        const double far = random_scale(&r, 0, 14);
+        assert_int_equal(quat_from_axes(x, qvec3_axpy(far, x, y), &found), QUAT_OK);
+        worse(&askew, quat_rotation_distance(found, q) / far);
+        const double same = random_scale(&r, -200, 200); /* parallel, but for the rounding of each component */
+        assert_int_equal(quat_from_axes(x, qvec3_scale(x, n % 2 ? same : -same), &found), QUAT_EDOMAIN);
         assert_int_equal(quat_from_frame(x, y, z, &found), QUAT_OK);
         worse(&whole, quat_rotation_distance(found, q));
     }
     assert_bound("from x and a skew y, rad", worst, 5e-15);
+    /* far x + y has lost 2 u far of y, and the two unit vectors lose 2 u each */
+    assert_bound("from x and far x + y, over far", askew, 10 * ROUNDING);
     assert_bound("from a frame, rad", whole, 3e-15);
     quat q;
     assert_int_equal(quat_from_axes(qvec3_make(1, 0, 0), qvec3_make(-2, 0, 0), &q), QUAT_EDOMAIN);

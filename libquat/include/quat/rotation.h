@@ -15,8 +15,8 @@ extern "C" {
 /* ---- the operator ---- */
 
 /* v rotated by the unit quaternion q (body to world): the vector part of (q v) q*. As two products it rounds half as
- * much as v + 2 w (u x v) + 2 u x (u x v) and takes no longer. Scales by |q|^2 if q is not unit. For many vectors by
- * the same q, quat_rotate_array. */
+ * much as v + 2 w (u x v) + 2 u x (u x v) and takes about as long. Scales by |q|^2 if q is not unit. For many
+ * vectors by the same q, quat_rotate_array. */
 static inline qvec3 quat_rotate(quat q, qvec3 v)
 {
     const double s = q.x * v.x + q.y * v.y + q.z * v.z; /* q v = -s + a */
@@ -110,7 +110,7 @@ QUAT_API quat_status quat_from_matrix_nearest(const qmat3 *m, quat *q, double *d
 QUAT_API quat_status quat_from_two_vectors(qvec3 a, qvec3 b, quat *q);
 
 /* The rotation whose body x axis is along x and whose y axis is in the half plane of x and y (Gram-Schmidt); w >= 0.
- * QUAT_EDOMAIN and *q = 1 for zero, infinite and NaN and for parallel x and y. */
+ * QUAT_EDOMAIN and *q = 1 for zero, infinite and NaN and for x and y that are parallel but for rounding (4e-16 rad). */
 QUAT_API quat_status quat_from_axes(qvec3 x, qvec3 y, quat *q);
 
 /* The rotation nearest to the frame with columns x, y, z, as quat_from_matrix_nearest; exact frames give their own. */
