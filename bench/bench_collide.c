@@ -6,7 +6,7 @@
  * against the 128-bit oracle (without libquadmath: against the series of order 30), median time of one call in
  * microseconds, that time over the series' own in the same class, and the median and largest condition number of M of the
  * class, by which rounding of the input can grow.
- * Classes: how the impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones), the scenes S1, S2, S5 that other programs are compared on,
+ * Classes: how the impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones; isotropic: a = b), the scenes S1, S2, S5 that other programs are compared on,
  * and S5e, 300 random ellipsoids on a plane. `p_z`: what integration over the normal impulse itself does, by CVODE.
  */
 #include <pthread.h>
@@ -335,6 +335,20 @@ static void gather_straight(group *g)
     }
 }
 
+/* a = b and sliding that turns: the closed form that is not straight. */
+static void gather_isotropic(group *g)
+{
+    memset(g, 0, sizeof *g);
+    g->name = "isotropic";
+    for (uint64_t i = 0; g->count < 4 * EACH; i++) {
+        impact_collision c = case_make(CASE_ISOTROPIC, 97, i);
+        c.law = IMPACT_POISSON;
+        impact_outcome o;
+        if (c.friction > 0 && impact_collide(&c, &o) == IMPACT_OK && o.solver == IMPACT_SOLVER_CLOSED_FORM)
+            g->c[g->count++] = c;
+    }
+}
+
 static void one_scene(group *g, const char *name, impact_collision c)
 {
     memset(g, 0, sizeof *g);
@@ -402,6 +416,8 @@ int main(void)
     random_ellipsoids(&g);
     array_call();
     gather_straight(&g);
+    run_straight(&g);
+    gather_isotropic(&g);
     run_straight(&g);
     gather(&g, "slip", CASE_PLAIN, slips);
     run_class(&g);

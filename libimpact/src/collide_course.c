@@ -7,7 +7,7 @@
  * Stronge: with W the normal work, W_c = min W is the work of loading (what is reloaded elastically does not lower the minimum),
  * and the impact ends in restitution once W - W_c = eps^2 |W_c| (Stronge, Impact Mechanics, 2000, section 3.5).
  */
-#include "collide_course.h"
+#include "collide_isotropic.h"
 
 #include <float.h>
 
@@ -222,7 +222,11 @@ bool impact_course_closed_form(impact_course *course)
         return true;
     }
     const double x = course->ux / course->s, y = course->uy / course->s;
-    if (!impact_course_is_straight(frame, course->mu, x, y)) return false;
+    if (!impact_course_is_straight(frame, course->mu, x, y)) {
+        const bool isotropic = impact_isotropic_is(frame);
+        if (isotropic) impact_isotropic_solve(course);
+        return isotropic;
+    }
     const impact_line line = impact_course_sliding(frame, course->mu, x, y);
     impact_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
     if (!course->ended) impact_course_finish(course);

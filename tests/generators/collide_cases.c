@@ -173,7 +173,9 @@ impact_collision case_make(case_class class_, uint64_t seed, uint64_t index)
     /* Mirror what separates; scale what slides. */
     qvec3 normal_part = qvec3_scale(c.normal, approach > 0 ? -approach : approach == 0 ? -1 : approach);
     qvec3 tangent = qvec3_sub(u, qvec3_scale(c.normal, approach));
-    if (class_ == CASE_TANGENT) {
+    const bool far = class_ == CASE_ISOTROPIC && case_random(g) < 0.3;
+    if (far) c.friction = decades(g, -3, 3);
+    if (class_ == CASE_TANGENT || far) {
         const double s = sqrt(qvec3_dot(tangent, tangent)), z = sqrt(qvec3_dot(normal_part, normal_part));
         tangent = qvec3_scale(tangent, decades(g, -6, 6) * z / s);
     }

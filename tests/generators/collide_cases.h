@@ -17,7 +17,7 @@ typedef enum case_class {
     CASE_PLANAR,  /* everything in one plane */
     CASE_SPHERE,
     CASE_SMOOTH,    /* mu = 0 */
-    CASE_ISOTROPIC, /* a = b, c and d not 0: exactly, or after a turn to rounding */
+    CASE_ISOTROPIC, /* a = b, c and d not 0, exactly or to rounding; some mu as in wild, u_t as in tangent */
     CASE_TILTED,    /* planar ones turned any way: in one plane but for rounding */
     CASE_CLASSES
 } case_class;

@@ -27,7 +27,7 @@ typedef struct impact_collider {
 /* When restitution ends: at eps times the impulse of compression; at u_z = -eps u_z(0); at eps^2 times the work of loading. */
 typedef enum impact_law { IMPACT_POISSON, IMPACT_NEWTON, IMPACT_STRONGE } impact_law;
 
-/* AUTO: closed form where the sliding direction does not turn, else the series; CVODE where only that can. */
+/* AUTO: closed form where the sliding direction does not turn or M_tt is isotropic, else the series; CVODE where only that can. */
 typedef enum impact_solver {
     IMPACT_SOLVER_AUTO,
     IMPACT_SOLVER_CLOSED_FORM,

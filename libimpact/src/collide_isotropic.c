@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * a = b: let x point along M_tz = (g, 0) and d tau = dp / s. Then t = tan(theta / 2) obeys dt/dtau = -g t, and with m = mu a,
+ * alpha = g - m, beta = g + m,
+ *
+ *   s = X e^(alpha tau) + Y e^(-beta tau),   u_x = X e^(alpha tau) - Y e^(-beta tau),   u_y = u_y0 e^(-m tau),
+ *   X = (s0 + u_x0) / 2,   Y = (s0 - u_x0) / 2,   4 X Y = u_y0^2:
+ *
+ * p, the impulse and uz are sums of I1 = int e^(alpha tau) and I2 = int e^(-beta tau), works of their products. The slip ends, at
+ * tau = infinity, iff alpha < 0. uz turns once at most, where mu g > 1.
+ */
+#include "collide_isotropic.h"
+
+#include <float.h>
+
+bool impact_isotropic_is(const impact_frame *frame) { return fabs(frame->a - frame->b) <= 8 * DBL_EPSILON * frame->a; }
+
+/* The slip from where the course stands. */
+typedef struct whirl {
+    impact_course *course;
+    double ex, ey; /* x of this file, in the course's tangential frame */
+    double a, g, mu, m, alpha, beta;
+    double X, Y, uy;
+    double X_climb, Y_climb; /* d uz / d tau = X_climb e^(alpha tau) + Y_climb e^(-beta tau) */
+} whirl;
+
+/* At tau, INFINITY where alpha < 0: the exponentials A, B and their integrals. */
+typedef struct powers {
+    double A, B, I1, I2;
+} powers;
+
+/* int_0^tau e^(k tau). */
+static inline double integral(double k, double tau, double expm1_k) { return k == 0 ? tau : expm1_k / k; }
+
+static inline powers powers_at(const whirl *w, double tau)
+{
+    const double A = expm1(w->alpha == 0 ? 0 : w->alpha * tau), B = expm1(-w->beta * tau);
+    return (powers){1 + A, 1 + B, integral(w->alpha, tau, A), -B / w->beta};
+}
+
+/* int I2 dI1 - int I1 dI2 = tau^3 2 g f[-beta tau, -2 m tau, alpha tau], f(x) = (e^x - 1) / x: its divided difference as a series
+ * where the plain difference would cancel. */
+static double swirl(const whirl *w, const powers *at, double tau)
+{
+    const double y = -w->beta * tau;
+    if (y < -0.5) {
+        const double I3 = -expm1(-2 * w->m * tau) / (2 * w->m);
+        return 2 * (at->I1 - I3) / w->beta - at->I1 * at->I2;
+    }
+    const double x = w->alpha * tau, z = x + y;
+    const double e1 = x + y + z, e2 = x * y + z * z, e3 = x * y * z;
+    /* h: complete homogeneous polynomials of x, y, z. */
+    double h = 1, h1 = 0, h2 = 0, factor = 1.0 / 6, sum = factor;
+    for (int k = 4; k < 24 && fabs(h * factor) > 0x1p-56; k++) {
+        const double next = e1 * h - e2 * h1 + e3 * h2;
+        h2 = h1;
+        h1 = h;
+        h = next;
+        factor /= k;
+        sum += h * factor;
+    }
+    return tau * tau * tau * 2 * w->g * sum;
+}
+
+/* ---- what the laws look at ---- */
+
+static double p_at(const whirl *w, const powers *at) { return w->X * at->I1 + w->Y * at->I2; }
+static double rise_at(const whirl *w, const powers *at) { return w->X_climb * at->I1 + w->Y_climb * at->I2; }
+
+static double work_at(const whirl *w, const powers *at, double tau)
+{
+    const double both = at->I1 * at->I2 + w->mu * w->g * swirl(w, at, tau);
+    return w->course->uz * p_at(w, at) + 0.5 * w->X * w->X_climb * at->I1 * at->I1 +
+           0.5 * w->Y * w->Y_climb * at->I2 * at->I2 + w->X * w->Y * both;
+}
+
+typedef enum target { TARGET_UZ, TARGET_P, TARGET_WORK } target;
+
+/* Less what is wanted. The slope, per unit of tau, as its two exponentials' shares. */
+static double value_at(const whirl *w, target what, double wanted, const powers *at, double tau, double slope[2])
+{
+    const double s1 = w->X * at->A, s2 = w->Y * at->B;
+    slope[0] = w->X_climb * at->A;
+    slope[1] = w->Y_climb * at->B;
+    if (what == TARGET_UZ) return (w->course->uz - wanted) + rise_at(w, at);
+    const double uz = what == TARGET_WORK ? w->course->uz + rise_at(w, at) : 1;
+    slope[0] = uz * s1;
+    slope[1] = uz * s2;
+    return what == TARGET_P ? p_at(w, at) - wanted : work_at(w, at, tau) - wanted;
+}
+
+/* tau further by so much that the integral of the larger exponential grows by `more` of its present rate: Newton's step in the variable in which
+ * the function is nearly straight. NaN or infinite where that is never. */
+static double step_on(const whirl *w, bool first, double tau, double more)
+{
+    const double k = first ? w->alpha : -w->beta;
+    return tau + (k == 0 ? more : log1p(k * more) / k);
+}
+
+/* The root of a function that is monotone on [low, high] and has another sign at high; Newton from `start` inside a bracket. */
+static double find_root(const whirl *w, target what, double wanted, double low, double high, double start)
+{
+    double slope[2], tau = start;
+    powers at = powers_at(w, low);
+    const double f_low = value_at(w, what, wanted, &at, low, slope);
+    if (f_low == 0) return low;
+    for (int i = 0; i < 200; i++) {
+        double f = f_low;
+        if (tau > low) {
+            at = powers_at(w, tau);
+            f = value_at(w, what, wanted, &at, tau, slope);
+            if (f == 0) return tau;
+            if ((f > 0) == (f_low > 0))
+                low = tau;
+            else
+                high = tau;
+        }
+        const double last = tau;
+        tau = step_on(w, fabs(slope[0]) >= fabs(slope[1]), last, -f / (slope[0] + slope[1]));
+        if (!(tau >= low && tau <= high && tau < INFINITY))
+            tau = high < INFINITY ? 0.5 * (low + high) : 2 * low + 1 / w->beta;
+        if (fabs(tau - last) <= 2 * DBL_EPSILON * tau) break;
+    }
+    return tau;
+}
+
+/* ---- the way from event to event ---- */
+
+static void start(whirl *w, impact_course *course)
+{
+    const impact_frame *frame = course->frame;
+    const double c = frame->c, d = frame->d;
+    w->course = course;
+    w->a = 0.5 * (frame->a + frame->b);
+    w->g = sqrt(c * c + d * d);
+    w->mu = course->mu;
+    w->m = w->mu * w->a;
+    w->alpha = w->g - w->m;
+    w->beta = w->g + w->m;
+    w->ex = c / w->g;
+    w->ey = d / w->g;
+    const double along = w->ex * course->ux + w->ey * course->uy;
+    w->uy = w->ex * course->uy - w->ey * course->ux;
+    /* The small one of X and Y from their product: no cancellation. */
+    const double large = 0.5 * (course->s + fabs(along)), small = 0.25 * w->uy * w->uy / large;
+    w->X = along > 0 ? large : small;
+    w->Y = along > 0 ? small : large;
+}
+
+/* The rates of uz; where it turns from rising to falling: INFINITY if not from here on. */
+static double find_turn(whirl *w)
+{
+    const double pull = w->mu * w->g;
+    w->X_climb = (1 - pull) * w->X;
+    w->Y_climb = (1 + pull) * w->Y;
+    return w->X_climb < 0 && w->X_climb + w->Y_climb > 0 ? log(w->Y_climb / -w->X_climb) / (2 * w->g) : INFINITY;
+}
+
+/* Moves on to tau within one phase; INFINITY: to the end of the slip. */
+static void move_to(whirl *w, double tau)
+{
+    if (!(tau > 0)) return;
+    impact_course *course = w->course;
+    const powers at = powers_at(w, tau);
+    const double shed = -expm1(-w->m * tau), I3 = shed * (2 - shed) / (2 * w->m);
+    const double along = w->mu * (w->Y * at.I2 - w->X * at.I1), over = -w->uy * shed / w->a;
+    const double squares = w->X * w->X * at.I1 * (1 + at.A) / 2 + w->Y * w->Y * at.I2 * (1 + at.B) / 2;
+    impact_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    impact_course_book(course, p_at(w, &at), work_at(w, &at, tau), -w->mu * (squares + 2 * w->X * w->Y * I3));
+    course->px += w->ex * along - w->ey * over;
+    course->py += w->ey * along + w->ex * over;
+    impact_course_reach(course, course->uz + rise_at(w, &at));
+    w->X *= at.A;
+    w->Y *= at.B;
+    w->uy *= 1 - shed;
+}
+
+/* Where to start looking for the end by Stronge's law: uz may be 0 here, and the work then has no slope. */
+static double guess_work(const whirl *w, double more)
+{
+    const double s = w->X + w->Y, rate = (w->X_climb + w->Y_climb) / s, uz = w->course->uz;
+    const double root = uz * uz + 2 * rate * more;
+    const double tau = step_on(w, w->X >= w->Y, 0, root > 0 ? 2 * more / (uz + sqrt(root)) / s : 0);
+    return tau > 0 && tau < INFINITY ? tau : 0;
+}
+
+/* In restitution, uz >= 0 up to `to`: whether the impact ends by then, and where. */
+static bool ends_by(const whirl *w, double to, double *where)
+{
+    const impact_course *course = w->course;
+    const bool poisson = course->law == IMPACT_POISSON, newton = course->law == IMPACT_NEWTON;
+    const double wanted = poisson  ? impact_course_left_poisson(course)
+                          : newton ? impact_course_target_newton(course)
+                                   : impact_course_left_stronge(course);
+    *where = 0;
+    if (newton ? course->uz >= wanted : wanted <= 0) return true;
+    const target what = poisson ? TARGET_P : newton ? TARGET_UZ : TARGET_WORK;
+    /* Without end nothing is out of reach but where sliding stops. */
+    if (to < INFINITY || w->alpha < 0) {
+        double slope[2];
+        const powers at = powers_at(w, to);
+        if (value_at(w, what, wanted, &at, to, slope) < 0) return false;
+    }
+    *where = find_root(w, what, wanted, 0, to, what == TARGET_WORK ? guess_work(w, wanted) : 0);
+    return true;
+}
+
+/* uz at tau, of which INFINITY may be one. */
+static double uz_at(const whirl *w, double tau)
+{
+    if (tau == INFINITY && w->alpha >= 0) return INFINITY;
+    const powers at = powers_at(w, tau);
+    return w->course->uz + rise_at(w, &at);
+}
+
+void impact_isotropic_solve(impact_course *course)
+{
+    whirl w;
+    start(&w, course);
+    for (int i = 0; i < 16; i++) {
+        const double to = find_turn(&w);
+        const bool rises = w.X_climb + w.Y_climb > 0;
+        const double uz_to = uz_at(&w, to);
+        double end = to;
+        bool turns;
+        if (course->compressing) {
+            turns = rises && uz_to >= 0;
+            if (turns) end = find_root(&w, TARGET_UZ, 0, 0, to, 0);
+        } else {
+            turns = !rises && uz_to < 0;
+            if (turns) end = find_root(&w, TARGET_UZ, 0, 0, to, 0);
+            double where;
+            if (ends_by(&w, end, &where)) {
+                move_to(&w, where);
+                if (course->law == IMPACT_NEWTON) course->uz = impact_course_target_newton(course);
+                course->ended = true;
+                return;
+            }
+        }
+        move_to(&w, end);
+        if (turns)
+            impact_course_turn(course);
+        else if (end == INFINITY)
+            break;
+    }
+    impact_course_finish(course);
+}
