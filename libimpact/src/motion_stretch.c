@@ -337,7 +337,8 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
                  "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
     else
         snprintf(motion->message, sizeof motion->message,
-                 "%d steps from t = %.17g came to t = %.17g only: the motion is too rough (a face that rocks?)",
+                 "%d steps from t = %.17g came to t = %.17g only: the motion is too rough (a face that "
+                 "rocks, or masses too different that press on each other?)",
                  MAX_STEPS, t_start, *t);
     return IMPACT_EUNSETTLED;
 }

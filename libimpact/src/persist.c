@@ -23,6 +23,25 @@ static void place_spot(impact_world *world, impact_pair *pair, const impact_stat
     pair->carried = true;
 }
 
+impact_status impact_persist_make_room(impact_persist *persist, int touches_needed)
+{
+    if (touches_needed <= persist->capacity) return IMPACT_OK;
+    const size_t n = 3 * (size_t)touches_needed;
+    impact_touch *touches = realloc(persist->touches, (size_t)touches_needed * sizeof *touches);
+    if (touches) persist->touches = touches;
+    double *matrix = realloc(persist->matrix, n * n * sizeof *matrix);
+    if (matrix) persist->matrix = matrix;
+    double *right = realloc(persist->right, n * sizeof *right);
+    if (right) persist->right = right;
+    int *order = realloc(persist->order, n * sizeof *order);
+    if (order) persist->order = order;
+    int *island = realloc(persist->island, (size_t)touches_needed * sizeof *island);
+    if (island) persist->island = island;
+    if (!touches || !matrix || !right || !order || !island) return IMPACT_ENOMEM;
+    persist->capacity = touches_needed;
+    return IMPACT_OK;
+}
+
 impact_status impact_persist_reserve(impact_persist *persist, impact_world *world, const impact_state *states)
 {
     int held = 0;
@@ -35,21 +54,7 @@ impact_status impact_persist_reserve(impact_persist *persist, impact_world *worl
             place_spot(world, pair, states);
     }
     persist->count = held;
-    if (held <= persist->capacity) return IMPACT_OK;
-    const size_t n = 3 * (size_t)held;
-    impact_touch *touches = realloc(persist->touches, (size_t)held * sizeof *touches);
-    if (touches) persist->touches = touches;
-    double *matrix = realloc(persist->matrix, n * n * sizeof *matrix);
-    if (matrix) persist->matrix = matrix;
-    double *right = realloc(persist->right, n * sizeof *right);
-    if (right) persist->right = right;
-    int *order = realloc(persist->order, n * sizeof *order);
-    if (order) persist->order = order;
-    int *island = realloc(persist->island, (size_t)held * sizeof *island);
-    if (island) persist->island = island;
-    if (!touches || !matrix || !right || !order || !island) return IMPACT_ENOMEM;
-    persist->capacity = held;
-    return IMPACT_OK;
+    return impact_persist_make_room(persist, held);
 }
 
 void impact_persist_free(impact_persist *persist)

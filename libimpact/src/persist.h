@@ -47,6 +47,8 @@ typedef struct impact_persist {
 
 /* Room for every pair of the world that is held now; the place of contact of those newly held that carry it. */
 impact_status impact_persist_reserve(impact_persist *persist, impact_world *world, const impact_state *states);
+/* Room for so many touches. */
+impact_status impact_persist_make_room(impact_persist *persist, int touches_needed);
 void impact_persist_free(impact_persist *persist);
 
 /* Geometry and reactions of every held contact under the loads. */

@@ -7,7 +7,10 @@
 #include "scene_together.h"
 #include "persist_system.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static qvec3 point_velocity(const impact_world *world, const impact_state *states, int body, qvec3 r)
 {
@@ -74,28 +77,111 @@ static double improve(const impact_world *world, impact_state *states, impact_sh
     return fabs(pushed) * along + rubbed * across;
 }
 
+/* One sweep over the shares; true when it moved nothing but roundings: of the velocities, and of what the impulses make of them. */
+static bool sweep(const impact_world *world, impact_state *states, impact_share *shares, int count, double speed)
+{
+    bool settled = true;
+    for (int c = 0; c < count; c++) {
+        double along, across;
+        own_response(world, states, &shares[c].touch, &along, &across);
+        const double moved = improve(world, states, &shares[c], along, across);
+        settled = settled && moved <= 1e-14 * speed + 4 * DBL_EPSILON * shares[c].normal * along;
+    }
+    return settled;
+}
+
+static bool sweep_until(const impact_world *world, impact_state *states, impact_share *shares, int count, double speed,
+                        int most)
+{
+    bool settled = false;
+    for (int k = 0; k < most && !settled; k++) settled = sweep(world, states, shares, count, speed);
+    return settled;
+}
+
+/* ---- where sweeps hardly move: heavy bodies on light ones ---- */
+
+/* The touch of a share that presses, sliding if its friction is spent and else stuck; no more approach and slip than that is wanted. */
+static impact_touch pressing_touch(const impact_share *share)
+{
+    impact_touch touch = share->touch;
+    const qvec3 tangential = qvec3_axpy(-share->normal, touch.normal, share->impulse);
+    const double friction = qvec3_norm(tangential);
+    touch.mode = friction < touch.friction * share->normal * (1 - 1e-9) ? IMPACT_ROLL : IMPACT_SLIDE;
+    touch.direction = friction > 0 ? qvec3_scale(tangential, -1 / friction) : impact_tangent(touch.normal);
+    touch.wanted = qvec3_neg(share->before);
+    return touch;
+}
+
+/* The impulse, brought back into the cone. */
+static void take(const impact_world *world, impact_state *states, impact_share *share, const impact_touch *touch)
+{
+    const qvec3 n = touch->normal;
+    const double normal = fmax(0, qvec3_dot(n, touch->force)), most = touch->friction * normal;
+    qvec3 tangential = qvec3_axpy(-qvec3_dot(n, touch->force), n, touch->force);
+    const double size = qvec3_norm(tangential);
+    if (size > most) tangential = qvec3_scale(tangential, most / size);
+    const qvec3 impulse = qvec3_axpy(normal, n, tangential);
+    apply(world, states, touch, qvec3_sub(impulse, share->impulse));
+    share->impulse = impulse;
+    share->normal = normal;
+}
+
+/* Solves for the impulses of all shares that press, stuck or sliding as they are now, at once. */
+static void solve_at_once(const impact_world *world, impact_state *states, impact_share *shares, int count,
+                          impact_persist *system)
+{
+    system->count = 0;
+    for (int c = 0; c < count; c++)
+        if (shares[c].normal > 0) system->touches[system->count++] = pressing_touch(&shares[c]);
+    impact_system_solve(system, world, states, true);
+    for (int c = 0, k = 0; c < count; c++)
+        if (shares[c].normal > 0) take(world, states, &shares[c], &system->touches[k++]);
+}
+
+/* Shares solved at once, and sweeps that tell which press and which slide, in turn. Without success nothing is changed. */
+static bool settle_at_once(const impact_world *world, impact_state *states, impact_share *shares, int count,
+                           double speed)
+{
+    enum { ROUNDS = 30, SWEEPS = 30 };
+    const size_t bodies = (size_t)world->body_count, n = (size_t)count;
+    impact_persist system = {0};
+    impact_state *kept_states = calloc(bodies, sizeof *kept_states);
+    impact_share *kept_shares = calloc(n, sizeof *kept_shares);
+    bool settled = false;
+    if (kept_states && kept_shares && impact_persist_make_room(&system, count) == IMPACT_OK) {
+        memcpy(kept_states, states, bodies * sizeof *states);
+        memcpy(kept_shares, shares, n * sizeof *shares);
+        for (int round = 0; round < ROUNDS && !settled; round++) {
+            solve_at_once(world, states, shares, count, &system);
+            settled = sweep_until(world, states, shares, count, speed, SWEEPS);
+        }
+        if (!settled) {
+            memcpy(states, kept_states, bodies * sizeof *states);
+            memcpy(shares, kept_shares, n * sizeof *shares);
+        }
+    }
+    impact_persist_free(&system);
+    free(kept_states);
+    free(kept_shares);
+    return settled;
+}
+
 bool impact_answer_together(const impact_world *world, impact_state *states, impact_share *shares, int count)
 {
     enum { SWEEPS = 5000 };
-    double speed = 0, left = INFINITY;
+    double speed = 0;
     for (int c = 0; c < count; c++) {
         shares[c].before = relative_velocity(world, states, &shares[c].touch);
         shares[c].impulse = (qvec3){0, 0, 0};
         shares[c].normal = 0;
         speed = fmax(speed, qvec3_norm(shares[c].before));
     }
-    for (int sweep = 0; sweep < SWEEPS && left > 1e-14 * speed; sweep++) {
-        left = 0;
-        for (int c = 0; c < count; c++) {
-            double along, across;
-            own_response(world, states, &shares[c].touch, &along, &across);
-            left = fmax(left, improve(world, states, &shares[c], along, across));
-        }
-    }
+    const bool settled =
+        sweep_until(world, states, shares, count, speed, SWEEPS) || settle_at_once(world, states, shares, count, speed);
     for (int c = 0; c < count; c++) {
         impact_share *share = &shares[c];
         share->after = relative_velocity(world, states, &share->touch);
         share->work = 0.5 * qvec3_dot(share->impulse, qvec3_add(share->before, share->after));
     }
-    return left <= 1e-14 * speed;
+    return settled;
 }

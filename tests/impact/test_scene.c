@@ -273,6 +273,35 @@ static void a_loose_tolerance_lets_nothing_fall_through(void **state)
     }
 }
 
+/* A heavy ball falls on a light one that lies on the floor: what sweeps of impulses would take millions of is solved at once. */
+static void a_heavy_ball_on_a_light_one(void **state)
+{
+    (void)state;
+    for (int digits = 1; digits <= 7; digits++) {
+        impact_body_def bodies[3] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 1),
+                                     ball_body("light", (qvec3){0, 0, 0.1}, 0.5, 0.5),
+                                     ball_body("heavy", (qvec3){0.02, 0, 1.8}, 0.5, 0.5)};
+        impact_shape_sphere(0.1, &bodies[1].shape);
+        impact_shape_sphere(1, &bodies[2].shape);
+        for (int k = 1; k < 3; k++) bodies[k].moments = (qvec3){NAN, NAN, NAN};
+        bodies[1].mass = 1;
+        bodies[2].mass = pow(10, digits);
+        impact_scene_def def = impact_default_scene_def();
+        def.duration = 0.5;
+        def.bodies = bodies;
+        def.body_count = 3;
+        def.max_events = 200;
+        impact_scene *scene = make_scene(&def);
+        assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+        impact_sample light, heavy;
+        impact_scene_body(scene, 1, &light);
+        impact_scene_body(scene, 2, &heavy);
+        assert_true(light.position.z > 0.1 - 1e-9);
+        assert_true(qvec3_norm(qvec3_sub(heavy.position, light.position)) > 1.1 - 1e-9);
+        impact_scene_destroy(scene);
+    }
+}
+
 static void the_same_bits_on_every_run(void **state)
 {
     (void)state;
@@ -473,6 +502,7 @@ int main(void)
         cmocka_unit_test(uses_only_what_it_needs),
         cmocka_unit_test(a_loose_tolerance_costs_less),
         cmocka_unit_test(a_loose_tolerance_lets_nothing_fall_through),
+        cmocka_unit_test(a_heavy_ball_on_a_light_one),
         cmocka_unit_test(the_same_bits_on_every_run),
         cmocka_unit_test(in_pieces_as_in_one),
         cmocka_unit_test(stops_when_asked),
