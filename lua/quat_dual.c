@@ -19,6 +19,8 @@ static qdual motion(lua_State *L, int index, const char *name)
 
 static int give(lua_State *L, qdual p)
 {
+    if (!quat_isfinite(p.real) || !quat_isfinite(p.dual)) /* of finite operands: an overflow */
+        return quat_lua_error(L, "the motion is not finite: %s", quat_status_string(QUAT_ERANGE));
     qdual *const place = lua_newuserdatauv(L, sizeof p, 0);
     *place = p;
     luaL_setmetatable(L, DUAL);

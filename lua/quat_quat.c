@@ -12,9 +12,6 @@ static quat arg(lua_State *L, int index, const char *name) { return quat_lua_arg
 
 static int give(lua_State *L, quat q)
 {
-    if (!isfinite(q.w) || !isfinite(q.x) || !isfinite(q.y) || !isfinite(q.z)) /* of finite operands: an overflow */
-        return quat_lua_error(L, "the result is (%f, %f, %f, %f): %s", q.w, q.x, q.y, q.z,
-                              quat_status_string(QUAT_ERANGE));
     quat_lua_push_quat(L, q);
     return 1;
 }

@@ -42,7 +42,8 @@ static int l_spline(lua_State *L)
     *place = NULL;
     luaL_setmetatable(L, SPLINE);
     const quat_status status = quat_spline_new(n, t, q, (quat_spline_end)end, first, last, place);
-    if (status == QUAT_NOT_CONVERGED || status == QUAT_ENOMEM) return quat_lua_failure(L, quat_status_string(status));
+    if (status == QUAT_NOT_CONVERGED || status == QUAT_ENOMEM || status == QUAT_ERANGE)
+        return quat_lua_failure(L, quat_status_string(status));
     if (status == QUAT_EARGUMENT)
         return quat_lua_reader_error(
             &reader, end == QUAT_SPLINE_PERIODIC

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "results.h"
+#include "arguments.h"
 
 #include <stdio.h>
 
@@ -52,6 +53,8 @@ void quat_lua_push_vec3(lua_State *L, qvec3 v)
 void quat_lua_push_quat(lua_State *L, quat q)
 {
     luaL_checkstack(L, 3, NULL);
+    if (!quat_isfinite(q)) /* of finite operands: an overflow */
+        quat_lua_error(L, "the result is (%f, %f, %f, %f): %s", q.w, q.x, q.y, q.z, quat_status_string(QUAT_ERANGE));
     quat *place = lua_newuserdatauv(L, sizeof q, 0);
     *place = q;
     luaL_newmetatable(L, QUAT_LUA_QUAT); /* filled by quat.core, whichever comes first */

@@ -16,7 +16,8 @@
 #define QUAT_LUA_VEC3 "quat.vec3"
 
 void quat_lua_push_vec3(lua_State *L, qvec3 v);
-void quat_lua_push_quat(lua_State *L, quat q); /* a quat userdata; `require "quat"` gives it its methods */
+/* A quat userdata; `require "quat"` gives it its methods. Raises an error for an infinite or NaN q. */
+void quat_lua_push_quat(lua_State *L, quat q);
 
 /* Each sets table[key] of the table on top of the stack. */
 void quat_lua_set_number(lua_State *L, const char *key, double value);

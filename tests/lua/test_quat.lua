@@ -337,6 +337,12 @@ check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) o
   quat.from_euler, 3, 1, 2, 3)
 check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got nothing",
   one.to_euler, one)
+local ok, overflow = pcall(one.integrate, one, function() return { 1e308, 0, 0 } end, 0, 100, 10)
+assert(not ok and overflow:find("the result or a number on the way to it is too large or too small", 1, true))
+check.raises("the motion is not finite: the result or a number on the way to it is too large or too small",
+  quat.motion_exp, { 1e200, 0, 0 }, { 1e200, 0, 1e200 })
+local whirl, why = quat.spline { times = { 0, 1e-12, 1 }, keys = { one, { 0.8, 0.6, 0, 0 }, { 0.6, 0.8, 0, 0 } } }
+assert(whirl == nil and why == "the result or a number on the way to it is too large or too small")
 check.raises("'w' cannot be set: quaternions do not change; make another with quat.new", function() quat.new(1, 2, 3, 4).w = 5 end)
 check.raises("argument 'vectors[2]' must be a vector {x, y, z} of finite numbers, got the string 'y'", one.rotate_list, one, { x, "y" })
 check.raises("argument 'vectors' must hold three numbers for each vector, got 4 numbers", one.rotate_list, one, { 1, 2, 3, 4 })
