@@ -103,26 +103,28 @@ static impact_status check_contact(const impact_collision *collision, char *mess
     return check_extras(collision, message, size);
 }
 
-static bool plain3(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z) <= DBL_MAX; }
+/* At most DBL_MAX where all are finite and not huge; a NaN stays one. */
+static inline double size3(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
 
-static bool plain_body(const impact_collider *body)
+static inline bool plain_body(const impact_collider *body)
 {
     const quat q = body->orientation;
     const qvec3 j = body->moments;
-    if (!(plain3(body->offset) && plain3(body->velocity) && plain3(body->omega) && body->mass > 0)) return false;
-    return isinf(body->mass) ||
-           (j.x > 0 && j.y > 0 && j.z > 0 && j.x + j.y + j.z <= DBL_MAX && fabs(quat_dot(q, q) - 1) <= 1e-6);
+    if (!(size3(body->offset) + (size3(body->velocity) + size3(body->omega)) <= DBL_MAX && body->mass > 0))
+        return false;
+    return body->mass == INFINITY || (impact_smaller(impact_smaller(j.x, j.y), j.z) > 0 && j.x + j.y + j.z <= DBL_MAX &&
+                                      fabs(quat_dot(q, q) - 1) <= 1e-6);
 }
 
 /* Most collisions, told at a glance; the rest is looked at closely. */
 static bool plain(const impact_collision *c)
 {
     const qvec3 n = c->normal;
-    return plain_body(&c->body[0]) && plain_body(&c->body[1]) && fmin(c->body[0].mass, c->body[1].mass) < INFINITY &&
-           plain3(n) && (n.x != 0 || n.y != 0 || n.z != 0) && c->friction >= 0 && c->friction <= DBL_MAX &&
-           c->restitution >= 0 && c->restitution <= 1 && (unsigned)c->law <= IMPACT_STRONGE &&
-           (unsigned)c->solver <= IMPACT_SOLVER_CVODE && c->series_order == 0 && c->tangential_compliance == 0 &&
-           !c->friction_law;
+    return plain_body(&c->body[0]) && plain_body(&c->body[1]) &&
+           (c->body[0].mass < INFINITY || c->body[1].mass < INFINITY) && size3(n) <= DBL_MAX && size3(n) > 0 &&
+           c->friction >= 0 && c->friction <= DBL_MAX && c->restitution >= 0 && c->restitution <= 1 &&
+           (unsigned)c->law <= IMPACT_STRONGE && (unsigned)c->solver <= IMPACT_SOLVER_CVODE && c->series_order == 0 &&
+           c->tangential_compliance == 0 && !c->friction_law;
 }
 
 impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size)
