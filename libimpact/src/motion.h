@@ -68,15 +68,15 @@ typedef struct impact_motion {
 impact_status impact_motion_open(impact_motion *motion, impact_world *world, double tolerance, double rest_speed);
 void impact_motion_close(impact_motion *motion);
 
-/* Advances the states (consistent modes: see impact_persist_resolve) from *t to the next event, at most to t_end. */
-impact_status impact_motion_advance(impact_motion *motion, double *t, double t_end, impact_state *states,
-                                    impact_sampler *sampler, impact_end *end);
-
 /* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet: the restarted
  * integrator would never see it. False when there is none. */
 bool impact_motion_also_crossed(impact_motion *motion, impact_end *end);
 
-/* The two roads of impact_motion_advance: in closed form, and by the integrator. */
+/* motion_advance.c, by one of two roads below. */
+/* Advances the states (consistent modes: see impact_persist_resolve) from *t to the next event, at most to t_end. */
+impact_status impact_motion_advance(impact_motion *motion, double *t, double t_end, impact_state *states,
+                                    impact_sampler *sampler, impact_end *end);
+/* In closed form: motion_flight.c; by the integrator: motion_stretch.c. */
 impact_status impact_motion_fly(impact_motion *motion, double *t, double t_end, impact_state *states,
                                 impact_sampler *sampler, impact_end *end);
 impact_status impact_motion_integrate(impact_motion *motion, double *t, double t_end, impact_state *states,

@@ -8,21 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool impact_scene_emit(void *context, double t, const impact_state *states)
-{
-    impact_scene *scene = context;
-    const impact_recorder *recorder = scene->recorder;
-    for (int i = 0; recorder->sample && i < scene->world.body_count; i++) {
-        if (scene->world.bodies[i].is_static) continue;
-        const impact_sample sample = impact_scene_sample(scene, t, i, states);
-        scene->world.usage.samples++;
-        if (recorder->sample(recorder->context, &sample)) continue;
-        scene->stop = IMPACT_ESINK;
-        return false;
-    }
-    return true;
-}
-
 static bool pulse(void *context, double t)
 {
     impact_scene *scene = context;
@@ -108,59 +93,6 @@ void impact_scene_destroy(impact_scene *scene)
     free(scene);
 }
 
-static bool all_at_rest(const impact_scene *scene)
-{
-    bool any = false;
-    for (int i = 0; i < scene->world.body_count; i++) {
-        if (scene->world.bodies[i].is_static) continue;
-        if (!scene->motion.resting[i]) return false;
-        any = true;
-    }
-    return any;
-}
-
-/* One stretch of motion and the event at its end. */
-static impact_status advance(impact_scene *scene, double t_end)
-{
-    enum { MAX_STALLS = 10000 };
-    const double t_before = scene->t;
-    impact_end end;
-    impact_sampler silent = {.pulse = scene->sampler.pulse, .context = scene};
-    const bool samples = scene->recorder && scene->recorder->sample;
-    scene->stop = IMPACT_OK;
-    impact_status status = impact_motion_advance(&scene->motion, &scene->t, t_end, scene->states,
-                                                 samples ? &scene->sampler : &silent, &end);
-    if (status < 0) {
-        snprintf(scene->message, sizeof scene->message, "%s", scene->motion.message);
-        return status;
-    }
-    status = impact_scene_handle(scene, end);
-    while (status == IMPACT_OK && impact_motion_also_crossed(&scene->motion, &end))
-        status = impact_scene_handle(scene, end);
-    if (status != IMPACT_OK) return status;
-    scene->stalls = scene->t > t_before ? 0 : scene->stalls + 1;
-    if (scene->stalls < MAX_STALLS) return scene->stop;
-    snprintf(scene->message, sizeof scene->message, "%d events at the one instant t = %.17g brought no end", MAX_STALLS,
-             scene->t);
-    return IMPACT_EUNSETTLED;
-}
-
-impact_status impact_scene_go_on(impact_scene *scene, double t_end)
-{
-    impact_status status = IMPACT_OK;
-    while (status == IMPACT_OK && scene->t < t_end) {
-        if (all_at_rest(scene)) return IMPACT_AT_REST;
-        if (scene->event_count >= scene->max_events) {
-            snprintf(scene->message, sizeof scene->message, "%ld events by t = %.17g: the limit", scene->event_count,
-                     scene->t);
-            return IMPACT_EVENT_LIMIT;
-        }
-        if (!scene->sampler.pulse(scene->sampler.context, scene->t)) return scene->stop;
-        status = scene->crowd ? impact_scene_crowd_advance(scene, t_end) : advance(scene, t_end);
-    }
-    return status;
-}
-
 static impact_status run(impact_scene *scene, double t_end)
 {
     scene->message[0] = '\0';
@@ -170,7 +102,8 @@ static impact_status run(impact_scene *scene, double t_end)
     impact_status status = scene->crowd ? impact_scene_crowd_deliver(scene) : IMPACT_OK;
     if (status == IMPACT_OK) status = impact_scene_settle(scene);
     if (status == IMPACT_OK && scene->crowd) impact_scene_crowd_begin(scene);
-    return status == IMPACT_OK ? impact_scene_go_on(scene, t_end) : status;
+    if (status != IMPACT_OK) return status;
+    return impact_scene_go_on(scene, t_end, scene->crowd ? impact_scene_crowd_advance : impact_scene_advance);
 }
 
 /* The run's check on itself: the energy that is there against the energy that was given and taken. Held contacts of superellipsoids,

@@ -270,7 +270,7 @@ static void stay(party *p, double t_end)
 static impact_status move_party(impact_scene_crowd *crowd, party *p, double t_end)
 {
     p->status = gather(crowd, p);
-    if (p->status == IMPACT_OK) p->status = impact_scene_go_on(&p->scene, t_end);
+    if (p->status == IMPACT_OK) p->status = impact_scene_go_on(&p->scene, t_end, impact_scene_advance);
     if (p->status >= 0 && !within(p, p->scene.states)) crowd->escaped = true;
     return p->status;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The scene as its own source files see it: scene_build.c makes it, scene_instant.c does what happens at one instant,
- * scene.c runs it. Internal.
+ * scene_advance.c goes from one to the next, scene.c runs it. Internal.
  */
 #ifndef IMPACT_SCENE_INTERNAL_H
 #define IMPACT_SCENE_INTERNAL_H
@@ -35,8 +35,11 @@ struct impact_scene {
 impact_status impact_scene_build(impact_scene *scene, const impact_scene_def *def);
 void impact_scene_unbuild(impact_scene *scene);
 
-/* On to the time t_end, as far as it goes: IMPACT_OK there, IMPACT_AT_REST, or why not. */
-impact_status impact_scene_go_on(impact_scene *scene, double t_end);
+/* One stretch of motion and the event at its end. */
+impact_status impact_scene_advance(impact_scene *scene, double t_end);
+typedef impact_status (*impact_scene_step)(impact_scene *scene, double t_end);
+/* On to the time t_end by such steps, as far as it goes: IMPACT_OK there, IMPACT_AT_REST, or why not. */
+impact_status impact_scene_go_on(impact_scene *scene, double t_end, impact_scene_step step);
 /* Puts every body's row into the recorder; for the sampler. */
 bool impact_scene_emit(void *scene, double t, const impact_state *states);
 
