@@ -106,8 +106,8 @@ static void screw_interpolation(void **state)
         assert_true(quat_same_rotation(quat_dual_sclerp(p, q, 1).real, q.real, 0));
     }
     assert_bound("sclerp is unit", unit, 1e-14);
-    assert_bound("half of half", half, 1e-13);
-    assert_bound("g sclerp(p, q) = sclerp(gp, gq)", moved, 1e-13);
+    assert_bound("half of half", half, 1e-14);
+    assert_bound("g sclerp(p, q) = sclerp(gp, gq)", moved, 1e-14);
     /* a quarter turn about the line x = 1 along z, rising 2: half of it is an eighth of a turn, rising 1 */
     qdual p, eighth;
     quat_dual_from_screw(qvec3_make(0, 0, 1), qvec3_make(1, 0, 0), 2 * atan2(1, 1), 2, &p);
