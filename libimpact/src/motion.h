@@ -17,7 +17,8 @@ typedef enum impact_end_kind {
     IMPACT_END_SLIP,    /* a rolling contact's friction reached its cone */
     IMPACT_END_STICK,   /* a sliding contact's slip died out */
     IMPACT_END_EDGE,    /* a body crossed the edge of a field's reach */
-    IMPACT_END_SLOW     /* a body that rolls or rests became slower than the rest speed */
+    IMPACT_END_SLOW,    /* a body that rolls or rests became slower than the rest speed */
+    IMPACT_END_RENEWAL  /* many steps of a held contact: it is to be put back exactly */
 } impact_end_kind;
 
 typedef struct impact_end {
@@ -57,10 +58,12 @@ typedef struct impact_motion {
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
     int *found;
     impact_state *scratch, *sampled;
-    bool sliding;       /* slip slows the clock: see motion_equations.c */
-    bool creeping;      /* contacts that move fast over flat places do */
-    bool after_onset;   /* the last stretch was the onset of some slip */
-    bool stiff;         /* this one follows it */
+    bool sliding;      /* slip slows the clock: see motion_equations.c */
+    bool creeping;     /* contacts that move fast over flat places do */
+    bool after_onset;  /* the last stretch was the onset of some slip */
+    bool stiff;        /* this one follows it */
+    long steps_before; /* of the stretch at hand, before its contacts were put back; and when it began, s: */
+    double began;
     double slip_scale;  /* m/s */
     double creep_scale; /* 1/s */
 } impact_motion;

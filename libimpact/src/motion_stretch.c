@@ -296,15 +296,17 @@ static impact_status limit_step(impact_motion *motion, const double *y)
 static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, impact_state *states,
                                impact_sampler *sampler, impact_end *end)
 {
-    enum { MAX_STILL = 1000, MAX_STEPS = 2000000 };
-    const double t_start = *t;
+    enum { MAX_STILL = 1000, MAX_STEPS = 2000000, RENEWAL = 20000 };
+    const long steps_before = motion->steps_before;
+    const double t_start = steps_before > 0 ? motion->began : *t;
+    motion->steps_before = 0;
     int still = 0;
     bool passed = false; /* the last step ended at a root that is no event */
     const bool clocked = impact_motion_clocked(motion);
     double tau = clocked ? 0 : *t;
     const double stop = clocked ? 1000 * (t_end - *t) + 1000 : t_end;
     *end = (impact_end){IMPACT_END_TIME, 0};
-    for (long step = 0; still < MAX_STILL && step < MAX_STEPS; step++) {
+    for (long step = steps_before; still < MAX_STILL && step < MAX_STEPS; step++) {
         const double tau_before = tau;
         bool found;
         impact_status status = limit_step(motion, y);
@@ -331,6 +333,12 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         if (end_onsets(motion) || (motion->stiff && slowest_slip(motion) > 1e-2 * motion->slip_scale)) return IMPACT_OK;
         still = tau > tau_before ? 0 : still + 1;
         passed = found;
+        if (motion->persist.count > 0 && step + 1 == steps_before + RENEWAL) { /* held contacts drift apart otherwise */
+            motion->steps_before = step + 1;
+            motion->began = t_start;
+            *end = (impact_end){IMPACT_END_RENEWAL, 0};
+            return IMPACT_OK;
+        }
     }
     if (still >= MAX_STILL)
         snprintf(motion->message, sizeof motion->message,

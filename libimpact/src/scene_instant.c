@@ -575,7 +575,8 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_SLIP: return begin_slide(scene, end.index);
     case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);
     case IMPACT_END_EDGE: return cross_edge(scene, end.index);
-    case IMPACT_END_SLOW: remember(scene); return hold(scene, -1, true);
+    case IMPACT_END_SLOW:
+    case IMPACT_END_RENEWAL: remember(scene); return hold(scene, -1, true);
     }
     return IMPACT_OK;
 }
