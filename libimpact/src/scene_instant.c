@@ -271,12 +271,12 @@ static impact_status strike_together(impact_scene *scene)
     impact_world *world = &scene->world;
     impact_share *shares = calloc((size_t)world->pair_count + 1, sizeof *shares);
     if (!shares) return IMPACT_ENOMEM;
+    impact_persist_stir(world);
     int count = 0;
     meeting m;
     for (int p = 0; p < world->pair_count; p++)
         if (meets(scene, p, &m)) shares[count++].touch = m.touch;
     double energy = impact_scene_total_energy(scene);
-    impact_persist_stir(world);
     impact_answer_together(world, scene->states, shares, count);
     impact_status status = IMPACT_OK;
     for (int c = 0; status == IMPACT_OK && c < count; c++) {
