@@ -4,6 +4,7 @@
  */
 #include "collide_cvode.h"
 #include "collide_direct.h"
+#include "collide_isotropic.h"
 #include "collide_series.h"
 
 /* Condition of M from which the last rounding is mended. */
@@ -152,6 +153,15 @@ static impact_status fail(const impact_collision *collision, impact_outcome *out
     return status;
 }
 
+/* Solves what has a closed form: sliding that does not turn, or turns alike in all directions. */
+static bool closed_form(impact_course *course)
+{
+    if (impact_course_straight(course)) return true;
+    if (!impact_isotropic_is(course->frame)) return false;
+    impact_isotropic_solve(course);
+    return true;
+}
+
 static impact_status solve(const impact_collision *collision, impact_course *course, double speed,
                            impact_outcome *outcome)
 {
@@ -161,7 +171,7 @@ static impact_status solve(const impact_collision *collision, impact_course *cou
         outcome->solver = IMPACT_SOLVER_CVODE;
         return impact_cvode_solve(course, collision, speed);
     }
-    if ((any || collision->solver == IMPACT_SOLVER_CLOSED_FORM) && impact_course_closed_form(course)) {
+    if ((any || collision->solver == IMPACT_SOLVER_CLOSED_FORM) && closed_form(course)) {
         outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
         return course->ended ? IMPACT_OK : IMPACT_EUNSETTLED;
     }

@@ -7,7 +7,7 @@
  * Stronge: with W the normal work, W_c = min W is the work of loading (what is reloaded elastically does not lower the minimum),
  * and the impact ends in restitution once W - W_c = eps^2 |W_c| (Stronge, Impact Mechanics, 2000, section 3.5).
  */
-#include "collide_isotropic.h"
+#include "collide_course.h"
 
 #include <float.h>
 
@@ -209,7 +209,7 @@ void impact_course_finish(impact_course *course)
     impact_course_line(course, &line, INFINITY);
 }
 
-bool impact_course_closed_form(impact_course *course)
+bool impact_course_straight(impact_course *course)
 {
     const impact_frame *frame = course->frame;
     if (course->mu == 0) {
@@ -222,11 +222,7 @@ bool impact_course_closed_form(impact_course *course)
         return true;
     }
     const double x = course->ux / course->s, y = course->uy / course->s;
-    if (!impact_course_is_straight(frame, course->mu, x, y)) {
-        const bool isotropic = impact_isotropic_is(frame);
-        if (isotropic) impact_isotropic_solve(course);
-        return isotropic;
-    }
+    if (!impact_course_is_straight(frame, course->mu, x, y)) return false;
     const impact_line line = impact_course_sliding(frame, course->mu, x, y);
     impact_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
     if (!course->ended) impact_course_finish(course);

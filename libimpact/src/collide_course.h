@@ -68,7 +68,7 @@ void impact_course_book(impact_course *course, double dp, double work, double fr
 /* Everything from u_t = 0 on. */
 void impact_course_finish(impact_course *course);
 
-/* Solves the whole impact when the sliding direction does not turn, or a = b; false otherwise. */
-bool impact_course_closed_form(impact_course *course);
+/* Solves the whole impact when the sliding direction does not turn; false otherwise. */
+bool impact_course_straight(impact_course *course);
 
 #endif

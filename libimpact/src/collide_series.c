@@ -381,7 +381,7 @@ static bool tail_is_near(const impact_course *course, double x, double y)
 bool impact_series_solve(impact_course *course, int order)
 {
     const impact_frame *frame = course->frame;
-    if (course->mu == 0) return impact_course_closed_form(course);
+    if (course->mu == 0) return impact_course_straight(course);
     const double mu = course->mu, small = 1e-17 * impact_smaller(course->s, 1);
     int events = -1;
     for (int steps = 0; steps < 400 && course->s > 0 && !course->ended; steps++) {
