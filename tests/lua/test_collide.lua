@@ -54,12 +54,17 @@ do
   local stops = with { J1 = { moments = { 4, 4, 4 } }, v1 = { 1e-6, -0.75, -1 }, w1 = { 0, 0, 0 }, r1 = { 0, -0.6, -0.8 }, n = { 0, 0.6, 0.8 }, mu = 0, eps = 0 }
   sensitivity = assert(impact.collide_sensitivity(stops))
   check.truth(sensitivity > 1e5 and sensitivity < 1e7, tostring(sensitivity))
-  check.truth(assert(impact.collide_sensitivity(with { mu = function() return 0.25 end })) > 0.1)
   local ok, message = pcall(impact.collide_sensitivity, with { frition = 1 })
   check.truth(not ok and tostring(message):find("unknown key 'frition'", 1, true), tostring(message))
-  ok, message = pcall(impact.collide_sensitivity, with { mu = function() error "worn out" end })
-  check.truth(not ok and tostring(message):find("worn out", 1, true), tostring(message))
-  local answer, why = impact.collide_sensitivity(with { solver = "closed_form", r1 = { 0.1, 0.2, -0.3 } })
+  local answer, why = impact.collide_sensitivity(with { mu = function() return 0.25 end })
+  if impact.has "cvode" then
+    check.truth(answer > 0.1, tostring(why))
+    ok, message = pcall(impact.collide_sensitivity, with { mu = function() error "worn out" end })
+    check.truth(not ok and tostring(message):find("worn out", 1, true), tostring(message))
+  else
+    check.truth(answer == nil and why:find("left out of the build", 1, true), tostring(why))
+  end
+  answer, why = impact.collide_sensitivity(with { solver = "closed_form", r1 = { 0.1, 0.2, -0.3 } })
   check.truth(answer == nil and type(why) == "string", tostring(why))
 end
 
