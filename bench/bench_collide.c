@@ -13,9 +13,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include "../tests/generators/collide_cases.h"
 #include "../tests/generators/collide_scenes.h"
+#include "measure.h"
 #ifdef HAVE_QUADMATH
 #include "../tests/generators/collide_oracle.h"
 #endif
@@ -31,19 +31,6 @@ typedef struct group {
     bool known[MOST];
     double series_time, conditioning_median, conditioning_largest;
 } group;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /* ---- right answers ---- */
 
@@ -88,9 +75,8 @@ static void condition(group *g)
         impact_outcome o;
         if (g->known[i] && impact_collide(&g->c[i], &o) == IMPACT_OK) conditioning[count++] = o.conditioning;
     }
-    qsort(conditioning, (size_t)count, sizeof *conditioning, ascending);
-    g->conditioning_median = count ? conditioning[count / 2] : NAN;
-    g->conditioning_largest = count ? conditioning[count - 1] : NAN;
+    g->conditioning_median = measure_quantile(conditioning, count, 0.5);
+    g->conditioning_largest = measure_quantile(conditioning, count, 1);
 }
 
 static void answer_all(group *g)
@@ -129,9 +115,9 @@ static double run(group *g, const char *name, const char *parameter, solver *sol
         bool answered = true;
         for (int r = 0; r < (slow ? 2 : REPEATS); r++) {
             const int loops = slow ? 1 : 20;
-            const double from = seconds();
+            const double from = measure_clock();
             for (int k = 0; k < loops; k++) answered = solve(&g->c[i], &o, context);
-            best = fmin(best, (seconds() - from) / loops);
+            best = fmin(best, (measure_clock() - from) / loops);
         }
         times[timed++] = best;
         const double error = answered ? case_error(&g->c[i], o.velocity, o.omega, g->v[i], g->w[i]) : INFINITY;
@@ -141,12 +127,10 @@ static double run(group *g, const char *name, const char *parameter, solver *sol
             errors[count++] = error;
     }
     if (timed == 0) return 0;
-    qsort(errors, (size_t)count, sizeof *errors, ascending);
-    qsort(times, (size_t)timed, sizeof *times, ascending);
-    const double time = times[timed / 2];
+    const double time = measure_quantile(times, timed, 0.5);
     if (g->series_time == 0) g->series_time = time;
     printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g,%.3g,%.3g\n", g->name, name, parameter, timed, failures,
-           count ? errors[count / 2] : NAN, count ? errors[count - 1] : NAN, 1e6 * time, time / g->series_time,
+           measure_quantile(errors, count, 0.5), measure_quantile(errors, count, 1), 1e6 * time, time / g->series_time,
            g->conditioning_median, g->conditioning_largest);
     fflush(stdout);
     return time;
@@ -390,9 +374,9 @@ static void array_call(void)
     for (int t = 0; t < 3; t++) {
         double best = INFINITY;
         for (int r = 0; r < 5; r++) {
-            const double from = seconds();
+            const double from = measure_clock();
             impact_collide_many(c, COUNT, threads[t], o, NULL);
-            best = fmin(best, (seconds() - from) / COUNT);
+            best = fmin(best, (measure_clock() - from) / COUNT);
         }
         if (t == 0) single = best;
         printf("array of spheres,closed form,%d threads,%d,0,,,%.3g,%.3g,,\n", threads[t], COUNT, 1e6 * best,

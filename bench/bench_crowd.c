@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <time.h>
 #include <impact/scene.h>
+#include "measure.h"
 
 enum { WALLS = 5, MOST = 400, REPEATS = 3 };
 
@@ -87,12 +88,6 @@ static outcome fall(int balls, double friction, double restitution, double durat
     return result;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 int main(void)
 {
     static const int sizes[] = {10, 20, 50, 100, 200, 400};
@@ -111,9 +106,8 @@ int main(void)
                 result = fall(sizes[s], kinds[k].friction, kinds[k].restitution, duration);
                 times[r] = result.cpu;
             }
-            qsort(times, REPEATS, sizeof *times, ascending);
-            const double cpu = times[REPEATS / 2] / duration,
-                         event = times[REPEATS / 2] / (double)(result.events ? result.events : 1);
+            const double time = measure_quantile(times, REPEATS, 0.5), cpu = time / duration,
+                         event = time / (double)(result.events ? result.events : 1);
             if (s == 0) first_cpu = cpu, first_event = event;
             printf("%s,%d,%ld,%ld,%.3g,%.3g,%.3g,%.3g,%s\n", kinds[k].name, sizes[s], result.events, result.starts, cpu,
                    1e6 * event, cpu / first_cpu, event / first_event, impact_status_string(result.status));

@@ -23,27 +23,15 @@
 
 enum { REPEATS = 101, LONG_REPEATS = 51 };
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, ascending);
-    return values[count / 2];
-}
-
 /* ---- our answers ---- */
 
 static bool our_impact(const impact_collision *c, double step, qvec3 v[2], qvec3 w[2], double *seconds)
 {
     (void)step;
     impact_outcome o;
-    const double from = engine_clock();
+    const double from = measure_clock();
     const bool done = impact_collide(c, &o) == IMPACT_OK;
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     for (int b = 0; b < 2; b++) v[b] = o.velocity[b], w[b] = o.omega[b];
     return done;
 }
@@ -66,9 +54,9 @@ static bool run_scene(const impact_scene_def *def, const impact_recorder *record
 {
     impact_scene *scene;
     if (impact_scene_create(def, &scene, NULL, 0) != IMPACT_OK) return false;
-    const double from = engine_clock();
+    const double from = measure_clock();
     const impact_status status = impact_scene_run(scene, recorder);
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     impact_scene_destroy(scene);
     return status >= 0;
 }
@@ -176,7 +164,7 @@ static void row_impact(const char *scene, const engine *e, const impact_collisio
     oracle_outcome right;
     if (oracle_collide(c, &right)) error = case_error(c, v, w, right.velocity, right.omega);
 #endif
-    print_row(scene, e, error, median(times, REPEATS));
+    print_row(scene, e, error, measure_quantile(times, REPEATS, 0.5));
 }
 
 /* Whole runs are repeated while they are short. */
@@ -195,7 +183,7 @@ static void row_bounce(const engine *e, const bounce_case *c)
         const double right = c->height * pow(c->restitution, 2 * (k + 1));
         worst = fmax(worst, fabs(height[k] / right - 1));
     }
-    print_row("S3", e, worst, median(times, count));
+    print_row("S3", e, worst, measure_quantile(times, count, 0.5));
 }
 
 static void row_tumble(const engine *e, const tumble_case *c, const quat right[TURNS])
@@ -206,7 +194,7 @@ static void row_tumble(const engine *e, const tumble_case *c, const quat right[T
     while (wants_more(times, count))
         if (!e->tumble(c, e->step, q, &times[count++])) return;
     for (int k = 0; k < TURNS; k++) worst = fmax(worst, quat_rotation_distance(q[k], right[k]));
-    print_row("S4", e, worst, median(times, count));
+    print_row("S4", e, worst, measure_quantile(times, count, 0.5));
 }
 
 typedef struct scene {

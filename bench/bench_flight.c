@@ -8,11 +8,11 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <impact/ode.h>
 #include <impact/tumble.h>
 #include <quat/rotation.h>
 #include "../tests/contact_random.h"
+#include "measure.h"
 #ifdef HAVE_QUADMATH
 #include "tumble_oracle.h"
 #endif
@@ -24,25 +24,6 @@ typedef struct body {
     quat orientation, truth;
     double t;
 } body;
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, ascending);
-    return values[count / 2];
-}
 
 static void make_bodies(body *bodies, double angle)
 {
@@ -130,19 +111,19 @@ static void measure(const method *m, const body *bodies, double angle)
         double repeats[REPEATS];
         quat q = {1, 0, 0, 0};
         for (int r = 0; r < REPEATS; r++) {
-            const double start = now();
+            const double start = measure_clock();
             for (int k = 0; k < m->batch; k++) {
                 q = m->turn(&bodies[i], context);
                 sum += q.x;
             }
-            repeats[r] = (now() - start) / m->batch * 1e6;
+            repeats[r] = (measure_clock() - start) / m->batch * 1e6;
         }
-        times[i] = median(repeats, REPEATS);
+        times[i] = measure_quantile(repeats, REPEATS, 0.5);
         errors[i] = quat_rotation_distance(q, bodies[i].truth);
         if (m->turn == integrated) impact_ode_destroy(context);
     }
-    const double error = median(errors, BODIES);
-    printf("%s,%g,%g,%.4g,%.2e,%.2e,%.12g\n", m->name, m->tolerance, angle, median(times, BODIES), error,
+    const double error = measure_quantile(errors, BODIES, 0.5);
+    printf("%s,%g,%g,%.4g,%.2e,%.2e,%.12g\n", m->name, m->tolerance, angle, measure_quantile(times, BODIES, 0.5), error,
            errors[BODIES - 1], sum / (m->batch * REPEATS));
     fflush(stdout);
 }

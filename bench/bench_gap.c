@@ -8,32 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <impact/toi.h>
 #include "../tests/contact_random.h"
 #include "peers_gap.h"
+#include "measure.h"
 
 enum { PAIRS = 2000, REPEATS = 7 };
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double quantile(double *values, int count, double q)
-{
-    if (count == 0) return NAN;
-    qsort(values, (size_t)count, sizeof *values, ascending);
-    return values[(int)(q * (count - 1))];
-}
 
 /* Separated pairs (relative gap 1e-4 to 1) or, overlap true, overlaps of depth 1e-9 to 1e-4 of the thinnest axis. */
 static void make_pairs(gap_case *cases, int family, bool overlap)
@@ -93,9 +73,9 @@ static void measure(const char *family, const char *kind, const char *name, gap_
         answered = 0;
         double gap;
         qvec3 normal;
-        const double start = now();
+        const double start = measure_clock();
         for (int i = 0; i < PAIRS; i++) answered += method(&cases[i], setting, &gap, &normal);
-        times[repeat] = (now() - start) / PAIRS * 1e6;
+        times[repeat] = (measure_clock() - start) / PAIRS * 1e6;
     }
     int gap_count = 0, normal_count = 0;
     for (int i = 0; i < PAIRS; i++) {
@@ -105,10 +85,11 @@ static void measure(const char *family, const char *kind, const char *name, gap_
         if (!isnan(gap)) gaps[gap_count++] = fabs(gap - cases[i].gap) / cases[i].reach;
         if (!isnan(normal.x)) normals[normal_count++] = qvec3_norm(qvec3_sub(normal, cases[i].normal));
     }
-    const double time = quantile(times, REPEATS, 0.5), p50 = quantile(gaps, gap_count, 0.5),
-                 p99 = quantile(gaps, gap_count, 0.99);
+    const double time = measure_quantile(times, REPEATS, 0.5), p50 = measure_quantile(gaps, gap_count, 0.5),
+                 p99 = measure_quantile(gaps, gap_count, 0.99);
     printf("%s,%s,%s,%g,%.3g,%.2g,%.2g,%.2g,%.2g,%.4f\n", family, kind, name, setting, time, p50, p99,
-           gap_count ? gaps[gap_count - 1] : NAN, quantile(normals, normal_count, 0.5), 1 - (double)answered / PAIRS);
+           gap_count ? gaps[gap_count - 1] : NAN, measure_quantile(normals, normal_count, 0.5),
+           1 - (double)answered / PAIRS);
     fflush(stdout);
 }
 
@@ -130,7 +111,7 @@ static void measure_toi(void)
         int met = 0;
         for (int repeat = 0; repeat < 3; repeat++) {
             met = 0;
-            const double start = now();
+            const double start = measure_clock();
             for (int i = 0; i < PAIRS; i++) {
                 double time;
                 impact_contact c;
@@ -140,9 +121,10 @@ static void measure_toi(void)
                     left[met++] = fabs(c.gap) /
                                   fmax(contact_size(&cases[i].body[0].shape), contact_size(&cases[i].body[1].shape));
             }
-            times[repeat] = (now() - start) / PAIRS * 1e6;
+            times[repeat] = (measure_clock() - start) / PAIRS * 1e6;
         }
-        const double time = quantile(times, 3, 0.5), p50 = quantile(left, met, 0.5), p99 = quantile(left, met, 0.99);
+        const double time = measure_quantile(times, 3, 0.5), p50 = measure_quantile(left, met, 0.5),
+                     p99 = measure_quantile(left, met, 0.99);
         printf("%s,toi,impact toi,0,%.3g,%.2g,%.2g,%.2g,nan,%.4f\n", random_family_name(family), time, p50, p99,
                left[met - 1], 1 - (double)met / PAIRS);
     }

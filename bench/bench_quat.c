@@ -16,10 +16,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <quat/batch.h>
 #include <quat/interpolate.h>
 #include <quat/rotation.h>
+#include "measure.h"
 
 enum { few = 10000, many = 1000000, rounds = 31, most = 9 };
 
@@ -284,7 +284,7 @@ static double worst_error(const bench_input *in, bench_case which, const double 
     return (double)(worst * 0x1p53L);
 }
 
-/* ---- input and clock ---- */
+/* ---- input ---- */
 
 static uint64_t seed = 2026;
 static double uniform(void *unused)
@@ -311,19 +311,6 @@ static bench_input make_input(size_t n)
     return (bench_input){n, &a[0].w, &b[0].w, w, s, &r[0].m[0][0]};
 }
 
-static double now(void)
-{
-    struct timespec ts;
-    clock_gettime(CLOCK_MONOTONIC, &ts);
-    return (double)ts.tv_sec * 1e9 + (double)ts.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void compete(bench_case which, const bench_input *in, const bench_contestant *const *all, int count)
 {
     static double times_of[most][rounds];
@@ -332,14 +319,13 @@ static void compete(bench_case which, const bench_input *in, const bench_contest
     for (int k = 0; k < rounds; k++)
         for (int c = 0; c < count; c++) {
             if (!all[c]->can(which)) continue;
-            const double start = now();
+            const double start = measure_clock();
             for (size_t j = 0; j < repeat; j++) all[c]->run(which, n);
-            times_of[c][k] = (now() - start) / (double)(n * repeat);
+            times_of[c][k] = 1e9 * (measure_clock() - start) / (double)(n * repeat);
         }
     for (int c = 0; c < count; c++) {
         if (!all[c]->can(which)) continue;
-        qsort(times_of[c], rounds, sizeof(double), ascending);
-        median[c] = times_of[c][rounds / 2];
+        median[c] = measure_quantile(times_of[c], rounds, 0.5);
         if (all[c]->peer && median[c] < fastest) fastest = median[c];
         if (strcmp(all[c]->name, "memcpy") == 0) copy = median[c];
     }

@@ -11,8 +11,8 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <impact/scene.h>
+#include "measure.h"
 
 enum { TIMES = 32, MOST_BODIES = 4, REPEATS = 7 };
 
@@ -28,19 +28,6 @@ typedef struct setting {
     impact_pair_def pair;
     impact_scene_def def;
 } setting;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /* ---- the scenes ---- */
 
@@ -215,15 +202,14 @@ static double run_time(const setting *s)
 {
     double times[REPEATS];
     for (int i = 0; i < REPEATS; i++) {
-        const double from = seconds();
+        const double from = measure_clock();
         impact_scene *scene = make(s);
         const impact_status status = impact_scene_run(scene, NULL);
         impact_scene_destroy(scene);
         if (status < IMPACT_OK) return NAN;
-        times[i] = seconds() - from;
+        times[i] = measure_clock() - from;
     }
-    qsort(times, REPEATS, sizeof *times, ascending);
-    return times[REPEATS / 2];
+    return measure_quantile(times, REPEATS, 0.5);
 }
 
 static void measure(setting *s, void solve(const setting *s, states *out))

@@ -6,7 +6,7 @@
 #define PEERS_ENGINES_H
 
 #include <impact/collide.h>
-#include <time.h>
+#include "measure.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,13 +39,6 @@ typedef struct engine {
 
 /* Empty where the engine is not installed. */
 extern const engine engines_ode[], engines_bullet[];
-
-static inline double engine_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* A bouncing point mass watched at each step: the height of each flight from its energy, so that the step's place on the parabola
  * does not count. */

@@ -77,9 +77,9 @@ bool impact(const impact_collision *c, double step, qvec3 v[2], qvec3 w[2], doub
     btContactSolverInfo info;
     world::settle(info);
     info.m_timeStep = step;
-    const double from = engine_clock();
+    const double from = measure_clock();
     world.solver.solveGroup(bodies, 2, &manifold, 1, nullptr, 0, info, nullptr, &world.dispatcher);
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     for (int i = 0; i < 2; i++) {
         v[i] = vector_of(own[i]->getLinearVelocity());
         w[i] = vector_of(own[i]->getAngularVelocity());
@@ -101,12 +101,12 @@ bool bounce(const bounce_case *c, double step, double height[BOUNCES], double *s
     world.dynamics.addRigidBody(ball.get());
     world.dynamics.addRigidBody(floor.get());
     bounce_watch watch = {0, 0};
-    const double from = engine_clock();
+    const double from = measure_clock();
     for (double t = 0; t < c->duration; t += step) {
         world.dynamics.stepSimulation(step, 0);
         bounce_look(&watch, c, ball->getCenterOfMassPosition().z(), ball->getLinearVelocity().z(), height);
     }
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     world.dynamics.removeRigidBody(ball.get());
     world.dynamics.removeRigidBody(floor.get());
     return watch.bounces == BOUNCES;
@@ -121,13 +121,13 @@ bool tumble(const tumble_case *c, double step, quat q[TURNS], double *seconds)
     body->setAngularVelocity(vector(c->omega));
     world.dynamics.addRigidBody(body.get());
     const int steps = (int)std::lrint(1 / step);
-    const double from = engine_clock();
+    const double from = measure_clock();
     for (int second = 0; second < TURNS; second++) {
         for (int k = 0; k < steps; k++) world.dynamics.stepSimulation(step, 0);
         const btQuaternion r = body->getOrientation();
         q[second] = quat_make(r.w(), r.x(), r.y(), r.z());
     }
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     world.dynamics.removeRigidBody(body.get());
     return true;
 }

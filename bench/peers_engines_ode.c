@@ -60,10 +60,10 @@ static bool impact(const impact_collision *c, double step, qvec3 v[2], qvec3 w[2
     contact.geom.normal[0] = c->normal.x, contact.geom.normal[1] = c->normal.y, contact.geom.normal[2] = c->normal.z;
     if (s > 0) contact.fdir1[0] = slip.x / s, contact.fdir1[1] = slip.y / s, contact.fdir1[2] = slip.z / s;
     dJointGroupID group = dJointGroupCreate(0);
-    const double from = engine_clock();
+    const double from = measure_clock();
     dJointAttach(dJointCreateContact(world, group, &contact), body[0], body[1]);
     const bool done = dWorldStep(world, step) != 0;
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     for (int i = 0; i < 2; i++) {
         v[i] = body[i] ? vector_of(dBodyGetLinearVel(body[i])) : c->body[i].velocity;
         w[i] = body[i] ? vector_of(dBodyGetAngularVel(body[i])) : c->body[i].omega;
@@ -101,14 +101,14 @@ static bool bounce(const bounce_case *c, double step, double height[BOUNCES], do
     dGeomSetBody(dCreateSphere(space, c->radius), ball);
     dCreatePlane(space, 0, 0, 1, 0);
     bounce_watch watch = {0, 0};
-    const double from = engine_clock();
+    const double from = measure_clock();
     for (double t = 0; t < c->duration; t += step) {
         dSpaceCollide(space, &b, near);
         dWorldStep(world, step);
         dJointGroupEmpty(b.group);
         bounce_look(&watch, c, dBodyGetPosition(ball)[2], dBodyGetLinearVel(ball)[2], height);
     }
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     dJointGroupDestroy(b.group);
     dSpaceDestroy(space);
     end_world(world);
@@ -122,13 +122,13 @@ static bool tumble(const tumble_case *c, double step, quat q[TURNS], double *sec
     dBodySetAngularVel(body, c->omega.x, c->omega.y, c->omega.z);
     dBodySetFiniteRotationMode(body, 1);
     const int steps = (int)lrint(1 / step);
-    const double from = engine_clock();
+    const double from = measure_clock();
     for (int second = 0; second < TURNS; second++) {
         for (int k = 0; k < steps; k++) dWorldStep(world, step);
         const dReal *r = dBodyGetQuaternion(body);
         q[second] = (quat){r[0], r[1], r[2], r[3]};
     }
-    *seconds = engine_clock() - from;
+    *seconds = measure_clock() - from;
     end_world(world);
     return true;
 }

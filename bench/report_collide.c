@@ -23,9 +23,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 #include "report_collide_tally.h"
+#include "measure.h"
 #ifdef HAVE_QUADMATH
 #include "../tests/generators/collide_oracle.h"
 #endif
@@ -46,13 +46,6 @@ typedef struct job {
     tally tally[CASE_CLASSES];
     impact_collide_workspace *workspace;
 } job;
-
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* ---- the data's own error ---- */
 
@@ -149,9 +142,9 @@ static void one(job *j, case_class class_, long index)
     tally *t = &j->tally[class_];
     const impact_collision c = case_make(class_, all->seed, (uint64_t)index);
     impact_outcome o;
-    const double from = seconds();
+    const double from = measure_clock();
     const impact_status status = impact_collide(&c, &o);
-    tally_time(t, seconds() - from);
+    tally_time(t, measure_clock() - from);
     t->impacts++;
     if (status != IMPACT_OK || !all_finite(&o)) {
         t->failures++;
@@ -189,11 +182,11 @@ static void show_progress(campaign *all)
 {
     const bool terminal = isatty(STDERR_FILENO);
     const long impacts = all->each * CASE_CLASSES;
-    const double start = seconds(), every = terminal ? 1 : 15;
+    const double start = measure_clock(), every = terminal ? 1 : 15;
     double last = start;
     for (long done; (done = atomic_load(&all->done)) < impacts;) {
         nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
-        const double now = seconds();
+        const double now = measure_clock();
         if (now - last < every || done == 0) continue;
         last = now;
         const double left = (now - start) * (double)(impacts - done) / (double)done;
