@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CREEP_FACTOR 1.0
-
 static impact_status allocate_state(impact_motion *motion)
 {
     const impact_world *world = motion->world;
@@ -120,7 +118,7 @@ static double creep_scale(const impact_motion *motion, const impact_state *state
         const impact_body *body = &motion->world->bodies[touch->body1];
         const double fall = qvec3_norm(motion->loads[touch->body1].force) * body->inverse_mass;
         const double rate = qvec3_norm(impact_omega(body, &states[touch->body1])) + sqrt(fall / body->radius);
-        scale = fmax(scale, CREEP_FACTOR * rate);
+        scale = fmax(scale, rate);
     }
     return scale;
 }
