@@ -51,8 +51,10 @@ static int l_new(lua_State *L)
     double range[4];
     for (int i = 0; i < 5; i++) quat_lua_need(&reader, keys[i]);
     for (int i = 0; i < 4; i++) range[i] = quat_lua_get_number(&reader, keys[i + 1], QUAT_LUA_FINITE, 0);
-    if (!(range[0] < range[1])) return quat_lua_reader_error(&reader, "u1 must be greater than u0");
-    if (!(range[2] < range[3])) return quat_lua_reader_error(&reader, "v1 must be greater than v0");
+    for (int i = 0; i < 4; i += 2)
+        if (!(range[i] < range[i + 1]))
+            return quat_lua_reader_error(&reader, "%s must be greater than %s, got %g and %g", keys[i + 2], keys[i + 1],
+                                         range[i + 1], range[i]);
     lua_surface *const s = new_surface(L);
     s->surface.at = ask;
     s->surface.u0 = range[0], s->surface.u1 = range[1], s->surface.v0 = range[2], s->surface.v1 = range[3];
