@@ -47,7 +47,7 @@ static void as_the_series(void **state)
 {
     (void)state;
     uint64_t g = 5;
-    int sticks = 0, slips = 0, jams = 0, again = 0, reversals = 0, falls = 0;
+    int sticks = 0, slips = 0, jams = 0, again = 0, reversals = 0, falls = 0, missed = 0;
     for (int i = 0; i < 60000; i++) {
         const double share = i % 5 == 0 ? decades(&g, -12, -1) : 0.95 * case_random(&g);
         const impact_frame f = frame_of(decades(&g, -0.5, 1), share, 7 * case_random(&g));
@@ -68,7 +68,9 @@ static void as_the_series(void **state)
         assert_near("work_r", one.work_r, two.work_r, work, 1e-12);
         assert_near("work_f", one.work_f, two.work_f, work - two.work_f, 1e-12);
         assert_int_equal(one.compressions, two.compressions);
-        falls += one.jammed != two.jammed; /* u_z falls by less than rounding: a jam to one and not to the other */
+        /* u_z falls by less than the rounding of the one or, rarely, of the other */
+        falls += one.jammed && !two.jammed;
+        missed += two.jammed && !one.jammed;
         /* Sliding that turns past u_t = 0 by a hair: the series takes that for a reversal. */
         if (memchr(two.phases, IMPACT_REVERSAL, (size_t)two.phase_count)) {
             reversals++;
@@ -82,9 +84,11 @@ static void as_the_series(void **state)
         jams += one.jammed;
         again += one.compressions > 1;
     }
-    print_message("%d stick, %d slip, %d jam (%d by a hair), %d are compressed again; %d pass u_t = 0 by a hair\n",
-                  sticks, slips, jams, falls, again, reversals);
-    assert_true(sticks > 1000 && slips > 1000 && jams > 1000 && again > 0 && reversals < 100 && falls < 100);
+    print_message(
+        "%d stick, %d slip, %d jam (%d and %d by a hair), %d are compressed again; %d pass u_t = 0 by a hair\n", sticks,
+        slips, jams, falls, missed, again, reversals);
+    assert_true(sticks > 1000 && slips > 1000 && jams > 1000 && again > 0 && reversals < 100 && falls < 100 &&
+                missed < 3);
 }
 
 /* mu a = g: alpha = 0, and s = X + Y e^(-2 g tau): sliding across M_tz at first neither stops nor grows without end. With X = Y = 1/2,
