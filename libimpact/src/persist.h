@@ -51,7 +51,11 @@ impact_status impact_persist_reserve(impact_persist *persist, impact_world *worl
 impact_status impact_persist_make_room(impact_persist *persist, int touches_needed);
 void impact_persist_free(impact_persist *persist);
 
-/* Geometry and reactions of every held contact under the loads. */
+/* Geometry of every held contact, and what its points do under the loads without reactions. */
+void impact_persist_find_touches(impact_persist *persist, impact_world *world, const impact_state *states,
+                                 const impact_load *loads);
+
+/* Geometry and reactions of every held contact under the loads (persist_solve.c). */
 void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states,
                           const impact_load *loads);
 
