@@ -67,13 +67,13 @@ static impact_body_def set_down(random_stream *random, double exponent, bool rol
     qvec3 lowest;
     body.name = "body";
     body.mass = 1;
-    impact_shape_superquadric(0.2 + 0.2 * random_unit(random), 0.2 + 0.2 * random_unit(random),
-                              0.2 + 0.2 * random_unit(random), pick(random, exponent), pick(random, exponent),
-                              pick(random, exponent), &body.shape);
+    double x[6]; /* exponents, then semi-axes */
+    for (int i = 0; i < 6; i++) x[i] = i < 3 ? pick(random, exponent) : 0.2 + 0.2 * random_unit(random);
+    impact_shape_superquadric(x[5], x[4], x[3], x[2], x[1], x[0], &body.shape);
     body.orientation = random_rotation(random);
     body.position.z =
         impact_shape_support(&body.shape, quat_rotate_inverse(body.orientation, (qvec3){0, 0, -1}), &lowest);
-    body.omega = qvec3_scale(random_direction(random), random_log(random, 0.1, 3));
+    body.omega = random_vector(random, 0.1, 3);
     body.velocity = qvec3_neg(qvec3_cross(body.omega, quat_rotate(body.orientation, lowest)));
     if (!rolls) body.velocity.x += 0.3;
     body.friction = rolls ? 1000 : 0;

@@ -38,6 +38,13 @@ static inline qvec3 random_direction(random_stream *random)
     return (qvec3){rho * cos(angle), rho * sin(angle), z};
 }
 
+/* low to high long, any way. */
+static inline qvec3 random_vector(random_stream *random, double low, double high)
+{
+    const double length = random_log(random, low, high);
+    return qvec3_scale(random_direction(random), length);
+}
+
 /* Evenly over the rotations (Shoemake 1992). */
 static inline quat random_rotation(random_stream *random)
 {
@@ -76,7 +83,8 @@ static inline impact_shape random_shape(random_stream *random, int family)
     impact_shape shape = {IMPACT_SPHERE, 1, 1, 1, 2, 2, 2};
     const double low = family == RANDOM_NEEDLE ? 1e-6 : family == RANDOM_EXTREME ? 1e-3 : 0.2;
     const double a = random_log(random, low, 1), b = random_log(random, low, 1), c = random_log(random, low, 1);
-    const double f[3] = {random_unit(random), random_unit(random), random_unit(random)};
+    double f[3];
+    for (int i = 0; i < 3; i++) f[i] = random_unit(random);
     switch (family) {
     case RANDOM_SPHERE: impact_shape_sphere(a, &shape); break;
     case RANDOM_ELLIPSOID:

@@ -34,17 +34,25 @@ static qvec3 in_ball(uint64_t *g)
 static quat any_turn(uint64_t *g)
 {
     for (;;) {
-        const quat q = {both(g), both(g), both(g), both(g)};
+        const double w = both(g), x = both(g), y = both(g), z = both(g);
+        const quat q = {w, x, y, z};
         const double n = quat_dot(q, q);
         quat unit;
         if (n < 1 && n > 1e-3 && quat_normalize(q, &unit) == QUAT_OK) return unit;
     }
 }
 
-/* A solid ellipsoid of the semi-axes, struck at a point on it or, for rods, near the end of its longest axis. */
-static impact_collider ellipsoid(uint64_t *g, double mass, qvec3 axes, bool at_end)
+/* A solid ellipsoid of the longest semi-axis 1 and two shorter ones, of a mass 10^low ... 10^high, struck at a point on it or, for rods,
+ * near the end of its longest axis. The first number drawn is a semi-axis, and so on: what it is does not depend on the compiler. */
+static impact_collider ellipsoid(uint64_t *g, double slim, double low, double high, bool at_end)
 {
-    impact_collider body = {.mass = mass, .orientation = any_turn(g), .velocity = in_ball(g), .omega = in_ball(g)};
+    const double shorter = decades(g, -slim, 0), short_too = decades(g, -slim, 0);
+    const qvec3 axes = {shorter, short_too, 1};
+    const double mass = low < high ? decades(g, low, high) : 1;
+    impact_collider body = {.mass = mass};
+    body.orientation = any_turn(g);
+    body.velocity = in_ball(g);
+    body.omega = in_ball(g);
     const double f = mass / 5, x = axes.x * axes.x, y = axes.y * axes.y, z = axes.z * axes.z;
     body.moments = (qvec3){f * (y + z), f * (x + z), f * (x + y)};
     qvec3 p = in_ball(g);
@@ -58,8 +66,6 @@ static impact_collider ellipsoid(uint64_t *g, double mass, qvec3 axes, bool at_e
     body.omega = qvec3_scale(body.omega, 1 / size);
     return body;
 }
-
-static qvec3 some_axes(uint64_t *g, double slim) { return (qvec3){decades(g, -slim, 0), decades(g, -slim, 0), 1}; }
 
 static const impact_collider still = {.mass = INFINITY, .orientation = {1, 0, 0, 0}};
 
@@ -88,12 +94,14 @@ static void isotropic(impact_collision *c, uint64_t *g)
     double size[4];
     for (int i = 0; i < 4; i++) size[i] = powers[(int)(5 * case_random(g))];
     const double x = size[0], y = size[1], m = size[2], j = size[3];
-    const qvec3 offset[2] = {{x, 0, -floor(16 * case_random(g)) / 8}, {0, y, floor(16 * case_random(g)) / 8}};
+    const double below = floor(16 * case_random(g)) / 8, above = floor(16 * case_random(g)) / 8;
+    const qvec3 offset[2] = {{x, 0, -below}, {0, y, above}};
     const double moment[2] = {j * x * x, j * y * y};
     c->normal = (qvec3){0, 0, 1};
-    for (int i = 0; i < 2; i++)
-        c->body[i] =
-            (impact_collider){m, {moment[i], moment[i], moment[i]}, {1, 0, 0, 0}, offset[i], in_ball(g), in_ball(g)};
+    for (int i = 0; i < 2; i++) {
+        const qvec3 v = in_ball(g), w = in_ball(g);
+        c->body[i] = (impact_collider){m, {moment[i], moment[i], moment[i]}, {1, 0, 0, 0}, offset[i], v, w};
+    }
 }
 
 /* The whole scene turned; the normal stays of about its length. */
@@ -114,22 +122,22 @@ static void make_bodies(impact_collision *c, case_class class_, uint64_t *g)
     const bool one_static = case_random(g) < 0.4;
     switch (class_) {
     case CASE_WILD:
-        c->body[0] = ellipsoid(g, decades(g, -4, 4), some_axes(g, 2), false);
-        c->body[1] = ellipsoid(g, decades(g, -4, 4), some_axes(g, 2), false);
+        c->body[0] = ellipsoid(g, 2, -4, 4, false);
+        c->body[1] = ellipsoid(g, 2, -4, 4, false);
         c->friction = decades(g, -3, 3);
         /* A light frame carries the point struck far outside: M of condition up to 1e8. */
         for (int i = 0; i < 2; i++)
             if (case_random(g) < 0.3) c->body[i].offset = qvec3_scale(c->body[i].offset, decades(g, 0, 3));
         break;
     case CASE_ROD:
-        c->body[0] = ellipsoid(g, 1, some_axes(g, 2), true);
-        c->body[1] = ellipsoid(g, decades(g, -1, 3), some_axes(g, 1), false);
+        c->body[0] = ellipsoid(g, 2, 0, 0, true);
+        c->body[1] = ellipsoid(g, 1, -1, 3, false);
         c->friction = decades(g, -1, 1);
         break;
     case CASE_PLANAR:
     case CASE_TILTED: {
-        c->body[0] = ellipsoid(g, 1, some_axes(g, 1), false);
-        c->body[1] = ellipsoid(g, decades(g, -1, 1), some_axes(g, 1), false);
+        c->body[0] = ellipsoid(g, 1, 0, 0, false);
+        c->body[1] = ellipsoid(g, 1, -1, 1, false);
         c->friction = decades(g, -1.5, 1);
         for (int i = 0; i < 2; i++) {
             impact_collider *body = &c->body[i];
@@ -141,15 +149,14 @@ static void make_bodies(impact_collision *c, case_class class_, uint64_t *g)
     case CASE_SPHERE:
         for (int i = 0; i < 2; i++) {
             const double r = decades(g, -1, 0), m = decades(g, -1, 1), j = 0.4 * m * r * r;
-            c->body[i] =
-                (impact_collider){m, {j, j, j}, any_turn(g), {0, 0, 0}, in_ball(g), qvec3_scale(in_ball(g), 1 / r)};
-            c->body[i].offset = qvec3_scale(c->normal, (i == 0 ? -r : r) / sqrt(qvec3_dot(c->normal, c->normal)));
+            const quat q = any_turn(g);
+            const qvec3 v = in_ball(g), w = qvec3_scale(in_ball(g), 1 / r);
+            const double along = (i == 0 ? -r : r) / sqrt(qvec3_dot(c->normal, c->normal));
+            c->body[i] = (impact_collider){m, {j, j, j}, q, qvec3_scale(c->normal, along), v, w};
         }
         break;
     case CASE_ISOTROPIC: isotropic(c, g); return;
-    default:
-        c->body[0] = ellipsoid(g, 1, some_axes(g, 0.5), false);
-        c->body[1] = ellipsoid(g, decades(g, -1, 1), some_axes(g, 0.5), false);
+    default: c->body[0] = ellipsoid(g, 0.5, 0, 0, false); c->body[1] = ellipsoid(g, 0.5, -1, 1, false);
     }
     if (one_static) c->body[case_random(g) < 0.5] = still;
 }

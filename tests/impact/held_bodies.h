@@ -10,11 +10,6 @@
 
 static const double mass = 4, radius = 0.3, gravity = 9.81;
 
-static inline qvec3 random_vector(random_stream *random, double low, double high)
-{
-    return qvec3_scale(random_direction(random), random_log(random, low, high));
-}
-
 static inline impact_body_def ellipsoid_body(const char *name, double a, double b, double c, quat orientation)
 {
     impact_body_def body = impact_default_body_def();

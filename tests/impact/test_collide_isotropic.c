@@ -50,7 +50,8 @@ static void as_the_series(void **state)
     int sticks = 0, slips = 0, jams = 0, again = 0, reversals = 0, falls = 0, missed = 0;
     for (int i = 0; i < 60000; i++) {
         const double share = i % 5 == 0 ? decades(&g, -12, -1) : 0.95 * case_random(&g);
-        const impact_frame f = frame_of(decades(&g, -0.5, 1), share, 7 * case_random(&g));
+        const double angle = 7 * case_random(&g), a = decades(&g, -0.5, 1);
+        const impact_frame f = frame_of(a, share, angle);
         impact_collision c = {.law = (impact_law)(i % 3)};
         c.friction = i % 7 == 0 ? hypot(f.c, f.d) / f.a * (1 + 1e-9 * (case_random(&g) - 0.5)) : decades(&g, -3, 2);
         c.restitution = i % 10 == 0 ? 0 : i % 10 == 1 ? 1 : case_random(&g);

@@ -9,11 +9,6 @@
 
 static double any_sign(random_stream *random, double size) { return random_bits(random) & 1 ? size : -size; }
 
-static qvec3 random_vector(random_stream *random, double low, double high)
-{
-    return qvec3_scale(random_direction(random), random_log(random, low, high));
-}
-
 /* ---- impact_flight_after ---- */
 
 static long double ballistic(double x, double v, double g, double dt)

@@ -289,8 +289,8 @@ static void attraction_keeps_momentum(void **state)
     for (int round = 0; round < 5; round++) {
         impact_body_def bodies[N];
         for (int i = 0; i < N; i++) {
-            bodies[i] = small_ball(qvec3_scale(random_direction(&random), 1.0 + i),
-                                   qvec3_scale(random_direction(&random), 0.5));
+            const qvec3 v = random_direction(&random), at = random_direction(&random);
+            bodies[i] = small_ball(qvec3_scale(at, 1.0 + i), qvec3_scale(v, 0.5));
             bodies[i].name = names[i];
             bodies[i].mass = random_log(&random, 0.1, 10);
         }

@@ -245,7 +245,7 @@ static void tumbling_keeps_energy_and_momentum(void **state)
         impact_body_def body = small_ball("T", 0.1, (qvec3){0, 0, 0}, (qvec3){0.1, 0, 0});
         impact_shape_ellipsoid(0.1, 0.2, 0.3, &body.shape);
         body.orientation = random_rotation(&random);
-        body.omega = qvec3_scale(random_direction(&random), random_log(&random, 0.1, 20));
+        body.omega = random_vector(&random, 0.1, 20);
         const impact_scene_def def = scene_of(&body, 1, 10);
         impact_scene *scene = make_scene(&def);
         if (impact_scene_run(scene, NULL) != IMPACT_OK) fail_msg("%s", impact_scene_message(scene));
@@ -273,7 +273,7 @@ static impact_body_def tumbling(random_stream *random, const char *name, int fam
     impact_body_def body = small_ball(name, 1, position, velocity);
     body.shape = random_shape(random, family);
     body.orientation = random_rotation(random);
-    body.omega = qvec3_scale(random_direction(random), random_log(random, 0.5, 20));
+    body.omega = random_vector(random, 0.5, 20);
     return body;
 }
 
@@ -352,7 +352,7 @@ static void a_tumbling_disc_does_not_tunnel(void **state)
         bodies[1].position = qvec3_scale(n, from + 2e-3);
         bodies[1].velocity = qvec3_scale(n, -speed);
         bodies[1].orientation = random_rotation(&random);
-        bodies[1].omega = qvec3_scale(random_direction(&random), random_log(&random, 1, 1e5));
+        bodies[1].omega = random_vector(&random, 1, 1e5);
         impact_scene_def def = scene_of(bodies, 2, 2 * (from + 2e-3) / speed);
         impact_usage usage;
         scene_log log = run_log(&def, &usage);

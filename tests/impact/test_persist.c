@@ -86,8 +86,10 @@ static void a_rolling_ball_slides_before_it_leaves(void **state)
 
 static impact_body_def rolling_egg(random_stream *random, qvec3 w)
 {
-    impact_body_def body = ellipsoid_body("egg", 0.2 + 0.2 * random_unit(random), 0.2 + 0.2 * random_unit(random),
-                                          0.2 + 0.2 * random_unit(random), random_rotation(random));
+    const quat q = random_rotation(random);
+    double axis[3];
+    for (int i = 2; i >= 0; i--) axis[i] = 0.2 + 0.2 * random_unit(random);
+    impact_body_def body = ellipsoid_body("egg", axis[0], axis[1], axis[2], q);
     qvec3 lowest;
     body.position.z =
         impact_shape_support(&body.shape, quat_rotate_inverse(body.orientation, (qvec3){0, 0, -1}), &lowest);
@@ -354,8 +356,10 @@ static void drop(random_stream *random, int eggs, int k)
     impact_body_def bodies[3];
     watch w = {.last.body = -1};
     for (int i = 0; i < eggs; i++) {
-        bodies[i] = ellipsoid_body(names[i], random_log(random, 0.1, 0.5), random_log(random, 0.1, 0.5),
-                                   random_log(random, 0.1, 0.5), random_rotation(random));
+        const quat q = random_rotation(random);
+        double axis[3];
+        for (int j = 2; j >= 0; j--) axis[j] = random_log(random, 0.1, 0.5);
+        bodies[i] = ellipsoid_body(names[i], axis[0], axis[1], axis[2], q);
         bodies[i].position = (qvec3){0.1 * i, 0, 0.6 + 0.4 * random_unit(random) + 1.1 * i};
         bodies[i].velocity = random_vector(random, 0.1, 2);
         bodies[i].omega = random_vector(random, 0.1, 10);

@@ -9,9 +9,9 @@
 static impact_shape random_superquadric(random_stream *random, double low, double high)
 {
     impact_shape shape;
-    impact_shape_superquadric(random_log(random, 0.1, 1), random_log(random, 0.1, 1), random_log(random, 0.1, 1),
-                              random_log(random, low, high), random_log(random, low, high),
-                              random_log(random, low, high), &shape);
+    double x[6]; /* exponents, then semi-axes */
+    for (int i = 0; i < 6; i++) x[i] = i < 3 ? random_log(random, low, high) : random_log(random, 0.1, 1);
+    impact_shape_superquadric(x[5], x[4], x[3], x[2], x[1], x[0], &shape);
     return shape;
 }
 
@@ -201,9 +201,9 @@ static void rolling_and_gliding_keep_their_integrals(void **state)
         qvec3 lowest;
         body->name = "body";
         body->mass = mass;
-        impact_shape_superquadric(0.2 + 0.2 * random_unit(&random), 0.2 + 0.2 * random_unit(&random),
-                                  0.2 + 0.2 * random_unit(&random), random_log(&random, 1.2, 20),
-                                  random_log(&random, 1.2, 20), random_log(&random, 1.2, 20), &body->shape);
+        double x[6]; /* exponents, then semi-axes */
+        for (int i = 0; i < 6; i++) x[i] = i < 3 ? random_log(&random, 1.2, 20) : 0.2 + 0.2 * random_unit(&random);
+        impact_shape_superquadric(x[5], x[4], x[3], x[2], x[1], x[0], &body->shape);
         body->orientation = random_rotation(&random);
         body->position.z =
             impact_shape_support(&body->shape, quat_rotate_inverse(body->orientation, (qvec3){0, 0, -1}), &lowest);

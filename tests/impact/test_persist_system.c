@@ -251,9 +251,11 @@ static void reactions_keep_the_contact(void **state)
         const bool slides = k & 1, on_plane = k % 4 >= 2;
         impact_body_def bodies[2] = {ellipsoid_body("one", 1, 1, 1, random_rotation(&random)),
                                      ellipsoid_body("two", 1, 1, 1, random_rotation(&random))};
-        for (int i = 0; i < 2; i++)
-            impact_shape_ellipsoid(random_log(&random, 0.4, 1), random_log(&random, 0.4, 1),
-                                   random_log(&random, 0.4, 1), &bodies[i].shape);
+        for (int i = 0; i < 2; i++) {
+            double axis[3];
+            for (int j = 2; j >= 0; j--) axis[j] = random_log(&random, 0.4, 1);
+            impact_shape_ellipsoid(axis[0], axis[1], axis[2], &bodies[i].shape);
+        }
         if (k % 3 == 0) impact_shape_sphere(random_log(&random, 0.4, 1), &bodies[0].shape);
         if (k % 7 == 0) bodies[1].is_static = true;
         if (on_plane) impact_shape_plane(INFINITY, INFINITY, &bodies[1].shape), bodies[1].is_static = true;

@@ -29,7 +29,11 @@ enum {
     FAMILIES
 };
 
-static double small(random_stream *random) { return random_log(random, 1e-17, 1) * (random_unit(random) - 0.5); }
+static double small(random_stream *random)
+{
+    const double size = random_log(random, 1e-17, 1);
+    return size * (random_unit(random) - 0.5);
+}
 
 static qvec3 permuted(qvec3 a, int turn)
 {
@@ -90,7 +94,8 @@ static void what_is_kept(void **state)
     for (int i = 0; i < 40000; i++) {
         const body b = random_body(&random, i % FAMILIES);
         const impact_tumble tumble = make(&b);
-        const double t = random_log(&random, 1e-3, 1e9) / fastest(&b) * (random_bits(&random) & 1 ? 1 : -1);
+        const double later = random_log(&random, 1e-3, 1e9) / fastest(&b),
+                     t = random_bits(&random) & 1 ? later : -later;
         const quat q = impact_tumble_at(&tumble, t);
         assert_near(quat_norm(q), 1, 3e-16);
         assert_near(energy(&tumble, t), energy(&tumble, 0), 1e-13 * energy(&tumble, 0));

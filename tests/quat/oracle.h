@@ -165,11 +165,15 @@ static inline quat random_unit(random_state *r) { return quat_random(random_unif
 static inline qvec3 random_direction(random_state *r)
 {
     for (;;) {
-        const qvec3 v = {random_between(r, -1, 1), random_between(r, -1, 1), random_between(r, -1, 1)};
+        const double x = random_between(r, -1, 1), y = random_between(r, -1, 1), z = random_between(r, -1, 1);
+        const qvec3 v = {x, y, z};
         const double n2 = v.x * v.x + v.y * v.y + v.z * v.z, n = sqrt(n2);
         if (n2 < 1 && n2 > 0.01) return (qvec3){v.x / n, v.y / n, v.z / n};
     }
 }
+/* Of the length or norm given, which may be random too: an argument is drawn before the call. */
+static inline qvec3 random_vector(random_state *r, double length) { return qvec3_scale(random_direction(r), length); }
+static inline quat random_quat(random_state *r, double norm) { return quat_scale(random_unit(r), norm); }
 /* Components between -1 and 1 and, one time in four, of wildly different sizes or zero. */
 static inline quat random_any(random_state *r)
 {

@@ -17,8 +17,7 @@ static size_t some(random_state *r, int round, size_t least)
 static void cloud(random_state *r, size_t n, quat c, double spread, quat q[], double w[])
 {
     for (size_t i = 0; i < n; i++) {
-        quat_normalize(quat_mul(c, quat_exp_pure(qvec3_scale(random_direction(r), 0.5 * spread * random_uniform(r)))),
-                       &q[i]);
+        quat_normalize(quat_mul(c, quat_exp_pure(random_vector(r, 0.5 * spread * random_uniform(r)))), &q[i]);
         if (random_uniform(r) < 0.5) q[i] = quat_neg(q[i]);
         w[i] = random_between(r, 0.1, 2);
     }
@@ -44,14 +43,14 @@ static void markley_mean_is_the_best(void **state)
         quat q[most], m;
         double w[most];
         const size_t n = some(&r, round, 1);
-        cloud(&r, n, random_unit(&r), random_scale(&r, -6, 0.4), q, w);
+        const double spread = random_scale(&r, -6, 0.4);
+        cloud(&r, n, random_unit(&r), spread, q, w);
         assert_true(quat_mean(n, q, w, &m) == QUAT_OK);
         assert_true(m.w >= 0);
         const wide best = markley(n, q, w, m);
         for (int k = 0; k < (round % 30 ? 1 : 6); k++) {
             quat other;
-            quat_normalize(quat_mul(m, quat_exp_pure(qvec3_scale(random_direction(&r), random_scale(&r, -7, 0)))),
-                           &other);
+            quat_normalize(quat_mul(m, quat_exp_pure(random_vector(&r, random_scale(&r, -7, 0)))), &other);
             assert_true(markley(n, q, w, other) <= best * (1 + 1e-15));
         }
         /* gradient on the sphere: sum w (q.q_i) q_i is along q */
@@ -83,7 +82,8 @@ static void karcher_mean_balances(void **state)
         quat q[most], m;
         double w[most], spread;
         const size_t n = some(&r, round, 1);
-        cloud(&r, n, random_unit(&r), random_scale(&r, -8, 0.19), q, w);
+        const double reach = random_scale(&r, -8, 0.19);
+        cloud(&r, n, random_unit(&r), reach, q, w);
         assert_int_equal(quat_mean_karcher(n, q, w, &m, &spread), QUAT_OK);
         wquat sum = {0, 0, 0, 0};
         wide square = 0;
@@ -99,8 +99,7 @@ static void karcher_mean_balances(void **state)
         worse(&balance, (double)wide_norm(sum) / total);
         assert_true(fabs(spread - 2 * sqrt((double)square / total)) < 1e-14);
         /* of two, the middle of the great circle */
-        const quat a = random_unit(&r),
-                   b = quat_mul(a, quat_exp_pure(qvec3_scale(random_direction(&r), random_between(&r, 0, 0.7))));
+        const quat a = random_unit(&r), b = quat_mul(a, quat_exp_pure(random_vector(&r, random_between(&r, 0, 0.7))));
         const quat two[2] = {a, quat_neg(b)}, half = quat_mul(a, quat_pow_unit(quat_mul(quat_conj(a), b), 0.5));
         assert_int_equal(quat_mean_karcher(2, two, NULL, &m, NULL), QUAT_OK);
         worse(&middle, quat_rotation_distance(m, half));
@@ -119,7 +118,7 @@ static void alignment_finds_the_rotation(void **state)
         double w[most], residual;
         const size_t n = some(&r, round, 3);
         const quat q = random_unit(&r);
-        const qvec3 shift = qvec3_scale(random_direction(&r), random_scale(&r, -2, 3));
+        const qvec3 shift = random_vector(&r, random_scale(&r, -2, 3));
         const double size = random_scale(&r, -140, 140), noise = random_scale(&r, -6, -0.5);
         for (size_t i = 0; i < n; i++) {
             a[i] = random_direction(&r);

@@ -20,7 +20,7 @@ static int fill(void **state)
         p[i] = random_unit(&r);
         q[i] = random_unit(&r);
         t[i] = i % 10 == 0 ? 0 : i % 10 == 1 ? 1 : random_uniform(&r);
-        v[i] = qvec3_scale(random_direction(&r), random_scale(&r, -3, 3));
+        v[i] = random_vector(&r, random_scale(&r, -3, 3));
     }
     return 0;
 }
@@ -123,7 +123,8 @@ static void normalise_arrays(void **state)
          round++) { /* of ordinary size, of any size, and some of any size among the ordinary */
         for (int i = 0; i < count; i++) {
             const bool any = round % 3 == 1 || (round % 3 == 2 && random_uniform(&r) < 0.05);
-            a[i] = quat_scale(random_any(&r), any ? random_scale(&r, -308, 307) : random_scale(&r, -9, 9));
+            const double size = random_scale(&r, any ? -308 : -9, any ? 307 : 9);
+            a[i] = quat_scale(random_any(&r), size);
             if (quat_equal(a[i], quat_make(0, 0, 0, 0))) a[i].y = 1;
         }
         size_t bad = 0;

@@ -5,7 +5,12 @@
 #include "oracle.h"
 #include <quat/dual.h>
 
-static qvec3 some_shift(random_state *r) { return qvec3_scale(random_direction(r), random_scale(r, -3, 3)); }
+static qvec3 some_shift(random_state *r) { return random_vector(r, random_scale(r, -3, 3)); }
+static qdual somewhere(random_state *r, double reach)
+{
+    const qvec3 shift = random_vector(r, reach);
+    return quat_dual_from(random_unit(r), shift);
+}
 static qvec3 apart(quat q, qvec3 s, qvec3 x) { return qvec3_add(quat_rotate(q, x), s); }
 static double gap(qvec3 a, qvec3 b, double size) { return qvec3_norm(qvec3_sub(a, b)) / size; }
 
@@ -89,8 +94,7 @@ static void screw_interpolation(void **state)
     random_state r = {93};
     double half = 0, moved = 0, unit = 0;
     for (int n = 0; n < 100000; n++) {
-        const qdual p = quat_dual_from(random_unit(&r), qvec3_scale(random_direction(&r), 2));
-        const qdual q = quat_dual_from(random_unit(&r), qvec3_scale(random_direction(&r), 2));
+        const qdual p = somewhere(&r, 2), q = somewhere(&r, 2);
         const double t = random_uniform(&r);
         const qdual s = quat_dual_sclerp(p, q, t);
         worse(&unit, fabs(quat_norm(s.real) - 1) + fabs(quat_dot(s.real, s.dual)));
@@ -99,7 +103,7 @@ static void screw_interpolation(void **state)
         /* near opposite orientations the shorter way is a matter of rounding, and the screw may be long */
         if (fabs(quat_dot(p.real, q.real)) > 0.05)
             worse(&half, gap(quat_dual_apply(twice, x), quat_dual_apply(once, x), 3));
-        const qdual g = quat_dual_from(random_unit(&r), random_direction(&r));
+        const qdual g = somewhere(&r, 1);
         const qdual a = quat_dual_mul(g, s), b = quat_dual_sclerp(quat_dual_mul(g, p), quat_dual_mul(g, q), t);
         if (fabs(quat_dot(p.real, q.real)) > 0.05) worse(&moved, gap(quat_dual_apply(a, x), quat_dual_apply(b, x), 4));
         assert_true(quat_equal(quat_dual_sclerp(p, q, 0).dual, p.dual));
@@ -123,7 +127,7 @@ static void normalise_and_blend(void **state)
     qdual unit, p[3];
     double askew = 0;
     for (int n = 0; n < 100000; n++) {
-        const qdual any = {quat_scale(random_unit(&r), random_scale(&r, -100, 100)), random_any(&r)};
+        const qdual any = {random_quat(&r, random_scale(&r, -100, 100)), random_any(&r)};
         assert_int_equal(quat_dual_normalize(any, &unit), QUAT_OK);
         assert_true(fabs(quat_norm(unit.real) - 1) < 1e-15);
         worse(&askew, fabs(quat_dot(unit.real, unit.dual)) / (1 + quat_norm(any.dual) / quat_norm(any.real)));

@@ -77,7 +77,7 @@ static void there_and_back_everywhere(void **state)
 
         /* at lock, and within 1e-15 ... 1e-1 of it, on both sides */
         const int proper = names[i][0] == names[i][2], which = random_uniform(&r) < 0.5;
-        const double near = n % 7 ? random_scale(&r, -17, -1) * (random_uniform(&r) < 0.5 ? -1 : 1) : 0;
+        const double off = random_scale(&r, -17, -1), near = n % 7 == 0 ? 0 : random_uniform(&r) < 0.5 ? -off : off;
         const double middle = (proper ? (which ? 0 : pi) : (which ? 0.5 * pi : -0.5 * pi)) + near;
         const double at_lock[3] = {random_between(&r, -pi, pi), middle, random_between(&r, -pi, pi)};
         quat s;

@@ -7,7 +7,7 @@ static const double pi = 3.14159265358979323846;
 /* Angles from 1e-300 to pi, and on both sides of the places where a part of exp vanishes. */
 static double nasty_angle(random_state *r, int n)
 {
-    const double near = random_scale(r, -15.5, -1) * (random_uniform(r) < 0.5 ? -1 : 1);
+    const double off = random_scale(r, -15.5, -1), near = random_uniform(r) < 0.5 ? -off : off;
     switch (n % 5) {
     case 0: return random_scale(r, -300, 0.49);
     case 1: return pi + near;
@@ -23,11 +23,11 @@ static void exp_of_pure_is_right_for_every_angle(void **state)
     random_state r = {11};
     double parts = 0, large = 0, huge = 0;
     for (int n = 0; n < 150000; n++) {
-        const qvec3 v = qvec3_scale(random_direction(&r), nasty_angle(&r, n));
+        const qvec3 v = random_vector(&r, nasty_angle(&r, n));
         worse(&parts, error_of_parts(quat_exp_pure(v), wide_exp(wide_vec(v))));
-        const qvec3 turns = qvec3_scale(random_direction(&r), random_scale(&r, 0, 7));
+        const qvec3 turns = random_vector(&r, random_scale(&r, 0, 7));
         worse(&large, error_of_parts(quat_exp_pure(turns), wide_exp(wide_vec(turns))));
-        const qvec3 many = qvec3_scale(random_direction(&r), random_scale(&r, 7, 15));
+        const qvec3 many = random_vector(&r, random_scale(&r, 7, 15));
         worse(&huge, error_of(quat_exp_pure(many), wide_exp(wide_vec(many))));
     }
     assert_bound("exp of a pure quaternion, each part, u", parts, 3);
@@ -48,7 +48,7 @@ static void exp_is_right(void **state)
     random_state r = {12};
     double parts = 0, whole = 0;
     for (int n = 0; n < 150000; n++) {
-        quat q = quat_pure(qvec3_scale(random_direction(&r), nasty_angle(&r, n))), e;
+        quat q = quat_pure(random_vector(&r, nasty_angle(&r, n))), e;
         q.w =
             n % 3 == 0 ? random_scale(&r, -300, 0) : random_between(&r, n % 3 == 1 ? -700 : -1, n % 3 == 1 ? 709.7 : 1);
         assert_int_equal(quat_exp(q, &e), QUAT_OK);
@@ -77,7 +77,7 @@ static void log_is_right(void **state)
     random_state r = {13};
     double unit = 0, parts = 0, near_one = 0, scales = 0;
     for (int n = 0; n < 150000; n++) {
-        const quat q = quat_exp_pure(qvec3_scale(random_direction(&r), nasty_angle(&r, n)));
+        const quat q = quat_exp_pure(random_vector(&r, nasty_angle(&r, n)));
         const wquat want = wide_log(wide_quat(q));
         worse(&unit, error_of_vector(quat_log_unit(q), (wquat){0, want.x, want.y, want.z}));
         quat l;
@@ -124,7 +124,7 @@ static void exp_and_log_undo_each_other(void **state)
     for (int n = 0; n < 100000; n++) {
         const quat q = random_unit(&r);
         worse(&forth, error_of(quat_exp_pure(quat_log_unit(q)), wide_unit(wide_quat(q))));
-        const qvec3 v = qvec3_scale(random_direction(&r), random_scale(&r, -300, 0.47));
+        const qvec3 v = random_vector(&r, random_scale(&r, -300, 0.47));
         worse(&back, error_of_vector(quat_log_unit(quat_exp_pure(v)), wide_vec(v)));
     }
     assert_bound("exp log q = q, u", forth, 6);
@@ -137,7 +137,7 @@ static void powers(void **state)
     random_state r = {15};
     double real = 0, unit = 0, square = 0, quaternion = 0, sum = 0;
     for (int n = 0; n < 100000; n++) {
-        const quat q = quat_scale(random_unit(&r), random_between(&r, 0.1, 10)), u = random_unit(&r);
+        const quat q = random_quat(&r, random_between(&r, 0.1, 10)), u = random_unit(&r);
         const double t = random_between(&r, -3, 3);
         quat p, s;
         assert_true(quat_pow(q, t, &p) >= 0);
@@ -173,7 +173,7 @@ static void roots_at_every_angle_and_scale(void **state)
     random_state r = {16};
     double parts = 0, back = 0;
     for (int n = 0; n < 100000; n++) {
-        const quat u = quat_exp_pure(qvec3_scale(random_direction(&r), nasty_angle(&r, n)));
+        const quat u = quat_exp_pure(random_vector(&r, nasty_angle(&r, n)));
         const quat q = quat_scale(u, n % 2 ? random_scale(&r, -310, 308) : random_between(&r, 0.3, 3));
         if (q.x == 0 && q.y == 0 && q.z == 0) continue;
         quat s;

@@ -50,7 +50,7 @@ static void jacobians_match_differences(void **state)
     double rotate = 0, product = 0, exp_worst = 0, log_worst = 0;
     for (int n = 0; n < 4000; n++) {
         const quat q = random_unit(&r), p = random_any(&r);
-        const qvec3 v = qvec3_scale(random_direction(&r), spread(&r, n)), u = random_direction(&r);
+        const qvec3 v = random_vector(&r, spread(&r, n)), u = random_direction(&r);
         const wquat wv = wide_vec(u), wq = wide_quat(q), wp = wide_quat(p);
         const qmat34 dr = quat_rotate_jacobian(q, u);
         const qmat4 left = quat_left_matrix(p), right = quat_right_matrix(p);
@@ -89,7 +89,7 @@ static void rotation_vector_jacobians_give_the_angular_velocity(void **state)
     random_state r = {42};
     double world = 0, body = 0, inverse = 0;
     for (int n = 0; n < 20000; n++) {
-        const qvec3 v = qvec3_scale(random_direction(&r), n % 3 ? random_between(&r, 0, 6) : random_scale(&r, -9, 0.5)),
+        const qvec3 v = random_vector(&r, n % 3 ? random_between(&r, 0, 6) : random_scale(&r, -9, 0.5)),
                     d = random_direction(&r);
         const wquat context[2] = {wide_vec(v), wide_vec(d)}, zero = {0, 0, 0, 0};
         const wquat q = turned(zero, context), dq = difference(turned, zero, 0, context);
@@ -156,9 +156,8 @@ static void jacobians_match_closed_forms(void **state)
     double rotate = 0, product = 0, exp_worst = 0, log_worst = 0;
     for (int n = 0; n < 100000; n++) {
         const quat q = random_unit(&r), p = random_any(&r), s = random_any(&r);
-        const qvec3 v = qvec3_scale(random_direction(&r),
-                                    n % 2 ? random_between(&r, 0, 3.14) : random_scale(&r, -300, 0.49)),
-                    u = qvec3_scale(random_direction(&r), random_scale(&r, -290, 290));
+        const qvec3 v = random_vector(&r, n % 2 ? random_between(&r, 0, 3.14) : random_scale(&r, -300, 0.49)),
+                    u = random_vector(&r, random_scale(&r, -290, 290));
         const double size = qvec3_norm(u);
         const qmat34 dr = quat_rotate_jacobian(q, u);
         const qmat4 left = quat_left_matrix(p), right = quat_right_matrix(p);
@@ -194,8 +193,7 @@ static void rotation_vector_jacobians_keep_their_identities(void **state)
     random_state r = {44};
     double along = 0, across = 0, turned = 0, inverse = 0;
     for (int n = 0; n < 100000; n++) {
-        const qvec3 v =
-            qvec3_scale(random_direction(&r), n % 3 ? random_between(&r, 0, 6) : random_scale(&r, -300, 0.7));
+        const qvec3 v = random_vector(&r, n % 3 ? random_between(&r, 0, 6) : random_scale(&r, -300, 0.7));
         const qvec3 d = random_direction(&r);
         const quat q = quat_from_rotation_vector(v);
         const qmat3 left = quat_rotation_vector_jacobian_left(v), right = quat_rotation_vector_jacobian_right(v);

@@ -184,7 +184,7 @@ static void the_boundary(void **state)
     random_state r = {103};
     double root = 0, outside = 0;
     for (int n = 0; n < 100000; n++) {
-        const qvec3 x = qvec3_scale(random_direction(&r), 1 - random_scale(&r, -18, 0));
+        const qvec3 x = random_vector(&r, 1 - random_scale(&r, -18, 0));
         const wide rest = -wide_norm2_minus_one(wide_vec(x));
         const int half = n % 2 ? 1 : -1;
         quat q;

@@ -307,7 +307,7 @@ static void chains_are_products_of_exponentials(void **state)
         qvec3 turns[legs];
         quat out[legs * parts + 1], inside[legs * parts + 1];
         const quat start = random_unit(&r);
-        for (int i = 0; i < legs; i++) turns[i] = qvec3_scale(random_direction(&r), random_between(&r, 0, 4 * pi));
+        for (int i = 0; i < legs; i++) turns[i] = random_vector(&r, random_between(&r, 0, 4 * pi));
         assert_int_equal(quat_chain(quat_scale(start, 3), legs, turns, QUAT_WORLD, parts, out), QUAT_OK);
         assert_int_equal(quat_chain(start, legs, turns, QUAT_BODY, parts, inside), QUAT_OK);
         wquat w = wide_quat(start), b = w;

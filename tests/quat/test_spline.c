@@ -11,7 +11,7 @@ static void random_keys(random_state *r, double reach, double t[], quat q[])
 {
     for (int i = 0; i < count; i++) {
         t[i] = (i ? t[i - 1] : -1) + random_between(r, 0.3, 2);
-        const quat step = quat_exp_pure(qvec3_scale(random_direction(r), 0.5 * reach * random_uniform(r)));
+        const quat step = quat_exp_pure(random_vector(r, 0.5 * reach * random_uniform(r)));
         q[i] = i ? quat_mul(q[i - 1], step) : random_unit(r);
         if (i && random_uniform(r) < 0.5) q[i] = quat_neg(q[i]);
     }

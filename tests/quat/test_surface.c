@@ -199,7 +199,8 @@ static void equations_23_and_24(void **state)
         quat_surface s;
         quat_surface_point p;
         quat_torus(2, 1, &f, &s);
-        assert_true(quat_surface_at(&s, random_between(&r, 0, 2 * pi), random_between(&r, 0, 2 * pi), &p) >= 0);
+        const double v = random_between(&r, 0, 2 * pi), u = random_between(&r, 0, 2 * pi);
+        assert_true(quat_surface_at(&s, u, v, &p) >= 0);
         quat q = p.frame;
         qvec3 a = qvec3_scale(p.a, 1 / qvec3_norm(p.xu)), b = qvec3_scale(p.b, 1 / qvec3_norm(p.xv));
         const qvec3 n = quat_rotate(q, qvec3_make(0, 0, 1));
@@ -268,7 +269,8 @@ static void nothing_depends_on_place_parameter_or_gauge(void **state)
         quat_curvature c;
         quat q = there.frame;
         qvec3 ra = there.a, rb = there.b;
-        quat_regauge(random_between(&r, -9, 9), random_between(&r, -3, 3), random_between(&r, -3, 3), &q, &ra, &rb);
+        const double dv = random_between(&r, -3, 3), du = random_between(&r, -3, 3), angle = random_between(&r, -9, 9);
+        quat_regauge(angle, du, dv, &q, &ra, &rb);
         assert_true(quat_curvature_of_frame(q, ra, rb, there.xu, there.xv, &c) >= 0);
         worse(&gauge, fabs(b->gauss - c.gauss));
         worse(&gauge, fabs(b->mean - c.mean));
