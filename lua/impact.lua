@@ -54,8 +54,8 @@ core.layer()
 ---@field shape_position? vec  where the shape's centre stands in the body's frame, m
 ---@field shape_orientation? quat|number[]  the shape's axes to the body's principal ones
 ---@field normal? vec  for planes, instead of orientation: where the free side is
----@field velocity? vec  m/s
----@field omega? vec  rad/s, world
+---@field velocity? vec  m/s; of a static body, its surface's: along a plane (a belt)
+---@field omega? vec  rad/s, world; of a static body, its surface's: about a plane's normal through its position, or an axis on which it is round
 ---@field friction? number
 ---@field restitution? number
 ---@field linear_damping? number  part of the velocity lost per second
@@ -125,7 +125,7 @@ core.layer()
 ---@field name fun(self): string
 ---@field definition fun(self): impact.definition
 ---@field state fun(self, body: string): impact.state
----@field energy fun(self): table  start, kinetic, potential, force_work, damping_loss, sliding_loss, impact_loss, J
+---@field energy fun(self): table  start, kinetic, potential, force_work, drive_work, damping_loss, sliding_loss, impact_loss, J
 ---@field usage fun(self): table  what the run used, by name; and events, by kind
 ---@field events fun(self): table[]  of a recorded run
 ---@field close fun(self)
@@ -407,10 +407,10 @@ local parts = {
 local function energy_line(energy)
   local now = energy.kinetic + energy.potential
   local terms = {
-    { energy.force_work, "forces" }, { -energy.damping_loss, "damping" }, { -energy.sliding_loss, "sliding" },
+    { energy.force_work, "forces" }, { energy.drive_work, "drives" }, { -energy.damping_loss, "damping" }, { -energy.sliding_loss, "sliding" },
     { -energy.impact_loss, "impacts" },
   }
-  local crumb = 1e-16 * math.max(math.abs(energy.start), energy.kinetic, math.abs(energy.potential))
+  local crumb = 1e-15 * math.max(math.abs(energy.start), energy.kinetic, math.abs(energy.potential))
   local balance, line = energy.start - now, string.format("%.6g J at the start", energy.start)
   for _, term in ipairs(terms) do
     balance = balance + term[1]

@@ -110,11 +110,12 @@ static int scene_energy(lua_State *L)
         {"kinetic", energy.kinetic},
         {"potential", energy.potential},
         {"force_work", energy.force_work},
+        {"drive_work", energy.drive_work},
         {"damping_loss", energy.damping_loss},
         {"sliding_loss", energy.sliding_loss},
         {"impact_loss", energy.impact_loss},
     };
-    lua_createtable(L, 0, 7);
+    lua_createtable(L, 0, 8);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         lua_pushnumber(L, numbers[i].value);
         lua_setfield(L, -2, numbers[i].key);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * A body that nothing comes near follows its parabola. One that can touch something is given a ball around where it is: as far as its
- * speed can take it, the speed that its group's energy can give it at most, or a few times the greatest speed there is in the group.
+ * speed can take it, the speed that its group's energy can give it at most (where no surface is driven), or a few times the greatest speed there is in the group.
  * Groups grow by what their balls reach, and their balls with them, until nothing changes. (The second bound on the speed is a guess,
  * which the run checks at every step: scene_crowd.c.)
  */
@@ -288,7 +288,7 @@ static bool allow(impact_crowd *crowd, const impact_world *world, const impact_s
         for (int i = crowd->slot[root]; sum.awake && i >= 0; i = crowd->bodies[i].group) {
             impact_crowd_body *body = &crowd->bodies[i];
             if (body->course == IMPACT_COURSE_FREE) continue;
-            const double most = sqrt(2 / world->bodies[i].mass) * energy;
+            const double most = world->driven ? INFINITY : sqrt(2 / world->bodies[i].mass) * energy;
             const double top_speed = fmin(most, caution * (sum.speed + g * time));
             changed = changed || body->course == IMPACT_COURSE_REST || time * top_speed > body->allowance;
             body->course = IMPACT_COURSE_BOUNDED;

@@ -37,7 +37,7 @@ typedef struct impact_sampler {
 
 /* Work since the start of the run, J. */
 typedef struct impact_works {
-    double force, damping, sliding;
+    double force, damping, sliding, drive;
 } impact_works;
 
 typedef struct impact_motion {

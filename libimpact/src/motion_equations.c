@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves, the place of each contact that is carried). While a contact slides, time is not the
- * variable of integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever faster.
+ * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves, the place of each contact that is carried, and where
+ * surfaces are driven the drives' work). While a contact slides, time is not the variable of integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever faster.
  * In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign can flip.
  * Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the direction is bound to the
  * acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t.
@@ -9,6 +9,7 @@
  * alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
  */
 #include "motion_equations.h"
+#include "drive.h"
 #include "persist_spot.h"
 #include "world_gap.h"
 
@@ -36,6 +37,7 @@ void impact_motion_pack(const impact_motion *motion, double t, const impact_stat
         if (!impact_spot_suits(motion->world, pair)) continue;
         for (int k = 0; k < Y_PER_SPOT; k++) *b++ = pair->carried ? pair->spot[k] : 0;
     }
+    if (motion->world->driven) y[impact_motion_drive(motion)] = motion->works.drive;
 }
 
 /* Static bodies' states are left as they are. */
@@ -131,6 +133,7 @@ int impact_motion_rates(double tau, const double *y, double *rate, void *context
         b += Y_PER_BODY;
     }
     spot_rates(motion, clock, b);
+    if (world->driven) rate[impact_motion_drive(motion)] = clock * impact_drive_power(&motion->persist, world);
     return 0;
 }
 

@@ -20,6 +20,9 @@ enum {
     ROOTS_PER_EDGE = 2
 };
 
+/* Where a driven world's y ends: the drives' work. */
+static inline int impact_motion_drive(const impact_motion *motion) { return motion->size - 1; }
+
 /* Between the bodies' states and the integrated state y; static bodies' states are left as they are. */
 void impact_motion_pack(const impact_motion *motion, double t, const impact_state *states, double *y);
 void impact_motion_unpack(const impact_motion *motion, const double *y, impact_state *states);

@@ -18,7 +18,7 @@ static impact_status allocate_state(impact_motion *motion)
     for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
     int spots = 0;
     for (int p = 0; p < world->pair_count; p++) spots += impact_spot_suits(world, &world->pairs[p]);
-    motion->size = Y_BODIES + Y_PER_BODY * moving + Y_PER_SPOT * spots;
+    motion->size = Y_BODIES + Y_PER_BODY * moving + Y_PER_SPOT * spots + world->driven;
     motion->roots =
         ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * impact_field_edge_count(world) + world->body_count;
     motion->kept = calloc((size_t)motion->size, sizeof *motion->kept);
@@ -388,7 +388,10 @@ impact_status impact_motion_integrate(impact_motion *motion, double *t, double t
     if (status != IMPACT_OK) return fail(motion, status);
     status = integrate(motion, t, t_end, motion->y, states, sampler, end);
     impact_motion_unpack(motion, motion->y, states);
-    motion->works = (impact_works){motion->y[Y_FORCE_WORK], motion->y[Y_DAMPING], motion->y[Y_SLIDING]};
+    motion->works.force = motion->y[Y_FORCE_WORK];
+    motion->works.damping = motion->y[Y_DAMPING];
+    motion->works.sliding = motion->y[Y_SLIDING];
+    if (motion->world->driven) motion->works.drive = motion->y[impact_motion_drive(motion)];
     count_work(motion);
     return status;
 }

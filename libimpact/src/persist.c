@@ -99,7 +99,7 @@ static void contact_rates(const impact_world *world, impact_touch *touch, const 
     const qvec3 w1 = impact_omega(b1, s1), turn1 = qvec3_cross(w1, n);
     touch->normal_rate = *rate2 = (qvec3){0, 0, 0};
     if (b2->shape.kind != IMPACT_PLANE) {
-        const qvec3 w2 = b2->is_static ? (qvec3){0, 0, 0} : impact_omega(b2, s2), turn2 = qvec3_cross(w2, n);
+        const qvec3 w2 = b2->is_static ? b2->spin : impact_omega(b2, s2), turn2 = qvec3_cross(w2, n);
         const qvec3 t1 = impact_tangent(n), t2 = qvec3_cross(n, t1);
         const qvec3 c1 = qvec3_add(curve(b1, s1, out1, t1), curve(b2, s2, n, t1));
         const qvec3 c2 = qvec3_add(curve(b1, s1, out1, t2), curve(b2, s2, n, t2));
@@ -117,7 +117,7 @@ static void contact_rates(const impact_world *world, impact_touch *touch, const 
 static qvec3 free_acceleration(const impact_body *body, const impact_state *state, const impact_load *load, qvec3 r,
                                qvec3 r_rate)
 {
-    if (body->is_static) return (qvec3){0, 0, 0};
+    if (body->is_static) return body->driven ? qvec3_cross(body->spin, r_rate) : (qvec3){0, 0, 0};
     const qvec3 omega = impact_omega(body, state);
     const qvec3 torque = qvec3_sub(load->torque, qvec3_cross(omega, state->momentum));
     const qvec3 alpha = impact_inverse_inertia(body, state->q, torque);
@@ -176,9 +176,7 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
                           .r2 = contact.offset2,
                           .carried = carried,
                           .still = impact_is_held(pair) && pair->still};
-    const qvec3 u1 = qvec3_add(s1->v, qvec3_cross(impact_omega(b1, s1), touch.r1));
-    const qvec3 u2 = b2->is_static ? (qvec3){0, 0, 0} : qvec3_add(s2->v, qvec3_cross(impact_omega(b2, s2), touch.r2));
-    const qvec3 u = qvec3_sub(u1, u2);
+    const qvec3 u = qvec3_sub(impact_point_velocity(b1, s1, touch.r1), impact_point_velocity(b2, s2, touch.r2));
     touch.slip = qvec3_axpy(-qvec3_dot(u, touch.normal), touch.normal, u);
     touch.speed = qvec3_norm(touch.slip);
     touch.onset = pair->mode == IMPACT_SLIDE && pair->onset;
@@ -188,6 +186,7 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
         carried_rates(world, &touch, states, &spot, &rate1);
     else
         contact_rates(world, &touch, states, &rate1, &rate2);
+    if (b2->driven) rate2 = qvec3_add(s1->v, rate1); /* its centre stands still */
     touch.bias = qvec3_sub(free_acceleration(b1, s1, &loads[pair->body1], touch.r1, rate1),
                            free_acceleration(b2, s2, &loads[pair->body2], touch.r2, rate2));
     return touch;

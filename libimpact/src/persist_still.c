@@ -29,8 +29,8 @@ typedef struct workspace {
 static bool is_slow(const impact_world *world, const impact_state *states, int i, double rest_speed)
 {
     const impact_body *body = &world->bodies[i];
-    return body->is_static ||
-           qvec3_norm(states[i].v) + body->radius * qvec3_norm(impact_omega(body, &states[i])) <= rest_speed;
+    if (body->is_static) return !body->driven;
+    return qvec3_norm(states[i].v) + body->radius * qvec3_norm(impact_omega(body, &states[i])) <= rest_speed;
 }
 
 static bool pair_is_slow(const impact_world *world, const impact_state *states, const impact_pair *pair,

@@ -113,9 +113,9 @@ static impact_status check_account(impact_scene *scene, impact_status status)
     const double tolerance = 1e-8 + 1e3 * scene->motion.tolerance;
     const impact_energy e = impact_scene_energy(scene);
     const double losses = e.damping_loss + e.sliding_loss + e.impact_loss, now = e.kinetic + e.potential;
-    const double off = now - (e.start + e.force_work - losses);
-    const double scale =
-        fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), fmax(fabs(e.force_work), fabs(losses))));
+    const double off = now - (e.start + e.force_work + e.drive_work - losses);
+    const double given = fmax(fabs(e.force_work), fabs(e.drive_work));
+    const double scale = fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), fmax(given, fabs(losses))));
     if ((status != IMPACT_OK && status != IMPACT_AT_REST) || fabs(off) <= tolerance * scale) return status;
     snprintf(scene->message, sizeof scene->message,
              "the energy account is off by %.2g J of %.2g J: do not trust the digits", off, scale);
@@ -163,6 +163,7 @@ impact_energy impact_scene_energy(const impact_scene *scene)
                            .kinetic = impact_world_kinetic_energy(&scene->world, scene->states),
                            .potential = impact_field_potential(&scene->world, scene->states),
                            .force_work = scene->motion.works.force,
+                           .drive_work = scene->motion.works.drive,
                            .damping_loss = scene->motion.works.damping,
                            .sliding_loss = scene->motion.works.sliding,
                            .impact_loss = scene->impact_loss};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene_internal.h"
+#include "drive.h"
 #include "scene_check.h"
 
 #include <stdlib.h>
@@ -42,7 +43,10 @@ static bool build_body(const impact_body_def *def, impact_body *body, impact_sta
     quat_normalize(def->orientation, &state->q);
     quat_normalize(def->shape_orientation, &body->turn);
     body->shifted = impact_scene_shape_stands_aside(def);
-    if (body->is_static) return body->name != NULL;
+    if (body->is_static) {
+        impact_drive_make(def, body);
+        return body->name != NULL;
+    }
     body->mass = isnan(def->mass) ? def->density * impact_shape_volume(&def->shape) : def->mass;
     body->moments = isnan(def->moments.x) ? qvec3_scale(impact_shape_inertia(&def->shape), body->mass) : def->moments;
     body->inverse_mass = 1 / body->mass;
@@ -119,6 +123,7 @@ impact_status impact_scene_build(impact_scene *scene, const impact_scene_def *de
     for (int i = 0; i < def->body_count; i++) {
         world->body_count++;
         if (!build_body(&def->bodies[i], &world->bodies[i], &scene->states[i])) return IMPACT_ENOMEM;
+        world->driven = world->driven || world->bodies[i].driven;
     }
     impact_status status = build_pairs(world, def);
     if (status == IMPACT_OK) status = build_fields(world, def);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene_check.h"
+#include "drive.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -100,6 +101,9 @@ static void check_body(check *c, const impact_body_def *body)
     require_words(c, body->is_static || body->shape.kind != IMPACT_PLANE, "a plane must be static");
     char why[200];
     require_words(c, impact_shape_check(&body->shape, why, sizeof why) == IMPACT_OK, why);
+    if (c->status != IMPACT_OK) return;
+    const char *refusal = impact_drive_refusal(body);
+    require_words(c, !refusal, refusal);
 }
 
 static void check_bodies(check *c, const impact_scene_def *def)

@@ -240,6 +240,7 @@ static party *make_party(impact_scene_crowd *crowd, int group)
     p->recorder = (impact_recorder){.context = p, .event = keep_event};
     if (whole->recorder && whole->recorder->sample) p->recorder.sample = keep_sample;
     p->scene.world = (impact_world){.gravity = whole->world.gravity,
+                                    .driven = whole->world.driven,
                                     .slip_speed = whole->world.slip_speed,
                                     .onset_speed = whole->world.onset_speed};
     p->scene.duration = whole->duration;
@@ -331,6 +332,7 @@ static void scatter(impact_scene_crowd *crowd, party *p)
     whole->motion.works.force += own->motion.works.force;
     whole->motion.works.damping += own->motion.works.damping;
     whole->motion.works.sliding += own->motion.works.sliding;
+    whole->motion.works.drive += own->motion.works.drive;
     whole->impact_loss += own->impact_loss;
     whole->event_count += own->event_count;
     add_usage(&whole->world.usage, &own->world.usage);

@@ -3,6 +3,7 @@
  * What happens at one instant: impacts, one after another, until no touching pair approaches; then the contacts that are held.
  */
 #include "scene_internal.h"
+#include "drive.h"
 #include "persist_still.h"
 #include "scene_together.h"
 #include "world_gap.h"
@@ -19,11 +20,26 @@ double impact_scene_total_energy(const impact_scene *scene)
            impact_field_potential(&scene->world, scene->states);
 }
 
+/* What impacts alone take from: without what drives gave on the way. */
+static double undriven_energy(const impact_scene *scene)
+{
+    return impact_scene_total_energy(scene) - scene->motion.works.drive;
+}
+
+/* A static body's drive does work with the impulse on body 1. */
+static double drive_impulse(impact_scene *scene, const impact_touch *touch, qvec3 impulse)
+{
+    const double work = qvec3_dot(impulse, impact_surface_velocity(&scene->world.bodies[touch->body2], touch->r2));
+    scene->motion.works.drive += work;
+    return work;
+}
+
 impact_sample impact_scene_sample(const impact_scene *scene, double t, int body, const impact_state *states)
 {
     const impact_state *s = &states[body];
     const impact_body *b = &scene->world.bodies[body];
-    return (impact_sample){t, body, b->name, s->x, s->q, s->v, impact_omega(b, s)};
+    return (impact_sample){
+        t, body, b->name, s->x, s->q, b->is_static ? b->drift : s->v, b->is_static ? b->spin : impact_omega(b, s)};
 }
 
 static bool record_rows(impact_scene *scene, int body, const impact_state *states)
@@ -174,6 +190,7 @@ static impact_collider collider(const impact_scene *scene, int body, qvec3 offse
 {
     const impact_body *b = &scene->world.bodies[body];
     const impact_state *s = &scene->states[body];
+    if (b->is_static) return (impact_collider){b->mass, b->moments, s->q, offset, b->drift, b->spin};
     return (impact_collider){b->mass, b->moments, s->q, offset, s->v, impact_omega(b, s)};
 }
 
@@ -228,6 +245,7 @@ static impact_status strike(impact_scene *scene, const meeting *m)
     }
     impact_event event = event_of_touch(scene, IMPACT_EVENT_IMPACT, touch);
     const int bodies[2] = {touch->body1, touch->body2};
+    drive_impulse(scene, touch, outcome.impulse);
     impact_persist_stir(world);
     for (int k = 0; k < 2; k++) {
         const impact_body *body = &world->bodies[bodies[k]];
@@ -289,7 +307,7 @@ static impact_status strike_together(impact_scene *scene)
         event.normal_before = qvec3_dot(share->touch.normal, share->before);
         event.normal_after = qvec3_dot(share->touch.normal, share->after);
         event.energy_before = energy;
-        event.energy_after = energy += share->work;
+        event.energy_after = energy += share->work + drive_impulse(scene, &share->touch, share->impulse);
         scene->motion.resting[share->touch.body1] = scene->motion.resting[share->touch.body2] = false;
         world->usage.impacts_together++;
         status = record(scene, &event);
@@ -402,6 +420,7 @@ static impact_status make_consistent(impact_scene *scene)
     if (status == IMPACT_OK) status = load(scene);
     if (status != IMPACT_OK) return status;
     impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);
+    motion->works.drive += impact_drive_power(&motion->persist, &scene->world);
     status = load(scene);
     if (status == IMPACT_OK)
         status =
@@ -498,13 +517,13 @@ static impact_status strike_all(impact_scene *scene)
 impact_status impact_scene_settle(impact_scene *scene)
 {
     remember(scene);
-    const double energy = impact_scene_total_energy(scene);
+    const double energy = undriven_energy(scene);
     impact_status status = strike_all(scene);
     if (status == IMPACT_OK) {
         choose_modes(scene);
         status = hold(scene, -1, false);
     }
-    scene->impact_loss += energy - impact_scene_total_energy(scene);
+    scene->impact_loss += energy - undriven_energy(scene);
     return status;
 }
 
@@ -532,9 +551,9 @@ static impact_status change_mode(impact_scene *scene, int p, impact_mode mode)
     impact_pair *pair = &scene->world.pairs[p];
     pair->mode = mode;
     pair->onset = false;
-    const double energy = impact_scene_total_energy(scene);
+    const double energy = undriven_energy(scene);
     const impact_status status = hold(scene, mode == IMPACT_OPEN ? p : -1, true);
-    scene->impact_loss += energy - impact_scene_total_energy(scene);
+    scene->impact_loss += energy - undriven_energy(scene);
     return status;
 }
 

@@ -12,17 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static qvec3 point_velocity(const impact_world *world, const impact_state *states, int body, qvec3 r)
-{
-    const impact_body *b = &world->bodies[body];
-    if (b->is_static) return (qvec3){0, 0, 0};
-    return qvec3_add(states[body].v, qvec3_cross(impact_omega(b, &states[body]), r));
-}
-
 static qvec3 relative_velocity(const impact_world *world, const impact_state *states, const impact_touch *touch)
 {
-    return qvec3_sub(point_velocity(world, states, touch->body1, touch->r1),
-                     point_velocity(world, states, touch->body2, touch->r2));
+    return qvec3_sub(impact_point_velocity(&world->bodies[touch->body1], &states[touch->body1], touch->r1),
+                     impact_point_velocity(&world->bodies[touch->body2], &states[touch->body2], touch->r2));
 }
 
 static void apply(const impact_world *world, impact_state *states, const impact_touch *touch, qvec3 impulse)

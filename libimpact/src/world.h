@@ -32,6 +32,8 @@ typedef struct impact_body {
     quat turn;     /* its axes to the body's */
     double friction, restitution;
     double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
+    bool driven;                      /* static, and its surface moves along itself: */
+    qvec3 drift, spin;                /* the point at r from the centre by drift + spin x r */
 } impact_body;
 
 typedef enum impact_mode {
@@ -75,6 +77,7 @@ typedef struct impact_world {
     impact_pair *pairs;
     impact_field *fields;
     qvec3 gravity;
+    bool driven;        /* one of its bodies is */
     double slip_speed;  /* m/s: slip that dies out below this sticks */
     double onset_speed; /* m/s: slip that begins goes the way it is accelerated up to this */
     impact_usage usage;
@@ -103,6 +106,19 @@ static inline qvec3 impact_inertia(const impact_body *body, quat q, qvec3 a)
 static inline qvec3 impact_omega(const impact_body *body, const impact_state *state)
 {
     return impact_inverse_inertia(body, state->q, state->momentum);
+}
+
+/* Velocity of a static body's surface at r from its centre. */
+static inline qvec3 impact_surface_velocity(const impact_body *body, qvec3 r)
+{
+    return body->driven ? qvec3_add(body->drift, qvec3_cross(body->spin, r)) : (qvec3){0, 0, 0};
+}
+
+/* Velocity of the body's point at r from its centre. */
+static inline qvec3 impact_point_velocity(const impact_body *body, const impact_state *state, qvec3 r)
+{
+    return body->is_static ? impact_surface_velocity(body, r)
+                           : qvec3_add(state->v, qvec3_cross(impact_omega(body, state), r));
 }
 
 /* The shape's axes to the world's. */

@@ -89,6 +89,8 @@ refused_by_library(scene(good, "bodies = { floor, coin, coin },"), "impact: scri
 refused_by_library(scene(good, "forces = { impact.wind { strength = 1, body = 'cone' } },"), "impact: script.lua:6: ")
 refused_by_library(scene(good, "pairs = { { bodies = { 'coin', 'cone' } } },"), "impact: script.lua:6: ")
 refused_by_library(scene("shape = impact.plane(), static = false,"), "impact: script.lua:2: body 'coin': ")
+refused_by_library(scene("shape = impact.plane(), velocity = { 1, 0, 1 },"),
+  "impact: script.lua:2: body 'coin': velocity of a static body is its surface's: a plane's must lie along it")
 
 -- Scripts that fail.
 refused("return {", "script.lua:1: unexpected symbol near <eof>")

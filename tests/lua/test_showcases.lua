@@ -106,4 +106,48 @@ do
   check.truth(n >= 4, "it bounces")
 end
 
+-- ---- the turntable: circles at two sevenths of its rate; and a belt ----
+do
+  local r = 0.02
+  local scene = example "turntable"
+  local W = scene:state("table").omega[3]
+  local rate, v0 = 2 / 7 * W, scene:state("thrown").velocity[2]
+  check.equal(scene:run { record = true }, "end of time")
+  local track = scene:track "thrown"
+  for i = 1, #track.t do
+    local c, s = math.cos(rate * track.t[i]), math.sin(rate * track.t[i])
+    check.close(track.x[i], 0.7 + v0 / rate * (c - 1), 1e-11)
+    check.close(track.y[i], v0 / rate * s, 1e-11)
+    check.close(track.vx[i], -v0 * s, 1e-11)
+    check.close(track.vy[i], v0 * c, 1e-11)
+  end
+  track = scene:track "set down"
+  local slides = scene:first("stick", "set down", "table").t
+  for i = 1, #track.t do
+    check.close(track.wx[i] - 5 / (2 * r) * track.vy[i], 0, 1e-10)
+    check.close(track.wy[i] + 5 / (2 * r) * track.vx[i], 0, 1e-10)
+    if track.t[i] > slides then
+      check.close(track.vx[i], -rate * track.y[i], 1e-12)
+      check.close(track.vy[i], rate * track.x[i], 1e-12)
+    end
+  end
+  local energy = scene:energy()
+  check.close(energy.kinetic + energy.potential, energy.start + energy.drive_work - energy.sliding_loss - energy.impact_loss, 1e-13)
+
+  -- Set down on a belt: sliding for 2 V/(7 mu g), then rolling at 2/7 V.
+  local V, mu, g = 3, 0.2, 9.81
+  local belt = impact.scene {
+    name = "belt", gravity = { 0, 0, -g }, duration = 1,
+    bodies = {
+      impact.body { name = "belt", shape = impact.plane { width = 50, depth = 1 }, velocity = { V, 0, 0 }, friction = 1 },
+      impact.body { name = "ball", shape = impact.sphere(r), position = { 0, 0, r }, friction = mu },
+    },
+  }
+  check.equal(belt:run { record = true }, "end of time")
+  check.close(belt:first("stick", "ball", "belt").t, 2 * V / (7 * mu * g), 1e-11)
+  check.close(belt:state("ball").velocity[1], 2 / 7 * V, 1e-11)
+  check.close(belt:state("ball").omega[2] * r, -5 / 7 * V, 1e-11)
+  check.truth(belt:summary():find(" by drives, -", 1, true), "the drive's work in the summary")
+end
+
 check.report("showcases")

@@ -19,7 +19,7 @@ extern "C" {
 typedef struct impact_body_def {
     const char *name; /* unique in the scene, not empty */
     impact_shape shape;
-    bool is_static;   /* never moves; planes must be static */
+    bool is_static;   /* never moves, but its surface may: see velocity; planes must be static */
     double mass;      /* kg; NaN: density times the shape's volume. Ignored for static bodies */
     double density;   /* kg/m^3; used when mass is NaN */
     qvec3 moments;    /* principal moments about the centre, kg m^2, along the body axes; NaN: of the uniform solid */
@@ -29,8 +29,11 @@ typedef struct impact_body_def {
      * shape to body, normalised. With anything but 0 and 1 the moments must be given. Not for planes. */
     qvec3 shape_position;
     quat shape_orientation;
-    qvec3 velocity;     /* m/s */
-    qvec3 omega;        /* rad/s, world */
+    qvec3 velocity; /* m/s */
+    qvec3 omega;    /* rad/s, world */
+    /* Of a static body they are its surface's, that moves along itself, for ever: the point x by velocity + omega x (x - position).
+     * Only what leaves its shape in place is allowed: along a plane, as a belt; about the normal of a plane without edges, as a
+     * turntable; about an axis through the shape's centre on which the shape is round, as a drum. */
     double friction;    /* >= 0; joined with the other body's by the scene's rule */
     double restitution; /* in [0, 1] */
     double linear_damping,
@@ -120,11 +123,12 @@ typedef struct impact_usage {
 
 IMPACT_API impact_usage impact_scene_usage(const impact_scene *scene);
 
-/* The energy account, J: kinetic + potential = start + work of forces - the losses, to the tolerance of the run. */
+/* The energy account, J: kinetic + potential = start + work of forces and of drives - the losses, to the tolerance of the run. */
 typedef struct impact_energy {
     double start;                                   /* kinetic + potential at t = 0 */
     double kinetic, potential;                      /* now; potential of uniform gravity and of attraction */
     double force_work;                              /* done by wind and custom forces */
+    double drive_work;                              /* done by static bodies whose surface moves */
     double damping_loss, sliding_loss, impact_loss; /* each >= 0 */
 } impact_energy;
 
