@@ -10,14 +10,18 @@
 
 static const char layers_key[] = "quat.layers"; /* registry: set of the chunk names of our own layers */
 
+void quat_lua_mark_layer(lua_State *L, const char *source)
+{
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, layers_key);
+    lua_pushboolean(L, 1);
+    lua_setfield(L, -2, source);
+    lua_pop(L, 1);
+}
+
 int quat_lua_layer(lua_State *L)
 {
     lua_Debug info;
-    luaL_getsubtable(L, LUA_REGISTRYINDEX, layers_key);
-    if (lua_getstack(L, 1, &info) && lua_getinfo(L, "S", &info)) {
-        lua_pushboolean(L, 1);
-        lua_setfield(L, -2, info.source);
-    }
+    if (lua_getstack(L, 1, &info) && lua_getinfo(L, "S", &info)) quat_lua_mark_layer(L, info.source);
     return 0;
 }
 
@@ -107,7 +111,6 @@ int quat_lua_quietly(lua_State *L, lua_CFunction work)
 
 /* ---- one value, of an argument (reader NULL) or of a key ---- */
 
-/* The value at index in words for an error, at most a few dozen characters. */
 /* Numbers as they stand in a short table, by place or by letter, or in a quaternion; false when it is none of these. */
 static bool describe_numbers(lua_State *L, int index, char *text, size_t size)
 {
@@ -138,6 +141,7 @@ static bool describe_numbers(lua_State *L, int index, char *text, size_t size)
     return count > 0;
 }
 
+/* The value at index in words for an error, at most a few dozen characters. */
 static const char *describe(lua_State *L, int index, char *text, size_t size)
 {
     if (describe_numbers(L, index, text, size)) return text;
@@ -302,8 +306,18 @@ static bool is_among(const char *given, const char *const keys[])
     return false;
 }
 
+/* The keys in words, for those who guess. */
+static void list_keys(const char *const keys[], char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = 0;
+    for (int i = 0; keys[i] && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", keys[i]);
+}
+
 static int unknown_key(const quat_lua_reader *reader, const char *const keys[])
 {
+    char known[400];
     lua_State *L = reader->L; /* the key is second from the top */
     const char *owner = reader->name ? reader->name : "", *quote = reader->name ? "'" : "",
                *space = reader->name ? " " : "";
@@ -315,15 +329,17 @@ static int unknown_key(const quat_lua_reader *reader, const char *const keys[])
     if (lua_type(L, -3) == LUA_TSTRING) {
         const char *given = lua_tostring(L, -3), *meant = quat_lua_guess(given, keys);
         lua_pushfstring(L, "unknown key '%s' in %s%s%s%s%s", given, reader->kind, space, quote, owner, quote);
+        list_keys(keys, known, sizeof known);
         if (meant)
             lua_pushfstring(L, " (did you mean '%s'?)", meant);
         else
-            lua_pushliteral(L, "");
+            lua_pushfstring(L, " (keys: %s)", known);
     } else {
         const char *given = luaL_tolstring(L, -3, NULL);
         lua_pushfstring(L, "unknown key [%s] in %s%s%s%s%s", given, reader->kind, space, quote, owner, quote);
         lua_remove(L, -2);
-        lua_pushliteral(L, " (its values have names)");
+        list_keys(keys, known, sizeof known);
+        lua_pushfstring(L, " (its values have names: %s)", known);
     }
     lua_concat(L, 3);
     return lua_error(L);

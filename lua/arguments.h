@@ -42,6 +42,8 @@ typedef enum quat_lua_range {
 void quat_lua_where(lua_State *L);
 /* Marks the calling Lua chunk as one of our own layers. A lua_CFunction: `core.layer()` on top of every layer. */
 int quat_lua_layer(lua_State *L);
+/* The same of a chunk by its name, as lua_Debug's source has it. */
+void quat_lua_mark_layer(lua_State *L, const char *source);
 /* Raises "file:line: message". Never returns; `return quat_lua_error(...)`. */
 int quat_lua_error(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Returns nil, message to the script: `return quat_lua_failure(L, quat_status_string(status))`. */
@@ -76,7 +78,7 @@ typedef struct quat_lua_reader {
 } quat_lua_reader;
 
 /* Checks that the value at index is a table with no other keys than those in keys (NULL-terminated), and raises
- * "unknown key 'fricton' in body 'coin' (did you mean 'friction'?)" otherwise. The table's own `name`, when it is a string,
+ * "unknown key 'fricton' in body 'coin' (did you mean 'friction'?)" otherwise, with the keys it knows where no guess comes to mind. The table's own `name`, when it is a string,
  * becomes the reader's. */
 quat_lua_reader quat_lua_read(lua_State *L, int index, const char *kind, const char *where, const char *const keys[]);
 /* Raises "file:line: body 'coin': message". */

@@ -10,7 +10,7 @@
 
 local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
 local format, gsub, match, rep = string.format, string.gsub, string.match, string.rep
-local concat, unpack = table.concat, table.unpack
+local concat, sort, unpack = table.concat, table.sort, table.unpack
 local abs, ceil, floor, huge, log, max, min = math.abs, math.ceil, math.floor, math.huge, math.log, math.max, math.min
 local pcall, require, io, os = pcall, require, io, os
 
@@ -32,39 +32,114 @@ local cycle = { "blue", "red", "green", "orange", "purple", "teal" }
 
 -- ---- describing ----
 
+local legends = {
+  ["top left"] = "top left", ["top right"] = "top right", ["bottom left"] = "bottom left",
+  ["bottom right"] = "bottom right", ["top center"] = "top center", ["bottom center"] = "bottom center",
+  ["center"] = "center center", ["row"] = "top right horizontal", ["none"] = "none",
+  ["center right"] = "center right", ["center left"] = "center left",
+}
+local shapes = { dot = 7, circle = 6, square = 5, triangle = 9, cross = 2, star = 3 }
+local aligns = { left = "left", center = "center", right = "right" }
+
+--- The names of a table in order, as words for a message.
+local function names_of(t)
+  local names = {}
+  for name in pairs(t) do names[#names + 1] = name end
+  sort(names)
+  return names
+end
+
+local function is_finite(value) return type(value) == "number" and value - value == 0 end
+
+--- Checks of a key's value: each returns nil, or what the value must be.
+local function one_of(choices)
+  return function(value)
+    if type(value) ~= "string" or not choices[value] then return "one of '" .. concat(names_of(choices), "', '") .. "'" end
+  end
+end
+
+local function numbers(least, most)
+  return function(value)
+    local count = type(value) == "table" and #value or -1
+    local good = count >= least and count <= most
+    for i = 1, good and count or 0 do good = good and is_finite(value[i]) end
+    if not good then return format("a list of %s numbers", least == most and least or least .. " or " .. most) end
+  end
+end
+
+local function span(value)
+  if numbers(2, 2)(value) or value[1] >= value[2] then return "{least, most}, two numbers in order" end
+end
+
+local function shade(value)
+  if type(value) ~= "string" or not match(plot.colors[value] or value, "^#%x%x%x%x%x%x$") then
+    return "'#rrggbb' or one of '" .. concat(names_of(plot.colors), "', '") .. "'"
+  end
+end
+
+-- What each key must be: a type's name, or a check.
 local panel_keys = {
-  title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = "string",
-  xrange = "table", yrange = "table", zrange = "table", view = "table", at = "table", frame = "boolean", box = "table",
+  title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = one_of(legends),
+  xrange = span, yrange = span, zrange = span, view = numbers(2, 2), at = numbers(2, 4), frame = "boolean", box = numbers(4, 4),
   three = "boolean", zoom = "number", xlog = "boolean", ylog = "boolean",
 }
-local figure_keys = { title = "string", subtitle = "string", size = "table", grid = "table" }
+local figure_keys = { title = "string", subtitle = "string", size = numbers(2, 2), grid = numbers(2, 2) }
 local item_keys = {
-  line = { label = "string", color = "string", width = "number", dash = "boolean", fill = "boolean", opacity = "number" },
-  points = { label = "string", color = "string", size = "number", shape = "string", front = "boolean" },
-  arrows = { label = "string", color = "string", width = "number", head = "number", front = "boolean" },
-  surface = { label = "string", color = "string", opacity = "number", lines = "boolean", value = "table", range = "table" },
-  text = { color = "string", at = "table", align = "string", size = "number" },
-  mark = { label = "string", color = "string", x = "number", y = "number", dash = "boolean" },
+  line = { label = "string", color = shade, width = "number", dash = "boolean", fill = "boolean", opacity = "number" },
+  points = { label = "string", color = shade, size = "number", shape = one_of(shapes), front = "boolean" },
+  arrows = { label = "string", color = shade, width = "number", head = "number", front = "boolean" },
+  surface = { label = "string", color = shade, opacity = "number", lines = "boolean", value = "table", range = span },
+  text = { color = shade, at = numbers(2, 3), align = one_of(aligns), size = "number" },
+  mark = { label = "string", color = shade, x = "number", y = "number", dash = "boolean" },
 }
+-- How many lists each item takes: flat, or in space.
+local item_lists = { line = { 2, 3 }, points = { 2, 3 }, arrows = { 4, 6 }, surface = { 3, 3 } }
 
---- Checks a description's names; `level` is the stack level to blame.
+local function described(value)
+  return type(value) == "string" and format("'%s'", value) or type(value) == "number" and format("%.14g", value) or
+      "a " .. type(value)
+end
+
+--- Checks a description's names and their values; `level` is the stack level to blame.
 local function checked(what, keys, description, level)
   if type(description) ~= "table" then error(what .. ": a table is needed, got a " .. type(description), level + 1) end
   for key, value in pairs(description) do
     if type(key) == "string" and key ~= "kind" then
       local wanted = keys[key]
-      if not wanted then error(format("unknown key '%s' in %s", key, what), level + 1) end
-      if type(value) ~= wanted then
-        error(format("%s: %s must be a %s, got a %s", what, key, wanted, type(value)), level + 1)
+      if not wanted then
+        error(format("unknown key '%s' in %s (keys: %s)", key, what, concat(names_of(keys), ", ")), level + 1)
       end
+      local must
+      if type(wanted) == "string" then must = type(value) ~= wanted and "a " .. wanted or nil else must = wanted(value) end
+      if must then error(format("%s: %s must be %s, got %s", what, key, must, described(value)), level + 1) end
     end
   end
   return description
 end
 
+--- Checks an item's lists: as many as its kind takes, of one length.
+local function check_lists(kind, description, level)
+  local counts = item_lists[kind]
+  if not counts then return end
+  local flat, space = counts[1], counts[2]
+  if #description ~= flat and #description ~= space then
+    error(format("%s: %s lists of numbers are needed, got %d", kind, flat == space and flat or flat .. " or " .. space, #description),
+      level + 1)
+  end
+  for i, list in ipairs(description) do
+    if type(list) ~= "table" then error(format("%s: item %d must be a list, got %s", kind, i, described(list)), level + 1) end
+    if #list ~= #description[1] then
+      error(format("%s: lists 1 and %d are of %d and %d", kind, i, #description[1], #list), level + 1)
+    end
+  end
+end
+
 local function maker(kind)
   return function(description)
     checked(kind, item_keys[kind], description, 2)
+    check_lists(kind, description, 2)
+    if kind == "text" and type(description[1]) ~= "string" then error("text: {\"words\", at = ...} is needed", 2) end
+    if kind == "mark" and not (description.x or description.y) then error("mark: x or y is missing", 2) end
     description.kind = kind
     return description
   end
@@ -133,10 +208,15 @@ local function quote(text)
   return "'" .. gsub(clean, "'", "''") .. "'"
 end
 
-local function number(value, what)
+local function number(value, what, look)
   if type(value) ~= "number" then error((what or "a value") .. " must be a number, got a " .. type(value), 0) end
-  if value ~= value or value == huge or value == -huge then return "NaN" end
-  return format("%.9g", value)
+  if not is_finite(value) then return "NaN" end
+  return format(look or "%.9g", value)
+end
+
+--- A number of the data, or of the axes that measure it: all its digits.
+local function datum(value)
+  return number(value, "a plotted value", "%.17g")
 end
 
 local function color(value, fallback)
@@ -151,8 +231,6 @@ local function with_opacity(code, opacity)
   if not opacity then return code end
   return format("#%02x%s", floor(255 * (1 - min(1, max(0, opacity))) + 0.5), code:sub(2))
 end
-
-local shapes = { dot = 7, circle = 6, square = 5, triangle = 9, cross = 2, star = 3 }
 
 local function columns_of(item, count)
   local columns = { unpack(item, 1, count) }
@@ -170,7 +248,7 @@ local function data_block(out, name, columns)
   out[#out + 1] = name .. " << EOD"
   local row = {}
   for i = 1, #columns[1] do
-    for c = 1, #columns do row[c] = number(columns[c][i], "a plotted value") end
+    for c = 1, #columns do row[c] = datum(columns[c][i]) end
     out[#out + 1] = concat(row, " ")
   end
   if #columns[1] == 0 then out[#out + 1] = rep("NaN ", #columns) end
@@ -184,7 +262,7 @@ local function surface_block(out, name, item)
   for i = 1, #x do
     for j = 1, #x[i] do
       local shade = value and value[i][j] or 0
-      out[#out + 1] = concat({ number(x[i][j]), number(y[i][j]), number(z[i][j]), number(shade) }, " ")
+      out[#out + 1] = concat({ datum(x[i][j]), datum(y[i][j]), datum(z[i][j]), datum(shade) }, " ")
     end
     out[#out + 1] = ""
   end
@@ -198,18 +276,18 @@ end
 --- Each returns the plotting clause of an item whose data stands in block `name`.
 local clauses = {}
 
-function clauses.line(out, name, item, three, fallback)
+function clauses.line(out, name, item, three, fallback, dashed)
   data_block(out, name, columns_of(item, three and 3 or 2))
   if item.fill and not three then
     return format("%s using 1:2 with filledcurves closed lc rgb %s %s", name,
       quote(with_opacity(color(item.color, fallback), item.opacity or 0.25)), title_of(item))
   end
   return format("%s using 1:2%s with lines lw %s dt %s lc rgb %s %s", name, three and ":3" or "", number(item.width or 2),
-    item.dash and "(7,4)" or "solid", quote(with_opacity(color(item.color, fallback), item.opacity)), title_of(item))
+    (item.dash or item.dash == nil and dashed) and "(7,4)" or "solid", quote(with_opacity(color(item.color, fallback), item.opacity)), title_of(item))
 end
 
 local function shape_of(item)
-  return shapes[item.shape or "dot"] or error(format("points: unknown shape '%s'", tostring(item.shape)), 0)
+  return shapes[item.shape or "dot"]
 end
 
 function clauses.points(out, name, item, three, fallback)
@@ -237,16 +315,14 @@ function clauses.surface(out, name, item, _, fallback)
 end
 
 local function position(at, three)
-  local a = { number(at[1], "a position"), number(at[2], "a position") }
-  if three then a[3] = number(at[3] or 0, "a position") end
+  local a = { datum(at[1]), datum(at[2]) }
+  if three then a[3] = datum(at[3] or 0) end
   return concat(a, ",")
 end
 
-local aligns = { left = "left", center = "center", right = "right" }
-
 local function put_text(out, item, three)
   out[#out + 1] = format("set label %s at %s %s front font ',%s' tc rgb %s", quote(item[1]),
-    position(item.at or { 0, 0, 0 }, three), aligns[item.align or "left"] or "left", number(item.size or 11),
+    position(item.at or { 0, 0, 0 }, three), aligns[item.align or "left"], number(item.size or 11),
     quote(color(item.color, "dark")))
 end
 
@@ -273,14 +349,14 @@ local function put_mark(out, item)
   local look = format("nohead front lw 1.2 dt %s lc rgb %s", item.dash == false and "solid" or "(3,3)",
     quote(color(item.color, "dark")))
   if item.x then
-    local x = number(item.x)
+    local x = datum(item.x)
     out[#out + 1] = format("set arrow from first %s, graph 0 to first %s, graph 1 %s", x, x, look)
     if item.label then
       out[#out + 1] = format("set label %s at first %s, graph 0.97 left offset 0.5,0 front font ',10' tc rgb %s",
         quote(item.label), x, quote(color(item.color, "dark")))
     end
   elseif item.y then
-    local y = number(item.y)
+    local y = datum(item.y)
     out[#out + 1] = format("set arrow from graph 0, first %s to graph 1, first %s %s", y, y, look)
     if item.label then
       out[#out + 1] = format("set label %s at graph 0.02, first %s left offset 0,0.5 front font ',10' tc rgb %s",
@@ -342,7 +418,7 @@ local function put_decades(out, panel, axis, name)
   return high - low > 10 and 100 or 10
 end
 
---- Range and marks of an axis: as asked, or as the data; `tight` keeps the data's own ends.
+--- Range and marks of an axis: as asked, or as the data; `tight` keeps the data's own ends. Returns the marks' step and digits.
 local function put_range(out, panel, axis, name, three, tight, parts)
   local asked = panel[name .. "range"]
   if panel[name .. "log"] then return put_decades(out, panel, axis, name) end
@@ -353,17 +429,14 @@ local function put_range(out, panel, axis, name, three, tight, parts)
   if most - least <= margin then least, most = least - max(margin, 0.5), most + max(margin, 0.5) end
   local step = nice_step(most - least, parts)
   if not asked and not tight then least, most = floor(least / step + 1e-9) * step, ceil(most / step - 1e-9) * step end
-  out[#out + 1] = format("set %srange [%s:%s]", name, number(least - 1e-5 * step), number(most + 1e-5 * step)) -- rounding must not clip
-  return step
+  out[#out + 1] = format("set %srange [%s:%s]", name, datum(least - 1e-5 * step), datum(most + 1e-5 * step)) -- rounding must not clip
+  -- As many digits as tell one mark from the next.
+  local digits = ceil(log(max(abs(least), abs(most)) / step, 10)) + 1
+  if digits > 6 then out[#out + 1] = format("set format %s '%%.%dg'", name, min(17, digits)) end
+  return step, digits
 end
 
-local legends = {
-  ["top left"] = "top left", ["top right"] = "top right", ["bottom left"] = "bottom left",
-  ["bottom right"] = "bottom right", ["top center"] = "top center", ["bottom center"] = "bottom center",
-  ["center"] = "center center", ["row"] = "top right horizontal",
-  ["center right"] = "center right", ["center left"] = "center left",
-}
-
+--- Returns how many digits the marks of y have.
 local function put_axes(out, panel, three)
   local add = function(...) out[#out + 1] = format(...) end
   add("unset label; unset arrow; unset xlabel; unset ylabel; unset zlabel; unset title")
@@ -372,26 +445,27 @@ local function put_axes(out, panel, three)
     local label = panel[axis .. "label"]
     if label then add("set %slabel %s font ',11' tc rgb '#2d3748'", axis, quote(label)) end
   end
-  add("unset logscale; set format '%% h'")
-  local steps = {}
+  add("unset logscale; set format '%%h'")
+  local steps, digits = {}, {}
   for i, axis in ipairs { "x", "y", "z" } do
     if i < 3 or three then
-      steps[i] = put_range(out, panel, i, axis, three, i == 1 and not three and not panel.equal, three and 4 or i == 1 and not panel.equal and 7 or 5)
+      steps[i], digits[i] = put_range(out, panel, i, axis, three, i == 1 and not three and not panel.equal, three and 4 or i == 1 and not panel.equal and 7 or 5)
     end
   end
   local legend = panel.legend or "top right"
   if legend == "none" then
     add("unset key")
   else
-    add("set key vertical %s Left reverse noopaque samplen 2.2 spacing 1.15 font ',10.5' tc rgb '#2d3748'", legends[legend] or "top right")
+    add("set key vertical %s Left reverse noopaque samplen 2.2 spacing 1.15 font ',10.5' tc rgb '#2d3748'", legends[legend])
   end
   if panel.frame == false then
     add("unset border; unset xtics; unset ytics; unset ztics; unset grid")
   else
     add("set border %d lc rgb '#718096' lw 1", three and 31 or 3)
     local look = "nomirror out scale 0.6 font ',10' tc rgb '#2d3748'"
-    add("set xtics %s %s; set ytics %s %s", number(steps[1]), look, number(steps[2]), look)
-    if three then add("set ztics %s %s", number(steps[3]), look) end
+    local x_aside, y_aside = three and " offset 0,-0.4" or "", three and " offset 1,-0.1" or "" -- apart where axes meet
+    add("set xtics %s %s%s; set ytics %s %s%s", datum(steps[1]), look, x_aside, datum(steps[2]), look, y_aside)
+    if three then add("set ztics %s %s", datum(steps[3]), look) end
     add("set grid lc rgb '#e2e8f0' lt 1 lw 1 dt solid")
   end
   if three then
@@ -402,10 +476,11 @@ local function put_axes(out, panel, three)
   else
     add(panel.equal and "set size ratio -1" or "set size noratio")
   end
+  return digits[2] or 1
 end
 
 --- Where the panel's axes stand: its box, or its cell of the figure's grid.
-local function put_place(out, panel, place, top, three)
+local function put_place(out, panel, place, top, three, digits)
   local add = function(...) out[#out + 1] = format(...) end
   local left, width = (place.column - 1) / place.columns, place.wide / place.columns
   local height = top * place.high / place.rows
@@ -423,7 +498,7 @@ local function put_place(out, panel, place, top, three)
   if three then
     add("set lmargin 2; set rmargin 2; set tmargin 2; set bmargin 1")
   else
-    add("set lmargin 9.5; set rmargin 3; set tmargin 2.2; set bmargin 3.6")
+    add("set lmargin %g; set rmargin 3; set tmargin 2.2; set bmargin 3.6", max(9.5, digits + 4))
   end
 end
 
@@ -444,8 +519,7 @@ end
 
 local function put_panel(out, panel, number_of, place, top)
   local three = is_three(panel)
-  put_axes(out, panel, three)
-  put_place(out, panel, place, top, three)
+  put_place(out, panel, place, top, three, put_axes(out, panel, three))
   local parts, colored = {}, 0
   for i, item in ipairs(panel) do
     if item.kind == "text" then
@@ -457,7 +531,7 @@ local function put_panel(out, panel, number_of, place, top)
     else
       if not item.color then colored = colored + 1 end
       local name = format("$panel%d_%d", number_of, i)
-      parts[#parts + 1] = clauses[item.kind](out, name, item, three, cycle[(colored - 1) % #cycle + 1])
+      parts[#parts + 1] = clauses[item.kind](out, name, item, three, cycle[(colored - 1) % #cycle + 1], not item.color and colored > #cycle)
       if item.value then
         out[#out + 1] = "set palette defined (0 '#2b6cb0', 0.5 '#f7fafc', 1 '#c53030')"
         put_colors(out, panel, item.range, place, top)
@@ -510,17 +584,21 @@ end
 
 --- Draws the figure as NAME.png: in the runner's output folder, or in a stock Lua where the name says.
 --- true, or nil and why (gnuplot is not installed, the file cannot be written).
+---@param figure plot.figure
+---@param name string
 ---@return true?, string?
 function plot.save(figure, name)
+  if type(name) ~= "string" then error("save: the picture's name must be a string, got " .. described(name), 2) end
+  name = gsub(name, "%.png$", "")
   local hosted, host = pcall(require, "quat.host")
   if hosted and type(host) == "table" then return host.save(figure, name) end
   local part, final = name .. ".png.part", name .. ".png"
-  local commands = plot.gnuplot(figure, part)
+  local good, commands = pcall(plot.gnuplot, figure, part)
+  if not good then error(format("figure '%s': %s", name, commands), 2) end
   local pipe = io.popen("gnuplot -d -", "w")
   if not pipe then return nil, "gnuplot cannot be started" end
   pipe:write(commands)
-  local good = pipe:close()
-  if not good then
+  if not pipe:close() then
     os.remove(part)
     return nil, "gnuplot is not installed, or failed"
   end

@@ -64,6 +64,7 @@ bool impact_runner_load_layer(lua_State *L, const char *module)
         if (strcmp(layer->module, module) != 0) continue;
         char name[64];
         snprintf(name, sizeof name, "=%s", module);
+        quat_lua_mark_layer(L, name);
         if (luaL_loadbufferx(L, (const char *)layer->source, layer->size, name, "t") != LUA_OK) lua_error(L);
         return true;
     }

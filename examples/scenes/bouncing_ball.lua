@@ -35,7 +35,7 @@ local function draw(scene)
     size = { 1300, 560 },
     grid = { 2, 1 },
     plot.panel {
-      title = "height, and the tops of the closed form", xlabel = "time, s", ylabel = "m", legend = "top right", xrange = { 0, 4.6 },
+      title = "height, and the tops of the closed form", xlabel = "time, s", ylabel = "m", legend = "top center", xrange = { 0, 4.6 },
       plot.line { track.t, height, color = "blue", label = "height" },
       plot.points { apex, tip, color = "red", label = "h e²ⁿ⁺²" },
       plot.mark { x = t0 * (1 + e) / (1 - e), color = "dark", label = "the end", dash = true },

@@ -45,7 +45,7 @@ check.raises("superquadric: exponent r = 0.5 < 1 is not convex", impact.superqua
 check.raises("superellipsoid: eps1 = 2.5 > 2 is not convex", impact.superellipsoid, { a = 1, b = 1, c = 1, eps1 = 2.5 })
 check.raises("unknown key 'eps' in superellipsoid (did you mean 'eps1'?)", impact.superellipsoid, { a = 1, b = 1, c = 1, eps = 1 })
 check.raises("unknown key 'rr' in superquadric (did you mean 'r'?)", impact.superquadric, { a = 1, b = 1, c = 1, rr = 4 })
-check.raises("unknown key 'x' in superquadric", impact.superquadric, { a = 1, b = 1, c = 1, x = 4 })
+check.raises("unknown key 'x' in superquadric (keys: a, b, c, r, s, t)", impact.superquadric, { a = 1, b = 1, c = 1, x = 4 })
 check.raises("superquadric: c is missing", impact.superquadric, { a = 1, b = 1 })
 check.raises("argument 'direction' must not be zero", box.support, box, { 0, 0, 0 })
 check.raises("first body: orientation is zero", impact.gap, { shape = ball, orientation = { 0, 0, 0, 0 } }, { shape = ball })

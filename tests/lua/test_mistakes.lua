@@ -34,8 +34,10 @@ check.truth(runner.exists("o/toss.csv"), "the good scene's CSV")
 
 -- A body's keys.
 refused(scene(good .. "fricton = 1,"), "script.lua:2: unknown key 'fricton' in body 'coin' (did you mean 'friction'?)")
-refused(scene(good .. "colour = 1,"), "script.lua:2: unknown key 'colour' in body 'coin'")
-refused(scene(good .. "7,"), "script.lua:2: unknown key [1] in body 'coin' (its values have names)")
+local keys = "name, shape, static, mass, density, moments, position, orientation, normal, velocity, omega, friction, restitution, " ..
+  "linear_damping, angular_damping, shape_position, shape_orientation)"
+refused(scene(good .. "colour = 1,"), "script.lua:2: unknown key 'colour' in body 'coin' (keys: " .. keys)
+refused(scene(good .. "7,"), "script.lua:2: unknown key [1] in body 'coin' (its values have names: " .. keys)
 refused(scene("shape = impact.sphere(0.1), mass = -1,"), "script.lua:2: body 'coin': mass must be a positive number, got -1")
 refused(scene("shape = impact.sphere(0.1), mass = 0/0,"), "script.lua:2: body 'coin': mass must be a positive number, got nan")
 refused(scene("shape = impact.sphere(0.1), mass = '4',"), "script.lua:2: body 'coin': mass must be a positive number, got the string '4'")
@@ -117,7 +119,9 @@ plot_refused("return 3", ": the plot of scene 'toss': a figure is made with plot
 plot_refused("return { kind = 'figure', { kind = 'panel', { kind = 'line', { 1 }, { 1, 2 } } } }",
   ": the plot of scene 'toss': line: columns 1 and 2 have 1 and 2 rows")
 plot_refused("return { kind = 'figure', print }", ": the plot of scene 'toss': a figure holds numbers, strings and tables only")
-plot_refused("return (require 'quat.plot'.figure { titel = 'x' })", ":7: unknown key 'titel' in figure")
+plot_refused("return (require 'quat.plot'.figure { titel = 'x' })", ":7: unknown key 'titel' in figure (keys: grid, size, subtitle, title)")
+plot_refused("require 'quat.plot'.save({}, 'x')", ":7: figure 'x': a figure is made with plot.figure") -- our own layers are not to blame
+plot_refused("require 'quat.csv'.save('x', { 'a' }, {})", ":7: csv: 1 names for 0 columns")
 plot_refused("return (scene:figur())", ":7: attempt to call a nil value (method 'figur')")
 
 -- Laws of force that fail, and a run that fails with the script in order.

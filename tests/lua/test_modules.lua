@@ -44,7 +44,7 @@ check.raises("argument 'radius' must be a positive number, got the string '2'", 
 check.raises("sphere: radius must be a positive number, got nan", impact.sphere, { radius = 0 / 0 })
 check.raises("sphere: radius is missing", impact.sphere, {})
 check.raises("unknown key 'radus' in sphere (did you mean 'radius'?)", impact.sphere, { radus = 1 })
-check.raises("unknown key [1] in plane (its values have names)", impact.plane, { 3, 3 })
+check.raises("unknown key [1] in plane (its values have names: width, depth)", impact.plane, { 3, 3 })
 check.raises("argument 'part' must be one of 'cvode', 'ccd', got the string 'gsl'", impact.has, "gsl")
 
 -- Tables of numbers, and logarithmic axes.
@@ -64,5 +64,41 @@ check.truth(front:find("set origin 0.1,0.2; set size 0.5,0.5", 1, true), "a zoom
 local logs = plot.gnuplot(plot.figure { plot.panel { xlog = true, ylog = true, plot.line { { 0.02, 300 }, { 0, 5e-9 } } } })
 check.truth(logs:find("set logscale x; set xrange [1e-2:1e3]", 1, true), "whole decades")
 check.truth(logs:find("set yrange [1e-9:1e-8]", 1, true), "zero is left out of a logarithmic axis")
+
+-- A hundred-millionth beside 1 is drawn, and told on the axis.
+local fine = plot.gnuplot(plot.figure { plot.panel { plot.line { { 0, 1 }, { 1, 1 + 1e-9 } } } })
+check.truth(fine:find("1 1.0000000010000001", 1, true), "data keep their digits")
+check.truth(fine:find("set format y '%.11g'", 1, true), "marks differ")
+check.truth(logs:find("set format '%h'", 1, true), "marks without a blank before them")
+-- The seventh line without a colour is told from the first.
+local seven = { {} }
+for i = 1, 7 do seven[i] = plot.line { { 0, 1 }, { i, i } } end
+check.equal(select(2, plot.gnuplot(plot.figure { plot.panel(seven) }):gsub("dt %(7,4%)", "")), 1)
+-- Mistakes in figures and tables are told where they are written.
+local function refuses(wanted, f, ...)
+  check.raises(wanted, function(...) local result = f(...) return result end, ...) -- a place to blame
+end
+refuses("unknown key 'colour' in line (keys: color, dash, fill, label, opacity, width)", plot.line, { { 1 }, { 2 }, colour = "red" })
+refuses("line: 2 or 3 lists of numbers are needed, got 1", plot.line, { { 1 } })
+refuses("line: lists 1 and 2 are of 2 and 1", plot.line, { { 1, 2 }, { 2 } })
+refuses("arrows: item 2 must be a list, got 3", plot.arrows, { {}, 3, {}, {} })
+refuses("points: shape must be one of 'circle', 'cross', 'dot', 'square', 'star', 'triangle', got 'diamond'", plot.points,
+  { { 1 }, { 2 }, shape = "diamond" })
+refuses("line: color must be '#rrggbb' or one of 'black', 'blue', 'dark', 'green', 'grey', 'orange', 'purple', 'red', 'teal', got 'pink'",
+  plot.line, { { 1 }, { 2 }, color = "pink" })
+refuses("panel: xrange must be {least, most}, two numbers in order, got a table", plot.panel, { xrange = { 2, 1 } })
+refuses("figure: size must be a list of 2 numbers, got a table", plot.figure, { size = { 10 }, plot.panel {} })
+refuses("panel: at must be a list of 2 or 4 numbers, got 3", plot.panel, { at = 3 })
+refuses("text: {\"words\", at = ...} is needed", plot.text, { at = { 0, 0 } })
+refuses("mark: x or y is missing", plot.mark, {})
+refuses("save: the picture's name must be a string, got a nil", plot.save, plot.figure { plot.panel {} })
+
+-- A table goes out and comes back: names with commas, NaN.
+local text = csv.text({ "a,b", 'q"' }, { { 1, 0 / 0 }, { "x", "y" } })
+check.equal(text, '"a,b","q"""\n1,x\nnan,y\n')
+check.equal(csv.rows(text)[2]['q"'], "y")
+refuses("csv: 1 names for 0 columns", csv.save, "x", { "a" }, {})
+refuses("csv: column 'a' must be a list, got a number", csv.text, { "a" }, { 1 })
+refuses("csv: rows reads a text, got a nil", csv.rows)
 
 check.report("modules")

@@ -353,7 +353,7 @@ check.raises("layout: reaches from data[1] to data[6], but data has 5 numbers", 
 check.raises("layout: reaches from data[-1] to data[1], but data has 3 numbers", one.rotate_strided, one, { 1, 2, 3 },
   { count = 1, component = -1 })
 check.raises("layout: count is missing", one.rotate_strided, one, {}, {})
-check.raises("unknown key 'stride' in layout", one.rotate_strided, one, {}, { count = 0, stride = 3 })
+check.raises("unknown key 'stride' in layout (keys: count, first, point, component)", one.rotate_strided, one, {}, { count = 0, stride = 3 })
 check.raises("argument 't[1]' must be a number from 0 to 1, got 1.5", quat.slerp_each, { one }, { one }, { 1.5 })
 check.raises("argument 'matrices[1]' must have 3 rows, got 4", quat.from_matrix_list, { { x, y, z, x } })
 check.raises("argument 'q[2]' must not be zero", quat.rotate_each, { one, zero }, { x, y })
