@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "gauss.h"
 
-#include <float.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,7 +37,7 @@ static quat_status carry(quat from, quat to, quat *q)
     return status;
 }
 
-enum { unseen, now, before };
+enum { unseen, now, done };
 
 /* From node 0 outward, ring after ring of neighbours: each frame carried from the neighbour it is reached by, or with
  * `signs` only turned to its side of S^3. */
@@ -47,13 +46,13 @@ static quat_status walk(const quat_mesh *mesh, quat q[], bool signs, char seen[]
     size_t count = 1, last = 0;
     quat_status worst = QUAT_OK;
     memset(seen, unseen, mesh->n);
-    seen[0] = before;
+    seen[0] = done;
     while (count > last && count < mesh->n) {
         last = count;
         for (size_t i = 0; i < mesh->m; i++)
             for (int c = 0; c < 6; c++) {
                 const size_t from = mesh->triangle[i][c % 3], to = mesh->triangle[i][(c + 1 + c / 3) % 3];
-                if (seen[from] != before || seen[to] != unseen) continue;
+                if (seen[from] != done || seen[to] != unseen) continue;
                 const quat_status status = signs ? QUAT_OK : carry(q[from], q[to], &q[to]);
                 if (signs) q[to] = quat_nearest(q[to], q[from]);
                 if (status != QUAT_OK) worst = status;
@@ -61,7 +60,7 @@ static quat_status walk(const quat_mesh *mesh, quat q[], bool signs, char seen[]
                 count++;
             }
         for (size_t i = 0; i < mesh->n; i++)
-            if (seen[i] == now) seen[i] = before;
+            if (seen[i] == now) seen[i] = done;
     }
     return count < mesh->n ? QUAT_EARGUMENT : worst;
 }
@@ -124,111 +123,21 @@ static quat_status start(const quat_mesh *mesh, const qvec3 x[], quat q[], quat 
     return walk(mesh, q, true, seen);
 }
 
-/* ---- least length ---- */
+/* ---- least area ---- */
 
-/* The edge opposite corner c of triangle i. */
-static void edge(const quat_mesh *mesh, size_t i, int c, size_t *a, size_t *b)
+/* Down with the areas rounded off where they vanish, less and less. Left as they are when that gains less than 1e-9. */
+static quat_status lower_area(const quat_mesh *mesh, quat q[], double work[], quat trial[], quat before[],
+                              size_t *rounds)
 {
-    *a = mesh->triangle[i][(c + 1) % 3];
-    *b = mesh->triangle[i][(c + 2) % 3];
-}
-
-static double energy_of(const quat_mesh *mesh, const quat q[])
-{
-    double sum = 0;
-    size_t a, b;
-    for (size_t i = 0; i < mesh->m; i++)
-        for (int c = 0; c < 3; c++) {
-            edge(mesh, i, c, &a, &b);
-            sum += mesh->weight[i][c] * quat_norm2(quat_sub(quat_nearest(q[b], q[a]), q[a]));
-        }
-    return sum;
-}
-
-/* With s = q_a* q_b and the angle D = phi_b - phi_a, |q_a - q_b|^2 = 2 - 2 (s.w cos D/2 - s.z sin D/2): slope s.z,
- * second derivative s.w/2. */
-static double slopes(const quat_mesh *mesh, const quat q[], double g[])
-{
-    double size = 0;
-    size_t a, b;
-    memset(g, 0, mesh->n * sizeof *g);
-    for (size_t i = 0; i < mesh->m; i++)
-        for (int c = 0; c < 3; c++) {
-            edge(mesh, i, c, &a, &b);
-            const quat s = quat_mul(quat_conj(q[a]), quat_nearest(q[b], q[a]));
-            const double push = mesh->weight[i][c] * s.z;
-            g[a] -= push;
-            g[b] += push;
-            size += fabs(mesh->weight[i][c]);
-        }
-    return size;
-}
-
-/* out = H x; with `above`, negative weights (obtuse corners) are left out, so that H is semidefinite and an upper
- * bound. */
-static void apply(const quat_mesh *mesh, const quat q[], bool above, const double x[], double out[])
-{
-    size_t a, b;
-    memset(out, 0, mesh->n * sizeof *out);
-    for (size_t i = 0; i < mesh->m; i++)
-        for (int c = 0; c < 3; c++) {
-            if (above && mesh->weight[i][c] <= 0) continue;
-            edge(mesh, i, c, &a, &b);
-            const double h = mesh->weight[i][c] * fabs(quat_dot(q[a], q[b])) / 2 * (x[b] - x[a]);
-            out[a] -= h;
-            out[b] += h;
-        }
-}
-
-static double dot(size_t n, const double a[], const double b[])
-{
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
-/* x = -H^-1 g by conjugate gradients; false when H is not definite. work: 3 n numbers. */
-static bool newton_step(const quat_mesh *mesh, const quat q[], bool above, const double g[], double x[], double work[])
-{
-    const size_t n = mesh->n;
-    double *const r = work, *const p = r + n, *const hp = p + n;
-    memset(x, 0, n * sizeof *x);
-    for (size_t i = 0; i < n; i++) p[i] = r[i] = -g[i];
-    double rr = dot(n, r, r);
-    const double enough = rr * 1e-20;
-    for (size_t round = 0; round < 4 * n && rr > enough; round++) {
-        apply(mesh, q, above, p, hp);
-        const double curve = dot(n, p, hp);
-        if (!(curve > 0)) return false;
-        const double step = rr / curve, old = rr;
-        for (size_t i = 0; i < n; i++) x[i] += step * p[i], r[i] -= step * hp[i];
-        rr = dot(n, r, r);
-        for (size_t i = 0; i < n; i++) p[i] = r[i] + rr / old * p[i];
-    }
-    return true;
-}
-
-/* work: 5 n numbers. */
-static quat_status lower_length(const quat_mesh *mesh, quat q[], double work[], quat trial[], size_t *rounds)
-{
-    const size_t n = mesh->n;
-    double *const g = work, *const x = g + n, energy = energy_of(mesh, q);
-    for (*rounds = 0; *rounds < 200; ++*rounds) {
-        double most = 0, step = 1, next = INFINITY;
-        const double size = slopes(mesh, q, g);
-        for (size_t i = 0; i < n; i++) most = fmax(most, fabs(g[i]));
-        if (most <= 1e-14 * size) return QUAT_OK;
-        if (!newton_step(mesh, q, false, g, x, x + n)) newton_step(mesh, q, true, g, x, x + n);
-        for (int half = 0; half < 30; half++, step /= 2) {
-            for (size_t i = 0; i < n; i++) trial[i] = quat_renormalize(quat_gauge_turn(q[i], step * (x[i] - x[0])));
-            next = energy_of(mesh, trial);
-            if (next <= energy + 64 * DBL_EPSILON * fabs(energy)) break;
-        }
-        if (!(next <= energy + 64 * DBL_EPSILON * fabs(energy))) return QUAT_OK; /* as low as rounding lets it come */
-        memcpy(q, trial, n * sizeof *q);
-        energy = next;
-    }
-    return QUAT_NOT_CONVERGED;
+    static const double softness[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+    const double scale = quat_gauge_sum(mesh, quat_gauge_area, q, 0);
+    quat_status status = QUAT_OK;
+    if (scale <= 1e-24 * (double)mesh->m) return QUAT_OK; /* a plane: nothing but rounding */
+    memcpy(before, q, mesh->n * sizeof *q);
+    for (size_t s = 0; s < sizeof softness / sizeof *softness; s++)
+        status = quat_gauge_lower(mesh, quat_gauge_area, softness[s] * scale / (double)mesh->m, q, work, trial, rounds);
+    if (!(quat_gauge_sum(mesh, quat_gauge_area, q, 0) < scale * (1 - 1e-9))) memcpy(q, before, mesh->n * sizeof *q);
+    return status;
 }
 
 /* ---- the whole ---- */
@@ -249,7 +158,7 @@ static size_t torn_edges(const quat_mesh *mesh, const quat q[])
     size_t a, b, count = 0;
     for (size_t i = 0; i < mesh->m; i++)
         for (int c = 0; c < 3; c++) {
-            edge(mesh, i, c, &a, &b);
+            quat_mesh_edge(mesh, i, c, &a, &b);
             count += quat_dot(q[a], q[b]) < 0;
         }
     return count;
@@ -265,11 +174,12 @@ quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t
     if ((unsigned)gauge > QUAT_MINIMAL_AREA) return QUAT_EARGUMENT;
     quat_status status = check(n, x, m, triangles, q);
     if (status != QUAT_OK) return status;
-    char *const memory = malloc(m * 3 * sizeof(double) + n * (6 * sizeof(double) + sizeof(quat) + 1));
+    char *const memory = malloc(m * 6 * sizeof(double) + n * (7 * sizeof(double) + 2 * sizeof(quat) + 1));
     if (!memory) return QUAT_ENOMEM;
     quat *const trial = (quat *)(void *)memory;
-    double *const work = (double *)(trial + n);
-    double(*const weight)[3] = (double(*)[3])(work + 6 * n);
+    quat *const before = trial + n;
+    double *const work = (double *)(before + n);
+    double(*const weight)[3] = (double(*)[3])(work + 7 * n + 3 * m);
     char *const seen = (char *)(weight + m);
     const size_t(*const triangle)[3] = (const size_t(*)[3])triangles;
     const quat_mesh mesh = {n, m, triangle, (const double(*)[3])weight};
@@ -277,15 +187,16 @@ quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t
     status = start(&mesh, x, q, trial, seen);
     if (status >= 0) {
         quat_status least = QUAT_OK;
-        if (gauge != QUAT_SHORTEST) least = lower_length(&mesh, q, work, trial, &report->rounds);
+        if (gauge != QUAT_SHORTEST)
+            least = quat_gauge_lower(&mesh, quat_gauge_length, 0, q, work, trial, &report->rounds);
         if (gauge == QUAT_MINIMAL_AREA) {
-            const quat_status area = quat_gauge_lower_area(&mesh, q, work, trial, &report->rounds);
+            const quat_status area = lower_area(&mesh, q, work, trial, before, &report->rounds);
             if (area != QUAT_OK) least = area;
         }
         if (least != QUAT_OK) status = least;
         if (gauge != QUAT_SHORTEST) walk(&mesh, q, true, seen);
-        report->energy = energy_of(&mesh, q);
-        report->area = quat_gauge_area(&mesh, q);
+        report->energy = quat_gauge_sum(&mesh, quat_gauge_length, q, 0);
+        report->area = quat_gauge_sum(&mesh, quat_gauge_area, q, 0);
         report->torn = torn_edges(&mesh, q);
     }
     free(memory);

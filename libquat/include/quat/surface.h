@@ -101,23 +101,21 @@ QUAT_API quat_status quat_surface_total(const quat_surface *surface, double tole
  *                        Dirichlet energy, which approaches the integral of |q_1|^2 + |q_2|^2, the squared stretch on
  *                        S^3 in two perpendicular directions, over the patch
  *   QUAT_MINIMAL_AREA    from there on, least sum of the areas of the triangles q_i q_j q_k in R^4; where that gains
- *                        less than 1e-9 of it, as before. A local minimum, flat: frames to about 1e-6 rad */
+ *                        less than 1e-9 of it, as before. It knows the surface by its normals alone */
 typedef enum quat_gauge { QUAT_SHORTEST, QUAT_MINIMAL_LENGTH, QUAT_MINIMAL_AREA } quat_gauge;
 
 typedef struct quat_gauge_report {
     double energy; /* of lengths, as above */
     double area;   /* of the image on S^3, by flat triangles */
     size_t rounds; /* of the minimisation */
-    size_t
-        torn; /* edges whose ends lie on opposite sides of S^3: the mesh has a hole, or the frames a whirl; 0 is good */
+    size_t torn;   /* edges whose ends lie on opposite sides of S^3, by a hole in the mesh or a whirl; 0 is good */
 } quat_gauge_report;
 
 /* Chooses frames over a connected triangle mesh of n nodes at x[i] and m triangles, three indices each; q[i] comes in
  * as any frame with the node's normal as its z axis and goes out as chosen, continuous on S^3. q[0] stays as it is: all
  * frames together can be turned about their normals without any cost. report may be NULL. QUAT_EARGUMENT: no nodes or
  * triangles, an index out of range, a mesh in several parts. QUAT_EDOMAIN: a q that cannot be normalised, infinite or
- * NaN. QUAT_NOT_UNIQUE: two neighbours with opposite normals. QUAT_NOT_CONVERGED with the best frames. QUAT_ENOMEM,
- * also when there is none for what GSL takes for the area. */
+ * NaN. QUAT_NOT_UNIQUE: two neighbours with opposite normals. QUAT_NOT_CONVERGED with the best frames. QUAT_ENOMEM. */
 QUAT_API quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t triangles[], quat_gauge gauge,
                                         quat q[], quat_gauge_report *report);
 
