@@ -89,9 +89,13 @@ static impact_contact swapped(impact_contact c)
     return s;
 }
 
-/* Scaled to a largest semi-axis in [1, 2). */
-static void make_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale,
-                      impact_pair *pair)
+double impact_gap_scale(const impact_solid *body1, const impact_solid *body2)
+{
+    return fmin(unit_scale(&body1->shape), unit_scale(&body2->shape));
+}
+
+void impact_gap_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale,
+                     impact_pair *pair)
 {
     impact_form_make(&body2->shape, scale, q2, &pair->form[0]);
     impact_form_make(&body1->shape, scale, q1, &pair->form[1]);
@@ -103,12 +107,33 @@ static void make_pair(const impact_solid *body1, quat q1, const impact_solid *bo
     pair->reach = pair->size + sqrt(pair->c[0] * pair->c[0] + pair->c[1] * pair->c[1] + pair->c[2] * pair->c[2]);
 }
 
+qvec3 impact_gap_guess(const impact_solid *body1, const impact_solid *body2)
+{
+    impact_pair pair;
+    double n[3];
+    impact_gap_pair(body1, body1->orientation, body2, body2->orientation, impact_gap_scale(body1, body2), &pair);
+    impact_gap_seed(&pair, n);
+    return (qvec3){n[0], n[1], n[2]};
+}
+
+void impact_gap_contact(const impact_solid *body1, const impact_solid *body2, double scale,
+                        const impact_meeting *meeting, impact_gap_path path, impact_contact *contact)
+{
+    const double back = 1 / scale;
+    const qvec3 normal = {meeting->n[0], meeting->n[1], meeting->n[2]};
+    const qvec3 offset1 = {meeting->x[1][0] * back, meeting->x[1][1] * back, meeting->x[1][2] * back};
+    const qvec3 offset2 = {meeting->x[0][0] * back, meeting->x[0][1] * back, meeting->x[0][2] * back};
+    closed_form(body1, body2, meeting->gap * back, normal, offset1, offset2, meeting->stiffness * back, contact);
+    contact->path = path;
+    contact->lower = meeting->lower * back, contact->upper = meeting->upper * back;
+}
+
 static impact_status smooth_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2,
                                  impact_gap_cache *cache, bool glance, impact_contact *contact)
 {
-    const double scale = fmin(unit_scale(&body1->shape), unit_scale(&body2->shape));
+    const double scale = impact_gap_scale(body1, body2);
     impact_pair pair;
-    make_pair(body1, q1, body2, q2, scale, &pair);
+    impact_gap_pair(body1, q1, body2, q2, scale, &pair);
     impact_meeting meeting;
     impact_gap_path path;
     const double cached[3] = {cache ? cache->normal.x : 0, cache ? cache->normal.y : 0, cache ? cache->normal.z : 0};
@@ -118,14 +143,8 @@ static impact_status smooth_pair(const impact_solid *body1, quat q1, const impac
         status = impact_gap_settle(&pair, seed, &meeting, &path);
     else if (!impact_gap_first(&pair, seed, &meeting, &path))
         return IMPACT_BRACKET;
-    const double back = 1 / scale;
-    const qvec3 normal = {meeting.n[0], meeting.n[1], meeting.n[2]};
-    const qvec3 offset1 = {meeting.x[1][0] * back, meeting.x[1][1] * back, meeting.x[1][2] * back};
-    const qvec3 offset2 = {meeting.x[0][0] * back, meeting.x[0][1] * back, meeting.x[0][2] * back};
-    closed_form(body1, body2, meeting.gap * back, normal, offset1, offset2, meeting.stiffness * back, contact);
-    contact->path = path;
-    contact->lower = meeting.lower * back, contact->upper = meeting.upper * back;
-    if (cache) *cache = (impact_gap_cache){true, normal};
+    impact_gap_contact(body1, body2, scale, &meeting, path, contact);
+    if (cache) *cache = (impact_gap_cache){true, contact->normal};
     return status;
 }
 
@@ -148,16 +167,22 @@ static impact_status check(const impact_solid *body, quat *unit)
     return impact_shape_check(&body->shape, NULL, 0);
 }
 
+impact_status impact_gap_check(const impact_solid *body1, quat *q1, const impact_solid *body2, quat *q2)
+{
+    impact_status status = check(body1, q1);
+    if (status == IMPACT_OK) status = check(body2, q2);
+    if (status != IMPACT_OK) return status;
+    return body1->shape.kind == IMPACT_PLANE && body2->shape.kind == IMPACT_PLANE ? IMPACT_EARGUMENT : IMPACT_OK;
+}
+
 static impact_status solve(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache, bool glance,
                            impact_contact *contact)
 {
     *contact = no_contact();
     quat q1, q2;
-    impact_status status = check(body1, &q1);
-    if (status == IMPACT_OK) status = check(body2, &q2);
+    const impact_status status = impact_gap_check(body1, &q1, body2, &q2);
     if (status != IMPACT_OK) return status;
     const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
-    if (plane1 && plane2) return IMPACT_EARGUMENT;
     if (body1->shape.kind == IMPACT_SPHERE && body2->shape.kind == IMPACT_SPHERE)
         return sphere_sphere(body1, body2, contact);
     if (plane2) {

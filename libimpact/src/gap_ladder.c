@@ -193,6 +193,12 @@ static void ellipsoid_seed(const impact_pair *pair, int steps, double n[3])
     }
 }
 
+void impact_gap_seed(const impact_pair *pair, double n[3])
+{
+    centre_line(pair, n);
+    ellipsoid_seed(pair, SEED_STEPS, n);
+}
+
 /* Distance of the bodies, then of the bodies shrunk until they are apart, each to a few digits and then polished. */
 static bool try_simplex(search *s, double *upper)
 {

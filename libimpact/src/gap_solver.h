@@ -8,7 +8,7 @@
 #ifndef IMPACT_GAP_SOLVER_H
 #define IMPACT_GAP_SOLVER_H
 
-#include <impact/gap.h>
+#include <impact/toi.h>
 #include "support.h"
 
 typedef struct impact_pair {
@@ -26,6 +26,21 @@ typedef struct impact_meeting {
     double lower, upper; /* bracket of the gap; upper is certain for separated bodies only */
 } impact_meeting;
 
+/* Whether impact_gap takes the bodies; their orientations, normalised. */
+impact_status impact_gap_check(const impact_solid *body1, quat *q1, const impact_solid *body2, quat *q2);
+
+/* What lengths are multiplied by for the largest semi-axis to lie in [1, 2); the pair so scaled of two bodies with unit
+ * orientations; and a meeting of it as a contact of theirs. */
+double impact_gap_scale(const impact_solid *body1, const impact_solid *body2);
+void impact_gap_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale,
+                     impact_pair *pair);
+void impact_gap_contact(const impact_solid *body1, const impact_solid *body2, double scale,
+                        const impact_meeting *meeting, impact_gap_path path, impact_contact *contact);
+
+/* A normal to begin with: that of ellipsoids in the bodies' stead; of two bodies, no planes, with unit orientations. */
+void impact_gap_seed(const impact_pair *pair, double n[3]);
+qvec3 impact_gap_guess(const impact_solid *body1, const impact_solid *body2);
+
 /* g(n), n unit; x (NULL: not wanted) are the support points. */
 double impact_pair_gap(const impact_pair *pair, const double n[3], double x[2][3]);
 
@@ -33,6 +48,18 @@ double impact_pair_gap(const impact_pair *pair, const double n[3], double x[2][3
  * true when it settled on the global maximum of g (gap >= 0) or on a local one that two overlapping bodies have;
  * *meeting is then the answer. */
 bool impact_gap_newton(const impact_pair *pair, const double n[3], const double (*x)[3], impact_meeting *meeting);
+
+/* Two moving bodies, as a search for their contact in time sees them. */
+typedef struct impact_course {
+    const impact_solid *body[2]; /* at time 0 */
+    const impact_motion *motion[2];
+    double longest; /* no step in time is longer, s */
+} impact_course;
+
+/* Newton for a time in [low, high] at which two bodies, no plane among them, come into contact, from *t in there and the
+ * normal n: true when it settled on one to rounding, but not always the first; *t, and the contact then. */
+bool impact_gap_strike(const impact_course *course, double low, double high, qvec3 n, double *t,
+                       impact_contact *contact);
 
 typedef enum impact_simplex_end { IMPACT_SIMPLEX_APART, IMPACT_SIMPLEX_OVERLAP } impact_simplex_end;
 

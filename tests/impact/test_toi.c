@@ -172,6 +172,37 @@ static void any_spin(void **state)
     assert_true(met > 500);
 }
 
+/* What toi says of the contact, a query of the gap there says too: no use is made of the search's own answer. */
+static void contact_is_the_gaps(void **state)
+{
+    (void)state;
+    random_stream random = {31};
+    int met = 0;
+    for (int k = 0; k < 3000; k++) {
+        const int family = k % RANDOM_FAMILIES;
+        if (family == RANDOM_NEEDLE) continue;
+        const impact_solid a = random_solid(&random, family, 3), b = random_solid(&random, family, 0);
+        const impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        double t;
+        impact_contact contact, there;
+        const impact_status status = impact_toi(&a, &ma, &b, &mb, 8, &t, &contact);
+        if (status != IMPACT_OK || t == 0) continue;
+        met++;
+        const impact_solid at = impact_motion_at(&a, &ma, t), bt = impact_motion_at(&b, &mb, t);
+        const impact_status asked = impact_gap(&at, &bt, NULL, &there);
+        if (family == RANDOM_OCTAHEDRAL && asked != IMPACT_OK) continue; /* two vertices may have no one normal */
+        assert_int_equal(asked, IMPACT_OK);
+        near(there.gap, 0, 1.5e-15);
+        near(contact.gap, there.gap, 1.5e-15);
+        near(contact.lower, contact.gap, 0);
+        assert_true(contact.upper >= contact.gap && contact.upper <= 4e-14);
+        near(qvec3_norm(qvec3_sub(qvec3_sub(contact.point1, contact.point2), qvec3_scale(contact.normal, contact.gap))),
+             0, 4e-14);
+        if (family < RANDOM_CYLINDER) near(qvec3_norm(qvec3_sub(contact.normal, there.normal)), 0, 1e-13);
+    }
+    assert_true(met > 1500);
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -197,6 +228,7 @@ int main(void)
         cmocka_unit_test(nothing_is_missed),
         cmocka_unit_test(first_contact_of_random_pairs),
         cmocka_unit_test(any_spin),
+        cmocka_unit_test(contact_is_the_gaps),
         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gap_chart (internal): a point of one body's surface with its normal, and how both move. Of the point's axis pairs
+ * (u, e) two are free and the third, the one of the largest mass u e, follows from the surface's equation; of a free pair
+ * the gentler half moves: u where de/du = (p - 1) |u|^(p-2) <= 1, else e.
+ */
+#ifndef IMPACT_GAP_CHART_H
+#define IMPACT_GAP_CHART_H
+
+#include "support.h"
+#include <math.h>
+
+typedef struct impact_chart {
+    double x[3], N[3];       /* world */
+    double P[2][3], Q[2][3]; /* derivatives of x and N along the two free pairs */
+    int index[2];            /* the free pairs */
+    bool primal[2];
+} impact_chart;
+
+/* The chart around a surface point. */
+void impact_chart_make(const impact_form *form, const impact_surface *s, impact_chart *chart);
+
+/* Moves the free halves; false when they leave the pivot too little mass. */
+bool impact_chart_move(const impact_form *form, const impact_chart *chart, const double step[2], impact_surface *s);
+
+/* The surface point whose normal is along d (world), near x (world, relative to the centre; NULL: any). */
+void impact_chart_start(const impact_form *form, const double d[3], const double *x, impact_surface *s);
+
+/* ---- vectors ---- */
+
+static inline double impact_dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline double impact_norm(const double a[3]) { return sqrt(impact_dot(a, a)); }
+
+static inline void impact_cross(const double a[3], const double b[3], double c[3])
+{
+    c[0] = a[1] * b[2] - a[2] * b[1], c[1] = a[2] * b[0] - a[0] * b[2], c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline void impact_to_world(const double m[3][3], const double b[3], double w[3])
+{
+    for (int i = 0; i < 3; i++) w[i] = m[i][0] * b[0] + m[i][1] * b[1] + m[i][2] * b[2];
+}
+
+static inline void impact_to_body(const double m[3][3], const double w[3], double b[3])
+{
+    for (int i = 0; i < 3; i++) b[i] = m[0][i] * w[0] + m[1][i] * w[1] + m[2][i] * w[2];
+}
+
+#endif

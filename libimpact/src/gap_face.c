@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT */
+#include "gap_face.h"
+#include <string.h>
+
+enum { UNKNOWNS = 5 };
+
+/* a x = b of n unknowns by Gauss with complete pivoting; unknowns the equations do not see are left at zero. */
+static inline void solve(int n, double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS], double x[UNKNOWNS])
+{
+    int column[UNKNOWNS] = {0, 1, 2, 3, 4}, rank = n;
+    double first = 0;
+    for (int k = 0; k < n; k++) {
+        int row = k, col = k;
+        double best = -1;
+        for (int i = k; i < n; i++)
+            for (int j = k; j < n; j++)
+                if (fabs(a[i][j]) > best) best = fabs(a[i][j]), row = i, col = j;
+        if (k == 0) first = best;
+        if (!(best > 1e-14 * first)) {
+            rank = k;
+            break;
+        }
+        if (row != k) {
+            for (int j = 0; j < n; j++) {
+                const double t = a[k][j];
+                a[k][j] = a[row][j], a[row][j] = t;
+            }
+            const double t = b[k];
+            b[k] = b[row], b[row] = t;
+        }
+        if (col != k) {
+            for (int i = 0; i < n; i++) {
+                const double t = a[i][k];
+                a[i][k] = a[i][col], a[i][col] = t;
+            }
+            const int t = column[k];
+            column[k] = column[col], column[col] = t;
+        }
+        const double inverse = 1 / a[k][k];
+        for (int i = k + 1; i < n; i++) {
+            const double f = a[i][k] * inverse;
+            for (int j = k + 1; j < n; j++) a[i][j] -= f * a[k][j];
+            b[i] -= f * b[k];
+        }
+    }
+    double y[UNKNOWNS] = {0, 0, 0, 0, 0};
+    for (int k = rank - 1; k >= 0; k--) {
+        double sum = b[k];
+        for (int j = k + 1; j < rank; j++) sum -= a[k][j] * y[j];
+        y[k] = sum / a[k][k];
+    }
+    for (int k = 0; k < n; k++) x[column[k]] = y[k];
+}
+
+/* Two unit vectors across the unit n (Duff et al. 2017). */
+static void across(const double n[3], double t[2][3])
+{
+    const double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+    t[0][0] = 1 + sign * n[0] * n[0] * a, t[0][1] = sign * b, t[0][2] = -sign * n[0];
+    t[1][0] = b, t[1][1] = sign + n[1] * n[1] * a, t[1][2] = -n[1];
+}
+
+void impact_face_start(const impact_pair *pair, const double n[3], const double (*x)[3], impact_surface s[2])
+{
+    for (int k = 0; k < 2; k++) {
+        const double d[3] = {k ? -n[0] : n[0], k ? -n[1] : n[1], k ? -n[2] : n[2]};
+        impact_chart_start(&pair->form[k], d, x ? x[k] : NULL, &s[k]);
+    }
+}
+
+bool impact_face_look(const impact_pair *pair, const impact_surface s[2], impact_face *face)
+{
+    for (int k = 0; k < 2; k++) impact_chart_make(&pair->form[k], &s[k], &face->chart[k]);
+    const double *NA = face->chart[0].N, *NB = face->chart[1].N;
+    const double a = 1 / impact_norm(NA), b = 1 / impact_norm(NB);
+    for (int i = 0; i < 3; i++) face->m[i] = NA[i] * a - NB[i] * b;
+    const double length = impact_norm(face->m);
+    if (!(length > 0.2)) return false;
+    for (int i = 0; i < 3; i++) {
+        face->m[i] /= length;
+        face->v[i] = pair->c[i] + face->chart[1].x[i] - face->chart[0].x[i];
+    }
+    across(face->m, face->t);
+    face->vm = impact_dot(face->v, face->m);
+    for (int k = 0; k < 2; k++) face->along[k] = impact_dot(face->chart[k].N, face->m);
+    for (int j = 0; j < 2; j++) {
+        face->vt[j] = impact_dot(face->v, face->t[j]);
+        for (int k = 0; k < 2; k++) face->y[k][j] = impact_dot(face->chart[k].N, face->t[j]) / face->along[k];
+    }
+    return true;
+}
+
+/* What the equations see of P and Q, the motions of body k's point and normal. Rows 0 and 1: the normals oppose; 2 and 3:
+ * v_t - v_m y_A = 0; 4: v_m = 0. */
+static inline void respond(const impact_face *face, int k, const double P[3], const double Q[3], double length,
+                           double row[UNKNOWNS])
+{
+    const double inverse = 1 / face->along[k], Qm = impact_dot(Q, face->m) * inverse, Pm = impact_dot(P, face->m),
+                 side = k == 0 ? -1 : 1;
+    for (int i = 0; i < 2; i++) {
+        const double dy = impact_dot(Q, face->t[i]) * inverse - face->y[k][i] * Qm;
+        double dv = side * (impact_dot(P, face->t[i]) - Pm * face->y[0][i]);
+        if (k == 0) dv -= face->vm * dy;
+        row[i] = -side * dy;
+        row[2 + i] = dv * length;
+    }
+    row[4] = side * Pm * length;
+}
+
+/* Columns 0 to 3 of the matrix and its right-hand side, each column scaled to a largest entry of 1. */
+static inline void set_up(const impact_pair *pair, const impact_face *face, int rows, double a[UNKNOWNS][UNKNOWNS],
+                          double b[UNKNOWNS], double scale[UNKNOWNS])
+{
+    const double length = 1 / pair->size;
+    for (int c = 0; c < 4; c++) {
+        const impact_chart *chart = &face->chart[c / 2];
+        double row[UNKNOWNS], largest = 0;
+        respond(face, c / 2, chart->P[c % 2], chart->Q[c % 2], length, row);
+        for (int i = 0; i < rows; i++) largest = fabs(row[i]) > largest ? fabs(row[i]) : largest;
+        scale[c] = largest > 0 ? 1 / largest : 0;
+        for (int i = 0; i < rows; i++) a[i][c] = row[i] * scale[c];
+    }
+    for (int i = 0; i < 2; i++) {
+        b[i] = face->y[1][i] - face->y[0][i];
+        b[2 + i] = -(face->vt[i] - face->vm * face->y[0][i]) * length;
+    }
+    b[4] = -face->vm * length;
+}
+
+void impact_face_step(const impact_pair *pair, const impact_face *face, double step[2][2])
+{
+    double a[UNKNOWNS][UNKNOWNS], b[UNKNOWNS], x[UNKNOWNS], scale[UNKNOWNS];
+    set_up(pair, face, 4, a, b, scale);
+    solve(4, a, b, x);
+    for (int c = 0; c < 4; c++) step[c / 2][c % 2] = x[c] * scale[c];
+}
+
+void impact_face_strike(const impact_pair *pair, const impact_face *face, const impact_drift *drift, double least,
+                        double most, double step[2][2], double *dt)
+{
+    double a[UNKNOWNS][UNKNOWNS], b[UNKNOWNS], x[UNKNOWNS], scale[UNKNOWNS], time[UNKNOWNS], part[UNKNOWNS];
+    set_up(pair, face, UNKNOWNS, a, b, scale);
+    respond(face, 0, drift->x[0], drift->N[0], 1 / pair->size, time);
+    respond(face, 1, drift->x[1], drift->N[1], 1 / pair->size, part);
+    double largest = 0;
+    for (int i = 0; i < UNKNOWNS; i++) {
+        time[i] += part[i];
+        largest = fmax(largest, fabs(time[i]));
+    }
+    scale[4] = largest > 0 ? 1 / largest : 0;
+    for (int i = 0; i < UNKNOWNS; i++) a[i][4] = time[i] * scale[4];
+    double work[UNKNOWNS][UNKNOWNS], right[UNKNOWNS];
+    memcpy(work, a, sizeof work);
+    memcpy(right, b, sizeof right);
+    solve(UNKNOWNS, work, right, x);
+    *dt = x[4] * scale[4];
+    if (!(*dt >= least && *dt <= most)) {
+        *dt = *dt > most ? most : least;
+        for (int i = 0; i < 4; i++) b[i] -= time[i] * *dt;
+        solve(4, a, b, x);
+    }
+    for (int c = 0; c < 4; c++) step[c / 2][c % 2] = x[c] * scale[c];
+}
+
+static const double longest_step = 0.5;
+
+bool impact_face_advance(const impact_pair *pair, const impact_face *face, double step[2][2], impact_surface s[2],
+                         double *taken)
+{
+    double largest = 0;
+    for (int k = 0; k < 2; k++)
+        for (int j = 0; j < 2; j++) largest = fmax(largest, fabs(step[k][j]));
+    if (!(largest < INFINITY)) return false;
+    double scale = largest > longest_step ? longest_step / largest : 1;
+    for (int k = 0; k < 2; k++) {
+        double part = scale;
+        for (int tries = 0;; tries++) {
+            impact_surface moved = s[k];
+            const double scaled[2] = {step[k][0] * part, step[k][1] * part};
+            if (impact_chart_move(&pair->form[k], &face->chart[k], scaled, &moved)) {
+                s[k] = moved;
+                break;
+            }
+            if (tries == 20) return false;
+            part /= 2;
+        }
+    }
+    *taken = largest;
+    return true;
+}
+
+double impact_pair_gap(const impact_pair *pair, const double n[3], double x[2][3])
+{
+    double h = 0, d[3], point[3], normal[3];
+    impact_surface s;
+    for (int k = 0; k < 2; k++) {
+        const impact_form *form = &pair->form[k];
+        const double world[3] = {k ? -n[0] : n[0], k ? -n[1] : n[1], k ? -n[2] : n[2]};
+        impact_to_body(form->rotation, world, d);
+        h += impact_form_support(form, d, &s);
+        if (x) {
+            impact_surface_point(form, &s, point, normal);
+            impact_to_world(form->rotation, point, x[k]);
+        }
+    }
+    return impact_dot(n, pair->c) - h;
+}
+
+/* H = P Q^-1 across m, for N scaled to length 1 along m. A flat surface has no finite H: its radii are then capped
+ * softly at 1e3 sizes, H (1 + cap H)^-1. */
+static void add_radii(const impact_pair *pair, const impact_face *face, int k, double W[2][2])
+{
+    double P[2][2], Q[2][2];
+    for (int j = 0; j < 2; j++) {
+        const double Qm = impact_dot(face->chart[k].Q[j], face->m) / face->along[k];
+        for (int i = 0; i < 2; i++) {
+            P[i][j] = impact_dot(face->chart[k].P[j], face->t[i]);
+            Q[i][j] =
+                (impact_dot(face->chart[k].Q[j], face->t[i]) / face->along[k] - face->y[k][i] * Qm) * (k ? -1 : 1);
+        }
+    }
+    double det = Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0];
+    const double cap = 1e-3 / pair->size;
+    bool flat = !(fabs(det) > 1e-6 * (fabs(Q[0][0] * Q[1][1]) + fabs(Q[0][1] * Q[1][0])));
+    for (int j = 0; j < 2; j++) flat = flat || fabs(Q[0][j]) + fabs(Q[1][j]) < cap * (fabs(P[0][j]) + fabs(P[1][j]));
+    if (flat) {
+        for (int j = 0; j < 2; j++)
+            for (int i = 0; i < 2; i++) Q[i][j] += cap * P[i][j];
+        det = Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0];
+    }
+    if (det == 0) return; /* neither point nor normal moves: a vertex */
+    W[0][0] += (P[0][0] * Q[1][1] - P[0][1] * Q[1][0]) / det;
+    W[0][1] += (P[0][1] * Q[0][0] - P[0][0] * Q[0][1]) / det;
+    W[1][0] += (P[1][0] * Q[1][1] - P[1][1] * Q[1][0]) / det;
+    W[1][1] += (P[1][1] * Q[0][0] - P[1][0] * Q[0][1]) / det;
+}
+
+static double stiffness(const impact_pair *pair, const impact_face *face, double gap)
+{
+    double W[2][2] = {{gap, 0}, {0, gap}};
+    add_radii(pair, face, 0, W);
+    add_radii(pair, face, 1, W);
+    const double off = 0.5 * (W[0][1] + W[1][0]), mean = 0.5 * (W[0][0] + W[1][1]), half = 0.5 * (W[0][0] - W[1][1]);
+    const double larger = fabs(mean) + hypot(half, off);
+    if (mean <= 0) return mean - hypot(half, off);
+    return (W[0][0] * W[1][1] - off * off) / larger;
+}
+
+/* Whether the point x_A + part (x_B + c - x_A) is in body k, with room for rounding. */
+static bool holds(const impact_pair *pair, const impact_face *face, int k, double part)
+{
+    double world[3], body[3];
+    for (int i = 0; i < 3; i++) world[i] = face->chart[k].x[i] + (k ? part - 1 : part) * face->v[i];
+    const impact_form *form = &pair->form[k];
+    impact_to_body(form->rotation, world, body);
+    const double thin = fmin(form->axis[0], fmin(form->axis[1], form->axis[2]));
+    const double steepest = fmax(fmax(form->p[0], form->p[1]), fmax(form->p[2], form->p[3]));
+    return impact_form_inside(form, body) <= 1 + 4e-15 * steepest * pair->size / thin;
+}
+
+/* Whether the bodies are seen to have a point in common: a witness point in the other body, or the one midway in both.
+ */
+static bool share_a_point(const impact_pair *pair, const impact_face *face)
+{
+    return (holds(pair, face, 0, 0.5) && holds(pair, face, 1, 0.5)) || holds(pair, face, 1, 0) ||
+           holds(pair, face, 0, 1);
+}
+
+bool impact_face_judge(const impact_pair *pair, const impact_face *face, impact_meeting *meeting)
+{
+    meeting->gap = meeting->lower = impact_pair_gap(pair, face->m, NULL);
+    const double slip = hypot(face->vt[0], face->vt[1]);
+    meeting->upper = fmax(meeting->gap, meeting->gap > slip ? impact_norm(face->v) : face->vm + slip);
+    if (!(meeting->upper - meeting->lower <= 2e-14 * pair->reach)) return false;
+    meeting->stiffness = stiffness(pair, face, meeting->gap);
+    if (meeting->gap < 0 && !(meeting->stiffness >= -1e-12 * pair->size && share_a_point(pair, face))) return false;
+    memcpy(meeting->n, face->m, sizeof meeting->n);
+    for (int k = 0; k < 2; k++) memcpy(meeting->x[k], face->chart[k].x, sizeof meeting->x[k]);
+    return true;
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * toi_proof (internal): two moving bodies at one time, and proofs that there is no contact from one time to another.
+ */
+#ifndef IMPACT_TOI_PROOF_H
+#define IMPACT_TOI_PROOF_H
+
+#include "gap_solver.h"
+
+/* The question: what does not change on the way. */
+typedef struct impact_chase {
+    impact_course course;
+    bool plane[2];
+    qvec3 omega[2]; /* of the bodies whose turning shows */
+    double radius[2], length;
+    qvec3 acceleration; /* of body 1 relative to body 2 */
+    double turning;     /* the faster spin */
+} impact_chase;
+
+/* One time and what is known of it. */
+typedef struct impact_instant {
+    double t, gap, rate, tolerance; /* gap: the bracket's lower end */
+    impact_solid body[2];
+    impact_form form[2]; /* of the bodies but planes, in their own lengths */
+    qvec3 c, v;          /* of body 1's position relative to body 2's */
+    impact_contact contact;
+    bool sketched; /* the contact holds but the bodies' supports along a normal that parts them */
+} impact_instant;
+
+/* The centres, or all of the bodies, at a time. */
+void impact_instant_centres(const impact_chase *q, double t, impact_instant *at);
+void impact_instant_place(const impact_chase *q, double t, impact_instant *at);
+
+/* Takes the supports along the unit n for the contact; false when they do not part the bodies, which are placed and no
+ * planes. */
+bool impact_instant_sketch(const impact_chase *q, qvec3 n, impact_instant *at);
+
+/* Whether there is provably no contact between two instants without one. */
+bool impact_toi_link(const impact_chase *q, const impact_instant *from, const impact_instant *to);
+
+/* A step from an instant, at most limit, in which there is provably no contact: along its normal, or for far bodies
+ * along a unit n with their bounding balls. */
+double impact_toi_safe_step(const impact_chase *q, const impact_instant *at, double limit);
+double impact_toi_ball_step(const impact_chase *q, const impact_instant *at, qvec3 n);
+
+#endif
