@@ -2,29 +2,13 @@
  *
  * The door of the room collide: answers known on paper, bad input, and what an outcome says.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include <float.h>
 #include <string.h>
 
 #include <impact/collide.h>
 #include "generators/collide_cases.h"
 #include "generators/collide_scenes.h"
-
-static void assert_near(double got, double wanted, double tolerance)
-{
-    if (fabs(got - wanted) <= tolerance) return;
-    fail_msg("wanted %.17g, got %.17g: off by %.3g, allowed %.3g", wanted, got, fabs(got - wanted), tolerance);
-}
-
-static void assert_near3(qvec3 got, qvec3 wanted, double tolerance)
-{
-    assert_near(got.x, wanted.x, tolerance);
-    assert_near(got.y, wanted.y, tolerance);
-    assert_near(got.z, wanted.z, tolerance);
-}
+#include "near.h"
 
 /* A solid sphere of radius .3 m and 4 kg on the plane z = 0. */
 static impact_collision sphere_on_plane(qvec3 v, qvec3 omega, double mu, double eps)
@@ -90,10 +74,9 @@ static void sphere_sticks_below_its_angle(void **state)
         impact_outcome o;
         assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
         const double contact = o.velocity[0].x - 0.3 * o.omega[0].y;
-        if (i <= 20) assert_near(contact, 0, 1e-15 * (1 + tangent));
+        assert_near(contact, i <= 20 ? 0 : tangent - limit, 1e-15 * (1 + tangent));
         if (i <= 20) assert_near(o.velocity[0].x, 5.0 / 7 * tangent, 1e-15 * (1 + tangent));
-        if (i > 20) assert_true(contact > 0.01);
-        if (i < 20) assert_int_equal(o.phases[o.phase_count - 1], IMPACT_STICK_R);
+        if (i != 20) assert_int_equal(o.phases[o.phase_count - 1], i < 20 ? IMPACT_STICK_R : IMPACT_SLIP_R);
         assert_near(o.velocity[0].z, eps, 1e-15);
     }
 }
@@ -101,12 +84,13 @@ static void sphere_sticks_below_its_angle(void **state)
 static void rebound_off_a_wall(void **state)
 {
     (void)state;
-    /* Sliding throughout, e_t = 1 - mu (1 + eps) cot(incidence). */
+    /* Sliding throughout, e_t = 1 - mu (1 + eps) cot(incidence): .894 for aluminium oxide at 60 degrees. */
     const double angle = 60 * acos(-1) / 180, mu = 0.092, eps = 0.98;
     const impact_collision c = sphere_on_plane((qvec3){sin(angle), 0, -cos(angle)}, (qvec3){0, 0, 0}, mu, eps);
     impact_outcome o;
     assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
     assert_near(o.velocity[0].x / sin(angle), 1 - mu * (1 + eps) / tan(angle), 1e-15);
+    assert_near(o.velocity[0].x / sin(angle), 0.894, 1e-3);
 }
 
 static void plastic_and_smooth(void **state)
@@ -183,17 +167,50 @@ static void separating_bodies_stay_as_they_are(void **state)
 
 /* ---- invariance ---- */
 
-static impact_collision rotated(impact_collision c, quat q)
+typedef impact_collision changed(impact_collision c);
+typedef void changed_back(impact_outcome *o);
+
+/* The answer to the changed impact, changed back, against the first: off by so many roundings of the data of either, and of M. */
+static void assert_invariant(changed *change, changed_back *back, double roundings)
 {
-    c.normal = quat_rotate(q, c.normal);
+    for (int class_ = 0; class_ < CASE_CLASSES; class_++)
+        for (uint64_t i = 0; i < 500; i++) {
+            const impact_collision c = case_make((case_class)class_, 53, i), d = change(c);
+            impact_outcome o, other;
+            assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+            assert_int_equal(impact_collide(&d, &other), IMPACT_OK);
+            back(&other);
+            const double off = case_error(&c, other.velocity, other.omega, o.velocity, o.omega);
+            const double follows = impact_collide_sensitivity(&c) + impact_collide_sensitivity(&d) + o.conditioning;
+            const double allowed = roundings * DBL_EPSILON * (1 + follows);
+            if (!(off <= allowed))
+                fail_msg("%s %d: off by %.3g, allowed %.3g", case_name((case_class)class_), (int)i, off, allowed);
+            assert_near(other.energy_after, o.energy_after, allowed * o.energy_before);
+            assert_int_equal(other.compressions, o.compressions);
+        }
+}
+
+static const quat any_turn = {0.5, -0.5, 0.1, 0.7};
+
+static impact_collision rotated(impact_collision c)
+{
+    c.normal = quat_rotate(any_turn, c.normal);
     for (int i = 0; i < 2; i++) {
         impact_collider *b = &c.body[i];
-        b->orientation = quat_mul(q, b->orientation);
-        b->offset = quat_rotate(q, b->offset);
-        b->velocity = quat_rotate(q, b->velocity);
-        b->omega = quat_rotate(q, b->omega);
+        b->orientation = quat_mul(any_turn, b->orientation);
+        b->offset = quat_rotate(any_turn, b->offset);
+        b->velocity = quat_rotate(any_turn, b->velocity);
+        b->omega = quat_rotate(any_turn, b->omega);
     }
     return c;
+}
+
+static void rotated_back(impact_outcome *o)
+{
+    for (int i = 0; i < 2; i++) {
+        o->velocity[i] = quat_rotate_inverse(any_turn, o->velocity[i]);
+        o->omega[i] = quat_rotate_inverse(any_turn, o->omega[i]);
+    }
 }
 
 static impact_collision swapped(impact_collision c)
@@ -205,13 +222,22 @@ static impact_collision swapped(impact_collision c)
     return c;
 }
 
-/* Lengths by 2^7, times by 2^-3, masses by 2^-11. */
+static void swapped_back(impact_outcome *o)
+{
+    const qvec3 v = o->velocity[0], w = o->omega[0];
+    o->velocity[0] = o->velocity[1];
+    o->omega[0] = o->omega[1];
+    o->velocity[1] = v;
+    o->omega[1] = w;
+}
+
+/* Lengths by 2^7, times by 2^-3, masses by 2^-12: no number is rounded by it, nor its root. */
 static impact_collision other_units(impact_collision c)
 {
     for (int i = 0; i < 2; i++) {
         impact_collider *b = &c.body[i];
-        b->mass *= 0x1p-11;
-        b->moments = qvec3_scale(b->moments, 0x1p3);
+        b->mass *= 0x1p-12;
+        b->moments = qvec3_scale(b->moments, 0x1p2);
         b->offset = qvec3_scale(b->offset, 0x1p7);
         b->velocity = qvec3_scale(b->velocity, 0x1p10);
         b->omega = qvec3_scale(b->omega, 0x1p3);
@@ -219,41 +245,31 @@ static impact_collision other_units(impact_collision c)
     return c;
 }
 
-static void rotating_swapping_and_scaling(void **state)
+static void units_back(impact_outcome *o)
+{
+    for (int i = 0; i < 2; i++) {
+        o->velocity[i] = qvec3_scale(o->velocity[i], 0x1p-10);
+        o->omega[i] = qvec3_scale(o->omega[i], 0x1p-3);
+    }
+    o->energy_after *= 0x1p-8;
+}
+
+static void rotated_is_the_same(void **state)
 {
     (void)state;
-    const quat q = {0.5, -0.5, 0.1, 0.7};
-    for (int class_ = 0; class_ < CASE_CLASSES; class_++)
-        for (uint64_t i = 0; i < 500; i++) {
-            const impact_collision c = case_make((case_class)class_, 53, i);
-            impact_outcome o, other;
-            assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
-            /* Rounding of the turned inputs, times the conditioning; slim bodies take up their slimness too. */
-            const double allowed = 1e-12 + 100 * 0x1p-52 * o.conditioning;
+    assert_invariant(rotated, rotated_back, 6);
+}
 
-            const impact_collision r = rotated(c, q);
-            assert_int_equal(impact_collide(&r, &other), IMPACT_OK);
-            const qvec3 rv[2] = {quat_rotate(q, o.velocity[0]), quat_rotate(q, o.velocity[1])};
-            const qvec3 rw[2] = {quat_rotate(q, o.omega[0]), quat_rotate(q, o.omega[1])};
-            const double off = case_error(&r, other.velocity, other.omega, rv, rw);
-            if (!(off < allowed))
-                fail_msg("%s %d rotated: off by %.3g, allowed %.3g", case_name((case_class)class_), (int)i, off,
-                         allowed);
+static void swapped_is_the_same(void **state)
+{
+    (void)state;
+    assert_invariant(swapped, swapped_back, 1);
+}
 
-            const impact_collision s = swapped(c);
-            assert_int_equal(impact_collide(&s, &other), IMPACT_OK);
-            const qvec3 sv[2] = {o.velocity[1], o.velocity[0]}, sw[2] = {o.omega[1], o.omega[0]};
-            assert_true(case_error(&s, other.velocity, other.omega, sv, sw) < allowed);
-            assert_int_equal(other.compressions, o.compressions);
-
-            const impact_collision k = other_units(c);
-            assert_int_equal(impact_collide(&k, &other), IMPACT_OK);
-            const qvec3 kv[2] = {qvec3_scale(o.velocity[0], 0x1p10), qvec3_scale(o.velocity[1], 0x1p10)};
-            const qvec3 kw[2] = {qvec3_scale(o.omega[0], 0x1p3), qvec3_scale(o.omega[1], 0x1p3)};
-            assert_true(case_error(&k, other.velocity, other.omega, kv, kw) < allowed);
-            assert_near(other.energy_after, o.energy_after * 0x1p9,
-                        1e-12 * o.energy_before * 0x1p9 * (1 + o.conditioning));
-        }
+static void in_other_units_is_the_same(void **state)
+{
+    (void)state;
+    assert_invariant(other_units, units_back, 0);
 }
 
 /* Each body's change of momentum and angular momentum is the impulse and its moment. */
@@ -344,7 +360,9 @@ int main(void)
         cmocka_unit_test(plastic_and_smooth),
         cmocka_unit_test(bad_input_is_named),
         cmocka_unit_test(separating_bodies_stay_as_they_are),
-        cmocka_unit_test(rotating_swapping_and_scaling),
+        cmocka_unit_test(rotated_is_the_same),
+        cmocka_unit_test(swapped_is_the_same),
+        cmocka_unit_test(in_other_units_is_the_same),
         cmocka_unit_test(momentum_is_the_impulse),
         cmocka_unit_test(two_spheres_by_hand),
         cmocka_unit_test(words_for_all),
