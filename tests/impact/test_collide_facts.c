@@ -165,8 +165,9 @@ static void fact_2_the_one_direction_of_a_restart(void **state)
         const wide lambda = restart(&f, e);
         const double rounding = 8 * eps * size_of(&f), rest[3] = {0, 0, -1};
         impact_flow_direction directions[4];
+        const int n = impact_flow_directions(&f, directions);
         int leaving = 0;
-        for (int k = 0; k < impact_flow_directions(&f, directions); k++) {
+        for (int k = 0; k < n; k++) {
             if (directions[k].rate <= 0) continue;
             leaving++;
             assert_near(directions[k].rate, (double)lambda, rounding);
@@ -303,7 +304,8 @@ static void fact_4_theta_is_monotone_and_u_z_turns_at_most_twice(void **state)
         impact_flow_direction directions[4];
         wide root = 2 * pi, stops[2] = {INFINITY, INFINITY};
         double rate = 0;
-        for (int k = 0; k < impact_flow_directions(&f, directions); k++) {
+        const int n = impact_flow_directions(&f, directions);
+        for (int k = 0; k < n; k++) {
             const wide way = wrapped(sense * (directions[k].theta - start));
             if (way < root) root = way, rate = directions[k].rate;
         }
