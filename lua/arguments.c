@@ -292,6 +292,11 @@ lua_Integer quat_lua_arg_integer(lua_State *L, int arg, const char *name, lua_In
 qvec3 quat_lua_arg_vec3(lua_State *L, int arg, const char *name) { return vec3_at(L, NULL, name, arg); }
 quat quat_lua_arg_quat(lua_State *L, int arg, const char *name) { return quat_at(L, NULL, name, arg); }
 
+int quat_lua_refuse(lua_State *L, int arg, const char *name, const char *wanted)
+{
+    return refuse(L, NULL, name, arg, wanted);
+}
+
 int quat_lua_arg_choice(lua_State *L, int arg, const char *name, const char *const words[])
 {
     return choice_at(L, NULL, name, arg, words);

@@ -63,6 +63,8 @@ lua_Integer quat_lua_arg_integer(lua_State *L, int arg, const char *name, lua_In
 qvec3 quat_lua_arg_vec3(lua_State *L, int arg, const char *name);
 /* A quaternion userdata, {w, x, y, z} or {w=, x=, y=, z=}, all finite; not normalised. */
 quat quat_lua_arg_quat(lua_State *L, int arg, const char *name);
+/* Raises "argument 'name' must be <wanted>, got <what it is>". */
+int quat_lua_refuse(lua_State *L, int arg, const char *name, const char *wanted);
 /* The index of the word in words (NULL-terminated). */
 int quat_lua_arg_choice(lua_State *L, int arg, const char *name, const char *const words[]);
 

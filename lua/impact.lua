@@ -339,6 +339,11 @@ local function find_body(self, name)
   error(string.format("scene '%s' has no body '%s'", self:name(), tostring(name)), 3)
 end
 
+--- A vector's three numbers, by place or by letter.
+local function parts_of(v)
+  return v[1] or v.x, v[2] or v.y, v[3] or v.z
+end
+
 --- The radius of the smallest ball about a body's centre that holds it, m.
 ---@return number
 function methods:radius(body)
@@ -346,14 +351,15 @@ function methods:radius(body)
 end
 
 --- The energies of a body along a track of it, J, as columns: translation, rotation, potential (of gravity), total.
----@return table
+---@param body string
+---@param track table  of scene:track
+---@return {translation: number[], rotation: number[], potential: number[], total: number[]}
 function methods:energies(body, track)
   local definition = find_body(self, body)
   local shape = definition.shape
   local mass = definition.mass or (definition.density or impact.defaults.density) * shape.volume
-  local moments = definition.moments or { mass * shape.inertia.x, mass * shape.inertia.y, mass * shape.inertia.z }
-  local gravity = self:definition().gravity or impact.defaults.gravity
-  local gx, gy, gz = gravity[1] or gravity.x, gravity[2] or gravity.y, gravity[3] or gravity.z
+  local ax, ay, az = parts_of(definition.moments or mass * shape.inertia)
+  local gx, gy, gz = parts_of(self:definition().gravity or impact.defaults.gravity)
   local result = { translation = {}, rotation = {}, potential = {}, total = {} }
   for i = 1, #track.t do
     local r = row_of(track, i)
@@ -365,7 +371,7 @@ function methods:energies(body, track)
     local by = r.wy + r.qw * ty + (tz * r.qx - tx * r.qz)
     local bz = r.wz + r.qw * tz + (tx * r.qy - ty * r.qx)
     local translation = mass / 2 * (r.vx ^ 2 + r.vy ^ 2 + r.vz ^ 2)
-    local rotation = (moments[1] * bx ^ 2 + moments[2] * by ^ 2 + moments[3] * bz ^ 2) / 2
+    local rotation = (ax * bx ^ 2 + ay * by ^ 2 + az * bz ^ 2) / 2
     local potential = -mass * (gx * r.x + gy * r.y + gz * r.z)
     result.translation[i], result.rotation[i], result.potential[i] = translation, rotation, potential
     result.total[i] = translation + rotation + potential

@@ -51,6 +51,8 @@ const char *impact_lua_push_position(lua_State *L, int index);
 /* Read a definition over the library's defaults. The strings in *def live as long as the table. */
 void impact_lua_read_body(lua_State *L, int index, const char *where, impact_body_def *def);
 /* The kinds' metatables decide; a custom force's function and context stay unset. Raises when it is no force; item names it. */
+/* Whether the value at index was made with impact.wind, impact.attraction or impact.force. */
+bool impact_lua_is_force(lua_State *L, int index);
 void impact_lua_read_force(lua_State *L, int index, const char *where, const char *item, impact_force_def *def);
 
 #endif

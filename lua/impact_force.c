@@ -62,6 +62,13 @@ static void read_kind(lua_State *L, int index, const char *where, impact_force_k
     }
 }
 
+bool impact_lua_is_force(lua_State *L, int index)
+{
+    for (int kind = IMPACT_FORCE_WIND; kind <= IMPACT_FORCE_CUSTOM; kind++)
+        if (impact_lua_is_marked(L, index, metatables[kind])) return true;
+    return false;
+}
+
 void impact_lua_read_force(lua_State *L, int index, const char *where, const char *item, impact_force_def *def)
 {
     for (int kind = IMPACT_FORCE_WIND; kind <= IMPACT_FORCE_CUSTOM; kind++) {

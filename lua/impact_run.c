@@ -126,6 +126,8 @@ static impact_csv *open_csv(const quat_lua_reader *options, const impact_lua_hos
     const bool inside = host && plain;
     if (inside && !host->prepare(host->context, message, size)) return NULL;
     const char *directory = inside ? host->directory : "", *slash = inside ? "/" : "";
+    const size_t length = strlen(name);
+    if (length > 4 && strcmp(name + length - 4, ".csv") == 0) name = lua_pushlstring(L, name, length - 4);
     const char *samples = lua_pushfstring(L, "%s%s%s.csv", directory, slash, name);
     const char *events = lua_pushfstring(L, "%s%s%s_events.csv", directory, slash, name);
     remove(lua_pushfstring(L, "%s.part", samples)); /* never through a link that lies there */

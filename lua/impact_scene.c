@@ -203,7 +203,8 @@ static int scene_close(lua_State *L)
 static int scene_tostring(lua_State *L)
 {
     const impact_lua_scene *self = luaL_checkudata(L, 1, IMPACT_LUA_SCENE);
-    lua_pushfstring(L, "scene '%s' (%d bodies%s)", self->name, self->body_count, self->scene ? "" : ", closed");
+    lua_pushfstring(L, "scene '%s' (%d %s%s)", self->name, self->body_count, self->body_count == 1 ? "body" : "bodies",
+                    self->scene ? "" : ", closed");
     return 1;
 }
 

@@ -57,6 +57,7 @@ static const impact_force_def *read_forces(const quat_lua_reader *reader, impact
     lua_State *L = reader->L;
     def->force_count = push_list(reader, "forces");
     const int list = lua_gettop(L);
+    if (impact_lua_is_force(L, list)) quat_lua_reader_error(reader, "forces must be a list of forces, got one force");
     impact_force_def *forces = hold(L, def->force_count, sizeof *forces);
     impact_lua_law *contexts = hold(L, def->force_count, sizeof *contexts);
     lua_pushvalue(L, -1);

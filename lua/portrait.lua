@@ -57,18 +57,44 @@ local function over_time(scene, body, other, axes, track, before, after, t)
   return with_marks(position, t, other), with_marks(moving, t), with_marks(energy, t)
 end
 
---- The samples of the recorded run: rows at t, both sides of an event, all bodies' own.
-local function parts(scene, body, other)
+--- A body's recorded run, smooth; `level` is the stack level to blame for a body without one.
+local function run_of(scene, body, level)
   local track = scene:track(body, 500)
+  if #track.t == 0 then error("portrait: body '" .. body .. "' does not move: there is nothing to draw", level + 1) end
+  return track
+end
+
+--- A body's recorded run, whole and before and after it meets the other for the first time, at t (nil: it never does).
+local function parts(scene, body, other)
+  local track = run_of(scene, body, 3)
   local t = meeting(scene, body, other)
   local before, after = impact.split(track, t or math.huge)
   return track, before, after, t
 end
 
+--- The figure's head: its title, and what solid and dashed mean when there is a meeting.
+local function headed(figure, title, t, other)
+  figure.title = title
+  figure.subtitle = t and "solid before the " .. other .. ", dashed after" or nil
+  figure.size = { 1400, 1000 }
+  return plot.figure(figure)
+end
+
+--- A point of a track's curve: its first or last row, to be seen.
+local function spot(track, row, names, color, label)
+  local place = { color = color, size = 1.6, label = label }
+  for i, name in ipairs(names) do place[i] = { track[name][row] } end
+  return plot.points(place)
+end
+
 --- A planar motion's orientation: (q0, q2) on the unit circle, q over time, and beside them position, speed and energy;
---- solid before `body` meets `other`, dashed after.
+--- solid before `body` meets `other`, dashed after. Without `other`, all solid.
+---@param scene impact.scene  recorded
+---@param body string
+---@param other? string
+---@param title? string
 ---@return plot.figure
-function portrait.planar(scene, body, other)
+function portrait.planar(scene, body, other, title)
   local track, before, after, t = parts(scene, body, other)
   local circle = { {}, {} }
   for i = 0, 360 do
@@ -77,7 +103,6 @@ function portrait.planar(scene, body, other)
   -- The way goes out and back on one and the same circle: the way back is drawn a little inside.
   local inner = { qw = {}, qy = {} }
   for i = 1, #after.t do inner.qw[i], inner.qy[i] = 0.94 * after.qw[i], 0.94 * after.qy[i] end
-  local last = #before.t
   local whole = false
   for i = 1, #track.t do whole = whole or track.qw[i] < 0 or track.qy[i] < -0.05 end
   local axis = { whole and -1.1 or -0.1, 1.1 } -- the whole circle, or the quarter that holds the motion
@@ -91,41 +116,40 @@ function portrait.planar(scene, body, other)
     yrange = axis,
     box = { 0.06, 0.405, 0.403, 0.885 },
     plot.line { circle[1], circle[2], color = "grey", width = 1 },
-    plot.line { before.qw, before.qy, color = "blue", width = 3, label = "before the " .. other },
-    plot.line { inner.qw, inner.qy, color = "blue", width = 2.5, dash = true, label = "after it, drawn inside" },
-    plot.points { { before.qw[1] }, { before.qy[1] }, color = "green", size = 1.6, label = "start" },
-    plot.points { { before.qw[last] }, { before.qy[last] }, color = "red", size = 1.6, label = "the " .. other },
+    plot.line { before.qw, before.qy, color = "blue", width = 3, label = t and "before the " .. other },
+    plot.line { inner.qw, inner.qy, color = "blue", width = 2.5, dash = true, label = t and "after it, drawn inside" },
+    spot(before, 1, { "qw", "qy" }, "green", "start"),
+    spot(before, #before.t, { "qw", "qy" }, "red", t and "the " .. other or "end"),
   }
   local q = { title = "orientation over time", xlabel = "time, s", legend = "center right", box = { 0.06, 0.08, 0.47, 0.275 } }
   two_parts(q, before, after, "t", "qw", "blue", "q₀")
   two_parts(q, before, after, "t", "qy", "orange", "q₂")
   local position, moving, energy = over_time(scene, body, other, 2, track, before, after, t)
-  return plot.figure {
-    title = "A sphere meets floor and wall",
-    subtitle = "solid before the " .. other .. ", dashed after",
-    size = { 1400, 1000 },
-    arc, with_marks(q, t, other), position, moving, energy,
-  }
+  return headed({ arc, with_marks(q, t, other), position, moving, energy }, title or "The motion of " .. body, t, other)
 end
 
 --- A motion's orientation in space: the curve (q1, q2, q3), q over time, and beside them position, speed and energy.
+---@param scene impact.scene  recorded
+---@param body string
+---@param other? string
+---@param title? string
 ---@return plot.figure
-function portrait.space(scene, body, other)
+function portrait.space(scene, body, other, title)
   local track, before, after, t = parts(scene, body, other)
-  local last = #before.t
   local curve = plot.panel {
     title = "the orientation's curve (q₁, q₂, q₃)",
     xlabel = "q₁",
     ylabel = "q₂",
     zlabel = "q₃",
-    legend = "top left",
+    legend = "top right",
     view = { 62, 38 },
+    zoom = 1.45,
     equal = true,
     box = { 0.03, 0.36, 0.5, 0.9 },
-    plot.line { before.qx, before.qy, before.qz, color = "blue", width = 2.5, label = "before the " .. other },
-    plot.line { after.qx, after.qy, after.qz, color = "blue", dash = true, width = 1.8, label = "after it" },
-    plot.points { { before.qx[1] }, { before.qy[1] }, { before.qz[1] }, color = "green", size = 1.6, label = "start" },
-    plot.points { { before.qx[last] }, { before.qy[last] }, { before.qz[last] }, color = "red", size = 1.6, label = "the " .. other },
+    plot.line { before.qx, before.qy, before.qz, color = "blue", width = 2.5, label = t and "before the " .. other },
+    plot.line { after.qx, after.qy, after.qz, color = "blue", dash = true, width = 1.8, label = t and "after it" },
+    spot(before, 1, { "qx", "qy", "qz" }, "green", "start"),
+    spot(before, #before.t, { "qx", "qy", "qz" }, "red", t and "the " .. other or "end"),
   }
   local q = { title = "orientation over time", xlabel = "time, s", legend = "row", box = { 0.06, 0.08, 0.47, 0.275 },
     yrange = { -1, 1.5 } }
@@ -134,12 +158,7 @@ function portrait.space(scene, body, other)
   two_parts(q, before, after, "t", "qy", "orange", "q₂")
   two_parts(q, before, after, "t", "qz", "green", "q₃")
   local position, moving, energy = over_time(scene, body, other, 3, track, before, after, t)
-  return plot.figure {
-    title = "A spinning sphere meets floor and wall",
-    subtitle = "solid before the " .. other .. ", dashed after",
-    size = { 1400, 1000 },
-    curve, with_marks(q, t, other), position, moving, energy,
-  }
+  return headed({ curve, with_marks(q, t, other), position, moving, energy }, title or "The motion of " .. body, t, other)
 end
 
 --- The outline of a ball of radius r about (x, y), appended to a list of columns with the pen lifted before it.
@@ -169,21 +188,25 @@ local function seen(description, scene, bodies, tracks, t, x, y)
 end
 
 --- Two bodies that meet: their paths from the side and from above, their orientations, speeds, and the energy.
+---@param scene impact.scene  recorded
+---@param left string
+---@param right string
+---@param title? string
 ---@return plot.figure
-function portrait.pair(scene, left, right)
+function portrait.pair(scene, left, right, title)
   local bodies = { left, right }
-  local tracks = { scene:track(left, 500), scene:track(right, 500) }
+  local tracks = { run_of(scene, left, 2), run_of(scene, right, 2) }
   local t = meeting(scene, left, right)
   local side = seen({ title = "from the side", xlabel = "x, m", ylabel = "z, m", equal = true, legend = "top center",
-    yrange = { 0, 5.5 }, box = { 0.09, 0.64, 0.47, 0.89 } }, scene, bodies, tracks, t, "x", "z")
+    box = { 0.09, 0.64, 0.47, 0.89 } }, scene, bodies, tracks, t, "x", "z")
   local above = seen({ title = "from above", xlabel = "x, m", ylabel = "y, m", equal = true, legend = "none",
     box = { 0.09, 0.08, 0.47, 0.53 } }, scene, bodies, tracks, t, "x", "y")
-  local q = { title = "orientation of the " .. left .. " one", legend = "row", box = { 0.59, 0.7, 0.98, 0.9 }, yrange = { -1, 1.5 } }
+  local q = { title = "orientation: " .. left, legend = "row", box = { 0.59, 0.7, 0.98, 0.9 }, yrange = { -1, 1.5 } }
   local before, after = impact.split(tracks[1], t or math.huge)
   for i, name in ipairs { "qw", "qx", "qy", "qz" } do
     two_parts(q, before, after, "t", name, ({ "dark", "blue", "orange", "green" })[i], ({ "q₀", "q₁", "q₂", "q₃" })[i])
   end
-  local turning = { title = "angular velocity of the " .. left .. " one", ylabel = "rad/s", legend = "bottom right",
+  local turning = { title = "angular velocity: " .. left, ylabel = "rad/s", legend = "bottom right",
     box = { 0.59, 0.39, 0.98, 0.59 } }
   for i, name in ipairs { "wx", "wy", "wz" } do
     two_parts(turning, before, after, "t", name, ({ "blue", "orange", "green" })[i], ({ "ω₁", "ω₂", "ω₃" })[i])
@@ -205,8 +228,8 @@ function portrait.pair(scene, left, right)
       label = ({ "all", "moving", "turning", "height" })[i] }
   end
   return plot.figure {
-    title = "Two spheres meet",
-    subtitle = "solid before they meet, dashed after",
+    title = title or left .. " and " .. right,
+    subtitle = t and "solid before they meet, dashed after" or nil,
     size = { 1400, 1000 },
     side, above, with_marks(q, t, "meeting"), with_marks(turning, t), with_marks(energy, t),
   }

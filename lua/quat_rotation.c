@@ -98,11 +98,8 @@ static quat_euler sequence(lua_State *L, int index)
     quat_euler s;
     const char *const name = lua_type(L, index) == LUA_TSTRING ? lua_tostring(L, index) : NULL;
     if (quat_euler_from_name(name, &s) != QUAT_OK)
-        quat_lua_error(
-            L,
-            "argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours "
-            "alike, got %s",
-            lua_isnoneornil(L, index) ? "nothing" : luaL_tolstring(L, index, NULL));
+        quat_lua_refuse(L, index, "sequence",
+                        "three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike");
     return s;
 }
 

@@ -98,7 +98,12 @@ static bool make_commands(lua_State *L, int index, impact_runner *runner, FILE *
     if (!to) return snprintf(message, size, "not enough memory"), false;
     lua_pushcfunction(to, write_commands);
     lua_pushlightuserdata(to, file);
-    const char *wrong = copy(L, index, to, 0);
+    const char *wrong = lua_istable(L, index) ? copy(L, index, to, 0) : NULL;
+    char type[80];
+    if (!lua_istable(L, index)) {
+        snprintf(type, sizeof type, "a figure is made with plot.figure; this is a %s", luaL_typename(L, index));
+        wrong = type;
+    }
     if (!wrong && lua_pcall(to, 2, 0, 0) != LUA_OK) {
         const char *text = lua_tostring(to, -1);
         const char *plain =

@@ -40,5 +40,5 @@ return impact.scene {
   forces = {
     impact.wind { origin = { -3, 0, 1 }, direction = { 1, 0, 0 }, strength = 25, reach = 2 },
   },
-  plot = function(scene) return portrait.planar(scene, "sphere", "wall") end,
+  plot = function(scene) return portrait.planar(scene, "sphere", "wall", "A sphere rolls to a wall and back") end,
 }

@@ -46,5 +46,5 @@ return impact.scene {
   forces = {
     impact.wind { origin = { -3, 0, 1 }, direction = { 1, 0, 0 }, strength = 25, reach = 2 },
   },
-  plot = function(scene) return portrait.space(scene, "sphere", "wall") end,
+  plot = function(scene) return portrait.space(scene, "sphere", "wall", "A spinning sphere meets floor and wall") end,
 }

@@ -57,5 +57,5 @@ return impact.scene {
   },
   forces = { wind("left", -5, 0, 1), wind("right", 5, 0.2, -1) },
   pairs = { { bodies = { "left", "right" }, friction = 0.25, restitution = 0.3 } },
-  plot = function(scene) return portrait.pair(scene, "left", "right") end,
+  plot = function(scene) return portrait.pair(scene, "left", "right", "Two spheres meet") end,
 }

@@ -76,6 +76,12 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
         scene->energy_start = impact_scene_total_energy(scene);
         status = check_overlaps(scene, message, message_size);
     }
+    if (status == IMPACT_OK && !isfinite(scene->energy_start)) {
+        status = IMPACT_EDOMAIN;
+        if (message)
+            snprintf(message, message_size, "scene '%s': its energy lies beyond double precision: take other units",
+                     def->name ? def->name : "");
+    }
     if (status == IMPACT_OK) status = impact_scene_crowd_open(scene);
     if (status != IMPACT_OK) {
         impact_scene_destroy(scene);
@@ -97,6 +103,11 @@ static impact_status run(impact_scene *scene, double t_end)
 {
     scene->message[0] = '\0';
     if (!isfinite(t_end)) return IMPACT_EDOMAIN;
+    if (t_end < scene->t) {
+        snprintf(scene->message, sizeof scene->message, "t = %.15g is over: the scene stands at %.15g s", t_end,
+                 scene->t);
+        return IMPACT_EARGUMENT;
+    }
     const double due = ceil(scene->t * scene->sampler.rate);
     if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
     impact_status status = scene->crowd ? impact_scene_crowd_deliver(scene) : IMPACT_OK;
@@ -117,8 +128,12 @@ static impact_status check_account(impact_scene *scene, impact_status status)
     const double given = fmax(fabs(e.force_work), fabs(e.drive_work));
     const double scale = fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), fmax(given, fabs(losses))));
     if ((status != IMPACT_OK && status != IMPACT_AT_REST) || fabs(off) <= tolerance * scale) return status;
-    snprintf(scene->message, sizeof scene->message,
-             "the energy account is off by %.2g J of %.2g J: do not trust the digits", off, scale);
+    if (isfinite(off))
+        snprintf(scene->message, sizeof scene->message,
+                 "the energy account is off by %.2g J of %.2g J: do not trust the digits", off, scale);
+    else
+        snprintf(scene->message, sizeof scene->message,
+                 "the motion has left double precision: do not trust the digits");
     return IMPACT_SOFT;
 }
 
@@ -134,7 +149,7 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
 
 impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder)
 {
-    return impact_scene_run_to(scene, scene->duration, recorder);
+    return impact_scene_run_to(scene, fmax(scene->duration, scene->t), recorder);
 }
 
 const char *impact_scene_message(const impact_scene *scene) { return scene->message; }

@@ -47,8 +47,7 @@ static bool build_body(const impact_body_def *def, impact_body *body, impact_sta
         impact_drive_make(def, body);
         return body->name != NULL;
     }
-    body->mass = isnan(def->mass) ? def->density * impact_shape_volume(&def->shape) : def->mass;
-    body->moments = isnan(def->moments.x) ? qvec3_scale(impact_shape_inertia(&def->shape), body->mass) : def->moments;
+    body->mass = impact_scene_body_mass(def, &body->moments);
     body->inverse_mass = 1 / body->mass;
     body->inverse_moments = (qvec3){1 / body->moments.x, 1 / body->moments.y, 1 / body->moments.z};
     body->spherical = equal_moments(body->moments);

@@ -66,6 +66,24 @@ static void check_mass(check *c, const impact_body_def *body)
                 "is larger than the other two together: no rigid body has such moments");
 }
 
+double impact_scene_body_mass(const impact_body_def *body, qvec3 *moments)
+{
+    const double mass = isnan(body->mass) ? body->density * impact_shape_volume(&body->shape) : body->mass;
+    *moments = isnan(body->moments.x) ? qvec3_scale(impact_shape_inertia(&body->shape), mass) : body->moments;
+    return mass;
+}
+
+/* What comes of the shape and the density must have a place among the doubles. */
+static void check_solid(check *c, const impact_body_def *body)
+{
+    static const char beyond[] = "of this size and density lies beyond double precision: take other units";
+    qvec3 moments;
+    const double mass = impact_scene_body_mass(body, &moments);
+    const double m[3] = {moments.x, moments.y, moments.z};
+    require(c, isnormal(mass), "mass", mass, beyond);
+    for (int i = 0; i < 3; i++) require(c, isnormal(m[i]), "moments", m[i], beyond);
+}
+
 bool impact_scene_shape_stands_aside(const impact_body_def *body)
 {
     const qvec3 p = body->shape_position;
@@ -102,6 +120,7 @@ static void check_body(check *c, const impact_body_def *body)
     char why[200];
     require_words(c, impact_shape_check(&body->shape, why, sizeof why) == IMPACT_OK, why);
     if (c->status != IMPACT_OK) return;
+    if (!body->is_static) check_solid(c, body);
     const char *refusal = impact_drive_refusal(body);
     require_words(c, !refusal, refusal);
 }
@@ -125,8 +144,10 @@ static void check_bodies(check *c, const impact_scene_def *def)
 
 static void check_force(check *c, const impact_scene_def *def, const impact_force_def *force)
 {
-    require_words(c, !force->body || impact_scene_def_find(def, force->body) >= 0,
-                  "acts on a body that the scene does not have");
+    char stranger[160];
+    snprintf(stranger, sizeof stranger, "acts on body '%s', which the scene does not have",
+             force->body ? force->body : "");
+    require_words(c, !force->body || impact_scene_def_find(def, force->body) >= 0, stranger);
     require(c, force->reach > 0, "reach", force->reach, "must be positive");
     switch (force->kind) {
     case IMPACT_FORCE_WIND:

@@ -346,6 +346,8 @@ static void in_pieces_as_in_one(void **state)
     free(s);
     assert_int_equal(impact_scene_run(whole, NULL), IMPACT_OK);
     for (int k = 1; k <= 15; k++) assert_int_equal(impact_scene_run_to(pieces, 0.25 * k, NULL), IMPACT_OK);
+    assert_int_equal(impact_scene_run_to(pieces, 3.5, NULL), IMPACT_EARGUMENT); /* time does not go back */
+    assert_string_equal(impact_scene_message(pieces), "t = 3.5 is over: the scene stands at 3.75 s");
     impact_sample a, b;
     impact_scene_body(whole, BALL, &a);
     impact_scene_body(pieces, BALL, &b);
@@ -462,6 +464,21 @@ static void bad_definitions_are_named(void **state)
     def.duration = -1;
     expect_refusal(&def, "scene 'scene': duration = -1: must be positive and finite");
     def.duration = 1;
+    bodies[1].shape = (impact_shape){.kind = IMPACT_SPHERE, .a = 1e-110, .b = 1e-110, .c = 1e-110};
+    bodies[1].mass = NAN;
+    expect_refusal(&def,
+                   "body 'coin': mass = 0: of this size and density lies beyond double precision: take other units");
+    bodies[1] = ball_body("coin", (qvec3){0, 0, 1}, 1, 0);
+    bodies[1].velocity.x = 1e300;
+    expect_refusal(&def, "scene 'scene': its energy lies beyond double precision: take other units");
+    bodies[1].velocity.x = 0;
+    impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND);
+    wind.name = "gust";
+    wind.body = "cone";
+    def.forces = &wind;
+    def.force_count = 1;
+    expect_refusal(&def, "force 'gust': acts on body 'cone', which the scene does not have");
+    def.force_count = 0;
     def.compliance = 3.5;
     expect_refusal(&def, "scene 'scene': compliance = 3.5: needs Stronge's law");
     def.compliance = NAN;

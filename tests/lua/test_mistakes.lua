@@ -42,6 +42,8 @@ refused(scene("shape = impact.sphere(0.1), mass = -1,"), "script.lua:2: body 'co
 refused(scene("shape = impact.sphere(0.1), mass = 0/0,"), "script.lua:2: body 'coin': mass must be a positive number, got nan")
 refused(scene("shape = impact.sphere(0.1), mass = '4',"), "script.lua:2: body 'coin': mass must be a positive number, got the string '4'")
 refused(scene("mass = 1,"), "script.lua:2: body 'coin': shape is missing")
+refused(scene("shape = impact.sphere(1e-110),"),
+  "script.lua:2: body 'coin': mass = 0: of this size and density lies beyond double precision: take other units")
 refused(scene("shape = 3,"), "script.lua:2: body 'coin': shape must be a shape such as impact.sphere(0.3), got a number")
 refused(scene("shape = impact.sphere(-0.1),"), "script.lua:3: argument 'radius' must be a positive number, got -0.1")
 refused(scene(good .. "density = 3,"), "script.lua:2: body 'coin': give mass or density, not both")
@@ -68,6 +70,7 @@ refused(scene(good, "rules = { friction = 'mean' },"),
 refused(scene(good, "rules = { frition = 'product' },"), "script.lua:6: unknown key 'frition' in rules (did you mean 'friction'?)")
 refused(scene(good, "forces = { { strength = 1 } },"),
   "script.lua:6: forces[1] must be made with impact.wind, impact.attraction or impact.force")
+refused(scene(good, "forces = impact.attraction {},"), "script.lua:6: scene 'toss': forces must be a list of forces, got one force")
 refused(scene(good, "forces = { impact.wind { direction = { 1, 0, 0 } } },"), "script.lua:7: wind: strength is missing")
 refused(scene(good, "forces = { impact.wind { strength = 1, direction = { 0, 0, 0 } } },"), "script.lua:7: wind: direction must not be zero")
 refused(scene(good, "forces = { impact.force { name = 'pull' } },"), "script.lua:7: force 'pull': law is missing")
@@ -115,7 +118,7 @@ local function plot_refused(plot, wanted)
   check.equal(code, 1)
   check.truth(runner.exists("o/toss.csv") and not runner.exists("o/toss.png"), "CSV, but no picture")
 end
-plot_refused("return 3", ": the plot of scene 'toss': a figure is made with plot.figure")
+plot_refused("return 3", ": the plot of scene 'toss': a figure is made with plot.figure; this is a number")
 plot_refused("return { kind = 'figure', { kind = 'panel', { kind = 'line', { 1 }, { 1, 2 } } } }",
   ": the plot of scene 'toss': line: columns 1 and 2 have 1 and 2 rows")
 plot_refused("return { kind = 'figure', print }", ": the plot of scene 'toss': a figure holds numbers, strings and tables only")
@@ -123,6 +126,13 @@ plot_refused("return (require 'quat.plot'.figure { titel = 'x' })", ":7: unknown
 plot_refused("require 'quat.plot'.save({}, 'x')", ":7: figure 'x': a figure is made with plot.figure") -- our own layers are not to blame
 plot_refused("require 'quat.csv'.save('x', { 'a' }, {})", ":7: csv: 1 names for 0 columns")
 plot_refused("return (scene:figur())", ":7: attempt to call a nil value (method 'figur')")
+
+plot_refused("", ": the plot of scene 'toss': a figure is made with plot.figure; this is a nil")
+plot_refused("local figure = require 'impact.portrait'.space(scene, 'floor')", ":7: portrait: body 'floor' does not move: there is nothing to draw")
+-- One body's picture needs nothing but its name.
+if runner.script(scene(good, "plot = function(s) return require 'impact.portrait'.space(s, 'coin') end,")) == 0 then
+  check.equal(runner.script(scene(good, "plot = function(s) return require 'impact.portrait'.planar(s, 'coin') end,")), 0)
+end
 
 -- Laws of force that fail, and a run that fails with the script in order.
 local code, _, said

@@ -331,7 +331,7 @@ check.raises("argument 'parts' must be a whole number from 1 to 1000000, got 0",
 check.raises("argument 'angle' would give more than 1000000 arrows, got 1e+10", quat.spinor_arrows, 1e10)
 check.raises("argument 'v' must be a vector {x, y, z} of finite numbers, got nothing", one.rotate, one)
 check.raises("argument 'q' must not be zero", quat.rotate, zero, x)
-check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got ZZX",
+check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got the string 'ZZX'",
   quat.from_euler, "ZZX", 1, 2, 3)
 check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got 3",
   quat.from_euler, 3, 1, 2, 3)
@@ -353,6 +353,8 @@ check.raises("layout: reaches from data[1] to data[6], but data has 5 numbers", 
 check.raises("layout: reaches from data[-1] to data[1], but data has 3 numbers", one.rotate_strided, one, { 1, 2, 3 },
   { count = 1, component = -1 })
 check.raises("layout: count is missing", one.rotate_strided, one, {}, {})
+check.raises("argument 'sequence' must be three axes such as 'ZYX' (intrinsic) or 'xyz' (extrinsic), no two neighbours alike, got a table",
+  quat.from_euler, {}, 1, 2, 3)
 check.raises("unknown key 'stride' in layout (keys: count, first, point, component)", one.rotate_strided, one, {}, { count = 0, stride = 3 })
 check.raises("argument 't[1]' must be a number from 0 to 1, got 1.5", quat.slerp_each, { one }, { one }, { 1.5 })
 check.raises("argument 'matrices[1]' must have 3 rows, got 4", quat.from_matrix_list, { { x, y, z, x } })

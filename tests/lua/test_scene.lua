@@ -67,8 +67,19 @@ do
   check.equal(usage.events.impact, usage.impacts_closed_form)
   check.close(energy.start - energy.impact_loss - energy.kinetic - energy.potential, 0, 1e-12)
   check.truth(scene:summary(reason):find("drop: end of time, t = 0.9 s", 1, true) == 1, "the summary's first line")
+  check.equal(tostring(scene), "scene 'drop' (2 bodies)")
   scene:close()
   check.raises("the scene is closed", function() scene:time() end)
+end
+
+-- Moments by letters, in the energies too.
+do
+  local turning = impact.scene { duration = 1, gravity = { x = 0, y = 0, z = -10 }, bodies = {
+    impact.body { name = "top", shape = impact.sphere(1), mass = 2, moments = { x = 1, y = 2, z = 3 }, omega = { 0, 0, 4 } } } }
+  turning:run { record = true }
+  local energies = turning:energies("top", turning:track("top"))
+  check.equal(energies.rotation[1], 24)
+  check.equal(tostring(turning), "scene 'scene' (1 body)")
 end
 
 -- In pieces, and stopped.
@@ -77,6 +88,8 @@ do
   whole:run_to(0.7)
   for k = 1, 7 do check.equal(pieces:run_to(k / 10), "end of time") end
   check.close(pieces:state("ball").position.z, whole:state("ball").position.z, 1e-14)
+  local reason, why, kind = pieces:run_to(0.5)
+  check.truth(reason == nil and why:find("is over: the scene stands at 0.7", 1, true) and kind == "run", "time does not go back")
   check.equal(drop():run { on_sample = function(state) return state.t < 0.2 end }, "stopped by the script")
   local scene = drop()
   check.equal(scene:run { on_event = function() return false end }, "stopped by the script")

@@ -92,7 +92,7 @@ IMPACT_API impact_status impact_scene_create(const impact_scene_def *def, impact
                                              unsigned long message_size);
 IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
 
-/* Runs on to the definition's duration, or to time t of it. Rows go to the recorder (NULL: nowhere). Samples stand at k/output_rate;
+/* Runs on to the definition's duration, or to time t, which is not over. Rows go to the recorder (NULL: nowhere). Samples stand at k/output_rate;
  * two more, just before and just after, beside each event, for the bodies in it. IMPACT_OK: the time was reached; IMPACT_AT_REST:
  * nothing moves any more and nothing will, state stands until the end; IMPACT_SOFT: one of these, but the energy account is off by
  * more than 1e-8 (and 1000 times the tolerance) of the energies in it; other positive statuses: stopped early; negative: failed. See impact_scene_message. A scene at rest or stopped can be run on. */
