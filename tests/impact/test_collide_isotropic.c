@@ -41,13 +41,58 @@ static void assert_near(const char *what, double x, double wanted, double size, 
     fail_msg("%s is %.17g, wanted %.17g; off by %.3g of %.3g", what, x, wanted, fabs(x - wanted) / size, tolerance);
 }
 
+static void assert_same_course(const impact_course *one, const impact_course *two)
+{
+    const double size = two->p, work = fabs(two->work_c) + two->work_r;
+    assert_near("p", one->p, two->p, size, 1e-12);
+    assert_near("px", one->px, two->px, size * (1 + one->mu), 1e-12);
+    assert_near("py", one->py, two->py, size * (1 + one->mu), 1e-12);
+    assert_near("uz", one->uz, two->uz, 1 + fabs(two->uz), 1e-12);
+    assert_near("p_c", one->p_c, two->p_c, size, 1e-12);
+    assert_near("work_c", one->work_c, two->work_c, work, 1e-12);
+    assert_near("work_r", one->work_r, two->work_r, work, 1e-12);
+    assert_near("work_f", one->work_f, two->work_f, work - two->work_f, 1e-12);
+    assert_int_equal(one->compressions, two->compressions);
+}
+
+/* As in collide_isotropic.c, in long double: s = X e^(alpha tau) + Y e^(-beta tau). */
+typedef long double wide;
+typedef struct whirl {
+    wide g, mu, alpha, beta, X, Y;
+} whirl;
+
+static whirl whirl_of(const impact_frame *f, double mu, double ux, double uy)
+{
+    const wide c = f->c, d = f->d, g = hypotl(c, d), along = (c * ux + d * uy) / g, across = (c * uy - d * ux) / g;
+    const wide large = (hypotl(ux, uy) + fabsl(along)) / 2, small = across * across / (4 * large);
+    const bool with = along > 0;
+    return (whirl){g, mu, g - mu * f->a, g + mu * f->a, with ? large : small, with ? small : large};
+}
+
+/* How far uz falls while it is negative for the first time, from its top to where sliding stops; 0: nothing of it. */
+static double fall_of(const whirl *w)
+{
+    const wide X = (1 - w->mu * w->g) * w->X, Y = (1 + w->mu * w->g) * w->Y;
+    if (X >= 0) return 0;
+    const wide top = fmaxl(logl(Y / -X) / (2 * w->g), 0);
+    const wide rise = X * expm1l(w->alpha * top) / w->alpha - Y * expm1l(-w->beta * top) / w->beta;
+    return rise >= 1 ? 0 : (double)(X * expl(w->alpha * top) / w->alpha - Y * expl(-w->beta * top) / w->beta);
+}
+
+/* The least s of sliding that does not stop. */
+static double least_speed(const whirl *w)
+{
+    const wide turn = logl(w->beta * w->Y / (w->alpha * w->X)) / (w->alpha + w->beta);
+    return (double)(w->X * expl(w->alpha * turn) * (1 + w->alpha / w->beta));
+}
+
 /* Sliding starts in any direction, along M_tz and against it too but for very little; friction from hardly any to much; alpha of either
  * sign and nearly 0; every law. */
 static void as_the_series(void **state)
 {
     (void)state;
     uint64_t g = 5;
-    int sticks = 0, slips = 0, jams = 0, again = 0, reversals = 0, falls = 0, missed = 0;
+    int sticks = 0, slips = 0, jams = 0, again = 0;
     for (int i = 0; i < 60000; i++) {
         const double share = i % 5 == 0 ? decades(&g, -12, -1) : 0.95 * case_random(&g);
         const double angle = 7 * case_random(&g), a = decades(&g, -0.5, 1);
@@ -59,22 +104,18 @@ static void as_the_series(void **state)
         const double theta = along + aside + (i % 2) * 3.14159265358979, s = decades(&g, -4, 4);
         const impact_course one = solved(&f, &c, s * cos(theta), s * sin(theta), false),
                             two = solved(&f, &c, s * cos(theta), s * sin(theta), true);
-        const double size = two.p, work = fabs(two.work_c) + two.work_r;
-        assert_near("p", one.p, two.p, size, 1e-12);
-        assert_near("px", one.px, two.px, size * (1 + c.friction), 1e-12);
-        assert_near("py", one.py, two.py, size * (1 + c.friction), 1e-12);
-        assert_near("uz", one.uz, two.uz, 1 + fabs(two.uz), 1e-12);
-        assert_near("p_c", one.p_c, two.p_c, size, 1e-12);
-        assert_near("work_c", one.work_c, two.work_c, work, 1e-12);
-        assert_near("work_r", one.work_r, two.work_r, work, 1e-12);
-        assert_near("work_f", one.work_f, two.work_f, work - two.work_f, 1e-12);
-        assert_int_equal(one.compressions, two.compressions);
-        /* u_z falls by less than the rounding of the one or, rarely, of the other */
-        falls += one.jammed && !two.jammed;
-        missed += two.jammed && !one.jammed;
+        assert_same_course(&one, &two);
+        /* A jam, however small, is seen as soon as uz = -1 shows it; compressed again is a jam too. */
+        const whirl w = whirl_of(&f, c.friction, s * cos(theta), s * sin(theta));
+        const double fall = fall_of(&w);
+        const bool jams_plainly = fall > 4 * DBL_EPSILON || one.compressions > 1;
+        if (jams_plainly || fall == 0) {
+            assert_int_equal(one.jammed, jams_plainly);
+            assert_int_equal(two.jammed, jams_plainly);
+        }
         /* Sliding that turns past u_t = 0 by a hair: the series takes that for a reversal. */
         if (memchr(two.phases, IMPACT_REVERSAL, (size_t)two.phase_count)) {
-            reversals++;
+            assert_true(w.alpha > 0 && least_speed(&w) < 1e-16 * s);
             continue;
         }
         assert_int_equal(one.phase_count, two.phase_count);
@@ -85,11 +126,7 @@ static void as_the_series(void **state)
         jams += one.jammed;
         again += one.compressions > 1;
     }
-    print_message(
-        "%d stick, %d slip, %d jam (%d and %d by a hair), %d are compressed again; %d pass u_t = 0 by a hair\n", sticks,
-        slips, jams, falls, missed, again, reversals);
-    assert_true(sticks > 1000 && slips > 1000 && jams > 1000 && again > 0 && reversals < 100 && falls < 100 &&
-                missed < 3);
+    assert_true(sticks > 1000 && slips > 1000 && jams > 1000 && again > 0);
 }
 
 /* mu a = g: alpha = 0, and s = X + Y e^(-2 g tau): sliding across M_tz at first neither stops nor grows without end. With X = Y = 1/2,
