@@ -181,16 +181,28 @@ typedef struct walk {
     bool failed, inflection;
 } walk;
 
-static double speed_at(double t, void *context)
+static double speed_at(double t, void *context, double *error)
 {
     walk *w = context;
     qvec3 d[4];
-    double e[4];
+    double e[4] = {0};
     if (w->failed || !derivatives(w->curve, t, 1, d, e)) {
         w->failed = true;
         return 0;
     }
+    *error = e[1];
     return qvec3_norm(d[1]);
+}
+
+/* The error of the derivatives that spoils an integral, in parts of it and its unit. */
+static const double rough = 1e-8;
+
+/* How far from the origin the curve's ends are: the size that values, and differences of them, are rounded to. */
+static double reach(const quat_curve *curve)
+{
+    qvec3 first[4], last[4];
+    if (!ask(curve, curve->start, first) || !ask(curve, curve->end, last)) return 0;
+    return fmax(qvec3_norm(first[0]), qvec3_norm(last[0]));
 }
 
 static quat_status check_ends(const quat_curve *curve, double a, double b)
@@ -203,12 +215,14 @@ static quat_status check_ends(const quat_curve *curve, double a, double b)
 
 quat_status quat_curve_length(const quat_curve *curve, double a, double b, double *length)
 {
-    walk w = {curve, false, false};
+    walk w = {.curve = curve};
+    double noise;
     *length = 0;
     quat_status status = check_ends(curve, a, b);
     if (status != QUAT_OK) return status;
-    status = quat_quadrature(speed_at, &w, a, b, 1e-13, length);
-    if (!w.failed && isfinite(*length)) return status;
+    status = quat_quadrature(speed_at, &w, a, b, 2e-15, length, &noise);
+    if (!w.failed && isfinite(*length))
+        return noise > rough * fabs(*length) && noise > rough * reach(curve) ? QUAT_NOT_CONVERGED : status;
     *length = 0;
     return w.failed ? QUAT_EDOMAIN : QUAT_ERANGE;
 }
@@ -218,16 +232,17 @@ quat_status quat_curve_length(const quat_curve *curve, double a, double b, doubl
 static quat_status advance(const quat_curve *curve, double from, double distance, double high, double guess, double *t)
 {
     double low = from, at = from, length = 0, x = fmin(fmax(guess, low), high);
-    int rough = 0;
-    for (int round = 0; round < 100 && rough < 4; round++) {
-        walk w = {curve, false, false};
+    int poor = 0;
+    for (int round = 0; round < 100 && poor < 4; round++) {
+        walk w = {.curve = curve};
         double piece;
         const quat_status status = quat_curve_length(curve, at, x, &piece);
         if (status < 0) return status;
-        rough += status != QUAT_OK;
+        poor += status != QUAT_OK;
         length += piece;
         at = x;
-        const double off = length - distance, speed = speed_at(x, &w);
+        double error;
+        const double off = length - distance, speed = speed_at(x, &w, &error);
         if (w.failed) return QUAT_EDOMAIN;
         if (off > 0)
             high = x;
@@ -235,10 +250,10 @@ static quat_status advance(const quat_curve *curve, double from, double distance
             low = x;
         *t = x;
         if (fabs(off) <= 4 * DBL_EPSILON * distance || high - low <= 2 * DBL_EPSILON * fmax(fabs(low), fabs(high)))
-            return rough ? QUAT_NOT_CONVERGED : QUAT_OK;
+            return poor ? QUAT_NOT_CONVERGED : QUAT_OK;
         double next = x - off / speed;
         if (!(next > low && next < high)) next = low + (high - low) / 2;
-        if (next == x) return rough ? QUAT_NOT_CONVERGED : QUAT_OK;
+        if (next == x) return poor ? QUAT_NOT_CONVERGED : QUAT_OK;
         x = next;
     }
     return QUAT_NOT_CONVERGED;
@@ -288,28 +303,39 @@ static bool bend(walk *w, double t, quat_curve_point *point)
     return !w->failed;
 }
 
-static double curvature_at(double t, void *context)
+static double curvature_at(double t, void *context, double *error)
 {
     quat_curve_point point;
-    return bend(context, t, &point) ? point.curvature * point.speed : 0;
+    if (!bend(context, t, &point)) return 0;
+    *error = point.curvature_error * point.speed;
+    return point.curvature * point.speed;
 }
 
-static double torsion_at(double t, void *context)
+static double torsion_at(double t, void *context, double *error)
 {
     quat_curve_point point;
-    return bend(context, t, &point) ? point.torsion * point.speed : 0;
+    if (!bend(context, t, &point)) return 0;
+    *error = point.torsion_error * point.speed;
+    return point.torsion * point.speed;
+}
+
+/* The integral of an angle along the whole curve. */
+static quat_status total_angle(quat_integrand f, walk *w, double *angle)
+{
+    double noise;
+    const quat_status status = quat_quadrature(f, w, w->curve->start, w->curve->end, 1e-14, angle, &noise);
+    return noise > rough * (fabs(*angle) + 1) ? QUAT_NOT_CONVERGED : status;
 }
 
 quat_status quat_curve_total(const quat_curve *curve, quat_curve_totals *totals)
 {
     const quat_curve_totals none = {0, 0, 0};
-    walk w = {curve, false, false};
+    walk w = {.curve = curve};
     *totals = none;
     if (!quat_curve_is_good(curve)) return QUAT_EARGUMENT;
-    const double tolerance = curve->known >= 3 ? 1e-12 : 1e-8;
     const quat_status s1 = quat_curve_length(curve, curve->start, curve->end, &totals->length),
-                      s2 = quat_quadrature(curvature_at, &w, curve->start, curve->end, tolerance, &totals->curvature),
-                      s3 = quat_quadrature(torsion_at, &w, curve->start, curve->end, tolerance, &totals->torsion);
+                      s2 = total_angle(curvature_at, &w, &totals->curvature),
+                      s3 = total_angle(torsion_at, &w, &totals->torsion);
     if (s1 < 0 || w.failed) {
         *totals = none;
         return s1 < 0 ? s1 : QUAT_EDOMAIN;

@@ -7,11 +7,14 @@
 
 #include <quat/quat.h>
 
-typedef double (*quat_integrand)(double t, void *context);
+/* f(t), and in *error (0 before) how far off it may be. */
+typedef double (*quat_integrand)(double t, void *context, double *error);
 
-/* The integral of f over a ... b to about `tolerance` of the integral of |f|. GSL's own drivers call the process-wide
- * error handler when they fall short of it, its rules never do: halving is done here. QUAT_NOT_CONVERGED when 40
- * halvings are not enough, or 4000 intervals. */
-quat_status quat_quadrature(quat_integrand f, void *context, double a, double b, double tolerance, double *integral);
+/* The integral of f over a ... b: each interval is halved until that changes it by no more than `tolerance` of the whole
+ * integral of |f|, or than f's own errors may; what these may make of the integral comes out in *noise. GSL's own
+ * drivers call the process-wide error handler when they fall short, its rules never do: halving is done here.
+ * QUAT_NOT_CONVERGED when 40 halvings are not enough, or 4000 intervals. */
+quat_status quat_quadrature(quat_integrand f, void *context, double a, double b, double tolerance, double *integral,
+                            double *noise);
 
 #endif

@@ -72,8 +72,8 @@ QUAT_API quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve
 /* ---- arc length ---- */
 
 /* The length from t = a to t = b, negative for b < a: adaptive Gauss-Kronrod over the speed, to about 1e-13 of it.
- * QUAT_NOT_CONVERGED with the best value when that is not reached (a speed with poles, or noise). QUAT_ERANGE when it
- * overflows; other statuses as quat_curve_derivatives'; *length = 0 then. */
+ * QUAT_NOT_CONVERGED with the best value when that is not reached (a speed with poles, noise, differences that err by
+ * 1e-8 of the curve's size). QUAT_ERANGE when it overflows; other statuses as quat_curve_derivatives'; *length = 0 then. */
 QUAT_API quat_status quat_curve_length(const quat_curve *curve, double a, double b, double *length);
 /* The t at `length` along the curve from its start: Newton's method, kept in a bracket. QUAT_EDOMAIN for a length
  * outside 0 ... the whole (by more than 1e-9 of it), QUAT_NOT_CONVERGED as for lengths. */

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Moving frames: against closed forms, the total torsion, and the carrying of a vector over a polygon in quadruple
+ * precision, which knows neither reflections nor torsion.
+ */
+#include "oracle.h"
+
+#include <quat/curve.h>
+#include <quat/family.h>
+#include <quat/rotation.h>
+#include "near.h"
+
+static const double pi = 3.14159265358979324;
+static const qvec3 x_axis = {1, 0, 0};
+
+/* On a helix the minimal frame is Frenet's turned by minus torsion times length. */
+static double helix_error(size_t n, double *tangent)
+{
+    static quat q[4097];
+    quat_family family;
+    quat_curve curve;
+    quat_framing_report report;
+    double worst = 0;
+    quat_helix(1, 4, 2, &family, &curve);
+    const double b = 4 / (2 * pi), c = sqrt(1 + b * b);
+    assert_int_equal(quat_curve_frames(&curve, QUAT_MINIMAL, NULL, n, NULL, q, &report), QUAT_OK);
+    assert_true(report.holonomy == 0 && report.monodromy == 0);
+    for (size_t i = 0; i < n; i++) {
+        const double t = curve.end * (double)i / (double)(n - 1), angle = -b / (c * c) * c * t;
+        quat_curve_point point;
+        quat_curve_at(&curve, fmin(t, curve.end), &point);
+        worse(&worst,
+              quat_rotation_distance(q[i], quat_mul(point.frame, quat_make(cos(angle / 2), sin(angle / 2), 0, 0))));
+        worse(tangent, qvec3_norm(qvec3_sub(quat_rotate(q[i], x_axis), quat_rotate(point.frame, x_axis))));
+        if (i > 0) assert_true(quat_dot(q[i], q[i - 1]) > 0);
+    }
+    return worst;
+}
+
+static void minimal_frames_are_of_order_four(void **state)
+{
+    (void)state;
+    double before = 0, tangent = 0, least = INFINITY, most = 0;
+    for (size_t n = 33; n <= 1025; n = 2 * n - 1) {
+        const double error = helix_error(n, &tangent);
+        if (n > 33) least = fmin(least, log2(before / error)), most = fmax(most, log2(before / error));
+        before = error;
+    }
+    if (getenv("QUAT_TEST_SHOW")) printf("order of the double reflection: %.3f ... %.3f\n", least, most);
+    assert_true(least > 3.95 && most < 4.05);
+    assert_bound("minimal frame, 513 steps a turn", before, 1e-10);
+    assert_bound("its tangent", tangent, 3e-15);
+}
+
+static void closed_frames_close(void **state)
+{
+    (void)state;
+    static quat q[2001], frenet_frame[2001];
+    double gap = 0, side = 0;
+    int monodromy[3];
+    for (int which = 0; which < 3; which++) {
+        quat_family family;
+        quat_curve curve;
+        quat_framing_report report, other;
+        if (which == 0) quat_ellipse(2, 1, &family, &curve);
+        if (which == 1) quat_trefoil(1, &family, &curve);
+        if (which == 2) quat_torus_knot(2, 0.5, 2, 5, &family, &curve);
+        assert_int_equal(quat_curve_frames(&curve, QUAT_CLOSED, NULL, 2001, NULL, q, &report), QUAT_OK);
+        monodromy[which] = report.monodromy;
+        worse(&gap, quat_rotation_distance(q[0], q[2000]));
+        for (size_t i = 1; i < 2001; i++) assert_true(quat_dot(q[i], q[i - 1]) > 0.99);
+        assert_true((quat_dot(q[0], q[2000]) < 0 ? -1 : 1) == report.monodromy);
+        /* the same tangents as Frenet's */
+        assert_int_equal(quat_curve_frames(&curve, QUAT_FRENET, NULL, 2001, NULL, frenet_frame, &other), QUAT_OK);
+        worse(&gap, quat_rotation_distance(frenet_frame[0], frenet_frame[2000]));
+        for (size_t i = 0; i < 2001; i++)
+            worse(&side, qvec3_norm(qvec3_sub(quat_rotate(q[i], x_axis), quat_rotate(frenet_frame[i], x_axis))));
+    }
+    assert_true(monodromy[0] == -1); /* one full turn about z */
+    assert_bound("closed frames come back, rad", gap, 4e-15);
+    assert_bound("tangents of closed and Frenet frames", side, 4e-15);
+}
+
+/* The angle about their common x axis from p to q. */
+static double turned(quat p, quat q)
+{
+    const quat s = quat_mul(quat_conj(p), q);
+    return remainder(2 * atan2(s.x, s.w), 2 * pi);
+}
+
+/* Closed frames differ from minimal ones by a turn about the tangent in proportion to arc length. */
+static void holonomy_is_taken_back_evenly(void **state)
+{
+    (void)state;
+    enum { n = 401 };
+    static quat minimal[n], closed[n];
+    quat_family family;
+    quat_curve curve;
+    quat_framing_report report;
+    double whole, worst = 0;
+    quat_trefoil(1, &family, &curve);
+    assert_int_equal(quat_curve_length(&curve, 0, 2 * pi, &whole), QUAT_OK);
+    assert_int_equal(quat_curve_frames(&curve, QUAT_MINIMAL, NULL, n, NULL, minimal, &report), QUAT_OK);
+    assert_true(fabs(report.holonomy) > 0.1);
+    assert_int_equal(quat_curve_frames(&curve, QUAT_CLOSED, NULL, n, NULL, closed, NULL), QUAT_OK);
+    for (int i = 0; i < n; i++) {
+        double gone;
+        assert_int_equal(quat_curve_length(&curve, 0, fmin(2 * pi * i / (n - 1), 2 * pi), &gone), QUAT_OK);
+        worse(&worst, fabs(remainder(turned(minimal[i], closed[i]) + report.holonomy * gone / whole, 2 * pi)));
+    }
+    assert_bound("twist of closed frames, rad", worst, 1e-14);
+}
+
+/* One round of the tangents on their sphere, as a polygon of great arcs: a vector carried along each by the shortest
+ * rotation comes back turned. Twice with half the steps, and extrapolated. */
+static double carried_round(const quat_curve *curve, int n)
+{
+    wquat q = {1, 0, 0, 0}, first = {0, 0, 0, 0}, before = first;
+    for (int i = 0; i <= n; i++) {
+        qvec3 d[4];
+        assert_int_equal(quat_curve_derivatives(curve, i < n ? curve->end * i / n : curve->end, 1, d, NULL), QUAT_OK);
+        const wquat t = wide_unit(wide_vec(d[1]));
+        if (i == 0) first = t;
+        if (i > 0) { /* 1 - t before: twice the half-way quaternion's direction */
+            const wquat turn = wide_mul(i < n ? t : first, before), half = {1 - turn.w, -turn.x, -turn.y, -turn.z};
+            q = wide_mul(wide_unit(half), q);
+        }
+        before = t;
+    }
+    return 2 * atan2((double)wide_dot(q, first), (double)q.w);
+}
+
+static void holonomy_is_minus_the_total_torsion(void **state)
+{
+    (void)state;
+    enum { n = 4001 };
+    static quat q[n];
+    random_state r = {311};
+    double torsion = 0, polygon = 0;
+    for (int round = 0; round < 60; round++) {
+        quat_family family;
+        quat_curve curve;
+        quat_framing_report report;
+        quat_curve_totals total;
+        const double size = random_scale(&r, -3, 3), thick = size * random_between(&r, 0.2, 0.6);
+        if (round == 0)
+            quat_trefoil(1, &family, &curve);
+        else if (round == 1)
+            quat_viviani(1, &family, &curve);
+        else
+            quat_torus_knot(size, thick, 1 + round % 3, 2 + round % 3, &family, &curve);
+        assert_int_equal(quat_curve_total(&curve, &total), QUAT_OK);
+        assert_int_equal(quat_curve_frames(&curve, QUAT_MINIMAL, NULL, n, NULL, q, &report), QUAT_OK);
+        worse(&torsion, fabs(remainder(report.holonomy + total.torsion, 2 * pi)));
+        if (round % 10 > 2) continue;
+        const double coarse = carried_round(&curve, 2000),
+                     fine = coarse + remainder(carried_round(&curve, 4000) - coarse, 2 * pi);
+        worse(&polygon, fabs(remainder(report.holonomy - (fine + (fine - coarse) / 3), 2 * pi)));
+    }
+    assert_bound("holonomy + total torsion, full turns apart", torsion, 1e-9);
+    assert_bound("holonomy against a polygon of tangents", polygon, 1e-9);
+}
+
+/* A plane curve's frame turns about its normal as often as its tangent goes round: an odd number of turns is -1. */
+static bool limacon(double t, qvec3 d[4], void *context)
+{
+    const double loop = *(const double *)context;
+    double c[4] = {cos(t), -sin(t), -cos(t), sin(t)}, s[4] = {sin(t), cos(t), -sin(t), -cos(t)}, power = loop;
+    const double c2[4] = {cos(2 * t), -sin(2 * t), -cos(2 * t), sin(2 * t)},
+                 s2[4] = {sin(2 * t), cos(2 * t), -sin(2 * t), -cos(2 * t)};
+    for (int k = 0; k < 4; k++, power *= 2) d[k] = qvec3_make(c[k] + power * c2[k], s[k] + power * s2[k], 0);
+    return true;
+}
+static bool eight(double t, qvec3 d[4], void *context)
+{
+    (void)context;
+    d[0] = qvec3_make(sin(t), sin(2 * t) / 2, 0);
+    d[1] = qvec3_make(cos(t), cos(2 * t), 0);
+    d[2] = qvec3_make(-sin(t), -2 * sin(2 * t), 0);
+    d[3] = qvec3_make(-cos(t), -4 * cos(2 * t), 0);
+    return true;
+}
+
+static void monodromy_counts_turns(void **state)
+{
+    (void)state;
+    quat q[201];
+    quat_framing_report report;
+    double round = 0.1, looped = 2;
+    const quat_curve once = {limacon, &round, 0, 2 * pi, true, 3}, twice = {limacon, &looped, 0, 2 * pi, true, 3},
+                     never = {eight, NULL, 0, 2 * pi, true, 3};
+    const quat_curve *const curves[3] = {&never, &once, &twice};
+    for (int turns = 0; turns < 3; turns++)
+        for (int framing = QUAT_MINIMAL; framing <= QUAT_CLOSED; framing++) {
+            assert_int_equal(quat_curve_frames(curves[turns], (quat_framing)framing, NULL, 201, NULL, q, &report),
+                             QUAT_OK);
+            assert_near(report.holonomy, 0, 1e-14);
+            assert_int_equal(report.monodromy, turns == 1 ? -1 : 1);
+        }
+    assert_int_equal(quat_curve_frames(&never, QUAT_FRENET, NULL, 200, NULL, q, &report), QUAT_NOT_UNIQUE);
+    assert_int_equal(report.inflections, 3); /* no normal at both ends, which are one place, and turned over half-way */
+}
+
+static void inflections_are_reported(void **state)
+{
+    (void)state;
+    quat_family family;
+    quat_curve curve;
+    quat_curve_point point;
+    quat_framing_report report;
+    quat q[101];
+    quat_cubic(1, true, &family, &curve);
+    assert_int_equal(quat_curve_at(&curve, 0, &point), QUAT_NOT_UNIQUE);
+    assert_true(point.curvature == 0 && point.torsion == 0 && quat_equal(point.frame, quat_identity()));
+    assert_int_equal(quat_curve_at(&curve, 0.1, &point), QUAT_OK);
+    assert_near3(quat_rotate(point.frame, qvec3_make(0, 0, 1)), qvec3_make(0, 0, 1), 1e-15);
+    assert_int_equal(quat_curve_frames(&curve, QUAT_FRENET, NULL, 101, NULL, q, &report), QUAT_NOT_UNIQUE);
+    assert_int_equal(report.inflections, 2); /* no normal at 0, and turned over after it */
+    assert_int_equal(quat_curve_frames(&curve, QUAT_FRENET, NULL, 100, NULL, q, &report), QUAT_NOT_UNIQUE);
+    assert_int_equal(report.inflections, 1);
+    const quat up = {1, 0, 0, 0};
+    assert_int_equal(quat_curve_frames(&curve, QUAT_MINIMAL, &up, 101, NULL, q, &report), QUAT_OK);
+    assert_int_equal(report.inflections, 0);
+    for (int i = 0; i < 101; i++) assert_near3(quat_rotate(q[i], qvec3_make(0, 0, 1)), qvec3_make(0, 0, 1), 1e-14);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(minimal_frames_are_of_order_four), cmocka_unit_test(closed_frames_close),
+        cmocka_unit_test(holonomy_is_taken_back_evenly),    cmocka_unit_test(holonomy_is_minus_the_total_torsion),
+        cmocka_unit_test(monodromy_counts_turns),           cmocka_unit_test(inflections_are_reported)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
