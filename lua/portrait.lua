@@ -273,6 +273,26 @@ function portrait.ball(state, radius, color1, color2)
   return items
 end
 
+--- Any shape at a state (scene:state), its centre at the state's position: one plot item.
+---@param state impact.state
+---@param shape impact.shape
+---@param color? string
+---@param opacity? number
+---@return plot.item
+function portrait.solid(state, shape, color, opacity)
+  local around, up = 48, 24
+  local points, x, y, z = shape:mesh(around, up), {}, {}, {}
+  for j = 0, up do
+    x[j + 1], y[j + 1], z[j + 1] = {}, {}, {}
+    for i = 0, around do -- the first once more: closed
+      local p = points[j * around + i % around + 1]
+      local px, py, pz = turn(state.orientation, p[1], p[2], p[3])
+      x[j + 1][i + 1], y[j + 1][i + 1], z[j + 1][i + 1] = px + state.position[1], py + state.position[2], pz + state.position[3]
+    end
+  end
+  return plot.surface { x, y, z, color = color, opacity = opacity or 1 }
+end
+
 --- A sheet of a plane at its state, from low to high along its own axes: one plot item.
 ---@return plot.item
 function portrait.sheet(state, low, high, color, opacity)

@@ -80,9 +80,9 @@ static int write_commands(lua_State *to) /* protected: (FILE *, figure) */
     FILE *file = lua_touserdata(to, 1);
     size_t length;
     luaL_openlibs(to);
-    impact_runner_load_layer(to, "quat.plot");
+    impact_runner_load_layer(to, "quat.gnuplot");
     lua_call(to, 0, 1);
-    lua_getfield(to, -1, "gnuplot");
+    lua_getfield(to, -1, "commands");
     lua_pushvalue(to, 2);
     lua_call(to, 1, 1);
     const char *text = luaL_checklstring(to, -1, &length);
@@ -107,7 +107,7 @@ static bool make_commands(lua_State *L, int index, impact_runner *runner, FILE *
     if (!wrong && lua_pcall(to, 2, 0, 0) != LUA_OK) {
         const char *text = lua_tostring(to, -1);
         const char *plain =
-            text && strncmp(text, "quat.plot:", 10) == 0 ? strchr(text, ' ') : NULL; /* not our line number */
+            text && strncmp(text, "quat.gnuplot:", 13) == 0 ? strchr(text, ' ') : NULL; /* not our line number */
         wrong = plain ? plain + 1 : text ? text : "it cannot be drawn";
     }
     if (wrong) snprintf(message, size, "%s", wrong);

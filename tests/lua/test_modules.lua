@@ -87,6 +87,7 @@ refuses("points: shape must be one of 'circle', 'cross', 'dot', 'square', 'star'
 refuses("line: color must be '#rrggbb' or one of 'black', 'blue', 'dark', 'green', 'grey', 'orange', 'purple', 'red', 'teal', got 'pink'",
   plot.line, { { 1 }, { 2 }, color = "pink" })
 refuses("panel: xrange must be {least, most}, two numbers in order, got a table", plot.panel, { xrange = { 2, 1 } })
+refuses("figure: panel 3 stands outside of the grid of 2 columns and 1 rows", plot.figure, { grid = { 2, 1 }, plot.panel {}, plot.panel {}, plot.panel {} })
 refuses("figure: size must be a list of 2 numbers, got a table", plot.figure, { size = { 10 }, plot.panel {} })
 refuses("panel: at must be a list of 2 or 4 numbers, got 3", plot.panel, { at = 3 })
 refuses("text: {\"words\", at = ...} is needed", plot.text, { at = { 0, 0 } })

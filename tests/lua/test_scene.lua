@@ -72,13 +72,21 @@ do
   check.raises("the scene is closed", function() scene:time() end)
 end
 
--- Moments by letters, in the energies too.
+-- Moments by letters, in the energies too; and the body's surface as it stands at the end.
 do
   local turning = impact.scene { duration = 1, gravity = { x = 0, y = 0, z = -10 }, bodies = {
     impact.body { name = "top", shape = impact.sphere(1), mass = 2, moments = { x = 1, y = 2, z = 3 }, omega = { 0, 0, 4 } } } }
   turning:run { record = true }
   local energies = turning:energies("top", turning:track("top"))
   check.equal(energies.rotation[1], 24)
+  local solid = require "impact.portrait".solid(turning:state "top", impact.ellipsoid { a = 3, b = 2, c = 1 })
+  local turn, tip = turning:state("top").orientation, turning:state("top").position + turning:state("top").orientation:rotate { 3, 0, 0 }
+  check.truth(turn.w ~= 1, "it has turned")
+  local nearest = math.huge
+  for i, row in ipairs(solid[1]) do
+    for j, x in ipairs(row) do nearest = math.min(nearest, (tip - { x, solid[2][i][j], solid[3][i][j] }):norm()) end
+  end
+  check.close(nearest, 0, 1e-12)
   check.equal(tostring(turning), "scene 'scene' (1 body)")
 end
 
