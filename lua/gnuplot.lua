@@ -257,7 +257,7 @@ local function ends(panel, axis, name, three)
   local asked = panel[name .. "range"]
   local least, most
   if asked then least, most = asked[1], asked[2] else least, most = extent(panel, axis, three) end
-  if not least or not (is_finite(least) and is_finite(most)) then least, most = 0, 1 end
+  if not least or number(least, "a range") == "NaN" or number(most, "a range") == "NaN" then least, most = 0, 1 end
   local margin = 1e-9 * max(abs(least), abs(most))
   if most - least <= margin then least, most = least - max(margin, 0.5), most + max(margin, 0.5) end
   return least, most
