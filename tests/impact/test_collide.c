@@ -284,7 +284,7 @@ static void momentum_is_the_impulse(void **state)
             const impact_collider *body = &c.body[b];
             if (isinf(body->mass)) continue;
             const qvec3 p = b == 0 ? o.impulse : qvec3_neg(o.impulse), j = body->moments;
-            const double rounding = 1e-14 * (body->mass + qvec3_norm(p));
+            const double rounding = 1e-15 * (body->mass + qvec3_norm(p));
             assert_near3(qvec3_scale(qvec3_sub(o.velocity[b], body->velocity), body->mass), p, rounding);
             const qvec3 dw = quat_rotate_inverse(body->orientation, qvec3_sub(o.omega[b], body->omega));
             const qvec3 dl = quat_rotate(body->orientation, (qvec3){j.x * dw.x, j.y * dw.y, j.z * dw.z});

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * CVODE's road: tolerances, friction laws, a workspace used again, and what it refuses.
+ * CVODE's road: tolerances, friction laws, a workspace used again, and what it refuses. Where none is given its tolerance is 1e-12.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,7 +39,7 @@ static void error_follows_tolerance(void **state)
             }
             assert_true(impact_collide_workspace_count(ws).rhs_calls > 1000);
             impact_collide_workspace_destroy(ws);
-            assert_true(sum < 300 * tolerance && sum < 0.1 * before);
+            assert_true(sum < 15 * tolerance && sum < 0.1 * before);
             before = sum;
         }
     }
@@ -94,12 +94,12 @@ static void friction_laws(void **state)
         c.friction_law = constant;
         c.friction_context = &mu;
         assert_int_equal(impact_collide(&c, &law), IMPACT_OK);
-        assert_true(distance(&c, &o, &law) < 1e-8);
+        assert_true(distance(&c, &o, &law) < 1e-10);
         c.friction_law = stribeck;
         assert_int_equal(impact_collide(&c, &law), IMPACT_OK);
         assert_int_equal(law.solver, IMPACT_SOLVER_CVODE);
-        assert_true(law.impulse_tangential <= 0.5 * law.impulse_normal * (1 + 1e-9));
-        if (c.law != IMPACT_NEWTON) assert_true(law.energy_after <= law.energy_before * (1 + 1e-9));
+        assert_true(law.impulse_tangential <= 0.5 * law.impulse_normal * (1 + 1e-14));
+        if (c.law != IMPACT_NEWTON) assert_true(law.energy_after <= law.energy_before * (1 + 1e-14));
         c.friction_law = negative;
         assert_true(impact_collide(&c, &law) < 0);
     }
@@ -124,7 +124,7 @@ static void viscous_friction_on_paper(void **state)
     impact_outcome o;
     assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
     const double u = 3 * exp(-3.5 * 0.05 * 1.5);
-    assert_true(fabs(o.velocity[0].x - 0.3 * o.omega[0].y - u) < 1e-9);
+    assert_true(fabs(o.velocity[0].x - 0.3 * o.omega[0].y - u) < 1e-11);
 }
 
 static void refusals(void **state)
