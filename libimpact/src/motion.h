@@ -60,8 +60,7 @@ typedef struct impact_motion {
     impact_state *scratch, *sampled;
     bool sliding;      /* slip slows the clock: see motion_equations.c */
     bool creeping;     /* contacts that move fast over flat places do */
-    bool after_onset;  /* the last stretch was the onset of some slip */
-    bool stiff;        /* this one follows it */
+    bool stiff;        /* some slip has just begun */
     long steps_before; /* of the stretch at hand, before its contacts were put back; and when it began, s: */
     double began;
     double slip_scale;  /* m/s */

@@ -75,24 +75,19 @@ double impact_motion_clock(const impact_motion *motion)
     return 1 / slowness;
 }
 
-static void body_rates(const impact_body *body, const impact_state *s, qvec3 force, qvec3 torque, double clock,
-                       double *rate)
+/* Under the load and, where contacts are held, what the reactions do. */
+static void body_rates(const impact_body *body, const impact_state *s, const impact_load *load,
+                       const impact_effect *effect, double clock, double *rate)
 {
+    const impact_effect none = {{0, 0, 0}, {0, 0, 0}};
+    if (!effect) effect = &none;
+    const qvec3 a = qvec3_axpy(body->inverse_mass, load->force, effect->linear);
+    const qvec3 torque = qvec3_add(load->torque, impact_inertia(body, s->q, effect->angular));
     const qvec3 omega = impact_omega(body, s);
     const quat turning = quat_mul((quat){0, omega.x, omega.y, omega.z}, s->q);
-    const double values[Y_PER_BODY] = {s->v.x,
-                                       s->v.y,
-                                       s->v.z,
-                                       0.5 * turning.w,
-                                       0.5 * turning.x,
-                                       0.5 * turning.y,
-                                       0.5 * turning.z,
-                                       force.x * body->inverse_mass,
-                                       force.y * body->inverse_mass,
-                                       force.z * body->inverse_mass,
-                                       torque.x,
-                                       torque.y,
-                                       torque.z};
+    const double values[Y_PER_BODY] = {
+        s->v.x, s->v.y, s->v.z, 0.5 * turning.w, 0.5 * turning.x, 0.5 * turning.y, 0.5 * turning.z,
+        a.x,    a.y,    a.z,    torque.x,        torque.y,        torque.z};
     for (int k = 0; k < Y_PER_BODY; k++) rate[k] = clock * values[k];
 }
 
@@ -104,6 +99,17 @@ static void spot_rates(const impact_motion *motion, double clock, double *rate)
         const impact_touch *touch = impact_is_held(&world->pairs[p]) ? &motion->persist.touches[c++] : NULL;
         if (!impact_spot_suits(world, &world->pairs[p])) continue;
         for (int k = 0; k < Y_PER_SPOT; k++) *rate++ = touch && touch->carried ? clock * touch->spot_rate[k] : 0;
+    }
+}
+
+/* What is still is balanced by its reactions. */
+static void clear_still_loads(impact_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (!touch->still) continue;
+        motion->loads[touch->body1].force = motion->loads[touch->body1].torque = motion->loads[touch->body2].force =
+            motion->loads[touch->body2].torque = (qvec3){0, 0, 0};
     }
 }
 
@@ -122,14 +128,15 @@ int impact_motion_rates(double tau, const double *y, double *rate, void *context
     for (int c = 0; c < motion->persist.count; c++)
         if (motion->persist.touches[c].mode == IMPACT_SLIDE)
             rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
-    impact_persist_add_reactions(&motion->persist, motion->loads);
+    clear_still_loads(motion);
     const double clock = impact_motion_clock(motion);
     rate[Y_TIME] = clock;
     for (int k = Y_FORCE_WORK; k < Y_BODIES; k++) rate[k] *= clock;
     double *b = rate + Y_BODIES;
     for (int i = 0; i < world->body_count; i++) {
         if (world->bodies[i].is_static) continue;
-        body_rates(&world->bodies[i], &motion->scratch[i], motion->loads[i].force, motion->loads[i].torque, clock, b);
+        body_rates(&world->bodies[i], &motion->scratch[i], &motion->loads[i],
+                   motion->persist.count > 0 ? &motion->persist.effects[i] : NULL, clock, b);
         b += Y_PER_BODY;
     }
     spot_rates(motion, clock, b);

@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Slip faster than this part of the slip scale turns no faster than the motion goes. */
+static const double grown_up = 1e-2;
+
 static impact_status allocate_state(impact_motion *motion)
 {
     const impact_world *world = motion->world;
@@ -63,22 +66,29 @@ static void count_work(impact_motion *motion)
     usage->integrator_rhs_calls = adams.rhs_calls + bdf.rhs_calls;
 }
 
-static bool any_onset(const impact_motion *motion)
-{
-    for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].onset) return true;
-    return false;
-}
-
-/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does. */
-static double slowest_slip(const impact_motion *motion)
+/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does. young: of those
+ * alone whose slip has just begun, or of the others. */
+static double slowest_slip(const impact_motion *motion, bool young)
 {
     double slowest = INFINITY;
     for (int c = 0; c < motion->persist.count; c++) {
         const impact_touch *touch = &motion->persist.touches[c];
-        if (touch->mode == IMPACT_SLIDE && !touch->onset && touch->friction > 0) slowest = fmin(slowest, touch->speed);
+        if (touch->mode == IMPACT_SLIDE && !touch->onset && touch->friction > 0 &&
+            motion->world->pairs[touch->pair].young == young)
+            slowest = fmin(slowest, touch->speed);
     }
     return slowest;
+}
+
+/* What has its direction from itself again is not young any more. */
+static void grow_up(impact_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        impact_pair *pair = &motion->world->pairs[touch->pair];
+        pair->young =
+            pair->young && touch->mode == IMPACT_SLIDE && !touch->onset && touch->speed < grown_up * motion->slip_scale;
+    }
 }
 
 /* Ends the onset of every contact that slides fast enough to have a direction of its own; tells whether one did. */
@@ -89,6 +99,7 @@ static bool end_onsets(impact_motion *motion)
         const impact_touch *touch = &motion->persist.touches[c];
         if (!touch->onset || touch->speed < motion->world->onset_speed) continue;
         motion->world->pairs[touch->pair].onset = false;
+        motion->world->pairs[touch->pair].young = true;
         ended = true;
     }
     return ended;
@@ -328,7 +339,8 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         memcpy(y, motion->kept, sizeof *y * (size_t)motion->size);
         if (status == IMPACT_OK && !sampler->pulse(sampler->context, *t)) status = IMPACT_STOPPED;
         if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME || tau == stop) return status;
-        if (end_onsets(motion) || (motion->stiff && slowest_slip(motion) > 1e-2 * motion->slip_scale)) return IMPACT_OK;
+        if (end_onsets(motion) || (motion->stiff && slowest_slip(motion, true) > grown_up * motion->slip_scale))
+            return IMPACT_OK;
         still = tau > tau_before ? 0 : still + 1;
         passed = found;
         if (motion->persist.count > 0 && step + 1 == steps_before + RENEWAL) { /* held contacts drift apart otherwise */
@@ -353,11 +365,11 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
 static impact_status choose_road(impact_motion *motion, const impact_state *states)
 {
     if (motion->persist.count > 0) impact_persist_solve(&motion->persist, motion->world, states, motion->loads);
-    const double slowest = slowest_slip(motion);
     motion->slip_scale = slip_scale(motion, states);
-    motion->stiff = motion->after_onset && slowest < 1e-2 * motion->slip_scale;
-    motion->after_onset = any_onset(motion);
-    motion->sliding = isfinite(slowest) && !motion->stiff;
+    grow_up(motion);
+    const double grown = slowest_slip(motion, false);
+    motion->stiff = isfinite(slowest_slip(motion, true));
+    motion->sliding = isfinite(grown) && (!motion->stiff || grown < grown_up * motion->slip_scale);
     motion->creep_scale = creep_scale(motion, states);
     motion->creeping = motion->creep_scale > 0;
     return choose_integrator(motion, motion->stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);

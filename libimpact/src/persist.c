@@ -23,25 +23,6 @@ static void place_spot(impact_world *world, impact_pair *pair, const impact_stat
     pair->carried = true;
 }
 
-impact_status impact_persist_make_room(impact_persist *persist, int touches_needed)
-{
-    if (touches_needed <= persist->capacity) return IMPACT_OK;
-    const size_t n = 3 * (size_t)touches_needed;
-    impact_touch *touches = realloc(persist->touches, (size_t)touches_needed * sizeof *touches);
-    if (touches) persist->touches = touches;
-    double *matrix = realloc(persist->matrix, n * n * sizeof *matrix);
-    if (matrix) persist->matrix = matrix;
-    double *right = realloc(persist->right, n * sizeof *right);
-    if (right) persist->right = right;
-    int *order = realloc(persist->order, n * sizeof *order);
-    if (order) persist->order = order;
-    int *island = realloc(persist->island, (size_t)touches_needed * sizeof *island);
-    if (island) persist->island = island;
-    if (!touches || !matrix || !right || !order || !island) return IMPACT_ENOMEM;
-    persist->capacity = touches_needed;
-    return IMPACT_OK;
-}
-
 impact_status impact_persist_reserve(impact_persist *persist, impact_world *world, const impact_state *states)
 {
     int held = 0;
@@ -54,17 +35,7 @@ impact_status impact_persist_reserve(impact_persist *persist, impact_world *worl
             place_spot(world, pair, states);
     }
     persist->count = held;
-    return impact_persist_make_room(persist, held);
-}
-
-void impact_persist_free(impact_persist *persist)
-{
-    free(persist->touches);
-    free(persist->matrix);
-    free(persist->right);
-    free(persist->order);
-    free(persist->island);
-    *persist = (impact_persist){0};
+    return impact_persist_make_room(persist, held, world->body_count);
 }
 
 /* ---- geometry ---- */
@@ -231,16 +202,6 @@ double impact_persist_own_acceleration(const impact_persist *persist, const impa
 
 /* ---- constraints put back ---- */
 
-static void apply_impulse(const impact_world *world, impact_state *states, const impact_touch *touch, qvec3 impulse)
-{
-    impact_state *s1 = &states[touch->body1], *s2 = &states[touch->body2];
-    s1->v = qvec3_axpy(world->bodies[touch->body1].inverse_mass, impulse, s1->v);
-    s1->momentum = qvec3_add(s1->momentum, qvec3_cross(touch->r1, impulse));
-    if (world->bodies[touch->body2].is_static) return;
-    s2->v = qvec3_axpy(-world->bodies[touch->body2].inverse_mass, impulse, s2->v);
-    s2->momentum = qvec3_sub(s2->momentum, qvec3_cross(touch->r2, impulse));
-}
-
 void impact_persist_close_gap(impact_world *world, impact_pair *pair, const impact_contact *contact,
                               impact_state *states)
 {
@@ -290,8 +251,7 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
         touch->wanted = qvec3_neg(qvec3_axpy(impact_world_approach(world, touch, states), touch->normal, touch->slip));
     }
     impact_system_solve(persist, world, states, false);
-    for (int c = 0; c < persist->count; c++)
-        apply_impulse(world, states, &persist->touches[c], persist->touches[c].force);
+    impact_system_apply(persist, world, states);
 }
 
 /* ---- modes ---- */
@@ -340,6 +300,7 @@ void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch)
     pair->mode = IMPACT_SLIDE;
     pair->onset = pair->friction > 0;
     pair->direction = against_friction(touch);
+    pair->turned = false;
 }
 
 /* Sliding that has died out, here or because another contact's did, is rolling until its friction says otherwise. */

@@ -31,24 +31,36 @@ typedef struct impact_touch {
     qvec3 force;     /* on body 1, N */
     double margin;   /* rolling: friction x pressure - |tangential force|, N */
     double drive;    /* at the onset: friction needed to hold the contact over what there is; below 1 it sticks again */
+    bool turning;    /* at the onset: the direction is solved for too, linearised about what it is: */
+    double pull;     /* slip's acceleration over the friction, 1/kg */
+    double turn;     /* the angle from direction about the normal */
     bool redundant;  /* its reaction is not unique */
     qvec3 slip_rate; /* tangential relative acceleration of the contact points, m/s^2 */
 } impact_touch;
+
+/* What forces do to a body. */
+typedef struct impact_effect {
+    qvec3 linear, angular; /* m/s^2, 1/s^2 (of impulses: m/s, 1/s) */
+} impact_effect;
 
 typedef struct impact_persist {
     int capacity; /* contacts there is room for */
     int count;    /* held contacts now */
     impact_touch *touches;
-    double *matrix, *right; /* (3 capacity)^2 and 3 capacity */
-    int *order;             /* 3 capacity */
-    bool redundant;         /* more contacts were solved for than the balance of forces can tell apart */
-    int *island;            /* capacity; touches of the same number share bodies */
+    struct impact_unknown *unknowns; /* 3 capacity */
+    double *matrix, *right;          /* 2 (3 capacity)^2 and 6 capacity */
+    int *order;                      /* 6 capacity */
+    bool redundant;                  /* more contacts were solved for than the balance of forces can tell apart */
+    int *island;                     /* capacity; touches of the same number share bodies */
+    int bodies;                      /* bodies there is room for */
+    int *first;                      /* per body: scratch */
+    impact_effect *effects;          /* per body: of the reactions that were solved for */
 } impact_persist;
 
 /* Room for every pair of the world that is held now; the place of contact of those newly held that carry it. */
 impact_status impact_persist_reserve(impact_persist *persist, impact_world *world, const impact_state *states);
-/* Room for so many touches. */
-impact_status impact_persist_make_room(impact_persist *persist, int touches_needed);
+/* Room for so many touches, among so many bodies. */
+impact_status impact_persist_make_room(impact_persist *persist, int touches_needed, int bodies_needed);
 void impact_persist_free(impact_persist *persist);
 
 /* Geometry of every held contact, and what its points do under the loads without reactions. */

@@ -7,15 +7,11 @@
 #include <math.h>
 
 /* What the reactions leave of each touch's tangential acceleration, and how far its friction is from the cone. */
-static void finish_touches(impact_persist *persist, const impact_world *world, const impact_state *states)
+static void finish_touches(impact_persist *persist)
 {
     for (int a = 0; a < persist->count; a++) {
         impact_touch *touch = &persist->touches[a];
-        qvec3 rate = touch->bias;
-        for (int b = 0; b < persist->count; b++)
-            if (persist->island[a] == persist->island[b])
-                rate = qvec3_add(rate, impact_system_response(world, states, touch, &persist->touches[b],
-                                                              persist->touches[b].force));
+        const qvec3 rate = qvec3_add(touch->bias, impact_system_change(persist, touch));
         touch->slip_rate = qvec3_axpy(-qvec3_dot(rate, touch->normal), touch->normal, rate);
         const qvec3 tangential = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
         touch->margin = touch->friction * touch->pressure - qvec3_norm(tangential);
@@ -29,7 +25,7 @@ static void solve_reactions(impact_persist *persist, const impact_world *world, 
         touch->wanted = qvec3_neg(qvec3_axpy(qvec3_dot(touch->normal_rate, touch->slip), touch->normal, touch->bias));
     }
     impact_system_solve(persist, world, states, true);
-    finish_touches(persist, world, states);
+    finish_touches(persist);
 }
 
 /* The unit vector d and the least k >= 0 of (A + k) d = b, for A symmetric and positive definite, in two dimensions: k by Newton on
@@ -53,8 +49,8 @@ static void secular(double a11, double a12, double a22, double b1, double b2, do
 }
 
 /* Slip that begins from rest goes the way it is accelerated, slip_rate || direction, until it is fast enough to have a direction of its
- * own. Turns the touch's direction there, with the pressure as it is; returns by how much. */
-static double turn_onset(const impact_world *world, const impact_state *states, impact_touch *touch)
+ * own. The direction in which it does, with the pressure and the other touches' forces as they are; sets the touch's drive. */
+static qvec3 onset_direction(const impact_world *world, const impact_state *states, impact_touch *touch)
 {
     const qvec3 t1 = impact_tangent(touch->normal), t2 = qvec3_cross(touch->normal, t1);
     const double grip = touch->friction * touch->pressure;
@@ -64,26 +60,141 @@ static double turn_onset(const impact_world *world, const impact_state *states, 
     const double x = qvec3_dot(t1, touch->direction), y = qvec3_dot(t2, touch->direction);
     const double b1 = qvec3_dot(t1, touch->slip_rate) + a11 * x + a12 * y,
                  b2 = qvec3_dot(t2, touch->slip_rate) + a12 * x + a22 * y;
-    if (!(grip > 0) || (b1 == 0 && b2 == 0)) {
-        touch->drive = 0;
-        return 0;
-    }
+    touch->drive = 0;
+    if (!(grip > 0) || (b1 == 0 && b2 == 0)) return touch->direction;
     double d1, d2;
     secular(a11, a12, a22, b1, b2, &d1, &d2, &touch->drive);
-    touch->direction = qvec3_axpy(d1, t1, qvec3_scale(t2, d2));
-    return hypot(d1 - x, d2 - y);
+    return qvec3_axpy(d1, t1, qvec3_scale(t2, d2));
+}
+
+static bool has_onset(const impact_persist *persist)
+{
+    for (int c = 0; c < persist->count; c++)
+        if (persist->touches[c].onset) return true;
+    return false;
+}
+
+/* ---- one contact after another: slow, but from anywhere ---- */
+
+/* Turns every onset's direction to where it goes; the most that one turned. */
+static double turn_each(impact_persist *persist, const impact_world *world, const impact_state *states)
+{
+    double turned = 0;
+    for (int c = 0; c < persist->count; c++) {
+        impact_touch *touch = &persist->touches[c];
+        if (!touch->onset) continue;
+        const qvec3 before = touch->direction;
+        touch->direction = onset_direction(world, states, touch);
+        turned = fmax(turned, qvec3_norm(qvec3_sub(touch->direction, before)));
+    }
+    return turned;
+}
+
+/* Solves with all directions as they are, and turns them, so often; the most that one turned last. */
+static double turn_in_turns(impact_persist *persist, const impact_world *world, const impact_state *states, int turns)
+{
+    double turned = INFINITY;
+    for (int c = 0; c < persist->count; c++) persist->touches[c].turning = false;
+    for (int k = 0; k < turns && turned >= 1e-15; k++) {
+        solve_reactions(persist, world, states);
+        turned = turn_each(persist, world, states);
+    }
+    return turned;
+}
+
+/* ---- all together: Newton's method ---- */
+
+/* What slip's acceleration is to friction: how its direction holds against being turned. */
+static double pull_of(const impact_touch *touch)
+{
+    const double grip = touch->friction * touch->pressure;
+    return grip > 0 ? qvec3_dot(touch->direction, touch->slip_rate) / grip : 0;
+}
+
+/* Takes the direction that was solved for; returns what the linear step left undone. */
+static double take_turn(const impact_world *world, impact_touch *touch)
+{
+    const qvec3 across = qvec3_cross(touch->normal, touch->direction);
+    const double turn = fmax(-0.5, fmin(0.5, touch->turn)), before = touch->pull, size = hypot(1, turn);
+    touch->direction = qvec3_axpy(turn / size, across, qvec3_scale(touch->direction, 1 / size));
+    touch->pull = pull_of(touch);
+    const double response = world->bodies[touch->body1].inverse_mass + world->bodies[touch->body2].inverse_mass;
+    return fabs(touch->turn) * (fabs(touch->turn) + fabs(touch->pull - before) / response);
+}
+
+/* From the directions and pulls as they are; false where it does not converge. */
+static bool turn_together(impact_persist *persist, const impact_world *world, const impact_state *states)
+{
+    enum { STEPS = 12 };
+    for (int k = 0; k < STEPS; k++) {
+        double left = 0;
+        for (int c = 0; c < persist->count; c++)
+            persist->touches[c].turning = persist->touches[c].onset && persist->touches[c].friction > 0;
+        solve_reactions(persist, world, states);
+        for (int c = 0; c < persist->count; c++)
+            if (persist->touches[c].turning) left = fmax(left, take_turn(world, &persist->touches[c]));
+        if (left < 1e-16) return true;
+        if (!(left < 1e3)) return false;
+    }
+    return false;
+}
+
+/* ---- both ---- */
+
+/* Begins where slip went when it was last solved for; false where one of them begins anew. */
+static bool recall_turns(impact_persist *persist, const impact_world *world)
+{
+    bool all = true;
+    for (int c = 0; c < persist->count; c++) {
+        impact_touch *touch = &persist->touches[c];
+        if (!touch->onset) continue;
+        const impact_pair *pair = &world->pairs[touch->pair];
+        const qvec3 d = qvec3_axpy(-qvec3_dot(pair->direction, touch->normal), touch->normal, pair->direction);
+        touch->direction = qvec3_scale(d, 1 / qvec3_norm(d));
+        touch->pull = pair->pull;
+        all = all && pair->turned;
+    }
+    return all;
+}
+
+static void keep_turns(const impact_persist *persist, impact_world *world)
+{
+    for (int c = 0; c < persist->count; c++) {
+        impact_touch touch = persist->touches[c];
+        if (!touch.onset) continue;
+        impact_pair *pair = &world->pairs[touch.pair];
+        pair->direction = touch.direction;
+        pair->pull = touch.pull;
+        pair->turned = true;
+    }
+}
+
+/* The directions of slip that begins, and all reactions with them. */
+static void solve_onsets(impact_persist *persist, impact_world *world, const impact_state *states)
+{
+    enum { TRIES = 4, FEW = 5, MANY = 50 };
+    bool settled = recall_turns(persist, world) && turn_together(persist, world, states);
+    for (int k = 0; k < TRIES && !settled; k++) {
+        recall_turns(persist, world);
+        settled = turn_in_turns(persist, world, states, FEW << k) < 1e-15;
+        for (int c = 0; c < persist->count; c++) persist->touches[c].pull = pull_of(&persist->touches[c]);
+        settled = settled || turn_together(persist, world, states);
+    }
+    if (!settled) {
+        recall_turns(persist, world);
+        turn_in_turns(persist, world, states, MANY);
+    }
+    for (int c = 0; c < persist->count; c++)
+        if (persist->touches[c].onset) onset_direction(world, states, &persist->touches[c]); /* its drive */
+    if (settled) keep_turns(persist, world);
 }
 
 void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states,
                           const impact_load *loads)
 {
-    enum { TURNS = 50 };
     impact_persist_find_touches(persist, world, states, loads);
-    for (int turn = 0; turn < TURNS; turn++) {
+    if (has_onset(persist))
+        solve_onsets(persist, world, states);
+    else
         solve_reactions(persist, world, states);
-        double turned = 0;
-        for (int c = 0; c < persist->count; c++)
-            if (persist->touches[c].onset) turned = fmax(turned, turn_onset(world, states, &persist->touches[c]));
-        if (turned < 1e-15) return;
-    }
 }

@@ -1,9 +1,70 @@
 /* SPDX-License-Identifier: MIT
  *
- * The linear system of the held contacts: one unknown for a sliding contact, three for a rolling one. Contacts that share no moving body,
- * however remotely, are solved apart.
+ * The linear system of the held contacts: one unknown for a sliding contact, two where its direction is solved for too, three for a
+ * rolling one. Contacts that share no moving body, however remotely, are solved apart.
  */
 #include "persist_system.h"
+#include "persist_linear.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* One unknown force and the equation beside it. What acts on body 2 is subtracted from what acts on body 1. */
+typedef struct impact_unknown {
+    int touch, body[2];    /* -1: static */
+    qvec3 row, row_arm[2]; /* the equation fixes row . (linear) + row_arm . (angular) */
+    qvec3 force;           /* on body 1, for 1 N; what it does: */
+    qvec3 linear[2], spin[2];
+    double scale; /* root of what a unit force does at its contact, in the mean of its rows, 1/sqrt(kg) */
+    double pull;  /* the equation is less pull times the force */
+    double value; /* N */
+} impact_unknown;
+
+/* ---- room ---- */
+
+static void *grown(void *old, size_t bytes, bool *there)
+{
+    void *room = realloc(old, bytes);
+    *there = *there && room;
+    return room ? room : old;
+}
+
+impact_status impact_persist_make_room(impact_persist *persist, int touches_needed, int bodies_needed)
+{
+    const size_t touches = (size_t)touches_needed, n = 3 * touches, bodies = (size_t)bodies_needed;
+    bool there = true;
+    if (touches_needed > persist->capacity) {
+        persist->touches = grown(persist->touches, touches * sizeof *persist->touches, &there);
+        persist->island = grown(persist->island, touches * sizeof *persist->island, &there);
+        persist->unknowns = grown(persist->unknowns, n * sizeof *persist->unknowns, &there);
+        persist->matrix = grown(persist->matrix, 2 * n * n * sizeof *persist->matrix, &there);
+        persist->right = grown(persist->right, 2 * n * sizeof *persist->right, &there);
+        persist->order = grown(persist->order, 2 * n * sizeof *persist->order, &there);
+        if (there) persist->capacity = touches_needed;
+    }
+    if (bodies_needed > persist->bodies) {
+        persist->first = grown(persist->first, bodies * sizeof *persist->first, &there);
+        persist->effects = grown(persist->effects, bodies * sizeof *persist->effects, &there);
+        if (there) persist->bodies = bodies_needed;
+    }
+    return there ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
+void impact_persist_free(impact_persist *persist)
+{
+    free(persist->touches);
+    free(persist->island);
+    free(persist->unknowns);
+    free(persist->matrix);
+    free(persist->right);
+    free(persist->order);
+    free(persist->first);
+    free(persist->effects);
+    *persist = (impact_persist){0};
+}
+
+/* ---- responses ---- */
 
 qvec3 impact_tangent(qvec3 n)
 {
@@ -29,130 +90,225 @@ qvec3 impact_system_response(const impact_world *world, const impact_state *stat
     return change;
 }
 
-static int unknowns_of(const impact_touch *touch) { return touch->mode == IMPACT_ROLL ? 3 : 1; }
-
-/* Row i of a touch: which component of u' it fixes. */
-static qvec3 row_direction(const impact_touch *touch, int i)
+static void clear_effects(impact_persist *persist, const impact_world *world)
 {
-    if (i == 0) return touch->normal;
-    const qvec3 t = impact_tangent(touch->normal);
-    return i == 1 ? t : qvec3_cross(touch->normal, t);
+    for (int i = 0; i < world->body_count; i++) persist->effects[i] = (impact_effect){{0, 0, 0}, {0, 0, 0}};
 }
 
-/* Column i: which force its unknown stands for; with friction, a sliding contact's pressure brings its friction along. */
-static qvec3 column_direction(const impact_touch *touch, int i, bool with_friction)
+qvec3 impact_system_change(const impact_persist *persist, const impact_touch *touch)
 {
-    if (touch->mode == IMPACT_SLIDE && with_friction)
-        return qvec3_axpy(-touch->friction, touch->direction, touch->normal);
-    return row_direction(touch, i);
-}
-
-/* Gauss with complete pivoting; unknowns whose pivots vanish are set to zero. x comes in right. Returns the rank. */
-static int solve_linear(double *a, double *right, int *order, int n)
-{
-    for (int i = 0; i < n; i++) order[i] = i;
-    double first = 0;
-    int rank = 0;
-    for (; rank < n; rank++) {
-        int row = rank, column = rank;
-        for (int i = rank; i < n; i++)
-            for (int j = rank; j < n; j++)
-                if (fabs(a[i * n + j]) > fabs(a[row * n + column])) row = i, column = j;
-        const double pivot = a[row * n + column];
-        if (rank == 0) first = fabs(pivot);
-        if (fabs(pivot) <= 1e-12 * first) break;
-        for (int j = 0; j < n; j++) {
-            const double swap = a[rank * n + j];
-            a[rank * n + j] = a[row * n + j], a[row * n + j] = swap;
-        }
-        const double swap = right[rank];
-        right[rank] = right[row], right[row] = swap;
-        for (int i = 0; i < n; i++) {
-            const double other = a[i * n + rank];
-            a[i * n + rank] = a[i * n + column], a[i * n + column] = other;
-        }
-        const int which = order[rank];
-        order[rank] = order[column], order[column] = which;
-        for (int i = rank + 1; i < n; i++) {
-            const double factor = a[i * n + rank] / pivot;
-            if (factor == 0) continue;
-            for (int j = rank; j < n; j++) a[i * n + j] -= factor * a[rank * n + j];
-            right[i] -= factor * right[rank];
-        }
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        if (i >= rank) {
-            right[i] = 0;
-            continue;
-        }
-        for (int j = i + 1; j < rank; j++) right[i] -= a[i * n + j] * right[j];
-        right[i] /= a[i * n + i];
-    }
-    for (int i = 0; i < n; i++) a[order[i]] = right[i]; /* the matrix is spent: its first row serves */
-    for (int i = 0; i < n; i++) right[i] = a[i];
-    return rank;
+    const impact_effect *one = &persist->effects[touch->body1], *two = &persist->effects[touch->body2];
+    return qvec3_sub(qvec3_add(one->linear, qvec3_cross(one->angular, touch->r1)),
+                     qvec3_add(two->linear, qvec3_cross(two->angular, touch->r2)));
 }
 
 /* ---- islands ---- */
 
-static bool share_a_body(const impact_world *world, const impact_touch *a, const impact_touch *b)
+static int island_of(const impact_persist *persist, int touch)
 {
-    return a->body1 == b->body1 || a->body1 == b->body2 ||
-           (a->body2 == b->body1 && !world->bodies[a->body2].is_static) ||
-           (a->body2 == b->body2 && !world->bodies[a->body2].is_static);
+    while (persist->island[touch] != touch) touch = persist->island[touch];
+    return touch;
 }
 
-/* Gives the touches that share bodies, directly or through others, the same number. */
+/* Gives the touches that share bodies, directly or through others, the same number: the first of them. */
 static void find_islands(impact_persist *persist, const impact_world *world)
 {
-    int *island = persist->island;
-    for (int a = 0; a < persist->count; a++) {
-        island[a] = a;
-        for (int b = 0; b < a; b++) {
-            if (island[b] == island[a] || !share_a_body(world, &persist->touches[a], &persist->touches[b])) continue;
-            const int from = island[a], to = island[b];
-            for (int c = 0; c <= a; c++)
-                if (island[c] == from) island[c] = to;
+    for (int c = 0; c < persist->count; c++)
+        persist->first[persist->touches[c].body1] = persist->first[persist->touches[c].body2] = -1;
+    for (int c = 0; c < persist->count; c++) {
+        const int bodies[2] = {persist->touches[c].body1, persist->touches[c].body2};
+        persist->island[c] = c;
+        for (int k = 0; k < 2; k++) {
+            if (world->bodies[bodies[k]].is_static) continue;
+            int *first = &persist->first[bodies[k]];
+            if (*first < 0) *first = c;
+            const int a = island_of(persist, *first), b = island_of(persist, c);
+            persist->island[a < b ? b : a] = a < b ? a : b;
         }
+    }
+    for (int c = 0; c < persist->count; c++) persist->island[c] = persist->island[persist->island[c]];
+}
+
+/* ---- unknowns ---- */
+
+static int unknowns_of(const impact_touch *touch, bool with_friction)
+{
+    return touch->mode == IMPACT_ROLL ? 3 : with_friction && touch->turning ? 2 : 1;
+}
+
+/* Row i of a touch: which component of u' it fixes. */
+static qvec3 row_direction(const impact_touch *touch, int i, bool with_friction)
+{
+    if (i == 0) return touch->normal;
+    if (touch->mode == IMPACT_SLIDE && with_friction) return qvec3_cross(touch->normal, touch->direction);
+    const qvec3 t = impact_tangent(touch->normal);
+    return i == 1 ? t : qvec3_cross(touch->normal, t);
+}
+
+/* Which force an unknown stands for; with friction, a sliding contact's pressure brings its friction along. */
+static qvec3 force_direction(const impact_touch *touch, int i, bool with_friction)
+{
+    if (touch->mode == IMPACT_SLIDE && with_friction && i == 0)
+        return qvec3_axpy(-touch->friction, touch->direction, touch->normal);
+    const qvec3 row = row_direction(touch, i, with_friction);
+    return touch->mode == IMPACT_SLIDE && i == 1 ? qvec3_neg(row) : row;
+}
+
+/* What the row sees of a force along itself. */
+static double own_response(const impact_world *world, const impact_state *states, const impact_unknown *u)
+{
+    double response = 0;
+    for (int k = 0; k < 2; k++) {
+        if (u->body[k] < 0) continue;
+        const impact_body *body = &world->bodies[u->body[k]];
+        response += body->inverse_mass * qvec3_dot(u->row, u->row) +
+                    qvec3_dot(u->row_arm[k], impact_inverse_inertia(body, states[u->body[k]].q, u->row_arm[k]));
+    }
+    return response;
+}
+
+static void fill_unknown(const impact_world *world, const impact_state *states, const impact_touch *touch, int i,
+                         bool with_friction, impact_unknown *u)
+{
+    const int bodies[2] = {touch->body1, touch->body2};
+    const qvec3 arms[2] = {touch->r1, touch->r2};
+    u->pull = u->value = 0;
+    u->row = row_direction(touch, i, with_friction);
+    u->force = force_direction(touch, i, with_friction);
+    for (int k = 0; k < 2; k++) {
+        const impact_body *body = &world->bodies[bodies[k]];
+        u->body[k] = body->is_static ? -1 : bodies[k];
+        if (body->is_static) continue;
+        u->row_arm[k] = qvec3_cross(arms[k], u->row);
+        u->linear[k] = qvec3_scale(u->force, body->inverse_mass);
+        u->spin[k] = impact_inverse_inertia(body, states[bodies[k]].q, qvec3_cross(arms[k], u->force));
     }
 }
 
-static void build_column(impact_persist *persist, const impact_world *world, const impact_state *states, int island,
-                         int b, qvec3 f, double *column, int stride)
+/* The island's unknowns; how many. */
+static int list_unknowns(impact_persist *persist, const impact_world *world, const impact_state *states, int island,
+                         bool with_friction)
 {
-    for (int a = 0; a < persist->count; a++) {
-        const impact_touch *touch = &persist->touches[a];
-        if (persist->island[a] != island) continue;
-        const qvec3 change = impact_system_response(world, states, touch, &persist->touches[b], f);
-        for (int i = 0; i < unknowns_of(touch); i++, column += stride)
-            *column = qvec3_dot(row_direction(touch, i), change);
+    int n = 0;
+    for (int c = island; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (persist->island[c] != island) continue;
+        const int count = unknowns_of(touch, with_friction);
+        double response = 0;
+        for (int i = 0; i < count; i++) {
+            fill_unknown(world, states, touch, i, with_friction, &persist->unknowns[n + i]);
+            response += own_response(world, states, &persist->unknowns[n + i]);
+        }
+        for (int i = 0; i < count; i++) {
+            persist->unknowns[n + i].touch = c;
+            persist->unknowns[n + i].scale = sqrt(response / count);
+        }
+        if (touch->mode == IMPACT_SLIDE && count == 2) persist->unknowns[n + 1].pull = touch->pull;
+        n += count;
+    }
+    return n;
+}
+
+/* What equation a sees of unknown b. */
+static double response_to(const impact_unknown *a, const impact_unknown *b)
+{
+    double seen = 0;
+    for (int k = 0; k < 2; k++)
+        for (int l = 0; l < 2; l++) {
+            if (a->body[k] < 0 || a->body[k] != b->body[l]) continue;
+            const double part = qvec3_dot(a->row, b->linear[l]) + qvec3_dot(a->row_arm[k], b->spin[l]);
+            seen += k == l ? part : -part;
+        }
+    return seen;
+}
+
+static void build_matrix(const impact_unknown *u, int n, double *matrix)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) matrix[i * n + j] = response_to(&u[i], &u[j]) / (u[i].scale * u[j].scale);
+        matrix[i * n + i] -= u[i].pull / (u[i].scale * u[i].scale);
+    }
+}
+
+/* ---- solutions ---- */
+
+/* What the equation asks for beyond what the forces so far do. */
+static double residual(const impact_persist *persist, const impact_unknown *u)
+{
+    double left = qvec3_dot(u->row, persist->touches[u->touch].wanted) + u->pull * u->value;
+    for (int k = 0; k < 2; k++) {
+        if (u->body[k] < 0) continue;
+        const impact_effect *effect = &persist->effects[u->body[k]];
+        const double seen = qvec3_dot(u->row, effect->linear) + qvec3_dot(u->row_arm[k], effect->angular);
+        left -= k == 0 ? seen : -seen;
+    }
+    return left;
+}
+
+static void add_force(impact_persist *persist, impact_unknown *u, double more)
+{
+    u->value += more;
+    for (int k = 0; k < 2; k++) {
+        if (u->body[k] < 0) continue;
+        impact_effect *effect = &persist->effects[u->body[k]];
+        const double own = k == 0 ? more : -more;
+        effect->linear = qvec3_axpy(own, u->linear[k], effect->linear);
+        effect->angular = qvec3_axpy(own, u->spin[k], effect->angular);
+    }
+}
+
+/* The forces; and then what their rounding has left, so often that what they do is right to rounding: of the motion, not of the forces,
+ * which can be far greater than what they leave of one another. */
+static void find_forces(impact_persist *persist, const impact_linear *system)
+{
+    enum { MOST = 6 };
+    impact_unknown *u = persist->unknowns;
+    double *x = persist->right, first = 0, before = INFINITY;
+    for (int pass = 0; pass < MOST; pass++) {
+        double left = 0;
+        for (int i = 0; i < system->n; i++) {
+            x[i] = residual(persist, &u[i]) / u[i].scale;
+            left = fmax(left, fabs(x[i]));
+        }
+        if (pass == 0) first = left;
+        if (left <= DBL_EPSILON * first || !(left < 0.5 * before)) return;
+        before = left;
+        impact_linear_solve(system, x);
+        for (int i = 0; i < system->n; i++) add_force(persist, &u[i], x[i] / u[i].scale);
+    }
+}
+
+static void take_forces(impact_persist *persist, int island, bool with_friction, bool unique)
+{
+    const impact_unknown *u = persist->unknowns;
+    for (int c = island; c < persist->count; c++) {
+        impact_touch *touch = &persist->touches[c];
+        if (persist->island[c] != island) continue;
+        const int count = unknowns_of(touch, with_friction);
+        touch->redundant = !unique;
+        touch->pressure = u->value;
+        const bool turns = touch->mode == IMPACT_SLIDE && count == 2;
+        touch->turn = turns ? u[1].value / (touch->friction * touch->pressure) : 0;
+        touch->force = (qvec3){0, 0, 0};
+        for (int i = 0; i < count; i++, u++) touch->force = qvec3_axpy(u->value, u->force, touch->force);
     }
 }
 
 static void solve_island(impact_persist *persist, const impact_world *world, const impact_state *states,
                          bool with_friction, int island)
 {
-    int n = 0;
-    for (int c = 0; c < persist->count; c++)
-        for (int i = 0; persist->island[c] == island && i < unknowns_of(&persist->touches[c]); i++)
-            persist->right[n++] = qvec3_dot(row_direction(&persist->touches[c], i), persist->touches[c].wanted);
-    double *column = persist->matrix;
-    for (int c = 0; c < persist->count; c++)
-        for (int i = 0; persist->island[c] == island && i < unknowns_of(&persist->touches[c]); i++)
-            build_column(persist, world, states, island, c, column_direction(&persist->touches[c], i, with_friction),
-                         column++, n);
-    const bool redundant = solve_linear(persist->matrix, persist->right, persist->order, n) < n;
-    persist->redundant = persist->redundant || redundant;
-    const double *x = persist->right;
-    for (int c = 0; c < persist->count; c++) {
-        impact_touch *touch = &persist->touches[c];
-        if (persist->island[c] != island) continue;
-        touch->redundant = redundant;
-        touch->pressure = x[0];
-        touch->force = (qvec3){0, 0, 0};
-        for (int i = 0; i < unknowns_of(touch); i++)
-            touch->force = qvec3_axpy(*x++, column_direction(touch, i, with_friction), touch->force);
-    }
+    const int n = list_unknowns(persist, world, states, island, with_friction);
+    impact_linear system = {.n = n,
+                            .matrix = persist->matrix,
+                            .spare = persist->matrix + n * n,
+                            .scratch = persist->right + n,
+                            .rows = persist->order,
+                            .columns = persist->order + n};
+    build_matrix(persist->unknowns, n, system.matrix);
+    impact_linear_factor(&system);
+    find_forces(persist, &system);
+    persist->redundant = persist->redundant || system.rank < n;
+    take_forces(persist, island, with_friction, system.rank == n);
 }
 
 /* What is still keeps its reaction, and needs no impulse. */
@@ -166,10 +322,22 @@ void impact_system_solve(impact_persist *persist, const impact_world *world, con
                          bool with_friction)
 {
     find_islands(persist, world);
+    clear_effects(persist, world);
     persist->redundant = false;
     for (int c = 0; c < persist->count; c++)
         if (persist->island[c] == c && !persist->touches[c].still)
             solve_island(persist, world, states, with_friction, c);
     for (int c = 0; c < persist->count; c++)
         if (persist->touches[c].still) recall(&persist->touches[c], world, with_friction);
+}
+
+void impact_system_apply(const impact_persist *persist, const impact_world *world, impact_state *states)
+{
+    for (int i = 0; i < world->body_count; i++) {
+        if (world->bodies[i].is_static) continue;
+        const impact_effect *effect = &persist->effects[i];
+        states[i].v = qvec3_add(states[i].v, effect->linear);
+        states[i].momentum =
+            qvec3_add(states[i].momentum, impact_inertia(&world->bodies[i], states[i].q, effect->angular));
+    }
 }

@@ -36,9 +36,8 @@ typedef struct impact_scene_crowd {
     impact_crowd crowd;
     party **parties;
     int party_count;
-    int *held;   /* contacts of each body */
-    int *local;  /* scratch: a body's index in its party */
-    bool *stiff; /* per body: slip has just begun on it */
+    int *held;  /* contacts of each body */
+    int *local; /* scratch: a body's index in its party */
     double *energy, *energy_end;
     impact_rows rows;
     double while_time; /* s */
@@ -207,7 +206,6 @@ static impact_status gather(impact_scene_crowd *crowd, party *p)
     for (int i = 0; i < own->world.body_count; i++) {
         own->states[i] = own->before[i] = whole->states[p->body[i]];
         own->motion.resting[i] = whole->motion.resting[p->body[i]];
-        own->motion.after_onset = own->motion.after_onset || crowd->stiff[p->body[i]];
     }
     for (int k = 0; k < own->world.pair_count; k++) {
         const impact_pair *pair = &whole->world.pairs[p->pair[k]];
@@ -313,13 +311,11 @@ static void add_usage(impact_usage *sum, const impact_usage *part)
 static void scatter(impact_scene_crowd *crowd, party *p)
 {
     impact_scene *whole = crowd->scene, *own = &p->scene;
-    const bool stiff = own->motion.stiff || own->motion.after_onset;
     for (int i = 0; i < own->world.body_count; i++) {
         if (own->world.bodies[i].is_static) continue;
         whole->states[p->body[i]] = own->states[i];
         whole->motion.resting[p->body[i]] = own->motion.resting[i];
         crowd->held[p->body[i]] = 0;
-        crowd->stiff[p->body[i]] = stiff;
     }
     for (int k = 0; k < own->world.pair_count; k++) {
         impact_pair *pair = &whole->world.pairs[p->pair[k]];
@@ -456,10 +452,9 @@ impact_status impact_scene_crowd_open(impact_scene *scene)
     *crowd = (impact_scene_crowd){.scene = scene,
                                   .held = calloc(n, sizeof *crowd->held),
                                   .local = calloc(n, sizeof *crowd->local),
-                                  .stiff = calloc(n, sizeof *crowd->stiff),
                                   .energy = calloc(n, sizeof *crowd->energy),
                                   .energy_end = calloc(n, sizeof *crowd->energy_end)};
-    if (!crowd->held || !crowd->local || !crowd->stiff || !crowd->energy || !crowd->energy_end) return IMPACT_ENOMEM;
+    if (!crowd->held || !crowd->local || !crowd->energy || !crowd->energy_end) return IMPACT_ENOMEM;
     return impact_crowd_open(&crowd->crowd, &scene->world);
 }
 
@@ -472,7 +467,6 @@ void impact_scene_crowd_close(impact_scene *scene)
     impact_rows_free(&crowd->rows);
     free(crowd->held);
     free(crowd->local);
-    free(crowd->stiff);
     free(crowd->energy);
     free(crowd->energy_end);
     free(crowd);

@@ -141,7 +141,7 @@ static bool settle_at_once(const impact_world *world, impact_state *states, impa
     impact_state *kept_states = calloc(bodies, sizeof *kept_states);
     impact_share *kept_shares = calloc(n, sizeof *kept_shares);
     bool settled = false;
-    if (kept_states && kept_shares && impact_persist_make_room(&system, count) == IMPACT_OK) {
+    if (kept_states && kept_shares && impact_persist_make_room(&system, count, world->body_count) == IMPACT_OK) {
         memcpy(kept_states, states, bodies * sizeof *states);
         memcpy(kept_shares, shares, n * sizeof *shares);
         for (int round = 0; round < ROUNDS && !settled; round++) {
@@ -159,6 +159,29 @@ static bool settle_at_once(const impact_world *world, impact_state *states, impa
     return settled;
 }
 
+/* Impulses far greater than what they leave of one another leave their rounding too: what approach and slip it makes of the shares that
+ * press is taken away by impulses of its own size. */
+static void take_rounding_away(const impact_world *world, impact_state *states, impact_share *shares, int count)
+{
+    impact_persist system = {0};
+    if (impact_persist_make_room(&system, count, world->body_count) == IMPACT_OK) {
+        for (int c = 0; c < count; c++) {
+            if (shares[c].normal <= 0) continue;
+            impact_touch *touch = &system.touches[system.count++];
+            *touch = pressing_touch(&shares[c]);
+            touch->wanted = qvec3_neg(relative_velocity(world, states, touch));
+        }
+        impact_system_solve(&system, world, states, true);
+        impact_system_apply(&system, world, states);
+        for (int c = 0, k = 0; c < count; c++) {
+            if (shares[c].normal <= 0) continue;
+            shares[c].normal += system.touches[k].pressure;
+            shares[c].impulse = qvec3_add(shares[c].impulse, system.touches[k++].force);
+        }
+    }
+    impact_persist_free(&system);
+}
+
 bool impact_answer_together(const impact_world *world, impact_state *states, impact_share *shares, int count)
 {
     enum { SWEEPS = 5000 };
@@ -171,6 +194,7 @@ bool impact_answer_together(const impact_world *world, impact_state *states, imp
     }
     const bool settled =
         sweep_until(world, states, shares, count, speed, SWEEPS) || settle_at_once(world, states, shares, count, speed);
+    if (settled) take_rounding_away(world, states, shares, count);
     for (int c = 0; c < count; c++) {
         impact_share *share = &shares[c];
         share->after = relative_velocity(world, states, &share->touch);

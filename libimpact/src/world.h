@@ -52,12 +52,15 @@ typedef struct impact_pair {
     double slack;
     bool onset;      /* IMPACT_SLIDE: from rest, and slower than the world's onset_speed yet */
     qvec3 direction; /* IMPACT_SLIDE, onset: about where the slip goes */
-    bool carried;    /* held: the contact's place on body 1 is integrated along (persist_spot) */
-    double spot[3];  /* carried: that place */
-    bool still;      /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
-    qvec3 reaction;  /* still, or was: on body 1, N */
-    bool struck;     /* scratch: exchanged an impulse in this instant */
-    bool settled;    /* scratch: had its chance to be held again in this instant */
+    bool young;      /* IMPACT_SLIDE: just past its onset, and too slow yet for its direction to change smoothly */
+    bool turned;     /* it is where the slip went when it was last solved for, with this pull (impact_touch): */
+    double pull;
+    bool carried;   /* held: the contact's place on body 1 is integrated along (persist_spot) */
+    double spot[3]; /* carried: that place */
+    bool still;     /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
+    qvec3 reaction; /* still, or was: on body 1, N */
+    bool struck;    /* scratch: exchanged an impulse in this instant */
+    bool settled;   /* scratch: had its chance to be held again in this instant */
     impact_gap_cache cache;
 } impact_pair;
 

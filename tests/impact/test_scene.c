@@ -277,7 +277,7 @@ static void a_loose_tolerance_lets_nothing_fall_through(void **state)
 static void a_heavy_ball_on_a_light_one(void **state)
 {
     (void)state;
-    for (int digits = 1; digits <= 7; digits++) {
+    for (int digits = 1; digits <= 12; digits++) {
         impact_body_def bodies[3] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 1),
                                      ball_body("light", (qvec3){0, 0, 0.1}, 0.5, 0.5),
                                      ball_body("heavy", (qvec3){0.02, 0, 1.8}, 0.5, 0.5)};
