@@ -19,7 +19,7 @@ local a = { x = {}, y = {}, image = {} }
 local flat = {
   title = "a) the circle from (0, 1) on the x axis",
   xlabel = "x", ylabel = "y", equal = true, legend = "bottom left",
-  xrange = { -3, 3 }, yrange = { -1.9, 1.9 }, box = { 0.05, 0.1, 0.52, 0.93 },
+  xrange = { -3, 3 }, yrange = { -3, 3 }, box = { 0.05, 0.1, 0.47, 0.93 },
   plot.line { { -3, 3 }, { 0, 0 }, color = "orange", width = 2, label = "the line, and images" },
   plot.line { circle[1], circle[2], color = "blue", width = 2.5, label = "the circle, and points" },
 }
@@ -45,14 +45,14 @@ for i = 1, 20 do
     local p = { math.cos(theta) * math.sin(phi), math.sin(theta) * math.sin(phi), math.cos(phi) }
     local image = quat.stereographic_sphere(p)
     x[i][j], y[i][j], z[i][j] = p[1], p[2], p[3]
-    local inside = p[3] < 0.62
+    local inside = p[3] < 0.8 -- within 3 of the middle
     u[i][j], v[i][j], w[i][j] = inside and image[1] or 0 / 0, inside and image[2] or 0 / 0, 0
   end
 end
 local space = {
   title = "b) the sphere from (0, 0, 1) on the plane z = 0",
-  equal = true, legend = "none", view = { 66, 30 }, zoom = 1.75, frame = false, box = { 0.55, 0.0, 1, 0.985 },
-  xrange = { -2.2, 2.2 }, yrange = { -2.2, 2.2 }, zrange = { -1, 1 },
+  equal = true, legend = "none", view = { 66, 30 }, zoom = 1.6, box = { 0.5, 0.0, 1, 0.985 },
+  xlabel = "x", ylabel = "y", zlabel = "z", xrange = { -3, 3 }, yrange = { -3, 3 }, zrange = { -1, 1 },
   plot.surface { u, v, w, color = "#f6c28b", opacity = 0.55 },
   plot.surface { x, y, z, color = "#8fb8de", opacity = 0.45 },
 }

@@ -63,7 +63,7 @@ for i = 0, 59 do
 end
 local space = {
   title = "b) the sphere on the plane z = 0",
-  equal = true, legend = "none", view = { 70, 30 }, zoom = 1.35, frame = false, box = { 0.55, 0.0, 1, 0.985 },
+  equal = true, legend = "none", view = { 70, 30 }, zoom = 1.15, box = { 0.53, 0.0, 1, 0.985 }, xlabel = "x", ylabel = "y", zlabel = "z",
   xrange = { -1.2, 1.2 }, yrange = { -1.2, 1.2 }, zrange = { -1, 1 },
   sheet("#f6c28b", 0.5, half(-1)),
   sheet("#b7a5d9", 0.7, half(1, 0)),

@@ -1,5 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --- The thesis' figure 10: a ball turned by -90 degrees about y, then 90 about x, then 90 about y. The net turn is -90 degrees about z.
+--- Colours and a disc show the orientation.
 ---
 ---   q = y(pi/2) x(pi/2) y(-pi/2) = z(-pi/2):   the last turn stands first
 ---
@@ -17,6 +18,20 @@ local columns = { {}, {}, {}, {}, {} }
 local figure = {
   title = "Three turns about horizontal axes are one about the vertical, by −90°", size = { 1600, 560 }, grid = { 4, 1 },
 }
+--- Half of a disc about the ball, in the plane of its own x and y; the halves, at positive and negative x, in two colours.
+local function half_disc(q, side)
+  local x, y, z = {}, {}, {}
+  for i = 0, 8 do
+    x[i + 1], y[i + 1], z[i + 1] = {}, {}, {}
+    for j = 0, 16 do
+      local radius, angle = 1 + 0.45 * i / 8, math.pi * (j / 16 - 0.5)
+      local p = q:rotate { side * radius * math.cos(angle), radius * math.sin(angle), 0 }
+      x[i + 1][j + 1], y[i + 1][j + 1], z[i + 1][j + 1] = p.x, p.y, p.z
+    end
+  end
+  return plot.surface { x, y, z, color = side > 0 and "#2c7a7b" or "#b8dcd8", opacity = 0.9 }
+end
+
 local view = { 65, 30 }
 local eye = portrait.eye(view)
 for n, q in ipairs(orientations) do
@@ -25,7 +40,7 @@ for n, q in ipairs(orientations) do
   local panel = {
     title = titles[n], equal = true, legend = "none", view = view, zoom = 1.7, frame = false,
     xrange = { -1.7, 1.7 }, yrange = { -1.7, 1.7 }, zrange = { -1.5, 1.5 },
-    portrait.sheet(state, { -1.2, -1.2 }, { 1.2, 1.2 }, "teal", 0.35),
+    half_disc(q, 1), half_disc(q, -1),
   }
   for _, item in ipairs(portrait.ball(state, 1, "#dd6b20", "#2b6cb0")) do panel[#panel + 1] = item end
   -- The axis of the turn that led here; at the end that of all three.

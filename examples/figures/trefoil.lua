@@ -65,7 +65,7 @@ local function image(frames)
   return x, y, z
 end
 local sphere = { title = "the frames on S³, vec q/(1.6 + w)", equal = true, legend = "none", view = { 62, 40 }, zoom = 0.95,
-  frame = true }
+  frame = true, xlabel = "x", ylabel = "y", zlabel = "z" }
 for _, each in ipairs { { frenet, "red", 2.5 }, { minimal, "green", 2.5 }, { closed, "blue", 2.5 } } do
   local x, y, z = image(each[1])
   sphere[#sphere + 1] = plot.line { x, y, z, color = each[2], width = each[3] }

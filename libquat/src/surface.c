@@ -182,6 +182,14 @@ static double error_of(const quat_surface_point *p, const double e[6], const qve
     return (second + size * (e[1] / u + e[2] / v) * 2) / (sine * sine);
 }
 
+/* Beside a degenerate point the curvatures may err by more than they are, or than one over the surface's extent. */
+static bool is_doubtful(const quat_surface *s, const quat_surface_point *p)
+{
+    const double extent = qvec3_norm(p->xu) * (s->u1 - s->u0) + qvec3_norm(p->xv) * (s->v1 - s->v0),
+                 largest = fmax(fabs(p->curvature.principal[0]), fabs(p->curvature.principal[1]));
+    return p->error > 1e-3 * (largest + 1 / extent);
+}
+
 quat_status quat_surface_at(const quat_surface *surface, double u, double v, quat_surface_point *p)
 {
     const quat_surface_point none = {.frame = {1, 0, 0, 0}};
@@ -209,7 +217,8 @@ quat_status quat_surface_at(const quat_surface *surface, double u, double v, qua
     p->a = rate(p, t1, t2, n, d[3], d[4]);
     p->b = rate(p, t1, t2, n, d[4], d[5]);
     p->error = error_of(p, e, d);
-    return quat_curvature_of_frame(p->frame, p->a, p->b, p->xu, p->xv, &p->curvature);
+    const quat_status found = quat_curvature_of_frame(p->frame, p->a, p->b, p->xu, p->xv, &p->curvature);
+    return found >= 0 && is_doubtful(surface, p) ? QUAT_NOT_CONVERGED : found;
 }
 
 /* ---- a patch ---- */

@@ -87,6 +87,82 @@ static void ellipsoids_in_quad(void **state)
     assert_bound("ellipsoid: K relative, closed form", closed, 5e-15);
 }
 
+static bool veil(double u, double v, qvec3 d[6], void *context)
+{
+    const quat_surface *inner = context;
+    return inner->at(u, v, d, inner->context);
+}
+
+/* Ever closer to the pole of the angles, where they degenerate: right to the last digit with derivatives known; with
+ * fewer known the word comes before the value is worthless. */
+static void beside_the_pole(void **state)
+{
+    (void)state;
+    random_state r = {413};
+    double worst[3] = {0}, told = 0, honest = 0;
+    size_t doubtful = 0;
+    for (int round = 0; round < 30000; round++) {
+        const double a = random_between(&r, 0.3, 3), b = random_between(&r, 0.3, 3), c = random_between(&r, 0.3, 3),
+                     u = random_between(&r, 0, 2 * pi), v = (round % 2 ? 1 : -1) * (pi / 2 - random_scale(&r, -14, -1));
+        quat_family family;
+        quat_surface s;
+        quat_surface_point p;
+        assert_int_equal(quat_ellipsoid(a, b, c, &family, &s), QUAT_OK);
+        quat_surface poorer = s;
+        poorer.at = veil, poorer.context = &s, poorer.known = round % 30 ? 2 : round / 30 % 2;
+        const quat_status status = quat_surface_at(&poorer, u, v, &p);
+        const classical want = wide_ellipsoid(a, b, c, u, v);
+        if (poorer.known == 2) {
+            assert_true(status >= 0);
+            judge(&p, want, worst);
+            continue;
+        }
+        doubtful += status == QUAT_NOT_CONVERGED;
+        if (status < 0) continue;
+        worse(&honest, off(p.curvature.mean, want.H, p.error));
+        if (status == QUAT_OK) worse(&told, off(p.curvature.mean, want.H, fabsf128(want.H)));
+    }
+    assert_true(doubtful > 50);
+    assert_bound("to 1e-14 from a pole: K", worst[0], 4e-15);
+    assert_bound("to 1e-14 from a pole: H", worst[1], 3e-15);
+    assert_bound("to 1e-14 from a pole: normal", worst[2], 2e-15);
+    assert_bound("with fewer derivatives: H, where it is called ok", told, 3e-4);
+    assert_bound("its error by the estimate", honest, 1);
+}
+
+/* What the thesis prints for K and H, and where it holds. With unit and perpendicular tangents along T1 and T2 a_x b_y -
+ * a_y b_x is K and (a_y - b_x)/2 is H; with others the first is K sqrt(EG - F^2), and the second is nothing: it changes
+ * with the frame's angle about N, and K and H do not. II/I gives -H. */
+static void what_the_thesis_prints_for_curvature(void **state)
+{
+    (void)state;
+    random_state r = {414};
+    double product = 0, unit = 0, second = 0, changed = 0;
+    for (int round = 0; round < 100000; round++) {
+        quat_family f;
+        quat_surface s;
+        quat_surface_point p;
+        quat_ellipsoid(1, 2, 1.5, &f, &s);
+        assert_true(quat_surface_at(&s, random_between(&r, 0, 2 * pi), random_between(&r, -1.4, 1.4), &p) >= 0);
+        quat q = p.frame;
+        qvec3 a = p.a, b = p.b;
+        quat_regauge(random_between(&r, -9, 9), random_between(&r, -3, 3), random_between(&r, -3, 3), &q, &a, &b);
+        const double K = p.curvature.gauss, H = p.curvature.mean, E = p.first[0], F = p.first[1], G = p.first[2];
+        worse(&product, fabs((a.x * b.y - a.y * b.x) / (K * sqrt(E * G - F * F)) - 1));
+        worse(&second, fabs((E * p.second[2] - 2 * F * p.second[1] + G * p.second[0]) / (2 * (E * G - F * F)) + H));
+        worse(&changed, fabs((a.y - b.x) / 2 - H));
+        /* rates along T1 and T2 themselves: x_u = sqrt(E) T1, x_v = F/sqrt(E) T1 + sqrt(EG - F^2)/sqrt(E) T2 */
+        const double e = sqrt(E), g = sqrt(E * G - F * F) / e;
+        const qvec3 by_1 = qvec3_scale(p.a, 1 / e), by_2 = qvec3_scale(qvec3_axpy(-F / e, by_1, p.b), 1 / g);
+        worse(&unit, fabs(by_1.x * by_2.y - by_1.y * by_2.x - K));
+        worse(&unit, fabs((by_1.y - by_2.x) / 2 - H));
+    }
+    assert_bound("a_x b_y - a_y b_x is K sqrt(EG - F^2)", product, 4e-15);
+    assert_bound("and K, H for unit tangents", unit, 6e-15);
+    assert_bound("II/I is -H", second, 3e-15);
+    assert_true(changed > 1);
+}
+
 static void closed_forms(void **state)
 {
     (void)state;
@@ -315,12 +391,6 @@ static void rates_are_the_frames(void **state)
 
 /* ---- differences ---- */
 
-static bool veil(double u, double v, qvec3 d[6], void *context)
-{
-    const quat_surface *inner = context;
-    return inner->at(u, v, d, inner->context);
-}
-
 static void fewer_derivatives(void **state)
 {
     (void)state;
@@ -464,6 +534,8 @@ static void bad_input_has_a_status(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(ellipsoids_in_quad),
+                                       cmocka_unit_test(beside_the_pole),
+                                       cmocka_unit_test(what_the_thesis_prints_for_curvature),
                                        cmocka_unit_test(closed_forms),
                                        cmocka_unit_test(superellipsoids_in_quad),
                                        cmocka_unit_test(equations_23_and_24),

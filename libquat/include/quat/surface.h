@@ -64,7 +64,9 @@ typedef struct quat_surface_point {
     double error; /* an estimate of the error of the principal curvatures */
 } quat_surface_point;
 
-/* Everything at (u, v), through the frame's rates. QUAT_NOT_UNIQUE at an umbilic. QUAT_EDOMAIN: outside an open range,
+/* Everything at (u, v), through the frame's rates. QUAT_NOT_UNIQUE at an umbilic. QUAT_NOT_CONVERGED where `error` comes
+ * to 1e-3 of the curvatures or of one over the surface's extent: beside a pole, when differences are all there is,
+ * within about 1e-5 of it, otherwise within 1e-11. QUAT_EDOMAIN: outside an open range,
  * infinite or NaN; no value; a degenerate point (x_u x x_v = 0 to rounding, such as the pole of a sphere's angles): all
  * zero then, frame = 1, but for the position if there is one. QUAT_ERANGE: lengths outside 1e-100 ... 1e100, where
  * products overflow or vanish. QUAT_EARGUMENT: a surface without a function, empty or infinite ranges, `known` outside
