@@ -6,7 +6,7 @@ include(CheckLinkerFlag)
 add_library(house_rules INTERFACE)
 target_compile_options(house_rules INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes> $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
-  -ffp-contract=off)
+  -ffp-contract=off -fno-math-errno)
 
 # A shared library names as needed only what it calls, so that loading the algebra loads libm and nothing else.
 check_linker_flag(C -Wl,--as-needed HOUSE_HAS_AS_NEEDED)

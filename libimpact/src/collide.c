@@ -7,81 +7,63 @@
 #include "collide_isotropic.h"
 #include "collide_series.h"
 
+#include <float.h>
+
 /* Condition of M from which the last rounding is mended. */
 static const double ill_conditioned = 100;
 
 /* ---- from the caller's units to scaled ones and back ---- */
 
 /* omega: local axes. */
-static inline double energy(const impact_collider *body, qvec3 velocity, qvec3 omega)
+static inline double energy(const impact_ready *ready, const impact_vectors *velocity, const impact_vectors *omega)
 {
-    const qvec3 j = body->moments;
-    return 0.5 * (body->mass * qvec3_dot(velocity, velocity) +
-                  (j.x * omega.x * omega.x + j.y * omega.y * omega.y + j.z * omega.z * omega.z));
+    const impact_vectors momentum = impact_vectors_weigh(&ready->moments, omega);
+    const impact_pair each =
+        0.5 * (ready->mass * impact_vectors_dot(velocity, velocity) + impact_vectors_dot(&momentum, omega));
+    return each[0] + each[1];
 }
 
-static double energy_before(const impact_collision *collision, const impact_ready ready[2])
+/* What an impulse on body 1, and its opposite on body 2, does to the velocities of both; and their energies. */
+static void push(const impact_ready *ready, qvec3 impulse, impact_outcome *outcome)
 {
-    double sum = 0;
+    const impact_vectors each = impact_vectors_of(impulse, qvec3_neg(impulse)),
+                         there = impact_ready_local(ready, &each);
+    const impact_vectors turn = impact_vectors_cross(&ready->offset, &there);
+    const impact_vectors spin = impact_vectors_weigh(&ready->inverse_moments, &turn),
+                         out = impact_ready_world(ready, &spin);
+    const impact_vectors velocity = impact_vectors_add(&ready->velocity, ready->inverse_mass, &each);
+    const impact_vectors before = impact_ready_local(ready, &ready->omega);
+    const impact_pair one = {1, 1};
+    const impact_vectors after = impact_vectors_add(&before, one, &spin),
+                         omega = impact_vectors_add(&ready->omega, one, &out);
+    outcome->energy_before = energy(ready, &ready->velocity, &before);
+    outcome->energy_after = energy(ready, &velocity, &after);
     for (int i = 0; i < 2; i++) {
-        const impact_collider *body = &collision->body[i];
-        if (ready[i].inverse_mass != 0) sum += energy(body, body->velocity, impact_ready_local(&ready[i], body->omega));
+        outcome->velocity[i] = impact_vectors_at(&velocity, i);
+        outcome->omega[i] = impact_vectors_at(&omega, i);
     }
-    return sum;
-}
-
-/* The velocities of one body after an impulse, and its energies. */
-static inline void push(const impact_collider *body, const impact_ready *ready, qvec3 impulse, int i,
-                        impact_outcome *outcome)
-{
-    if (ready->inverse_mass == 0) {
-        outcome->velocity[i] = body->velocity;
-        outcome->omega[i] = body->omega;
-        return;
-    }
-    const qvec3 turn = qvec3_cross(ready->offset, impact_ready_local(ready, impulse));
-    const qvec3 spin = impact_ready_spin(ready, turn), before = impact_ready_local(ready, body->omega);
-    const qvec3 velocity = qvec3_axpy(ready->inverse_mass, impulse, body->velocity);
-    outcome->energy_before += energy(body, body->velocity, before);
-    outcome->energy_after += energy(body, velocity, qvec3_add(before, spin));
-    outcome->velocity[i] = velocity;
-    outcome->omega[i] = qvec3_add(body->omega, impact_ready_world(ready, spin));
-}
-
-/* What the outcome's impulse does to both. */
-static void apply(const impact_collision *collision, const impact_ready ready[2], impact_outcome *outcome)
-{
-    const qvec3 impulse = outcome->impulse;
-    outcome->energy_before = outcome->energy_after = 0;
-    push(&collision->body[0], &ready[0], impulse, 0, outcome);
-    push(&collision->body[1], &ready[1], qvec3_neg(impulse), 1, outcome);
 }
 
 /* M^-1 times a change of the contact's velocity. */
 static qvec3 impulse_for(const impact_frame *frame, qvec3 du)
 {
     const double ux = qvec3_dot(du, frame->t1), uy = qvec3_dot(du, frame->t2), uz = qvec3_dot(du, frame->n);
-    const double z = (uz - frame->c / frame->a * ux - frame->d / frame->b * uy) / frame->k;
-    const double x = (ux - frame->c * z) / frame->a, y = (uy - frame->d * z) / frame->b;
+    const double z = (uz + frame->alpha * ux + frame->beta * uy) / frame->k;
+    const double x_left = ux - frame->c * z, y_left = uy - frame->d * z;
+    const double y = (y_left - frame->e / frame->a * x_left) / frame->schur, x = (x_left - frame->e * y) / frame->a;
     return qvec3_scale(qvec3_axpy(x, frame->t1, qvec3_axpy(y, frame->t2, qvec3_scale(frame->n, z))), 1 / frame->scale);
 }
 
 /* A contact that sticks must end with u = (0, 0, uz). Where M is ill-conditioned, rounding of the impulse turns the bodies by more than
  * that allows: what is missing is given to their velocities, not to the impulse, which is right to its own rounding. */
-static void refine(const impact_collision *collision, const impact_ready ready[2], const impact_frame *frame, double uz,
-                   impact_outcome *outcome)
+static void refine(const impact_ready *ready, const impact_frame *frame, double uz, impact_outcome *outcome)
 {
-    impact_collision after = *collision;
-    for (int i = 0; i < 2; i++) {
-        after.body[i].velocity = outcome->velocity[i];
-        after.body[i].omega = outcome->omega[i];
-    }
-    const qvec3 missing = qvec3_axpy(uz, frame->n, qvec3_neg(impact_frame_velocity(&after)));
+    impact_ready after = *ready;
+    after.velocity = impact_vectors_of(outcome->velocity[0], outcome->velocity[1]);
+    after.omega = impact_vectors_of(outcome->omega[0], outcome->omega[1]);
+    const qvec3 missing = qvec3_axpy(uz, frame->n, qvec3_neg(impact_ready_velocity(&after)));
     const double before = outcome->energy_before;
-    const qvec3 impulse = impulse_for(frame, missing);
-    outcome->energy_after = 0;
-    push(&after.body[0], &ready[0], impulse, 0, outcome);
-    push(&after.body[1], &ready[1], qvec3_neg(impulse), 1, outcome);
+    push(&after, impulse_for(frame, missing), outcome);
     outcome->energy_before = before;
 }
 
@@ -98,7 +80,7 @@ static void unchanged(const impact_collision *collision, impact_outcome *outcome
     outcome->conditioning = value;
 }
 
-static void report(const impact_collision *collision, const impact_ready ready[2], const impact_course *course,
+static void report(const impact_collision *collision, const impact_ready *ready, const impact_course *course,
                    double speed, impact_outcome *outcome)
 {
     const impact_frame *frame = course->frame;
@@ -128,23 +110,18 @@ static void report(const impact_collision *collision, const impact_ready ready[2
     for (int i = 0; i < course->phase_count; i++) outcome->phases[i] = course->phases[i];
     outcome->conditioning = frame->conditioning;
     outcome->energy_rose = course->work_c + course->work_r + course->work_f > -1e-12 * course->work_c;
-    apply(collision, ready, outcome);
+    push(ready, outcome->impulse, outcome);
     const impact_phase last = course->phase_count > 0 ? course->phases[course->phase_count - 1] : IMPACT_SLIP_C;
     const bool sticks = (last == IMPACT_STICK_C || last == IMPACT_STICK_R) && outcome->solver != IMPACT_SOLVER_CVODE;
-    if (sticks && frame->conditioning > ill_conditioned) refine(collision, ready, frame, course->uz * speed, outcome);
+    if (sticks && frame->conditioning > ill_conditioned) refine(ready, frame, course->uz * speed, outcome);
 }
 
-static double sum_of_sizes(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
-
 /* A tangential velocity below this is what is left of larger ones that cancel: the contact rolls, and starts from u_t = 0. */
-static double rounding_of_velocity(const impact_collision *collision)
+static double rounding_of_velocity(const impact_ready *ready)
 {
-    double sum = 0;
-    for (int i = 0; i < 2; i++) {
-        const impact_collider *body = &collision->body[i];
-        sum += sum_of_sizes(body->velocity) + sum_of_sizes(body->omega) * sum_of_sizes(body->offset);
-    }
-    return 0x1p-52 * sum;
+    const impact_pair each =
+        impact_vectors_size(&ready->velocity) + impact_vectors_size(&ready->omega) * impact_vectors_size(&ready->arm);
+    return DBL_MIN + 0x1p-51 * (each[0] + each[1]);
 }
 
 static impact_status fail(const impact_collision *collision, impact_outcome *outcome, impact_status status)
@@ -162,31 +139,43 @@ static bool closed_form(impact_course *course)
     return true;
 }
 
-static impact_status solve(const impact_collision *collision, impact_course *course, double speed,
-                           impact_outcome *outcome)
+/* Along the principal directions, which the series and CVODE ask for. */
+static void turn_to_principal(const impact_ready *ready, impact_frame *frame, impact_course *course)
+{
+    const qvec3 t1 = frame->t1;
+    impact_frame_turn(ready, frame);
+    course->ux = course->s * qvec3_dot(t1, frame->t1);
+    course->uy = course->s * qvec3_dot(t1, frame->t2);
+}
+
+static impact_status solve(const impact_collision *collision, const impact_ready *ready, impact_frame *frame,
+                           impact_course *course, double speed, impact_outcome *outcome)
 {
     const bool any = collision->solver == IMPACT_SOLVER_AUTO;
     const bool compliant = collision->tangential_compliance > 0 && course->mu > 0;
-    if (collision->solver == IMPACT_SOLVER_CVODE || collision->friction_law || compliant) {
-        outcome->solver = IMPACT_SOLVER_CVODE;
-        return impact_cvode_solve(course, collision, speed);
-    }
-    if ((any || collision->solver == IMPACT_SOLVER_CLOSED_FORM) && closed_form(course)) {
+    const bool cvode = collision->solver == IMPACT_SOLVER_CVODE || collision->friction_law || compliant;
+    if (!cvode && (any || collision->solver == IMPACT_SOLVER_CLOSED_FORM) && closed_form(course)) {
         outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
         return course->ended ? IMPACT_OK : IMPACT_EUNSETTLED;
     }
     if (collision->solver == IMPACT_SOLVER_CLOSED_FORM) return IMPACT_EARGUMENT;
+    turn_to_principal(ready, frame, course);
+    if (cvode) {
+        outcome->solver = IMPACT_SOLVER_CVODE;
+        return impact_cvode_solve(course, collision, speed);
+    }
     outcome->solver = IMPACT_SOLVER_SERIES;
     const int order = collision->series_order == 0 ? IMPACT_SERIES_ORDER : collision->series_order;
     return impact_series_solve(course, order) ? IMPACT_OK : IMPACT_EUNSETTLED;
 }
 
 /* Nothing happens, and says so. */
-static void separate(const impact_collision *collision, const impact_ready ready[2], double approach,
+static void separate(const impact_collision *collision, const impact_ready *ready, double approach,
                      impact_outcome *outcome)
 {
     unchanged(collision, outcome, 0);
-    outcome->energy_before = outcome->energy_after = energy_before(collision, ready);
+    const impact_vectors omega = impact_ready_local(ready, &ready->omega);
+    outcome->energy_before = outcome->energy_after = energy(ready, &ready->velocity, &omega);
     outcome->normal_before = outcome->normal_after = approach;
 }
 
@@ -197,34 +186,40 @@ static bool may_be_direct(const impact_collision *collision)
     return closed && !compliant && !collision->friction_law;
 }
 
+/* |t|, how fast the contact points slide; 0 where that is but rounding. */
+static double sliding_speed(const impact_ready *ready, qvec3 t)
+{
+    const double s2 = qvec3_dot(t, t), s = s2 > DBL_MIN && s2 < DBL_MAX ? sqrt(s2) : qvec3_norm(t);
+    return s > rounding_of_velocity(ready) ? s : 0;
+}
+
 impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome)
 {
     impact_status status = impact_collide_check(collision, NULL, 0);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
-    impact_ready ready[2];
-    for (int i = 0; i < 2; i++) impact_ready_make(&collision->body[i], &ready[i]);
-    const qvec3 n = impact_frame_normal(collision), u = impact_frame_velocity(collision);
-    const double approach = qvec3_dot(u, n), rounding = rounding_of_velocity(collision);
+    impact_ready ready;
+    impact_ready_make(collision, &ready);
+    const qvec3 n = impact_frame_normal(collision), u = impact_ready_velocity(&ready);
+    const double approach = qvec3_dot(u, n), speed = -approach;
     if (!isfinite(approach)) return fail(collision, outcome, IMPACT_EDOMAIN);
-    if (approach < 0 && may_be_direct(collision) &&
-        impact_direct_solve(collision, ready, n, u, approach, rounding, outcome)) {
-        apply(collision, ready, outcome);
+    /* At right angles to n however small it is beside u. */
+    const qvec3 t = qvec3_cross(n, qvec3_cross(u, n));
+    const double s = sliding_speed(&ready, t);
+    if (approach < 0 && may_be_direct(collision) && impact_direct_solve(collision, &ready, n, t, s, speed, outcome)) {
+        push(&ready, outcome->impulse, outcome);
         return IMPACT_OK;
     }
     impact_frame frame;
-    impact_frame_make(n, ready, &frame);
+    impact_frame_make(n, s > 0 ? qvec3_scale(t, 1 / s) : impact_frame_across(n), &ready, &frame);
     if (!(approach < 0)) {
-        separate(collision, ready, approach, outcome);
+        separate(collision, &ready, approach, outcome);
         outcome->conditioning = frame.conditioning;
         return IMPACT_SEPARATING;
     }
-    const double speed = -approach;
-    double ux = qvec3_dot(u, frame.t1), uy = qvec3_dot(u, frame.t2);
-    if (fabs(ux) + fabs(uy) <= rounding) ux = uy = 0;
     impact_course course;
-    impact_course_start(&course, &frame, collision, ux / speed, uy / speed);
-    status = solve(collision, &course, speed, outcome);
+    impact_course_start(&course, &frame, collision, s / speed, 0);
+    status = solve(collision, &ready, &frame, &course, speed, outcome);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
-    report(collision, ready, &course, speed, outcome);
+    report(collision, &ready, &course, speed, outcome);
     return IMPACT_OK;
 }

@@ -106,25 +106,29 @@ static impact_status check_contact(const impact_collision *collision, char *mess
 /* At most DBL_MAX where all are finite and not huge; a NaN stays one. */
 static inline double size3(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
 
-static inline bool plain_body(const impact_collider *body)
+static bool plain_bodies(const impact_collider *one, const impact_collider *two)
 {
-    const quat q = body->orientation;
-    const qvec3 j = body->moments;
-    if (!(size3(body->offset) + (size3(body->velocity) + size3(body->omega)) <= DBL_MAX && body->mass > 0))
-        return false;
-    return body->mass == INFINITY || (impact_smaller(impact_smaller(j.x, j.y), j.z) > 0 && j.x + j.y + j.z <= DBL_MAX &&
-                                      fabs(quat_dot(q, q) - 1) <= 1e-6);
+    const impact_vectors offset = impact_vectors_of(one->offset, two->offset);
+    const impact_vectors velocity = impact_vectors_of(one->velocity, two->velocity);
+    const impact_vectors omega = impact_vectors_of(one->omega, two->omega);
+    const impact_vectors j = impact_vectors_of(one->moments, two->moments);
+    const quat p = one->orientation, q = two->orientation;
+    const impact_pair mass = {one->mass, two->mass}, length2 = {quat_dot(p, p), quat_dot(q, q)};
+    const impact_mask known =
+        impact_vectors_size(&offset) + (impact_vectors_size(&velocity) + impact_vectors_size(&omega)) <= DBL_MAX;
+    const impact_mask moves = (mass < INFINITY) & (j.x > 0) & (j.y > 0) & (j.z > 0) & (j.x + j.y + j.z <= DBL_MAX) &
+                              (impact_pair_size(length2 - 1) <= 1e-6);
+    return impact_mask_all(known & (mass > 0) & ((mass == INFINITY) | moves)) && impact_mask_any(moves);
 }
 
 /* Most collisions, told at a glance; the rest is looked at closely. */
 static bool plain(const impact_collision *c)
 {
-    const qvec3 n = c->normal;
-    return plain_body(&c->body[0]) && plain_body(&c->body[1]) &&
-           (c->body[0].mass < INFINITY || c->body[1].mass < INFINITY) && size3(n) <= DBL_MAX && size3(n) > 0 &&
-           c->friction >= 0 && c->friction <= DBL_MAX && c->restitution >= 0 && c->restitution <= 1 &&
-           (unsigned)c->law <= IMPACT_STRONGE && (unsigned)c->solver <= IMPACT_SOLVER_CVODE && c->series_order == 0 &&
-           c->tangential_compliance == 0 && !c->friction_law;
+    const double size = size3(c->normal);
+    return plain_bodies(&c->body[0], &c->body[1]) && size <= DBL_MAX && size > 0 && c->friction >= 0 &&
+           c->friction <= DBL_MAX && c->restitution >= 0 && c->restitution <= 1 && (unsigned)c->law <= IMPACT_STRONGE &&
+           (unsigned)c->solver <= IMPACT_SOLVER_CVODE && c->series_order == 0 && c->tangential_compliance == 0 &&
+           !c->friction_law;
 }
 
 impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size)

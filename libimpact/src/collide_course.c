@@ -149,13 +149,15 @@ void impact_course_line(impact_course *course, const impact_line *line, double r
 impact_line impact_course_sliding(const impact_frame *frame, double mu, double x, double y)
 {
     const double along = frame->c * x + frame->d * y;
-    return (impact_line){
-        .R = along - mu * (frame->a * x * x + frame->b * y * y), .Z = 1 - mu * along, .gx = -mu * x, .gy = -mu * y};
+    return (impact_line){.R = along - mu * (frame->a * x * x + 2 * frame->e * x * y + frame->b * y * y),
+                         .Z = 1 - mu * along,
+                         .gx = -mu * x,
+                         .gy = -mu * y};
 }
 
 double impact_course_turning(const impact_frame *frame, double mu, double x, double y)
 {
-    return (frame->d * x - frame->c * y) + mu * (frame->a - frame->b) * x * y;
+    return (frame->d * x - frame->c * y) + mu * ((frame->a - frame->b) * x * y - frame->e * (x * x - y * y));
 }
 
 bool impact_course_is_straight(const impact_frame *frame, double mu, double x, double y)
@@ -164,18 +166,27 @@ bool impact_course_is_straight(const impact_frame *frame, double mu, double x, d
     return fabs(impact_course_turning(frame, mu, x, y)) <= 2e-15 * rate;
 }
 
-/* The root lambda > 0 of |(mu M_tt + lambda)^-1 M_tz| = 1: Newton on 1/|.| - 1, convex and rising, from the left (More & Sorensen 1983). */
+/* The root lambda > 0 of |v| = 1, v = (mu M_tt + lambda)^-1 M_tz: Newton on 1/|v| - 1, convex and rising, from the left (More & Sorensen
+ * 1983); there lie 0 and, by Jensen's inequality, |M_tz| less mu M_tt along M_tz. The determinant and v'(mu M_tt + lambda)^-1 v are sums of
+ * what is positive. */
 static double restart_speed(const impact_frame *frame, double mu, double *x, double *y)
 {
-    double lambda = 0;
+    const double a = frame->a, b = frame->b, c = frame->c, d = frame->d, e = frame->e, g2 = c * c + d * d;
+    const double pull = mu * a * frame->schur, trace = mu * (a + b), q = mu * e;
+    double lambda = impact_larger(sqrt(g2) - mu * (a * c * c + 2 * e * c * d + b * d * d) / g2, 0);
     for (int i = 0; i < 60; i++) {
-        const double ea = mu * frame->a + lambda, eb = mu * frame->b + lambda;
-        *x = frame->c / ea;
-        *y = frame->d / eb;
-        const double n2 = *x * *x + *y * *y, n = sqrt(n2);
-        const double step = (n - 1) * n2 / (*x * *x / ea + *y * *y / eb);
+        const double p = mu * a + lambda, inverse = 1 / (mu * pull + lambda * (trace + lambda));
+        *x = (lambda * c - pull * frame->alpha) * inverse;
+        *y = (lambda * d - pull * frame->beta) * inverse;
+        const double n2 = *x * *x + *y * *y, n = sqrt(n2), over = p * *y - q * *x;
+        const double step = (n - 1) * n2 * p / (*x * *x + over * over * inverse);
         lambda += step;
-        if (!(fabs(step) > 2 * DBL_EPSILON * lambda)) break;
+        if (fabs(step) > 1e-8 * lambda) continue;
+        /* Newton's last step squares the error; to first order v follows it. */
+        const double dy = over * inverse, dx = (*x - q * dy) / p;
+        *x -= step * dx;
+        *y -= step * dy;
+        break;
     }
     const double f = 1 / sqrt(*x * *x + *y * *y);
     *x *= f;
@@ -185,7 +196,7 @@ static double restart_speed(const impact_frame *frame, double mu, double *x, dou
 
 impact_line impact_course_from_rest(const impact_frame *frame, double mu)
 {
-    const double alpha = -frame->c / frame->a, beta = -frame->d / frame->b;
+    const double alpha = frame->alpha, beta = frame->beta;
     if (alpha * alpha + beta * beta <= mu * mu)
         return (impact_line){.Z = frame->k, .gx = alpha, .gy = beta, .stick = true};
     double x = 0, y = 0;
@@ -196,8 +207,8 @@ impact_line impact_course_from_rest(const impact_frame *frame, double mu)
     }
     const double lambda = restart_speed(frame, mu, &x, &y);
     /* Z = xi' M xi + mu R as a sum of what is positive: no cancellation, and Z > 0 is plain. */
-    const double ex = alpha + mu * x, ey = beta + mu * y;
-    const double Z = frame->k + frame->a * ex * ex + frame->b * ey * ey + mu * lambda;
+    const double ey = beta + mu * y, ex = alpha + mu * x + frame->e / frame->a * ey;
+    const double Z = frame->k + frame->a * ex * ex + frame->schur * ey * ey + mu * lambda;
     return (impact_line){.R = lambda, .Z = Z, .gx = -mu * x, .gy = -mu * y};
 }
 

@@ -8,30 +8,29 @@
 #include <float.h>
 
 /* Whether every offset is along the normal and every body round; *l is then M_tt. */
-static bool central(const impact_ready ready[2], qvec3 n, double *l)
+static bool central(const impact_ready *ready, qvec3 n, double *l)
 {
-    if (!ready[0].round || !ready[1].round) return false;
-    *l = ready[0].inverse_mass + ready[1].inverse_mass;
-    for (int i = 0; i < 2; i++) {
-        const qvec3 r = ready[i].offset, x = qvec3_cross(r, n);
-        const double r2 = qvec3_dot(r, r);
-        /* A static body may be struck anywhere. */
-        if (ready[i].inverse_mass != 0 && qvec3_dot(x, x) > 16 * DBL_EPSILON * DBL_EPSILON * r2) return false;
-        *l += r2 * ready[i].inverse_moments.x;
-    }
+    if (!ready->round) return false;
+    const impact_vectors *r = &ready->offset, normal = impact_vectors_of(n, n), x = impact_vectors_cross(r, &normal);
+    const impact_pair r2 = impact_vectors_dot(r, r), aside = impact_vectors_dot(&x, &x);
+    if (impact_mask_any(aside > 16 * DBL_EPSILON * DBL_EPSILON * r2)) return false;
+    const impact_pair each = ready->inverse_mass + r2 * ready->inverse_moments.x;
+    *l = each[0] + each[1];
     return true;
 }
 
 /* M_zz */
-static double along_normal(const impact_ready ready[2], qvec3 n)
+static double along_normal(const impact_ready *ready, qvec3 n)
 {
-    double w = ready[0].inverse_mass + ready[1].inverse_mass;
-    for (int i = 0; i < 2; i++) {
-        const qvec3 x = qvec3_cross(ready[i].offset, impact_ready_local(&ready[i], n));
-        w += qvec3_dot(x, impact_ready_spin(&ready[i], x));
-    }
-    return w;
+    const impact_vectors each = impact_vectors_of(n, n), there = impact_ready_local(ready, &each);
+    const impact_vectors x = impact_vectors_cross(&ready->offset, &there);
+    const impact_vectors turn = impact_vectors_weigh(&ready->inverse_moments, &x);
+    const impact_pair w = ready->inverse_mass + impact_vectors_dot(&x, &turn);
+    return w[0] + w[1];
 }
+
+/* |M| |M^-1| / 3 of M = diag(l, l, 1). */
+static double conditioning(double l) { return sqrt((2 * l * l + 1) * (2 + l * l)) / (3 * l); }
 
 /* The impulse of friction on the tangential velocity t: how large, its work, and whether it stops it, in compression or at all. */
 typedef struct friction {
@@ -59,26 +58,24 @@ static int list_phases(const friction *f, bool slides, bool back, unsigned char 
     return n;
 }
 
-bool impact_direct_solve(const impact_collision *collision, const impact_ready ready[2], qvec3 n, qvec3 u,
-                         double approach, double rounding, impact_outcome *outcome)
+bool impact_direct_solve(const impact_collision *collision, const impact_ready *ready, qvec3 n, qvec3 t, double s,
+                         double speed, impact_outcome *outcome)
 {
     const bool smooth = collision->friction == 0;
-    double w = ready[0].inverse_mass + ready[1].inverse_mass, l = 1;
+    double w = ready->inverse_mass[0] + ready->inverse_mass[1], l = 1;
     if (smooth)
         w = along_normal(ready, n);
     else if (!central(ready, n, &l))
         return false;
-    const double eps = collision->restitution, speed = -approach, p_c = speed / w, p = (1 + eps) * p_c;
+    const double eps = collision->restitution, p_c = speed / w, p = (1 + eps) * p_c;
     const double work = 0.5 * speed * p_c, back = eps * eps * work;
-    const qvec3 normal = qvec3_scale(n, p), t = qvec3_axpy(speed, n, u);
-    const double t2 = qvec3_dot(t, t), length = t2 > DBL_MIN && t2 < DBL_MAX ? sqrt(t2) : qvec3_norm(t);
-    const double s = length > rounding ? length : 0;
+    const qvec3 normal = qvec3_scale(n, p);
     const friction f = rub(collision->friction, p, p_c, s, l);
     const bool rubs = s > 0 && !smooth;
     outcome->impulse = rubs ? qvec3_axpy(-f.impulse / s, t, normal) : normal;
     outcome->impulse_normal = p;
     outcome->impulse_tangential = rubs ? f.impulse : 0;
-    outcome->normal_before = approach;
+    outcome->normal_before = -speed;
     outcome->normal_after = eps * speed;
     outcome->compression_impulse = p_c;
     outcome->work_compression = -work;
@@ -87,7 +84,7 @@ bool impact_direct_solve(const impact_collision *collision, const impact_ready r
     outcome->compressions = 1;
     outcome->phase_count = list_phases(&f, smooth || s > 0, eps > 0, outcome->phases);
     outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
-    outcome->conditioning = smooth ? 1 : l / w;
+    outcome->conditioning = smooth ? 1 : conditioning(l / w);
     outcome->jammed = false;
     outcome->energy_rose = back - work + outcome->work_friction > 1e-12 * work;
     return true;

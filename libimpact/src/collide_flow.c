@@ -61,8 +61,18 @@ static bool frame_of(const impact_flow *flow, impact_frame *frame)
     const double k = 1 - c * c / a - d * d / b;
     if (!(m > 0 && a > 0 && b > 0 && k > 0 && isfinite(a + b + k) && flow->friction >= 0 && isfinite(flow->friction)))
         return false;
-    *frame = (impact_frame){
-        .t1 = flow->t1, .t2 = flow->t2, .n = flow->n, .a = a, .b = b, .c = c, .d = d, .k = k, .scale = m};
+    *frame = (impact_frame){.t1 = flow->t1,
+                            .t2 = flow->t2,
+                            .n = flow->n,
+                            .a = a,
+                            .b = b,
+                            .c = c,
+                            .d = d,
+                            .schur = b,
+                            .k = k,
+                            .alpha = -c / a,
+                            .beta = -d / b,
+                            .scale = m};
     return true;
 }
 
@@ -242,10 +252,10 @@ impact_status impact_flow_make(const impact_collision *collision, impact_flow *f
 {
     const impact_status status = impact_collide_check(collision, NULL, 0);
     if (status != IMPACT_OK) return status;
-    impact_ready ready[2];
+    impact_ready ready;
     impact_frame frame;
-    for (int i = 0; i < 2; i++) impact_ready_make(&collision->body[i], &ready[i]);
-    impact_frame_make(impact_frame_normal(collision), ready, &frame);
+    impact_ready_make(collision, &ready);
+    impact_frame_principal(impact_frame_normal(collision), &ready, &frame);
     const double m = frame.scale;
     *flow = (impact_flow){.t1 = frame.t1,
                           .t2 = frame.t2,
@@ -256,7 +266,7 @@ impact_status impact_flow_make(const impact_collision *collision, impact_flow *f
                           .d = frame.d * m,
                           .m = m,
                           .friction = collision->friction};
-    const qvec3 u = impact_frame_velocity(collision);
+    const qvec3 u = impact_ready_velocity(&ready);
     velocity[0] = qvec3_dot(u, frame.t1);
     velocity[1] = qvec3_dot(u, frame.t2);
     velocity[2] = qvec3_dot(u, frame.n);

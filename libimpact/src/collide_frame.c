@@ -7,123 +7,145 @@
 
 #include <float.h>
 
-/* A vector for each body, side by side. */
-typedef struct vectors {
-    impact_pair x, y, z;
-} vectors;
+/* Rows: with the weights J^-1/2, a unit vector's dot product with them is its arm offset x e, local axes, for each body. */
+typedef struct levers {
+    impact_vectors row[3];
+} levers;
 
-typedef struct both {
-    vectors axis[3], offset, inverse_moments;
-} both;
-
-static inline vectors side_by_side(qvec3 one, qvec3 two)
+static inline impact_vectors row(impact_pair weight, impact_pair p, const impact_vectors *x, impact_pair q,
+                                 const impact_vectors *y)
 {
-    return (vectors){{one.x, two.x}, {one.y, two.y}, {one.z, two.z}};
+    p *= weight;
+    q *= weight;
+    return (impact_vectors){p * x->x - q * y->x, p * x->y - q * y->y, p * x->z - q * y->z};
 }
 
-static inline both make_both(const impact_ready *one, const impact_ready *two)
+static inline levers make_levers(const impact_ready *ready)
 {
-    both r;
-    for (int i = 0; i < 3; i++) r.axis[i] = side_by_side(one->axis[i], two->axis[i]);
-    r.offset = side_by_side(one->offset, two->offset);
-    r.inverse_moments = side_by_side(one->inverse_moments, two->inverse_moments);
-    return r;
+    const impact_vectors *axis = ready->axis, *r = &ready->offset, *w = &ready->inverse_moments;
+    return (levers){{row(impact_pair_sqrt(w->x), r->y, &axis[2], r->z, &axis[1]),
+                     row(impact_pair_sqrt(w->y), r->z, &axis[0], r->x, &axis[2]),
+                     row(impact_pair_sqrt(w->z), r->x, &axis[1], r->y, &axis[0])}};
 }
 
-/* r x e, local axes. */
-static inline vectors make_arms(const both *bodies, qvec3 e)
+static inline impact_vectors make_arms(const levers *l, qvec3 e)
 {
-    const vectors *axis = bodies->axis, *r = &bodies->offset;
-    const impact_pair x = axis[0].x * e.x + axis[0].y * e.y + axis[0].z * e.z;
-    const impact_pair y = axis[1].x * e.x + axis[1].y * e.y + axis[1].z * e.z;
-    const impact_pair z = axis[2].x * e.x + axis[2].y * e.y + axis[2].z * e.z;
-    return (vectors){r->y * z - r->z * y, r->z * x - r->x * z, r->x * y - r->y * x};
+    const impact_vectors *row = l->row;
+    return (impact_vectors){row[0].x * e.x + row[0].y * e.y + row[0].z * e.z,
+                            row[1].x * e.x + row[1].y * e.y + row[1].z * e.z,
+                            row[2].x * e.x + row[2].y * e.y + row[2].z * e.z};
 }
 
-/* sum p.J^-1 q */
-static inline double arms_dot(const both *bodies, const vectors *p, const vectors *q)
+/* sum p.q over both bodies */
+static inline double arms_dot(const impact_vectors *p, const impact_vectors *q)
 {
-    const vectors *w = &bodies->inverse_moments;
-    const impact_pair sum = p->x * (w->x * q->x) + p->y * (w->y * q->y) + p->z * (w->z * q->z);
+    const impact_pair sum = impact_vectors_dot(p, q);
     return sum[0] + sum[1];
 }
 
-static inline vectors arms_mix(double x, const vectors *p, double y, const vectors *q)
+static inline impact_vectors arms_mix(double x, const impact_vectors *p, double y, const impact_vectors *q)
 {
-    return (vectors){x * p->x + y * q->x, x * p->y + y * q->y, x * p->z + y * q->z};
+    return (impact_vectors){x * p->x + y * q->x, x * p->y + y * q->y, x * p->z + y * q->z};
 }
 
-/* A unit vector across n, without a branch that jumps near the poles (Duff et al. 2017). */
-static qvec3 across(qvec3 n)
+static inline impact_pair both(double x) { return (impact_pair){x, x}; }
+
+/* Without a branch that jumps near the poles (Duff et al. 2017). */
+qvec3 impact_frame_across(qvec3 n)
 {
     const double sign = copysign(1, n.z), f = -1 / (sign + n.z);
     return (qvec3){1 + sign * n.x * n.x * f, sign * n.x * n.y * f, -sign * n.x};
 }
 
-/* The largest root of l^3 - e1 l^2 + e2 l - e3, all three real and positive, to 0.1 %: e1/3 + 2q cos(phi/3), and of cos(phi) =
- * 2y^2 - 1 it is cos(phi/3) = cos(2/3 acos y), nearly a parabola in y. */
-static inline double largest_root(double e1, double e2, double e3)
+/* |M| |M^-1| / 3 by Frobenius norms, the inverse from what elimination left: its diagonal is a sum of what is positive. */
+static inline double conditioning(const impact_frame *m, double shear, double inverse_a, double inverse_schur)
 {
-    const double d = impact_larger(e1 * e1 - 3 * e2, 1e-30 * e1 * e1), q = sqrt(d);
-    const double cosine = (e1 * (2 * e1 * e1 - 9 * e2) + 27 * e3) / (2 * d * q);
-    const double y = sqrt(impact_smaller(impact_larger(0.5 + 0.5 * cosine, 0), 1));
-    return (e1 + 2 * q * (0.500734 + y * (0.562841 - 0.064169 * y))) / 3;
-}
-
-/* Largest over smallest root: that is the largest root times that of the reversed polynomial. */
-static double conditioning(double trace, double second, double det)
-{
-    const double f = 1 / det;
-    return impact_larger(largest_root(trace, second, det) * largest_root(second * f, trace * f, f), 1);
+    const double w = 1 / m->k, s = inverse_schur, alpha = m->alpha, beta = m->beta;
+    const double x = inverse_a + shear * shear * s + alpha * alpha * w, y = s + beta * beta * w,
+                 xy = alpha * beta * w - shear * s;
+    const double inverse2 = x * x + y * y + w * w + 2 * (xy * xy + (alpha * alpha + beta * beta) * (w * w));
+    const double norm2 = m->a * m->a + m->b * m->b + 1 + 2 * (m->c * m->c + m->d * m->d + m->e * m->e);
+    return impact_larger(sqrt(norm2) * sqrt(inverse2) * (1.0 / 3), 1);
 }
 
 qvec3 impact_frame_normal(const impact_collision *collision)
 {
     const qvec3 given = collision->normal;
     const double length2 = qvec3_dot(given, given);
+    /* Most are of unit length but for rounding: no root, no division. */
+    if (fabs(length2 - 1) < 1e-14) return qvec3_scale(given, 1.5 - 0.5 * length2);
     const double length = length2 > 1e-200 && length2 < 1e200 ? sqrt(length2) : qvec3_norm(given);
     return (qvec3){given.x / length, given.y / length, given.z / length};
 }
 
-void impact_frame_make(qvec3 n, const impact_ready ready[2], impact_frame *frame)
+void impact_frame_make(qvec3 n, qvec3 t1, const impact_ready *ready, impact_frame *frame)
 {
-    const double w = ready[0].inverse_mass + ready[1].inverse_mass;
-    qvec3 t1 = across(n), t2 = qvec3_cross(n, t1);
-    const both bodies = make_both(&ready[0], &ready[1]);
-    vectors x = make_arms(&bodies, t1), y = make_arms(&bodies, t2);
-    const vectors z = make_arms(&bodies, n);
-    const double m = w + arms_dot(&bodies, &z, &z), f = 1 / m;
-    double a = w + arms_dot(&bodies, &x, &x), b = w + arms_dot(&bodies, &y, &y);
-    /* One-sided Jacobi: turn t1, t2 until M_xy is rounding. */
-    for (int sweep = 0; sweep < 3; sweep++) {
-        const double xy = arms_dot(&bodies, &x, &y);
-        if (xy * xy <= 16 * DBL_EPSILON * DBL_EPSILON * (a * b)) break;
-        const double h = (b - a) * f, g = 2 * xy * f, r = fabs(h) + sqrt(h * h + g * g);
+    const double w = ready->inverse_mass[0] + ready->inverse_mass[1];
+    const qvec3 t2 = qvec3_cross(n, t1);
+    const levers l = make_levers(ready);
+    const impact_vectors x = make_arms(&l, t1), y = make_arms(&l, t2), z = make_arms(&l, n);
+    const double a = w + arms_dot(&x, &x), m = w + arms_dot(&z, &z), e = arms_dot(&x, &y), c = arms_dot(&x, &z);
+    const double f = 1 / m, g = 1 / a;
+    /* Gram and Schmidt, modified: what t1 leaves of t2 and n, then what t2 leaves of n. */
+    const double shear = e * g, lean = c * g;
+    const impact_vectors y_left = impact_vectors_add(&y, both(-shear), &x),
+                         z_left = impact_vectors_add(&z, both(-lean), &x);
+    const double schur = w * (1 + shear * shear) + arms_dot(&y_left, &y_left);
+    const double h = 1 / schur, beta = -(w * (shear * lean) + arms_dot(&y_left, &z_left)) * h,
+                 alpha = -(lean + beta * shear);
+    const impact_vectors rest = impact_vectors_add(&z_left, both(beta), &y_left);
+    const double k = w * (1 + (alpha * alpha + beta * beta)) + arms_dot(&rest, &rest);
+    *frame = (impact_frame){.t1 = t1,
+                            .t2 = t2,
+                            .n = n,
+                            .a = a * f,
+                            .b = (w + arms_dot(&y, &y)) * f,
+                            .c = c * f,
+                            .d = arms_dot(&y, &z) * f,
+                            .e = e * f,
+                            .schur = schur * f,
+                            .k = k * f,
+                            .alpha = alpha,
+                            .beta = beta,
+                            .scale = m};
+    frame->conditioning = conditioning(frame, shear, g * m, h * m);
+}
+
+/* One-sided Jacobi: t1, t2 until M_xy is rounding of its own. */
+void impact_frame_turn(const impact_ready *ready, impact_frame *frame)
+{
+    const double w = ready->inverse_mass[0] + ready->inverse_mass[1], f = 1 / frame->scale;
+    const levers l = make_levers(ready);
+    qvec3 t1 = frame->t1, t2 = frame->t2;
+    impact_vectors x = make_arms(&l, t1), y = make_arms(&l, t2);
+    const impact_vectors z = make_arms(&l, frame->n);
+    double a = frame->a, b = frame->b, e = frame->e;
+    for (int sweep = 0; sweep < 3 && e * e > 16 * DBL_EPSILON * DBL_EPSILON * (a * b); sweep++) {
+        const double h = b - a, g = 2 * e, r = fabs(h) + sqrt(h * h + g * g);
         const double shrink = 1 / sqrt(r * r + g * g), cs = r * shrink, sn = copysign(g * shrink, g * h);
-        const vectors old = x;
+        const impact_vectors old = x;
         const qvec3 old_t1 = t1;
         x = arms_mix(cs, &old, -sn, &y);
         y = arms_mix(sn, &old, cs, &y);
         t1 = qvec3_axpy(-sn, t2, qvec3_scale(old_t1, cs));
         t2 = qvec3_axpy(sn, old_t1, qvec3_scale(t2, cs));
-        a = w + arms_dot(&bodies, &x, &x);
-        b = w + arms_dot(&bodies, &y, &y);
+        a = (w + arms_dot(&x, &x)) * f;
+        b = (w + arms_dot(&y, &y)) * f;
+        e = arms_dot(&x, &y) * f;
     }
-    const double c = arms_dot(&bodies, &x, &z), d = arms_dot(&bodies, &y, &z);
-    /* What the best alpha t1 + beta t2 leaves of n: at the least, rounding of alpha and beta counts but squared. */
-    const double alpha = -c / a, beta = -d / b;
-    const vectors least = arms_mix(alpha, &x, beta, &y), rest = arms_mix(1, &z, 1, &least);
-    const double k = w * (1 + (alpha * alpha + beta * beta)) + arms_dot(&bodies, &rest, &rest);
-    *frame = (impact_frame){
-        .t1 = t1, .t2 = t2, .n = n, .a = a * f, .b = b * f, .c = c * f, .d = d * f, .k = k * f, .scale = m};
-    const double A = frame->a, B = frame->b, K = frame->k;
-    frame->conditioning = conditioning(
-        A + B + 1, A * B + A * (K + frame->d * frame->d / B) + B * (K + frame->c * frame->c / A), A * B * K);
+    frame->t1 = t1;
+    frame->t2 = t2;
+    frame->a = a;
+    frame->b = frame->schur = b;
+    frame->e = 0;
+    frame->c = arms_dot(&x, &z) * f;
+    frame->d = arms_dot(&y, &z) * f;
+    frame->alpha = -frame->c / a;
+    frame->beta = -frame->d / b;
 }
 
-qvec3 impact_frame_velocity(const impact_collision *collision)
+void impact_frame_principal(qvec3 n, const impact_ready *ready, impact_frame *frame)
 {
-    const impact_collider *one = &collision->body[0], *two = &collision->body[1];
-    return qvec3_sub(qvec3_add(one->velocity, qvec3_cross(one->omega, one->offset)),
-                     qvec3_add(two->velocity, qvec3_cross(two->omega, two->offset)));
+    impact_frame_make(n, impact_frame_across(n), ready, frame);
+    impact_frame_turn(ready, frame);
 }

@@ -13,7 +13,10 @@
 
 #include <float.h>
 
-bool impact_isotropic_is(const impact_frame *frame) { return fabs(frame->a - frame->b) <= 8 * DBL_EPSILON * frame->a; }
+bool impact_isotropic_is(const impact_frame *frame)
+{
+    return fabs(frame->a - frame->b) <= 8 * DBL_EPSILON * frame->a && fabs(frame->e) <= 4 * DBL_EPSILON * frame->a;
+}
 
 /* The slip from where the course stands. */
 typedef struct whirl {
@@ -34,6 +37,8 @@ static inline double integral(double k, double tau, double expm1_k) { return k =
 
 static inline powers powers_at(const whirl *w, double tau)
 {
+    if (tau == 0) return (powers){1, 1, 0, 0};
+    if (tau == INFINITY) return (powers){0, 0, -1 / w->alpha, 1 / w->beta};
     const double A = expm1(w->alpha == 0 ? 0 : w->alpha * tau), B = expm1(-w->beta * tau);
     return (powers){1 + A, 1 + B, integral(w->alpha, tau, A), -B / w->beta};
 }
@@ -97,10 +102,11 @@ static double step_on(const whirl *w, bool first, double tau, double more)
     return tau + (k == 0 ? more : log1p(k * more) / k);
 }
 
-/* The root of a function that is monotone on [low, high] and has another sign at high; Newton from `start` inside a bracket. */
+/* The root of a function that is monotone on [low, high] and has another sign at high; Newton from `start` inside a bracket. Steps d
+ * shrink as d -> K d^2: where the next would be rounding, it is not taken. */
 static double find_root(const whirl *w, target what, double wanted, double low, double high, double start)
 {
-    double slope[2], tau = start;
+    double slope[2], tau = start, before = 0;
     powers at = powers_at(w, low);
     const double f_low = value_at(w, what, wanted, &at, low, slope);
     if (f_low == 0) return low;
@@ -117,9 +123,11 @@ static double find_root(const whirl *w, target what, double wanted, double low, 
         }
         const double last = tau;
         tau = step_on(w, fabs(slope[0]) >= fabs(slope[1]), last, -f / (slope[0] + slope[1]));
-        if (!(tau >= low && tau <= high && tau < INFINITY))
-            tau = high < INFINITY ? 0.5 * (low + high) : 2 * low + 1 / w->beta;
-        if (fabs(tau - last) <= 2 * DBL_EPSILON * tau) break;
+        const bool inside = tau >= low && tau <= high && tau < INFINITY;
+        if (!inside) tau = high < INFINITY ? 0.5 * (low + high) : 2 * low + 1 / w->beta;
+        const double d = fabs(tau - last);
+        if (d <= 2 * DBL_EPSILON * tau || d * d * d <= 0.5 * DBL_EPSILON * tau * (before * before)) break;
+        before = inside ? d : 0;
     }
     return tau;
 }

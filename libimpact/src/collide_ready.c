@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Inverses, axes, and the offset in local axes. The moment of an impulse about a slim body's axis comes from the small components of
+ * Inverses, axes, and the offsets in local axes. The moment of an impulse about a slim body's axis comes from the small components of
  * the offset across that axis: rounding of the large one must not spill into them, so they are taken in doubled precision
  * (Dekker 1971).
  */
@@ -9,95 +9,125 @@
 /* Largest over smallest moment from which a body is slim. */
 static const double slim = 8;
 
-typedef struct pair {
-    double high, low; /* their sum is meant */
-} pair;
+typedef struct doubled {
+    impact_pair high, low; /* their sum is meant */
+} doubled;
 
 typedef struct halves {
-    double whole, high, low;
+    impact_pair whole, high, low;
 } halves;
 
-static inline halves halve(double a)
+static inline halves halve(impact_pair a)
 {
-    const double t = 134217729 * a, high = t - (t - a);
+    const impact_pair t = 134217729 * a, high = t - (t - a);
     return (halves){a, high, a - high};
 }
 
-static inline pair product(halves a, halves b)
+static inline doubled product(halves a, halves b)
 {
-    const double p = a.whole * b.whole;
-    return (pair){p, (((a.high * b.high - p) + a.high * b.low) + a.low * b.high) + a.low * b.low};
+    const impact_pair p = a.whole * b.whole;
+    return (doubled){p, (((a.high * b.high - p) + a.high * b.low) + a.low * b.high) + a.low * b.low};
 }
 
-static inline pair sum(pair a, pair b)
+static inline doubled sum(doubled a, doubled b)
 {
-    const double s = a.high + b.high, t = s - a.high;
-    return (pair){s, ((a.high - (s - t)) + (b.high - t)) + (a.low + b.low)};
+    const impact_pair s = a.high + b.high, t = s - a.high;
+    return (doubled){s, ((a.high - (s - t)) + (b.high - t)) + (a.low + b.low)};
 }
 
-static inline pair difference(pair a, pair b) { return sum(a, (pair){-b.high, -b.low}); }
-static inline pair twice(pair a) { return (pair){2 * a.high, 2 * a.low}; }
+static inline doubled difference(doubled a, doubled b) { return sum(a, (doubled){-b.high, -b.low}); }
+static inline doubled twice(doubled a) { return (doubled){2 * a.high, 2 * a.low}; }
 
 /* x . v for an axis x in doubled precision. */
-static double along(pair x, pair y, pair z, const halves v[3])
+static inline impact_pair along(doubled x, doubled y, doubled z, const halves v[3])
 {
-    const pair px = product(halve(x.high), v[0]), py = product(halve(y.high), v[1]), pz = product(halve(z.high), v[2]);
-    const pair s = sum(sum(px, py), pz);
+    const doubled px = product(halve(x.high), v[0]), py = product(halve(y.high), v[1]),
+                  pz = product(halve(z.high), v[2]);
+    const doubled s = sum(sum(px, py), pz);
     return s.high + (s.low + (x.low * v[0].whole + y.low * v[1].whole + z.low * v[2].whole));
 }
 
-/* The offset along the principal axes, times |q|^2. */
-static qvec3 slim_offset(quat given, qvec3 r)
+typedef struct quats {
+    impact_pair w, x, y, z;
+} quats;
+
+/* The offsets along the principal axes, times |q|^2. */
+static impact_vectors slim_offset(const quats *q, const impact_vectors *r)
 {
-    const halves w = halve(given.w), x = halve(given.x), y = halve(given.y), z = halve(given.z);
-    const halves v[3] = {halve(r.x), halve(r.y), halve(r.z)};
-    const pair ww = product(w, w), xx = product(x, x), yy = product(y, y), zz = product(z, z);
-    const pair xy = product(x, y), xz = product(x, z), yz = product(y, z);
-    const pair wx = product(w, x), wy = product(w, y), wz = product(w, z);
-    const pair wz_less = difference(ww, zz), xy_less = difference(xx, yy);
-    const pair z_z = difference(sum(ww, zz), sum(xx, yy));
-    return (qvec3){along(sum(wz_less, xy_less), twice(sum(xy, wz)), twice(difference(xz, wy)), v),
-                   along(twice(difference(xy, wz)), difference(wz_less, xy_less), twice(sum(yz, wx)), v),
-                   along(twice(sum(xz, wy)), twice(difference(yz, wx)), z_z, v)};
+    const halves w = halve(q->w), x = halve(q->x), y = halve(q->y), z = halve(q->z);
+    const halves v[3] = {halve(r->x), halve(r->y), halve(r->z)};
+    const doubled ww = product(w, w), xx = product(x, x), yy = product(y, y), zz = product(z, z);
+    const doubled xy = product(x, y), xz = product(x, z), yz = product(y, z);
+    const doubled wx = product(w, x), wy = product(w, y), wz = product(w, z);
+    const doubled wz_less = difference(ww, zz), xy_less = difference(xx, yy);
+    const doubled z_z = difference(sum(ww, zz), sum(xx, yy));
+    return (impact_vectors){along(sum(wz_less, xy_less), twice(sum(xy, wz)), twice(difference(xz, wy)), v),
+                            along(twice(difference(xy, wz)), difference(wz_less, xy_less), twice(sum(yz, wx)), v),
+                            along(twice(sum(xz, wy)), twice(difference(yz, wx)), z_z, v)};
 }
 
-void impact_ready_make(const impact_collider *body, impact_ready *ready)
+/* The homogeneous form: a quaternion off unit length scales the axes, which is put right by one factor; it is returned. */
+static impact_pair make_axes(const quats *q, impact_vectors axis[3])
 {
-    ready->offset = body->offset;
-    ready->round = true;
-    ready->axis[0] = (qvec3){1, 0, 0};
-    ready->axis[1] = (qvec3){0, 1, 0};
-    ready->axis[2] = (qvec3){0, 0, 1};
-    if (isinf(body->mass)) {
-        ready->inverse_mass = 0;
-        ready->inverse_moments = (qvec3){0, 0, 0};
+    const impact_pair ww = q->w * q->w, xx = q->x * q->x, yy = q->y * q->y, zz = q->z * q->z;
+    const impact_pair f = 1 / (ww + xx + yy + zz), g = 2 * f;
+    const impact_pair xy = q->x * q->y, xz = q->x * q->z, yz = q->y * q->z;
+    const impact_pair wx = q->w * q->x, wy = q->w * q->y, wz = q->w * q->z;
+    axis[0] = (impact_vectors){((ww - zz) + (xx - yy)) * f, (xy + wz) * g, (xz - wy) * g};
+    axis[1] = (impact_vectors){(xy - wz) * g, ((ww - zz) - (xx - yy)) * f, (yz + wx) * g};
+    axis[2] = (impact_vectors){(xz + wy) * g, (yz - wx) * g, ((ww + zz) - (xx + yy)) * f};
+    return f;
+}
+
+/* In the lanes of slim bodies, the offset again with small components as good as the large one. */
+static void refine_offset(const quats *q, impact_pair f, const impact_vectors *r, impact_mask lanes,
+                          impact_vectors *offset)
+{
+    const impact_vectors fine = slim_offset(q, r);
+    const impact_pair x = fine.x * f, y = fine.y * f, z = fine.z * f;
+    /* Beyond 1e300 doubling overflows. */
+    lanes &= (x + y + z) - (x + y + z) == 0;
+    offset->x = impact_pair_pick(lanes, x, offset->x);
+    offset->y = impact_pair_pick(lanes, y, offset->y);
+    offset->z = impact_pair_pick(lanes, z, offset->z);
+}
+
+void impact_ready_make(const impact_collision *collision, impact_ready *ready)
+{
+    const impact_collider *one = &collision->body[0], *two = &collision->body[1];
+    const impact_pair mass = {one->mass, two->mass}, zero = {0, 0}, unit = {1, 1};
+    const impact_mask moves = mass < INFINITY;
+    ready->moves = moves;
+    ready->mass = impact_pair_where(moves, mass);
+    ready->inverse_mass = 1 / mass;
+    const impact_vectors j = impact_vectors_of(one->moments, two->moments);
+    ready->moments =
+        (impact_vectors){impact_pair_where(moves, j.x), impact_pair_where(moves, j.y), impact_pair_where(moves, j.z)};
+    ready->inverse_moments = (impact_vectors){impact_pair_where(moves, 1 / impact_pair_pick(moves, j.x, unit)),
+                                              impact_pair_where(moves, 1 / impact_pair_pick(moves, j.y, unit)),
+                                              impact_pair_where(moves, 1 / impact_pair_pick(moves, j.z, unit))};
+    ready->velocity = impact_vectors_of(one->velocity, two->velocity);
+    ready->omega = impact_vectors_of(one->omega, two->omega);
+    ready->arm = impact_vectors_of(one->offset, two->offset);
+    const impact_vectors r = {impact_pair_where(moves, ready->arm.x), impact_pair_where(moves, ready->arm.y),
+                              impact_pair_where(moves, ready->arm.z)};
+    const impact_mask turned = moves & ~((j.x == j.y) & (j.y == j.z));
+    ready->offset = r;
+    ready->round = !impact_mask_any(turned);
+    if (ready->round) {
+        ready->axis[0] = (impact_vectors){unit, zero, zero};
+        ready->axis[1] = (impact_vectors){zero, unit, zero};
+        ready->axis[2] = (impact_vectors){zero, zero, unit};
         return;
     }
-    const qvec3 j = body->moments;
-    ready->inverse_mass = 1 / body->mass;
-    if (j.x == j.y && j.y == j.z) {
-        const double inverse = 1 / j.x;
-        ready->inverse_moments = (qvec3){inverse, inverse, inverse};
-        return;
-    }
-    ready->round = false;
-    ready->inverse_moments = (qvec3){1 / j.x, 1 / j.y, 1 / j.z};
-    /* The homogeneous form: a quaternion off unit length scales the axes, which is put right by one factor. */
-    const quat q = body->orientation;
-    const double ww = q.w * q.w, xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, f = 1 / (ww + xx + yy + zz), g = 2 * f;
-    const double xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z, wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
-    ready->axis[0] = (qvec3){((ww - zz) + (xx - yy)) * f, (xy + wz) * g, (xz - wy) * g};
-    ready->axis[1] = (qvec3){(xy - wz) * g, ((ww - zz) - (xx - yy)) * f, (yz + wx) * g};
-    ready->axis[2] = (qvec3){(xz + wy) * g, (yz - wx) * g, ((ww + zz) - (xx + yy)) * f};
-    const double least = impact_smaller(impact_smaller(j.x, j.y), j.z),
-                 most = impact_larger(impact_larger(j.x, j.y), j.z);
-    if (most > slim * least) {
-        const qvec3 fine = qvec3_scale(slim_offset(q, body->offset), f);
-        /* Beyond 1e300 doubling overflows. */
-        if (isfinite(fine.x + fine.y + fine.z)) {
-            ready->offset = fine;
-            return;
-        }
-    }
-    ready->offset = impact_ready_local(ready, body->offset);
+    const quat p = one->orientation, s = two->orientation;
+    const quats q = {
+        impact_pair_pick(turned, (impact_pair){p.w, s.w}, unit), impact_pair_where(turned, (impact_pair){p.x, s.x}),
+        impact_pair_where(turned, (impact_pair){p.y, s.y}), impact_pair_where(turned, (impact_pair){p.z, s.z})};
+    const impact_pair f = make_axes(&q, ready->axis);
+    ready->offset = impact_ready_local(ready, &r);
+    const impact_pair least = impact_pair_smaller(impact_pair_smaller(j.x, j.y), j.z);
+    const impact_pair most = impact_pair_larger(impact_pair_larger(j.x, j.y), j.z);
+    const impact_mask lanes = turned & (most > slim * least);
+    if (impact_mask_any(lanes)) refine_offset(&q, f, &r, lanes, &ready->offset);
 }

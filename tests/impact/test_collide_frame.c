@@ -30,16 +30,63 @@ static double by_definition(const impact_collision *c, qvec3 e, qvec3 f)
     return sum;
 }
 
+/* |M| |M^-1| / 3, the inverse by its adjugate. */
+static double conditioning(const impact_frame *f)
+{
+    const long double a = f->a, b = f->b, c = f->c, d = f->d, e = f->e;
+    const long double xx = b - d * d, yy = a - c * c, zz = a * b - e * e, xy = c * d - e, xz = e * d - b * c,
+                      yz = e * c - a * d;
+    const long double det = xx * a + xy * e + xz * c;
+    const long double squares = a * a + b * b + 1 + 2 * (c * c + d * d + e * e);
+    const long double adjugate = xx * xx + yy * yy + zz * zz + 2 * (xy * xy + xz * xz + yz * yz);
+    return (double)(sqrtl(squares * adjugate) / (3 * det));
+}
+
+/* Any tangent will do: M there, what elimination leaves of it, and the impulse that sticks. */
+static void any_tangent(void **state)
+{
+    (void)state;
+    uint64_t g = 11;
+    for (uint64_t i = 0; i < 10000; i++) {
+        const impact_collision c = case_make(i % 2 ? CASE_PLAIN : CASE_ROD, 7, i);
+        impact_ready ready;
+        impact_frame f;
+        impact_ready_make(&c, &ready);
+        const qvec3 n = impact_frame_normal(&c), t = impact_frame_across(n), s = qvec3_cross(n, t);
+        const double angle = 7 * case_random(&g);
+        const qvec3 t1 = qvec3_axpy(cos(angle), t, qvec3_scale(s, sin(angle))), t2 = qvec3_cross(n, t1);
+        impact_frame_make(n, t1, &ready, &f);
+        const double big = f.scale * (f.a + f.b + 1) * 1e-13;
+        assert_true(qvec3_norm(qvec3_sub(f.t1, t1)) == 0 && qvec3_norm(qvec3_sub(f.t2, t2)) == 0);
+        assert_true(fabs(by_definition(&c, t1, t1) - f.a * f.scale) < big);
+        assert_true(fabs(by_definition(&c, t2, t2) - f.b * f.scale) < big);
+        assert_true(fabs(by_definition(&c, t1, t2) - f.e * f.scale) < big);
+        assert_true(fabs(by_definition(&c, t1, n) - f.c * f.scale) < big);
+        assert_true(fabs(by_definition(&c, t2, n) - f.d * f.scale) < big);
+        const double known = conditioning(&f), small = 1e-14 * known;
+        assert_true(fabs(f.schur - (f.b - f.e * f.e / f.a)) < small * f.b);
+        assert_true(fabs(f.a * f.alpha + f.e * f.beta + f.c) < small * f.a);
+        assert_true(fabs(f.e * f.alpha + f.b * f.beta + f.d) < small * f.b);
+        assert_true(fabs(f.k - (1 + f.c * f.alpha + f.d * f.beta)) < small);
+        assert_true(fabs(f.conditioning - known) < small * known);
+        const impact_frame before = f;
+        impact_frame_turn(&ready, &f);
+        assert_true(f.e == 0 && f.schur == f.b && f.k == before.k);
+        assert_true(fabs(f.a + f.b - before.a - before.b) < 1e-14 * (f.a + f.b));
+        assert_true(fabs(hypot(f.alpha, f.beta) - hypot(before.alpha, before.beta)) < small);
+    }
+}
+
 static void frame_is_principal(void **state)
 {
     (void)state;
     for (int class_ = 0; class_ < CASE_CLASSES; class_++)
         for (uint64_t i = 0; i < 3000; i++) {
             const impact_collision c = case_make((case_class)class_, 7, i);
-            impact_ready ready[2];
+            impact_ready ready;
             impact_frame f;
-            for (int k = 0; k < 2; k++) impact_ready_make(&c.body[k], &ready[k]);
-            impact_frame_make(impact_frame_normal(&c), ready, &f);
+            impact_ready_make(&c, &ready);
+            impact_frame_principal(impact_frame_normal(&c), &ready, &f);
             const double big = f.scale * (f.a + f.b + 1) * 1e-13;
             assert_true(fabs(qvec3_dot(f.t1, f.t2)) < 1e-15 && fabs(qvec3_dot(f.t1, f.n)) < 1e-15 &&
                         fabs(qvec3_dot(f.t2, f.n)) < 1e-15);
@@ -53,7 +100,8 @@ static void frame_is_principal(void **state)
             /* Positive definite, and k its Schur complement. */
             assert_true(f.k > 0 && f.k <= 1 + 1e-15);
             assert_true(fabs(f.k - (1 - f.c * f.c / f.a - f.d * f.d / f.b)) < 1e-14);
-            assert_true(f.conditioning >= 1);
+            const double known = conditioning(&f);
+            if (known < 1e6) assert_true(fabs(f.conditioning - known) < 1e-14 * known * known);
         }
 }
 
@@ -64,17 +112,18 @@ static void frame_on_paper(void **state)
     const impact_collision c = {
         .body = {{1, {1, 1, 1}, {1, 0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {.mass = INFINITY}},
         .normal = {0, 0, 2}};
-    impact_ready ready[2];
+    impact_ready ready;
     impact_frame f;
-    for (int k = 0; k < 2; k++) impact_ready_make(&c.body[k], &ready[k]);
-    impact_frame_make(impact_frame_normal(&c), ready, &f);
+    impact_ready_make(&c, &ready);
+    impact_frame_principal(impact_frame_normal(&c), &ready, &f);
     assert_true(fabs(f.scale - 2) < 1e-15 && fabs(f.a * f.b - 0.5) < 1e-15 && fabs(f.a + f.b - 1.5) < 1e-15 &&
                 f.c == 0 && f.d == 0);
-    assert_true(fabs(f.conditioning - 2) < 0.02);
+    assert_true(fabs(f.conditioning - sqrt(1.5)) < 1e-15);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(frame_is_principal), cmocka_unit_test(frame_on_paper)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(any_tangent), cmocka_unit_test(frame_is_principal),
+                                       cmocka_unit_test(frame_on_paper)};
     return cmocka_run_group_tests_name("impact collide_frame", tests, NULL, NULL);
 }

@@ -19,8 +19,16 @@ static double decades(uint64_t *g, double low, double high) { return pow(10, low
 /* M = [[a, 0, c], [0, a, d], [c, d, 1]], |M_tz| the part `share` < 1 of what keeps it positive definite. */
 static impact_frame frame_of(double a, double share, double angle)
 {
-    const double g = share * sqrt(a);
-    return (impact_frame){.a = a, .b = a, .c = g * cos(angle), .d = g * sin(angle), .k = 1 - share * share, .scale = 1};
+    const double g = share * sqrt(a), c = g * cos(angle), d = g * sin(angle);
+    return (impact_frame){.a = a,
+                          .b = a,
+                          .c = c,
+                          .d = d,
+                          .schur = a,
+                          .k = 1 - share * share,
+                          .alpha = -c / a,
+                          .beta = -d / a,
+                          .scale = 1};
 }
 
 static impact_course solved(const impact_frame *f, const impact_collision *c, double ux, double uy, bool series)
@@ -134,7 +142,7 @@ static void as_the_series(void **state)
 static void neither_growing_nor_stopping(void **state)
 {
     (void)state;
-    const impact_frame f = {.a = 0.5, .b = 0.5, .c = 0.25, .k = 0.875, .scale = 1};
+    const impact_frame f = {.a = 0.5, .b = 0.5, .c = 0.25, .schur = 0.5, .k = 0.875, .alpha = -0.5, .scale = 1};
     const impact_collision c = {.friction = 0.5};
     const impact_course o = solved(&f, &c, 0, 1, false);
     double tau = 1;

@@ -29,14 +29,18 @@ static void slim_offset_is_exact(void **state)
     const qvec3 local = {0x1p-30, -0x1.8p-31, 1};
     for (int i = 0; i < 6; i++) {
         const double n2 = quat_dot(turns[i], turns[i]);
-        const impact_collider rod = {
-            .mass = 1, .moments = {1, 1, 1e-4}, .orientation = turns[i], .offset = turned(turns[i], local)};
+        const impact_collision c = {
+            .body = {
+                {.mass = INFINITY},
+                {.mass = 1, .moments = {1, 1, 1e-4}, .orientation = turns[i], .offset = turned(turns[i], local)},
+            }};
         impact_ready ready;
-        impact_ready_make(&rod, &ready);
+        impact_ready_make(&c, &ready);
         assert_false(ready.round);
-        assert_true(fabs(ready.offset.x / (n2 * local.x) - 1) < 5e-16);
-        assert_true(fabs(ready.offset.y / (n2 * local.y) - 1) < 5e-16);
-        assert_true(fabs(ready.offset.z / n2 - 1) < 5e-16);
+        const qvec3 offset = impact_vectors_at(&ready.offset, 1);
+        assert_true(fabs(offset.x / (n2 * local.x) - 1) < 5e-16);
+        assert_true(fabs(offset.y / (n2 * local.y) - 1) < 5e-16);
+        assert_true(fabs(offset.z / n2 - 1) < 5e-16);
     }
 }
 
@@ -45,29 +49,42 @@ static void axes_are_the_orientation(void **state)
     (void)state;
     for (uint64_t i = 0; i < 2000; i++) {
         const impact_collision c = case_make(CASE_WILD, 5, i);
-        const impact_collider *body = &c.body[isinf(c.body[0].mass) ? 1 : 0];
         impact_ready ready;
-        impact_ready_make(body, &ready);
-        const qvec3 v = c.normal, there = impact_ready_local(&ready, v), back = impact_ready_world(&ready, there);
-        assert_true(qvec3_norm(qvec3_sub(there, quat_rotate_inverse(body->orientation, v))) < 2e-15);
-        assert_true(qvec3_norm(qvec3_sub(back, v)) < 2e-15);
-        const qvec3 r = quat_rotate_inverse(body->orientation, body->offset);
-        assert_true(qvec3_norm(qvec3_sub(ready.offset, r)) <= 2e-15 * qvec3_norm(r));
+        impact_ready_make(&c, &ready);
+        const impact_vectors v = impact_vectors_of(c.normal, c.normal), there = impact_ready_local(&ready, &v);
+        const impact_vectors back = impact_ready_world(&ready, &there);
+        for (int k = 0; k < 2; k++) {
+            const impact_collider *body = &c.body[k];
+            if (isinf(body->mass)) continue;
+            const qvec3 n = impact_vectors_at(&there, k), r = quat_rotate_inverse(body->orientation, body->offset);
+            assert_true(qvec3_norm(qvec3_sub(n, quat_rotate_inverse(body->orientation, c.normal))) < 2e-15);
+            assert_true(qvec3_norm(qvec3_sub(impact_vectors_at(&back, k), c.normal)) < 2e-15);
+            assert_true(qvec3_norm(qvec3_sub(impact_vectors_at(&ready.offset, k), r)) <= 2e-15 * qvec3_norm(r));
+        }
     }
 }
 
+/* Nothing that a static body's moments and orientation hold gets through. */
 static void round_and_static_bodies_stay_in_the_world(void **state)
 {
     (void)state;
-    const quat q = {0.5, 0.5, -0.5, 0.5};
+    const quat q = {0.5, 0.5, -0.5, 0.5}, none = {NAN, NAN, NAN, NAN};
     const impact_collider ball = {2, {3, 3, 3}, q, {1, 2, 3}, {0, 0, 0}, {0, 0, 0}};
-    const impact_collider wall = {.mass = INFINITY, .orientation = q, .offset = {4, 5, 6}};
+    const impact_collider wall = {.mass = INFINITY, .moments = {NAN, 0, -1}, .orientation = none, .offset = {4, 5, 6}};
+    const impact_collider rod = {2, {3, 3, 1}, q, {1, 2, 3}, {0, 0, 0}, {0, 0, 0}};
     impact_ready ready;
-    impact_ready_make(&ball, &ready);
-    assert_true(ready.round && ready.inverse_mass == 0.5 && ready.inverse_moments.y == 1.0 / 3 && ready.offset.x == 1);
-    impact_ready_make(&wall, &ready);
-    assert_true(ready.round && ready.inverse_mass == 0 && ready.inverse_moments.y == 0 && ready.offset.x == 4);
-    assert_true(impact_ready_local(&ready, ready.axis[1]).y == 1);
+    impact_ready_make(&(impact_collision){.body = {ball, wall}}, &ready);
+    assert_true(ready.round && ready.inverse_mass[0] == 0.5 && ready.inverse_moments.y[0] == 1.0 / 3);
+    assert_true(ready.offset.x[0] == 1 && ready.arm.x[1] == 4);
+    for (int i = 0; i < 2; i++) {
+        if (i == 1) impact_ready_make(&(impact_collision){.body = {rod, wall}}, &ready);
+        assert_true(ready.inverse_mass[1] == 0 && ready.inverse_moments.y[1] == 0 && ready.moments.x[1] == 0);
+        assert_true(ready.offset.x[1] == 0 && ready.mass[1] == 0);
+        assert_true(ready.axis[0].x[1] == 1 && ready.axis[1].y[1] == 1 && ready.axis[2].x[1] == 0);
+    }
+    assert_false(ready.round);
+    impact_ready_make(&(impact_collision){.body = {rod, ball}}, &ready);
+    assert_true(ready.axis[0].x[1] == 1 && ready.axis[1].z[1] == 0 && ready.offset.z[1] == 3);
 }
 
 int main(void)

@@ -143,6 +143,26 @@ static void orders_agree(void **state)
 
 /* ---- what holds always ---- */
 
+/* However slow the sliding is beside the approach: the works account for the energy. */
+static void slow_sliding(void **state)
+{
+    (void)state;
+    for (int exponent = -18; exponent < 0; exponent++)
+        for (uint64_t i = 0; i < 2000; i++) {
+            impact_collision c = case_make(CASE_PLAIN, 31, i);
+            const qvec3 n = qvec3_scale(c.normal, 1 / qvec3_norm(c.normal)), t = qvec3_cross(n, (qvec3){0.3, 0.5, 0.8});
+            for (int k = 0; k < 2; k++) c.body[k].velocity = c.body[k].omega = (qvec3){0, 0, 0};
+            const int mover = isinf(c.body[0].mass) ? 1 : 0;
+            const double sign = mover == 0 ? -1 : 1;
+            c.body[mover].velocity = qvec3_axpy(sign, n, qvec3_scale(t, pow(10, exponent)));
+            impact_outcome o;
+            assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+            const double works = o.work_compression + o.work_restitution + o.work_friction;
+            assert_true(fabs(o.energy_after - o.energy_before - works) <=
+                        1e-13 * (1 + o.conditioning) * o.energy_before);
+        }
+}
+
 static void cone_and_works(void **state)
 {
     (void)state;
@@ -171,6 +191,7 @@ int main(void)
         cmocka_unit_test(closed_hodograph),
         cmocka_unit_test(agrees_with_cvode),
         cmocka_unit_test(orders_agree),
+        cmocka_unit_test(slow_sliding),
         cmocka_unit_test(cone_and_works),
     };
     return cmocka_run_group_tests_name("impact collide_series", tests, NULL, NULL);

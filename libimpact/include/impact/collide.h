@@ -85,7 +85,8 @@ typedef struct impact_outcome {
     int phase_count;
     unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order; what does not fit is left out */
     impact_solver solver;                    /* the one that answered */
-    /* Of the contact's inverse mass matrix M: largest over smallest eigenvalue; 1 is best, and where there is no friction. */
+    /* Of the contact's inverse mass matrix M: |M| |M^-1| / 3 by Frobenius norms, between a third and the whole of the ratio of its largest
+     * eigenvalue to its smallest. 1 is best, and where there is no friction. */
     double conditioning;
     bool jammed;      /* friction drove the contact on into compression: u_z fell while it was < 0 */
     bool energy_rose; /* Newton's law only (or a restitution above 1): it can */
