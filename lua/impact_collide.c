@@ -233,6 +233,12 @@ static impact_status read_whole(lua_State *L, const quat_lua_reader *reader, law
     return IMPACT_OK;
 }
 
+const char *impact_lua_why_no_outcome(impact_status status)
+{
+    return status == IMPACT_EARGUMENT ? "solver is closed_form, and this impact has none"
+                                      : impact_status_string(status);
+}
+
 /* collide{m1=, J1=, r1=, v1=, w1=, m2=, ..., n=, mu=, eps=, law=, solver=}: a table, or nil and why there is no answer. */
 static int collide(lua_State *L)
 {
@@ -244,7 +250,7 @@ static int collide(lua_State *L)
     impact_outcome o;
     status = impact_collide(&c, &o);
     if (call.failed) return quat_lua_reader_error(&reader, "mu: %s", lua_tostring(L, -1));
-    if (status < 0) return quat_lua_failure(L, impact_status_string(status));
+    if (status < 0) return quat_lua_failure(L, impact_lua_why_no_outcome(status));
     push_outcome(L, &o, status);
     return 1;
 }
@@ -262,7 +268,8 @@ static int sensitivity(lua_State *L)
     if (isnan(answer)) {
         impact_outcome o;
         const impact_status why = impact_collide(&c, &o);
-        return quat_lua_failure(L, why < 0 ? impact_status_string(why) : "an impact with nearby data has no answer");
+        return quat_lua_failure(L,
+                                why < 0 ? impact_lua_why_no_outcome(why) : "an impact with nearby data has no answer");
     }
     lua_pushnumber(L, answer);
     return 1;

@@ -17,6 +17,9 @@ void impact_lua_read_inertia(const quat_lua_reader *reader, const char *key, qve
 /* Reads the keys that every kind of call has, mu not among them. Raises with the key. */
 void impact_lua_read_collision(const quat_lua_reader *reader, impact_collision *c);
 
+/* Words for a failure of impact_collide after impact_collide_check has found nothing. */
+const char *impact_lua_why_no_outcome(impact_status status);
+
 /* impact.flow{} */
 int impact_lua_flow(lua_State *L);
 

@@ -205,7 +205,7 @@ static void fill(lua_State *L, int first_column, const impact_outcome *o, impact
     }
     lua_pushstring(L, status == IMPACT_OK           ? "ok"
                       : status == IMPACT_SEPARATING ? "separating"
-                                                    : impact_status_string(status));
+                                                    : impact_lua_why_no_outcome(status));
     lua_rawseti(L, first_column + COLUMNS - 1, row + 1);
 }
 

@@ -3,12 +3,24 @@
  * The door of the room collide: answers known on paper, bad input, and what an outcome says.
  */
 #include <float.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <impact/collide.h>
 #include "generators/collide_cases.h"
 #include "generators/collide_scenes.h"
 #include "near.h"
+
+static long allocations;
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *block, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *block, size_t size);
+void *__wrap_malloc(size_t size) { return allocations++, __real_malloc(size); }
+void *__wrap_calloc(size_t count, size_t size) { return allocations++, __real_calloc(count, size); }
+void *__wrap_realloc(void *block, size_t size) { return allocations++, __real_realloc(block, size); }
 
 /* A solid sphere of radius .3 m and 4 kg on the plane z = 0. */
 static impact_collision sphere_on_plane(qvec3 v, qvec3 omega, double mu, double eps)
@@ -349,6 +361,29 @@ static void what_sticks_is_at_rest(void **state)
     assert_true(stuck > 1000);
 }
 
+/* By impact_collide, nor by CVODE's road once it has a workspace (what SUNDIALS does inside is its own). */
+static void nothing_is_allocated(void **state)
+{
+    (void)state;
+    const bool cvode = impact_has(IMPACT_PART_CVODE);
+    impact_collide_workspace *workspace = NULL;
+    if (cvode) assert_int_equal(impact_collide_workspace_create(IMPACT_ODE_ADAMS, 1e-9, &workspace), IMPACT_OK);
+    void *volatile block = malloc(1);
+    free(block);
+    assert_true(allocations > 0); /* the count works */
+    for (int class_ = 0; class_ < CASE_CLASSES; class_++)
+        for (uint64_t i = 0; i < 300; i++) {
+            impact_collision c = case_make((case_class)class_, 41, i);
+            c.workspace = workspace;
+            if (cvode && i < 10) c.solver = IMPACT_SOLVER_CVODE;
+            impact_outcome o;
+            const long before = allocations;
+            assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+            assert_int_equal(allocations, before);
+        }
+    impact_collide_workspace_destroy(workspace);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -366,6 +401,7 @@ int main(void)
         cmocka_unit_test(momentum_is_the_impulse),
         cmocka_unit_test(two_spheres_by_hand),
         cmocka_unit_test(words_for_all),
+        cmocka_unit_test(nothing_is_allocated),
     };
     return cmocka_run_group_tests_name("impact collide", tests, NULL, NULL);
 }

@@ -65,7 +65,16 @@ do
     check.truth(answer == nil and why:find("left out of the build", 1, true), tostring(why))
   end
   answer, why = impact.collide_sensitivity(with { solver = "closed_form", r1 = { 0.1, 0.2, -0.3 } })
-  check.truth(answer == nil and type(why) == "string", tostring(why))
+  check.truth(answer == nil and why == "solver is closed_form, and this impact has none", tostring(why))
+end
+
+-- A solver that has no answer says why.
+do
+  local turning = with { solver = "closed_form", J1 = { moments = { 0.1, 0.2, 0.25 } }, r1 = { 0.1, 0.2, -0.3 } }
+  local o, why = impact.collide(turning)
+  check.truth(o == nil and why == "solver is closed_form, and this impact has none", tostring(why))
+  turning.count = 1
+  check.truth(impact.collide_many(turning).status[1] == why)
 end
 
 -- Mistakes are named.
