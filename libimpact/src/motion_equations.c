@@ -10,6 +10,7 @@
  */
 #include "motion_equations.h"
 #include "drive.h"
+#include "persist_flat.h"
 #include "persist_spot.h"
 #include "world_gap.h"
 
@@ -57,6 +58,7 @@ void impact_motion_unpack(const impact_motion *motion, const double *y, impact_s
         impact_pair *pair = &motion->world->pairs[p];
         if (!impact_spot_suits(motion->world, pair)) continue;
         if (pair->carried) memcpy(pair->spot, b, sizeof pair->spot);
+        if (pair->flat) impact_flat_level(motion->world, pair, states);
         b += Y_PER_SPOT;
     }
 }
@@ -181,6 +183,7 @@ static void held_pair_roots(impact_world *world, const impact_touch *touch, cons
                                             : touch->speed - world->slip_speed;
     value[2] = impact_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
+    if (touch->flat) value[2] = fmin(value[2], touch->spare);
 }
 
 int impact_motion_root_values(double tau, const double *y, double *value, void *context)

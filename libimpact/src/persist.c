@@ -6,6 +6,7 @@
  *   sliding: tangential force = -friction pressure u_t/|u_t|
  * and u' = bias + K (reactions), linear: see persist_system.
  */
+#include "persist_flat.h"
 #include "persist_spot.h"
 #include "persist_system.h"
 #include "world_gap.h"
@@ -29,6 +30,7 @@ impact_status impact_persist_reserve(impact_persist *persist, impact_world *worl
     for (int p = 0; p < world->pair_count; p++) {
         impact_pair *pair = &world->pairs[p];
         held += impact_is_held(pair);
+        pair->flat = impact_flat_lies(world, pair, states);
         if (!impact_is_held(pair))
             pair->carried = false;
         else if (!pair->carried && impact_spot_suits(world, pair))
@@ -131,6 +133,7 @@ impact_touch impact_persist_touch(impact_world *world, int p, const impact_state
     const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const impact_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const bool carried = impact_is_held(pair) && pair->carried;
+    if (carried && impact_flat_lies(world, pair, states)) return impact_flat_touch(world, p, states, loads);
     impact_contact contact;
     impact_spot spot;
     if (carried)
@@ -228,6 +231,10 @@ static void close_gaps(impact_world *world, impact_state *states)
         if (!impact_is_held(pair)) continue;
         impact_contact contact;
         impact_spot spot;
+        if (pair->flat) {
+            impact_flat_level(world, pair, states);
+            continue;
+        }
         if (pair->carried) {
             spot = impact_spot_at(&world->bodies[pair->body1].shape, pair->spot);
             align(world, pair, states, &spot);

@@ -19,6 +19,8 @@ typedef struct impact_touch {
     bool carried;        /* the contact point's place on body 1 is integrated along (persist_spot) */
     double spot_rate[3]; /* carried: its rate, 1/s */
     double creep;        /* carried: how fast the contact moves over the surface, in semi-axes, 1/s */
+    bool flat;           /* the body lies on a face: r1 is the centre of pressure (persist_flat) */
+    double spare;        /* flat: above 0 while that stays on the face */
     qvec3 slip;          /* tangential velocity of body 1's contact point over body 2's, m/s */
     double speed;        /* |slip| */
     bool onset;          /* sliding from rest, too slow for a direction of its own */

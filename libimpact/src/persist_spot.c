@@ -53,6 +53,17 @@ void impact_spot_find(const impact_shape *shape, qvec3 normal, double s[3])
     for (int i = 0; i < 3; i++) s[i] = surface.u[i] + surface.e[i];
 }
 
+void impact_spot_on(const impact_shape *shape, qvec3 point, double s[3])
+{
+    const double x[3] = {point.x, point.y, point.z};
+    double p[3], axis[3];
+    exponents_of(shape, p, axis);
+    for (int i = 0; i < 3; i++) {
+        const double u = x[i] / axis[i];
+        s[i] = u + copysign(pow(fabs(u), p[i] - 1), u);
+    }
+}
+
 impact_spot impact_spot_at(const impact_shape *shape, const double s[3])
 {
     impact_spot spot;

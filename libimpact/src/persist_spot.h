@@ -31,6 +31,9 @@ bool impact_spot_suits(const impact_world *world, const impact_pair *pair);
 /* The spot of the outward normal given, body axes. */
 void impact_spot_find(const impact_shape *shape, qvec3 normal, double s[3]);
 
+/* The spot at a point of the surface, or near it, body axes, m. */
+void impact_spot_on(const impact_shape *shape, qvec3 point, double s[3]);
+
 /* s need not be quite on the surface. */
 impact_spot impact_spot_at(const impact_shape *shape, const double s[3]);
 

@@ -240,7 +240,8 @@ static party *make_party(impact_scene_crowd *crowd, int group)
     p->scene.world = (impact_world){.gravity = whole->world.gravity,
                                     .driven = whole->world.driven,
                                     .slip_speed = whole->world.slip_speed,
-                                    .onset_speed = whole->world.onset_speed};
+                                    .onset_speed = whole->world.onset_speed,
+                                    .flat_height = whole->world.flat_height};
     p->scene.duration = whole->duration;
     p->scene.law = whole->law;
     p->scene.solver = whole->solver;

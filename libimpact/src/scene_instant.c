@@ -4,6 +4,7 @@
  */
 #include "scene_internal.h"
 #include "drive.h"
+#include "persist_flat.h"
 #include "persist_still.h"
 #include "scene_together.h"
 #include "world_gap.h"
@@ -449,6 +450,17 @@ static int find_pressed(impact_scene *scene, meeting *m)
     return -1;
 }
 
+/* What rocks on a face too low to be seen lies on it; the energy is given up. */
+static impact_status lie_down(impact_scene *scene)
+{
+    const double energy = undriven_energy(scene);
+    impact_status status = load(scene);
+    if (status != IMPACT_OK || !impact_flat_lay(&scene->world, scene->states, scene->motion.loads)) return status;
+    status = make_consistent(scene);
+    scene->impact_loss += energy - undriven_energy(scene);
+    return status;
+}
+
 /* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other contacts have changed
  * their modes, is held again at once: it would come back in less than can be told from rounding, and again and again. Each pair is given
  * one such chance in an instant. opened: the pair that has just lifted off, or -1; rejoin: whether to look for such pairs. */
@@ -468,6 +480,7 @@ static impact_status hold(impact_scene *scene, int opened, bool rejoin)
         pair->mode = held_mode(&m.touch, m.touch.speed > world->slip_speed);
         status = make_consistent(scene);
     }
+    if (status == IMPACT_OK) status = lie_down(scene);
     if (status == IMPACT_OK) status = load(scene);
     if (status == IMPACT_OK) status = record_changes(scene);
     return status == IMPACT_OK ? bring_to_rest(scene) : status;
@@ -517,13 +530,13 @@ static impact_status strike_all(impact_scene *scene)
 impact_status impact_scene_settle(impact_scene *scene)
 {
     remember(scene);
-    const double energy = undriven_energy(scene);
+    const double account = undriven_energy(scene) + scene->impact_loss;
     impact_status status = strike_all(scene);
     if (status == IMPACT_OK) {
         choose_modes(scene);
         status = hold(scene, -1, false);
     }
-    scene->impact_loss += energy - undriven_energy(scene);
+    scene->impact_loss = account - undriven_energy(scene);
     return status;
 }
 
@@ -551,9 +564,9 @@ static impact_status change_mode(impact_scene *scene, int p, impact_mode mode)
     impact_pair *pair = &scene->world.pairs[p];
     pair->mode = mode;
     pair->onset = false;
-    const double energy = undriven_energy(scene);
+    const double account = undriven_energy(scene) + scene->impact_loss;
     const impact_status status = hold(scene, mode == IMPACT_OPEN ? p : -1, true);
-    scene->impact_loss += energy - undriven_energy(scene);
+    scene->impact_loss = account - undriven_energy(scene);
     return status;
 }
 
@@ -568,6 +581,18 @@ static impact_status begin_slide(impact_scene *scene, int p)
     for (int c = 0; c < persist->count; c++)
         if (persist->touches[c].pair == p) impact_persist_begin_slide(&scene->world.pairs[p], &persist->touches[c]);
     return hold(scene, -1, true);
+}
+
+/* Whether it is the face, not the plane, that a flat pair's centre of pressure has left; the body then tips. */
+static bool tips(impact_scene *scene, int p)
+{
+    const double spent = 1e-6; /* of its spare, as a root leaves it */
+    remember(scene);
+    if (load(scene) != IMPACT_OK) return false;
+    const impact_touch touch = impact_persist_touch(&scene->world, p, scene->states, scene->motion.loads);
+    if (!touch.flat || touch.spare > spent) return false;
+    impact_flat_tip(&scene->world, &scene->world.pairs[p], scene->states, &touch);
+    return true;
 }
 
 static impact_status cross_edge(impact_scene *scene, int edge)
@@ -588,6 +613,7 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_GAP: return arrive(scene, end.index);
     case IMPACT_END_RETURN: scene->world.pairs[end.index].beyond = false; return IMPACT_OK;
     case IMPACT_END_BOUNDS:
+        if (scene->world.pairs[end.index].flat && tips(scene, end.index)) return hold(scene, -1, true);
         scene->world.pairs[end.index].beyond = true;
         return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_LIFTOFF: return change_mode(scene, end.index, IMPACT_OPEN);

@@ -57,6 +57,9 @@ typedef struct impact_pair {
     double pull;
     bool carried;   /* held: the contact's place on body 1 is integrated along (persist_spot) */
     double spot[3]; /* carried: that place */
+    /* carried: body 1 lies on a face, as long as it rocks with less energy than lying, J (persist_flat) */
+    bool flat;
+    double lying;
     bool still;     /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
     qvec3 reaction; /* still, or was: on body 1, N */
     bool struck;    /* scratch: exchanged an impulse in this instant */
@@ -83,6 +86,7 @@ typedef struct impact_world {
     bool driven;        /* one of its bodies is */
     double slip_speed;  /* m/s: slip that dies out below this sticks */
     double onset_speed; /* m/s: slip that begins goes the way it is accelerated up to this */
+    double flat_height; /* m: bodies that rock on a face and rise less lie on it */
     impact_usage usage;
 } impact_world;
 
