@@ -188,11 +188,8 @@ static void cone_and_works(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_hodograph),
-        cmocka_unit_test(agrees_with_cvode),
-        cmocka_unit_test(orders_agree),
-        cmocka_unit_test(slow_sliding),
-        cmocka_unit_test(cone_and_works),
+        cmocka_unit_test(closed_hodograph), cmocka_unit_test(agrees_with_cvode), cmocka_unit_test(orders_agree),
+        cmocka_unit_test(slow_sliding),     cmocka_unit_test(cone_and_works),
     };
     return cmocka_run_group_tests_name("impact collide_series", tests, NULL, NULL);
 }
