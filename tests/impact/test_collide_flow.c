@@ -31,9 +31,9 @@ static void elementary_when_a_is_b(void **state)
         const double u[3] = {cos(theta + turn), sin(theta + turn), -1};
         impact_flow_point points[2];
         assert_int_equal(impact_flow_sample(&flow, u, p, 2, points), IMPACT_OK);
-        assert_true(fabs(points[1].velocity[0] - (x * cos(turn) - y * sin(turn))) < 1e-13);
-        assert_true(fabs(points[1].velocity[1] - (x * sin(turn) + y * cos(turn))) < 1e-13);
-        assert_true(fabs(points[1].speed - (A + B) / 2) < 1e-13);
+        assert_true(fabs(points[1].velocity[0] - (x * cos(turn) - y * sin(turn))) < 1e-14);
+        assert_true(fabs(points[1].velocity[1] - (x * sin(turn) + y * cos(turn))) < 1e-14);
+        assert_true(fabs(points[1].speed - (A + B) / 2) < 1e-14);
     }
 }
 

@@ -56,7 +56,7 @@ static void any_tangent(void **state)
         const double angle = 7 * case_random(&g);
         const qvec3 t1 = qvec3_axpy(cos(angle), t, qvec3_scale(s, sin(angle))), t2 = qvec3_cross(n, t1);
         impact_frame_make(n, t1, &ready, &f);
-        const double big = f.scale * (f.a + f.b + 1) * 1e-13;
+        const double big = f.scale * (f.a + f.b + 1) * 2e-14;
         assert_true(qvec3_norm(qvec3_sub(f.t1, t1)) == 0 && qvec3_norm(qvec3_sub(f.t2, t2)) == 0);
         assert_true(fabs(by_definition(&c, t1, t1) - f.a * f.scale) < big);
         assert_true(fabs(by_definition(&c, t2, t2) - f.b * f.scale) < big);
@@ -87,7 +87,7 @@ static void frame_is_principal(void **state)
             impact_frame f;
             impact_ready_make(&c, &ready);
             impact_frame_principal(impact_frame_normal(&c), &ready, &f);
-            const double big = f.scale * (f.a + f.b + 1) * 1e-13;
+            const double big = f.scale * (f.a + f.b + 1) * 2e-14;
             assert_true(fabs(qvec3_dot(f.t1, f.t2)) < 1e-15 && fabs(qvec3_dot(f.t1, f.n)) < 1e-15 &&
                         fabs(qvec3_dot(f.t2, f.n)) < 1e-15);
             assert_true(qvec3_dot(qvec3_cross(f.t1, f.t2), f.n) > 0.999999);

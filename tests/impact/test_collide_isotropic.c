@@ -194,7 +194,7 @@ static void asked_for(void **state)
         assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
         assert_int_equal(o.solver, IMPACT_SOLVER_CLOSED_FORM);
         const double sum = o.work_compression + o.work_restitution + o.work_friction;
-        assert_true(fabs(o.energy_after - o.energy_before - sum) <= 1e-13 * o.energy_before);
+        assert_true(fabs(o.energy_after - o.energy_before - sum) <= 1e-14 * o.energy_before);
     }
 }
 
