@@ -424,36 +424,6 @@ static void fewer_derivatives(void **state)
     }
 }
 
-/* ---- over the surface ---- */
-
-static void gauss_and_bonnet(void **state)
-{
-    (void)state;
-    quat_family f;
-    quat_surface s;
-    quat_surface_totals t;
-    double worst = 0;
-    quat_ellipsoid(2, 2, 2, &f, &s);
-    assert_int_equal(quat_surface_total(&s, 1e-12, &t), QUAT_OK);
-    worse(&worst, fabs(t.gauss - 4 * pi) + fabs(t.area / (16 * pi) - 1) + fabs(t.mean / (8 * pi) - 1) +
-                      fabs(t.bending - 4 * pi));
-    quat_ellipsoid(1, 2, 3, &f, &s);
-    assert_int_equal(quat_surface_total(&s, 1e-11, &t), QUAT_OK);
-    worse(&worst, fabs(t.gauss - 4 * pi));
-    assert_true(t.bending > 4 * pi);
-    quat_torus(sqrt(2), 1, &f, &s);
-    assert_int_equal(quat_surface_total(&s, 1e-12, &t), QUAT_OK);
-    worse(&worst,
-          fabs(t.gauss) + fabs(t.area / (4 * pi * pi * sqrt(2)) - 1) + fabs(t.bending - 2 * pi * pi)); /* Clifford's */
-    quat_superellipsoid(1, 1.5, 2, 1, 1, &f, &s);
-    assert_int_equal(quat_surface_total(&s, 1e-11, &t), QUAT_OK);
-    worse(&worst, fabs(t.gauss - 4 * pi));
-    assert_bound("Gauss and Bonnet, areas, Willmore", worst, 5e-13);
-    quat_ellipsoid(1, 1, 1e4, &f, &s);
-    assert_int_equal(quat_surface_total(&s, 1e-12, &t),
-                     QUAT_NOT_CONVERGED); /* a needle: the poles ask for more points */
-}
-
 /* ---- bad input ---- */
 
 static bool nowhere(double u, double v, qvec3 d[6], void *context)
@@ -542,7 +512,6 @@ int main(void)
                                        cmocka_unit_test(nothing_depends_on_place_parameter_or_gauge),
                                        cmocka_unit_test(rates_are_the_frames),
                                        cmocka_unit_test(fewer_derivatives),
-                                       cmocka_unit_test(gauss_and_bonnet),
                                        cmocka_unit_test(bad_input_has_a_status)};
     gsl_set_error_handler(count_call);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -87,9 +87,11 @@ typedef struct quat_surface_totals {
     double bending; /* integral of H^2: 4 pi or more for a closed surface (Willmore) */
 } quat_surface_totals;
 
-/* Product rules of 16, 32 ... 512 points each way (128 when x alone is known) until two in a row agree to `tolerance`
- * (relative; at least 1e-14): Gauss-Legendre across an open range, equal steps around a closed one. Degenerate edges
- * (poles) do no harm; they are not asked. QUAT_NOT_CONVERGED with the last values otherwise. */
+/* Product rules of 16, 32, 64 points each way until two in a row agree to `tolerance` (relative; at least 1e-14):
+ * Gauss-Legendre across an open range, equal steps around a closed one. Where they do not, the worst of up to 500
+ * rectangles (50 when x alone is known) is halved until all agree with their halves. Degenerate edges (poles) do no
+ * harm; they are not asked. QUAT_NOT_CONVERGED with the last values otherwise, also when the points' own errors leave
+ * more than `tolerance`. QUAT_ERANGE when one overflows. Other statuses as quat_surface_at's, and QUAT_ENOMEM. */
 QUAT_API quat_status quat_surface_total(const quat_surface *surface, double tolerance, quat_surface_totals *totals);
 
 /* ---- quaternion Gauss maps ---- */
