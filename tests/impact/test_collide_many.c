@@ -53,8 +53,44 @@ static void same_bits_on_any_number_of_threads(void **state)
     free(statuses);
 }
 
+static double stribeck(double speed, void *context)
+{
+    (void)context;
+    return 0.1 + 0.4 * exp(-speed / 0.5);
+}
+
+/* Friction laws are called from all threads, and a workspace is a pattern for each thread's own. */
+static void cvode_in_threads(void **state)
+{
+    (void)state;
+    if (!impact_has(IMPACT_PART_CVODE)) skip();
+    enum { FEW = 300 };
+    static impact_collision c[FEW];
+    static impact_outcome single[FEW], many[FEW];
+    impact_collide_workspace *workspace;
+    assert_int_equal(impact_collide_workspace_create(IMPACT_ODE_BDF, 1e-8, &workspace), IMPACT_OK);
+    for (int i = 0; i < FEW; i++) {
+        c[i] = case_make((case_class)(i % CASE_CLASSES), 53, (uint64_t)i);
+        c[i].solver = IMPACT_SOLVER_CVODE;
+        c[i].friction_law = i % 3 ? stribeck : NULL;
+        c[i].workspace = i % 2 ? workspace : NULL;
+        assert_int_equal(impact_collide(&c[i], &single[i]), IMPACT_OK);
+    }
+    const long calls = impact_collide_workspace_count(workspace).rhs_calls;
+    for (int threads = 1; threads < 5; threads++) {
+        assert_int_equal(impact_collide_many(c, FEW, threads, many, NULL), IMPACT_OK);
+        for (int i = 0; i < FEW; i++) {
+            assert_memory_equal(many[i].velocity, single[i].velocity, sizeof single[i].velocity);
+            assert_memory_equal(many[i].omega, single[i].omega, sizeof single[i].omega);
+        }
+    }
+    assert_int_equal(impact_collide_workspace_count(workspace).rhs_calls, calls);
+    impact_collide_workspace_destroy(workspace);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits_on_any_number_of_threads)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits_on_any_number_of_threads),
+                                       cmocka_unit_test(cvode_in_threads)};
     return cmocka_run_group_tests_name("impact collide_many", tests, NULL, NULL);
 }
