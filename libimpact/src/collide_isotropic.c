@@ -23,6 +23,7 @@ typedef struct whirl {
     impact_course *course;
     double ex, ey; /* x of this file, in the course's tangential frame */
     double a, g, mu, m, alpha, beta;
+    double over_alpha, over_beta; /* their inverses; 0 for alpha = 0 */
     double X, Y, uy;
     double X_climb, Y_climb; /* d uz / d tau = X_climb e^(alpha tau) + Y_climb e^(-beta tau) */
 } whirl;
@@ -32,15 +33,30 @@ typedef struct powers {
     double A, B, I1, I2;
 } powers;
 
-/* int_0^tau e^(k tau). */
-static inline double integral(double k, double tau, double expm1_k) { return k == 0 ? tau : expm1_k / k; }
-
 static inline powers powers_at(const whirl *w, double tau)
 {
     if (tau == 0) return (powers){1, 1, 0, 0};
-    if (tau == INFINITY) return (powers){0, 0, -1 / w->alpha, 1 / w->beta};
-    const double A = expm1(w->alpha == 0 ? 0 : w->alpha * tau), B = expm1(-w->beta * tau);
-    return (powers){1 + A, 1 + B, integral(w->alpha, tau, A), -B / w->beta};
+    if (tau == INFINITY) return (powers){0, 0, -w->over_alpha, w->over_beta};
+    const double B = expm1(-w->beta * tau);
+    if (w->alpha == 0) return (powers){1, 1 + B, tau, -B * w->over_beta};
+    const double A = expm1(w->alpha * tau);
+    return (powers){1 + A, 1 + B, A * w->over_alpha, -B * w->over_beta};
+}
+
+/* int_0^d e^(k t) dt for a small k d. */
+static inline double little(double k, double d)
+{
+    const double x = k * d;
+    return d * (1 + x * (0.5 + x * ((1.0 / 6) + x * (1.0 / 24))));
+}
+
+/* From one tau to another. */
+static inline powers powers_on(const whirl *w, const powers *at, double from, double to)
+{
+    const double d = to - from;
+    if (!(fabs(d) * w->beta < 1e-3)) return powers_at(w, to);
+    const double up = at->A * little(w->alpha, d), down = at->B * little(-w->beta, d);
+    return (powers){at->A + w->alpha * up, at->B - w->beta * down, at->I1 + up, at->I2 + down};
 }
 
 /* int I2 dI1 - int I1 dI2 = tau^3 2 g f[-beta tau, -2 m tau, alpha tau], f(x) = (e^x - 1) / x: its divided difference as a series
@@ -50,7 +66,7 @@ static double swirl(const whirl *w, const powers *at, double tau)
     const double y = -w->beta * tau;
     if (y < -0.5) {
         const double I3 = -expm1(-2 * w->m * tau) / (2 * w->m);
-        return 2 * (at->I1 - I3) / w->beta - at->I1 * at->I2;
+        return 2 * (at->I1 - I3) * w->over_beta - at->I1 * at->I2;
     }
     const double x = w->alpha * tau, z = x + y;
     const double e1 = x + y + z, e2 = x * y + z * z, e3 = x * y * z;
@@ -98,23 +114,23 @@ static double value_at(const whirl *w, target what, double wanted, const powers 
  * the function is nearly straight. NaN or infinite where that is never. */
 static double step_on(const whirl *w, bool first, double tau, double more)
 {
-    const double k = first ? w->alpha : -w->beta;
-    return tau + (k == 0 ? more : log1p(k * more) / k);
+    if (first) return tau + (w->alpha == 0 ? more : log1p(w->alpha * more) * w->over_alpha);
+    return tau - log1p(-w->beta * more) * w->over_beta;
 }
 
 /* The root of a function that is monotone on [low, high] and has another sign at high; Newton from `start` inside a bracket. Steps d
- * shrink as d -> K d^2: where the next would be rounding, it is not taken. */
-static double find_root(const whirl *w, target what, double wanted, double low, double high, double start)
+ * shrink as d -> K d^2: where the next would be rounding, it is not taken. *at: the exponentials there. */
+static double find_root(const whirl *w, target what, double wanted, double low, double high, double start, powers *at)
 {
     double slope[2], tau = start, before = 0;
-    powers at = powers_at(w, low);
-    const double f_low = value_at(w, what, wanted, &at, low, slope);
+    *at = powers_at(w, low);
+    const double f_low = value_at(w, what, wanted, at, low, slope);
     if (f_low == 0) return low;
     for (int i = 0; i < 200; i++) {
         double f = f_low;
         if (tau > low) {
-            at = powers_at(w, tau);
-            f = value_at(w, what, wanted, &at, tau, slope);
+            *at = powers_at(w, tau);
+            f = value_at(w, what, wanted, at, tau, slope);
             if (f == 0) return tau;
             if ((f > 0) == (f_low > 0))
                 low = tau;
@@ -126,7 +142,10 @@ static double find_root(const whirl *w, target what, double wanted, double low, 
         const bool inside = tau >= low && tau <= high && tau < INFINITY;
         if (!inside) tau = high < INFINITY ? 0.5 * (low + high) : 2 * low + 1 / w->beta;
         const double d = fabs(tau - last);
-        if (d <= 2 * DBL_EPSILON * tau || d * d * d <= 0.5 * DBL_EPSILON * tau * (before * before)) break;
+        if (d <= 2 * DBL_EPSILON * tau || d * d * d <= 0.5 * DBL_EPSILON * tau * (before * before)) {
+            *at = powers_on(w, at, last, tau);
+            break;
+        }
         before = inside ? d : 0;
     }
     return tau;
@@ -145,6 +164,8 @@ static void start(whirl *w, impact_course *course)
     w->m = w->mu * w->a;
     w->alpha = w->g - w->m;
     w->beta = w->g + w->m;
+    w->over_alpha = w->alpha == 0 ? 0 : 1 / w->alpha;
+    w->over_beta = 1 / w->beta;
     w->ex = c / w->g;
     w->ey = d / w->g;
     const double along = w->ex * course->ux + w->ey * course->uy;
@@ -164,22 +185,28 @@ static double find_turn(whirl *w)
     return w->X_climb < 0 && w->X_climb + w->Y_climb > 0 ? log(w->Y_climb / -w->X_climb) / (2 * w->g) : INFINITY;
 }
 
+/* 1 - e^(-m tau), which is 1 - sqrt(A B) where that is as good: A and B are right to rounding of 1. */
+static inline double shed_by(const whirl *w, const powers *at, double tau)
+{
+    const double x = w->m * tau;
+    return x > 0.25 && at->A > 0.25 && at->B > 0.25 ? 1 - sqrt(at->A * at->B) : -expm1(-x);
+}
+
 /* Moves on to tau within one phase; INFINITY: to the end of the slip. */
-static void move_to(whirl *w, double tau)
+static void move_to(whirl *w, double tau, const powers *at)
 {
     if (!(tau > 0)) return;
     impact_course *course = w->course;
-    const powers at = powers_at(w, tau);
-    const double shed = -expm1(-w->m * tau), I3 = shed * (2 - shed) / (2 * w->m);
-    const double along = w->mu * (w->Y * at.I2 - w->X * at.I1), over = -w->uy * shed / w->a;
-    const double squares = w->X * w->X * at.I1 * (1 + at.A) / 2 + w->Y * w->Y * at.I2 * (1 + at.B) / 2;
+    const double shed = shed_by(w, at, tau), I3 = shed * (2 - shed) / (2 * w->m);
+    const double along = w->mu * (w->Y * at->I2 - w->X * at->I1), over = -w->uy * shed / w->a;
+    const double squares = w->X * w->X * at->I1 * (1 + at->A) / 2 + w->Y * w->Y * at->I2 * (1 + at->B) / 2;
     impact_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
-    impact_course_book(course, p_at(w, &at), work_at(w, &at, tau), -w->mu * (squares + 2 * w->X * w->Y * I3));
+    impact_course_book(course, p_at(w, at), work_at(w, at, tau), -w->mu * (squares + 2 * w->X * w->Y * I3));
     course->px += w->ex * along - w->ey * over;
     course->py += w->ey * along + w->ex * over;
-    impact_course_reach(course, course->uz + rise_at(w, &at));
-    w->X *= at.A;
-    w->Y *= at.B;
+    impact_course_reach(course, course->uz + rise_at(w, at));
+    w->X *= at->A;
+    w->Y *= at->B;
     w->uy *= 1 - shed;
 }
 
@@ -192,8 +219,8 @@ static double guess_work(const whirl *w, double more)
     return tau > 0 && tau < INFINITY ? tau : 0;
 }
 
-/* In restitution, uz >= 0 up to `to`: whether the impact ends by then, and where. */
-static bool ends_by(const whirl *w, double to, double *where)
+/* In restitution, uz >= 0 up to `to`: whether the impact ends by then, and where; the exponentials at both. */
+static bool ends_by(const whirl *w, double to, const powers *at_to, double *where, powers *at)
 {
     const impact_course *course = w->course;
     const bool poisson = course->law == IMPACT_POISSON, newton = course->law == IMPACT_NEWTON;
@@ -201,24 +228,16 @@ static bool ends_by(const whirl *w, double to, double *where)
                           : newton ? impact_course_target_newton(course)
                                    : impact_course_left_stronge(course);
     *where = 0;
+    *at = (powers){1, 1, 0, 0};
     if (newton ? course->uz >= wanted : wanted <= 0) return true;
     const target what = poisson ? TARGET_P : newton ? TARGET_UZ : TARGET_WORK;
     /* Without end nothing is out of reach but where sliding stops. */
     if (to < INFINITY || w->alpha < 0) {
         double slope[2];
-        const powers at = powers_at(w, to);
-        if (value_at(w, what, wanted, &at, to, slope) < 0) return false;
+        if (value_at(w, what, wanted, at_to, to, slope) < 0) return false;
     }
-    *where = find_root(w, what, wanted, 0, to, what == TARGET_WORK ? guess_work(w, wanted) : 0);
+    *where = find_root(w, what, wanted, 0, to, what == TARGET_WORK ? guess_work(w, wanted) : 0, at);
     return true;
-}
-
-/* uz at tau, of which INFINITY may be one. */
-static double uz_at(const whirl *w, double tau)
-{
-    if (tau == INFINITY && w->alpha >= 0) return INFINITY;
-    const powers at = powers_at(w, tau);
-    return w->course->uz + rise_at(w, &at);
 }
 
 void impact_isotropic_solve(impact_course *course)
@@ -226,29 +245,25 @@ void impact_isotropic_solve(impact_course *course)
     whirl w;
     start(&w, course);
     for (int i = 0; i < 16; i++) {
-        const double to = find_turn(&w);
-        const bool rises = w.X_climb + w.Y_climb > 0;
-        const double uz_to = uz_at(&w, to);
-        double end = to;
-        bool turns;
-        if (course->compressing) {
-            turns = rises && uz_to >= 0;
-            if (turns) end = find_root(&w, TARGET_UZ, 0, 0, to, 0);
-        } else {
-            turns = !rises && uz_to < 0;
-            if (turns) end = find_root(&w, TARGET_UZ, 0, 0, to, 0);
-            double where;
-            if (ends_by(&w, end, &where)) {
-                move_to(&w, where);
-                if (course->law == IMPACT_NEWTON) course->uz = impact_course_target_newton(course);
-                course->ended = true;
-                return;
-            }
+        /* To the next event. */
+        double to = find_turn(&w);
+        const bool without_end = to == INFINITY && w.alpha >= 0, rises = w.X_climb + w.Y_climb > 0;
+        powers at = without_end ? (powers){NAN, NAN, NAN, NAN} : powers_at(&w, to);
+        const double uz_to = without_end ? INFINITY : course->uz + rise_at(&w, &at);
+        const bool turns = course->compressing ? rises && uz_to >= 0 : !rises && uz_to < 0;
+        if (turns) to = find_root(&w, TARGET_UZ, 0, 0, to, 0, &at);
+        double where;
+        powers at_end;
+        if (!course->compressing && ends_by(&w, to, &at, &where, &at_end)) {
+            move_to(&w, where, &at_end);
+            if (course->law == IMPACT_NEWTON) course->uz = impact_course_target_newton(course);
+            course->ended = true;
+            return;
         }
-        move_to(&w, end);
+        move_to(&w, to, &at);
         if (turns)
             impact_course_turn(course);
-        else if (end == INFINITY)
+        else if (to == INFINITY)
             break;
     }
     impact_course_finish(course);
