@@ -7,7 +7,7 @@
  * microseconds, that time over the series' own in the same class, and the median and largest condition number of M of the
  * class, by which rounding of the input can grow.
  * Classes: how the impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones; isotropic: a = b), the scenes S1, S2, S5 that other programs are compared on,
- * and S5e, 300 random ellipsoids on a plane. `p_z`: what integration over the normal impulse itself does, by CVODE.
+ * and S5e, 300 random ellipsoids on a plane. `loop of`, `array of`: many different impacts by a closed form, the mean time of one. `p_z`: what integration over the normal impulse itself does, by CVODE.
  */
 #include <pthread.h>
 #include <stdio.h>
@@ -361,7 +361,41 @@ static void random_ellipsoids(group *g)
     run_scene(g);
 }
 
-/* Closed forms and the array call: nanoseconds for one sphere impact. */
+static void print_loop(const char *name, const char *parameter, int count, double time, double unit)
+{
+    printf("%s,closed form,%s,%d,0,,,%.3g,%.3g,,\n", name, parameter, count, 1e6 * time, time / unit);
+}
+
+/* Different impacts one after another, as a program has them: the time of one in the mean, for each closed form, beside a sphere's. */
+static void closed_forms(void)
+{
+    enum { COUNT = 2000 };
+    static const case_class classes[] = {CASE_SPHERE, CASE_SMOOTH, CASE_REST, CASE_PLANAR, CASE_TILTED, CASE_ISOTROPIC};
+    static const char *const names[] = {"loop of spheres", "loop without friction", "loop from rest",
+                                        "loop of planar",  "loop of tilted planar", "loop of a = b"};
+    static impact_collision c[COUNT];
+    static impact_outcome o[COUNT];
+    double sphere = 0, sum = 0;
+    for (int k = 0; k < 6; k++) {
+        int count = 0;
+        for (uint64_t i = 0; count < COUNT; i++) {
+            c[count] = case_make(classes[k], 103, i);
+            count += impact_collide(&c[count], &o[count]) == IMPACT_OK && o[count].solver == IMPACT_SOLVER_CLOSED_FORM;
+        }
+        double best = INFINITY;
+        for (int r = 0; r < 15; r++) {
+            const double from = measure_clock();
+            for (int i = 0; i < COUNT; i++) impact_collide(&c[i], &o[i]);
+            best = fmin(best, (measure_clock() - from) / COUNT);
+        }
+        if (k == 0) sphere = best;
+        print_loop(names[k], "", COUNT, best, sphere);
+        sum += best;
+    }
+    print_loop("loop of all these", "", 6 * COUNT, sum / 6, sphere);
+}
+
+/* The array call: the time of one sphere impact. */
 static void array_call(void)
 {
     enum { COUNT = 200000 };
@@ -369,7 +403,8 @@ static void array_call(void)
     impact_outcome *o = calloc(COUNT, sizeof *o);
     if (!c || !o) exit(1);
     for (int i = 0; i < COUNT; i++) c[i] = case_make(CASE_SPHERE, 101, (uint64_t)i);
-    const int threads[] = {1, 2, 4};
+    static const int threads[] = {1, 2, 4};
+    static const char *const names[] = {"1 threads", "2 threads", "4 threads"};
     double single = 0;
     for (int t = 0; t < 3; t++) {
         double best = INFINITY;
@@ -379,8 +414,7 @@ static void array_call(void)
             best = fmin(best, (measure_clock() - from) / COUNT);
         }
         if (t == 0) single = best;
-        printf("array of spheres,closed form,%d threads,%d,0,,,%.3g,%.3g,,\n", threads[t], COUNT, 1e6 * best,
-               best / single);
+        print_loop("array of spheres", names[t], COUNT, best, single);
     }
     free(c);
     free(o);
@@ -398,6 +432,7 @@ int main(void)
     one_scene(&g, "S5a", scene_ellipsoid(0));
     one_scene(&g, "S5b", scene_ellipsoid(1));
     random_ellipsoids(&g);
+    closed_forms();
     array_call();
     gather_straight(&g);
     run_straight(&g);
