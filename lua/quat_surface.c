@@ -330,7 +330,7 @@ static int l_choose_frames(lua_State *L)
     return quat_lua_results(L, status, 2);
 }
 
-/* surface.transition(q1, q2) -> turns, angles */
+/* surface.transition(q1, q2) -> turns, angles [, reason] */
 static int l_transition(lua_State *L)
 {
     size_t n, count;
@@ -342,7 +342,7 @@ static int l_transition(lua_State *L)
     if (status < 0) return quat_lua_failure(L, "the frames do not share their normals");
     lua_pushnumber(L, turns);
     quat_lua_push_numbers(L, n, angle);
-    return 2;
+    return quat_lua_results(L, status, 2);
 }
 
 void quat_lua_open_surface(lua_State *L)

@@ -207,8 +207,9 @@ quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t
 
 quat_status quat_transition(size_t n, const quat q1[], const quat q2[], double angle[], double *turns, double *off)
 {
-    const double two_pi = 6.28318530717958648;
+    const double two_pi = 6.28318530717958648, widest = 0.375 * two_pi;
     double first = 0, last = 0, worst = 0;
+    bool coarse = false;
     if (turns) *turns = 0;
     if (off) *off = 0;
     if (n < 1 || !q1 || !q2) return QUAT_EARGUMENT;
@@ -221,11 +222,12 @@ quat_status quat_transition(size_t n, const quat q1[], const quat q2[], double a
         phi -= two_pi * nearbyint((phi - last) / two_pi);
         worst = fmax(worst, side);
         if (i == 0) first = phi;
+        coarse = coarse || (i > 0 && fabs(phi - last) > widest);
         if (angle) angle[i] = phi;
         last = phi;
     }
     if (off) *off = worst;
     if (worst > 1e-6) return QUAT_EDOMAIN;
     if (turns) *turns = (last - first) / two_pi;
-    return QUAT_OK;
+    return coarse ? QUAT_NOT_UNIQUE : QUAT_OK;
 }

@@ -40,6 +40,10 @@ static inline wquat wide_sub(wquat p, wquat q) { return (wquat){p.w - q.w, p.x -
 static inline wquat wide_scale(wquat q, wide s) { return (wquat){q.w * s, q.x * s, q.y * s, q.z * s}; }
 static inline wquat wide_conj(wquat q) { return (wquat){q.w, -q.x, -q.y, -q.z}; }
 static inline wide wide_dot(wquat p, wquat q) { return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z; }
+static inline wquat wide_cross(wquat p, wquat q) /* of the vector parts */
+{
+    return (wquat){0, p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
+}
 static inline wide wide_norm(wquat q) { return sqrtf128(wide_dot(q, q)); }
 static inline wquat wide_unit(wquat q) { return wide_scale(q, 1 / wide_norm(q)); }
 static inline wquat wide_mul(wquat p, wquat q)

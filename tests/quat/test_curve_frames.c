@@ -13,6 +13,54 @@
 static const double pi = 3.14159265358979324;
 static const qvec3 x_axis = {1, 0, 0};
 
+/* Two mirrors, in quadruple precision: the chord's bisecting plane, then the one that brings the tangent where it
+ * belongs. The whole frame goes along. */
+static wquat wide_mirrored(wquat v, wquat normal)
+{
+    return wide_sub(v, wide_scale(normal, 2 * wide_dot(v, normal) / wide_dot(normal, normal)));
+}
+
+static void steps_are_two_mirrors(void **state)
+{
+    (void)state;
+    random_state r = {312};
+    double axes = 0, back = 0, moved = 0, tangents = 0;
+    for (int round = 0; round < 100000; round++) {
+        const quat q = random_unit(&r), turn = random_unit(&r);
+        const double bend = random_scale(&r, -12, 0), scale = random_scale(&r, -50, 50);
+        const qvec3 t0 = quat_rotate(q, x_axis), x0 = qvec3_scale(random_direction(&r), scale);
+        qvec3 t1, chord = qvec3_axpy(bend, random_direction(&r), t0);
+        assert_int_equal(qvec3_normalize(qvec3_axpy(bend, random_direction(&r), t0), &t1), QUAT_OK);
+        const qvec3 x1 = qvec3_axpy(scale * random_between(&r, 0.1, 10), chord, x0);
+        quat next, other;
+        chord = qvec3_sub(x1, x0);
+        assert_int_equal(quat_frame_step(q, x0, x1, t1, &next), QUAT_OK);
+        assert_true(quat_dot(q, next) >= 0);
+        const wquat first = wide_vec(chord), tangent = wide_unit(wide_vec(t1)),
+                    second = wide_sub(
+                        tangent,
+                        wide_mirrored(wide_unit(wide_rotate(wide_unit(wide_quat(q)), (wquat){0, 1, 0, 0})), first));
+        for (int axis = 0; axis < 3; axis++) {
+            const wquat body = {0, axis == 0, axis == 1, axis == 2},
+                        want = wide_mirrored(wide_mirrored(wide_rotate(wide_unit(wide_quat(q)), body), first), second),
+                        got = wide_rotate(wide_unit(wide_quat(next)), body);
+            worse(&axes, (double)wide_norm(wide_sub(got, want)));
+        }
+        worse(&tangents, qvec3_norm(qvec3_sub(quat_rotate(next, x_axis), t1)));
+        assert_int_equal(quat_frame_step(next, x1, x0, t0, &other), QUAT_OK); /* and the same way back */
+        worse(&back, quat_rotation_distance(other, q));
+        /* the whole scene turned turns the answer */
+        assert_int_equal(quat_frame_step(quat_mul(turn, q), quat_rotate(turn, x0), quat_rotate(turn, x1),
+                                         quat_rotate(turn, t1), &other),
+                         QUAT_OK);
+        worse(&moved, quat_rotation_distance(other, quat_mul(turn, next)));
+    }
+    assert_bound("a step against two mirrors", axes, 2e-14);
+    assert_bound("its tangent", tangents, 2e-14);
+    assert_bound("there and back, rad", back, 1e-14);
+    assert_bound("with the whole scene turned, rad", moved, 2e-14);
+}
+
 /* On a helix the minimal frame is Frenet's turned by minus torsion times length. */
 static double helix_error(size_t n, double *tangent)
 {
@@ -226,9 +274,12 @@ static void inflections_are_reported(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(minimal_frames_are_of_order_four), cmocka_unit_test(closed_frames_close),
-        cmocka_unit_test(holonomy_is_taken_back_evenly),    cmocka_unit_test(holonomy_is_minus_the_total_torsion),
-        cmocka_unit_test(monodromy_counts_turns),           cmocka_unit_test(inflections_are_reported)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_are_two_mirrors),
+                                       cmocka_unit_test(minimal_frames_are_of_order_four),
+                                       cmocka_unit_test(closed_frames_close),
+                                       cmocka_unit_test(holonomy_is_taken_back_evenly),
+                                       cmocka_unit_test(holonomy_is_minus_the_total_torsion),
+                                       cmocka_unit_test(monodromy_counts_turns),
+                                       cmocka_unit_test(inflections_are_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -135,8 +135,9 @@ QUAT_API quat_status quat_surface_patch(const quat_surface *surface, double u0, 
  * angle[i] (may be NULL) is continuous, the first in -pi ... pi. *turns (may be NULL) is how often the angle goes round
  * from first to last: for a closed seam, with the last point the first again, a whole number; -2 around the equator of
  * a sphere from the northern to the southern patch, counter-clockwise seen from north: minus its Euler number. *off
- * (may be NULL) is the largest angle between the normals. QUAT_EARGUMENT for n < 1; QUAT_EDOMAIN when normals differ by
- * more than 1e-6 rad or a quaternion cannot be normalised. */
+ * (may be NULL) is the largest angle between the normals. QUAT_NOT_UNIQUE when the angle goes by more than 3/8 of a turn
+ * from one point to the next: half a turn could be either way, take more points. QUAT_EARGUMENT for n < 1; QUAT_EDOMAIN
+ * when normals differ by more than 1e-6 rad or a quaternion cannot be normalised. */
 QUAT_API quat_status quat_transition(size_t n, const quat q1[], const quat q2[], double angle[], double *turns,
                                      double *off);
 
