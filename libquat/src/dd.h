@@ -8,8 +8,10 @@
 
 #include <math.h>
 
-/* Not clang: up to 17 it gives the clones names of their own and leaves the function itself undefined. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+/* Not clang: up to 17 it gives the clones names of their own and leaves the function itself undefined. Nor under gcc's thread sanitizer,
+ * which is not there yet when the loader picks a clone. */
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
+    !defined(__SANITIZE_THREAD__)
 #define QUAT_HAS_CLONES
 #define QUAT_FMA_CLONES __attribute__((target_clones("fma", "default")))
 #define QUAT_AVX2_CLONES __attribute__((target_clones("avx2", "default")))
