@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * report_held: the energy account of contacts that are held. Superquadrics of random axes, orientation and spin, set down on a plane
- * so that they roll, or slide without friction, for three seconds.
+ * report_held: the energy account of contacts that are held. Superquadrics and superellipsoids of random axes, orientation and spin, set
+ * down on a plane so that they roll, or slide without friction, for three seconds.
  *
  * report_held [--runs N] [--seed S] [--exponent P]
  * CSV: one row per exponent and mode. error: what the account is off by, over the largest energy in it, of the runs that ended
@@ -16,10 +16,11 @@
 #include <impact/scene.h>
 #include "../tests/contact_random.h"
 
-enum { MOST_STEPS = 1000000, MIXED = 0, MOST_RUNS = 10000 };
+enum { MOST_STEPS = 1000000, MIXED = 0, BARR = -1, MOST_RUNS = 10000 };
 
 static const double duration = 3;
-static const double exponents[] = {1.2, 1.5, 1.8, 2, 2.05, 2.2, 2.5, 3, 3.5, 4, 5, 6, 8, 12, 16, 20, MIXED};
+static const double exponents[] = {1.2, 1.5, 1.8, 2,  2.05, 2.2, 2.5, 3,   3.5,   4,
+                                   5,   6,   8,   12, 16,   20,  50,  100, MIXED, BARR};
 
 typedef struct watch {
     long steps;
@@ -57,7 +58,7 @@ static bool note_event(void *context, const impact_event *event)
 
 static double pick(random_stream *random, double exponent)
 {
-    return exponent == MIXED ? random_log(random, 1.2, 20) : exponent;
+    return exponent == MIXED || exponent == BARR ? random_log(random, 1.2, 20) : exponent;
 }
 
 /* Its lowest point touches the floor, and rests there, or glides at the velocity slide. */
@@ -69,7 +70,10 @@ static impact_body_def set_down(random_stream *random, double exponent, bool rol
     body.mass = 1;
     double x[6]; /* exponents, then semi-axes */
     for (int i = 0; i < 6; i++) x[i] = i < 3 ? pick(random, exponent) : 0.2 + 0.2 * random_unit(random);
-    impact_shape_superquadric(x[5], x[4], x[3], x[2], x[1], x[0], &body.shape);
+    if (exponent == BARR)
+        impact_shape_superellipsoid(x[5], x[4], x[3], 2 / x[2], 2 / x[1], &body.shape);
+    else
+        impact_shape_superquadric(x[5], x[4], x[3], x[2], x[1], x[0], &body.shape);
     body.orientation = random_rotation(random);
     body.position.z =
         impact_shape_support(&body.shape, quat_rotate_inverse(body.orientation, (qvec3){0, 0, -1}), &lowest);
@@ -165,16 +169,19 @@ static double argument(int count, char **arguments, const char *name, double oth
 
 int main(int count, char **arguments)
 {
-    const double only = argument(count, arguments, "--exponent", -1);
+    const double only = argument(count, arguments, "--exponent", NAN);
     const int runs = (int)fmin(fmax(argument(count, arguments, "--runs", 20), 1), MOST_RUNS);
     const uint64_t seed = (uint64_t)argument(count, arguments, "--seed", 1);
     static tally row;
     printf("exponent,mode,ended,error_median,error_worst,soft,refused,long,held,drift,steps,starts,message\n");
     for (size_t k = 0; k < sizeof exponents / sizeof *exponents; k++)
         for (int rolls = 1; rolls >= 0; rolls--) {
-            if (only >= 0 && exponents[k] != only) continue;
-            char name[32] = "mixed";
-            if (exponents[k] != MIXED) snprintf(name, sizeof name, "%g", exponents[k]);
+            if (!isnan(only) && exponents[k] != only) continue;
+            char name[32];
+            if (exponents[k] == MIXED || exponents[k] == BARR)
+                snprintf(name, sizeof name, "%s", exponents[k] == MIXED ? "mixed" : "superellipsoid");
+            else
+                snprintf(name, sizeof name, "%g", exponents[k]);
             memset(&row, 0, sizeof row);
             random_stream random = {seed};
             for (int i = 0; i < runs; i++) run(&random, exponents[k], rolls, &row);

@@ -37,17 +37,23 @@ static int face_below(const impact_body *body, const impact_state *state, qvec3 
 }
 
 /* By how much a body has risen that stands on the point at foot of the face, body axes, m; infinite on what is no flat face. With the other
- * axes' u = x/a small, the support function is c (1 + sum |u|^p (p - 1)/p_face). */
+ * axes' u = x/a small, the support function is c (1 + sum |u|^p (p - 1)/p_face). Of a superellipsoid the faces across x and y bend as
+ * |u|^r/r along the section and |u|^t/t along z, those across z as K^t/t. */
 static double rise(const impact_shape *shape, int face, qvec3 foot)
 {
     const double flattest = 3; /* exponents below it make no face */
+    const bool nested = shape->kind == IMPACT_SUPERELLIPSOID;
     const double p[3] = {shape->r, shape->s, shape->t}, axis[3] = {shape->a, shape->b, shape->c};
     const double u[3] = {foot.x / shape->a, foot.y / shape->b, foot.z / shape->c};
     double sum = 0;
+    if (nested && face == 2) {
+        const double k = pow(pow(fabs(u[0]), p[0]) + pow(fabs(u[1]), p[0]), 1 / p[0]);
+        return p[2] < flattest ? INFINITY : axis[2] * pow(fmin(k, 2), p[2]) * (p[2] - 1) / p[2];
+    }
     for (int i = 0; i < 3; i++) {
         if (i == face) continue;
         if (p[i] < flattest) return INFINITY;
-        sum += pow(fmin(fabs(u[i]), 2), p[i]) * (p[i] - 1) / p[face];
+        sum += pow(fmin(fabs(u[i]), 2), p[i]) * (p[i] - 1) / (nested ? p[i] : p[face]);
     }
     return axis[face] * sum;
 }

@@ -15,14 +15,24 @@ static impact_shape random_superquadric(random_stream *random, double low, doubl
     return shape;
 }
 
+static impact_shape random_superellipsoid(random_stream *random, double low, double high)
+{
+    impact_shape shape;
+    const double a = random_log(random, 0.1, 1), b = random_log(random, 0.1, 1), c = random_log(random, 0.1, 1);
+    const double t = random_log(random, low, high);
+    impact_shape_superellipsoid(a, b, c, 2 / t, 2 / random_log(random, low, high), &shape);
+    return shape;
+}
+
 /* ---- the coordinates ---- */
 
 static void a_spot_is_where_the_support_is(void **state)
 {
     (void)state;
     random_stream random = {31};
-    for (int k = 0; k < 20000; k++) {
-        const impact_shape shape = random_superquadric(&random, 1.1, 30);
+    for (int k = 0; k < 40000; k++) {
+        const impact_shape shape =
+            k % 2 ? random_superquadric(&random, 1.1, 30) : random_superellipsoid(&random, 1.1, 30);
         const qvec3 n = random_direction(&random);
         double s[3];
         qvec3 point;
@@ -31,7 +41,7 @@ static void a_spot_is_where_the_support_is(void **state)
         const impact_spot spot = impact_spot_at(&shape, s);
         assert_near3(spot.normal, n, 1e-14);
         assert_near3(spot.point, point, 1e-14);
-        assert_near(qvec3_dot(spot.point, n), h, 2e-15);
+        assert_near(qvec3_dot(spot.point, n), h, k % 2 ? 2e-15 : 4e-15); /* one power more */
     }
 }
 
@@ -59,8 +69,9 @@ static void spots_move_as_their_normals_turn(void **state)
     (void)state;
     random_stream random = {32};
     const double h = 2e-5;
-    for (int k = 0; k < 5000; k++) {
-        const impact_shape shape = random_superquadric(&random, 1.3, 5);
+    for (int k = 0; k < 10000; k++) {
+        const impact_shape shape =
+            k % 2 ? random_superquadric(&random, 1.3, 5) : random_superellipsoid(&random, 1.3, 5);
         const qvec3 n = random_direction(&random), w = random_direction(&random);
         double s[3], turned[4][3];
         impact_spot_find(&shape, n, s);
@@ -86,6 +97,8 @@ static void spots_move_as_their_normals_turn(void **state)
 /* A body that rolls, or glides without friction, and turns about its y axis only. With f its angle, r the contact point from the centre
  * and h(f) the centre's height, energy is all there is to it:
  *   rolling (J + m r^2) f'^2/2 + m g h = E,   gliding (J + m h'^2) f'^2/2 + m g h = E. */
+typedef enum tumbler_kind { SUPERQUADRIC, ELLIPSOID_PROFILE, ELLIPSOID_SECTION } tumbler_kind;
+
 typedef struct tumbler {
     long double a, c, p, t;      /* semi-axes along x and z, exponents */
     long double inertia, energy; /* per mass */
@@ -125,20 +138,34 @@ static tumble revolution(const tumbler *b)
     return sum;
 }
 
+/* Of the kind, with semi-axes a and c and exponents p and t in the plane; other is the exponent across, where superellipsoids are long, not to
+ * fall sideways. They turn about their y axis, where both exponents are the profile's, or lie on their side and turn about z, where both
+ * are the section's. */
+static quat tumbler_shape(tumbler_kind kind, double p, double t, double a, double c, double other, impact_shape *shape)
+{
+    if (kind == SUPERQUADRIC) impact_shape_superquadric(a, 0.25, c, p, other, t, shape);
+    if (kind == ELLIPSOID_PROFILE) impact_shape_superellipsoid(a, 0.6, c, 2 / t, 2 / other, shape);
+    if (kind == ELLIPSOID_SECTION) impact_shape_superellipsoid(a, c, 0.6, 2 / other, 2 / p, shape);
+    /* z along the world's y, y down */
+    return kind == ELLIPSOID_SECTION ? quat_from_rotation_vector((qvec3){-acos(0), 0, 0}) : quat_identity();
+}
+
 /* It begins on the flattest or sharpest spot, with energy for a fifth more than its centre has to climb. */
-static void check_revolution(double p, double t, double a, double c, bool rolls)
+static void check_revolution(tumbler_kind kind, double p, double t, double a, double c, double other, bool rolls)
 {
     impact_body_def bodies[2] = {floor_body(), impact_default_body_def()};
     impact_body_def *body = &bodies[1];
     body->name = "tumbler";
     body->mass = mass;
-    assert_int_equal(impact_shape_superquadric(a, 0.25, c, p, 2, t, &body->shape), IMPACT_OK);
+    const quat start = body->orientation = tumbler_shape(kind, p, t, a, c, other, &body->shape);
+    const qvec3 moments = impact_shape_inertia(&body->shape);
     body->position.z = c;
     body->friction = rolls ? 1e9 : 0;
-    tumbler b = {a, c, p, t, impact_shape_inertia(&body->shape).y, 0, rolls};
+    tumbler b = {a, c, p, t, kind == ELLIPSOID_SECTION ? moments.z : moments.y, 0, rolls};
     double highest = 0, lowest = INFINITY;
     for (double f = 0; f < 1.6; f += 0.01) {
-        const double h = impact_shape_support(&body->shape, (qvec3){sin(f), 0, cos(f)}, NULL);
+        const qvec3 up = quat_rotate_inverse(start, (qvec3){sin(f), 0, cos(f)});
+        const double h = impact_shape_support(&body->shape, up, NULL);
         highest = fmax(highest, h), lowest = fmin(lowest, h);
     }
     b.energy = gravity * (highest + 0.2 * (highest - lowest) + 0.01);
@@ -152,12 +179,14 @@ static void check_revolution(double p, double t, double a, double c, bool rolls)
     const impact_recorder recorder = log_recorder(&log);
     const impact_status status = impact_scene_run(scene, &recorder);
     if (status != IMPACT_OK) fail_msg("p = %g, t = %g: %s", p, t, impact_scene_message(scene));
-    assert_int_equal(find_event(&log, IMPACT_EVENT_LIFTOFF, NULL, 0), -1);
+    if (find_event(&log, IMPACT_EVENT_LIFTOFF, NULL, 0) >= 0)
+        fail_msg("kind %d p %g t %g other %g rolls %d", (int)kind, p, t, other, rolls);
     impact_sample end;
     impact_scene_body(scene, 1, &end);
-    const quat q = end.orientation; /* once about is -1 */
+    const quat q = quat_mul(end.orientation, quat_conj(start)); /* once about is -1 */
     assert_near(2 * atan2(-q.y, -q.w), 0, 5e-9);
-    assert_near(q.x * q.x + q.z * q.z, 0, 1e-30);
+    const double sideways = kind == SUPERQUADRIC ? 1e-15 : 1e-11;
+    assert_at_most(q.x * q.x + q.z * q.z, sideways * sideways);
     assert_near(end.position.x, rolls ? (double)turn.path : 0.25 * (double)turn.period, 1e-9);
     assert_near(end.position.z, c, 1e-9);
     const impact_energy energy = impact_scene_energy(scene);
@@ -173,8 +202,12 @@ static void revolutions_take_their_time(void **state)
     const int count = sizeof exponents / sizeof *exponents;
     for (int i = 0; i < count; i++)
         for (int rolls = 0; rolls < 2; rolls++) {
-            check_revolution(exponents[i], exponents[i], 0.2, 0.2, rolls);
-            check_revolution(exponents[i], exponents[(i + 4) % count], 0.22, 0.2, rolls);
+            const double p = exponents[i], other = exponents[(i + 4) % count];
+            check_revolution(SUPERQUADRIC, p, p, 0.2, 0.2, 2, rolls);
+            check_revolution(SUPERQUADRIC, p, other, 0.22, 0.2, 2, rolls);
+            if (p == 2) continue;
+            if (p <= 4) check_revolution(ELLIPSOID_PROFILE, p, p, 0.2, 0.2, 2, rolls); /* flatter poles let it veer */
+            check_revolution(ELLIPSOID_SECTION, p, p, 0.2, 0.2, 2, rolls);
         }
 }
 
@@ -194,7 +227,7 @@ static void rolling_and_gliding_keep_their_integrals(void **state)
 {
     (void)state;
     random_stream random = {33};
-    for (int k = 0; k < 60; k++) {
+    for (int k = 0; k < 90; k++) {
         const bool rolls = k & 1;
         impact_body_def bodies[2] = {floor_body(), impact_default_body_def()};
         impact_body_def *body = &bodies[1];
