@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * report_extreme: whole scenes at the ends of their ranges, each beside its closed form. CSV: the case and what is driven to
+ * its end; how the run ended; error of the answer relative to its own size (NaN: no closed form, the account tells); how far the energy
+ * account is off, of the energies in it; impacts, integrator steps, and the CPU time in ms.
+ *
+ *   stiff drag     a body falls through drag of this rate (1/s): terminal speed g/rate
+ *   units          five bounces, with lengths and gravity times this
+ *   mass ratio     two spheres collide centrally, restitution 1
+ *   speed          a disc 0.1 mm thin against a thin wall, at this speed (m/s)
+ *   far away       five bounces this far from the origin (m)
+ *   spin           an ellipsoid tumbles at this rate (rad/s), and hits the floor
+ *   bounces        so many of them, restitution 1
+ *   restitution    all bounces until rest: the time they take
+ *   friction       a sliding sphere, to 5/7 of its speed
+ *   exponent       a superquadric falls on the floor, tilted
+ *   slimness       an ellipsoid of this aspect falls on the floor, tilted
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+#include <impact/impact.h>
+#include <quat/rotation.h>
+
+static const double gravity = 9.81;
+
+/* ---- a scene, its run and its row ---- */
+
+enum { MOST_BODIES = 3 };
+
+typedef struct trial {
+    impact_scene_def def;
+    impact_body_def bodies[MOST_BODIES];
+    impact_force_def force;
+    impact_scene *scene;
+    impact_status status;
+    double cpu; /* s */
+} trial;
+
+static void start(trial *t, double duration)
+{
+    *t = (trial){.def = impact_default_scene_def()};
+    t->def.gravity = (qvec3){0, 0, -gravity};
+    t->def.duration = duration;
+    t->def.output_rate = 0;
+}
+
+static impact_body_def *add(trial *t, const char *name, double restitution, double friction)
+{
+    impact_body_def *body = &t->bodies[t->def.body_count++];
+    *body = impact_default_body_def();
+    body->name = name;
+    body->mass = 1;
+    body->restitution = restitution;
+    body->friction = friction;
+    return body;
+}
+
+static void add_floor(trial *t)
+{
+    impact_body_def *body = add(t, "floor", 1, 1);
+    impact_shape_plane(INFINITY, INFINITY, &body->shape);
+    body->is_static = true;
+}
+
+static impact_body_def *add_ball(trial *t, double radius, double restitution, double friction)
+{
+    impact_body_def *body = add(t, "ball", restitution, friction);
+    impact_shape_sphere(radius, &body->shape);
+    return body;
+}
+
+static void run(trial *t)
+{
+    t->def.bodies = t->bodies;
+    t->def.forces = &t->force;
+    char message[256];
+    const clock_t from = clock();
+    t->status = impact_scene_create(&t->def, &t->scene, message, sizeof message);
+    if (t->status == IMPACT_OK) t->status = impact_scene_run(t->scene, NULL);
+    t->cpu = (double)(clock() - from) / CLOCKS_PER_SEC;
+    if (t->status < 0) fprintf(stderr, "report_extreme: %s\n", t->scene ? impact_scene_message(t->scene) : message);
+}
+
+static impact_sample end_of(const trial *t, int body)
+{
+    impact_sample sample = {0};
+    if (t->scene) impact_scene_body(t->scene, body, &sample);
+    return sample;
+}
+
+static double account(const impact_energy *e)
+{
+    const double now = e->kinetic + e->potential + e->damping_loss + e->sliding_loss + e->impact_loss - e->force_work;
+    const double size = fabs(e->start) + fabs(e->kinetic) + fabs(e->potential) + fabs(e->force_work) + e->damping_loss +
+                        e->sliding_loss + e->impact_loss;
+    return size > 0 ? fabs(now - e->start) / size : 0;
+}
+
+static void row(const char *name, double parameter, trial *t, double error)
+{
+    if (!t->scene) {
+        printf("%s,%g,%s,,,,,\n", name, parameter, impact_status_string(t->status));
+        return;
+    }
+    const impact_usage u = impact_scene_usage(t->scene);
+    const impact_energy e = impact_scene_energy(t->scene);
+    printf("%s,%g,%s,%.1e,%.1e,%ld,%ld,%.3g\n", name, parameter, impact_status_string(t->status), error, account(&e),
+           u.events[IMPACT_EVENT_IMPACT], u.integrator_steps, 1e3 * t->cpu);
+    fflush(stdout);
+    impact_scene_destroy(t->scene);
+}
+
+static double off(double value, double wanted) { return fabs(value - wanted) / fabs(wanted); }
+
+/* ---- the cases ---- */
+
+static bool drag(double t, int body, double mass, qvec3 x, quat q, qvec3 v, qvec3 omega, qvec3 *force, qvec3 *torque,
+                 void *rate)
+{
+    (void)t, (void)body, (void)x, (void)q, (void)omega, (void)torque;
+    *force = qvec3_scale(v, -mass * *(const double *)rate);
+    return true;
+}
+
+static void stiff_drag(double rate)
+{
+    trial t;
+    start(&t, 1);
+    add_ball(&t, 0.1, 0, 0);
+    t.force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
+    t.force.function = drag;
+    t.force.context = &rate;
+    t.def.force_count = 1;
+    run(&t);
+    row("stiff drag", rate, &t, off(end_of(&t, 0).velocity.z, gravity / rate * expm1(-rate)));
+}
+
+/* Height of the lowest point of a ball let fall from 1 m, at t, and its speed. */
+static double bouncing(double restitution, double t)
+{
+    double v = sqrt(2 * gravity), left = t - v / gravity;
+    for (;;) {
+        v *= restitution;
+        if (left < 2 * v / gravity) return left * (v - 0.5 * gravity * left);
+        left -= 2 * v / gravity;
+    }
+}
+
+/* Five bounces. */
+static void drop(const char *name, double parameter, double unit, double away)
+{
+    trial t;
+    start(&t, 2.8);
+    t.def.gravity.z *= unit;
+    t.def.rest_height *= unit;
+    t.def.rest_speed *= unit;
+    add_floor(&t);
+    add_ball(&t, 0.3 * unit, 0.8, 0.2)->position = (qvec3){away, -away, 1.3 * unit};
+    run(&t);
+    const double wanted = (0.3 + bouncing(0.8, 2.8)) * unit;
+    row(name, parameter, &t, off(end_of(&t, 1).position.z, wanted));
+}
+
+static void mass_ratio(double ratio)
+{
+    trial t;
+    start(&t, 1);
+    t.def.gravity.z = 0;
+    add_ball(&t, 0.1, 1, 0.3)->velocity.x = 1;
+    impact_body_def *other = add(&t, "other", 1, 0.3);
+    impact_shape_sphere(0.1, &other->shape);
+    other->mass = ratio;
+    other->position.x = 0.7;
+    run(&t);
+    const double one = (1 - ratio) / (1 + ratio), two = 2 / (1 + ratio);
+    row("mass ratio", ratio, &t, fmax(fabs(end_of(&t, 0).velocity.x - one), off(end_of(&t, 1).velocity.x, two)));
+}
+
+static void speed(double v)
+{
+    trial t;
+    start(&t, 2 / v);
+    t.def.gravity.z = 0;
+    impact_body_def *wall = add(&t, "wall", 1, 0), *disc = add(&t, "disc", 1, 0);
+    impact_shape_superquadric(5e-5, 1, 1, 8, 8, 8, &wall->shape);
+    wall->is_static = true;
+    impact_shape_superquadric(5e-5, 0.1, 0.1, 2, 2, 2, &disc->shape);
+    disc->position.x = -1;
+    disc->velocity.x = v;
+    run(&t);
+    /* At the face's flat middle: 1 - 1e-4 there, the rest back. */
+    row("speed", v, &t, off(end_of(&t, 1).position.x, -1 - 2e-4));
+}
+
+static void spin(double rate)
+{
+    trial t;
+    start(&t, 1);
+    add_floor(&t);
+    impact_body_def *body = add(&t, "egg", 1, 0);
+    impact_shape_ellipsoid(0.3, 0.2, 0.1, &body->shape);
+    body->position.z = 2;
+    body->omega = (qvec3){0.01 * rate, rate, 0.02 * rate};
+    run(&t);
+    row("spin", rate, &t, NAN);
+}
+
+static void bounces(double count)
+{
+    trial t;
+    const double each = 2 * sqrt(2 / gravity);
+    start(&t, count * each);
+    add_floor(&t);
+    add_ball(&t, 0.3, 1, 0)->position.z = 1.3;
+    run(&t);
+    const impact_sample s = end_of(&t, 1);
+    const double height = s.position.z - 0.3 + 0.5 * s.velocity.z * s.velocity.z / gravity;
+    row("bounces", count, &t, fabs(height - 1));
+}
+
+static void restitution(double e)
+{
+    trial t;
+    const double fall = sqrt(2 / gravity), rest = fall * (1 + e) / (1 - e);
+    start(&t, 2 * rest);
+    add_floor(&t);
+    add_ball(&t, 0.3, e, 0)->position.z = 1.3;
+    run(&t);
+    row("restitution", e, &t, t.scene ? off(impact_scene_time(t.scene), rest) : NAN);
+}
+
+static void friction(double mu)
+{
+    trial t;
+    const double v = 1;
+    start(&t, 2 * 2 * v / (7 * mu * gravity));
+    add_floor(&t);
+    impact_body_def *ball = add_ball(&t, 0.3, 0, mu);
+    ball->position.z = 0.3;
+    ball->velocity.x = v;
+    run(&t);
+    row("friction", mu, &t, off(end_of(&t, 1).velocity.x, 5 * v / 7));
+}
+
+static void falls(const char *name, double parameter, const impact_shape *shape, double height, double duration)
+{
+    trial t;
+    start(&t, duration);
+    add_floor(&t);
+    impact_body_def *body = add(&t, "body", 0.5, 0.3);
+    body->shape = *shape;
+    body->position.z = height;
+    body->orientation = quat_from_rotation_vector((qvec3){0.3, 0.2, 0.1});
+    run(&t);
+    row(name, parameter, &t, NAN);
+}
+
+static void exponent(double n)
+{
+    impact_shape shape;
+    impact_shape_superquadric(0.2, 0.15, 0.1, n, n, n, &shape);
+    falls("exponent", n, &shape, 0.5, 2);
+}
+
+static void slimness(double aspect)
+{
+    impact_shape shape;
+    impact_shape_ellipsoid(0.3, 0.3 / aspect, 0.3 / aspect, &shape);
+    falls("slimness", aspect, &shape, 0.5, 1);
+}
+
+static void each(void (*trial_of)(double), double from, double factor, int count)
+{
+    for (int i = 0; i < count; i++, from *= factor) trial_of(from);
+}
+
+int main(void)
+{
+    printf("case,parameter,ended,error,account,impacts,steps,ms\n");
+    each(stiff_drag, 1, 100, 5);
+    for (int k = -9; k <= 9; k += 3) drop("units", pow(10, k), pow(10, k), 0);
+    each(mass_ratio, 1e-12, 1e4, 7);
+    each(speed, 1, 100, 4);
+    for (int k = 0; k <= 12; k += 3) drop("far away", pow(10, k), 1, pow(10, k));
+    each(spin, 1, 100, 5);
+    each(bounces, 10, 10, 4);
+    restitution(0.01);
+    restitution(0.5);
+    restitution(0.99);
+    restitution(0.999);
+    each(friction, 1e-6, 100, 7);
+    static const double exponents[] = {1.1, 2, 4, 10, 30, 100, 300};
+    for (int i = 0; i < 7; i++) exponent(exponents[i]);
+    each(slimness, 1, 10, 7);
+    return 0;
+}
