@@ -21,6 +21,13 @@ static double pull_at(const impact_frame *frame, double mu, double theta)
     return -(frame->c * x + frame->d * y) + mu * (frame->a - frame->b) * (x * x - y * y);
 }
 
+/* The slope of the pull. */
+static double bend_at(const impact_frame *frame, double mu, double theta)
+{
+    const double x = cos(theta), y = sin(theta);
+    return frame->c * y - frame->d * x - 4 * mu * (frame->a - frame->b) * x * y;
+}
+
 typedef double angle_function(const impact_frame *frame, double mu, double theta);
 
 /* The zero between low and high, where the signs differ. */
@@ -76,6 +83,21 @@ static bool frame_of(const impact_flow *flow, impact_frame *frame)
     return true;
 }
 
+/* The roots of T between low and high, two or three close together among them: split where the bend is 0, so that the pull is monotone,
+ * and where that is 0, so that T is. order: 2 the bend, 1 the pull, 0 T. */
+static int directions_between(const impact_frame *frame, const impact_flow *flow, int order, double low, double high,
+                              impact_flow_direction *directions, int n)
+{
+    static angle_function *const functions[3] = {turning_at, pull_at, bend_at};
+    angle_function *const f = functions[order];
+    const double mu = flow->friction;
+    const bool zero = unlike(f(frame, mu, low), f(frame, mu, high));
+    const double middle = zero ? bisect(f, frame, mu, low, high) : high;
+    if (order == 0) return zero ? add_direction(frame, flow, middle, directions, n) : n;
+    n = directions_between(frame, flow, order - 1, low, middle, directions, n);
+    return zero ? directions_between(frame, flow, order - 1, middle, high, directions, n) : n;
+}
+
 int impact_flow_directions(const impact_flow *flow, impact_flow_direction directions[4])
 {
     enum { CELLS = 360 };
@@ -86,20 +108,9 @@ int impact_flow_directions(const impact_flow *flow, impact_flow_direction direct
     if (size <= 4 * DBL_EPSILON * (1 + mu * (frame.a + frame.b))) return 0;
     int n = 0;
     /* Cells begin off the axes, where directions like to lie. */
-    for (int i = 0; i < CELLS; i++) {
-        const double low = turn * (i + 0.37123) / CELLS, high = turn * (i + 1.37123) / CELLS;
-        const double T_low = turning_at(&frame, mu, low), T_high = turning_at(&frame, mu, high);
-        if (unlike(T_low, T_high)) {
-            n = add_direction(&frame, flow, bisect(turning_at, &frame, mu, low, high), directions, n);
-            continue;
-        }
-        /* Two directions close together: T comes to the other side and back within one cell. */
-        if (!unlike(pull_at(&frame, mu, low), pull_at(&frame, mu, high))) continue;
-        const double middle = bisect(pull_at, &frame, mu, low, high);
-        if (!unlike(T_low, turning_at(&frame, mu, middle))) continue;
-        n = add_direction(&frame, flow, bisect(turning_at, &frame, mu, low, middle), directions, n);
-        n = add_direction(&frame, flow, bisect(turning_at, &frame, mu, middle, high), directions, n);
-    }
+    for (int i = 0; i < CELLS; i++)
+        n = directions_between(&frame, flow, 2, turn * (i + 0.37123) / CELLS, turn * (i + 1.37123) / CELLS, directions,
+                               n);
     return n;
 }
 
