@@ -142,9 +142,12 @@ static int scene_usage(lua_State *L)
         {"impacts_closed_form", usage.impacts_closed_form},
         {"impacts_series", usage.impacts_series},
         {"impacts_cvode", usage.impacts_cvode},
+        {"impacts_simultaneous", usage.impacts_simultaneous},
+        {"impacts_together", usage.impacts_together},
+        {"reactions_chosen", usage.reactions_chosen},
         {"samples", usage.samples},
     };
-    lua_createtable(L, 0, 14);
+    lua_createtable(L, 0, 17);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         lua_pushinteger(L, counts[i].value);
         lua_setfield(L, -2, counts[i].key);

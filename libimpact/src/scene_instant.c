@@ -376,13 +376,19 @@ static impact_status record_changes(impact_scene *scene)
     return IMPACT_OK;
 }
 
+/* How fast any point of the body moves at most, m/s. */
+static double fastest_point(const impact_body *body, const impact_state *state)
+{
+    return qvec3_norm(state->v) + body->radius * qvec3_norm(impact_omega(body, state));
+}
+
 /* A body that is slower than the rest speed, held, and not accelerated, is at rest. */
 static bool comes_to_rest(const impact_scene *scene, int body)
 {
     const impact_body *b = &scene->world.bodies[body];
     const impact_state *s = &scene->states[body];
     if (b->is_static || scene->motion.resting[body]) return false;
-    if (qvec3_norm(s->v) + b->radius * qvec3_norm(impact_omega(b, s)) > scene->rest_speed) return false;
+    if (fastest_point(b, s) > scene->rest_speed) return false;
     qvec3 force = scene->motion.loads[body].force, torque = scene->motion.loads[body].torque;
     bool held = false;
     for (int c = 0; c < scene->motion.persist.count; c++) {
@@ -461,6 +467,23 @@ static impact_status lie_down(impact_scene *scene)
     return status;
 }
 
+/* Whether a body that moves is held with friction by reactions that are not unique. */
+static bool hangs_on_choice(const impact_scene *scene)
+{
+    const impact_persist *persist = &scene->motion.persist;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (touch->still || !touch->redundant || !(touch->friction > 0)) continue;
+        const int bodies[2] = {touch->body1, touch->body2};
+        for (int k = 0; k < 2; k++) {
+            const impact_body *body = &scene->world.bodies[bodies[k]];
+            const impact_state *state = &scene->states[bodies[k]];
+            if (!body->is_static && fastest_point(body, state) > scene->rest_speed) return true;
+        }
+    }
+    return false;
+}
+
 /* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other contacts have changed
  * their modes, is held again at once: it would come back in less than can be told from rounding, and again and again. Each pair is given
  * one such chance in an instant. opened: the pair that has just lifted off, or -1; rejoin: whether to look for such pairs. */
@@ -481,6 +504,7 @@ static impact_status hold(impact_scene *scene, int opened, bool rejoin)
         status = make_consistent(scene);
     }
     if (status == IMPACT_OK) status = lie_down(scene);
+    if (status == IMPACT_OK) world->usage.reactions_chosen += hangs_on_choice(scene);
     if (status == IMPACT_OK) status = load(scene);
     if (status == IMPACT_OK) status = record_changes(scene);
     return status == IMPACT_OK ? bring_to_rest(scene) : status;

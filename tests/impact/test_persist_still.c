@@ -133,6 +133,24 @@ static void what_is_still_is_stirred_by_an_impact(void **state)
     }
 }
 
+/* A ball that slides along between walls that just touch it: their pressures are a choice, and matter where they rub. */
+static void motion_on_chosen_reactions_is_told(void **state)
+{
+    (void)state;
+    for (int walls = 0; walls < 2; walls++)
+        for (int rough = 0; rough < 2; rough++) {
+            slot s;
+            make_slot(&s, rough ? 0.2 : 0, (qvec3){0, 0, -9.81}, quat_identity());
+            s.bodies[4].velocity = (qvec3){0, -0.5, 0};
+            if (!walls) s.bodies[1].position.x -= 1;
+            impact_scene *scene = make_scene(&s.def);
+            assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+            const long chosen = impact_scene_usage(scene).reactions_chosen;
+            assert_int_equal(chosen > 0, walls && rough);
+            impact_scene_destroy(scene);
+        }
+}
+
 /* With other forces, that may change, nothing is taken for still. */
 static void nothing_is_still_under_other_forces(void **state)
 {
@@ -157,6 +175,7 @@ int main(void)
     const struct CMUnitTest integrated[] = {
         cmocka_unit_test(walls_that_nothing_presses_hold_nothing),
         cmocka_unit_test(what_is_still_is_stirred_by_an_impact),
+        cmocka_unit_test(motion_on_chosen_reactions_is_told),
         cmocka_unit_test(nothing_is_still_under_other_forces),
     };
     const int failed = cmocka_run_group_tests(closed_forms, NULL, NULL);
