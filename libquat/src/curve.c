@@ -249,7 +249,8 @@ static quat_status advance(const quat_curve *curve, double from, double distance
         else
             low = x;
         *t = x;
-        if (fabs(off) <= 4 * DBL_EPSILON * distance || high - low <= 2 * DBL_EPSILON * fmax(fabs(low), fabs(high)))
+        const double finest = 2 * DBL_EPSILON * fmax(fabs(low), fabs(high));
+        if (fabs(off) <= fmax(4 * DBL_EPSILON * distance, finest * speed) || high - low <= finest)
             return poor ? QUAT_NOT_CONVERGED : QUAT_OK;
         double next = x - off / speed;
         if (!(next > low && next < high)) next = low + (high - low) / 2;

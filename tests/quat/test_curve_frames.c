@@ -159,6 +159,41 @@ static void holonomy_is_taken_back_evenly(void **state)
     assert_bound("twist of closed frames, rad", worst, 1e-14);
 }
 
+/* A minimal frame turns at the rate of the curvature alone: its way on S^3 is half the total curvature, and no other
+ * frames of the curve have a shorter one. */
+static double way(size_t n, const quat q[])
+{
+    double sum = 0;
+    for (size_t i = 1; i < n; i++) sum += quat_distance(q[i - 1], q[i]);
+    return sum;
+}
+
+static void minimal_frames_go_the_shortest_way(void **state)
+{
+    (void)state;
+    enum { n = 4001 };
+    static quat q[n], other[n];
+    double shortest = 0;
+    for (int which = 0; which < 3; which++) {
+        quat_family family;
+        quat_curve curve;
+        quat_curve_totals total;
+        if (which == 0) quat_trefoil(1, &family, &curve);
+        if (which == 1) quat_torus_knot(2, 0.5, 2, 5, &family, &curve);
+        if (which == 2) quat_helix(1, 4, 2, &family, &curve);
+        assert_int_equal(quat_curve_total(&curve, &total), QUAT_OK);
+        assert_int_equal(quat_curve_frames(&curve, QUAT_MINIMAL, NULL, n, NULL, q, NULL), QUAT_OK);
+        assert_int_equal(quat_curve_frames(&curve, QUAT_MINIMAL, NULL, n / 2 + 1, NULL, other, NULL), QUAT_OK);
+        const double fine = way(n, q), coarse = way(n / 2 + 1, other), limit = fine + (fine - coarse) / 3;
+        worse(&shortest, fabs(2 * limit / total.curvature - 1));
+        assert_int_equal(quat_curve_frames(&curve, QUAT_FRENET, NULL, n, NULL, other, NULL), QUAT_OK);
+        assert_true(way(n, other) > fine);
+        if (curve.closed) assert_int_equal(quat_curve_frames(&curve, QUAT_CLOSED, NULL, n, NULL, other, NULL), QUAT_OK);
+        if (curve.closed) assert_true(way(n, other) > fine);
+    }
+    assert_bound("a minimal frame's way, in half total curvatures", shortest, 1e-10);
+}
+
 /* One round of the tangents on their sphere, as a polygon of great arcs: a vector carried along each by the shortest
  * rotation comes back turned. Twice with half the steps, and extrapolated. */
 static double carried_round(const quat_curve *curve, int n)
@@ -279,6 +314,7 @@ int main(void)
                                        cmocka_unit_test(closed_frames_close),
                                        cmocka_unit_test(holonomy_is_taken_back_evenly),
                                        cmocka_unit_test(holonomy_is_minus_the_total_torsion),
+                                       cmocka_unit_test(minimal_frames_go_the_shortest_way),
                                        cmocka_unit_test(monodromy_counts_turns),
                                        cmocka_unit_test(inflections_are_reported)};
     return cmocka_run_group_tests(tests, NULL, NULL);

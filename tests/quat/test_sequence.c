@@ -90,6 +90,23 @@ static void centre_line_follows_the_frames(void **state)
         const qvec3 free = {0.5 * sin(pi * s) * (1 - cos(pi * s)), cos(pi * s) * cos(pi * s), 0};
         worse(&end, qvec3_norm(qvec3_sub(quat_belt_centre(s, 1), free)));
     }
+    /* and from 0 to any t by Gauss' five points on 64 parts */
+    static const double node[5] = {-0.90617984593866399280, -0.53846931010568309104, 0, 0.53846931010568309104,
+                                   0.90617984593866399280},
+                        weight[5] = {0.23692688505618908751, 0.47862867049936646804, 0.56888888888888888889,
+                                     0.47862867049936646804, 0.23692688505618908751};
+    double part = 0;
+    for (int n = 0; n < 2000; n++) {
+        const double s = random_between(&r, -1, 2), t = random_between(&r, -1, 2), step = t / 128;
+        qvec3 place = {0, 0, 0};
+        for (int i = 0; i < 64; i++)
+            for (int k = 0; k < 5; k++)
+                place = qvec3_axpy(step * weight[k],
+                                   quat_rotate(quat_belt_untwist(s, step * (2 * i + 1 + node[k])), qvec3_make(0, 1, 0)),
+                                   place);
+        worse(&part, qvec3_norm(qvec3_sub(place, quat_belt_centre(s, t))));
+    }
+    assert_bound("centre line to any t, any s, by quadrature", part, 5e-15);
     /* the slope is a trigonometric polynomial of degree 2: the mean of 8 values is its integral over the whole belt */
     for (int n = 0; n < 100; n++) {
         const double s = n / 99.0;
