@@ -99,6 +99,48 @@ bool impact_field_loads(const impact_world *world, double t, const impact_state 
     return true;
 }
 
+/* ---- how fast forces brake ---- */
+
+static double component(qvec3 v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
+
+static bool brake_of(const impact_field *field, const impact_world *world, double t, const impact_state *state, int i,
+                     double *rate)
+{
+    const impact_body *body = &world->bodies[i];
+    const qvec3 omega = impact_omega(body, state), axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double size = qvec3_norm(state->v) + body->radius * qvec3_norm(omega);
+    const double nudge = 0x1p-20 * (size > 0 ? size : body->radius);
+    qvec3 force = {0, 0, 0}, torque = {0, 0, 0};
+    if (!field->def.function(t, i, body->mass, state->x, state->q, state->v, omega, &force, &torque,
+                             field->def.context))
+        return false;
+    for (int k = 0; k < 6; k++) {
+        const bool turns = k >= 3;
+        const qvec3 e = axes[k % 3], v = turns ? state->v : qvec3_axpy(nudge, e, state->v);
+        const qvec3 w = turns ? qvec3_axpy(nudge / body->radius, e, omega) : omega;
+        qvec3 f = {0, 0, 0}, g = {0, 0, 0};
+        if (!field->def.function(t, i, body->mass, state->x, state->q, v, w, &f, &g, field->def.context)) return false;
+        const qvec3 change =
+            turns ? impact_inverse_inertia(body, state->q, qvec3_scale(qvec3_sub(g, torque), body->radius))
+                  : qvec3_scale(qvec3_sub(f, force), body->inverse_mass);
+        *rate = fmax(*rate, -component(change, k % 3) / nudge);
+    }
+    return true;
+}
+
+double impact_field_brake(const impact_world *world, double t, const impact_state *states, double *turning)
+{
+    double rate = 0;
+    *turning = 0;
+    for (int k = 0; k < world->field_count; k++)
+        for (int i = 0; i < world->body_count && world->fields[k].def.kind == IMPACT_FORCE_CUSTOM; i++) {
+            if (!acts_on(&world->fields[k], world, i)) continue;
+            if (!brake_of(&world->fields[k], world, t, &states[i], i, &rate)) return 0;
+            *turning = fmax(*turning, qvec3_norm(impact_omega(&world->bodies[i], &states[i])));
+        }
+    return rate;
+}
+
 double impact_field_potential(const impact_world *world, const impact_state *states)
 {
     double potential = 0;

@@ -16,6 +16,11 @@ typedef struct impact_load {
 /* Load of gravity, fields and damping on every body at time t. false: a custom force refused. */
 bool impact_field_loads(const impact_world *world, double t, const impact_state *states, impact_load *loads);
 
+/* The greatest rate, 1/s, at which custom forces brake a body's motion along or about an axis of the world, by differences: so much faster
+ * than the motion they may be that only an implicit method follows. *turning: the fastest of their bodies' |omega|. 0 where there are
+ * none, or a force refuses. */
+double impact_field_brake(const impact_world *world, double t, const impact_state *states, double *turning);
+
 /* Potential energy of gravity and attraction, J. */
 double impact_field_potential(const impact_world *world, const impact_state *states);
 

@@ -53,7 +53,7 @@ typedef struct impact_motion {
 
     /* the integrator's side; absent until it is needed */
     impact_ode *ode;         /* the one at work: adams or bdf */
-    impact_ode *adams, *bdf; /* for smooth motion; for the slow slip after an onset, which is stiff */
+    impact_ode *adams, *bdf; /* for smooth motion; for what is stiff: slow slip after an onset, forces that brake hard */
     int size, roots;
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
     int *found;

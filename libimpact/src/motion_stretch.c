@@ -343,7 +343,8 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
             return IMPACT_OK;
         still = tau > tau_before ? 0 : still + 1;
         passed = found;
-        if (motion->persist.count > 0 && step + 1 == steps_before + RENEWAL) { /* held contacts drift apart otherwise */
+        /* Held contacts drift apart otherwise, and forces may brake as they did not before. */
+        if (step + 1 == steps_before + RENEWAL) {
             motion->steps_before = step + 1;
             motion->began = t_start;
             *end = (impact_end){IMPACT_END_RENEWAL, 0};
@@ -361,8 +362,16 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
     return IMPACT_EUNSETTLED;
 }
 
+/* Whether custom forces brake so much faster than the motion goes on that Adams' short steps, a hundredth of their time, would cost more
+ * than BDF's many. */
+static bool is_braked(const impact_motion *motion, double t, double t_end, const impact_state *states)
+{
+    double turning;
+    return impact_field_brake(motion->world, t, states, &turning) > 30 * turning + 50 / (t_end - t);
+}
+
 /* Which variable and which method the stretch needs. */
-static impact_status choose_road(impact_motion *motion, const impact_state *states)
+static impact_status choose_road(impact_motion *motion, double t, double t_end, const impact_state *states)
 {
     if (motion->persist.count > 0) impact_persist_solve(&motion->persist, motion->world, states, motion->loads);
     motion->slip_scale = slip_scale(motion, states);
@@ -372,7 +381,8 @@ static impact_status choose_road(impact_motion *motion, const impact_state *stat
     motion->sliding = isfinite(grown) && (!motion->stiff || grown < grown_up * motion->slip_scale);
     motion->creep_scale = creep_scale(motion, states);
     motion->creeping = motion->creep_scale > 0;
-    return choose_integrator(motion, motion->stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
+    const bool stiff = motion->stiff || is_braked(motion, t, t_end, states);
+    return choose_integrator(motion, stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
 }
 
 /* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing holds is integrated
@@ -392,7 +402,7 @@ impact_status impact_motion_integrate(impact_motion *motion, double *t, double t
     memcpy(motion->scratch, states,
            sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
     impact_motion_set_slack(motion, states);
-    impact_status status = choose_road(motion, states);
+    impact_status status = choose_road(motion, *t, t_end, states);
     if (status != IMPACT_OK) return status;
     impact_motion_pack(motion, *t, states, motion->y);
     status = choose_tolerance(motion);

@@ -362,6 +362,65 @@ static void a_spring_swings(void **state)
     }
 }
 
+/* Brakes to a wind of 2 m/s along x and a turn of 3 rad/s about y. */
+static bool brake_to(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
+                     void *context)
+{
+    (void)t, (void)body, (void)x, (void)q;
+    const double rate = *(const double *)context, inertia = 0.4 * m * radius * radius;
+    *force = qvec3_scale(qvec3_sub((qvec3){2, 0, 0}, v), m * rate);
+    *torque = qvec3_scale(qvec3_sub((qvec3){0, 3, 0}, w), inertia * rate);
+    return true;
+}
+
+/* However fast they brake: x = V (t - (1 - e^(-k t))/k). The steps do not grow with k. */
+static void forces_may_brake_hard(void **state)
+{
+    (void)state;
+    const impact_body_def body = ball_body("ball", (qvec3){0, 0, 0}, 0, 0);
+    for (double rate = 1; rate < 1e11; rate *= 10) {
+        impact_force_def force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
+        force.function = brake_to;
+        force.context = &rate;
+        const impact_scene_def def = scene_of(&body, 1, &force, 2);
+        impact_scene *scene = make_scene(&def);
+        if (impact_scene_run(scene, NULL) != IMPACT_OK) fail_msg("rate %g: %s", rate, impact_scene_message(scene));
+        impact_sample end;
+        impact_scene_body(scene, 0, &end);
+        const double reached = -expm1(-2 * rate);
+        assert_near3(end.velocity, (qvec3){2 * reached, 0, 0}, 1e-12);
+        assert_near3(end.omega, (qvec3){0, 3 * reached, 0}, 1e-12);
+        assert_near3(end.position, (qvec3){2 * (2 - reached / rate), 0, 0}, 1e-11);
+        assert_true(impact_scene_usage(scene).integrator_steps < 5000);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* Across the velocity, as a magnet's: nothing brakes. */
+static bool turn_aside(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
+                       void *context)
+{
+    (void)t, (void)body, (void)x, (void)q, (void)w, (void)torque;
+    *force = qvec3_scale(qvec3_cross((qvec3){0, 0, *(const double *)context}, v), m);
+    return true;
+}
+
+static void a_magnet_turns_in_circles(void **state)
+{
+    (void)state;
+    double rate = 20;
+    const impact_body_def body = small_ball((qvec3){0, 0, 0}, (qvec3){1, 0, 0});
+    impact_force_def force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
+    force.function = turn_aside;
+    force.context = &rate;
+    const impact_scene_def def = scene_of(&body, 1, &force, 1);
+    impact_energy energy;
+    const impact_sample end = run_scene(&def, NULL, &energy);
+    assert_near3(end.velocity, (qvec3){cos(rate), sin(rate), 0}, 1e-11);
+    assert_near3(end.position, (qvec3){sin(rate) / rate, (1 - cos(rate)) / rate, 0}, 1e-12);
+    assert_near(energy.force_work, 0, 1e-11);
+}
+
 static bool push_in_time(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
                          void *context)
 {
@@ -451,6 +510,8 @@ int main(void)
         cmocka_unit_test(attraction_ends_at_its_reach),
         cmocka_unit_test(attraction_keeps_momentum),
         cmocka_unit_test(a_spring_swings),
+        cmocka_unit_test(forces_may_brake_hard),
+        cmocka_unit_test(a_magnet_turns_in_circles),
         cmocka_unit_test(a_force_may_know_the_time),
         cmocka_unit_test(a_refusal_stops_the_run),
         cmocka_unit_test(damping_decays),

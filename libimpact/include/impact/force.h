@@ -19,7 +19,7 @@ typedef enum impact_force_kind {
 } impact_force_kind;
 
 /* Force (N, world, at the centre) and torque (N m, world) of a custom force at time t; both are zero on entry. They must be smooth
- * along the motion. Return false to stop the run with an error. */
+ * along the motion. They are asked at velocities nearby too: forces that brake fast beside the motion are followed by BDF, not Adams. Return false to stop the run with an error. */
 typedef bool impact_force_function(double t, int body, double mass, qvec3 position, quat orientation, qvec3 velocity,
                                    qvec3 omega, qvec3 *force, qvec3 *torque, void *context);
 
