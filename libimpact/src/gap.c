@@ -99,11 +99,15 @@ void impact_gap_pair(const impact_solid *body1, quat q1, const impact_solid *bod
 {
     impact_form_make(&body2->shape, scale, q2, &pair->form[0]);
     impact_form_make(&body1->shape, scale, q1, &pair->form[1]);
-    const qvec3 c = qvec3_sub(body1->position, body2->position);
-    pair->c[0] = c.x * scale, pair->c[1] = c.y * scale, pair->c[2] = c.z * scale;
     pair->size = 0;
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) pair->size = fmax(pair->size, pair->form[k].axis[i]);
+    impact_gap_apart(qvec3_sub(body1->position, body2->position), scale, pair);
+}
+
+void impact_gap_apart(qvec3 c, double scale, impact_pair *pair)
+{
+    pair->c[0] = c.x * scale, pair->c[1] = c.y * scale, pair->c[2] = c.z * scale;
     pair->reach = pair->size + sqrt(pair->c[0] * pair->c[0] + pair->c[1] * pair->c[1] + pair->c[2] * pair->c[2]);
 }
 

@@ -52,6 +52,34 @@ static inline void solve(int n, double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS]
     for (int k = 0; k < n; k++) x[column[k]] = y[k];
 }
 
+/* The same for all five, pivoting in rows alone, which is faster; false when a pivot is small. */
+static bool solve_plainly(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS], double x[UNKNOWNS])
+{
+    for (int k = 0; k < UNKNOWNS; k++) {
+        int row = k;
+        for (int i = k + 1; i < UNKNOWNS; i++) row = fabs(a[i][k]) > fabs(a[row][k]) ? i : row;
+        if (!(fabs(a[row][k]) > 1e-6)) return false;
+        for (int j = k; j < UNKNOWNS; j++) {
+            const double t = a[k][j];
+            a[k][j] = a[row][j], a[row][j] = t;
+        }
+        const double t = b[k];
+        b[k] = b[row], b[row] = t;
+        const double inverse = 1 / a[k][k];
+        for (int i = k + 1; i < UNKNOWNS; i++) {
+            const double f = a[i][k] * inverse;
+            for (int j = k + 1; j < UNKNOWNS; j++) a[i][j] -= f * a[k][j];
+            b[i] -= f * b[k];
+        }
+    }
+    for (int k = UNKNOWNS - 1; k >= 0; k--) {
+        double sum = b[k];
+        for (int j = k + 1; j < UNKNOWNS; j++) sum -= a[k][j] * x[j];
+        x[k] = sum / a[k][k];
+    }
+    return true;
+}
+
 /* Two unit vectors across the unit n (Duff et al. 2017). */
 static void across(const double n[3], double t[2][3])
 {
@@ -149,13 +177,20 @@ void impact_face_strike(const impact_pair *pair, const impact_face *face, const 
     }
     scale[4] = largest > 0 ? 1 / largest : 0;
     for (int i = 0; i < UNKNOWNS; i++) a[i][4] = time[i] * scale[4];
-    double work[UNKNOWNS][UNKNOWNS], right[UNKNOWNS];
-    memcpy(work, a, sizeof work);
-    memcpy(right, b, sizeof right);
-    solve(UNKNOWNS, work, right, x);
-    *dt = x[4] * scale[4];
-    if (!(*dt >= least && *dt <= most)) {
-        *dt = *dt > most ? most : least;
+    *dt = least;
+    if (least < most) {
+        double work[UNKNOWNS][UNKNOWNS], right[UNKNOWNS];
+        memcpy(work, a, sizeof work);
+        memcpy(right, b, sizeof right);
+        if (!solve_plainly(work, right, x)) {
+            memcpy(work, a, sizeof work);
+            memcpy(right, b, sizeof right);
+            solve(UNKNOWNS, work, right, x);
+        }
+        *dt = x[4] * scale[4];
+    }
+    if (!(*dt > least && *dt < most)) {
+        *dt = *dt >= most ? most : least;
         for (int i = 0; i < 4; i++) b[i] -= time[i] * *dt;
         solve(4, a, b, x);
     }
@@ -169,8 +204,10 @@ bool impact_face_advance(const impact_pair *pair, const impact_face *face, doubl
 {
     double largest = 0;
     for (int k = 0; k < 2; k++)
-        for (int j = 0; j < 2; j++) largest = fmax(largest, fabs(step[k][j]));
-    if (!(largest < INFINITY)) return false;
+        for (int j = 0; j < 2; j++) {
+            if (!(fabs(step[k][j]) < INFINITY)) return false;
+            if (fabs(step[k][j]) > largest) largest = fabs(step[k][j]);
+        }
     double scale = largest > longest_step ? longest_step / largest : 1;
     for (int k = 0; k < 2; k++) {
         double part = scale;

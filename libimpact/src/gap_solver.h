@@ -34,6 +34,7 @@ impact_status impact_gap_check(const impact_solid *body1, quat *q1, const impact
 double impact_gap_scale(const impact_solid *body1, const impact_solid *body2);
 void impact_gap_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale,
                      impact_pair *pair);
+void impact_gap_apart(qvec3 c, double scale, impact_pair *pair); /* moves its bodies c apart */
 void impact_gap_contact(const impact_solid *body1, const impact_solid *body2, double scale,
                         const impact_meeting *meeting, impact_gap_path path, impact_contact *contact);
 
@@ -53,8 +54,13 @@ bool impact_gap_newton(const impact_pair *pair, const double n[3], const double 
 typedef struct impact_course {
     const impact_solid *body[2]; /* at time 0 */
     const impact_motion *motion[2];
+    quat axis[2]; /* of the spins, pure and unit */
+    double half_spin[2];
     double longest; /* no step in time is longer, s */
 } impact_course;
+
+/* Body k at time t: impact_motion_at but for the last digits, and faster. */
+impact_solid impact_course_at(const impact_course *course, int k, double t);
 
 /* Newton for a time in [low, high] at which two bodies, no plane among them, come into contact, from *t in there and the
  * normal n: true when it settled on one to rounding, but not always the first; *t, and the contact then. */

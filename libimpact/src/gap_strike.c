@@ -24,17 +24,22 @@ static void spin(qvec3 omega, const impact_chart *chart, double x[3], double N[3
     impact_cross(w, chart->N, N);
 }
 
-static void place(strike *s)
+static void place(strike *s, bool exact)
 {
-    for (int k = 0; k < 2; k++) s->body[k] = impact_motion_at(s->course->body[k], s->course->motion[k], s->t);
-    impact_gap_pair(&s->body[0], s->body[0].orientation, &s->body[1], s->body[1].orientation, s->scale, &s->pair);
+    const impact_course *course = s->course;
+    for (int k = 0; k < 2; k++) {
+        s->body[k] =
+            exact ? impact_motion_at(course->body[k], course->motion[k], s->t) : impact_course_at(course, k, s->t);
+        impact_form_turn(&s->pair.form[1 - k], s->body[k].orientation);
+    }
+    impact_gap_apart(qvec3_sub(s->body[0].position, s->body[1].position), s->scale, &s->pair);
 }
 
 /* Bodies, points and drift at s->t; false when the normals do not face each other. */
-static bool look(strike *s, const impact_surface surface[2])
+static bool look(strike *s, bool exact, const impact_surface surface[2])
 {
     const impact_motion *motion1 = s->course->motion[0], *motion2 = s->course->motion[1];
-    place(s);
+    place(s, exact);
     if (!impact_face_look(&s->pair, surface, &s->face)) return false;
     spin(motion2->omega, &s->face.chart[0], s->drift.x[0], s->drift.N[0]);
     spin(motion1->omega, &s->face.chart[1], s->drift.x[1], s->drift.N[1]);
@@ -70,7 +75,7 @@ static bool trim(strike *s, impact_surface surface[2], double low, double high, 
         if (!there) s->t = next;
         double step[2][2];
         impact_face_step(&s->pair, &s->face, step);
-        if (!impact_face_advance(&s->pair, &s->face, step, surface, &last) || !look(s, surface)) break;
+        if (!impact_face_advance(&s->pair, &s->face, step, surface, &last) || !look(s, true, surface)) break;
     }
     return least < INFINITY;
 }
@@ -93,11 +98,13 @@ bool impact_gap_strike(const impact_course *course, double low, double high, qve
     strike s = {.course = course, .scale = impact_gap_scale(course->body[0], course->body[1]), .t = *t};
     const double normal[3] = {n.x, n.y, n.z};
     impact_surface surface[2];
-    place(&s);
+    impact_gap_pair(course->body[0], course->body[0]->orientation, course->body[1], course->body[1]->orientation,
+                    s.scale, &s.pair);
+    place(&s, false);
     impact_face_start(&s.pair, normal, NULL, surface);
     double last = INFINITY;
     for (int i = 0, turns = 0, trims = 0; i < MAX_ITERATIONS; i++) {
-        if (!look(&s, surface)) return false;
+        if (!look(&s, last < finest_step, surface)) return false;
         if (last < finest_step) {
             if (trim(&s, surface, low, high, t, contact)) return true;
             if (++trims == MAX_TURNS) return false;

@@ -13,6 +13,11 @@ void impact_form_make(const impact_shape *shape, double scale, quat orientation,
                           .p = {shape->r, shape->s, shape->t, shape->t}};
     form->uniform = !form->nested && shape->r == shape->s && shape->s == shape->t;
     form->round = form->uniform && shape->r == 2;
+    impact_form_turn(form, orientation);
+}
+
+void impact_form_turn(impact_form *form, quat orientation)
+{
     const qmat3 m = quat_to_matrix(orientation);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) form->rotation[i][j] = m.m[i][j];

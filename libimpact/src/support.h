@@ -29,6 +29,9 @@ typedef struct impact_surface {
 /* Semi-axes are multiplied by scale. Spheres are ellipsoids here; planes have no form. */
 void impact_form_make(const impact_shape *shape, double scale, quat orientation, impact_form *form);
 
+/* The same body with another orientation. */
+void impact_form_turn(impact_form *form, quat orientation);
+
 /* h(d) for a non-zero d in the body's axes, and the surface point where it is reached. */
 double impact_form_support(const impact_form *form, const double d[3], impact_surface *surface);
 

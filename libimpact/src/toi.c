@@ -7,7 +7,7 @@
 #include <quat/rotation.h>
 #include "toi_proof.h"
 
-enum { MAX_STEPS = 2000, MAX_WAITING = 12, MAX_STRIKES = 3, MAX_BALL_STEPS = 4 };
+enum { MAX_STEPS = 2000, MAX_WAITING = 12, MAX_BALL_STEPS = 4 };
 
 impact_solid impact_motion_at(const impact_solid *body, const impact_motion *motion, double t)
 {
@@ -18,6 +18,18 @@ impact_solid impact_motion_at(const impact_solid *body, const impact_motion *mot
         moved.orientation = quat_mul(quat_from_rotation_vector(qvec3_scale(motion->omega, t)), body->orientation);
         if (quat_normalize(moved.orientation, &unit) == QUAT_OK) moved.orientation = unit;
     }
+    return moved;
+}
+
+impact_solid impact_course_at(const impact_course *course, int k, double t)
+{
+    const impact_motion *motion = course->motion[k];
+    impact_solid moved = *course->body[k];
+    moved.position = qvec3_axpy(0.5 * t * t, motion->acceleration, qvec3_axpy(t, motion->velocity, moved.position));
+    if (course->half_spin[k] == 0) return moved;
+    const double half = course->half_spin[k] * t, sine = sin(half);
+    const quat axis = course->axis[k];
+    moved.orientation = quat_mul((quat){cos(half), sine * axis.x, sine * axis.y, sine * axis.z}, moved.orientation);
     return moved;
 }
 
@@ -69,7 +81,10 @@ static void note_contact(const impact_chase *q, impact_instant *at)
     at->sketched = false;
 }
 
-static bool touches(const impact_instant *at) { return at->gap <= at->tolerance; }
+/* What a gap may be for its rounding, or for that of the time. */
+static double slack(const impact_instant *at) { return fmax(at->tolerance, 1.2e-16 * at->t * fabs(at->rate)); }
+
+static bool touches(const impact_instant *at) { return at->gap <= slack(at); }
 
 /* The gap at the instant, its bodies placed, from the normal seed (NULL: none). glance: it may lie beyond the contact. */
 static impact_status solve(const impact_chase *q, const qvec3 *seed, bool glance, impact_instant *at)
@@ -95,7 +110,7 @@ typedef struct search {
     int waiting_count;
     bool crossed, followed; /* beyond is known, last is known */
     int stalls;             /* the bracket's steps that came to nothing much */
-    int strikes;            /* how often Newton for the contact may still be tried */
+    double strike_gap;      /* below it Newton for the contact may be tried, again */
 } search;
 
 /* t(g) at g = 0 by the cubic through two instants with their rates; NaN when they do not fall steadily to it. */
@@ -147,7 +162,7 @@ static qvec3 lean(const search *s, double t)
 /* What is found at a later instant becomes beyond, or waits. */
 static void keep(search *s, const impact_instant *at)
 {
-    if (at->gap < -at->tolerance) {
+    if (at->gap < -slack(at)) {
         s->beyond = *at;
         s->crossed = true;
         s->waiting_count = 0;
@@ -162,7 +177,7 @@ static bool look(search *s, double t)
 {
     impact_instant at;
     const qvec3 seed = lean(s, t);
-    impact_instant_place(&s->q, t, &at);
+    impact_instant_place(&s->q, t, true, &at);
     if (solve(&s->q, &seed, true, &at) != IMPACT_OK) return false;
     keep(s, &at);
     return true;
@@ -174,10 +189,23 @@ static bool glimpse(search *s, double t)
     impact_instant at;
     const impact_instant *next = &s->waiting[s->waiting_count - 1];
     if (s->q.plane[0] || s->q.plane[1]) return false;
-    impact_instant_place(&s->q, t, &at);
+    impact_instant_place(&s->q, t, false, &at);
     if (!impact_instant_sketch(&s->q, lean(s, t), &at) && !impact_instant_sketch(&s->q, next->contact.normal, &at) &&
         !impact_instant_sketch(&s->q, s->here.contact.normal, &at))
         return false;
+    if (at.gap < 0.1 * (s->here.gap + fmax(0, next->gap))) return false;
+    keep(s, &at);
+    return true;
+}
+
+/* A time ahead is clear of contact along the normal that one guesses there, and the gap has not shrunk by much. */
+static bool scout(search *s, double t)
+{
+    impact_instant at;
+    if (s->crossed || s->q.plane[0] || s->q.plane[1]) return false;
+    impact_instant_place(&s->q, t, false, &at);
+    if (!impact_instant_sketch(&s->q, impact_gap_guess(&at.body[0], &at.body[1]), &at)) return false;
+    if (at.gap < 0.2 * s->here.gap) return false;
     keep(s, &at);
     return true;
 }
@@ -187,16 +215,25 @@ static bool strike(search *s)
 {
     const impact_instant *here = &s->here;
     const double high = s->crossed ? s->beyond.t : s->t_max;
-    if (s->strikes == 0 || !(here->rate < 0) || !(s->crossed || here->t - here->gap / here->rate < high)) return false;
-    s->strikes--;
+    if (!(here->gap < s->strike_gap) || !(here->rate < 0) || !(s->crossed || here->t - here->gap / here->rate < high))
+        return false;
+    s->strike_gap = 0.25 * here->gap;
     impact_instant at;
     double t = here->t;
     if (!impact_gap_strike(&s->q.course, here->t, high, here->contact.normal, &t, &at.contact)) return false;
     if (!(t > here->t && t < high)) return false;
-    impact_instant_place(&s->q, t, &at);
+    impact_instant_place(&s->q, t, true, &at);
     note_contact(&s->q, &at);
     keep(s, &at);
     return true;
+}
+
+/* How the normal turned lately, rad/s. */
+static qvec3 trend(const search *s)
+{
+    const qvec3 none = {0, 0, 0};
+    if (!s->followed || !(qvec3_dot(s->last.contact.normal, s->here.contact.normal) > 0.5)) return none;
+    return impact_toi_turn(s->last.contact.normal, s->here.contact.normal, s->here.t - s->last.t);
 }
 
 static void go_to(search *s, const impact_instant *next)
@@ -207,41 +244,57 @@ static void go_to(search *s, const impact_instant *next)
     if (s->waiting_count > 0 && s->waiting[s->waiting_count - 1].t <= next->t) s->waiting_count--;
 }
 
-/* Goes to time t, before which there is no contact. */
-static impact_status stride(search *s, double t)
+/* Goes to time t, before which there is no contact; far: the gap itself is not needed there. */
+static impact_status stride(search *s, double t, bool far)
 {
     impact_instant next;
     const qvec3 seed = s->here.contact.normal;
-    impact_instant_place(&s->q, t, &next);
-    const impact_status status = solve(&s->q, &seed, false, &next);
+    impact_status status = IMPACT_OK;
+    impact_instant_place(&s->q, t, true, &next);
+    if (!far || !impact_instant_sketch(&s->q, impact_gap_guess(&next.body[0], &next.body[1]), &next))
+        status = solve(&s->q, &seed, false, &next);
     go_to(s, &next);
     return status;
 }
 
-/* Finds the gap here, where only a normal that parts the bodies was known. */
-static impact_status settle_here(search *s)
+/* Finds the gap at an instant where only a normal that parts the bodies was known. */
+static impact_status settle(const search *s, impact_instant *at)
 {
-    const qvec3 seed = s->here.contact.normal;
-    return solve(&s->q, &seed, false, &s->here);
+    const qvec3 seed = at->contact.normal;
+    impact_instant_place(&s->q, at->t, true, at);
+    return solve(&s->q, &seed, false, at);
 }
 
-/* One move on: links the instant that waits, or looks at a new one, or steps by a proof that needs no other end. stuck:
- * no time lies between here and the contact. */
+/* On to an instant ahead of here, nothing waiting, without the gap at it: as far as the balls are clear, or to the contact
+ * itself, or to a time when a normal is seen to part the bodies. False when none of that can be had. */
+static bool set_forth(search *s, double t, impact_status *status)
+{
+    const impact_instant *here = &s->here;
+    const double clear = s->crossed ? 0 : here->t + impact_toi_ball_step(&s->q, here, here->contact.normal);
+    *status = IMPACT_OK;
+    if (clear > here->t && clear >= t) {
+        *status = stride(s, fmin(s->t_max, clear), true);
+        return true;
+    }
+    return strike(s) || (t > here->t && scout(s, t));
+}
+
+/* One move on: links the instant that waits, or finds a new one, or steps by a proof that needs no other end. stuck: no time
+ * lies between here and the contact. */
 static impact_status move_on(search *s, bool *stuck)
 {
     impact_instant *here = &s->here;
-    const impact_instant *next = s->waiting_count > 0 ? &s->waiting[s->waiting_count - 1] : NULL;
+    impact_instant *next = s->waiting_count > 0 ? &s->waiting[s->waiting_count - 1] : NULL;
     if (next && impact_toi_link(&s->q, here, next)) {
         go_to(s, next);
         return IMPACT_OK;
     }
-    if (!next && strike(s)) return IMPACT_OK;
-    if (!next && here->sketched) return settle_here(s);
+    if (next && next->t - here->t < 0.02 * s->q.course.longest && (here->sketched || next->sketched))
+        return settle(s, here->sketched ? here : next); /* so near: their normals are bad */
     const double t = next ? 0.5 * (here->t + next->t) : aim(s);
-    if (!next && !s->crossed) {
-        const double clear = fmin(s->t_max, here->t + impact_toi_ball_step(&s->q, here, here->contact.normal));
-        if (clear > here->t && clear >= t) return stride(s, clear);
-    }
+    impact_status status;
+    if (!next && set_forth(s, t, &status)) return status;
+    if (!next && here->sketched) return settle(s, here);
     const double end = next ? next->t : s->crossed ? s->beyond.t : s->t_max;
     if (t > here->t && (t < end || end == s->t_max) && s->waiting_count < MAX_WAITING) {
         const double width = end - here->t;
@@ -251,11 +304,11 @@ static impact_status move_on(search *s, bool *stuck)
             return IMPACT_OK;
         }
     }
-    if (here->sketched) return settle_here(s);
+    if (here->sketched) return settle(s, here);
     const double limit = fmin(end, fmax(t, here->t)),
-                 safe = fmin(limit, here->t + impact_toi_safe_step(&s->q, here, limit - here->t));
+                 safe = fmin(limit, here->t + impact_toi_safe_step(&s->q, here, trend(s), limit - here->t));
     *stuck = !(safe > here->t);
-    return *stuck ? IMPACT_OK : stride(s, safe);
+    return *stuck ? IMPACT_OK : stride(s, safe, false);
 }
 
 /* Whether the gap left is rounding's: of the length, or of the time. */
@@ -285,7 +338,7 @@ static impact_status set_out(search *s)
     impact_instant *here = &s->here;
     qvec3 n = {0, 0, 0};
     const bool plane = s->q.plane[0] || s->q.plane[1];
-    impact_instant_place(&s->q, plane ? 0 : balls_meet(s, &n), here);
+    impact_instant_place(&s->q, plane ? 0 : balls_meet(s, &n), true, here);
     if (plane || here->t >= s->t_max) return solve(&s->q, NULL, false, here);
     n = impact_gap_guess(&here->body[0], &here->body[1]);
     return impact_instant_sketch(&s->q, n, here) ? IMPACT_OK : solve(&s->q, &n, false, here);
@@ -299,7 +352,7 @@ static impact_status run(search *s)
         if (touches(&s->here)) return IMPACT_OK;
         if (s->here.t >= s->t_max && !s->here.sketched) return IMPACT_NO_CONTACT;
         if (s->here.t >= s->t_max) {
-            status = settle_here(s);
+            status = settle(s, &s->here);
             continue;
         }
         status = move_on(s, &stuck);
@@ -314,16 +367,31 @@ static impact_chase chase_of(const impact_solid body[2], const impact_motion *mo
     impact_chase q = {.course = {.body = {&body[0], &body[1]}, .motion = {motion1, motion2}}};
     for (int k = 0; k < 2; k++) {
         const impact_shape *shape = &body[k].shape;
+        const qvec3 omega = q.course.motion[k]->omega;
+        const double spin = qvec3_norm(omega);
+        q.course.half_spin[k] = 0.5 * spin;
+        if (spin > 0) q.course.axis[k] = quat_pure(qvec3_scale(omega, 1 / spin));
         q.plane[k] = shape->kind == IMPACT_PLANE;
         if (q.plane[k]) continue;
         q.radius[k] = outer_radius(shape);
-        if (shape->kind != IMPACT_SPHERE) q.omega[k] = q.course.motion[k]->omega;
-        q.turning = fmax(q.turning, qvec3_norm(q.omega[k]));
+        if (shape->kind == IMPACT_SPHERE) continue;
+        q.omega[k] = omega;
+        q.turning = fmax(q.turning, spin);
     }
     q.length = fmax(length_of(&body[0]), length_of(&body[1]));
     q.acceleration = qvec3_sub(motion1->acceleration, motion2->acceleration);
     q.course.longest = q.turning > 0 ? longest_turn / q.turning : INFINITY;
     return q;
+}
+
+static void set(search *s, const impact_solid body[2], const impact_motion *motion1, const impact_motion *motion2,
+                double t_max)
+{
+    s->q = chase_of(body, motion1, motion2);
+    s->t_max = t_max;
+    s->waiting_count = s->stalls = 0;
+    s->crossed = s->followed = false;
+    s->strike_gap = closed_form(&body[0], &body[1]) ? 0 : INFINITY;
 }
 
 impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1, const impact_solid *body2,
@@ -337,8 +405,8 @@ impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1
     if (status == IMPACT_OK && t_max < 0) status = IMPACT_EARGUMENT;
     if (status == IMPACT_OK) status = impact_gap_check(body1, &body[0].orientation, body2, &body[1].orientation);
     if (status != IMPACT_OK) return status;
-    search s = {.q = chase_of(body, motion1, motion2), .t_max = t_max, .strikes = MAX_STRIKES};
-    if (closed_form(&body[0], &body[1])) s.strikes = 0;
+    search s;
+    set(&s, body, motion1, motion2, t_max);
     status = run(&s);
     if (contact) *contact = s.here.contact;
     if (status >= 0 || status == IMPACT_EUNSETTLED) *time = s.here.t;

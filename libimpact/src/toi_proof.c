@@ -1,19 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * The proof that nothing touches between two times. From a state with gap g >= 0 and normal n,
- * follow time (either way) along the direction n(t) = (1 + alpha t^2/2) n + t nu. With d = n or -n outward, w the spin,
- * c, v, a the centres' offset and its rates, the direction in a body's axes is, to third order, R^T of
+ * The proof that nothing touches between two times, 0 and T. Where normals n0 and n1 part the bodies by g0 and g1 there,
+ * follow the direction n(t) that turns from one to the other at a steady rate Omega. In the axes of a body of spin w it is
+ * d(t) = R^T n (or its opposite), and with D = Omega - w
  *
- *     d + t (nu - w x d) + t^2/2 q + t^3/6 s + rest,   q = w x (w x d) - 2 w x nu + alpha d,
- *     s = -w x (w x (w x d)) + 3 w x (w x nu) - 3 alpha w x d,   |rest| <= M t^4/24.
+ *     d'' = R^T [(D x w) x n + D x (D x n)],   |d'''| <= E (|w| + 3 |D|) + |D|^3,   E = |D x w|.
  *
- * The support function h is convex and subadditive, r the body's radius, so that n(t).c(t) less both h is at least
+ * d(t) is the chord between its ends less the integral of Green's function, which is never negative and has the integral
+ * t (T - t)/2, times d''. The support function h is convex and subadditive. So with c, v, a the centres' offset and its
+ * rates, lambda = t/T, the bodies are parted at t by at least
  *
- *     psi(t) = g + (n.v + nu.c) t + min(0, B) t^2/2 + min(0, C) t^3/6 - r M t^4/24 - sum [h(d + t (nu - w x d)) - h(d)]
+ *     (1 - lambda) g0 + lambda g1 - lambda (1 - lambda) T^2/2 [M + L T (1 + lambda)/3],
+ *     M = (n.c)'' + sum h(d'') at time 0,   (n.c)'' = -Omega^2 n.c + 2 (Omega x n).v + n.a,
+ *     L = Omega^3 |c| + 3 Omega^2 |v| + 3 Omega |a| + sum r |d'''|, at their largest, r the body's radius.
  *
- * B = n.a + 2 nu.v + alpha n.c - sum h(q), C = 3 nu.a + 3 alpha n.v - sum r |s|. psi is concave: psi(T) >= 0 proves that
- * there is no contact from 0 to T. nu is chosen to lead to the normal found at T, where the true gap is known to be
- * positive, so that psi(T) falls short of it by terms of second order in T only, however steep or flat the surfaces.
+ * With K for T^2/2 times the bracket at lambda = 1 that is never negative if sqrt(g0) + sqrt(g1) >= sqrt(K), or, as the
+ * bracket times (1 - lambda) falls, if g1 is at least T^2/2 times the bracket at 0 and M >= 0. The normals are those of
+ * the gap or near it, so that the bound falls short of the gap by terms of second order in T only, however steep or flat
+ * the surfaces.
  */
 #include "toi_proof.h"
 
@@ -36,12 +40,13 @@ void impact_instant_centres(const impact_chase *q, double t, impact_instant *at)
     at->v = qvec3_axpy(t, q->acceleration, v);
 }
 
-void impact_instant_place(const impact_chase *q, double t, impact_instant *at)
+void impact_instant_place(const impact_chase *q, double t, bool exact, impact_instant *at)
 {
     impact_instant_centres(q, t, at);
     at->sketched = false;
     for (int k = 0; k < 2; k++) {
-        at->body[k] = impact_motion_at(q->course.body[k], q->course.motion[k], t);
+        at->body[k] =
+            exact ? impact_motion_at(q->course.body[k], q->course.motion[k], t) : impact_course_at(&q->course, k, t);
         if (!q->plane[k]) impact_form_make(&at->body[k].shape, 1, at->body[k].orientation, &at->form[k]);
     }
     at->c = qvec3_sub(at->body[0].position, at->body[1].position);
@@ -70,49 +75,62 @@ bool impact_instant_sketch(const impact_chase *q, qvec3 n, impact_instant *at)
     return true;
 }
 
-/* psi(T) with n(t) as the head of this file has it. */
-static double psi(const impact_chase *q, const impact_instant *at, double sense, qvec3 nu, double T)
+/* How far the unit n parts the bodies, or g(n). */
+static double parted(const impact_chase *q, const impact_instant *at, qvec3 n)
 {
-    const qvec3 n = at->contact.normal, v = qvec3_scale(at->v, sense);
-    qvec3 outward[2], lead[2], w[2];
-    double alpha = 0;
-    for (int k = 0; k < 2; k++) {
-        outward[k] = k ? n : qvec3_neg(n), lead[k] = k ? nu : qvec3_neg(nu);
-        w[k] = qvec3_scale(q->omega[k], sense);
-        const qvec3 slip = qvec3_sub(lead[k], qvec3_cross(w[k], outward[k]));
-        if (!q->plane[k]) alpha = fmax(alpha, qvec3_dot(slip, slip) - qvec3_dot(nu, nu));
-    }
-    double first = qvec3_dot(n, v) + qvec3_dot(nu, at->c),
-           second = qvec3_dot(n, q->acceleration) + 2 * qvec3_dot(nu, v) + alpha * qvec3_dot(n, at->c),
-           third = 3 * qvec3_dot(nu, q->acceleration) + 3 * alpha * qvec3_dot(n, v),
-           fourth = fmin(0, 6 * alpha * qvec3_dot(n, q->acceleration)), value = fmax(0, at->gap);
+    double gap = qvec3_dot(n, at->c);
+    for (int k = 0; k < 2; k++)
+        if (!q->plane[k]) gap -= support(&at->form[k], k ? n : qvec3_neg(n));
+    return gap;
+}
+
+/* The bound's M and L, for n to turn at the rate turn; sense: of time, 1 or -1; speed, distance: the largest on the way. */
+static void bends(const impact_chase *q, const impact_instant *at, double sense, qvec3 turn, double speed,
+                  double distance, double *M, double *L)
+{
+    const qvec3 n = at->contact.normal, lead = qvec3_cross(turn, n);
+    const double square = qvec3_dot(turn, turn), rate = sqrt(square);
+    *M = -square * qvec3_dot(n, at->c) + 2 * sense * qvec3_dot(lead, at->v) + qvec3_dot(n, q->acceleration);
+    *L = square * (rate * distance + 3 * speed) + 3 * rate * qvec3_norm(q->acceleration);
     for (int k = 0; k < 2; k++) {
         if (q->plane[k]) continue;
-        const qvec3 wd = qvec3_cross(w[k], outward[k]), wnu = qvec3_cross(w[k], lead[k]);
-        const qvec3 bend = qvec3_axpy(alpha, outward[k], qvec3_axpy(-2, wnu, qvec3_cross(w[k], wd)));
-        const qvec3 twist =
-            qvec3_axpy(-3 * alpha, wd,
-                       qvec3_sub(qvec3_scale(qvec3_cross(w[k], wnu), 3), qvec3_cross(w[k], qvec3_cross(w[k], wd))));
-        const double W = qvec3_norm(w[k]), N = qvec3_norm(nu);
-        second -= support(&at->form[k], bend);
-        third -= q->radius[k] * qvec3_norm(twist);
-        fourth -=
-            q->radius[k] * W * W * (W * W * (1 + T * N + 0.5 * alpha * T * T) + 4 * W * (N + alpha * T) + 6 * alpha);
-        const qvec3 offset = k ? at->contact.offset2 : at->contact.offset1;
-        value -=
-            support(&at->form[k], qvec3_axpy(T, qvec3_sub(lead[k], wd), outward[k])) - qvec3_dot(outward[k], offset);
+        const qvec3 w = qvec3_scale(q->omega[k], sense), D = qvec3_sub(turn, w), E = qvec3_cross(D, w);
+        const double slip = qvec3_norm(D);
+        *M += support(&at->form[k], qvec3_add(qvec3_cross(E, n), qvec3_cross(D, qvec3_cross(D, n))));
+        *L += q->radius[k] * (qvec3_norm(E) * (qvec3_norm(w) + 3 * slip) + slip * slip * slip);
     }
-    return value + T * (first + T * (fmin(0, second) / 2 + T * (fmin(0, third) / 6 + T * fourth / 24)));
+}
+
+qvec3 impact_toi_turn(qvec3 n0, qvec3 n1, double T)
+{
+    const qvec3 axis = qvec3_cross(n0, n1);
+    const double sine = qvec3_norm(axis);
+    return sine > 0 ? qvec3_scale(axis, atan2(sine, qvec3_dot(n0, n1)) / (sine * T)) : axis;
+}
+
+/* The largest speed of the centres, and no less than the largest distance, between two instants. */
+static double greatest_speed(const impact_instant *a, const impact_instant *b)
+{
+    return fmax(qvec3_norm(a->v), qvec3_norm(b->v));
+}
+
+static double greatest_distance(const impact_chase *q, const impact_instant *a, const impact_instant *b)
+{
+    const double T = b->t - a->t;
+    return fmax(qvec3_norm(a->c), qvec3_norm(b->c)) + qvec3_norm(q->acceleration) * T * T / 8;
 }
 
 bool impact_toi_link(const impact_chase *q, const impact_instant *from, const impact_instant *to)
 {
     const bool forward = from->gap < to->gap;
     const impact_instant *base = forward ? from : to, *end = forward ? to : from;
-    const double T = to->t - from->t, along = qvec3_dot(base->contact.normal, end->contact.normal);
-    if (!(along > 0.2)) return false;
-    const qvec3 nu = qvec3_scale(qvec3_axpy(-along, base->contact.normal, end->contact.normal), 1 / (along * T));
-    return psi(q, base, forward ? 1 : -1, nu, T) >= -base->tolerance;
+    const double T = to->t - from->t, g0 = fmax(0, base->gap) + base->tolerance, g1 = end->gap + base->tolerance;
+    if (!(qvec3_dot(base->contact.normal, end->contact.normal) > 0)) return false;
+    const qvec3 turn = impact_toi_turn(base->contact.normal, end->contact.normal, T);
+    double M, L;
+    bends(q, base, forward ? 1 : -1, turn, greatest_speed(from, to), greatest_distance(q, from, to), &M, &L);
+    if (M >= 0 && g1 >= 0.5 * T * T * (M + L * T / 3)) return true;
+    return sqrt(g0) + sqrt(g1) >= T * sqrt(fmax(0, 0.5 * (M + 2 * L * T / 3)));
 }
 
 /* First T > 0 at which gap + slope T - bend T^2/2 is zero; infinite when there is none. gap > 0, bend >= 0. */
@@ -123,10 +141,37 @@ static double first_zero(double gap, double slope, double bend)
     return bend > 0 ? (slope + root) / bend : INFINITY;
 }
 
-double impact_toi_safe_step(const impact_chase *q, const impact_instant *at, double limit)
+/* Of the turns the normal may make on the way to end, as it did before, with either body or none, the one along which the
+ * bodies are parted most; and by how much they are. */
+static double best_turn(const impact_chase *q, const impact_instant *at, const impact_instant *end, qvec3 trend,
+                        qvec3 *turn)
 {
-    const double value = psi(q, at, 1, (qvec3){0, 0, 0}, limit);
-    return value >= 0 ? limit : limit * (at->gap / (at->gap - value)); /* psi is above its chord */
+    const qvec3 n = at->contact.normal, turns[4] = {{0, 0, 0}, trend, q->omega[0], q->omega[1]};
+    const double T = end->t - at->t;
+    double best = -INFINITY;
+    for (int i = 0; i < 4; i++) {
+        const qvec3 across = qvec3_axpy(-qvec3_dot(turns[i], n), n, turns[i]);
+        const double angle = T * qvec3_norm(across);
+        if ((i > 0 && !(angle > 0)) || angle > 1 || (i > 0 && (q->plane[0] || q->plane[1]))) continue;
+        const double sine = angle > 0 ? T * sin(angle) / angle : 0;
+        const double gap = parted(q, end, qvec3_axpy(sine, qvec3_cross(across, n), qvec3_scale(n, cos(angle))));
+        if (gap > best) best = gap, *turn = across;
+    }
+    return best;
+}
+
+double impact_toi_safe_step(const impact_chase *q, const impact_instant *at, qvec3 trend, double limit)
+{
+    impact_instant end;
+    impact_instant_place(q, at->t + limit, false, &end);
+    double M, L;
+    qvec3 turn = {0, 0, 0};
+    const double g0 = at->gap, g1 = best_turn(q, at, &end, trend, &turn);
+    bends(q, at, 1, turn, greatest_speed(at, &end), greatest_distance(q, at, &end), &M, &L);
+    const double K = fmax(0, 0.5 * limit * limit * (M + 2 * L * limit / 3)), b = g0 + K - g1,
+                 square = b * b - 4 * K * g0;
+    if (g1 >= 0 && (b <= 0 || square <= 0)) return limit;
+    return limit * fmin(1, 2 * g0 / (b + sqrt(fmax(0, square))));
 }
 
 double impact_toi_ball_step(const impact_chase *q, const impact_instant *at, qvec3 n)

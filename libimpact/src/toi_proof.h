@@ -27,9 +27,9 @@ typedef struct impact_instant {
     bool sketched; /* the contact holds but the bodies' supports along a normal that parts them */
 } impact_instant;
 
-/* The centres, or all of the bodies, at a time. */
+/* The centres, or all of the bodies, at a time; exact: as impact_motion_at has them, to the last digit. */
 void impact_instant_centres(const impact_chase *q, double t, impact_instant *at);
-void impact_instant_place(const impact_chase *q, double t, impact_instant *at);
+void impact_instant_place(const impact_chase *q, double t, bool exact, impact_instant *at);
 
 /* Takes the supports along the unit n for the contact; false when they do not part the bodies, which are placed and no
  * planes. */
@@ -38,9 +38,12 @@ bool impact_instant_sketch(const impact_chase *q, qvec3 n, impact_instant *at);
 /* Whether there is provably no contact between two instants without one. */
 bool impact_toi_link(const impact_chase *q, const impact_instant *from, const impact_instant *to);
 
-/* A step from an instant, at most limit, in which there is provably no contact: along its normal, or for far bodies
- * along a unit n with their bounding balls. */
-double impact_toi_safe_step(const impact_chase *q, const impact_instant *at, double limit);
+/* The steady turn that takes the unit n0 to n1 in the time T; they are less than a right angle apart. */
+qvec3 impact_toi_turn(qvec3 n0, qvec3 n1, double T);
+
+/* A step from an instant, at most limit, in which there is provably no contact: along its normal, which may turn (trend: as
+ * it did before, rad/s), or for far bodies along a unit n with their bounding balls. */
+double impact_toi_safe_step(const impact_chase *q, const impact_instant *at, qvec3 trend, double limit);
 double impact_toi_ball_step(const impact_chase *q, const impact_instant *at, qvec3 n);
 
 #endif

@@ -172,6 +172,56 @@ static void any_spin(void **state)
     assert_true(met > 500);
 }
 
+/* Any two shapes, planes among them, thrown anyhow: accelerated, spun to 60 rad/s, alike or not at all, to meet or to miss. */
+static void any_motion(void **state)
+{
+    (void)state;
+    random_stream random = {4};
+    int met = 0, missed = 0;
+    for (int k = 0; k < 2000; k++) {
+        impact_solid body[2];
+        impact_motion motion[2];
+        for (int i = 0; i < 2; i++) {
+            const double distance = i == 0 ? random_log(&random, 0.3, 5) : 0;
+            const int family = (int)(random_bits(&random) % RANDOM_FAMILIES);
+            body[i] = random_solid(&random, family, distance);
+            motion[i] = random_motion(&random, body[i].position);
+            const double push = random_log(&random, 0.01, 100), spin = random_log(&random, 0.01, 20);
+            motion[i].acceleration = qvec3_scale(motion[i].acceleration, k % 2 == 0 ? push : 0);
+            motion[i].omega = qvec3_scale(motion[i].omega, k % 5 == 0 ? 0 : spin);
+        }
+        if (k % 29 == 0) {
+            impact_shape_plane(INFINITY, INFINITY, &body[1].shape);
+            motion[1] = at_rest;
+        }
+        if (k % 29 == 1) motion[1].omega = motion[0].omega;
+        double t;
+        const double end = random_log(&random, 0.1, 10);
+        impact_contact contact;
+        const impact_status status = impact_toi(&body[0], &motion[0], &body[1], &motion[1], end, &t, &contact);
+        if (!(status == IMPACT_OK || status == IMPACT_NO_CONTACT))
+            fail_msg("%d: status %d at t = %g, gap %g", k, status, t, contact.gap);
+        if (status == IMPACT_NO_CONTACT) assert_true(missed++ >= 0 && t == end && contact.gap > 0);
+        if (status == IMPACT_OK && t > 0) {
+            double speed = 0;
+            for (int i = 0; i < 2; i++)
+                speed +=
+                    qvec3_norm(qvec3_axpy(t, motion[i].acceleration, motion[i].velocity)) + qvec3_norm(motion[i].omega);
+            near(contact.gap, 0, 1e-15 + 2.3e-16 * t * speed); /* the time's last digit */
+            met++;
+        }
+        for (int i = 0; i < 8; i++) {
+            const double s = i < 4 ? t * random_unit(&random) : t * (1 - random_log(&random, 1e-9, 0.1));
+            const impact_solid at = impact_motion_at(&body[0], &motion[0], s),
+                               bt = impact_motion_at(&body[1], &motion[1], s);
+            impact_contact before;
+            assert_true(impact_gap(&at, &bt, NULL, &before) >= 0);
+            if (t > 0 && !(before.upper > 0)) fail_msg("%d: gap %g at %g, before %g", k, before.gap, s, t);
+        }
+    }
+    if (met < 250 || missed < 500) fail_msg("%d met, %d missed", met, missed);
+}
+
 /* What toi says of the contact, a query of the gap there says too: no use is made of the search's own answer. */
 static void contact_is_the_gaps(void **state)
 {
@@ -228,6 +278,7 @@ int main(void)
         cmocka_unit_test(nothing_is_missed),
         cmocka_unit_test(first_contact_of_random_pairs),
         cmocka_unit_test(any_spin),
+        cmocka_unit_test(any_motion),
         cmocka_unit_test(contact_is_the_gaps),
         cmocka_unit_test(bad_input),
     };
