@@ -322,6 +322,11 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         if (status == IMPACT_OK) status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
         if (motion->message[0] != '\0') return IMPACT_EDOMAIN;        /* a load was refused */
         if (status == IMPACT_EINTEGRATOR && passed) return IMPACT_OK; /* another root close by: begin anew from here */
+        if (status == IMPACT_EINTEGRATOR && *t > t_start &&
+            motion->persist.count > 0) { /* reactions that went a corner */
+            *end = (impact_end){IMPACT_END_RENEWAL, 0};
+            return IMPACT_OK;
+        }
         if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);
         if (status == IMPACT_OK && end->kind == IMPACT_END_GAP) status = polish_gap(motion, end->index, &tau, y);
         if (status != IMPACT_OK) return fail(motion, status);
@@ -376,9 +381,8 @@ static impact_status choose_road(impact_motion *motion, double t, double t_end, 
     if (motion->persist.count > 0) impact_persist_solve(&motion->persist, motion->world, states, motion->loads);
     motion->slip_scale = slip_scale(motion, states);
     grow_up(motion);
-    const double grown = slowest_slip(motion, false);
     motion->stiff = isfinite(slowest_slip(motion, true));
-    motion->sliding = isfinite(grown) && (!motion->stiff || grown < grown_up * motion->slip_scale);
+    motion->sliding = motion->stiff || isfinite(slowest_slip(motion, false));
     motion->creep_scale = creep_scale(motion, states);
     motion->creeping = motion->creep_scale > 0;
     const bool stiff = motion->stiff || is_braked(motion, t, t_end, states);

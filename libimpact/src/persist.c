@@ -287,8 +287,28 @@ static int worst_grip(const impact_persist *persist, double scale)
     return worst;
 }
 
-/* Unit vector against a touch's friction as solved for: the way it would slide if the friction gave way. */
-static qvec3 against_friction(const impact_touch *touch)
+/* The contact whose slip was to begin, but which sticks now that others slide too, furthest within its cone; or -1. Each has one such
+ * chance: where no modes are consistent none is to be taken back for ever. */
+static int worst_onset(const impact_persist *persist, const impact_world *world)
+{
+    int worst = -1;
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (touch->onset && !world->pairs[touch->pair].tried && touch->drive < 1 - 1e-9 &&
+            (worst < 0 || touch->drive < persist->touches[worst].drive))
+            worst = c;
+    }
+    return worst;
+}
+
+static bool all_slide(const impact_persist *persist)
+{
+    for (int c = 0; c < persist->count; c++)
+        if (persist->touches[c].onset && persist->touches[c].drive < 1 - 1e-9) return false;
+    return true;
+}
+
+qvec3 impact_against_friction(const impact_touch *touch)
 {
     const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
     const double size = qvec3_norm(friction);
@@ -306,7 +326,7 @@ void impact_persist_begin_slide(impact_pair *pair, const impact_touch *touch)
 {
     pair->mode = IMPACT_SLIDE;
     pair->onset = pair->friction > 0;
-    pair->direction = against_friction(touch);
+    pair->direction = impact_against_friction(touch);
     pair->turned = false;
 }
 
@@ -327,17 +347,24 @@ impact_status impact_persist_resolve(impact_persist *persist, impact_world *worl
 {
     impact_status status = impact_persist_reserve(persist, world, states);
     stop_slow_slides(persist, world, states, loads);
-    for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 4 * world->pair_count + 8; round++) {
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].tried = false;
+    for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 6 * world->pair_count + 8; round++) {
         impact_persist_solve(persist, world, states, loads);
         const double scale = force_scale(persist);
-        const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale);
+        const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale),
+                  stuck = worst_onset(persist, world);
         if (pull >= 0 && !(persist->redundant && grip >= 0)) {
             world->pairs[persist->touches[pull].pair].mode = IMPACT_OPEN;
             status = impact_persist_reserve(persist, world, states);
         } else if (grip >= 0) {
             impact_persist_begin_slide(&world->pairs[persist->touches[grip].pair], &persist->touches[grip]);
+        } else if (stuck >= 0) {
+            impact_pair *pair = &world->pairs[persist->touches[stuck].pair];
+            pair->mode = IMPACT_ROLL;
+            pair->onset = false;
+            pair->tried = true;
         } else {
-            return IMPACT_OK;
+            return all_slide(persist) ? IMPACT_OK : impact_persist_try_modes(persist, world, states, loads);
         }
     }
     return persist->count == 0 ? status : IMPACT_EUNSETTLED;

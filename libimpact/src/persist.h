@@ -99,4 +99,15 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
 impact_status impact_persist_resolve(impact_persist *persist, impact_world *world, const impact_state *states,
                                      const impact_load *loads);
 
+/* Unit vector against a touch's friction as solved for: the way it would slide if the friction gave way. */
+qvec3 impact_against_friction(const impact_touch *touch);
+
+/* Lets roll, until their friction says otherwise, the contacts whose slip was to begin and that others hold. */
+void impact_persist_stop_onsets(impact_persist *persist, impact_world *world, const impact_state *states,
+                                const impact_load *loads);
+
+/* Of few contacts without slip: rolling, sliding or open, whichever is consistent; otherwise as they were (persist_modes.c). */
+impact_status impact_persist_try_modes(impact_persist *persist, impact_world *world, const impact_state *states,
+                                       const impact_load *loads);
+
 #endif

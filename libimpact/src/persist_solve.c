@@ -169,24 +169,44 @@ static void keep_turns(const impact_persist *persist, impact_world *world)
     }
 }
 
+/* Sets every onset's drive; whether all of them go on sliding. Newton's method also finds directions against which slip would be
+ * accelerated: none of Coulomb's. */
+static bool all_slide(impact_persist *persist, const impact_world *world, const impact_state *states)
+{
+    bool all = true;
+    for (int c = 0; c < persist->count; c++) {
+        impact_touch *touch = &persist->touches[c];
+        if (!touch->onset) continue;
+        onset_direction(world, states, touch);
+        all = all && touch->drive >= 1 - 1e-9;
+    }
+    return all;
+}
+
+/* Without knowledge of where slip went. */
+static bool solve_anew(impact_persist *persist, impact_world *world, const impact_state *states)
+{
+    enum { TRIES = 4, FEW = 5, MANY = 50 };
+    for (int k = 0; k < TRIES; k++) {
+        recall_turns(persist, world);
+        if (turn_in_turns(persist, world, states, FEW << k) < 1e-15) return true;
+        for (int c = 0; c < persist->count; c++) persist->touches[c].pull = pull_of(&persist->touches[c]);
+        if (turn_together(persist, world, states)) return true;
+    }
+    recall_turns(persist, world);
+    return turn_in_turns(persist, world, states, MANY) < 1e-15;
+}
+
 /* The directions of slip that begins, and all reactions with them. */
 static void solve_onsets(impact_persist *persist, impact_world *world, const impact_state *states)
 {
-    enum { TRIES = 4, FEW = 5, MANY = 50 };
     bool settled = recall_turns(persist, world) && turn_together(persist, world, states);
-    for (int k = 0; k < TRIES && !settled; k++) {
-        recall_turns(persist, world);
-        settled = turn_in_turns(persist, world, states, FEW << k) < 1e-15;
-        for (int c = 0; c < persist->count; c++) persist->touches[c].pull = pull_of(&persist->touches[c]);
-        settled = settled || turn_together(persist, world, states);
+    bool slide = settled && all_slide(persist, world, states);
+    if (!slide) {
+        settled = solve_anew(persist, world, states);
+        slide = all_slide(persist, world, states);
     }
-    if (!settled) {
-        recall_turns(persist, world);
-        turn_in_turns(persist, world, states, MANY);
-    }
-    for (int c = 0; c < persist->count; c++)
-        if (persist->touches[c].onset) onset_direction(world, states, &persist->touches[c]); /* its drive */
-    if (settled) keep_turns(persist, world);
+    if (settled && slide) keep_turns(persist, world);
 }
 
 void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states,

@@ -630,6 +630,16 @@ static impact_status cross_edge(impact_scene *scene, int edge)
     return status == IMPACT_OK ? hold(scene, -1, true) : status;
 }
 
+/* Held contacts are put back, and those that others hold are asked again whether they must give way. */
+static impact_status renew(impact_scene *scene)
+{
+    remember(scene);
+    const impact_status status = load(scene);
+    if (status != IMPACT_OK) return status;
+    impact_persist_stop_onsets(&scene->motion.persist, &scene->world, scene->states, scene->motion.loads);
+    return hold(scene, -1, true);
+}
+
 impact_status impact_scene_handle(impact_scene *scene, impact_end end)
 {
     switch (end.kind) {
@@ -644,8 +654,8 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_SLIP: return begin_slide(scene, end.index);
     case IMPACT_END_STICK: return change_mode(scene, end.index, IMPACT_ROLL);
     case IMPACT_END_EDGE: return cross_edge(scene, end.index);
-    case IMPACT_END_SLOW:
-    case IMPACT_END_RENEWAL: remember(scene); return hold(scene, -1, true);
+    case IMPACT_END_SLOW: remember(scene); return hold(scene, -1, true);
+    case IMPACT_END_RENEWAL: return renew(scene);
     }
     return IMPACT_OK;
 }

@@ -62,6 +62,7 @@ typedef struct impact_pair {
     double lying;
     bool still;     /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
     qvec3 reaction; /* still, or was: on body 1, N */
+    bool tried;     /* scratch: sticks again after its slip was to begin */
     bool struck;    /* scratch: exchanged an impulse in this instant */
     bool settled;   /* scratch: had its chance to be held again in this instant */
     impact_gap_cache cache;
