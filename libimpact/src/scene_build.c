@@ -115,7 +115,7 @@ impact_status impact_scene_build(impact_scene *scene, const impact_scene_def *de
     const size_t n = (size_t)def->body_count;
     *world = (impact_world){.gravity = def->gravity, .slip_speed = fmax(1e-2 * def->rest_speed, 100 * def->tolerance)};
     world->onset_speed = 1e5 * world->slip_speed;
-    world->flat_height = def->rest_height;
+    world->flat_height = 100 * def->rest_height;
     world->bodies = calloc(n, sizeof *world->bodies);
     scene->states = calloc(n, sizeof *scene->states);
     scene->before = calloc(n, sizeof *scene->before);

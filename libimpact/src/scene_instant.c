@@ -168,6 +168,9 @@ static double lasting_press(const impact_scene *scene, const meeting *m)
         pull += b->radius * qvec3_norm(impact_inverse_inertia(b, states[body[k]].q, l->torque));
         radius = fmin(radius, b->radius);
     }
+    /* of a face that is about to be rolled over the reaction is without bound, for no time */
+    const double passing = 1e6 * qvec3_norm(scene->world.gravity);
+    if (passing > 0) pull = fmin(pull, passing);
     return fmin(-m->acceleration, pull + speed * speed / (roundest * radius));
 }
 

@@ -74,7 +74,7 @@ typedef struct impact_scene_def {
 
     double tolerance; /* relative, of the motion's integration; a thirtieth of it where no contact is held */
     /* m: a bounce that would rise less than this, than a few roundings of the gap, or than the integrator can tell, is the last: the
-     * contact is held; a body that rocks on a flat face with less energy than lifts it by this lies there */
+     * contact is held; a body that rocks on a flat face with less energy than lifts it by a hundred of this lies there */
     double rest_height;
     double rest_speed; /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
     long max_events;   /* IMPACT_EVENT_LIMIT after so many */
