@@ -92,7 +92,7 @@ static void a_slope_holds_up_to_its_friction(void **state)
         assert_near3(end.position, place, 1e-12);
         assert_near3(end.velocity, quat_rotate(tilt, (qvec3){a * duration, 0, 0}), 1e-12);
         assert_near(quat_dot(end.orientation, tilt), 1, 1e-15);
-        assert_account(scene, 1e-12);
+        assert_account(scene, 1e-11);
         free_log(&log);
         impact_scene_destroy(scene);
     }
