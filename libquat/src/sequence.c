@@ -48,7 +48,7 @@ quat quat_belt_untwist(double s, double t)
  * (ab (cos f - cos^2 f) + b sin^2 f, a^2 + b^2 cos f, -ab (sin f - sin f cos f) + b sin f cos f). */
 qvec3 quat_belt_centre(double s, double t)
 {
-    const circle aside = half_turns(s), turn = half_turns(2 * t);
+    const circle aside = half_turns(s), turn = half_turns(2 * remainder(t, 1));
     const double a = aside.cosine, b = aside.sine, c = turn.cosine, z = turn.sine, per = 1 / (2 * pi);
     return qvec3_make(0.5 * b * (1 - a) * t + per * b * z * (a - 0.5 * (1 + a) * c), a * a * t + per * b * b * z,
                       per * b * (0.5 * (1 + a) * z * z - a * (1 - c)));

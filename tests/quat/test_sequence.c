@@ -123,6 +123,8 @@ static void centre_line_follows_the_frames(void **state)
     quat_belt_frames(0.3, 3, q, c);
     assert_true(quat_equal(q[1], quat_belt_untwist(0.3, 0.5)) && quat_equal(q[2], one));
     assert_true(c[1].x == quat_belt_centre(0.3, 0.5).x && qvec3_norm(c[0]) == 0);
+    assert_true(
+        isfinite(qvec3_norm(qvec3_scale(quat_belt_centre(0.3, -1e308), 1e-300)))); /* any t: 2 t is no number there */
     quat_belt_frames(0.3, 1, NULL, c);
     quat_belt_frames(0.3, 0, NULL, NULL);
     assert_true(qvec3_norm(c[0]) == 0);
