@@ -41,6 +41,28 @@ void impact_motion_pack(const impact_motion *motion, double t, const impact_stat
     if (motion->world->driven) y[impact_motion_drive(motion)] = motion->works.drive;
 }
 
+/* SI's own unit for what is ordinary; what is large is measured by itself, or rounding where it passes zero would count as error. */
+static double measure_of(double size) { return size > 1e3 ? size : 1; }
+
+void impact_motion_measures(const impact_motion *motion, const impact_state *states, double *measure)
+{
+    for (int i = 0; i < motion->size; i++) measure[i] = 1;
+    double *b = measure + Y_BODIES;
+    for (int i = 0; i < motion->world->body_count; i++) {
+        const impact_body *body = &motion->world->bodies[i];
+        if (body->is_static) continue;
+        const double pushed = qvec3_norm(motion->loads[i].force) / body->mass * body->radius;
+        const double speed = hypot(impact_motion_speed(body, &states[i]), sqrt(pushed));
+        const double moment = fmax(body->moments.x, fmax(body->moments.y, body->moments.z));
+        for (int k = 0; k < 3; k++) {
+            b[k] = measure_of(body->radius);
+            b[Y_VELOCITY + k] = measure_of(speed);
+            b[Y_VELOCITY + 3 + k] = measure_of(moment * speed / body->radius);
+        }
+        b += Y_PER_BODY;
+    }
+}
+
 /* Static bodies' states are left as they are. */
 void impact_motion_unpack(const impact_motion *motion, const double *y, impact_state *states)
 {

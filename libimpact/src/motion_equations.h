@@ -26,6 +26,8 @@ static inline int impact_motion_drive(const impact_motion *motion) { return moti
 /* Between the bodies' states and the integrated state y; static bodies' states are left as they are. */
 void impact_motion_pack(const impact_motion *motion, double t, const impact_state *states, double *y);
 void impact_motion_unpack(const impact_motion *motion, const double *y, impact_state *states);
+/* What each component of y is measured by where it passes zero: 1, or of a large body its size, speed and angular momentum. */
+void impact_motion_measures(const impact_motion *motion, const impact_state *states, double *measure);
 
 /* Whether the variable of integration is not time. */
 static inline bool impact_motion_clocked(const impact_motion *motion) { return motion->sliding || motion->creeping; }

@@ -391,13 +391,16 @@ static impact_status choose_road(impact_motion *motion, double t, double t_end, 
 
 /* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing holds is integrated
  * as closely as doubles let it be, at a fifth more steps. Reactions are not that smooth. */
-static impact_status choose_tolerance(impact_motion *motion)
+static impact_status choose_tolerance(impact_motion *motion, const impact_state *states)
 {
     const double closest = 1e-15;
     const double tolerance = motion->persist.count > 0
                                  ? motion->tolerance
                                  : fmax(fmin(closest, motion->tolerance), 0.03 * motion->tolerance);
-    return impact_ode_set_tolerance(motion->ode, tolerance, 1e-2 * tolerance);
+    double *absolute = motion->kept; /* free until there are samples */
+    impact_motion_measures(motion, states, absolute);
+    for (int i = 0; i < motion->size; i++) absolute[i] *= 1e-2 * tolerance;
+    return impact_ode_set_tolerances(motion->ode, tolerance, absolute);
 }
 
 impact_status impact_motion_integrate(impact_motion *motion, double *t, double t_end, impact_state *states,
@@ -409,7 +412,7 @@ impact_status impact_motion_integrate(impact_motion *motion, double *t, double t
     impact_status status = choose_road(motion, *t, t_end, states);
     if (status != IMPACT_OK) return status;
     impact_motion_pack(motion, *t, states, motion->y);
-    status = choose_tolerance(motion);
+    status = choose_tolerance(motion, states);
     if (status == IMPACT_OK) status = impact_ode_start(motion->ode, impact_motion_clocked(motion) ? 0 : *t, motion->y);
     if (status != IMPACT_OK) return fail(motion, status);
     status = integrate(motion, t, t_end, motion->y, states, sampler, end);

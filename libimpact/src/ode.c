@@ -86,16 +86,23 @@ static bool valid(const impact_ode_def *def)
            def->relative_tolerance > 0 && def->absolute_tolerance >= 0 && def->max_steps >= 0;
 }
 
+/* A tolerance for each component, copied. */
+static bool set_vector(impact_ode *ode, double relative, const double *absolute)
+{
+    if (!ode->tolerances) ode->tolerances = N_VNew_Serial(ode->def.size, ode->sundials);
+    if (!ode->tolerances) return false;
+    memcpy(N_VGetArrayPointer(ode->tolerances), absolute, sizeof(double) * (size_t)ode->def.size);
+    return CVodeSVtolerances(ode->cvode, relative, ode->tolerances) == CV_SUCCESS;
+}
+
 static bool set_tolerances(impact_ode *ode)
 {
     const impact_ode_def *def = &ode->def;
     if (!def->absolute_tolerances)
         return CVodeSStolerances(ode->cvode, def->relative_tolerance, def->absolute_tolerance) == CV_SUCCESS;
-    ode->tolerances = N_VNew_Serial(def->size, ode->sundials);
-    if (!ode->tolerances) return false;
-    memcpy(N_VGetArrayPointer(ode->tolerances), def->absolute_tolerances, sizeof(double) * (size_t)def->size);
+    const double *given = def->absolute_tolerances;
     ode->def.absolute_tolerances = NULL; /* the caller's array is not kept */
-    return CVodeSVtolerances(ode->cvode, def->relative_tolerance, ode->tolerances) == CV_SUCCESS;
+    return set_vector(ode, def->relative_tolerance, given);
 }
 
 static bool set_solver(impact_ode *ode)
@@ -202,8 +209,16 @@ impact_status impact_ode_limit_step(impact_ode *ode, double max_step)
 
 impact_status impact_ode_set_tolerance(impact_ode *ode, double relative, double absolute)
 {
-    if (ode->tolerances || !(relative >= 0 && absolute >= 0 && relative < 1)) return IMPACT_EARGUMENT;
+    if (!(relative >= 0 && absolute >= 0 && relative < 1)) return IMPACT_EARGUMENT;
     return CVodeSStolerances(ode->cvode, relative, absolute) == CV_SUCCESS ? IMPACT_OK : IMPACT_EARGUMENT;
+}
+
+impact_status impact_ode_set_tolerances(impact_ode *ode, double relative, const double *absolute)
+{
+    if (!(relative >= 0 && relative < 1)) return IMPACT_EARGUMENT;
+    for (int i = 0; i < ode->def.size; i++)
+        if (!(absolute[i] >= 0)) return IMPACT_EARGUMENT;
+    return set_vector(ode, relative, absolute) ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
 impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found, bool *found)

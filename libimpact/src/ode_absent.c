@@ -25,6 +25,12 @@ impact_status impact_ode_set_tolerance(impact_ode *ode, double relative, double 
     return IMPACT_EABSENT;
 }
 
+impact_status impact_ode_set_tolerances(impact_ode *ode, double relative, const double *absolute)
+{
+    (void)ode, (void)relative, (void)absolute;
+    return IMPACT_EABSENT;
+}
+
 impact_status impact_ode_limit_step(impact_ode *ode, double max_step)
 {
     (void)ode, (void)max_step;

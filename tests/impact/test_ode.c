@@ -213,6 +213,13 @@ static void another_tolerance_from_the_next_start_on(void **state)
     assert_true(fabs(y[0] - cos(20)) > 1e-8);
     assert_int_equal(impact_ode_set_tolerance(ode, -1, 1), IMPACT_EARGUMENT);
     assert_int_equal(impact_ode_set_tolerance(ode, 1e-6, NAN), IMPACT_EARGUMENT);
+    const double each[2] = {1e-8, 1e-8}, bad[2] = {1e-8, NAN}; /* one for each component: the same here */
+    const long loose = impact_ode_count(ode).steps - close;
+    assert_int_equal(impact_ode_set_tolerances(ode, 1e-6, each), IMPACT_OK);
+    assert_int_equal(impact_ode_start(ode, 0, start), IMPACT_OK);
+    assert_int_equal(impact_ode_advance(ode, 20, &t, y, NULL, &found), IMPACT_OK);
+    assert_int_equal(impact_ode_count(ode).steps - close, 2 * loose);
+    assert_int_equal(impact_ode_set_tolerances(ode, 1e-6, bad), IMPACT_EARGUMENT);
     impact_ode_destroy(ode);
 }
 

@@ -51,9 +51,10 @@ IMPACT_API impact_status impact_ode_start(impact_ode *ode, double t, const doubl
 /* Bounds the step from now on; 0: no bound. */
 IMPACT_API impact_status impact_ode_limit_step(impact_ode *ode, double max_step);
 
-/* Other tolerances from the next start on, for every component. IMPACT_EARGUMENT for a negative one, and for an integrator that was made
- * with a tolerance of its own for each. */
+/* Other tolerances from the next start on: one absolute tolerance for every component, or absolute[n], copied, one for each.
+ * IMPACT_EARGUMENT for a negative one or NaN. */
 IMPACT_API impact_status impact_ode_set_tolerance(impact_ode *ode, double relative, double absolute);
+IMPACT_API impact_status impact_ode_set_tolerances(impact_ode *ode, double relative, const double *absolute);
 
 /* One internal step towards t_stop, never past it. *t and y[n] are the new state: the end of the step, or the first root in it.
  * roots_found[roots]: -1 or +1 where the root function crosses falling or rising, else 0 (NULL: not wanted).
