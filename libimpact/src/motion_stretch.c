@@ -80,6 +80,18 @@ static double slowest_slip(const impact_motion *motion, bool young)
     return slowest;
 }
 
+/* Whether some slip dies out again that has just begun. */
+static bool young_fades(const impact_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        if (touch->mode == IMPACT_SLIDE && !touch->onset && motion->world->pairs[touch->pair].young &&
+            qvec3_dot(touch->slip_rate, touch->slip) < 0)
+            return true;
+    }
+    return false;
+}
+
 /* What has its direction from itself again is not young any more. */
 static void grow_up(impact_motion *motion)
 {
@@ -346,6 +358,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME || tau == stop) return status;
         if (end_onsets(motion) || (motion->stiff && slowest_slip(motion, true) > grown_up * motion->slip_scale))
             return IMPACT_OK;
+        if (motion->stiff && !motion->sliding && young_fades(motion)) return IMPACT_OK;
         still = tau > tau_before ? 0 : still + 1;
         passed = found;
         /* Held contacts drift apart otherwise, and forces may brake as they did not before. */
@@ -382,7 +395,9 @@ static impact_status choose_road(impact_motion *motion, double t, double t_end, 
     motion->slip_scale = slip_scale(motion, states);
     grow_up(motion);
     motion->stiff = isfinite(slowest_slip(motion, true));
-    motion->sliding = motion->stiff || isfinite(slowest_slip(motion, false));
+    const double grown = slowest_slip(motion, false);
+    motion->sliding = isfinite(grown) && (!motion->stiff || grown < grown_up * motion->slip_scale);
+    motion->sliding = motion->sliding || young_fades(motion);
     motion->creep_scale = creep_scale(motion, states);
     motion->creeping = motion->creep_scale > 0;
     const bool stiff = motion->stiff || is_braked(motion, t, t_end, states);
