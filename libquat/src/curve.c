@@ -290,6 +290,9 @@ quat_status quat_curve_even(const quat_curve *curve, size_t n, double t[])
         found = advance(curve, t[i - 1], step, curve->end, guess, &t[i]);
         if (found < 0) return found;
         if (found != QUAT_OK) status = found;
+        if (t[i] > t[i - 1] && t[i] < curve->end) continue;
+        status = QUAT_NOT_CONVERGED; /* lengths that are noise lead nowhere */
+        break;
     }
     const double last = t[i - 1], step = (curve->end - last) / (double)(n - i);
     for (size_t k = i; k < n; k++) t[k] = k + 1 < n ? last + (double)(k - i + 1) * step : curve->end;

@@ -95,7 +95,7 @@ static double refine(search *s, part whole, int depth)
 quat_status quat_quadrature(quat_integrand f, void *context, double a, double b, double tolerance, double *integral,
                             double *noise)
 {
-    search s = {.f = f, .context = context, .left = 4000};
+    search s = {.f = f, .context = context, .left = 1600};
     *integral = *noise = 0;
     if (a == b) return QUAT_OK;
     const part whole = ask(&s, a, b);

@@ -78,8 +78,9 @@ QUAT_API quat_status quat_curve_length(const quat_curve *curve, double a, double
 /* The t at `length` along the curve from its start: Newton's method, kept in a bracket. QUAT_EDOMAIN for a length
  * outside 0 ... the whole (by more than 1e-9 of it), QUAT_NOT_CONVERGED as for lengths. */
 QUAT_API quat_status quat_curve_at_length(const quat_curve *curve, double length, double *t);
-/* n >= 2 values of t at equal distances along the curve, from start to end. QUAT_NOT_CONVERGED where a length is that:
- * the rest are then at equal steps of t. Other statuses as quat_curve_length's, and QUAT_EARGUMENT for n < 2. */
+/* n >= 2 values of t at equal distances along the curve, increasing, from start to end. QUAT_NOT_CONVERGED where a length
+ * is that, or nothing but noise: the rest are then at equal steps of t. Other statuses as quat_curve_length's, and
+ * QUAT_EARGUMENT for n < 2. */
 QUAT_API quat_status quat_curve_even(const quat_curve *curve, size_t n, double t[]);
 
 /* Integrals along the curve: length, of the curvature (2 pi or more for a closed curve, more than 4 pi for a knot;
