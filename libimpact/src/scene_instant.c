@@ -299,8 +299,13 @@ static impact_status strike_together(impact_scene *scene)
     for (int p = 0; p < world->pair_count; p++)
         if (meets(scene, p, &m)) shares[count++].touch = m.touch;
     double energy = impact_scene_total_energy(scene);
-    impact_answer_together(world, scene->states, shares, count);
     impact_status status = IMPACT_OK;
+    if (!impact_answer_together(world, scene->states, shares, count) && world->driven) {
+        snprintf(scene->message, sizeof scene->message,
+                 "no impulses end the impacts at t = %.17g: do moving surfaces draw a body in where it jams?",
+                 scene->t);
+        status = IMPACT_EUNSETTLED;
+    }
     for (int c = 0; status == IMPACT_OK && c < count; c++) {
         const impact_share *share = &shares[c];
         if (!(share->normal > 0)) continue;

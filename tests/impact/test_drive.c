@@ -177,6 +177,130 @@ static void a_belt_is_a_floor_seen_from_a_train(void **state)
     }
 }
 
+/* Carried against a wall it is spun up where it is: with N the belt's pressure, the wall's friction, of muw times mub N, holds it down,
+ * N = m g/(1 - muw mub), and (2/5) m r w' = mub N (1 - muw) until the rim goes with the belt. From then on nothing acts. */
+static void between_belt_and_wall_it_spins_in_its_place(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 5; k++) {
+        const double V = 0.4 + k, mub = 0.2 + 0.1 * k, muw = 0.15 * k;
+        const double N = mass * gravity / (1 - muw * mub), stop = 0.4 * mass * V / (mub * N * (1 - muw));
+        const impact_pair_def pairs[2] = {
+            {.body1 = "ball", .body2 = "floor", .friction = mub, .restitution = 0},
+            {.body1 = "ball", .body2 = "wall", .friction = muw, .restitution = 0},
+        };
+        impact_body_def bodies[3] = {floor_body(), plane_body("wall", (qvec3){radius, 0, 0}, quat_identity(), 1, 0),
+                                     ball_body("ball", (qvec3){0, 0, radius}, 1, 0)};
+        bodies[0].velocity.x = V;
+        bodies[1].orientation = (quat){sqrt(0.5), 0, -sqrt(0.5), 0};
+        impact_scene_def def = scene_of(bodies, 3, 2 * stop);
+        def.pairs = pairs;
+        def.pair_count = 2;
+        impact_scene *scene = make_scene(&def);
+        scene_log log = {0};
+        const impact_recorder recorder = log_recorder(&log);
+        run(scene, def.duration, &recorder);
+        assert_near(log.events[find_event(&log, IMPACT_EVENT_STICK, NULL, 0)].t, stop, 1e-10);
+        impact_sample s;
+        impact_scene_body(scene, 2, &s);
+        assert_near3(s.position, (qvec3){0, 0, radius}, 1e-12);
+        assert_near3(s.omega, (qvec3){0, -V / radius, 0}, 1e-9);
+        const impact_energy e = impact_scene_energy(scene);
+        assert_near(e.drive_work, mub * N * V * stop, 1e-9 * (1 + e.drive_work));
+        assert_account_closes(scene, 1e-11);
+        free_log(&log);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* In a groove of two belts that go along it, m v = P, (2/5) m r^2 w = P r/sqrt 2, v + w r/sqrt 2 = V: at 4/9 V. The impacts that clamp
+ * it go round. */
+static void in_a_groove_of_belts_it_rolls_at_four_ninths(void **state)
+{
+    (void)state;
+    const double V = 3, half = 0.39269908169872415; /* pi/8 */
+    impact_body_def bodies[3] = {plane_body("left", (qvec3){0, 0, 0}, (quat){cos(half), 0, sin(half), 0}, 0.6, 0.9),
+                                 plane_body("right", (qvec3){0, 0, 0}, (quat){cos(half), 0, -sin(half), 0}, 0.6, 0.9),
+                                 ball_body("ball", (qvec3){0.1, 0, 1}, 1, 0.5)};
+    bodies[0].velocity.y = bodies[1].velocity.y = V;
+    const impact_scene_def def = scene_of(bodies, 3, 8);
+    impact_scene *scene = make_scene(&def);
+    run(scene, def.duration, NULL);
+    impact_sample s;
+    impact_scene_body(scene, 2, &s);
+    assert_near3(s.velocity, (qvec3){0, 4. / 9 * V, 0}, 1e-9);
+    assert_near3(s.omega, (qvec3){s.omega.x, 0, 0}, 1e-9);
+    const impact_energy e = impact_scene_energy(scene);
+    assert_near(e.drive_work, 4. / 9 * mass * V * V, 1e-9);
+    assert_account_closes(scene, 1e-11);
+    impact_scene_destroy(scene);
+}
+
+/* What goes round in one instant is answered together: a ball that just fits between two belts and is thrown against one. */
+static void together_drives_do_work_too(void **state)
+{
+    (void)state;
+    random_stream random = {53};
+    const quat left = {sqrt(0.5), 0, sqrt(0.5), 0}, right = {sqrt(0.5), 0, -sqrt(0.5), 0};
+    for (int k = 0; k < 30; k++) {
+        impact_body_def bodies[3] = {plane_body("left", (qvec3){-radius, 0, 0}, left, 0.1 + 0.02 * k, 0.9),
+                                     plane_body("right", (qvec3){radius, 0, 0}, right, 0.3, 0.9),
+                                     ball_body("ball", (qvec3){0, 0, 0}, 1, 1)};
+        bodies[0].velocity = (qvec3){0, 3 * random_unit(&random), 2};
+        bodies[1].velocity = (qvec3){0, 0, -4 * random_unit(&random)};
+        bodies[2].velocity = (qvec3){0.5 + random_unit(&random), 0, 0};
+        const impact_scene_def def = scene_of(bodies, 3, 0.5);
+        impact_scene *scene = make_scene(&def);
+        run(scene, def.duration, NULL);
+        assert_true(impact_scene_usage(scene).impacts_together > 0);
+        assert_true(fabs(impact_scene_energy(scene).drive_work) > 0.01);
+        assert_account_closes(scene, 1e-11);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* Drawn in where it jams it has nowhere to go: no rigid bodies do that, and the run says so. */
+static void what_is_drawn_into_a_wedge_is_told(void **state)
+{
+    (void)state;
+    const double lean = 1.2;
+    impact_body_def bodies[3] = {
+        plane_body("left", (qvec3){0, 0, 0}, (quat){cos(lean / 2), 0, sin(lean / 2), 0}, 0.5, 0.8),
+        plane_body("right", (qvec3){0, 0, 0}, (quat){cos(lean / 2), 0, -sin(lean / 2), 0}, 0.5, 0.8),
+        ball_body("ball", (qvec3){0, 0, radius / cos(lean)}, 1, 1)};
+    bodies[0].velocity = quat_rotate(bodies[0].orientation, (qvec3){1, 2, 0});
+    bodies[1].velocity = quat_rotate(bodies[1].orientation, (qvec3){-0.5, 1, 0});
+    bodies[2].velocity = (qvec3){0.3, 0.5, -3};
+    const impact_scene_def def = scene_of(bodies, 3, 1);
+    impact_scene *scene = make_scene(&def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_EUNSETTLED);
+    assert_non_null(strstr(impact_scene_message(scene), "do moving surfaces draw a body in where it jams?"));
+    impact_scene_destroy(scene);
+}
+
+/* A belt with ends: carried over one it falls, at the speed it has. */
+static void a_ball_falls_off_the_end_of_a_belt(void **state)
+{
+    (void)state;
+    const double V = 2, mu = 0.3, t0 = 2 * V / (7 * mu * gravity), way = 0.5 * mu * gravity * t0 * t0;
+    impact_body_def bodies[2] = {floor_body(), ball_body("ball", (qvec3){0, 0, radius}, mu, 0)};
+    bodies[0].velocity.x = V;
+    impact_shape_plane(1, 0.5, &bodies[0].shape);
+    const double leaves = t0 + (1 - way) / (2. / 7 * V);
+    const impact_scene_def def = scene_of(bodies, 2, leaves + 1);
+    impact_scene *scene = make_scene(&def);
+    scene_log log = {0};
+    const impact_recorder recorder = log_recorder(&log);
+    run(scene, def.duration, &recorder);
+    assert_near(log.events[find_event(&log, IMPACT_EVENT_LIFTOFF, NULL, 0)].t, leaves, 1e-10);
+    impact_sample s;
+    impact_scene_body(scene, 1, &s);
+    assert_near3(s.position, (qvec3){1 + 2. / 7 * V, 0, radius - 0.5 * gravity}, 1e-10);
+    assert_account_closes(scene, 1e-11);
+    free_log(&log);
+    impact_scene_destroy(scene);
+}
+
 /* Without friction a moving surface does nothing: what stands on it rests. */
 static void without_friction_nothing_is_driven(void **state)
 {
@@ -359,6 +483,11 @@ int main(void)
         cmocka_unit_test(a_ball_on_a_belt_rolls_at_two_sevenths),
         cmocka_unit_test(a_ball_dropped_on_a_belt_ends_the_same),
         cmocka_unit_test(a_belt_is_a_floor_seen_from_a_train),
+        cmocka_unit_test(between_belt_and_wall_it_spins_in_its_place),
+        cmocka_unit_test(in_a_groove_of_belts_it_rolls_at_four_ninths),
+        cmocka_unit_test(together_drives_do_work_too),
+        cmocka_unit_test(what_is_drawn_into_a_wedge_is_told),
+        cmocka_unit_test(a_ball_falls_off_the_end_of_a_belt),
         cmocka_unit_test(without_friction_nothing_is_driven),
         cmocka_unit_test(a_drum_is_a_heavy_body_that_turns),
         cmocka_unit_test(many_on_a_belt_move_as_together),
