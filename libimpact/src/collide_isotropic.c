@@ -59,15 +59,22 @@ static inline powers powers_on(const whirl *w, const powers *at, double from, do
     return (powers){at->A + w->alpha * up, at->B - w->beta * down, at->I1 + up, at->I2 + down};
 }
 
+/* 1 - e^(-m tau), which is 1 - sqrt(A B) where that is as good: A and B are right to rounding of 1. */
+static inline double shed_by(const whirl *w, const powers *at, double tau)
+{
+    const double x = w->m * tau;
+    return x > 0.25 && at->A > 0.25 && at->B > 0.25 ? 1 - sqrt(at->A * at->B) : -expm1(-x);
+}
+
+/* int_0^tau e^(-2 m t) dt */
+static inline double integral_of_both(const whirl *w, double shed) { return shed * (2 - shed) / (2 * w->m); }
+
 /* int I2 dI1 - int I1 dI2 = tau^3 2 g f[-beta tau, -2 m tau, alpha tau], f(x) = (e^x - 1) / x: its divided difference as a series
  * where the plain difference would cancel. */
-static double swirl(const whirl *w, const powers *at, double tau)
+static double swirl(const whirl *w, const powers *at, double tau, double I3)
 {
     const double y = -w->beta * tau;
-    if (y < -0.5) {
-        const double I3 = -expm1(-2 * w->m * tau) / (2 * w->m);
-        return 2 * (at->I1 - I3) * w->over_beta - at->I1 * at->I2;
-    }
+    if (y < -0.5) return 2 * (at->I1 - I3) * w->over_beta - at->I1 * at->I2;
     const double x = w->alpha * tau, z = x + y;
     const double e1 = x + y + z, e2 = x * y + z * z, e3 = x * y * z;
     /* h: complete homogeneous polynomials of x, y, z. */
@@ -88,26 +95,32 @@ static double swirl(const whirl *w, const powers *at, double tau)
 static double p_at(const whirl *w, const powers *at) { return w->X * at->I1 + w->Y * at->I2; }
 static double rise_at(const whirl *w, const powers *at) { return w->X_climb * at->I1 + w->Y_climb * at->I2; }
 
-static double work_at(const whirl *w, const powers *at, double tau)
+static double work_at(const whirl *w, const powers *at, double tau, double I3)
 {
-    const double both = at->I1 * at->I2 + w->mu * w->g * swirl(w, at, tau);
+    const double both = at->I1 * at->I2 + w->mu * w->g * swirl(w, at, tau, I3);
     return w->course->uz * p_at(w, at) + 0.5 * w->X * w->X_climb * at->I1 * at->I1 +
            0.5 * w->Y * w->Y_climb * at->I2 * at->I2 + w->X * w->Y * both;
 }
 
 typedef enum target { TARGET_UZ, TARGET_P, TARGET_WORK } target;
 
-/* Less what is wanted. The slope, per unit of tau, as its two exponentials' shares. */
-static double value_at(const whirl *w, target what, double wanted, const powers *at, double tau, double slope[2])
+/* A function of tau less what is wanted, and its first two derivatives; the first by the shares of its two exponentials. */
+typedef struct jet {
+    double value, first[2], second;
+} jet;
+
+static jet value_at(const whirl *w, target what, double wanted, const powers *at, double tau)
 {
-    const double s1 = w->X * at->A, s2 = w->Y * at->B;
-    slope[0] = w->X_climb * at->A;
-    slope[1] = w->Y_climb * at->B;
-    if (what == TARGET_UZ) return (w->course->uz - wanted) + rise_at(w, at);
-    const double uz = what == TARGET_WORK ? w->course->uz + rise_at(w, at) : 1;
-    slope[0] = uz * s1;
-    slope[1] = uz * s2;
-    return what == TARGET_P ? p_at(w, at) - wanted : work_at(w, at, tau) - wanted;
+    const double s1 = w->X * at->A, s2 = w->Y * at->B, z1 = w->X_climb * at->A, z2 = w->Y_climb * at->B;
+    const double bend_s = w->alpha * s1 - w->beta * s2;
+    switch (what) {
+    case TARGET_UZ: return (jet){(w->course->uz - wanted) + rise_at(w, at), {z1, z2}, w->alpha * z1 - w->beta * z2};
+    case TARGET_P: return (jet){p_at(w, at) - wanted, {s1, s2}, bend_s};
+    case TARGET_WORK: break;
+    }
+    const double uz = w->course->uz + rise_at(w, at);
+    const double I3 = integral_of_both(w, shed_by(w, at, tau));
+    return (jet){work_at(w, at, tau, I3) - wanted, {uz * s1, uz * s2}, (z1 + z2) * (s1 + s2) + uz * bend_s};
 }
 
 /* tau further by so much that the integral of the larger exponential grows by `more` of its present rate: Newton's step in the variable in which
@@ -118,35 +131,44 @@ static double step_on(const whirl *w, bool first, double tau, double more)
     return tau - log1p(-w->beta * more) * w->over_beta;
 }
 
-/* The root of a function that is monotone on [low, high] and has another sign at high; Newton from `start` inside a bracket. Steps d
- * shrink as d -> K d^2: where the next would be rounding, it is not taken. *at: the exponentials there. */
+/* Halley's step, and about how far it misses the root: (f''^2/4 f'^2 - f'''/6 f') d^3, the third derivative at most beta^2 times what the
+ * exponentials' shares of the first come to. Newton's as above where that is no better, with no such bound. */
+static double step_from(const whirl *w, const jet *f, double tau, double *miss)
+{
+    const double inverse = 1 / (f->first[0] + f->first[1]), t = -f->value * inverse, bend = f->second * inverse;
+    *miss = INFINITY;
+    if (!(tau > 0 && fabs(t * bend) < 1)) return step_on(w, fabs(f->first[0]) >= fabs(f->first[1]), tau, t);
+    const double d = t / (1 + 0.5 * t * bend), shares = (fabs(f->first[0]) + fabs(f->first[1])) * fabs(inverse);
+    *miss = fabs(d * d * d) * (bend * bend + w->beta * w->beta * shares);
+    return tau + d;
+}
+
+/* The root of a function that is monotone on [low, high] and has another sign at high, from `start` inside a bracket; a step that misses
+ * it by no more than rounding is the last. *at: the exponentials there. */
 static double find_root(const whirl *w, target what, double wanted, double low, double high, double start, powers *at)
 {
-    double slope[2], tau = start, before = 0;
+    double tau = start, miss;
     *at = powers_at(w, low);
-    const double f_low = value_at(w, what, wanted, at, low, slope);
-    if (f_low == 0) return low;
+    jet f = value_at(w, what, wanted, at, low);
+    if (f.value == 0) return low;
+    const bool from_above = f.value > 0;
     for (int i = 0; i < 200; i++) {
-        double f = f_low;
         if (tau > low) {
             *at = powers_at(w, tau);
-            f = value_at(w, what, wanted, at, tau, slope);
-            if (f == 0) return tau;
-            if ((f > 0) == (f_low > 0))
-                low = tau;
-            else
-                high = tau;
+            f = value_at(w, what, wanted, at, tau);
+            if (f.value == 0) return tau;
+            *((f.value > 0) == from_above ? &low : &high) = tau;
         }
         const double last = tau;
-        tau = step_on(w, fabs(slope[0]) >= fabs(slope[1]), last, -f / (slope[0] + slope[1]));
-        const bool inside = tau >= low && tau <= high && tau < INFINITY;
-        if (!inside) tau = high < INFINITY ? 0.5 * (low + high) : 2 * low + 1 / w->beta;
-        const double d = fabs(tau - last);
-        if (d <= 2 * DBL_EPSILON * tau || d * d * d <= 0.5 * DBL_EPSILON * tau * (before * before)) {
+        tau = step_from(w, &f, last, &miss);
+        if (!(tau >= low && tau <= high && tau < INFINITY)) {
+            tau = high < INFINITY ? 0.5 * (low + high) : 2 * low + 1 / w->beta;
+            miss = INFINITY;
+        }
+        if (fabs(tau - last) <= 2 * DBL_EPSILON * tau || miss <= DBL_EPSILON * tau) {
             *at = powers_on(w, at, last, tau);
             break;
         }
-        before = inside ? d : 0;
     }
     return tau;
 }
@@ -185,23 +207,16 @@ static double find_turn(whirl *w)
     return w->X_climb < 0 && w->X_climb + w->Y_climb > 0 ? log(w->Y_climb / -w->X_climb) / (2 * w->g) : INFINITY;
 }
 
-/* 1 - e^(-m tau), which is 1 - sqrt(A B) where that is as good: A and B are right to rounding of 1. */
-static inline double shed_by(const whirl *w, const powers *at, double tau)
-{
-    const double x = w->m * tau;
-    return x > 0.25 && at->A > 0.25 && at->B > 0.25 ? 1 - sqrt(at->A * at->B) : -expm1(-x);
-}
-
 /* Moves on to tau within one phase; INFINITY: to the end of the slip. */
 static void move_to(whirl *w, double tau, const powers *at)
 {
     if (!(tau > 0)) return;
     impact_course *course = w->course;
-    const double shed = shed_by(w, at, tau), I3 = shed * (2 - shed) / (2 * w->m);
+    const double shed = shed_by(w, at, tau), I3 = integral_of_both(w, shed);
     const double along = w->mu * (w->Y * at->I2 - w->X * at->I1), over = -w->uy * shed / w->a;
     const double squares = w->X * w->X * at->I1 * (1 + at->A) / 2 + w->Y * w->Y * at->I2 * (1 + at->B) / 2;
     impact_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
-    impact_course_book(course, p_at(w, at), work_at(w, at, tau), -w->mu * (squares + 2 * w->X * w->Y * I3));
+    impact_course_book(course, p_at(w, at), work_at(w, at, tau, I3), -w->mu * (squares + 2 * w->X * w->Y * I3));
     course->px += w->ex * along - w->ey * over;
     course->py += w->ey * along + w->ex * over;
     impact_course_reach(course, course->uz + rise_at(w, at));
@@ -233,8 +248,7 @@ static bool ends_by(const whirl *w, double to, const powers *at_to, double *wher
     const target what = poisson ? TARGET_P : newton ? TARGET_UZ : TARGET_WORK;
     /* Without end nothing is out of reach but where sliding stops. */
     if (to < INFINITY || w->alpha < 0) {
-        double slope[2];
-        if (value_at(w, what, wanted, at_to, to, slope) < 0) return false;
+        if (value_at(w, what, wanted, at_to, to).value < 0) return false;
     }
     *where = find_root(w, what, wanted, 0, to, what == TARGET_WORK ? guess_work(w, wanted) : 0, at);
     return true;
