@@ -63,7 +63,8 @@ static bool own_springs(const springs *s, double own[])
     return true;
 }
 
-/* x = -H^-1 g by conjugate gradients, H's diagonal before them; false when H is not definite. work: 5 n numbers. */
+/* x = -H^-1 g by conjugate gradients, H's diagonal before them; false when H is not definite, and when rounding makes it
+ * look so early on. work: 5 n numbers. */
 static bool solve(const springs *s, const double g[], double x[], double work[])
 {
     const size_t n = s->mesh->n;
@@ -74,11 +75,11 @@ static bool solve(const springs *s, const double g[], double x[], double work[])
     remove_mean(n, r);
     for (size_t i = 0; i < n; i++) p[i] = z[i] = r[i] / own[i];
     double rz = dot(n, r, z);
-    const double enough = rz * 1e-20;
+    const double enough = rz * 1e-20, usable = rz * 1e-8;
     for (size_t round = 0; round < 4 * n && rz > enough; round++) {
         apply(s, p, hp);
         const double curve = dot(n, p, hp);
-        if (!(curve > 0)) return false;
+        if (!(curve > 0)) return rz <= usable;
         const double step = rz / curve, old = rz;
         for (size_t i = 0; i < n; i++) x[i] += step * p[i], r[i] -= step * hp[i];
         remove_mean(n, r);
@@ -106,16 +107,18 @@ static double slopes(const quat_mesh *mesh, quat_gauge_cost cost, double soft, c
     return sum;
 }
 
-/* Newton's step x, as little firmer than the springs as makes them definite; false when nothing does. */
-static bool newton(springs *s, const double g[], double x[], double work[])
+/* Newton's step x, as little firmer than the springs as makes them definite; down the slopes when nothing does. */
+static void newton(springs *s, const double g[], double x[], double work[])
 {
     static const double least = 1e-6, most = 1e6;
     s->firm = s->firm > least ? s->firm / 4 : 0;
     while (!solve(s, g, x, work)) {
         s->firm = s->firm > 0 ? 4 * s->firm : least;
-        if (s->firm > most) return false;
+        if (s->firm <= most) continue;
+        s->firm = 0;
+        for (size_t i = 0; i < s->mesh->n; i++) x[i] = -g[i];
+        return;
     }
-    return true;
 }
 
 quat_status quat_gauge_lower(const quat_mesh *mesh, quat_gauge_cost cost, double soft, quat q[], double work[],
@@ -127,7 +130,7 @@ quat_status quat_gauge_lower(const quat_mesh *mesh, quat_gauge_cost cost, double
     springs s = {mesh, (const double(*)[3])stiffness, 0};
     for (int round = 0; round < 200; round++, ++*rounds) {
         const double value = slopes(mesh, cost, soft, q, g, stiffness), slack = 64 * DBL_EPSILON * fabs(value);
-        if (!newton(&s, g, x, scratch)) return QUAT_NOT_CONVERGED;
+        newton(&s, g, x, scratch);
         const double gain = -dot(n, g, x), held = x[0];
         double most = 0, next = INFINITY;
         for (size_t i = 0; i < n; i++) x[i] -= held, most = fmax(most, fabs(x[i]));
@@ -139,6 +142,7 @@ quat_status quat_gauge_lower(const quat_mesh *mesh, quat_gauge_cost cost, double
         }
         if (!(next <= value + slack)) return QUAT_OK; /* as low as rounding lets it come */
         memcpy(q, trial, n * sizeof *q);
+        if (gain > 100 * slack && value - next <= slack) return QUAT_OK; /* or a fold does: neighbours change sides */
         if (gain <= 1e-15 * fabs(value)) return QUAT_OK; /* the error after this step is that before it, squared */
     }
     return QUAT_NOT_CONVERGED;
