@@ -7,20 +7,10 @@
 #include <string.h>
 
 #include <impact/collide.h>
+#include "allocations.h"
 #include "generators/collide_cases.h"
 #include "generators/collide_scenes.h"
 #include "near.h"
-
-static long allocations;
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *block, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *block, size_t size);
-void *__wrap_malloc(size_t size) { return allocations++, __real_malloc(size); }
-void *__wrap_calloc(size_t count, size_t size) { return allocations++, __real_calloc(count, size); }
-void *__wrap_realloc(void *block, size_t size) { return allocations++, __real_realloc(block, size); }
 
 /* A solid sphere of radius .3 m and 4 kg on the plane z = 0. */
 static impact_collision sphere_on_plane(qvec3 v, qvec3 omega, double mu, double eps)

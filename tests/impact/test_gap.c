@@ -8,19 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <impact/gap.h>
+#include "allocations.h"
 #include "contact_random.h"
-
-/* The linker sends the library's calls here (-Wl,--wrap). */
-static long allocations;
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *block, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *block, size_t size);
-void *__wrap_malloc(size_t size) { return allocations++, __real_malloc(size); }
-void *__wrap_calloc(size_t count, size_t size) { return allocations++, __real_calloc(count, size); }
-void *__wrap_realloc(void *block, size_t size) { return allocations++, __real_realloc(block, size); }
 
 static void near(double got, double wanted, double tolerance)
 {
