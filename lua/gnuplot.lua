@@ -263,17 +263,18 @@ local function ends(panel, axis, name, three)
   return least, most
 end
 
---- The step of each axis' marks; one for all in space on one scale, where the shorter axes have little room.
+--- The step of each axis' marks. In space on one scale the shorter of x and y has little room, and fewer marks: down to two steps.
 local function steps_of(panel, three)
-  local steps, widest = {}, 0
+  local steps, few, widest = {}, {}, 0
   for i, axis in ipairs { "x", "y", "z" } do
     if i < 3 or three then
       local least, most = ends(panel, i, axis, three)
       widest = max(widest, most - least)
+      few[i] = nice_step(most - least, 2)
       steps[i] = nice_step(most - least, three and 4 or i == 1 and not panel.equal and 7 or 5)
     end
   end
-  for i = 1, three and panel.equal and 3 or 0 do steps[i] = nice_step(widest, 4) end
+  for i = 1, three and panel.equal and 2 or 0 do steps[i] = min(nice_step(widest, 4), few[i]) end
   return steps
 end
 

@@ -52,8 +52,9 @@ typedef struct impact_motion {
     struct impact_flyer *flyers; /* bodies in closed form; absent until they are */
 
     /* the integrator's side; absent until it is needed */
-    impact_ode *ode;         /* the one at work: adams or bdf */
-    impact_ode *adams, *bdf; /* for smooth motion; for what is stiff: slow slip after an onset, forces that brake hard */
+    impact_ode *ode; /* the one at work: adams or bdf */
+    impact_ode *adams,
+        *bdf; /* for smooth motion; for what is stiff: slow slip after an onset, forces that brake hard */
     int size, roots;
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
     int *found;

@@ -116,7 +116,7 @@ typedef struct impact_usage {
     long impacts_closed_form, impacts_series, impacts_cvode; /* impacts, by solver */
     /* of these, answers to another impact in the same instant, taken in the order of the definition */
     long impacts_simultaneous;
-    long impacts_together;              /* impulses that many pairs exchanged together, where answers would not end */
+    long impacts_together; /* impulses that many pairs exchanged together, where answers would not end */
     /* instants after which bodies moved on with reactions of friction that are not unique: what follows hangs on the choice */
     long reactions_chosen;
     long events[IMPACT_EVENT_REST + 1]; /* by kind */
