@@ -187,7 +187,7 @@
 ---@field helicoid fun(a: number, turns: number, width: number): surface
 ---@field superellipsoid fun(a: number, b: number, c: number, e: number, f: number): surface
 ---@field choose_frames fun(mesh: { positions: vector[], frames: rotation[], triangles: integer[][], gauge?: "shortest" | "length" | "area" }): quat[]?, { energy: number, area: number, rounds: integer, torn: integer } | string, string?
----@field transition fun(q1: rotation[], q2: rotation[]): number?, number[] | string  turns, angles
+---@field transition fun(q1: rotation[], q2: rotation[]): number?, number[] | string, string?  turns, angles, a reason when the seam is too coarse
 
 local core = require "quat.core"
 core.layer()

@@ -118,6 +118,10 @@ local turns, angles = quat.surface.transition(shifted, chosen)
 check.close(turns, 0, 1e-14)
 check.close(angles[2], pi / 2, 1e-14)
 check.equal(quat.surface.transition({ chosen[1] }, { chosen[2] }), nil)
+do -- half a turn from one point to the next could be either way
+  local _, _, reason = quat.surface.transition({ quat.identity(), quat.new(0, 0, 0, 1) }, { quat.identity(), quat.identity() })
+  check.equal(reason, "the answer is not unique; one was chosen")
+end
 check.raises("argument 'triangles[1]' must be three numbers of nodes, 1 ... 3", quat.surface.choose_frames,
   { positions = x, frames = q, triangles = { { 1, 2, 4 } } })
 
