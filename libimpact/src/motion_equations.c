@@ -11,6 +11,7 @@
 #include "motion_equations.h"
 #include "drive.h"
 #include "persist_flat.h"
+#include "persist_line.h"
 #include "persist_spot.h"
 #include "world_gap.h"
 
@@ -81,6 +82,7 @@ void impact_motion_unpack(const impact_motion *motion, const double *y, impact_s
         if (!impact_spot_suits(motion->world, pair)) continue;
         if (pair->carried) memcpy(pair->spot, b, sizeof pair->spot);
         if (pair->flat) impact_flat_level(motion->world, pair, states);
+        if (pair->lined) impact_line_level(motion->world, pair, states);
         b += Y_PER_SPOT;
     }
 }
@@ -153,6 +155,10 @@ int impact_motion_rates(double tau, const double *y, double *rate, void *context
         if (motion->persist.touches[c].mode == IMPACT_SLIDE)
             rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
     clear_still_loads(motion);
+    for (int c = 0; c < motion->persist.count; c++) {
+        const impact_touch *touch = &motion->persist.touches[c];
+        impact_line_brace(world, touch, motion->scratch, &motion->loads[touch->body1]);
+    }
     const double clock = impact_motion_clock(motion);
     rate[Y_TIME] = clock;
     for (int k = Y_FORCE_WORK; k < Y_BODIES; k++) rate[k] *= clock;
@@ -194,7 +200,8 @@ static void open_pair_roots(impact_world *world, impact_pair *pair, const impact
     value[1] = pair->beyond ? 1 : still - impact_world_gap_rate(world, pair, states, &contact);
 }
 
-static void held_pair_roots(impact_world *world, const impact_touch *touch, const impact_state *states, double *value)
+static void held_pair_roots(impact_world *world, const impact_touch *touch, const impact_state *states,
+                            const impact_load *loads, double *value)
 {
     const impact_contact contact = {.offset2 = touch->r2};
     value[0] = touch->still ? 1 : touch->pressure;
@@ -206,6 +213,7 @@ static void held_pair_roots(impact_world *world, const impact_touch *touch, cons
     value[2] = impact_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
     if (touch->flat) value[2] = fmin(value[2], touch->spare);
+    if (touch->lined) value[2] = fmin(value[2], impact_line_spare(world, touch, states, loads));
 }
 
 int impact_motion_root_values(double tau, const double *y, double *value, void *context)
@@ -221,7 +229,7 @@ int impact_motion_root_values(double tau, const double *y, double *value, void *
     for (int p = 0, c = 0; p < world->pair_count; p++, value += ROOTS_PER_PAIR) {
         value[2] = 1;
         if (impact_is_held(&world->pairs[p]))
-            held_pair_roots(world, &motion->persist.touches[c++], states, value);
+            held_pair_roots(world, &motion->persist.touches[c++], states, motion->loads, value);
         else
             open_pair_roots(world, &world->pairs[p], states, value);
     }

@@ -317,7 +317,8 @@ static impact_status limit_step(impact_motion *motion, const double *y)
 static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, impact_state *states,
                                impact_sampler *sampler, impact_end *end)
 {
-    enum { MAX_STILL = 1000, MAX_STEPS = 2000000, RENEWAL = 20000 };
+    enum { MAX_STILL = 1000, MAX_STEPS = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
+    const long renewal = motion->creeping ? CARRIED_RENEWAL : RENEWAL;
     const long steps_before = motion->steps_before;
     const double t_start = steps_before > 0 ? motion->began : *t;
     motion->steps_before = 0;
@@ -362,7 +363,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         still = tau > tau_before ? 0 : still + 1;
         passed = found;
         /* Held contacts drift apart otherwise, and forces may brake as they did not before. */
-        if (step + 1 == steps_before + RENEWAL) {
+        if (step + 1 == steps_before + renewal) {
             motion->steps_before = step + 1;
             motion->began = t_start;
             *end = (impact_end){IMPACT_END_RENEWAL, 0};

@@ -7,6 +7,7 @@
  * and u' = bias + K (reactions), linear: see persist_system.
  */
 #include "persist_flat.h"
+#include "persist_line.h"
 #include "persist_spot.h"
 #include "persist_system.h"
 #include "world_gap.h"
@@ -31,6 +32,7 @@ impact_status impact_persist_reserve(impact_persist *persist, impact_world *worl
         impact_pair *pair = &world->pairs[p];
         held += impact_is_held(pair);
         pair->flat = impact_flat_lies(world, pair, states);
+        pair->lined = impact_line_lies(world, pair, states);
         if (!impact_is_held(pair))
             pair->carried = false;
         else if (!pair->carried && impact_spot_suits(world, pair))
@@ -98,6 +100,15 @@ static qvec3 free_acceleration(const impact_body *body, const impact_state *stat
     return qvec3_add(qvec3_add(a, qvec3_cross(alpha, r)), qvec3_cross(omega, r_rate));
 }
 
+/* Where nothing but the axis of a line is flat the orientation tells the spot as well as the spot itself: it is led back there. */
+static bool orientation_tells(const impact_pair *pair, const impact_shape *shape)
+{
+    const double p[3] = {shape->r, shape->s, shape->t};
+    for (int i = 0; i < 3; i++)
+        if (p[i] > 2 && !(pair->lined && pair->line == i)) return false;
+    return true;
+}
+
 /* A carried contact moves over body 1 as its spot does; the plane's normal stays. */
 static void carried_rates(const impact_world *world, impact_touch *touch, const impact_state *states,
                           const impact_spot *spot, qvec3 *rate1)
@@ -105,8 +116,14 @@ static void carried_rates(const impact_world *world, impact_touch *touch, const 
     const impact_body *b1 = &world->bodies[touch->body1];
     const impact_state *s1 = &states[touch->body1];
     const quat q = impact_shape_axes(b1, s1);
-    const qvec3 omega = impact_omega(b1, s1), turn = qvec3_cross(quat_rotate_inverse(q, omega), spot->normal);
-    const impact_spot_rate rate = impact_spot_move(&b1->shape, spot, qvec3_neg(turn));
+    const qvec3 omega = impact_omega(b1, s1);
+    qvec3 turn = qvec3_cross(spot->normal, quat_rotate_inverse(q, omega));
+    if (orientation_tells(&world->pairs[touch->pair], &b1->shape))
+        turn = qvec3_axpy(qvec3_norm(omega), qvec3_sub(quat_rotate_inverse(q, qvec3_neg(touch->normal)), spot->normal),
+                          turn);
+    touch->lined = impact_line_lies(world, &world->pairs[touch->pair], states);
+    if (touch->lined) turn = impact_line_turn(&world->pairs[touch->pair], turn);
+    const impact_spot_rate rate = impact_spot_move(&b1->shape, spot, turn);
     memcpy(touch->spot_rate, rate.s, sizeof rate.s);
     touch->creep = rate.creep;
     *rate1 = qvec3_add(qvec3_cross(omega, touch->r1), quat_rotate(q, rate.point_rate));
@@ -238,6 +255,7 @@ static void close_gaps(impact_world *world, impact_state *states)
         if (pair->carried) {
             spot = impact_spot_at(&world->bodies[pair->body1].shape, pair->spot);
             align(world, pair, states, &spot);
+            if (pair->lined) impact_line_level(world, pair, states);
             contact = carried_contact(world, pair, states, &spot);
         } else {
             impact_world_gap(world, pair, states, &contact);

@@ -21,6 +21,7 @@ typedef struct impact_touch {
     double creep;        /* carried: how fast the contact moves over the surface, in semi-axes, 1/s */
     bool flat;           /* the body lies on a face: r1 is the centre of pressure (persist_flat) */
     double spare;        /* flat: above 0 while that stays on the face */
+    bool lined;          /* the body lies along a line (persist_line) */
     qvec3 slip;          /* tangential velocity of body 1's contact point over body 2's, m/s */
     double speed;        /* |slip| */
     bool onset;          /* sliding from rest, too slow for a direction of its own */

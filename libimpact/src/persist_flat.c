@@ -58,8 +58,7 @@ static double rise(const impact_shape *shape, int face, qvec3 foot)
     return axis[face] * sum;
 }
 
-/* The body's only contact, on a plane, of a face. */
-static bool suits(const impact_world *world, const impact_pair *pair)
+bool impact_flat_suits(const impact_world *world, const impact_pair *pair)
 {
     if (!impact_is_held(pair) || !pair->carried || world->bodies[pair->body1].shifted) return false;
     for (int p = 0; p < world->pair_count; p++) {
@@ -80,7 +79,7 @@ static double rocking_energy(const impact_body *body, const impact_state *state,
 
 bool impact_flat_lies(const impact_world *world, const impact_pair *pair, const impact_state *states)
 {
-    return pair->flat && suits(world, pair) &&
+    return pair->flat && impact_flat_suits(world, pair) &&
            rocking_energy(&world->bodies[pair->body1], &states[pair->body1], plane_normal(pair, states)) <= pair->lying;
 }
 
@@ -285,7 +284,7 @@ bool impact_flat_lay(impact_world *world, impact_state *states, const impact_loa
 {
     bool any = false;
     for (int p = 0; p < world->pair_count; p++)
-        if (suits(world, &world->pairs[p]))
+        if (impact_flat_suits(world, &world->pairs[p]))
             any = lay(world, &world->pairs[p], states, &loads[world->pairs[p].body1]) || any;
     return any;
 }

@@ -15,6 +15,9 @@
  * not either; whose whole energy is no more than that, and whose friction holds them, are stopped. Tells whether there were any. */
 bool impact_flat_lay(impact_world *world, impact_state *states, const impact_load *loads);
 
+/* Whether the pair is held and its place carried, the body's only contact, of a shape about its centre of mass. */
+bool impact_flat_suits(const impact_world *world, const impact_pair *pair);
+
 /* Whether a flat pair still is: held, the body's only contact, and not rocking. */
 bool impact_flat_lies(const impact_world *world, const impact_pair *pair, const impact_state *states);
 

@@ -5,6 +5,7 @@
 #include "scene_internal.h"
 #include "drive.h"
 #include "persist_flat.h"
+#include "persist_line.h"
 #include "persist_still.h"
 #include "scene_together.h"
 #include "world_gap.h"
@@ -469,7 +470,10 @@ static impact_status lie_down(impact_scene *scene)
 {
     const double energy = undriven_energy(scene);
     impact_status status = load(scene);
-    if (status != IMPACT_OK || !impact_flat_lay(&scene->world, scene->states, scene->motion.loads)) return status;
+    if (status != IMPACT_OK) return status;
+    const bool flat = impact_flat_lay(&scene->world, scene->states, scene->motion.loads);
+    const bool lined = impact_line_lay(&scene->motion.persist, &scene->world, scene->states, scene->motion.loads);
+    if (!flat && !lined) return status;
     status = make_consistent(scene);
     scene->impact_loss += energy - undriven_energy(scene);
     return status;
@@ -615,16 +619,28 @@ static impact_status begin_slide(impact_scene *scene, int p)
     return hold(scene, -1, true);
 }
 
-/* Whether it is the face, not the plane, that a flat pair's centre of pressure has left; the body then tips. */
+/* Whether it is the face or the line that a pair's centre of pressure has left, not the plane; the body then tips. */
 static bool tips(impact_scene *scene, int p)
 {
     const double spent = 1e-6; /* of its spare, as a root leaves it */
+    impact_world *world = &scene->world;
+    impact_persist *persist = &scene->motion.persist;
+    impact_pair *pair = &world->pairs[p];
     remember(scene);
-    if (load(scene) != IMPACT_OK) return false;
-    const impact_touch touch = impact_persist_touch(&scene->world, p, scene->states, scene->motion.loads);
-    if (!touch.flat || touch.spare > spent) return false;
-    impact_flat_tip(&scene->world, &scene->world.pairs[p], scene->states, &touch);
-    return true;
+    if ((!pair->flat && !pair->lined) || load(scene) != IMPACT_OK) return false;
+    impact_persist_solve(persist, world, scene->states, scene->motion.loads);
+    for (int c = 0; c < persist->count; c++) {
+        const impact_touch *touch = &persist->touches[c];
+        if (touch->pair != p) continue;
+        if (touch->flat && touch->spare <= spent)
+            impact_flat_tip(world, pair, scene->states, touch);
+        else if (touch->lined && impact_line_spare(world, touch, scene->states, scene->motion.loads) <= spent)
+            pair->lined = false;
+        else
+            return false;
+        return true;
+    }
+    return false;
 }
 
 static impact_status cross_edge(impact_scene *scene, int edge)
@@ -655,7 +671,7 @@ impact_status impact_scene_handle(impact_scene *scene, impact_end end)
     case IMPACT_END_GAP: return arrive(scene, end.index);
     case IMPACT_END_RETURN: scene->world.pairs[end.index].beyond = false; return IMPACT_OK;
     case IMPACT_END_BOUNDS:
-        if (scene->world.pairs[end.index].flat && tips(scene, end.index)) return hold(scene, -1, true);
+        if (tips(scene, end.index)) return hold(scene, -1, true);
         scene->world.pairs[end.index].beyond = true;
         return change_mode(scene, end.index, IMPACT_OPEN);
     case IMPACT_END_LIFTOFF: return change_mode(scene, end.index, IMPACT_OPEN);

@@ -60,6 +60,9 @@ typedef struct impact_pair {
     /* carried: body 1 lies on a face, as long as it rocks with less energy than lying, J (persist_flat) */
     bool flat;
     double lying;
+    /* carried: body 1 lies along a line of its surface, its axis line kept level (persist_line) */
+    bool lined;
+    int line;
     bool still;     /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
     qvec3 reaction; /* still, or was: on body 1, N */
     bool tried;     /* scratch: sticks again after its slip was to begin */
