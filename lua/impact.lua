@@ -228,6 +228,8 @@ end
 local methods = core.scene_methods
 local recorded_track = methods.track
 
+local event_kinds = { "impact", "contact", "slip", "stick", "liftoff", "force", "rest" }
+
 -- ---- tracks: the recorded rows of a body, as columns ----
 
 local columns = { "t", "x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy", "wz" }
@@ -270,6 +272,15 @@ local function row_of(track, i)
   return row
 end
 
+--- Raises the message where the caller of `level` stands, unless it is so.
+local function need(so, message, level)
+  if not so then error(message, level + 1) end
+end
+
+local function is_track(value)
+  return type(value) == "table" and type(value.t) == "table"
+end
+
 --- The recorded rows of a body as columns t, x, y, z, qw ... wz. With a rate, rows are put between them, at least so many per
 --- second, for smooth curves; the recorded rows stay as they are.
 ---@param body string
@@ -278,6 +289,7 @@ end
 function methods:track(body, rate)
   local track = recorded_track(self, body)
   if not rate then return track end
+  need(type(rate) == "number", "track: rate must be a number", 2)
   local fine = {}
   for _, column in ipairs(columns) do fine[column] = {} end
   local function add(row)
@@ -297,6 +309,8 @@ end
 --- A track's rows before and after time t. Of the rows at t itself, the first ends the one, the others begin the other.
 ---@return table, table
 function impact.split(track, t)
+  need(is_track(track), "split: a track of scene:track is needed", 2)
+  need(type(t) == "number", "split: t must be a number", 2)
   local before, after = {}, {}
   for _, column in ipairs(columns) do before[column], after[column] = {}, {} end
   local passed = false
@@ -311,6 +325,8 @@ end
 --- A column over times t, read off at other times by straight lines; where t has two rows for one time, the later.
 ---@return number[]
 function impact.along(t, column, times)
+  need(type(t) == "table" and type(column) == "table" and type(times) == "table", "along: three lists are needed", 2)
+  need(#t == #column and #t > 0, string.format("along: %d times for %d values", #t, #column), 2)
   local result, i = {}, 1
   for row, time in ipairs(times) do
     while i < #t and t[i + 1] <= time do i = i + 1 end
@@ -324,6 +340,8 @@ end
 --- The first recorded event of a kind ("impact", "contact", ...) between two bodies, or nil; a nil name is any.
 ---@return table?
 function methods:first(kind, body1, body2)
+  local known = table.concat(event_kinds, ", ")
+  need((", " .. known .. ","):find(", " .. tostring(kind) .. ",", 1, true), "first: the kind must be one of " .. known, 2)
   for _, event in ipairs(self:events()) do
     local straight = (not body1 or event.body1 == body1) and (not body2 or event.body2 == body2)
     local turned = (not body1 or event.body2 == body1) and (not body2 or event.body1 == body2)
@@ -355,6 +373,7 @@ end
 ---@param track table  of scene:track
 ---@return {translation: number[], rotation: number[], potential: number[], total: number[]}
 function methods:energies(body, track)
+  need(is_track(track), "energies: a track of scene:track is needed", 2)
   local definition = find_body(self, body)
   local shape = definition.shape
   local mass = definition.mass or (definition.density or impact.defaults.density) * shape.volume
@@ -394,8 +413,6 @@ function methods:figure()
   if not plot then error(string.format("scene '%s' has no plot", self:name()), 2) end
   return plot(self)
 end
-
-local event_kinds = { "impact", "contact", "slip", "stick", "liftoff", "force", "rest" }
 
 local parts = {
   { "ballistic_flights", "flight in closed form", "stretch", "stretches" },

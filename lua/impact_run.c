@@ -196,6 +196,7 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     self->t_end = t_end;
     self->samples_told = 0;
     self->record = quat_lua_get_boolean(&options, "record", false);
+    self->rows.asked = self->rows.asked || self->record;
     self->sample_slot = function_slot(&options, "on_sample");
     self->event_slot = function_slot(&options, "on_event");
     self->progress_slot = function_slot(&options, "on_progress");

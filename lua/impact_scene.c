@@ -175,10 +175,18 @@ static int scene_run_to(lua_State *L)
     return impact_lua_run(L, self, quat_lua_arg_number(L, 2, "t", QUAT_LUA_NOT_NEGATIVE), 3);
 }
 
+/* Raises when no run was recorded: empty rows would be taken for an answer. */
+static const impact_lua_scene *recorded_scene(lua_State *L)
+{
+    const impact_lua_scene *self = check_scene(L);
+    if (!self->rows.asked) quat_lua_error(L, "scene '%s' has no rows: run it with record = true", self->name);
+    return self;
+}
+
 /* track(body): {t=, x=, ... wz=}, columns of the recorded rows of one body. */
 static int scene_track(lua_State *L)
 {
-    const impact_lua_scene *self = check_scene(L);
+    const impact_lua_scene *self = recorded_scene(L);
     const char *name = luaL_checkstring(L, 2);
     const int body = impact_scene_find(self->scene, name);
     if (body < 0) return quat_lua_error(L, "scene '%s' has no body '%s'", self->name, name);
@@ -189,7 +197,7 @@ static int scene_track(lua_State *L)
 /* events(): the recorded events, in order. */
 static int scene_events(lua_State *L)
 {
-    impact_lua_push_events(L, &check_scene(L)->rows);
+    impact_lua_push_events(L, &recorded_scene(L)->rows);
     return 1;
 }
 

@@ -21,6 +21,7 @@ typedef struct impact_lua_event {
 
 /* What scene:run{record=true} keeps. */
 typedef struct impact_lua_rows {
+    bool asked; /* some run was to keep rows */
     impact_sample *samples;
     size_t sample_count, sample_capacity;
     impact_lua_event *events;

@@ -280,6 +280,7 @@ end
 ---@param opacity? number
 ---@return plot.item
 function portrait.solid(state, shape, color, opacity)
+  if type(shape) ~= "userdata" then error("solid: shape must be a shape, got a " .. type(shape), 2) end
   local around, up = 48, 24
   local points, x, y, z = shape:mesh(around, up), {}, {}, {}
   for j = 0, up do

@@ -72,6 +72,25 @@ do
   check.raises("the scene is closed", function() scene:time() end)
 end
 
+-- Rows that nobody kept, and what is no track, are told.
+do
+  local scene = drop()
+  local function refuses(wanted, f) check.raises(wanted, function() local result = f() return result end) end
+  scene:run_to(0.1)
+  refuses("scene 'drop' has no rows: run it with record = true", function() local track = scene:track "ball" return track end)
+  refuses("scene 'drop' has no rows: run it with record = true", function() local events = scene:events() return events end)
+  scene:run { record = true }
+  local track = scene:track "ball"
+  refuses("track: rate must be a number", function() local fine = scene:track("ball", "x") return fine end)
+  refuses("energies: a track of scene:track is needed", function() local energies = scene:energies "ball" return energies end)
+  refuses("split: t must be a number", function() local before = impact.split(track) return before end)
+  refuses("along: 2 times for 1 values", function() local values = impact.along({ 1, 2 }, { 3 }, { 1.5 }) return values end)
+  refuses("first: the kind must be one of impact, contact, slip, stick, liftoff, force, rest", function()
+    local event = scene:first "bounce"
+    return event
+  end)
+end
+
 -- Moments by letters, in the energies too; and the body's surface as it stands at the end.
 do
   local turning = impact.scene { duration = 1, gravity = { x = 0, y = 0, z = -10 }, bodies = {
