@@ -278,6 +278,33 @@ static void what_is_drawn_into_a_wedge_is_told(void **state)
     impact_scene_destroy(scene);
 }
 
+/* A box that lies on a turntable goes along as long as friction can turn it, W^2 x <= mu g; else it slides off. */
+static void a_box_goes_along_until_friction_gives(void **state)
+{
+    (void)state;
+    const double mu = 0.5, x0 = 0.4, parts[5] = {0.2, 0.7, 0.999, 1.001, 1.5};
+    for (int k = 0; k < 5; k++) {
+        const double W = parts[k] * sqrt(mu * gravity / x0);
+        impact_body_def bodies[2] = {floor_body(), ball_body("box", (qvec3){x0, 0, 0.05}, mu, 0)};
+        bodies[0].omega.z = W;
+        impact_shape_superquadric(0.1, 0.1, 0.05, 50, 50, 50, &bodies[1].shape);
+        bodies[1].velocity.y = W * x0;
+        bodies[1].omega.z = W;
+        const impact_scene_def def = scene_of(bodies, 2, 2);
+        impact_scene *scene = make_scene(&def);
+        run(scene, def.duration, NULL);
+        impact_sample s;
+        impact_scene_body(scene, 1, &s);
+        const qvec3 along = turned_about((qvec3){0, 0, 1}, 2 * W, bodies[1].position);
+        if (parts[k] < 1)
+            assert_near3(s.position, along, 1e-10);
+        else
+            assert_true(hypot(s.position.x, s.position.y) > x0 + 0.01);
+        assert_account_closes(scene, 1e-10);
+        impact_scene_destroy(scene);
+    }
+}
+
 /* A belt with ends: carried over one it falls, at the speed it has. */
 static void a_ball_falls_off_the_end_of_a_belt(void **state)
 {
@@ -487,6 +514,7 @@ int main(void)
         cmocka_unit_test(in_a_groove_of_belts_it_rolls_at_four_ninths),
         cmocka_unit_test(together_drives_do_work_too),
         cmocka_unit_test(what_is_drawn_into_a_wedge_is_told),
+        cmocka_unit_test(a_box_goes_along_until_friction_gives),
         cmocka_unit_test(a_ball_falls_off_the_end_of_a_belt),
         cmocka_unit_test(without_friction_nothing_is_driven),
         cmocka_unit_test(a_drum_is_a_heavy_body_that_turns),
