@@ -313,11 +313,21 @@ static impact_status limit_step(impact_motion *motion, const double *y)
     return impact_ode_limit_step(motion->ode, isfinite(limit) ? limit : 0);
 }
 
+static impact_status too_rough(impact_motion *motion, double from, double to, long steps)
+{
+    snprintf(motion->message, sizeof motion->message,
+             "%ld steps from t = %.17g came to t = %.17g only: the motion is too rough (a face that "
+             "rocks, or masses too different that press on each other?)",
+             steps, from, to);
+    return IMPACT_EUNSETTLED;
+}
+
 /* Steps until an event or t_end; y at the end is the state at *t. */
 static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, impact_state *states,
                                impact_sampler *sampler, impact_end *end)
 {
-    enum { MAX_STILL = 1000, MAX_STEPS = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
+    enum { MAX_STILL = 1000, LOOK = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
+    const double least = 1e-6; /* of the time left, gained in so many steps */
     const long renewal = motion->creeping ? CARRIED_RENEWAL : RENEWAL;
     const long steps_before = motion->steps_before;
     const double t_start = steps_before > 0 ? motion->began : *t;
@@ -328,7 +338,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
     double tau = clocked ? 0 : *t;
     const double stop = clocked ? 1000 * (t_end - *t) + 1000 : t_end;
     *end = (impact_end){IMPACT_END_TIME, 0};
-    for (long step = steps_before; still < MAX_STILL && step < MAX_STEPS; step++) {
+    for (long step = steps_before; still < MAX_STILL; step++) {
         const double tau_before = tau;
         bool found;
         impact_status status = limit_step(motion, y);
@@ -364,20 +374,16 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         passed = found;
         /* Held contacts drift apart otherwise, and forces may brake as they did not before. */
         if (step + 1 == steps_before + renewal) {
-            motion->steps_before = step + 1;
+            const bool looks = step + 1 >= LOOK; /* long runs are the caller's to stop, unless they get nowhere */
+            if (looks && *t - t_start < least * (t_end - t_start)) return too_rough(motion, t_start, *t, LOOK);
+            motion->steps_before = looks ? 0 : step + 1;
             motion->began = t_start;
             *end = (impact_end){IMPACT_END_RENEWAL, 0};
             return IMPACT_OK;
         }
     }
-    if (still >= MAX_STILL)
-        snprintf(motion->message, sizeof motion->message,
-                 "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
-    else
-        snprintf(motion->message, sizeof motion->message,
-                 "%d steps from t = %.17g came to t = %.17g only: the motion is too rough (a face that "
-                 "rocks, or masses too different that press on each other?)",
-                 MAX_STEPS, t_start, *t);
+    snprintf(motion->message, sizeof motion->message,
+             "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
     return IMPACT_EUNSETTLED;
 }
 
