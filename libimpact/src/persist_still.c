@@ -7,6 +7,7 @@
  */
 #include "persist_still.h"
 #include "persist_system.h"
+#include "world_gap.h"
 
 #include <stdlib.h>
 
@@ -24,6 +25,7 @@ typedef struct workspace {
     body_rate *rates;            /* per body */
     contact_response *responses; /* per touch */
     impact_pair *before;         /* the pairs as they were */
+    bool *locked;                /* per body: what sticks at its contacts leaves it no motion */
 } workspace;
 
 static bool is_slow(const impact_world *world, const impact_state *states, int i, double rest_speed)
@@ -165,13 +167,15 @@ static answer sweep(impact_persist *persist, const impact_world *world, const im
 
 /* Whether the island's bodies are all slow, and its reactions not unique. */
 static bool can_be_still(const impact_persist *persist, const impact_world *world, const impact_state *states,
-                         int island, double rest_speed)
+                         int island, double rest_speed, const bool *locked)
 {
     bool redundant = false;
     for (int c = 0; c < persist->count; c++) {
         const impact_touch *touch = &persist->touches[c];
         if (persist->island[c] != island) continue;
-        if (!pair_is_slow(world, states, &world->pairs[touch->pair], rest_speed)) return false;
+        if (!pair_is_slow(world, states, &world->pairs[touch->pair], rest_speed) &&
+            !(locked[touch->body1] && locked[touch->body2]))
+            return false;
         redundant = redundant || touch->redundant;
     }
     return redundant;
@@ -219,22 +223,44 @@ static void settle(impact_persist *persist, impact_world *world, const impact_st
     if (found == MOVES) open_parting(persist, world, island, work, load);
 }
 
+/* Which bodies, slower than jam_speed, would not move any more if their contacts stuck. */
+static void find_locked(impact_persist *persist, impact_world *world, const impact_state *states,
+                        const impact_load *loads, double rest_speed, double jam_speed, bool *locked)
+{
+    impact_persist_find_touches(persist, world, states, loads);
+    for (int c = 0; c < persist->count; c++) {
+        impact_touch *touch = &persist->touches[c];
+        touch->wanted = qvec3_neg(qvec3_axpy(impact_world_approach(world, touch, states), touch->normal, touch->slip));
+    }
+    impact_system_solve(persist, world, states, false);
+    for (int i = 0; i < world->body_count; i++) {
+        const impact_body *body = &world->bodies[i];
+        locked[i] = body->is_static;
+        if (body->is_static || !is_slow(world, states, i, jam_speed)) continue;
+        const impact_effect *effect = &persist->effects[i];
+        const qvec3 v = qvec3_add(states[i].v, effect->linear),
+                    omega = qvec3_add(impact_omega(body, &states[i]), effect->angular);
+        locked[i] = qvec3_norm(v) + body->radius * qvec3_norm(omega) <= rest_speed;
+    }
+}
+
 /* Solves for the reactions as if everything slow stuck, and finds the islands; which of them are still. */
 static void find(impact_persist *persist, impact_world *world, const impact_state *states, const impact_load *loads,
-                 double rest_speed, workspace *work)
+                 double rest_speed, double jam_speed, workspace *work)
 {
     for (int p = 0; p < world->pair_count; p++) {
         impact_pair *pair = &world->pairs[p];
         work->before[p] = *pair;
         if (!impact_is_held(pair) || pair->friction == 0) continue;
-        if (!pair_is_slow(world, states, pair, rest_speed)) continue;
+        if (!pair_is_slow(world, states, pair, jam_speed)) continue;
         pair->mode = IMPACT_ROLL;
         pair->onset = false;
     }
+    find_locked(persist, world, states, loads, rest_speed, jam_speed, work->locked);
     impact_persist_solve(persist, world, states, loads);
     begin_rates(world, states, loads, work->rates);
     for (int c = 0; c < persist->count; c++)
-        if (persist->island[c] == c && can_be_still(persist, world, states, c, rest_speed))
+        if (persist->island[c] == c && can_be_still(persist, world, states, c, rest_speed, work->locked))
             settle(persist, world, states, c, work);
     for (int p = 0; p < world->pair_count; p++) {
         impact_pair *pair = &world->pairs[p];
@@ -250,20 +276,22 @@ void impact_persist_stir(impact_world *world)
 }
 
 impact_status impact_persist_find_still(impact_persist *persist, impact_world *world, const impact_state *states,
-                                        const impact_load *loads, double rest_speed)
+                                        const impact_load *loads, double rest_speed, double jam_speed)
 {
     bool any = false;
     impact_persist_stir(world);
     for (int p = 0; p < world->pair_count; p++)
-        any = any || (impact_is_held(&world->pairs[p]) && pair_is_slow(world, states, &world->pairs[p], rest_speed));
+        any = any || (impact_is_held(&world->pairs[p]) && pair_is_slow(world, states, &world->pairs[p], jam_speed));
     if (!any || world->field_count > 0) return IMPACT_OK;
     workspace work = {.rates = malloc((size_t)world->body_count * sizeof *work.rates),
                       .responses = malloc((size_t)persist->count * sizeof *work.responses),
-                      .before = malloc((size_t)world->pair_count * sizeof *work.before)};
-    const bool room = work.rates && work.responses && work.before;
-    if (room) find(persist, world, states, loads, rest_speed, &work);
+                      .before = malloc((size_t)world->pair_count * sizeof *work.before),
+                      .locked = malloc((size_t)world->body_count * sizeof *work.locked)};
+    const bool room = work.rates && work.responses && work.before && work.locked;
+    if (room) find(persist, world, states, loads, rest_speed, jam_speed, &work);
     free(work.rates);
     free(work.responses);
     free(work.before);
+    free(work.locked);
     return room ? IMPACT_OK : IMPACT_ENOMEM;
 }

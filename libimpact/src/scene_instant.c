@@ -427,6 +427,28 @@ static impact_status bring_to_rest(impact_scene *scene)
     return IMPACT_OK;
 }
 
+static void stop(impact_scene *scene, int body)
+{
+    if (!scene->world.bodies[body].is_static) scene->states[body].v = scene->states[body].momentum = (qvec3){0, 0, 0};
+}
+
+/* What stands still, or is so jammed that it stops before it has gone the rest height. */
+static impact_status find_still(impact_scene *scene)
+{
+    impact_motion *motion = &scene->motion;
+    impact_world *world = &scene->world;
+    const double jam_speed = fmax(scene->rest_speed, sqrt(2 * qvec3_norm(world->gravity) * scene->rest_height));
+    const impact_status status =
+        impact_persist_find_still(&motion->persist, world, scene->states, motion->loads, scene->rest_speed, jam_speed);
+    for (int p = 0; status == IMPACT_OK && p < world->pair_count; p++) {
+        const impact_pair *pair = &world->pairs[p];
+        if (!impact_is_held(pair) || !pair->still) continue;
+        stop(scene, pair->body1);
+        stop(scene, pair->body2);
+    }
+    return status;
+}
+
 /* Puts the constraints of the contacts that are held in order, and opens those that would pull. */
 static impact_status make_consistent(impact_scene *scene)
 {
@@ -438,9 +460,7 @@ static impact_status make_consistent(impact_scene *scene)
     impact_persist_project(&motion->persist, &scene->world, scene->states, motion->loads);
     motion->works.drive += impact_drive_power(&motion->persist, &scene->world);
     status = load(scene);
-    if (status == IMPACT_OK)
-        status =
-            impact_persist_find_still(&motion->persist, &scene->world, scene->states, motion->loads, scene->rest_speed);
+    if (status == IMPACT_OK) status = find_still(scene);
     if (status == IMPACT_OK)
         status = impact_persist_resolve(&motion->persist, &scene->world, scene->states, motion->loads);
     if (status == IMPACT_EUNSETTLED)
