@@ -281,12 +281,13 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
 
 /* ---- modes ---- */
 
-/* The contact that pulls hardest, or -1. */
+/* The contact that pulls hardest, or -1; what nothing presses cannot begin to slide either. */
 static int worst_pull(const impact_persist *persist, double scale)
 {
     int worst = -1;
     for (int c = 0; c < persist->count; c++)
-        if (!persist->touches[c].still && persist->touches[c].pressure < -1e-12 * scale &&
+        if (!persist->touches[c].still &&
+            persist->touches[c].pressure < (persist->touches[c].onset ? 1e-12 : -1e-12) * scale &&
             (worst < 0 || persist->touches[c].pressure < persist->touches[worst].pressure))
             worst = c;
     return worst;
@@ -365,6 +366,7 @@ impact_status impact_persist_resolve(impact_persist *persist, impact_world *worl
 {
     impact_status status = impact_persist_reserve(persist, world, states);
     stop_slow_slides(persist, world, states, loads);
+    persist->lenient = false;
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].tried = false;
     for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 6 * world->pair_count + 8; round++) {
         impact_persist_solve(persist, world, states, loads);
@@ -382,7 +384,9 @@ impact_status impact_persist_resolve(impact_persist *persist, impact_world *worl
             pair->onset = false;
             pair->tried = true;
         } else {
-            return all_slide(persist) ? IMPACT_OK : impact_persist_try_modes(persist, world, states, loads);
+            if (!all_slide(persist)) status = impact_persist_try_modes(persist, world, states, loads);
+            persist->lenient = !all_slide(persist);
+            return status;
         }
     }
     return persist->count == 0 ? status : IMPACT_EUNSETTLED;

@@ -53,11 +53,13 @@ typedef struct impact_persist {
     struct impact_unknown *unknowns; /* 3 capacity */
     double *matrix, *right;          /* 2 (3 capacity)^2 and 6 capacity */
     int *order;                      /* 6 capacity */
-    bool redundant;                  /* more contacts were solved for than the balance of forces can tell apart */
-    int *island;                     /* capacity; touches of the same number share bodies */
-    int bodies;                      /* bodies there is room for */
-    int *first;                      /* per body: scratch */
-    impact_effect *effects;          /* per body: of the reactions that were solved for */
+    bool
+        lenient; /* no modes were found in which all slip that begins goes on: directions are then not looked for anew */
+    bool redundant;         /* more contacts were solved for than the balance of forces can tell apart */
+    int *island;            /* capacity; touches of the same number share bodies */
+    int bodies;             /* bodies there is room for */
+    int *first;             /* per body: scratch */
+    impact_effect *effects; /* per body: of the reactions that were solved for */
 } impact_persist;
 
 /* Room for every pair of the world that is held now; the place of contact of those newly held that carry it. */

@@ -201,12 +201,12 @@ static bool solve_anew(impact_persist *persist, impact_world *world, const impac
 static void solve_onsets(impact_persist *persist, impact_world *world, const impact_state *states)
 {
     bool settled = recall_turns(persist, world) && turn_together(persist, world, states);
-    bool slide = settled && all_slide(persist, world, states);
-    if (!slide) {
+    bool good = settled && (all_slide(persist, world, states) || persist->lenient);
+    if (!good) {
         settled = solve_anew(persist, world, states);
-        slide = all_slide(persist, world, states);
+        good = settled && (all_slide(persist, world, states) || persist->lenient);
     }
-    if (settled && slide) keep_turns(persist, world);
+    if (good) keep_turns(persist, world);
 }
 
 void impact_persist_solve(impact_persist *persist, impact_world *world, const impact_state *states,
