@@ -2,12 +2,14 @@
  *
  * bench_collide: error against run time of one impact.
  *
- * CSV rows (drawn by draw_collide.lua): class, solver, parameter, impacts, failures (no answer, or off by more than 1e-3), median and worst error of the velocities
- * against the 128-bit oracle (without libquadmath: against the series of order 30), median time of one call in
- * microseconds, that time over the series' own in the same class, and the median and largest condition number of M of the
- * class, by which rounding of the input can grow.
- * Classes: how the impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones; isotropic: a = b), the scenes S1, S2, S5 that other programs are compared on,
- * and S5e, 300 random ellipsoids on a plane. `loop of`, `array of`: many different impacts by a closed form, the mean time of one. `p_z`: what integration over the normal impulse itself does, by CVODE.
+ * CSV rows (drawn by draw_collide.lua): class, solver, parameter, impacts, failures (no answer, or off by more than
+ * 1e-3), median and worst error of the velocities against the 128-bit oracle (without libquadmath: against the series
+ * of order 30), median time of one call in microseconds, that time over the series' own in the same class, and the
+ * median and largest condition number of M of the class, by which rounding of the input can grow. Classes: how the
+ * impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones; isotropic: a = b), the
+ * scenes S1, S2, S5 that other programs are compared on, and S5e, 300 random ellipsoids on a plane. `loop of`, `array
+ * of`: many different impacts by a closed form, the mean time of one. `p_z`: what integration over the normal impulse
+ * itself does, by CVODE.
  */
 #include <pthread.h>
 #include <stdio.h>
@@ -366,7 +368,8 @@ static void print_loop(const char *name, const char *parameter, int count, doubl
     printf("%s,closed form,%s,%d,0,,,%.3g,%.3g,,\n", name, parameter, count, 1e6 * time, time / unit);
 }
 
-/* Different impacts one after another, as a program has them: the time of one in the mean, for each closed form, beside a sphere's. */
+/* Different impacts one after another, as a program has them: the time of one in the mean, for each closed form, beside
+ * a sphere's. */
 static void closed_forms(void)
 {
     enum { COUNT = 2000 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a simulated second of balls that fall into a box costs, and one event, against the number of balls: CSV, with ratios to the
- * smallest case. The box grows with the balls, so that each has as many neighbours.
+ * What a simulated second of balls that fall into a box costs, and one event, against the number of balls: CSV, with
+ * ratios to the smallest case. The box grows with the balls, so that each has as many neighbours.
  */
 #include <math.h>
 #include <stdio.h>

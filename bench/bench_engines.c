@@ -2,14 +2,15 @@
  *
  * bench_engines: whole engines side by side on scenes with a known answer.
  *
- *   S1 a spinning sphere meets a plane, S2 two spheres meet obliquely (a: slide throughout, b: come to stick), S3 ten bounces,
- *   S4 free tumbling near the unstable axis for 100 s, S5 an ellipsoid meets a plane (a: the slip turns by 97 degrees, b: it ends)
+ *   S1 a spinning sphere meets a plane, S2 two spheres meet obliquely (a: slide throughout, b: come to stick), S3 ten
+ * bounces, S4 free tumbling near the unstable axis for 100 s, S5 an ellipsoid meets a plane (a: the slip turns by 97
+ * degrees, b: it ends)
  *
- * CSV: scene, engine, step in s (0: none), error, time in us (median), that time over ours. The error is, for one impact, that of
- * the velocities, sqrt(sum |dv|^2 + rho^2 |dw|^2) relative to their own; for S3 the worst relative error of a height; for S4 the
- * worst angle in rad at t = 1 ... 100 s. The right answers: S1, S2, S5 by the 128-bit oracle, S3 (height eps^(2 k)), and S4 by a
- * Taylor series in long double. Other engines solve an impact by Newton's law with the last direction of slip: on S5 no step helps
- * them.
+ * CSV: scene, engine, step in s (0: none), error, time in us (median), that time over ours. The error is, for one
+ * impact, that of the velocities, sqrt(sum |dv|^2 + rho^2 |dw|^2) relative to their own; for S3 the worst relative
+ * error of a height; for S4 the worst angle in rad at t = 1 ... 100 s. The right answers: S1, S2, S5 by the 128-bit
+ * oracle, S3 (height eps^(2 k)), and S4 by a Taylor series in long double. Other engines solve an impact by Newton's
+ * law with the last direction of slip: on S5 no step helps them.
  */
 #include <impact/impact.h>
 #include <stdio.h>

@@ -7,7 +7,8 @@
  * ns: median over the rounds, per element. ratio: this row's time over that of the fastest peer in double (memcpy for
  * the rows called rotate_array_to_copy). error_u: largest error of a component over the length of the result, in units
  * of 2^-53, against long double. checksum: the sum of all results. In every round all contestants run one after the
- * other, so that what disturbs one disturbs all. `libquat matrix`: the same rotations held as matrices, made beforehand.
+ * other, so that what disturbs one disturbs all. `libquat matrix`: the same rotations held as matrices, made
+ * beforehand.
  */
 #include "bench_quat.h"
 #include <float.h>

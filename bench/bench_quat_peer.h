@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the peers of bench_quat in C++ have in common: their arrays and the loops over them. `Ops` gives a peer's types Quat,
- * Vec and Mat, how to make them and take them apart, and its operations, by the peer's own calls.
+ * What the peers of bench_quat in C++ have in common: their arrays and the loops over them. `Ops` gives a peer's types
+ * Quat, Vec and Mat, how to make them and take them apart, and its operations, by the peer's own calls.
  */
 #ifndef BENCH_QUAT_PEER_H
 #define BENCH_QUAT_PEER_H

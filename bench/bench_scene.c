@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * bench_scene: error against run time of whole scenes over `tolerance`, the relative tolerance of the motion's integration.
+ * bench_scene: error against run time of whole scenes over `tolerance`, the relative tolerance of the motion's
+ * integration.
  *
- * CSV rows (drawn by draw_scene.lua): scene, what the error is taken against, tolerance, worst error of position and of velocity over 32
- * times of the run, relative to the largest of the run, median time of making and running the scene in microseconds, that over the
- * time at the default tolerance, and the integrator's steps.
- * Scenes: `orbit`, two spheres about each other, eccentricity 0.6, ten turns, against Kepler's equation in long double; `sphere_wall`
- * and `two_spheres` as in examples/scenes; `ellipsoid`, dropped in a wind on the floor, three bounces. These three have no closed
- * form as a whole, and are taken against themselves at the tolerance 1e-14.
+ * CSV rows (drawn by draw_scene.lua): scene, what the error is taken against, tolerance, worst error of position and of
+ * velocity over 32 times of the run, relative to the largest of the run, median time of making and running the scene in
+ * microseconds, that over the time at the default tolerance, and the integrator's steps. Scenes: `orbit`, two spheres
+ * about each other, eccentricity 0.6, ten turns, against Kepler's equation in long double; `sphere_wall` and
+ * `two_spheres` as in examples/scenes; `ellipsoid`, dropped in a wind on the floor, three bounces. These three have no
+ * closed form as a whole, and are taken against themselves at the tolerance 1e-14.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What bench_engines and the engines it compares share: three questions, each asked with a step of the engine's choosing.
+ * What bench_engines and the engines it compares share: three questions, each asked with a step of the engine's
+ * choosing.
  */
 #ifndef PEERS_ENGINES_H
 #define PEERS_ENGINES_H
@@ -25,7 +26,8 @@ typedef struct tumble_case {
     qvec3 moments, omega;
 } tumble_case;
 
-/* Each gives its answer and the seconds that the motion itself took, without the making of a world. False: no answer. */
+/* Each gives its answer and the seconds that the motion itself took, without the making of a world. False:
+ * no answer. */
 typedef struct engine {
     const char *name; /* NULL ends the list */
     double step;      /* s */
@@ -40,8 +42,8 @@ typedef struct engine {
 /* Empty where the engine is not installed. */
 extern const engine engines_ode[], engines_bullet[];
 
-/* A bouncing point mass watched at each step: the height of each flight from its energy, so that the step's place on the parabola
- * does not count. */
+/* A bouncing point mass watched at each step: the height of each flight from its energy, so that the step's place on
+ * the parabola does not count. */
 typedef struct bounce_watch {
     double last_speed;
     int bounces;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Open Dynamics Engine as a peer: its direct solver (dWorldStep), no softening, the friction pyramid laid along the slip.
+ * Open Dynamics Engine as a peer: its direct solver (dWorldStep), no softening, the friction pyramid laid along the
+ * slip.
  */
 #include "peers_engines.h"
 

@@ -3,20 +3,22 @@
  * report_collide: the campaign of the room collide over random impacts of every class.
  *
  * report_collide [--impacts N] [--seed S] [--threads T] [--cvode N] [--oracle N]
- * N impacts in all, the classes in turn, on so many threads (by itself as many as there are cores); one in a hundred is solved by CVODE
- * at 1e-12 too and one in two hundred by the 128-bit oracle, or about as many as --cvode and --oracle say. How far it is and how
- * long it will yet take goes to stderr. Every figure but the times depends on N and the seed alone.
+ * N impacts in all, the classes in turn, on so many threads (by itself as many as there are cores); one in a hundred is
+ * solved by CVODE at 1e-12 too and one in two hundred by the 128-bit oracle, or about as many as --cvode and --oracle
+ * say. How far it is and how long it will yet take goes to stderr. Every figure but the times depends on N and the seed
+ * alone.
  *
  * Three tables, CSV:
- * 1. per class: how many impacts, how many failed (a status below 0, or a NaN), what happened in them; the worst energy gain over the
- *    energy before (Poisson and Stronge), the worst distance outside of the friction cone over |P|, Newton's gains, and the time of
- *    one call in microseconds (the mean leaves out what took above 200: another program had the core);
- * 2. per class and independent solver: quantiles of the error of the velocities, plain and in units of eps cond(M); how many the
- *    other solver could not answer, how many are off by more than 1e-12 and more than 10 eps cond, and how many of these by more than
- *    ten times the data's own error (see 3) as well;
- * 3. the worst of each class against the oracle: beside the error of ours, data_error is how far the exact answer itself moves when
- *    the inputs change by at most one unit in the last place, the largest of 24 such changes.
- * Then all of it in four lines of words.
+ * 1. per class: how many impacts, how many failed (a status below 0, or a NaN), what happened in them; the worst energy
+ * gain over the energy before (Poisson and Stronge), the worst distance outside of the friction cone over |P|, Newton's
+ * gains, and the time of one call in microseconds (the mean leaves out what took above 200: another program had the
+ * core);
+ * 2. per class and independent solver: quantiles of the error of the velocities, plain and in units of eps cond(M); how
+ * many the other solver could not answer, how many are off by more than 1e-12 and more than 10 eps cond, and how many
+ * of these by more than ten times the data's own error (see 3) as well;
+ * 3. the worst of each class against the oracle: beside the error of ours, data_error is how far the exact answer
+ * itself moves when the inputs change by at most one unit in the last place, the largest of 24 such changes. Then all
+ * of it in four lines of words.
  */
 #include <pthread.h>
 #include <stdatomic.h>
@@ -275,7 +277,8 @@ static bool known(int argc, char **argv)
     return true;
 }
 
-/* About `wanted` of the impacts of all classes: every so many of a class, and no multiple of 3, since the laws come in turn. */
+/* About `wanted` of the impacts of all classes: every so many of a class, and no multiple of 3, since the laws come in
+ * turn. */
 static long stride(long impacts, long wanted)
 {
     const long every = wanted > 0 ? (impacts + wanted - 1) / wanted : 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * report_extreme: whole scenes at the ends of their ranges, each beside its closed form. CSV: the case and what is driven to
- * its end; how the run ended; error of the answer relative to its own size (NaN: no closed form, the account tells); how far the energy
- * account is off, of the energies in it; impacts, integrator steps, and the CPU time in ms.
+ * report_extreme: whole scenes at the ends of their ranges, each beside its closed form. CSV: the case and what is
+ * driven to its end; how the run ended; error of the answer relative to its own size (NaN: no closed form, the account
+ * tells); how far the energy account is off, of the energies in it; impacts, integrator steps, and the CPU time in ms.
  *
  *   stiff drag     a body falls through drag of this rate (1/s): terminal speed g/rate
  *   units          five bounces, with lengths and gravity times this

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * report_held: the energy account of contacts that are held. Superquadrics and superellipsoids of random axes, orientation and spin, set
- * down on a plane so that they roll, or slide without friction, for three seconds.
+ * report_held: the energy account of contacts that are held. Superquadrics and superellipsoids of random axes,
+ * orientation and spin, set down on a plane so that they roll, or slide without friction, for three seconds.
  *
  * report_held [--runs N] [--seed S] [--exponent P]
- * CSV: one row per exponent and mode. error: what the account is off by, over the largest energy in it, of the runs that ended
- * well: median and worst. soft: runs that said themselves that their account is off (IMPACT_SOFT); refused: runs that ended with an
- * error, with a word; long: stopped after a million steps. held: the part of the time in contact. drift: of the runs without friction,
- * the change of the angular momentum about the vertical, over the largest. steps, starts: the integrator's, per run. message: the last
- * refusal.
+ * CSV: one row per exponent and mode. error: what the account is off by, over the largest energy in it, of the runs
+ * that ended well: median and worst. soft: runs that said themselves that their account is off (IMPACT_SOFT); refused:
+ * runs that ended with an error, with a word; long: stopped after a million steps. held: the part of the time in
+ * contact. drift: of the runs without friction, the change of the angular momentum about the vertical, over the
+ * largest. steps, starts: the integrator's, per run. message: the last refusal.
  */
 #include <stdio.h>
 #include <stdlib.h>

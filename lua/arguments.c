@@ -233,7 +233,8 @@ static int choice_at(lua_State *L, const quat_lua_reader *reader, const char *ke
     return refuse(L, reader, key, index, wanted);
 }
 
-/* The components of the table at index, by place or by letter; all must be finite. False when it is not such a table. */
+/* The components of the table at index, by place or by letter; all must be finite. False when it is not such
+ * a table. */
 static bool components_at(lua_State *L, int index, const char *letters, double *values)
 {
     const int count = (int)strlen(letters);

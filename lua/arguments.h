@@ -3,13 +3,14 @@
  * arguments: how the Lua face reads what a script hands it. Shared by quat.core, quat.gsl and impact.core.
  *
  * To bind a room:
- *   1. lua/quat_ROOM.c or lua/impact_ROOM.c with one `void quat_lua_open_ROOM(lua_State *L)` (or impact_lua_open_ROOM): the module's
- *      table is on top of the stack when it is called and when it returns; add your functions to it with luaL_setfuncs.
+ *   1. lua/quat_ROOM.c or lua/impact_ROOM.c with one `void quat_lua_open_ROOM(lua_State *L)` (or impact_lua_open_ROOM):
+ * the module's table is on top of the stack when it is called and when it returns; add your functions to it with
+ * luaL_setfuncs.
  *   2. Name the file in lua/CMakeLists.txt and the opener in the list of lua/quat_core.c or lua/impact_core.c.
- *      A room that needs GSL goes to the module quat.gsl instead (lua/quat_gsl.c), which quat.lua and the runner load when a script
- *      first uses one of its names.
- *   3. Read with the functions below. Misuse raises an error that names the argument; an expected failure returns nil, message
- *      (quat_lua_failure). Results go back with what results.h has.
+ *      A room that needs GSL goes to the module quat.gsl instead (lua/quat_gsl.c), which quat.lua and the runner load
+ * when a script first uses one of its names.
+ *   3. Read with the functions below. Misuse raises an error that names the argument; an expected failure returns nil,
+ * message (quat_lua_failure). Results go back with what results.h has.
  *   4. Sugar in Lua and the LuaLS annotations go to lua/quat.lua or lua/impact.lua.
  * Never let a Lua error pass through C code that is not ours (CVODE, GSL, libccd): call back with lua_pcall.
  */
@@ -49,8 +50,8 @@ int quat_lua_error(lua_State *L, const char *format, ...) __attribute__((format(
 /* Returns nil, message to the script: `return quat_lua_failure(L, quat_status_string(status))`. */
 int quat_lua_failure(lua_State *L, const char *message);
 
-/* Runs work on the arguments on the stack with the collector at rest: no finaliser of the script's runs, and no string of a table
- * that is being read goes away. `return quat_lua_quietly(L, work)`. */
+/* Runs work on the arguments on the stack with the collector at rest: no finaliser of the script's runs, and no string
+ * of a table that is being read goes away. `return quat_lua_quietly(L, work)`. */
 int quat_lua_quietly(lua_State *L, lua_CFunction work);
 
 /* ---- arguments of functions, by position; name is the argument's name in the error ---- */
@@ -70,7 +71,8 @@ int quat_lua_arg_choice(lua_State *L, int arg, const char *name, const char *con
 
 /* ---- tables of named values ---- */
 
-/* A table being read. kind and name tell the script whose key is wrong: "body 'coin'". All pointers must outlive the reader. */
+/* A table being read. kind and name tell the script whose key is wrong: "body 'coin'". All pointers must outlive the
+ * reader. */
 typedef struct quat_lua_reader {
     lua_State *L;
     int index;         /* of the table, absolute */
@@ -80,8 +82,8 @@ typedef struct quat_lua_reader {
 } quat_lua_reader;
 
 /* Checks that the value at index is a table with no other keys than those in keys (NULL-terminated), and raises
- * "unknown key 'fricton' in body 'coin' (did you mean 'friction'?)" otherwise, with the keys it knows where no guess comes to mind. The table's own `name`, when it is a string,
- * becomes the reader's. */
+ * "unknown key 'fricton' in body 'coin' (did you mean 'friction'?)" otherwise, with the keys it knows where no guess
+ * comes to mind. The table's own `name`, when it is a string, becomes the reader's. */
 quat_lua_reader quat_lua_read(lua_State *L, int index, const char *kind, const char *where, const char *const keys[]);
 /* Raises "file:line: body 'coin': message". */
 int quat_lua_reader_error(const quat_lua_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -5,8 +5,8 @@
 #ifndef QUAT_LUA_GUESS_H
 #define QUAT_LUA_GUESS_H
 
-/* The one of the keys (NULL-terminated) that was probably meant: at most a third of its letters wrong, of a single letter its repeats;
- * NULL when none is near. */
+/* The one of the keys (NULL-terminated) that was probably meant: at most a third of its letters wrong, of a single
+ * letter its repeats; NULL when none is near. */
 const char *quat_lua_guess(const char *given, const char *const keys[]);
 
 #endif

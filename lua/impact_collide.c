@@ -212,8 +212,8 @@ static impact_status make_box(lua_State *L, const quat_lua_reader *reader, impac
     return status;
 }
 
-/* Reads all of a collision; *call, if it has a friction law, serves that from then on. Raises with the key; a status below 0 where there
- * is no workspace to be had. */
+/* Reads all of a collision; *call, if it has a friction law, serves that from then on. Raises with the key; a status
+ * below 0 where there is no workspace to be had. */
 static impact_status read_whole(lua_State *L, const quat_lua_reader *reader, law_call *call, impact_collision *c)
 {
     impact_lua_read_collision(reader, c);
@@ -239,7 +239,8 @@ const char *impact_lua_why_no_outcome(impact_status status)
                                       : impact_status_string(status);
 }
 
-/* collide{m1=, J1=, r1=, v1=, w1=, m2=, ..., n=, mu=, eps=, law=, solver=}: a table, or nil and why there is no answer. */
+/* collide{m1=, J1=, r1=, v1=, w1=, m2=, ..., n=, mu=, eps=, law=, solver=}: a table, or nil and why there is
+ * no answer. */
 static int collide(lua_State *L)
 {
     const quat_lua_reader reader = quat_lua_read(L, 1, "collision", NULL, collide_keys);

@@ -11,7 +11,8 @@
 extern const char *const impact_lua_laws[];
 extern const char *const impact_lua_solvers[];
 
-/* Reads an inertia at the top of the stack: {{,,},{,,},{,,}}, a world tensor, or {moments=, orientation=}. Raises with the key. */
+/* Reads an inertia at the top of the stack: {{,,},{,,},{,,}}, a world tensor, or {moments=, orientation=}. Raises with
+ * the key. */
 void impact_lua_read_inertia(const quat_lua_reader *reader, const char *key, qvec3 *moments, quat *orientation);
 
 /* Reads the keys that every kind of call has, mu not among them. Raises with the key. */

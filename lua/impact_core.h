@@ -41,7 +41,8 @@ const impact_lua_host *impact_lua_get_host(lua_State *L);
 
 /* ---- definitions that a script makes before the scene ---- */
 
-/* Makes the table at arg a checked definition of the kind: gives it the metatable and keeps its position for later errors. */
+/* Makes the table at arg a checked definition of the kind: gives it the metatable and keeps its position for later
+ * errors. */
 void impact_lua_mark(lua_State *L, int arg, const char *metatable);
 /* Whether the value at index was so marked. */
 bool impact_lua_is_marked(lua_State *L, int index, const char *metatable);
@@ -50,7 +51,8 @@ const char *impact_lua_push_position(lua_State *L, int index);
 
 /* Read a definition over the library's defaults. The strings in *def live as long as the table. */
 void impact_lua_read_body(lua_State *L, int index, const char *where, impact_body_def *def);
-/* The kinds' metatables decide; a custom force's function and context stay unset. Raises when it is no force; item names it. */
+/* The kinds' metatables decide; a custom force's function and context stay unset. Raises when it is no force; item
+ * names it. */
 /* Whether the value at index was made with impact.wind, impact.attraction or impact.force. */
 bool impact_lua_is_force(lua_State *L, int index);
 void impact_lua_read_force(lua_State *L, int index, const char *where, const char *item, impact_force_def *def);

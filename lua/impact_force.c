@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Forces as a script writes them: impact.wind{...}, impact.attraction{...}, impact.force{law=function(t, body) ... end}.
+ * Forces as a script writes them: impact.wind{...}, impact.attraction{...}, impact.force{law=function(t, body) ...
+ * end}.
  */
 #include "impact_core.h"
 

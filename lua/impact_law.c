@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The laws of custom forces: functions of the script, called from inside CVODE. Each call is protected: an error is kept, and the run
- * stops in order.
+ * The laws of custom forces: functions of the script, called from inside CVODE. Each call is protected: an error is
+ * kept, and the run stops in order.
  */
 #include "impact_scene.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Running a scene from a script. The script's functions are called from inside libimpact and CVODE, so each call is protected:
- * an error is kept, the run stops in order, and the error goes on from where scene:run was called.
+ * Running a scene from a script. The script's functions are called from inside libimpact and CVODE, so each call is
+ * protected: an error is kept, the run stops in order, and the error goes on from where scene:run was called.
  */
 #include "impact_scene.h"
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene userdata, and the files that work on it: impact_scene.c (making it, asking it) stands on impact_scene_read.c (its
- * definition), impact_run.c (running it), impact_rows.c (what comes out) and impact_law.c (forces of the script).
+ * The scene userdata, and the files that work on it: impact_scene.c (making it, asking it) stands on
+ * impact_scene_read.c (its definition), impact_run.c (running it), impact_rows.c (what comes out) and impact_law.c
+ * (forces of the script).
  */
 #ifndef IMPACT_LUA_SCENE_H
 #define IMPACT_LUA_SCENE_H
@@ -28,8 +29,8 @@ typedef struct impact_lua_rows {
     size_t event_count, event_capacity;
 } impact_lua_rows;
 
-/* The places of an entry of the table of laws. The script sees the state; what is written into it at each call stands beside it, so
- * that the script cannot take it away. */
+/* The places of an entry of the table of laws. The script sees the state; what is written into it at each call stands
+ * beside it, so that the script cannot take it away. */
 enum {
     IMPACT_LUA_LAW_FUNCTION = 1,
     IMPACT_LUA_LAW_STATE,
@@ -72,7 +73,8 @@ typedef struct impact_lua_scene {
 
 /* ---- impact_law.c ---- */
 
-/* Pushes the entry of a custom force in the table of laws. The force's table is on top of the stack, its place below it. */
+/* Pushes the entry of a custom force in the table of laws. The force's table is on top of the stack, its place below
+ * it. */
 void impact_lua_push_law(lua_State *L, const impact_force_def *force);
 /* The force function that calls a script's law. */
 impact_force_function impact_lua_call_law;
@@ -96,13 +98,14 @@ void impact_lua_push_events(lua_State *L, const impact_lua_rows *rows);
 
 /* ---- impact_scene_read.c ---- */
 
-/* The definition in the table at index. What it points to stays on the stack, and must until the scene is made; laws: the stack
- * place of the table of laws, which is filled. */
+/* The definition in the table at index. What it points to stays on the stack, and must until the scene is made; laws:
+ * the stack place of the table of laws, which is filled. */
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws);
 
 /* ---- impact_run.c ---- */
 
-/* Runs to t_end, with the table of options at options_index: returns what run returns to the script. The scene is at index 1. */
+/* Runs to t_end, with the table of options at options_index: returns what run returns to the script. The scene is at
+ * index 1. */
 int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index);
 
 #endif

@@ -10,7 +10,8 @@ static const char *const rule_words[] = {"product", "geometric_mean", "minimum",
 static const char *const law_words[] = {"poisson", "newton", "stronge", NULL};
 static const char *const solver_words[] = {"auto", "closed_form", "series", "cvode", NULL};
 
-/* A list at key: pushes it and returns its length; 0 (and nil pushed) when it is absent. Holes and names are refused. */
+/* A list at key: pushes it and returns its length; 0 (and nil pushed) when it is absent. Holes and names
+ * are refused. */
 static int push_list(const quat_lua_reader *reader, const char *key)
 {
     lua_State *L = reader->L;

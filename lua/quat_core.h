@@ -22,7 +22,8 @@ void quat_lua_open_sequence(lua_State *L);
 void quat_lua_open_dual(lua_State *L);
 void quat_lua_open_vector(lua_State *L);
 
-/* Adds functions (ended by {NULL, NULL}) to the module's table on top of the stack and to the methods of quaternions. */
+/* Adds functions (ended by {NULL, NULL}) to the module's table on top of the stack and to the methods
+ * of quaternions. */
 void quat_lua_add_methods(lua_State *L, const luaL_Reg functions[]);
 
 /* ---- results ---- */
@@ -55,8 +56,8 @@ qvec2 quat_lua_arg_vec2(lua_State *L, int arg, const char *name);
 /* Three rows of three finite numbers. */
 qmat3 quat_lua_arg_matrix(lua_State *L, int arg, const char *name);
 
-/* Lists, read into a buffer that Lua collects: n elements of the list at arg. The list is pinned by the buffer's place on
- * the stack; at least `least` elements are asked for. */
+/* Lists, read into a buffer that Lua collects: n elements of the list at arg. The list is pinned by the buffer's place
+ * on the stack; at least `least` elements are asked for. */
 quat *quat_lua_arg_quats(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 qvec2 *quat_lua_arg_vec2s(lua_State *L, int arg, const char *name, size_t least, size_t *n);
 qvec3 *quat_lua_arg_vec3s(lua_State *L, int arg, const char *name, size_t least, size_t *n);

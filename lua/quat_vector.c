@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Vectors in Lua: operators and methods of the tables {x, y, z} that are handed out, and quat.vec3 to make one. The other
- * operand may be any {x, y, z} or {x = , y = , z = }.
+ * Vectors in Lua: operators and methods of the tables {x, y, z} that are handed out, and quat.vec3 to make one. The
+ * other operand may be any {x, y, z} or {x = , y = , z = }.
  */
 #include "quat_core.h"
 

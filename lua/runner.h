@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The runner: impact SCRIPT.lua. Its parts: runner.c (the command), runner_limits.c (memory and time), runner_sandbox.c (what a
- * script can reach), runner_files.c (the output folder), runner_draw.c (pictures by gnuplot).
+ * The runner: impact SCRIPT.lua. Its parts: runner.c (the command), runner_limits.c (memory and time), runner_sandbox.c
+ * (what a script can reach), runner_files.c (the output folder), runner_draw.c (pictures by gnuplot).
  */
 #ifndef IMPACT_RUNNER_H
 #define IMPACT_RUNNER_H
@@ -45,8 +45,9 @@ typedef struct impact_runner {
 
 /* A lua_Alloc whose context is the runner. */
 void *impact_runner_allocate(void *context, void *block, size_t old_size, size_t new_size);
-/* Starts the clock of --max-time: when it is over, Lua code and runs are stopped; what cannot be stopped so is ended with the
- * process, IMPACT_EXIT_LIMIT, a second later. SIGINT and SIGTERM stop them too; another, a second later, ends the process. */
+/* Starts the clock of --max-time: when it is over, Lua code and runs are stopped; what cannot be stopped so is ended
+ * with the process, IMPACT_EXIT_LIMIT, a second later. SIGINT and SIGTERM stop them too; another, a second later, ends
+ * the process. */
 void impact_runner_start_clock(lua_State *L, const impact_runner *runner);
 bool impact_runner_time_is_over(void);
 bool impact_runner_is_interrupted(void);
@@ -81,7 +82,8 @@ typedef enum impact_draw_result {
     IMPACT_DRAW_FAILED
 } impact_draw_result;
 
-/* Draws the figure at index (plain data, see plot.lua) as NAME.png in the output folder; other than IMPACT_DRAWN: with a message. */
+/* Draws the figure at index (plain data, see plot.lua) as NAME.png in the output folder; other than IMPACT_DRAWN: with
+ * a message. */
 impact_draw_result impact_runner_draw(lua_State *L, int index, impact_runner *runner, const char *name, char *message,
                                       size_t size);
 /* luaopen of quat.host: save(figure, name) and write(name, text); the runner is upvalue 1. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures. A script describes a figure as plain data; the data is copied into a Lua state of our own, which no script has touched,
- * and there becomes gnuplot's commands. gnuplot starts without a shell, reads the commands from a file without a name and writes
- * the picture to a descriptor of ours.
+ * Pictures. A script describes a figure as plain data; the data is copied into a Lua state of our own, which no script
+ * has touched, and there becomes gnuplot's commands. gnuplot starts without a shell, reads the commands from a file
+ * without a name and writes the picture to a descriptor of ours.
  */
 #define _XOPEN_SOURCE 700
 #include "runner.h"
@@ -31,8 +31,8 @@ static int push_string(lua_State *to)
 static int push_table(lua_State *to) { return lua_newtable(to), 1; }
 static int set_entry(lua_State *to) { return lua_rawset(to, 1), 0; }
 
-/* Pushes a copy of the value at index of `from` onto `to`; NULL, or what is wrong. Raises in neither state: `to` is worked in
- * protected calls, and `from` is only read. */
+/* Pushes a copy of the value at index of `from` onto `to`; NULL, or what is wrong. Raises in neither state: `to` is
+ * worked in protected calls, and `from` is only read. */
 static const char *copy(lua_State *from, int index, lua_State *to, int depth)
 {
     if (depth > DEEPEST) return "a figure's tables are nested too deep";

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The output folder. Every file is reached from the folder's descriptor, component by component, without following links.
+ * The output folder. Every file is reached from the folder's descriptor, component by component, without following
+ * links.
  */
 #define _XOPEN_SOURCE 700
 #include "runner.h"

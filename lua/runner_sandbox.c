@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a script can reach. Without --trust: no programs, no files but those of the output folder, no C code but ours, no bytecode,
- * no look into other functions' insides.
+ * What a script can reach. Without --trust: no programs, no files but those of the output folder, no C code but ours,
+ * no bytecode, no look into other functions' insides.
  */
 #define _XOPEN_SOURCE 700
 #include "runner.h"
@@ -71,8 +71,8 @@ bool impact_runner_load_layer(lua_State *L, const char *module)
     return false;
 }
 
-/* require "quat.gsl": the module beside this program, from the build tree or as installed, so that GSL is loaded by those only who
- * use it. Upvalue 1 is package.loadlib. */
+/* require "quat.gsl": the module beside this program, from the build tree or as installed, so that GSL is loaded by
+ * those only who use it. Upvalue 1 is package.loadlib. */
 static int load_gsl(lua_State *L)
 {
     static const char *const places[] = {"modules", IMPACT_RUNNER_MODULES};

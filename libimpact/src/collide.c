@@ -54,8 +54,9 @@ static qvec3 impulse_for(const impact_frame *frame, qvec3 du)
     return qvec3_scale(qvec3_axpy(x, frame->t1, qvec3_axpy(y, frame->t2, qvec3_scale(frame->n, z))), 1 / frame->scale);
 }
 
-/* A contact that sticks must end with u = (0, 0, uz). Where M is ill-conditioned, rounding of the impulse turns the bodies by more than
- * that allows: what is missing is given to their velocities, not to the impulse, which is right to its own rounding. */
+/* A contact that sticks must end with u = (0, 0, uz). Where M is ill-conditioned, rounding of the impulse turns the
+ * bodies by more than that allows: what is missing is given to their velocities, not to the impulse, which is right to
+ * its own rounding. */
 static void refine(const impact_ready *ready, const impact_frame *frame, double uz, impact_outcome *outcome)
 {
     impact_ready after = *ready;
@@ -116,7 +117,8 @@ static void report(const impact_collision *collision, const impact_ready *ready,
     if (sticks && frame->conditioning > ill_conditioned) refine(ready, frame, course->uz * speed, outcome);
 }
 
-/* A tangential velocity below this is what is left of larger ones that cancel: the contact rolls, and starts from u_t = 0. */
+/* A tangential velocity below this is what is left of larger ones that cancel: the contact rolls, and starts from u_t =
+ * 0. */
 static double rounding_of_velocity(const impact_ready *ready)
 {
     const impact_pair each =

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * A contact that gives in the tangent too: Stronge's bilinear springs (Stronge 2000, chapter 5; Jia 2013 in three dimensions), by CVODE.
+ * A contact that gives in the tangent too: Stronge's bilinear springs (Stronge 2000, chapter 5; Jia 2013 in three
+ * dimensions), by CVODE.
  *
- * Unit of stiffness: the normal spring while loading, so that the unit of time drops out of the answer. With delta' = -uz,
- *   normal force   F = delta while loading, F = F_c - (delta_c - delta) / eps^2 while unloading or loading again up to delta_c;
- *   sticking       f' = -k u_t, k = 1 / eta^2, as long as |f| <= mu F;
- *   sliding        f = -mu F (cos phi, sin phi), mu F phi' = k u_t . (-sin phi, cos phi), at the speed
- *                  v = u_t . (cos phi, sin phi) - mu F' / k, as long as v > 0.
+ * Unit of stiffness: the normal spring while loading, so that the unit of time drops out of the answer. With delta' =
+ * -uz, normal force   F = delta while loading, F = F_c - (delta_c - delta) / eps^2 while unloading or loading again up
+ * to delta_c; sticking       f' = -k u_t, k = 1 / eta^2, as long as |f| <= mu F; sliding        f = -mu F (cos phi, sin
+ * phi), mu F phi' = k u_t . (-sin phi, cos phi), at the speed v = u_t . (cos phi, sin phi) - mu F' / k, as long as v >
+ * 0.
  */
 #include "collide_cvode.h"
 

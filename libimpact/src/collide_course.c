@@ -4,8 +4,9 @@
  *
  * Poisson: restitution impulse = eps (compression impulse), both summed over repeated compressions.
  * Newton: the first uz = -eps uz(0) in restitution.
- * Stronge: with W the normal work, W_c = min W is the work of loading (what is reloaded elastically does not lower the minimum),
- * and the impact ends in restitution once W - W_c = eps^2 |W_c| (Stronge, Impact Mechanics, 2000, section 3.5).
+ * Stronge: with W the normal work, W_c = min W is the work of loading (what is reloaded elastically does not lower the
+ * minimum), and the impact ends in restitution once W - W_c = eps^2 |W_c| (Stronge, Impact Mechanics, 2000,
+ * section 3.5).
  */
 #include "collide_course.h"
 
@@ -166,9 +167,9 @@ bool impact_course_is_straight(const impact_frame *frame, double mu, double x, d
     return fabs(impact_course_turning(frame, mu, x, y)) <= 2e-15 * rate;
 }
 
-/* The root lambda > 0 of |v| = 1, v = (mu M_tt + lambda)^-1 M_tz: Newton on 1/|v| - 1, convex and rising, from the left (More & Sorensen
- * 1983); there lie 0 and, by Jensen's inequality, |M_tz| less mu M_tt along M_tz. The determinant and v'(mu M_tt + lambda)^-1 v are sums of
- * what is positive. */
+/* The root lambda > 0 of |v| = 1, v = (mu M_tt + lambda)^-1 M_tz: Newton on 1/|v| - 1, convex and rising, from the left
+ * (More & Sorensen 1983); there lie 0 and, by Jensen's inequality, |M_tz| less mu M_tt along M_tz. The determinant and
+ * v'(mu M_tt + lambda)^-1 v are sums of what is positive. */
 static double restart_speed(const impact_frame *frame, double mu, double *x, double *y)
 {
     const double a = frame->a, b = frame->b, c = frame->c, d = frame->d, e = frame->e, g2 = c * c + d * d;

@@ -27,7 +27,8 @@ typedef struct impact_course {
     unsigned char phases[IMPACT_MAX_PHASES];
 } impact_course;
 
-/* A straight piece: u and the impulse change in proportion to p. Per unit of p: s by R, uz by Z, (px, py) by (gx, gy). */
+/* A straight piece: u and the impulse change in proportion to p. Per unit of p: s by R, uz by Z, (px, py) by
+ * (gx, gy). */
 typedef struct impact_line {
     double R, Z, gx, gy;
     bool stick;
@@ -48,7 +49,8 @@ impact_line impact_course_sliding(const impact_frame *frame, double mu, double x
 /* How fast the sliding direction turns, per unit of tau: T = (-y, x) . (M_tz - mu M_tt (x, y)). */
 double impact_course_turning(const impact_frame *frame, double mu, double x, double y);
 
-/* Whether T there is nothing but rounding: the slip is then taken as a straight one, which puts u_t off by at most 2e-15 of its change. */
+/* Whether T there is nothing but rounding: the slip is then taken as a straight one, which puts u_t off by at most
+ * 2e-15 of its change. */
 bool impact_course_is_straight(const impact_frame *frame, double mu, double x, double y);
 
 /* The restitution impulse still due, the velocity at which the impact ends, the work still to be given back. */

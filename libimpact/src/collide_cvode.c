@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The phases of an impact by CVODE in (ln s, theta): d ln s / dtau = R, dtheta / dtau = T are bounded and independent of s where mu is
- * constant, so the error control sees the last way to s = 0 as a straight line. Roots: uz = 0, Z = 0 (so that no pair of roots of uz
- * can hide in one step), the end of restitution, and s small enough to go on along a line.
+ * The phases of an impact by CVODE in (ln s, theta): d ln s / dtau = R, dtheta / dtau = T are bounded and independent
+ * of s where mu is constant, so the error control sees the last way to s = 0 as a straight line. Roots: uz = 0, Z = 0
+ * (so that no pair of roots of uz can hide in one step), the end of restitution, and s small enough to go on along a
+ * line.
  */
 #include "collide_cvode.h"
 

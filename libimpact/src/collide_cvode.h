@@ -7,8 +7,8 @@
 
 #include "collide_course.h"
 
-/* Solves the course by CVODE. `speed` is U, the unit of velocity, for the caller's friction law. IMPACT_EUNSETTLED where the phases do
- * not end, IMPACT_EINTEGRATOR where CVODE gives up, IMPACT_EABSENT in a build without it. */
+/* Solves the course by CVODE. `speed` is U, the unit of velocity, for the caller's friction law. IMPACT_EUNSETTLED
+ * where the phases do not end, IMPACT_EINTEGRATOR where CVODE gives up, IMPACT_EABSENT in a build without it. */
 impact_status impact_cvode_solve(impact_course *course, const impact_collision *collision, double speed);
 
 /* The integrator of the compliant contact, kept in a workspace. */

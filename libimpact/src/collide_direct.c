@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Without friction only M_zz counts. Round bodies struck centrally have M = diag(l, l, w): sliding goes straight, and friction does not
- * act on u_z. In both, u_z rises by M_zz per unit of p throughout, and every law ends at p = (1 + eps) p_c.
+ * Without friction only M_zz counts. Round bodies struck centrally have M = diag(l, l, w): sliding goes straight, and
+ * friction does not act on u_z. In both, u_z rises by M_zz per unit of p throughout, and every law ends at p = (1 +
+ * eps) p_c.
  */
 #include "collide_direct.h"
 
@@ -32,7 +33,8 @@ static double along_normal(const impact_ready *ready, qvec3 n)
 /* |M| |M^-1| / 3 of M = diag(l, l, 1). */
 static double conditioning(double l) { return sqrt((2 * l * l + 1) * (2 + l * l)) / (3 * l); }
 
-/* The impulse of friction on the tangential velocity t: how large, its work, and whether it stops it, in compression or at all. */
+/* The impulse of friction on the tangential velocity t: how large, its work, and whether it stops it, in compression or
+ * at all. */
 typedef struct friction {
     double impulse, work;
     bool holds, holds_soon;

@@ -83,8 +83,8 @@ static bool frame_of(const impact_flow *flow, impact_frame *frame)
     return true;
 }
 
-/* The roots of T between low and high, two or three close together among them: split where the bend is 0, so that the pull is monotone,
- * and where that is 0, so that T is. order: 2 the bend, 1 the pull, 0 T. */
+/* The roots of T between low and high, two or three close together among them: split where the bend is 0, so that the
+ * pull is monotone, and where that is 0, so that T is. order: 2 the bend, 1 the pull, 0 T. */
 static int directions_between(const impact_frame *frame, const impact_flow *flow, int order, double low, double high,
                               impact_flow_direction *directions, int n)
 {

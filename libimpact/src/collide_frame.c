@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * M = (w1 + w2) I - [r1] J1^-1 [r1] - [r2] J2^-1 [r2] is never formed as a difference: with arms r x e in each body's axes,
- * e.M f = (w1 + w2) e.f + sum (r x e).J^-1 (r x f), so that every entry is a sum of products.
+ * M = (w1 + w2) I - [r1] J1^-1 [r1] - [r2] J2^-1 [r2] is never formed as a difference: with arms r x e in each body's
+ * axes, e.M f = (w1 + w2) e.f + sum (r x e).J^-1 (r x f), so that every entry is a sum of products.
  */
 #include "collide_frame.h"
 
 #include <float.h>
 
-/* Rows: with the weights J^-1/2, a unit vector's dot product with them is its arm offset x e, local axes, for each body. */
+/* Rows: with the weights J^-1/2, a unit vector's dot product with them is its arm offset x e, local axes, for each
+ * body. */
 typedef struct levers {
     impact_vectors row[3];
 } levers;
@@ -57,7 +58,8 @@ qvec3 impact_frame_across(qvec3 n)
     return (qvec3){1 + sign * n.x * n.x * f, sign * n.x * n.y * f, -sign * n.x};
 }
 
-/* |M| |M^-1| / 3 by Frobenius norms, the inverse from what elimination left: its diagonal is a sum of what is positive. */
+/* |M| |M^-1| / 3 by Frobenius norms, the inverse from what elimination left: its diagonal is a sum of what
+ * is positive. */
 static inline double conditioning(const impact_frame *m, double shear, double inverse_a, double inverse_schur)
 {
     const double w = 1 / m->k, s = inverse_schur, alpha = m->alpha, beta = m->beta;

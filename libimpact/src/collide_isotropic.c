@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * a = b: let x point along M_tz = (g, 0) and d tau = dp / s. Then t = tan(theta / 2) obeys dt/dtau = -g t, and with m = mu a,
- * alpha = g - m, beta = g + m,
+ * a = b: let x point along M_tz = (g, 0) and d tau = dp / s. Then t = tan(theta / 2) obeys dt/dtau = -g t, and with m =
+ * mu a, alpha = g - m, beta = g + m,
  *
  *   s = X e^(alpha tau) + Y e^(-beta tau),   u_x = X e^(alpha tau) - Y e^(-beta tau),   u_y = u_y0 e^(-m tau),
  *   X = (s0 + u_x0) / 2,   Y = (s0 - u_x0) / 2,   4 X Y = u_y0^2:
  *
- * p, the impulse and uz are sums of I1 = int e^(alpha tau) and I2 = int e^(-beta tau), works of their products. The slip ends, at
- * tau = infinity, iff alpha < 0. uz turns once at most, where mu g > 1.
+ * p, the impulse and uz are sums of I1 = int e^(alpha tau) and I2 = int e^(-beta tau), works of their products. The
+ * slip ends, at tau = infinity, iff alpha < 0. uz turns once at most, where mu g > 1.
  */
 #include "collide_isotropic.h"
 
@@ -69,8 +69,8 @@ static inline double shed_by(const whirl *w, const powers *at, double tau)
 /* int_0^tau e^(-2 m t) dt */
 static inline double integral_of_both(const whirl *w, double shed) { return shed * (2 - shed) / (2 * w->m); }
 
-/* int I2 dI1 - int I1 dI2 = tau^3 2 g f[-beta tau, -2 m tau, alpha tau], f(x) = (e^x - 1) / x: its divided difference as a series
- * where the plain difference would cancel. */
+/* int I2 dI1 - int I1 dI2 = tau^3 2 g f[-beta tau, -2 m tau, alpha tau], f(x) = (e^x - 1) / x: its divided difference
+ * as a series where the plain difference would cancel. */
 static double swirl(const whirl *w, const powers *at, double tau, double I3)
 {
     const double y = -w->beta * tau;
@@ -104,7 +104,8 @@ static double work_at(const whirl *w, const powers *at, double tau, double I3)
 
 typedef enum target { TARGET_UZ, TARGET_P, TARGET_WORK } target;
 
-/* A function of tau less what is wanted, and its first two derivatives; the first by the shares of its two exponentials. */
+/* A function of tau less what is wanted, and its first two derivatives; the first by the shares of its two
+ * exponentials. */
 typedef struct jet {
     double value, first[2], second;
 } jet;
@@ -123,16 +124,17 @@ static jet value_at(const whirl *w, target what, double wanted, const powers *at
     return (jet){work_at(w, at, tau, I3) - wanted, {uz * s1, uz * s2}, (z1 + z2) * (s1 + s2) + uz * bend_s};
 }
 
-/* tau further by so much that the integral of the larger exponential grows by `more` of its present rate: Newton's step in the variable in which
- * the function is nearly straight. NaN or infinite where that is never. */
+/* tau further by so much that the integral of the larger exponential grows by `more` of its present rate: Newton's step
+ * in the variable in which the function is nearly straight. NaN or infinite where that is never. */
 static double step_on(const whirl *w, bool first, double tau, double more)
 {
     if (first) return tau + (w->alpha == 0 ? more : log1p(w->alpha * more) * w->over_alpha);
     return tau - log1p(-w->beta * more) * w->over_beta;
 }
 
-/* Halley's step, and about how far it misses the root: (f''^2/4 f'^2 - f'''/6 f') d^3, the third derivative at most beta^2 times what the
- * exponentials' shares of the first come to. Newton's as above where that is no better, with no such bound. */
+/* Halley's step, and about how far it misses the root: (f''^2/4 f'^2 - f'''/6 f') d^3, the third derivative at most
+ * beta^2 times what the exponentials' shares of the first come to. Newton's as above where that is no better, with no
+ * such bound. */
 static double step_from(const whirl *w, const jet *f, double tau, double *miss)
 {
     const double inverse = 1 / (f->first[0] + f->first[1]), t = -f->value * inverse, bend = f->second * inverse;
@@ -143,8 +145,8 @@ static double step_from(const whirl *w, const jet *f, double tau, double *miss)
     return tau + d;
 }
 
-/* The root of a function that is monotone on [low, high] and has another sign at high, from `start` inside a bracket; a step that misses
- * it by no more than rounding is the last. *at: the exponentials there. */
+/* The root of a function that is monotone on [low, high] and has another sign at high, from `start` inside a bracket; a
+ * step that misses it by no more than rounding is the last. *at: the exponentials there. */
 static double find_root(const whirl *w, target what, double wanted, double low, double high, double start, powers *at)
 {
     double tau = start, miss;

@@ -7,8 +7,8 @@
 
 #include "collide_course.h"
 
-/* Whether a and b are the same but for rounding: to as much as that of their own sums, so that taking them as equal changes M by no
- * more than making it did. */
+/* Whether a and b are the same but for rounding: to as much as that of their own sums, so that taking them as equal
+ * changes M by no more than making it did. */
 bool impact_isotropic_is(const impact_frame *frame);
 
 /* Solves the whole impact from u_t != 0 on, mu > 0, sliding that turns. */

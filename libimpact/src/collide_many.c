@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Many impacts at once. Each is a pure function of its own input, so that the threads only share the work out: in blocks,
- * by an atomic counter.
+ * Many impacts at once. Each is a pure function of its own input, so that the threads only share the work out: in
+ * blocks, by an atomic counter.
  */
 #include "collide_cvode.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Inverses, axes, and the offsets in local axes. The moment of an impulse about a slim body's axis comes from the small components of
- * the offset across that axis: rounding of the large one must not spill into them, so they are taken in doubled precision
- * (Dekker 1971).
+ * Inverses, axes, and the offsets in local axes. The moment of an impulse about a slim body's axis comes from the small
+ * components of the offset across that axis: rounding of the large one must not spill into them, so they are taken in
+ * doubled precision (Dekker 1971).
  */
 #include "collide_ready.h"
 
@@ -66,7 +66,8 @@ static impact_vectors slim_offset(const quats *q, const impact_vectors *r)
                             along(twice(sum(xz, wy)), twice(difference(yz, wx)), z_z, v)};
 }
 
-/* The homogeneous form: a quaternion off unit length scales the axes, which is put right by one factor; it is returned. */
+/* The homogeneous form: a quaternion off unit length scales the axes, which is put right by one factor; it
+ * is returned. */
 static impact_pair make_axes(const quats *q, impact_vectors axis[3])
 {
     const impact_pair ww = q->w * q->w, xx = q->x * q->x, yy = q->y * q->y, zz = q->z * q->z;

@@ -8,7 +8,8 @@
 #include <impact/collide.h>
 #include "collide_pair.h"
 
-/* A static body has mass, moments, inverses and offset 0. Local axes: `axis`; of a round or static body, the world's. */
+/* A static body has mass, moments, inverses and offset 0. Local axes: `axis`; of a round or static body,
+ * the world's. */
 typedef struct impact_ready {
     impact_pair mass, inverse_mass;
     impact_vectors moments, inverse_moments;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * How far the answer follows its data, by trying: cond(M) alone knows neither of slim bodies, nor of a velocity that nearly vanishes,
- * nor of events that are about to happen or not.
+ * How far the answer follows its data, by trying: cond(M) alone knows neither of slim bodies, nor of a velocity that
+ * nearly vanishes, nor of events that are about to happen or not.
  */
 #include <impact/collide.h>
 
@@ -54,7 +54,8 @@ static void nudge_all(impact_collision *c, uint64_t *state)
     if (eps <= 1 || c->any_restitution) c->restitution = eps;
 }
 
-/* sum of |v|^2 + rho^2 |omega|^2 over the bodies that move, rho^2 the mean moment over the mass; of the difference to `other` if given. */
+/* sum of |v|^2 + rho^2 |omega|^2 over the bodies that move, rho^2 the mean moment over the mass; of the difference to
+ * `other` if given. */
 static double size2(const impact_collision *c, const impact_outcome *o, const impact_outcome *other)
 {
     double sum = 0;

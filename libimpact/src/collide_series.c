@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * With d tau = dp / s, s = |u_t|, sliding is  du_t/dtau = s M_tz - mu M_tt u_t,  dp/dtau = s: Lipschitz, free of angles, and regular
- * where sliding stops. One Taylor step holds u_t, s (from s^2 = u_t . u_t), uz, p and the works as polynomials of tau; the step length
- * follows from the last coefficients (Jorba & Zou 2005).
+ * With d tau = dp / s, s = |u_t|, sliding is  du_t/dtau = s M_tz - mu M_tt u_t,  dp/dtau = s: Lipschitz, free of
+ * angles, and regular where sliding stops. One Taylor step holds u_t, s (from s^2 = u_t . u_t), uz, p and the works as
+ * polynomials of tau; the step length follows from the last coefficients (Jorba & Zou 2005).
  *
- * Events: theta turns monotonically within a slip, by far less than pi/2 in a step, so Z = d uz / dp is monotone between the zeros of
- * M_tz x u_t. Splitting a step there and at the zeros of Z leaves pieces on which uz is monotone: no event can be missed.
+ * Events: theta turns monotonically within a slip, by far less than pi/2 in a step, so Z = d uz / dp is monotone
+ * between the zeros of M_tz x u_t. Splitting a step there and at the zeros of Z leaves pieces on which uz is monotone:
+ * no event can be missed.
  */
 #include "collide_series.h"
 
@@ -90,7 +91,8 @@ double impact_taylor_integral(const double *coefficient, int order, double t)
 
 /* ---- one step and the events in it ---- */
 
-/* The integrals from 0 to t that the course is kept by: side by side, since each alone is a chain of dependent operations. */
+/* The integrals from 0 to t that the course is kept by: side by side, since each alone is a chain of dependent
+ * operations. */
 typedef struct totals {
     double p, work, friction, px, py;
 } totals;
@@ -163,7 +165,8 @@ static double target_value(step *st, target what, double t, double wanted, doubl
     return 0;
 }
 
-/* The root of a monotone function on [low, high] whose signs differ at the ends: Newton kept inside a shrinking bracket. */
+/* The root of a monotone function on [low, high] whose signs differ at the ends: Newton kept inside a shrinking
+ * bracket. */
 static double find_root(step *st, target what, double wanted, double low, double high)
 {
     double slope, f_low = target_value(st, what, low, wanted, &slope);
@@ -292,8 +295,8 @@ static void monotone_piece(step *st, double to)
     if (!course->ended) move_to(st, to);
 }
 
-/* A step that stops short of its end at a turn (Stronge's law) goes on as a new one: the work given back is then an integral from
- * there, and not a small difference. */
+/* A step that stops short of its end at a turn (Stronge's law) goes on as a new one: the work given back is then an
+ * integral from there, and not a small difference. */
 static bool stopped(const step *st, double at) { return st->course->ended || st->at < at; }
 
 static void split_at_climb(step *st, double to)
@@ -364,7 +367,8 @@ static stride take_tail(impact_course *course)
     return STRIDE_TAKEN;
 }
 
-/* Whether Z keeps its sign and uz its sense on the way to the end of the slip: then what holds at its end holds on it. */
+/* Whether Z keeps its sign and uz its sense on the way to the end of the slip: then what holds at its end holds
+ * on it. */
 static bool tail_is_near(const impact_course *course, double x, double y)
 {
     const impact_frame *frame = course->frame;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * collide, inside: turning slip by Taylor series in tau (d tau = dp / s), and the last way to u_t = 0 by a series at its end.
+ * collide, inside: turning slip by Taylor series in tau (d tau = dp / s), and the last way to u_t = 0 by a series at
+ * its end.
  */
 #ifndef IMPACT_COLLIDE_SERIES_H
 #define IMPACT_COLLIDE_SERIES_H
@@ -16,7 +17,8 @@ typedef double impact_pair_anywhere __attribute__((vector_size(16), aligned(8), 
 /* Coefficients to the order, and a zero after the last. */
 enum { IMPACT_SERIES_ROOM = IMPACT_SERIES_MOST + 2 };
 
-/* One Taylor step from the state of a course: coefficients of tau^k. The integrals (uz, p, work ...) start at 0 for tau = 0. */
+/* One Taylor step from the state of a course: coefficients of tau^k. The integrals (uz, p, work ...) start at 0 for tau
+ * = 0. */
 typedef struct impact_taylor {
     int order;
     double h;                                                                   /* how far the series may be used */

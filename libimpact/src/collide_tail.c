@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * The last way of a slip that ends. Let the direction end at theta_e, T(theta_e) = 0 > T'(theta_e), R(theta_e) < 0, and
- * t = tan((theta - theta_e) / 2). What is still to come of an integral of s^n g(theta) d tau is s^n f(t), with f analytic at t = 0:
+ * t = tan((theta - theta_e) / 2). What is still to come of an integral of s^n g(theta) d tau is s^n f(t), with f
+ * analytic at t = 0:
  *
  *   V f' + n R~ f = -(1 + t^2)^2 g,   V = (1 + t^2)^3 T / 2 (degree 6, V(0) = 0),   R~ = (1 + t^2)^2 R (degree 4),
  *

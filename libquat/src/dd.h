@@ -8,8 +8,8 @@
 
 #include <math.h>
 
-/* Not clang: up to 17 it gives the clones names of their own and leaves the function itself undefined. Nor under gcc's thread sanitizer,
- * which is not there yet when the loader picks a clone. */
+/* Not clang: up to 17 it gives the clones names of their own and leaves the function itself undefined. Nor under gcc's
+ * thread sanitizer, which is not there yet when the loader picks a clone. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&                           \
     !defined(__SANITIZE_THREAD__)
 #define QUAT_HAS_CLONES

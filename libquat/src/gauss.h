@@ -44,7 +44,8 @@ quat_triangle_cost quat_gauge_area(const quat_mesh *mesh, size_t i, const quat q
 double quat_gauge_sum(const quat_mesh *mesh, quat_gauge_cost cost, const quat q[], double soft);
 
 /* Lowers the sum from q on, in place, over the nodes' angles, that of node 0 held: Newton's method, conjugate gradients
- * inside, down to rounding. work holds 7 n + 3 m numbers, trial n frames; *rounds counts on. QUAT_NOT_CONVERGED when 200 rounds are not enough. */
+ * inside, down to rounding. work holds 7 n + 3 m numbers, trial n frames; *rounds counts on. QUAT_NOT_CONVERGED when
+ * 200 rounds are not enough. */
 quat_status quat_gauge_lower(const quat_mesh *mesh, quat_gauge_cost cost, double soft, quat q[], double work[],
                              quat trial[], size_t *rounds);
 

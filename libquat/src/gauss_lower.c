@@ -63,8 +63,8 @@ static bool own_springs(const springs *s, double own[])
     return true;
 }
 
-/* x = -H^-1 g by conjugate gradients, H's diagonal before them; false when H is not definite, and when rounding makes it
- * look so early on. work: 5 n numbers. */
+/* x = -H^-1 g by conjugate gradients, H's diagonal before them; false when H is not definite, and when rounding makes
+ * it look so early on. work: 5 n numbers. */
 static bool solve(const springs *s, const double g[], double x[], double work[])
 {
     const size_t n = s->mesh->n;

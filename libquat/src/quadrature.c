@@ -56,8 +56,8 @@ static double surprise(const search *s, double t)
     return fabs(s->f(t, s->context, &error) - above / below);
 }
 
-/* A kink between an end and the node next to it, .0022 of the interval away, is seen by no rule on it and by none on its
- * halves: f is asked close to the ends, and not at them, where it may be infinite. */
+/* A kink between an end and the node next to it, .0022 of the interval away, is seen by no rule on it and by none on
+ * its halves: f is asked close to the ends, and not at them, where it may be infinite. */
 static part ask(search *s, double a, double b)
 {
     static const double blind = 0.0022, inward = 1e-8, shortest = 1e-5;
@@ -75,8 +75,8 @@ static part ask(search *s, double a, double b)
     return p;
 }
 
-/* The rule's own estimate takes a small difference for a far smaller error. Two halves that give what the whole gave are
- * better witnesses. */
+/* The rule's own estimate takes a small difference for a far smaller error. Two halves that give what the whole gave
+ * are better witnesses. */
 static double refine(search *s, part whole, int depth)
 {
     const double middle = whole.a + (whole.b - whole.a) / 2;

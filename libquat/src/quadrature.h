@@ -10,8 +10,8 @@
 /* f(t), and in *error (0 before) how far off it may be. */
 typedef double (*quat_integrand)(double t, void *context, double *error);
 
-/* The integral of f over a ... b: each interval is halved until that changes it by no more than `tolerance` of the whole
- * integral of |f|, or than f's own errors may; what these may make of the integral comes out in *noise. GSL's own
+/* The integral of f over a ... b: each interval is halved until that changes it by no more than `tolerance` of the
+ * whole integral of |f|, or than f's own errors may; what these may make of the integral comes out in *noise. GSL's own
  * drivers call the process-wide error handler when they fall short, its rules never do: halving is done here.
  * QUAT_NOT_CONVERGED when 40 halvings are not enough, or 1600 intervals. */
 quat_status quat_quadrature(quat_integrand f, void *context, double a, double b, double tolerance, double *integral,

@@ -24,10 +24,12 @@ typedef struct impact_collider {
     qvec3 omega;      /* rad/s, world */
 } impact_collider;
 
-/* When restitution ends: at eps times the impulse of compression; at u_z = -eps u_z(0); at eps^2 times the work of loading. */
+/* When restitution ends: at eps times the impulse of compression; at u_z = -eps u_z(0); at eps^2 times the work of
+ * loading. */
 typedef enum impact_law { IMPACT_POISSON, IMPACT_NEWTON, IMPACT_STRONGE } impact_law;
 
-/* AUTO: closed form where the sliding direction does not turn or M_tt is isotropic, else the series; CVODE where only that can. */
+/* AUTO: closed form where the sliding direction does not turn or M_tt is isotropic, else the series; CVODE where only
+ * that can. */
 typedef enum impact_solver {
     IMPACT_SOLVER_AUTO,
     IMPACT_SOLVER_CLOSED_FORM,
@@ -35,7 +37,8 @@ typedef enum impact_solver {
     IMPACT_SOLVER_CVODE
 } impact_solver;
 
-/* mu at the sliding speed given, m/s; finite and >= 0, smooth for speed > 0; mu(0) decides whether friction can hold. */
+/* mu at the sliding speed given, m/s; finite and >= 0, smooth for speed > 0; mu(0) decides whether friction
+ * can hold. */
 typedef double impact_friction_law(double speed, void *context);
 
 /* An integrator kept from one impact to the next; not shared between threads. */
@@ -59,8 +62,8 @@ typedef struct impact_collision {
     impact_collide_workspace *workspace; /* for CVODE; NULL: one is made for the call (it allocates), Adams at 1e-12 */
 } impact_collision;
 
-/* What happened in order: sliding or sticking in compression (C) and restitution (R). A reversal stands where sliding came to a
- * stop and went on at once in another direction, friction being too weak to hold. */
+/* What happened in order: sliding or sticking in compression (C) and restitution (R). A reversal stands where sliding
+ * came to a stop and went on at once in another direction, friction being too weak to hold. */
 typedef enum impact_phase {
     IMPACT_SLIP_C = 1,
     IMPACT_STICK_C,
@@ -85,8 +88,8 @@ typedef struct impact_outcome {
     int phase_count;
     unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order; what does not fit is left out */
     impact_solver solver;                    /* the one that answered */
-    /* Of the contact's inverse mass matrix M: |M| |M^-1| / 3 by Frobenius norms, between a third and the whole of the ratio of its largest
-     * eigenvalue to its smallest. 1 is best, and where there is no friction. */
+    /* Of the contact's inverse mass matrix M: |M| |M^-1| / 3 by Frobenius norms, between a third and the whole of the
+     * ratio of its largest eigenvalue to its smallest. 1 is best, and where there is no friction. */
     double conditioning;
     bool jammed;      /* friction drove the contact on into compression: u_z fell while it was < 0 */
     bool energy_rose; /* Newton's law only (or a restitution above 1): it can */
@@ -97,54 +100,59 @@ IMPACT_API const char *impact_law_name(impact_law law);
 IMPACT_API const char *impact_solver_name(impact_solver solver);
 IMPACT_API const char *impact_phase_name(impact_phase phase);
 
-/* Whether impact_collide would take the collision: IMPACT_OK, or IMPACT_EDOMAIN (NaN or infinity) or IMPACT_EARGUMENT (out of range)
- * with the thing and its value in message[size], cut to fit; size 0: no message. */
+/* Whether impact_collide would take the collision: IMPACT_OK, or IMPACT_EDOMAIN (NaN or infinity) or IMPACT_EARGUMENT
+ * (out of range) with the thing and its value in message[size], cut to fit; size 0: no message. */
 IMPACT_API impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size);
 
-/* Moments and orientation for an impact_collider from an inertia tensor about the centre in world axes, kg m^2, symmetric to 1e-9 of
- * its largest entry and positive definite. IMPACT_EARGUMENT otherwise, IMPACT_EDOMAIN for a NaN or infinity: *orientation = 1. */
+/* Moments and orientation for an impact_collider from an inertia tensor about the centre in world axes, kg m^2,
+ * symmetric to 1e-9 of its largest entry and positive definite. IMPACT_EARGUMENT otherwise, IMPACT_EDOMAIN for a NaN or
+ * infinity: *orientation = 1. */
 IMPACT_API impact_status impact_principal_axes(const qmat3 *tensor, qvec3 *moments, quat *orientation);
 
-/* A workspace for CVODE's road, of the method and relative tolerance given (1e-14 ... 1e-2). IMPACT_EABSENT in a build without CVODE. */
+/* A workspace for CVODE's road, of the method and relative tolerance given (1e-14 ... 1e-2). IMPACT_EABSENT in a build
+ * without CVODE. */
 IMPACT_API impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance,
                                                          impact_collide_workspace **workspace);
 IMPACT_API void impact_collide_workspace_destroy(impact_collide_workspace *workspace); /* NULL is fine */
 /* CVODE's work since the workspace was made. */
 IMPACT_API impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace);
 
-/* Solves one impact (docs/collide.md). IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome: nothing changed);
- * negative: the outcome holds the velocities given and NaN elsewhere: as impact_collide_check; IMPACT_EARGUMENT also where a closed form
- * was asked for and there is none; IMPACT_EABSENT for CVODE in a build without it; IMPACT_EINTEGRATOR, IMPACT_EUNSETTLED, IMPACT_ENOMEM.
- * A tangential velocity that is rounding of the velocities given counts as none. Sources: Mirtich & Canny 1995; Stronge 2000; the series
- * after Jorba & Zou 2005. */
+/* Solves one impact (docs/collide.md). IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome:
+ * nothing changed); negative: the outcome holds the velocities given and NaN elsewhere: as impact_collide_check;
+ * IMPACT_EARGUMENT also where a closed form was asked for and there is none; IMPACT_EABSENT for CVODE in a build
+ * without it; IMPACT_EINTEGRATOR, IMPACT_EUNSETTLED, IMPACT_ENOMEM. A tangential velocity that is rounding of the
+ * velocities given counts as none. Sources: Mirtich & Canny 1995; Stronge 2000; the series after Jorba & Zou 2005. */
 IMPACT_API impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome);
 
-/* Solves count impacts into outcomes[count] and, when wanted, statuses[count], on so many threads (1 ... 256; 0: as many as the machine
- * has). The answers are the same bits for any number of threads. Returns the first failure, else IMPACT_OK; separating pairs are no
- * failure. A workspace given in a collision serves as a pattern: each thread makes its own of the same method and tolerance.
- * Friction laws are called from several threads at once. IMPACT_EARGUMENT: threads out of range. */
+/* Solves count impacts into outcomes[count] and, when wanted, statuses[count], on so many threads (1 ... 256; 0: as
+ * many as the machine has). The answers are the same bits for any number of threads. Returns the first failure, else
+ * IMPACT_OK; separating pairs are no failure. A workspace given in a collision serves as a pattern: each thread makes
+ * its own of the same method and tolerance. Friction laws are called from several threads at once. IMPACT_EARGUMENT:
+ * threads out of range. */
 IMPACT_API impact_status impact_collide_many(const impact_collision *collisions, size_t count, int threads,
                                              impact_outcome *outcomes, impact_status *statuses);
 
-/* How far the velocities after the impact follow its data: their relative change over that of the data, the largest of eight tries
- * with every number (both bodies', the normal, friction, restitution) changed by 2^-36 of itself up or down at random, always the same;
- * the size of velocities is the root of the sum over both bodies of |v|^2 + rho^2 |omega|^2, rho^2 the mean moment over the mass. Times
- * 2^-52 it is what rounding of the data alone leaves open: it knows of M, of slim bodies, of velocities that nearly vanish, and of
- * events that are about to happen. Takes as long as nine impacts. 0 where nothing moves; NaN where impact_collide refuses. */
+/* How far the velocities after the impact follow its data: their relative change over that of the data, the largest of
+ * eight tries with every number (both bodies', the normal, friction, restitution) changed by 2^-36 of itself up or down
+ * at random, always the same; the size of velocities is the root of the sum over both bodies of |v|^2 + rho^2
+ * |omega|^2, rho^2 the mean moment over the mass. Times 2^-52 it is what rounding of the data alone leaves open: it
+ * knows of M, of slim bodies, of velocities that nearly vanish, and of events that are about to happen. Takes as long
+ * as nine impacts. 0 where nothing moves; NaN where impact_collide refuses. */
 IMPACT_API double impact_collide_sensitivity(const impact_collision *collision);
 
 /* ---- sliding itself, as data for plotting ---- */
 
-/* The inverse mass that the contact feels, M = [[a, 0, c], [0, b, d], [c, d, m]], 1/kg, in the frame (t1, t2, n) with the principal
- * tangential axes; and mu. From impact_flow_make, or filled by hand (t1, t2, n are only carried along). */
+/* The inverse mass that the contact feels, M = [[a, 0, c], [0, b, d], [c, d, m]], 1/kg, in the frame (t1, t2, n) with
+ * the principal tangential axes; and mu. From impact_flow_make, or filled by hand (t1, t2, n are only carried along).
+ */
 typedef struct impact_flow {
     qvec3 t1, t2, n;
     double a, b, c, d, m;
     double friction;
 } impact_flow;
 
-/* The flow of a collision; velocity[3]: the relative velocity of the contact points along (t1, t2, n), m/s. Status as impact_collide,
- * but approach is not asked for. */
+/* The flow of a collision; velocity[3]: the relative velocity of the contact points along (t1, t2, n), m/s. Status as
+ * impact_collide, but approach is not asked for. */
 IMPACT_API impact_status impact_flow_make(const impact_collision *collision, impact_flow *flow, double velocity[3]);
 
 typedef struct impact_flow_point {
@@ -155,8 +163,9 @@ typedef struct impact_flow_point {
     bool stick;          /* u_t = 0 and friction holds it there */
 } impact_flow_point;
 
-/* points[count]: the flow from velocity[3] at count >= 2 equal steps of p from 0 to p_end > 0 (N s): sliding, stopping, sticking or
- * sliding on, without regard to compression and restitution. IMPACT_EARGUMENT, IMPACT_EDOMAIN: M not positive definite, mu < 0, p_end
+/* points[count]: the flow from velocity[3] at count >= 2 equal steps of p from 0 to p_end > 0 (N s): sliding, stopping,
+ * sticking or sliding on, without regard to compression and restitution. IMPACT_EARGUMENT, IMPACT_EDOMAIN: M not
+ * positive definite, mu < 0, p_end
  * <= 0, count < 2, NaN; IMPACT_EUNSETTLED: the series did not settle. */
 IMPACT_API impact_status impact_flow_sample(const impact_flow *flow, const double velocity[3], double p_end, int count,
                                             impact_flow_point *points);
@@ -169,7 +178,8 @@ typedef struct impact_flow_direction {
     double pull;  /* dT/dtheta, 1/kg: negative where directions nearby turn to this one */
 } impact_flow_direction;
 
-/* Up to 4 directions in order of theta; returns how many: 0 where every direction is one (a = b, c = d = 0) or M is not positive definite. */
+/* Up to 4 directions in order of theta; returns how many: 0 where every direction is one (a = b, c = d = 0) or M is not
+ * positive definite. */
 IMPACT_API int impact_flow_directions(const impact_flow *flow, impact_flow_direction directions[4]);
 
 #ifdef __cplusplus

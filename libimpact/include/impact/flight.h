@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * flight: motion between impacts where it has a closed form: uniform gravity, and bodies whose angular velocity stays as it is
- * (three equal principal moments, or no rotation).
+ * flight: motion between impacts where it has a closed form: uniform gravity, and bodies whose angular velocity stays
+ * as it is (three equal principal moments, or no rotation).
  */
 #ifndef IMPACT_FLIGHT_H
 #define IMPACT_FLIGHT_H
@@ -24,8 +24,8 @@ typedef struct impact_flight {
 /* The flight after dt seconds (any sign) under uniform gravity: exact but for rounding. */
 IMPACT_API impact_flight impact_flight_after(impact_flight start, qvec3 gravity, double dt);
 
-/* Smallest dt >= 0 at which a + b dt + c dt^2 / 2 falls to zero, for a >= 0 (negative a counts as 0): infinite when it never does, and
- * 0 when a = 0 and it falls at once. A gap of zero that opens (b > 0) falls again later, not now. */
+/* Smallest dt >= 0 at which a + b dt + c dt^2 / 2 falls to zero, for a >= 0 (negative a counts as 0): infinite when it
+ * never does, and 0 when a = 0 and it falls at once. A gap of zero that opens (b > 0) falls again later, not now. */
 IMPACT_API double impact_flight_fall_time(double a, double b, double c);
 
 #ifdef __cplusplus

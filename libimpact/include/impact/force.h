@@ -18,8 +18,9 @@ typedef enum impact_force_kind {
     IMPACT_FORCE_CUSTOM      /* the caller's function */
 } impact_force_kind;
 
-/* Force (N, world, at the centre) and torque (N m, world) of a custom force at time t; both are zero on entry. They must be smooth
- * along the motion. They are asked at velocities nearby too: forces that brake fast beside the motion are followed by BDF, not Adams. Return false to stop the run with an error. */
+/* Force (N, world, at the centre) and torque (N m, world) of a custom force at time t; both are zero on entry. They
+ * must be smooth along the motion. They are asked at velocities nearby too: forces that brake fast beside the motion
+ * are followed by BDF, not Adams. Return false to stop the run with an error. */
 typedef bool impact_force_function(double t, int body, double mass, qvec3 position, quat orientation, qvec3 velocity,
                                    qvec3 omega, qvec3 *force, qvec3 *torque, void *context);
 
@@ -43,7 +44,8 @@ typedef struct impact_force_def {
     void *context;
 } impact_force_def;
 
-/* Defaults: wind along +x of strength 0 with no edge and no falloff; attraction with Newton's G = 6.67430e-11 and power 2 (CODATA 2018). */
+/* Defaults: wind along +x of strength 0 with no edge and no falloff; attraction with Newton's G = 6.67430e-11 and power
+ * 2 (CODATA 2018). */
 IMPACT_API impact_force_def impact_default_force_def(impact_force_kind kind);
 
 #ifdef __cplusplus

@@ -41,7 +41,8 @@ typedef struct impact_ode_counts {
     long steps, rhs_calls, root_calls, error_test_failures, starts;
 } impact_ode_counts;
 
-/* Copies the definition; *ode is NULL on failure. IMPACT_EARGUMENT: a number out of its range, or a function that is missing. */
+/* Copies the definition; *ode is NULL on failure. IMPACT_EARGUMENT: a number out of its range, or a function that is
+ * missing. */
 IMPACT_API impact_status impact_ode_create(const impact_ode_def *def, impact_ode **ode);
 IMPACT_API void impact_ode_destroy(impact_ode *ode); /* NULL is fine */
 
@@ -51,14 +52,14 @@ IMPACT_API impact_status impact_ode_start(impact_ode *ode, double t, const doubl
 /* Bounds the step from now on; 0: no bound. */
 IMPACT_API impact_status impact_ode_limit_step(impact_ode *ode, double max_step);
 
-/* Other tolerances from the next start on: one absolute tolerance for every component, or absolute[n], copied, one for each.
- * IMPACT_EARGUMENT for a negative one or NaN. */
+/* Other tolerances from the next start on: one absolute tolerance for every component, or absolute[n], copied, one for
+ * each. IMPACT_EARGUMENT for a negative one or NaN. */
 IMPACT_API impact_status impact_ode_set_tolerance(impact_ode *ode, double relative, double absolute);
 IMPACT_API impact_status impact_ode_set_tolerances(impact_ode *ode, double relative, const double *absolute);
 
-/* One internal step towards t_stop, never past it. *t and y[n] are the new state: the end of the step, or the first root in it.
- * roots_found[roots]: -1 or +1 where the root function crosses falling or rising, else 0 (NULL: not wanted).
- * *found: whether a root ended the step. IMPACT_EINTEGRATOR: see impact_ode_message. */
+/* One internal step towards t_stop, never past it. *t and y[n] are the new state: the end of the step, or the first
+ * root in it. roots_found[roots]: -1 or +1 where the root function crosses falling or rising, else 0 (NULL: not
+ * wanted). *found: whether a root ended the step. IMPACT_EINTEGRATOR: see impact_ode_message. */
 IMPACT_API impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double *y, int *roots_found,
                                          bool *found);
 

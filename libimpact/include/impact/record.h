@@ -57,10 +57,10 @@ typedef struct impact_recorder {
     bool (*progress)(void *context, double t, double t_end); /* now and then; false stops the run with IMPACT_STOPPED */
 } impact_recorder;
 
-/* CSV sink. Rows go to "PATH.part" files; only impact_csv_close(csv, true) gives them their names, so that no partial file
- * passes for a whole one. 17 significant digits, one header line, "\n", '.' whatever the locale.
- * samples: t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz
- * events:  t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,energy_before,energy_after */
+/* CSV sink. Rows go to "PATH.part" files; only impact_csv_close(csv, true) gives them their names, so that no partial
+ * file passes for a whole one. 17 significant digits, one header line, "\n", '.' whatever the locale. samples:
+ * t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz events:
+ * t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,energy_before,energy_after */
 typedef struct impact_csv impact_csv;
 
 /* Either path may be NULL. IMPACT_ESINK when a file cannot be opened: message (may be NULL) names it and says why.
@@ -69,7 +69,8 @@ IMPACT_API impact_status impact_csv_open(const char *samples_path, const char *e
                                          char *message, unsigned long message_size);
 /* A recorder over it (no progress function); valid until the close. */
 IMPACT_API impact_recorder impact_csv_recorder(impact_csv *csv);
-/* keep: flush, close and rename, IMPACT_ESINK when any of it fails; otherwise the partial files are removed. NULL is fine. */
+/* keep: flush, close and rename, IMPACT_ESINK when any of it fails; otherwise the partial files are removed. NULL is
+ * fine. */
 IMPACT_API impact_status impact_csv_close(impact_csv *csv, bool keep, char *message, unsigned long message_size);
 
 #ifdef __cplusplus

@@ -25,15 +25,17 @@ typedef struct impact_body_def {
     qvec3 moments;    /* principal moments about the centre, kg m^2, along the body axes; NaN: of the uniform solid */
     qvec3 position;   /* of the centre of mass, m */
     quat orientation; /* body to world; normalised */
-    /* Where the shape's centre and axes stand in the body's frame, which is that of its centre of mass and principal moments: m, and
-     * shape to body, normalised. With anything but 0 and 1 the moments must be given. Not for planes. */
+    /* Where the shape's centre and axes stand in the body's frame, which is that of its centre of mass and principal
+     * moments: m, and shape to body, normalised. With anything but 0 and 1 the moments must be given. Not for planes.
+     */
     qvec3 shape_position;
     quat shape_orientation;
     qvec3 velocity; /* m/s */
     qvec3 omega;    /* rad/s, world */
-    /* Of a static body they are its surface's, that moves along itself, for ever: the point x by velocity + omega x (x - position).
-     * Only what leaves its shape in place is allowed: along a plane, as a belt; about the normal of a plane without edges, as a
-     * turntable; about an axis through the shape's centre on which the shape is round, as a drum. */
+    /* Of a static body they are its surface's, that moves along itself, for ever: the point x by velocity + omega x (x
+     * - position). Only what leaves its shape in place is allowed: along a plane, as a belt; about the normal of a
+     * plane without edges, as a turntable; about an axis through the shape's centre on which the shape is round, as a
+     * drum. */
     double friction;    /* >= 0; joined with the other body's by the scene's rule */
     double restitution; /* in [0, 1] */
     double linear_damping,
@@ -73,15 +75,16 @@ typedef struct impact_scene_def {
     double compliance;    /* of every contact, eta^2: see impact_collision; > 0 with Stronge's law only; 0: rigid */
 
     double tolerance; /* relative, of the motion's integration; a thirtieth of it where no contact is held */
-    /* m: a bounce that would rise less than this, than a few roundings of the gap, or than the integrator can tell, is the last: the
-     * contact is held; a body that rocks on a flat face with less energy than lifts it by a hundred of this lies there */
+    /* m: a bounce that would rise less than this, than a few roundings of the gap, or than the integrator can tell, is
+     * the last: the contact is held; a body that rocks on a flat face with less energy than lifts it by a hundred of
+     * this lies there */
     double rest_height;
     double rest_speed; /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
     long max_events;   /* IMPACT_EVENT_LIMIT after so many */
 } impact_scene_def;
 
-/* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis), Poisson's law,
- * tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events. */
+/* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
+ * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events. */
 IMPACT_API impact_scene_def impact_default_scene_def(void);
 IMPACT_API impact_body_def impact_default_body_def(void);
 
@@ -92,10 +95,12 @@ IMPACT_API impact_status impact_scene_create(const impact_scene_def *def, impact
                                              unsigned long message_size);
 IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
 
-/* Runs on to the definition's duration, or to time t, which is not over. Rows go to the recorder (NULL: nowhere). Samples stand at k/output_rate;
- * two more, just before and just after, beside each event, for the bodies in it. IMPACT_OK: the time was reached; IMPACT_AT_REST:
- * nothing moves any more and nothing will, state stands until the end; IMPACT_SOFT: one of these, but the energy account is off by
- * more than 1e-8 (and 1000 times the tolerance) of the energies in it; other positive statuses: stopped early; negative: failed. See impact_scene_message. A scene at rest or stopped can be run on. */
+/* Runs on to the definition's duration, or to time t, which is not over. Rows go to the recorder (NULL: nowhere).
+ * Samples stand at k/output_rate; two more, just before and just after, beside each event, for the bodies in it.
+ * IMPACT_OK: the time was reached; IMPACT_AT_REST: nothing moves any more and nothing will, state stands until the end;
+ * IMPACT_SOFT: one of these, but the energy account is off by more than 1e-8 (and 1000 times the tolerance) of the
+ * energies in it; other positive statuses: stopped early; negative: failed. See impact_scene_message. A scene at rest
+ * or stopped can be run on. */
 IMPACT_API impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder);
 IMPACT_API impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder);
 
@@ -117,7 +122,8 @@ typedef struct impact_usage {
     /* of these, answers to another impact in the same instant, taken in the order of the definition */
     long impacts_simultaneous;
     long impacts_together; /* impulses that many pairs exchanged together, where answers would not end */
-    /* instants after which bodies moved on with reactions of friction that are not unique: what follows hangs on the choice */
+    /* instants after which bodies moved on with reactions of friction that are not unique: what follows hangs on the
+     * choice */
     long reactions_chosen;
     long events[IMPACT_EVENT_REST + 1]; /* by kind */
     long samples;
@@ -125,7 +131,8 @@ typedef struct impact_usage {
 
 IMPACT_API impact_usage impact_scene_usage(const impact_scene *scene);
 
-/* The energy account, J: kinetic + potential = start + work of forces and of drives - the losses, to the tolerance of the run. */
+/* The energy account, J: kinetic + potential = start + work of forces and of drives - the losses, to the tolerance of
+ * the run. */
 typedef struct impact_energy {
     double start;                                   /* kinetic + potential at t = 0 */
     double kinetic, potential;                      /* now; potential of uniform gravity and of attraction */

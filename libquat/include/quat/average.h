@@ -14,11 +14,11 @@
 extern "C" {
 #endif
 
-/* The mean of n rotations (q/|q| counts) that minimises sum w |R(q) - R(q_i)|_F^2: the leading eigenvector of the sum of
- * w q q^T (Markley, Cheng, Crassidis, Oshman 2007), w >= 0. weights may be NULL (all 1). QUAT_NOT_UNIQUE when the two
- * largest eigenvalues agree to rounding (two opposite half turns, for instance). QUAT_EARGUMENT for n = 0; QUAT_EDOMAIN
- * for a quaternion that cannot be normalised, for negative, infinite or NaN weights, and when all weights are 0;
- * *mean = 1 then. */
+/* The mean of n rotations (q/|q| counts) that minimises sum w |R(q) - R(q_i)|_F^2: the leading eigenvector of the sum
+ * of w q q^T (Markley, Cheng, Crassidis, Oshman 2007), w >= 0. weights may be NULL (all 1). QUAT_NOT_UNIQUE when the
+ * two largest eigenvalues agree to rounding (two opposite half turns, for instance). QUAT_EARGUMENT for n = 0;
+ * QUAT_EDOMAIN for a quaternion that cannot be normalised, for negative, infinite or NaN weights, and when all weights
+ * are 0; *mean = 1 then. */
 QUAT_API quat_status quat_mean(size_t n, const quat q[], const double weights[], quat *mean);
 
 /* The Karcher mean: minimises the weighted sum of squared rotation angles. Newton-like iteration q exp(average of the

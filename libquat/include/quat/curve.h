@@ -73,14 +73,15 @@ QUAT_API quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve
 
 /* The length from t = a to t = b, negative for b < a: adaptive Gauss-Kronrod over the speed, to about 1e-13 of it.
  * QUAT_NOT_CONVERGED with the best value when that is not reached (a speed with poles, noise, differences that err by
- * 1e-8 of the curve's size). QUAT_ERANGE when it overflows; other statuses as quat_curve_derivatives'; *length = 0 then. */
+ * 1e-8 of the curve's size). QUAT_ERANGE when it overflows; other statuses as quat_curve_derivatives'; *length = 0
+ * then. */
 QUAT_API quat_status quat_curve_length(const quat_curve *curve, double a, double b, double *length);
 /* The t at `length` along the curve from its start: Newton's method, kept in a bracket. QUAT_EDOMAIN for a length
  * outside 0 ... the whole (by more than 1e-9 of it), QUAT_NOT_CONVERGED as for lengths. */
 QUAT_API quat_status quat_curve_at_length(const quat_curve *curve, double length, double *t);
-/* n >= 2 values of t at equal distances along the curve, increasing, from start to end. QUAT_NOT_CONVERGED where a length
- * is that, or nothing but noise: the rest are then at equal steps of t. Other statuses as quat_curve_length's, and
- * QUAT_EARGUMENT for n < 2. */
+/* n >= 2 values of t at equal distances along the curve, increasing, from start to end. QUAT_NOT_CONVERGED where a
+ * length is that, or nothing but noise: the rest are then at equal steps of t. Other statuses as quat_curve_length's,
+ * and QUAT_EARGUMENT for n < 2. */
 QUAT_API quat_status quat_curve_even(const quat_curve *curve, size_t n, double t[]);
 
 /* Integrals along the curve: length, of the curvature (2 pi or more for a closed curve, more than 4 pi for a knot;
@@ -101,7 +102,7 @@ typedef enum quat_framing {
 
 typedef struct quat_framing_report {
     double holonomy; /* closed curves: the angle about the tangent by which the minimal frame comes back turned,
-                         * -pi ... pi; minus the total torsion, up to full turns. 0 for open ones */
+                      * -pi ... pi; minus the total torsion, up to full turns. 0 for open ones */
     int monodromy;   /* closed curves: +1 when q[n-1] comes back on q[0]'s side of S^3, -1 opposite; 0 for open ones */
     size_t inflections; /* QUAT_FRENET: where there is no normal or it turned over; 0 otherwise */
 } quat_framing_report;

@@ -64,13 +64,13 @@ typedef struct quat_surface_point {
     double error; /* an estimate of the error of the principal curvatures */
 } quat_surface_point;
 
-/* Everything at (u, v), through the frame's rates. QUAT_NOT_UNIQUE at an umbilic. QUAT_NOT_CONVERGED where `error` comes
- * to 1e-3 of the curvatures or of one over the surface's extent: beside a pole, when differences are all there is,
- * within about 1e-5 of it, otherwise within 1e-11. QUAT_EDOMAIN: outside an open range,
- * infinite or NaN; no value; a degenerate point (x_u x x_v = 0 to rounding, such as the pole of a sphere's angles): all
- * zero then, frame = 1, but for the position if there is one. QUAT_ERANGE: lengths outside 1e-100 ... 1e100, where
- * products overflow or vanish. QUAT_EARGUMENT: a surface without a function, empty or infinite ranges, `known` outside
- * 0 ... 2. With differences of x alone, errors of about 1e-10 of the curvature's size. */
+/* Everything at (u, v), through the frame's rates. QUAT_NOT_UNIQUE at an umbilic. QUAT_NOT_CONVERGED where `error`
+ * comes to 1e-3 of the curvatures or of one over the surface's extent: beside a pole, when differences are all there
+ * is, within about 1e-5 of it, otherwise within 1e-11. QUAT_EDOMAIN: outside an open range, infinite or NaN; no value;
+ * a degenerate point (x_u x x_v = 0 to rounding, such as the pole of a sphere's angles): all zero then, frame = 1, but
+ * for the position if there is one. QUAT_ERANGE: lengths outside 1e-100 ... 1e100, where products overflow or vanish.
+ * QUAT_EARGUMENT: a surface without a function, empty or infinite ranges, `known` outside 0 ... 2. With differences of
+ * x alone, errors of about 1e-10 of the curvature's size. */
 QUAT_API quat_status quat_surface_at(const quat_surface *surface, double u, double v, quat_surface_point *point);
 
 /* The largest component of a_v - b_u - a x b for the coordinate gauge, with a_v and b_u by differences: 0 for the
@@ -135,9 +135,9 @@ QUAT_API quat_status quat_surface_patch(const quat_surface *surface, double u0, 
  * angle[i] (may be NULL) is continuous, the first in -pi ... pi. *turns (may be NULL) is how often the angle goes round
  * from first to last: for a closed seam, with the last point the first again, a whole number; -2 around the equator of
  * a sphere from the northern to the southern patch, counter-clockwise seen from north: minus its Euler number. *off
- * (may be NULL) is the largest angle between the normals. QUAT_NOT_UNIQUE when the angle goes by more than 3/8 of a turn
- * from one point to the next: half a turn could be either way, take more points. QUAT_EARGUMENT for n < 1; QUAT_EDOMAIN
- * when normals differ by more than 1e-6 rad or a quaternion cannot be normalised. */
+ * (may be NULL) is the largest angle between the normals. QUAT_NOT_UNIQUE when the angle goes by more than 3/8 of a
+ * turn from one point to the next: half a turn could be either way, take more points. QUAT_EARGUMENT for n < 1;
+ * QUAT_EDOMAIN when normals differ by more than 1e-6 rad or a quaternion cannot be normalised. */
 QUAT_API quat_status quat_transition(size_t n, const quat q1[], const quat q2[], double angle[], double *turns,
                                      double *off);
 
