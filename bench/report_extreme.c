@@ -13,6 +13,7 @@
  *   bounces        so many of them, restitution 1
  *   restitution    all bounces until rest: the time they take
  *   friction       a sliding sphere, to 5/7 of its speed
+ *   sliding units  the same, with lengths and gravity times this
  *   exponent       a superquadric falls on the floor, tilted
  *   slimness       an ellipsoid of this aspect falls on the floor, tilted
  */
@@ -231,18 +232,25 @@ static void restitution(double e)
     row("restitution", e, &t, t.scene ? off(impact_scene_time(t.scene), rest) : NAN);
 }
 
-static void friction(double mu)
+/* Lengths and gravity in this unit. */
+static void slide(const char *name, double parameter, double mu, double unit)
 {
     trial t;
     const double v = 1;
     start(&t, 2 * 2 * v / (7 * mu * gravity));
+    t.def.gravity.z *= unit;
+    t.def.rest_height *= unit;
+    t.def.rest_speed *= unit;
     add_floor(&t);
-    impact_body_def *ball = add_ball(&t, 0.3, 0, mu);
-    ball->position.z = 0.3;
-    ball->velocity.x = v;
+    impact_body_def *ball = add_ball(&t, 0.3 * unit, 0, mu);
+    ball->position.z = 0.3 * unit;
+    ball->velocity.x = v * unit;
     run(&t);
-    row("friction", mu, &t, off(end_of(&t, 1).velocity.x, 5 * v / 7));
+    row(name, parameter, &t, off(end_of(&t, 1).velocity.x, 5 * v * unit / 7));
 }
+
+static void friction(double mu) { slide("friction", mu, mu, 1); }
+static void sliding_units(double unit) { slide("sliding units", unit, 0.3, unit); }
 
 static void falls(const char *name, double parameter, const impact_shape *shape, double height, double duration)
 {
@@ -291,6 +299,7 @@ int main(void)
     restitution(0.99);
     restitution(0.999);
     each(friction, 1e-6, 100, 7);
+    each(sliding_units, 1e-9, 1000, 7);
     static const double exponents[] = {1.1, 2, 4, 10, 30, 100, 300};
     for (int i = 0; i < 7; i++) exponent(exponents[i]);
     each(slimness, 1, 10, 7);
