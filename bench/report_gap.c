@@ -115,7 +115,8 @@ static void one_pair(random_stream *random, int family, tally tallies[SIGNS])
         return;
     }
     const double reach = size + qvec3_norm(body[0].position);
-    if (gap < 0 && contact.gap > gap + 1e-13 * reach && gap_along(body, contact.normal) > gap + 1e-13 * reach) {
+    const double along = gap_along(body, contact.normal);
+    if (gap < 0 && along > gap + 4e-15 * reach && fabs(contact.gap - along) <= 4e-15 * reach) {
         t->nearer++; /* the way out that was constructed is not the nearest: the support functions bear the answer out
                       */
         return;

@@ -40,6 +40,14 @@ static inline void impact_cross(const double a[3], const double b[3], double c[3
     c[0] = a[1] * b[2] - a[2] * b[1], c[1] = a[2] * b[0] - a[0] * b[2], c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/* Two unit vectors across the unit n (Duff et al. 2017). */
+static inline void impact_across(const double n[3], double t[2][3])
+{
+    const double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+    t[0][0] = 1 + sign * n[0] * n[0] * a, t[0][1] = sign * b, t[0][2] = -sign * n[0];
+    t[1][0] = b, t[1][1] = sign + n[1] * n[1] * a, t[1][2] = -n[1];
+}
+
 static inline void impact_to_world(const double m[3][3], const double b[3], double w[3])
 {
     for (int i = 0; i < 3; i++) w[i] = m[i][0] * b[0] + m[i][1] * b[1] + m[i][2] * b[2];

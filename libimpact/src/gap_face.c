@@ -80,14 +80,6 @@ static bool solve_plainly(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS], doub
     return true;
 }
 
-/* Two unit vectors across the unit n (Duff et al. 2017). */
-static void across(const double n[3], double t[2][3])
-{
-    const double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
-    t[0][0] = 1 + sign * n[0] * n[0] * a, t[0][1] = sign * b, t[0][2] = -sign * n[0];
-    t[1][0] = b, t[1][1] = sign + n[1] * n[1] * a, t[1][2] = -n[1];
-}
-
 void impact_face_start(const impact_pair *pair, const double n[3], const double (*x)[3], impact_surface s[2])
 {
     for (int k = 0; k < 2; k++) {
@@ -108,7 +100,7 @@ bool impact_face_look(const impact_pair *pair, const impact_surface s[2], impact
         face->m[i] /= length;
         face->v[i] = pair->c[i] + face->chart[1].x[i] - face->chart[0].x[i];
     }
-    across(face->m, face->t);
+    impact_across(face->m, face->t);
     face->vm = impact_dot(face->v, face->m);
     for (int k = 0; k < 2; k++) face->along[k] = impact_dot(face->chart[k].N, face->m);
     for (int j = 0; j < 2; j++) {

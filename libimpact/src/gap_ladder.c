@@ -10,7 +10,7 @@
  * an overlap may have several local answers. */
 static const double deep_part = 0.05;
 
-enum { SEED_STEPS = 4 };
+enum { SEED_STEPS = 4, MAX_PROOFS = 8 };
 
 typedef struct search {
     const impact_pair *pair;
@@ -120,24 +120,38 @@ static bool certain(const search *s)
     return balls >= depth || certain_edges(s, depth);
 }
 
-static bool done(const search *s)
+/* Whether the best answer needs no proof, or has one that is cheap. */
+static bool plain(const search *s)
 {
-    if (!s->found) return false;
     const double depth = -s->best.gap, radius = s->best.stiffness + depth;
     if (depth <= 1e-13 * s->pair->reach) return true;
     return s->sharp ? depth <= deep_part * s->thin && certain(s) : depth <= deep_part * fmin(s->thin, radius);
 }
 
-/* Newton from n and, when not NULL, the points x; true when the search is over. */
-static bool try_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
+static bool newton_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
 {
     impact_meeting meeting;
-    if (impact_gap_newton(s->pair, n, x, &meeting) && (!s->found || meeting.gap > s->best.gap)) {
-        s->best = meeting;
-        s->path = path;
-        s->found = true;
+    if (!impact_gap_newton(s->pair, n, x, &meeting) || (s->found && !(meeting.gap > s->best.gap))) return false;
+    s->best = meeting;
+    s->path = path;
+    s->found = true;
+    return true;
+}
+
+/* Newton from n and, when not NULL, the points x; true when the search is over. A shallow answer that is not plain is
+ * proved, or what speaks against it seeds the next. */
+static bool try_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
+{
+    double other[3];
+    if (!newton_from(s, n, x, path)) return false;
+    for (int tries = 0; tries < MAX_PROOFS; tries++) {
+        if (plain(s)) return true;
+        if (!(-s->best.gap <= deep_part * s->thin)) return false;
+        const impact_proof proof = impact_gap_prove(s->pair, &s->best, other);
+        if (proof != IMPACT_PROOF_AGAINST) return proof == IMPACT_PROOF_NEAREST;
+        if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
     }
-    return done(s);
+    return false;
 }
 
 static void centre_line(const impact_pair *pair, double n[3])

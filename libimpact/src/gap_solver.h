@@ -79,6 +79,12 @@ impact_simplex_end impact_gap_simplex(const impact_pair *pair, double shrink, do
  * penetration search) asks for. False when this build has no libccd or nothing was met. */
 bool impact_gap_harvest(const impact_pair *pair, bool deep, double n[3]);
 
+/* Whether g is nowhere more than -depth, but for 1e-14 of the reach, depth > 0 being the meeting's. Against: it is at the
+ * normal n. Open: neither was found in a bounded number of steps. */
+typedef enum impact_proof { IMPACT_PROOF_NEAREST, IMPACT_PROOF_AGAINST, IMPACT_PROOF_OPEN } impact_proof;
+
+impact_proof impact_gap_prove(const impact_pair *pair, const impact_meeting *meeting, double n[3]);
+
 /* All the ways in order, from a cached normal (NULL: none). */
 impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting,
                                 impact_gap_path *path);
