@@ -6,8 +6,8 @@
  * report_gap [--pairs N] [--seed S] [--threads T] [--family NAME]
  * CSV: one row per family of pairs and sign of the gap; errors relative to L + |c|, normals in rad, of the answers with
  * status ok, nan where there was none. flagged: another status (a bracket, or deep). wrong: status ok and off by more
- * than 1e-13. nearer: overlaps whose nearest way out is another than the one constructed. skipped: constructions dropped
- * before the gap was asked for, their truth not being known; not among the pairs.
+ * than 1e-13. nearer: overlaps whose nearest way out is another than the one constructed. skipped: constructions
+ * dropped before the gap was asked for, their truth not being known; not among the pairs.
  */
 #include <pthread.h>
 #include <stdio.h>

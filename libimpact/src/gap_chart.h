@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * gap_chart (internal): a point of one body's surface with its normal, and how both move. Of the point's axis pairs
- * (u, e) two are free and the third, the one of the largest mass u e, follows from the surface's equation; of a free pair
- * the gentler half moves: u where de/du = (p - 1) |u|^(p-2) <= 1, else e.
+ * (u, e) two are free and the third, the one of the largest mass u e, follows from the surface's equation; of a free
+ * pair the gentler half moves: u where de/du = (p - 1) |u|^(p-2) <= 1, else e.
  */
 #ifndef IMPACT_GAP_CHART_H
 #define IMPACT_GAP_CHART_H

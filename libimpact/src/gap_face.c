@@ -110,8 +110,8 @@ bool impact_face_look(const impact_pair *pair, const impact_surface s[2], impact
     return true;
 }
 
-/* What the equations see of P and Q, the motions of body k's point and normal. Rows 0 and 1: the normals oppose; 2 and 3:
- * v_t - v_m y_A = 0; 4: v_m = 0. */
+/* What the equations see of P and Q, the motions of body k's point and normal. Rows 0 and 1: the normals oppose; 2 and
+ * 3: v_t - v_m y_A = 0; 4: v_m = 0. */
 static inline void respond(const impact_face *face, int k, const double P[3], const double Q[3], double length,
                            double row[UNKNOWNS])
 {

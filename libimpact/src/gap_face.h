@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * gap_face (internal): two surface points that face each other, the equations that they be witness points, and Newton's
- * step on them. The normals oppose (2 equations, in gnomonic coordinates about their bisector) and the points' difference
- * is along them (2 equations); for bodies in motion, and one unknown more, the time, the points also meet.
+ * step on them. The normals oppose (2 equations, in gnomonic coordinates about their bisector) and the points'
+ * difference is along them (2 equations); for bodies in motion, and one unknown more, the time, the points also meet.
  */
 #ifndef IMPACT_GAP_FACE_H
 #define IMPACT_GAP_FACE_H

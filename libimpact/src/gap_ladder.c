@@ -3,6 +3,7 @@
  * The ways to the gap, cheapest first. A gap >= 0 that Newton settles is the gap: g has no other local maximum. A
  * negative one is a local maximum; where it is deep, others are looked for.
  */
+#include "gap_chart.h"
 #include "gap_solver.h"
 #include <string.h>
 
@@ -97,8 +98,9 @@ static bool holds_disc(const impact_form *form, const edge *e, const double x[3]
 }
 
 /* Two edges across each other. The support function of a disc of radius r is r (sqrt(a^2 + b^2) - b), a = n'.along and
- * b = n'.m, at least r a^2/(2 M), M^2 = 1 + 1/facing^2; the sum of both a^2 is at least sin^2(n, n') (1 - |cos|), of the
- * angle between the edges. So with r = 16 depth M^3/(1 - |cos|) it is over depth (1 - n.n'), the ball's, for every n'. */
+ * b = n'.m, at least r a^2/(2 M), M^2 = 1 + 1/facing^2; the sum of both a^2 is at least sin^2(n, n') (1 - |cos|), of
+ * the angle between the edges. So with r = 16 depth M^3/(1 - |cos|) it is over depth (1 - n.n'), the ball's, for every
+ * n'. */
 static bool certain_edges(const search *s, double depth)
 {
     edge e[2];
@@ -111,8 +113,8 @@ static bool certain_edges(const search *s, double depth)
            holds_disc(&s->pair->form[1], &e[1], s->best.x[1], radius);
 }
 
-/* Whether an overlap's answer is proved the nearest way out: balls in both bodies, touching them at their witness points,
- * add up to one in their difference that touches it there. */
+/* Whether an overlap's answer is proved the nearest way out: balls in both bodies, touching them at their witness
+ * points, add up to one in their difference that touches it there. */
 static bool certain(const search *s)
 {
     const double depth = -s->best.gap, balls = inner_radius(&s->pair->form[0], s->best.x[0], depth) +
@@ -147,7 +149,9 @@ static bool try_from(search *s, const double n[3], const double (*x)[3], impact_
     for (int tries = 0; tries < MAX_PROOFS; tries++) {
         if (plain(s)) return true;
         if (!(-s->best.gap <= deep_part * s->thin)) return false;
-        const impact_proof proof = impact_gap_prove(s->pair, &s->best, other);
+        double gap = s->best.gap, here[3];
+        for (int i = 0; i < 3; i++) other[i] = s->best.n[i], here[i] = gap * other[i];
+        const impact_proof proof = impact_gap_prove(s->pair, here, false, &gap, other);
         if (proof != IMPACT_PROOF_AGAINST) return proof == IMPACT_PROOF_NEAREST;
         if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
     }
@@ -296,16 +300,83 @@ static bool try_homotopy(search *s)
     return try_from(s, n, NULL, IMPACT_PATH_FALLBACK);
 }
 
-/* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies. */
+static void difference(const impact_pair *pair, const double x[2][3], double v[3])
+{
+    for (int i = 0; i < 3; i++) v[i] = pair->c[i] + x[1][i] - x[0][i];
+}
+
+/* Points from the midst of the faces or edges that the normal n touches: the mean of those of normals about it. */
+static void midst(const impact_pair *pair, const double n[3], double lean, double x[2][3])
+{
+    double t[2][3];
+    impact_across(n, t);
+    memset(x, 0, 2 * sizeof x[0]);
+    for (int turn = 0; turn < 8; turn++) {
+        double m[3], y[2][3];
+        for (int i = 0; i < 3; i++)
+            m[i] = n[i] + lean * (cos(turn * 0.7853981633974483) * t[0][i] + sin(turn * 0.7853981633974483) * t[1][i]);
+        impact_pair_gap(pair, m, y);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < 3; i++) x[k][i] += y[k][i] / 8;
+    }
+}
+
+/* No way settled, of bodies that touch or overlap by little: the highest g over the whole sphere, where that can be
+ * had. True when Newton settles there. */
+static bool climb(search *s, double *upper)
+{
+    double x[2][3], v[3];
+    if (!(s->low <= 0 && -s->low <= deep_part * s->thin)) return false;
+    impact_pair_gap(s->pair, s->low_n, x);
+    difference(s->pair, (const double(*)[3])x, v);
+    if (impact_gap_prove(s->pair, v, true, &s->low, s->low_n) != IMPACT_PROOF_NEAREST) return false;
+    *upper = fmin(*upper, s->low + 1.8e-14 * s->pair->reach);
+    for (double lean = 1e-10; lean < 0.1; lean *= 10) { /* edges and vertices are round at any scale */
+        midst(s->pair, s->low_n, lean, x);
+        if (newton_from(s, s->low_n, (const double(*)[3])x, IMPACT_PATH_FALLBACK))
+            return s->best.gap >= s->low - 1e-14 * s->pair->reach;
+    }
+    return false;
+}
+
+static bool holds(const impact_form *form, const double x[3])
+{
+    double body[3];
+    for (int i = 0; i < 3; i++)
+        body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
+    return impact_form_inside(form, body) <= 1 + 1e-14;
+}
+
+/* Moves one of the points that the normal touches across it to face the other; false when it leaves its body. */
+static bool face(const impact_pair *pair, const double n[3], double gap, double x[2][3])
+{
+    double v[3];
+    difference(pair, (const double(*)[3])x, v);
+    for (int k = 0; k < 2; k++) {
+        double moved[3];
+        for (int i = 0; i < 3; i++) moved[i] = x[k][i] + (k ? -1 : 1) * (v[i] - gap * n[i]);
+        if (!holds(&pair->form[k], moved)) continue;
+        memcpy(x[k], moved, sizeof moved);
+        return true;
+    }
+    return false;
+}
+
+/* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies.
+ */
 static impact_status bracket(const search *s, double upper, impact_meeting *meeting)
 {
     double v[3];
     memcpy(meeting->n, s->low_n, sizeof meeting->n);
     meeting->lower = meeting->gap = impact_pair_gap(s->pair, meeting->n, meeting->x);
-    for (int i = 0; i < 3; i++) v[i] = s->pair->c[i] + meeting->x[1][i] - meeting->x[0][i];
-    meeting->upper = fmax(fmin(upper, distance_of(v)), meeting->lower);
+    difference(s->pair, (const double(*)[3])meeting->x, v);
+    const double apart = distance_of(v);
+    meeting->upper = fmax(fmin(upper, apart), meeting->lower);
     meeting->stiffness = 0;
-    return meeting->upper - meeting->lower <= 2e-14 * s->pair->reach ? IMPACT_OK : IMPACT_BRACKET;
+    if (!(meeting->upper - meeting->lower <= 2e-14 * s->pair->reach)) return IMPACT_BRACKET;
+    return apart - fabs(meeting->gap) <= 2e-14 * s->pair->reach || face(s->pair, meeting->n, meeting->gap, meeting->x)
+               ? IMPACT_OK
+               : IMPACT_BRACKET;
 }
 
 bool impact_gap_first(const impact_pair *pair, const double *cached, impact_meeting *meeting, impact_gap_path *path)
@@ -340,6 +411,7 @@ impact_status impact_gap_settle(const impact_pair *pair, const double *cached, i
     over = over || try_simplex(&s, &upper) || (!s.found && (try_slope(&s) || try_homotopy(&s)));
     if (!over) over = impact_gap_harvest(pair, true, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK);
     over = over || try_axes(&s);
+    if (!s.found) over = climb(&s, &upper);
     *path = s.found ? s.path : IMPACT_PATH_FALLBACK;
     if (!s.found) return bracket(&s, upper, meeting);
     *meeting = s.best;

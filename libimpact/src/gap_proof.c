@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whether an overlap's normal n, at depth, is the nearest way out: whether g <= -depth for every normal. Each point v of
- * the bodies' difference c + B - A bounds g(d) by v.d. v.d + depth |d| is convex in d, so that where it is no more than 0
- * at the corners of a spherical triangle it is so throughout. The sphere is halved into such triangles, each with the
- * support point of its middle, until all are cleared or a normal with a larger g turns up. Around n itself, where g is
- * highest, the point there does, for depth a little less: by less than the accuracy that is promised.
+ * Whether an overlap's normal n, at depth, is the nearest way out: whether g <= -depth for every normal. Each point v
+ * of the bodies' difference c + B - A bounds g(d) by v.d. v.d + depth |d| is convex in d, so that where it is no more
+ * than 0 at the corners of a spherical triangle it is so throughout. The sphere is halved into such triangles, each
+ * with the support point of its middle, until all are cleared or a normal with a larger g turns up. Around n itself,
+ * where g is highest, the point there does, for depth a little less: by less than the accuracy that is promised. (Where
+ * depth is no more than that, the bodies just touching, a triangle's inside is cleared for at most sqrt(3) times as
+ * much.)
  */
 #include "gap_chart.h"
 #include "gap_solver.h"
@@ -29,7 +31,8 @@ static void middle(const double a[3], const double b[3], double m[3])
     for (int i = 0; i < 3; i++) m[i] /= length;
 }
 
-/* Cuts the side along which the bound changes most, for a sphere's point of radius depth at least; *t keeps one half. */
+/* Cuts the side along which the bound changes most, for a sphere's point of radius depth at least; *t keeps the half
+ * where it is lower. */
 static void halve(triangle *t, double depth, triangle *half)
 {
     int side = 0;
@@ -40,10 +43,12 @@ static void halve(triangle *t, double depth, triangle *half)
         if (change > most) most = change, side = i;
     }
     double m[3];
-    middle(t->d[side], t->d[(side + 1) % 3], m);
+    const int next = (side + 1) % 3;
+    const bool after = impact_dot(t->v, t->d[next]) > impact_dot(t->v, t->d[side]);
+    middle(t->d[side], t->d[next], m);
     *half = *t;
-    memcpy(t->d[side], m, sizeof m);
-    memcpy(half->d[(side + 1) % 3], m, sizeof m);
+    memcpy(t->d[after ? next : side], m, sizeof m);
+    memcpy(half->d[after ? side : next], m, sizeof m);
 }
 
 /* The point of the difference farthest against the triangle's middle n; its g. */
@@ -58,20 +63,18 @@ static double support(const impact_pair *pair, const triangle *t, double n[3], d
     return g;
 }
 
-impact_proof impact_gap_prove(const impact_pair *pair, const impact_meeting *meeting, double n[3])
+impact_proof impact_gap_prove(const impact_pair *pair, const double here[3], bool climb, double *gap, double n[3])
 {
-    const double depth = -meeting->gap - 1e-14 * pair->reach;
-    double t[2][3], here[3];
-    impact_across(meeting->n, t);
-    for (int i = 0; i < 3; i++) here[i] = meeting->gap * meeting->n[i];
+    double t[2][3], depth = -*gap - 1e-14 * pair->reach;
+    impact_across(n, t);
     triangle waiting[MAX_WAITING];
     int count = 0;
     for (int octant = 0; octant < 8; octant++) {
         triangle *o = &waiting[count++];
         for (int i = 0; i < 3; i++) {
-            o->d[0][i] = octant & 1 ? meeting->n[i] : -meeting->n[i];
+            o->d[0][i] = octant & 4 ? n[i] : -n[i];
             o->d[1][i] = octant & 2 ? t[0][i] : -t[0][i];
-            o->d[2][i] = octant & 4 ? t[1][i] : -t[1][i];
+            o->d[2][i] = octant & 1 ? t[1][i] : -t[1][i];
             o->v[i] = here[i];
         }
     }
@@ -82,11 +85,18 @@ impact_proof impact_gap_prove(const impact_pair *pair, const impact_meeting *mee
             continue;
         }
         if (tests >= MAX_TRIANGLES || count == MAX_WAITING) return IMPACT_PROOF_OPEN;
-        if (support(pair, top, n, top->v) > -depth) return IMPACT_PROOF_AGAINST;
+        double m[3];
+        const double g = support(pair, top, m, top->v);
+        if (g > (climb ? *gap : -depth)) {
+            *gap = g;
+            memcpy(n, m, sizeof m);
+            if (!climb) return IMPACT_PROOF_AGAINST;
+            depth = -g - 1e-14 * pair->reach;
+        }
         if (clears(top, top->v, depth))
             count--;
         else
-            halve(top, depth, &waiting[count++]);
+            halve(top, fabs(depth), &waiting[count++]);
     }
     return IMPACT_PROOF_NEAREST;
 }

@@ -62,8 +62,8 @@ typedef struct impact_course {
 /* Body k at time t: impact_motion_at but for the last digits, and faster. */
 impact_solid impact_course_at(const impact_course *course, int k, double t);
 
-/* Newton for a time in [low, high] at which two bodies, no plane among them, come into contact, from *t in there and the
- * normal n: true when it settled on one to rounding, but not always the first; *t, and the contact then. */
+/* Newton for a time in [low, high] at which two bodies, no plane among them, come into contact, from *t in there and
+ * the normal n: true when it settled on one to rounding, but not always the first; *t, and the contact then. */
 bool impact_gap_strike(const impact_course *course, double low, double high, qvec3 n, double *t,
                        impact_contact *contact);
 
@@ -79,11 +79,12 @@ impact_simplex_end impact_gap_simplex(const impact_pair *pair, double shrink, do
  * penetration search) asks for. False when this build has no libccd or nothing was met. */
 bool impact_gap_harvest(const impact_pair *pair, bool deep, double n[3]);
 
-/* Whether g is nowhere more than -depth, but for 1e-14 of the reach, depth > 0 being the meeting's. Against: it is at the
- * normal n. Open: neither was found in a bounded number of steps. */
+/* Whether g is nowhere more than *gap, no more than 0, but for 1.8e-14 of the reach, *gap being g(n); here: a point of
+ * the difference c + B - A. Against: it is, and *gap and n tell where; climb: they are followed to the highest instead.
+ * Open: neither was found in a bounded number of steps. */
 typedef enum impact_proof { IMPACT_PROOF_NEAREST, IMPACT_PROOF_AGAINST, IMPACT_PROOF_OPEN } impact_proof;
 
-impact_proof impact_gap_prove(const impact_pair *pair, const impact_meeting *meeting, double n[3]);
+impact_proof impact_gap_prove(const impact_pair *pair, const double here[3], bool climb, double *gap, double n[3]);
 
 /* All the ways in order, from a cached normal (NULL: none). */
 impact_status impact_gap_settle(const impact_pair *pair, const double *cached, impact_meeting *meeting,

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * A search for the time of contact, and proofs (toi_proof) that nothing touches before it. The far end comes first: Newton
- * for the contact itself, or for the gap at times that the gap's rate foretells; then what lies between is cleared, halved
- * where no proof clears it at once. At a time between it is enough to know a normal that parts the bodies.
+ * A search for the time of contact, and proofs (toi_proof) that nothing touches before it. The far end comes first:
+ * Newton for the contact itself, or for the gap at times that the gap's rate foretells; then what lies between is
+ * cleared, halved where no proof clears it at once. At a time between it is enough to know a normal that parts the
+ * bodies.
  */
 #include <quat/rotation.h>
 #include "toi_proof.h"
@@ -86,7 +87,8 @@ static double slack(const impact_instant *at) { return fmax(at->tolerance, 1.2e-
 
 static bool touches(const impact_instant *at) { return at->gap <= slack(at); }
 
-/* The gap at the instant, its bodies placed, from the normal seed (NULL: none). glance: it may lie beyond the contact. */
+/* The gap at the instant, its bodies placed, from the normal seed (NULL: none). glance: it may lie beyond the contact.
+ */
 static impact_status solve(const impact_chase *q, const qvec3 *seed, bool glance, impact_instant *at)
 {
     impact_gap_cache cache = {0};
@@ -265,8 +267,8 @@ static impact_status settle(const search *s, impact_instant *at)
     return solve(&s->q, &seed, false, at);
 }
 
-/* On to an instant ahead of here, nothing waiting, without the gap at it: as far as the balls are clear, or to the contact
- * itself, or to a time when a normal is seen to part the bodies. False when none of that can be had. */
+/* On to an instant ahead of here, nothing waiting, without the gap at it: as far as the balls are clear, or to the
+ * contact itself, or to a time when a normal is seen to part the bodies. False when none of that can be had. */
 static bool set_forth(search *s, double t, impact_status *status)
 {
     const impact_instant *here = &s->here;
@@ -279,8 +281,8 @@ static bool set_forth(search *s, double t, impact_status *status)
     return strike(s) || (t > here->t && scout(s, t));
 }
 
-/* One move on: links the instant that waits, or finds a new one, or steps by a proof that needs no other end. stuck: no time
- * lies between here and the contact. */
+/* One move on: links the instant that waits, or finds a new one, or steps by a proof that needs no other end. stuck: no
+ * time lies between here and the contact. */
 static impact_status move_on(search *s, bool *stuck)
 {
     impact_instant *here = &s->here;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * The proof that nothing touches between two times, 0 and T. Where normals n0 and n1 part the bodies by g0 and g1 there,
- * follow the direction n(t) that turns from one to the other at a steady rate Omega. In the axes of a body of spin w it is
- * d(t) = R^T n (or its opposite), and with D = Omega - w
+ * The proof that nothing touches between two times, 0 and T. Where normals n0 and n1 part the bodies by g0 and g1
+ * there, follow the direction n(t) that turns from one to the other at a steady rate Omega. In the axes of a body of
+ * spin w it is d(t) = R^T n (or its opposite), and with D = Omega - w
  *
  *     d'' = R^T [(D x w) x n + D x (D x n)],   |d'''| <= E (|w| + 3 |D|) + |D|^3,   E = |D x w|.
  *
- * d(t) is the chord between its ends less the integral of Green's function, which is never negative and has the integral
- * t (T - t)/2, times d''. The support function h is convex and subadditive. So with c, v, a the centres' offset and its
- * rates, lambda = t/T, the bodies are parted at t by at least
+ * d(t) is the chord between its ends less the integral of Green's function, which is never negative and has the
+ * integral t (T - t)/2, times d''. The support function h is convex and subadditive. So with c, v, a the centres'
+ * offset and its rates, lambda = t/T, the bodies are parted at t by at least
  *
  *     (1 - lambda) g0 + lambda g1 - lambda (1 - lambda) T^2/2 [M + L T (1 + lambda)/3],
  *     M = (n.c)'' + sum h(d'') at time 0,   (n.c)'' = -Omega^2 n.c + 2 (Omega x n).v + n.a,
@@ -16,8 +16,8 @@
  *
  * With K for T^2/2 times the bracket at lambda = 1 that is never negative if sqrt(g0) + sqrt(g1) >= sqrt(K), or, as the
  * bracket times (1 - lambda) falls, if g1 is at least T^2/2 times the bracket at 0 and M >= 0. The normals are those of
- * the gap or near it, so that the bound falls short of the gap by terms of second order in T only, however steep or flat
- * the surfaces.
+ * the gap or near it, so that the bound falls short of the gap by terms of second order in T only, however steep or
+ * flat the surfaces.
  */
 #include "toi_proof.h"
 
@@ -84,7 +84,8 @@ static double parted(const impact_chase *q, const impact_instant *at, qvec3 n)
     return gap;
 }
 
-/* The bound's M and L, for n to turn at the rate turn; sense: of time, 1 or -1; speed, distance: the largest on the way. */
+/* The bound's M and L, for n to turn at the rate turn; sense: of time, 1 or -1; speed, distance: the largest on the
+ * way. */
 static void bends(const impact_chase *q, const impact_instant *at, double sense, qvec3 turn, double speed,
                   double distance, double *M, double *L)
 {
@@ -141,8 +142,8 @@ static double first_zero(double gap, double slope, double bend)
     return bend > 0 ? (slope + root) / bend : INFINITY;
 }
 
-/* Of the turns the normal may make on the way to end, as it did before, with either body or none, the one along which the
- * bodies are parted most; and by how much they are. */
+/* Of the turns the normal may make on the way to end, as it did before, with either body or none, the one along which
+ * the bodies are parted most; and by how much they are. */
 static double best_turn(const impact_chase *q, const impact_instant *at, const impact_instant *end, qvec3 trend,
                         qvec3 *turn)
 {

@@ -41,8 +41,8 @@ bool impact_toi_link(const impact_chase *q, const impact_instant *from, const im
 /* The steady turn that takes the unit n0 to n1 in the time T; they are less than a right angle apart. */
 qvec3 impact_toi_turn(qvec3 n0, qvec3 n1, double T);
 
-/* A step from an instant, at most limit, in which there is provably no contact: along its normal, which may turn (trend: as
- * it did before, rad/s), or for far bodies along a unit n with their bounding balls. */
+/* A step from an instant, at most limit, in which there is provably no contact: along its normal, which may turn
+ * (trend: as it did before, rad/s), or for far bodies along a unit n with their bounding balls. */
 double impact_toi_safe_step(const impact_chase *q, const impact_instant *at, qvec3 trend, double limit);
 double impact_toi_ball_step(const impact_chase *q, const impact_instant *at, qvec3 n);
 

@@ -334,7 +334,8 @@ static void octahedra(void **state)
     expect_gap(&edge, &a, 1 / sqrt(2) - 0.1);
 }
 
-/* Exact octahedra are polytopes: the gap of two that overlap is the largest along a face's normal or across two edges. */
+/* Exact octahedra are polytopes: the gap of two that overlap is the largest along a face's normal or across two edges.
+ */
 static double octahedra_gap(const impact_solid body[2])
 {
     static const int sign[2] = {1, -1};
@@ -408,7 +409,8 @@ static double gap_along(const impact_solid body[2], qvec3 n)
     return qvec3_dot(n, d);
 }
 
-/* Where an overlap's answer is ok no other normal is a nearer way out, near it or far from it; of bodies with edges too. */
+/* Where an overlap's answer is ok no other normal is a nearer way out, near it or far from it; of bodies with edges
+ * too. */
 static void no_nearer_way_out(void **state)
 {
     (void)state;

@@ -140,8 +140,8 @@ static void first_contact_of_random_pairs(void **state)
     assert_true(met > 500);
 }
 
-/* Needles, thrown past and at each other with slow and fast spins: never unsettled, and no contact before the first. The
- * gap left is that of the time's last digit. */
+/* Needles, thrown past and at each other with slow and fast spins: never unsettled, and no contact before the first.
+ * The gap left is that of the time's last digit. */
 static void any_spin(void **state)
 {
     (void)state;
@@ -172,7 +172,8 @@ static void any_spin(void **state)
     assert_true(met > 500);
 }
 
-/* Any two shapes, planes among them, thrown anyhow: accelerated, spun to 60 rad/s, alike or not at all, to meet or to miss. */
+/* Any two shapes, planes among them, thrown anyhow: accelerated, spun to 60 rad/s, alike or not at all, to meet or to
+ * miss. */
 static void any_motion(void **state)
 {
     (void)state;

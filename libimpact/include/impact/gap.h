@@ -48,8 +48,8 @@ typedef struct impact_contact {
 /* The gap of two solids: any shapes but two planes (IMPACT_EARGUMENT, as for a shape that impact_shape_check refuses).
  * cache may be NULL. IMPACT_OK: settled, the bracket closed to 2e-14 (L + |c|) or better, L the largest semi-axis and c
  * between the positions. With an answer too: IMPACT_DEEP, the nearest way out that was found, where an overlap may have
- * several (deeper than 5 % of the smallest semi-axis or of the radii at the contact; or both bodies with edges and it
- * is not proved the nearest); IMPACT_BRACKET, the gap lies in [lower, upper]. IMPACT_EDOMAIN: a position that is not
+ * several (deeper than 5 % of the smallest semi-axis; or of the radii at the contact, or both bodies with edges, and
+ * not proved the nearest); IMPACT_BRACKET, the gap lies in [lower, upper]. IMPACT_EDOMAIN: a position that is not
  * finite, an orientation that is zero or not finite. A negative status leaves every number of *contact NaN. Method:
  * docs/gap.md.
  */
