@@ -87,6 +87,16 @@ void impact_motion_unpack(const impact_motion *motion, const double *y, impact_s
     }
 }
 
+/* How far a contact's slip is to slow the clock: what next to nothing presses changes nothing, and need never die out. */
+static double rubbing(const impact_persist *persist, int contact)
+{
+    const double least = 0.01; /* of the greatest pressure */
+    double most = 0;
+    for (int c = 0; c < persist->count; c++) most = fmax(most, fabs(persist->touches[c].pressure));
+    const double pressure = fabs(persist->touches[contact].pressure);
+    return pressure < least * most ? pressure / (least * most) : 1;
+}
+
 /* dt/dtau. */
 double impact_motion_clock(const impact_motion *motion)
 {
@@ -97,7 +107,7 @@ double impact_motion_clock(const impact_motion *motion)
     for (int c = 0; c < motion->persist.count && motion->sliding; c++)
         if (motion->persist.touches[c].mode == IMPACT_SLIDE && !motion->persist.touches[c].onset &&
             motion->persist.touches[c].friction > 0)
-            slowness += motion->slip_scale / motion->persist.touches[c].speed;
+            slowness += rubbing(&motion->persist, c) * motion->slip_scale / motion->persist.touches[c].speed;
     return 1 / slowness;
 }
 

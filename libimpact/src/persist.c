@@ -281,13 +281,13 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
 
 /* ---- modes ---- */
 
-/* The contact that pulls hardest, or -1; what nothing presses cannot begin to slide either. */
+/* The contact that pulls hardest, or -1; what nothing presses does not slide either. */
 static int worst_pull(const impact_persist *persist, double scale)
 {
     int worst = -1;
     for (int c = 0; c < persist->count; c++)
         if (!persist->touches[c].still &&
-            persist->touches[c].pressure < (persist->touches[c].onset ? 1e-12 : -1e-12) * scale &&
+            persist->touches[c].pressure < (persist->touches[c].mode == IMPACT_SLIDE ? 1e-12 : -1e-12) * scale &&
             (worst < 0 || persist->touches[c].pressure < persist->touches[worst].pressure))
             worst = c;
     return worst;

@@ -404,6 +404,8 @@ static bool comes_to_rest(const impact_scene *scene, int body)
         const impact_touch *touch = &scene->motion.persist.touches[c];
         if (touch->body1 != body && touch->body2 != body) continue;
         if (touch->still) return true;
+        const bool fades = touch->mode == IMPACT_SLIDE && !touch->onset && touch->friction > 0;
+        if (fades && touch->speed <= 2 * scene->rest_speed) return false; /* it sticks first */
         held = true;
         const qvec3 f = touch->body1 == body ? touch->force : qvec3_neg(touch->force);
         force = qvec3_add(force, f);
