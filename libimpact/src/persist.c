@@ -281,13 +281,19 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
 
 /* ---- modes ---- */
 
-/* The contact that pulls hardest, or -1; what nothing presses does not slide either. */
+/* Whether the touch's pressure is less than it may be: what nothing presses does not slide either, where that is no matter of choice. */
+static bool pulls(const impact_touch *touch, double scale)
+{
+    const bool slides = touch->mode == IMPACT_SLIDE && !touch->redundant;
+    return !touch->still && touch->pressure < (slides ? 1e-12 : -1e-12) * scale;
+}
+
+/* The contact that pulls hardest, or -1. */
 static int worst_pull(const impact_persist *persist, double scale)
 {
     int worst = -1;
     for (int c = 0; c < persist->count; c++)
-        if (!persist->touches[c].still &&
-            persist->touches[c].pressure < (persist->touches[c].mode == IMPACT_SLIDE ? 1e-12 : -1e-12) * scale &&
+        if (pulls(&persist->touches[c], scale) &&
             (worst < 0 || persist->touches[c].pressure < persist->touches[worst].pressure))
             worst = c;
     return worst;
