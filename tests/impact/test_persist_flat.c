@@ -71,6 +71,57 @@ static void a_box_slides_to_rest(void **state)
         }
 }
 
+/* Four bodies are moved in groups: each slides as it does alone. */
+static void many_boxes_slide_to_rest(void **state)
+{
+    (void)state;
+    enum { BOXES = 4 };
+    static const char *const names[BOXES] = {"one", "two", "three", "four"};
+    const double friction = 0.25;
+    impact_body_def bodies[BOXES + 1] = {floor_body()};
+    for (int i = 0; i < BOXES; i++) {
+        impact_body_def *box = &bodies[i + 1];
+        *box = box_body(100, friction);
+        box->name = names[i];
+        box->position.x = i;
+        box->velocity.y = 1 + 0.5 * i;
+    }
+    const impact_scene_def def = scene_of(bodies, BOXES + 1, 5);
+    impact_scene *scene = make_scene(&def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_AT_REST);
+    for (int i = 0; i < BOXES; i++) {
+        impact_sample end;
+        impact_scene_body(scene, i + 1, &end);
+        const double v = bodies[i + 1].velocity.y;
+        assert_near3(end.position, (qvec3){i, v * v / (2 * friction * gravity), half[2]}, 1e-11);
+    }
+    assert_account(scene, 1e-11);
+    impact_scene_destroy(scene);
+}
+
+/* A ball that strikes a box at rest sets it sliding: it comes to rest on its face again. */
+static void a_struck_box_lies_down_again(void **state)
+{
+    (void)state;
+    impact_body_def box = box_body(100, 0.5), ball = ball_body("ball", (qvec3){-0.8, 0, 0.15}, 0, 0.5);
+    box.restitution = 0.5;
+    ball.mass = 1;
+    impact_shape_sphere(0.1, &ball.shape);
+    ball.velocity = (qvec3){2, 0, 0};
+    impact_body_def bodies[3] = {floor_body(), box, ball};
+    bodies[0].restitution = 1;
+    impact_scene_def def = scene_of(bodies, 3, 0.6);
+    impact_scene *scene = make_scene(&def);
+    assert_true(impact_scene_run(scene, NULL) >= 0);
+    impact_sample end;
+    impact_scene_body(scene, 1, &end);
+    assert_true(end.position.x > 1e-3);
+    assert_near(end.position.z, half[2], 1e-12);
+    assert_near3(end.velocity, (qvec3){0, 0, 0}, 1e-12);
+    assert_account(scene, 1e-9);
+    impact_scene_destroy(scene);
+}
+
 /* On a slope it stays, or slides at g (sin - mu cos). */
 static void a_slope_holds_up_to_its_friction(void **state)
 {
@@ -235,6 +286,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_box_slides_to_rest),
+        cmocka_unit_test(many_boxes_slide_to_rest),
+        cmocka_unit_test(a_struck_box_lies_down_again),
         cmocka_unit_test(a_slope_holds_up_to_its_friction),
         cmocka_unit_test(a_belt_takes_a_box_along),
         cmocka_unit_test(a_turning_box_slides_then_pivots),
