@@ -3,9 +3,9 @@
  * report_flat: what drops on a face. Box-like superquadrics of one exponent, and cylinders of (2, 2, p), are let fall .01 m onto their largest
  * face, tilted, or thrown in any orientation (tilt "any"), and watched for five seconds.
  *
- * report_flat [--steps N] [--seed S]
+ * report_flat [--steps N] [--seed S] [--exponent P]
  * CSV: one row per shape, tilt, and friction, over the restitutions 0, .3 and .8: rest: runs that came to rest; ended: that still moved after
- * five seconds; long: stopped after N steps of the integrator (200 000); refused: with an error, or the word that the account is off.
+ * five seconds; long: stopped after N steps of the integrator (a million); refused: with an error, or the word that the account is off.
  * account: the worst error of the energy account, over the energy at the start; sunk: the deepest that the body ended in the plane, over
  * its bounding radius; steps: the most.
  */
@@ -109,7 +109,8 @@ static double argument(int count, char **arguments, const char *name, double oth
 int main(int count, char **arguments)
 {
     static const double exponents[] = {4, 10, 20, 50, 100}, tilts[] = {0, 1e-6, 1e-3, 0.1, NAN};
-    const long most = (long)fmax(argument(count, arguments, "--steps", 2e5), 1);
+    const long most = (long)fmax(argument(count, arguments, "--steps", 1e6), 1);
+    const double only = argument(count, arguments, "--exponent", NAN);
     random_stream random = {(uint64_t)argument(count, arguments, "--seed", 1)};
     printf("shape,exponent,tilt,friction,rest,ended,long,refused,account,sunk,steps\n");
     for (int cylinder = 0; cylinder < 2; cylinder++)
@@ -117,6 +118,7 @@ int main(int count, char **arguments)
             for (int i = 0; i < 5; i++)
                 for (int rough = 1; rough >= 0; rough--) {
                     const double p = exponents[k];
+                    if (!isnan(only) && p != only) continue;
                     impact_shape shape;
                     if (cylinder)
                         impact_shape_superquadric(0.2, 0.2, 0.15, 2, 2, p, &shape);
