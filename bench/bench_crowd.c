@@ -44,6 +44,61 @@ typedef struct outcome {
     impact_status status;
 } outcome;
 
+/* ---- piles ---- */
+
+typedef struct watch {
+    double start, most; /* s of the processor */
+} watch;
+
+static bool within_time(void *context, double t, double duration)
+{
+    const watch *w = context;
+    (void)t, (void)duration;
+    return now() - w->start < w->most;
+}
+
+/* Five balls in a shaft as wide as two and a bit, each dropped on the one below: clamped between walls and each other
+ * as they settle. */
+static void shaft(double friction, double restitution)
+{
+    static const char *const names[] = {"1", "2", "3", "4", "5"};
+    const double h = sqrt(0.5), most = 20;
+    const qvec3 at[5] = {
+        {-0.14, 0, 0.15}, {0.13, 0, 0.2}, {0.01, 0.003, 0.5}, {-0.02, -0.005, 0.8}, {0.02, -0.005, 1.1}};
+    impact_body_def bodies[WALLS + 5] = {wall("floor", (qvec3){0, 0, 0}, (quat){1, 0, 0, 0}),
+                                         wall("west", (qvec3){-0.25, 0, 0}, (quat){h, 0, h, 0}),
+                                         wall("east", (qvec3){0.25, 0, 0}, (quat){h, 0, -h, 0}),
+                                         wall("south", (qvec3){0, -0.11, 0}, (quat){h, -h, 0, 0}),
+                                         wall("north", (qvec3){0, 0.11, 0}, (quat){h, h, 0, 0})};
+    for (int i = 0; i < 5; i++) {
+        impact_body_def *body = &bodies[WALLS + i];
+        *body = impact_default_body_def();
+        body->name = names[i];
+        impact_shape_sphere(0.1, &body->shape);
+        body->position = at[i];
+        body->friction = friction;
+        body->restitution = restitution;
+    }
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = bodies;
+    def.body_count = WALLS + 5;
+    def.friction_rule = def.restitution_rule = IMPACT_MINIMUM;
+    def.duration = 4;
+    impact_scene *scene;
+    if (impact_scene_create(&def, &scene, NULL, 0) != IMPACT_OK) return;
+    watch w = {.start = now(), .most = most};
+    const impact_recorder recorder = {.context = &w, .progress = within_time};
+    const impact_status status = impact_scene_run(scene, &recorder);
+    const double cpu = now() - w.start, reached = impact_scene_time(scene);
+    const impact_usage usage = impact_scene_usage(scene);
+    printf("%g,%g,%.3f,%.3g,%ld,%ld,%s\n", friction, restitution, reached, cpu / reached, usage.integrator_starts,
+           usage.integrator_steps, impact_status_string(status));
+    fflush(stdout);
+    impact_scene_destroy(scene);
+}
+
+/* ---- balls in a box ---- */
+
 static outcome fall(int balls, double friction, double restitution, double duration)
 {
     static char names[MOST][16];
@@ -114,5 +169,8 @@ int main(void)
             fflush(stdout);
         }
     }
+    printf("\npile_friction,pile_restitution,reached_s,cpu_per_second,integrator_starts,integrator_steps,status\n");
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++) shaft(0.3 * k, 0.25 * l);
     return 0;
 }

@@ -247,7 +247,8 @@ static void the_same_bits_on_every_run(void **state)
 
 /* ---- chains and clamps ---- */
 
-/* Balls that touch, on a line: impacts one after another, in the order of the pairs, so that the last alone flies off. */
+/* Balls that touch, on a line: impacts one after another, in the order of the pairs, so that the last alone flies off.
+ */
 static void a_cradle_of_touching_balls(void **state)
 {
     (void)state;
@@ -278,23 +279,31 @@ static void a_cradle_of_touching_balls(void **state)
     }
 }
 
-/* Five balls in a shaft as wide as two and a bit: the lower ones are clamped between floor, walls and those above. Impacts go round among
+/* Balls in a shaft as wide as two and a bit, dropped on each other. */
+static box_scene *make_shaft(int balls, double friction, double restitution)
+{
+    const double half = 0.25, r = 0.1;
+    const qvec3 at[5] = {
+        {-0.14, 0, 0.15}, {0.13, 0, 0.2}, {0.01, 0.003, 0.5}, {-0.02, -0.005, 0.8}, {0.02, -0.005, 1.1}};
+    box_scene *s = make_box(balls, friction, restitution);
+    s->bodies[1].position.x = -half, s->bodies[2].position.x = half;
+    s->bodies[3].position.y = -0.11, s->bodies[4].position.y = 0.11;
+    for (int i = 0; i < balls; i++) {
+        s->bodies[WALLS + i] = small_ball(s, WALLS + i, at[i], friction, restitution);
+        impact_shape_sphere(r, &s->bodies[WALLS + i].shape);
+    }
+    s->def.duration = 4;
+    return s;
+}
+
+/* Five balls in the shaft: the lower ones are clamped between floor, walls and those above. Impacts go round among
  * them, end together, and all come to rest; no row gains energy beyond rounding. */
 static void clamped_balls_come_to_rest(void **state)
 {
     (void)state;
-    const double restitutions[3] = {0, 0.3, 0.5}, half = 0.25, r = 0.1;
-    const qvec3 at[5] = {
-        {-0.14, 0, 0.15}, {0.13, 0, 0.2}, {0.01, 0.003, 0.5}, {-0.02, -0.005, 0.8}, {0.02, -0.005, 1.1}};
+    const double restitutions[3] = {0, 0.3, 0.5};
     for (int k = 0; k < 3; k++) {
-        box_scene *s = make_box(5, 0, restitutions[k]);
-        s->bodies[1].position.x = -half, s->bodies[2].position.x = half;
-        s->bodies[3].position.y = -0.11, s->bodies[4].position.y = 0.11;
-        for (int i = 0; i < 5; i++) {
-            s->bodies[WALLS + i] = small_ball(s, WALLS + i, at[i], 0, restitutions[k]);
-            impact_shape_sphere(r, &s->bodies[WALLS + i].shape);
-        }
-        s->def.duration = 4;
+        box_scene *s = make_shaft(5, 0, restitutions[k]);
         impact_energy energy;
         scene_log log = run_box(s, IMPACT_AT_REST, &energy);
         int together = 0;
@@ -310,6 +319,23 @@ static void clamped_balls_come_to_rest(void **state)
         free_log(&log);
         free(s);
     }
+}
+
+/* With friction they slide and stick on each other until they jam: slip begins and dies out on many contacts at once.
+ */
+static void rough_clamped_balls_come_to_rest(void **state)
+{
+    (void)state;
+    box_scene *s = make_shaft(3, 0.3, 0);
+    impact_energy energy;
+    scene_log log = run_box(s, IMPACT_AT_REST, &energy);
+    assert_true(find_event(&log, IMPACT_EVENT_SLIP, NULL, 0) >= 0);
+    for (int i = 0; i < log.event_count; i++) assert_true(log.events[i].impulse_normal >= 0);
+    assert_near(energy.kinetic + energy.potential + energy.impact_loss + energy.sliding_loss, energy.start, 1e-8);
+    assert_near(energy.kinetic, 0, 1e-15);
+    assert_true(energy.sliding_loss > 0);
+    free_log(&log);
+    free(s);
 }
 
 /* ---- stopping ---- */
@@ -376,6 +402,7 @@ int main(void)
         cmocka_unit_test(nothing_overlaps),
         cmocka_unit_test(a_cradle_of_touching_balls),
         cmocka_unit_test(clamped_balls_come_to_rest),
+        cmocka_unit_test(rough_clamped_balls_come_to_rest),
         cmocka_unit_test(the_same_bits_on_every_run),
     };
     const int failed = cmocka_run_group_tests(closed_forms, NULL, NULL);
