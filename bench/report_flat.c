@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * report_flat: what drops on a face. Box-like superquadrics of one exponent, and cylinders of (2, 2, p), are let fall .01 m onto their largest
- * face, tilted, or thrown in any orientation (tilt "any"), and watched for five seconds.
+ * report_flat: what drops on a face. Box-like superquadrics of one exponent, and cylinders of (2, 2, p), are let fall
+ * .01 m onto their largest face, tilted, or thrown in any orientation (tilt "any"), and watched for five seconds.
  *
  * report_flat [--steps N] [--seed S] [--exponent P]
- * CSV: one row per shape, tilt, and friction, over the restitutions 0, .3 and .8: rest: runs that came to rest; ended: that still moved after
- * five seconds; long: stopped after N steps of the integrator (a million); refused: with an error, or the word that the account is off.
- * account: the worst error of the energy account, over the energy at the start; sunk: the deepest that the body ended in the plane, over
- * its bounding radius; steps: the most.
+ * CSV: one row per shape, tilt, and friction, over the restitutions 0, .3 and .8: rest: runs that came to rest; ended:
+ * that still moved after five seconds; long: stopped after N steps of the integrator (a million); refused: with an
+ * error, or the word that the account is off. account: the worst error of the energy account, over the energy at the
+ * start; sunk: the deepest that the body ended in the plane, over its bounding radius; steps: the most.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -44,11 +44,12 @@ impact_status impact_persist_reserve(impact_persist *persist, impact_world *worl
 
 /* ---- geometry ---- */
 
-/* Where an exponent is over 2 the surface is flat along its axis at 0: there the radius of curvature stands for its neighbourhood's. */
+/* Where an exponent is over 2 the surface is flat along its axis at 0: there the radius of curvature stands for its
+ * neighbourhood's. */
 static double off_zero(double component) { return copysign(fmax(fabs(component), 1e-9), component); }
 
-/* What a body's surface does at the contact: the Hessian of its support function there, in the world, whose eigenvalues are the radii of
- * curvature, applied to a tangential vector. */
+/* What a body's surface does at the contact: the Hessian of its support function there, in the world, whose eigenvalues
+ * are the radii of curvature, applied to a tangential vector. */
 static qvec3 curve(const impact_body *body, const impact_state *state, qvec3 outward, qvec3 v)
 {
     if (body->shape.kind == IMPACT_SPHERE)
@@ -62,9 +63,10 @@ static qvec3 curve(const impact_body *body, const impact_state *state, qvec3 out
                                   h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
 }
 
-/* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each surface the
- * point of outward normal m moves by r' = w x r + W (m' - w x m), W the support function's Hessian; that both points stay together
- * gives (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n). A plane's normal stays (W2 is infinite). */
+/* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each
+ * surface the point of outward normal m moves by r' = w x r + W (m' - w x m), W the support function's Hessian; that
+ * both points stay together gives (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n). A plane's normal stays (W2 is
+ * infinite). */
 static void contact_rates(const impact_world *world, impact_touch *touch, const impact_state *states, qvec3 *rate1,
                           qvec3 *rate2)
 {
@@ -88,7 +90,8 @@ static void contact_rates(const impact_world *world, impact_touch *touch, const 
     *rate1 = qvec3_add(qvec3_cross(w1, touch->r1), curve(b1, s1, out1, qvec3_sub(turn1, touch->normal_rate)));
 }
 
-/* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the centre. */
+/* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the
+ * centre. */
 static qvec3 free_acceleration(const impact_body *body, const impact_state *state, const impact_load *load, qvec3 r,
                                qvec3 r_rate)
 {
@@ -100,7 +103,8 @@ static qvec3 free_acceleration(const impact_body *body, const impact_state *stat
     return qvec3_add(qvec3_add(a, qvec3_cross(alpha, r)), qvec3_cross(omega, r_rate));
 }
 
-/* Where nothing but the axis of a line is flat the orientation tells the spot as well as the spot itself: it is led back there. */
+/* Where nothing but the axis of a line is flat the orientation tells the spot as well as the spot itself: it is led
+ * back there. */
 static bool orientation_tells(const impact_pair *pair, const impact_shape *shape)
 {
     const double p[3] = {shape->r, shape->s, shape->t};
@@ -231,7 +235,8 @@ void impact_persist_close_gap(impact_world *world, impact_pair *pair, const impa
     s2->x = qvec3_axpy(contact->gap * w2 / (w1 + w2), contact->normal, s2->x);
 }
 
-/* Turns body 1 so that the plane's normal stands where the carried contact is: what the integration's tolerance left between them. */
+/* Turns body 1 so that the plane's normal stands where the carried contact is: what the integration's tolerance left
+ * between them. */
 static void align(const impact_world *world, const impact_pair *pair, impact_state *states, const impact_spot *spot)
 {
     impact_state *s1 = &states[pair->body1];
@@ -281,7 +286,8 @@ void impact_persist_project(impact_persist *persist, impact_world *world, impact
 
 /* ---- modes ---- */
 
-/* Whether the touch's pressure is less than it may be: what nothing presses does not slide either, where that is no matter of choice. */
+/* Whether the touch's pressure is less than it may be: what nothing presses does not slide either, where that is no
+ * matter of choice. */
 static bool pulls(const impact_touch *touch, double scale)
 {
     const bool slides = touch->mode == IMPACT_SLIDE && !touch->redundant;
@@ -312,8 +318,8 @@ static int worst_grip(const impact_persist *persist, double scale)
     return worst;
 }
 
-/* The contact whose slip was to begin, but which sticks now that others slide too, furthest within its cone; or -1. Each has one such
- * chance: where no modes are consistent none is to be taken back for ever. */
+/* The contact whose slip was to begin, but which sticks now that others slide too, furthest within its cone; or -1.
+ * Each has one such chance: where no modes are consistent none is to be taken back for ever. */
 static int worst_onset(const impact_persist *persist, const impact_world *world)
 {
     int worst = -1;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * persist: contacts that are held after the bounces died out: their reactions while rolling or sliding, when a mode ends, and the
- * constraints put back exactly. Strictly convex bodies on planes and on each other. Internal.
+ * persist: contacts that are held after the bounces died out: their reactions while rolling or sliding, when a mode
+ * ends, and the constraints put back exactly. Strictly convex bodies on planes and on each other. Internal.
  */
 #ifndef IMPACT_PERSIST_H
 #define IMPACT_PERSIST_H
@@ -53,8 +53,8 @@ typedef struct impact_persist {
     struct impact_unknown *unknowns; /* 3 capacity */
     double *matrix, *right;          /* 2 (3 capacity)^2 and 6 capacity */
     int *order;                      /* 6 capacity */
-    bool
-        lenient; /* no modes were found in which all slip that begins goes on: directions are then not looked for anew */
+    bool lenient; /* no modes were found in which all slip that begins goes on: directions are then not looked for anew
+                   */
     bool redundant;         /* more contacts were solved for than the balance of forces can tell apart */
     int *island;            /* capacity; touches of the same number share bodies */
     int bodies;             /* bodies there is room for */
@@ -109,7 +109,8 @@ qvec3 impact_against_friction(const impact_touch *touch);
 void impact_persist_stop_onsets(impact_persist *persist, impact_world *world, const impact_state *states,
                                 const impact_load *loads);
 
-/* Of few contacts without slip: rolling, sliding or open, whichever is consistent; otherwise as they were (persist_modes.c). */
+/* Of few contacts without slip: rolling, sliding or open, whichever is consistent; otherwise as they were
+ * (persist_modes.c). */
 impact_status impact_persist_try_modes(impact_persist *persist, impact_world *world, const impact_state *states,
                                        const impact_load *loads);
 

@@ -1,19 +1,25 @@
 /* SPDX-License-Identifier: MIT
  *
- * With the face's outward normal -n, the centre at height c, the centre of pressure at r = rho - c n, N = -F . n and f the friction, no
- * torque tips the body where
- *   rho = rho0 - c f/N,   rho0 = -n x T/N    (F, T: loads).
- * Sliding, f = -mu N d with d the direction of the slip u there. With w = v + omega n x rho0 the velocity at rho0, k = mu c omega:
- *   u = |u| d = w + k n x d,  so that  |u|^2 = |w|^2 - k^2,  d = (|u| w + k n x w)/|w|^2.
- * Sticking, rho is where the body's turning leaves no velocity, rho = n x v/omega, and f = -N (rho - rho0)/c; without turning f is what
- * holds the body. v and omega are relative to the plane's surface.
+ * With the face's outward normal -n, the centre at height c, the centre of pressure at r = rho - c n, N = -F . n and f
+ * the friction, no torque tips the body where (F, T: loads)
+ *
+ *   rho = rho0 - c f/N,   rho0 = -n x T/N.
+ *
+ * Sliding, f = -mu N d with d the direction of the slip u there. With w = v + omega n x rho0 the velocity at rho0 and
+ * k = mu c omega:
+ *
+ *   u = |u| d = w + k n x d,   so that   |u|^2 = |w|^2 - k^2,   d = (|u| w + k n x w)/|w|^2.
+ *
+ * Sticking, rho is where the body's turning leaves no velocity, rho = n x v/omega, and f = -N (rho - rho0)/c; without
+ * turning f is what holds the body. v and omega are relative to the plane's surface.
  */
 #include "persist_flat.h"
 #include "persist_spot.h"
 #include "persist_system.h"
 #include "world_gap.h"
 
-/* A slide that ends in a pivot leaves friction that just suffices, and goes on doing so: what integration adds is not to break it. */
+/* A slide that ends in a pivot leaves friction that just suffices, and goes on doing so: what integration adds is not
+ * to break it. */
 static const double grip = 1 + 1e-6;
 
 static qvec3 plane_normal(const impact_pair *pair, const impact_state *states)
@@ -36,9 +42,10 @@ static int face_below(const impact_body *body, const impact_state *state, qvec3 
     return k;
 }
 
-/* By how much a body has risen that stands on the point at foot of the face, body axes, m; infinite on what is no flat face. With the other
- * axes' u = x/a small, the support function is c (1 + sum |u|^p (p - 1)/p_face). Of a superellipsoid the faces across x and y bend as
- * |u|^r/r along the section and |u|^t/t along z, those across z as K^t/t. */
+/* By how much a body has risen that stands on the point at foot of the face, body axes, m; infinite on what is no flat
+ * face. With the other axes' u = x/a small, the support function is c (1 + sum |u|^p (p - 1)/p_face). Of a
+ * superellipsoid the faces across x and y bend as |u|^r/r along the section and |u|^t/t along z, those across z as
+ * K^t/t. */
 static double rise(const impact_shape *shape, int face, qvec3 foot)
 {
     const double flattest = 3; /* exponents below it make no face */
@@ -105,8 +112,8 @@ static gliding glide(const impact_world *world, const impact_pair *pair, const i
     return g;
 }
 
-/* Whether the body turns over the surface fast enough to stand on a point of its own. Its centre then goes in circles, at a speed of up
- * to k and the rate g/(c omega): what is too slow to be seen turns in its place. */
+/* Whether the body turns over the surface fast enough to stand on a point of its own. Its centre then goes in circles,
+ * at a speed of up to k and the rate g/(c omega): what is too slow to be seen turns in its place. */
 static bool pivots(const impact_world *world, const impact_pair *pair, const gliding *g, double height)
 {
     const double k = pair->friction * height * g->omega;

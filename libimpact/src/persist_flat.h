@@ -1,18 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * persist_flat: bodies that lie on a flat face, where the contact's place follows the balance and no longer the tilt. Internal.
+ * persist_flat: bodies that lie on a flat face, where the contact's place follows the balance and no longer the tilt.
+ * Internal.
  *
- * On a plane, a face whose exponents are high carries the body at any of its points at a tilt of next to nothing: 1e-50 rad a third of the
- * way out for an exponent of 100, about which the body would rock in 1e-25 s. Below a rise of flat_height the tilt is 0 and the contact
- * point, as the centre of pressure, stands where no torque is left to tip the body: the limit of those motions as they grow smaller.
+ * On a plane, a face whose exponents are high carries the body at any of its points at a tilt of next to nothing: 1e-50
+ * rad a third of the way out for an exponent of 100, about which the body would rock in 1e-25 s. Below a rise of
+ * flat_height the tilt is 0 and the contact point, as the centre of pressure, stands where no torque is left to tip the
+ * body: the limit of those motions as they grow smaller.
  */
 #ifndef IMPACT_PERSIST_FLAT_H
 #define IMPACT_PERSIST_FLAT_H
 
 #include "persist.h"
 
-/* Lays down the bodies that rock on a face with less energy than lifts them by flat_height, and rest or slide there on a point that does
- * not either; whose whole energy is no more than that, and whose friction holds them, are stopped. Tells whether there were any. */
+/* Lays down the bodies that rock on a face with less energy than lifts them by flat_height, and rest or slide there on
+ * a point that does not either; whose whole energy is no more than that, and whose friction holds them, are stopped.
+ * Tells whether there were any. */
 bool impact_flat_lay(impact_world *world, impact_state *states, const impact_load *loads);
 
 /* Whether the pair is held and its place carried, the body's only contact, of a shape about its centre of mass. */
@@ -24,7 +27,8 @@ bool impact_flat_lies(const impact_world *world, const impact_pair *pair, const 
 /* Stands the body exactly on its face, moving along the plane only. */
 void impact_flat_level(const impact_world *world, const impact_pair *pair, impact_state *states);
 
-/* The contact of a flat pair, at its centre of pressure: its bias is such that the linear system of the contacts finds the balance. */
+/* The contact of a flat pair, at its centre of pressure: its bias is such that the linear system of the contacts finds
+ * the balance. */
 impact_touch impact_flat_touch(const impact_world *world, int pair, const impact_state *states,
                                const impact_load *loads);
 

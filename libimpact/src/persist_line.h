@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * persist_line: bodies that lie along a line of their surface, such as a cylinder on its side that rolls straight. Internal.
+ * persist_line: bodies that lie along a line of their surface, such as a cylinder on its side that rolls straight.
+ * Internal.
  *
- * Along an axis of high exponent a round side is flat, and rounding alone makes the body rock along it, faster than can be followed. While
- * nothing tips it that way, the axis is kept level and the contact stays at the middle of the line; across, it is carried as ever.
+ * Along an axis of high exponent a round side is flat, and rounding alone makes the body rock along it, faster than can
+ * be followed. While nothing tips it that way, the axis is kept level and the contact stays at the middle of the line;
+ * across, it is carried as ever.
  */
 #ifndef IMPACT_PERSIST_LINE_H
 #define IMPACT_PERSIST_LINE_H
 
 #include "persist.h"
 
-/* Lays bodies along a line where they rock along it with less energy than lifts them by flat_height, and nothing tips them. Tells whether
- * there were any. The persist has room for what is held. */
+/* Lays bodies along a line where they rock along it with less energy than lifts them by flat_height, and nothing tips
+ * them. Tells whether there were any. The persist has room for what is held. */
 bool impact_line_lay(impact_persist *persist, impact_world *world, impact_state *states, const impact_load *loads);
 
 /* Whether a pair whose body lay along a line still does: held, its only contact, and not rocking. */
@@ -23,11 +25,13 @@ qvec3 impact_line_turn(const impact_pair *pair, qvec3 normal_rate);
 /* Takes away the velocity that would tip the body along its line. */
 void impact_line_level(const impact_world *world, const impact_pair *pair, impact_state *states);
 
-/* Above 0 while the touch, solved for, needs its centre of pressure at the middle of the line, to rounding; 1 of other touches. */
+/* Above 0 while the touch, solved for, needs its centre of pressure at the middle of the line, to rounding; 1 of other
+ * touches. */
 double impact_line_spare(const impact_world *world, const impact_touch *touch, const impact_state *states,
                          const impact_load *loads);
 
-/* Adds to the load, of the touch's body and solved for, what keeps the line level: the moment of the pressure along it. */
+/* Adds to the load, of the touch's body and solved for, what keeps the line level: the moment of the pressure along it.
+ */
 void impact_line_brace(const impact_world *world, const impact_touch *touch, const impact_state *states,
                        impact_load *load);
 

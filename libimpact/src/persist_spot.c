@@ -80,7 +80,8 @@ static void section_part(double s, double b, double r, double *v, double *e)
     }
 }
 
-/* v = u/K, e and K of the section from s = K v + K^(t-1) e, both v >= 0 and sum v^r = 1. That sum falls with K: Newton in log K. */
+/* v = u/K, e and K of the section from s = K v + K^(t-1) e, both v >= 0 and sum v^r = 1. That sum falls with K: Newton
+ * in log K. */
 static double section_of(const double s[2], double r, double t, double v[2], double e[2])
 {
     double k, other;
@@ -174,7 +175,8 @@ impact_spot impact_spot_at(const impact_shape *shape, const double s[3])
     return spot;
 }
 
-/* With H the Hessian of K^t/t along x and y, H = K^(t-2) ((r-1) diag |v|^(r-2) + (t-r) e e^T), e = |v|^(r-1): u' = H^-1 e'. */
+/* With H the Hessian of K^t/t along x and y, H = K^(t-2) ((r-1) diag |v|^(r-2) + (t-r) e e^T), e = |v|^(r-1): u' = H^-1
+ * e'. */
 static void section_rates(const impact_shape *shape, const impact_spot *spot, const double e_rate[2], double u_rate[2])
 {
     const double r = shape->r, t = shape->t, turn = spot->section[0] * e_rate[0] + spot->section[1] * e_rate[1];
@@ -183,8 +185,9 @@ static void section_rates(const impact_shape *shape, const impact_spot *spot, co
             (e_rate[i] / spot->slope[i] - (t - r) / ((t - 1) * (r - 1)) * turn * spot->section[i]) / spot->k_ratio;
 }
 
-/* The normal m is p e/a over its length l, so that e' = (a/p)(l m' + l' m); sum p e u' = 0, u' = e'/slope, gives l'. Of superellipsoids m
- * is e/a over its length; e is homogeneous in (x, y) and in z alike, and sum e u' = 0 is sum u e' = 0. */
+/* The normal m is p e/a over its length l, so that e' = (a/p)(l m' + l' m); sum p e u' = 0, u' = e'/slope, gives l'. Of
+ * superellipsoids m is e/a over its length; e is homogeneous in (x, y) and in z alike, and sum e u' = 0 is sum u e' =
+ * 0. */
 impact_spot_rate impact_spot_move(const impact_shape *shape, const impact_spot *spot, qvec3 normal_rate)
 {
     const double m_rate[3] = {normal_rate.x, normal_rate.y, normal_rate.z};

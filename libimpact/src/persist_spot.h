@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * persist_spot: where a held contact stands on a surface that is flat or sharp along an axis, in coordinates that move gently. Internal.
+ * persist_spot: where a held contact stands on a surface that is flat or sharp along an axis, in coordinates that move
+ * gently. Internal.
  *
  * A superquadric's contact point is no smooth function of its orientation where an exponent p is over 2: with
- * e = |u|^(p-1) sgn u, u = x/a, it is e that follows the normal, and u = |e|^(1/(p-1)) sgn e. So the spot is not solved from the
- * orientation but integrated along, as s = u + e on each axis: both u and e are functions of s of slope at most 1.
- * A superellipsoid of two exponents, K^t + |u_z|^t = 1 with K^r = |u_x|^r + |u_y|^r, has e = K^(t-r) |u|^(r-1) sgn u along x and y: the
- * gradient of K^t/t, so that s = u + e is that of a convex function still.
+ * e = |u|^(p-1) sgn u, u = x/a, it is e that follows the normal, and u = |e|^(1/(p-1)) sgn e. So the spot is not solved
+ * from the orientation but integrated along, as s = u + e on each axis: both u and e are functions of s of slope at
+ * most 1. A superellipsoid of two exponents, K^t + |u_z|^t = 1 with K^r = |u_x|^r + |u_y|^r, has e = K^(t-r) |u|^(r-1)
+ * sgn u along x and y: the gradient of K^t/t, so that s = u + e is that of a convex function still.
  */
 #ifndef IMPACT_PERSIST_SPOT_H
 #define IMPACT_PERSIST_SPOT_H
@@ -29,8 +30,8 @@ typedef struct impact_spot_rate {
     qvec3 point_rate; /* m/s, body axes */
 } impact_spot_rate;
 
-/* Whether the pair's contact is integrated along while it is held: a superquadric or superellipsoid with an exponent other than 2, on a
- * plane. */
+/* Whether the pair's contact is integrated along while it is held: a superquadric or superellipsoid with an exponent
+ * other than 2, on a plane. */
 bool impact_spot_suits(const impact_world *world, const impact_pair *pair);
 
 /* The spot of the outward normal given, body axes. */

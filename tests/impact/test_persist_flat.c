@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Bodies that lie on a flat face: they slide to rest in closed form, pivot, ride on belts, stand on slopes, tip over; and what is dropped
- * on a face comes to rest there.
+ * Bodies that lie on a flat face: they slide to rest in closed form, pivot, ride on belts, stand on slopes, tip over;
+ * and what is dropped on a face comes to rest there.
  */
 #include "held_bodies.h"
 
@@ -172,8 +172,9 @@ static void a_belt_takes_a_box_along(void **state)
 
 /* ---- with it ---- */
 
-/* Sliding and turning, the friction keeps its direction: with k = mu c omega and s^2 = v^2 - k^2, v = (s, -k) in the axes of the slip and
- * across it, s falls by mu g t. At s = 0 the body pivots: v keeps its size and turns at the rate -g/(c omega). */
+/* Sliding and turning, the friction keeps its direction: with k = mu c omega and s^2 = v^2 - k^2, v = (s, -k) in the
+ * axes of the slip and across it, s falls by mu g t. At s = 0 the body pivots: v keeps its size and turns at the rate
+ * -g/(c omega). */
 static void a_turning_box_slides_then_pivots(void **state)
 {
     (void)state;
@@ -197,7 +198,8 @@ static void a_turning_box_slides_then_pivots(void **state)
         const qvec3 v = qvec3_scale(across, -k), v_left = qvec3_scale(d, k); /* n x v */
         const qvec3 v_end = qvec3_axpy(sin(turned), v_left, qvec3_scale(v, cos(turned)));
         const qvec3 way = qvec3_scale(qvec3_axpy(1 - cos(turned), v_left, qvec3_scale(v, sin(turned))), 1 / rate);
-        /* when the slip ends is known to the root of rounding: what is left of it has no size beside the pivot's speed */
+        /* when the slip ends is known to the root of rounding: what is left of it has no size beside the pivot's speed
+         */
         const double known = 1e-6 * fabs(k) / (friction * gravity) * (fabs(rate) + 1);
         assert_near(log.events[find_event(&log, IMPACT_EVENT_STICK, "roll", 0)].t, stop, known);
         assert_near3(end.velocity, v_end, 3 * known * fabs(k) + 1e-10);
@@ -252,8 +254,8 @@ static bool growing_torque(double t, int body, double m, qvec3 position, quat or
     return true;
 }
 
-/* The centre of pressure goes out with the torque, to where the body stands on a point that has risen by rest_height: from there on its
- * contact is carried; at the edge of the face it tips over. */
+/* The centre of pressure goes out with the torque, to where the body stands on a point that has risen by rest_height:
+ * from there on its contact is carried; at the edge of the face it tips over. */
 static void a_box_tips_over_its_edge(void **state)
 {
     (void)state;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cylinders on their side, flat along their axis: they roll and slide straight in closed form, whatever their exponent, and do not rattle.
+ * Cylinders on their side, flat along their axis: they roll and slide straight in closed form, whatever their exponent,
+ * and do not rattle.
  */
 #include "held_bodies.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Contacts that run over flat and sharp places of a surface: the coordinates that carry them, revolutions whose period is a quadrature,
- * and the integrals of free rolling and gliding.
+ * Contacts that run over flat and sharp places of a surface: the coordinates that carry them, revolutions whose period
+ * is a quadrature, and the integrals of free rolling and gliding.
  */
 #include "persist_spot.h"
 #include "held_bodies.h"
@@ -94,8 +94,9 @@ static void spots_move_as_their_normals_turn(void **state)
 
 /* ---- revolutions in a plane ---- */
 
-/* A body that rolls, or glides without friction, and turns about its y axis only. With f its angle, r the contact point from the centre
- * and h(f) the centre's height, energy is all there is to it:
+/* A body that rolls, or glides without friction, and turns about its y axis only. With f its angle, r the contact point
+ * from the centre and h(f) the centre's height, energy is all there is to it:
+ *
  *   rolling (J + m r^2) f'^2/2 + m g h = E,   gliding (J + m h'^2) f'^2/2 + m g h = E. */
 typedef enum tumbler_kind { SUPERQUADRIC, ELLIPSOID_PROFILE, ELLIPSOID_SECTION } tumbler_kind;
 
@@ -109,7 +110,8 @@ typedef struct tumble {
     long double period, path;
 } tumble;
 
-/* The part of a quarter turn at mass |u_x|^p = v, |u_z|^t = w, v + w = 1; both, since near the ends one of them is the other's rounding. */
+/* The part of a quarter turn at mass |u_x|^p = v, |u_z|^t = w, v + w = 1; both, since near the ends one of them is the
+ * other's rounding. */
 static tumble tumble_rate(const tumbler *b, long double v, long double w)
 {
     const long double x = b->a * powl(v, 1 / b->p), z = b->c * powl(w, 1 / b->t);
@@ -138,9 +140,9 @@ static tumble revolution(const tumbler *b)
     return sum;
 }
 
-/* Of the kind, with semi-axes a and c and exponents p and t in the plane; other is the exponent across, where superellipsoids are long, not to
- * fall sideways. They turn about their y axis, where both exponents are the profile's, or lie on their side and turn about z, where both
- * are the section's. */
+/* Of the kind, with semi-axes a and c and exponents p and t in the plane; other is the exponent across, where
+ * superellipsoids are long, not to fall sideways. They turn about their y axis, where both exponents are the profile's,
+ * or lie on their side and turn about z, where both are the section's. */
 static quat tumbler_shape(tumbler_kind kind, double p, double t, double a, double c, double other, impact_shape *shape)
 {
     if (kind == SUPERQUADRIC) impact_shape_superquadric(a, 0.25, c, p, other, t, shape);
