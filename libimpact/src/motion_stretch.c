@@ -66,8 +66,8 @@ static void count_work(impact_motion *motion)
     usage->integrator_rhs_calls = adams.rhs_calls + bdf.rhs_calls;
 }
 
-/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does. young: of those
- * alone whose slip has just begun, or of the others. */
+/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does.
+ * young: of those alone whose slip has just begun, or of the others. */
 static double slowest_slip(const impact_motion *motion, bool young)
 {
     double slowest = INFINITY;
@@ -131,7 +131,8 @@ static double slip_scale(const impact_motion *motion, const impact_state *states
     return fmax(scale, motion->world->slip_speed);
 }
 
-/* How fast a carried contact may move over its surface before it slows the clock, 1/s: as the body itself moves, about; 0: none is. */
+/* How fast a carried contact may move over its surface before it slows the clock, 1/s: as the body itself moves, about;
+ * 0: none is. */
 static double creep_scale(const impact_motion *motion, const impact_state *states)
 {
     double scale = 0;
@@ -220,7 +221,8 @@ static impact_end end_of_root(const impact_motion *motion, int root)
     return (impact_end){IMPACT_END_SLOW, root - edges};
 }
 
-/* Whether a root is that of a value's rate: the value is lowest here. If it is below its slack, both its zeros lie in the step. */
+/* Whether a root is that of a value's rate: the value is lowest here. If it is below its slack, both its zeros lie in
+ * the step. */
 static bool is_lowest_point(const impact_motion *motion, int root, last_step_function *value, double *slack)
 {
     const impact_world *world = motion->world;
@@ -235,7 +237,8 @@ static bool is_lowest_point(const impact_motion *motion, int root, last_step_fun
     return edge_root % ROOTS_PER_EDGE == 1 && value->index < impact_field_edge_count(world);
 }
 
-/* Looks through the roots found at *tau for the event that ends the stretch; a zero that the step hid moves *tau and y back to it. */
+/* Looks through the roots found at *tau for the event that ends the stretch; a zero that the step hid moves *tau and y
+ * back to it. */
 static impact_status pick_event(impact_motion *motion, double tau_before, double *tau, double *y, impact_end *end)
 {
     for (int root = 0; root < motion->roots; root++) {
@@ -269,7 +272,8 @@ bool impact_motion_also_crossed(impact_motion *motion, impact_end *end)
     return false;
 }
 
-/* From the root that was watched for, the slack below zero and to 1e-14 of the step, one Newton step back to where the gap is zero. */
+/* From the root that was watched for, the slack below zero and to 1e-14 of the step, one Newton step back to where the
+ * gap is zero. */
 static impact_status polish_gap(impact_motion *motion, int pair, double *tau, double *y)
 {
     impact_world *world = motion->world;
@@ -366,7 +370,11 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         status = emit_until(motion, *t, states, sampler, y);
         memcpy(y, motion->kept, sizeof *y * (size_t)motion->size);
         if (status == IMPACT_OK && !sampler->pulse(sampler->context, *t)) status = IMPACT_STOPPED;
-        if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME || tau == stop) return status;
+        if (status != IMPACT_OK || *t >= t_end || end->kind != IMPACT_END_TIME) return status;
+        if (tau == stop) { /* slip so slow that time all but stands, and that does not die out: does anything move? */
+            *end = (impact_end){IMPACT_END_RENEWAL, 0};
+            return IMPACT_OK;
+        }
         if (end_onsets(motion) || (motion->stiff && slowest_slip(motion, true) > grown_up * motion->slip_scale))
             return IMPACT_OK;
         if (motion->stiff && !motion->sliding && young_fades(motion)) return IMPACT_OK;
@@ -387,8 +395,8 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
     return IMPACT_EUNSETTLED;
 }
 
-/* Whether custom forces brake so much faster than the motion goes on that Adams' short steps, a hundredth of their time, would cost more
- * than BDF's many. */
+/* Whether custom forces brake so much faster than the motion goes on that Adams' short steps, a hundredth of their
+ * time, would cost more than BDF's many. */
 static bool is_braked(const impact_motion *motion, double t, double t_end, const impact_state *states)
 {
     double turning;
@@ -411,8 +419,8 @@ static impact_status choose_road(impact_motion *motion, double t, double t_end, 
     return choose_integrator(motion, stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
 }
 
-/* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing holds is integrated
- * as closely as doubles let it be, at a fifth more steps. Reactions are not that smooth. */
+/* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing
+ * holds is integrated as closely as doubles let it be, at a fifth more steps. Reactions are not that smooth. */
 static impact_status choose_tolerance(impact_motion *motion, const impact_state *states)
 {
     const double closest = 1e-15;
