@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * A body that nothing comes near follows its parabola. One that can touch something is given a ball around where it is: as far as its
- * speed can take it, the speed that its group's energy can give it at most (where no surface is driven), or a few times the greatest speed there is in the group.
- * Groups grow by what their balls reach, and their balls with them, until nothing changes. (The second bound on the speed is a guess,
- * which the run checks at every step: scene_crowd.c.)
+ * A body that nothing comes near follows its parabola. One that can touch something is given a ball around where it is:
+ * as far as its speed can take it, the speed that its group's energy can give it at most (where no surface is driven),
+ * or a few times the greatest speed there is in the group. Groups grow by what their balls reach, and their balls with
+ * them, until nothing changes. (The second bound on the speed is a guess, which the run checks at every step:
+ * scene_crowd.c.)
  */
 #include "crowd.h"
 
@@ -263,8 +264,9 @@ static void chain_groups(impact_crowd *crowd, const impact_world *world)
     }
 }
 
-/* Bounds what is no longer free or at rest, and lets allowances grow with their groups; false when nothing changed. Energy: with all
- * of the group's, K + g T sum(m V), given to one body of mass m, V = sqrt(2 E/m), which is quadratic in sqrt(E). */
+/* Bounds what is no longer free or at rest, and lets allowances grow with their groups; false when nothing changed.
+ * Energy: with all of the group's, K + g T sum(m V), given to one body of mass m, V = sqrt(2 E/m), which is quadratic
+ * in sqrt(E). */
 static bool allow(impact_crowd *crowd, const impact_world *world, const impact_state *states, double time,
                   double caution)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * crowd: which bodies of a scene can meet within a while, and which cannot. Those that cannot are moved apart from one another
- * (scene_crowd.c). Internal.
+ * crowd: which bodies of a scene can meet within a while, and which cannot. Those that cannot are moved apart from one
+ * another (scene_crowd.c). Internal.
  */
 #ifndef IMPACT_CROWD_H
 #define IMPACT_CROWD_H
@@ -48,8 +48,9 @@ void impact_crowd_close(impact_crowd *crowd);
 /* The world's pair of two bodies of which one moves. */
 int impact_crowd_pair(const impact_crowd *crowd, const impact_world *world, int i, int j);
 
-/* Divides the bodies into groups that cannot meet within the time. resting: per body; held: of each body, how many contacts are.
- * caution: how many times its group's greatest speed a body is given, unless its group's energy allows less. */
+/* Divides the bodies into groups that cannot meet within the time. resting: per body; held: of each body, how many
+ * contacts are. caution: how many times its group's greatest speed a body is given, unless its group's energy allows
+ * less. */
 impact_status impact_crowd_divide(impact_crowd *crowd, const impact_world *world, const impact_state *states,
                                   const bool *resting, const int *held, double time, double caution);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * motion: from one event of the world to the next, in closed form where flight has one, by the integrator elsewhere. Internal.
+ * motion: from one event of the world to the next, in closed form where flight has one, by the integrator elsewhere.
+ * Internal.
  */
 #ifndef IMPACT_MOTION_H
 #define IMPACT_MOTION_H
@@ -71,8 +72,8 @@ typedef struct impact_motion {
 impact_status impact_motion_open(impact_motion *motion, impact_world *world, double tolerance, double rest_speed);
 void impact_motion_close(impact_motion *motion);
 
-/* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet: the restarted
- * integrator would never see it. False when there is none. */
+/* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet:
+ * the restarted integrator would never see it. False when there is none. */
 bool impact_motion_also_crossed(impact_motion *motion, impact_end *end);
 
 /* motion_advance.c, by one of two roads below. */

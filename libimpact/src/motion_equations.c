@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves, the place of each contact that is carried, and where
- * surfaces are driven the drives' work). While a contact slides, time is not the variable of integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever faster.
- * In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign can flip.
- * Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the direction is bound to the
- * acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t.
- * Over a flat place of a surface the contact point runs without bound, and with it the reactions: u' of persist_spot slows the clock
- * alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
+ * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves, the place of each contact that is
+ * carried, and where surfaces are driven the drives' work). While a contact slides, time is not the variable of
+ * integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever
+ * faster. In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign
+ * can flip. Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the
+ * direction is bound to the acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t. Over a
+ * flat place of a surface the contact point runs without bound, and with it the reactions: u' of persist_spot slows the
+ * clock alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
  */
 #include "motion_equations.h"
 #include "drive.h"
@@ -42,7 +43,8 @@ void impact_motion_pack(const impact_motion *motion, double t, const impact_stat
     if (motion->world->driven) y[impact_motion_drive(motion)] = motion->works.drive;
 }
 
-/* SI's own unit for what is ordinary; what is large is measured by itself, or rounding where it passes zero would count as error. */
+/* SI's own unit for what is ordinary; what is large is measured by itself, or rounding where it passes zero would count
+ * as error. */
 static double measure_of(double size) { return size > 1e3 ? size : 1; }
 
 void impact_motion_measures(const impact_motion *motion, const impact_state *states, double *measure)
@@ -87,7 +89,8 @@ void impact_motion_unpack(const impact_motion *motion, const double *y, impact_s
     }
 }
 
-/* How far a contact's slip is to slow the clock: what next to nothing presses changes nothing, and need never die out. */
+/* How far a contact's slip is to slow the clock: what next to nothing presses changes nothing, and need never die out.
+ */
 static double rubbing(const impact_persist *persist, int contact)
 {
     const double least = 0.01; /* of the greatest pressure */
@@ -191,7 +194,8 @@ double impact_motion_speed(const impact_body *body, const impact_state *state)
     return qvec3_norm(state->v) + body->radius * qvec3_norm(impact_omega(body, state));
 }
 
-/* The gap with its slack, and minus its rate. Far apart, of the bounding balls, or of the bounding ball and the plane. */
+/* The gap with its slack, and minus its rate. Far apart, of the bounding balls, or of the bounding ball and the plane.
+ */
 static void open_pair_roots(impact_world *world, impact_pair *pair, const impact_state *states, double *value)
 {
     const impact_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];

@@ -26,7 +26,8 @@ static inline int impact_motion_drive(const impact_motion *motion) { return moti
 /* Between the bodies' states and the integrated state y; static bodies' states are left as they are. */
 void impact_motion_pack(const impact_motion *motion, double t, const impact_state *states, double *y);
 void impact_motion_unpack(const impact_motion *motion, const double *y, impact_state *states);
-/* What each component of y is measured by where it passes zero: 1, or of a large body its size, speed and angular momentum. */
+/* What each component of y is measured by where it passes zero: 1, or of a large body its size, speed and angular
+ * momentum. */
 void impact_motion_measures(const impact_motion *motion, const impact_state *states, double *measure);
 
 /* Whether the variable of integration is not time. */
@@ -38,10 +39,11 @@ double impact_motion_clock(const impact_motion *motion);
 /* How fast any point of the body moves at most, m/s. */
 double impact_motion_speed(const impact_body *body, const impact_state *state);
 
-/* For impact_ode: the rates of y, and the root functions: ROOTS_PER_PAIR for each pair (open: its gap and slack, minus its gap's
- * rate; held: its pressure, what is left of its mode, its distance from the plane's bounds), ROOTS_PER_EDGE for each edge of a field
- * (its value, minus the value's rate), one for each body (its speed over the rest speed). Every one falls through zero when its event
- * comes; a rate's root is where a value that fell and rose within one step is lowest. */
+/* For impact_ode: the rates of y, and the root functions: ROOTS_PER_PAIR for each pair (open: its gap and slack, minus
+ * its gap's rate; held: its pressure, what is left of its mode, its distance from the plane's bounds), ROOTS_PER_EDGE
+ * for each edge of a field (its value, minus the value's rate), one for each body (its speed over the rest speed).
+ * Every one falls through zero when its event comes; a rate's root is where a value that fell and rose within one step
+ * is lowest. */
 int impact_motion_rates(double tau, const double *y, double *rate, void *motion);
 int impact_motion_root_values(double tau, const double *y, double *value, void *motion);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * P A Q = L U, of rank r: with z = Q^-1 x, the first r of z follow from the others, which are free. The least z is one solution less its
- * part along those of the homogeneous system, for which an orthonormal basis is kept.
+ * P A Q = L U, of rank r: with z = Q^-1 x, the first r of z follow from the others, which are free. The least z is one
+ * solution less its part along those of the homogeneous system, for which an orthonormal basis is kept.
  */
 #include "persist_linear.h"
 

@@ -16,8 +16,8 @@ typedef struct impact_linear {
     int *rows, *columns; /* n each */
 } impact_linear;
 
-/* Takes the matrix apart by Gauss' elimination, with complete pivoting if pivots under 1e-12 of the greatest element show that the
- * equations do not determine all unknowns. */
+/* Takes the matrix apart by Gauss' elimination, with complete pivoting if pivots under 1e-12 of the greatest element
+ * show that the equations do not determine all unknowns. */
 void impact_linear_factor(impact_linear *system);
 
 /* x, in place of the right-hand side: of all that satisfy the equations that tell something, the one of least norm. */

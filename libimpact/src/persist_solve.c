@@ -28,8 +28,9 @@ static void solve_reactions(impact_persist *persist, const impact_world *world, 
     finish_touches(persist);
 }
 
-/* The unit vector d and the least k >= 0 of (A + k) d = b, for A symmetric and positive definite, in two dimensions: k by Newton on
- * 1/|d(k)| = 1, which is concave and increasing, from k = 0. *drive = |A^-1 b|; below 1 there is no k: d is then A^-1 b/drive. */
+/* The unit vector d and the least k >= 0 of (A + k) d = b, for A symmetric and positive definite, in two dimensions: k
+ * by Newton on 1/|d(k)| = 1, which is concave and increasing, from k = 0. *drive = |A^-1 b|; below 1 there is no k: d
+ * is then A^-1 b/drive. */
 static void secular(double a11, double a12, double a22, double b1, double b2, double *d1, double *d2, double *drive)
 {
     double k = 0;
@@ -48,8 +49,9 @@ static void secular(double a11, double a12, double a22, double b1, double b2, do
     }
 }
 
-/* Slip that begins from rest goes the way it is accelerated, slip_rate || direction, until it is fast enough to have a direction of its
- * own. The direction in which it does, with the pressure and the other touches' forces as they are; sets the touch's drive. */
+/* Slip that begins from rest goes the way it is accelerated, slip_rate || direction, until it is fast enough to have a
+ * direction of its own. The direction in which it does, with the pressure and the other touches' forces as they are;
+ * sets the touch's drive. */
 static qvec3 onset_direction(const impact_world *world, const impact_state *states, impact_touch *touch)
 {
     const qvec3 t1 = impact_tangent(touch->normal), t2 = qvec3_cross(touch->normal, t1);
@@ -169,8 +171,8 @@ static void keep_turns(const impact_persist *persist, impact_world *world)
     }
 }
 
-/* Sets every onset's drive; whether all of them go on sliding. Newton's method also finds directions against which slip would be
- * accelerated: none of Coulomb's. */
+/* Sets every onset's drive; whether all of them go on sliding. Newton's method also finds directions against which slip
+ * would be accelerated: none of Coulomb's. */
 static bool all_slide(impact_persist *persist, const impact_world *world, const impact_state *states)
 {
     bool all = true;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rest needs reactions that balance the loads, not that they be unique. They are looked for by Gauss's sweeps over the contacts, each
- * solved against the others as they are, as scene_together does with impulses: f_n >= 0, a_n >= 0, f_n a_n = 0, |f_t| <= mu f_n and
- * f_t against a_t (Moreau 1988). The sweeps begin without reactions, so that contacts are pressed by the loads alone: of a ball that just
- * fits between two walls friction gives way, though walls that squeezed it could hold it.
+ * Rest needs reactions that balance the loads, not that they be unique. They are looked for by Gauss's sweeps over the
+ * contacts, each solved against the others as they are, as scene_together does with impulses: f_n >= 0, a_n >= 0, f_n
+ * a_n = 0, |f_t| <= mu f_n and f_t against a_t (Moreau 1988). The sweeps begin without reactions, so that contacts are
+ * pressed by the loads alone: of a ball that just fits between two walls friction gives way, though walls that squeezed
+ * it could hold it.
  */
 #include "persist_still.h"
 #include "persist_system.h"
@@ -92,8 +93,8 @@ static double greatest(const impact_persist *persist, const impact_world *world,
     return most;
 }
 
-/* Gives the touch the pressure under which its bodies do not approach, then the friction that does most against their slip. Returns by
- * how much accelerations changed. */
+/* Gives the touch the pressure under which its bodies do not approach, then the friction that does most against their
+ * slip. Returns by how much accelerations changed. */
 static double improve(const impact_world *world, const impact_state *states, impact_touch *touch,
                       contact_response response, body_rate *rates)
 {
@@ -119,7 +120,8 @@ static qvec3 last_reaction(const impact_world *world, const impact_touch *touch)
     return pressure >= 0 && rubs <= touch->friction * pressure + 1e-13 * pressure ? f : (qvec3){0, 0, 0};
 }
 
-/* Gives the island's touches reactions to begin with, those they had or none; returns the acceleration that they leave. */
+/* Gives the island's touches reactions to begin with, those they had or none; returns the acceleration that they leave.
+ */
 static double begin(impact_persist *persist, const impact_world *world, const impact_state *states, int island,
                     bool anew, workspace *work)
 {
@@ -141,7 +143,8 @@ typedef enum answer {
     MOVES     /* the sweeps settled on some */
 } answer;
 
-/* Looks for the reactions of the island's touches: those that they had, if they balance the loads, or else from none at all. */
+/* Looks for the reactions of the island's touches: those that they had, if they balance the loads, or else from none at
+ * all. */
 static answer sweep(impact_persist *persist, const impact_world *world, const impact_state *states, int island,
                     workspace *work, double load)
 {

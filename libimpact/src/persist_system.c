@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The linear system of the held contacts: one unknown for a sliding contact, two where its direction is solved for too, three for a
- * rolling one. Contacts that share no moving body, however remotely, are solved apart.
+ * The linear system of the held contacts: one unknown for a sliding contact, two where its direction is solved for too,
+ * three for a rolling one. Contacts that share no moving body, however remotely, are solved apart.
  */
 #include "persist_system.h"
 #include "persist_linear.h"
@@ -257,8 +257,8 @@ static void add_force(impact_persist *persist, impact_unknown *u, double more)
     }
 }
 
-/* The forces; and then what their rounding has left, so often that what they do is right to rounding: of the motion, not of the forces,
- * which can be far greater than what they leave of one another. */
+/* The forces; and then what their rounding has left, so often that what they do is right to rounding: of the motion,
+ * not of the forces, which can be far greater than what they leave of one another. */
 static void find_forces(impact_persist *persist, const impact_linear *system)
 {
     enum { MOST = 6 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * For a while so short that few bodies can meet, the bodies are divided into groups of those that can, and each group is moved on to the
- * while's end as a small scene of its own, events and all: what happens to one ball does not disturb the motion of the others. The guess
- * in the division, how fast a body can become, is checked at every step; a while in which a body got further than it was allowed is
- * taken back and tried again with more room.
+ * For a while so short that few bodies can meet, the bodies are divided into groups of those that can, and each group
+ * is moved on to the while's end as a small scene of its own, events and all: what happens to one ball does not disturb
+ * the motion of the others. The guess in the division, how fast a body can become, is checked at every step; a while in
+ * which a body got further than it was allowed is taken back and tried again with more room.
  */
 #include "scene_crowd.h"
 #include "crowd.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * scene_crowd: a scene of many bodies, divided for short whiles into groups that cannot meet (crowd.h), each moved on as a small scene
- * of its own. Internal.
+ * scene_crowd: a scene of many bodies, divided for short whiles into groups that cannot meet (crowd.h), each moved on
+ * as a small scene of its own. Internal.
  */
 #ifndef IMPACT_SCENE_CROWD_H
 #define IMPACT_SCENE_CROWD_H

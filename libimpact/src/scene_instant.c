@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What happens at one instant: impacts, one after another, until no touching pair approaches; then the contacts that are held.
+ * What happens at one instant: impacts, one after another, until no touching pair approaches; then the contacts that
+ * are held.
  */
 #include "scene_internal.h"
 #include "drive.h"
@@ -151,9 +152,9 @@ static bool meets(impact_scene *scene, int p, meeting *m)
     return true;
 }
 
-/* The acceleration that presses two bodies together and goes on doing so: about edges and over faces the normal turns fast, but not for
- * long. Surfaces rounder than a thousandth of the body press no more than this. The loads hold the pair's own reaction, which its
- * acceleration does not. */
+/* The acceleration that presses two bodies together and goes on doing so: about edges and over faces the normal turns
+ * fast, but not for long. Surfaces rounder than a thousandth of the body press no more than this. The loads hold the
+ * pair's own reaction, which its acceleration does not. */
 static double lasting_press(const impact_scene *scene, const meeting *m)
 {
     const double roundest = 1e-3;
@@ -175,8 +176,9 @@ static double lasting_press(const impact_scene *scene, const meeting *m)
     return fmin(-m->acceleration, pull + speed * speed / (roundest * radius));
 }
 
-/* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies together. Bounces
- * that are met a rounding d late gain what they fall by it, and never rise less than d e^2/(1 - e^2): that counts as rest too. */
+/* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies
+ * together. Bounces that are met a rounding d late gain what they fall by it, and never rise less than d e^2/(1 - e^2):
+ * that counts as rest too. */
 static bool dies_out(const impact_scene *scene, const meeting *m, double speed)
 {
     enum { MOST = 10 };
@@ -221,9 +223,9 @@ static void count_solver(impact_scene *scene, impact_solver solver)
     if (solver == IMPACT_SOLVER_CVODE) usage->impacts_cvode++;
 }
 
-/* Solves the pair's impact. One whose bounce would die out is solved with restitution 0: it then exchanges, at once, the whole impulse
- * of the infinitely many bounces that would follow, less what the pressing force brings while they last: the sum
- * m w (1 + e)(1 + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
+/* Solves the pair's impact. One whose bounce would die out is solved with restitution 0: it then exchanges, at once,
+ * the whole impulse of the infinitely many bounces that would follow, less what the pressing force brings while they
+ * last: the sum m w (1 + e)(1 + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
 static impact_status strike(impact_scene *scene, const meeting *m)
 {
     impact_world *world = &scene->world;
@@ -271,8 +273,8 @@ static impact_status strike(impact_scene *scene, const meeting *m)
     return record(scene, &event);
 }
 
-/* The first touching pair that approaches in earnest, or -1. Those that barely do are put right by projection where they are held, or
- * (answering) will be: what answers another impact so softly would not rise again. */
+/* The first touching pair that approaches in earnest, or -1. Those that barely do are put right by projection where
+ * they are held, or (answering) will be: what answers another impact so softly would not rise again. */
 static int find_approach(impact_scene *scene, bool answering, meeting *m)
 {
     for (int p = 0; p < scene->world.pair_count; p++) {
@@ -326,7 +328,8 @@ static impact_status strike_together(impact_scene *scene)
     return status;
 }
 
-/* Whether the impacts of this instant have gone round among the pairs that struck often enough, and lose energy as they go. */
+/* Whether the impacts of this instant have gone round among the pairs that struck often enough, and lose energy as they
+ * go. */
 static bool goes_round(const impact_scene *scene, int impacts)
 {
     int struck = 0;
@@ -346,7 +349,8 @@ static impact_mode held_mode(const impact_touch *touch, bool slides)
     return slides || touch->friction == 0 ? IMPACT_SLIDE : IMPACT_ROLL;
 }
 
-/* Tentative modes: what touches and does not leave is held; those that would pull are opened again when the reactions are known. */
+/* Tentative modes: what touches and does not leave is held; those that would pull are opened again when the reactions
+ * are known. */
 static void choose_modes(impact_scene *scene)
 {
     impact_world *world = &scene->world;
@@ -471,7 +475,8 @@ static impact_status make_consistent(impact_scene *scene)
     return status;
 }
 
-/* The first open pair that touches, is all but still along the normal, and is pressed together by the loads and the reactions; or -1. */
+/* The first open pair that touches, is all but still along the normal, and is pressed together by the loads and the
+ * reactions; or -1. */
 static int find_pressed(impact_scene *scene, meeting *m)
 {
     impact_world *world = &scene->world;
@@ -518,9 +523,10 @@ static bool hangs_on_choice(const impact_scene *scene)
     return false;
 }
 
-/* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other contacts have changed
- * their modes, is held again at once: it would come back in less than can be told from rounding, and again and again. Each pair is given
- * one such chance in an instant. opened: the pair that has just lifted off, or -1; rejoin: whether to look for such pairs. */
+/* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other
+ * contacts have changed their modes, is held again at once: it would come back in less than can be told from rounding,
+ * and again and again. Each pair is given one such chance in an instant. opened: the pair that has just lifted off, or
+ * -1; rejoin: whether to look for such pairs. */
 static impact_status hold(impact_scene *scene, int opened, bool rejoin)
 {
     impact_world *world = &scene->world;
@@ -550,8 +556,8 @@ static void remember(impact_scene *scene)
     for (int p = 0; p < scene->world.pair_count; p++) scene->modes[p] = scene->world.pairs[p].mode;
 }
 
-/* One impact after another, in the order of the pairs, until no touching pair approaches. Restitution that has gone round among the
- * same few pairs time and again is spent: the rest of it is answered by all together. */
+/* One impact after another, in the order of the pairs, until no touching pair approaches. Restitution that has gone
+ * round among the same few pairs time and again is spent: the rest of it is answered by all together. */
 static impact_status strike_all(impact_scene *scene)
 {
     enum { MAX_IMPACTS = 100000 };

@@ -32,8 +32,9 @@ typedef struct impact_rows {
 impact_row *impact_rows_add(impact_rows *rows);
 void impact_rows_free(impact_rows *rows);
 
-/* Puts them in order of time: samples of the grid by body before events, events of one instant by group. energy[g], energy_end[g]: of
- * each of the groups at start and end; fills the events' energies with those of all groups together. */
+/* Puts them in order of time: samples of the grid by body before events, events of one instant by group. energy[g],
+ * energy_end[g]: of each of the groups at start and end; fills the events' energies with those of all groups together.
+ */
 impact_status impact_rows_arrange(impact_rows *rows, int groups, double start, double end, const double *energy,
                                   const double *energy_end);
 

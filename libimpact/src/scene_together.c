@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * With impulses p at the contacts and u the relative velocities after, p_n >= 0, u_n >= 0, p_n u_n = 0, |p_t| <= mu p_n and p_t . u_t <= 0
- * (Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988, without restitution). Then the kinetic energy changes
- * by p . u - (p . W p)/2 <= 0.
+ * With impulses p at the contacts and u the relative velocities after, p_n >= 0, u_n >= 0, p_n u_n = 0, |p_t| <= mu p_n
+ * and p_t . u_t <= 0 (Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988, without
+ * restitution). Then the kinetic energy changes by p . u - (p . W p)/2 <= 0.
  */
 #include "scene_together.h"
 #include "persist_system.h"
@@ -44,7 +44,8 @@ static void own_response(const impact_world *world, const impact_state *states, 
     if (!world->bodies[touch->body1].spherical || !world->bodies[touch->body2].spherical) *across *= 2;
 }
 
-/* Solves one share against the others as they are: along the normal, then across it; returns by how much velocities changed. */
+/* Solves one share against the others as they are: along the normal, then across it; returns by how much velocities
+ * changed. */
 static double improve(const impact_world *world, impact_state *states, impact_share *share, double along, double across)
 {
     const impact_touch *touch = &share->touch;
@@ -70,7 +71,8 @@ static double improve(const impact_world *world, impact_state *states, impact_sh
     return fabs(pushed) * along + rubbed * across;
 }
 
-/* One sweep over the shares; true when it moved nothing but roundings: of the velocities, and of what the impulses make of them. */
+/* One sweep over the shares; true when it moved nothing but roundings: of the velocities, and of what the impulses make
+ * of them. */
 static bool sweep(const impact_world *world, impact_state *states, impact_share *shares, int count, double speed)
 {
     bool settled = true;
@@ -93,7 +95,8 @@ static bool sweep_until(const impact_world *world, impact_state *states, impact_
 
 /* ---- where sweeps hardly move: heavy bodies on light ones ---- */
 
-/* The touch of a share that presses, sliding if its friction is spent and else stuck; no more approach and slip than that is wanted. */
+/* The touch of a share that presses, sliding if its friction is spent and else stuck; no more approach and slip than
+ * that is wanted. */
 static impact_touch pressing_touch(const impact_share *share)
 {
     impact_touch touch = share->touch;
@@ -131,7 +134,8 @@ static void solve_at_once(const impact_world *world, impact_state *states, impac
         if (shares[c].normal > 0) take(world, states, &shares[c], &system->touches[k++]);
 }
 
-/* Shares solved at once, and sweeps that tell which press and which slide, in turn. Without success nothing is changed. */
+/* Shares solved at once, and sweeps that tell which press and which slide, in turn. Without success nothing is changed.
+ */
 static bool settle_at_once(const impact_world *world, impact_state *states, impact_share *shares, int count,
                            double speed)
 {
@@ -159,8 +163,8 @@ static bool settle_at_once(const impact_world *world, impact_state *states, impa
     return settled;
 }
 
-/* Impulses far greater than what they leave of one another leave their rounding too: what approach and slip it makes of the shares that
- * press is taken away by impulses of its own size. */
+/* Impulses far greater than what they leave of one another leave their rounding too: what approach and slip it makes of
+ * the shares that press is taken away by impulses of its own size. */
 static void take_rounding_away(const impact_world *world, impact_state *states, impact_share *shares, int count)
 {
     impact_persist system = {0};

@@ -16,10 +16,10 @@ typedef struct impact_share {
     double work;         /* J: impulse . (before + after)/2; the shares' sum is the change of energy */
 } impact_share;
 
-/* Changes the velocities so that no share's pair approaches any more: normal impulses >= 0, only where the pair does not part; friction
- * within its cone, against the slip that is left. Gauss's sweeps over the shares in order, each solving its own; kinetic energy falls.
- * Where they do not settle, as between bodies of very different masses, all that press are solved at once. True when it settled; what
- * approach is left otherwise is less than before. */
+/* Changes the velocities so that no share's pair approaches any more: normal impulses >= 0, only where the pair does
+ * not part; friction within its cone, against the slip that is left. Gauss's sweeps over the shares in order, each
+ * solving its own; kinetic energy falls. Where they do not settle, as between bodies of very different masses, all that
+ * press are solved at once. True when it settled; what approach is left otherwise is less than before. */
 bool impact_answer_together(const impact_world *world, impact_state *states, impact_share *shares, int count);
 
 #endif

@@ -131,7 +131,8 @@ static void a_bullet_meets_the_wall(void **state)
     }
 }
 
-/* Thrown up at a ceiling: the top of its way a little above it, just under it, or far under it. Only what reaches it strikes. */
+/* Thrown up at a ceiling: the top of its way a little above it, just under it, or far under it. Only what reaches it
+ * strikes. */
 static void a_throw_that_dips_into_the_ceiling(void **state)
 {
     (void)state;
@@ -156,7 +157,8 @@ static void a_throw_that_dips_into_the_ceiling(void **state)
     }
 }
 
-/* Contact without approach is no impact: a ball that glides along a wall, two that touch and part, or go side by side. */
+/* Contact without approach is no impact: a ball that glides along a wall, two that touch and part, or go side by side.
+ */
 static void touching_is_not_striking(void **state)
 {
     (void)state;
@@ -184,7 +186,8 @@ static void touching_is_not_striking(void **state)
     }
 }
 
-/* Through the plane's surface beside its bounds, round behind it, and back up beside them: no impact; then down onto it. */
+/* Through the plane's surface beside its bounds, round behind it, and back up beside them: no impact; then down onto
+ * it. */
 static void beyond_the_bounds_and_back(void **state)
 {
     (void)state;
@@ -204,7 +207,8 @@ static void beyond_the_bounds_and_back(void **state)
         assert_true(log.event_count >= 3);
         assert_near(log.events[0].t, fall, 1e-12);
         assert_int_equal(log.events[0].body2, 1);
-        /* At t = 2 fall it is at its top again, x = -2 + 2 fall = -0.72; it meets the table's height at x = -0.27: onto it. */
+        /* At t = 2 fall it is at its top again, x = -2 + 2 fall = -0.72; it meets the table's height at x = -0.27: onto
+         * it. */
         assert_near(log.events[1].t, 2 * fall + onto, 1e-12);
         assert_int_equal(log.events[1].body2, 0);
         assert_near3(log.events[1].point, (qvec3){-2 + 2 * fall + onto, 0, 0}, 1e-11);
@@ -282,8 +286,8 @@ static impact_solid solid_of(const impact_body_def *def, const impact_sample *sa
     return (impact_solid){def->shape, sample->position, sample->orientation};
 }
 
-/* Two of them fall, towards each other and to the ground: never nearer than touching before the first event, and touching there; without
- * the integrator, and when and where it has them meet. */
+/* Two of them fall, towards each other and to the ground: never nearer than touching before the first event, and
+ * touching there; without the integrator, and when and where it has them meet. */
 static void tumbling_bodies_meet(void **state)
 {
     (void)state;
@@ -336,7 +340,8 @@ static void tumbling_bodies_meet(void **state)
     if (pair_met < 10 || ground_met < 10) fail_msg("%d pairs met, %d the ground", pair_met, ground_met);
 }
 
-/* A disc 1e-4 m thick that tumbles, at 1e4 m/s, to a wall and to a plate as thin: it meets both, however it happens to stand. */
+/* A disc 1e-4 m thick that tumbles, at 1e4 m/s, to a wall and to a plate as thin: it meets both, however it happens to
+ * stand. */
 static void a_tumbling_disc_does_not_tunnel(void **state)
 {
     (void)state;
@@ -369,8 +374,8 @@ static void a_tumbling_disc_does_not_tunnel(void **state)
     }
 }
 
-/* Two elastic bodies of every family of shapes in a box of planes: hundreds of impacts, none of them by the integrator, every bounce as
- * high as it came, no energy lost, and never a sample in which anything overlaps. */
+/* Two elastic bodies of every family of shapes in a box of planes: hundreds of impacts, none of them by the integrator,
+ * every bounce as high as it came, no energy lost, and never a sample in which anything overlaps. */
 enum { BOX = 6 };
 
 static void box_of_planes(impact_body_def *bodies)

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Held contacts as they move: rolls and slides with closed forms, several contacts at once, and random bodies dropped on a plane.
+ * Held contacts as they move: rolls and slides with closed forms, several contacts at once, and random bodies dropped
+ * on a plane.
  */
 #include "held_bodies.h"
 
-/* What a step may add to any number of a body's, relative to it: CVODE holds the root mean square of one body's 17 to the tolerance. */
+/* What a step may add to any number of a body's, relative to it: CVODE holds the root mean square of one body's 17 to
+ * the tolerance. */
 static const double step_error = 4.2e-13;
 
 /* ---- rolling off a fixed ball ---- */
@@ -50,7 +52,8 @@ static void a_ball_without_friction_leaves_a_ball_at_two_thirds(void **state)
     free_log(&r.log);
 }
 
-/* N = m g (cos - 10/7 (cos0 - cos)), friction 2/7 m g sin: it leaves at 10/17 cos0, sliding just before however strong the friction. */
+/* N = m g (cos - 10/7 (cos0 - cos)), friction 2/7 m g sin: it leaves at 10/17 cos0, sliding just before however strong
+ * the friction. */
 static void a_rolling_ball_leaves_a_ball_at_ten_seventeenths(void **state)
 {
     (void)state;
@@ -132,8 +135,8 @@ static void rolling_keeps_energy_and_the_contact_point_at_rest(void **state)
 
 /* ---- slides with closed forms ---- */
 
-/* On an incline too steep for its friction, a ball that rolls across it slides straight down while it goes on across: the slip it gains
- * points down. */
+/* On an incline too steep for its friction, a ball that rolls across it slides straight down while it goes on across:
+ * the slip it gains points down. */
 static void slip_from_rest_goes_down_the_incline(void **state)
 {
     (void)state;
@@ -187,8 +190,9 @@ static void pivoting_goes_on(void **state)
     }
 }
 
-/* Painleve (1895): a rod that slides towards its lean is pressed into the floor by its own friction where mu > K_zz/K_xz, K the inverse
- * mass of its lower end: no force holds it, and an impact without approach stops the slip. Below that, and away from its lean, it slides. */
+/* Painleve (1895): a rod that slides towards its lean is pressed into the floor by its own friction where mu >
+ * K_zz/K_xz, K the inverse mass of its lower end: no force holds it, and an impact without approach stops the slip.
+ * Below that, and away from its lean, it slides. */
 static void a_rod_that_jams_is_stopped_by_an_impact(void **state)
 {
     (void)state;
@@ -222,8 +226,8 @@ static void a_rod_that_jams_is_stopped_by_an_impact(void **state)
 
 /* ---- several contacts ---- */
 
-/* A ball that spins in the corner of a floor and a wall and slides on both: N1 = m g/(1 + mu^2), N2 = mu N1, and it stops after
- * t = 2/5 R w/(g mu (1 + mu)/(1 + mu^2)). */
+/* A ball that spins in the corner of a floor and a wall and slides on both: N1 = m g/(1 + mu^2), N2 = mu N1, and it
+ * stops after t = 2/5 R w/(g mu (1 + mu)/(1 + mu^2)). */
 static void spin_in_a_corner_dies_out(void **state)
 {
     (void)state;
@@ -253,7 +257,8 @@ static void spin_in_a_corner_dies_out(void **state)
     }
 }
 
-/* Spinning about any axis and thrown into the corner, it comes to rest, or pivots: what no friction without moment can stop. */
+/* Spinning about any axis and thrown into the corner, it comes to rest, or pivots: what no friction without moment can
+ * stop. */
 static void thrown_into_a_corner_it_settles(void **state)
 {
     (void)state;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Linear systems of known rank: A = B C of random factors, of which the solution of least norm lies in the span of the rows of C.
+ * Linear systems of known rank: A = B C of random factors, of which the solution of least norm lies in the span of the
+ * rows of C.
  */
 #include "persist_linear.h"
 #include "contact_random.h"

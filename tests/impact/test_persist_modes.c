@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Ellipsoids in a groove of two planes, with friction: the modes of both contacts at an instant against Coulomb's law, and what is dropped
- * there slides, rocks and rests without a stall.
+ * Ellipsoids in a groove of two planes, with friction: the modes of both contacts at an instant against Coulomb's law,
+ * and what is dropped there slides, rocks and rests without a stall.
  */
 #include "persist_system.h"
 #include "scene_internal.h"
@@ -46,7 +46,8 @@ static void set_down(groove *g)
     egg->position = at;
 }
 
-/* Signorini's conditions and Coulomb's law of the touches as solved for, in accelerations; by how much of the load they are off. */
+/* Signorini's conditions and Coulomb's law of the touches as solved for, in accelerations; by how much of the load they
+ * are off. */
 static double off_coulomb(const impact_scene *scene)
 {
     const impact_persist *persist = &scene->motion.persist;

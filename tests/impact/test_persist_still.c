@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Bodies at rest on more contacts than the balance of forces can tell apart: whichever way they are turned, with reactions that balance;
- * and what does not rest.
+ * Bodies at rest on more contacts than the balance of forces can tell apart: whichever way they are turned, with
+ * reactions that balance; and what does not rest.
  */
 #include "persist_still.h"
 #include "scene_internal.h"
@@ -80,7 +80,8 @@ static void a_clamped_ball_rests_however_it_is_turned(void **state)
     }
 }
 
-/* Pulled out of the slot, it is clamped by walls that nothing presses: their friction gives way, and it falls freely. */
+/* Pulled out of the slot, it is clamped by walls that nothing presses: their friction gives way, and it falls freely.
+ */
 static void walls_that_nothing_presses_hold_nothing(void **state)
 {
     (void)state;
@@ -133,7 +134,8 @@ static void what_is_still_is_stirred_by_an_impact(void **state)
     }
 }
 
-/* A ball that slides along between walls that just touch it: their pressures are a choice, and matter where they rub. */
+/* A ball that slides along between walls that just touch it: their pressures are a choice, and matter where they rub.
+ */
 static void motion_on_chosen_reactions_is_told(void **state)
 {
     (void)state;

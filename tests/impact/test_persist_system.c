@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The reactions of held contacts at one instant: against Newton and Euler in long double, and against finite differences of the gap.
+ * The reactions of held contacts at one instant: against Newton and Euler in long double, and against finite
+ * differences of the gap.
  */
 #include "scene_internal.h"
 #include "held_bodies.h"
@@ -100,7 +101,8 @@ static void inertia(const spinner *b, bool inverse, const real v[3], real out[3]
     }
 }
 
-/* Rolling: v = -w x r all the time, m v' = F + m g, J w' + w x J w = r x F. For w': J w' + m r x (w' x r) = -w x J w - m r x (w x r' + g). */
+/* Rolling: v = -w x r all the time, m v' = F + m g, J w' + w x J w = r x F. For w': J w' + m r x (w' x r) = -w x J w -
+ * m r x (w x r' + g). */
 static void rolling_force(const spinner *b, real force[3])
 {
     const real h = 1e-4L, g[3] = {0, 0, -(real)gravity};
@@ -130,8 +132,8 @@ static void rolling_force(const spinner *b, real force[3])
     for (int i = 0; i < 3; i++) force[i] = -mass * (force[i] + a[i]);
 }
 
-/* Sliding: F = N (n - mu s/|s|) with N so that the height keeps to that of the lowest point: z'' = h'', h'' being that of turning at
- * w alone, less (r x n) . w'. */
+/* Sliding: F = N (n - mu s/|s|) with N so that the height keeps to that of the lowest point: z'' = h'', h'' being that
+ * of turning at w alone, less (r x n) . w'. */
 static void sliding_force(const spinner *b, const real slip[3], real mu, real force[3])
 {
     const real h = 4e-4L, n[3] = {0, 0, 1};
@@ -241,8 +243,9 @@ static qvec3 contact_velocity(impact_scene *scene, const impact_state *states, d
     return qvec3_sub(u1, u2);
 }
 
-/* Any smooth bodies, their centres of mass anywhere in them, on each other or on a plane, touching, rolling or sliding: with the reactions that were solved for, the contact
- * velocity (rolling) or the gap's rate (sliding) stays what it is, by finite differences of the gap's contact points. */
+/* Any smooth bodies, their centres of mass anywhere in them, on each other or on a plane, touching, rolling or sliding:
+ * with the reactions that were solved for, the contact velocity (rolling) or the gap's rate (sliding) stays what it is,
+ * by finite differences of the gap's contact points. */
 static void reactions_keep_the_contact(void **state)
 {
     (void)state;

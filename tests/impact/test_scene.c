@@ -29,8 +29,9 @@ typedef struct thesis_scene {
     impact_scene_def def;
 } thesis_scene;
 
-/* As the authors' files have it, the pairs' friction is .25 x .25, and the sphere slides to the wall: to roll under the wind it would need
- * 2/7 F/(m g) = .18 and more for the damping of its spin. grips: the same with a friction of .5 for both pairs. */
+/* As the authors' files have it, the pairs' friction is .25 x .25, and the sphere slides to the wall: to roll under the
+ * wind it would need 2/7 F/(m g) = .18 and more for the damping of its spin. grips: the same with a friction of .5 for
+ * both pairs. */
 static thesis_scene *make_thesis_scene(bool grips)
 {
     thesis_scene *s = calloc(1, sizeof *s);
@@ -110,7 +111,8 @@ static void first_bounce_is_where_the_closed_form_puts_it(void **state)
     fail_msg("no rows on either side of the bounce");
 }
 
-/* While it rolls on the floor, v = w x r n and 1.4 m a = F - m (k + .4 kw) v: an exponential approach to the drift speed. */
+/* While it rolls on the floor, v = w x r n and 1.4 m a = F - m (k + .4 kw) v: an exponential approach to the drift
+ * speed. */
 static void rolls_as_the_closed_form_says_and_meets_the_wall_rolling(void **state)
 {
     (void)state;
@@ -217,7 +219,8 @@ static void uses_only_what_it_needs(void **state)
     free_log(&log);
 }
 
-/* Bounces that the integrator cannot tell from its own error are not followed: a loose tolerance makes a run shorter, not longer. */
+/* Bounces that the integrator cannot tell from its own error are not followed: a loose tolerance makes a run shorter,
+ * not longer. */
 static void a_loose_tolerance_costs_less(void **state)
 {
     (void)state;
@@ -243,7 +246,8 @@ static void a_loose_tolerance_costs_less(void **state)
     }
 }
 
-/* The tolerance says from which speed on slip is slip, but not which impacts are impacts: in flight there is nothing to tolerate. */
+/* The tolerance says from which speed on slip is slip, but not which impacts are impacts: in flight there is nothing to
+ * tolerate. */
 static void a_loose_tolerance_lets_nothing_fall_through(void **state)
 {
     (void)state;
@@ -273,7 +277,8 @@ static void a_loose_tolerance_lets_nothing_fall_through(void **state)
     }
 }
 
-/* A heavy ball falls on a light one that lies on the floor: what sweeps of impulses would take millions of is solved at once. */
+/* A heavy ball falls on a light one that lies on the floor: what sweeps of impulses would take millions of is solved at
+ * once. */
 static void a_heavy_ball_on_a_light_one(void **state)
 {
     (void)state;
@@ -302,7 +307,8 @@ static void a_heavy_ball_on_a_light_one(void **state)
     }
 }
 
-/* An egg of a micrometre rocks on for hundreds of thousands of steps: what is held must not drift off, nor the energy with it. */
+/* An egg of a micrometre rocks on for hundreds of thousands of steps: what is held must not drift off, nor the energy
+ * with it. */
 static void what_is_held_for_long_does_not_drift(void **state)
 {
     (void)state;
@@ -323,8 +329,9 @@ static void what_is_held_for_long_does_not_drift(void **state)
     impact_scene_destroy(scene);
 }
 
-/* An ellipsoid of tens of metres, whose angular momentum about the vertical is almost none of all there is: to tell that from zero
- * once took a million steps. The same in lengths of a sixtieth of it, and times of the square root of that, goes alike. */
+/* An ellipsoid of tens of metres, whose angular momentum about the vertical is almost none of all there is: to tell
+ * that from zero once took a million steps. The same in lengths of a sixtieth of it, and times of the square root of
+ * that, goes alike. */
 static void large_bodies_move_as_small_ones(void **state)
 {
     (void)state;
@@ -533,7 +540,8 @@ static void a_build_without_cvode_says_so(void **state)
     free(s);
 }
 
-/* A superellipsoid that is flat along an axis passes that spot faster than the integrator sees: the run says so itself. */
+/* A superellipsoid that is flat along an axis passes that spot faster than the integrator sees: the run says so itself.
+ */
 static void an_account_that_does_not_close_is_told(void **state)
 {
     (void)state;
