@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Counts what is allocated: the linker sends the library's calls here (-Wl,--wrap=malloc and its like). For one file of a program.
+ * Counts what is allocated: the linker sends the library's calls here (-Wl,--wrap=malloc and its like). For one file of
+ * a program.
  */
 #ifndef TESTS_ALLOCATIONS_H
 #define TESTS_ALLOCATIONS_H

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A spinning ball falls from rest and bounces: the first impact of a scene, from C. The same scene in Lua: docs/scene.md.
+ * A spinning ball falls from rest and bounces: the first impact of a scene, from C. The same scene in Lua:
+ * docs/scene.md.
  *
  *   fall    z = z0 - g t^2/2 until z = r:  t = sqrt(2 (z0 - r)/g) = 0.428426 s
  *   bounce  the contact point slips at v - r w = -2 m/s; friction ends that during the impact: v+ = r w+ = 1 + 4/7 m/s

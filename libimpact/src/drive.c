@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The point at r from the centre of a static body moves by drift + spin x r. That field has to be tangential everywhere on the surface:
- * of a plane, a drift along it and a spin about its normal; of other shapes, a spin about an axis on which they are round.
+ * The point at r from the centre of a static body moves by drift + spin x r. That field has to be tangential everywhere
+ * on the surface: of a plane, a drift along it and a spin about its normal; of other shapes, a spin about an axis on
+ * which they are round.
  */
 #include "drive.h"
 

@@ -118,7 +118,8 @@ static impact_status run(impact_scene *scene, double t_end)
 }
 
 /* The run's check on itself: the energy that is there against the energy that was given and taken. Held contacts
- * of two bodies on each other that are flat along an axis (exponents over 2) can pass that spot faster than the integrator sees. */
+ * of two bodies on each other that are flat along an axis (exponents over 2) can pass that spot faster than the
+ * integrator sees. */
 static impact_status check_account(impact_scene *scene, impact_status status)
 {
     const double tolerance = 1e-8 + 1e3 * scene->motion.tolerance;

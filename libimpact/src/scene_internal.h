@@ -47,7 +47,8 @@ bool impact_scene_emit(void *scene, double t, const impact_state *states);
 double impact_scene_total_energy(const impact_scene *scene);
 impact_sample impact_scene_sample(const impact_scene *scene, double t, int body, const impact_state *states);
 
-/* At the scene's time: all impacts there are, in the order of the pairs, then which contacts are held, in which mode. */
+/* At the scene's time: all impacts there are, in the order of the pairs, then which contacts are held, in
+ * which mode. */
 impact_status impact_scene_settle(impact_scene *scene);
 /* At the scene's time: what the end of a stretch of motion stands for. */
 impact_status impact_scene_handle(impact_scene *scene, impact_end end);

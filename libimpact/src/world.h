@@ -71,8 +71,8 @@ typedef struct impact_pair {
     impact_gap_cache cache;
 } impact_pair;
 
-/* A force with its edges: inside[slot] tells whether the slot's body (wind) or couple of bodies (attraction) is within reach. It is
- * held between events, so that the forces are smooth there. */
+/* A force with its edges: inside[slot] tells whether the slot's body (wind) or couple of bodies (attraction) is within
+ * reach. It is held between events, so that the forces are smooth there. */
 typedef struct impact_field {
     impact_force_def def; /* name is owned; body is not used: see only */
     char *name;
@@ -156,7 +156,8 @@ static inline impact_solid impact_solid_of(const impact_body *body, const impact
                           impact_shape_axes(body, state)};
 }
 
-/* A rate, of motion at this speed, up to which a distance does not open, m/s: what only rounding moves stays where it is. */
+/* A rate, of motion at this speed, up to which a distance does not open, m/s: what only rounding moves stays where it
+ * is. */
 static inline double impact_still_rate(const impact_world *world, double speed)
 {
     return world->slip_speed + 1e-9 * speed;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prints the coefficients of libquat/src/slerp_kernel.h: the polynomial of degree 11 in x that equals atan(sqrt x)/sqrt x at the
- * Chebyshev nodes of 0 <= x <= tan^2(pi/8), and its largest relative error with the coefficients rounded to double.
- * cc -O2 atan_coefficients.c -lm && ./a.out
+ * Prints the coefficients of libquat/src/slerp_kernel.h: the polynomial of degree 11 in x that equals atan(sqrt x)/sqrt
+ * x at the Chebyshev nodes of 0 <= x <= tan^2(pi/8), and its largest relative error with the coefficients rounded to
+ * double. cc -O2 atan_coefficients.c -lm && ./a.out
  */
 #define __STDC_WANT_IEC_60559_TYPES_EXT__ 1
 #include <math.h>

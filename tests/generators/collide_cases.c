@@ -42,8 +42,9 @@ static quat any_turn(uint64_t *g)
     }
 }
 
-/* A solid ellipsoid of the longest semi-axis 1 and two shorter ones, of a mass 10^low ... 10^high, struck at a point on it or, for rods,
- * near the end of its longest axis. The first number drawn is a semi-axis, and so on: what it is does not depend on the compiler. */
+/* A solid ellipsoid of the longest semi-axis 1 and two shorter ones, of a mass 10^low ... 10^high, struck at a point on
+ * it or, for rods, near the end of its longest axis. The first number drawn is a semi-axis, and so on: what it is does
+ * not depend on the compiler. */
 static impact_collider ellipsoid(uint64_t *g, double slim, double low, double high, bool at_end)
 {
     const double shorter = decades(g, -slim, 0), short_too = decades(g, -slim, 0);
@@ -86,8 +87,8 @@ static void set_contact_velocity(impact_collision *c, qvec3 u)
         c->body[1].velocity = qvec3_sub(c->body[1].velocity, more);
 }
 
-/* Two bodies of three equal moments J = y^2 m, struck off centre along x and along y: M_tt is the same both ways, to the last bit for
- * powers of two. */
+/* Two bodies of three equal moments J = y^2 m, struck off centre along x and along y: M_tt is the same both ways, to
+ * the last bit for powers of two. */
 static void isotropic(impact_collision *c, uint64_t *g)
 {
     static const double powers[] = {0.25, 0.5, 1, 2, 4};

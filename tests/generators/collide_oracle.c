@@ -197,7 +197,8 @@ static real measure(const run *rn, sought what, const state *st, real *slope)
     return 0;
 }
 
-/* Newton's step in the variable that the measure is nearly linear in: the way, or the power of what is left that s goes with. */
+/* Newton's step in the variable that the measure is nearly linear in: the way, or the power of what is left that s goes
+ * with. */
 static real step_of(const arc *ar, real x, real value, real slope)
 {
     const real by = value / slope, g = ar->gamma_end;

@@ -102,8 +102,8 @@ static bool find_roots(arc *ar)
 
 /* ---- s and T along the arc ---- */
 
-/* log of sin((theta - root) / 2) over the same at theta0, theta - theta0 = 2 turn; of conjugate roots gamma log + its conjugate is
- * the same twice. The argument runs from 0 to at most pi, always the same way round. */
+/* log of sin((theta - root) / 2) over the same at theta0, theta - theta0 = 2 turn; of conjugate roots gamma log + its
+ * conjugate is the same twice. The argument runs from 0 to at most pi, always the same way round. */
 static complex_real log_ratio(const arc *ar, int n, real square, real twice)
 {
     const complex_real z = -2 * square + twice * ar->cotangent[n];
@@ -170,7 +170,8 @@ static void make_nodes(arc *ar)
     }
 }
 
-/* An integral over a panel and the size of the highest two Legendre coefficients of the integrand, times half the width. */
+/* An integral over a panel and the size of the highest two Legendre coefficients of the integrand, times half the
+ * width. */
 typedef struct sum {
     real value, high;
 } sum;
@@ -192,7 +193,8 @@ static void gauss(const arc *ar, real from, real to, sum *p, sum *ss)
     *ss = (sum){value[1], fabsq(high[1][0]) + fabsq(high[1][1])};
 }
 
-/* Coefficients fall like a power: the rule, exact to twice the degree, is off by about the square of the highest ones. */
+/* Coefficients fall like a power: the rule, exact to twice the degree, is off by about the square of the
+ * highest ones. */
 static bool is_good(sum s, real so_far, real least)
 {
     return s.high * s.high <= 1e-24Q * s.value * fmaxq(so_far + s.value, least);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The closed hodograph of turning slip in 128-bit arithmetic: s(theta) as a product of powers of sines of the distances to the roots
- * of T, and the integrals of s/T and s^2/T over theta.
+ * The closed hodograph of turning slip in 128-bit arithmetic: s(theta) as a product of powers of sines of the distances
+ * to the roots of T, and the integrals of s/T and s^2/T over theta.
  */
 #ifndef COLLIDE_ORACLE_ARC_H
 #define COLLIDE_ORACLE_ARC_H
@@ -14,7 +14,8 @@ typedef __complex128 complex_real;
 
 enum { X, Y, N };
 
-/* M = [[a, 0, c], [0, b, d], [c, d, m]] in the principal tangential frame, friction, and the velocity u at the start. */
+/* M = [[a, 0, c], [0, b, d], [c, d, m]] in the principal tangential frame, friction, and the velocity u at
+ * the start. */
 typedef struct slip {
     real a, b, c, d, m, mu, u[3];
 } slip;

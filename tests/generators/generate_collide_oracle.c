@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Writes tests/data/collide_oracle.csv: impacts of every kind and their answers in 128 bits.
- *   cmake --build build --target generate_collide_oracle && build/tests/generators/generate_collide_oracle > tests/data/collide_oracle.csv
- * The library is asked only which random impacts are interesting (a slip, a stick, a reversal, a jam ...), never for an answer.
+ *   cmake --build build --target generate_collide_oracle && build/tests/generators/generate_collide_oracle >
+ * tests/data/collide_oracle.csv The library is asked only which random impacts are interesting (a slip, a stick, a
+ * reversal, a jam ...), never for an answer.
  */
 #include <stdio.h>
 #include "collide_cases.h"

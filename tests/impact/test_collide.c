@@ -50,7 +50,8 @@ static void sphere_slides(void **state)
 static void sphere_at_any_speed(void **state)
 {
     (void)state;
-    /* Velocities so large or small that their squares are not numbers: the answer keeps its bits, and so does friction. */
+    /* Velocities so large or small that their squares are not numbers: the answer keeps its bits, and so
+     * does friction. */
     const impact_collision c = sphere_on_plane((qvec3){4, 1, -2}, (qvec3){1, -2, 5}, 0.25, 0.3);
     impact_outcome o, far;
     assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
@@ -172,7 +173,8 @@ static void separating_bodies_stay_as_they_are(void **state)
 typedef impact_collision changed(impact_collision c);
 typedef void changed_back(impact_outcome *o);
 
-/* The answer to the changed impact, changed back, against the first: off by so many roundings of the data of either, and of M. */
+/* The answer to the changed impact, changed back, against the first: off by so many roundings of the data of either,
+ * and of M. */
 static void assert_invariant(changed *change, changed_back *back, double roundings)
 {
     for (int class_ = 0; class_ < CASE_CLASSES; class_++)
@@ -326,7 +328,8 @@ static void words_for_all(void **state)
     assert_string_equal(impact_phase_name((impact_phase)77), "unknown");
 }
 
-/* However ill-conditioned M is, a contact that sticks ends with u = uz n, to the rounding of the velocities it is made of. */
+/* However ill-conditioned M is, a contact that sticks ends with u = uz n, to the rounding of the velocities it is made
+ * of. */
 static void what_sticks_is_at_rest(void **state)
 {
     (void)state;

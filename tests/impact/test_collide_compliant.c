@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tangential compliance: against the rebound of real spheres, against plain time stepping with the force returned to the cone,
- * Garwin's superball, and in the limit of a rigid contact. CVODE's relative tolerance is 1e-12 where none is given.
+ * Tangential compliance: against the rebound of real spheres, against plain time stepping with the force returned to
+ * the cone, Garwin's superball, and in the limit of a rigid contact. CVODE's relative tolerance is 1e-12 where none is
+ * given.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,8 +29,8 @@ static double rebound_angle(double degrees, double compliance)
     return atan2(o.velocity[0].x, o.velocity[0].z) * 180 / acos(-1);
 }
 
-/* 5 mm aluminium-oxide spheres on soda-lime glass (Kharaz, Gorham & Salman 2001). Nothing is fitted: eta^2 = E* / 4 G* from the elastic
- * constants, E = 380 and 70 GPa, nu = .23 and .25 (Mindlin 1949). */
+/* 5 mm aluminium-oxide spheres on soda-lime glass (Kharaz, Gorham & Salman 2001). Nothing is fitted: eta^2 = E* / 4 G*
+ * from the elastic constants, E = 380 and 70 GPa, nu = .23 and .25 (Mindlin 1949). */
 static void kharaz_spheres(void **state)
 {
     (void)state;
@@ -105,7 +106,8 @@ static void time_stepping(void **state)
     }
 }
 
-/* Random impacts of every class: an answer, no gain of energy, inside of the cone, Stronge's restitution of the normal work. */
+/* Random impacts of every class: an answer, no gain of energy, inside of the cone, Stronge's restitution of the normal
+ * work. */
 static void always_an_answer(void **state)
 {
     (void)state;
@@ -138,8 +140,9 @@ static qvec3 velocity_of(const impact_collision *c)
     return impact_ready_velocity(&ready);
 }
 
-/* Garwin's superball (1969): eta^2 = 7/2 makes the tangential spring swing in time with the normal one, so that a solid sphere keeps its
- * energy and sends its contact velocity back; the second bounce undoes the first but for the sign of the first's spin and slip. */
+/* Garwin's superball (1969): eta^2 = 7/2 makes the tangential spring swing in time with the normal one, so that a solid
+ * sphere keeps its energy and sends its contact velocity back; the second bounce undoes the first but for the sign of
+ * the first's spin and slip. */
 static void superball(void **state)
 {
     (void)state;
@@ -174,8 +177,8 @@ static double off_rigid(impact_collision c, const impact_outcome *rigid, double 
     return case_error(&c, o.velocity, o.omega, rigid->velocity, rigid->omega);
 }
 
-/* A stiff contact comes near the rigid answer in proportion to its compliance: a hundredth of it, a hundredth of the way, in the mean of
- * the logarithms. */
+/* A stiff contact comes near the rigid answer in proportion to its compliance: a hundredth of it, a hundredth of the
+ * way, in the mean of the logarithms. */
 static void stiff_is_rigid(void **state)
 {
     (void)state;

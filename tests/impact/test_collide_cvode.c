@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * CVODE's road: tolerances, friction laws, a workspace used again, and what it refuses. Where none is given its tolerance is 1e-12.
+ * CVODE's road: tolerances, friction laws, a workspace used again, and what it refuses. Where none is given its
+ * tolerance is 1e-12.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -105,7 +106,8 @@ static void friction_laws(void **state)
     }
 }
 
-/* A sphere that slides throughout: du/dp = -(7/2) mu(u) / m, so int du / mu = -(7/2) p / m. With mu = A u, u = u0 exp(-3.5 A p / m). */
+/* A sphere that slides throughout: du/dp = -(7/2) mu(u) / m, so int du / mu = -(7/2) p / m. With mu = A u, u = u0
+ * exp(-3.5 A p / m). */
 static double proportional(double speed, void *context)
 {
     (void)context;

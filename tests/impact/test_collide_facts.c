@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The facts that docs/collide.md lists, as properties of what the library answers for random bodies; references in long double.
- * M = [[a, 0, c], [0, b, d], [c, d, m]] in the principal tangential frame. At a sliding direction theta, |u_t| changes by R, theta by
- * T / |u_t| and u_z by Z per unit of p.
+ * The facts that docs/collide.md lists, as properties of what the library answers for random bodies; references in long
+ * double. M = [[a, 0, c], [0, b, d], [c, d, m]] in the principal tangential frame. At a sliding direction theta, |u_t|
+ * changes by R, theta by T / |u_t| and u_z by Z per unit of p.
  */
 #include <complex.h>
 #include <float.h>
@@ -73,8 +73,8 @@ static double apart(const impact_flow *f, const double *u, const double *v)
     return hypot((u[0] - v[0]) / sqrt(f->a), (u[1] - v[1]) / sqrt(f->b));
 }
 
-/* du_t/dp = -M_tt grad(mu |u_t| - u_t . M_tt^-1 M_tz): the potential falls; two slips never part in the norm of M_tt^-1; and who starts
- * on the way of another goes on as that one. */
+/* du_t/dp = -M_tt grad(mu |u_t| - u_t . M_tt^-1 M_tz): the potential falls; two slips never part in the norm of
+ * M_tt^-1; and who starts on the way of another goes on as that one. */
 static void fact_1_the_flow_is_unique_and_non_expansive(void **state)
 {
     (void)state;
@@ -238,8 +238,9 @@ static wide form_of(const impact_collision *c, const wide xi[3])
     return sum;
 }
 
-/* With xi = (-mu e, 1) for sliding along e, Z - mu R = xi' M xi > 0: in no slip does u_z - mu |u_t| fall. So a jam brakes, and u_z > 0 by
- * p = (|u_z| + mu |u_t|) / k at the latest, k the least of xi' M xi; in a plane, where nothing can turn aside, it runs into u_t = 0. */
+/* With xi = (-mu e, 1) for sliding along e, Z - mu R = xi' M xi > 0: in no slip does u_z - mu |u_t| fall. So a jam
+ * brakes, and u_z > 0 by p = (|u_z| + mu |u_t|) / k at the latest, k the least of xi' M xi; in a plane, where nothing
+ * can turn aside, it runs into u_t = 0. */
 static void fact_3_a_jam_runs_into_stick_and_compression_ends(void **state)
 {
     (void)state;
@@ -286,8 +287,9 @@ static void fact_3_a_jam_runs_into_stick_and_compression_ends(void **state)
     assert_true(jams > 300 && planar_jams > 50);
 }
 
-/* Theta turns in the sense of T to at most the next root of T; and u_z rises and falls as Z has it, so that it turns at the two angles
- * of Z = 0 alone. What goes beyond the root has stopped, and slides on along the one direction of a restart. */
+/* Theta turns in the sense of T to at most the next root of T; and u_z rises and falls as Z has it, so that it turns at
+ * the two angles of Z = 0 alone. What goes beyond the root has stopped, and slides on along the one direction of a
+ * restart. */
 static void fact_4_theta_is_monotone_and_u_z_turns_at_most_twice(void **state)
 {
     (void)state;
@@ -335,8 +337,8 @@ static void fact_4_theta_is_monotone_and_u_z_turns_at_most_twice(void **state)
     assert_true(slips > 3000 && turning[1] > 300 && turning[2] > 5);
 }
 
-/* Four iff |c|^2/3 + |d|^2/3 < (mu |a - b|)^2/3, else two: of random bodies, and a hair inside and outside of the astroid, near
- * its cusps too, where three directions are close. Half of them attract. */
+/* Four iff |c|^2/3 + |d|^2/3 < (mu |a - b|)^2/3, else two: of random bodies, and a hair inside and outside of the
+ * astroid, near its cusps too, where three directions are close. Half of them attract. */
 static void fact_5_four_invariant_directions_or_two(void **state)
 {
     (void)state;
@@ -375,7 +377,8 @@ static void fact_5_four_invariant_directions_or_two(void **state)
 
 typedef long double complex complex_wide;
 
-/* The roots z = e^(i theta) of T: h z^4 + (i d - c) z^3 + (c + i d) z - h, h = mu (a - b) / 2, all at once (Durand & Kerner). */
+/* The roots z = e^(i theta) of T: h z^4 + (i d - c) z^3 + (c + i d) z - h, h = mu (a - b) / 2, all at once (Durand &
+ * Kerner). */
 static complex_wide quartic(const impact_flow *f, complex_wide z)
 {
     const wide h = (wide)f->friction * ((wide)f->a - f->b) / 2;
@@ -438,8 +441,8 @@ static wide impulse_between(const impact_flow *f, const complex_wide theta[4], c
     return (to - from) * sum;
 }
 
-/* s = s0 prod |sin((theta - theta_i) / 2) / sin((theta0 - theta_i) / 2)|^gamma_i, sum gamma_i = -2, p = int s / T; against the library's
- * own points of a slip. Its theta is a double, by which s may be off by R / T and p by s / T. */
+/* s = s0 prod |sin((theta - theta_i) / 2) / sin((theta0 - theta_i) / 2)|^gamma_i, sum gamma_i = -2, p = int s / T;
+ * against the library's own points of a slip. Its theta is a double, by which s may be off by R / T and p by s / T. */
 static void fact_6_the_closed_hodograph(void **state)
 {
     (void)state;
@@ -517,8 +520,8 @@ static void fact_7_poisson_and_stronge_never_gain(void **state)
     assert_true(newton > 100);
 }
 
-/* Kane's: thin, at 55 degrees, eps = 1, mu = 0.5, v = (-1, 0, -1); its end slides, stops and slides back. M_xx = 1 + 3 sin^2,
- * M_zz = 1 + 3 cos^2, M_xz = 3 sin cos per unit of mass, and each piece is straight. */
+/* Kane's: thin, at 55 degrees, eps = 1, mu = 0.5, v = (-1, 0, -1); its end slides, stops and slides back. M_xx = 1 + 3
+ * sin^2, M_zz = 1 + 3 cos^2, M_xz = 3 sin cos per unit of mass, and each piece is straight. */
 static void fact_7_the_thin_rod_gains_by_newton(void **state)
 {
     (void)state;

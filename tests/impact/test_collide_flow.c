@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The sliding flow as data: the elementary case, directions on the axes, what is refused. More of it: test_collide_facts.c.
+ * The sliding flow as data: the elementary case, directions on the axes, what is refused. More of it:
+ * test_collide_facts.c.
  */
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Turning slip with a = b in closed form: against the series over random M, on paper, and where a and b are equal but for rounding.
+ * Turning slip with a = b in closed form: against the series over random M, on paper, and where a and b are equal but
+ * for rounding.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -94,8 +95,8 @@ static double least_speed(const whirl *w)
     return (double)(w->X * expl(w->alpha * turn) * (1 + w->alpha / w->beta));
 }
 
-/* Sliding starts in any direction, along M_tz and against it too but for very little; friction from hardly any to much; alpha of either
- * sign and nearly 0; every law. */
+/* Sliding starts in any direction, along M_tz and against it too but for very little; friction from hardly any to much;
+ * alpha of either sign and nearly 0; every law. */
 static void as_the_series(void **state)
 {
     (void)state;
@@ -137,8 +138,9 @@ static void as_the_series(void **state)
     assert_true(sticks > 1000 && slips > 1000 && jams > 1000 && again > 0);
 }
 
-/* mu a = g: alpha = 0, and s = X + Y e^(-2 g tau): sliding across M_tz at first neither stops nor grows without end. With X = Y = 1/2,
- * q = 1 - e^(-2 g tau), mu = 1/2, g = 1/4: uz = -1 + (7/16) tau + (9/8) q and s = 1 - q / 2, u_y = sqrt(1 - q). */
+/* mu a = g: alpha = 0, and s = X + Y e^(-2 g tau): sliding across M_tz at first neither stops nor grows without end.
+ * With X = Y = 1/2, q = 1 - e^(-2 g tau), mu = 1/2, g = 1/4: uz = -1 + (7/16) tau + (9/8) q and s = 1 - q / 2, u_y =
+ * sqrt(1 - q). */
 static void neither_growing_nor_stopping(void **state)
 {
     (void)state;
@@ -160,7 +162,8 @@ static void neither_growing_nor_stopping(void **state)
     assert_int_equal(o.phases[0], IMPACT_SLIP_C);
 }
 
-/* Equal to the last bit or but for rounding: both roads answer alike, and which is taken does not show in the answer. */
+/* Equal to the last bit or but for rounding: both roads answer alike, and which is taken does not show in
+ * the answer. */
 static void equal_but_for_rounding(void **state)
 {
     (void)state;

@@ -21,7 +21,8 @@ static qvec3 turned(quat q, qvec3 v)
                    2 * (x * z - w * y) * v.x + 2 * (y * z + w * x) * v.y + (w * w - x * x - y * y + z * z) * v.z};
 }
 
-/* A rod along its z, struck 2^-30 off its axis: the offset in the world is exact, and so must the small components be. */
+/* A rod along its z, struck 2^-30 off its axis: the offset in the world is exact, and so must the small
+ * components be. */
 static void slim_offset_is_exact(void **state)
 {
     (void)state;

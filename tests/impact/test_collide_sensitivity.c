@@ -13,8 +13,8 @@
 
 static const impact_collider floor_body = {.mass = INFINITY, .orientation = {1, 0, 0, 0}};
 
-/* A ball of unit mass falls straight down: v = eps u. Against the changes of u and of eps the answer moves by 0 or by 2; n at unit
- * length does not follow a change along itself. */
+/* A ball of unit mass falls straight down: v = eps u. Against the changes of u and of eps the answer moves by 0 or by
+ * 2; n at unit length does not follow a change along itself. */
 static void a_ball_on_paper(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Turning slip: against the closed hodograph in 128 bits (tests/data/collide_oracle.csv), against CVODE, against other orders,
- * and cone and works over random impacts of every class.
+ * Turning slip: against the closed hodograph in 128 bits (tests/data/collide_oracle.csv), against CVODE, against other
+ * orders, and cone and works over random impacts of every class.
  */
 #include <setjmp.h>
 #include <stdarg.h>

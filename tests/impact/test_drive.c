@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Static bodies whose surface moves: closed forms, Galileo's twin of a belt, a heavy body's of a drum; the drive's work; what is refused.
+ * Static bodies whose surface moves: closed forms, Galileo's twin of a belt, a heavy body's of a drum; the drive's
+ * work; what is refused.
  */
 #include <stdio.h>
 #include "held_bodies.h"
@@ -26,8 +27,8 @@ static qvec3 turned_about(qvec3 axis, double angle, qvec3 v)
 
 /* ---- turntable ---- */
 
-/* A ball of moments k m r^2 that rolls on z = 0, which turns at `spin` about the origin, and leans so that g_t is the gravity along it:
- * v' = k/(1 + k) spin z x v + g_t/(1 + k), in the table's plane. */
+/* A ball of moments k m r^2 that rolls on z = 0, which turns at `spin` about the origin, and leans so that g_t is the
+ * gravity along it: v' = k/(1 + k) spin z x v + g_t/(1 + k), in the table's plane. */
 static void check_turntable(double k, double spin, qvec3 v0, double lean, double turns, double tolerance)
 {
     const double rate = k / (1 + k) * spin, pull = gravity * sin(lean) / (1 + k);
@@ -81,8 +82,8 @@ static void on_a_table_that_leans_it_drifts_across(void **state)
 
 /* ---- belt ---- */
 
-/* Set down on a belt without spin it slides with a = mu g for 2 V/(7 mu g), and rolls at 2/7 V from then on; the drive gives
- * 2/7 m V^2, of which friction takes half. */
+/* Set down on a belt without spin it slides with a = mu g for 2 V/(7 mu g), and rolls at 2/7 V from then on; the drive
+ * gives 2/7 m V^2, of which friction takes half. */
 static void a_ball_on_a_belt_rolls_at_two_sevenths(void **state)
 {
     (void)state;
@@ -177,8 +178,9 @@ static void a_belt_is_a_floor_seen_from_a_train(void **state)
     }
 }
 
-/* Carried against a wall it is spun up where it is: with N the belt's pressure, the wall's friction, of muw times mub N, holds it down,
- * N = m g/(1 - muw mub), and (2/5) m r w' = mub N (1 - muw) until the rim goes with the belt. From then on nothing acts. */
+/* Carried against a wall it is spun up where it is: with N the belt's pressure, the wall's friction, of muw times mub
+ * N, holds it down, N = m g/(1 - muw mub), and (2/5) m r w' = mub N (1 - muw) until the rim goes with the belt. From
+ * then on nothing acts. */
 static void between_belt_and_wall_it_spins_in_its_place(void **state)
 {
     (void)state;
@@ -213,8 +215,8 @@ static void between_belt_and_wall_it_spins_in_its_place(void **state)
     }
 }
 
-/* In a groove of two belts that go along it, m v = P, (2/5) m r^2 w = P r/sqrt 2, v + w r/sqrt 2 = V: at 4/9 V. The impacts that clamp
- * it go round. */
+/* In a groove of two belts that go along it, m v = P, (2/5) m r^2 w = P r/sqrt 2, v + w r/sqrt 2 = V: at 4/9 V. The
+ * impacts that clamp it go round. */
 static void in_a_groove_of_belts_it_rolls_at_four_ninths(void **state)
 {
     (void)state;
@@ -236,7 +238,8 @@ static void in_a_groove_of_belts_it_rolls_at_four_ninths(void **state)
     impact_scene_destroy(scene);
 }
 
-/* What goes round in one instant is answered together: a ball that just fits between two belts and is thrown against one. */
+/* What goes round in one instant is answered together: a ball that just fits between two belts and is thrown against
+ * one. */
 static void together_drives_do_work_too(void **state)
 {
     (void)state;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Flight in closed form against the same in long double, by another formula; when a parabola falls to zero, against its roots.
+ * Flight in closed form against the same in long double, by another formula; when a parabola falls to zero, against its
+ * roots.
  */
 #include <impact/flight.h>
 #include <quat/rotation.h>

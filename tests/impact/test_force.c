@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Forces on bodies that meet nothing: motions with closed forms, edges of reach, potentials as integrals of their forces, and the
- * account of energy.
+ * Forces on bodies that meet nothing: motions with closed forms, edges of reach, potentials as integrals of their
+ * forces, and the account of energy.
  */
 #include "scene_internal.h"
 #include "contact_random.h"
@@ -192,8 +192,8 @@ static long double integral_of_force(double k, double power, double from, double
     return sum;
 }
 
-/* Over random powers, with 1 and what is close to it, reaching far or not: U(b) - U(a) is the integral of the pull from a to b, and U is zero
- * at the reach; the pull is as its formula says, on either body. */
+/* Over random powers, with 1 and what is close to it, reaching far or not: U(b) - U(a) is the integral of the pull from
+ * a to b, and U is zero at the reach; the pull is as its formula says, on either body. */
 static void attractions_potential_is_the_integral_of_its_force(void **state)
 {
     (void)state;
@@ -254,7 +254,8 @@ static void an_ellipse_closes(void **state)
     }
 }
 
-/* Two bodies let go within reach of a constant pull pass by each other's place, leave the reach, and drift on at the speed they have there. */
+/* Two bodies let go within reach of a constant pull pass by each other's place, leave the reach, and drift on at the
+ * speed they have there. */
 static void attraction_ends_at_its_reach(void **state)
 {
     (void)state;

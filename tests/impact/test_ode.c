@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The integrator's thin face against solutions with closed forms, Robertson's problem, and everything that can be refused.
+ * The integrator's thin face against solutions with closed forms, Robertson's problem, and everything that can be
+ * refused.
  */
 #include <string.h>
 #include <impact/ode.h>
@@ -241,7 +242,8 @@ static void no_way_to_go_is_no_failure(void **state)
     impact_ode_destroy(ode);
 }
 
-/* ---- Robertson's kinetics (1966), stiff: reference values of the Test Set for IVP Solvers (Mazzia and Magherini 2008), t = 1e11 ---- */
+/* ---- Robertson's kinetics (1966), stiff: reference values of the Test Set for IVP Solvers (Mazzia and Magherini
+ * 2008), t = 1e11 ---- */
 
 static int robertson(double t, const double *y, double *rate, void *context)
 {

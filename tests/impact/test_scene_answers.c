@@ -84,7 +84,8 @@ static void bowling_ball(void **state)
     }
 }
 
-/* On an incline of angle a, a ball rolls at 5/7 g sin a when friction allows (mu > 2/7 tan a), and slides at g (sin a - mu cos a) else. */
+/* On an incline of angle a, a ball rolls at 5/7 g sin a when friction allows (mu > 2/7 tan a), and slides at g (sin a -
+ * mu cos a) else. */
 static void incline(void **state)
 {
     (void)state;

@@ -6,7 +6,8 @@
 
 /* ---- shapes aside ---- */
 
-/* A sphere about a point off its centre of mass, thrown: the sphere's centre goes round at a steady rate and down a parabola. */
+/* A sphere about a point off its centre of mass, thrown: the sphere's centre goes round at a steady rate and down a
+ * parabola. */
 static void a_loaded_ball_lands_when_its_surface_does(void **state)
 {
     (void)state;
@@ -115,8 +116,8 @@ static scene_log run_toy(const impact_body_def *toy, double duration, double rat
 
 /* ---- rattleback ---- */
 
-/* Kane and Levinson's (1982): an ellipsoid, its centre of mass 1 cm below its centre, its principal axes turned from the ellipsoid's.
- * hand = -1: its mirror image. */
+/* Kane and Levinson's (1982): an ellipsoid, its centre of mass 1 cm below its centre, its principal axes turned from
+ * the ellipsoid's. hand = -1: its mirror image. */
 static impact_body_def rattleback(double hand, double spin)
 {
     impact_body_def body = impact_default_body_def();
@@ -135,8 +136,8 @@ static impact_body_def rattleback(double hand, double spin)
     return body;
 }
 
-/* Spun one way it begins to rattle, stops, and turns back to its full spin, as nothing is lost; spun the other way it goes on. Its mirror
- * image does the mirror image. */
+/* Spun one way it begins to rattle, stops, and turns back to its full spin, as nothing is lost; spun the other way it
+ * goes on. Its mirror image does the mirror image. */
 static void a_rattleback_turns_back(void **state)
 {
     (void)state;
@@ -157,8 +158,8 @@ static void a_rattleback_turns_back(void **state)
 
 /* ---- tippe top ---- */
 
-/* A sphere of radius R whose centre of mass lies 0.3 R below its centre. With moments A across and C along its axis it inverts when
- * 0.7 < A/C < 1.3 and it spins fast enough; friction turns it over, sliding. */
+/* A sphere of radius R whose centre of mass lies 0.3 R below its centre. With moments A across and C along its axis it
+ * inverts when 0.7 < A/C < 1.3 and it spins fast enough; friction turns it over, sliding. */
 static void a_tippe_top_inverts(void **state)
 {
     (void)state;
@@ -194,9 +195,9 @@ static void a_tippe_top_inverts(void **state)
 
 /* ---- Euler's disk ---- */
 
-/* A disk that rolls round on its edge, leaning by the angle a, its centre at rest: it turns about the line from the centre to the contact,
- * w = W z + s e with w x r = 0, e its axis; its weight turns the angular momentum at the rate W: r x m g z = W z x L(w). Thin and flat,
- * W^2 = 4 g/(radius a). */
+/* A disk that rolls round on its edge, leaning by the angle a, its centre at rest: it turns about the line from the
+ * centre to the contact, w = W z + s e with w x r = 0, e its axis; its weight turns the angular momentum at the rate W:
+ * r x m g z = W z x L(w). Thin and flat, W^2 = 4 g/(radius a). */
 static double start_disk(impact_body_def *disk, double half_thickness, double angle)
 {
     const double edge = 0.0375;
@@ -236,7 +237,8 @@ static void a_disk_rolls_round_on_its_edge(void **state)
         }
         free_log(&log);
     }
-    /* the limit, of ever thinner and flatter disks; the edge's rounding, exponent 100, takes 0.5 % of the moment m radius^2/4 */
+    /* the limit, of ever thinner and flatter disks; the edge's rounding, exponent 100, takes 0.5 % of the moment m
+     * radius^2/4 */
     for (double angle = 0.1; angle > 1e-3; angle /= 4) {
         impact_body_def disk;
         const double edge = 0.0375, rate = start_disk(&disk, 1e-5 * angle * edge, angle);

@@ -109,8 +109,8 @@ static void exact_lock_is_said(void **state)
     assert_true(a[2] == 0 && a[1] == 0.5 * pi && a[0] == 0);
     assert_int_equal(quat_to_euler(quat_make(0.5, 0.5, 0.5, -0.5), QUAT_EULER_ZYX, a), QUAT_NOT_UNIQUE);
     assert_true(a[2] == 0 && off_by(quat_make(0.5, 0.5, 0.5, -0.5), "ZYX", a) < 2e-15);
-    /* the matrix there holds the sum or the difference only: entry (2,1) of R_x(a) R_y(+-90) R_z(c) is +-sin(a +- c), not
-     * the thesis' half of it and more */
+    /* the matrix there holds the sum or the difference only: entry (2,1) of R_x(a) R_y(+-90) R_z(c) is +-sin(a +- c),
+     * not the thesis' half of it and more */
     for (int side = -1; side <= 1; side += 2) {
         const double angles[3] = {0.3, side * 0.5 * pi, 0.9};
         quat q;

@@ -57,7 +57,8 @@ static void make_cap(int sign, double reach, cap *c)
 }
 
 /* Of a half sphere the best frames are the shortest rotations from its pole, which fill a cap of radius pi/4 of a great
- * sphere of S^3: totally geodesic, met by the circles of frames at right angles to its edge, area 2 pi (1 - cos pi/4). */
+ * sphere of S^3: totally geodesic, met by the circles of frames at right angles to its edge, area 2 pi (1 - cos pi/4).
+ */
 static void half_spheres(void **state)
 {
     (void)state;
@@ -242,7 +243,8 @@ static void transitions_wind_as_they_are_made(void **state)
 
 /* ---- what least area is ---- */
 
-/* It knows a surface by its normals alone: half of any ellipsoid has a half sphere's frames, whatever its least length. */
+/* It knows a surface by its normals alone: half of any ellipsoid has a half sphere's frames, whatever its
+ * least length. */
 static void half_ellipsoids(void **state)
 {
     (void)state;
@@ -277,8 +279,8 @@ static void half_ellipsoids(void **state)
 }
 
 /* Tori cut open into one patch: all have the same normals, hence the same least area, and more than the 2 pi that the
- * two coverings of the sphere have when S^3 is seen over S^2 (a sphere of radius 1/2). Along the circles where K = 0 frames
- * may slip past each other at no cost. */
+ * two coverings of the sphere have when S^3 is seen over S^2 (a sphere of radius 1/2). Along the circles where K = 0
+ * frames may slip past each other at no cost. */
 static void whole_tori(void **state)
 {
     (void)state;

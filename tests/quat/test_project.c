@@ -322,7 +322,8 @@ static void hopf(void **state)
     assert_true(quat_near(f, quat_make(0, sin(0.3), cos(0.3), 0), 2e-16));
     assert_true(fabs(quat_hopf_angle(f) - 0.3) < 2e-16);
     assert_true(quat_hopf(f).z == -1);
-    /* the fibres over z and -z are the great circles (w, z) and (x, y): two linked circles, images of a line and the unit circle */
+    /* the fibres over z and -z are the great circles (w, z) and (x, y): two linked circles, images of a line and the
+     * unit circle */
     quat_hopf_fibre(qvec3_make(0, 0, 1), 0.3, &f);
     assert_true(quat_near(f, quat_make(cos(0.3), 0, 0, sin(0.3)), 2e-16));
 }

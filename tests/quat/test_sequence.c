@@ -242,7 +242,8 @@ static void a_circle_of_the_hand_turns_the_ball(void **state)
     assert_true(qvec3_norm(quat_roll_loop(0)) == 0 && isfinite(quat_roll_loop(1e300).x));
 }
 
-/* The thesis' hand, sin f x - cos f y, goes counter-clockwise and the ball clockwise: the appendix's code, and its limit. */
+/* The thesis' hand, sin f x - cos f y, goes counter-clockwise and the ball clockwise: the appendix's code, and its
+ * limit. */
 static void the_ball_trick(void **state)
 {
     (void)state;
@@ -300,7 +301,8 @@ static void three_turns_and_two_mirrors(void **state)
         worse(&theorem, quat_norm(quat_add(product, q)));
         worse(&theorem, fabs(q.w - qvec3_dot(a, b)));
         worse(&mirrors, qvec3_norm(qvec3_sub(quat_rotate(product, v), quat_reflect(b, quat_reflect(a, v)))));
-        /* equation 9: every point of S^3 is (cos f/2, sin f/2 n) for one f in 0 ... 2 pi; f + 2 pi gives the opposite */
+        /* equation 9: every point of S^3 is (cos f/2, sin f/2 n) for one f in 0 ... 2 pi; f + 2 pi gives
+         * the opposite */
         const quat p = random_unit(&r);
         const double half = atan2(qvec3_norm(quat_vector(p)), p.w);
         qvec3 axis;

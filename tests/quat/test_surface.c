@@ -126,9 +126,9 @@ static void beside_the_pole(void **state)
     assert_bound("its error by the estimate", honest, 1);
 }
 
-/* What the thesis prints for K and H, and where it holds. With unit and perpendicular tangents along T1 and T2 a_x b_y -
- * a_y b_x is K and (a_y - b_x)/2 is H; with others the first is K sqrt(EG - F^2), and the second is nothing: it changes
- * with the frame's angle about N, and K and H do not. II/I gives -H. */
+/* What the thesis prints for K and H, and where it holds. With unit and perpendicular tangents along T1 and T2 a_x b_y
+ * - a_y b_x is K and (a_y - b_x)/2 is H; with others the first is K sqrt(EG - F^2), and the second is nothing: it
+ * changes with the frame's angle about N, and K and H do not. II/I gives -H. */
 static void what_the_thesis_prints_for_curvature(void **state)
 {
     (void)state;
