@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene as its own source files see it: scene_build.c makes it, scene_instant.c does what happens at one instant,
- * scene_advance.c goes from one to the next, scene.c runs it. Internal.
+ * The scene as its own source files see it: scene_build.c makes it, scene_instant.c does what happens at one instant
+ * (scene_strike.c: impacts; scene_hold.c: held contacts), scene_advance.c goes from one to the next, scene.c runs it.
+ * Internal.
  */
 #ifndef IMPACT_SCENE_INTERNAL_H
 #define IMPACT_SCENE_INTERNAL_H
