@@ -7,6 +7,7 @@
  *   stiff drag     a body falls through drag of this rate (1/s): terminal speed g/rate
  *   units          five bounces, with lengths and gravity times this
  *   mass ratio     two spheres collide centrally, restitution 1
+ *   heavy on light so much heavier, a ball falls on the side of another
  *   speed          a disc 0.1 mm thin against a thin wall, at this speed (m/s)
  *   far away       five bounces this far from the origin (m)
  *   spin           an ellipsoid tumbles at this rate (rad/s), and hits the floor
@@ -179,6 +180,21 @@ static void mass_ratio(double ratio)
     row("mass ratio", ratio, &t, fmax(fabs(end_of(&t, 0).velocity.x - one), off(end_of(&t, 1).velocity.x, two)));
 }
 
+/* The heavy one leans on the light one, both on the floor. */
+static void heavy_on_light(double ratio)
+{
+    trial t;
+    start(&t, 2);
+    add_floor(&t);
+    impact_body_def *light = add_ball(&t, 0.1, 0.3, 0.3), *heavy = add(&t, "heavy", 0.3, 0.3);
+    light->position = (qvec3){0.15, 0.02, 0.1};
+    impact_shape_sphere(0.1, &heavy->shape);
+    heavy->mass = ratio;
+    heavy->position = (qvec3){0, 0, 0.25};
+    run(&t);
+    row("heavy on light", ratio, &t, NAN);
+}
+
 static void speed(double v)
 {
     trial t;
@@ -290,6 +306,7 @@ int main(void)
     each(stiff_drag, 1, 100, 5);
     for (int k = -9; k <= 9; k += 3) drop("units", pow(10, k), pow(10, k), 0);
     each(mass_ratio, 1e-12, 1e4, 7);
+    each(heavy_on_light, 1, 1e4, 4);
     each(speed, 1, 100, 4);
     for (int k = 0; k <= 12; k += 3) drop("far away", pow(10, k), 1, pow(10, k));
     each(spin, 1, 100, 5);
