@@ -24,10 +24,10 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 #include "report_collide_tally.h"
 #include "measure.h"
+#include "options.h"
 #ifdef HAVE_QUADMATH
 #include "../tests/generators/collide_oracle.h"
 #endif
@@ -253,30 +253,6 @@ static void print_tables(const tally each[CASE_CLASSES], uint64_t seed)
 
 /* ---- the door ---- */
 
-/* The number after the option's name, or -1; the fallback where it is not given. */
-static long option(int argc, char **argv, const char *name, long fallback)
-{
-    for (int i = 1; i + 1 < argc; i += 2)
-        if (strcmp(argv[i], name) == 0) {
-            char *end;
-            const long value = strtol(argv[i + 1], &end, 10);
-            return *end == '\0' && value >= 0 ? value : -1;
-        }
-    return fallback;
-}
-
-static bool known(int argc, char **argv)
-{
-    static const char *const names[] = {"--impacts", "--seed", "--threads", "--cvode", "--oracle"};
-    if (argc % 2 == 0) return false;
-    for (int i = 1; i < argc; i += 2) {
-        bool found = false;
-        for (size_t k = 0; k < sizeof names / sizeof *names; k++) found = found || strcmp(argv[i], names[k]) == 0;
-        if (!found) return false;
-    }
-    return true;
-}
-
 /* About `wanted` of the impacts of all classes: every so many of a class, and no multiple of 3, since the laws come in
  * turn. */
 static long stride(long impacts, long wanted)
@@ -287,13 +263,17 @@ static long stride(long impacts, long wanted)
 
 int main(int argc, char **argv)
 {
+    static const char *const names[] = {"--impacts", "--seed", "--threads", "--cvode", "--oracle", NULL};
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    const long impacts = option(argc, argv, "--impacts", 1000000), seed = option(argc, argv, "--seed", 1);
-    const long threads = option(argc, argv, "--threads", cores < 1 ? 1 : cores < MOST_THREADS ? cores : MOST_THREADS);
-    const long cvode = option(argc, argv, "--cvode", impacts / 100),
-               oracle = option(argc, argv, "--oracle", impacts / 200);
-    if (!known(argc, argv) || impacts < CASE_CLASSES || seed < 0 || threads < 1 || threads > MOST_THREADS ||
-        cvode < 0 || oracle < 0) {
+    const long impacts = options_count(argc, argv, "--impacts", 1000000), seed = options_count(argc, argv, "--seed", 1);
+    const long threads = options_count(argc, argv, "--threads",
+                                       cores < 1              ? 1
+                                       : cores < MOST_THREADS ? cores
+                                                              : MOST_THREADS);
+    const long cvode = options_count(argc, argv, "--cvode", impacts / 100),
+               oracle = options_count(argc, argv, "--oracle", impacts / 200);
+    if (!options_known(argc, argv, names) || impacts < CASE_CLASSES || seed < 0 || threads < 1 ||
+        threads > MOST_THREADS || cvode < 0 || oracle < 0) {
         fprintf(stderr, "report_collide [--impacts N >= %d] [--seed S] [--threads 1 ... %d] [--cvode N] [--oracle N]\n",
                 CASE_CLASSES, MOST_THREADS);
         return 2;

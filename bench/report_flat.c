@@ -11,9 +11,9 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <impact/scene.h>
 #include "../tests/contact_random.h"
+#include "options.h"
 
 typedef struct tally {
     int rest, ended, too_long, refused;
@@ -99,19 +99,17 @@ static void report(const char *name, double exponent, const impact_shape *shape,
     fflush(stdout);
 }
 
-static double argument(int count, char **arguments, const char *name, double otherwise)
+int main(int argc, char **argv)
 {
-    for (int i = 1; i + 1 < count; i++)
-        if (strcmp(arguments[i], name) == 0) return strtod(arguments[i + 1], NULL);
-    return otherwise;
-}
-
-int main(int count, char **arguments)
-{
+    static const char *const names[] = {"--steps", "--exponent", "--seed", NULL};
+    if (!options_known(argc, argv, names)) {
+        fprintf(stderr, "report_flat [--steps N] [--exponent P] [--seed S]\n");
+        return 2;
+    }
     static const double exponents[] = {4, 10, 20, 50, 100}, tilts[] = {0, 1e-6, 1e-3, 0.1, NAN};
-    const long most = (long)fmax(argument(count, arguments, "--steps", 1e6), 1);
-    const double only = argument(count, arguments, "--exponent", NAN);
-    random_stream random = {(uint64_t)argument(count, arguments, "--seed", 1)};
+    const long most = (long)fmax(options_number(argc, argv, "--steps", 1e6), 1);
+    const double only = options_number(argc, argv, "--exponent", NAN);
+    random_stream random = {(uint64_t)options_number(argc, argv, "--seed", 1)};
     printf("shape,exponent,tilt,friction,rest,ended,long,refused,account,sunk,steps\n");
     for (int cylinder = 0; cylinder < 2; cylinder++)
         for (int k = cylinder ? 4 : 0; k < 5; k++)

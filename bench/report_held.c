@@ -15,6 +15,7 @@
 #include <string.h>
 #include <impact/scene.h>
 #include "../tests/contact_random.h"
+#include "options.h"
 
 enum { MOST_STEPS = 1000000, MIXED = 0, BARR = -1, MOST_RUNS = 10000 };
 
@@ -160,18 +161,16 @@ static void print(const char *name, bool rolls, tally *r)
     fflush(stdout);
 }
 
-static double argument(int count, char **arguments, const char *name, double otherwise)
+int main(int argc, char **argv)
 {
-    for (int i = 1; i + 1 < count; i++)
-        if (strcmp(arguments[i], name) == 0) return strtod(arguments[i + 1], NULL);
-    return otherwise;
-}
-
-int main(int count, char **arguments)
-{
-    const double only = argument(count, arguments, "--exponent", NAN);
-    const int runs = (int)fmin(fmax(argument(count, arguments, "--runs", 20), 1), MOST_RUNS);
-    const uint64_t seed = (uint64_t)argument(count, arguments, "--seed", 1);
+    static const char *const names[] = {"--exponent", "--runs", "--seed", NULL};
+    if (!options_known(argc, argv, names)) {
+        fprintf(stderr, "report_held [--exponent P] [--runs N] [--seed S]\n");
+        return 2;
+    }
+    const double only = options_number(argc, argv, "--exponent", NAN);
+    const int runs = (int)fmin(fmax(options_number(argc, argv, "--runs", 20), 1), MOST_RUNS);
+    const uint64_t seed = (uint64_t)options_number(argc, argv, "--seed", 1);
     static tally row;
     printf("exponent,mode,ended,error_median,error_worst,soft,refused,long,held,drift,steps,starts,message\n");
     for (size_t k = 0; k < sizeof exponents / sizeof *exponents; k++)
