@@ -156,7 +156,7 @@ static void a_belt_is_a_floor_seen_from_a_train(void **state)
         bodies[1].velocity = random_vector(&random, 0.01, 2);
         bodies[1].omega = random_vector(&random, 0.01, 10);
         impact_sample end[2];
-        long impacts[2];
+        long impacts[2], sticks[2];
         const double duration = k % 3 == 0 ? 3 : 0.9;
         for (int moves = 0; moves < 2; moves++) {
             bodies[0].velocity = moves ? V : (qvec3){0, 0, 0};
@@ -165,13 +165,16 @@ static void a_belt_is_a_floor_seen_from_a_train(void **state)
             impact_scene *scene = make_scene(&def);
             run(scene, duration, NULL);
             impact_scene_body(scene, 1, &end[moves]);
-            /* Not sticks: what sticks in its last bounce may slide for an instant more, by rounding. */
-            impacts[moves] = impact_scene_usage(scene).events[IMPACT_EVENT_IMPACT];
+            const impact_usage usage = impact_scene_usage(scene);
+            impacts[moves] = usage.events[IMPACT_EVENT_IMPACT];
+            /* What sticks in its last bounce may slide for an instant more, by rounding. */
+            sticks[moves] = usage.events[IMPACT_EVENT_STICK] - usage.events[IMPACT_EVENT_SLIP];
             assert_account_closes(scene, 1e-9);
             impact_scene_destroy(scene);
         }
         const double rough = k % 3 == 0 ? 1 : 100;
         assert_int_equal(impacts[0], impacts[1]);
+        assert_int_equal(sticks[0], sticks[1]);
         assert_near3(end[1].velocity, qvec3_add(end[0].velocity, V), 1e-9 * rough);
         assert_near3(end[1].omega, end[0].omega, 1e-9 * rough);
         assert_near3(end[1].position, qvec3_axpy(duration, V, end[0].position), 1e-9 * rough);
