@@ -132,6 +132,18 @@ static impact_status fail(const impact_collision *collision, impact_outcome *out
     return status;
 }
 
+static bool needs_cvode(const impact_collision *collision)
+{
+    const bool compliant = collision->tangential_compliance > 0 && collision->friction > 0;
+    return collision->solver == IMPACT_SOLVER_CVODE || collision->friction_law || compliant;
+}
+
+static bool may_be_closed(const impact_collision *collision)
+{
+    const bool asked = collision->solver == IMPACT_SOLVER_AUTO || collision->solver == IMPACT_SOLVER_CLOSED_FORM;
+    return asked && !needs_cvode(collision);
+}
+
 /* Solves what has a closed form: sliding that does not turn, or turns alike in all directions. */
 static bool closed_form(impact_course *course)
 {
@@ -153,16 +165,13 @@ static void turn_to_principal(const impact_ready *ready, impact_frame *frame, im
 static impact_status solve(const impact_collision *collision, const impact_ready *ready, impact_frame *frame,
                            impact_course *course, double speed, impact_outcome *outcome)
 {
-    const bool any = collision->solver == IMPACT_SOLVER_AUTO;
-    const bool compliant = collision->tangential_compliance > 0 && course->mu > 0;
-    const bool cvode = collision->solver == IMPACT_SOLVER_CVODE || collision->friction_law || compliant;
-    if (!cvode && (any || collision->solver == IMPACT_SOLVER_CLOSED_FORM) && closed_form(course)) {
+    if (may_be_closed(collision) && closed_form(course)) {
         outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
         return course->ended ? IMPACT_OK : IMPACT_EUNSETTLED;
     }
     if (collision->solver == IMPACT_SOLVER_CLOSED_FORM) return IMPACT_EARGUMENT;
     turn_to_principal(ready, frame, course);
-    if (cvode) {
+    if (needs_cvode(collision)) {
         outcome->solver = IMPACT_SOLVER_CVODE;
         return impact_cvode_solve(course, collision, speed);
     }
@@ -181,11 +190,15 @@ static void separate(const impact_collision *collision, const impact_ready *read
     outcome->normal_before = outcome->normal_after = approach;
 }
 
-static bool may_be_direct(const impact_collision *collision)
+static bool finite3(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
+
+/* An answer beyond double precision is none; only such speeds can lead to it. */
+static impact_status finish(const impact_collision *collision, double speed, impact_outcome *outcome)
 {
-    const bool closed = collision->solver == IMPACT_SOLVER_AUTO || collision->solver == IMPACT_SOLVER_CLOSED_FORM;
-    const bool compliant = collision->tangential_compliance > 0 && collision->friction > 0;
-    return closed && !compliant && !collision->friction_law;
+    if (speed < 1e200) return IMPACT_OK;
+    const bool finite = finite3(outcome->velocity[0]) && finite3(outcome->velocity[1]) && finite3(outcome->omega[0]) &&
+                        finite3(outcome->omega[1]);
+    return finite ? IMPACT_OK : fail(collision, outcome, IMPACT_EDOMAIN);
 }
 
 /* |t|, how fast the contact points slide; 0 where that is but rounding. */
@@ -203,13 +216,13 @@ impact_status impact_collide(const impact_collision *collision, impact_outcome *
     impact_ready_make(collision, &ready);
     const qvec3 n = impact_frame_normal(collision), u = impact_ready_velocity(&ready);
     const double approach = qvec3_dot(u, n), speed = -approach;
-    if (!isfinite(approach)) return fail(collision, outcome, IMPACT_EDOMAIN);
     /* At right angles to n however small it is beside u. */
     const qvec3 t = qvec3_cross(n, qvec3_cross(u, n));
+    if (!isfinite(approach) || !isfinite(t.x + t.y + t.z)) return fail(collision, outcome, IMPACT_EDOMAIN);
     const double s = sliding_speed(&ready, t);
-    if (approach < 0 && may_be_direct(collision) && impact_direct_solve(collision, &ready, n, t, s, speed, outcome)) {
+    if (approach < 0 && may_be_closed(collision) && impact_direct_solve(collision, &ready, n, t, s, speed, outcome)) {
         push(&ready, outcome->impulse, outcome);
-        return IMPACT_OK;
+        return finish(collision, speed + s, outcome);
     }
     impact_frame frame;
     impact_frame_make(n, s > 0 ? qvec3_scale(t, 1 / s) : impact_frame_across(n), &ready, &frame);
@@ -223,5 +236,5 @@ impact_status impact_collide(const impact_collision *collision, impact_outcome *
     status = solve(collision, &ready, &frame, &course, speed, outcome);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
     report(collision, &ready, &course, speed, outcome);
-    return IMPACT_OK;
+    return finish(collision, speed + s, outcome);
 }

@@ -98,7 +98,6 @@ void impact_ready_make(const impact_collision *collision, impact_ready *ready)
     const impact_collider *one = &collision->body[0], *two = &collision->body[1];
     const impact_pair mass = {one->mass, two->mass}, zero = {0, 0}, unit = {1, 1};
     const impact_mask moves = mass < INFINITY;
-    ready->moves = moves;
     ready->mass = impact_pair_where(moves, mass);
     ready->inverse_mass = 1 / mass;
     const impact_vectors j = impact_vectors_of(one->moments, two->moments);

@@ -16,8 +16,7 @@ typedef struct impact_ready {
     impact_vectors velocity, omega, arm; /* arm: contact point from the centre; world */
     impact_vectors offset;               /* the same, local axes */
     impact_vectors axis[3];              /* principal axes, world */
-    impact_mask moves;
-    bool round; /* both have three equal moments (or are static): orientations do not matter */
+    bool round;                          /* both have three equal moments (or are static): orientations do not matter */
 } impact_ready;
 
 /* In line, where fmax and fmin are calls; a NaN is not minded. */

@@ -28,15 +28,11 @@ static impact_collider collider(const impact_scene *scene, int body, qvec3 offse
 
 static const char *phases_in_words(const impact_outcome *outcome, char *words, size_t size)
 {
-    static const char *const names[] = {[IMPACT_SLIP_C] = "slip-c",
-                                        [IMPACT_STICK_C] = "stick-c",
-                                        [IMPACT_SLIP_R] = "slip-r",
-                                        [IMPACT_STICK_R] = "stick-r",
-                                        [IMPACT_REVERSAL] = "reversal"};
     size_t used = 0;
     words[0] = '\0';
     for (int i = 0; i < outcome->phase_count && used < size; i++)
-        used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "", names[outcome->phases[i]]);
+        used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "",
+                                 impact_phase_name((impact_phase)outcome->phases[i]));
     return words;
 }
 

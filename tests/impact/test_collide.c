@@ -377,9 +377,39 @@ static void nothing_is_allocated(void **state)
     impact_collide_workspace_destroy(workspace);
 }
 
+/* Near the end of double precision: an answer in finite numbers, or a refusal. */
+static void nothing_overflows_unsaid(void **state)
+{
+    (void)state;
+    uint64_t g = 5;
+    int refused = 0;
+    for (int i = 0; i < 4000; i++) {
+        impact_collision c = case_make(i % 2 ? CASE_PLAIN : CASE_SPHERE, 19, (uint64_t)i);
+        const double size = pow(10, 300 + 8.2 * case_random(&g));
+        for (int k = 0; k < 2; k++) {
+            const double most = DBL_MAX / (4 + qvec3_norm(c.body[k].velocity));
+            c.body[k].velocity = qvec3_scale(c.body[k].velocity, fmin(size, most));
+            c.body[k].omega = (qvec3){0, 0, 0};
+        }
+        impact_outcome o;
+        const impact_status status = impact_collide(&c, &o);
+        if (status < 0) {
+            refused++;
+            continue;
+        }
+        for (int k = 0; k < 2; k++) {
+            const qvec3 v = o.velocity[k], w = o.omega[k];
+            assert_true(isfinite(v.x) && isfinite(v.y) && isfinite(v.z));
+            assert_true(isfinite(w.x) && isfinite(w.y) && isfinite(w.z));
+        }
+    }
+    assert_true(refused > 0 && refused < 4000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_overflows_unsaid),
         cmocka_unit_test(sphere_slides),
         cmocka_unit_test(sphere_at_any_speed),
         cmocka_unit_test(what_sticks_is_at_rest),
