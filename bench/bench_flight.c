@@ -11,7 +11,7 @@
 #include <impact/ode.h>
 #include <impact/tumble.h>
 #include <quat/rotation.h>
-#include "../tests/contact_random.h"
+#include "../tests/kit/contact_random.h"
 #include "measure.h"
 #ifdef HAVE_QUADMATH
 #include "tumble_oracle.h"

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <impact/toi.h>
-#include "../tests/contact_random.h"
+#include "../tests/kit/contact_random.h"
 #include "peers_gap.h"
 #include "measure.h"
 

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <impact/scene.h>
-#include "../tests/contact_random.h"
+#include "../tests/kit/contact_random.h"
 #include "options.h"
 
 typedef struct tally {

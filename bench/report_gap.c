@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include "../tests/contact_random.h"
+#include "../tests/kit/contact_random.h"
 
 enum { BINS = 400, MIXTURE = RANDOM_FAMILIES, FAMILIES = RANDOM_FAMILIES + 1, SIGNS = 3 };
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <impact/scene.h>
-#include "../tests/contact_random.h"
+#include "../tests/kit/contact_random.h"
 #include "options.h"
 
 enum { MOST_STEPS = 1000000, MIXED = 0, BARR = -1, MOST_RUNS = 10000 };

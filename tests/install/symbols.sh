@@ -1,18 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# symbols.sh NAME SHARED STATIC: the shared library shows, and the archive defines, our prefixes only.
+# symbols.sh NAME SHARED STATIC: the shared library shows our public prefix only; the archive defines names of that and of
+# the internal prefix (impact_: imp_).
 set -euo pipefail
-prefix="^${1%%_*}_"
+prefix=${1%%_*}
 bad=0
-check() { # check FILE NM-FLAG...
-    local file=$1 names strangers
-    shift
+check() { # check FILE PREFIXES NM-FLAG...
+    local file=$1 prefixes=$2 names strangers
+    shift 2
     names=$(nm --extern-only --defined-only --format=posix "$@" "$file" | awk 'NF >= 2 && !/:$/ { print $1 }' | sort -u)
-    strangers=$(grep -vE "$prefix" <<<"$names" || true)
+    strangers=$(grep -vE "^($prefixes)_" <<<"$names" || true)
     echo "$file: $(wc -l <<<"$names") names"
     [ -n "$names" ] || { echo "  none at all"; bad=1; }
     [ -z "$strangers" ] || { echo "  not ours: ${strangers//$'\n'/ }"; bad=1; }
 }
-check "$2" --dynamic
-check "$3"
+check "$2" "$prefix" --dynamic
+check "$3" "$prefix|imp"
 exit "$bad"

@@ -8,7 +8,7 @@
 #include <quat/family.h>
 #include <quat/rotation.h>
 #include "handler.h"
-#include "near.h"
+#include "kit/near.h"
 
 static const double pi = 3.14159265358979324;
 

@@ -8,7 +8,7 @@
 #include <quat/curve.h>
 #include <quat/family.h>
 #include <quat/rotation.h>
-#include "near.h"
+#include "kit/near.h"
 
 static const double pi = 3.14159265358979324;
 static const qvec3 x_axis = {1, 0, 0};

@@ -6,7 +6,7 @@
 
 #include <quat/family.h>
 #include "handler.h"
-#include "near.h"
+#include "kit/near.h"
 
 static const double pi = 3.14159265358979324;
 

@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A contact that gives in the tangent too: Stronge's bilinear springs (Stronge 2000, chapter 5; Jia 2013 in three
+ * dimensions), by CVODE.
+ *
+ * Unit of stiffness: the normal spring while loading, so that the unit of time drops out of the answer. With delta' =
+ * -uz, normal force   F = delta while loading, F = F_c - (delta_c - delta) / eps^2 while unloading or loading again up
+ * to delta_c; sticking       f' = -k u_t, k = 1 / eta^2, as long as |f| <= mu F; sliding        f = -mu F (cos phi, sin
+ * phi), mu F phi' = k u_t . (-sin phi, cos phi), at the speed v = u_t . (cos phi, sin phi) - mu F' / k, as long as v >
+ * 0.
+ */
+#include "collide/collide_cvode.h"
+
+#include <stdlib.h>
+
+enum { DELTA, A, B, P, PX, PY, WORK, FRICTION, SIZE }; /* (A, B): f while sticking, phi in A while sliding */
+enum { ROOT_UZ, ROOT_OFF, ROOT_RELOAD, ROOT_GRIP, ROOTS };
+
+struct imp_compliant {
+    impact_ode *ode;
+    const imp_frame *frame;
+    double mu, eps2, k;
+    double u[3];             /* before the impact */
+    double delta_c, force_c; /* where unloading began */
+    bool loading, sliding;
+};
+
+static void velocity(const imp_compliant *c, const double *y, double *u)
+{
+    const imp_frame *m = c->frame;
+    u[0] = c->u[0] + (m->a * y[PX] + m->c * y[P]);
+    u[1] = c->u[1] + (m->b * y[PY] + m->d * y[P]);
+    u[2] = c->u[2] + (m->c * y[PX] + m->d * y[PY] + y[P]);
+}
+
+static double force(const imp_compliant *c, const double *y)
+{
+    return c->loading ? y[DELTA] : c->force_c - (c->delta_c - y[DELTA]) / c->eps2;
+}
+
+static double force_rate(const imp_compliant *c, double uz) { return c->loading ? -uz : -uz / c->eps2; }
+
+static void tangential(const imp_compliant *c, const double *y, double F, double *f)
+{
+    f[0] = c->sliding ? -c->mu * F * cos(y[A]) : y[A];
+    f[1] = c->sliding ? -c->mu * F * sin(y[A]) : y[B];
+}
+
+static double slide_speed(const imp_compliant *c, const double *y, const double *u)
+{
+    return u[0] * cos(y[A]) + u[1] * sin(y[A]) - c->mu * force_rate(c, u[2]) / c->k;
+}
+
+static int rates(double t, const double *y, double *rate, void *context)
+{
+    (void)t;
+    const imp_compliant *c = context;
+    double u[3], f[2];
+    velocity(c, y, u);
+    const double F = force(c, y);
+    tangential(c, y, F, f);
+    rate[DELTA] = -u[2];
+    rate[P] = F;
+    rate[PX] = f[0];
+    rate[PY] = f[1];
+    rate[WORK] = F * u[2];
+    rate[FRICTION] = f[0] * u[0] + f[1] * u[1];
+    if (c->sliding) {
+        /* Where the force is small phi follows u_t at once; beyond a rate of 1e6 how fast makes no difference. */
+        const double least = 1e-6 * c->k * hypot(u[0], u[1]) + 1e-12;
+        rate[A] = c->k * (u[1] * cos(y[A]) - u[0] * sin(y[A])) / fmax(c->mu * F, least);
+        rate[B] = 0;
+    } else {
+        rate[A] = -c->k * u[0];
+        rate[B] = -c->k * u[1];
+    }
+    return 0;
+}
+
+static int root_functions(double t, const double *y, double *value, void *context)
+{
+    (void)t;
+    const imp_compliant *c = context;
+    double u[3];
+    velocity(c, y, u);
+    const double F = force(c, y);
+    value[ROOT_UZ] = u[2];
+    value[ROOT_OFF] = c->loading ? 1 : F - 1e-8 * c->force_c;
+    value[ROOT_RELOAD] = c->loading ? -1 : y[DELTA] - c->delta_c;
+    value[ROOT_GRIP] = c->sliding ? slide_speed(c, y, u) : c->mu * c->mu * F * F - (y[A] * y[A] + y[B] * y[B]);
+    return 0;
+}
+
+static impact_status make(double tolerance, imp_compliant **out)
+{
+    imp_compliant *c = calloc(1, sizeof *c);
+    *out = NULL;
+    if (!c) return IMPACT_ENOMEM;
+    const impact_ode_def def = {.size = SIZE,
+                                .roots = ROOTS,
+                                .rhs = rates,
+                                .root_functions = root_functions,
+                                .context = c,
+                                .method = IMPACT_ODE_BDF,
+                                .relative_tolerance = tolerance,
+                                .absolute_tolerance = 0.1 * tolerance};
+    const impact_status status = impact_ode_create(&def, &c->ode);
+    if (status != IMPACT_OK) {
+        free(c);
+        return status;
+    }
+    *out = c;
+    return IMPACT_OK;
+}
+
+void imp_compliant_destroy(imp_compliant *c)
+{
+    if (!c) return;
+    impact_ode_destroy(c->ode);
+    free(c);
+}
+
+/* The first instant, in closed form: the springs are loaded in proportion to time. */
+static void begin(imp_compliant *c, const imp_course *course, double *y)
+{
+    const double t = 1e-7;
+    c->frame = course->frame;
+    c->mu = course->mu;
+    c->eps2 = course->eps * course->eps;
+    c->u[0] = course->ux;
+    c->u[1] = course->uy;
+    c->u[2] = course->uz;
+    c->loading = true;
+    c->sliding = c->k * course->s > c->mu;
+    c->delta_c = c->force_c = 0;
+    const double x = course->s > 0 ? course->ux / course->s : 1, z = course->s > 0 ? course->uy / course->s : 0;
+    const double pull = c->sliding ? c->mu : c->k * course->s;
+    for (int i = 0; i < SIZE; i++) y[i] = 0;
+    y[DELTA] = t;
+    y[A] = c->sliding ? atan2(z, x) : -pull * x * t;
+    y[B] = c->sliding ? 0 : -pull * z * t;
+    y[P] = t * t / 2;
+    y[PX] = -pull * x * y[P];
+    y[PY] = -pull * z * y[P];
+    y[WORK] = -y[P];
+    y[FRICTION] = -pull * course->s * y[P];
+}
+
+/* Takes what came since the last event into the course. */
+static void book(imp_course *course, const imp_compliant *c, const double *y, double *before)
+{
+    double u[3];
+    velocity(c, y, u);
+    const bool cp = course->compressing;
+    imp_course_phase(course,
+                     c->sliding ? (cp ? IMPACT_SLIP_C : IMPACT_SLIP_R) : (cp ? IMPACT_STICK_C : IMPACT_STICK_R));
+    imp_course_book(course, y[P] - before[P], y[WORK] - before[WORK], y[FRICTION] - before[FRICTION]);
+    course->px = y[PX];
+    course->py = y[PY];
+    course->ux = u[0];
+    course->uy = u[1];
+    course->s = hypot(u[0], u[1]);
+    imp_course_reach(course, u[2]);
+    for (int i = 0; i < SIZE; i++) before[i] = y[i];
+}
+
+/* Lets go of what little force is left: impulse F^2 / (2 |F'|), at the edge of the cone. */
+static void let_go(imp_course *course, imp_compliant *c, double *y, double *before)
+{
+    double u[3], f[2];
+    velocity(c, y, u);
+    const double F = fmax(force(c, y), 0), dp = u[2] > 0 ? F * F * c->eps2 / (2 * u[2]) : 0;
+    tangential(c, y, F, f);
+    y[P] += dp;
+    y[WORK] += u[2] * dp;
+    if (F > 0) {
+        y[PX] += f[0] / F * dp;
+        y[PY] += f[1] / F * dp;
+    }
+    book(course, c, y, before);
+    course->ended = true;
+}
+
+static void change_grip(imp_compliant *c, double *y)
+{
+    if (c->sliding) {
+        const double F = force(c, y), x = cos(y[A]), z = sin(y[A]);
+        y[A] = -c->mu * F * x;
+        y[B] = -c->mu * F * z;
+    } else {
+        y[A] = atan2(-y[B], -y[A]);
+        y[B] = 0;
+    }
+    c->sliding = !c->sliding;
+}
+
+static impact_status follow(imp_course *course, imp_compliant *c)
+{
+    double y[SIZE], before[SIZE] = {0}, t = 0;
+    begin(c, course, y);
+    for (int events = 0; events < 200; events++) {
+        int found[ROOTS];
+        bool any = false;
+        impact_status status = impact_ode_start(c->ode, t, y);
+        for (double stop = t + 10; status == IMPACT_OK && !any; stop += 10) {
+            status = impact_ode_advance(c->ode, stop, &t, y, found, &any);
+            if (stop > 1e7) return IMPACT_EUNSETTLED;
+        }
+        if (status != IMPACT_OK) return status;
+        book(course, c, y, before);
+        if (found[ROOT_OFF] < 0) {
+            let_go(course, c, y, before);
+            return IMPACT_OK;
+        }
+        if (found[ROOT_UZ] && course->compressing == (found[ROOT_UZ] > 0)) {
+            imp_course_turn(course);
+            if (c->eps2 == 0) {
+                course->ended = true;
+                return IMPACT_OK;
+            }
+            if (c->loading) {
+                c->force_c = y[DELTA];
+                c->delta_c = y[DELTA];
+                c->loading = false;
+            }
+        }
+        /* Past delta_c the virgin line goes on from where it was left. */
+        if (found[ROOT_RELOAD] > 0 && course->compressing) c->loading = true;
+        if (found[ROOT_GRIP] < 0) change_grip(c, y);
+    }
+    return IMPACT_EUNSETTLED;
+}
+
+impact_status imp_compliant_solve(imp_course *course, double compliance, double tolerance, imp_compliant **keep)
+{
+    if (!*keep) {
+        const impact_status status = make(tolerance, keep);
+        if (status != IMPACT_OK) return status;
+    }
+    (*keep)->k = 1 / compliance;
+    return follow(course, *keep);
+}

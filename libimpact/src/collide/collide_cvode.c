@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The phases of an impact by CVODE in (ln s, theta): d ln s / dtau = R, dtheta / dtau = T are bounded and independent
+ * of s where mu is constant, so the error control sees the last way to s = 0 as a straight line. Roots: uz = 0, Z = 0
+ * (so that no pair of roots of uz can hide in one step), the end of restitution, and s small enough to go on along a
+ * line.
+ */
+#include "collide/collide_cvode.h"
+
+#include <stdlib.h>
+
+enum { LOG_S, THETA, P, PX, PY, WORK, FRICTION, SIZE };
+enum { ROOT_UZ, ROOT_CLIMB, ROOT_END, ROOT_STOP, ROOTS };
+
+struct impact_collide_workspace {
+    impact_ode *ode;
+    imp_compliant *compliant; /* made when first needed */
+    double tolerance;
+    impact_ode_method method;
+    /* The impact at hand; the integrals in y count from the last start. */
+    const imp_course *course;
+    impact_friction_law *law;
+    void *law_context;
+    double speed, log_stop;
+    double climb_shift; /* keeps a zero of Z that was found from being found again */
+};
+
+static double friction_at(const impact_collide_workspace *ws, double s)
+{
+    return ws->law ? ws->law(s * ws->speed, ws->law_context) : ws->course->mu;
+}
+
+static double uz_of(const impact_collide_workspace *ws, const double *y)
+{
+    const imp_frame *frame = ws->course->frame;
+    return ws->course->uz + (frame->c * y[PX] + frame->d * y[PY] + y[P]);
+}
+
+static int rates(double tau, const double *y, double *rate, void *context)
+{
+    (void)tau;
+    const impact_collide_workspace *ws = context;
+    const double s = exp(y[LOG_S]), x = cos(y[THETA]), z = sin(y[THETA]), mu = friction_at(ws, s);
+    if (!(mu >= 0 && isfinite(mu))) return -1;
+    rate[LOG_S] = imp_course_sliding(ws->course->frame, mu, x, z).R;
+    rate[THETA] = imp_course_turning(ws->course->frame, mu, x, z);
+    rate[P] = s;
+    rate[PX] = -mu * s * x;
+    rate[PY] = -mu * s * z;
+    rate[WORK] = s * uz_of(ws, y);
+    rate[FRICTION] = -mu * s * s;
+    return 0;
+}
+
+static int root_functions(double tau, const double *y, double *value, void *context)
+{
+    (void)tau;
+    const impact_collide_workspace *ws = context;
+    const imp_course *course = ws->course;
+    const double mu = friction_at(ws, exp(y[LOG_S]));
+    value[ROOT_UZ] = uz_of(ws, y);
+    value[ROOT_CLIMB] = ws->climb_shift + imp_course_sliding(course->frame, mu, cos(y[THETA]), sin(y[THETA])).Z;
+    value[ROOT_STOP] = y[LOG_S] - ws->log_stop;
+    value[ROOT_END] = -1;
+    if (course->compressing) return 0;
+    switch (course->law) {
+    case IMPACT_POISSON: value[ROOT_END] = y[P] - imp_course_left_poisson(course); break;
+    case IMPACT_NEWTON: value[ROOT_END] = value[ROOT_UZ] - imp_course_target_newton(course); break;
+    case IMPACT_STRONGE: value[ROOT_END] = y[WORK] - imp_course_left_stronge(course); break;
+    }
+    return 0;
+}
+
+impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance,
+                                              impact_collide_workspace **workspace)
+{
+    *workspace = NULL;
+    if (!impact_has(IMPACT_PART_CVODE)) return IMPACT_EABSENT;
+    if (!(tolerance >= 1e-14 && tolerance <= 1e-2)) return IMPACT_EARGUMENT;
+    impact_collide_workspace *ws = calloc(1, sizeof *ws);
+    if (!ws) return IMPACT_ENOMEM;
+    ws->tolerance = tolerance;
+    ws->method = method;
+    const impact_ode_def def = {.size = SIZE,
+                                .roots = ROOTS,
+                                .rhs = rates,
+                                .root_functions = root_functions,
+                                .context = ws,
+                                .method = method,
+                                .relative_tolerance = tolerance,
+                                .absolute_tolerance = tolerance};
+    const impact_status status = impact_ode_create(&def, &ws->ode);
+    if (status != IMPACT_OK) {
+        free(ws);
+        return status;
+    }
+    *workspace = ws;
+    return IMPACT_OK;
+}
+
+impact_status imp_cvode_workspace_like(const impact_collide_workspace *pattern, impact_collide_workspace **workspace)
+{
+    if (!pattern) return impact_collide_workspace_create(IMPACT_ODE_ADAMS, 1e-12, workspace);
+    return impact_collide_workspace_create(pattern->method, pattern->tolerance, workspace);
+}
+
+void impact_collide_workspace_destroy(impact_collide_workspace *workspace)
+{
+    if (!workspace) return;
+    impact_ode_destroy(workspace->ode);
+    imp_compliant_destroy(workspace->compliant);
+    free(workspace);
+}
+
+impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace)
+{
+    return impact_ode_count(workspace->ode);
+}
+
+/* Takes what was integrated since the last start into the course. */
+static void take(imp_course *course, const impact_collide_workspace *ws, const double *y)
+{
+    const double uz = uz_of(ws, y);
+    imp_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    imp_course_book(course, y[P], y[WORK], y[FRICTION]);
+    course->px += y[PX];
+    course->py += y[PY];
+    imp_course_reach(course, uz);
+    course->s = exp(y[LOG_S]);
+    course->ux = course->s * cos(y[THETA]);
+    course->uy = course->s * sin(y[THETA]);
+}
+
+static bool over_at_once(const imp_course *course)
+{
+    if (course->compressing) return false;
+    switch (course->law) {
+    case IMPACT_POISSON: return imp_course_left_poisson(course) <= 0;
+    case IMPACT_NEWTON: return course->uz >= imp_course_target_newton(course);
+    case IMPACT_STRONGE: return imp_course_left_stronge(course) <= 0;
+    }
+    return false;
+}
+
+/* To the next root, or to where the direction no longer turns (a stiff straight line: *settled). */
+static impact_status to_root(const imp_course *course, impact_collide_workspace *ws, double *y, int *found,
+                             bool *settled)
+{
+    const imp_frame *frame = course->frame;
+    const double mu = friction_at(ws, course->s);
+    const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
+    y[LOG_S] = log(course->s);
+    y[THETA] = atan2(course->uy, course->ux);
+    for (int i = P; i < SIZE; i++) y[i] = 0;
+    *settled = false;
+    impact_status status = impact_ode_start(ws->ode, 0, y);
+    double tau = 0;
+    bool any = false;
+    for (double stop = 100 / (rate + course->s); status == IMPACT_OK && !any && !*settled; stop *= 4) {
+        if (stop > 1e30 / (rate + course->s)) return IMPACT_EUNSETTLED;
+        status = impact_ode_advance(ws->ode, stop, &tau, y, found, &any);
+        *settled = !any && !ws->law &&
+                   fabs(imp_course_turning(frame, mu, cos(y[THETA]), sin(y[THETA]))) <= ws->tolerance * rate;
+    }
+    return status;
+}
+
+/* The rest of a slip along a line, at the friction of its end. */
+static void straight(imp_course *course, impact_collide_workspace *ws)
+{
+    const double mu = friction_at(ws, 0);
+    const imp_line line = imp_course_sliding(course->frame, mu, course->ux / course->s, course->uy / course->s);
+    imp_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
+    if (!course->ended) course->s = 0;
+}
+
+/* One slip to its stop or to the end of the impact. */
+static impact_status slide(imp_course *course, impact_collide_workspace *ws)
+{
+    ws->climb_shift = 0;
+    while (!course->ended && course->s > 0) {
+        if (over_at_once(course)) {
+            course->ended = true;
+            return IMPACT_OK;
+        }
+        double y[SIZE];
+        int found[ROOTS];
+        bool settled;
+        const impact_status status = to_root(course, ws, y, found, &settled);
+        if (status != IMPACT_OK) return status;
+        take(course, ws, y);
+        if (settled || found[ROOT_STOP] < 0)
+            straight(course, ws);
+        else if (found[ROOT_END] > 0)
+            course->ended = true;
+        else if (found[ROOT_UZ] && course->compressing == (found[ROOT_UZ] > 0))
+            imp_course_turn(course);
+        if (found[ROOT_CLIMB]) ws->climb_shift = 1e-6 * found[ROOT_CLIMB];
+    }
+    return IMPACT_OK;
+}
+
+static impact_status follow(imp_course *course, impact_collide_workspace *ws)
+{
+    for (int slips = 0; slips < 16; slips++) {
+        if (course->s > 0) {
+            const impact_status status = slide(course, ws);
+            if (status != IMPACT_OK || course->ended) return status;
+        }
+        const double mu = friction_at(ws, 0);
+        if (!(mu >= 0 && isfinite(mu))) return IMPACT_EDOMAIN;
+        const imp_line line = imp_course_from_rest(course->frame, mu);
+        if (!line.stick && course->phase_count > 0) imp_course_phase(course, IMPACT_REVERSAL);
+        if (line.stick || !ws->law) {
+            course->mu = mu;
+            imp_course_line(course, &line, INFINITY);
+            return IMPACT_OK;
+        }
+        /* mu will change as the slip gathers speed: on by CVODE from a speed that is nothing. */
+        course->s = 1e3 * exp(ws->log_stop);
+        course->ux = -line.gx / mu * course->s;
+        course->uy = -line.gy / mu * course->s;
+    }
+    return IMPACT_EUNSETTLED;
+}
+
+impact_status imp_cvode_solve(imp_course *course, const impact_collision *collision, double speed)
+{
+    impact_collide_workspace *ws = collision->workspace;
+    if (!ws) {
+        const impact_status status = imp_cvode_workspace_like(NULL, &ws);
+        if (status != IMPACT_OK) return status;
+    }
+    ws->course = course;
+    ws->law = collision->friction_law;
+    ws->law_context = collision->friction_context;
+    ws->speed = speed;
+    ws->log_stop = log(1e-3 * ws->tolerance * (course->s > 0 ? fmin(course->s, 1) : 1));
+    impact_status status =
+        collision->tangential_compliance > 0
+            ? imp_compliant_solve(course, collision->tangential_compliance, ws->tolerance, &ws->compliant)
+            : follow(course, ws);
+    if (status == IMPACT_OK && !course->ended) status = IMPACT_EUNSETTLED;
+    ws->course = NULL;
+    if (!collision->workspace) impact_collide_workspace_destroy(ws);
+    return status;
+}

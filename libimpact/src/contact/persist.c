@@ -1,0 +1,417 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * With n the normal, u the relative velocity of the contact points and u' its rate along the moving contact:
+ *   held:    d2(gap)/dt2 = n . u' + n' . u = 0
+ *   rolling: u' = 0
+ *   sliding: tangential force = -friction pressure u_t/|u_t|
+ * and u' = bias + K (reactions), linear: see persist_system.
+ */
+#include "contact/persist_flat.h"
+#include "contact/persist_line.h"
+#include "contact/persist_spot.h"
+#include "contact/persist_system.h"
+#include "world/world_gap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The carried contact's place begins where the orientation puts it. */
+static void place_spot(imp_world *world, imp_pair *pair, const imp_state *states)
+{
+    const qvec3 n = quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1});
+    const imp_body *body = &world->bodies[pair->body1];
+    const qvec3 outward = quat_rotate_inverse(imp_shape_axes(body, &states[pair->body1]), qvec3_neg(n));
+    imp_spot_find(&body->shape, outward, pair->spot);
+    pair->carried = true;
+}
+
+impact_status imp_persist_reserve(imp_persist *persist, imp_world *world, const imp_state *states)
+{
+    int held = 0;
+    for (int p = 0; p < world->pair_count; p++) {
+        imp_pair *pair = &world->pairs[p];
+        held += imp_is_held(pair);
+        pair->flat = imp_flat_lies(world, pair, states);
+        pair->lined = imp_line_lies(world, pair, states);
+        if (!imp_is_held(pair))
+            pair->carried = false;
+        else if (!pair->carried && imp_spot_suits(world, pair))
+            place_spot(world, pair, states);
+    }
+    persist->count = held;
+    return imp_persist_make_room(persist, held, world->body_count);
+}
+
+/* ---- geometry ---- */
+
+/* Where an exponent is over 2 the surface is flat along its axis at 0: there the radius of curvature stands for its
+ * neighbourhood's. */
+static double off_zero(double component) { return copysign(fmax(fabs(component), 1e-9), component); }
+
+/* What a body's surface does at the contact: the Hessian of its support function there, in the world, whose eigenvalues
+ * are the radii of curvature, applied to a tangential vector. */
+static qvec3 curve(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v)
+{
+    if (body->shape.kind == IMPACT_SPHERE)
+        return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
+    const quat q = imp_shape_axes(body, state);
+    const qvec3 d = quat_rotate_inverse(q, outward);
+    const qmat3 h = impact_shape_support_hessian(&body->shape, (qvec3){off_zero(d.x), off_zero(d.y), off_zero(d.z)});
+    const qvec3 b = quat_rotate_inverse(q, v);
+    return quat_rotate(q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
+                                  h.m[1][0] * b.x + h.m[1][1] * b.y + h.m[1][2] * b.z,
+                                  h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
+}
+
+/* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each
+ * surface the point of outward normal m moves by r' = w x r + W (m' - w x m), W the support function's Hessian; that
+ * both points stay together gives (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n). A plane's normal stays (W2 is
+ * infinite). */
+static void contact_rates(const imp_world *world, imp_touch *touch, const imp_state *states, qvec3 *rate1, qvec3 *rate2)
+{
+    const imp_body *b1 = &world->bodies[touch->body1], *b2 = &world->bodies[touch->body2];
+    const imp_state *s1 = &states[touch->body1], *s2 = &states[touch->body2];
+    const qvec3 n = touch->normal, out1 = qvec3_neg(n);
+    const qvec3 w1 = imp_omega(b1, s1), turn1 = qvec3_cross(w1, n);
+    touch->normal_rate = *rate2 = (qvec3){0, 0, 0};
+    if (b2->shape.kind != IMPACT_PLANE) {
+        const qvec3 w2 = b2->is_static ? b2->spin : imp_omega(b2, s2), turn2 = qvec3_cross(w2, n);
+        const qvec3 t1 = imp_tangent(n), t2 = qvec3_cross(n, t1);
+        const qvec3 c1 = qvec3_add(curve(b1, s1, out1, t1), curve(b2, s2, n, t1));
+        const qvec3 c2 = qvec3_add(curve(b1, s1, out1, t2), curve(b2, s2, n, t2));
+        const qvec3 moves = qvec3_add(touch->slip, qvec3_add(curve(b1, s1, out1, turn1), curve(b2, s2, n, turn2)));
+        const double a = qvec3_dot(t1, c1), b = qvec3_dot(t1, c2), d = qvec3_dot(t2, c2), determinant = a * d - b * b;
+        const double x = qvec3_dot(t1, moves), y = qvec3_dot(t2, moves);
+        touch->normal_rate =
+            qvec3_axpy((d * x - b * y) / determinant, t1, qvec3_scale(t2, (a * y - b * x) / determinant));
+        *rate2 = qvec3_add(qvec3_cross(w2, touch->r2), curve(b2, s2, n, qvec3_sub(touch->normal_rate, turn2)));
+    }
+    *rate1 = qvec3_add(qvec3_cross(w1, touch->r1), curve(b1, s1, out1, qvec3_sub(turn1, touch->normal_rate)));
+}
+
+/* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the
+ * centre. */
+static qvec3 free_acceleration(const imp_body *body, const imp_state *state, const imp_load *load, qvec3 r,
+                               qvec3 r_rate)
+{
+    if (body->is_static) return body->driven ? qvec3_cross(body->spin, r_rate) : (qvec3){0, 0, 0};
+    const qvec3 omega = imp_omega(body, state);
+    const qvec3 torque = qvec3_sub(load->torque, qvec3_cross(omega, state->momentum));
+    const qvec3 alpha = imp_inverse_inertia(body, state->q, torque);
+    const qvec3 a = qvec3_scale(load->force, body->inverse_mass);
+    return qvec3_add(qvec3_add(a, qvec3_cross(alpha, r)), qvec3_cross(omega, r_rate));
+}
+
+/* Where nothing but the axis of a line is flat the orientation tells the spot as well as the spot itself: it is led
+ * back there. */
+static bool orientation_tells(const imp_pair *pair, const impact_shape *shape)
+{
+    const double p[3] = {shape->r, shape->s, shape->t};
+    for (int i = 0; i < 3; i++)
+        if (p[i] > 2 && !(pair->lined && pair->line == i)) return false;
+    return true;
+}
+
+/* A carried contact moves over body 1 as its spot does; the plane's normal stays. */
+static void carried_rates(const imp_world *world, imp_touch *touch, const imp_state *states, const imp_spot *spot,
+                          qvec3 *rate1)
+{
+    const imp_body *b1 = &world->bodies[touch->body1];
+    const imp_state *s1 = &states[touch->body1];
+    const quat q = imp_shape_axes(b1, s1);
+    const qvec3 omega = imp_omega(b1, s1);
+    qvec3 turn = qvec3_cross(spot->normal, quat_rotate_inverse(q, omega));
+    if (orientation_tells(&world->pairs[touch->pair], &b1->shape))
+        turn = qvec3_axpy(qvec3_norm(omega), qvec3_sub(quat_rotate_inverse(q, qvec3_neg(touch->normal)), spot->normal),
+                          turn);
+    touch->lined = imp_line_lies(world, &world->pairs[touch->pair], states);
+    if (touch->lined) turn = imp_line_turn(&world->pairs[touch->pair], turn);
+    const imp_spot_rate rate = imp_spot_move(&b1->shape, spot, turn);
+    memcpy(touch->spot_rate, rate.s, sizeof rate.s);
+    touch->creep = rate.creep;
+    *rate1 = qvec3_add(qvec3_cross(omega, touch->r1), quat_rotate(q, rate.point_rate));
+}
+
+/* The contact of a plane with the spot of body 1 that is carried along. */
+static impact_contact carried_contact(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                                      imp_spot *spot)
+{
+    const imp_body *b1 = &world->bodies[pair->body1];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    impact_contact contact = {.normal = quat_rotate(s2->q, (qvec3){0, 0, 1})};
+    *spot = imp_spot_at(&b1->shape, pair->spot);
+    contact.offset1 = qvec3_add(imp_shape_offset(b1, s1), quat_rotate(imp_shape_axes(b1, s1), spot->point));
+    contact.offset2 = qvec3_add(qvec3_sub(s1->x, s2->x), contact.offset1);
+    contact.gap = qvec3_dot(contact.normal, contact.offset2);
+    contact.offset2 = qvec3_axpy(-contact.gap, contact.normal, contact.offset2);
+    return contact;
+}
+
+imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, const imp_load *loads)
+{
+    imp_pair *pair = &world->pairs[p];
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const bool carried = imp_is_held(pair) && pair->carried;
+    if (carried && imp_flat_lies(world, pair, states)) return imp_flat_touch(world, p, states, loads);
+    impact_contact contact;
+    imp_spot spot;
+    if (carried)
+        contact = carried_contact(world, pair, states, &spot);
+    else
+        imp_world_gap(world, pair, states, &contact);
+    imp_touch touch = {.pair = p,
+                       .body1 = pair->body1,
+                       .body2 = pair->body2,
+                       .mode = pair->mode,
+                       .friction = pair->friction,
+                       .normal = contact.normal,
+                       .r1 = contact.offset1,
+                       .r2 = contact.offset2,
+                       .carried = carried,
+                       .still = imp_is_held(pair) && pair->still};
+    const qvec3 u = qvec3_sub(imp_point_velocity(b1, s1, touch.r1), imp_point_velocity(b2, s2, touch.r2));
+    touch.slip = qvec3_axpy(-qvec3_dot(u, touch.normal), touch.normal, u);
+    touch.speed = qvec3_norm(touch.slip);
+    touch.onset = pair->mode == IMP_SLIDE && pair->onset;
+    touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
+    qvec3 rate1, rate2 = {0, 0, 0};
+    if (carried)
+        carried_rates(world, &touch, states, &spot, &rate1);
+    else
+        contact_rates(world, &touch, states, &rate1, &rate2);
+    if (b2->driven) rate2 = qvec3_add(s1->v, rate1); /* its centre stands still */
+    touch.bias = qvec3_sub(free_acceleration(b1, s1, &loads[pair->body1], touch.r1, rate1),
+                           free_acceleration(b2, s2, &loads[pair->body2], touch.r2, rate2));
+    return touch;
+}
+
+void imp_persist_find_touches(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads)
+{
+    int c = 0;
+    for (int p = 0; p < world->pair_count; p++)
+        if (imp_is_held(&world->pairs[p])) persist->touches[c++] = imp_persist_touch(world, p, states, loads);
+}
+
+/* ---- reactions ---- */
+
+void imp_persist_add_reactions(const imp_persist *persist, imp_load *loads)
+{
+    for (int c = 0; c < persist->count; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        imp_load *l1 = &loads[touch->body1], *l2 = &loads[touch->body2];
+        if (touch->still) {
+            l1->force = l1->torque = l2->force = l2->torque = (qvec3){0, 0, 0};
+            continue;
+        }
+        l1->force = qvec3_add(l1->force, touch->force);
+        l1->torque = qvec3_add(l1->torque, qvec3_cross(touch->r1, touch->force));
+        l2->force = qvec3_sub(l2->force, touch->force);
+        l2->torque = qvec3_sub(l2->torque, qvec3_cross(touch->r2, touch->force));
+    }
+}
+
+double imp_persist_own_acceleration(const imp_persist *persist, const imp_world *world, const imp_state *states,
+                                    int pair)
+{
+    for (int c = 0; c < persist->count; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        if (touch->pair == pair)
+            return qvec3_dot(touch->normal, imp_system_response(world, states, touch, touch, touch->force));
+    }
+    return 0;
+}
+
+/* ---- constraints put back ---- */
+
+void imp_persist_close_gap(imp_world *world, imp_pair *pair, const impact_contact *contact, imp_state *states)
+{
+    const double w1 = world->bodies[pair->body1].inverse_mass, w2 = world->bodies[pair->body2].inverse_mass;
+    imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    s1->x = qvec3_axpy(-contact->gap * w1 / (w1 + w2), contact->normal, s1->x);
+    s2->x = qvec3_axpy(contact->gap * w2 / (w1 + w2), contact->normal, s2->x);
+}
+
+/* Turns body 1 so that the plane's normal stands where the carried contact is: what the integration's tolerance left
+ * between them. */
+static void align(const imp_world *world, const imp_pair *pair, imp_state *states, const imp_spot *spot)
+{
+    imp_state *s1 = &states[pair->body1];
+    const qvec3 down = quat_rotate(states[pair->body2].q, (qvec3){0, 0, -1});
+    const quat q = imp_shape_axes(&world->bodies[pair->body1], s1);
+    const qvec3 turn = qvec3_cross(quat_rotate(q, spot->normal), down);
+    quat_normalize(quat_mul(quat_from_rotation_vector(turn), s1->q), &s1->q);
+}
+
+static void close_gaps(imp_world *world, imp_state *states)
+{
+    for (int p = 0; p < world->pair_count; p++) {
+        imp_pair *pair = &world->pairs[p];
+        if (!imp_is_held(pair)) continue;
+        impact_contact contact;
+        imp_spot spot;
+        if (pair->flat) {
+            imp_flat_level(world, pair, states);
+            continue;
+        }
+        if (pair->carried) {
+            spot = imp_spot_at(&world->bodies[pair->body1].shape, pair->spot);
+            align(world, pair, states, &spot);
+            if (pair->lined) imp_line_level(world, pair, states);
+            contact = carried_contact(world, pair, states, &spot);
+        } else {
+            imp_world_gap(world, pair, states, &contact);
+        }
+        imp_persist_close_gap(world, pair, &contact, states);
+    }
+}
+
+void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads)
+{
+    if (persist->count == 0) return;
+    enum { SWEEPS = 3 }; /* contacts that share a body disturb each other by the square of their gaps */
+    for (int sweep = 0; sweep < (persist->count > 1 ? SWEEPS : 1); sweep++) close_gaps(world, states);
+    imp_persist_find_touches(persist, world, states, loads);
+    for (int c = 0; c < persist->count; c++) {
+        imp_touch *touch = &persist->touches[c];
+        touch->wanted = qvec3_neg(qvec3_axpy(imp_persist_approach(world, touch, states), touch->normal, touch->slip));
+    }
+    imp_system_solve(persist, world, states, false);
+    imp_system_apply(persist, world, states);
+}
+
+/* ---- modes ---- */
+
+/* Whether the touch's pressure is less than it may be: what nothing presses does not slide either, where that is no
+ * matter of choice. */
+static bool pulls(const imp_touch *touch, double scale)
+{
+    const bool slides = touch->mode == IMP_SLIDE && !touch->redundant;
+    return !touch->still && touch->pressure < (slides ? 1e-12 : -1e-12) * scale;
+}
+
+/* The contact that pulls hardest, or -1. */
+static int worst_pull(const imp_persist *persist, double scale)
+{
+    int worst = -1;
+    for (int c = 0; c < persist->count; c++)
+        if (pulls(&persist->touches[c], scale) &&
+            (worst < 0 || persist->touches[c].pressure < persist->touches[worst].pressure))
+            worst = c;
+    return worst;
+}
+
+/* The rolling contact whose friction is furthest out of its cone, or -1. */
+static int worst_grip(const imp_persist *persist, double scale)
+{
+    int worst = -1;
+    for (int c = 0; c < persist->count; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        if (!touch->still && touch->mode == IMP_ROLL && touch->margin < -1e-12 * scale &&
+            (worst < 0 || touch->margin < persist->touches[worst].margin))
+            worst = c;
+    }
+    return worst;
+}
+
+/* The contact whose slip was to begin, but which sticks now that others slide too, furthest within its cone; or -1.
+ * Each has one such chance: where no modes are consistent none is to be taken back for ever. */
+static int worst_onset(const imp_persist *persist, const imp_world *world)
+{
+    int worst = -1;
+    for (int c = 0; c < persist->count; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        if (touch->onset && !world->pairs[touch->pair].tried && touch->drive < 1 - 1e-9 &&
+            (worst < 0 || touch->drive < persist->touches[worst].drive))
+            worst = c;
+    }
+    return worst;
+}
+
+static bool all_slide(const imp_persist *persist)
+{
+    for (int c = 0; c < persist->count; c++)
+        if (persist->touches[c].onset && persist->touches[c].drive < 1 - 1e-9) return false;
+    return true;
+}
+
+qvec3 imp_against_friction(const imp_touch *touch)
+{
+    const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
+    const double size = qvec3_norm(friction);
+    return size > 0 ? qvec3_scale(friction, -1 / size) : imp_tangent(touch->normal);
+}
+
+static double force_scale(const imp_persist *persist)
+{
+    double scale = 0;
+    for (int c = 0; c < persist->count; c++) scale = fmax(scale, qvec3_norm(persist->touches[c].force));
+    return scale;
+}
+
+void imp_persist_begin_slide(imp_pair *pair, const imp_touch *touch)
+{
+    pair->mode = IMP_SLIDE;
+    pair->onset = pair->friction > 0;
+    pair->direction = imp_against_friction(touch);
+    pair->turned = false;
+}
+
+/* Sliding that has died out, here or because another contact's did, is rolling until its friction says otherwise. */
+static void stop_slow_slides(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads)
+{
+    imp_persist_find_touches(persist, world, states, loads);
+    for (int c = 0; c < persist->count; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        if (touch->mode == IMP_SLIDE && touch->friction > 0 && touch->speed <= world->slip_speed && !touch->onset)
+            world->pairs[touch->pair].mode = IMP_ROLL;
+    }
+}
+
+impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const imp_state *states,
+                                  const imp_load *loads)
+{
+    impact_status status = imp_persist_reserve(persist, world, states);
+    stop_slow_slides(persist, world, states, loads);
+    persist->lenient = false;
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].tried = false;
+    for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 6 * world->pair_count + 8; round++) {
+        imp_persist_solve(persist, world, states, loads);
+        const double scale = force_scale(persist);
+        const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale),
+                  stuck = worst_onset(persist, world);
+        if (pull >= 0 && !(persist->redundant && grip >= 0)) {
+            world->pairs[persist->touches[pull].pair].mode = IMP_OPEN;
+            status = imp_persist_reserve(persist, world, states);
+        } else if (grip >= 0) {
+            imp_persist_begin_slide(&world->pairs[persist->touches[grip].pair], &persist->touches[grip]);
+        } else if (stuck >= 0) {
+            imp_pair *pair = &world->pairs[persist->touches[stuck].pair];
+            pair->mode = IMP_ROLL;
+            pair->onset = false;
+            pair->tried = true;
+        } else {
+            if (!all_slide(persist)) status = imp_persist_try_modes(persist, world, states, loads);
+            persist->lenient = !all_slide(persist);
+            return status;
+        }
+    }
+    return persist->count == 0 ? status : IMPACT_EUNSETTLED;
+}
+
+double imp_persist_approach(const imp_world *world, const imp_touch *touch, const imp_state *states)
+{
+    const impact_contact contact = {.normal = touch->normal, .offset1 = touch->r1, .offset2 = touch->r2};
+    return imp_world_gap_rate(world, &world->pairs[touch->pair], states, &contact);
+}
+
+double imp_persist_drive_power(const imp_persist *persist, const imp_world *world)
+{
+    double power = 0;
+    for (int c = 0; c < persist->count && world->driven; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        if (world->bodies[touch->body2].driven)
+            power += qvec3_dot(touch->force, imp_surface_velocity(&world->bodies[touch->body2], touch->r2));
+    }
+    return power;
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * persist: contacts that are held after the bounces died out: their reactions while rolling or sliding, when a mode
+ * ends, and the constraints put back exactly. Strictly convex bodies on planes and on each other. Internal.
+ */
+#ifndef IMP_PERSIST_H
+#define IMP_PERSIST_H
+
+#include "world/field.h"
+
+/* One held contact at one instant. */
+typedef struct imp_touch {
+    int pair, body1, body2;
+    imp_mode mode;
+    double friction;
+    qvec3 normal;        /* from body 2 to body 1 */
+    qvec3 r1, r2;        /* contact point from each centre */
+    qvec3 normal_rate;   /* d(normal)/dt as the contact moves, 1/s */
+    bool carried;        /* the contact point's place on body 1 is integrated along (persist_spot) */
+    double spot_rate[3]; /* carried: its rate, 1/s */
+    double creep;        /* carried: how fast the contact moves over the surface, in semi-axes, 1/s */
+    bool flat;           /* the body lies on a face: r1 is the centre of pressure (persist_flat) */
+    double spare;        /* flat: above 0 while that stays on the face */
+    bool lined;          /* the body lies along a line (persist_line) */
+    qvec3 slip;          /* tangential velocity of body 1's contact point over body 2's, m/s */
+    double speed;        /* |slip| */
+    bool onset;          /* sliding from rest, too slow for a direction of its own */
+    bool still;          /* as its pair: the force is the pair's reaction */
+    qvec3 direction;     /* unit of slip; at the onset, of its acceleration */
+    qvec3 bias;          /* relative acceleration of the contact points without reactions, m/s^2 */
+    qvec3 wanted;        /* change of the relative acceleration (or velocity) that the reactions are to make */
+    /* solved for: */
+    double pressure; /* normal force, N */
+    qvec3 force;     /* on body 1, N */
+    double margin;   /* rolling: friction x pressure - |tangential force|, N */
+    double drive;    /* at the onset: friction needed to hold the contact over what there is; below 1 it sticks again */
+    bool turning;    /* at the onset: the direction is solved for too, linearised about what it is: */
+    double pull;     /* slip's acceleration over the friction, 1/kg */
+    double turn;     /* the angle from direction about the normal */
+    bool redundant;  /* its reaction is not unique */
+    qvec3 slip_rate; /* tangential relative acceleration of the contact points, m/s^2 */
+} imp_touch;
+
+/* What forces do to a body. */
+typedef struct imp_effect {
+    qvec3 linear, angular; /* m/s^2, 1/s^2 (of impulses: m/s, 1/s) */
+} imp_effect;
+
+typedef struct imp_persist {
+    int capacity; /* contacts there is room for */
+    int count;    /* held contacts now */
+    imp_touch *touches;
+    struct imp_unknown *unknowns; /* 3 capacity */
+    double *matrix, *right;       /* 2 (3 capacity)^2 and 6 capacity */
+    int *order;                   /* 6 capacity */
+    bool lenient; /* no modes were found in which all slip that begins goes on: directions are then not looked for anew
+                   */
+    bool redundant;      /* more contacts were solved for than the balance of forces can tell apart */
+    int *island;         /* capacity; touches of the same number share bodies */
+    int bodies;          /* bodies there is room for */
+    int *first;          /* per body: scratch */
+    imp_effect *effects; /* per body: of the reactions that were solved for */
+} imp_persist;
+
+/* Room for every pair of the world that is held now; the place of contact of those newly held that carry it. */
+impact_status imp_persist_reserve(imp_persist *persist, imp_world *world, const imp_state *states);
+/* Room for so many touches, among so many bodies. */
+impact_status imp_persist_make_room(imp_persist *persist, int touches_needed, int bodies_needed);
+void imp_persist_free(imp_persist *persist);
+
+/* Geometry of every held contact, and what its points do under the loads without reactions. */
+void imp_persist_find_touches(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads);
+
+/* Geometry and reactions of every held contact under the loads (persist_solve.c). */
+void imp_persist_solve(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads);
+
+/* Adds the reactions that were solved for to the loads of their bodies; what is still has no load left. */
+void imp_persist_add_reactions(const imp_persist *persist, imp_load *loads);
+
+/* The part of a held pair's d2(gap)/dt2 that its own reaction, as solved for, makes; 0 for a pair that is not held. */
+double imp_persist_own_acceleration(const imp_persist *persist, const imp_world *world, const imp_state *states,
+                                    int pair);
+
+/* The contact as it is, whether held or not; its bias without any reaction. */
+imp_touch imp_persist_touch(imp_world *world, int pair, const imp_state *states, const imp_load *loads);
+
+/* Lets the touch's pair slide from rest, against the friction as solved for. */
+void imp_persist_begin_slide(imp_pair *pair, const imp_touch *touch);
+
+/* Moves the pair's bodies along the normal so that the gap is zero. */
+void imp_persist_close_gap(imp_world *world, imp_pair *pair, const impact_contact *contact, imp_state *states);
+
+/* Puts positions and velocities back on the held contacts exactly. */
+void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads);
+
+/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and
+ * slide what must. Where reactions are not unique friction gives way first: what pulls is sure only once they are. */
+impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const imp_state *states,
+                                  const imp_load *loads);
+
+/* Unit vector against a touch's friction as solved for: the way it would slide if the friction gave way. */
+qvec3 imp_against_friction(const imp_touch *touch);
+
+/* Lets roll, until their friction says otherwise, the contacts whose slip was to begin and that others hold. */
+void imp_persist_stop_onsets(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads);
+
+/* Of few contacts without slip: rolling, sliding or open, whichever is consistent; otherwise as they were
+ * (persist_modes.c). */
+impact_status imp_persist_try_modes(imp_persist *persist, imp_world *world, const imp_state *states,
+                                    const imp_load *loads);
+
+/* Normal relative velocity at a touch, m/s; < 0: approaching. */
+double imp_persist_approach(const imp_world *world, const imp_touch *touch, const imp_state *states);
+
+/* What the drives give the world through the held contacts as they are solved for: their forces' power, W, or their
+ * impulses' work, J. */
+double imp_persist_drive_power(const imp_persist *persist, const imp_world *world);
+
+#endif

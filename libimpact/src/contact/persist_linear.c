@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * P A Q = L U, of rank r: with z = Q^-1 x, the first r of z follow from the others, which are free. The least z is one
+ * solution less its part along those of the homogeneous system, for which an orthonormal basis is kept.
+ */
+#include "contact/persist_linear.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double vanishing = 1e-12; /* a pivot, against the greatest element */
+
+static double *row_of(const imp_linear *system, int i) { return &system->matrix[i * system->n]; }
+
+static void swap_rows(imp_linear *system, int i, int j)
+{
+    if (i == j) return;
+    double *a = row_of(system, i), *b = row_of(system, j);
+    for (int k = 0; k < system->n; k++) {
+        const double swap = a[k];
+        a[k] = b[k], b[k] = swap;
+    }
+    const int swap = system->rows[i];
+    system->rows[i] = system->rows[j], system->rows[j] = swap;
+}
+
+static void swap_columns(imp_linear *system, int i, int j)
+{
+    if (i == j) return;
+    for (int k = 0; k < system->n; k++) {
+        double *row = row_of(system, k);
+        const double swap = row[i];
+        row[i] = row[j], row[j] = swap;
+    }
+    const int swap = system->columns[i];
+    system->columns[i] = system->columns[j], system->columns[j] = swap;
+}
+
+static void begin(imp_linear *system)
+{
+    system->rank = system->n;
+    for (int k = 0; k < system->n; k++) system->rows[k] = system->columns[k] = k;
+}
+
+static void eliminate(imp_linear *system, int k)
+{
+    const double *from = row_of(system, k);
+    for (int i = k + 1; i < system->n; i++) {
+        double *row = row_of(system, i);
+        if (row[k] == 0) continue;
+        row[k] /= from[k];
+        const double factor = row[k];
+        for (int j = k + 1; j < system->n; j++) row[j] -= factor * from[j];
+    }
+}
+
+/* With pivots from columns; false where one vanishes. */
+static bool reduce_regular(imp_linear *system, double least)
+{
+    const int n = system->n;
+    const double *a = system->matrix;
+    begin(system);
+    for (int k = 0; k < n; k++) {
+        int row = k;
+        for (int i = k + 1; i < n; i++)
+            if (fabs(a[i * n + k]) > fabs(a[row * n + k])) row = i;
+        if (!(fabs(a[row * n + k]) > least)) return false;
+        swap_rows(system, k, row);
+        eliminate(system, k);
+    }
+    return true;
+}
+
+/* With complete pivoting, as far as pivots do not vanish. */
+static void reduce_singular(imp_linear *system, double least)
+{
+    const int n = system->n;
+    const double *a = system->matrix;
+    begin(system);
+    for (int k = 0; k < n; k++) {
+        int row = k, column = k;
+        for (int i = k; i < n; i++)
+            for (int j = k; j < n; j++)
+                if (fabs(a[i * n + j]) > fabs(a[row * n + column])) row = i, column = j;
+        if (!(fabs(a[row * n + column]) > least)) {
+            system->rank = k;
+            return;
+        }
+        swap_rows(system, k, row);
+        swap_columns(system, k, column);
+        eliminate(system, k);
+    }
+}
+
+/* Solves the upper triangle of the first `rank` rows. */
+static void substitute_back(const imp_linear *system, double *z)
+{
+    for (int i = system->rank - 1; i >= 0; i--) {
+        const double *row = row_of(system, i);
+        for (int j = i + 1; j < system->rank; j++) z[i] -= row[j] * z[j];
+        z[i] /= row[i];
+    }
+}
+
+/* a less factor b. */
+static void subtract(double *a, double factor, const double *b, int n)
+{
+    for (int i = 0; i < n; i++) a[i] -= factor * b[i];
+}
+
+static double dot(const double *a, const double *b, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+static double *basis_of(const imp_linear *system, int k) { return &system->spare[(k - system->rank) * system->n]; }
+
+/* Of the homogeneous system: by Gram and Schmidt, twice, from those with a single one of the free unknowns. */
+static void find_basis(const imp_linear *system)
+{
+    const int n = system->n, rank = system->rank;
+    for (int k = rank; k < n; k++) {
+        double *own = basis_of(system, k);
+        for (int i = 0; i < n; i++) own[i] = i < rank ? -row_of(system, i)[k] : i == k;
+        substitute_back(system, own);
+        for (int twice = 0; twice < 2; twice++)
+            for (int l = rank; l < k; l++) subtract(own, dot(own, basis_of(system, l), n), basis_of(system, l), n);
+        const double size = sqrt(dot(own, own, n));
+        for (int i = 0; i < n; i++) own[i] /= size;
+    }
+}
+
+void imp_linear_factor(imp_linear *system)
+{
+    const size_t bytes = (size_t)system->n * (size_t)system->n * sizeof *system->matrix;
+    double most = 0;
+    for (int k = 0; k < system->n * system->n; k++) most = fmax(most, fabs(system->matrix[k]));
+    memcpy(system->spare, system->matrix, bytes);
+    if (reduce_regular(system, vanishing * most)) return;
+    memcpy(system->matrix, system->spare, bytes);
+    reduce_singular(system, vanishing * most);
+    find_basis(system);
+}
+
+void imp_linear_solve(const imp_linear *system, double *x)
+{
+    const int n = system->n, rank = system->rank;
+    double *z = system->scratch;
+    for (int i = 0; i < n; i++) z[i] = i < rank ? x[system->rows[i]] : 0;
+    for (int i = 0; i < rank; i++) z[i] -= dot(row_of(system, i), z, i);
+    substitute_back(system, z);
+    for (int k = rank; k < n; k++) subtract(z, dot(z, basis_of(system, k), n), basis_of(system, k), n);
+    for (int i = 0; i < n; i++) x[system->columns[i]] = z[i];
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * persist_linear: square linear systems, and where they leave something open, their solution of least norm. Internal.
+ */
+#ifndef IMP_PERSIST_LINEAR_H
+#define IMP_PERSIST_LINEAR_H
+
+#include <stdbool.h>
+
+/* A system of n equations, taken apart; the arrays are the caller's. */
+typedef struct imp_linear {
+    int n, rank;
+    double *matrix;      /* n^2: comes in by rows, and is spent */
+    double *spare;       /* n^2 of scratch */
+    double *scratch;     /* n of scratch */
+    int *rows, *columns; /* n each */
+} imp_linear;
+
+/* Takes the matrix apart by Gauss' elimination, with complete pivoting if pivots under 1e-12 of the greatest element
+ * show that the equations do not determine all unknowns. */
+void imp_linear_factor(imp_linear *system);
+
+/* x, in place of the right-hand side: of all that satisfy the equations that tell something, the one of least norm. */
+void imp_linear_solve(const imp_linear *system, double *x);
+
+#endif

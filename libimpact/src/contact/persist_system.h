@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * persist_system: the linear system behind the held contacts. Internal.
+ */
+#ifndef IMP_PERSIST_SYSTEM_H
+#define IMP_PERSIST_SYSTEM_H
+
+#include "contact/persist.h"
+
+/* An orthonormal tangent; the other is normal x it. */
+qvec3 imp_tangent(qvec3 normal);
+
+/* Change of touch a's relative acceleration (or velocity) for a force (or impulse) f on body 1 of touch b. */
+qvec3 imp_system_response(const imp_world *world, const imp_state *states, const imp_touch *a, const imp_touch *b,
+                          qvec3 f);
+
+/* Finds each touch's force (or impulse) and pressure, so that its relative acceleration (or velocity) changes by what
+ * is wanted: along the normal, and for a rolling contact across it too. with_friction: a sliding contact's pressure
+ * brings its friction along, and where its direction is solved for too, across that direction u' changes by pull x (the
+ * force across it). Where the reactions are not unique, those of the least sum of squares, each over the inertia at its
+ * contact: they follow the state as smoothly as it goes. What is still keeps its reaction, and no impulse. */
+void imp_system_solve(imp_persist *persist, const imp_world *world, const imp_state *states, bool with_friction);
+
+/* By how much all forces that were solved for change this touch's relative acceleration. */
+qvec3 imp_system_change(const imp_persist *persist, const imp_touch *touch);
+
+/* Adds to the states what all impulses that were solved for do. */
+void imp_system_apply(const imp_persist *persist, const imp_world *world, imp_state *states);
+
+#endif

@@ -1,0 +1,419 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The ways to the gap, cheapest first. A gap >= 0 that Newton settles is the gap: g has no other local maximum. A
+ * negative one is a local maximum; where it is deep, others are looked for.
+ */
+#include "gap/gap_chart.h"
+#include "gap/gap_solver.h"
+#include <string.h>
+
+/* Deeper than this part of the smallest semi-axis, or of the smallest radius of both surfaces together at the contact,
+ * an overlap may have several local answers. */
+static const double deep_part = 0.05;
+
+enum { SEED_STEPS = 4, MAX_PROOFS = 8 };
+
+typedef struct search {
+    const imp_gap_solids *pair;
+    imp_gap_bracket best; /* the highest local maximum so far */
+    impact_gap_path path;
+    bool found;
+    double thin;          /* smallest semi-axis */
+    bool sharp;           /* both bodies have edges or vertices: an overlap counts as deep if not proved otherwise */
+    double low, low_n[3]; /* the largest g met, and where */
+} search;
+
+/* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
+static const double sharp_exponent = 1.3;
+
+static bool is_sharp(const imp_form *form)
+{
+    return form->p[0] < sharp_exponent || form->p[1] < sharp_exponent || form->p[2] < sharp_exponent;
+}
+
+static double distance_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/* A radius up to depth such that the ball that touches the surface from inside at the witness point x (world) lies in
+ * the body: with f <= 1 the body and F its largest second derivative within two depths of x, f is at most
+ * 1 - |grad f| |z|^2/(2 r) + F |z|^2/2 at x + z of the ball of radius r. 0: none is known. */
+static double inner_radius(const imp_form *form, const double x[3], double depth)
+{
+    double slope = 0, bend = 0;
+    if (form->nested) return 0;
+    for (int i = 0; i < 3; i++) {
+        const double place =
+            fabs(form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2]);
+        const double p = form->p[i], axis = form->axis[i], near = (place - 2 * depth) / axis,
+                     far = (place + 2 * depth) / axis;
+        if (p < 2 && !(near > 0)) return 0;
+        const double first = p * pow(place / axis, p - 1) / axis;
+        slope += first * first;
+        bend = fmax(bend, p * (p - 1) * pow(p < 2 ? near : far, p - 2) / (axis * axis));
+    }
+    return sqrt(slope) >= bend * depth ? depth : sqrt(slope) / bend;
+}
+
+/* A witness point by an edge, where one coordinate is as good as 0 and its exponent under 2. */
+typedef struct edge {
+    int axis;
+    double along[3]; /* the edge's direction, world */
+    double facing;   /* cosine of the angle from the edge's plane of symmetry to the normal */
+} edge;
+
+static bool edge_at(const imp_form *form, const double x[3], const double n[3], double depth, edge *e)
+{
+    const double(*m)[3] = form->rotation;
+    int found = 0;
+    if (form->nested) return false;
+    for (int i = 0; i < 3; i++) {
+        const double place = fabs(m[0][i] * x[0] + m[1][i] * x[1] + m[2][i] * x[2]);
+        if (form->p[i] < 2 && place < 20 * depth) e->axis = i, found++;
+    }
+    if (found != 1) return false;
+    const double a[3] = {m[0][e->axis], m[1][e->axis], m[2][e->axis]};
+    for (int i = 0; i < 3; i++) e->along[i] = n[(i + 1) % 3] * a[(i + 2) % 3] - n[(i + 2) % 3] * a[(i + 1) % 3];
+    e->facing = distance_of(e->along);
+    for (int i = 0; i < 3; i++) e->along[i] /= e->facing;
+    return e->facing > 1e-2;
+}
+
+/* Whether the body holds the disc of that radius, touching at x from inside, of the directions along and
+ * -m = -g/(g.n), g the gradient without the edge's axis; m stretches it by up to 1/facing. As for inner_radius; the
+ * edge's own coordinate stands still. */
+static bool holds_disc(const imp_form *form, const edge *e, const double x[3], double radius)
+{
+    const double(*m)[3] = form->rotation;
+    double slope = 0, bend = 0;
+    for (int i = 0; i < 3; i++) {
+        if (i == e->axis) continue;
+        const double place = fabs(m[0][i] * x[0] + m[1][i] * x[1] + m[2][i] * x[2]), p = form->p[i],
+                     axis = form->axis[i], reach = 2 * radius / e->facing, near = (place - reach) / axis,
+                     far = (place + reach) / axis;
+        if (p < 2 && !(near > 0)) return false;
+        const double first = p * pow(place / axis, p - 1) / axis;
+        slope += first * first;
+        bend = fmax(bend, p * (p - 1) * pow(p < 2 ? near : far, p - 2) / (axis * axis));
+    }
+    return sqrt(slope) * e->facing >= bend * radius;
+}
+
+/* Two edges across each other. The support function of a disc of radius r is r (sqrt(a^2 + b^2) - b), a = n'.along and
+ * b = n'.m, at least r a^2/(2 M), M^2 = 1 + 1/facing^2; the sum of both a^2 is at least sin^2(n, n') (1 - |cos|), of
+ * the angle between the edges. So with r = 16 depth M^3/(1 - |cos|) it is over depth (1 - n.n'), the ball's, for every
+ * n'. */
+static bool certain_edges(const search *s, double depth)
+{
+    edge e[2];
+    for (int k = 0; k < 2; k++)
+        if (!edge_at(&s->pair->form[k], s->best.x[k], s->best.n, depth, &e[k])) return false;
+    const double cosine = e[0].along[0] * e[1].along[0] + e[0].along[1] * e[1].along[1] + e[0].along[2] * e[1].along[2];
+    const double stretch = sqrt(1 + 1 / pow(fmin(e[0].facing, e[1].facing), 2));
+    const double radius = 16 * depth * stretch * stretch * stretch / (1 - fabs(cosine));
+    return holds_disc(&s->pair->form[0], &e[0], s->best.x[0], radius) &&
+           holds_disc(&s->pair->form[1], &e[1], s->best.x[1], radius);
+}
+
+/* Whether an overlap's answer is proved the nearest way out: balls in both bodies, touching them at their witness
+ * points, add up to one in their difference that touches it there. */
+static bool certain(const search *s)
+{
+    const double depth = -s->best.gap, balls = inner_radius(&s->pair->form[0], s->best.x[0], depth) +
+                                               inner_radius(&s->pair->form[1], s->best.x[1], depth);
+    return balls >= depth || certain_edges(s, depth);
+}
+
+/* Whether the best answer needs no proof, or has one that is cheap. */
+static bool plain(const search *s)
+{
+    const double depth = -s->best.gap, radius = s->best.stiffness + depth;
+    if (depth <= 1e-13 * s->pair->reach) return true;
+    return s->sharp ? depth <= deep_part * s->thin && certain(s) : depth <= deep_part * fmin(s->thin, radius);
+}
+
+static bool newton_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
+{
+    imp_gap_bracket meeting;
+    if (!imp_gap_newton(s->pair, n, x, &meeting) || (s->found && !(meeting.gap > s->best.gap))) return false;
+    s->best = meeting;
+    s->path = path;
+    s->found = true;
+    return true;
+}
+
+/* Newton from n and, when not NULL, the points x; true when the search is over. A shallow answer that is not plain is
+ * proved, or what speaks against it seeds the next. */
+static bool try_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
+{
+    double other[3];
+    if (!newton_from(s, n, x, path)) return false;
+    for (int tries = 0; tries < MAX_PROOFS; tries++) {
+        if (plain(s)) return true;
+        if (!(-s->best.gap <= deep_part * s->thin)) return false;
+        double gap = s->best.gap, here[3];
+        for (int i = 0; i < 3; i++) other[i] = s->best.n[i], here[i] = gap * other[i];
+        const imp_proof proof = imp_gap_prove(s->pair, here, false, &gap, other);
+        if (proof != IMP_PROOF_AGAINST) return proof == IMP_PROOF_NEAREST;
+        if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
+    }
+    return false;
+}
+
+static void centre_line(const imp_gap_solids *pair, double n[3])
+{
+    const double distance = distance_of(pair->c);
+    for (int i = 0; i < 3; i++) n[i] = distance > 0 ? pair->c[i] / distance : i == 2;
+}
+
+/* M = R diag(axis^2) R^T, the ellipsoid a body is taken for here. */
+static void add_ellipsoid(const imp_form *form, double scale, double M[3][3])
+{
+    for (int k = 0; k < 3; k++) {
+        const double square = scale * form->axis[k] * form->axis[k];
+        for (int i = 0; i < 3; i++)
+            for (int j = i; j < 3; j++) M[i][j] += square * form->rotation[i][k] * form->rotation[j][k];
+    }
+}
+
+static double ellipsoid_height(const imp_form *form, const double n[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const double w =
+            form->axis[k] * (form->rotation[0][k] * n[0] + form->rotation[1][k] * n[1] + form->rotation[2][k] * n[2]);
+        sum += w * w;
+    }
+    return sqrt(sum);
+}
+
+/* n = M^-1 c normalised, by cofactors; M symmetric and positive, its upper half filled. */
+static bool solve_for_normal(double M[3][3], const double c[3], double n[3])
+{
+    const double a = M[1][1] * M[2][2] - M[1][2] * M[1][2], b = M[0][2] * M[1][2] - M[0][1] * M[2][2],
+                 d = M[0][1] * M[1][2] - M[0][2] * M[1][1], e = M[0][0] * M[2][2] - M[0][2] * M[0][2],
+                 f = M[0][1] * M[0][2] - M[0][0] * M[1][2], g = M[0][0] * M[1][1] - M[0][1] * M[0][1];
+    const double x[3] = {a * c[0] + b * c[1] + d * c[2], b * c[0] + e * c[1] + f * c[2],
+                         d * c[0] + f * c[1] + g * c[2]};
+    const double length = distance_of(x);
+    if (!(length > 0) || !(x[0] * c[0] + x[1] * c[1] + x[2] * c[2] > 0)) return false;
+    for (int i = 0; i < 3; i++) n[i] = x[i] / length;
+    return true;
+}
+
+/* The normal for the bodies' ellipsoids: fixed points of n ~ (M_A/h_A + M_B/h_B + g I)^-1 c, from the centre line. */
+static void ellipsoid_seed(const imp_gap_solids *pair, int steps, double n[3])
+{
+    for (int k = 0; k < steps; k++) {
+        const double h[2] = {ellipsoid_height(&pair->form[0], n), ellipsoid_height(&pair->form[1], n)};
+        const double g = fmax(0, n[0] * pair->c[0] + n[1] * pair->c[1] + n[2] * pair->c[2] - h[0] - h[1]);
+        double M[3][3] = {{g, 0, 0}, {0, g, 0}, {0, 0, g}};
+        for (int i = 0; i < 2; i++) add_ellipsoid(&pair->form[i], 1 / h[i], M);
+        if (!solve_for_normal(M, pair->c, n)) return;
+    }
+}
+
+void imp_gap_seed(const imp_gap_solids *pair, double n[3])
+{
+    centre_line(pair, n);
+    ellipsoid_seed(pair, SEED_STEPS, n);
+}
+
+/* Distance of the bodies, then of the bodies shrunk until they are apart, each to a few digits and then polished. */
+static bool try_simplex(search *s, double *upper)
+{
+    static const double shrink[] = {1, 0.99, 0.9, 0.7, 0.45, 0.2, 0.05}, tolerance[] = {1e-2, 1e-4, 1e-7, 1e-11};
+    for (size_t i = 0; i < sizeof shrink / sizeof *shrink; i++) {
+        double n[3], x[2][3], low, high;
+        centre_line(s->pair, n);
+        for (size_t j = 0; j < sizeof tolerance / sizeof *tolerance; j++) {
+            const bool apart =
+                imp_gap_simplex(s->pair, shrink[i], tolerance[j], 20 << j, n, x, &low, &high) == IMP_SIMPLEX_APART;
+            const double g = imp_pair_gap(s->pair, n, NULL);
+            if (g > s->low) {
+                s->low = g;
+                memcpy(s->low_n, n, sizeof s->low_n);
+            }
+            if (shrink[i] == 1 && apart) *upper = fmin(*upper, high);
+            if (try_from(s, n, (const double(*)[3])x, IMPACT_PATH_FALLBACK)) return true;
+            if (try_from(s, n, NULL, IMPACT_PATH_FALLBACK)) return true;
+            if (!apart) break;
+        }
+        if (shrink[i] == 1 && s->low > 0) break; /* apart: shrinking adds nothing */
+    }
+    return false;
+}
+
+/* The bodies' axes, towards each other and away. */
+static bool try_axes(search *s)
+{
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 3; i++)
+            for (int side = -1; side <= 1; side += 2) {
+                const double(*m)[3] = s->pair->form[k].rotation;
+                const double n[3] = {side * m[0][i], side * m[1][i], side * m[2][i]};
+                if (try_from(s, n, NULL, IMPACT_PATH_FALLBACK)) return true;
+            }
+    return false;
+}
+
+/* Steps of many lengths up g's slope from the best normal met: for two vertices in touch, whose g is flat at 0. */
+static bool try_slope(search *s)
+{
+    for (int round = 0; round < 8; round++) {
+        double x[2][3], v[3], along = 0, best[3], highest = s->low;
+        imp_pair_gap(s->pair, s->low_n, x);
+        for (int i = 0; i < 3; i++) v[i] = s->pair->c[i] + x[1][i] - x[0][i];
+        for (int i = 0; i < 3; i++) along += v[i] * s->low_n[i];
+        for (int i = 0; i < 3; i++) v[i] -= along * s->low_n[i];
+        const double slope = distance_of(v);
+        if (!(slope > 0)) return false;
+        for (double step = 1; step > 1e-7; step /= 2) {
+            double n[3];
+            for (int i = 0; i < 3; i++) n[i] = s->low_n[i] + step * v[i] / slope;
+            const double length = distance_of(n);
+            for (int i = 0; i < 3; i++) n[i] /= length;
+            const double g = imp_pair_gap(s->pair, n, NULL);
+            if (g > highest) highest = g, memcpy(best, n, sizeof best);
+        }
+        if (!(highest > s->low)) return false;
+        s->low = highest;
+        memcpy(s->low_n, best, sizeof best);
+        if (try_from(s, best, NULL, IMPACT_PATH_FALLBACK)) return true;
+    }
+    return false;
+}
+
+/* All exponents go from 2 to their own along p_t - 1 = (p - 1)^t, each stage seeding the next. */
+static bool try_homotopy(search *s)
+{
+    double n[3];
+    centre_line(s->pair, n);
+    for (int stage = 0; stage <= 8; stage++) {
+        imp_gap_solids eased = *s->pair;
+        for (int k = 0; k < 2; k++) {
+            imp_form *form = &eased.form[k];
+            for (int i = 0; i < 4; i++) form->p[i] = 1 + pow(form->p[i] - 1, stage / 8.0);
+            if (stage == 0) form->round = form->uniform = true, form->nested = false;
+        }
+        imp_gap_bracket meeting;
+        if (imp_gap_newton(&eased, n, NULL, &meeting)) memcpy(n, meeting.n, sizeof n);
+    }
+    return try_from(s, n, NULL, IMPACT_PATH_FALLBACK);
+}
+
+static void difference(const imp_gap_solids *pair, const double x[2][3], double v[3])
+{
+    for (int i = 0; i < 3; i++) v[i] = pair->c[i] + x[1][i] - x[0][i];
+}
+
+/* Points from the midst of the faces or edges that the normal n touches: the mean of those of normals about it. */
+static void midst(const imp_gap_solids *pair, const double n[3], double lean, double x[2][3])
+{
+    double t[2][3];
+    imp_across(n, t);
+    memset(x, 0, 2 * sizeof x[0]);
+    for (int turn = 0; turn < 8; turn++) {
+        double m[3], y[2][3];
+        for (int i = 0; i < 3; i++)
+            m[i] = n[i] + lean * (cos(turn * 0.7853981633974483) * t[0][i] + sin(turn * 0.7853981633974483) * t[1][i]);
+        imp_pair_gap(pair, m, y);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < 3; i++) x[k][i] += y[k][i] / 8;
+    }
+}
+
+/* No way settled, of bodies that touch or overlap by little: the highest g over the whole sphere, where that can be
+ * had. True when Newton settles there. */
+static bool climb(search *s, double *upper)
+{
+    double x[2][3], v[3];
+    if (!(s->low <= 0 && -s->low <= deep_part * s->thin)) return false;
+    imp_pair_gap(s->pair, s->low_n, x);
+    difference(s->pair, (const double(*)[3])x, v);
+    if (imp_gap_prove(s->pair, v, true, &s->low, s->low_n) != IMP_PROOF_NEAREST) return false;
+    *upper = fmin(*upper, s->low + 1.8e-14 * s->pair->reach);
+    for (double lean = 1e-10; lean < 0.1; lean *= 10) { /* edges and vertices are round at any scale */
+        midst(s->pair, s->low_n, lean, x);
+        if (newton_from(s, s->low_n, (const double(*)[3])x, IMPACT_PATH_FALLBACK))
+            return s->best.gap >= s->low - 1e-14 * s->pair->reach;
+    }
+    return false;
+}
+
+static bool holds(const imp_form *form, const double x[3])
+{
+    double body[3];
+    for (int i = 0; i < 3; i++)
+        body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
+    return imp_form_inside(form, body) <= 1 + 1e-14;
+}
+
+/* Moves one of the points that the normal touches across it to face the other; false when it leaves its body. */
+static bool face(const imp_gap_solids *pair, const double n[3], double gap, double x[2][3])
+{
+    double v[3];
+    difference(pair, (const double(*)[3])x, v);
+    for (int k = 0; k < 2; k++) {
+        double moved[3];
+        for (int i = 0; i < 3; i++) moved[i] = x[k][i] + (k ? -1 : 1) * (v[i] - gap * n[i]);
+        if (!holds(&pair->form[k], moved)) continue;
+        memcpy(x[k], moved, sizeof moved);
+        return true;
+    }
+    return false;
+}
+
+/* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies.
+ */
+static impact_status bracket(const search *s, double upper, imp_gap_bracket *meeting)
+{
+    double v[3];
+    memcpy(meeting->n, s->low_n, sizeof meeting->n);
+    meeting->lower = meeting->gap = imp_pair_gap(s->pair, meeting->n, meeting->x);
+    difference(s->pair, (const double(*)[3])meeting->x, v);
+    const double apart = distance_of(v);
+    meeting->upper = fmax(fmin(upper, apart), meeting->lower);
+    meeting->stiffness = 0;
+    if (!(meeting->upper - meeting->lower <= 2e-14 * s->pair->reach)) return IMPACT_BRACKET;
+    return apart - fabs(meeting->gap) <= 2e-14 * s->pair->reach || face(s->pair, meeting->n, meeting->gap, meeting->x)
+               ? IMPACT_OK
+               : IMPACT_BRACKET;
+}
+
+bool imp_gap_first(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting, impact_gap_path *path)
+{
+    double n[3];
+    *path = IMPACT_PATH_NEWTON;
+    if (cached && imp_gap_newton(pair, cached, NULL, meeting)) return true;
+    centre_line(pair, n);
+    ellipsoid_seed(pair, SEED_STEPS, n);
+    if (imp_gap_newton(pair, n, NULL, meeting)) return true;
+    *path = IMPACT_PATH_GJK;
+    return imp_gap_harvest(pair, false, n) && imp_gap_newton(pair, n, NULL, meeting);
+}
+
+impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting,
+                             impact_gap_path *path)
+{
+    search s = {.pair = pair,
+                .low = -INFINITY,
+                .thin = INFINITY,
+                .sharp = is_sharp(&pair->form[0]) && is_sharp(&pair->form[1])};
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 3; i++) s.thin = fmin(s.thin, pair->form[k].axis[i]);
+    double n[3], upper = distance_of(pair->c);
+    centre_line(pair, n);
+    bool over = cached && try_from(&s, cached, NULL, IMPACT_PATH_NEWTON);
+    if (!over) {
+        ellipsoid_seed(pair, SEED_STEPS, n);
+        over = try_from(&s, n, NULL, IMPACT_PATH_NEWTON);
+    }
+    over = over || (imp_gap_harvest(pair, false, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK));
+    over = over || try_simplex(&s, &upper) || (!s.found && (try_slope(&s) || try_homotopy(&s)));
+    if (!over) over = imp_gap_harvest(pair, true, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK);
+    over = over || try_axes(&s);
+    if (!s.found) over = climb(&s, &upper);
+    *path = s.found ? s.path : IMPACT_PATH_FALLBACK;
+    if (!s.found) return bracket(&s, upper, meeting);
+    *meeting = s.best;
+    return over ? IMPACT_OK : IMPACT_DEEP;
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Mixed primal/dual Newton for two witness points: gap_face's steps until they are small.
+ */
+#include "gap/gap_face.h"
+
+static const double finest_step = 1e-10;
+enum { MAX_ITERATIONS = 16, MORE_ITERATIONS = 8 }; /* more when the steps have become small */
+
+bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double (*x)[3], imp_gap_bracket *meeting)
+{
+    imp_surface s[2];
+    imp_face_start(pair, n, x, s);
+    double last = INFINITY;
+    int settled = 0; /* how often it has: while the bracket is wider than rounding, a few more steps may close it */
+    for (int i = 0, end = MAX_ITERATIONS; i < end; i++) {
+        imp_face face;
+        if (!imp_face_look(pair, s, &face)) return settled > 0;
+        if (i == MAX_ITERATIONS - 1 && last < 1e-2) end += MORE_ITERATIONS;
+        if (last < finest_step || i == end - 1) {
+            imp_gap_bracket now;
+            if (imp_face_judge(pair, &face, &now)) {
+                if (settled++ == 0 || now.upper - now.lower < meeting->upper - meeting->lower) *meeting = now;
+                if (meeting->upper - meeting->lower <= 1e-15 * pair->reach || settled == 4) return true;
+            }
+        }
+        double step[2][2];
+        imp_face_step(pair, &face, step);
+        if (!imp_face_advance(pair, &face, step, s, &last)) return settled > 0;
+    }
+    return settled > 0;
+}

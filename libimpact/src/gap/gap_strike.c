@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Newton for witness points and time at once: the surface points face each other and meet. Convex bodies whose normals
+ * oppose where they meet are parted by the plane there, so that each such time is one of gap zero.
+ */
+#include "gap/gap_face.h"
+
+static const double finest_step = 1e-10;
+enum { MAX_ITERATIONS = 32, MAX_TURNS = 3, MAX_TRIMS = 4 };
+
+typedef struct strike {
+    const imp_gap_course *course;
+    double scale, t;
+    impact_solid body[2];
+    imp_gap_solids pair;
+    imp_face face;
+    imp_drift drift;
+} strike;
+
+static void spin(qvec3 omega, const imp_chart *chart, double x[3], double N[3])
+{
+    const double w[3] = {omega.x, omega.y, omega.z};
+    imp_cross(w, chart->x, x);
+    imp_cross(w, chart->N, N);
+}
+
+static void place(strike *s, bool exact)
+{
+    const imp_gap_course *course = s->course;
+    for (int k = 0; k < 2; k++) {
+        s->body[k] =
+            exact ? impact_motion_at(course->body[k], course->motion[k], s->t) : imp_course_at(course, k, s->t);
+        imp_form_turn(&s->pair.form[1 - k], s->body[k].orientation);
+    }
+    imp_gap_apart(qvec3_sub(s->body[0].position, s->body[1].position), s->scale, &s->pair);
+}
+
+/* Bodies, points and drift at s->t; false when the normals do not face each other. */
+static bool look(strike *s, bool exact, const imp_surface surface[2])
+{
+    const impact_motion *motion1 = s->course->motion[0], *motion2 = s->course->motion[1];
+    place(s, exact);
+    if (!imp_face_look(&s->pair, surface, &s->face)) return false;
+    spin(motion2->omega, &s->face.chart[0], s->drift.x[0], s->drift.N[0]);
+    spin(motion1->omega, &s->face.chart[1], s->drift.x[1], s->drift.N[1]);
+    const qvec3 v = qvec3_axpy(s->t, qvec3_sub(motion1->acceleration, motion2->acceleration),
+                               qvec3_sub(motion1->velocity, motion2->velocity));
+    s->drift.x[1][0] += v.x * s->scale, s->drift.x[1][1] += v.y * s->scale, s->drift.x[1][2] += v.z * s->scale;
+    return true;
+}
+
+/* The rate of the gap, less than 0 while the bodies close. */
+static double closing(const strike *s) { return imp_dot(s->face.m, s->drift.x[1]) - imp_dot(s->face.m, s->drift.x[0]); }
+
+/* The points face each other: trims the time to the gap's zero, and the points to the time as it is rounded. */
+static bool trim(strike *s, imp_surface surface[2], double low, double high, double *t, impact_contact *contact)
+{
+    double least = INFINITY, last;
+    for (int i = 0; i < MAX_TRIMS; i++) {
+        imp_gap_bracket meeting;
+        const double rate = closing(s);
+        if (!imp_face_judge(&s->pair, &s->face, &meeting) || !(rate < 0)) break;
+        const double width = meeting.upper - meeting.lower, off = fabs(meeting.lower) + width;
+        if (off < least) {
+            least = off;
+            *t = s->t;
+            imp_gap_contact(&s->body[0], &s->body[1], s->scale, &meeting, IMPACT_PATH_NEWTON, contact);
+        }
+        const double next = fmin(high, fmax(low, s->t - meeting.lower / rate));
+        const bool there = fabs(meeting.lower) <= 2.5e-16 * s->pair.reach || next == s->t;
+        if (there && width <= 1e-15 * s->pair.reach) break;
+        if (!there) s->t = next;
+        double step[2][2];
+        imp_face_step(&s->pair, &s->face, step);
+        if (!imp_face_advance(&s->pair, &s->face, step, surface, &last) || !look(s, true, surface)) break;
+    }
+    return least < INFINITY;
+}
+
+/* How far the time may move: on, while the bodies are apart and near no contact; back, where they overlap. */
+static void reins(const strike *s, double low, double high, double *least, double *most)
+{
+    const double longest = s->course->longest, near = 1e-2 * s->pair.size, rate = closing(s), gap = s->face.vm;
+    *least = fmax(low - s->t, -longest);
+    *most = fmin(high - s->t, longest);
+    if (gap > near)
+        *least = rate < 0 ? fmin(*most, -0.5 * gap / rate) : *most;
+    else if (gap < -near && rate >= 0)
+        *most = *least;
+}
+
+bool imp_gap_strike(const imp_gap_course *course, double low, double high, qvec3 n, double *t, impact_contact *contact)
+{
+    strike s = {.course = course, .scale = imp_gap_scale(course->body[0], course->body[1]), .t = *t};
+    const double normal[3] = {n.x, n.y, n.z};
+    imp_surface surface[2];
+    imp_gap_pair(course->body[0], course->body[0]->orientation, course->body[1], course->body[1]->orientation, s.scale,
+                 &s.pair);
+    place(&s, false);
+    imp_face_start(&s.pair, normal, NULL, surface);
+    double last = INFINITY;
+    for (int i = 0, turns = 0, trims = 0; i < MAX_ITERATIONS; i++) {
+        if (!look(&s, last < finest_step, surface)) return false;
+        if (last < finest_step) {
+            if (trim(&s, surface, low, high, t, contact)) return true;
+            if (++trims == MAX_TURNS) return false;
+        }
+        double step[2][2], dt, least, most;
+        reins(&s, low, high, &least, &most);
+        imp_face_strike(&s.pair, &s.face, &s.drift, least, most, step, &dt);
+        if ((s.t == low && dt <= 0) || (s.t == high && dt >= 0))
+            if (++turns == MAX_TURNS) return false;
+        if (!imp_face_advance(&s.pair, &s.face, step, surface, &last)) return false;
+        if (last > 0.5) dt *= 0.5 / last;
+        last = fmax(last, fabs(dt * closing(&s)));
+        s.t += dt;
+    }
+    return false;
+}

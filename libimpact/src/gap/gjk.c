@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gjk: libccd as a source of seeds; the only file that names it. libccd stops near 1e-4 rad and misses shallow
+ * contacts, so its answers are not used: its support callback notes the best of all the directions it asks for.
+ *
+ * libccd sees one body, c + B - A, against a point at the origin: along d that body reaches -g(-d).
+ */
+#include <stdint.h>
+#include <ccd/ccd.h>
+#include "gap/gap_solver.h"
+
+#ifndef CCD_DOUBLE
+#error "libccd must be built for double"
+#endif
+
+enum { MAX_CALLS = 200 };
+
+typedef struct harvest {
+    const imp_gap_solids *pair;
+    double g, n[3];
+    int calls;
+} harvest;
+
+/* After MAX_CALLS the body shrinks to a point, which ends every loop of libccd. */
+static void support_difference(const void *object, const ccd_vec3_t *direction, ccd_vec3_t *out)
+{
+    harvest *h = (harvest *)(uintptr_t)object;
+    const double length = sqrt(ccdVec3Len2(direction));
+    ccdVec3Set(out, 0, 0, 0);
+    if (h->calls++ >= MAX_CALLS || !(length > 0) || !isfinite(length)) return;
+    double x[2][3];
+    const double n[3] = {-direction->v[0] / length, -direction->v[1] / length, -direction->v[2] / length};
+    const double g = imp_pair_gap(h->pair, n, x), *c = h->pair->c;
+    if (g > h->g) {
+        h->g = g;
+        for (int i = 0; i < 3; i++) h->n[i] = n[i];
+    }
+    ccdVec3Set(out, c[0] + x[1][0] - x[0][0], c[1] + x[1][1] - x[0][1], c[2] + x[1][2] - x[0][2]);
+}
+
+static void support_origin(const void *object, const ccd_vec3_t *direction, ccd_vec3_t *out)
+{
+    (void)object, (void)direction;
+    ccdVec3Set(out, 0, 0, 0);
+}
+
+static void first_direction(const void *object, const void *origin, ccd_vec3_t *direction)
+{
+    const harvest *h = object;
+    (void)origin;
+    ccdVec3Set(direction, -h->n[0], -h->n[1], -h->n[2]);
+}
+
+bool imp_gap_harvest(const imp_gap_solids *pair, bool deep, double n[3])
+{
+    harvest h = {.pair = pair, .g = -INFINITY, .n = {n[0], n[1], n[2]}};
+    ccd_t ccd;
+    CCD_INIT(&ccd);
+    ccd.first_dir = first_direction;
+    ccd.support1 = support_difference;
+    ccd.support2 = support_origin;
+    ccd.max_iterations = 60;
+    ccd.epa_tolerance = 1e-3 * pair->size;
+    if (deep) {
+        ccd_real_t depth;
+        ccd_vec3_t direction, position;
+        ccdGJKPenetration(&h, &h, &ccd, &depth, &direction, &position);
+    } else {
+        ccdGJKIntersect(&h, &h, &ccd);
+    }
+    for (int i = 0; i < 3; i++) n[i] = h.n[i];
+    return h.calls > 0;
+}

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gjk in a build without libccd: there is nothing to harvest.
+ */
+#include "gap/gap_solver.h"
+
+bool imp_gap_harvest(const imp_gap_solids *pair, bool deep, double n[3])
+{
+    (void)pair, (void)deep, (void)n;
+    return false;
+}

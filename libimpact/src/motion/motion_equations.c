@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The integrated state is y = (t, works[3], (x, q, v, L) of each body that moves, the place of each contact that is
+ * carried, and where surfaces are driven the drives' work). While a contact slides, time is not the variable of
+ * integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever
+ * faster. In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign
+ * can flip. Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the
+ * direction is bound to the acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t. Over a
+ * flat place of a surface the contact point runs without bound, and with it the reactions: u' of persist_spot slows the
+ * clock alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
+ */
+#include "motion/motion_equations.h"
+#include "world/drive.h"
+#include "contact/persist_flat.h"
+#include "contact/persist_line.h"
+#include "contact/persist_spot.h"
+#include "world/world_gap.h"
+
+#include <string.h>
+
+/* ---- the integrated state ---- */
+
+void imp_motion_pack(const impact_motion *motion, double t, const imp_state *states, double *y)
+{
+    y[Y_TIME] = t;
+    y[Y_FORCE_WORK] = motion->works.force;
+    y[Y_DAMPING] = motion->works.damping;
+    y[Y_SLIDING] = motion->works.sliding;
+    double *b = y + Y_BODIES;
+    for (int i = 0; i < motion->world->body_count; i++) {
+        if (motion->world->bodies[i].is_static) continue;
+        const imp_state *s = &states[i];
+        const double values[Y_PER_BODY] = {s->x.x, s->x.y, s->x.z, s->q.w,        s->q.x,        s->q.y,       s->q.z,
+                                           s->v.x, s->v.y, s->v.z, s->momentum.x, s->momentum.y, s->momentum.z};
+        memcpy(b, values, sizeof values);
+        b += Y_PER_BODY;
+    }
+    for (int p = 0; p < motion->world->pair_count; p++) {
+        const imp_pair *pair = &motion->world->pairs[p];
+        if (!imp_spot_suits(motion->world, pair)) continue;
+        for (int k = 0; k < Y_PER_SPOT; k++) *b++ = pair->carried ? pair->spot[k] : 0;
+    }
+    if (motion->world->driven) y[imp_motion_drive(motion)] = motion->works.drive;
+}
+
+/* SI's own unit for what is ordinary; what is large is measured by itself, or rounding where it passes zero would count
+ * as error. */
+static double measure_of(double size) { return size > 1e3 ? size : 1; }
+
+void imp_motion_measures(const impact_motion *motion, const imp_state *states, double *measure)
+{
+    for (int i = 0; i < motion->size; i++) measure[i] = 1;
+    double *b = measure + Y_BODIES;
+    for (int i = 0; i < motion->world->body_count; i++) {
+        const imp_body *body = &motion->world->bodies[i];
+        if (body->is_static) continue;
+        const double pushed = qvec3_norm(motion->loads[i].force) / body->mass * body->radius;
+        const double speed = hypot(imp_motion_speed(body, &states[i]), sqrt(pushed));
+        const double moment = fmax(body->moments.x, fmax(body->moments.y, body->moments.z));
+        for (int k = 0; k < 3; k++) {
+            b[k] = measure_of(body->radius);
+            b[Y_VELOCITY + k] = measure_of(speed);
+            b[Y_VELOCITY + 3 + k] = measure_of(moment * speed / body->radius);
+        }
+        b += Y_PER_BODY;
+    }
+}
+
+/* Static bodies' states are left as they are. */
+void imp_motion_unpack(const impact_motion *motion, const double *y, imp_state *states)
+{
+    const double *b = y + Y_BODIES;
+    for (int i = 0; i < motion->world->body_count; i++) {
+        if (motion->world->bodies[i].is_static) continue;
+        imp_state *s = &states[i];
+        s->x = (qvec3){b[0], b[1], b[2]};
+        quat_normalize((quat){b[3], b[4], b[5], b[6]}, &s->q);
+        s->v = (qvec3){b[7], b[8], b[9]};
+        s->momentum = (qvec3){b[10], b[11], b[12]};
+        b += Y_PER_BODY;
+    }
+    for (int p = 0; p < motion->world->pair_count; p++) {
+        imp_pair *pair = &motion->world->pairs[p];
+        if (!imp_spot_suits(motion->world, pair)) continue;
+        if (pair->carried) memcpy(pair->spot, b, sizeof pair->spot);
+        if (pair->flat) imp_flat_level(motion->world, pair, states);
+        if (pair->lined) imp_line_level(motion->world, pair, states);
+        b += Y_PER_SPOT;
+    }
+}
+
+/* How far a contact's slip is to slow the clock: what next to nothing presses changes nothing, and need never die out.
+ */
+static double rubbing(const imp_persist *persist, int contact)
+{
+    const double least = 0.01; /* of the greatest pressure */
+    double most = 0;
+    for (int c = 0; c < persist->count; c++) most = fmax(most, fabs(persist->touches[c].pressure));
+    const double pressure = fabs(persist->touches[contact].pressure);
+    return pressure < least * most ? pressure / (least * most) : 1;
+}
+
+/* dt/dtau. */
+double imp_motion_clock(const impact_motion *motion)
+{
+    double slowness = 1;
+    for (int c = 0; c < motion->persist.count && motion->creeping; c++)
+        if (motion->persist.touches[c].carried)
+            slowness = hypot(slowness, motion->persist.touches[c].creep / motion->creep_scale);
+    for (int c = 0; c < motion->persist.count && motion->sliding; c++)
+        if (motion->persist.touches[c].mode == IMP_SLIDE && !motion->persist.touches[c].onset &&
+            motion->persist.touches[c].friction > 0)
+            slowness += rubbing(&motion->persist, c) * motion->slip_scale / motion->persist.touches[c].speed;
+    return 1 / slowness;
+}
+
+/* Under the load and, where contacts are held, what the reactions do. */
+static void body_rates(const imp_body *body, const imp_state *s, const imp_load *load, const imp_effect *effect,
+                       double clock, double *rate)
+{
+    const imp_effect none = {{0, 0, 0}, {0, 0, 0}};
+    if (!effect) effect = &none;
+    const qvec3 a = qvec3_axpy(body->inverse_mass, load->force, effect->linear);
+    const qvec3 torque = qvec3_add(load->torque, imp_inertia(body, s->q, effect->angular));
+    const qvec3 omega = imp_omega(body, s);
+    const quat turning = quat_mul((quat){0, omega.x, omega.y, omega.z}, s->q);
+    const double values[Y_PER_BODY] = {
+        s->v.x, s->v.y, s->v.z, 0.5 * turning.w, 0.5 * turning.x, 0.5 * turning.y, 0.5 * turning.z,
+        a.x,    a.y,    a.z,    torque.x,        torque.y,        torque.z};
+    for (int k = 0; k < Y_PER_BODY; k++) rate[k] = clock * values[k];
+}
+
+/* Of the contacts that are carried, in the order of their pairs, as the touches are. */
+static void spot_rates(const impact_motion *motion, double clock, double *rate)
+{
+    const imp_world *world = motion->world;
+    for (int p = 0, c = 0; p < world->pair_count; p++) {
+        const imp_touch *touch = imp_is_held(&world->pairs[p]) ? &motion->persist.touches[c++] : NULL;
+        if (!imp_spot_suits(world, &world->pairs[p])) continue;
+        for (int k = 0; k < Y_PER_SPOT; k++) *rate++ = touch && touch->carried ? clock * touch->spot_rate[k] : 0;
+    }
+}
+
+/* What is still is balanced by its reactions. */
+static void clear_still_loads(impact_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        if (!touch->still) continue;
+        motion->loads[touch->body1].force = motion->loads[touch->body1].torque = motion->loads[touch->body2].force =
+            motion->loads[touch->body2].torque = (qvec3){0, 0, 0};
+    }
+}
+
+int imp_motion_rates(double tau, const double *y, double *rate, void *context)
+{
+    impact_motion *motion = context;
+    imp_world *world = motion->world;
+    imp_motion_unpack(motion, y, motion->scratch);
+    if (!imp_motion_load(motion, imp_motion_clocked(motion) ? y[Y_TIME] : tau, motion->scratch)) return -1;
+    rate[Y_FORCE_WORK] = rate[Y_DAMPING] = rate[Y_SLIDING] = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        rate[Y_FORCE_WORK] += motion->loads[i].work_rate;
+        rate[Y_DAMPING] += motion->loads[i].damping_rate;
+    }
+    if (motion->persist.count > 0) imp_persist_solve(&motion->persist, world, motion->scratch, motion->loads);
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].mode == IMP_SLIDE)
+            rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
+    clear_still_loads(motion);
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        imp_line_brace(world, touch, motion->scratch, &motion->loads[touch->body1]);
+    }
+    const double clock = imp_motion_clock(motion);
+    rate[Y_TIME] = clock;
+    for (int k = Y_FORCE_WORK; k < Y_BODIES; k++) rate[k] *= clock;
+    double *b = rate + Y_BODIES;
+    for (int i = 0; i < world->body_count; i++) {
+        if (world->bodies[i].is_static) continue;
+        body_rates(&world->bodies[i], &motion->scratch[i], &motion->loads[i],
+                   motion->persist.count > 0 ? &motion->persist.effects[i] : NULL, clock, b);
+        b += Y_PER_BODY;
+    }
+    spot_rates(motion, clock, b);
+    if (world->driven) rate[imp_motion_drive(motion)] = clock * imp_persist_drive_power(&motion->persist, world);
+    return 0;
+}
+
+/* ---- roots: every one falls through zero when its event comes ---- */
+
+double imp_motion_speed(const imp_body *body, const imp_state *state)
+{
+    return qvec3_norm(state->v) + body->radius * qvec3_norm(imp_omega(body, state));
+}
+
+/* The gap with its slack, and minus its rate. Far apart, of the bounding balls, or of the bounding ball and the plane.
+ */
+static void open_pair_roots(imp_world *world, imp_pair *pair, const imp_state *states, double *value)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const double bound = imp_world_distance_bound(world, pair, states);
+    const double speed =
+        imp_motion_speed(b1, &states[pair->body1]) + (b2->is_static ? 0 : imp_motion_speed(b2, &states[pair->body2]));
+    const double still = imp_still_rate(world, speed);
+    if (bound > b1->radius) {
+        value[0] = pair->beyond ? -bound : bound;
+        value[1] = pair->beyond ? 1 : still - imp_world_distance_bound_rate(world, pair, states);
+        return;
+    }
+    impact_contact contact;
+    imp_world_gap(world, pair, states, &contact);
+    value[0] = pair->beyond ? -contact.gap : contact.gap + pair->slack;
+    value[1] = pair->beyond ? 1 : still - imp_world_gap_rate(world, pair, states, &contact);
+}
+
+static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_state *states, const imp_load *loads,
+                            double *value)
+{
+    const impact_contact contact = {.offset2 = touch->r2};
+    value[0] = touch->still ? 1 : touch->pressure;
+    value[1] = touch->still              ? 1
+               : touch->mode == IMP_ROLL ? touch->margin
+               : touch->friction == 0    ? 1 /* slip neither begins nor ends */
+               : touch->onset            ? touch->drive - (1 - 1e-9)
+                                         : touch->speed - world->slip_speed;
+    value[2] = imp_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
+    if (!isfinite(value[2])) value[2] = 1;
+    if (touch->flat) value[2] = fmin(value[2], touch->spare);
+    if (touch->lined) value[2] = fmin(value[2], imp_line_spare(world, touch, states, loads));
+}
+
+int imp_motion_root_values(double tau, const double *y, double *value, void *context)
+{
+    impact_motion *motion = context;
+    imp_world *world = motion->world;
+    imp_state *states = motion->scratch;
+    imp_motion_unpack(motion, y, states);
+    if (motion->persist.count > 0) {
+        if (!imp_motion_load(motion, imp_motion_clocked(motion) ? y[Y_TIME] : tau, states)) return -1;
+        imp_persist_solve(&motion->persist, world, states, motion->loads);
+    }
+    for (int p = 0, c = 0; p < world->pair_count; p++, value += ROOTS_PER_PAIR) {
+        value[2] = 1;
+        if (imp_is_held(&world->pairs[p]))
+            held_pair_roots(world, &motion->persist.touches[c++], states, motion->loads, value);
+        else
+            open_pair_roots(world, &world->pairs[p], states, value);
+    }
+    imp_field_edges(world, states, value);
+    value += ROOTS_PER_EDGE * imp_field_edge_count(world);
+    for (int i = 0; i < world->body_count; i++)
+        value[i] = motion->resting[i] ? 1 : imp_motion_speed(&world->bodies[i], &states[i]) - motion->rest_speed;
+    return 0;
+}

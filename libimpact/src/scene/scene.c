@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/scene_internal.h"
+#include "scene/scene_check.h"
+#include "scene/scene_crowd.h"
+#include "world/world_gap.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool pulse(void *context, double t)
+{
+    impact_scene *scene = context;
+    if (!scene->recorder || !scene->recorder->progress) return true;
+    if (scene->recorder->progress(scene->recorder->context, t, scene->duration)) return true;
+    scene->stop = IMPACT_STOPPED;
+    return false;
+}
+
+/* A touch of a few rounding errors is no overlap. */
+static impact_status check_overlaps(impact_scene *scene, char *message, unsigned long message_size)
+{
+    imp_world *world = &scene->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        imp_pair *pair = &world->pairs[p];
+        const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+        if (imp_world_distance_bound(world, pair, scene->states) > 0) continue;
+        impact_contact contact;
+        const impact_status status = imp_world_gap(world, pair, scene->states, &contact);
+        if (status < 0) {
+            if (message)
+                snprintf(message, message_size, "bodies '%s' and '%s': %s", b1->name, b2->name,
+                         impact_status_string(status));
+            return status;
+        }
+        const double size = qvec3_norm(scene->states[pair->body1].x) + b1->radius;
+        if (imp_world_inside_bounds(world, pair, scene->states, &contact) < 0) {
+            pair->beyond = contact.gap < 0;
+        } else if (contact.gap < -1e-9 * size) {
+            if (message)
+                snprintf(message, message_size, "body '%s': overlaps '%s' by %.6g m at the start", b1->name, b2->name,
+                         -contact.gap);
+            return IMPACT_EARGUMENT;
+        }
+    }
+    return IMPACT_OK;
+}
+
+impact_status impact_scene_create(const impact_scene_def *def, impact_scene **out, char *message,
+                                  unsigned long message_size)
+{
+    *out = NULL;
+    if (message && message_size > 0) message[0] = '\0';
+    impact_status status = imp_scene_check(def, message, message_size);
+    if (status != IMPACT_OK) return status;
+    impact_scene *scene = calloc(1, sizeof *scene);
+    if (!scene) return IMPACT_ENOMEM;
+    scene->duration = def->duration;
+    scene->law = def->law;
+    scene->compliance = def->compliance;
+    scene->solver = def->solver;
+    scene->rest_height = def->rest_height;
+    scene->rest_speed = def->rest_speed;
+    scene->max_events = def->max_events;
+    scene->sampler = (imp_sampler){.rate = def->output_rate, .emit = imp_scene_emit, .pulse = pulse, .context = scene};
+    status = imp_scene_build(scene, def);
+    if (status == IMPACT_OK && def->compliance > 0) { /* impacts are few: as exactly as can be */
+        status = impact_collide_workspace_create(IMPACT_ODE_BDF, 1e-14, &scene->springs);
+        if (status == IMPACT_EABSENT && message)
+            snprintf(message, message_size,
+                     "compliance needs CVODE, and this build has none (IMPACT_WITH_CVODE is off)");
+    }
+    if (status == IMPACT_OK) {
+        imp_field_locate(&scene->world, scene->states);
+        scene->energy_start = imp_scene_total_energy(scene);
+        status = check_overlaps(scene, message, message_size);
+    }
+    if (status == IMPACT_OK && !isfinite(scene->energy_start)) {
+        status = IMPACT_EDOMAIN;
+        if (message)
+            snprintf(message, message_size, "scene '%s': its energy lies beyond double precision: take other units",
+                     def->name ? def->name : "");
+    }
+    if (status == IMPACT_OK) status = imp_scene_crowd_open(scene);
+    if (status != IMPACT_OK) {
+        impact_scene_destroy(scene);
+        return status;
+    }
+    *out = scene;
+    return IMPACT_OK;
+}
+
+void impact_scene_destroy(impact_scene *scene)
+{
+    if (!scene) return;
+    imp_scene_crowd_close(scene);
+    imp_scene_unbuild(scene);
+    free(scene);
+}
+
+static impact_status run(impact_scene *scene, double t_end)
+{
+    scene->message[0] = '\0';
+    if (!isfinite(t_end)) return IMPACT_EDOMAIN;
+    if (t_end < scene->t) {
+        snprintf(scene->message, sizeof scene->message, "t = %.15g is over: the scene stands at %.15g s", t_end,
+                 scene->t);
+        return IMPACT_EARGUMENT;
+    }
+    const double due = ceil(scene->t * scene->sampler.rate);
+    if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
+    impact_status status = scene->crowd ? imp_scene_crowd_deliver(scene) : IMPACT_OK;
+    if (status == IMPACT_OK) status = imp_scene_settle(scene);
+    if (status == IMPACT_OK && scene->crowd) imp_scene_crowd_begin(scene);
+    if (status != IMPACT_OK) return status;
+    return imp_scene_go_on(scene, t_end, scene->crowd ? imp_scene_crowd_advance : imp_scene_advance);
+}
+
+/* The run's check on itself: the energy that is there against the energy that was given and taken. Held contacts
+ * of two bodies on each other that are flat along an axis (exponents over 2) can pass that spot faster than the
+ * integrator sees. */
+static impact_status check_account(impact_scene *scene, impact_status status)
+{
+    const double tolerance = 1e-8 + 1e3 * scene->motion.tolerance;
+    const impact_energy e = impact_scene_energy(scene);
+    const double losses = e.damping_loss + e.sliding_loss + e.impact_loss, now = e.kinetic + e.potential;
+    const double off = now - (e.start + e.force_work + e.drive_work - losses);
+    const double given = fmax(fabs(e.force_work), fabs(e.drive_work));
+    const double scale = fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), fmax(given, fabs(losses))));
+    if ((status != IMPACT_OK && status != IMPACT_AT_REST) || fabs(off) <= tolerance * scale) return status;
+    if (isfinite(off))
+        snprintf(scene->message, sizeof scene->message,
+                 "the energy account is off by %.2g J of %.2g J: do not trust the digits", off, scale);
+    else
+        snprintf(scene->message, sizeof scene->message,
+                 "the motion has left double precision: do not trust the digits");
+    return IMPACT_SOFT;
+}
+
+impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
+{
+    scene->recorder = recorder;
+    const impact_status status = check_account(scene, run(scene, t));
+    scene->recorder = NULL;
+    if (status < 0 && scene->message[0] == '\0')
+        snprintf(scene->message, sizeof scene->message, "%s", impact_status_string(status));
+    return status;
+}
+
+impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder)
+{
+    return impact_scene_run_to(scene, fmax(scene->duration, scene->t), recorder);
+}
+
+const char *impact_scene_message(const impact_scene *scene) { return scene->message; }
+
+double impact_scene_time(const impact_scene *scene) { return scene->t; }
+
+int impact_scene_find(const impact_scene *scene, const char *body)
+{
+    for (int i = 0; i < scene->world.body_count; i++)
+        if (strcmp(scene->world.bodies[i].name, body) == 0) return i;
+    return -1;
+}
+
+impact_status impact_scene_body(const impact_scene *scene, int body, impact_sample *sample)
+{
+    if (body < 0 || body >= scene->world.body_count) return IMPACT_EARGUMENT;
+    *sample = imp_scene_sample(scene, scene->t, body, scene->states);
+    return IMPACT_OK;
+}
+
+impact_usage impact_scene_usage(const impact_scene *scene) { return scene->world.usage; }
+
+impact_energy impact_scene_energy(const impact_scene *scene)
+{
+    return (impact_energy){.start = scene->energy_start,
+                           .kinetic = imp_world_kinetic_energy(&scene->world, scene->states),
+                           .potential = imp_field_potential(&scene->world, scene->states),
+                           .force_work = scene->motion.works.force,
+                           .drive_work = scene->motion.works.drive,
+                           .damping_loss = scene->motion.works.damping,
+                           .sliding_loss = scene->motion.works.sliding,
+                           .impact_loss = scene->impact_loss};
+}

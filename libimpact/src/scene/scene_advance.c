@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From one event of a scene to the next: below the scene's own run and the groups of its crowd alike.
+ */
+#include "scene/scene_internal.h"
+
+#include <stdio.h>
+
+bool imp_scene_emit(void *context, double t, const imp_state *states)
+{
+    impact_scene *scene = context;
+    const impact_recorder *recorder = scene->recorder;
+    for (int i = 0; recorder->sample && i < scene->world.body_count; i++) {
+        if (scene->world.bodies[i].is_static) continue;
+        const impact_sample sample = imp_scene_sample(scene, t, i, states);
+        scene->world.usage.samples++;
+        if (recorder->sample(recorder->context, &sample)) continue;
+        scene->stop = IMPACT_ESINK;
+        return false;
+    }
+    return true;
+}
+
+static bool all_at_rest(const impact_scene *scene)
+{
+    bool any = false;
+    for (int i = 0; i < scene->world.body_count; i++) {
+        if (scene->world.bodies[i].is_static) continue;
+        if (!scene->motion.resting[i]) return false;
+        any = true;
+    }
+    return any;
+}
+
+impact_status imp_scene_advance(impact_scene *scene, double t_end)
+{
+    enum { MAX_STALLS = 10000 };
+    const double t_before = scene->t;
+    imp_end end;
+    imp_sampler silent = {.pulse = scene->sampler.pulse, .context = scene};
+    const bool samples = scene->recorder && scene->recorder->sample;
+    scene->stop = IMPACT_OK;
+    impact_status status =
+        imp_motion_advance(&scene->motion, &scene->t, t_end, scene->states, samples ? &scene->sampler : &silent, &end);
+    if (status < 0) {
+        snprintf(scene->message, sizeof scene->message, "%s", scene->motion.message);
+        return status;
+    }
+    status = imp_scene_handle(scene, end);
+    while (status == IMPACT_OK && imp_motion_also_crossed(&scene->motion, &end)) status = imp_scene_handle(scene, end);
+    if (status != IMPACT_OK) return status;
+    scene->stalls = scene->t > t_before ? 0 : scene->stalls + 1;
+    if (scene->stalls < MAX_STALLS) return scene->stop;
+    snprintf(scene->message, sizeof scene->message, "%d events at the one instant t = %.17g brought no end", MAX_STALLS,
+             scene->t);
+    return IMPACT_EUNSETTLED;
+}
+
+impact_status imp_scene_go_on(impact_scene *scene, double t_end, imp_scene_step step)
+{
+    impact_status status = IMPACT_OK;
+    while (status == IMPACT_OK && scene->t < t_end) {
+        if (all_at_rest(scene)) return IMPACT_AT_REST;
+        if (scene->event_count >= scene->max_events) {
+            snprintf(scene->message, sizeof scene->message, "%ld events by t = %.17g: the limit", scene->event_count,
+                     scene->t);
+            return IMPACT_EVENT_LIMIT;
+        }
+        if (!scene->sampler.pulse(scene->sampler.context, scene->t)) return scene->stop;
+        status = step(scene, t_end);
+    }
+    return status;
+}

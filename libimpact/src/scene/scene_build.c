@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/scene_internal.h"
+#include "world/drive.h"
+#include "scene/scene_check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static char *copy_string(const char *text)
+{
+    const size_t size = strlen(text) + 1;
+    char *copy = malloc(size);
+    return copy ? memcpy(copy, text, size) : NULL;
+}
+
+static double joined(impact_pair_rule rule, double a, double b)
+{
+    switch (rule) {
+    case IMPACT_PRODUCT: return a * b;
+    case IMPACT_GEOMETRIC_MEAN: return sqrt(a * b);
+    case IMPACT_MINIMUM: return fmin(a, b);
+    case IMPACT_MAXIMUM: return fmax(a, b);
+    }
+    return 0;
+}
+
+/* Three equal moments, but for the rounding of the formulas that gave them. */
+static bool equal_moments(qvec3 m) { return fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x; }
+
+static bool build_body(const impact_body_def *def, imp_body *body, imp_state *state)
+{
+    *body = (imp_body){.name = copy_string(def->name),
+                       .shape = def->shape,
+                       .is_static = def->is_static,
+                       .mass = INFINITY,
+                       .radius = impact_shape_bounding_radius(&def->shape) + qvec3_norm(def->shape_position),
+                       .offset = def->shape_position,
+                       .friction = def->friction,
+                       .restitution = def->restitution,
+                       .linear_rate = -log1p(-def->linear_damping),
+                       .angular_rate = -log1p(-def->angular_damping)};
+    *state = (imp_state){.x = def->position};
+    quat_normalize(def->orientation, &state->q);
+    quat_normalize(def->shape_orientation, &body->turn);
+    body->shifted = imp_scene_shape_stands_aside(def);
+    if (body->is_static) {
+        imp_drive_make(def, body);
+        return body->name != NULL;
+    }
+    body->mass = imp_scene_body_mass(def, &body->moments);
+    body->inverse_mass = 1 / body->mass;
+    body->inverse_moments = (qvec3){1 / body->moments.x, 1 / body->moments.y, 1 / body->moments.z};
+    body->spherical = equal_moments(body->moments);
+    state->v = def->velocity;
+    state->momentum = imp_inertia(body, state->q, def->omega);
+    return body->name != NULL;
+}
+
+static const impact_pair_def *find_own_rule(const impact_scene_def *def, int i, int j)
+{
+    for (int k = 0; k < def->pair_count; k++) {
+        const int a = imp_scene_def_find(def, def->pairs[k].body1), b = imp_scene_def_find(def, def->pairs[k].body2);
+        if ((a == i && b == j) || (a == j && b == i)) return &def->pairs[k];
+    }
+    return NULL;
+}
+
+/* Every two bodies of which one moves, in order; a moving body comes first, a plane last. */
+static impact_status build_pairs(imp_world *world, const impact_scene_def *def)
+{
+    const int n = world->body_count;
+    world->pairs = calloc((size_t)n * (size_t)n / 2 + 1, sizeof *world->pairs);
+    if (!world->pairs) return IMPACT_ENOMEM;
+    for (int i = 0; i < n; i++)
+        for (int j = i + 1; j < n; j++) {
+            const imp_body *a = &world->bodies[i], *b = &world->bodies[j];
+            if (a->is_static && b->is_static) continue;
+            const impact_pair_def *own = find_own_rule(def, i, j);
+            imp_pair *pair = &world->pairs[world->pair_count++];
+            *pair = (imp_pair){.body1 = a->is_static ? j : i,
+                               .body2 = a->is_static ? i : j,
+                               .friction = joined(def->friction_rule, a->friction, b->friction),
+                               .restitution = joined(def->restitution_rule, a->restitution, b->restitution)};
+            if (own && !isnan(own->friction)) pair->friction = own->friction;
+            if (own && !isnan(own->restitution)) pair->restitution = own->restitution;
+        }
+    return IMPACT_OK;
+}
+
+static impact_status build_fields(imp_world *world, const impact_scene_def *def)
+{
+    world->fields = calloc((size_t)def->force_count + 1, sizeof *world->fields);
+    if (!world->fields) return IMPACT_ENOMEM;
+    for (int k = 0; k < def->force_count; k++) {
+        imp_field *field = &world->fields[world->field_count++];
+        field->def = def->forces[k];
+        field->only = def->forces[k].body ? imp_scene_def_find(def, def->forces[k].body) : -1;
+        field->def.body = NULL;
+        if (field->def.kind == IMPACT_FORCE_WIND) {
+            const qvec3 d = field->def.direction;
+            field->def.direction = qvec3_scale(d, 1 / qvec3_norm(d));
+        }
+        field->name = copy_string(def->forces[k].name ? def->forces[k].name : "force");
+        field->slots = imp_field_slots(&field->def, world->body_count);
+        field->inside = calloc((size_t)field->slots + 1, sizeof *field->inside);
+        if (!field->name || !field->inside) return IMPACT_ENOMEM;
+    }
+    return IMPACT_OK;
+}
+
+impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
+{
+    imp_world *world = &scene->world;
+    const size_t n = (size_t)def->body_count;
+    *world = (imp_world){.gravity = def->gravity, .slip_speed = fmax(1e-2 * def->rest_speed, 100 * def->tolerance)};
+    world->onset_speed = 1e5 * world->slip_speed;
+    world->flat_height = 100 * def->rest_height;
+    world->bodies = calloc(n, sizeof *world->bodies);
+    scene->states = calloc(n, sizeof *scene->states);
+    scene->before = calloc(n, sizeof *scene->before);
+    if (!world->bodies || !scene->states || !scene->before) return IMPACT_ENOMEM;
+    for (int i = 0; i < def->body_count; i++) {
+        world->body_count++;
+        if (!build_body(&def->bodies[i], &world->bodies[i], &scene->states[i])) return IMPACT_ENOMEM;
+        world->driven = world->driven || world->bodies[i].driven;
+    }
+    impact_status status = build_pairs(world, def);
+    if (status == IMPACT_OK) status = build_fields(world, def);
+    if (status == IMPACT_OK) status = imp_motion_open(&scene->motion, world, def->tolerance, def->rest_speed);
+    scene->modes = calloc((size_t)world->pair_count + 1, sizeof *scene->modes);
+    return status == IMPACT_OK && !scene->modes ? IMPACT_ENOMEM : status;
+}
+
+void imp_scene_unbuild(impact_scene *scene)
+{
+    imp_world *world = &scene->world;
+    imp_motion_close(&scene->motion);
+    impact_collide_workspace_destroy(scene->springs);
+    for (int i = 0; i < world->body_count; i++) free(world->bodies[i].name);
+    for (int k = 0; k < world->field_count; k++) {
+        free(world->fields[k].name);
+        free(world->fields[k].inside);
+    }
+    free(world->bodies);
+    free(world->pairs);
+    free(world->fields);
+    free(scene->states);
+    free(scene->before);
+    free(scene->modes);
+}

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/scene_check.h"
+#include "world/drive.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define MOST_SAMPLES 1e15 /* each then has its own number in a double */
+
+/* Where the message goes, and whose value is being looked at. */
+typedef struct check {
+    char *message;
+    size_t size;
+    const char *kind, *name; /* "body", "coin" */
+    impact_status status;
+} check;
+
+/* Every test below goes through here: the first failure is kept. */
+static bool require(check *c, bool good, const char *key, double value, const char *rule)
+{
+    if (c->status != IMPACT_OK) return false;
+    if (good) return true;
+    c->status = isfinite(value) ? IMPACT_EARGUMENT : IMPACT_EDOMAIN;
+    if (c->message && c->size > 0)
+        snprintf(c->message, c->size, "%s '%s': %s = %.17g: %s", c->kind, c->name, key, value, rule);
+    return false;
+}
+
+static void require_words(check *c, bool good, const char *words)
+{
+    if (c->status != IMPACT_OK || good) return;
+    c->status = IMPACT_EARGUMENT;
+    if (c->message && c->size > 0) snprintf(c->message, c->size, "%s '%s': %s", c->kind, c->name, words);
+}
+
+static void require_vector(check *c, qvec3 v, const char *key)
+{
+    const double values[3] = {v.x, v.y, v.z};
+    for (int i = 0; i < 3; i++) {
+        char component[64];
+        snprintf(component, sizeof component, "%s.%c", key, "xyz"[i]);
+        require(c, isfinite(values[i]), component, values[i], "must be finite");
+    }
+}
+
+int imp_scene_def_find(const impact_scene_def *def, const char *name)
+{
+    for (int i = 0; i < def->body_count; i++)
+        if (name && def->bodies[i].name && strcmp(def->bodies[i].name, name) == 0) return i;
+    return -1;
+}
+
+static void check_mass(check *c, const impact_body_def *body)
+{
+    if (body->is_static) return;
+    if (isnan(body->mass))
+        require(c, isfinite(body->density) && body->density > 0, "density", body->density,
+                "must be positive and finite, or give a mass");
+    else
+        require(c, isfinite(body->mass) && body->mass > 0, "mass", body->mass, "must be positive and finite");
+    const double m[3] = {body->moments.x, body->moments.y, body->moments.z};
+    if (isnan(m[0]) && isnan(m[1]) && isnan(m[2])) return;
+    for (int i = 0; i < 3; i++) require(c, isfinite(m[i]) && m[i] > 0, "moments", m[i], "must be positive and finite");
+    for (int i = 0; i < 3; i++)
+        require(c, m[i] <= (m[(i + 1) % 3] + m[(i + 2) % 3]) * (1 + 1e-12), "moments", m[i],
+                "is larger than the other two together: no rigid body has such moments");
+}
+
+double imp_scene_body_mass(const impact_body_def *body, qvec3 *moments)
+{
+    const double mass = isnan(body->mass) ? body->density * impact_shape_volume(&body->shape) : body->mass;
+    *moments = isnan(body->moments.x) ? qvec3_scale(impact_shape_inertia(&body->shape), mass) : body->moments;
+    return mass;
+}
+
+/* What comes of the shape and the density must have a place among the doubles. */
+static void check_solid(check *c, const impact_body_def *body)
+{
+    static const char beyond[] = "of this size and density lies beyond double precision: take other units";
+    qvec3 moments;
+    const double mass = imp_scene_body_mass(body, &moments);
+    const double m[3] = {moments.x, moments.y, moments.z};
+    require(c, isnormal(mass), "mass", mass, beyond);
+    for (int i = 0; i < 3; i++) require(c, isnormal(m[i]), "moments", m[i], beyond);
+}
+
+bool imp_scene_shape_stands_aside(const impact_body_def *body)
+{
+    const qvec3 p = body->shape_position;
+    const quat q = body->shape_orientation;
+    return p.x != 0 || p.y != 0 || p.z != 0 || q.x != 0 || q.y != 0 || q.z != 0;
+}
+
+static void check_body(check *c, const impact_body_def *body)
+{
+    require_vector(c, body->position, "position");
+    require_vector(c, body->velocity, "velocity");
+    require_vector(c, body->omega, "omega");
+    quat unit;
+    const double size = body->orientation.w + body->orientation.x + body->orientation.y + body->orientation.z;
+    require(c, quat_normalize(body->orientation, &unit) == QUAT_OK, "orientation", size,
+            "must be a finite quaternion that is not zero");
+    require_vector(c, body->shape_position, "shape_position");
+    require_words(c, quat_normalize(body->shape_orientation, &unit) == QUAT_OK,
+                  "shape_orientation must be a finite quaternion that is not zero");
+    const bool aside = imp_scene_shape_stands_aside(body);
+    require_words(c, !aside || body->shape.kind != IMPACT_PLANE,
+                  "a plane takes no shape_position or shape_orientation");
+    require_words(c, !aside || body->is_static || !isnan(body->moments.x),
+                  "give moments: its shape stands aside of the centre of mass or of the principal axes");
+    check_mass(c, body);
+    require(c, isfinite(body->friction) && body->friction >= 0, "friction", body->friction, "must be >= 0 and finite");
+    require(c, body->restitution >= 0 && body->restitution <= 1, "restitution", body->restitution,
+            "must lie in [0, 1]");
+    require(c, body->linear_damping >= 0 && body->linear_damping < 1, "linear_damping", body->linear_damping,
+            "must lie in [0, 1)");
+    require(c, body->angular_damping >= 0 && body->angular_damping < 1, "angular_damping", body->angular_damping,
+            "must lie in [0, 1)");
+    require_words(c, body->is_static || body->shape.kind != IMPACT_PLANE, "a plane must be static");
+    char why[200];
+    require_words(c, impact_shape_check(&body->shape, why, sizeof why) == IMPACT_OK, why);
+    if (c->status != IMPACT_OK) return;
+    if (!body->is_static) check_solid(c, body);
+    const char *refusal = imp_drive_refusal(body);
+    require_words(c, !refusal, refusal);
+}
+
+static void check_bodies(check *c, const impact_scene_def *def)
+{
+    require(c, def->body_count >= 1 && def->bodies, "bodies", def->body_count, "a scene needs at least one body");
+    for (int i = 0; c->status == IMPACT_OK && i < def->body_count; i++) {
+        const impact_body_def *body = &def->bodies[i];
+        char number[32];
+        snprintf(number, sizeof number, "%d", i + 1);
+        c->kind = "body";
+        c->name = number;
+        require_words(c, body->name && body->name[0] != '\0', "has no name");
+        if (c->status != IMPACT_OK) return;
+        c->name = body->name;
+        require_words(c, imp_scene_def_find(def, body->name) == i, "the name is taken by another body");
+        check_body(c, body);
+    }
+}
+
+static void check_force(check *c, const impact_scene_def *def, const impact_force_def *force)
+{
+    char stranger[160];
+    snprintf(stranger, sizeof stranger, "acts on body '%s', which the scene does not have",
+             force->body ? force->body : "");
+    require_words(c, !force->body || imp_scene_def_find(def, force->body) >= 0, stranger);
+    require(c, force->reach > 0, "reach", force->reach, "must be positive");
+    switch (force->kind) {
+    case IMPACT_FORCE_WIND:
+        require_vector(c, force->origin, "origin");
+        require_vector(c, force->direction, "direction");
+        require(c, qvec3_norm(force->direction) > 0, "direction", 0, "must not be zero");
+        require(c, isfinite(force->strength), "strength", force->strength, "must be finite");
+        require(c, force->radius > 0, "radius", force->radius, "must be positive");
+        require(c, isfinite(force->falloff_power), "falloff_power", force->falloff_power, "must be finite");
+        require(c, isfinite(force->falloff_length) && force->falloff_length > 0, "falloff_length",
+                force->falloff_length, "must be positive and finite");
+        break;
+    case IMPACT_FORCE_ATTRACTION:
+        require_words(c, !force->body, "an attraction acts on every two bodies: it takes no 'body'");
+        require(c, isfinite(force->constant), "constant", force->constant, "must be finite");
+        require(c, isfinite(force->power), "power", force->power, "must be finite");
+        break;
+    case IMPACT_FORCE_CUSTOM: require_words(c, force->function != NULL, "a custom force needs a function"); break;
+    default: require_words(c, false, "is of no known kind");
+    }
+}
+
+static void check_pair(check *c, const impact_scene_def *def, const impact_pair_def *pair)
+{
+    const int i = imp_scene_def_find(def, pair->body1), j = imp_scene_def_find(def, pair->body2);
+    c->name = pair->body1 ? pair->body1 : "";
+    require_words(c, i >= 0, "the scene has no such body");
+    c->name = pair->body2 ? pair->body2 : "";
+    require_words(c, j >= 0, "the scene has no such body");
+    require_words(c, i != j, "a pair needs two bodies");
+    require(c, isnan(pair->friction) || (isfinite(pair->friction) && pair->friction >= 0), "friction", pair->friction,
+            "must be >= 0 and finite");
+    require(c, isnan(pair->restitution) || (pair->restitution >= 0 && pair->restitution <= 1), "restitution",
+            pair->restitution, "must lie in [0, 1]");
+}
+
+impact_status imp_scene_check(const impact_scene_def *def, char *message, unsigned long message_size)
+{
+    check c = {.message = message,
+               .size = message_size,
+               .kind = "scene",
+               .name = def->name ? def->name : "",
+               .status = IMPACT_OK};
+    require_vector(&c, def->gravity, "gravity");
+    require(&c, isfinite(def->duration) && def->duration > 0, "duration", def->duration, "must be positive and finite");
+    require(&c, isfinite(def->output_rate) && def->output_rate >= 0, "output_rate", def->output_rate,
+            "must be >= 0 and finite");
+    require(&c, def->output_rate * def->duration <= MOST_SAMPLES, "output_rate", def->output_rate,
+            "with this duration makes more than 1e15 samples");
+    require(&c, isfinite(def->compliance) && def->compliance >= 0, "compliance", def->compliance,
+            "must be >= 0 and finite");
+    require(&c, def->compliance == 0 || def->law == IMPACT_STRONGE, "compliance", def->compliance,
+            "needs Stronge's law");
+    require(&c, def->tolerance >= 1e-15 && def->tolerance <= 1e-2, "tolerance", def->tolerance,
+            "must lie in [1e-15, 1e-2]");
+    require(&c, isfinite(def->rest_height) && def->rest_height > 0, "rest_height", def->rest_height,
+            "must be positive and finite");
+    require(&c, isfinite(def->rest_speed) && def->rest_speed > 0, "rest_speed", def->rest_speed,
+            "must be positive and finite");
+    require(&c, def->max_events > 0, "max_events", (double)def->max_events, "must be positive");
+    require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule",
+            def->friction_rule, "is no rule");
+    require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule",
+            def->restitution_rule, "is no rule");
+    check_bodies(&c, def);
+    for (int k = 0; c.status == IMPACT_OK && k < def->force_count; k++) {
+        c.kind = "force";
+        c.name = def->forces[k].name ? def->forces[k].name : "";
+        check_force(&c, def, &def->forces[k]);
+    }
+    for (int k = 0; c.status == IMPACT_OK && k < def->pair_count; k++) {
+        c.kind = "pair with";
+        check_pair(&c, def, &def->pairs[k]);
+    }
+    return c.status;
+}

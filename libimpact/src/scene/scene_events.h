@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene_events: what the recorder is told at an event, and the energies there. Internal.
+ */
+#ifndef IMP_SCENE_EVENTS_H
+#define IMP_SCENE_EVENTS_H
+
+#include "scene/scene_internal.h"
+
+/* Kinetic + potential less what drives gave on the way, J: what impacts alone take from. */
+double imp_scene_undriven_energy(const impact_scene *scene);
+
+/* Keeps the states and modes as they are, for the rows before an event. */
+void imp_scene_remember(impact_scene *scene);
+
+/* An event now; its energies are the present ones. */
+impact_event imp_scene_event_of_touch(const impact_scene *scene, impact_event_kind kind, const imp_touch *touch);
+impact_event imp_scene_event_of_body(const impact_scene *scene, impact_event_kind kind, int body);
+
+/* Counts the event, and hands it on between its bodies' rows before and after. */
+impact_status imp_scene_record(impact_scene *scene, const impact_event *event);
+
+#endif

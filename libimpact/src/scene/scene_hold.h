@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene_hold: which contacts are held at an instant, in which mode, and what comes to rest. Internal.
+ */
+#ifndef IMP_SCENE_HOLD_H
+#define IMP_SCENE_HOLD_H
+
+#include "scene/scene_internal.h"
+
+/* Tentative modes: what touches and does not leave is held; those that would pull are opened again when the reactions
+ * are known. */
+void imp_scene_choose_modes(impact_scene *scene);
+
+/* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other
+ * contacts have changed their modes, is held again at once: it would come back in less than can be told from rounding,
+ * and again and again. Each pair is given one such chance in an instant. opened: the pair that has just lifted off, or
+ * -1; rejoin: whether to look for such pairs. */
+impact_status imp_scene_hold(impact_scene *scene, int opened, bool rejoin);
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene_strike: all impacts of one instant. Internal.
+ */
+#ifndef IMP_SCENE_STRIKE_H
+#define IMP_SCENE_STRIKE_H
+
+#include "scene/scene_internal.h"
+
+/* One impact after another, in the order of the pairs, until no touching pair approaches. Restitution that has gone
+ * round among the same few pairs time and again is spent: the rest of it is answered by all together. */
+impact_status imp_scene_strike_all(impact_scene *scene);
+
+#endif

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * world: the bodies, pairs and forces of one scene as the rooms of motion see them. Internal.
+ */
+#ifndef IMP_WORLD_H
+#define IMP_WORLD_H
+
+#include <quat/rotation.h>
+#include <impact/force.h>
+#include <impact/gap.h>
+#include <impact/scene.h>
+
+/* What moves of a body. The angular momentum, not omega, is the state: it is what torque-free motion keeps. */
+typedef struct imp_state {
+    qvec3 x;
+    quat q;
+    qvec3 v;
+    qvec3 momentum; /* angular, about the centre, world */
+} imp_state;
+
+/* What does not change of a body. */
+typedef struct imp_body {
+    char *name;
+    impact_shape shape;
+    bool is_static;
+    bool spherical; /* three equal principal moments: omega is parallel to the angular momentum */
+    double mass, inverse_mass;
+    qvec3 moments, inverse_moments;
+    double radius; /* of the bounding ball about the centre of mass */
+    bool shifted;  /* the shape stands aside of the body's frame: */
+    qvec3 offset;  /* its centre, body axes */
+    quat turn;     /* its axes to the body's */
+    double friction, restitution;
+    double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
+    bool driven;                      /* static, and its surface moves along itself: */
+    qvec3 drift, spin;                /* the point at r from the centre by drift + spin x r */
+} imp_body;
+
+typedef enum imp_mode {
+    IMP_OPEN,  /* apart, or about to be */
+    IMP_SLIDE, /* held, sliding */
+    IMP_ROLL   /* held, the contact point at rest: rolling, pivoting or resting */
+} imp_mode;
+
+/* Two bodies that can touch; body1 moves. */
+typedef struct imp_pair {
+    int body1, body2;
+    double friction, restitution;
+    imp_mode mode;
+    bool beyond; /* IMP_OPEN: body 1 passed beside the bounds of the plane and is behind it */
+    /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
+    double slack;
+    bool onset;      /* IMP_SLIDE: from rest, and slower than the world's onset_speed yet */
+    qvec3 direction; /* IMP_SLIDE, onset: about where the slip goes */
+    bool young;      /* IMP_SLIDE: just past its onset, and too slow yet for its direction to change smoothly */
+    bool turned;     /* it is where the slip went when it was last solved for, with this pull (imp_touch): */
+    double pull;
+    bool carried;   /* held: the contact's place on body 1 is integrated along (persist_spot) */
+    double spot[3]; /* carried: that place */
+    /* carried: body 1 lies on a face, as long as it rocks with less energy than lying, J (persist_flat) */
+    bool flat;
+    double lying;
+    /* carried: body 1 lies along a line of its surface, its axis line kept level (persist_line) */
+    bool lined;
+    int line;
+    bool still;     /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
+    qvec3 reaction; /* still, or was: on body 1, N */
+    bool tried;     /* scratch: sticks again after its slip was to begin */
+    bool struck;    /* scratch: exchanged an impulse in this instant */
+    bool settled;   /* scratch: had its chance to be held again in this instant */
+    impact_gap_cache cache;
+} imp_pair;
+
+/* A force with its edges: inside[slot] tells whether the slot's body (wind) or couple of bodies (attraction) is within
+ * reach. It is held between events, so that the forces are smooth there. */
+typedef struct imp_field {
+    impact_force_def def; /* name is owned; body is not used: see only */
+    char *name;
+    int only; /* the one body it acts on, or -1 */
+    int slots;
+    bool *inside;
+} imp_field;
+
+typedef struct imp_world {
+    int body_count, pair_count, field_count;
+    imp_body *bodies;
+    imp_pair *pairs;
+    imp_field *fields;
+    qvec3 gravity;
+    bool driven;        /* one of its bodies is */
+    double slip_speed;  /* m/s: slip that dies out below this sticks */
+    double onset_speed; /* m/s: slip that begins goes the way it is accelerated up to this */
+    double flat_height; /* m: bodies that rock on a face and rise less lie on it */
+    impact_usage usage;
+} imp_world;
+
+static inline bool imp_is_held(const imp_pair *pair) { return pair->mode != IMP_OPEN; }
+
+/* J^-1 a, for a vector in the world frame. */
+static inline qvec3 imp_inverse_inertia(const imp_body *body, quat q, qvec3 a)
+{
+    if (body->spherical) return qvec3_scale(a, body->inverse_moments.x);
+    const qvec3 b = quat_rotate_inverse(q, a);
+    return quat_rotate(
+        q, (qvec3){b.x * body->inverse_moments.x, b.y * body->inverse_moments.y, b.z * body->inverse_moments.z});
+}
+
+/* J a, for a vector in the world frame; zero for a static body. */
+static inline qvec3 imp_inertia(const imp_body *body, quat q, qvec3 a)
+{
+    if (body->is_static) return (qvec3){0, 0, 0};
+    if (body->spherical) return qvec3_scale(a, body->moments.x);
+    const qvec3 b = quat_rotate_inverse(q, a);
+    return quat_rotate(q, (qvec3){b.x * body->moments.x, b.y * body->moments.y, b.z * body->moments.z});
+}
+
+static inline qvec3 imp_omega(const imp_body *body, const imp_state *state)
+{
+    return imp_inverse_inertia(body, state->q, state->momentum);
+}
+
+/* Velocity of a static body's surface at r from its centre. */
+static inline qvec3 imp_surface_velocity(const imp_body *body, qvec3 r)
+{
+    return body->driven ? qvec3_add(body->drift, qvec3_cross(body->spin, r)) : (qvec3){0, 0, 0};
+}
+
+/* Velocity of the body's point at r from its centre. */
+static inline qvec3 imp_point_velocity(const imp_body *body, const imp_state *state, qvec3 r)
+{
+    return body->is_static ? imp_surface_velocity(body, r)
+                           : qvec3_add(state->v, qvec3_cross(imp_omega(body, state), r));
+}
+
+/* The shape's axes to the world's. */
+static inline quat imp_shape_axes(const imp_body *body, const imp_state *state)
+{
+    return body->shifted ? quat_mul(state->q, body->turn) : state->q;
+}
+
+/* The shape's centre from the body's, world. */
+static inline qvec3 imp_shape_offset(const imp_body *body, const imp_state *state)
+{
+    return body->shifted ? quat_rotate(state->q, body->offset) : (qvec3){0, 0, 0};
+}
+
+/* A ball whose turning does not move its surface. */
+static inline bool imp_is_ball(const imp_body *body) { return body->shape.kind == IMPACT_SPHERE && !body->shifted; }
+
+static inline impact_solid imp_solid_of(const imp_body *body, const imp_state *state)
+{
+    return (impact_solid){body->shape, qvec3_add(state->x, imp_shape_offset(body, state)), imp_shape_axes(body, state)};
+}
+
+/* A rate, of motion at this speed, up to which a distance does not open, m/s: what only rounding moves stays where it
+ * is. */
+static inline double imp_still_rate(const imp_world *world, double speed) { return world->slip_speed + 1e-9 * speed; }
+
+#endif

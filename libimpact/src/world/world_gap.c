@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+#include "world/world_gap.h"
+
+impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const impact_solid solid1 = imp_solid_of(b1, s1), solid2 = imp_solid_of(b2, s2);
+    const impact_status status = impact_gap(&solid1, &solid2, &pair->cache, contact);
+    contact->offset1 = qvec3_add(contact->offset1, imp_shape_offset(b1, s1));
+    contact->offset2 = qvec3_add(contact->offset2, imp_shape_offset(b2, s2));
+    switch (contact->path) {
+    case IMPACT_PATH_CLOSED_FORM: world->usage.gap_closed_form++; break;
+    case IMPACT_PATH_NEWTON: world->usage.gap_newton++; break;
+    case IMPACT_PATH_GJK: world->usage.gap_gjk++; break;
+    case IMPACT_PATH_FALLBACK: world->usage.gap_fallback++; break;
+    case IMPACT_PATH_NONE: break;
+    }
+    return status;
+}
+
+double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point)
+{
+    if (!body->shifted) return impact_shape_support(&body->shape, direction, point);
+    const double h = impact_shape_support(&body->shape, quat_rotate_inverse(body->turn, direction), point);
+    *point = qvec3_add(body->offset, quat_rotate(body->turn, *point));
+    return h + qvec3_dot(direction, body->offset);
+}
+
+static qvec3 omega_of(const imp_world *world, const imp_state *states, int body)
+{
+    return imp_omega(&world->bodies[body], &states[body]);
+}
+
+double imp_world_gap_rate(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                          const impact_contact *contact)
+{
+    return impact_gap_rate(contact, states[pair->body1].v, omega_of(world, states, pair->body1), states[pair->body2].v,
+                           omega_of(world, states, pair->body2));
+}
+
+double imp_world_reach(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    return qvec3_norm(states[pair->body1].x) + world->bodies[pair->body1].radius;
+}
+
+double imp_world_touching_distance(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    return 1e-12 * imp_world_reach(world, pair, states);
+}
+
+double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const qvec3 d = qvec3_sub(states[pair->body1].x, states[pair->body2].x);
+    if (b2->shape.kind == IMPACT_PLANE)
+        return qvec3_dot(quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1}), d) - b1->radius;
+    return qvec3_norm(d) - b1->radius - b2->radius;
+}
+
+double imp_world_distance_bound_rate(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const qvec3 v = qvec3_sub(states[pair->body1].v, states[pair->body2].v);
+    if (world->bodies[pair->body2].shape.kind == IMPACT_PLANE)
+        return qvec3_dot(quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1}), v);
+    const qvec3 d = qvec3_sub(states[pair->body1].x, states[pair->body2].x);
+    return qvec3_dot(d, v) / qvec3_norm(d);
+}
+
+double imp_world_inside_bounds(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                               const impact_contact *contact)
+{
+    const impact_shape *shape = &world->bodies[pair->body2].shape;
+    if (shape->kind != IMPACT_PLANE) return INFINITY;
+    const qvec3 local = quat_rotate_inverse(states[pair->body2].q, contact->offset2);
+    return fmin(shape->a - fabs(local.x), shape->b - fabs(local.y));
+}
+
+double imp_world_kinetic_energy(const imp_world *world, const imp_state *states)
+{
+    double energy = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (body->is_static) continue;
+        energy += 0.5 * body->mass * qvec3_dot(states[i].v, states[i].v) +
+                  0.5 * qvec3_dot(states[i].momentum, imp_omega(body, &states[i]));
+    }
+    return energy;
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * world_gap: gaps, contact velocities and energy of the world's pairs. Internal.
+ */
+#ifndef IMP_WORLD_GAP_H
+#define IMP_WORLD_GAP_H
+
+#include "world/world.h"
+
+/* The pair's contact, counted by the road that answered. */
+impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact);
+
+/* The support function of the body's surface about its centre of mass, in its own axes: see impact_shape_support. */
+double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point);
+
+/* d(gap)/dt at a contact of the pair. */
+double imp_world_gap_rate(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                          const impact_contact *contact);
+
+/* m: how far body 1 reaches from the origin: places are known relative to it. */
+double imp_world_reach(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
+/* Gaps of the pair up to this are rounding, m. */
+double imp_world_touching_distance(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
+/* A lower bound of the gap without a query, from the bounding balls; -inf when there is none. */
+double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
+/* Its rate, m/s. */
+double imp_world_distance_bound_rate(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
+/* Whether the contact lies within the bounds of the pair's plane (always, for other shapes); > 0 inside, m. */
+double imp_world_inside_bounds(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                               const impact_contact *contact);
+
+/* Of all bodies that move, J. */
+double imp_world_kinetic_energy(const imp_world *world, const imp_state *states);
+
+#endif

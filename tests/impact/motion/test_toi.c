@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <impact/toi.h>
+#include "kit/contact_random.h"
+
+static impact_solid solid(impact_shape shape, qvec3 position, quat orientation)
+{
+    return (impact_solid){shape, position, orientation};
+}
+
+static impact_shape sphere(double radius)
+{
+    impact_shape shape = {0};
+    assert_int_equal(impact_shape_sphere(radius, &shape), IMPACT_OK);
+    return shape;
+}
+
+static void near(double got, double wanted, double tolerance)
+{
+    if (!(fabs(got - wanted) <= tolerance)) fail_msg("wanted %.17g, got %.17g, off by %g", wanted, got, got - wanted);
+}
+
+static const impact_motion at_rest = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+
+static void spheres_meet_in_closed_form(void **state)
+{
+    (void)state;
+    const impact_solid a = solid(sphere(1), (qvec3){-5, 0.6, 0}, quat_identity()),
+                       b = solid(sphere(0.5), (qvec3){0, 0, 0}, quat_identity());
+    const impact_motion m = {{2, 0, 0}, {0, 0, 0}, {3, 4, 5}};
+    double t;
+    impact_contact contact;
+    assert_int_equal(impact_toi(&a, &m, &b, &at_rest, 10, &t, &contact), IMPACT_OK);
+    near(t, (5 - sqrt(2.25 - 0.36)) / 2, 1e-15);
+    assert_true(fabs(contact.gap) < 2e-15);
+    const impact_motion past = {{2, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const impact_solid high = solid(sphere(1), (qvec3){-5, 1.5 + 1e-9, 0}, quat_identity());
+    assert_int_equal(impact_toi(&high, &past, &b, &at_rest, 10, &t, NULL), IMPACT_NO_CONTACT);
+    assert_true(t == 10);
+    const impact_solid grazing = solid(sphere(1), (qvec3){-5, 1.5 - 1e-9, 0}, quat_identity());
+    assert_int_equal(impact_toi(&grazing, &past, &b, &at_rest, 10, &t, NULL), IMPACT_OK);
+    near(t, (5 - sqrt(2.25 - (1.5 - 1e-9) * (1.5 - 1e-9))) / 2, 1e-10); /* conditioning 1/sqrt(1e-9) */
+}
+
+static void falling_on_a_plane(void **state)
+{
+    (void)state;
+    impact_shape plane;
+    impact_shape_plane(INFINITY, INFINITY, &plane);
+    const impact_solid floor = solid(plane, (qvec3){0, 0, 0}, quat_identity()),
+                       ball = solid(sphere(0.3), (qvec3){0, 0, 1.3}, quat_identity());
+    const impact_motion fall = {{0, 0, 0}, {0, 0, -9.80665}, {0, 0, 0}}, moving = {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    double t;
+    assert_int_equal(impact_toi(&ball, &fall, &floor, &at_rest, 10, &t, NULL), IMPACT_OK);
+    near(t, sqrt(2 / 9.80665), 2e-16);
+    assert_int_equal(impact_toi(&floor, &at_rest, &ball, &fall, 10, &t, NULL), IMPACT_OK);
+    near(t, sqrt(2 / 9.80665), 2e-16);
+    assert_int_equal(impact_toi(&ball, &fall, &floor, &moving, 10, &t, NULL), IMPACT_EARGUMENT);
+    const impact_motion thrown = {{0, 0, 3}, {0, 0, -9.80665}, {0, 0, 0}}; /* up first */
+    assert_int_equal(impact_toi(&ball, &thrown, &floor, &at_rest, 10, &t, NULL), IMPACT_OK);
+    near(t, (3 + sqrt(9 + 2 * 9.80665)) / 9.80665, 4e-16);
+}
+
+/* A stick that turns once a second strikes a pin at its tip's radius: the sampling of a coarse step would miss it. */
+static void nothing_is_missed(void **state)
+{
+    (void)state;
+    impact_shape stick;
+    assert_int_equal(impact_shape_ellipsoid(1, 1e-3, 1e-3, &stick), IMPACT_OK);
+    const impact_solid rod = solid(stick, (qvec3){0, 0, 0}, quat_identity());
+    const double angle = 0.25, radius = 1e-6;
+    const impact_solid pin = solid(sphere(radius), (qvec3){0.5 * cos(angle), 0.5 * sin(angle), 0}, quat_identity());
+    const impact_motion spin = {{0, 0, 0}, {0, 0, 0}, {0, 0, 100}};
+    double t;
+    impact_contact contact;
+    assert_int_equal(impact_toi(&rod, &spin, &pin, &at_rest, 1, &t, &contact), IMPACT_OK);
+    assert_true(fabs(contact.gap) <= 1e-15);
+    const double half_width = 1e-3 * sqrt(0.75); /* the rod's half width at 0.5 */
+    assert_true(t < angle / 100 && t > (angle - 1.1 * (half_width + radius) / 0.5) / 100);
+    const impact_motion shot = {{1e6, 0, 0}, {0, 0, 0}, {0, 0, 0}}; /* two bullets through each other within 4 ns */
+    const impact_solid left = solid(sphere(1e-3), (qvec3){-1e3, 0, 0}, quat_identity()),
+                       right = solid(sphere(1e-3), (qvec3){0, 1.9e-3, 0}, quat_identity());
+    assert_int_equal(impact_toi(&left, &shot, &right, &at_rest, 1, &t, NULL), IMPACT_OK);
+    near(t, (1e3 - sqrt(4e-6 - 1.9e-3 * 1.9e-3)) / 1e6, 1e-15);
+}
+
+/* One draw a statement: the order of evaluation within one is the compiler's. */
+static impact_solid random_solid(random_stream *random, int family, double distance)
+{
+    impact_solid body = {.shape = random_shape(random, family)};
+    body.position = qvec3_scale(random_direction(random), distance);
+    body.orientation = random_rotation(random);
+    return body;
+}
+
+/* Towards the origin, and tumbling. */
+static impact_motion random_motion(random_stream *random, qvec3 position)
+{
+    impact_motion motion;
+    motion.velocity = qvec3_axpy(0.2, random_direction(random), qvec3_scale(position, -0.25));
+    motion.acceleration = qvec3_scale(random_direction(random), 0.1);
+    motion.omega = qvec3_scale(random_direction(random), 3);
+    return motion;
+}
+
+/* Random tumbling shapes: the gap is zero at the time and positive on a grid before it. */
+static void first_contact_of_random_pairs(void **state)
+{
+    (void)state;
+    random_stream random = {99};
+    int met = 0;
+    for (int k = 0; k < 1500; k++) {
+        const int family = 1 + k % (RANDOM_FAMILIES - 1);
+        if (family == RANDOM_NEEDLE) continue;
+        const impact_solid a = random_solid(&random, family, 4), b = random_solid(&random, family, 0);
+        const impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        double t;
+        impact_contact contact;
+        const impact_status status = impact_toi(&a, &ma, &b, &mb, 6, &t, &contact);
+        if (!(status == IMPACT_OK || status == IMPACT_NO_CONTACT))
+            fail_msg("status %d at t = %g, gap %g", status, t, contact.gap);
+        if (status == IMPACT_OK) {
+            met++;
+            if (!(fabs(contact.gap) <= 1e-15 * (1 + 1)))
+                fail_msg("%s: gap %g in [%g, %g] by path %d at contact, t %.17g", random_family_name(family),
+                         contact.gap, contact.lower, contact.upper, contact.path, t);
+        }
+        for (int i = 0; i < 40; i++) {
+            const double s = t * i / 40;
+            const impact_solid at = impact_motion_at(&a, &ma, s), bt = impact_motion_at(&b, &mb, s);
+            impact_contact before;
+            assert_true(impact_gap(&at, &bt, NULL, &before) >= 0);
+            if (!(before.upper > 0)) fail_msg("gap %g at %g, before the contact at %g", before.gap, s, t);
+        }
+    }
+    assert_true(met > 500);
+}
+
+/* Needles, thrown past and at each other with slow and fast spins: never unsettled, and no contact before the first.
+ * The gap left is that of the time's last digit. */
+static void any_spin(void **state)
+{
+    (void)state;
+    random_stream random = {7};
+    int met = 0;
+    for (int k = 0; k < 1500; k++) {
+        const impact_solid a = random_solid(&random, k % RANDOM_FAMILIES, 2),
+                           b = random_solid(&random, (k / RANDOM_FAMILIES) % RANDOM_FAMILIES, 0);
+        impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        ma.velocity = qvec3_scale(ma.velocity, 3);
+        ma.omega = qvec3_scale(ma.omega, random_log(&random, 0.01, 20));
+        mb.omega = qvec3_scale(mb.omega, random_log(&random, 0.01, 20));
+        double t;
+        impact_contact contact;
+        const impact_status status = impact_toi(&a, &ma, &b, &mb, 2, &t, &contact);
+        if (!(status == IMPACT_OK || status == IMPACT_NO_CONTACT))
+            fail_msg("%d: status %d at t = %g, gap %g", k, status, t, contact.gap);
+        met += status == IMPACT_OK && t > 0;
+        if (status == IMPACT_OK && t > 0) near(contact.gap, 0, 2e-15 * (1 + qvec3_norm(ma.omega)));
+        for (int i = 0; i < 30; i++) {
+            const double s = i < 15 ? t * random_unit(&random) : t * (1 - random_log(&random, 1e-9, 0.1));
+            const impact_solid at = impact_motion_at(&a, &ma, s), bt = impact_motion_at(&b, &mb, s);
+            impact_contact before;
+            assert_true(impact_gap(&at, &bt, NULL, &before) >= 0);
+            if (t > 0 && !(before.upper > 0)) fail_msg("%d: gap %g at %g, before %g", k, before.gap, s, t);
+        }
+    }
+    assert_true(met > 500);
+}
+
+/* Any two shapes, planes among them, thrown anyhow: accelerated, spun to 60 rad/s, alike or not at all, to meet or to
+ * miss. */
+static void any_motion(void **state)
+{
+    (void)state;
+    random_stream random = {4};
+    int met = 0, missed = 0;
+    for (int k = 0; k < 2000; k++) {
+        impact_solid body[2];
+        impact_motion motion[2];
+        for (int i = 0; i < 2; i++) {
+            const double distance = i == 0 ? random_log(&random, 0.3, 5) : 0;
+            const int family = (int)(random_bits(&random) % RANDOM_FAMILIES);
+            body[i] = random_solid(&random, family, distance);
+            motion[i] = random_motion(&random, body[i].position);
+            const double push = random_log(&random, 0.01, 100), spin = random_log(&random, 0.01, 20);
+            motion[i].acceleration = qvec3_scale(motion[i].acceleration, k % 2 == 0 ? push : 0);
+            motion[i].omega = qvec3_scale(motion[i].omega, k % 5 == 0 ? 0 : spin);
+        }
+        if (k % 29 == 0) {
+            impact_shape_plane(INFINITY, INFINITY, &body[1].shape);
+            motion[1] = at_rest;
+        }
+        if (k % 29 == 1) motion[1].omega = motion[0].omega;
+        double t;
+        const double end = random_log(&random, 0.1, 10);
+        impact_contact contact;
+        const impact_status status = impact_toi(&body[0], &motion[0], &body[1], &motion[1], end, &t, &contact);
+        if (!(status == IMPACT_OK || status == IMPACT_NO_CONTACT))
+            fail_msg("%d: status %d at t = %g, gap %g", k, status, t, contact.gap);
+        if (status == IMPACT_NO_CONTACT) assert_true(missed++ >= 0 && t == end && contact.gap > 0);
+        if (status == IMPACT_OK && t > 0) {
+            double speed = 0;
+            for (int i = 0; i < 2; i++)
+                speed +=
+                    qvec3_norm(qvec3_axpy(t, motion[i].acceleration, motion[i].velocity)) + qvec3_norm(motion[i].omega);
+            near(contact.gap, 0, 1e-15 + 2.3e-16 * t * speed); /* the time's last digit */
+            met++;
+        }
+        for (int i = 0; i < 8; i++) {
+            const double s = i < 4 ? t * random_unit(&random) : t * (1 - random_log(&random, 1e-9, 0.1));
+            const impact_solid at = impact_motion_at(&body[0], &motion[0], s),
+                               bt = impact_motion_at(&body[1], &motion[1], s);
+            impact_contact before;
+            assert_true(impact_gap(&at, &bt, NULL, &before) >= 0);
+            if (t > 0 && !(before.upper > 0)) fail_msg("%d: gap %g at %g, before %g", k, before.gap, s, t);
+        }
+    }
+    if (met < 250 || missed < 500) fail_msg("%d met, %d missed", met, missed);
+}
+
+/* What toi says of the contact, a query of the gap there says too: no use is made of the search's own answer. */
+static void contact_is_the_gaps(void **state)
+{
+    (void)state;
+    random_stream random = {31};
+    int met = 0;
+    for (int k = 0; k < 3000; k++) {
+        const int family = k % RANDOM_FAMILIES;
+        if (family == RANDOM_NEEDLE) continue;
+        const impact_solid a = random_solid(&random, family, 3), b = random_solid(&random, family, 0);
+        const impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        double t;
+        impact_contact contact, there;
+        const impact_status status = impact_toi(&a, &ma, &b, &mb, 8, &t, &contact);
+        if (status != IMPACT_OK || t == 0) continue;
+        met++;
+        const impact_solid at = impact_motion_at(&a, &ma, t), bt = impact_motion_at(&b, &mb, t);
+        const impact_status asked = impact_gap(&at, &bt, NULL, &there);
+        if (family == RANDOM_OCTAHEDRAL && asked != IMPACT_OK) continue; /* two vertices may have no one normal */
+        assert_int_equal(asked, IMPACT_OK);
+        near(there.gap, 0, 1.5e-15);
+        near(contact.gap, there.gap, 1.5e-15);
+        near(contact.lower, contact.gap, 0);
+        assert_true(contact.upper >= contact.gap && contact.upper <= 4e-14);
+        near(qvec3_norm(qvec3_sub(qvec3_sub(contact.point1, contact.point2), qvec3_scale(contact.normal, contact.gap))),
+             0, 4e-14);
+        if (family < RANDOM_CYLINDER) near(qvec3_norm(qvec3_sub(contact.normal, there.normal)), 0, 1e-13);
+    }
+    assert_true(met > 1500);
+}
+
+static void bad_input(void **state)
+{
+    (void)state;
+    const impact_solid a = solid(sphere(1), (qvec3){-5, 0, 0}, quat_identity()),
+                       b = solid(sphere(1), (qvec3){0, 0, 0}, quat_identity());
+    const impact_motion bad = {{NAN, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    double t;
+    assert_int_equal(impact_toi(&a, &bad, &b, &at_rest, 1, &t, NULL), IMPACT_EDOMAIN);
+    assert_true(isnan(t));
+    assert_int_equal(impact_toi(&a, &at_rest, &b, &at_rest, INFINITY, &t, NULL), IMPACT_EDOMAIN);
+    assert_int_equal(impact_toi(&a, &at_rest, &b, &at_rest, -1, &t, NULL), IMPACT_EARGUMENT);
+    assert_int_equal(impact_toi(&a, &at_rest, &b, &at_rest, 1, &t, NULL), IMPACT_NO_CONTACT);
+    const impact_solid inside = solid(sphere(1), (qvec3){-1, 0, 0}, quat_identity());
+    assert_int_equal(impact_toi(&inside, &at_rest, &b, &at_rest, 1, &t, NULL), IMPACT_OK);
+    assert_true(t == 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spheres_meet_in_closed_form),
+        cmocka_unit_test(falling_on_a_plane),
+        cmocka_unit_test(nothing_is_missed),
+        cmocka_unit_test(first_contact_of_random_pairs),
+        cmocka_unit_test(any_spin),
+        cmocka_unit_test(any_motion),
+        cmocka_unit_test(contact_is_the_gaps),
+        cmocka_unit_test(bad_input),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Whole scenes against closed forms: bounces, slides, rolls and several bodies with known answers.
+ */
+#include "kit/scene_log.h"
+
+static const double mass = 4, radius = 0.3, gravity = 9.81;
+
+/* ---- bounces, in closed form throughout ---- */
+
+static void ten_bounces(void **state)
+{
+    (void)state;
+    const double g = 9.80665, e = 0.8, w0 = sqrt(2 * g);
+    impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 1),
+                                 ball_body("ball", (qvec3){0, 0, radius + 1}, 0.25, e)};
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = bodies;
+    def.body_count = 2;
+    def.duration = 60;
+    def.output_rate = 0;
+    impact_scene *scene = make_scene(&def);
+    scene_log log = {0};
+    const impact_recorder recorder = log_recorder(&log);
+    assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_AT_REST);
+    double t = w0 / g, w = w0;
+    for (int i = 0; i < 10; i++) {
+        assert_near(log.events[i].t, t, 4e-15 * (i + 1));
+        assert_near(log.events[i].normal_before, -w, 1e-14 * w0);
+        assert_near(log.events[i].normal_after * log.events[i].normal_after / (2 * g), pow(e, 2 * i + 2), 4e-15);
+        t += 2 * e * w / g;
+        w *= e;
+    }
+    /* Zeno: all bounces end at w0/g + 2 e w0/(g (1 - e)), but for the tail below the rest height. */
+    const int contact = find_event(&log, IMPACT_EVENT_CONTACT, "roll", 0);
+    assert_true(contact >= 0);
+    const double zeno = w0 / g * (1 + 2 * e / (1 - e)), tail = 2 * sqrt(2 * def.rest_height / g) / (1 - e);
+    assert_true(log.events[contact].t < zeno && log.events[contact].t > zeno - tail / e);
+    const impact_usage usage = impact_scene_usage(scene);
+    assert_int_equal(usage.integrators, 0);
+    assert_true(usage.ballistic_flights > 10);
+    impact_sample rest;
+    assert_int_equal(impact_scene_body(scene, impact_scene_find(scene, "ball"), &rest), IMPACT_OK);
+    assert_near3(rest.position, (qvec3){0, 0, radius}, 1e-15);
+    assert_true(qvec3_norm(rest.velocity) == 0 && qvec3_norm(rest.omega) == 0);
+    free_log(&log);
+    impact_scene_destroy(scene);
+}
+
+/* ---- slides and rolls with known answers ---- */
+
+/* A ball thrown along the floor without spin slides until t = 2 v0/(7 mu g), then rolls at 5/7 v0 (Coriolis 1835). */
+static void bowling_ball(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 8; k++) {
+        const double v0 = 0.3 * pow(3, k - 3), mu = 0.05 + 0.1 * k, angle = 0.7 * k;
+        impact_body_def bodies[2] = {plane_body("lane", (qvec3){0, 0, 0}, quat_identity(), 1, 0),
+                                     ball_body("ball", (qvec3){0, 0, radius}, mu, 0)};
+        bodies[1].velocity = (qvec3){v0 * cos(angle), v0 * sin(angle), 0};
+        impact_scene_def def = impact_default_scene_def();
+        def.gravity = (qvec3){0, 0, -gravity};
+        def.bodies = bodies;
+        def.body_count = 2;
+        def.tolerance = 1e-14;
+        def.rest_speed = 1e-10; /* it rolls once its slip is below a hundredth of it */
+        const double t = 2 * v0 / (7 * mu * gravity);
+        def.duration = 2 * t;
+        impact_scene *scene = make_scene(&def);
+        scene_log log = {0};
+        const impact_recorder recorder = log_recorder(&log);
+        assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_OK);
+        const int stick = find_event(&log, IMPACT_EVENT_STICK, "roll", 0);
+        assert_true(stick >= 0);
+        assert_near(log.events[stick].t, t, 1e-12);
+        impact_sample end;
+        impact_scene_body(scene, 1, &end);
+        assert_near3(end.velocity, qvec3_scale(bodies[1].velocity, 5.0 / 7), 1e-12 * fmax(1, v0));
+        assert_near(qvec3_norm(end.omega), 5.0 / 7 * v0 / radius, 1e-11 * fmax(1, v0));
+        const impact_energy energy = impact_scene_energy(scene);
+        assert_near(energy.sliding_loss, mass * v0 * v0 / 7, 1e-12 * fmax(1, mass * v0 * v0));
+        free_log(&log);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* On an incline of angle a, a ball rolls at 5/7 g sin a when friction allows (mu > 2/7 tan a), and slides at g (sin a -
+ * mu cos a) else. */
+static void incline(void **state)
+{
+    (void)state;
+    for (int slides = 0; slides < 2; slides++) {
+        const double angle = 0.5, mu = slides ? 0.1 : 0.2;
+        const quat tilt = {cos(angle / 2), 0, sin(angle / 2), 0};
+        const qvec3 normal = quat_rotate(tilt, (qvec3){0, 0, 1}), down = quat_rotate(tilt, (qvec3){1, 0, 0});
+        impact_body_def bodies[2] = {plane_body("incline", (qvec3){0, 0, 0}, tilt, 1, 0),
+                                     ball_body("ball", qvec3_scale(normal, radius), mu, 0)};
+        impact_scene_def def = impact_default_scene_def();
+        def.gravity = (qvec3){0, 0, -gravity};
+        def.bodies = bodies;
+        def.body_count = 2;
+        def.duration = 2;
+        impact_scene *scene = make_scene(&def);
+        assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+        const double a = slides ? gravity * (sin(angle) - mu * cos(angle)) : 5.0 / 7 * gravity * sin(angle);
+        const double spin = slides ? 2.5 * mu * gravity * cos(angle) / radius : a / radius;
+        impact_sample end;
+        impact_scene_body(scene, 1, &end);
+        assert_near3(end.position, qvec3_axpy(0.5 * a * 4, down, bodies[1].position), 1e-10);
+        assert_near3(end.velocity, qvec3_scale(down, a * 2), 1e-10);
+        assert_near3(end.omega, (qvec3){0, spin * 2, 0}, 1e-9);
+        impact_scene_destroy(scene);
+    }
+}
+
+/* It rolls over the floor's edge and falls as a stone. */
+static void falls_off_the_edge(void **state)
+{
+    (void)state;
+    impact_body_def bodies[2] = {plane_body("table", (qvec3){0, 0, 0}, quat_identity(), 1, 0),
+                                 ball_body("ball", (qvec3){0, 0, radius}, 1, 0)};
+    impact_shape_plane(0.5, 2, &bodies[0].shape);
+    bodies[1].velocity = (qvec3){1, 0, 0};
+    bodies[1].omega = (qvec3){0, 1 / radius, 0};
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, -gravity};
+    def.bodies = bodies;
+    def.body_count = 2;
+    def.duration = 1;
+    impact_scene *scene = make_scene(&def);
+    scene_log log = {0};
+    const impact_recorder recorder = log_recorder(&log);
+    assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_OK);
+    const int liftoff = find_event(&log, IMPACT_EVENT_LIFTOFF, NULL, 0);
+    assert_true(liftoff >= 0);
+    assert_near(log.events[liftoff].t, 0.5, 1e-12);
+    impact_sample end;
+    impact_scene_body(scene, 1, &end);
+    assert_near3(end.position, (qvec3){1, 0, radius - 0.5 * gravity * 0.25}, 1e-11);
+    free_log(&log);
+    impact_scene_destroy(scene);
+}
+
+/* ---- several bodies ---- */
+
+/* Newton's cradle of three, not touching: the last flies off with the first one's velocity. */
+static void cradle(void **state)
+{
+    (void)state;
+    impact_body_def bodies[3] = {ball_body("a", (qvec3){0, 0, 0}, 0, 1), ball_body("b", (qvec3){1, 0, 0}, 0, 1),
+                                 ball_body("c", (qvec3){1.7, 0, 0}, 0, 1)};
+    bodies[0].velocity = (qvec3){2, 0, 0};
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, 0};
+    def.bodies = bodies;
+    def.body_count = 3;
+    impact_scene *scene = make_scene(&def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+    const double x[3] = {0.4, 1.1, 1.7 + 2 * (1 - 0.25)}, v[3] = {0, 0, 2};
+    for (int i = 0; i < 3; i++) {
+        impact_sample s;
+        impact_scene_body(scene, i, &s);
+        assert_near3(s.position, (qvec3){x[i], 0, 0}, 1e-14);
+        assert_near3(s.velocity, (qvec3){v[i], 0, 0}, 1e-14);
+    }
+    const impact_usage usage = impact_scene_usage(scene);
+    assert_int_equal(usage.integrators, 0);
+    assert_int_equal(usage.events[IMPACT_EVENT_IMPACT], 2);
+    impact_scene_destroy(scene);
+}
+
+/* Two bodies that fall towards each other under Newton's attraction alone, from rest a distance d apart: they meet at
+ * t = sqrt(d^3/(2 G (m1 + m2))) (acos(sqrt(x)) + sqrt(x (1 - x))), x = 2 r/d. */
+static void fall_by_attraction(void **state)
+{
+    (void)state;
+    const double d = 3, G = 0.5, x = 2 * radius / d;
+    impact_body_def bodies[2] = {ball_body("a", (qvec3){0, 0, 0}, 0, 0.5), ball_body("b", (qvec3){0, d, 0}, 0, 0.5)};
+    impact_force_def attraction = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
+    attraction.constant = G;
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, 0};
+    def.bodies = bodies;
+    def.body_count = 2;
+    def.forces = &attraction;
+    def.force_count = 1;
+    const double t = sqrt(d * d * d / (2 * G * 2 * mass)) * (acos(sqrt(x)) + sqrt(x * (1 - x)));
+    def.duration = 1.01 * t;
+    def.restitution_rule = IMPACT_MAXIMUM;
+    impact_scene *scene = make_scene(&def);
+    scene_log log = {0};
+    const impact_recorder recorder = log_recorder(&log);
+    assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_OK);
+    assert_near(log.events[0].t, t, 1e-10);
+    const double speed = sqrt(2 * G * 2 * mass * (1 / (2 * radius) - 1 / d));
+    assert_near(log.events[0].normal_before, -speed, 1e-10);
+    assert_near(log.events[0].normal_after, 0.5 * speed, 1e-10);
+    const impact_energy energy = impact_scene_energy(scene);
+    assert_near(energy.kinetic + energy.potential, energy.start - energy.impact_loss, 1e-9);
+    free_log(&log);
+    impact_scene_destroy(scene);
+}
+
+/* The whole scene turned by a rotation, and its bodies in another order, gives the turned answer. */
+static void invariant_under_rotation_and_order(void **state)
+{
+    (void)state;
+    quat turn;
+    quat_normalize((quat){0.3, -0.7, 0.2, 0.5}, &turn);
+    impact_sample ends[2];
+    for (int turned = 0; turned < 2; turned++) {
+        const quat r = turned ? turn : quat_identity();
+        const int ball = turned ? 1 : 0, other = turned ? 0 : 1;
+        impact_body_def bodies[3] = {[2] = plane_body("floor", (qvec3){0, 0, 0}, r, 0.4, 0.7)};
+        bodies[ball] = ball_body("ball", quat_rotate(r, (qvec3){0, 0, 1}), 0.6, 0.8);
+        bodies[ball].velocity = quat_rotate(r, (qvec3){1, 0.3, 0});
+        bodies[ball].omega = quat_rotate(r, (qvec3){3, -8, 11});
+        bodies[other] = ball_body("other", quat_rotate(r, (qvec3){1.2, 0.2, 0.3}), 0.5, 0.8);
+        impact_scene_def def = impact_default_scene_def();
+        def.gravity = quat_rotate(r, (qvec3){0, 0, -gravity});
+        def.bodies = bodies;
+        def.body_count = 3;
+        def.duration = 0.9;
+        impact_scene *scene = make_scene(&def);
+        assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+        impact_scene_body(scene, impact_scene_find(scene, "ball"), &ends[turned]);
+        const impact_usage usage = impact_scene_usage(scene);
+        assert_true(usage.events[IMPACT_EVENT_IMPACT] >= 2);
+        impact_scene_destroy(scene);
+    }
+    assert_near3(ends[1].position, quat_rotate(turn, ends[0].position), 1e-12);
+    assert_near3(ends[1].velocity, quat_rotate(turn, ends[0].velocity), 1e-11);
+    assert_near3(ends[1].omega, quat_rotate(turn, ends[0].omega), 1e-10);
+}
+
+int main(void)
+{
+    const struct CMUnitTest closed_forms[] = {
+        cmocka_unit_test(ten_bounces),
+        cmocka_unit_test(cradle),
+    };
+    const struct CMUnitTest integrated[] = {
+        cmocka_unit_test(bowling_ball),
+        cmocka_unit_test(incline),
+        cmocka_unit_test(falls_off_the_edge),
+        cmocka_unit_test(fall_by_attraction),
+        cmocka_unit_test(invariant_under_rotation_and_order),
+    };
+    const int failed = cmocka_run_group_tests(closed_forms, NULL, NULL);
+    if (!impact_has(IMPACT_PART_CVODE)) return failed;
+    return failed + cmocka_run_group_tests(integrated, NULL, NULL);
+}
