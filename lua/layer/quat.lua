@@ -225,6 +225,8 @@ core.layer()
 ---@field mean_karcher fun(q: rotation[], weights?: number[]): quat?, number | string, string?  mean, root mean square angle
 ---@field align fun(a: vector[], b: vector[], weights?: number[]): quat?, number | string, string?  b = R a: R, residual
 ---@field align_points fun(a: vector[], b: vector[], weights?: number[]): quat?, vec3 | string, number?, string?
+---@field align_error fun(q: rotation, a: vector[], b: vector[], weights?: number[]): number  rad, by which rounding may have turned q
+---@field align_points_error fun(q: rotation, a: vector[], b: vector[], weights?: number[]): number
 ---@field from_stereographic fun(image: vector, pole?: pole): quat
 ---@field stereographic_sphere fun(p: vector, pole?: pole): number[]?, string?  {x, y}; from "north" unless told
 ---@field from_stereographic_sphere fun(image: point, pole?: pole): vec3

@@ -196,6 +196,9 @@ check.close(residual, 0, 1e-15)
 local fit, shift = quat.align_points({ x, y, z }, { { 5, 1, 0 }, { 4, 0, 0 }, { 5, 0, 1 } })
 same(fit, h, 0, 0, h, 1e-14)
 vector(shift, 5, 0, 0, 1e-14)
+check.equal(quat.align_error(aligned, { x, y }, { y, { -1, 0, 0 } }) < 1e-14, true)
+check.equal(quat.align_error(one, { x }, { x }), math.huge)
+check.equal(quat.align_points_error(fit, { x, y, z }, { { 5, 1, 0 }, { 4, 0, 0 }, { 5, 0, 1 } }) < 1e-14, true)
 check.equal(select(3, quat.align({ x }, { x })), "the answer is not unique; one was chosen")
 
 -- Derivatives.
