@@ -6,6 +6,7 @@
 #define IMPACT_IMPACT_H
 
 #include "status.h"
+#include "memory.h"
 #include "shape.h"
 #include "gap.h"
 #include "toi.h"
