@@ -17,6 +17,22 @@ else()
   set(house_origin $ORIGIN)
 endif()
 
+# While 0.x breaks, each minor version is an interface of its own: a program of one does not load another.
+set(HOUSE_SOVERSION ${PROJECT_VERSION_MAJOR})
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+  set(HOUSE_SOVERSION 0.${PROJECT_VERSION_MINOR})
+endif()
+
+# check_version_macros(HEADER PREFIX): PREFIX_VERSION_MAJOR, _MINOR and _PATCH of the header are the project's.
+function(check_version_macros header prefix)
+  foreach(part MAJOR MINOR PATCH)
+    file(STRINGS ${header} line REGEX "^#define ${prefix}_VERSION_${part} ")
+    if(NOT line STREQUAL "#define ${prefix}_VERSION_${part} ${PROJECT_VERSION_${part}}")
+      message(FATAL_ERROR "${header}: '${line}', but the project's version is ${PROJECT_VERSION}")
+    endif()
+  endforeach()
+endfunction()
+
 # add_house_library(NAME [PACKAGE PACKAGE] SOURCES ... [HOUSE ...] [LIBRARIES ...] [DEFINITIONS ...])
 # compiles the sources once and links them twice: PACKAGE::NAME (shared) and PACKAGE::NAME_static; PACKAGE is NAME unless given.
 # HOUSE: this house's own libraries (quat), linked in the matching kind and shown to users; LIBRARIES: all others, kept private.
@@ -43,7 +59,7 @@ function(add_house_library name)
     add_library(${target} ${kind} $<TARGET_OBJECTS:${name}_objects>)
     add_library(${LIB_PACKAGE}::${target} ALIAS ${target})
     set_target_properties(${target} PROPERTIES
-      OUTPUT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+      OUTPUT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${HOUSE_SOVERSION}
       LINKER_LANGUAGE C INSTALL_RPATH ${house_origin})
     target_include_directories(${target} PUBLIC
       $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

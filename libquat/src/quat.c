@@ -3,6 +3,8 @@
 #include "dd.h"
 #include "scale.h"
 
+const char *quat_version(void) { return QUAT_VERSION; }
+
 const char *quat_status_string(quat_status status)
 {
     switch (status) {

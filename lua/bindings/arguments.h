@@ -3,12 +3,12 @@
  * arguments: how the Lua face reads what a script hands it. Shared by quat.core, quat.gsl and impact.core.
  *
  * To bind a room:
- *   1. lua/quat_ROOM.c or lua/impact_ROOM.c with one `void quat_lua_open_ROOM(lua_State *L)` (or impact_lua_open_ROOM):
- * the module's table is on top of the stack when it is called and when it returns; add your functions to it with
- * luaL_setfuncs.
- *   2. Name the file in lua/CMakeLists.txt and the opener in the list of lua/bindings/quat_core.c or
- * lua/bindings/impact_core.c. A room that needs GSL goes to the module quat.gsl instead (lua/bindings/quat_gsl.c),
- * which quat.lua and the runner load when a script first uses one of its names.
+ *   1. quat_ROOM.c or impact_ROOM.c in lua/bindings, with one `void quat_lua_open_ROOM(lua_State *L)` (or
+ * impact_lua_open_ROOM): the module's table is on top of the stack when it is called and when it returns; add your
+ * functions to it with luaL_setfuncs.
+ *   2. Name the file in lua/CMakeLists.txt and the opener in the list of quat_core.c or impact_core.c.
+ *      A room that needs GSL goes to the module quat.gsl instead (quat_gsl.c), which quat.lua and the runner load
+ * when a script first uses one of its names.
  *   3. Read with the functions below. Misuse raises an error that names the argument; an expected failure returns nil,
  * message (quat_lua_failure). Results go back with what results.h has.
  *   4. Sugar in Lua and the LuaLS annotations go to lua/layer/quat.lua or lua/layer/impact.lua.

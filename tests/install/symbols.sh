@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # symbols.sh NAME SHARED STATIC: the shared library shows our public prefix only; the archive defines names of that and of
-# the internal prefix (impact_: imp_).
+# the internal prefix (impact_: imp_). Vectors are quat's: qvec3_.
 set -euo pipefail
 prefix=${1%%_*}
+[ "$prefix" = impact ] || prefix='quat|qvec[23]|qmat3'
 bad=0
 check() { # check FILE PREFIXES NM-FLAG...
     local file=$1 prefixes=$2 names strangers

@@ -12,7 +12,8 @@
 extern "C" {
 #endif
 
-/* 0 is success; positive, success with a reason; negative, failure. */
+/* 0 is success; positive, success with a reason; negative, failure. One numbering with quat_status: what both have has
+ * one number, and no number has two meanings. */
 typedef enum impact_status {
     IMPACT_OK = 0,
     IMPACT_STOPPED = 1,     /* the caller asked to stop */
@@ -27,9 +28,9 @@ typedef enum impact_status {
     IMPACT_EDOMAIN = -2,    /* a NaN or infinity where a finite value is needed */
     IMPACT_ENOMEM = -3,
     IMPACT_EABSENT = -4,     /* the part was left out of this build */
-    IMPACT_EINTEGRATOR = -5, /* CVODE failed: the message says how */
-    IMPACT_EUNSETTLED = -6,  /* no answer within the allowed work */
-    IMPACT_ESINK = -7        /* the recorder's sink refused a row */
+    IMPACT_EINTEGRATOR = -6, /* CVODE failed: the message says how */
+    IMPACT_EUNSETTLED = -7,  /* no answer within the allowed work */
+    IMPACT_ESINK = -8        /* the recorder's sink refused a row */
 } impact_status;
 
 /* One short English sentence for a status; never NULL. */
@@ -39,6 +40,11 @@ typedef enum impact_part { IMPACT_PART_CVODE, IMPACT_PART_CCD } impact_part;
 
 /* Whether this build holds the part. */
 IMPACT_API bool impact_has(impact_part part);
+
+/* The version of these headers, for the preprocessor. */
+#define IMPACT_VERSION_MAJOR 0
+#define IMPACT_VERSION_MINOR 2
+#define IMPACT_VERSION_PATCH 0
 
 /* "MAJOR.MINOR.PATCH" of the library as built. */
 IMPACT_API const char *impact_version(void);

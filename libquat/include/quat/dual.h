@@ -22,41 +22,41 @@ typedef struct qtwist {
     qvec3 rotation, translation;
 } qtwist;
 
-static inline qdual quat_dual_make(quat real, quat dual)
+QUAT_INLINE qdual quat_dual_make(quat real, quat dual)
 {
     const qdual r = {real, dual};
     return r;
 }
-static inline qdual quat_dual_identity(void) { return quat_dual_make(quat_identity(), quat_make(0, 0, 0, 0)); }
+QUAT_INLINE qdual quat_dual_identity(void) { return quat_dual_make(quat_identity(), quat_make(0, 0, 0, 0)); }
 
 /* The motion x -> R(q) x + shift, q unit. */
-static inline qdual quat_dual_from(quat q, qvec3 shift)
+QUAT_INLINE qdual quat_dual_from(quat q, qvec3 shift)
 {
     return quat_dual_make(q, quat_scale(quat_mul(quat_pure(shift), q), 0.5));
 }
 /* The shift of a unit p: the vector part of 2 d r*. Its rotation is p.real. */
-static inline qvec3 quat_dual_shift(qdual p) { return quat_vector(quat_scale(quat_mul(p.dual, quat_conj(p.real)), 2)); }
+QUAT_INLINE qvec3 quat_dual_shift(qdual p) { return quat_vector(quat_scale(quat_mul(p.dual, quat_conj(p.real)), 2)); }
 
-static inline qdual quat_dual_add(qdual p, qdual q)
+QUAT_INLINE qdual quat_dual_add(qdual p, qdual q)
 {
     return quat_dual_make(quat_add(p.real, q.real), quat_add(p.dual, q.dual));
 }
-static inline qdual quat_dual_scale(qdual p, double s)
+QUAT_INLINE qdual quat_dual_scale(qdual p, double s)
 {
     return quat_dual_make(quat_scale(p.real, s), quat_scale(p.dual, s));
 }
-static inline qdual quat_dual_mul(qdual p, qdual q)
+QUAT_INLINE qdual quat_dual_mul(qdual p, qdual q)
 {
     return quat_dual_make(quat_mul(p.real, q.real), quat_add(quat_mul(p.real, q.dual), quat_mul(p.dual, q.real)));
 }
 /* Both parts conjugated: the inverse motion of a unit p. */
-static inline qdual quat_dual_conj(qdual p) { return quat_dual_make(quat_conj(p.real), quat_conj(p.dual)); }
+QUAT_INLINE qdual quat_dual_conj(qdual p) { return quat_dual_make(quat_conj(p.real), quat_conj(p.dual)); }
 /* The inverse of any p with non-zero real part: 1/r - e (1/r) d (1/r). Errors as quat_inverse's; *inverse = 1 then. */
 QUAT_API quat_status quat_dual_inverse(qdual p, qdual *inverse);
 
 /* The motion of unit p applied to a point, and its inverse. */
-static inline qvec3 quat_dual_apply(qdual p, qvec3 x) { return qvec3_add(quat_rotate(p.real, x), quat_dual_shift(p)); }
-static inline qvec3 quat_dual_apply_inverse(qdual p, qvec3 x)
+QUAT_INLINE qvec3 quat_dual_apply(qdual p, qvec3 x) { return qvec3_add(quat_rotate(p.real, x), quat_dual_shift(p)); }
+QUAT_INLINE qvec3 quat_dual_apply_inverse(qdual p, qvec3 x)
 {
     return quat_rotate_inverse(p.real, qvec3_sub(x, quat_dual_shift(p)));
 }

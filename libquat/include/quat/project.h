@@ -71,7 +71,7 @@ QUAT_API quat_status quat_from_orthographic_array(size_t n, const qvec3 image[],
 /* ---- Hopf (1931): each point of S^2 has a great circle of S^3 above it ---- */
 
 /* The point of S^2 below unit q: q k q*, where the rotation carries the z axis; the same for q exp(k t), whatever t. */
-static inline qvec3 quat_hopf(quat q) { return quat_rotate(q, qvec3_make(0, 0, 1)); }
+QUAT_INLINE qvec3 quat_hopf(quat q) { return quat_rotate(q, qvec3_make(0, 0, 1)); }
 /* The point of the fibre over p (any finite non-zero length) at angle t (rad): q0 exp(k t), q0 the shortest rotation
  * from z to p; t = 0 ... 2 pi goes round once. Over -z every q0 is as short: j is taken, and the status is
  * QUAT_NOT_UNIQUE. QUAT_EDOMAIN and *q = 1 for zero, infinite and NaN. */

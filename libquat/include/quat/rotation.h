@@ -17,7 +17,7 @@ extern "C" {
 /* v rotated by the unit quaternion q (body to world): the vector part of (q v) q*. As two products it rounds half as
  * much as v + 2 w (u x v) + 2 u x (u x v) and takes about as long. Scales by |q|^2 if q is not unit. For many
  * vectors by the same q, quat_rotate_array. */
-static inline qvec3 quat_rotate(quat q, qvec3 v)
+QUAT_INLINE qvec3 quat_rotate(quat q, qvec3 v)
 {
     const double s = q.x * v.x + q.y * v.y + q.z * v.z; /* q v = -s + a */
     const qvec3 a = qvec3_make(q.w * v.x + (q.y * v.z - q.z * v.y), q.w * v.y + (q.z * v.x - q.x * v.z),
@@ -27,17 +27,17 @@ static inline qvec3 quat_rotate(quat q, qvec3 v)
 }
 
 /* The inverse rotation, world to body. */
-static inline qvec3 quat_rotate_inverse(quat q, qvec3 v) { return quat_rotate(quat_conj(q), v); }
+QUAT_INLINE qvec3 quat_rotate_inverse(quat q, qvec3 v) { return quat_rotate(quat_conj(q), v); }
 
 /* ---- reflections ---- */
 
 /* v mirrored in the plane through the origin with unit normal n: v - 2 (n.v) n = n v n. Its determinant is -1: it is no
  * rotation; two of them are. */
-static inline qvec3 quat_reflect(qvec3 n, qvec3 v) { return qvec3_axpy(-2 * qvec3_dot(n, v), n, v); }
+QUAT_INLINE qvec3 quat_reflect(qvec3 n, qvec3 v) { return qvec3_axpy(-2 * qvec3_dot(n, v), n, v); }
 
 /* The rotation that mirrors in the plane of unit normal n1 first, then in that of n2: -n2 n1 = (n1.n2, n1 x n2), which
  * turns by twice the angle from n1 to n2 (thesis, theorem 5, with its sign corrected). */
-static inline quat quat_from_reflections(qvec3 n1, qvec3 n2)
+QUAT_INLINE quat quat_from_reflections(qvec3 n1, qvec3 n2)
 {
     return quat_from_parts(qvec3_dot(n1, n2), qvec3_cross(n1, n2));
 }
@@ -61,7 +61,7 @@ QUAT_API quat_status quat_to_axis_angle(quat q, qvec3 *axis, double *angle);
 /* ---- matrices ---- */
 
 /* The rotation matrix of the unit quaternion q: its columns are the body axes in the world. */
-static inline qmat3 quat_to_matrix(quat q)
+QUAT_INLINE qmat3 quat_to_matrix(quat q)
 {
     const double x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
     const double xx = q.x * x2, yy = q.y * y2, zz = q.z * z2;
@@ -76,7 +76,7 @@ static inline qmat3 quat_to_matrix(quat q)
  * the result is a unit quaternion whatever the noise in m. QUAT_EDOMAIN and *q = 1 when m has an infinite or NaN
  * element or one beyond 1e140, and when it is zero or vanishes beside 1. For a matrix that is off by more than
  * rounding, quat_from_matrix_nearest. */
-static inline quat_status quat_from_matrix(const qmat3 *m, quat *q)
+QUAT_INLINE quat_status quat_from_matrix(const qmat3 *m, quat *q)
 {
     const double a = m->m[0][0], b = m->m[1][1], c = m->m[2][2];
     const double wx = m->m[2][1] - m->m[1][2], wy = m->m[0][2] - m->m[2][0], wz = m->m[1][0] - m->m[0][1];
@@ -125,22 +125,22 @@ QUAT_API quat_status quat_swing_twist(quat q, qvec3 axis, quat *swing, quat *twi
 /* ---- angular velocity (rad/s) ---- */
 
 /* dq/dt of unit q turning at omega in world axes: (0, omega) q / 2. */
-static inline quat quat_derivative_world(quat q, qvec3 omega) { return quat_scale(quat_mul(quat_pure(omega), q), 0.5); }
+QUAT_INLINE quat quat_derivative_world(quat q, qvec3 omega) { return quat_scale(quat_mul(quat_pure(omega), q), 0.5); }
 /* The same with omega in body axes: q (0, omega) / 2. */
-static inline quat quat_derivative_body(quat q, qvec3 omega) { return quat_scale(quat_mul(q, quat_pure(omega)), 0.5); }
+QUAT_INLINE quat quat_derivative_body(quat q, qvec3 omega) { return quat_scale(quat_mul(q, quat_pure(omega)), 0.5); }
 /* The angular velocity in world axes of unit q with derivative dq: the vector part of 2 dq q*. */
-static inline qvec3 quat_omega_world(quat q, quat dq) { return quat_vector(quat_scale(quat_mul(dq, quat_conj(q)), 2)); }
+QUAT_INLINE qvec3 quat_omega_world(quat q, quat dq) { return quat_vector(quat_scale(quat_mul(dq, quat_conj(q)), 2)); }
 /* The same in body axes: the vector part of 2 q* dq. */
-static inline qvec3 quat_omega_body(quat q, quat dq) { return quat_vector(quat_scale(quat_mul(quat_conj(q), dq), 2)); }
+QUAT_INLINE qvec3 quat_omega_body(quat q, quat dq) { return quat_vector(quat_scale(quat_mul(quat_conj(q), dq), 2)); }
 
 /* q after time dt (s) of turning at a constant omega in world axes: exp(omega dt/2) q. For varying omega,
  * integrate.h. */
-static inline quat quat_step_world(quat q, qvec3 omega, double dt)
+QUAT_INLINE quat quat_step_world(quat q, qvec3 omega, double dt)
 {
     return quat_mul(quat_from_rotation_vector(qvec3_scale(omega, dt)), q);
 }
 /* The same with omega in body axes: q exp(omega dt/2). */
-static inline quat quat_step_body(quat q, qvec3 omega, double dt)
+QUAT_INLINE quat quat_step_body(quat q, qvec3 omega, double dt)
 {
     return quat_mul(q, quat_from_rotation_vector(qvec3_scale(omega, dt)));
 }

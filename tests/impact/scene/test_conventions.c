@@ -7,6 +7,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
+#include <string.h>
 #include <impact/impact.h>
 
 static void assert_vec3(qvec3 got, qvec3 wanted) { assert_true(qvec3_norm(qvec3_sub(got, wanted)) < 1e-15); }
@@ -133,6 +134,25 @@ static void failures_are_negative(void **state)
     assert_true(IMPACT_EARGUMENT < 0 && IMPACT_EABSENT < 0);
 }
 
+/* What both libraries have has one number; no other number means something in both. */
+static void statuses_of_both_libraries_have_one_numbering(void **state)
+{
+    (void)state;
+    assert_int_equal(QUAT_OK, IMPACT_OK);
+    assert_int_equal(QUAT_EARGUMENT, IMPACT_EARGUMENT);
+    assert_int_equal(QUAT_EDOMAIN, IMPACT_EDOMAIN);
+    assert_int_equal(QUAT_ENOMEM, IMPACT_ENOMEM);
+    assert_int_equal(QUAT_EABSENT, IMPACT_EABSENT);
+    int known = 0;
+    for (int number = -64; number < 64; number++) {
+        const bool quats = strcmp(quat_status_string((quat_status)number), "unknown status") != 0;
+        const bool impacts = strcmp(impact_status_string((impact_status)number), "unknown status") != 0;
+        if (number > 0 || number < IMPACT_EABSENT) assert_false(quats && impacts);
+        known += quats + impacts;
+    }
+    assert_true(known > 20);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +166,7 @@ int main(void)
         cmocka_unit_test(moments_are_along_the_body_axes),
         cmocka_unit_test(damping_is_the_part_lost_per_second),
         cmocka_unit_test(failures_are_negative),
+        cmocka_unit_test(statuses_of_both_libraries_have_one_numbering),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
