@@ -39,6 +39,7 @@ static void swap_columns(imp_linear *system, int i, int j)
 static void begin(imp_linear *system)
 {
     system->rank = system->n;
+    system->sign = 1;
     for (int k = 0; k < system->n; k++) system->rows[k] = system->columns[k] = k;
 }
 
@@ -54,22 +55,63 @@ static void eliminate(imp_linear *system, int k)
     }
 }
 
-/* With pivots from columns; false where one vanishes. */
-static bool reduce_regular(imp_linear *system, double least)
+/* ---- pivots from columns, four at a time: one pass over what is left instead of four, in the same order of sums ----
+ */
+
+enum { PANEL = 4 };
+
+/* row -= factors[0] from[0] - factors[1] from[1] ... from column `first` on. */
+static void subtract_rows(double *restrict row, const double *factors, const double *from, int n, int first, int count)
+{
+    if (count < PANEL) {
+        for (int l = 0; l < count; l++)
+            for (int j = first; j < n; j++) row[j] -= factors[l] * from[l * n + j];
+        return;
+    }
+    const double f0 = factors[0], f1 = factors[1], f2 = factors[2], f3 = factors[3];
+    const double *restrict a = from, *restrict b = a + n, *restrict c = b + n, *restrict d = c + n;
+    for (int j = first; j < n; j++) row[j] = (((row[j] - f0 * a[j]) - f1 * b[j]) - f2 * c[j]) - f3 * d[j];
+}
+
+/* Takes the columns k to k + width apart, these columns alone; false where a pivot does not exceed the least. */
+static bool reduce_panel(imp_linear *system, int first, int width, double least)
 {
     const int n = system->n;
     const double *a = system->matrix;
-    begin(system);
-    for (int k = 0; k < n; k++) {
+    for (int k = first; k < first + width; k++) {
         int row = k;
         for (int i = k + 1; i < n; i++)
             if (fabs(a[i * n + k]) > fabs(a[row * n + k])) row = i;
         if (!(fabs(a[row * n + k]) > least)) return false;
+        if (row != k) system->sign = -system->sign;
         swap_rows(system, k, row);
-        eliminate(system, k);
+        const double *from = row_of(system, k);
+        if (from[k] < 0) system->sign = -system->sign;
+        for (int i = k + 1; i < n; i++) {
+            double *own = row_of(system, i);
+            own[k] /= from[k];
+            for (int j = k + 1; j < first + width; j++) own[j] -= own[k] * from[j];
+        }
     }
     return true;
 }
+
+/* False where a pivot does not exceed the least. */
+static bool reduce_regular(imp_linear *system, double least)
+{
+    const int n = system->n;
+    begin(system);
+    for (int first = 0; first < n; first += PANEL) {
+        const int width = n - first < PANEL ? n - first : PANEL, next = first + width;
+        if (!reduce_panel(system, first, width, least)) return false;
+        for (int i = first + 1; i < n; i++)
+            subtract_rows(row_of(system, i), row_of(system, i) + first, row_of(system, first), n, next,
+                          i < next ? i - first : width);
+    }
+    return true;
+}
+
+bool imp_linear_factor_regular(imp_linear *system) { return reduce_regular(system, 0); }
 
 /* With complete pivoting, as far as pivots do not vanish. */
 static void reduce_singular(imp_linear *system, double least)
@@ -141,6 +183,7 @@ void imp_linear_factor(imp_linear *system)
     if (reduce_regular(system, vanishing * most)) return;
     memcpy(system->matrix, system->spare, bytes);
     reduce_singular(system, vanishing * most);
+    system->sign = 0;
     find_basis(system);
 }
 

@@ -10,6 +10,7 @@
 /* A system of n equations, taken apart; the arrays are the caller's. */
 typedef struct imp_linear {
     int n, rank;
+    int sign;            /* of the determinant; 0 where equations are missing */
     double *matrix;      /* n^2: comes in by rows, and is spent */
     double *spare;       /* n^2 of scratch */
     double *scratch;     /* n of scratch */
@@ -19,6 +20,9 @@ typedef struct imp_linear {
 /* Takes the matrix apart by Gauss' elimination, with complete pivoting if pivots under 1e-12 of the greatest element
  * show that the equations do not determine all unknowns. */
 void imp_linear_factor(imp_linear *system);
+
+/* The same where no pivot but zero is refused: false of those. The matrix is badly conditioned, and known to be. */
+bool imp_linear_factor_regular(imp_linear *system);
 
 /* x, in place of the right-hand side: of all that satisfy the equations that tell something, the one of least norm. */
 void imp_linear_solve(const imp_linear *system, double *x);

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Every threshold of the library, with its unit, its reason and what it is derived from. eps is the unit in the last
+ * place of 1 (2^-52; of the second precision, 2^-112).
+ */
+#ifndef IMP_TOLERANCES_H
+#define IMP_TOLERANCES_H
+
+/* ---- contact: the cone problem, docs/cone.md ---- */
+
+/* The residual of what is solved: some 450 eps of the largest reaction and velocity. W itself is rounded, in sums of as
+ * many terms as bodies' coordinates; the worst of 70 000 made problems is 2e-14. */
+#define IMP_CONE_ACCEPTED 1e-13
+/* The residual up to which an answer is told as inexact: above it modes, not digits, are wrong. */
+#define IMP_CONE_USABLE 1e-6
+/* |F| without units at which Newton's steps end: 4 eps, x and y being of order 1. */
+#define IMP_CONE_FINEST 1e-15
+/* e where the path ends: x and y that differ by less than its square, 1e-20, are modes that no rounding tells apart. */
+#define IMP_CONE_PATH_END 1e-10
+/* |F| up to this part of e is the path: x and y are of order e where modes are not told apart yet. */
+#define IMP_CONE_NEAR 0.1
+/* e below which a step that fails shows rounding, not a fold: the matrix' condition is 1/e^2, 1e12. */
+#define IMP_CONE_ARC_LEAST 1e-6
+/* Ratio of e's steps from which the path is said to turn: 44 steps for two decades. */
+#define IMP_CONE_SLOW 0.9
+/* The least step by arc length, of a contact's size: a path that creeps more is left. */
+#define IMP_CONE_CREEP 1e-6
+/* Alpha of A + alpha 1, A's diagonal being 1 in the mean: contacts hardly feel each other. */
+#define IMP_CONE_EASING 20
+/* The same of the problem that shows a direction of no solution: its answer grows to 1/shift along it, and is off it by
+ * as little. */
+#define IMP_CONE_SHIFT 1e-10
+/* Q/d: where a solution's reactions would have to exceed this there is none: W d is then rounding. */
+#define IMP_CONE_EXCLUDING 1e8
+
+/* ---- contact: the proof of rest, docs/cone.md ---- */
+
+/* What may be left of a body's load and reactions, of the sum of their sizes: some 450 eps of sums of as many terms. */
+#define IMP_REST_BALANCED 1e-13
+/* The residual from which the forces themselves are corrected: Newton's next step squares it. */
+#define IMP_REST_NEAR 1e-8
+/* Of its greatest element, added to the Hessian's diagonal: its rounding. */
+#define IMP_REST_SHIFT 1e-13
+/* Of the load's size: reactions larger than this are none. A slope of mu (1 + 1e-6) shows 1e9 and more. */
+#define IMP_REST_EXCLUDING 1e6
+
+#endif

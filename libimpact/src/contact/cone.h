@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cone: Coulomb's law at many contacts at once, for impulses or for accelerations. Internal.
+ *
+ * Per contact c with normal n and friction mu, the velocities (or their rates) of its points being u = W r + q:
+ *
+ *     K   = {r : |r_t| <= mu r_n}        K* = {v : mu |v_t| <= v_n}
+ *     û   = u + mu |u_t| n               K* contains û,  û . r = 0,  K contains r        (De Saxcé & Feng 1998)
+ *
+ * that is u_n >= 0, friction within its cone, and against the slip with all its force where there is any. A contact
+ * without friction keeps its normal part alone; its friction is zero, its slip whatever W and q make of it.
+ */
+#ifndef IMP_CONE_H
+#define IMP_CONE_H
+
+#include "base/arena.h"
+
+/* Three numbers a contact: along its normal, then along two tangents; units are the caller's, kept by W. */
+typedef struct imp_cone_problem {
+    int count;              /* contacts, >= 0 */
+    const double *w;        /* (3 count)^2 by rows: symmetric, no eigenvalue under zero, of any rank */
+    const double *q;        /* 3 count: u without reactions */
+    const double *friction; /* count, >= 0 */
+    const double *last_r;   /* 3 count each: an answer of like modes to begin with; NULL: none */
+    const double *last_u;
+} imp_cone_problem;
+
+typedef enum imp_cone_status {
+    IMP_CONE_SOLVED,
+    IMP_CONE_INEXACT,     /* an answer is there, with a residual over the bound: told, not to be trusted silently */
+    IMP_CONE_UNSETTLED,   /* no answer was found; none is excluded */
+    IMP_CONE_NO_SOLUTION, /* none exists: `r` holds a direction that shows it, see imp_cone_outcome */
+    IMP_CONE_BAD          /* W, q or a friction is no number, or a friction is negative, or there is no room */
+} imp_cone_status;
+
+typedef enum imp_cone_mode { IMP_CONE_OPEN, IMP_CONE_STICKS, IMP_CONE_SLIDES } imp_cone_mode;
+
+typedef enum imp_cone_stage {
+    IMP_CONE_LAST, /* the modes of last time */
+    IMP_CONE_PATH, /* the central path */
+    IMP_CONE_ARC,  /* the central path by arc length, round folds */
+    IMP_CONE_EASED /* by way of W + alpha 1, alpha to 0 */
+} imp_cone_stage;
+
+/* The proof: with R = max |r_c|, Q = max |q_c| over the contacts and s = R/Q, the largest over the contacts of
+ * |r - P_K(r - s û)|/R, which is zero of solutions alone, from W, q and r as given, sums taken in twice the precision.
+ * NO_SOLUTION: r is a direction d >= 0 along normals, W d = 0 to rounding and d . q < 0, so that d . u = d . q < 0
+ * whatever the reactions, while u_n >= 0 wants d . u >= 0: reactions under `least_reactions` cannot solve it. */
+typedef struct imp_cone_outcome {
+    imp_cone_status status;
+    imp_cone_stage stage;
+    double residual;        /* the proof's, 1 */
+    double least_reactions; /* NO_SOLUTION: -d . q/max |W d|, |d|_1 = 1: infinite where W d vanishes */
+    int factorings, steps;  /* linear systems taken apart; Newton's steps */
+    bool chosen;            /* the linear system at the answer has no full rank: reactions are not unique */
+} imp_cone_outcome;
+
+/* All that the solver needs, from an arena: nothing is allocated while it solves. */
+typedef struct imp_cone_workspace {
+    imp_arena *arena;
+    int capacity; /* contacts */
+    double *block;
+    struct imp_cone_key *keys;
+    int *indices;
+} imp_cone_workspace;
+
+/* Room for so many contacts, of the workspace's arena; false where that has no more. What was there is lost. */
+bool imp_cone_reserve(imp_cone_workspace *workspace, int contacts);
+void imp_cone_release(imp_cone_workspace *workspace); /* gives it back to the arena */
+
+/* Solves the problem: r (reactions, on the side of u) and u, 3 count each, and the mode of each contact (count; NULL if
+ * not wanted). The answer's bits depend neither on the contacts' order nor on anything but the problem. */
+imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_workspace *workspace, double *r, double *u,
+                                imp_cone_mode *modes);
+
+/* The residual of any r, as in the outcome; u: of r, 3 count, written. */
+double imp_cone_residual(const imp_cone_problem *problem, const double *r, double *u);
+
+const char *imp_cone_status_name(imp_cone_status status);
+
+#endif

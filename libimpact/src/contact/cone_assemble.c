@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * W_ij = g_i . g_j with the rows g of G M^(-1/2): the same products whichever of i and j comes first, so that W is
+ * symmetric and its bits know nothing of the contacts' order.
+ */
+#include "contact/cone_assemble.h"
+
+#include <math.h>
+
+void imp_cone_find_axes(qvec3 normal, qvec3 axes[3])
+{
+    const double x = fabs(normal.x), y = fabs(normal.y), z = fabs(normal.z);
+    const qvec3 least = x <= y && x <= z ? (qvec3){1, 0, 0} : y <= z ? (qvec3){0, 1, 0} : (qvec3){0, 0, 1};
+    const qvec3 across = qvec3_cross(normal, least);
+    axes[0] = normal;
+    axes[1] = qvec3_scale(across, 1 / qvec3_norm(across));
+    axes[2] = qvec3_cross(normal, axes[1]);
+}
+
+static void find_side(const imp_body *body, quat q, const qvec3 axes[3], qvec3 arm, double sign, double side[3][6])
+{
+    const double linear = body->is_static ? 0 : sign * sqrt(body->inverse_mass);
+    const qvec3 root = {sqrt(body->inverse_moments.x), sqrt(body->inverse_moments.y), sqrt(body->inverse_moments.z)};
+    for (int k = 0; k < 3; k++) {
+        const qvec3 torque = qvec3_cross(arm, axes[k]);
+        const qvec3 own = body->spherical ? torque : quat_rotate_inverse(q, torque);
+        const double row[6] = {linear * axes[k].x,    linear * axes[k].y,    linear * axes[k].z,
+                               sign * root.x * own.x, sign * root.y * own.y, sign * root.z * own.z};
+        for (int l = 0; l < 6; l++) side[k][l] = body->is_static ? 0 : row[l];
+    }
+}
+
+static void add_block(double a[3][6], double b[3][6], double *w, size_t width)
+{
+    for (size_t k = 0; k < 3; k++)
+        for (size_t l = 0; l < 3; l++) {
+            double sum = 0;
+            for (int m = 0; m < 6; m++) sum += a[k][m] * b[l][m];
+            w[k * width + l] += sum;
+        }
+}
+
+void imp_cone_find_rows(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
+                        imp_cone_row *rows)
+{
+    for (int c = 0; c < count; c++) {
+        const imp_cone_contact *own = &contacts[c];
+        find_side(&world->bodies[own->body1], states[own->body1].q, own->axes, own->arm1, 1, rows[c].side[0]);
+        find_side(&world->bodies[own->body2], states[own->body2].q, own->axes, own->arm2, -1, rows[c].side[1]);
+    }
+}
+
+void imp_cone_assemble(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
+                       imp_cone_row *rows, double *w)
+{
+    const size_t width = 3 * (size_t)count;
+    imp_cone_find_rows(world, states, contacts, count, rows);
+    for (size_t i = 0; i < width * width; i++) w[i] = 0;
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++) {
+            const int one[2] = {contacts[i].body1, contacts[i].body2}, two[2] = {contacts[j].body1, contacts[j].body2};
+            for (int s = 0; s < 2; s++)
+                for (int t = 0; t < 2; t++)
+                    if (one[s] == two[t] && !world->bodies[one[s]].is_static)
+                        add_block(rows[i].side[s], rows[j].side[t], &w[3 * ((size_t)i * width + (size_t)j)], width);
+        }
+}
+
+void imp_cone_contact_velocities(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
+                                 int count, double *u)
+{
+    for (int c = 0; c < count; c++) {
+        const imp_cone_contact *own = &contacts[c];
+        const qvec3 v = qvec3_sub(imp_point_velocity(&world->bodies[own->body1], &states[own->body1], own->arm1),
+                                  imp_point_velocity(&world->bodies[own->body2], &states[own->body2], own->arm2));
+        for (int k = 0; k < 3; k++) u[3 * c + k] = qvec3_dot(own->axes[k], v);
+    }
+}
+
+void imp_cone_push(const imp_world *world, const imp_cone_contact *contacts, int count, const double *r,
+                   imp_state *states)
+{
+    for (int c = 0; c < count; c++) {
+        const imp_cone_contact *own = &contacts[c];
+        qvec3 p = {0, 0, 0};
+        for (int k = 0; k < 3; k++) p = qvec3_axpy(r[3 * c + k], own->axes[k], p);
+        const int bodies[2] = {own->body1, own->body2};
+        const qvec3 arms[2] = {own->arm1, own->arm2};
+        for (int s = 0; s < 2; s++, p = qvec3_neg(p)) {
+            if (world->bodies[bodies[s]].is_static) continue;
+            imp_state *state = &states[bodies[s]];
+            state->v = qvec3_axpy(world->bodies[bodies[s]].inverse_mass, p, state->v);
+            state->momentum = qvec3_add(state->momentum, qvec3_cross(arms[s], p));
+        }
+    }
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cone_assemble: the cone problem's W = G M^-1 G^T and velocities of bodies that touch. Internal.
+ */
+#ifndef IMP_CONE_ASSEMBLE_H
+#define IMP_CONE_ASSEMBLE_H
+
+#include "contact/cone.h"
+#include "world/world.h"
+
+/* Where two bodies touch. */
+typedef struct imp_cone_contact {
+    int body1, body2;
+    qvec3 axes[3];    /* normal, from body 2 to body 1, and two tangents; world, orthonormal */
+    qvec3 arm1, arm2; /* from the bodies' centres of mass, m */
+} imp_cone_contact;
+
+/* Of one contact the three rows of G M^(-1/2), of both bodies: force along an axis to (linear, angular) per root of
+ * mass and of moments, in body axes; zero of a static one. */
+typedef struct imp_cone_row {
+    double side[2][3][6];
+} imp_cone_row;
+
+/* The normal and two tangents that depend on it alone. */
+void imp_cone_find_axes(qvec3 normal, qvec3 axes[3]);
+
+void imp_cone_find_rows(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
+                        imp_cone_row *rows);
+
+/* rows (count) and w ((3 count)^2, symmetric to the bit), 1/kg. */
+void imp_cone_assemble(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
+                       imp_cone_row *rows, double *w);
+
+/* What the bodies' velocities are at the contacts, along their axes: 3 count, m/s. */
+void imp_cone_contact_velocities(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
+                                 int count, double *u);
+
+/* Gives the bodies the contacts' impulses, N s. */
+void imp_cone_push(const imp_world *world, const imp_cone_contact *contacts, int count, const double *r,
+                   imp_state *states);
+
+#endif

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: MIT */
+#include "contact/cone_map.h"
+
+#include <math.h>
+#include <string.h>
+
+/* One contact's spectral values. */
+typedef struct cone_spectrum {
+    double dir[2], size;     /* z_t/|z_t|, 0 at the axis; |z_t| */
+    double f[2], g[2];       /* f(lambda_i), f(-lambda_i) */
+    double rise[2], fall[2]; /* f'(lambda_i), f'(-lambda_i) */
+    double root[2];          /* sqrt(lambda² + 4 e²) */
+    double chord, counter;   /* (f_2 - f_1)/(lambda_2 - lambda_1), and 1 - it */
+} cone_spectrum;
+
+/* The smaller of f(lambda), f(-lambda), without cancellation. */
+static double smaller_part(double size, double root, double e)
+{
+    return size + root > 0 ? 2 * e * e / (size + root) : 0;
+}
+
+static void spectral_value(cone_spectrum *s, int i, double lambda, double e)
+{
+    const double size = fabs(lambda), root = sqrt(lambda * lambda + 4 * e * e);
+    const double small = smaller_part(size, root, e), large = 0.5 * (size + root);
+    s->root[i] = root;
+    s->f[i] = lambda > 0 ? large : small;
+    s->g[i] = lambda > 0 ? small : large;
+    s->rise[i] = root > 0 ? s->f[i] / root : 0.5;
+    s->fall[i] = root > 0 ? s->g[i] / root : 0.5;
+}
+
+/* chord = (1 + L/S)/2 with L = lambda_1 + lambda_2, S = root_1 + root_2; S² - L² without cancellation. */
+static void find_chord(cone_spectrum *s, double lambda1, double lambda2, double e)
+{
+    const double sum = s->root[0] + s->root[1], along = lambda1 + lambda2, product = lambda1 * lambda2,
+                 four = 4 * e * e;
+    double small = 0.5;
+    if (sum > 0) {
+        const double roots = s->root[0] * s->root[1];
+        const double excess =
+            product > 0 ? four * (lambda1 * lambda1 + lambda2 * lambda2 + four) / (roots + product) : roots - product;
+        small = (four + excess) / (sum * (sum + fabs(along)));
+    }
+    s->chord = along < 0 ? small : 1 - small;
+    s->counter = along < 0 ? 1 - small : small;
+}
+
+static cone_spectrum spectrum_of(const double *z, int dimension, double e)
+{
+    cone_spectrum s = {.size = 0};
+    if (dimension == 3) {
+        s.size = sqrt(z[1] * z[1] + z[2] * z[2]);
+        if (s.size > 0) s.dir[0] = z[1] / s.size, s.dir[1] = z[2] / s.size;
+    }
+    spectral_value(&s, 0, z[0] - s.size, e);
+    spectral_value(&s, 1, z[0] + s.size, e);
+    find_chord(&s, z[0] - s.size, z[0] + s.size, e);
+    return s;
+}
+
+void imp_cone_values(const imp_cone_system *system, const double *z, double e, double *x, double *u)
+{
+    for (int c = 0; c < system->count; c++) {
+        const int i = system->start[c], dimension = system->start[c + 1] - i;
+        const cone_spectrum s = spectrum_of(&z[i], dimension, e);
+        x[i] = 0.5 * (s.f[0] + s.f[1]);
+        u[i] = s.g[1];
+        for (int k = 1; k < dimension; k++) {
+            x[i + k] = s.chord * z[i + k];
+            u[i + k] = -s.counter * z[i + k];
+        }
+    }
+}
+
+/* A row by a vector, in four sums, whose order is fixed: one sum would wait for each of its additions. */
+static double row_product(const double *row, const double *x, int n)
+{
+    double sum[4] = {0, 0, 0, 0};
+    int j = 0;
+    for (; j + 4 <= n; j += 4)
+        for (int k = 0; k < 4; k++) sum[k] += row[j + k] * x[j + k];
+    for (; j < n; j++) sum[0] += row[j] * x[j];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+void imp_cone_reactions(const imp_cone_system *system, const double *x, double *r)
+{
+    const double unit = system->size / system->d;
+    for (int c = 0; c < system->count; c++) {
+        const int i = system->start[c], from = system->order[c];
+        const double friction = system->start[c + 1] - i == 3 ? system->problem->friction[from] : 0;
+        r[3 * from] = x[i] * unit;
+        for (int k = 1; k < 3; k++) r[3 * from + k] = friction > 0 ? friction * x[i + k] * unit : 0;
+    }
+}
+
+/* Sum and product with their errors (Ogita, Rump & Oishi 2005). */
+void imp_cone_velocities(const imp_cone_problem *problem, const double *r, double *u)
+{
+    const int n = 3 * problem->count;
+    for (int i = 0; i < n; i++) {
+        const double *row = &problem->w[(size_t)i * (size_t)n];
+        double sum = problem->q[i], rest = 0;
+        for (int j = 0; j < n; j++) {
+            if (r[j] == 0) continue;
+            const double product = row[j] * r[j], low = fma(row[j], r[j], -product);
+            const double next = sum + product, back = next - sum;
+            rest += ((sum - (next - back)) + (product - back)) + low;
+            sum = next;
+        }
+        u[i] = sum + rest;
+    }
+}
+
+/* T u/Q - b as the problem itself has it. */
+static void ask_problem(imp_cone_system *system, double *value)
+{
+    imp_cone_reactions(system, system->x, system->r);
+    imp_cone_velocities(system->problem, system->r, system->own);
+    for (int c = 0; c < system->count; c++) {
+        const int i = system->start[c], from = system->order[c];
+        for (int k = 0; i + k < system->start[c + 1]; k++)
+            value[i + k] = (k ? system->problem->friction[from] : 1) * system->own[3 * from + k] / system->size;
+    }
+}
+
+double imp_cone_defect(imp_cone_system *system, const double *z, double e, double *value)
+{
+    const int n = system->n;
+    double square = 0;
+    imp_cone_values(system, z, e, system->x, system->u);
+    if (system->exact)
+        ask_problem(system, value);
+    else
+        for (int i = 0; i < n; i++)
+            value[i] = row_product(&system->a[(size_t)i * (size_t)n], system->x, n) + system->b[i];
+    for (int i = 0; i < n; i++) {
+        value[i] = system->u[i] - value[i];
+        square += value[i] * value[i];
+    }
+    return sqrt(square);
+}
+
+/* X' and -U' of one contact, 3 x 3. */
+static void derivatives(const cone_spectrum *s, double rise[3][3], double fall[3][3])
+{
+    const double along = 0.5 * (s->rise[0] + s->rise[1]), skew = 0.5 * (s->rise[1] - s->rise[0]);
+    const double back = 0.5 * (s->fall[0] + s->fall[1]), turn = 0.5 * (s->fall[1] - s->fall[0]);
+    rise[0][0] = along;
+    fall[0][0] = s->fall[1];
+    for (int k = 0; k < 2; k++) {
+        rise[0][k + 1] = rise[k + 1][0] = skew * s->dir[k];
+        fall[0][k + 1] = s->fall[1] * s->dir[k];
+        fall[k + 1][0] = turn * s->dir[k];
+        for (int l = 0; l < 2; l++) {
+            const double ray = s->dir[k] * s->dir[l];
+            rise[k + 1][l + 1] = (along - s->chord) * ray + (k == l ? s->chord : 0);
+            fall[k + 1][l + 1] = (back - s->counter) * ray + (k == l ? s->counter : 0);
+        }
+    }
+}
+
+/* The columns of one contact with friction. */
+static void fill_columns(imp_cone_system *system, int i, double rise[3][3], double fall[3][3])
+{
+    const size_t n = (size_t)system->n;
+    for (size_t row = 0; row < n; row++) {
+        const double *a = &system->a[row * n + (size_t)i];
+        double *m = &system->matrix[row * n + (size_t)i];
+        for (int k = 0; k < 3; k++) m[k] = a[0] * rise[0][k] + a[1] * rise[1][k] + a[2] * rise[2][k];
+    }
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++) system->matrix[((size_t)(i + k)) * n + (size_t)(i + l)] += fall[k][l];
+}
+
+void imp_cone_factor(imp_cone_system *system, const double *z, double e)
+{
+    const size_t n = (size_t)system->n;
+    for (int c = 0; c < system->count; c++) {
+        const int i = system->start[c], dimension = system->start[c + 1] - i;
+        const cone_spectrum s = spectrum_of(&z[i], dimension, e);
+        double rise[3][3], fall[3][3];
+        derivatives(&s, rise, fall);
+        if (dimension == 3) {
+            fill_columns(system, i, rise, fall);
+            continue;
+        }
+        for (size_t row = 0; row < n; row++)
+            system->matrix[row * n + (size_t)i] = system->a[row * n + (size_t)i] * rise[0][0];
+        system->matrix[(size_t)i * n + (size_t)i] += fall[0][0];
+    }
+    imp_linear linear = {.n = system->n,
+                         .matrix = system->matrix,
+                         .spare = system->spare,
+                         .scratch = system->scratch,
+                         .rows = system->rows,
+                         .columns = system->columns};
+    if (e == 0)
+        imp_linear_factor(&linear);
+    else if (!imp_linear_factor_regular(&linear))
+        linear.sign = 0;
+    system->rank = linear.rank;
+    system->sign = linear.sign;
+    system->factorings++;
+}
+
+void imp_cone_back(imp_cone_system *system, double *right)
+{
+    const imp_linear linear = {.n = system->n,
+                               .rank = system->rank,
+                               .matrix = system->matrix,
+                               .spare = system->spare,
+                               .scratch = system->scratch,
+                               .rows = system->rows,
+                               .columns = system->columns};
+    imp_linear_solve(&linear, right);
+}
+
+void imp_cone_drift(imp_cone_system *system, const double *z, double e, double *rate)
+{
+    const int n = system->n;
+    double *x = system->x, *u = system->u; /* d/d(e²) of both: df/d(e²) = 1/root */
+    for (int c = 0; c < system->count; c++) {
+        const int i = system->start[c], dimension = system->start[c + 1] - i;
+        const cone_spectrum s = spectrum_of(&z[i], dimension, e);
+        const double low = 1 / s.root[0], high = 1 / s.root[1];
+        x[i] = 0.5 * (low + high);
+        u[i] = high;
+        for (int k = 1; k < dimension; k++) x[i + k] = u[i + k] = 0.5 * (high - low) * s.dir[k - 1];
+    }
+    for (int i = 0; i < n; i++) rate[i] = u[i] - row_product(&system->a[(size_t)i * (size_t)n], x, n);
+}
+
+/* Along the step, halved until |F| falls; false where it does not. */
+static bool search_line(imp_cone_system *system, double e, double *norm)
+{
+    enum { HALVINGS = 12 };
+    const int n = system->n;
+    double part = 1;
+    for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
+        for (int i = 0; i < n; i++) system->trial[i] = system->z[i] + part * system->step[i];
+        const double found = imp_cone_defect(system, system->trial, e, system->rate);
+        if (!(found < (1 - 1e-4 * part) * *norm)) continue;
+        memcpy(system->z, system->trial, sizeof *system->z * (size_t)n);
+        memcpy(system->value, system->rate, sizeof *system->z * (size_t)n);
+        *norm = found;
+        return true;
+    }
+    return false;
+}
+
+bool imp_cone_newton(imp_cone_system *system, double e, double wanted, int most, bool positive)
+{
+    double norm = imp_cone_defect(system, system->z, e, system->value);
+    for (int k = 0; k < most && norm > wanted; k++) {
+        imp_cone_factor(system, system->z, e);
+        if (positive && system->sign <= 0) return false;
+        memcpy(system->step, system->value, sizeof *system->step * (size_t)system->n);
+        imp_cone_back(system, system->step);
+        system->steps++;
+        if (!search_line(system, e, &norm)) return false;
+    }
+    return norm <= wanted;
+}

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cone_map: the problem without units, and its smoothed map. Internal to the cone solver.
+ *
+ * x = r d/(T Q), y = T û/Q, T = diag(1, mu, mu), d = tr W/3n, A = T W T/d, b = T q/Q: both cones become |x_t| <= x_n.
+ * With z = x - y and lambda_1,2 = z_n -/+ |z_t|, f(lambda) = (lambda + sqrt(lambda² + 4 e²))/2:
+ *
+ *     x = f(z) in the cone's Jordan algebra, y = f(-z): x o y = e² 1 for every z        (Fukushima, Luo & Tseng 2002)
+ *     F(z) = U(z) - A X(z) - b,   U = y - |y_t| n, as y_n - |y_t| = f(-lambda_2)
+ *
+ * A contact without friction is the number z_n alone.
+ */
+#ifndef IMP_CONE_MAP_H
+#define IMP_CONE_MAP_H
+
+#include "contact/cone.h"
+#include "contact/persist_linear.h"
+
+typedef struct imp_cone_system {
+    const imp_cone_problem *problem;
+    const int *order; /* the problem's contact of each of the system's */
+    double d, size;   /* the scales, powers of two: what changes units by such changes no bit; Q */
+    double eased;     /* alpha, what A's diagonal has too much */
+    bool exact;       /* F is asked of the problem itself, in twice the precision */
+    int count, n;     /* contacts, unknowns */
+    const int *start; /* count + 1: each contact's first unknown; a contact has three or one */
+    double *a, *b;    /* n^2 by rows, n */
+    double *r, *own;  /* of the problem, 3 count: scratch */
+    double *matrix, *spare, *scratch;
+    int *rows, *columns;
+    double *z, *trial, *step, *value, *x, *u, *rate, *kept, *tangent, *best; /* n each */
+    int factorings, steps;
+    int sign, rank; /* of the matrix taken apart last: of its determinant, 0 if singular */
+} imp_cone_system;
+
+/* X(z) and U(z). */
+void imp_cone_values(const imp_cone_system *system, const double *z, double e, double *x, double *u);
+
+/* F(z); returns its norm. */
+double imp_cone_defect(imp_cone_system *system, const double *z, double e, double *value);
+
+/* -dF/dz = A X' - U', taken apart: sign and rank. */
+void imp_cone_factor(imp_cone_system *system, const double *z, double e);
+
+/* The solution of it for a right-hand side, in place; of least norm where there are many. */
+void imp_cone_back(imp_cone_system *system, double *right);
+
+/* The problem's r of x, 3 count. */
+void imp_cone_reactions(const imp_cone_system *system, const double *x, double *r);
+
+/* The problem's u = W r + q, each sum rounded once. */
+void imp_cone_velocities(const imp_cone_problem *problem, const double *r, double *u);
+
+/* dF/d(e²). */
+void imp_cone_drift(imp_cone_system *system, const double *z, double e, double *rate);
+
+/* Newton's steps at a fixed e from system->z until |F| <= wanted, each halved until |F| falls; false where that fails
+ * within `most` steps, or where `positive` and a determinant is not above zero. The z of least |F| stays. */
+bool imp_cone_newton(imp_cone_system *system, double e, double wanted, int most, bool positive);
+
+/* Follows the central path from e = 1 down; the stage it took. What comes is as near the answer as the path led. */
+imp_cone_stage imp_cone_follow(imp_cone_system *system);
+
+/* The same by way of A + alpha 1: so much of it that contacts hardly feel each other down to e, there alpha to 0, then
+ * on; false where that fails. */
+bool imp_cone_follow_eased(imp_cone_system *system, double e);
+
+#endif
