@@ -342,7 +342,7 @@ end
 function methods:first(kind, body1, body2)
   local known = table.concat(event_kinds, ", ")
   need((", " .. known .. ","):find(", " .. tostring(kind) .. ",", 1, true), "first: the kind must be one of " .. known, 2)
-  for _, event in ipairs(self:events()) do
+  for _, event in ipairs(methods.events(self)) do
     local straight = (not body1 or event.body1 == body1) and (not body2 or event.body2 == body2)
     local turned = (not body1 or event.body2 == body1) and (not body2 or event.body1 == body2)
     if event.event == kind and (straight or turned) then return event end
@@ -351,7 +351,7 @@ function methods:first(kind, body1, body2)
 end
 
 local function find_body(self, name)
-  for _, body in ipairs(self:definition().bodies) do
+  for _, body in ipairs(methods.definition(self).bodies) do
     if body.name == name then return body end
   end
   error(string.format("scene '%s' has no body '%s'", self:name(), tostring(name)), 3)
@@ -403,13 +403,13 @@ end
 --- Whether the definition holds a plot.
 ---@return boolean
 function methods:has_plot()
-  return self:definition().plot ~= nil
+  return methods.definition(self).plot ~= nil
 end
 
 --- The figure that the definition's plot makes of the recorded run.
 ---@return plot.figure
 function methods:figure()
-  local plot = self:definition().plot
+  local plot = methods.definition(self).plot
   if not plot then error(string.format("scene '%s' has no plot", self:name()), 2) end
   return plot(self)
 end
@@ -446,7 +446,7 @@ end
 ---@param reason? string
 ---@return string
 function methods:summary(reason)
-  local usage, happened, used, unused = self:usage(), {}, {}, {}
+  local usage, happened, used, unused = methods.usage(self), {}, {}, {}
   for _, kind in ipairs(event_kinds) do
     local count = usage.events[kind] or 0
     if count > 0 then happened[#happened + 1] = string.format("%d %s", count, kind) end

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Shapes and solids out of bytes, and back into C.
+ */
+#ifndef FUZZ_SOLIDS_H
+#define FUZZ_SOLIDS_H
+
+#include "fuzz.h"
+
+#include <impact/gap.h>
+#include <quat/rotation.h>
+
+static inline impact_shape take_shape(fuzz_bytes *b)
+{
+    static const double steep[] = {1, 1, 2, 2, 1e6, 100, 4, 1.0000001};
+    impact_shape s = {IMPACT_SPHERE, 1, 1, 1, 2, 2, 2};
+    const double a = take_positive(b, 4), m = take_positive(b, 2), n = take_positive(b, 2);
+    switch (take_below(b, 6)) {
+    case 0: impact_shape_sphere(a, &s); break;
+    case 1: {
+        const unsigned sides = take_below(b, 4);
+        impact_shape_plane(sides & 1 ? INFINITY : a, sides & 2 ? INFINITY : a * m, &s);
+        break;
+    }
+    case 2: impact_shape_ellipsoid(a, a * m, a * n, &s); break;
+    case 3: {
+        const double p = 1 + take_positive(b, 6), q = 1 + take_positive(b, 6), r = 1 + take_positive(b, 6);
+        impact_shape_superquadric(a, a * m, a * n, fmin(p, 1e6), fmin(q, 1e6), fmin(r, 1e6), &s);
+        break;
+    }
+    case 4: {
+        const double e = 2 * take_unit(b), f = 2 * take_unit(b);
+        impact_shape_superellipsoid(a, a * m, a * n, fmax(e, 1e-3), fmax(f, 1e-3), &s);
+        break;
+    }
+    default: {
+        const double p = steep[take_below(b, 8)], q = steep[take_below(b, 8)], r = steep[take_below(b, 8)];
+        impact_shape_superquadric(a, a * m, a * n, p, q, r, &s);
+    }
+    }
+    return s;
+}
+
+static inline impact_solid take_solid(fuzz_bytes *b, double far)
+{
+    impact_solid solid = {.shape = take_shape(b)};
+    solid.position = take_vec3(b, far);
+    solid.orientation = take_quat(b);
+    return solid;
+}
+
+/* The largest semi-axis; a plane has none. */
+static inline double solid_size(const impact_solid *s)
+{
+    return s->shape.kind == IMPACT_PLANE ? 0 : fmax(s->shape.a, fmax(s->shape.b, s->shape.c));
+}
+
+static inline void show_shape(FILE *out, const impact_shape *s)
+{
+    const double numbers[6] = {s->a, s->b, s->c, s->r, s->s, s->t};
+    fprintf(out, "{(impact_shape_kind)%d", (int)s->kind);
+    for (int i = 0; i < 6; i++) {
+        fputs(", ", out);
+        show_number(out, numbers[i]);
+    }
+    fputs("}", out);
+}
+
+static inline void show_solid(FILE *out, const char *name, const impact_solid *s)
+{
+    fprintf(out, "    const impact_solid %s = {.shape = ", name);
+    show_shape(out, &s->shape);
+    show_vec3(out, ",\n        .position = ", s->position);
+    show_quat(out, ", .orientation = ", s->orientation);
+    fputs("};\n", out);
+}
+
+#endif
