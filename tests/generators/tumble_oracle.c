@@ -117,12 +117,21 @@ static void step(body *b, real h)
 
 static real size_of(const body *b) { return sqrtq(b->L[0] * b->L[0] + b->L[1] * b->L[1] + b->L[2] * b->L[2]); }
 
-/* A third of a radian a step: its 32nd power is 1e-16, over 32! 1e-51. */
-static void move(body *b, real t)
+/* A third of a radian a step, of omega or of its turn in the body by Euler's equations, (I_i - I_j)/I_k times as fast;
+ * neither is faster than |L| over the smallest moment. The 32nd power is 1e-16, and the nearest pole of an elliptic
+ * function is pi/2 away or more: 1e-22. */
+static void spin(body *b, real t)
 {
-    const real fastest = size_of(b) / fminq(b->I[0], fminq(b->I[1], b->I[2]));
-    const int steps = (int)(fabsq(t) * fastest * 3) + 1;
-    for (int i = 0; i < steps; i++) step(b, t / steps);
+    const real sign = t < 0 ? -1 : 1, most = size_of(b) / fminq(b->I[0], fminq(b->I[1], b->I[2]));
+    real left = fabsq(t), gyration = 1;
+    for (int i = 0; i < 3; i++) gyration = fmaxq(gyration, fabsq(b->I[i] - b->I[(i + 1) % 3]) / b->I[(i + 2) % 3]);
+    while (left > 0) {
+        real square = 0;
+        for (int i = 0; i < 3; i++) square += b->L[i] * b->L[i] / (b->I[i] * b->I[i]);
+        const real h = fminq(left, 1 / (3 * fminq(most, gyration * sqrtq(square))));
+        step(b, sign * h);
+        left -= h;
+    }
 }
 
 /* Landau and Lifshitz, Mechanics, section 37. */
@@ -163,14 +172,14 @@ static void multiply(const real a[4], const real b[4], real product[4])
     product[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
 }
 
-static void tumble(body *b, qvec3 momentum, real t)
+static void tumble(body *b, const real axis[3], real t)
 {
     const real period = period_of(b), laps = nearbyintq(t / period);
     if (finiteq(period) && laps != 0) {
-        const real axis[3] = {momentum.x, momentum.y, momentum.z}, back[4] = {b->q[0], -b->q[1], -b->q[2], -b->q[3]};
+        const real back[4] = {b->q[0], -b->q[1], -b->q[2], -b->q[3]};
         body lap = *b;
         real turn[4], turned[4], along = 0;
-        move(&lap, period);
+        spin(&lap, period);
         multiply(lap.q, back, turn);
         for (int i = 0; i < 3; i++) along += turn[i + 1] * axis[i] / size_of(b);
         const real half = laps * atan2q(along, turn[0]);
@@ -180,13 +189,14 @@ static void tumble(body *b, qvec3 momentum, real t)
         for (int i = 0; i < 4; i++) b->q[i] = turned[i];
         t -= laps * period;
     }
-    move(b, t);
+    spin(b, t);
 }
 
 quat oracle_tumble(qvec3 moments, quat orientation, qvec3 momentum, double t)
 {
     body b = make_body(moments, orientation, momentum);
-    tumble(&b, momentum, t);
+    const real axis[3] = {momentum.x, momentum.y, momentum.z};
+    tumble(&b, axis, t);
     return (quat){(double)b.q[0], (double)b.q[1], (double)b.q[2], (double)b.q[3]};
 }
 
@@ -196,7 +206,7 @@ double oracle_tumble_sensitivity(qvec3 moments, quat orientation, qvec3 momentum
     const real rounding = 0x1p-53Q;
     body there = start;
     double sum = 0;
-    move(&there, t);
+    spin(&there, t);
     for (int k = 0; k < 6; k++) {
         body other = start;
         real square = 0;
@@ -204,9 +214,52 @@ double oracle_tumble_sensitivity(qvec3 moments, quat orientation, qvec3 momentum
             other.I[k] *= 1 + rounding;
         else
             other.L[k - 3] += rounding * size_of(&start);
-        move(&other, t);
+        spin(&other, t);
         for (int i = 0; i < 4; i++) square += (other.q[i] - there.q[i]) * (other.q[i] - there.q[i]);
         sum += (double)sqrtq(square);
     }
     return sum;
+}
+
+static body spinning_body(qvec3 moments, quat orientation, qvec3 omega)
+{
+    body b = make_body(moments, orientation, (qvec3){0, 0, 0});
+    b.L[0] = (real)moments.x * omega.x, b.L[1] = (real)moments.y * omega.y, b.L[2] = (real)moments.z * omega.z;
+    return b;
+}
+
+void oracle_tumble_omega(qvec3 moments, quat orientation, qvec3 omega, double t, quat *q, qvec3 *omega_t)
+{
+    body b = spinning_body(moments, orientation, omega);
+    const real back[4] = {b.q[0], -b.q[1], -b.q[2], -b.q[3]}, inside[4] = {0, b.L[0], b.L[1], b.L[2]};
+    real half[4], world[4];
+    multiply(b.q, inside, half);
+    multiply(half, back, world);
+    tumble(&b, world + 1, t);
+    *q = (quat){(double)b.q[0], (double)b.q[1], (double)b.q[2], (double)b.q[3]};
+    *omega_t = (qvec3){(double)(b.L[0] / b.I[0]), (double)(b.L[1] / b.I[1]), (double)(b.L[2] / b.I[2])};
+}
+
+void oracle_tumble_omega_sensitivity(qvec3 moments, quat orientation, qvec3 omega, double t, double *of_q,
+                                     double *of_omega)
+{
+    const body start = spinning_body(moments, orientation, omega);
+    const real change = 0x1p-60Q;
+    body there = start;
+    spin(&there, t);
+    *of_q = *of_omega = 0;
+    for (int k = 0; k < 6; k++) {
+        body other = start;
+        real turned = 0, faster = 0, size = 0;
+        if (k < 3) other.I[k] *= 1 + change;
+        other.L[k % 3] *= 1 + change; /* omega stays as it is where a moment changes */
+        spin(&other, t);
+        for (int i = 0; i < 4; i++) turned += (other.q[i] - there.q[i]) * (other.q[i] - there.q[i]);
+        for (int i = 0; i < 3; i++) {
+            const real off = other.L[i] / other.I[i] - there.L[i] / there.I[i];
+            faster += off * off, size += there.L[i] * there.L[i] / (there.I[i] * there.I[i]);
+        }
+        *of_q += (double)(2 * sqrtq(turned) / change);
+        *of_omega += (double)(sqrtq(faster / size) / change);
+    }
 }

@@ -17,6 +17,14 @@ quat oracle_tumble(qvec3 moments, quat orientation, qvec3 momentum, double t);
  * rounding (2^-53) of each makes in the orientation after t. */
 double oracle_tumble_sensitivity(qvec3 moments, quat orientation, qvec3 momentum, double t);
 
+/* From the angular velocity in the body's axes: orientation and angular velocity (body axes) after t. */
+void oracle_tumble_omega(qvec3 moments, quat orientation, qvec3 omega, double t, quat *q, qvec3 *omega_t);
+
+/* How much larger than themselves relative changes of the moments and of omega's components come out: the sums of the
+ * changes of the orientation, rad, and of omega_t, relative to its size. */
+void oracle_tumble_omega_sensitivity(qvec3 moments, quat orientation, qvec3 omega, double t, double *of_q,
+                                     double *of_omega);
+
 /* 4 K/omega_p. */
 double oracle_tumble_period(qvec3 moments, quat orientation, qvec3 momentum);
 

@@ -6,12 +6,15 @@
 enum { TERMS = IMPACT_THETA_TERMS };
 static const double pi = 3.14159265358979323846;
 
+/* Each step halves the logarithm of b/a, at most 744 in size, and then doubles the digits: 16 would do. */
+enum { MAX_MEANS = 24 };
+
 /* Limit of the arithmetic-geometric mean of 1 and b. */
 static double agm(double b)
 {
     double a = 1;
     if (b == 0) return 0;
-    while (fabs(a - b) > 1e-8 * a) {
+    for (int i = 0; i < MAX_MEANS && fabs(a - b) > 1e-8 * a; i++) {
         const double mean = 0.5 * (a + b);
         b = sqrt(a * b);
         a = mean;
@@ -109,10 +112,14 @@ void imp_elliptic_at(const impact_elliptic *e, double u, double *sn, double *cn,
 
 /* ---- integrals ---- */
 
+/* Where one argument is far above the others each step halves the logarithm of their ratio, at most 744; then it
+ * quarters the differences: 20 would do. NaN for NaN. */
+enum { MAX_DUPLICATIONS = 32 };
+
 double imp_elliptic_rf(double x, double y, double z)
 {
     if ((x == 0) + (y == 0) + (z == 0) > 1) return INFINITY;
-    for (;;) {
+    for (int i = 0; i < MAX_DUPLICATIONS; i++) {
         const double a = (x + y + z) / 3, dx = 1 - x / a, dy = 1 - y / a, dz = -dx - dy;
         if (fmax(fabs(dx), fmax(fabs(dy), fabs(dz))) < 2e-3) {
             const double e2 = dx * dy - dz * dz, e3 = dx * dy * dz;
@@ -123,6 +130,7 @@ double imp_elliptic_rf(double x, double y, double z)
         y = 0.25 * (y + lambda);
         z = 0.25 * (z + lambda);
     }
+    return NAN;
 }
 
 double imp_elliptic_inverse(double sn, double cn, double dn) { return sn * imp_elliptic_rf(cn * cn, dn * dn, 1); }

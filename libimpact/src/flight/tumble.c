@@ -90,25 +90,24 @@ static void motion_at(const impact_tumble *tumble, double t, double l[3], double
     *chi = tumble->mean * t - 2 * tumble->sense * (phase - tumble->start_phase);
 }
 
-impact_status impact_tumble_make(qvec3 moments, quat orientation, qvec3 momentum, impact_tumble *tumble)
+/* The tumble of a body with this momentum in its own axes; all else is set. */
+static void begin(const double inside[3], impact_tumble *tumble)
 {
-    quat unit;
-    if (!qvec3_isfinite(moments) || !qvec3_isfinite(momentum) || quat_normalize(orientation, &unit) != QUAT_OK)
-        return IMPACT_EDOMAIN;
-    if (!(moments.x > 0 && moments.y > 0 && moments.z > 0)) return IMPACT_EARGUMENT;
-    *tumble = (impact_tumble){.orientation = unit, .momentum = momentum, .moments = moments, .steady = true};
-    const double size = qvec3_norm(momentum);
-    if (size == 0) return IMPACT_OK;
-    qvec3 direction;
-    qvec3_normalize(momentum, &direction);
-    const qvec3 inside = quat_rotate_inverse(unit, direction);
-    const double I[3] = {moments.x, moments.y, moments.z}, along[3] = {inside.x, inside.y, inside.z};
+    const qvec3 moments = tumble->moments;
+    const double size = qvec3_norm(qvec3_make(inside[0], inside[1], inside[2]));
+    tumble->size = size;
+    tumble->steady = true;
+    tumble->turn = quat_rotate(tumble->orientation, tumble->omega);
+    if (size == 0) return;
+    const double I[3] = {moments.x, moments.y, moments.z};
+    const double along[3] = {inside[0] / size, inside[1] / size, inside[2] / size};
     int *axis = tumble->axis;
     sort_axes(I, axis);
     const double low = I[axis[0]], middle = I[axis[1]], high = I[axis[2]];
+    if (!(high > low)) return;
     double rho = (low / middle) * ((high - middle) / (high - low));
     double sigma = (high / middle) * ((middle - low) / (high - low));
-    if (high > low && !(rho * along[axis[2]] * along[axis[2]] >= sigma * along[axis[0]] * along[axis[0]])) {
+    if (!(rho * along[axis[2]] * along[axis[2]] >= sigma * along[axis[0]] * along[axis[0]])) {
         const int k = axis[0];
         axis[0] = axis[2];
         axis[2] = k;
@@ -117,24 +116,53 @@ impact_status impact_tumble_make(qvec3 moments, quat orientation, qvec3 momentum
         sigma = share;
     }
     sign_axes(tumble, along);
-    double l[3], moment[3];
+    double l[3], moment[3], chi;
     for (int k = 0; k < 3; k++) l[k] = tumble->sign[k] * along[axis[k]], moment[k] = I[axis[k]];
-    tumble->steady = !(high > low && find_motion(tumble, size, moment, rho, sigma, l));
-    if (tumble->steady) {
-        const qvec3 omega = {inside.x * (size / I[0]), inside.y * (size / I[1]), inside.z * (size / I[2])};
-        tumble->turn = quat_rotate(unit, omega);
-        return IMPACT_OK;
-    }
-    double chi;
+    tumble->steady = !find_motion(tumble, size, moment, rho, sigma, l);
+    if (tumble->steady) return;
     tumble->start_phase = imp_elliptic_phase_at(&tumble->elliptic, &tumble->phase, tumble->start);
     motion_at(tumble, 0, l, &chi);
     tumble->first = onto_third(l);
+}
+
+static impact_status check(qvec3 moments, quat orientation, qvec3 vector, quat *unit)
+{
+    if (!qvec3_isfinite(moments) || !qvec3_isfinite(vector) || quat_normalize(orientation, unit) != QUAT_OK)
+        return IMPACT_EDOMAIN;
+    return moments.x > 0 && moments.y > 0 && moments.z > 0 ? IMPACT_OK : IMPACT_EARGUMENT;
+}
+
+impact_status impact_tumble_make(qvec3 moments, quat orientation, qvec3 momentum, impact_tumble *tumble)
+{
+    quat unit;
+    const impact_status status = check(moments, orientation, momentum, &unit);
+    if (status != IMPACT_OK) return status;
+    const qvec3 L = quat_rotate_inverse(unit, momentum), omega = {L.x / moments.x, L.y / moments.y, L.z / moments.z};
+    const double inside[3] = {L.x, L.y, L.z};
+    if (!qvec3_isfinite(omega)) return IMPACT_EDOMAIN;
+    *tumble = (impact_tumble){.orientation = unit, .momentum = momentum, .moments = moments, .omega = omega};
+    begin(inside, tumble);
+    return IMPACT_OK;
+}
+
+impact_status impact_tumble_make_omega(qvec3 moments, quat orientation, qvec3 omega, impact_tumble *tumble)
+{
+    quat unit;
+    const impact_status status = check(moments, orientation, omega, &unit);
+    if (status != IMPACT_OK) return status;
+    const qvec3 L = {moments.x * omega.x, moments.y * omega.y, moments.z * omega.z};
+    const double inside[3] = {L.x, L.y, L.z};
+    if (!qvec3_isfinite(L)) return IMPACT_EDOMAIN;
+    *tumble =
+        (impact_tumble){.orientation = unit, .momentum = quat_rotate(unit, L), .moments = moments, .omega = omega};
+    begin(inside, tumble);
     return IMPACT_OK;
 }
 
 quat impact_tumble_at(const impact_tumble *tumble, double t)
 {
     quat turned;
+    if (t == 0) return tumble->orientation;
     if (tumble->steady)
         return quat_unit(quat_mul(quat_from_rotation_vector(qvec3_scale(tumble->turn, t)), tumble->orientation));
     double l[3], chi;
@@ -147,12 +175,25 @@ quat impact_tumble_at(const impact_tumble *tumble, double t)
     return quat_unit(quat_mul(tumble->orientation, (quat){turned.w, vector[0], vector[1], vector[2]}));
 }
 
+/* |L| l_k/I_k of the body's own amplitudes: through L in the world each component would have the rounding of the
+ * largest moment's. */
+qvec3 impact_tumble_omega_body(const impact_tumble *tumble, double t)
+{
+    if (tumble->steady || t == 0) return tumble->omega;
+    const double I[3] = {tumble->moments.x, tumble->moments.y, tumble->moments.z};
+    double l[3], chi, omega[3];
+    motion_at(tumble, t, l, &chi);
+    for (int k = 0; k < 3; k++) {
+        const int i = tumble->axis[k];
+        omega[i] = tumble->sign[k] * l[k] * (tumble->size / I[i]);
+    }
+    return (qvec3){omega[0], omega[1], omega[2]};
+}
+
 qvec3 impact_tumble_omega(const impact_tumble *tumble, double t)
 {
     if (tumble->steady) return tumble->turn;
-    const quat q = impact_tumble_at(tumble, t);
-    const qvec3 b = quat_rotate_inverse(q, tumble->momentum);
-    return quat_rotate(q, (qvec3){b.x / tumble->moments.x, b.y / tumble->moments.y, b.z / tumble->moments.z});
+    return quat_rotate(impact_tumble_at(tumble, t), impact_tumble_omega_body(tumble, t));
 }
 
 double impact_tumble_period(const impact_tumble *tumble)

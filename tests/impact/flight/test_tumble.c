@@ -3,6 +3,8 @@
  * Torque-free rotation against Taylor series in 128-bit arithmetic (libquadmath), and against what it keeps.
  */
 #include <impact/tumble.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <quat/rotation.h>
 #include "kit/contact_random.h"
 #include "kit/near.h"
@@ -72,8 +74,6 @@ static double fastest(const body *b)
     return qvec3_norm(b->momentum) / fmin(b->moments.x, fmin(b->moments.y, b->moments.z));
 }
 
-static double largest(const body *b) { return fmax(b->moments.x, fmax(b->moments.y, b->moments.z)); }
-
 static impact_tumble make(const body *b)
 {
     impact_tumble tumble;
@@ -99,11 +99,10 @@ static void what_is_kept(void **state)
         const quat q = impact_tumble_at(&tumble, t);
         assert_near(quat_norm(q), 1, 3e-16);
         assert_near(energy(&tumble, t), energy(&tumble, 0), 1e-13 * energy(&tumble, 0));
-        /* L = R J omega; omega's own rounding comes back times the largest moment. */
-        const qvec3 omega = quat_rotate_inverse(q, impact_tumble_omega(&tumble, t));
+        /* L = R J omega, to rounding whatever the moments: omega in the body's axes has it in each component */
+        const qvec3 omega = impact_tumble_omega_body(&tumble, t);
         const qvec3 inside = {omega.x * b.moments.x, omega.y * b.moments.y, omega.z * b.moments.z};
-        assert_near3(quat_rotate(q, inside), b.momentum,
-                     1e-14 * qvec3_norm(b.momentum) + 2e-15 * largest(&b) * qvec3_norm(omega));
+        assert_near3(quat_rotate(q, inside), b.momentum, 1e-14 * qvec3_norm(b.momentum));
     }
 }
 
@@ -227,9 +226,122 @@ static void bad_input(void **state)
     assert_int_equal(impact_tumble_make((qvec3){1, -1, 1}, q, good, &tumble), IMPACT_EARGUMENT);
     assert_int_equal(impact_tumble_make(good, (quat){0, 0, 0, 0}, good, &tumble), IMPACT_EDOMAIN);
     assert_int_equal(impact_tumble_make(good, q, (qvec3){INFINITY, 0, 0}, &tumble), IMPACT_EDOMAIN);
+    assert_int_equal(impact_tumble_make((qvec3){1e-200, 1, 1}, q, (qvec3){1e200, 0, 0}, &tumble), IMPACT_EDOMAIN);
+    assert_int_equal(impact_tumble_make_omega((qvec3){1, NAN, 1}, q, good, &tumble), IMPACT_EDOMAIN);
+    assert_int_equal(impact_tumble_make_omega((qvec3){1, 0, 1}, q, good, &tumble), IMPACT_EARGUMENT);
+    assert_int_equal(impact_tumble_make_omega(good, (quat){0, 0, 0, 0}, good, &tumble), IMPACT_EDOMAIN);
+    assert_int_equal(impact_tumble_make_omega((qvec3){1e200, 1, 1}, q, (qvec3){1e200, 0, 0}, &tumble), IMPACT_EDOMAIN);
+}
+
+/* ---- from the angular velocity in the body's axes ---- */
+
+enum { REAL_KINDS = 5, KINDS = 8 };
+
+/* Slender bodies, moments to 1 : 1e-9: rods, bars, discs, all but spheres; and, from REAL_KINDS on, such as no mass
+ * distribution has, one moment more than the sum of the others. Spins whose components are of any size. */
+static void slender(random_stream *random, int kind, qvec3 *moments, qvec3 *omega)
+{
+    const double r = kind < REAL_KINDS ? random_log(random, 1e-9, 1e-1) : random_log(random, 1e-3, 1e-1),
+                 s = random_unit(random);
+    const qvec3 kinds[KINDS] = {{1, 1, r},         {1, 1 - r * s, r},   {1, 0.5, 0.5 + r * s}, {1, 1 + r * s, 1 - r},
+                                {1, s, 1 - s + r}, {1, r, r * (1 + s)}, {1, sqrt(r), r},       {1, 0.5 + s / 2, r}};
+    const int turn = (int)(random_bits(random) % 6);
+    const double x = random_log(random, 1e-4, 1), y = random_log(random, 1e-4, 1), z = random_log(random, 1e-4, 1);
+    *moments = permuted(kinds[kind], turn);
+    *omega = qvec3_make(random_bits(random) & 1 ? x : -x, y, z);
+}
+
+/* rad/s: of the turn about the momentum, of the phase in the body, of omega at the start; the largest. */
+static double fastest_turn(const impact_tumble *tumble)
+{
+    const double start = qvec3_norm(tumble->omega);
+    return tumble->steady ? start : fmax(start, fmax(fabs(tumble->mean), tumble->rate));
+}
+
+static void omega_is_kept_to_the_bit(void **state)
+{
+    (void)state;
+    random_stream random = {11};
+    for (int i = 0; i < 20000; i++) {
+        qvec3 moments, omega;
+        slender(&random, i % KINDS, &moments, &omega);
+        const quat q = random_rotation(&random);
+        impact_tumble tumble;
+        assert_int_equal(impact_tumble_make_omega(moments, q, omega, &tumble), IMPACT_OK);
+        assert_near3(impact_tumble_omega_body(&tumble, 0), omega, 0);
+        assert_near3(tumble.omega, omega, 0);
+        /* the formula, not the copy: an instant later it has moved by rounding alone */
+        const double fast = fastest_turn(&tumble);
+        assert_near3(impact_tumble_omega_body(&tumble, 1e-18 / fast), omega, 4e-15 * fast);
+        /* world axes: the body's, turned */
+        const double t = random_log(&random, 1e-3, 10) / fast;
+        const qvec3 later = impact_tumble_omega_body(&tumble, t);
+        assert_near3(quat_rotate_inverse(impact_tumble_at(&tumble, t), impact_tumble_omega(&tumble, t)), later,
+                     2e-15 * qvec3_norm(later));
+        /* what flight keeps: |L| and the energy, of each component's own terms */
+        const qvec3 L0 = {moments.x * omega.x, moments.y * omega.y, moments.z * omega.z};
+        const qvec3 L = {moments.x * later.x, moments.y * later.y, moments.z * later.z};
+        assert_near(qvec3_norm(L), qvec3_norm(L0), 2e-15 * qvec3_norm(L0));
+        assert_near(qvec3_dot(L, later), qvec3_dot(L0, omega), 4e-15 * qvec3_dot(L0, omega));
+    }
 }
 
 #ifdef HAVE_QUADMATH
+typedef struct flight_error {
+    double q, omega;
+} flight_error;
+
+/* After the angle, and (NULL: not wanted) what relative changes of the data come to. */
+static flight_error error_after(qvec3 moments, quat q, qvec3 omega, double angle, flight_error *sensitivity)
+{
+    impact_tumble tumble;
+    quat wanted;
+    qvec3 spin;
+    assert_int_equal(impact_tumble_make_omega(moments, q, omega, &tumble), IMPACT_OK);
+    const double t = angle / fastest_turn(&tumble);
+    if (sensitivity) oracle_tumble_omega_sensitivity(moments, q, omega, t, &sensitivity->q, &sensitivity->omega);
+    oracle_tumble_omega(moments, q, omega, t, &wanted, &spin);
+    return (flight_error){quat_rotation_distance(impact_tumble_at(&tumble, t), wanted),
+                          qvec3_norm(qvec3_sub(impact_tumble_omega_body(&tumble, t), spin)) / qvec3_norm(spin)};
+}
+
+/* In units of eps times the true sensitivity to the data. */
+static void slender_bodies_to_the_limit_of_their_data(void **state)
+{
+    (void)state;
+    random_stream random = {12};
+    flight_error worst = {0, 0};
+    for (int i = 0; i < 4 * KINDS; i++) {
+        qvec3 moments, omega;
+        slender(&random, i % KINDS, &moments, &omega);
+        const quat q = random_rotation(&random);
+        flight_error s;
+        const flight_error e = error_after(moments, q, omega, random_log(&random, 1e-2, 30), &s);
+        worst.q = fmax(worst.q, e.q / (2.2e-16 * (1 + s.q)));
+        worst.omega = fmax(worst.omega, e.omega / (2.2e-16 * (1 + s.omega)));
+    }
+    if (!(worst.q <= 30 && worst.omega <= 30)) fail_msg("q %g, omega %g eps x sensitivity", worst.q, worst.omega);
+    if (getenv("TEST_SHOW")) printf("slender flight: q %.2g, omega %.2g eps x sensitivity\n", worst.q, worst.omega);
+}
+
+static void slender_bodies_after_a_thousand_radians(void **state)
+{
+    (void)state;
+    random_stream random = {13};
+    flight_error worst = {0, 0};
+    for (int i = 0; i < 3 * REAL_KINDS; i++) {
+        qvec3 moments, omega;
+        slender(&random, i % REAL_KINDS, &moments, &omega);
+        const quat q = random_rotation(&random);
+        const flight_error e = error_after(moments, q, omega, 1000, NULL);
+        worst.q = fmax(worst.q, e.q);
+        worst.omega = fmax(worst.omega, e.omega);
+    }
+    /* the time, the rates and their products have roundings: 4e-16 of the angle, as above */
+    if (!(worst.q <= 4e-13 && worst.omega <= 4e-13)) fail_msg("q %g, omega %g after 1000 rad", worst.q, worst.omega);
+    if (getenv("TEST_SHOW")) printf("slender flight, 1000 rad: q %.2g, omega %.2g\n", worst.q, worst.omega);
+}
+
 /* Over a hundred radians: a few roundings, and as many of the data as the motion itself magnifies. */
 static void against_taylor_series(void **state)
 {
@@ -277,7 +389,10 @@ int main(void)
         cmocka_unit_test(on_the_unstable_axis),
         cmocka_unit_test(tiny_and_huge),
         cmocka_unit_test(bad_input),
+        cmocka_unit_test(omega_is_kept_to_the_bit),
 #ifdef HAVE_QUADMATH
+        cmocka_unit_test(slender_bodies_to_the_limit_of_their_data),
+        cmocka_unit_test(slender_bodies_after_a_thousand_radians),
         cmocka_unit_test(against_taylor_series),
         cmocka_unit_test(a_million_periods),
 #endif
