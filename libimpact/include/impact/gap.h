@@ -47,9 +47,12 @@ typedef struct impact_contact {
 
 /* The gap of two solids: any shapes but two planes (IMPACT_EARGUMENT, as for a shape that impact_shape_check refuses).
  * cache may be NULL. IMPACT_OK: settled, the bracket closed to 2e-14 (L + |c|) or better, L the largest semi-axis and c
- * between the positions. With an answer too: IMPACT_DEEP, the nearest way out that was found, where an overlap may have
- * several (deeper than 5 % of the smallest semi-axis; or of the radii at the contact, or both bodies with edges, and
- * not proved the nearest); IMPACT_BRACKET, the gap lies in [lower, upper]. IMPACT_EDOMAIN: a position that is not
+ * between the positions; an overlap is then proved the nearest way out (IMPACT_OK is not said without), or one of
+ * several that are equally near. With an answer too: IMPACT_DEEP, a way out that no other is nearer than by more than
+ * the bracket; IMPACT_BRACKET, the gap lies in [lower, upper], and no witness points were found. Both brackets of an
+ * overlap are at most half a per cent of its depth wide, but where the work allowed is not enough: then upper is the
+ * distance of the centres or 0. Two octahedra (all exponents 1) that overlap are solved as the polytopes they are.
+ * IMPACT_EDOMAIN: a position that is not
  * finite, an orientation that is zero or not finite. A negative status leaves every number of *contact NaN. Method:
  * docs/gap.md.
  */

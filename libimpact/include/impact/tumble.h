@@ -51,24 +51,24 @@ typedef struct impact_tumble {
     impact_elliptic_phase phase;
 } impact_tumble;
 
-/* moments: each finite and > 0, in any ratio (no triangle inequality is asked for); equal ones and nearly equal ones are
- * fine. orientation: normalised on use. momentum: finite, world; zero stays where it is. IMPACT_EDOMAIN: a NaN or
+/* moments: each finite and > 0, in any ratio (no triangle inequality is asked for); equal ones and nearly equal ones
+ * are fine. orientation: normalised on use. momentum: finite, world; zero stays where it is. IMPACT_EDOMAIN: a NaN or
  * infinity, given or in momentum/moments, or a zero orientation; IMPACT_EARGUMENT: a moment <= 0. *tumble is then
  * unchanged. A momentum exactly on the separatrix or on an axis of spin is followed there: it is for rounding to decide
  * whether a body spun about its middle axis ever turns over. */
 IMPACT_API impact_status impact_tumble_make(qvec3 moments, quat orientation, qvec3 momentum, impact_tumble *tumble);
 
-/* The same from the angular velocity in the body's axes, rad/s: what slender bodies are to be kept by, since the momentum
- * in world axes has lost eps J_max/J_min of the spin about their axis. Statuses as above, moments times omega in place
- * of the momentum. */
+/* The same from the angular velocity in the body's axes, rad/s: what slender bodies are to be kept by, since the
+ * momentum in world axes has lost eps J_max/J_min of the spin about their axis. Statuses as above, moments times omega
+ * in place of the momentum. */
 IMPACT_API impact_status impact_tumble_make_omega(qvec3 moments, quat orientation, qvec3 omega, impact_tumble *tumble);
 
 /* The orientation after t seconds, of any sign and size: unit, its sign continuous in t. The error is a few
  * roundings, and a few of the angle turned through: 1e-16 |omega t|. NaN only for a t that is not finite. */
 IMPACT_API quat impact_tumble_at(const impact_tumble *tumble, double t);
 
-/* The angular velocity then, rad/s, in the body's axes, each component to the rounding of its own amplitude; at t = 0 the
- * bits that impact_tumble_make_omega was given. */
+/* The angular velocity then, rad/s, in the body's axes, each component to the rounding of its own amplitude; at t = 0
+ * the bits that impact_tumble_make_omega was given. */
 IMPACT_API qvec3 impact_tumble_omega_body(const impact_tumble *tumble, double t);
 
 /* The same in world axes. */

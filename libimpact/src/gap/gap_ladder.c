@@ -11,6 +11,10 @@
  * an overlap may have several local answers. */
 static const double deep_part = 0.05;
 
+/* Of the reach, what a proof that there is no nearer way out leaves: half of the bracket that is promised. Of the depth
+ * and of the size, what it leaves where that cannot be had (a ring of ways out, alike but for rounding). */
+static const double exact_slack = 1e-14, coarse_depth = 5e-3, coarse_size = 1e-3;
+
 enum { SEED_STEPS = 4, MAX_PROOFS = 8 };
 
 typedef struct search {
@@ -21,6 +25,7 @@ typedef struct search {
     double thin;          /* smallest semi-axis */
     bool sharp;           /* both bodies have edges or vertices: an overlap counts as deep if not proved otherwise */
     double low, low_n[3]; /* the largest g met, and where */
+    double most;          /* no overlap's gap is more: proved, or INFINITY */
 } search;
 
 /* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
@@ -130,6 +135,13 @@ static bool plain(const search *s)
     return s->sharp ? depth <= deep_part * s->thin && certain(s) : depth <= deep_part * fmin(s->thin, radius);
 }
 
+static void note_low(search *s, double g, const double n[3])
+{
+    if (!(g > s->low)) return;
+    s->low = g;
+    memcpy(s->low_n, n, sizeof s->low_n);
+}
+
 static bool newton_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
 {
     imp_gap_bracket meeting;
@@ -140,22 +152,30 @@ static bool newton_from(search *s, const double n[3], const double (*x)[3], impa
     return true;
 }
 
+/* Proves the best answer the nearest way out, to the accuracy that is promised; what speaks against it is taken. */
+static bool prove_best(search *s)
+{
+    for (int tries = 0; tries < MAX_PROOFS; tries++) {
+        imp_gap_peaks peaks = {0};
+        double gap = s->best.gap, other[3];
+        memcpy(other, s->best.n, sizeof other);
+        const double peak[3] = {gap * other[0], gap * other[1], gap * other[2]};
+        imp_gap_peak_add(peak, &peaks);
+        const imp_proof proof = imp_gap_prove(s->pair, &peaks, exact_slack * s->pair->reach, false, &gap, other);
+        if (proof != IMP_PROOF_AGAINST) return proof == IMP_PROOF_NEAREST;
+        note_low(s, gap, other);
+        if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
+    }
+    return false;
+}
+
 /* Newton from n and, when not NULL, the points x; true when the search is over. A shallow answer that is not plain is
  * proved, or what speaks against it seeds the next. */
 static bool try_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
 {
-    double other[3];
     if (!newton_from(s, n, x, path)) return false;
-    for (int tries = 0; tries < MAX_PROOFS; tries++) {
-        if (plain(s)) return true;
-        if (!(-s->best.gap <= deep_part * s->thin)) return false;
-        double gap = s->best.gap, here[3];
-        for (int i = 0; i < 3; i++) other[i] = s->best.n[i], here[i] = gap * other[i];
-        const imp_proof proof = imp_gap_prove(s->pair, here, false, &gap, other);
-        if (proof != IMP_PROOF_AGAINST) return proof == IMP_PROOF_NEAREST;
-        if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
-    }
-    return false;
+    if (plain(s)) return true;
+    return -s->best.gap <= deep_part * s->thin && prove_best(s);
 }
 
 static void centre_line(const imp_gap_solids *pair, double n[3])
@@ -227,11 +247,7 @@ static bool try_simplex(search *s, double *upper)
         for (size_t j = 0; j < sizeof tolerance / sizeof *tolerance; j++) {
             const bool apart =
                 imp_gap_simplex(s->pair, shrink[i], tolerance[j], 20 << j, n, x, &low, &high) == IMP_SIMPLEX_APART;
-            const double g = imp_pair_gap(s->pair, n, NULL);
-            if (g > s->low) {
-                s->low = g;
-                memcpy(s->low_n, n, sizeof s->low_n);
-            }
+            note_low(s, imp_pair_gap(s->pair, n, NULL), n);
             if (shrink[i] == 1 && apart) *upper = fmin(*upper, high);
             if (try_from(s, n, (const double(*)[3])x, IMPACT_PATH_FALLBACK)) return true;
             if (try_from(s, n, NULL, IMPACT_PATH_FALLBACK)) return true;
@@ -239,19 +255,6 @@ static bool try_simplex(search *s, double *upper)
         }
         if (shrink[i] == 1 && s->low > 0) break; /* apart: shrinking adds nothing */
     }
-    return false;
-}
-
-/* The bodies' axes, towards each other and away. */
-static bool try_axes(search *s)
-{
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < 3; i++)
-            for (int side = -1; side <= 1; side += 2) {
-                const double(*m)[3] = s->pair->form[k].rotation;
-                const double n[3] = {side * m[0][i], side * m[1][i], side * m[2][i]};
-                if (try_from(s, n, NULL, IMPACT_PATH_FALLBACK)) return true;
-            }
     return false;
 }
 
@@ -321,22 +324,45 @@ static void midst(const imp_gap_solids *pair, const double n[3], double lean, do
     }
 }
 
-/* No way settled, of bodies that touch or overlap by little: the highest g over the whole sphere, where that can be
- * had. True when Newton settles there. */
-static bool climb(search *s, double *upper)
+/* The highest g over the whole sphere but for slack, from the highest met; false where the work allowed is not enough.
+ */
+static bool climb(search *s, double slack)
 {
-    double x[2][3], v[3];
-    if (!(s->low <= 0 && -s->low <= deep_part * s->thin)) return false;
-    imp_pair_gap(s->pair, s->low_n, x);
+    imp_gap_peaks peaks = {0};
+    double gap = s->low, n[3], x[2][3], v[3];
+    memcpy(n, s->low_n, sizeof n);
+    imp_pair_gap(s->pair, n, x);
     difference(s->pair, (const double(*)[3])x, v);
-    if (imp_gap_prove(s->pair, v, true, &s->low, s->low_n) != IMP_PROOF_NEAREST) return false;
-    *upper = fmin(*upper, s->low + 1.8e-14 * s->pair->reach);
+    imp_gap_peak_add(v, &peaks);
+    const imp_proof proof = imp_gap_prove(s->pair, &peaks, slack, true, &gap, n);
+    note_low(s, gap, n);
+    if (proof == IMP_PROOF_NEAREST) s->most = fmin(s->most, gap + slack);
+    return proof == IMP_PROOF_NEAREST;
+}
+
+/* Newton from the midst of what the best normal met touches. */
+static bool settle_low(search *s)
+{
+    double x[2][3];
     for (double lean = 1e-10; lean < 0.1; lean *= 10) { /* edges and vertices are round at any scale */
         midst(s->pair, s->low_n, lean, x);
-        if (newton_from(s, s->low_n, (const double(*)[3])x, IMPACT_PATH_FALLBACK))
-            return s->best.gap >= s->low - 1e-14 * s->pair->reach;
+        if (newton_from(s, s->low_n, (const double(*)[3])x, IMPACT_PATH_FALLBACK) &&
+            s->best.gap >= s->low - exact_slack * s->pair->reach)
+            return true;
     }
     return false;
+}
+
+/* An overlap without a proof: bounded from both sides, and the nearest way out looked for over the whole sphere. True
+ * when it is proved. */
+static bool surround(search *s)
+{
+    if (s->found) note_low(s, s->best.gap, s->best.n);
+    climb(s, fmax(exact_slack * s->pair->reach, fmin(coarse_depth * -s->low, coarse_size * s->pair->size)));
+    if (!s->found || s->low > s->best.gap) newton_from(s, s->low_n, NULL, IMPACT_PATH_FALLBACK);
+    if (s->found && s->best.gap >= s->low - exact_slack * s->pair->reach && prove_best(s)) return true;
+    if (s->found && s->best.gap >= s->low - exact_slack * s->pair->reach) return false;
+    return climb(s, exact_slack * s->pair->reach) && settle_low(s);
 }
 
 static bool holds(const imp_form *form, const double x[3])
@@ -371,7 +397,7 @@ static impact_status bracket(const search *s, double upper, imp_gap_bracket *mee
     meeting->lower = meeting->gap = imp_pair_gap(s->pair, meeting->n, meeting->x);
     difference(s->pair, (const double(*)[3])meeting->x, v);
     const double apart = distance_of(v);
-    meeting->upper = fmax(fmin(upper, apart), meeting->lower);
+    meeting->upper = fmax(fmin(s->most, fmin(upper, apart)), meeting->lower);
     meeting->stiffness = 0;
     if (!(meeting->upper - meeting->lower <= 2e-14 * s->pair->reach)) return IMPACT_BRACKET;
     return apart - fabs(meeting->gap) <= 2e-14 * s->pair->reach || face(s->pair, meeting->n, meeting->gap, meeting->x)
@@ -388,14 +414,28 @@ bool imp_gap_first(const imp_gap_solids *pair, const double *cached, imp_gap_bra
     ellipsoid_seed(pair, SEED_STEPS, n);
     if (imp_gap_newton(pair, n, NULL, meeting)) return true;
     *path = IMPACT_PATH_GJK;
-    return imp_gap_harvest(pair, false, n) && imp_gap_newton(pair, n, NULL, meeting);
+    return imp_gap_harvest(pair, n) && imp_gap_newton(pair, n, NULL, meeting);
+}
+
+/* The best answer, with what is known of better ones: an overlap that is not over may have a nearer way out, by no more
+ * than the bracket. */
+static impact_status answer(const search *s, bool over, imp_gap_bracket *meeting)
+{
+    *meeting = s->best;
+    if (over) return IMPACT_OK;
+    meeting->lower = fmin(meeting->gap, meeting->lower);
+    meeting->upper = fmax(meeting->upper, fmin(s->most, 0));
+    return IMPACT_DEEP;
 }
 
 impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting,
                              impact_gap_path *path)
 {
+    *path = IMPACT_PATH_CLOSED_FORM;
+    if (imp_gap_are_octahedra(pair) && imp_gap_octahedra(pair, meeting)) return IMPACT_OK;
     search s = {.pair = pair,
                 .low = -INFINITY,
+                .most = INFINITY,
                 .thin = INFINITY,
                 .sharp = is_sharp(&pair->form[0]) && is_sharp(&pair->form[1])};
     for (int k = 0; k < 2; k++)
@@ -407,13 +447,11 @@ impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, i
         ellipsoid_seed(pair, SEED_STEPS, n);
         over = try_from(&s, n, NULL, IMPACT_PATH_NEWTON);
     }
-    over = over || (imp_gap_harvest(pair, false, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK));
-    over = over || try_simplex(&s, &upper) || (!s.found && (try_slope(&s) || try_homotopy(&s)));
-    if (!over) over = imp_gap_harvest(pair, true, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK);
-    over = over || try_axes(&s);
-    if (!s.found) over = climb(&s, &upper);
+    over = over || (imp_gap_harvest(pair, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK));
+    if (!s.found) over = try_simplex(&s, &upper) || try_slope(&s) || try_homotopy(&s);
+    const double low = s.found ? s.best.gap : s.low;
+    if (!over && low <= 0) over = surround(&s);
     *path = s.found ? s.path : IMPACT_PATH_FALLBACK;
-    if (!s.found) return bracket(&s, upper, meeting);
-    *meeting = s.best;
-    return over ? IMPACT_OK : IMPACT_DEEP;
+    const bool best = s.found && s.best.gap >= s.low - 2 * exact_slack * pair->reach;
+    return best ? answer(&s, over, meeting) : bracket(&s, upper, meeting);
 }

@@ -1,18 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whether an overlap's normal n, at depth, is the nearest way out: whether g <= -depth for every normal. Each point v
- * of the bodies' difference c + B - A bounds g(d) by v.d. v.d + depth |d| is convex in d, so that where it is no more
- * than 0 at the corners of a spherical triangle it is so throughout. The sphere is halved into such triangles, each
- * with the support point of its middle, until all are cleared or a normal with a larger g turns up. Around n itself,
- * where g is highest, the point there does, for depth a little less: by less than the accuracy that is promised. (Where
- * depth is no more than that, the bodies just touching, a triangle's inside is cleared for at most sqrt(3) times as
- * much.)
+ * Whether g is nowhere more than a bound B < 0, over the whole sphere of normals. Each point v of the bodies'
+ * difference c + B - A bounds g(d) by v.d. v.d - B |d| is convex in d, so that where it is no more than 0 at the
+ * corners of a spherical triangle it is so throughout. The sphere is halved into such triangles, each with the support
+ * point of its middle, until all are cleared or a normal with a larger g turns up. Around a peak n of g, of height g(n)
+ * < B, its own point g(n) n does: v.d <= B for all within acos(B/g(n)). So poses with as many equal peaks as symmetry
+ * makes are proved once each peak is known: where a middle comes close to the bound Newton is asked for the peak by it.
+ * (Where B
+ * >= 0, the bodies just touching, a triangle's inside is cleared for at most sqrt(3) times as much.)
  */
 #include "gap/gap_chart.h"
 #include "gap/gap_solver.h"
 #include <string.h>
 
-enum { MAX_TRIANGLES = 6000, MAX_WAITING = 64 };
+/* A triangle is halved 2 log2(1e7) times at most before a peak's point clears it, and the stack keeps one of each two.
+ */
+enum { MAX_TRIANGLES = 6000, MAX_WAITING = 96 };
+/* Of the reach, and a hundredth of the depth at most: a middle so near the bound is within 1e-3 rad of a peak, where
+ * Newton converges; and of the cosine: as near to a known peak it is not asked again. */
+static const double near_peak = 1e-6, same_peak = 1e-4;
 
 typedef struct triangle {
     double d[3][3]; /* unit corners */
@@ -22,6 +28,13 @@ typedef struct triangle {
 static bool clears(const triangle *t, const double v[3], double depth)
 {
     return imp_dot(v, t->d[0]) <= -depth && imp_dot(v, t->d[1]) <= -depth && imp_dot(v, t->d[2]) <= -depth;
+}
+
+static bool peaks_clear(const triangle *t, const imp_gap_peaks *peaks, double depth)
+{
+    for (int i = 0; i < peaks->count; i++)
+        if (clears(t, peaks->v[i], depth)) return true;
+    return false;
 }
 
 static void middle(const double a[3], const double b[3], double m[3])
@@ -63,35 +76,71 @@ static double support(const imp_gap_solids *pair, const triangle *t, double n[3]
     return g;
 }
 
-imp_proof imp_gap_prove(const imp_gap_solids *pair, const double here[3], bool climb, double *gap, double n[3])
+/* Eight triangles about n; the one with it in a corner, and their first points. */
+static int octants(const imp_gap_peaks *peaks, const double n[3], triangle *waiting)
 {
-    double t[2][3], depth = -*gap - 1e-14 * pair->reach;
+    double t[2][3];
     imp_across(n, t);
-    triangle waiting[MAX_WAITING];
-    int count = 0;
     for (int octant = 0; octant < 8; octant++) {
-        triangle *o = &waiting[count++];
+        triangle *o = &waiting[octant];
         for (int i = 0; i < 3; i++) {
             o->d[0][i] = octant & 4 ? n[i] : -n[i];
             o->d[1][i] = octant & 2 ? t[0][i] : -t[0][i];
             o->d[2][i] = octant & 1 ? t[1][i] : -t[1][i];
-            o->v[i] = here[i];
+            o->v[i] = peaks->v[0][i];
         }
     }
+    return 8;
+}
+
+void imp_gap_peak_add(const double v[3], imp_gap_peaks *peaks)
+{
+    if (peaks->count < IMP_MOST_PEAKS) memcpy(peaks->v[peaks->count++], v, sizeof peaks->v[0]);
+}
+
+static double near_the_peak(const imp_gap_solids *pair, double bound)
+{
+    return fmin(near_peak * pair->reach, 0.01 * fabs(bound));
+}
+
+/* Newton for the peak near the normal m, unless it is known or as many were asked for as may be; its height, -INFINITY
+ * when there is none. */
+static double ask_peak(const imp_gap_solids *pair, imp_gap_peaks *peaks, double bound, double m[3])
+{
+    imp_gap_bracket meeting;
+    const double near = near_the_peak(pair, bound);
+    for (int i = 0; i < peaks->count; i++)
+        if (imp_dot(m, peaks->v[i]) <= -(1 - same_peak) * imp_norm(peaks->v[i])) return -INFINITY;
+    if (peaks->asked++ >= IMP_MOST_PEAKS || !imp_gap_newton(pair, m, NULL, &meeting)) return -INFINITY;
+    const double v[3] = {meeting.gap * meeting.n[0], meeting.gap * meeting.n[1], meeting.gap * meeting.n[2]};
+    if (meeting.gap > bound)
+        memcpy(m, meeting.n, sizeof meeting.n);
+    else if (meeting.gap > bound - 2 * near)
+        imp_gap_peak_add(v, peaks);
+    return meeting.gap;
+}
+
+imp_proof imp_gap_prove(const imp_gap_solids *pair, imp_gap_peaks *peaks, double slack, bool climb, double *gap,
+                        double n[3])
+{
+    triangle waiting[MAX_WAITING];
+    double depth = -*gap - slack;
+    int count = octants(peaks, n, waiting);
+    peaks->asked = 0;
     for (int tests = 0; count > 0; tests++) {
         triangle *top = &waiting[count - 1];
-        if (clears(top, top->v, depth) || clears(top, here, depth)) {
+        if (clears(top, top->v, depth) || peaks_clear(top, peaks, depth)) {
             count--;
             continue;
         }
         if (tests >= MAX_TRIANGLES || count == MAX_WAITING) return IMP_PROOF_OPEN;
-        double m[3];
-        const double g = support(pair, top, m, top->v);
+        double m[3], g = support(pair, top, m, top->v);
+        if (!climb && g > -depth - near_the_peak(pair, depth)) g = fmax(g, ask_peak(pair, peaks, -depth, m));
         if (g > (climb ? *gap : -depth)) {
             *gap = g;
             memcpy(n, m, sizeof m);
             if (!climb) return IMP_PROOF_AGAINST;
-            depth = -g - 1e-14 * pair->reach;
+            depth = -g - slack;
         }
         if (clears(top, top->v, depth))
             count--;

@@ -74,16 +74,31 @@ typedef enum imp_simplex_end { IMP_SIMPLEX_APART, IMP_SIMPLEX_OVERLAP } imp_simp
 imp_simplex_end imp_gap_simplex(const imp_gap_solids *pair, double shrink, double tolerance, int steps, double n[3],
                                 double x[2][3], double *lower, double *upper);
 
-/* libccd's way: the normal with the largest g among all the directions that its intersection test (deep: its
- * penetration search) asks for. False when this build has no libccd or nothing was met. */
-bool imp_gap_harvest(const imp_gap_solids *pair, bool deep, double n[3]);
+/* libccd's way: the normal with the largest g among all the directions that its intersection test asks for.
+ * False when this build has no libccd or nothing was met. */
+bool imp_gap_harvest(const imp_gap_solids *pair, double n[3]);
 
-/* Whether g is nowhere more than *gap, no more than 0, but for 1.8e-14 of the reach, *gap being g(n); here: a point of
- * the difference c + B - A. Against: it is, and *gap and n tell where; climb: they are followed to the highest instead.
- * Open: neither was found in a bounded number of steps. */
+/* Points of the bodies' difference c + B - A, at peaks n of g: there g(n) n is one, but for rounding. asked: for how
+ * many Newton was. */
+enum { IMP_MOST_PEAKS = 32 };
+typedef struct imp_gap_peaks {
+    int count, asked;
+    double v[IMP_MOST_PEAKS][3];
+} imp_gap_peaks;
+
+void imp_gap_peak_add(const double v[3], imp_gap_peaks *peaks);
+
+/* Whether g is nowhere more than *gap + slack, *gap <= 0 being g(n); peaks: one at least, more may be found. Against:
+ * it is, and *gap and n tell where; climb: they are followed to the highest instead. Open: neither was found in a
+ * bounded number of steps. */
 typedef enum imp_proof { IMP_PROOF_NEAREST, IMP_PROOF_AGAINST, IMP_PROOF_OPEN } imp_proof;
 
-imp_proof imp_gap_prove(const imp_gap_solids *pair, const double here[3], bool climb, double *gap, double n[3]);
+imp_proof imp_gap_prove(const imp_gap_solids *pair, imp_gap_peaks *peaks, double slack, bool climb, double *gap,
+                        double n[3]);
+
+/* Two octahedra: whether they are such, and their gap where they overlap (false where they do not). */
+bool imp_gap_are_octahedra(const imp_gap_solids *pair);
+bool imp_gap_octahedra(const imp_gap_solids *pair, imp_gap_bracket *meeting);
 
 /* All the ways in order, from a cached normal (NULL: none). */
 impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting,

@@ -51,7 +51,7 @@ static void first_direction(const void *object, const void *origin, ccd_vec3_t *
     ccdVec3Set(direction, -h->n[0], -h->n[1], -h->n[2]);
 }
 
-bool imp_gap_harvest(const imp_gap_solids *pair, bool deep, double n[3])
+bool imp_gap_harvest(const imp_gap_solids *pair, double n[3])
 {
     harvest h = {.pair = pair, .g = -INFINITY, .n = {n[0], n[1], n[2]}};
     ccd_t ccd;
@@ -60,14 +60,7 @@ bool imp_gap_harvest(const imp_gap_solids *pair, bool deep, double n[3])
     ccd.support1 = support_difference;
     ccd.support2 = support_origin;
     ccd.max_iterations = 60;
-    ccd.epa_tolerance = 1e-3 * pair->size;
-    if (deep) {
-        ccd_real_t depth;
-        ccd_vec3_t direction, position;
-        ccdGJKPenetration(&h, &h, &ccd, &depth, &direction, &position);
-    } else {
-        ccdGJKIntersect(&h, &h, &ccd);
-    }
+    ccdGJKIntersect(&h, &h, &ccd);
     for (int i = 0; i < 3; i++) n[i] = h.n[i];
     return h.calls > 0;
 }

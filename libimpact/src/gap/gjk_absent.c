@@ -4,8 +4,8 @@
  */
 #include "gap/gap_solver.h"
 
-bool imp_gap_harvest(const imp_gap_solids *pair, bool deep, double n[3])
+bool imp_gap_harvest(const imp_gap_solids *pair, double n[3])
 {
-    (void)pair, (void)deep, (void)n;
+    (void)pair, (void)n;
     return false;
 }

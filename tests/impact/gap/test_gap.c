@@ -365,7 +365,7 @@ static double octahedra_gap(const impact_solid body[2])
     return best;
 }
 
-/* Shallow overlaps: right where the status is ok, as it is for nearly all, and no less than the deep ones' truth. */
+/* Shallow overlaps: all settled, by the same facets that are enumerated here in another order (deep: test_gap_deep). */
 static void overlapping_octahedra(void **state)
 {
     (void)state;
@@ -394,11 +394,10 @@ static void overlapping_octahedra(void **state)
         impact_contact contact;
         const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
         asked++;
-        if (status != IMPACT_OK) continue;
-        settled++;
-        near(contact.gap, wanted, 2e-14);
+        settled += status == IMPACT_OK;
+        near(contact.gap, wanted, 2e-15);
     }
-    if (settled < 0.97 * asked) fail_msg("%d of %d settled", settled, asked);
+    assert_int_equal(settled, asked);
 }
 
 /* g along the unit n: no more than the gap. */
@@ -474,17 +473,15 @@ static void concentric_and_deep(void **state)
     const impact_solid a = superquadric(1, 2, 3, 2, 2, 2, (qvec3){0, 0, 0}),
                        b = superquadric(0.5, 0.5, 0.5, 2, 2, 2, (qvec3){0, 0, 0});
     impact_contact c;
-    impact_status status = impact_gap(&b, &a, NULL, &c);
-    assert_int_equal(status, IMPACT_DEEP);
-    near(c.gap, -1.5, 1e-14); /* out along the shortest axis */
+    assert_int_equal(impact_gap(&b, &a, NULL, &c), IMPACT_OK); /* two ways out, equally near: each is the nearest */
+    near(c.gap, -1.5, 1e-14);                                  /* along the shortest axis */
     near(fabs(c.normal.x), 1, 1e-14);
     const impact_solid same = ball(1, (qvec3){0, 0, 0});
     assert_int_equal(impact_gap(&same, &same, NULL, &c), IMPACT_DEEP);
     near(c.gap, -2, 0);
     const impact_solid deep = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0.1, 0.2, 1.2}),
                        block = superquadric(1, 1, 1, 4, 4, 4, (qvec3){0, 0, 0});
-    status = impact_gap(&deep, &block, NULL, &c);
-    assert_int_equal(status, IMPACT_DEEP);
+    assert_int_equal(impact_gap(&deep, &block, NULL, &c), IMPACT_OK);
     assert_true(c.gap < -0.75 && c.gap > -0.85 && c.normal.z > 0.9);
 }
 

@@ -33,7 +33,7 @@ static void harvest_improves_the_seed(void **state)
         const qvec3 d = random_direction(&random);
         double n[3] = {d.x, d.y, d.z};
         const double before = imp_pair_gap(&pair, n, NULL);
-        const bool met = imp_gap_harvest(&pair, k % 2 == 1, n);
+        const bool met = imp_gap_harvest(&pair, n);
         assert_true(met == impact_has(IMPACT_PART_CCD));
         assert_true(fabs(length(n) - 1) < 1e-14);
         assert_true(imp_pair_gap(&pair, n, NULL) >= before - 1e-14);
@@ -48,7 +48,7 @@ static void harvest_ends(void **state)
     for (int k = 0; k < 400; k++) {
         imp_gap_solids pair = random_pair(&random, RANDOM_BOXY, k % 4 == 0 ? 0 : 0.3);
         double n[3] = {0, 0, 1};
-        imp_gap_harvest(&pair, true, n);
+        imp_gap_harvest(&pair, n);
         assert_true(isfinite(n[0] + n[1] + n[2]));
     }
 }
