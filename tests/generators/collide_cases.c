@@ -2,11 +2,13 @@
 #include "collide_cases.h"
 
 #include <quat/rotation.h>
+#include "collide_extremes.h"
 
 const char *case_name(case_class class_)
 {
-    static const char *const names[CASE_CLASSES] = {"plain",  "wild",   "rod",    "tangent",   "rest",
-                                                    "planar", "sphere", "smooth", "isotropic", "tilted"};
+    static const char *const names[CASE_ALL] = {"plain",   "wild",     "rod",    "tangent",   "rest",
+                                                "planar",  "sphere",   "smooth", "isotropic", "tilted",
+                                                "slender", "slippery", "range"};
     return names[class_];
 }
 
@@ -167,6 +169,7 @@ impact_collision case_make(case_class class_, uint64_t seed, uint64_t index)
     uint64_t state =
                  seed * 0x2545f4914f6cdd1du + index * 0x9e3779b97f4a7c15u * 64 + (uint64_t)class_ * 0xda942042e4dd58b5u,
              *g = &state;
+    if (class_ >= CASE_CLASSES) return case_extreme(class_, g, (impact_law)(index % 3));
     impact_collision c = {.law = (impact_law)(index % 3)};
     c.normal = in_ball(g);
     if (class_ == CASE_PLANAR || class_ == CASE_TILTED) c.normal.y = 0;

@@ -19,13 +19,22 @@ typedef enum case_class {
     CASE_SMOOTH,    /* mu = 0 */
     CASE_ISOTROPIC, /* a = b, c and d not 0, exactly or to rounding; some mu as in wild, u_t as in tangent */
     CASE_TILTED,    /* planar ones turned any way: in one plane but for rounding */
-    CASE_CLASSES
+    CASE_CLASSES,
+    /* At the limits of what is admitted: collide_extremes.c. */
+    CASE_SLENDER = CASE_CLASSES, /* moments r : 1 : 1, r = 1e-1 ... 1e-9, any way and along the axes, struck anywhere */
+    CASE_SLIPPERY,               /* slender or not, mu 1e-8 ... 1e-300, all units within 1e+-8 */
+    CASE_RANGE,                  /* every number within 1e+-3 ... 1e+-100; many are refused */
+    CASE_ALL
 } case_class;
 
 const char *case_name(case_class class_);
 
-/* A collision that approaches; about one in ten at restitution 0, one in ten at 1; the laws in turn. */
+/* A collision that approaches (CASE_RANGE: or touches); about one in ten at restitution 0, one in ten at 1; the laws in
+ * turn. */
 impact_collision case_make(case_class class_, uint64_t seed, uint64_t index);
+
+/* A slender impact with the given r. */
+impact_collision case_slender(uint64_t seed, uint64_t index, double r);
 
 /* splitmix64 (Steele, Lea, Flood 2014): the next number, in [0, 1). */
 double case_random(uint64_t *state);

@@ -87,6 +87,7 @@ typedef struct impact_outcome {
     int compressions;                   /* how many times the contact was compressed */
     int phase_count;
     unsigned char phases[IMPACT_MAX_PHASES]; /* impact_phase values, in order; what does not fit is left out */
+    qvec3 phase_impulse[IMPACT_MAX_PHASES];  /* on body 1 up to the end of each phase, N s, world */
     impact_solver solver;                    /* the one that answered */
     /* Of the contact's inverse mass matrix M: |M| |M^-1| / 3 by Frobenius norms, between a third and the whole of the
      * ratio of its largest eigenvalue to its smallest. 1 is best, and where there is no friction. */

@@ -6,6 +6,32 @@
 #ifndef IMP_TOLERANCES_H
 #define IMP_TOLERANCES_H
 
+/* ---- collide: the range an impact is taken in, docs/collide.md ---- */
+
+/* Numbers in units of the reduced mass, the longest arm and the fastest velocity: products of three stay within 1e+-308.
+ */
+#define IMP_COLLIDE_RANGE 1e100
+/* Largest over smallest moment of one body: J^-1/2 spreads over 1e6, and its squares still meet in one sum. */
+#define IMP_COLLIDE_MOMENTS_APART 1e12
+/* Larger over smaller mass: 1/eps, beyond which the larger takes no part in any sum. */
+#define IMP_COLLIDE_MASSES_APART 1e16
+/* Masses, moments, arms and velocities within this power, and an approach above the second (their units' cube), are in
+ * range whatever the units: no need to look closer. */
+#define IMP_COLLIDE_ORDINARY 1e20
+#define IMP_COLLIDE_ORDINARY_APPROACH 1e-60
+
+/* ---- collide: the solvers ---- */
+
+/* Largest over smallest moment from which a body is slim: 3 bits of its arm are at stake in J^-1/2 r. */
+#define IMP_COLLIDE_SLIM 8
+/* |M| |M^-1| / 3 from which the impulse's rounding is felt in u: a bit for each of two products. */
+#define IMP_COLLIDE_UNEVEN 4
+/* Units of eps: a sliding direction turns by no more than rounding of its rate's terms (nine of them). */
+#define IMP_COLLIDE_STRAIGHT 9
+/* sigma: 22 terms of e^sigma hold 2^-60 to 1.4; further than this the last coefficients, which may vanish, are not
+ * believed. */
+#define IMP_COLLIDE_FARTHEST 4
+
 /* ---- contact: the cone problem, docs/cone.md ---- */
 
 /* The residual of what is solved: some 450 eps of the largest reaction and velocity. W itself is rounded, in sums of as

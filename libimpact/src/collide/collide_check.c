@@ -2,13 +2,14 @@
  *
  * What impact_collide takes, and in which words it refuses the rest.
  */
-#include "collide/collide_series.h"
+#include "collide/collide_check.h"
 
-#include <float.h>
-#include <stdarg.h>
 #include <stdio.h>
+#include "base/tolerances.h"
+#include "collide/collide_series.h"
+#include "collide/collide_units.h"
 
-static impact_status refuse(char *message, size_t size, impact_status status, const char *format, ...)
+impact_status imp_collide_refuse(char *message, size_t size, impact_status status, const char *format, ...)
 {
     if (size > 0) {
         va_list values;
@@ -24,8 +25,8 @@ static bool finite3(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite
 static impact_status check_vector(const char *name, int number, qvec3 v, char *message, size_t size)
 {
     if (finite3(v)) return IMPACT_OK;
-    return refuse(message, size, IMPACT_EDOMAIN, "body %d: %s is (%g, %g, %g), must be finite", number, name, v.x, v.y,
-                  v.z);
+    return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "body %d: %s is (%g, %g, %g), must be finite", number,
+                              name, v.x, v.y, v.z);
 }
 
 static impact_status check_body(const impact_collider *body, int number, char *message, size_t size)
@@ -34,25 +35,26 @@ static impact_status check_body(const impact_collider *body, int number, char *m
     if (status == IMPACT_OK) status = check_vector("velocity", number, body->velocity, message, size);
     if (status == IMPACT_OK) status = check_vector("omega", number, body->omega, message, size);
     if (status != IMPACT_OK) return status;
-    if (isnan(body->mass)) return refuse(message, size, IMPACT_EDOMAIN, "body %d: mass is NaN", number);
+    if (isnan(body->mass)) return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "body %d: mass is NaN", number);
     if (!(body->mass > 0))
-        return refuse(message, size, IMPACT_EARGUMENT, "body %d: mass is %g, must be > 0", number, body->mass);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "body %d: mass is %g, must be > 0", number,
+                                  body->mass);
     if (isinf(body->mass)) return IMPACT_OK;
     const qvec3 j = body->moments;
     status = check_vector("moments", number, j, message, size);
     if (status != IMPACT_OK) return status;
     if (!(j.x > 0 && j.y > 0 && j.z > 0))
-        return refuse(message, size, IMPACT_EARGUMENT, "body %d: moments are (%g, %g, %g), must be > 0", number, j.x,
-                      j.y, j.z);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "body %d: moments are (%g, %g, %g), must be > 0",
+                                  number, j.x, j.y, j.z);
     const quat q = body->orientation;
     const double n2 = quat_dot(q, q);
     if (!isfinite(n2))
-        return refuse(message, size, IMPACT_EDOMAIN,
-                      "body %d: orientation is (%g, %g, %g, %g), must be a finite unit quaternion", number, q.w, q.x,
-                      q.y, q.z);
+        return imp_collide_refuse(message, size, IMPACT_EDOMAIN,
+                                  "body %d: orientation is (%g, %g, %g, %g), must be a finite unit quaternion", number,
+                                  q.w, q.x, q.y, q.z);
     if (!(fabs(n2 - 1) <= 1e-6))
-        return refuse(message, size, IMPACT_EARGUMENT, "body %d: orientation has length %.17g, must be 1", number,
-                      sqrt(n2));
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "body %d: orientation has length %.17g, must be 1",
+                                  number, sqrt(n2));
     return IMPACT_OK;
 }
 
@@ -61,22 +63,24 @@ static impact_status check_extras(const impact_collision *collision, char *messa
 {
     const int order = collision->series_order;
     if (order != 0 && (order < 8 || order > IMP_SERIES_MOST))
-        return refuse(message, size, IMPACT_EARGUMENT, "series_order is %d, must be 8 to %d, or 0", order,
-                      IMP_SERIES_MOST);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "series_order is %d, must be 8 to %d, or 0", order,
+                                  IMP_SERIES_MOST);
     const double soft = collision->tangential_compliance;
     if (!isfinite(soft))
-        return refuse(message, size, IMPACT_EDOMAIN, "tangential_compliance is %g, must be finite", soft);
-    if (!(soft >= 0)) return refuse(message, size, IMPACT_EARGUMENT, "tangential_compliance is %g, must be >= 0", soft);
+        return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "tangential_compliance is %g, must be finite", soft);
+    if (!(soft >= 0))
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "tangential_compliance is %g, must be >= 0", soft);
     const bool cvode = collision->solver == IMPACT_SOLVER_AUTO || collision->solver == IMPACT_SOLVER_CVODE;
     if ((soft > 0 || collision->friction_law) && !cvode)
-        return refuse(message, size, IMPACT_EARGUMENT, "solver is %s, but %s needs cvode",
-                      impact_solver_name(collision->solver), soft > 0 ? "tangential_compliance" : "a friction law");
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "solver is %s, but %s needs cvode",
+                                  impact_solver_name(collision->solver),
+                                  soft > 0 ? "tangential_compliance" : "a friction law");
     if (soft > 0 && collision->law != IMPACT_STRONGE)
-        return refuse(message, size, IMPACT_EARGUMENT, "law is %s, but tangential_compliance needs stronge",
-                      impact_law_name(collision->law));
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "law is %s, but tangential_compliance needs stronge",
+                                  impact_law_name(collision->law));
     if (soft > 0 && (collision->restitution > 1 || collision->friction_law))
-        return refuse(message, size, IMPACT_EARGUMENT,
-                      "tangential_compliance takes constant friction and a restitution of at most 1");
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT,
+                                  "tangential_compliance takes constant friction and a restitution of at most 1");
     return IMPACT_OK;
 }
 
@@ -84,62 +88,67 @@ static impact_status check_contact(const impact_collision *collision, char *mess
 {
     const qvec3 n = collision->normal;
     if (!finite3(n))
-        return refuse(message, size, IMPACT_EDOMAIN, "normal is (%g, %g, %g), must be finite", n.x, n.y, n.z);
+        return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "normal is (%g, %g, %g), must be finite", n.x, n.y,
+                                  n.z);
     if (n.x == 0 && n.y == 0 && n.z == 0)
-        return refuse(message, size, IMPACT_EARGUMENT, "normal is (0, 0, 0), must have a direction");
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "normal is (0, 0, 0), must have a direction");
     if (!isfinite(collision->friction))
-        return refuse(message, size, IMPACT_EDOMAIN, "friction is %g, must be finite", collision->friction);
+        return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "friction is %g, must be finite", collision->friction);
     if (!(collision->friction >= 0))
-        return refuse(message, size, IMPACT_EARGUMENT, "friction is %g, must be >= 0", collision->friction);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "friction is %g, must be >= 0", collision->friction);
     const double eps = collision->restitution;
-    if (!isfinite(eps)) return refuse(message, size, IMPACT_EDOMAIN, "restitution is %g, must be finite", eps);
+    if (!isfinite(eps))
+        return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "restitution is %g, must be finite", eps);
     if (!(eps >= 0 && (eps <= 1 || collision->any_restitution)))
-        return refuse(message, size, IMPACT_EARGUMENT, "restitution is %g, must be in [0, 1]", eps);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "restitution is %g, must be in [0, 1]", eps);
     if ((int)collision->law < IMPACT_POISSON || collision->law > IMPACT_STRONGE)
-        return refuse(message, size, IMPACT_EARGUMENT, "law is %d, must be one of impact_law", (int)collision->law);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "law is %d, must be one of impact_law",
+                                  (int)collision->law);
     if ((int)collision->solver < IMPACT_SOLVER_AUTO || collision->solver > IMPACT_SOLVER_CVODE)
-        return refuse(message, size, IMPACT_EARGUMENT, "solver is %d, must be one of impact_solver",
-                      (int)collision->solver);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "solver is %d, must be one of impact_solver",
+                                  (int)collision->solver);
     return check_extras(collision, message, size);
 }
 
-/* At most DBL_MAX where all are finite and not huge; a NaN stays one. */
+/* A NaN stays one. */
 static inline double size3(qvec3 v) { return fabs(v.x) + fabs(v.y) + fabs(v.z); }
 
 static bool plain_bodies(const impact_collider *one, const impact_collider *two)
 {
+    const double most = IMP_COLLIDE_ORDINARY, least = 1 / IMP_COLLIDE_ORDINARY;
     const imp_vectors offset = imp_vectors_of(one->offset, two->offset);
     const imp_vectors velocity = imp_vectors_of(one->velocity, two->velocity);
     const imp_vectors omega = imp_vectors_of(one->omega, two->omega);
     const imp_vectors j = imp_vectors_of(one->moments, two->moments);
     const quat p = one->orientation, q = two->orientation;
     const imp_pair mass = {one->mass, two->mass}, length2 = {quat_dot(p, p), quat_dot(q, q)};
-    const imp_mask known =
-        imp_vectors_size(&offset) + (imp_vectors_size(&velocity) + imp_vectors_size(&omega)) <= DBL_MAX;
-    const imp_mask moves = (mass < INFINITY) & (j.x > 0) & (j.y > 0) & (j.z > 0) & (j.x + j.y + j.z <= DBL_MAX) &
-                           (imp_pair_size(length2 - 1) <= 1e-6);
-    return imp_mask_all(known & (mass > 0) & ((mass == INFINITY) | moves)) && imp_mask_any(moves);
+    const imp_pair slowest = imp_pair_smaller(imp_pair_smaller(j.x, j.y), j.z), all = j.x + j.y + j.z;
+    const imp_mask known = imp_vectors_size(&offset) + (imp_vectors_size(&velocity) + imp_vectors_size(&omega)) <= most;
+    const imp_mask moves = (mass <= most) & (slowest >= least) & (all <= most) &
+                           (all <= IMP_COLLIDE_MOMENTS_APART * slowest) & (imp_pair_size(length2 - 1) <= 1e-6);
+    const bool near = mass[0] == INFINITY || mass[1] == INFINITY ||
+                      (mass[0] <= IMP_COLLIDE_MASSES_APART * mass[1] && mass[1] <= IMP_COLLIDE_MASSES_APART * mass[0]);
+    return near && imp_mask_all(known & (mass >= least) & ((mass == INFINITY) | moves)) && imp_mask_any(moves);
 }
 
-/* Most collisions, told at a glance; the rest is looked at closely. */
-static bool plain(const impact_collision *c)
+bool imp_collide_is_plain(const impact_collision *c)
 {
     const double size = size3(c->normal);
     return plain_bodies(&c->body[0], &c->body[1]) && size <= DBL_MAX && size > 0 && c->friction >= 0 &&
-           c->friction <= DBL_MAX && c->restitution >= 0 && c->restitution <= 1 && (unsigned)c->law <= IMPACT_STRONGE &&
-           (unsigned)c->solver <= IMPACT_SOLVER_CVODE && c->series_order == 0 && c->tangential_compliance == 0 &&
-           !c->friction_law;
+           c->friction <= IMP_COLLIDE_ORDINARY && c->restitution >= 0 && c->restitution <= 1 &&
+           (unsigned)c->law <= IMPACT_STRONGE && (unsigned)c->solver <= IMPACT_SOLVER_CVODE && c->series_order == 0 &&
+           c->tangential_compliance == 0 && !c->friction_law;
 }
 
 impact_status impact_collide_check(const impact_collision *collision, char *message, size_t size)
 {
     if (size > 0) message[0] = '\0';
-    if (plain(collision)) return IMPACT_OK;
     for (int i = 0; i < 2; i++) {
         const impact_status status = check_body(&collision->body[i], i + 1, message, size);
         if (status != IMPACT_OK) return status;
     }
     if (isinf(collision->body[0].mass) && isinf(collision->body[1].mass))
-        return refuse(message, size, IMPACT_EARGUMENT, "both bodies are static (mass inf): one must move");
-    return check_contact(collision, message, size);
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "both bodies are static (mass inf): one must move");
+    const impact_status status = check_contact(collision, message, size);
+    return status == IMPACT_OK ? imp_units_check(collision, message, size) : status;
 }

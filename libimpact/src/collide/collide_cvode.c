@@ -169,9 +169,10 @@ static impact_status to_root(const imp_course *course, impact_collide_workspace 
 static void straight(imp_course *course, impact_collide_workspace *ws)
 {
     const double mu = friction_at(ws, 0);
-    const imp_line line = imp_course_sliding(course->frame, mu, course->ux / course->s, course->uy / course->s);
-    imp_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
-    if (!course->ended) course->s = 0;
+    const double held = course->mu;
+    course->mu = mu;
+    imp_course_slide(course, course->ux / course->s, course->uy / course->s);
+    course->mu = held;
 }
 
 /* One slip to its stop or to the end of the impact. */

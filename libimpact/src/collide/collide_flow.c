@@ -178,28 +178,29 @@ static void from_rest(sampler *sm)
 static void through_step(sampler *sm, const imp_taylor *ty)
 {
     const int n = ty->order;
-    const double h = ty->h, mu = sm->flow->friction, dp = imp_taylor_integral(ty->s, n, h);
+    const double h = ty->h, mu = sm->flow->friction, rate = ty->rate, rub = mu * rate,
+                 dp = rate * imp_taylor_integral(ty->s, n, h);
     double t = 0;
     while (sm->next < sm->count && wanted_p(sm) <= sm->p + dp) {
         const double p = wanted_p(sm);
         double low = t, high = h;
         for (int i = 0; i < 60; i++) {
-            const double f = sm->p + imp_taylor_integral(ty->s, n, t) - p;
+            const double f = sm->p + rate * imp_taylor_integral(ty->s, n, t) - p;
             if (f > 0)
                 high = t;
             else
                 low = t;
-            double to = t - f / imp_taylor_value(ty->s, n, t);
+            double to = t - f / (rate * imp_taylor_value(ty->s, n, t));
             if (!(to >= low && to <= high)) to = 0.5 * (low + high);
             const double move = fabs(to - t);
             t = to;
             if (move <= 2 * DBL_EPSILON * t) break;
         }
         put(sm, imp_taylor_value(ty->x, n, t), imp_taylor_value(ty->y, n, t), p,
-            sm->px - mu * imp_taylor_integral(ty->x, n, t), sm->py - mu * imp_taylor_integral(ty->y, n, t), false);
+            sm->px - rub * imp_taylor_integral(ty->x, n, t), sm->py - rub * imp_taylor_integral(ty->y, n, t), false);
     }
-    sm->px -= mu * imp_taylor_integral(ty->x, n, h);
-    sm->py -= mu * imp_taylor_integral(ty->y, n, h);
+    sm->px -= rub * imp_taylor_integral(ty->x, n, h);
+    sm->py -= rub * imp_taylor_integral(ty->y, n, h);
     sm->p += dp;
     sm->x = imp_taylor_value(ty->x, n, h);
     sm->y = imp_taylor_value(ty->y, n, h);
@@ -216,13 +217,13 @@ static impact_status sample(sampler *sm)
             return IMPACT_OK;
         }
         const double x = sm->x / sm->s, y = sm->y / sm->s;
-        const imp_line line = imp_course_sliding(frame, mu, x, y);
+        const imp_line line = imp_course_straight_line(frame, mu, x, y);
         if (imp_course_is_straight(frame, mu, x, y)) {
             along_line(sm, &line, x, y);
             continue;
         }
         imp_tail tail;
-        if (line.R < 0 && imp_tail_make(&tail, frame, mu, sm->x, sm->y, sm->s, 0) && sm->p + tail.p < wanted_p(sm)) {
+        if (imp_tail_make(&tail, frame, mu, sm->x, sm->y, sm->s, 0) && sm->p + tail.p < wanted_p(sm)) {
             sm->p += tail.p;
             sm->px += tail.px;
             sm->py += tail.py;

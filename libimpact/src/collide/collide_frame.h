@@ -8,29 +8,46 @@
 #include "collide/collide_ready.h"
 
 /* M = scale [[a, e, c], [e, b, d], [c, d, 1]] in a right-handed frame (t1, t2, n); e = 0 in the principal one.
- * schur = b - e^2/a and k = 1 - (c, d).M_tt^-1 (c, d) are the least of sums of squares, not those differences. */
+ * schur = det M_tt / a and k = 1 - (c, d).M_tt^-1 (c, d) are the least of sums of squares, not differences. */
 typedef struct imp_frame {
-    qvec3 t1, t2, n;
-    double a, b, c, d, e;
-    double schur, k;
-    double alpha, beta;  /* -M_tt^-1 M_tz: per unit of p, the tangential impulse that sticks */
-    double scale;        /* M_zz, 1/kg */
-    double conditioning; /* |M| |M^-1| / 3, Frobenius norms */
+    imp_vec t1, t2, n;
+    imp_real a, b, c, d, e;
+    imp_real schur, k;
+    imp_real alpha, beta;  /* -M_tt^-1 M_tz: per unit of p, the tangential impulse that sticks */
+    imp_real scale;        /* M_zz, 1/kg */
+    imp_real conditioning; /* |M| |M^-1| / 3, Frobenius norms */
 } imp_frame;
 
+/* Rows of the root of M, M = w I + B' B: with the weights J^-1/2, a unit vector's dot product with them is its arm
+ * offset x e, local axes, for each body. */
+typedef struct imp_levers {
+    imp_vectors row[3];
+} imp_levers;
+
+imp_levers imp_frame_levers(const imp_ready *ready);
+
+/* The rows times e. */
+static inline imp_vectors imp_frame_arms(const imp_levers *l, imp_vec e)
+{
+    const imp_vectors *row = l->row;
+    return (imp_vectors){row[0].x * e.x + row[0].y * e.y + row[0].z * e.z,
+                         row[1].x * e.x + row[1].y * e.y + row[1].z * e.z,
+                         row[2].x * e.x + row[2].y * e.y + row[2].z * e.z};
+}
+
 /* n and t1: unit, at right angles. */
-void imp_frame_make(qvec3 n, qvec3 t1, const imp_ready *ready, imp_frame *frame);
+void imp_frame_make(imp_vec n, imp_vec t1, const imp_ready *ready, imp_frame *frame);
 
 /* Turns t1, t2 to the principal directions of M_tt. */
 void imp_frame_turn(const imp_ready *ready, imp_frame *frame);
 
 /* The principal frame for the unit normal n. */
-void imp_frame_principal(qvec3 n, const imp_ready *ready, imp_frame *frame);
+void imp_frame_principal(imp_vec n, const imp_ready *ready, imp_frame *frame);
 
 /* A unit vector across the unit vector n. */
-qvec3 imp_frame_across(qvec3 n);
+imp_vec imp_frame_across(imp_vec n);
 
 /* The collision's normal at unit length. */
-qvec3 imp_frame_normal(const impact_collision *collision);
+imp_vec imp_frame_normal(const impact_collision *collision);
 
 #endif

@@ -225,6 +225,8 @@ static void move_to(whirl *w, double tau, const powers *at)
     w->X *= at->A;
     w->Y *= at->B;
     w->uy *= 1 - shed;
+    course->ux = w->ex * (w->X - w->Y) - w->ey * w->uy;
+    course->uy = w->ey * (w->X - w->Y) + w->ex * w->uy;
 }
 
 /* Where to start looking for the end by Stronge's law: uz may be 0 here, and the work then has no slope. */

@@ -5,13 +5,12 @@
 #ifndef IMP_COLLIDE_PAIR_H
 #define IMP_COLLIDE_PAIR_H
 
-#include <math.h>
-#include <quat/quat.h>
+#include "collide/collide_real.h"
 
-typedef double imp_pair __attribute__((vector_size(16)));
+typedef imp_real imp_pair __attribute__((vector_size(2 * sizeof(imp_real))));
 
 /* Per lane all bits or none, as comparisons of pairs give it. */
-typedef long long imp_mask __attribute__((vector_size(16)));
+typedef imp_word imp_mask __attribute__((vector_size(2 * sizeof(imp_real))));
 
 /* A vector for each body. */
 typedef struct imp_vectors {
@@ -35,19 +34,19 @@ static inline imp_pair imp_pair_size(imp_pair x)
     return (imp_pair)((imp_mask)x & ~sign);
 }
 
-static inline imp_pair imp_pair_sqrt(imp_pair x) { return (imp_pair){sqrt(x[0]), sqrt(x[1])}; }
+static inline imp_pair imp_pair_sqrt(imp_pair x) { return (imp_pair){imp_sqrt(x[0]), imp_sqrt(x[1])}; }
 static inline imp_pair imp_pair_larger(imp_pair x, imp_pair y) { return imp_pair_pick(x > y, x, y); }
 static inline imp_pair imp_pair_smaller(imp_pair x, imp_pair y) { return imp_pair_pick(x < y, x, y); }
 
-static inline imp_vectors imp_vectors_of(qvec3 one, qvec3 two)
+static inline imp_vectors imp_vectors_of(imp_vec one, imp_vec two)
 {
     return (imp_vectors){{one.x, two.x}, {one.y, two.y}, {one.z, two.z}};
 }
 
 /* Body `lane`'s. */
-static inline qvec3 imp_vectors_at(const imp_vectors *v, int lane)
+static inline imp_vec imp_vectors_at(const imp_vectors *v, int lane)
 {
-    return (qvec3){v->x[lane], v->y[lane], v->z[lane]};
+    return (imp_vec){v->x[lane], v->y[lane], v->z[lane]};
 }
 
 static inline imp_pair imp_vectors_dot(const imp_vectors *p, const imp_vectors *q)

@@ -6,8 +6,7 @@
  */
 #include "collide/collide_ready.h"
 
-/* Largest over smallest moment from which a body is slim. */
-static const double slim = 8;
+#include "base/tolerances.h"
 
 typedef struct doubled {
     imp_pair high, low; /* their sum is meant */
@@ -19,7 +18,7 @@ typedef struct halves {
 
 static inline halves halve(imp_pair a)
 {
-    const imp_pair t = 134217729 * a, high = t - (t - a);
+    const imp_pair t = IMP_SPLITTER * a, high = t - (t - a);
     return (halves){a, high, a - high};
 }
 
@@ -85,7 +84,7 @@ static void refine_offset(const quats *q, imp_pair f, const imp_vectors *r, imp_
 {
     const imp_vectors fine = slim_offset(q, r);
     const imp_pair x = fine.x * f, y = fine.y * f, z = fine.z * f;
-    /* Beyond 1e300 doubling overflows. */
+    /* Where doubling overflows, as it was. */
     lanes &= (x + y + z) - (x + y + z) == 0;
     offset->x = imp_pair_pick(lanes, x, offset->x);
     offset->y = imp_pair_pick(lanes, y, offset->y);
@@ -96,17 +95,17 @@ void imp_ready_make(const impact_collision *collision, imp_ready *ready)
 {
     const impact_collider *one = &collision->body[0], *two = &collision->body[1];
     const imp_pair mass = {one->mass, two->mass}, zero = {0, 0}, unit = {1, 1};
-    const imp_mask moves = mass < INFINITY;
+    const imp_mask moves = mass < (imp_real)INFINITY;
     ready->mass = imp_pair_where(moves, mass);
     ready->inverse_mass = 1 / mass;
-    const imp_vectors j = imp_vectors_of(one->moments, two->moments);
+    const imp_vectors j = imp_vectors_of(imp_vec_of(one->moments), imp_vec_of(two->moments));
     ready->moments = (imp_vectors){imp_pair_where(moves, j.x), imp_pair_where(moves, j.y), imp_pair_where(moves, j.z)};
     ready->inverse_moments = (imp_vectors){imp_pair_where(moves, 1 / imp_pair_pick(moves, j.x, unit)),
                                            imp_pair_where(moves, 1 / imp_pair_pick(moves, j.y, unit)),
                                            imp_pair_where(moves, 1 / imp_pair_pick(moves, j.z, unit))};
-    ready->velocity = imp_vectors_of(one->velocity, two->velocity);
-    ready->omega = imp_vectors_of(one->omega, two->omega);
-    ready->arm = imp_vectors_of(one->offset, two->offset);
+    ready->velocity = imp_vectors_of(imp_vec_of(one->velocity), imp_vec_of(two->velocity));
+    ready->omega = imp_vectors_of(imp_vec_of(one->omega), imp_vec_of(two->omega));
+    ready->arm = imp_vectors_of(imp_vec_of(one->offset), imp_vec_of(two->offset));
     const imp_vectors r = {imp_pair_where(moves, ready->arm.x), imp_pair_where(moves, ready->arm.y),
                            imp_pair_where(moves, ready->arm.z)};
     const imp_mask turned = moves & ~((j.x == j.y) & (j.y == j.z));
@@ -125,6 +124,6 @@ void imp_ready_make(const impact_collision *collision, imp_ready *ready)
     ready->offset = imp_ready_local(ready, &r);
     const imp_pair least = imp_pair_smaller(imp_pair_smaller(j.x, j.y), j.z);
     const imp_pair most = imp_pair_larger(imp_pair_larger(j.x, j.y), j.z);
-    const imp_mask lanes = turned & (most > slim * least);
+    const imp_mask lanes = turned & (most > IMP_COLLIDE_SLIM * least);
     if (imp_mask_any(lanes)) refine_offset(&q, f, &r, lanes, &ready->offset);
 }

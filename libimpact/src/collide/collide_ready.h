@@ -19,10 +19,6 @@ typedef struct imp_ready {
     bool round;                       /* both have three equal moments (or are static): orientations do not matter */
 } imp_ready;
 
-/* In line, where fmax and fmin are calls; a NaN is not minded. */
-static inline double imp_larger(double a, double b) { return a > b ? a : b; }
-static inline double imp_smaller(double a, double b) { return a < b ? a : b; }
-
 void imp_ready_make(const impact_collision *collision, imp_ready *ready);
 
 /* World vectors to local axes and back. */
@@ -43,11 +39,11 @@ static inline imp_vectors imp_ready_world(const imp_ready *ready, const imp_vect
 }
 
 /* Of the contact points, body 1 less body 2, world. */
-static inline qvec3 imp_ready_velocity(const imp_ready *ready)
+static inline imp_vec imp_ready_velocity(const imp_ready *ready)
 {
     const imp_vectors turn = imp_vectors_cross(&ready->omega, &ready->arm);
     const imp_pair x = ready->velocity.x + turn.x, y = ready->velocity.y + turn.y, z = ready->velocity.z + turn.z;
-    return (qvec3){x[0] - x[1], y[0] - y[1], z[0] - z[1]};
+    return (imp_vec){x[0] - x[1], y[0] - y[1], z[0] - z[1]};
 }
 
 #endif

@@ -2,7 +2,11 @@
  *
  * With d tau = dp / s, s = |u_t|, sliding is  du_t/dtau = s M_tz - mu M_tt u_t,  dp/dtau = s: Lipschitz, free of
  * angles, and regular where sliding stops. One Taylor step holds u_t, s (from s^2 = u_t . u_t), uz, p and the works as
- * polynomials of tau; the step length follows from the last coefficients (Jorba & Zou 2005).
+ * polynomials; the step length follows from the last coefficients (Jorba & Zou 2005).
+ *
+ * The variable is sigma = Lambda tau, Lambda = |c| + |d| + mu max(a, b): |du_t/dsigma| <= imp_sqrt(2) s, so that all
+ * coefficients are of the size of s however small mu and M_tz are (in tau they carry Lambda^k, and underflow). While
+ * u_t changes by less than (imp_sqrt(2) - 1) s, u_t . u_t does not vanish: the radius of convergence is .29 at least.
  *
  * Events: theta turns monotonically within a slip, by far less than pi/2 in a step, so Z = d uz / dp is monotone
  * between the zeros of M_tz x u_t. Splitting a step there and at the zeros of Z leaves pieces on which uz is monotone:
@@ -10,33 +14,41 @@
  */
 #include "collide/collide_series.h"
 
-#include <float.h>
+#include "base/tolerances.h"
 
-static const double inverse[] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
-                                 1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13,
-                                 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18, 1.0 / 19, 1.0 / 20,
-                                 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24, 1.0 / 25, 1.0 / 26, 1.0 / 27,
-                                 1.0 / 28, 1.0 / 29, 1.0 / 30, 1.0 / 31, 1.0 / 32, 1.0 / 33, 1.0 / 34};
+#define I(k) ((imp_real)1 / (k))
+static const imp_real inverse[] = {0,     I(1),  I(2),  I(3),  I(4),  I(5),  I(6),  I(7),  I(8),  I(9),  I(10),
+                                   I(11), I(12), I(13), I(14), I(15), I(16), I(17), I(18), I(19), I(20), I(21),
+                                   I(22), I(23), I(24), I(25), I(26), I(27), I(28), I(29), I(30), I(31), I(32),
+                                   I(33), I(34), I(35), I(36), I(37), I(38), I(39), I(40), I(41), I(42), I(43)};
+#undef I
 
-/* The largest h for which the last two terms stay below 2^-60 of s. */
-static double step_length(const imp_taylor *taylor)
+/* The largest h for which the last two terms stay below eps/256 of s. */
+static imp_real step_length(const imp_taylor *taylor)
 {
     const int n = taylor->order;
-    double h = INFINITY;
+    imp_real h = IMP_COLLIDE_FARTHEST;
     for (int k = n - 1; k <= n; k++) {
-        const double size = imp_larger(imp_larger(fabs(taylor->x[k]), fabs(taylor->y[k])), fabs(taylor->s[k]));
-        if (size > 0) h = imp_smaller(h, exp(log(taylor->s[0] / size * 0x1p-60) / k));
+        const imp_real size =
+            imp_larger(imp_larger(imp_abs(taylor->x[k]), imp_abs(taylor->y[k])), imp_abs(taylor->s[k]));
+        const double least = (double)(IMP_EPSILON / 256 * (taylor->s[0] / size));
+        if (size > 0 && least < DBL_MAX) h = imp_smaller(h, exp(log(least) / k));
     }
     return h;
 }
 
-void imp_taylor_make(imp_taylor *taylor, const imp_frame *frame, double mu, double ux, double uy, double s, int order)
+void imp_taylor_make(imp_taylor *taylor, const imp_frame *frame, imp_real mu, imp_real ux, imp_real uy, imp_real s,
+                     int order)
 {
-    double *x = taylor->x, *y = taylor->y, *v = taylor->s;
-    const double ma = mu * frame->a, mb = mu * frame->b, c = frame->c, d = frame->d, half = 0.5 / s;
+    imp_real *x = taylor->x, *y = taylor->y, *v = taylor->s;
+    const imp_real lambda = imp_abs(frame->c) + imp_abs(frame->d) + mu * imp_larger(frame->a, frame->b),
+                   rate = 1 / lambda;
+    const imp_real ma = mu * frame->a * rate, mb = mu * frame->b * rate, c = frame->c * rate, d = frame->d * rate;
+    const imp_real half = 0.5 / s;
     imp_pair u[IMP_SERIES_ROOM]; /* x and y */
     const imp_pair pull = {c, d}, drag = {ma, mb};
     taylor->order = order;
+    taylor->rate = rate;
     u[0] = (imp_pair){ux, uy};
     x[0] = ux;
     y[0] = uy;
@@ -49,7 +61,7 @@ void imp_taylor_make(imp_taylor *taylor, const imp_frame *frame, double mu, doub
         y[n] = u[n][1];
         /* s^2 = x^2 + y^2, term n; every product but the middle one stands twice. */
         imp_pair q = {0, 0};
-        double r = 0;
+        imp_real r = 0;
         for (int i = 1; 2 * i < n; i++) {
             q += u[i] * u[n - i];
             r += v[i] * v[n - i];
@@ -64,24 +76,23 @@ void imp_taylor_make(imp_taylor *taylor, const imp_frame *frame, double mu, doub
         v[n] = (q[0] + q[1] - r) * half;
     }
     x[order + 1] = y[order + 1] = v[order + 1] = taylor->squared[order + 1] = taylor->climb[order + 1] = 0;
-    for (int k = 0; k <= order; k++) taylor->climb[k] = v[k] - mu * (c * x[k] + d * y[k]);
-    /* A straight slip at constant speed would have no end. */
-    taylor->h = imp_smaller(step_length(taylor), 100 / (fabs(c) + fabs(d) + imp_larger(ma, mb)));
+    for (int k = 0; k <= order; k++) taylor->climb[k] = rate * v[k] - mu * (c * x[k] + d * y[k]);
+    taylor->h = step_length(taylor);
 }
 
 /* Even and odd terms side by side. */
-double imp_taylor_value(const double *coefficient, int order, double t)
+imp_real imp_taylor_value(const imp_real *coefficient, int order, imp_real t)
 {
-    const double t2 = t * t;
+    const imp_real t2 = t * t;
     int k = order - order % 2;
     imp_pair sum = IMP_PAIR(coefficient + k);
     for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMP_PAIR(coefficient + k);
     return sum[0] + t * sum[1];
 }
 
-double imp_taylor_integral(const double *coefficient, int order, double t)
+imp_real imp_taylor_integral(const imp_real *coefficient, int order, imp_real t)
 {
-    const double t2 = t * t;
+    const imp_real t2 = t * t;
     int k = order - order % 2;
     imp_pair sum = IMP_PAIR(coefficient + k) * IMP_PAIR(inverse + k + 1);
     for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMP_PAIR(coefficient + k) * IMP_PAIR(inverse + k + 1);
@@ -93,20 +104,20 @@ double imp_taylor_integral(const double *coefficient, int order, double t)
 /* The integrals from 0 to t that the course is kept by: side by side, since each alone is a chain of dependent
  * operations. */
 typedef struct totals {
-    double p, work, friction, px, py;
+    imp_real p, work, friction, px, py;
 } totals;
 
 typedef struct step {
     imp_course *course;
     imp_taylor taylor;
-    double uz0;                    /* uz at tau = 0 */
-    double power[IMP_SERIES_ROOM]; /* uz s, the rate of the normal work */
+    imp_real uz0;                    /* uz at sigma = 0 */
+    imp_real power[IMP_SERIES_ROOM]; /* uz s / Lambda, the rate of the normal work */
     bool has_power;
-    double at;   /* where the course stands in this step */
+    imp_real at; /* where the course stands in this step */
     totals done; /* from 0 to `at` */
 } step;
 
-static double uz_at(const step *st, double t)
+static imp_real uz_at(const step *st, imp_real t)
 {
     return st->uz0 + imp_taylor_integral(st->taylor.climb, st->taylor.order, t);
 }
@@ -114,10 +125,10 @@ static double uz_at(const step *st, double t)
 static void make_power(step *st)
 {
     const int order = st->taylor.order;
-    const double *s = st->taylor.s;
-    double *power = st->power, uz[IMP_SERIES_ROOM];
-    uz[0] = st->uz0;
-    for (int k = 0; k <= order; k++) uz[k + 1] = st->taylor.climb[k] * inverse[k + 1];
+    const imp_real *s = st->taylor.s, rate = st->taylor.rate;
+    imp_real *power = st->power, uz[IMP_SERIES_ROOM];
+    uz[0] = st->uz0 * rate;
+    for (int k = 0; k <= order; k++) uz[k + 1] = st->taylor.climb[k] * inverse[k + 1] * rate;
     for (int k = 0; k <= order; k += 2) {
         imp_pair sum = {0, uz[k + 1] * s[0]};
         for (int i = 0; i <= k; i++) sum += uz[i] * IMP_PAIR(s + k - i);
@@ -128,7 +139,7 @@ static void make_power(step *st)
     st->has_power = true;
 }
 
-static double work_at(step *st, double t)
+static imp_real work_at(step *st, imp_real t)
 {
     if (!st->has_power) make_power(st);
     return imp_taylor_integral(st->power, st->taylor.order, t);
@@ -137,21 +148,23 @@ static double work_at(step *st, double t)
 /* What a root is looked for of. */
 typedef enum target { TARGET_UZ, TARGET_CLIMB, TARGET_CROSS, TARGET_P, TARGET_WORK } target;
 
-static double target_value(step *st, target what, double t, double wanted, double *slope)
+static imp_real target_value(step *st, target what, imp_real t, imp_real wanted, imp_real *slope)
 {
     const imp_taylor *ty = &st->taylor;
     const int n = ty->order;
     switch (what) {
     case TARGET_UZ: *slope = imp_taylor_value(ty->climb, n, t); return uz_at(st, t) - wanted;
-    case TARGET_P: *slope = imp_taylor_value(ty->s, n, t); return imp_taylor_integral(ty->s, n, t) - wanted;
+    case TARGET_P:
+        *slope = ty->rate * imp_taylor_value(ty->s, n, t);
+        return ty->rate * imp_taylor_integral(ty->s, n, t) - wanted;
     case TARGET_WORK: *slope = imp_taylor_value(st->power, n, t); return work_at(st, t) - wanted;
     case TARGET_CLIMB:
         *slope = 0;
         for (int k = n; k >= 1; k--) *slope = *slope * t + k * ty->climb[k];
         return imp_taylor_value(ty->climb, n, t) - wanted;
     case TARGET_CROSS: {
-        const double c = st->course->frame->c, d = st->course->frame->d;
-        double sum = 0, rate = 0;
+        const imp_real c = st->course->frame->c, d = st->course->frame->d;
+        imp_real sum = 0, rate = 0;
         for (int k = n; k >= 0; k--) {
             rate = rate * t + sum;
             sum = sum * t + (c * ty->y[k] - d * ty->x[k]);
@@ -166,47 +179,47 @@ static double target_value(step *st, target what, double t, double wanted, doubl
 
 /* The root of a monotone function on [low, high] whose signs differ at the ends: Newton kept inside a shrinking
  * bracket. */
-static double find_root(step *st, target what, double wanted, double low, double high)
+static imp_real find_root(step *st, target what, imp_real wanted, imp_real low, imp_real high)
 {
-    double slope, f_low = target_value(st, what, low, wanted, &slope);
-    const double f_high = target_value(st, what, high, wanted, &slope);
+    imp_real slope, f_low = target_value(st, what, low, wanted, &slope);
+    const imp_real f_high = target_value(st, what, high, wanted, &slope);
     if (f_low == 0) return low;
     if (f_high == 0 || (f_low > 0) == (f_high > 0)) return high;
-    double t = low + (high - low) * (f_low / (f_low - f_high));
+    imp_real t = low + (high - low) * (f_low / (f_low - f_high));
     for (int i = 0; i < 80; i++) {
-        const double f = target_value(st, what, t, wanted, &slope);
+        const imp_real f = target_value(st, what, t, wanted, &slope);
         if (f == 0) return t;
         if ((f > 0) == (f_low > 0))
             low = t;
         else
             high = t;
-        double new_t = t - f / slope;
+        imp_real new_t = t - f / slope;
         if (!(new_t >= low && new_t <= high)) new_t = 0.5 * (low + high);
-        const double move = fabs(new_t - t);
+        const imp_real move = imp_abs(new_t - t);
         t = new_t;
-        if (move <= 2 * DBL_EPSILON * t) break;
+        if (move <= 2 * IMP_EPSILON * t) break;
     }
     return t;
 }
 
-static totals totals_at(step *st, double t)
+static totals totals_at(step *st, imp_real t)
 {
     if (!st->has_power) make_power(st);
     const imp_taylor *ty = &st->taylor;
-    double work = 0;
+    imp_real work = 0;
     imp_pair slide = {0, 0}, speed = {0, 0};
     for (int k = ty->order; k >= 0; k--) {
-        const double f = inverse[k + 1];
+        const imp_real f = inverse[k + 1];
         slide = slide * t + (imp_pair){ty->x[k], ty->y[k]} * f;
         speed = speed * t + (imp_pair){ty->s[k], ty->squared[k]} * f;
         work = work * t + st->power[k] * f;
     }
-    const double rub = -st->course->mu * t;
-    return (totals){speed[0] * t, work * t, speed[1] * rub, slide[0] * rub, slide[1] * rub};
+    const imp_real tau = ty->rate * t, rub = -st->course->mu * tau;
+    return (totals){speed[0] * tau, work * t, speed[1] * rub, slide[0] * rub, slide[1] * rub};
 }
 
-/* Moves the course on to tau = t within one phase. */
-static void move_to(step *st, double t)
+/* Moves the course on to sigma = t within one phase. */
+static void move_to(step *st, imp_real t)
 {
     imp_course *course = st->course;
     if (!(t > st->at)) return;
@@ -221,22 +234,22 @@ static void move_to(step *st, double t)
 }
 
 /* In restitution, uz >= 0 up to `to`: whether the impact ends by then, and where. */
-static bool end_by(step *st, double to, double *where)
+static bool end_by(step *st, imp_real to, imp_real *where)
 {
     const imp_course *course = st->course;
     switch (course->law) {
     case IMPACT_POISSON: {
-        const double wanted = st->done.p + imp_course_left_poisson(course);
+        const imp_real wanted = st->done.p + imp_course_left_poisson(course);
         if (wanted <= st->done.p) {
             *where = st->at;
             return true;
         }
-        if (imp_taylor_integral(st->taylor.s, st->taylor.order, to) < wanted) return false;
+        if (st->taylor.rate * imp_taylor_integral(st->taylor.s, st->taylor.order, to) < wanted) return false;
         *where = find_root(st, TARGET_P, wanted, st->at, to);
         return true;
     }
     case IMPACT_NEWTON: {
-        const double wanted = imp_course_target_newton(course);
+        const imp_real wanted = imp_course_target_newton(course);
         if (course->uz >= wanted) {
             *where = st->at;
             return true;
@@ -246,7 +259,7 @@ static bool end_by(step *st, double to, double *where)
         return true;
     }
     case IMPACT_STRONGE: {
-        const double more = imp_course_left_stronge(course);
+        const imp_real more = imp_course_left_stronge(course);
         if (more <= 0) {
             *where = st->at;
             return true;
@@ -260,17 +273,17 @@ static bool end_by(step *st, double to, double *where)
 }
 
 /* The sense of uz on a piece where it is monotone; at a turn, uz itself is rounding. */
-static bool climbs(const step *st, double to)
+static bool climbs(const step *st, imp_real to)
 {
     return imp_taylor_value(st->taylor.climb, st->taylor.order, 0.5 * (st->at + to)) > 0;
 }
 
-/* Follows the course to tau = to through its events; uz is monotone on the way. */
-static void monotone_piece(step *st, double to)
+/* Follows the course to sigma = to through its events; uz is monotone on the way. */
+static void monotone_piece(step *st, imp_real to)
 {
     imp_course *course = st->course;
     for (int i = 0; i < 4 && !course->ended; i++) {
-        const double uz_to = uz_at(st, to);
+        const imp_real uz_to = uz_at(st, to);
         if (course->compressing) {
             if (uz_to < 0 || !climbs(st, to)) break;
             move_to(st, find_root(st, TARGET_UZ, 0, st->at, to));
@@ -279,8 +292,8 @@ static void monotone_piece(step *st, double to)
             continue;
         }
         const bool turns = uz_to < 0 && !climbs(st, to);
-        const double turn = turns ? find_root(st, TARGET_UZ, 0, st->at, to) : to;
-        double end;
+        const imp_real turn = turns ? find_root(st, TARGET_UZ, 0, st->at, to) : to;
+        imp_real end;
         if (end_by(st, turn, &end)) {
             move_to(st, end);
             if (course->law == IMPACT_NEWTON) course->uz = imp_course_target_newton(course);
@@ -296,14 +309,15 @@ static void monotone_piece(step *st, double to)
 
 /* A step that stops short of its end at a turn (Stronge's law) goes on as a new one: the work given back is then an
  * integral from there, and not a small difference. */
-static bool stopped(const step *st, double at) { return st->course->ended || st->at < at; }
+static bool stopped(const step *st, imp_real at) { return st->course->ended || st->at < at; }
 
-static void split_at_climb(step *st, double to)
+static void split_at_climb(step *st, imp_real to)
 {
     const int n = st->taylor.order;
-    const double low = imp_taylor_value(st->taylor.climb, n, st->at), high = imp_taylor_value(st->taylor.climb, n, to);
+    const imp_real low = imp_taylor_value(st->taylor.climb, n, st->at),
+                   high = imp_taylor_value(st->taylor.climb, n, to);
     if ((low > 0 && high < 0) || (low < 0 && high > 0)) {
-        const double split = find_root(st, TARGET_CLIMB, 0, st->at, to);
+        const imp_real split = find_root(st, TARGET_CLIMB, 0, st->at, to);
         monotone_piece(st, split);
         if (stopped(st, split)) return;
     }
@@ -315,10 +329,10 @@ static void follow_step(step *st)
     imp_course *course = st->course;
     const imp_frame *frame = course->frame;
     const int n = st->taylor.order;
-    const double h = st->taylor.h, x = imp_taylor_value(st->taylor.x, n, h), y = imp_taylor_value(st->taylor.y, n, h);
-    const double before = frame->c * course->uy - frame->d * course->ux, after = frame->c * y - frame->d * x;
+    const imp_real h = st->taylor.h, x = imp_taylor_value(st->taylor.x, n, h), y = imp_taylor_value(st->taylor.y, n, h);
+    const imp_real before = frame->c * course->uy - frame->d * course->ux, after = frame->c * y - frame->d * x;
     if ((before > 0 && after < 0) || (before < 0 && after > 0)) {
-        const double split = find_root(st, TARGET_CROSS, 0, 0, h);
+        const imp_real split = find_root(st, TARGET_CROSS, 0, 0, h);
         split_at_climb(st, split);
         if (!stopped(st, split)) split_at_climb(st, h);
     } else {
@@ -326,7 +340,7 @@ static void follow_step(step *st)
     }
     course->ux = st->at == h ? x : imp_taylor_value(st->taylor.x, n, st->at);
     course->uy = st->at == h ? y : imp_taylor_value(st->taylor.y, n, st->at);
-    course->s = sqrt(course->ux * course->ux + course->uy * course->uy);
+    course->s = imp_sqrt(course->ux * course->ux + course->uy * course->uy);
 }
 
 /* ---- the end of a slip ---- */
@@ -337,10 +351,10 @@ typedef enum stride { STRIDE_TAKEN, STRIDE_NOT_YET, STRIDE_EVENT } stride;
 static stride take_tail(imp_course *course)
 {
     const imp_frame *frame = course->frame;
-    const double mu = course->mu;
+    const imp_real mu = course->mu;
     imp_tail tail;
     if (!imp_tail_make(&tail, frame, mu, course->ux, course->uy, course->s, course->uz)) return STRIDE_NOT_YET;
-    const double uz = course->uz + tail.rise;
+    const imp_real uz = course->uz + tail.rise;
     if (course->compressing ? uz >= 0 : uz < 0) return STRIDE_EVENT;
     if (!course->compressing) {
         switch (course->law) {
@@ -360,36 +374,35 @@ static stride take_tail(imp_course *course)
     course->px += tail.px;
     course->py += tail.py;
     imp_course_reach(course, uz);
-    course->s = 0;
+    course->s = course->ux = course->uy = 0;
     return STRIDE_TAKEN;
 }
 
 /* Whether Z keeps its sign and uz its sense on the way to the end of the slip: then what holds at its end holds
  * on it. */
-static bool tail_is_near(const imp_course *course, double x, double y)
+static bool tail_is_near(const imp_course *course, imp_real x, imp_real y)
 {
     const imp_frame *frame = course->frame;
-    const double mu = course->mu, along = frame->c * x + frame->d * y;
-    const double R = along - mu * (frame->a * x * x + frame->b * y * y);
-    const double T = imp_course_turning(frame, mu, x, y), slope = -along + mu * (frame->a - frame->b) * (x * x - y * y);
-    if (!(R < 0 && slope < 0 && fabs(T) < 0.5 * -slope)) return false;
+    const imp_real mu = course->mu, along = frame->c * x + frame->d * y;
+    const imp_real R = along - mu * (frame->a * x * x + frame->b * y * y);
+    const imp_real T = imp_course_turning(frame, mu, x, y),
+                   slope = -along + mu * (frame->a - frame->b) * (x * x - y * y);
+    if (!(R < 0 && slope < 0 && imp_abs(T) < 0.5 * -slope)) return false;
     /* Z and its slope in theta bound its change over twice the angle that Newton sees. */
-    const double Z = 1 - mu * along, swing = mu * hypot(frame->c, frame->d) * 2 * fabs(T / slope);
-    return fabs(Z) > swing;
+    const imp_real Z = 1 - mu * along, swing = mu * imp_hypot(frame->c, frame->d) * 2 * imp_abs(T / slope);
+    return imp_abs(Z) > swing;
 }
 
 bool imp_series_solve(imp_course *course, int order)
 {
     const imp_frame *frame = course->frame;
     if (course->mu == 0) return imp_course_straight(course);
-    const double mu = course->mu, small = 1e-17 * imp_smaller(course->s, 1);
+    const imp_real mu = course->mu, small = IMP_EPSILON / 16 * imp_smaller(course->s, 1);
     int events = -1;
     for (int steps = 0; steps < 400 && course->s > 0 && !course->ended; steps++) {
-        const double x = course->ux / course->s, y = course->uy / course->s;
+        const imp_real x = course->ux / course->s, y = course->uy / course->s;
         if (course->s <= small || imp_course_is_straight(frame, mu, x, y)) {
-            const imp_line line = imp_course_sliding(frame, mu, x, y);
-            imp_course_line(course, &line, line.R < 0 ? course->s / -line.R : INFINITY);
-            if (!course->ended) course->s = 0;
+            imp_course_slide(course, x, y);
             break;
         }
         /* A tail with an event in it is not tried again before that event is past. */
