@@ -40,7 +40,8 @@ static impact_collider slim_body(uint64_t *g, double r, int way, bool thin_z)
     impact_collider body = {.mass = decades(g, -2, 2)};
     const double j = 0.3 * body.mass, one = case_random(g), two = case_random(g), along = both(g);
     const double thick = way % 2 ? 1 : sqrt(r), x = thick * both(g), y = thick * both(g);
-    body.moments = thin_z ? (qvec3){j * (0.5 + one), j * (0.5 + two), j * r} : (qvec3){j * r, j * (0.5 + one), j * (0.5 + two)};
+    body.moments =
+        thin_z ? (qvec3){j * (0.5 + one), j * (0.5 + two), j * r} : (qvec3){j * r, j * (0.5 + one), j * (0.5 + two)};
     body.orientation = way < 2 ? turned(g) : quat_identity();
     body.offset = quat_rotate(body.orientation, thin_z ? (qvec3){x, y, along} : (qvec3){along, x, y});
     body.velocity = in_cube(g);
@@ -124,8 +125,10 @@ static impact_collision range(uint64_t *g, impact_law law)
         body->velocity = spread3(g, span / 4);
         body->omega = spread3(g, span / 4);
     }
-    if (case_random(g) < 0.3) c.body[case_random(g) < 0.5] = (impact_collider){.mass = INFINITY, .orientation = {1, 0, 0, 0}};
-    const double mass = decades(g, -span, span), length = decades(g, -span / 4, span / 4), speed = decades(g, -span / 4, span / 4);
+    if (case_random(g) < 0.3)
+        c.body[case_random(g) < 0.5] = (impact_collider){.mass = INFINITY, .orientation = {1, 0, 0, 0}};
+    const double mass = decades(g, -span, span), length = decades(g, -span / 4, span / 4),
+                 speed = decades(g, -span / 4, span / 4);
     change_units(&c, mass, length, speed);
     face(&c);
     return c;

@@ -8,7 +8,8 @@
 
 /* ---- collide: the range an impact is taken in, docs/collide.md ---- */
 
-/* Numbers in units of the reduced mass, the longest arm and the fastest velocity: products of three stay within 1e+-308.
+/* Numbers in units of the reduced mass, the longest arm and the fastest velocity: products of three stay within
+ * 1e+-308.
  */
 #define IMP_COLLIDE_RANGE 1e100
 /* Largest over smallest moment of one body: J^-1/2 spreads over 1e6, and its squares still meet in one sum. */

@@ -2,8 +2,8 @@
  *
  * From a finished course to an outcome. The course knows the impulse to rounding of its parts, and the contact's
  * velocity u to eps |u|. Spin about a slim body's axis follows from u, everything else from the impulse P: with
- * M = B' B, B (9 x 3) stacking sqrt(1/m1 + 1/m2) and, of each body, J^-1/2 [r]x in its axes, all in the contact's frame,
- * z = B P are the changes of all velocities weighed by the root of the masses. What rounding of P leaves of u,
+ * M = B' B, B (9 x 3) stacking sqrt(1/m1 + 1/m2) and, of each body, J^-1/2 [r]x in its axes, all in the contact's
+ * frame, z = B P are the changes of all velocities weighed by the root of the masses. What rounding of P leaves of u,
  *
  *   delta = (u+ - u-) - B' z,   B Pi = Q R,   y = R^-T Pi' delta,   z <- z + Q y,
  *
@@ -187,8 +187,8 @@ static bool ever_sticks(const imp_course *course)
     return false;
 }
 
-/* P in the course's frame and units gives z, in the same; the velocities after it. A slip's friction rounds with itself,
- * mu p, what sticks with p. */
+/* P in the course's frame and units gives z, in the same; the velocities after it. A slip's friction rounds with
+ * itself, mu p, what sticks with p. */
 static void push_to(const imp_ready *ready, const imp_course *course, const imp_real P[3], imp_real speed,
                     impact_outcome *outcome)
 {
@@ -223,8 +223,7 @@ static void report_phases(const imp_course *course, imp_real unit, impact_outcom
     for (int i = 0; i < course->phase_count; i++) {
         const imp_real *at = course->reached[i];
         outcome->phases[i] = course->phases[i];
-        outcome->phase_impulse[i] =
-            imp_vec_rounded(in_world(course->frame, at[0] * unit, at[1] * unit, at[2] * unit));
+        outcome->phase_impulse[i] = imp_vec_rounded(in_world(course->frame, at[0] * unit, at[1] * unit, at[2] * unit));
     }
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * collide, inside: units of mass, length and time in which the numbers of an impact are near 1, and the range that it is
- * taken in.
+ * collide, inside: units of mass, length and time in which the numbers of an impact are near 1, and the range that it
+ * is taken in.
  */
 #ifndef IMP_COLLIDE_UNITS_H
 #define IMP_COLLIDE_UNITS_H
@@ -14,7 +14,8 @@ typedef struct imp_units {
     int mass, length, speed;
 } imp_units;
 
-/* Reduced mass; longest arm or radius of gyration; fastest velocity. The collision is finite, and of positive masses. */
+/* Reduced mass; longest arm or radius of gyration; fastest velocity. The collision is finite, and of positive masses.
+ */
 imp_units imp_units_of(const impact_collision *collision);
 
 impact_collision imp_units_scaled(const impact_collision *collision, imp_units units);

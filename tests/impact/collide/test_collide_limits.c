@@ -104,8 +104,10 @@ static void a_sliding_egg(void **state)
     for (int exponent = 8; exponent <= 300; exponent += 4)
         for (int i = 0; i < 200; i++) {
             const double off = pow(10, -8 * case_random(&g)), x = 2 * case_random(&g) - 1, y = 2 * case_random(&g) - 1;
-            impact_collision c = {.normal = {0, 0, 1}, .friction = pow(10, -exponent), .restitution = 0.5, .law = i % 3};
-            c.body[0] = (impact_collider){1, {1, 2, 1.5}, {1, 0, 0, 0}, {off * x, off * y, off * x * y}, {y, x, -1}, {0, 0, 0}};
+            impact_collision c = {
+                .normal = {0, 0, 1}, .friction = pow(10, -exponent), .restitution = 0.5, .law = i % 3};
+            c.body[0] =
+                (impact_collider){1, {1, 2, 1.5}, {1, 0, 0, 0}, {off * x, off * y, off * x * y}, {y, x, -1}, {0, 0, 0}};
             c.body[1] = still;
             impact_outcome o;
             assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
@@ -117,8 +119,8 @@ static void a_sliding_egg(void **state)
 
 /* ---- units ---- */
 
-/* In units a power of two (of mass: of four) larger or smaller the answer is the same to the bit, also where the numbers are beyond
- * 1e+-100. */
+/* In units a power of two (of mass: of four) larger or smaller the answer is the same to the bit, also where the
+ * numbers are beyond 1e+-100. */
 static void units_scale_out(void **state)
 {
     (void)state;
@@ -215,7 +217,7 @@ static void beyond(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slender_bodies), cmocka_unit_test(slippery),    cmocka_unit_test(a_sliding_egg),
+        cmocka_unit_test(slender_bodies),  cmocka_unit_test(slippery),    cmocka_unit_test(a_sliding_egg),
         cmocka_unit_test(units_scale_out), cmocka_unit_test(any_numbers), cmocka_unit_test(beyond),
     };
     return cmocka_run_group_tests_name("impact collide_limits", tests, NULL, NULL);
