@@ -7,6 +7,7 @@
 #define IMPACT_ODE_H
 
 #include <stddef.h>
+#include "memory.h"
 #include "status.h"
 
 #ifdef __cplusplus
@@ -35,6 +36,7 @@ typedef struct impact_ode_def {
     double absolute_tolerance;         /* >= 0, for every component; see also absolute_tolerances */
     const double *absolute_tolerances; /* n values, copied, or NULL */
     long max_steps;                    /* per advance; 0: 100000 */
+    const impact_allocator *allocator; /* copied; NULL: malloc */
 } impact_ode_def;
 
 typedef struct impact_ode_counts {
@@ -42,9 +44,18 @@ typedef struct impact_ode_counts {
 } impact_ode_counts;
 
 /* Copies the definition; *ode is NULL on failure. IMPACT_EARGUMENT: a number out of its range, or a function that is
- * missing. */
+ * missing. IMPACT_ENOMEM: the allocator, or malloc for SUNDIALS' own objects, has no more. After this call nothing is
+ * allocated, by either. */
 IMPACT_API impact_status impact_ode_create(const impact_ode_def *def, impact_ode **ode);
 IMPACT_API void impact_ode_destroy(impact_ode *ode); /* NULL is fine */
+
+/* Fewer components and root functions (the first ones) from the next start on, at most those of the definition, with
+ * the same memory and to the same bits as an integrator of that size; with absolute tolerances of their own those are
+ * to be set anew. IMPACT_EARGUMENT: more than there were, or no component. */
+IMPACT_API impact_status impact_ode_resize(impact_ode *ode, int size, int roots);
+
+/* What its allocator gave; of an integrator that belongs to a scene or workspace: what that was given. */
+IMPACT_API impact_memory impact_ode_memory(const impact_ode *ode);
 
 /* (Re)starts at (t, y[n]); keeps the workspace. IMPACT_EDOMAIN, with a message, when a number is not finite. */
 IMPACT_API impact_status impact_ode_start(impact_ode *ode, double t, const double *y);

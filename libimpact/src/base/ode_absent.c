@@ -2,7 +2,14 @@
  *
  * ode in a build without CVODE: every call answers IMPACT_EABSENT.
  */
-#include <impact/ode.h>
+#include "base/ode_in.h"
+
+impact_status imp_ode_create_in(imp_arena *arena, const impact_ode_def *def, impact_ode **ode)
+{
+    (void)arena, (void)def;
+    *ode = NULL;
+    return IMPACT_EABSENT;
+}
 
 impact_status impact_ode_create(const impact_ode_def *def, impact_ode **ode)
 {
@@ -12,6 +19,18 @@ impact_status impact_ode_create(const impact_ode_def *def, impact_ode **ode)
 }
 
 void impact_ode_destroy(impact_ode *ode) { (void)ode; }
+
+impact_status impact_ode_resize(impact_ode *ode, int size, int roots)
+{
+    (void)ode, (void)size, (void)roots;
+    return IMPACT_EABSENT;
+}
+
+impact_memory impact_ode_memory(const impact_ode *ode)
+{
+    (void)ode;
+    return (impact_memory){0};
+}
 
 impact_status impact_ode_start(impact_ode *ode, double t, const double *y)
 {

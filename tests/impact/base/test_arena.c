@@ -8,40 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/arena.h"
-#include "kit/near.h"
-
-/* An allocator that counts, and fails at its n-th call. */
-typedef struct counter {
-    size_t held, largest;
-    long calls, fail_at, live;
-} counter;
-
-static void *count_in(size_t size, void *context)
-{
-    counter *c = context;
-    if (++c->calls == c->fail_at) return NULL;
-    c->held += size;
-    c->live++;
-    if (size > c->largest) c->largest = size;
-    size_t *piece = malloc(size + 16); /* its size stands before it */
-    *piece = size;
-    return (char *)piece + 16;
-}
-
-static void count_out(void *piece, size_t size, void *context)
-{
-    counter *c = context;
-    size_t *whole = (size_t *)(void *)((char *)piece - 16);
-    assert_int_equal(*whole, size);
-    c->held -= size;
-    c->live--;
-    free(whole);
-}
-
-static impact_allocator counted_by(counter *c, size_t limit)
-{
-    return (impact_allocator){.allocate = count_in, .release = count_out, .context = c, .limit = limit};
-}
+#include "kit/ledger.h"
 
 static uint64_t seed = 1;
 
@@ -79,8 +46,8 @@ static void check(const model_block *b)
 static void blocks_keep_apart(void **state)
 {
     (void)state;
-    counter c = {0};
-    const impact_allocator allocator = counted_by(&c, 0);
+    ledger c = {0};
+    const impact_allocator allocator = ledger_allocator(&c, 0);
     imp_arena *arena;
     model_block blocks[64] = {0};
     assert_int_equal(imp_arena_create(&allocator, &arena), IMPACT_OK);
@@ -111,8 +78,8 @@ static void blocks_keep_apart(void **state)
 static void pieces_double(void **state)
 {
     (void)state;
-    counter c = {0};
-    const impact_allocator allocator = counted_by(&c, 0);
+    ledger c = {0};
+    const impact_allocator allocator = ledger_allocator(&c, 0);
     imp_arena *arena;
     assert_int_equal(imp_arena_create(&allocator, &arena), IMPACT_OK);
     for (int i = 0; i < 100000; i++) assert_non_null(imp_arena_take(arena, 3, 8));
@@ -126,8 +93,8 @@ static void pieces_double(void **state)
 static void what_is_given_back_serves_again(void **state)
 {
     (void)state;
-    counter c = {0};
-    const impact_allocator allocator = counted_by(&c, 0);
+    ledger c = {0};
+    const impact_allocator allocator = ledger_allocator(&c, 0);
     imp_arena *arena;
     assert_int_equal(imp_arena_create(&allocator, &arena), IMPACT_OK);
     void *blocks[50];
@@ -169,8 +136,8 @@ static void the_limit_binds_and_is_told(void **state)
     (void)state;
     char message[200];
     for (size_t limit = 0; limit < 300000; limit += 4099) {
-        counter c = {0};
-        const impact_allocator allocator = counted_by(&c, limit);
+        ledger c = {0};
+        const impact_allocator allocator = ledger_allocator(&c, limit);
         imp_arena *arena;
         const impact_status status = imp_arena_create(&allocator, &arena);
         if (limit > 0 && limit < 4096) assert_int_equal(status, IMPACT_ENOMEM);
@@ -200,8 +167,8 @@ static void failures_are_answered(void **state)
 {
     (void)state;
     for (long fail_at = 1; fail_at <= 12; fail_at++) {
-        counter c = {.fail_at = fail_at};
-        const impact_allocator allocator = counted_by(&c, 0);
+        ledger c = {.fail_at = fail_at};
+        const impact_allocator allocator = ledger_allocator(&c, 0);
         imp_arena *arena = (imp_arena *)&c;
         if (imp_arena_create(&allocator, &arena) != IMPACT_OK) {
             assert_int_equal(fail_at, 1);
@@ -224,7 +191,7 @@ static void what_makes_no_sense_is_refused(void **state)
 {
     (void)state;
     imp_arena *arena;
-    const impact_allocator half = {.allocate = count_in};
+    const impact_allocator half = {.allocate = ledger_allocate};
     assert_int_equal(imp_arena_create(&half, &arena), IMPACT_EARGUMENT);
     assert_null(arena);
     const impact_allocator limited = {.limit = 1 << 20};
