@@ -114,9 +114,16 @@ IMPACT_API impact_status impact_principal_axes(const qmat3 *tensor, qvec3 *momen
  * without CVODE. */
 IMPACT_API impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance,
                                                          impact_collide_workspace **workspace);
+/* The same in the caller's memory: see memory.h; NULL: malloc. IMPACT_ENOMEM when it is spent; an impact that needs
+ * more later (the first with tangential compliance) answers so too. */
+IMPACT_API impact_status impact_collide_workspace_create_with(const impact_allocator *allocator,
+                                                              impact_ode_method method, double tolerance,
+                                                              impact_collide_workspace **workspace);
 IMPACT_API void impact_collide_workspace_destroy(impact_collide_workspace *workspace); /* NULL is fine */
 /* CVODE's work since the workspace was made. */
 IMPACT_API impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace);
+/* What it holds; of one that belongs to a scene: what the scene holds. */
+IMPACT_API impact_memory impact_collide_workspace_memory(const impact_collide_workspace *workspace);
 
 /* Solves one impact (docs/collide.md). IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome:
  * nothing changed); negative: the outcome holds the velocities given and NaN elsewhere: as impact_collide_check;

@@ -81,6 +81,8 @@ typedef struct impact_scene_def {
     double rest_height;
     double rest_speed; /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
     long max_events;   /* IMPACT_EVENT_LIMIT after so many */
+    const impact_allocator
+        *allocator; /* of all memory the scene takes, and its limit; copied; NULL: malloc (memory.h) */
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
@@ -91,6 +93,7 @@ IMPACT_API impact_body_def impact_default_body_def(void);
 typedef struct impact_scene impact_scene;
 
 /* *scene is NULL on failure, and message (may be NULL) says what is wrong with which body, key and value. */
+/* IMPACT_ENOMEM, here and in a run, says how much was wanted. After it a run can go on no more. */
 IMPACT_API impact_status impact_scene_create(const impact_scene_def *def, impact_scene **scene, char *message,
                                              unsigned long message_size);
 IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
@@ -130,6 +133,7 @@ typedef struct impact_usage {
 } impact_usage;
 
 IMPACT_API impact_usage impact_scene_usage(const impact_scene *scene);
+IMPACT_API impact_memory impact_scene_memory(const impact_scene *scene); /* what it holds now */
 
 /* The energy account, J: kinetic + potential = start + work of forces and of drives - the losses, to the tolerance of
  * the run. */

@@ -25,8 +25,12 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 enum {
-    VECTORS_ADAMS = 32,  /* CVODE has 27 at once at most, of order 12 (6.4.1; test_ode.c asks that some are left) */
-    VECTORS_BDF = 24,    /* 21, of order 5 */
+    VECTORS_ADAMS = 32, /* CVODE has 27 at once at most, of order 12 (6.4.1; test_ode.c asks that some are left) */
+    VECTORS_BDF = 24,   /* 21, of order 5 */
+    /* CVODE takes steps too short to change t, and calls them done: before a jump it comes to them by cutting its step,
+     * and goes on, because they show no error and the step grows tenfold in 13 of them at most (order 12). A right-hand
+     * side that jumps for good would hold it so for ever. */
+    MAX_STILL = 100,
     SUNDIALS_OWN = 16384 /* bytes: several times what SUNContext_Create and CVodeCreate take: 208 + 1864 (6.4.1) */
 };
 
@@ -42,7 +46,8 @@ struct impact_ode {
     N_Vector tolerances; /* NULL when one absolute tolerance serves all */
     SUNNonlinearSolver nonlinear;
     int *roots_found;
-    double t; /* as answered last */
+    double t; /* as answered last; and how often in a row: */
+    int still;
     double step_begin, step_end;
     impact_ode_counts counts;
     char message[256];
@@ -272,6 +277,7 @@ impact_status impact_ode_start(impact_ode *ode, double t, const double *y)
     ode->counts.starts++;
     memcpy(N_VGetArrayPointer(ode->y), y, sizeof(double) * (size_t)ode->size);
     ode->t = ode->step_begin = ode->step_end = t;
+    ode->still = 0;
     return CVodeReInit(ode->cvode, t, ode->y) == CV_SUCCESS ? IMPACT_OK : IMPACT_EINTEGRATOR;
 }
 
@@ -308,9 +314,8 @@ impact_status impact_ode_step(impact_ode *ode, double t_stop, double *t, double 
     if (ode->pool.spent) return IMPACT_ENOMEM;
     if (result < 0) return explain_failure(ode, reason(result));
     memcpy(y, N_VGetArrayPointer(ode->y), sizeof(double) * (size_t)ode->size);
-    /* CVODE takes steps too short to change t, and calls them done: a right-hand side that jumps would hold it so for
-     * ever. */
-    if (*t == ode->t && result == CV_SUCCESS)
+    ode->still = *t == ode->t && result == CV_SUCCESS ? ode->still + 1 : 0;
+    if (ode->still > MAX_STILL)
         return explain_failure(ode,
                                "no step is both short enough and long enough to change t: a jump, or a singularity");
     ode->t = *t;

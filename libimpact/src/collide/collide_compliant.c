@@ -11,8 +11,6 @@
  */
 #include "collide/collide_cvode.h"
 
-#include <stdlib.h>
-
 enum { DELTA, A, B, P, PX, PY, WORK, FRICTION, SIZE }; /* (A, B): f while sticking, phi in A while sliding */
 enum { ROOT_UZ, ROOT_OFF, ROOT_RELOAD, ROOT_GRIP, ROOTS };
 
@@ -91,9 +89,9 @@ static int root_functions(double t, const double *y, double *value, void *contex
     return 0;
 }
 
-static impact_status make(double tolerance, imp_compliant **out)
+static impact_status make(imp_arena *arena, double tolerance, imp_compliant **out)
 {
-    imp_compliant *c = calloc(1, sizeof *c);
+    imp_compliant *c = imp_arena_take(arena, 1, sizeof *c);
     *out = NULL;
     if (!c) return IMPACT_ENOMEM;
     const impact_ode_def def = {.size = SIZE,
@@ -104,20 +102,20 @@ static impact_status make(double tolerance, imp_compliant **out)
                                 .method = IMPACT_ODE_BDF,
                                 .relative_tolerance = tolerance,
                                 .absolute_tolerance = 0.1 * tolerance};
-    const impact_status status = impact_ode_create(&def, &c->ode);
+    const impact_status status = imp_ode_create_in(arena, &def, &c->ode);
     if (status != IMPACT_OK) {
-        free(c);
+        imp_arena_give(arena, c);
         return status;
     }
     *out = c;
     return IMPACT_OK;
 }
 
-void imp_compliant_destroy(imp_compliant *c)
+void imp_compliant_destroy(imp_arena *arena, imp_compliant *c)
 {
     if (!c) return;
     impact_ode_destroy(c->ode);
-    free(c);
+    imp_arena_give(arena, c);
 }
 
 /* The first instant, in closed form: the springs are loaded in proportion to time. */
@@ -231,10 +229,11 @@ static impact_status follow(imp_course *course, imp_compliant *c)
     return IMPACT_EUNSETTLED;
 }
 
-impact_status imp_compliant_solve(imp_course *course, double compliance, double tolerance, imp_compliant **keep)
+impact_status imp_compliant_solve(imp_arena *arena, imp_course *course, double compliance, double tolerance,
+                                  imp_compliant **keep)
 {
     if (!*keep) {
-        const impact_status status = make(tolerance, keep);
+        const impact_status status = make(arena, tolerance, keep);
         if (status != IMPACT_OK) return status;
     }
     (*keep)->k = 1 / compliance;

@@ -7,12 +7,12 @@
  */
 #include "collide/collide_cvode.h"
 
-#include <stdlib.h>
-
 enum { LOG_S, THETA, P, PX, PY, WORK, FRICTION, SIZE };
 enum { ROOT_UZ, ROOT_CLIMB, ROOT_END, ROOT_STOP, ROOTS };
 
 struct impact_collide_workspace {
+    imp_arena *arena;
+    bool owns_arena;
     impact_ode *ode;
     imp_compliant *compliant; /* made when first needed */
     double tolerance;
@@ -71,14 +71,15 @@ static int root_functions(double tau, const double *y, double *value, void *cont
     return 0;
 }
 
-impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance,
-                                              impact_collide_workspace **workspace)
+impact_status imp_collide_workspace_in(imp_arena *arena, impact_ode_method method, double tolerance,
+                                       impact_collide_workspace **workspace)
 {
     *workspace = NULL;
     if (!impact_has(IMPACT_PART_CVODE)) return IMPACT_EABSENT;
     if (!(tolerance >= 1e-14 && tolerance <= 1e-2)) return IMPACT_EARGUMENT;
-    impact_collide_workspace *ws = calloc(1, sizeof *ws);
+    impact_collide_workspace *ws = imp_arena_take(arena, 1, sizeof *ws);
     if (!ws) return IMPACT_ENOMEM;
+    ws->arena = arena;
     ws->tolerance = tolerance;
     ws->method = method;
     const impact_ode_def def = {.size = SIZE,
@@ -89,13 +90,34 @@ impact_status impact_collide_workspace_create(impact_ode_method method, double t
                                 .method = method,
                                 .relative_tolerance = tolerance,
                                 .absolute_tolerance = tolerance};
-    const impact_status status = impact_ode_create(&def, &ws->ode);
+    const impact_status status = imp_ode_create_in(arena, &def, &ws->ode);
     if (status != IMPACT_OK) {
-        free(ws);
+        imp_arena_give(arena, ws);
         return status;
     }
     *workspace = ws;
     return IMPACT_OK;
+}
+
+impact_status impact_collide_workspace_create_with(const impact_allocator *allocator, impact_ode_method method,
+                                                   double tolerance, impact_collide_workspace **workspace)
+{
+    imp_arena *arena;
+    *workspace = NULL;
+    impact_status status = imp_arena_create(allocator, &arena);
+    if (status != IMPACT_OK) return status;
+    status = imp_collide_workspace_in(arena, method, tolerance, workspace);
+    if (status == IMPACT_OK)
+        (*workspace)->owns_arena = true;
+    else
+        imp_arena_destroy(arena);
+    return status;
+}
+
+impact_status impact_collide_workspace_create(impact_ode_method method, double tolerance,
+                                              impact_collide_workspace **workspace)
+{
+    return impact_collide_workspace_create_with(NULL, method, tolerance, workspace);
 }
 
 impact_status imp_cvode_workspace_like(const impact_collide_workspace *pattern, impact_collide_workspace **workspace)
@@ -107,9 +129,17 @@ impact_status imp_cvode_workspace_like(const impact_collide_workspace *pattern, 
 void impact_collide_workspace_destroy(impact_collide_workspace *workspace)
 {
     if (!workspace) return;
+    imp_arena *arena = workspace->arena;
+    const bool owns_arena = workspace->owns_arena;
     impact_ode_destroy(workspace->ode);
-    imp_compliant_destroy(workspace->compliant);
-    free(workspace);
+    imp_compliant_destroy(arena, workspace->compliant);
+    imp_arena_give(arena, workspace);
+    if (owns_arena) imp_arena_destroy(arena);
+}
+
+impact_memory impact_collide_workspace_memory(const impact_collide_workspace *workspace)
+{
+    return imp_arena_memory(workspace->arena);
 }
 
 impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace)
@@ -239,7 +269,7 @@ impact_status imp_cvode_solve(imp_course *course, const impact_collision *collis
     ws->log_stop = log(1e-3 * ws->tolerance * (course->s > 0 ? fmin(course->s, 1) : 1));
     impact_status status =
         collision->tangential_compliance > 0
-            ? imp_compliant_solve(course, collision->tangential_compliance, ws->tolerance, &ws->compliant)
+            ? imp_compliant_solve(ws->arena, course, collision->tangential_compliance, ws->tolerance, &ws->compliant)
             : follow(course, ws);
     if (status == IMPACT_OK && !course->ended) status = IMPACT_EUNSETTLED;
     ws->course = NULL;

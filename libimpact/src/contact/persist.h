@@ -47,8 +47,9 @@ typedef struct imp_effect {
 } imp_effect;
 
 typedef struct imp_persist {
-    int capacity; /* contacts there is room for */
-    int count;    /* held contacts now */
+    imp_arena *arena; /* set by who opens it */
+    int capacity;     /* contacts there is room for */
+    int count;        /* held contacts now */
     imp_touch *touches;
     struct imp_unknown *unknowns; /* 3 capacity */
     double *matrix, *right;       /* 2 (3 capacity)^2 and 6 capacity */

@@ -281,15 +281,16 @@ impact_status imp_persist_find_still(imp_persist *persist, imp_world *world, con
     for (int p = 0; p < world->pair_count; p++)
         any = any || (imp_is_held(&world->pairs[p]) && pair_is_slow(world, states, &world->pairs[p], jam_speed));
     if (!any || world->field_count > 0) return IMPACT_OK;
-    workspace work = {.rates = malloc((size_t)world->body_count * sizeof *work.rates),
-                      .responses = malloc((size_t)persist->count * sizeof *work.responses),
-                      .before = malloc((size_t)world->pair_count * sizeof *work.before),
-                      .locked = malloc((size_t)world->body_count * sizeof *work.locked)};
+    imp_arena *arena = world->arena;
+    workspace work = {.rates = imp_arena_take(arena, (size_t)world->body_count, sizeof *work.rates),
+                      .responses = imp_arena_take(arena, (size_t)persist->count, sizeof *work.responses),
+                      .before = imp_arena_take(arena, (size_t)world->pair_count, sizeof *work.before),
+                      .locked = imp_arena_take(arena, (size_t)world->body_count, sizeof *work.locked)};
     const bool room = work.rates && work.responses && work.before && work.locked;
     if (room) find(persist, world, states, loads, rest_speed, jam_speed, &work);
-    free(work.rates);
-    free(work.responses);
-    free(work.before);
-    free(work.locked);
+    imp_arena_give(arena, work.rates);
+    imp_arena_give(arena, work.responses);
+    imp_arena_give(arena, work.before);
+    imp_arena_give(arena, work.locked);
     return room ? IMPACT_OK : IMPACT_ENOMEM;
 }

@@ -23,11 +23,15 @@ typedef struct imp_unknown {
 
 /* ---- room ---- */
 
-static void *grown(void *old, size_t bytes, bool *there)
+/* Room for `count`, with the first `kept` of what stood there. */
+static void *grown(imp_arena *arena, void *old, size_t kept, size_t count, size_t size, bool *there)
 {
-    void *room = realloc(old, bytes);
+    void *room = imp_arena_take(arena, count, size);
     *there = *there && room;
-    return room ? room : old;
+    if (!room) return old;
+    if (kept > 0) memcpy(room, old, kept * size);
+    imp_arena_give(arena, old);
+    return room;
 }
 
 impact_status imp_persist_make_room(imp_persist *persist, int touches_needed, int bodies_needed)
@@ -35,17 +39,18 @@ impact_status imp_persist_make_room(imp_persist *persist, int touches_needed, in
     const size_t touches = (size_t)touches_needed, n = 3 * touches, bodies = (size_t)bodies_needed;
     bool there = true;
     if (touches_needed > persist->capacity) {
-        persist->touches = grown(persist->touches, touches * sizeof *persist->touches, &there);
-        persist->island = grown(persist->island, touches * sizeof *persist->island, &there);
-        persist->unknowns = grown(persist->unknowns, n * sizeof *persist->unknowns, &there);
-        persist->matrix = grown(persist->matrix, 2 * n * n * sizeof *persist->matrix, &there);
-        persist->right = grown(persist->right, 2 * n * sizeof *persist->right, &there);
-        persist->order = grown(persist->order, 2 * n * sizeof *persist->order, &there);
+        persist->touches = grown(persist->arena, persist->touches, (size_t)persist->capacity, touches,
+                                 sizeof *persist->touches, &there);
+        persist->island = grown(persist->arena, persist->island, 0, touches, sizeof *persist->island, &there);
+        persist->unknowns = grown(persist->arena, persist->unknowns, 0, n, sizeof *persist->unknowns, &there);
+        persist->matrix = grown(persist->arena, persist->matrix, 0, 2 * n * n, sizeof *persist->matrix, &there);
+        persist->right = grown(persist->arena, persist->right, 0, 2 * n, sizeof *persist->right, &there);
+        persist->order = grown(persist->arena, persist->order, 0, 2 * n, sizeof *persist->order, &there);
         if (there) persist->capacity = touches_needed;
     }
     if (bodies_needed > persist->bodies) {
-        persist->first = grown(persist->first, bodies * sizeof *persist->first, &there);
-        persist->effects = grown(persist->effects, bodies * sizeof *persist->effects, &there);
+        persist->first = grown(persist->arena, persist->first, 0, bodies, sizeof *persist->first, &there);
+        persist->effects = grown(persist->arena, persist->effects, 0, bodies, sizeof *persist->effects, &there);
         if (there) persist->bodies = bodies_needed;
     }
     return there ? IMPACT_OK : IMPACT_ENOMEM;
@@ -53,15 +58,15 @@ impact_status imp_persist_make_room(imp_persist *persist, int touches_needed, in
 
 void imp_persist_free(imp_persist *persist)
 {
-    free(persist->touches);
-    free(persist->island);
-    free(persist->unknowns);
-    free(persist->matrix);
-    free(persist->right);
-    free(persist->order);
-    free(persist->first);
-    free(persist->effects);
-    *persist = (imp_persist){0};
+    imp_arena_give(persist->arena, persist->touches);
+    imp_arena_give(persist->arena, persist->island);
+    imp_arena_give(persist->arena, persist->unknowns);
+    imp_arena_give(persist->arena, persist->matrix);
+    imp_arena_give(persist->arena, persist->right);
+    imp_arena_give(persist->arena, persist->order);
+    imp_arena_give(persist->arena, persist->first);
+    imp_arena_give(persist->arena, persist->effects);
+    *persist = (imp_persist){.arena = persist->arena};
 }
 
 /* ---- responses ---- */

@@ -138,9 +138,9 @@ static bool settle_at_once(const imp_world *world, imp_state *states, imp_share 
 {
     enum { ROUNDS = 30, SWEEPS = 30 };
     const size_t bodies = (size_t)world->body_count, n = (size_t)count;
-    imp_persist system = {0};
-    imp_state *kept_states = calloc(bodies, sizeof *kept_states);
-    imp_share *kept_shares = calloc(n, sizeof *kept_shares);
+    imp_persist system = {.arena = world->arena};
+    imp_state *kept_states = imp_arena_take(world->arena, bodies, sizeof *kept_states);
+    imp_share *kept_shares = imp_arena_take(world->arena, n, sizeof *kept_shares);
     bool settled = false;
     if (kept_states && kept_shares && imp_persist_make_room(&system, count, world->body_count) == IMPACT_OK) {
         memcpy(kept_states, states, bodies * sizeof *states);
@@ -155,8 +155,8 @@ static bool settle_at_once(const imp_world *world, imp_state *states, imp_share 
         }
     }
     imp_persist_free(&system);
-    free(kept_states);
-    free(kept_shares);
+    imp_arena_give(world->arena, kept_states);
+    imp_arena_give(world->arena, kept_shares);
     return settled;
 }
 
@@ -164,7 +164,7 @@ static bool settle_at_once(const imp_world *world, imp_state *states, imp_share 
  * the shares that press is taken away by impulses of its own size. */
 static void take_rounding_away(const imp_world *world, imp_state *states, imp_share *shares, int count)
 {
-    imp_persist system = {0};
+    imp_persist system = {.arena = world->arena};
     if (imp_persist_make_room(&system, count, world->body_count) == IMPACT_OK) {
         for (int c = 0; c < count; c++) {
             if (shares[c].normal <= 0) continue;

@@ -8,28 +8,31 @@
 
 impact_status imp_motion_open(impact_motion *motion, imp_world *world, double tolerance, double rest_speed)
 {
-    *motion = (impact_motion){.world = world, .tolerance = tolerance, .rest_speed = rest_speed};
+    *motion = (impact_motion){
+        .world = world, .persist.arena = world->arena, .tolerance = tolerance, .rest_speed = rest_speed};
     const size_t n = (size_t)world->body_count;
-    motion->resting = calloc(n, sizeof *motion->resting);
-    motion->loads = calloc(n, sizeof *motion->loads);
-    motion->sampled = calloc(n, sizeof *motion->sampled);
-    motion->scratch = calloc(n, sizeof *motion->scratch);
+    motion->resting = imp_arena_take(world->arena, n, sizeof *motion->resting);
+    motion->loads = imp_arena_take(world->arena, n, sizeof *motion->loads);
+    motion->sampled = imp_arena_take(world->arena, n, sizeof *motion->sampled);
+    motion->scratch = imp_arena_take(world->arena, n, sizeof *motion->scratch);
     return motion->resting && motion->loads && motion->sampled && motion->scratch ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
 void imp_motion_close(impact_motion *motion)
 {
+    if (!motion->world) return;
+    imp_arena *arena = motion->world->arena;
     impact_ode_destroy(motion->adams);
     impact_ode_destroy(motion->bdf);
     imp_persist_free(&motion->persist);
-    free(motion->flyers);
-    free(motion->resting);
-    free(motion->loads);
-    free(motion->sampled);
-    free(motion->scratch);
-    free(motion->kept);
-    free(motion->y);
-    free(motion->found);
+    imp_arena_give(arena, motion->flyers);
+    imp_arena_give(arena, motion->resting);
+    imp_arena_give(arena, motion->loads);
+    imp_arena_give(arena, motion->sampled);
+    imp_arena_give(arena, motion->scratch);
+    imp_arena_give(arena, motion->kept);
+    imp_arena_give(arena, motion->y);
+    imp_arena_give(arena, motion->found);
     *motion = (impact_motion){0};
 }
 

@@ -6,7 +6,7 @@
 #ifndef IMP_MOTION_H
 #define IMP_MOTION_H
 
-#include <impact/ode.h>
+#include "base/ode_in.h"
 #include "contact/persist.h"
 
 typedef enum imp_end_kind {
@@ -70,7 +70,7 @@ typedef struct impact_motion {
 } impact_motion;
 
 impact_status imp_motion_open(impact_motion *motion, imp_world *world, double tolerance, double rest_speed);
-void imp_motion_close(impact_motion *motion);
+void imp_motion_close(impact_motion *motion); /* of one that was not opened: nothing */
 
 /* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet:
  * the restarted integrator would never see it. False when there is none. */

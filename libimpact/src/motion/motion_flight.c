@@ -6,13 +6,12 @@
 #include "motion/motion.h"
 #include "motion/motion_meet.h"
 
-#include <stdlib.h>
-
 /* Every body's flight from here; a body whose flight nothing has changed goes on with it. */
 static impact_status board(impact_motion *motion, const imp_state *states)
 {
     const imp_world *world = motion->world;
-    if (!motion->flyers) motion->flyers = calloc((size_t)world->body_count, sizeof *motion->flyers);
+    if (!motion->flyers)
+        motion->flyers = imp_arena_take(world->arena, (size_t)world->body_count, sizeof *motion->flyers);
     if (!motion->flyers) return IMPACT_ENOMEM;
     for (int i = 0; i < world->body_count; i++) imp_flyer_board(&motion->flyers[i], &world->bodies[i], &states[i]);
     return IMPACT_OK;

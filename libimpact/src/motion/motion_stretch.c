@@ -24,9 +24,9 @@ static impact_status allocate_state(impact_motion *motion)
     motion->size = Y_BODIES + Y_PER_BODY * moving + Y_PER_SPOT * spots + world->driven;
     motion->roots =
         ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * imp_field_edge_count(world) + world->body_count;
-    motion->kept = calloc((size_t)motion->size, sizeof *motion->kept);
-    motion->found = calloc((size_t)motion->roots, sizeof *motion->found);
-    motion->y = calloc((size_t)motion->size, sizeof *motion->y);
+    motion->kept = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->kept);
+    motion->found = imp_arena_take(world->arena, (size_t)motion->roots, sizeof *motion->found);
+    motion->y = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->y);
     return motion->kept && motion->y && motion->found ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
@@ -45,7 +45,7 @@ static impact_status choose_integrator(impact_motion *motion, impact_ode_method 
                                     .relative_tolerance = motion->tolerance,
                                     .absolute_tolerance = 1e-2 * motion->tolerance,
                                     .falling_roots_only = true};
-        status = impact_ode_create(&def, ode);
+        status = imp_ode_create_in(motion->world->arena, &def, ode);
         if (status == IMPACT_EABSENT)
             snprintf(motion->message, sizeof motion->message,
                      "this motion needs the integrator, and this build has none (IMPACT_WITH_CVODE is off)");

@@ -3,6 +3,7 @@
 #include "scene/scene_check.h"
 #include "scene/scene_crowd.h"
 #include "world/world_gap.h"
+#include "collide/collide_workspace.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,6 +47,24 @@ static impact_status check_overlaps(impact_scene *scene, char *message, unsigned
     return IMPACT_OK;
 }
 
+/* The scene in an arena of its own. */
+static impact_status open_memory(const impact_scene_def *def, impact_scene **scene, char *message, unsigned long size)
+{
+    imp_arena *arena;
+    const impact_status status = imp_arena_create(def->allocator, &arena);
+    if (status != IMPACT_OK) {
+        if (message)
+            snprintf(message, size, "scene '%s': %s", def->name ? def->name : "",
+                     status == IMPACT_ENOMEM ? "no memory for it" : "its allocator has one function without the other");
+        return status;
+    }
+    *scene = imp_arena_take(arena, 1, sizeof **scene);
+    if (*scene) return (*scene)->world.arena = arena, IMPACT_OK;
+    if (message) imp_arena_explain(arena, message, size);
+    imp_arena_destroy(arena);
+    return IMPACT_ENOMEM;
+}
+
 impact_status impact_scene_create(const impact_scene_def *def, impact_scene **out, char *message,
                                   unsigned long message_size)
 {
@@ -53,8 +72,9 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
     if (message && message_size > 0) message[0] = '\0';
     impact_status status = imp_scene_check(def, message, message_size);
     if (status != IMPACT_OK) return status;
-    impact_scene *scene = calloc(1, sizeof *scene);
-    if (!scene) return IMPACT_ENOMEM;
+    impact_scene *scene;
+    status = open_memory(def, &scene, message, message_size);
+    if (status != IMPACT_OK) return status;
     scene->duration = def->duration;
     scene->law = def->law;
     scene->compliance = def->compliance;
@@ -65,7 +85,7 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
     scene->sampler = (imp_sampler){.rate = def->output_rate, .emit = imp_scene_emit, .pulse = pulse, .context = scene};
     status = imp_scene_build(scene, def);
     if (status == IMPACT_OK && def->compliance > 0) { /* impacts are few: as exactly as can be */
-        status = impact_collide_workspace_create(IMPACT_ODE_BDF, 1e-14, &scene->springs);
+        status = imp_collide_workspace_in(scene->world.arena, IMPACT_ODE_BDF, 1e-14, &scene->springs);
         if (status == IMPACT_EABSENT && message)
             snprintf(message, message_size,
                      "compliance needs CVODE, and this build has none (IMPACT_WITH_CVODE is off)");
@@ -82,6 +102,7 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
                      def->name ? def->name : "");
     }
     if (status == IMPACT_OK) status = imp_scene_crowd_open(scene);
+    if (status == IMPACT_ENOMEM && message) imp_arena_explain(scene->world.arena, message, message_size);
     if (status != IMPACT_OK) {
         impact_scene_destroy(scene);
         return status;
@@ -94,8 +115,9 @@ void impact_scene_destroy(impact_scene *scene)
 {
     if (!scene) return;
     imp_scene_crowd_close(scene);
-    imp_scene_unbuild(scene);
-    free(scene);
+    imp_motion_close(&scene->motion);
+    impact_collide_workspace_destroy(scene->springs);
+    imp_arena_destroy(scene->world.arena); /* with everything else */
 }
 
 static impact_status run(impact_scene *scene, double t_end)
@@ -142,6 +164,7 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     scene->recorder = recorder;
     const impact_status status = check_account(scene, run(scene, t));
     scene->recorder = NULL;
+    if (status == IMPACT_ENOMEM) imp_arena_explain(scene->world.arena, scene->message, sizeof scene->message);
     if (status < 0 && scene->message[0] == '\0')
         snprintf(scene->message, sizeof scene->message, "%s", impact_status_string(status));
     return status;
@@ -169,6 +192,8 @@ impact_status impact_scene_body(const impact_scene *scene, int body, impact_samp
     *sample = imp_scene_sample(scene, scene->t, body, scene->states);
     return IMPACT_OK;
 }
+
+impact_memory impact_scene_memory(const impact_scene *scene) { return imp_arena_memory(scene->world.arena); }
 
 impact_usage impact_scene_usage(const impact_scene *scene) { return scene->world.usage; }
 

@@ -6,13 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static char *copy_string(const char *text)
-{
-    const size_t size = strlen(text) + 1;
-    char *copy = malloc(size);
-    return copy ? memcpy(copy, text, size) : NULL;
-}
-
 static double joined(impact_pair_rule rule, double a, double b)
 {
     switch (rule) {
@@ -27,9 +20,9 @@ static double joined(impact_pair_rule rule, double a, double b)
 /* Three equal moments, but for the rounding of the formulas that gave them. */
 static bool equal_moments(qvec3 m) { return fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x; }
 
-static bool build_body(const impact_body_def *def, imp_body *body, imp_state *state)
+static bool build_body(imp_arena *arena, const impact_body_def *def, imp_body *body, imp_state *state)
 {
-    *body = (imp_body){.name = copy_string(def->name),
+    *body = (imp_body){.name = imp_arena_copy(arena, def->name),
                        .shape = def->shape,
                        .is_static = def->is_static,
                        .mass = INFINITY,
@@ -69,7 +62,7 @@ static const impact_pair_def *find_own_rule(const impact_scene_def *def, int i, 
 static impact_status build_pairs(imp_world *world, const impact_scene_def *def)
 {
     const int n = world->body_count;
-    world->pairs = calloc((size_t)n * (size_t)n / 2 + 1, sizeof *world->pairs);
+    world->pairs = imp_arena_take(world->arena, (size_t)n * (size_t)n / 2 + 1, sizeof *world->pairs);
     if (!world->pairs) return IMPACT_ENOMEM;
     for (int i = 0; i < n; i++)
         for (int j = i + 1; j < n; j++) {
@@ -89,7 +82,7 @@ static impact_status build_pairs(imp_world *world, const impact_scene_def *def)
 
 static impact_status build_fields(imp_world *world, const impact_scene_def *def)
 {
-    world->fields = calloc((size_t)def->force_count + 1, sizeof *world->fields);
+    world->fields = imp_arena_take(world->arena, (size_t)def->force_count + 1, sizeof *world->fields);
     if (!world->fields) return IMPACT_ENOMEM;
     for (int k = 0; k < def->force_count; k++) {
         imp_field *field = &world->fields[world->field_count++];
@@ -100,9 +93,9 @@ static impact_status build_fields(imp_world *world, const impact_scene_def *def)
             const qvec3 d = field->def.direction;
             field->def.direction = qvec3_scale(d, 1 / qvec3_norm(d));
         }
-        field->name = copy_string(def->forces[k].name ? def->forces[k].name : "force");
+        field->name = imp_arena_copy(world->arena, def->forces[k].name ? def->forces[k].name : "force");
         field->slots = imp_field_slots(&field->def, world->body_count);
-        field->inside = calloc((size_t)field->slots + 1, sizeof *field->inside);
+        field->inside = imp_arena_take(world->arena, (size_t)field->slots + 1, sizeof *field->inside);
         if (!field->name || !field->inside) return IMPACT_ENOMEM;
     }
     return IMPACT_OK;
@@ -112,39 +105,23 @@ impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
 {
     imp_world *world = &scene->world;
     const size_t n = (size_t)def->body_count;
-    *world = (imp_world){.gravity = def->gravity, .slip_speed = fmax(1e-2 * def->rest_speed, 100 * def->tolerance)};
+    imp_arena *arena = world->arena;
+    *world = (imp_world){
+        .arena = arena, .gravity = def->gravity, .slip_speed = fmax(1e-2 * def->rest_speed, 100 * def->tolerance)};
     world->onset_speed = 1e5 * world->slip_speed;
     world->flat_height = 100 * def->rest_height;
-    world->bodies = calloc(n, sizeof *world->bodies);
-    scene->states = calloc(n, sizeof *scene->states);
-    scene->before = calloc(n, sizeof *scene->before);
+    world->bodies = imp_arena_take(arena, n, sizeof *world->bodies);
+    scene->states = imp_arena_take(arena, n, sizeof *scene->states);
+    scene->before = imp_arena_take(arena, n, sizeof *scene->before);
     if (!world->bodies || !scene->states || !scene->before) return IMPACT_ENOMEM;
     for (int i = 0; i < def->body_count; i++) {
         world->body_count++;
-        if (!build_body(&def->bodies[i], &world->bodies[i], &scene->states[i])) return IMPACT_ENOMEM;
+        if (!build_body(arena, &def->bodies[i], &world->bodies[i], &scene->states[i])) return IMPACT_ENOMEM;
         world->driven = world->driven || world->bodies[i].driven;
     }
     impact_status status = build_pairs(world, def);
     if (status == IMPACT_OK) status = build_fields(world, def);
     if (status == IMPACT_OK) status = imp_motion_open(&scene->motion, world, def->tolerance, def->rest_speed);
-    scene->modes = calloc((size_t)world->pair_count + 1, sizeof *scene->modes);
+    scene->modes = imp_arena_take(arena, (size_t)world->pair_count + 1, sizeof *scene->modes);
     return status == IMPACT_OK && !scene->modes ? IMPACT_ENOMEM : status;
-}
-
-void imp_scene_unbuild(impact_scene *scene)
-{
-    imp_world *world = &scene->world;
-    imp_motion_close(&scene->motion);
-    impact_collide_workspace_destroy(scene->springs);
-    for (int i = 0; i < world->body_count; i++) free(world->bodies[i].name);
-    for (int k = 0; k < world->field_count; k++) {
-        free(world->fields[k].name);
-        free(world->fields[k].inside);
-    }
-    free(world->bodies);
-    free(world->pairs);
-    free(world->fields);
-    free(scene->states);
-    free(scene->before);
-    free(scene->modes);
 }

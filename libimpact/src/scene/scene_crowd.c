@@ -42,6 +42,7 @@ typedef struct imp_scene_crowd {
     imp_rows rows;
     double while_time; /* s */
     bool escaped, stopped;
+    bool spent; /* a group found no memory: it did not move whole, and the scene cannot go on */
 } imp_scene_crowd;
 
 /* ---- a group's rows ---- */
@@ -127,22 +128,23 @@ static bool party_pulse(void *context, double t)
 static void free_party(party *p)
 {
     if (!p) return;
+    imp_arena *arena = p->scene.world.arena;
     imp_motion_close(&p->scene.motion);
-    free(p->scene.world.bodies);
-    free(p->scene.world.pairs);
-    free(p->scene.states);
-    free(p->scene.before);
-    free(p->scene.modes);
-    free(p->body);
-    free(p->pair);
-    free(p->top_speed);
-    free(p);
+    imp_arena_give(arena, p->scene.world.bodies);
+    imp_arena_give(arena, p->scene.world.pairs);
+    imp_arena_give(arena, p->scene.states);
+    imp_arena_give(arena, p->scene.before);
+    imp_arena_give(arena, p->scene.modes);
+    imp_arena_give(arena, p->body);
+    imp_arena_give(arena, p->pair);
+    imp_arena_give(arena, p->top_speed);
+    imp_arena_give(arena, p);
 }
 
 static void free_parties(imp_scene_crowd *crowd)
 {
     for (int g = 0; g < crowd->party_count; g++) free_party(crowd->parties[g]);
-    free(crowd->parties);
+    imp_arena_give(crowd->scene->world.arena, crowd->parties);
     crowd->parties = NULL;
     crowd->party_count = 0;
 }
@@ -151,14 +153,14 @@ static impact_status allocate_party(party *p, int bodies, int pairs)
 {
     imp_world *world = &p->scene.world;
     const size_t n = (size_t)bodies + 1, m = (size_t)pairs + 1;
-    world->bodies = calloc(n, sizeof *world->bodies);
-    world->pairs = calloc(m, sizeof *world->pairs);
-    p->scene.states = calloc(n, sizeof *p->scene.states);
-    p->scene.before = calloc(n, sizeof *p->scene.before);
-    p->scene.modes = calloc(m, sizeof *p->scene.modes);
-    p->body = calloc(n, sizeof *p->body);
-    p->pair = calloc(m, sizeof *p->pair);
-    p->top_speed = calloc(n, sizeof *p->top_speed);
+    world->bodies = imp_arena_take(world->arena, n, sizeof *world->bodies);
+    world->pairs = imp_arena_take(world->arena, m, sizeof *world->pairs);
+    p->scene.states = imp_arena_take(world->arena, n, sizeof *p->scene.states);
+    p->scene.before = imp_arena_take(world->arena, n, sizeof *p->scene.before);
+    p->scene.modes = imp_arena_take(world->arena, m, sizeof *p->scene.modes);
+    p->body = imp_arena_take(world->arena, n, sizeof *p->body);
+    p->pair = imp_arena_take(world->arena, m, sizeof *p->pair);
+    p->top_speed = imp_arena_take(world->arena, n, sizeof *p->top_speed);
     return world->bodies && world->pairs && p->scene.states && p->scene.before && p->scene.modes && p->body &&
                    p->pair && p->top_speed
                ? IMPACT_OK
@@ -231,13 +233,14 @@ static party *make_party(imp_scene_crowd *crowd, int group)
     const imp_crowd *c = &crowd->crowd;
     const int members = c->member_start[group + 1] - c->member_start[group],
               pairs = c->pair_start[group + 1] - c->pair_start[group];
-    party *p = calloc(1, sizeof *p);
+    party *p = imp_arena_take(whole->world.arena, 1, sizeof *p);
     if (!p) return NULL;
     p->owner = crowd;
     p->group = group;
     p->recorder = (impact_recorder){.context = p, .event = keep_event};
     if (whole->recorder && whole->recorder->sample) p->recorder.sample = keep_sample;
-    p->scene.world = (imp_world){.gravity = whole->world.gravity,
+    p->scene.world = (imp_world){.arena = whole->world.arena,
+                                 .gravity = whole->world.gravity,
                                  .driven = whole->world.driven,
                                  .slip_speed = whole->world.slip_speed,
                                  .onset_speed = whole->world.onset_speed,
@@ -284,13 +287,14 @@ static double move_parties(imp_scene_crowd *crowd, double t_end, party **stopped
     *stopped = NULL;
     while (again) {
         again = false;
-        for (int g = 0; g < crowd->party_count && !crowd->escaped && !crowd->stopped; g++) {
+        for (int g = 0; g < crowd->party_count && !crowd->escaped && !crowd->stopped && !crowd->spent; g++) {
             party *p = crowd->parties[g];
             const bool done = p->moved && p->scene.t <= t_end;
             if (p == *stopped || (done && goes_on(p->status))) continue;
             p->moved = true;
             drop_rows(&crowd->rows, p->group);
             if (goes_on(move_party(crowd, p, t_end))) continue;
+            crowd->spent = p->status == IMPACT_ENOMEM;
             t_end = p->scene.t;
             *stopped = p;
             again = g > 0;
@@ -379,7 +383,7 @@ static impact_status make_parties(imp_scene_crowd *crowd, double time, double ca
     impact_status status = imp_crowd_divide(&crowd->crowd, &scene->world, scene->states, scene->motion.resting,
                                             crowd->held, time, caution);
     if (status != IMPACT_OK) return status;
-    crowd->parties = calloc((size_t)crowd->crowd.group_count + 1, sizeof *crowd->parties);
+    crowd->parties = imp_arena_take(scene->world.arena, (size_t)crowd->crowd.group_count + 1, sizeof *crowd->parties);
     if (!crowd->parties) return IMPACT_ENOMEM;
     crowd->rows.count = crowd->rows.next = 0;
     for (; crowd->party_count < crowd->crowd.group_count; crowd->party_count++) {
@@ -419,6 +423,7 @@ impact_status imp_scene_crowd_advance(impact_scene *scene, double t_end)
         if (status != IMPACT_OK) return status;
         party *stopped;
         const double reached = move_parties(crowd, end, &stopped);
+        if (crowd->spent) return IMPACT_ENOMEM;
         if (crowd->stopped) return IMPACT_STOPPED;
         if (!crowd->escaped) return close_while(crowd, stopped ? reached : rest_time(crowd, end), stopped);
     }
@@ -448,13 +453,15 @@ impact_status imp_scene_crowd_open(impact_scene *scene)
     int moving = 0;
     for (int i = 0; i < scene->world.body_count; i++) moving += !scene->world.bodies[i].is_static;
     if (moving < LEAST_BODIES || scene->world.field_count > 0) return IMPACT_OK;
-    imp_scene_crowd *crowd = scene->crowd = calloc(1, sizeof *crowd);
+    imp_arena *arena = scene->world.arena;
+    imp_scene_crowd *crowd = scene->crowd = imp_arena_take(arena, 1, sizeof *crowd);
     if (!crowd) return IMPACT_ENOMEM;
     *crowd = (imp_scene_crowd){.scene = scene,
-                               .held = calloc(n, sizeof *crowd->held),
-                               .local = calloc(n, sizeof *crowd->local),
-                               .energy = calloc(n, sizeof *crowd->energy),
-                               .energy_end = calloc(n, sizeof *crowd->energy_end)};
+                               .rows.arena = arena,
+                               .held = imp_arena_take(arena, n, sizeof *crowd->held),
+                               .local = imp_arena_take(arena, n, sizeof *crowd->local),
+                               .energy = imp_arena_take(arena, n, sizeof *crowd->energy),
+                               .energy_end = imp_arena_take(arena, n, sizeof *crowd->energy_end)};
     if (!crowd->held || !crowd->local || !crowd->energy || !crowd->energy_end) return IMPACT_ENOMEM;
     return imp_crowd_open(&crowd->crowd, &scene->world);
 }
@@ -466,10 +473,10 @@ void imp_scene_crowd_close(impact_scene *scene)
     free_parties(crowd);
     imp_crowd_close(&crowd->crowd);
     imp_rows_free(&crowd->rows);
-    free(crowd->held);
-    free(crowd->local);
-    free(crowd->energy);
-    free(crowd->energy_end);
-    free(crowd);
+    imp_arena_give(crowd->scene->world.arena, crowd->held);
+    imp_arena_give(crowd->scene->world.arena, crowd->local);
+    imp_arena_give(crowd->scene->world.arena, crowd->energy);
+    imp_arena_give(crowd->scene->world.arena, crowd->energy_end);
+    imp_arena_give(scene->world.arena, crowd);
     scene->crowd = NULL;
 }

@@ -32,9 +32,8 @@ struct impact_scene {
     char message[512];
 };
 
-/* The world of a definition that imp_scene_check has passed. */
+/* The world, in its arena, of a definition that imp_scene_check has passed. */
 impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def);
-void imp_scene_unbuild(impact_scene *scene);
 
 /* One stretch of motion and the event at its end. */
 impact_status imp_scene_advance(impact_scene *scene, double t_end);

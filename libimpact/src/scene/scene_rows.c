@@ -5,15 +5,10 @@
 
 imp_row *imp_rows_add(imp_rows *rows)
 {
-    if (rows->count == rows->room) {
-        const int room = 2 * rows->room + 64;
-        imp_row *more = realloc(rows->rows, (size_t)room * sizeof *more);
-        if (!more) {
-            rows->failed = true;
-            return NULL;
-        }
-        rows->rows = more, rows->room = room;
-    }
+    imp_row *more = imp_arena_grow(rows->arena, rows->rows, &rows->room, rows->count + 1, sizeof *more);
+    rows->failed = rows->failed || !more;
+    if (!more) return NULL;
+    rows->rows = more;
     imp_row *row = &rows->rows[rows->count++];
     *row = (imp_row){0};
     return row;
@@ -21,8 +16,8 @@ imp_row *imp_rows_add(imp_rows *rows)
 
 void imp_rows_free(imp_rows *rows)
 {
-    free(rows->rows);
-    *rows = (imp_rows){0};
+    imp_arena_give(rows->arena, rows->rows);
+    *rows = (imp_rows){.arena = rows->arena};
 }
 
 static int in_order(const void *a, const void *b)
@@ -60,7 +55,7 @@ impact_status imp_rows_arrange(imp_rows *rows, int groups, double start, double 
                                const double *energy_end)
 {
     if (rows->failed) return IMPACT_ENOMEM;
-    place *places = malloc(((size_t)groups + 1) * sizeof *places);
+    place *places = imp_arena_take(rows->arena, (size_t)groups, sizeof *places);
     if (!places) return IMPACT_ENOMEM;
     if (rows->count > 0) qsort(rows->rows, (size_t)rows->count, sizeof *rows->rows, in_order);
     for (int g = 0; g < groups; g++)
@@ -77,7 +72,7 @@ impact_status imp_rows_arrange(imp_rows *rows, int groups, double start, double 
         row->event.energy_before += others;
         row->event.energy_after += others;
     }
-    free(places);
+    imp_arena_give(rows->arena, places);
     return IMPACT_OK;
 }
 

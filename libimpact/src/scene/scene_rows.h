@@ -6,6 +6,7 @@
 #define IMP_SCENE_ROWS_H
 
 #include <impact/record.h>
+#include "base/arena.h"
 
 typedef struct imp_row {
     double t;
@@ -23,6 +24,7 @@ typedef struct imp_knot {
 } imp_knot;
 
 typedef struct imp_rows {
+    imp_arena *arena;
     imp_row *rows;
     int count, room, next; /* next: the first that is not handed on yet */
     bool failed;           /* out of memory */

@@ -6,7 +6,6 @@
 #include "contact/together.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 /* A static body's drive does work with the impulse on body 1. */
 static double drive_impulse(impact_scene *scene, const imp_touch *touch, qvec3 impulse)
@@ -115,7 +114,7 @@ static int find_approach(impact_scene *scene, bool answering, imp_meeting *m)
 static impact_status strike_together(impact_scene *scene)
 {
     imp_world *world = &scene->world;
-    imp_share *shares = calloc((size_t)world->pair_count + 1, sizeof *shares);
+    imp_share *shares = imp_arena_take(world->arena, (size_t)world->pair_count, sizeof *shares);
     if (!shares) return IMPACT_ENOMEM;
     imp_persist_stir(world);
     int count = 0;
@@ -145,7 +144,7 @@ static impact_status strike_together(impact_scene *scene)
         world->usage.impacts_together++;
         status = imp_scene_record(scene, &event);
     }
-    free(shares);
+    imp_arena_give(world->arena, shares);
     return status;
 }
 

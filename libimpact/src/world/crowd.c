@@ -16,15 +16,17 @@ impact_status imp_crowd_open(imp_crowd *crowd, const imp_world *world)
 {
     const int n = world->body_count;
     const size_t size = (size_t)n + 1;
-    *crowd = (imp_crowd){.body_count = n,
-                         .bodies = calloc(size, sizeof *crowd->bodies),
-                         .order = calloc(size, sizeof *crowd->order),
-                         .moving_before = calloc(size, sizeof *crowd->moving_before),
-                         .first_pair = calloc(size, sizeof *crowd->first_pair),
-                         .slot = calloc(size, sizeof *crowd->slot),
-                         .member_start = calloc(size, sizeof *crowd->member_start),
-                         .members = calloc(size, sizeof *crowd->members),
-                         .pair_start = calloc(size, sizeof *crowd->pair_start)};
+    imp_arena *arena = world->arena;
+    *crowd = (imp_crowd){.arena = arena,
+                         .body_count = n,
+                         .bodies = imp_arena_take(arena, size, sizeof *crowd->bodies),
+                         .order = imp_arena_take(arena, size, sizeof *crowd->order),
+                         .moving_before = imp_arena_take(arena, size, sizeof *crowd->moving_before),
+                         .first_pair = imp_arena_take(arena, size, sizeof *crowd->first_pair),
+                         .slot = imp_arena_take(arena, size, sizeof *crowd->slot),
+                         .member_start = imp_arena_take(arena, size, sizeof *crowd->member_start),
+                         .members = imp_arena_take(arena, size, sizeof *crowd->members),
+                         .pair_start = imp_arena_take(arena, size, sizeof *crowd->pair_start)};
     if (!crowd->bodies || !crowd->order || !crowd->moving_before || !crowd->first_pair || !crowd->slot ||
         !crowd->member_start || !crowd->members || !crowd->pair_start)
         return IMPACT_ENOMEM;
@@ -41,15 +43,15 @@ impact_status imp_crowd_open(imp_crowd *crowd, const imp_world *world)
 
 void imp_crowd_close(imp_crowd *crowd)
 {
-    free(crowd->bodies);
-    free(crowd->order);
-    free(crowd->moving_before);
-    free(crowd->first_pair);
-    free(crowd->slot);
-    free(crowd->member_start);
-    free(crowd->members);
-    free(crowd->pair_start);
-    free(crowd->pairs);
+    imp_arena_give(crowd->arena, crowd->bodies);
+    imp_arena_give(crowd->arena, crowd->order);
+    imp_arena_give(crowd->arena, crowd->moving_before);
+    imp_arena_give(crowd->arena, crowd->first_pair);
+    imp_arena_give(crowd->arena, crowd->slot);
+    imp_arena_give(crowd->arena, crowd->member_start);
+    imp_arena_give(crowd->arena, crowd->members);
+    imp_arena_give(crowd->arena, crowd->pair_start);
+    imp_arena_give(crowd->arena, crowd->pairs);
     *crowd = (imp_crowd){0};
 }
 
@@ -146,12 +148,9 @@ static void join(imp_crowd *crowd, int i, int j)
 
 static impact_status note_pair(imp_crowd *crowd, const imp_world *world, int i, int j)
 {
-    if (crowd->pair_count == crowd->pair_room) {
-        const int room = 2 * crowd->pair_room + 64;
-        int *pairs = realloc(crowd->pairs, (size_t)room * sizeof *pairs);
-        if (!pairs) return IMPACT_ENOMEM;
-        crowd->pairs = pairs, crowd->pair_room = room;
-    }
+    int *pairs = imp_arena_grow(crowd->arena, crowd->pairs, &crowd->pair_room, crowd->pair_count + 1, sizeof *pairs);
+    if (!pairs) return IMPACT_ENOMEM;
+    crowd->pairs = pairs;
     crowd->pairs[crowd->pair_count++] = imp_crowd_pair(crowd, world, i, j);
     if (world->bodies[i].is_static || world->bodies[j].is_static) return IMPACT_OK;
     crowd->meetings++;
@@ -337,7 +336,7 @@ static void list_groups(imp_crowd *crowd, const imp_world *world)
 
 static impact_status list_pairs(imp_crowd *crowd, const imp_world *world)
 {
-    int *sorted = malloc(((size_t)crowd->pair_room + 1) * sizeof *sorted), *next = crowd->slot;
+    int *sorted = imp_arena_take(crowd->arena, (size_t)crowd->pair_room, sizeof *sorted), *next = crowd->slot;
     if (!sorted) return IMPACT_ENOMEM;
     if (crowd->pair_count > 0) qsort(crowd->pairs, (size_t)crowd->pair_count, sizeof *crowd->pairs, ascending);
     memset(crowd->pair_start, 0, ((size_t)crowd->group_count + 1) * sizeof *crowd->pair_start);
@@ -348,7 +347,7 @@ static impact_status list_pairs(imp_crowd *crowd, const imp_world *world)
     }
     for (int k = 0; k < crowd->pair_count; k++)
         sorted[next[group_of_pair(crowd, world, crowd->pairs[k])]++] = crowd->pairs[k];
-    free(crowd->pairs);
+    imp_arena_give(crowd->arena, crowd->pairs);
     crowd->pairs = sorted;
     return IMPACT_OK;
 }

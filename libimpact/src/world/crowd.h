@@ -27,6 +27,7 @@ typedef struct imp_crowd_body {
 } imp_crowd_body;
 
 typedef struct imp_crowd {
+    imp_arena *arena;
     int body_count;
     imp_crowd_body *bodies;
     int *order; /* of the bodies that are no planes, by the low side of their boxes along x */

@@ -9,6 +9,7 @@
 #include <impact/force.h>
 #include <impact/gap.h>
 #include <impact/scene.h>
+#include "base/arena.h"
 
 /* What moves of a body. The angular momentum, not omega, is the state: it is what torque-free motion keeps. */
 typedef struct imp_state {
@@ -82,6 +83,7 @@ typedef struct imp_field {
 } imp_field;
 
 typedef struct imp_world {
+    imp_arena *arena; /* the scene's: all memory of the world and of what moves it */
     int body_count, pair_count, field_count;
     imp_body *bodies;
     imp_pair *pairs;
