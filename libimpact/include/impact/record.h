@@ -6,6 +6,7 @@
 #define IMPACT_RECORD_H
 
 #include <quat/quat.h>
+#include "memory.h"
 #include "status.h"
 
 #ifdef __cplusplus
@@ -57,21 +58,49 @@ typedef struct impact_recorder {
     bool (*progress)(void *context, double t, double t_end); /* now and then; false stops the run with IMPACT_STOPPED */
 } impact_recorder;
 
-/* CSV sink. Rows go to "PATH.part" files; only impact_csv_close(csv, true) gives them their names, so that no partial
- * file passes for a whole one. 17 significant digits, one header line, "\n", '.' whatever the locale. samples:
- * t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz events:
+/* Bytes that may still be written, by all who are given the same one. */
+typedef struct impact_quota {
+    unsigned long long left;
+    bool spent; /* something was refused */
+} impact_quota;
+
+/* CSV sink. Its files have their names only once impact_csv_close gives them: until then they have none at all (Linux,
+ * where the file system allows it: nothing is left of a process that is killed), or stand under "PATH.part". 17
+ * significant digits, one header line, "\n", '.' whatever the locale; a text that a spreadsheet would take for a
+ * formula (it begins with = + - @ tab or return) has an apostrophe before it, as has one that begins with an
+ * apostrophe. samples: t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz events:
  * t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,energy_before,energy_after */
 typedef struct impact_csv impact_csv;
 
-/* Either path may be NULL. IMPACT_ESINK when a file cannot be opened: message (may be NULL) names it and says why.
- * IMPACT_EARGUMENT when both are the same. */
+typedef struct impact_csv_def {
+    const char *samples_path, *events_path; /* either may be NULL */
+    impact_quota *quota;                    /* outlives the sink; a row beyond it is refused; NULL: none */
+    const impact_allocator *allocator;      /* copied; NULL: malloc (the C library's FILE beside it) */
+} impact_csv_def;
+
+/* IMPACT_ESINK when a file cannot be opened: message (may be NULL) names it and says why. IMPACT_EARGUMENT when both
+ * are the same. IMPACT_ENOMEM. */
+IMPACT_API impact_status impact_csv_open_with(const impact_csv_def *def, impact_csv **csv, char *message,
+                                              unsigned long message_size);
+/* The same without quota and allocator. */
 IMPACT_API impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **csv,
                                          char *message, unsigned long message_size);
-/* A recorder over it (no progress function); valid until the close. */
+/* A recorder over it (no progress function); valid until the close. Where it refuses a row errno says why: EDQUOT for
+ * the quota. */
 IMPACT_API impact_recorder impact_csv_recorder(impact_csv *csv);
-/* keep: flush, close and rename, IMPACT_ESINK when any of it fails; otherwise the partial files are removed. NULL is
- * fine. */
-IMPACT_API impact_status impact_csv_close(impact_csv *csv, bool keep, char *message, unsigned long message_size);
+IMPACT_API long impact_csv_rows(const impact_csv *csv); /* given to it, in both files */
+
+/* What becomes of the files. */
+typedef enum impact_csv_fate {
+    IMPACT_CSV_DROP,   /* they are gone; what stood under their names before stays */
+    IMPACT_CSV_KEEP,   /* they get their names, all or none; partial ones of a run before are removed */
+    IMPACT_CSV_PARTIAL /* of a run that ended early: "NAME.partial.csv" for "NAME.csv", whole lines; none without rows
+                        */
+} impact_csv_fate;
+
+/* IMPACT_ESINK when a file cannot be finished or named: message says which and why, and it is gone. NULL is fine. */
+IMPACT_API impact_status impact_csv_close(impact_csv *csv, impact_csv_fate fate, char *message,
+                                          unsigned long message_size);
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <impact/record.h>
+#include "base/out_file.h"
 
 #include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 const char *impact_event_name(impact_event_kind kind)
@@ -20,14 +19,11 @@ const char *impact_event_name(impact_event_kind kind)
     return "unknown";
 }
 
-/* A file that stands under "PATH.part" until it is whole. */
-typedef struct part_file {
-    FILE *file;
-    char *path, *part;
-} part_file;
-
 struct impact_csv {
-    part_file samples, events;
+    imp_arena *arena;
+    imp_out_file samples, events;
+    long rows[2];     /* of samples and events */
+    char *partial[2]; /* names of what was not ended */
 };
 
 static void explain(char *message, size_t size, const char *path, const char *what)
@@ -35,107 +31,48 @@ static void explain(char *message, size_t size, const char *path, const char *wh
     if (message && size > 0) snprintf(message, size, "%s: %s: %s", path, what, strerror(errno));
 }
 
-static bool open_part(part_file *f, const char *path, const char *header)
-{
-    if (!path) return true;
-    const size_t length = strlen(path);
-    f->path = malloc(length + 1);
-    f->part = malloc(length + sizeof ".part");
-    if (!f->path || !f->part) return false;
-    memcpy(f->path, path, length + 1);
-    memcpy(f->part, path, length);
-    memcpy(f->part + length, ".part", sizeof ".part");
-    f->file = fopen(f->part, "wb");
-    return f->file && fputs(header, f->file) >= 0;
-}
-
-static void discard(part_file *f)
-{
-    if (f->file) {
-        fclose(f->file);
-        remove(f->part);
-    }
-    free(f->path);
-    free(f->part);
-    *f = (part_file){0};
-}
-
-/* Flushes and closes; the partial file is gone when that fails. */
-static bool finish(part_file *f)
-{
-    if (!f->file) return true;
-    const bool good = fflush(f->file) == 0 && !ferror(f->file);
-    const bool closed = fclose(f->file) == 0;
-    f->file = NULL;
-    if (good && closed) return true;
-    remove(f->part);
-    return false;
-}
-
-static bool give_name(const part_file *f) { return !f->path || rename(f->part, f->path) == 0; }
-
-impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **out, char *message,
-                              unsigned long message_size)
-{
-    *out = NULL;
-    if (samples_path && events_path && strcmp(samples_path, events_path) == 0) {
-        if (message) snprintf(message, message_size, "%s: samples and events need a file each", samples_path);
-        return IMPACT_EARGUMENT;
-    }
-    impact_csv *csv = calloc(1, sizeof *csv);
-    if (!csv) return IMPACT_ENOMEM;
-    const bool samples = open_part(&csv->samples, samples_path, "t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n");
-    if (!samples) explain(message, message_size, samples_path, "cannot be written");
-    const bool events =
-        samples && open_part(&csv->events, events_path,
-                             "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
-                             "energy_before,energy_after\n");
-    if (samples && !events) explain(message, message_size, events_path, "cannot be written");
-    if (!events) {
-        impact_csv_close(csv, false, NULL, 0);
-        return IMPACT_ESINK;
-    }
-    *out = csv;
-    return IMPACT_OK;
-}
+/* ---- rows ---- */
 
 /* A number with the digits that give back the same bits, '.' whatever the locale; adding 0 turns -0 into 0. */
-static bool put_number(FILE *file, double value, char end)
+static bool put_number(imp_out_file *file, double value, char end)
 {
     char text[32];
-    snprintf(text, sizeof text, "%.17g", value + 0.0);
+    snprintf(text, sizeof text - 1, "%.17g", value + 0.0);
     char *point = text + strspn(text, "+-0123456789einfa");
     const size_t size = strcspn(point, "0123456789e"); /* of the locale's decimal point, which may be several bytes */
     if (size > 0) {
         memmove(point + 1, point + size, strlen(point + size) + 1);
         *point = '.';
     }
-    return fputs(text, file) >= 0 && putc(end, file) != EOF;
+    const size_t length = strlen(text);
+    text[length] = end;
+    return imp_out_put(file, text, length + 1);
 }
 
-static bool put_numbers(FILE *file, const double *values, int count, char end)
+static bool put_numbers(imp_out_file *file, const double *values, int count, char end)
 {
     for (int i = 0; i < count; i++)
         if (!put_number(file, values[i], i + 1 < count ? ',' : end)) return false;
     return true;
 }
 
-/* A word, quoted when it holds what CSV would trip over (RFC 4180). */
-static bool put_word(FILE *file, const char *word)
+/* A word, quoted when it holds what CSV would trip over (RFC 4180). What a spreadsheet would take for a formula gets an
+ * apostrophe before it, and so does what begins with one: that can be undone. */
+static bool put_word(imp_out_file *file, const char *word)
 {
-    if (!strpbrk(word, ",\"\r\n")) return fputs(word, file) >= 0 && putc(',', file) != EOF;
-    putc('"', file);
-    for (; *word; word++) {
-        if (*word == '"') putc('"', file);
-        putc(*word, file);
-    }
-    return putc('"', file) != EOF && putc(',', file) != EOF;
+    const bool runs = word[0] && strchr("=+-@\t\r'", word[0]);
+    if (!runs && !strpbrk(word, ",\"\r\n")) return imp_out_put(file, word, strlen(word)) && imp_out_put(file, ",", 1);
+    bool good = imp_out_put(file, "\"'", runs ? 2 : 1);
+    for (; good && *word; word++) good = imp_out_put(file, *word == '"' ? "\"\"" : word, *word == '"' ? 2 : 1);
+    return good && imp_out_put(file, "\",", 2);
 }
 
 static bool put_sample(void *context, const impact_sample *s)
 {
-    FILE *file = ((impact_csv *)context)->samples.file;
-    if (!file) return true;
+    impact_csv *csv = context;
+    imp_out_file *file = &csv->samples;
+    if (!file->file) return true;
+    csv->rows[0]++;
     const double values[] = {s->position.x,    s->position.y,    s->position.z, s->orientation.w, s->orientation.x,
                              s->orientation.y, s->orientation.z, s->velocity.x, s->velocity.y,    s->velocity.z,
                              s->omega.x,       s->omega.y,       s->omega.z};
@@ -145,8 +82,10 @@ static bool put_sample(void *context, const impact_sample *s)
 
 static bool put_event(void *context, const impact_event *e)
 {
-    FILE *file = ((impact_csv *)context)->events.file;
-    if (!file) return true;
+    impact_csv *csv = context;
+    imp_out_file *file = &csv->events;
+    if (!file->file) return true;
+    csv->rows[1]++;
     const double values[] = {e->point.x,       e->point.y,     e->point.z,        e->normal.x,
                              e->normal.y,      e->normal.z,    e->impulse_normal, e->impulse_tangential,
                              e->normal_before, e->normal_after};
@@ -161,25 +100,93 @@ impact_recorder impact_csv_recorder(impact_csv *csv)
     return (impact_recorder){.context = csv, .sample = put_sample, .event = put_event};
 }
 
-impact_status impact_csv_close(impact_csv *csv, bool keep, char *message, unsigned long message_size)
+/* ---- closing ---- */
+
+static impact_status end_files(impact_csv *csv, impact_csv_fate fate, char *message, unsigned long size)
+{
+    imp_out_file *files[2] = {&csv->samples, &csv->events};
+    const bool partial = fate == IMPACT_CSV_PARTIAL;
+    for (int i = 0; i < 2; i++)
+        if (!imp_out_finish(files[i], partial))
+            return explain(message, size, files[i]->path, "cannot be finished"), IMPACT_ESINK;
+    for (int i = 0; i < 2; i++)
+        if (files[i]->path && !imp_out_give_name(files[i], partial ? csv->partial[i] : files[i]->path))
+            return explain(message, size, files[i]->path, "cannot be given its name"), IMPACT_ESINK;
+    for (int i = 0; !partial && i < 2; i++)
+        if (csv->partial[i]) remove(csv->partial[i]); /* of a run before, that did not come so far */
+    return IMPACT_OK;
+}
+
+impact_status impact_csv_close(impact_csv *csv, impact_csv_fate fate, char *message, unsigned long message_size)
 {
     if (!csv) return IMPACT_OK;
-    impact_status status = IMPACT_OK;
-    part_file *files[2] = {&csv->samples, &csv->events};
-    for (int i = 0; keep && i < 2; i++)
-        if (!finish(files[i])) {
-            explain(message, message_size, files[i]->path, "cannot be finished");
-            status = IMPACT_ESINK;
-        }
-    for (int i = 0; keep && status == IMPACT_OK && i < 2; i++)
-        if (!give_name(files[i])) {
-            explain(message, message_size, files[i]->path, "cannot be given its name");
-            status = IMPACT_ESINK;
-        }
-    for (int i = 0; i < 2; i++) {
-        if (status != IMPACT_OK && !files[i]->file && files[i]->part) remove(files[i]->part);
-        discard(files[i]);
-    }
-    free(csv);
+    const bool keep = fate == IMPACT_CSV_KEEP || (fate == IMPACT_CSV_PARTIAL && impact_csv_rows(csv) > 0);
+    const impact_status status = keep ? end_files(csv, fate, message, message_size) : IMPACT_OK;
+    imp_out_close(&csv->samples);
+    imp_out_close(&csv->events);
+    imp_arena_destroy(csv->arena);
     return status;
 }
+
+/* ---- opening ---- */
+
+/* "NAME.partial.csv" for "NAME.csv"; of another ending, "NAME.partial". */
+static char *partial_name(imp_arena *arena, const char *path)
+{
+    const size_t length = strlen(path), stem = length > 4 && !strcmp(path + length - 4, ".csv") ? length - 4 : length;
+    char *name = imp_arena_take(arena, length + sizeof ".partial", 1);
+    if (name) sprintf(name, "%.*s.partial%s", (int)stem, path, path + stem);
+    return name;
+}
+
+static bool open_one(impact_csv *csv, int which, const char *path, impact_quota *quota, const char *header)
+{
+    imp_out_file *f = which ? &csv->events : &csv->samples;
+    if (!path) return true;
+    csv->partial[which] = partial_name(csv->arena, path);
+    if (!csv->partial[which]) return errno = ENOMEM, false;
+    return imp_out_open(f, csv->arena, path, quota) && imp_out_put(f, header, strlen(header));
+}
+
+static impact_status open_both(impact_csv *csv, const impact_csv_def *def, char *message, unsigned long size)
+{
+    static const char samples[] = "t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
+    static const char events[] = "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
+                                 "energy_before,energy_after\n";
+    if (!open_one(csv, 0, def->samples_path, def->quota, samples))
+        return explain(message, size, def->samples_path, "cannot be written"), IMPACT_ESINK;
+    if (!open_one(csv, 1, def->events_path, def->quota, events))
+        return explain(message, size, def->events_path, "cannot be written"), IMPACT_ESINK;
+    return IMPACT_OK;
+}
+
+impact_status impact_csv_open_with(const impact_csv_def *def, impact_csv **out, char *message,
+                                   unsigned long message_size)
+{
+    imp_arena *arena;
+    *out = NULL;
+    if (def->samples_path && def->events_path && strcmp(def->samples_path, def->events_path) == 0) {
+        if (message) snprintf(message, message_size, "%s: samples and events need a file each", def->samples_path);
+        return IMPACT_EARGUMENT;
+    }
+    impact_status status = imp_arena_create(def->allocator, &arena);
+    if (status != IMPACT_OK) return status;
+    impact_csv *csv = imp_arena_take(arena, 1, sizeof *csv);
+    if (!csv) return imp_arena_destroy(arena), IMPACT_ENOMEM;
+    *csv = (impact_csv){.arena = arena, .samples.descriptor = -1, .events.descriptor = -1};
+    status = open_both(csv, def, message, message_size);
+    if (status == IMPACT_OK)
+        *out = csv;
+    else
+        impact_csv_close(csv, IMPACT_CSV_DROP, NULL, 0);
+    return status;
+}
+
+impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **csv, char *message,
+                              unsigned long message_size)
+{
+    const impact_csv_def def = {.samples_path = samples_path, .events_path = events_path};
+    return impact_csv_open_with(&def, csv, message, message_size);
+}
+
+long impact_csv_rows(const impact_csv *csv) { return csv->rows[0] + csv->rows[1]; }
