@@ -48,20 +48,53 @@ static bool both_planes(const impact_solid body[2])
     return body[0].shape.kind == IMPACT_PLANE && body[1].shape.kind == IMPACT_PLANE;
 }
 
-/* gap(A, B): {gap=, normal=, point1=, point2=, ...}, or nil, message */
-static int gap(lua_State *L)
+static void read_solids(lua_State *L, impact_solid body[2])
 {
     static const char *const keys[] = {"name", "shape", "position", "orientation", NULL};
-    impact_solid body[2];
     for (int i = 0; i < 2; i++) {
         const quat_lua_reader reader = quat_lua_read(L, i + 1, i == 0 ? "first body" : "second body", NULL, keys);
         read_solid(&reader, &body[i]);
     }
+}
+
+/* gap(A, B): {gap=, normal=, point1=, point2=, ...}, or nil, message */
+static int gap(lua_State *L)
+{
+    impact_solid body[2];
+    read_solids(L, body);
     if (both_planes(body)) return quat_lua_failure(L, no_gap);
     impact_contact contact;
     const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
     if (status < 0) return quat_lua_failure(L, impact_status_string(status));
     push_contact(L, &contact, status);
+    return 1;
+}
+
+/* gap_receipt(A, B, contact): {worst=, normal=, dual=, primal=, order=, inside1=, inside2=} */
+static int gap_receipt(lua_State *L)
+{
+    static const char *const keys[] = {"gap",    "lower",   "upper",   "stiffness", "normal", "point1",
+                                       "point2", "offset1", "offset2", "path",      "status", NULL};
+    impact_solid body[2];
+    impact_contact contact = {0};
+    impact_gap_residuals r;
+    read_solids(L, body);
+    const quat_lua_reader reader = quat_lua_read(L, 3, "contact", NULL, keys);
+    contact.gap = quat_lua_get_number(&reader, "gap", QUAT_LUA_FINITE, NAN);
+    contact.lower = quat_lua_get_number(&reader, "lower", QUAT_LUA_FINITE, NAN);
+    contact.upper = quat_lua_get_number(&reader, "upper", QUAT_LUA_FINITE, NAN);
+    contact.normal = quat_lua_get_vec3(&reader, "normal", (qvec3){NAN, NAN, NAN});
+    contact.offset1 = quat_lua_get_vec3(&reader, "offset1", (qvec3){NAN, NAN, NAN});
+    contact.offset2 = quat_lua_get_vec3(&reader, "offset2", (qvec3){NAN, NAN, NAN});
+    const double worst = impact_gap_receipt(&body[0], &body[1], &contact, &r);
+    lua_createtable(L, 0, 7);
+    quat_lua_set_number(L, "worst", worst);
+    quat_lua_set_number(L, "normal", r.normal);
+    quat_lua_set_number(L, "dual", r.dual);
+    quat_lua_set_number(L, "primal", r.primal);
+    quat_lua_set_number(L, "order", r.order);
+    quat_lua_set_number(L, "inside1", r.inside1);
+    quat_lua_set_number(L, "inside2", r.inside2);
     return 1;
 }
 
@@ -93,6 +126,6 @@ static int toi(lua_State *L)
 
 void impact_lua_open_gap(lua_State *L)
 {
-    static const luaL_Reg functions[] = {{"gap", gap}, {"toi", toi}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"gap", gap}, {"gap_receipt", gap_receipt}, {"toi", toi}, {NULL, NULL}};
     luaL_setfuncs(L, functions, 0);
 }

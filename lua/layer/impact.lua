@@ -209,6 +209,7 @@ core.layer()
 ---@field superellipsoid fun(axes: {a: number, b: number, c: number, eps1?: number, eps2?: number}): impact.shape
 ---@field shape table  the five above, by the same names
 ---@field gap fun(first: impact.solid, second: impact.solid): impact.contact?, string?
+---@field gap_receipt fun(first: impact.solid, second: impact.solid, contact: impact.contact): table  its residuals in eps; `worst`
 ---@field toi fun(first: impact.solid, second: impact.solid, t_max: number): number?, impact.contact|string
 ---@field body fun(definition: impact.body): impact.body
 ---@field collide fun(collision: impact.collision): impact.outcome?, string?  one impact; or nil and why there is no answer

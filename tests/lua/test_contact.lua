@@ -28,6 +28,12 @@ check.equal(#normals, 84)
 local ball = impact.sphere(1)
 local contact = impact.gap({ shape = ball, position = { 0, 0, 5 } }, { shape = box, orientation = { 2, 0, 0, 0 } })
 check.close(contact.gap, 1, 1e-15)
+local pair = { { shape = ball, position = { 0, 0, 5 } }, { shape = box, orientation = { 2, 0, 0, 0 } } }
+check.equal(impact.gap_receipt(pair[1], pair[2], contact).worst < 20, true)
+local lower = contact.lower
+contact.lower = 0.9
+check.equal(impact.gap_receipt(pair[1], pair[2], contact).dual > 1e10, true)
+contact.lower = lower
 check.close(contact.normal.z, 1, 1e-15)
 check.close(contact.point1.z, 4, 1e-15)
 check.close(contact.point2.z, 3, 1e-15)

@@ -47,17 +47,31 @@ typedef struct impact_contact {
 
 /* The gap of two solids: any shapes but two planes (IMPACT_EARGUMENT, as for a shape that impact_shape_check refuses).
  * cache may be NULL. IMPACT_OK: settled, the bracket closed to 2e-14 (L + |c|) or better, L the largest semi-axis and c
- * between the positions; an overlap is then proved the nearest way out (IMPACT_OK is not said without), or one of
- * several that are equally near. With an answer too: IMPACT_DEEP, a way out that no other is nearer than by more than
- * the bracket; IMPACT_BRACKET, the gap lies in [lower, upper], and no witness points were found. Both brackets of an
- * overlap are at most half a per cent of its depth wide, but where the work allowed is not enough: then upper is the
- * distance of the centres or 0. Two octahedra (all exponents 1) that overlap are solved as the polytopes they are.
- * IMPACT_EDOMAIN: a position that is not
- * finite, an orientation that is zero or not finite. A negative status leaves every number of *contact NaN. Method:
- * docs/gap.md.
+ * between the positions; an overlap deeper than 5 % of the smallest semi-axis or of the radii at the contact, or of two
+ * bodies with edges, is then proved the nearest way out, or one of several equally near. With an answer too:
+ * IMPACT_DEEP, a way out that no other is nearer than by more than the bracket; IMPACT_BRACKET, the gap lies in [lower,
+ * upper], and no witness points were found. Both brackets of an overlap are at most half a per cent of its depth wide,
+ * but where the work allowed is not enough: then upper is the distance of the centres or 0. Two octahedra (all
+ * exponents 1) that overlap are solved as the polytopes they are. IMPACT_EDOMAIN: a position that is not finite, an
+ * orientation that is zero or not finite. A negative status leaves every number of *contact NaN. Method: docs/gap.md.
  */
 IMPACT_API impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                                     impact_contact *contact);
+
+/* Residuals of an answer in eps (L + |c|); of normal in eps. */
+typedef struct impact_gap_residuals {
+    double normal;           /* |n| - 1; against a plane also its distance from the plane's normal */
+    double dual;             /* lower against g(n) = n.c - h_2(n) - h_1(-n), which is no more than the gap */
+    double primal;           /* apart: the points' distance beyond upper; overlapping: n.(x_1 - x_2) against the gap */
+    double order;            /* of lower, gap and upper */
+    double inside1, inside2; /* the witness points' distances outside their bodies, to first order */
+} impact_gap_residuals;
+
+/* Checks an answer by the solids and the contact alone, by none of the solver's formulas; the worst residual, infinite
+ * for NaN. residuals may be NULL. Right answers (IMPACT_OK, and IMPACT_DEEP) stay below 20, and
+ * impact_gap takes no others. Solids that impact_gap refuses have no receipt: the answer means nothing. */
+IMPACT_API double impact_gap_receipt(const impact_solid *body1, const impact_solid *body2,
+                                     const impact_contact *contact, impact_gap_residuals *residuals);
 
 /* d(gap)/dt in m/s for the bodies' velocities (m/s, world, of the positions) and angular velocities (rad/s, world):
  * exactly normal . (u1 - u2), u the velocities of the witness points. */

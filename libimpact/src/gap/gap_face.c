@@ -294,12 +294,17 @@ static bool share_a_point(const imp_gap_solids *pair, const imp_face *face)
            holds(pair, face, 0, 1);
 }
 
+/* Of the reach: 20 eps; right answers of all families stay below 4. */
+static const double outside_limit = 4.4e-15;
+
 bool imp_face_judge(const imp_gap_solids *pair, const imp_face *face, imp_gap_bracket *meeting)
 {
     meeting->gap = meeting->lower = imp_pair_gap(pair, face->m, NULL);
     const double slip = hypot(face->vt[0], face->vt[1]);
     meeting->upper = fmax(meeting->gap, meeting->gap > slip ? imp_norm(face->v) : face->vm + slip);
     if (!(meeting->upper - meeting->lower <= 2e-14 * pair->reach)) return false;
+    for (int k = 0; k < 2; k++) /* the points prove the upper end where they lie in their bodies */
+        if (!(imp_gap_outside(&pair->form[k], face->chart[k].x) <= outside_limit * pair->reach)) return false;
     meeting->stiffness = stiffness(pair, face, meeting->gap);
     if (meeting->gap < 0 && !(meeting->stiffness >= -1e-12 * pair->size && share_a_point(pair, face))) return false;
     memcpy(meeting->n, face->m, sizeof meeting->n);

@@ -100,6 +100,9 @@ imp_proof imp_gap_prove(const imp_gap_solids *pair, imp_gap_peaks *peaks, double
 bool imp_gap_are_octahedra(const imp_gap_solids *pair);
 bool imp_gap_octahedra(const imp_gap_solids *pair, imp_gap_bracket *meeting);
 
+/* How far x (world, relative to the centre) is outside the body, to first order; negative inside. */
+double imp_gap_outside(const imp_form *form, const double x[3]);
+
 /* All the ways in order, from a cached normal (NULL: none). */
 impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting,
                              impact_gap_path *path);

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What an answer of the gap can be held to without the solver: for every unit n, g(n) = n.c - h_2(n) - h_1(-n) is no
+ * more than the gap, and for every two points of the bodies their distance is no less. So normal and witness points
+ * are an interval with two proved ends, once the points are seen to lie in their bodies: by the bodies' inequalities,
+ * which no step of the solver evaluates.
+ */
+#include <quat/rotation.h>
+#include <float.h>
+#include "gap/gap_solver.h"
+
+/* |x/a|^p */
+static double mass_of(double ratio, double p) { return p == 2 ? ratio * ratio : p == 1 ? ratio : pow(ratio, p); }
+
+/* The masses m_i, of sum f, and p_i m_i/|x_i|, the sizes of f's derivatives; a superellipsoid's section counts as one
+ * mass. */
+static double plain_excess(const imp_form *form, const double x[3])
+{
+    double excess = -1, square = 0;
+    for (int i = 0; i < 3; i++) {
+        const double size = fabs(x[i]), mass = mass_of(size / form->axis[i], form->p[i]);
+        const double slope = size > 0 ? form->p[i] * mass / size : 0;
+        excess += mass, square += slope * slope;
+    }
+    return excess / sqrt(square);
+}
+
+static double nested_excess(const imp_form *form, const double x[3])
+{
+    const double p = form->p[0], t = form->p[IMP_SECTION], u = fabs(x[0]) / form->axis[0],
+                 v = fabs(x[1]) / form->axis[1], w = fabs(x[2]) / form->axis[2], larger = fmax(u, v);
+    const double a = u == larger ? 1 : pow(u / larger, p), b = v == larger ? 1 : pow(v / larger, p), sum = a + b;
+    const double section = pow(larger * pow(sum, 1 / p), t), along = pow(w, t);
+    const double x_slope = u > 0 ? t * section * (a / sum) / (u * form->axis[0]) : 0,
+                 y_slope = v > 0 ? t * section * (b / sum) / (v * form->axis[1]) : 0,
+                 z_slope = w > 0 ? t * along / (w * form->axis[2]) : 0;
+    return (section + along - 1) / sqrt(x_slope * x_slope + y_slope * y_slope + z_slope * z_slope);
+}
+
+double imp_gap_outside(const imp_form *form, const double x[3])
+{
+    double body[3];
+    for (int i = 0; i < 3; i++)
+        body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
+    return form->nested ? nested_excess(form, body) : plain_excess(form, body);
+}
+
+/* ---- of a contact, for anyone ---- */
+
+/* h(d) about the body's position, d world and unit; a plane's where d is its normal but for rounding, which *off is. */
+static double height_of(const impact_solid *body, qvec3 d, double *off)
+{
+    const qvec3 inside = quat_rotate_inverse(quat_unit(body->orientation), d);
+    if (body->shape.kind != IMPACT_PLANE) return impact_shape_support(&body->shape, inside, NULL);
+    *off = fmax(*off, qvec3_norm(qvec3_sub(inside, (qvec3){0, 0, 1})));
+    return 0;
+}
+
+static double outside_of(const impact_solid *body, qvec3 offset)
+{
+    const qvec3 x = quat_rotate_inverse(quat_unit(body->orientation), offset);
+    if (body->shape.kind == IMPACT_PLANE) return x.z;
+    const double scale = ldexp(1, -ilogb(fmax(body->shape.a, fmax(body->shape.b, body->shape.c))));
+    const double scaled[3] = {scale * x.x, scale * x.y, scale * x.z};
+    imp_form form;
+    imp_form_make(&body->shape, scale, quat_identity(), &form);
+    return imp_gap_outside(&form, scaled) / scale;
+}
+
+/* NaN stays. */
+static double excess_of(double x) { return x <= 0 ? 0 : x; }
+
+static double size_of(const impact_solid *body)
+{
+    return body->shape.kind == IMPACT_PLANE ? 0 : fmax(body->shape.a, fmax(body->shape.b, body->shape.c));
+}
+
+double impact_gap_receipt(const impact_solid *body1, const impact_solid *body2, const impact_contact *contact,
+                          impact_gap_residuals *residuals)
+{
+    const qvec3 c = qvec3_sub(body1->position, body2->position), n = contact->normal;
+    const double unit = DBL_EPSILON * (fmax(size_of(body1), size_of(body2)) + qvec3_norm(c));
+    impact_gap_residuals r = {.normal = fabs(qvec3_norm(n) - 1)};
+    const double lower = qvec3_dot(n, c) - height_of(body2, n, &r.normal) - height_of(body1, qvec3_neg(n), &r.normal);
+    const qvec3 v = qvec3_sub(qvec3_add(c, contact->offset1), contact->offset2);
+    r.normal /= DBL_EPSILON;
+    r.dual = fabs(contact->lower - lower) / unit;
+    r.primal =
+        (contact->gap > 0 ? excess_of(qvec3_norm(v) - contact->upper) : fabs(qvec3_dot(n, v) - contact->gap)) / unit;
+    r.order = (excess_of(contact->lower - contact->gap) + excess_of(contact->gap - contact->upper)) / unit;
+    r.inside1 = excess_of(outside_of(body1, contact->offset1)) / unit;
+    r.inside2 = excess_of(outside_of(body2, contact->offset2)) / unit;
+    if (residuals) *residuals = r;
+    const double all[6] = {r.normal, r.dual, r.primal, r.order, r.inside1, r.inside2};
+    double worst = 0;
+    for (int i = 0; i < 6; i++)
+        if (!(all[i] <= worst)) worst = isnan(all[i]) ? INFINITY : all[i];
+    return worst;
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Receipts: every answer with status ok passes, over random pairs of all families; and answers spoilt in any one number
+ * fail.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <impact/gap.h>
+#include "kit/contact_random.h"
+
+static const double limit = 20;
+
+/* Apart, touching or overlapping by some of the thinner axis, at any scale; one of thirty is a plane. */
+static void random_solids(random_stream *random, int k, impact_solid body[2])
+{
+    const double scale = ldexp(1, (int)(random_bits(random) % 200) - 100);
+    qvec3 x[2];
+    const qvec3 normal = random_direction(random);
+    for (int i = 0; i < 2; i++) {
+        body[i] = (impact_solid){.shape = random_shape(random, (int)(random_bits(random) % RANDOM_FAMILIES))};
+        body[i].orientation = random_rotation(random);
+        x[i] = contact_support(&body[i], i ? normal : qvec3_neg(normal));
+        body[i].shape.a *= scale, body[i].shape.b *= scale, body[i].shape.c *= scale;
+    }
+    const double thin = fmin(body[0].shape.a, fmin(body[0].shape.b, body[0].shape.c));
+    const double gap = k % 3 == 0   ? scale * random_log(random, 1e-9, 100)
+                       : k % 3 == 1 ? 0
+                                    : -thin * random_log(random, 1e-9, 1);
+    body[0].position = qvec3_axpy(gap, normal, qvec3_scale(qvec3_sub(x[1], x[0]), scale));
+    if (k % 30 == 7) impact_shape_plane(INFINITY, INFINITY, &body[1].shape);
+}
+
+static void right_answers_pass(void **state)
+{
+    (void)state;
+    random_stream random = {51};
+    double worst = 0;
+    int checked = 0;
+    for (int k = 0; k < 20000; k++) {
+        impact_solid body[2];
+        random_solids(&random, k, body);
+        impact_contact c;
+        impact_gap_residuals r;
+        const impact_status status = impact_gap(&body[0], &body[1], NULL, &c);
+        assert_true(status >= 0);
+        if (status == IMPACT_BRACKET) continue;
+        const double got = impact_gap_receipt(&body[0], &body[1], &c, &r);
+        if (!(got <= limit))
+            fail_msg("%d: status %d, normal %g dual %g primal %g order %g inside %g %g; exponents %g %g %g, %g %g %g",
+                     k, status, r.normal, r.dual, r.primal, r.order, r.inside1, r.inside2, body[0].shape.r,
+                     body[0].shape.s, body[0].shape.t, body[1].shape.r, body[1].shape.s, body[1].shape.t);
+        worst = fmax(worst, got);
+        checked++;
+    }
+    if (getenv("TEST_SHOW")) printf("%d answers, worst residual %.3g\n", checked, worst);
+    assert_true(checked > 19000);
+}
+
+/* Each number moved by 1e-9 of the size. */
+static void spoilt_answers_fail(void **state)
+{
+    (void)state;
+    random_stream random = {52};
+    for (int k = 0; k < 2000; k++) {
+        impact_solid body[2];
+        random_solids(&random, 3 * k, body);
+        if (body[1].shape.kind == IMPACT_PLANE) continue;
+        impact_contact c;
+        if (impact_gap(&body[0], &body[1], NULL, &c) != IMPACT_OK) continue;
+        const double much = 1e-9 * (fmax(contact_size(&body[0].shape), contact_size(&body[1].shape)) +
+                                    qvec3_norm(qvec3_sub(body[0].position, body[1].position)));
+        impact_contact spoilt[8] = {c, c, c, c, c, c, c, c};
+        spoilt[0].gap += much;
+        spoilt[1].lower -= much;
+        spoilt[2].upper -= much;
+        spoilt[3].offset1 = qvec3_axpy(-much, c.normal, c.offset1); /* out of its body */
+        spoilt[4].offset2 = qvec3_axpy(much, c.normal, c.offset2);
+        spoilt[5].normal = qvec3_scale(c.normal, 1 + 1e-9);
+        spoilt[6].offset1.x = NAN;
+        spoilt[7].gap = NAN;
+        for (int i = 0; i < 8; i++)
+            if (!(impact_gap_receipt(&body[0], &body[1], &spoilt[i], NULL) > 1e4))
+                fail_msg("%d passes, spoilt %d", k, i);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(right_answers_pass),
+        cmocka_unit_test(spoilt_answers_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
