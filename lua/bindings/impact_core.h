@@ -27,10 +27,15 @@ void impact_lua_push_shape(lua_State *L, const impact_shape *shape);
 
 /* Set by a program that runs scripts; absent in a stock interpreter. */
 typedef struct impact_lua_host {
-    const char *directory;                                      /* scene:run{csv="name"} writes in here */
-    bool confined;                                              /* and csv takes plain names only */
-    bool (*prepare)(void *context, char *message, size_t size); /* makes the folder; false with a message */
-    bool (*progress)(void *context, double t, double t_end);    /* false: the run fails, and its files are dropped */
+    const char *directory; /* scene:run{csv="name"} writes in here */
+    bool confined;         /* and csv takes plain names only */
+    /* Makes the folder for NAME.csv and NAME_events.csv; false with a message. */
+    bool (*prepare)(void *context, const char *name, char *message, size_t size);
+    bool (*progress)(void *context, double t, double t_end); /* false: the run fails */
+    /* A run ended early, at t of t_end; files: where its rows are ("a.csv and b.csv"), or "". */
+    void (*ended_early)(void *context, double t, double t_end, const char *files);
+    impact_quota *quota;         /* of the CSV files; NULL: none */
+    impact_allocator *allocator; /* of the scenes and CSV files; NULL: malloc */
     void *context;
 } impact_lua_host;
 

@@ -6,6 +6,7 @@
 #include "impact_scene.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -64,6 +65,7 @@ static bool on_sample(void *context, const impact_sample *sample)
 {
     impact_lua_scene *self = context;
     if (self->failed || self->stopped) return false;
+    self->t_told = sample->t;
     /* Long flights in closed form are all samples and no progress. */
     if (++self->samples_told % 1024 == 0 && !tell_host(self, sample->t, self->t_end)) return false;
     if (self->has_csv && !self->csv.sample(self->csv.context, sample)) return csv_fails(self);
@@ -75,6 +77,7 @@ static bool on_event(void *context, const impact_event *event)
 {
     impact_lua_scene *self = context;
     if (self->failed || self->stopped) return false;
+    self->t_told = event->t;
     if (self->has_csv && !self->csv.event(self->csv.context, event)) return csv_fails(self);
     if (self->record && !impact_lua_keep_event(self->L, &self->rows, event)) return self->record_failed = true, false;
     return !self->event_slot || call_script(self, call_with_event, self->event_slot, event);
@@ -113,7 +116,8 @@ static int function_slot(const quat_lua_reader *options, const char *key)
 /* A name for files that stays in its folder. */
 static bool is_plain(const char *name) { return name[0] && name[0] != '.' && !strchr(name, '/') && strlen(name) < 200; }
 
-/* Opens NAME.csv and NAME_events.csv; NULL with a message when it cannot. */
+/* Opens NAME.csv and NAME_events.csv; NULL with a message when it cannot. The names they get when the run ends early
+ * stand on top of the stack. */
 static impact_csv *open_csv(const quat_lua_reader *options, const impact_lua_host *host, char *message, size_t size)
 {
     lua_State *L = options->L;
@@ -124,15 +128,19 @@ static impact_csv *open_csv(const quat_lua_reader *options, const impact_lua_hos
     if (host && host->confined && !plain)
         quat_lua_reader_error(options, "csv must be a plain name without '/', got the string '%s'", name);
     const bool inside = host && plain;
-    if (inside && !host->prepare(host->context, message, size)) return NULL;
     const char *directory = inside ? host->directory : "", *slash = inside ? "/" : "";
     const size_t length = strlen(name);
     if (length > 4 && strcmp(name + length - 4, ".csv") == 0) name = lua_pushlstring(L, name, length - 4);
+    if (inside && !host->prepare(host->context, name, message, size)) return NULL;
     const char *samples = lua_pushfstring(L, "%s%s%s.csv", directory, slash, name);
     const char *events = lua_pushfstring(L, "%s%s%s_events.csv", directory, slash, name);
-    remove(lua_pushfstring(L, "%s.part", samples)); /* never through a link that lies there */
-    remove(lua_pushfstring(L, "%s.part", events));
-    if (impact_csv_open(samples, events, &csv, message, size) < 0) csv = NULL;
+    const impact_csv_def def = {.samples_path = samples,
+                                .events_path = events,
+                                .quota = host ? host->quota : NULL,
+                                .allocator = host ? host->allocator : NULL};
+    if (impact_csv_open_with(&def, &csv, message, size) < 0) csv = NULL;
+    lua_pushfstring(L, "%s%s%s.partial.csv and %s%s%s_events.partial.csv", directory, slash, name, directory, slash,
+                    name);
     return csv;
 }
 
@@ -148,14 +156,28 @@ static const char *outcome(const impact_lua_scene *self, impact_status status)
     }
 }
 
-/* Returns the reason it ended, with a message when that is "inaccurate"; or nil, message, "run" or "output". */
+/* Closes the files: whole ones of a run that came to its end, partial ones of another, which the host is told of. */
+static impact_status close_files(lua_State *L, impact_lua_scene *self, impact_csv *csv, bool early, char *message,
+                                 size_t size)
+{
+    const bool rows = csv && impact_csv_rows(csv) > 0;
+    const impact_status closed = impact_csv_close(csv, early ? IMPACT_CSV_PARTIAL : IMPACT_CSV_KEEP, message, size);
+    if (early && self->host && self->host->ended_early)
+        self->host->ended_early(self->host->context, fmax(impact_scene_time(self->scene), self->t_told), self->t_end,
+                                rows && closed == IMPACT_OK ? lua_tostring(L, self->files_slot) : "");
+    return closed;
+}
+
+/* Returns the reason it ended, with a message when that is "inaccurate" or "event limit"; or nil, message, "run" or
+ * "output". */
 static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, impact_status status)
 {
     char message[400] = "";
     const bool good = !self->failed && !self->record_failed && !self->csv_failed && !self->ended_by_host &&
                       (status >= 0 || self->stopped);
     self->L = NULL;
-    const impact_status closed = csv ? impact_csv_close(csv, good, message, sizeof message) : IMPACT_OK;
+    const impact_status closed =
+        close_files(L, self, csv, !good || status == IMPACT_EVENT_LIMIT, message, sizeof message);
     if (self->failed) {
         lua_settop(L, self->error_slot);
         return lua_error(L);
@@ -163,13 +185,15 @@ static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, impact_
     if (self->record_failed) return quat_lua_error(L, "not enough memory to record the run");
     if (good && closed >= 0) {
         lua_pushstring(L, outcome(self, status));
-        if (status != IMPACT_SOFT) return 1;
+        if (self->stopped || (status != IMPACT_SOFT && status != IMPACT_EVENT_LIMIT)) return 1;
         lua_pushstring(L, impact_scene_message(self->scene));
         return 2;
     }
     lua_pushnil(L);
     if (good || self->csv_failed) {
-        if (self->csv_failed) snprintf(message, sizeof message, "cannot write the rows: %s", strerror(self->csv_errno));
+        if (self->csv_failed)
+            snprintf(message, sizeof message, "cannot write the rows: %s",
+                     self->csv_errno == EDQUOT ? "the disk limit is reached" : strerror(self->csv_errno));
         lua_pushstring(L, message);
         lua_pushliteral(L, "output");
     } else {
@@ -194,6 +218,7 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     const quat_lua_reader options = quat_lua_read(L, options_index, "run", NULL, keys);
     self->host = impact_lua_get_host(L);
     self->t_end = t_end;
+    self->t_told = 0;
     self->samples_told = 0;
     self->record = quat_lua_get_boolean(&options, "record", false);
     self->rows.asked = self->rows.asked || self->record;
@@ -211,6 +236,7 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
             lua_pushliteral(L, "output");
             return 3;
         }
+        self->files_slot = lua_gettop(L);
         self->csv = impact_csv_recorder(csv);
         self->has_csv = true;
     }

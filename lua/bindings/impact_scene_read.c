@@ -140,6 +140,8 @@ impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene
         "solver", "tolerance", "rest_height", "rest_speed",  "max_events", "plot",   "compliance", NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
+    const impact_lua_host *host = impact_lua_get_host(L);
+    def.allocator = host ? host->allocator : NULL;
     def.name = quat_lua_get_string(&reader, "name", def.name ? def.name : "scene");
     def.gravity = quat_lua_get_vec3(&reader, "gravity", def.gravity);
     quat_lua_need(&reader, "duration");

@@ -10,6 +10,8 @@ local function cell(value)
   if value ~= value then return "nan" end
   if type(value) == "number" then return format(math.type(value) == "integer" and "%d" or "%.17g", value) end
   local text = tostring(value)
+  -- What a spreadsheet would take for a formula has an apostrophe before it, and so has what begins with one; a number is none.
+  if text:find("^[=+@\t\r'-]") and not tonumber(text) then return '"\'' .. text:gsub('"', '""') .. '"' end
   if text:find('[,"\r\n]') then return '"' .. text:gsub('"', '""') .. '"' end
   return text
 end
@@ -61,6 +63,11 @@ local function cells_of(line)
   return cells
 end
 
+--- A cell without the apostrophe that keeps it from being a formula.
+local function plain(text)
+  return text and match(text, "^'([=+@\t\r'-].*)$") or text
+end
+
 --- The rows of a CSV text below its header, each a table by the header's names; what reads as a number is one, lines that begin with
 --- "#" are left out. No cell may hold a line's end.
 ---@param text string
@@ -72,10 +79,11 @@ function csv.rows(text)
     if sub(line, 1, 1) ~= "#" then
       local cells = cells_of(line)
       if not names then
-        names = cells
+        names = {}
+        for i = 1, #cells do names[i] = plain(cells[i]) end
       else
         local row = {}
-        for i, name in ipairs(names) do row[name] = tonumber(cells[i]) or cells[i] end
+        for i, name in ipairs(names) do row[name] = tonumber(cells[i]) or plain(cells[i]) end
         rows[#rows + 1] = row
       end
       rows = rows or {}

@@ -7,36 +7,42 @@
 
 #include <errno.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 static void usage(FILE *file)
 {
-    fputs("usage: impact SCRIPT.lua [options]\n"
-          "\n"
-          "Runs the scene that the script returns and writes NAME.csv, NAME_events.csv and, when the scene has a plot "
-          "and gnuplot\n"
-          "is there, NAME.png. A script that returns nothing has done its work itself.\n"
-          "\n"
-          "  --out DIR         the output folder; made when needed (default: out)\n"
-          "  --quiet           no progress, no closing summary\n"
-          "  --max-memory MB   bounds the memory of the script\n"
-          "  --max-time S      bounds the time of the whole run, in seconds\n"
-          "  --trust           lets the script start programs, open any file and load C modules\n"
-          "  --help            this text\n"
-          "  --version         versions, and what this build holds\n"
-          "\n"
-          "exit codes\n"
-          "  0  done\n"
-          "  1  the script has an error: its file, line and reason are told\n"
-          "  2  the command line is wrong\n"
-          "  3  the run failed\n"
-          "  4  an output could not be written\n"
-          "  5  --max-memory or --max-time was reached\n"
-          "  6  done, but the energy account does not close: do not trust the digits\n"
-          "  130  interrupted (Ctrl-C)\n",
-          file);
+    fputs(
+        "usage: impact SCRIPT.lua [options]\n"
+        "\n"
+        "Runs the scene that the script returns and writes NAME.csv, NAME_events.csv and, when the scene has a plot "
+        "and gnuplot\n"
+        "is there, NAME.png. A script that returns nothing has done its work itself.\n"
+        "\n"
+        "  --out DIR         the output folder; made when needed (default: out)\n"
+        "  --quiet           no progress, no closing summary\n"
+        "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
+        "  --max-time S      bounds the time of the whole run, in seconds\n"
+        "  --max-disk MB     bounds what is written, in all (default: 1024)\n"
+        "  --trust           lets the script start programs, open any file and load C modules\n"
+        "  --help            this text\n"
+        "  --version         versions, and what this build holds\n"
+        "\n"
+        "exit codes\n"
+        "  0  done\n"
+        "  1  the script has an error, or one of its functions that a run called: file, line and reason are told\n"
+        "  2  the command line is wrong\n"
+        "  3  the run failed: the integrator stopped, or no answer was found within the allowed work\n"
+        "  4  an output could not be written\n"
+        "  5  a limit was reached: --max-memory, --max-time, --max-disk, or the scene's max_events\n"
+        "  6  done, but the energy account does not close: do not trust the digits\n"
+        "  128 + N  ended by signal N: 130 by Ctrl-C, 129 by a hangup, 131 by SIGQUIT, 143 by SIGTERM\n"
+        "\n"
+        "Each but 0 comes with one line that says why, --quiet or not. A run that ends early keeps the rows it has as\n"
+        "NAME.partial.csv and NAME_events.partial.csv, and the line says how far it came.\n",
+        file);
 }
 
 static void version(void)
@@ -74,6 +80,8 @@ static int take_value(impact_runner *runner, const char *option, char *value)
     if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
     if (strcmp(option, "--max-time") == 0)
         runner->max_time = number;
+    else if (strcmp(option, "--max-disk") == 0)
+        runner->max_disk_megabytes = number;
     else
         runner->max_megabytes = number, runner->max_memory = (size_t)(number * 1048576.0);
     return -1;
@@ -82,7 +90,7 @@ static int take_value(impact_runner *runner, const char *option, char *value)
 /* The option with a value that the word is, alone or as OPTION=VALUE; NULL: none. */
 static const char *option_of(char *word, char **value)
 {
-    static const char *const options[] = {"--out", "--max-memory", "--max-time"};
+    static const char *const options[] = {"--out", "--max-memory", "--max-time", "--max-disk"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
         const size_t length = strlen(options[i]);
         if (strncmp(word, options[i], length) != 0 || (word[length] && word[length] != '=')) continue;
@@ -135,7 +143,7 @@ static void clear_progress(impact_runner *runner)
 static bool on_progress(void *context, double t, double t_end)
 {
     impact_runner *runner = context;
-    if (impact_runner_time_is_over() || impact_runner_is_interrupted()) return false;
+    if (impact_runner_time_is_over() || impact_runner_signal()) return false;
     if (runner->quiet || !isatty(STDERR_FILENO)) return true;
     const double now = impact_runner_now();
     if (now - runner->started < 0.5 || now - runner->progress_at < 0.1) return true;
@@ -146,15 +154,27 @@ static bool on_progress(void *context, double t, double t_end)
     return true;
 }
 
-static bool prepare(void *context, char *message, size_t size)
+static bool prepare(void *context, const char *name, char *message, size_t size)
 {
-    return impact_runner_open_folder(context, message, size);
+    impact_runner *runner = context;
+    runner->early[0] = 0;
+    if (!impact_runner_open_folder(runner, message, size)) return false;
+    impact_runner_guard(runner, name);
+    return true;
 }
 
+static void on_early_end(void *context, double t, double t_end, const char *files)
+{
+    impact_runner *runner = context;
+    snprintf(runner->early, sizeof runner->early, "; the run came to t = %.6g of %.6g s%s%s", t, t_end,
+             files[0] ? ", its rows are in " : "", files);
+}
+
+/* The one line of an end that is not as it should be. */
 static int complain(impact_runner *runner, int code, const char *message)
 {
     clear_progress(runner);
-    fprintf(stderr, "impact: %s\n", message ? message : "unknown error");
+    fprintf(stderr, "impact: %s%s\n", message ? message : "unknown error", runner->early);
     return code;
 }
 
@@ -162,12 +182,21 @@ static int complain(impact_runner *runner, int code, const char *message)
 static int complain_limits(impact_runner *runner, int code, const char *text)
 {
     char message[120];
-    if (impact_runner_is_interrupted()) return complain(runner, IMPACT_EXIT_INTERRUPTED, "interrupted");
+    const int end = impact_runner_signal();
+    if (end) {
+        snprintf(message, sizeof message, end == SIGINT ? "interrupted" : "ended by signal %d, %s", end,
+                 strsignal(end));
+        return complain(runner, IMPACT_EXIT_SIGNAL + end, message);
+    }
+    if (runner->quota.spent) {
+        snprintf(message, sizeof message, "disk limit of %g MB reached", runner->max_disk_megabytes);
+        return complain(runner, IMPACT_EXIT_LIMIT, message);
+    }
     if (impact_runner_time_is_over()) {
         snprintf(message, sizeof message, "time limit of %g s reached", runner->max_time);
         return complain(runner, IMPACT_EXIT_LIMIT, message);
     }
-    if (text && strstr(text, "not enough memory")) {
+    if (text && (strstr(text, "not enough memory") || strstr(text, "out of memory"))) {
         snprintf(message, sizeof message, "memory limit of %g MB reached", runner->max_megabytes);
         return complain(runner, IMPACT_EXIT_LIMIT, runner->memory_refused ? message : "not enough memory");
     }
@@ -208,6 +237,8 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
     lua_setfield(L, -2, "record");
     lua_call(L, 2, 3);
     clear_progress(runner);
+    if (!lua_isnil(L, -3) && strcmp(lua_tostring(L, -3), "event limit") == 0)
+        return complain(runner, IMPACT_EXIT_LIMIT, lua_tostring(L, -2));
     if (!lua_isnil(L, -3)) {
         const char *doubt = lua_tostring(L, -2);
         if (doubt) fprintf(stderr, "impact: %s\n", doubt);
@@ -311,13 +342,19 @@ static int run_script(impact_runner *runner)
 
 int main(int count, char **words)
 {
-    impact_runner runner = {.directory = "out", .folder = -1, .started = impact_runner_now()};
+    impact_runner runner = {
+        .directory = "out", .folder = -1, .started = impact_runner_now(), .max_disk_megabytes = 1024};
     int code = read_command(count, words, &runner);
     if (code < 0) {
+        runner.quota.left = (unsigned long long)(runner.max_disk_megabytes * 1048576.0);
+        impact_runner_limit_memory(&runner);
         runner.host = (impact_lua_host){.directory = runner.directory,
                                         .confined = !runner.trust,
                                         .prepare = prepare,
                                         .progress = on_progress,
+                                        .ended_early = on_early_end,
+                                        .quota = &runner.quota,
+                                        .allocator = &runner.allocator,
                                         .context = &runner};
         code = run_script(&runner);
     }

@@ -22,7 +22,7 @@ enum {
     IMPACT_EXIT_OUTPUT = 4,
     IMPACT_EXIT_LIMIT = 5,
     IMPACT_EXIT_INACCURATE = 6,
-    IMPACT_EXIT_INTERRUPTED = 130 /* as a shell tells it */
+    IMPACT_EXIT_SIGNAL = 128 /* + the signal, as a shell tells it */
 };
 
 typedef struct impact_runner {
@@ -32,12 +32,16 @@ typedef struct impact_runner {
     double max_time;      /* s; 0: no limit */
     double max_megabytes; /* as given, and: */
     size_t max_memory;    /* bytes; 0: no limit */
-    size_t memory;        /* bytes the Lua state holds */
+    size_t memory;        /* bytes that Lua, the scenes and the CSV files' sinks hold */
     bool memory_refused;
-    int folder; /* descriptor of the output folder, or -1 */
+    double max_disk_megabytes; /* as given, and what is left of it: */
+    impact_quota quota;
+    char early[800]; /* how far the last run came that ended early, and where its rows are; or "" */
+    int folder;      /* descriptor of the output folder, or -1 */
     bool progress_shown;
     double started; /* s, monotonic */
     double progress_at;
+    impact_allocator allocator; /* of scenes and sinks: it draws on max_memory */
     impact_lua_host host;
 } impact_runner;
 
@@ -45,12 +49,17 @@ typedef struct impact_runner {
 
 /* A lua_Alloc whose context is the runner. */
 void *impact_runner_allocate(void *context, void *block, size_t old_size, size_t new_size);
+/* The same count for scenes and sinks, and a bound on the address space that holds for what neither asks of us
+ * (SUNDIALS, libccd, the C library): the limit, what there is already, and 64 MiB. */
+void impact_runner_limit_memory(impact_runner *runner);
 /* Starts the clock of --max-time: when it is over, Lua code and runs are stopped; what cannot be stopped so is ended
- * with the process, IMPACT_EXIT_LIMIT, a second later. SIGINT and SIGTERM stop them too; another, a second later, ends
- * the process. */
+ * with the process, IMPACT_EXIT_LIMIT, a second later. SIGINT, SIGTERM, SIGHUP and SIGQUIT stop them too; another, a
+ * second later, ends the process. */
 void impact_runner_start_clock(lua_State *L, const impact_runner *runner);
 bool impact_runner_time_is_over(void);
-bool impact_runner_is_interrupted(void);
+int impact_runner_signal(void); /* that told the process to end; 0: none */
+/* What is to go when the process is ended at once: NAME.part of both CSV files, where they stand under it. */
+void impact_runner_guard(const impact_runner *runner, const char *name);
 double impact_runner_now(void); /* s, monotonic */
 
 /* ---- runner_files.c: nothing here follows a link out of the folder ---- */
@@ -61,8 +70,14 @@ bool impact_runner_open_folder(impact_runner *runner, char *message, size_t size
 int impact_runner_open_file(impact_runner *runner, const char *path, int flags);
 /* A name that stands for a file of the folder itself: no '/', no leading '.', no control characters. */
 bool impact_runner_is_plain(const char *name);
-/* Gives NAME.part its name, or removes it; both in the folder. */
-bool impact_runner_finish_file(impact_runner *runner, const char *name, bool keep);
+/* A new file of the folder that has no name yet, or stands under NAME.part; -1 with errno. */
+int impact_runner_new_file(impact_runner *runner, const char *name, bool *nameless);
+/* Gives it its name, in place of what had it, or drops it; false with errno. */
+bool impact_runner_finish_file(impact_runner *runner, int file, bool nameless, const char *name, bool keep);
+/* Takes bytes from the disk's quota; false with EDQUOT when it has not as many. */
+bool impact_runner_spend(impact_runner *runner, unsigned long long bytes);
+/* As fdopen, for writing: what is written draws on the quota. */
+FILE *impact_runner_count_writes(impact_runner *runner, int file, const char *mode);
 /* io.open for scripts; the runner is upvalue 1. */
 int impact_runner_io_open(lua_State *L);
 

@@ -13,6 +13,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -119,19 +120,21 @@ static bool make_commands(lua_State *L, int index, impact_runner *runner, FILE *
 
 enum { NO_PROGRAM = 127 };
 
-static int run_gnuplot(FILE *commands, int picture, FILE *complaints)
+static int run_gnuplot(FILE *commands, int picture, FILE *complaints, unsigned long long room)
 {
     int status = 0;
     const pid_t child = fork();
     if (child < 0) return -1;
     if (child == 0) {
+        const struct rlimit limit = {(rlim_t)room, (rlim_t)room};
+        setrlimit(RLIMIT_FSIZE, &limit);
         if (dup2(fileno(commands), 0) < 0 || dup2(picture, 1) < 0 || dup2(fileno(complaints), 2) < 0) _exit(NO_PROGRAM);
         execlp("gnuplot", "gnuplot", "-d", "-", (char *)NULL);
         _exit(NO_PROGRAM);
     }
     while (waitpid(child, &status, 0) < 0) {
         if (errno != EINTR) return -1;
-        if (impact_runner_time_is_over()) kill(child, SIGKILL);
+        if (impact_runner_time_is_over() || impact_runner_signal()) kill(child, SIGKILL);
     }
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
@@ -151,29 +154,29 @@ static void last_complaint(FILE *complaints, char *message, size_t size)
 static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, const char *file_name, char *message,
                                         size_t size)
 {
-    char part[256];
     if (!impact_runner_open_folder(runner, message, size)) return IMPACT_DRAW_FAILED;
-    snprintf(part, sizeof part, "%s.part", file_name);
-    unlinkat(runner->folder, part, 0);
-    const int picture = impact_runner_open_file(runner, part, O_WRONLY | O_CREAT | O_EXCL);
-    FILE *complaints = tmpfile();
+    bool nameless = false;
+    const int picture = impact_runner_new_file(runner, file_name, &nameless);
+    FILE *complaints = picture >= 0 ? tmpfile() : NULL;
     int code = -1;
     impact_draw_result result = IMPACT_DRAW_FAILED;
-    if (picture < 0 || !complaints)
-        snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, part, strerror(errno));
+    if (!complaints)
+        snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, file_name, strerror(errno));
     else
-        code = run_gnuplot(commands, picture, complaints);
-    const bool drawn = code == 0 && lseek(picture, 0, SEEK_END) > 0;
-    if (picture >= 0 && complaints && !drawn) {
+        code = run_gnuplot(commands, picture, complaints, runner->quota.left);
+    const off_t length = code == 0 ? lseek(picture, 0, SEEK_END) : 0;
+    const bool drawn = length > 0 && impact_runner_spend(runner, (unsigned long long)length);
+    if (complaints && !drawn) {
         if (code == NO_PROGRAM)
             snprintf(message, size, "gnuplot is not installed"), result = IMPACT_DRAW_NO_GNUPLOT;
         else
             last_complaint(complaints, message, size);
     }
     if (complaints) fclose(complaints);
+    if (picture >= 0 && impact_runner_finish_file(runner, picture, nameless, file_name, drawn)) result = IMPACT_DRAWN;
+    if (drawn && result != IMPACT_DRAWN)
+        snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, file_name, strerror(errno));
     if (picture >= 0) close(picture);
-    if (picture >= 0 && impact_runner_finish_file(runner, file_name, drawn)) return IMPACT_DRAWN;
-    if (drawn) snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, file_name, strerror(errno));
     return result;
 }
 
@@ -216,27 +219,37 @@ static int host_save(lua_State *L)
     }
 }
 
+static bool write_all(int file, const char *text, size_t length)
+{
+    while (length > 0) {
+        const ssize_t written = write(file, text, length);
+        if (written < 0 && errno != EINTR) return false;
+        if (written > 0) text += written, length -= (size_t)written;
+    }
+    return true;
+}
+
 /* write(name, text): the whole file or none; true, or nil and why */
 static int host_write(lua_State *L)
 {
-    char message[400] = "", part[256];
+    char message[400] = "";
     size_t length;
     impact_runner *runner = lua_touserdata(L, lua_upvalueindex(1));
     const char *name = plain_name(L, 1), *text = luaL_checklstring(L, 2, &length);
     if (!impact_runner_open_folder(runner, message, sizeof message)) return quat_lua_failure(L, message);
-    snprintf(part, sizeof part, "%s.part", name);
-    unlinkat(runner->folder, part, 0);
-    const int descriptor = impact_runner_open_file(runner, part, O_WRONLY | O_CREAT | O_EXCL);
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    bool good = file && fwrite(text, 1, length, file) == length;
-    if (file) good = fclose(file) == 0 && good;
+    bool nameless = false;
+    const int file = impact_runner_new_file(runner, name, &nameless);
+    const bool good = file >= 0 && impact_runner_spend(runner, length) && write_all(file, text, length);
     const int error = errno;
-    if (file && impact_runner_finish_file(runner, name, good)) {
-        lua_pushboolean(L, 1);
-        return 1;
-    }
-    snprintf(message, sizeof message, "cannot write '%s/%s': %s", runner->directory, name, strerror(error));
-    return quat_lua_failure(L, message);
+    const bool there = file >= 0 && impact_runner_finish_file(runner, file, nameless, name, good);
+    if (good) snprintf(message, sizeof message, "cannot write '%s/%s': %s", runner->directory, name, strerror(errno));
+    if (!good)
+        snprintf(message, sizeof message, "cannot write '%s/%s': %s", runner->directory, name,
+                 error == EDQUOT ? "the disk limit is reached" : strerror(error));
+    if (file >= 0 && close(file) != 0 && there) return quat_lua_failure(L, strerror(errno));
+    if (!there) return quat_lua_failure(L, message);
+    lua_pushboolean(L, 1);
+    return 1;
 }
 
 int impact_runner_open_host(lua_State *L)

@@ -3,11 +3,12 @@
  * The output folder. Every file is reached from the folder's descriptor, component by component, without following
  * links.
  */
-#define _XOPEN_SOURCE 700
+#define _GNU_SOURCE
 #include "runner.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -85,16 +86,110 @@ int impact_runner_open_file(impact_runner *runner, const char *path, int flags)
     return -1;
 }
 
-bool impact_runner_finish_file(impact_runner *runner, const char *name, bool keep)
+/* ---- files that have a name only when they are whole ---- */
+
+static void part_of(const char *name, char part[256]) { snprintf(part, 256, "%s.part", name); }
+
+int impact_runner_new_file(impact_runner *runner, const char *name, bool *nameless)
 {
     char part[256];
-    snprintf(part, sizeof part, "%s.part", name);
+    int file = -1;
+#if defined(O_TMPFILE)
+    if (access("/proc/self/fd", X_OK) == 0) file = openat(runner->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+#endif
+    *nameless = file >= 0;
+    if (file >= 0) return file;
+    part_of(name, part);
+    unlinkat(runner->folder, part, 0);
+    return impact_runner_open_file(runner, part, O_RDWR | O_CREAT | O_EXCL);
+}
+
+static bool link_file(const impact_runner *runner, int file, const char *name)
+{
+    char own[40];
+    snprintf(own, sizeof own, "/proc/self/fd/%d", file);
+    return linkat(AT_FDCWD, own, runner->folder, name, AT_SYMLINK_FOLLOW) == 0;
+}
+
+bool impact_runner_finish_file(impact_runner *runner, int file, bool nameless, const char *name, bool keep)
+{
+    char part[256];
+    part_of(name, part);
+    if (keep && nameless) {
+        if (link_file(runner, file, name)) return true;
+        if (errno != EEXIST) return false;
+        unlinkat(runner->folder, part, 0);
+        if (!link_file(runner, file, part)) return false;
+    }
     if (keep && renameat(runner->folder, part, runner->folder, name) == 0) return true;
     const int error = errno;
     unlinkat(runner->folder, part, 0);
     errno = error;
     return false;
 }
+
+/* ---- the quota ---- */
+
+bool impact_runner_spend(impact_runner *runner, unsigned long long bytes)
+{
+    if (bytes > runner->quota.left) return runner->quota.spent = true, errno = EDQUOT, false;
+    runner->quota.left -= bytes;
+    return true;
+}
+
+#if defined(__linux__)
+
+typedef struct counted {
+    impact_runner *runner;
+    int file;
+} counted;
+
+static ssize_t read_counted(void *cookie, char *buffer, size_t size)
+{
+    return read(((counted *)cookie)->file, buffer, size);
+}
+
+static ssize_t write_counted(void *cookie, const char *buffer, size_t size)
+{
+    const counted *c = cookie;
+    if (!impact_runner_spend(c->runner, size)) return 0;
+    const ssize_t written = write(c->file, buffer, size);
+    return written < 0 ? 0 : written; /* as fopencookie wants it */
+}
+
+static int seek_counted(void *cookie, off64_t *offset, int whence)
+{
+    const off_t at = lseek(((counted *)cookie)->file, *offset, whence);
+    if (at >= 0) *offset = at;
+    return at >= 0 ? 0 : -1;
+}
+
+static int close_counted(void *cookie)
+{
+    const int closed = close(((counted *)cookie)->file);
+    free(cookie);
+    return closed;
+}
+
+FILE *impact_runner_count_writes(impact_runner *runner, int file, const char *mode)
+{
+    const cookie_io_functions_t functions = {read_counted, write_counted, seek_counted, close_counted};
+    counted *c = malloc(sizeof *c);
+    FILE *stream = NULL;
+    if (c) *c = (counted){runner, file}, stream = fopencookie(c, mode, functions);
+    if (c && !stream) free(c);
+    return stream;
+}
+
+#else /* counted where a file is closed, and each bounded by RLIMIT_FSIZE */
+
+FILE *impact_runner_count_writes(impact_runner *runner, int file, const char *mode)
+{
+    (void)runner;
+    return fdopen(file, mode);
+}
+
+#endif
 
 /* ---- io.open ---- */
 
@@ -139,7 +234,7 @@ int impact_runner_io_open(lua_State *L)
         const int file = impact_runner_open_file(runner, inside, flags_of(mode) & ~O_TRUNC);
         /* Truncated only when it is known to be a plain file of the folder. */
         const bool fresh = file >= 0 && (mode[0] != 'w' || ftruncate(file, 0) == 0);
-        stream->f = fresh ? fdopen(file, mode) : NULL;
+        stream->f = fresh ? impact_runner_count_writes(runner, file, mode) : NULL;
         if (file >= 0 && !stream->f) close(file);
     } else {
         errno = EACCES;

@@ -4,29 +4,80 @@
 
 #include <signal.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
 #include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
+
+/* ---- memory ---- */
+
+/* Whether `more` bytes may be held beside `others`. */
+static bool allowed(impact_runner *runner, size_t others, size_t more)
+{
+    const bool within = !runner->max_memory || (others <= runner->max_memory && more <= runner->max_memory - others);
+    runner->memory_refused = runner->memory_refused || !within;
+    return within;
+}
 
 void *impact_runner_allocate(void *context, void *block, size_t old_size, size_t new_size)
 {
     impact_runner *runner = context;
     if (!block) old_size = 0; /* then it tells the kind of object */
+    const size_t others = runner->memory - old_size;
     if (new_size == 0) {
-        runner->memory -= old_size;
+        runner->memory = others;
         free(block);
         return NULL;
     }
-    const size_t others = runner->memory - old_size;
-    if (runner->max_memory && new_size > old_size &&
-        (others > runner->max_memory || new_size > runner->max_memory - others)) {
-        runner->memory_refused = true;
-        return NULL;
-    }
+    if (new_size > old_size && !allowed(runner, others, new_size)) return NULL;
     void *moved = realloc(block, new_size);
     if (moved) runner->memory = others + new_size;
     return moved;
 }
+
+static void *allocate_piece(size_t size, void *context)
+{
+    impact_runner *runner = context;
+    void *piece = allowed(runner, runner->memory, size) ? malloc(size) : NULL;
+    if (piece) runner->memory += size;
+    return piece;
+}
+
+static void release_piece(void *piece, size_t size, void *context)
+{
+    ((impact_runner *)context)->memory -= size;
+    free(piece);
+}
+
+/* What the process has mapped, bytes; 0: not known. */
+static size_t mapped(void)
+{
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file && fscanf(file, "%lu", &pages) != 1) pages = 0;
+    if (file) fclose(file);
+    return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+void impact_runner_limit_memory(impact_runner *runner)
+{
+    runner->allocator = (impact_allocator){.allocate = allocate_piece, .release = release_piece, .context = runner};
+    const size_t there = mapped();
+    struct rlimit limit;
+#if !defined(__SANITIZE_ADDRESS__) /* which maps terabytes */
+    if (runner->max_memory && there > 0 && getrlimit(RLIMIT_AS, &limit) == 0) {
+        const rlim_t most = (rlim_t)runner->max_memory + there + ((rlim_t)64 << 20);
+        if (limit.rlim_max == RLIM_INFINITY || most < limit.rlim_max) limit.rlim_cur = most;
+        setrlimit(RLIMIT_AS, &limit);
+    }
+#else
+    (void)there;
+#endif
+    if (getrlimit(RLIMIT_CORE, &limit) == 0) limit.rlim_cur = 0, setrlimit(RLIMIT_CORE, &limit);
+}
+
+/* ---- time ---- */
 
 double impact_runner_now(void)
 {
@@ -35,51 +86,71 @@ double impact_runner_now(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* ---- what ends the process ---- */
+
 /* A signal handler has no other way to tell. */
-static volatile sig_atomic_t time_is_over = 0;
+static volatile sig_atomic_t time_is_over = 0, signal_seen = 0;
+
+static int guarded_folder = -1;
+static char guarded[2][256];
+
+void impact_runner_guard(const impact_runner *runner, const char *name)
+{
+    guarded_folder = runner->folder;
+    snprintf(guarded[0], sizeof guarded[0], "%s.csv.part", name);
+    snprintf(guarded[1], sizeof guarded[1], "%s_events.csv.part", name);
+}
+
+static void end_at_once(int code, const char *message, size_t length)
+{
+    for (int i = 0; i < 2; i++)
+        if (guarded[i][0]) unlinkat(guarded_folder, guarded[i], 0);
+    const ssize_t written = write(STDERR_FILENO, message, length);
+    _exit(written >= 0 ? code : code);
+}
 
 static void on_alarm(int signal_number)
 {
     static const char message[] = "\nimpact: time limit reached, and the script did not stop\n";
     (void)signal_number;
-    if (time_is_over) {
-        const ssize_t written = write(STDERR_FILENO, message, sizeof message - 1);
-        _exit(written >= 0 ? IMPACT_EXIT_LIMIT : IMPACT_EXIT_LIMIT);
-    }
+    if (time_is_over) end_at_once(IMPACT_EXIT_LIMIT, message, sizeof message - 1);
     time_is_over = 1;
 }
 
 bool impact_runner_time_is_over(void) { return time_is_over != 0; }
 
-static volatile sig_atomic_t interrupted = 0;
-
 /* The first one stops in order; another, a second later, ends the process: some senders tell both it and its group. */
-static void on_interrupt(int signal_number)
+static void on_signal(int signal_number)
 {
+    static const char message[] = "\nimpact: ended by a second signal, before the run could stop in order\n";
     static volatile time_t first = 0;
-    (void)signal_number;
-    if (!interrupted) first = time(NULL);
-    if (interrupted && time(NULL) - first > 1) _exit(IMPACT_EXIT_INTERRUPTED);
-    interrupted = 1;
+    if (!signal_seen) first = time(NULL);
+    if (signal_seen && time(NULL) - first > 1)
+        end_at_once(IMPACT_EXIT_SIGNAL + signal_number, message, sizeof message - 1);
+    signal_seen = signal_number;
 }
 
-bool impact_runner_is_interrupted(void) { return interrupted != 0; }
+int impact_runner_signal(void) { return signal_seen; }
 
 /* Inherited by coroutines. Once it is to end it fires at every instruction, so that no pcall can hold it. */
 static void on_count(lua_State *L, lua_Debug *info)
 {
     (void)info;
-    if (!time_is_over && !interrupted) return;
+    if (!time_is_over && !signal_seen) return;
     lua_sethook(L, on_count, LUA_MASKCOUNT, 1);
-    luaL_error(L, interrupted ? "interrupted" : "time limit reached");
+    luaL_error(L, signal_seen ? "interrupted" : "time limit reached");
 }
 
 void impact_runner_start_clock(lua_State *L, const impact_runner *runner)
 {
-    const struct sigaction interrupt = {.sa_handler = on_interrupt};
-    struct sigaction before; /* nohup and background jobs ignore it */
-    if (sigaction(SIGINT, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGINT, &interrupt, NULL);
-    sigaction(SIGTERM, &interrupt, NULL);
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+    const struct sigaction to_end = {.sa_handler = on_signal}, ignored = {.sa_handler = SIG_IGN};
+    struct sigaction before; /* nohup and background jobs ignore some */
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
+        if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(signals[i], &to_end, NULL);
+    sigaction(SIGXFSZ, &ignored, NULL); /* a file that has grown too large is told where it is written */
+    sigaction(SIGPIPE, &ignored, NULL); /* so is a reader that went away */
     lua_sethook(L, on_count, LUA_MASKCOUNT, 1000);
     if (!(runner->max_time > 0)) return;
     const struct sigaction action = {.sa_handler = on_alarm};

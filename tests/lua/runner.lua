@@ -55,13 +55,19 @@ function runner.script(text, options)
   return runner.command("script.lua --out o " .. (options or ""))
 end
 
---- The same, told to end after a while.
-function runner.terminated(text, seconds)
+--- The same, sent a signal after a while.
+function runner.signalled(text, signal, seconds)
   shell("rm -rf " .. quote(folder .. "/o"))
   runner.write("script.lua", text)
-  local code = shell(string.format("cd %s && { env -u LD_PRELOAD %s script.lua --out o >stdout.txt 2>stderr.txt </dev/null & " ..
-    "sleep %g; kill -TERM $!; wait $!; }", quote(folder), quote(program), seconds))
+  local code = shell(string.format("cd %s && env -u LD_PRELOAD timeout --preserve-status -s %s %g %s script.lua --out o " ..
+    ">stdout.txt 2>stderr.txt </dev/null", quote(folder), signal, seconds, quote(program)))
   return code, runner.read("stdout.txt"), runner.read("stderr.txt")
+end
+
+--- The names in the output folder, sorted, with a blank between.
+function runner.files()
+  shell(string.format("cd %s && ls -A o > files.txt 2>/dev/null", quote(folder)))
+  return (runner.read("files.txt"):gsub("\n", " "):gsub(" $", ""))
 end
 
 return runner

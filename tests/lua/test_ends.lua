@@ -1,0 +1,139 @@
+-- SPDX-License-Identifier: MIT
+--- However a run ends: its exit code, one line that says why and how far it came, its rows kept as partial files, and no other
+--- file left.
+local check = require "check"
+local runner = require "runner"
+local has_cvode = require "impact".has "cvode"
+runner.clean()
+
+local partial = "long.partial.csv long_events.partial.csv"
+
+--- A scene that goes on for ever: 'long', one ball, one row a millisecond.
+local function long(more)
+  return "local impact = require 'impact' return impact.scene { name = 'long', duration = 1e7, output_rate = 1000, " .. (more or "") ..
+    " bodies = { impact.body { name = 'ball', shape = impact.sphere(1) } } }"
+end
+
+--- The rows of a partial file: whole lines, in order of time; how far they come.
+local function rows_of(name)
+  local text = runner.read("o/" .. name)
+  check.equal(text:sub(-1), "\n")
+  local last, count = -1, 0
+  for line in text:gmatch("[^\n]+") do
+    local t = tonumber(line:match("^([^,]*),"))
+    if count > 0 then check.truth(t and t >= last, "rows in order: " .. line) end
+    last, count = t or last, count + 1
+  end
+  return last, count
+end
+
+--- The end of a run that did not come to its own.
+local function ends(code, out, said, wanted, message, files)
+  if code ~= wanted then error(string.format("wanted exit code %d, got %d: %s", wanted, code, said), 2) end
+  check.equal(out, "")
+  check.equal(select(2, said:gsub("\n", "\n")), 1) -- one line
+  if not said:find("^impact: " .. message) then error(string.format("wanted '%s', got %s", message, said), 2) end
+  check.equal(runner.files(), files)
+  if files == partial then
+    local t = tonumber(said:match("; the run came to t = ([%d.e+-]+) of 1e%+07 s, its rows are in o/long%.partial%.csv and o/long_events%.partial%.csv\n$"))
+    check.truth(t, "how far: " .. said)
+    local last = rows_of("long.partial.csv")
+    check.truth(last > 0 and last <= t * (1 + 1e-5) + 1e-9, string.format("rows to %g of a run to %g", last, t))
+  end
+end
+
+-- Limits.
+for _, quiet in ipairs { "", "--quiet " } do
+  local code, out, said = runner.script(long(), quiet .. "--max-time 0.3")
+  ends(code, out, said, 5, "time limit of 0%.3 s reached; the run", partial)
+  code, out, said = runner.script(long(), quiet .. "--max-disk 0.5")
+  ends(code, out, said, 5, "disk limit of 0%.5 MB reached; the run", partial)
+  local size = #runner.read("o/long.partial.csv") + #runner.read("o/long_events.partial.csv")
+  check.truth(size <= 0.5 * 1048576 and size > 0.4 * 1048576, "bytes on the disk: " .. size)
+  local bounce = "local impact = require 'impact' return impact.scene { name = 'long', duration = 1e7, max_events = 3, bodies = { " ..
+    "impact.body { name = 'ball', shape = impact.sphere(0.1), position = { 0, 0, 1 }, restitution = 0.9 }, " ..
+    "impact.body { name = 'floor', static = true, shape = impact.plane(), restitution = 1 } } }"
+  code, out, said = runner.script(bounce, quiet)
+  ends(code, out, said, 5, "3 events by t = .*: the limit; the run", partial)
+  check.equal(select(2, rows_of("long_events.partial.csv")), 4)
+end
+do -- what a script writes itself draws on the same quota, however many files are open
+  local code, _, said = runner.script("local f, g = assert(io.open('a', 'w')), assert(io.open('b', 'w')) local line = ('x'):rep(1000) " ..
+    "for i = 1, 1000 do if not (f:write(line) and g:write(line)) then break end end f:close() g:close() " ..
+    "assert(not require 'quat.csv'.save('c', { 'x' }, { { ('y'):rep(2e5) } })) error 'over'", "--max-disk 0.25")
+  check.equal(code, 5)
+  check.equal(said, "impact: disk limit of 0.25 MB reached\n")
+  local size = #runner.read("o/a") + #runner.read("o/b")
+  check.truth(size <= 0.25 * 1048576 and size > 0.2 * 1048576, "bytes on the disk: " .. size)
+  check.equal(runner.files(), "a b")
+end
+
+-- A disk that is full: here a bound on each file, which the system sets.
+do
+  runner.shell("rm -rf " .. runner.quote(runner.folder .. "/o"))
+  runner.write("script.lua", long())
+  local code = runner.shell(string.format("cd %s && (ulimit -f 100; exec env -u LD_PRELOAD %s script.lua --out o >stdout.txt 2>stderr.txt)",
+    runner.quote(runner.folder), runner.quote(runner.program)))
+  ends(code, runner.read("stdout.txt"), runner.read("stderr.txt"), 4, "cannot write the rows: File too large; the run", partial)
+end
+
+-- The script's functions, called from inside a run.
+if has_cvode then
+  local law = "forces = { impact.force { law = function(t, b) if t > 2 then %s end return { 0, 0, 0 } end } },"
+  local code, out, said = runner.script(long(law:format("error 'enough'")))
+  ends(code, out, said, 1, "script%.lua:1: enough; the run", partial)
+  code, out, said = runner.script(long(law:format("return { 0 / 0, 0, 0 }")))
+  ends(code, out, said, 1, "script%.lua:1: force 'force': the force must be a vector .*; the run", partial)
+  -- v' = v^2 from 1 leaves every bound at t = 1.
+  local blow_up = long("forces = { impact.force { law = function(t, b) return { b.velocity.x ^ 2, 0, 0 } end } },"):gsub("impact.sphere%(1%)",
+    "%0, mass = 1, velocity = { 1, 0, 0 }")
+  code, out, said = runner.script(blow_up)
+  ends(code, out, said, 3, "integration stopped at t = %S+, step %S+: .*; the run", partial)
+end
+do
+  local text = long():gsub("return impact%.scene", "local scene = impact.scene") ..
+    " scene:run { csv = 'long', on_sample = function(s) if s.t > 1 then error 'enough' end end }"
+  local code, out, said = runner.script(text)
+  ends(code, out, said, 1, "script%.lua:1: enough; the run", partial)
+end
+
+-- Memory: everything that a scene and its script hold.
+do
+  local code, out, said = runner.script("local impact = require 'impact' local bodies = {} for i = 1, 3000 do bodies[i] = impact.body { " ..
+    "name = 'b' .. i, shape = impact.sphere(0.1), position = { i, 0, 0 } } end return impact.scene { duration = 1, bodies = bodies }",
+    "--max-memory 4")
+  ends(code, out, said, 5, "memory limit of 4 MB reached\n", "")
+end
+
+-- Signals: in order, at the next step; what is killed leaves nothing, where the file system has files without a name.
+for signal, code in pairs { INT = 130, TERM = 143, HUP = 129, QUIT = 131 } do
+  local got, out, said = runner.signalled(long(), signal, 0.5)
+  ends(got, out, said, code, signal == "INT" and "interrupted; the run" or "ended by signal %d+, %a+; the run", partial)
+  got, out, said = runner.signalled("while true do pcall(coroutine.wrap(function() while true do end end)) end", signal, 0.3)
+  ends(got, out, said, code, signal == "INT" and "interrupted\n" or "ended by signal %d+, %a+\n", "")
+end
+if not runner.exists("o/x") then
+  local got = runner.signalled(long(), "KILL", 0.5)
+  check.equal(got, 137)
+  local files = runner.files()
+  check.truth(files == "" or files == "long.csv.part long_events.csv.part", "nothing, or files that say that they are not whole: " .. files)
+end
+
+-- A whole run takes the partial files away.
+do
+  check.equal(runner.command("script.lua --out o --max-time 0.3"), 5)
+  local short = long():gsub("1e7", "1")
+  runner.write("script.lua", short)
+  check.equal(runner.command("script.lua --out o --quiet"), 0)
+  check.equal(runner.files(), "long.csv long_events.csv")
+end
+
+-- The list of codes.
+do
+  local _, out = runner.command("--help")
+  for _, code in ipairs { "0  done", "1  the script", "2  the command", "3  the run", "4  an output", "5  a limit", "6  done, but", "128 %+ N" } do
+    check.truth(out:find("\n  " .. code), "--help tells: " .. code)
+  end
+end
+
+check.report("ends")
