@@ -1,0 +1,207 @@
+-- SPDX-License-Identifier: MIT
+--- Mutants: one change each to a rule or formula, which some test has to notice.
+---
+---   lua5.4 tests/mutants.lua make [SEED]                    prints a list: of every file below, the first so many candidates by
+---                                                           the hash of seed, file and line
+---   lua5.4 tests/mutants.lua run BUILD WORK PART PARTS [PATTERN]   tries tests/mutants.txt (those whose file matches): each is
+---                                                           compiled alone, linked before the archive of BUILD, and run
+---                                                           against the tests of its folder until one fails
+---
+--- A line of tests/mutants.txt: file, old line, new line, and, where it may survive, the reason: tabs between.
+local root = arg[0]:match "^(.*)/tests/[^/]*$" or "."
+
+-- Which tests run a file's lines: the quick ones first. Files that no pattern names have no mutants.
+local rooms = {
+  { "^libquat/src/average%.c$", { "quat_average" } }, { "^libquat/src/attitude%.c$", { "quat_average", "quat_rotation" } },
+  { "^libquat/src/batch%.c$", { "quat_batch" } }, { "^libquat/src/dual%.c$", { "quat_dual" } },
+  { "^libquat/src/euler%.c$", { "quat_euler" } }, { "^libquat/src/exponential%.c$", { "quat_exponential" } },
+  { "^libquat/src/integrate%.c$", { "quat_integrate" } }, { "^libquat/src/interpolate%.c$", { "quat_interpolate" } },
+  { "^libquat/src/jacobian%.c$", { "quat_jacobian" } }, { "^libquat/src/project%.c$", { "quat_project" } },
+  { "^libquat/src/quat%.c$", { "quat_quat" } }, { "^libquat/src/rotation%.c$", { "quat_rotation" } },
+  { "^libquat/src/sequence%.c$", { "quat_sequence" } }, { "^libquat/src/spline%.c$", { "quat_spline" } },
+  { "^libimpact/src/shape/", { "impact_shape", "impact_gap" } },
+  { "^libimpact/src/flight/elliptic", { "impact_elliptic", "impact_tumble" } }, { "^libimpact/src/flight/", { "impact_flight", "impact_tumble" } },
+  { "^libimpact/src/base/record%.c$", { "impact_record" } }, { "^libimpact/src/gap/gap_strike", { "impact_gap", "impact_toi", "impact_motion" } },
+  { "^libimpact/src/gap/", { "impact_gap", "impact_gjk", "impact_toi" } }, { "^libimpact/src/motion/toi", { "impact_toi" } },
+  { "^libimpact/src/collide/", { "impact_collide", "impact_collide_frame", "impact_collide_ready", "impact_collide_direct",
+    "impact_collide_inertia", "impact_collide_isotropic", "impact_collide_flow", "impact_collide_course", "impact_collide_series",
+    "impact_collide_facts", "impact_collide_sensitivity", "impact_collide_compliant", "impact_collide_many", "impact_collide_cvode" } },
+}
+
+local function read(path)
+  local file = assert(io.open(path, "rb"))
+  local text = file:read "a"
+  file:close()
+  return text
+end
+
+local function write(path, text)
+  local file = assert(io.open(path, "wb"))
+  file:write(text)
+  file:close()
+end
+
+local function lines_of(text)
+  local list = {}
+  for line in (text:gsub("\n$", "") .. "\n"):gmatch "(.-)\n" do list[#list + 1] = line end
+  return list
+end
+
+local function tests_of(file)
+  for _, room in ipairs(rooms) do
+    if file:find(room[1]) then return room[2] end
+  end
+end
+
+-- ---- making them ----
+
+--- FNV-1a, 32 bits.
+local function hash(text)
+  local h = 2166136261
+  for i = 1, #text do h = ((h ~ text:byte(i)) * 16777619) & 0xffffffff end
+  return h
+end
+
+--- The place after the parenthesis that closes the one at `from`.
+local function closing(line, from)
+  local depth = 0
+  for i = from, #line do
+    local c = line:sub(i, i)
+    depth = depth + (c == "(" and 1 or c == ")" and -1 or 0)
+    if depth == 0 then return i end
+  end
+end
+
+local function swap(add, line, old, new)
+  local from, to = line:find(old, 1, true)
+  if from then add(line:sub(1, from - 1) .. new .. line:sub(to + 1)) end
+end
+
+--- Every change of one line that we know how to make: add(new line).
+local function changes(line, add)
+  local from, to = line:find "%f[%w_.]%d[%d.]*e%-?%d+"
+  if not from then from, to = line:find "%f[%w_.]0x1p%-?%d+" end
+  if from then -- a threshold
+    add(line:sub(1, from - 1) .. "(10 * " .. line:sub(from, to) .. ")" .. line:sub(to + 1))
+    add(line:sub(1, from - 1) .. "(" .. line:sub(from, to) .. " / 10)" .. line:sub(to + 1))
+  end
+  local open = line:match "^%s+if ()%("
+  local close = open and closing(line, open)
+  if close then -- a condition
+    local condition = line:sub(open, close)
+    add(line:sub(1, open - 1) .. "(1 || " .. condition .. ")" .. line:sub(close + 1))
+    add(line:sub(1, open - 1) .. "(0 && " .. condition .. ")" .. line:sub(close + 1))
+  end
+  local loop = line:find "for %(" or line:find "enum "
+  if not loop then
+    for _, pair in ipairs { { " < ", " >= " }, { " <= ", " > " }, { " > ", " <= " }, { " && ", " || " }, { " || ", " && " },
+      { " - ", " + " }, { " + ", " - " }, { "(-", "(" }, { "= -", "= " }, { "return -", "return " }, { "0.5 * ", "0.25 * " },
+      { " 2 * ", " 3 * " }, { " * ", " / " } } do
+      swap(add, line, pair[1], pair[2])
+    end
+    if line:find "^%s+[%w_.%->%[%]*]+ [%+%-%*/|]?= [^{]*;$" or line:find "^%s+[%w_]+%(.*%);$" then add(line:match "^%s+" .. ";") end
+  end
+end
+
+local function is_code(line)
+  return line:find "^    " and not line:find "^%s*[/*#}]" and not line:find '"' and not line:find "^%s*static" and #line < 120
+end
+
+local function make(seed)
+  local pipe = assert(io.popen(string.format("cd '%s' && git ls-files 'lib*/src/*.c'", root)))
+  for file in pipe:lines() do
+    if tests_of(file) then
+      local list, count, found = lines_of(read(root .. "/" .. file)), {}, {}
+      for _, line in ipairs(list) do count[line] = (count[line] or 0) + 1 end
+      for _, line in ipairs(list) do
+        if is_code(line) and count[line] == 1 then
+          changes(line, function(new)
+            found[#found + 1] = { hash(seed .. file .. line .. new), line, new }
+          end)
+        end
+      end
+      table.sort(found, function(a, b) return a[1] < b[1] end)
+      for i = 1, math.min(#found, 2 + #list // 50) do print(file .. "\t" .. found[i][2] .. "\t" .. found[i][3]) end
+    end
+  end
+  pipe:close()
+end
+
+-- ---- trying them ----
+
+local function command(text) return os.execute(text .. " >/dev/null 2>&1") == true end
+
+--- Runs the test linked with the mutant's object before everything else, to its first failure; at most 60 s of computing.
+local function passes(build, work, test, object)
+  local library, name = test:match "^(%a+)_(.*)$"
+  local folder = string.format("%s/tests/%s/CMakeFiles/test_%s.dir", build, library, test)
+  local wrap = ""
+  local lists = read(string.format("%s/build.ninja", build))
+  local at = lists:find("build tests/" .. library .. "/test_" .. test .. ":", 1, true)
+  wrap = lists:sub(at, lists:find("\n\n", at, true)):match "LINK_FLAGS = ([^\n]*)" or ""
+  local libraries = lists:sub(at, lists:find("\n\n", at, true)):match "LINK_LIBRARIES = ([^\n]*)"
+  local program = string.format("%s/test_%s_%s", work, library, name)
+  local objects = string.format("$(find %s -name '*.o')", folder)
+  assert(command(string.format("cd '%s' && cc -O2 %s %s %s -o %s %s", build, wrap, objects, object, program, libraries)),
+    "no link of " .. test)
+  return command(string.format("cd '%s' && ulimit -t 60 && CMOCKA_TEST_ABORT=1 '%s'", work, program))
+end
+
+--- As the build compiles the file, of the text given.
+local function compile(build, work, file, source)
+  local path = string.format("%s/%s", work, file:match "[^/]+$")
+  write(path, source)
+  local known = read(build .. "/compile_commands.json")
+  local at = assert(known:find('/' .. file .. '"', 1, true), "not in this build: " .. file)
+  local text = known:sub(1, at):match '.*"command": "(.-)",%s*"file":.-$':gsub('\\"', '"'):gsub("\\\\", "\\")
+  local object, folder = path:gsub("%.c$", ".o"), (root .. "/" .. file):match "^(.*)/[^/]+$"
+  text = text:gsub("%-o %S+ %-c %S+$", "")
+  return command(string.format("cd '%s' && %s -w -O2 -I'%s' -o '%s' -c '%s'", build, text, folder, object, path)) and object
+end
+
+local function run(build, work, part, parts, pattern)
+  local caught, total, stale, known = 0, 0, 0, 0
+  local survivors = {}
+  os.execute("mkdir -p '" .. work .. "'")
+  local number = 0
+  for line in io.lines(root .. "/tests/mutants.txt") do
+    local file, old, new, reason = line:match "^([^\t]+)\t([^\t]+)\t([^\t]+)\t?(.*)$"
+    if file and not file:find "^#" and (not pattern or file:find(pattern)) then
+      number = number + 1
+      if number % parts == part % parts then
+        local text = "\n" .. read(root .. "/" .. file)
+        local from, to = text:find("\n" .. old .. "\n", 1, true)
+        local object = from and compile(build, work, file, text:sub(2, from) .. new .. text:sub(to))
+        if not object then
+          stale = stale + 1
+          print("stale     " .. file .. ": " .. old:match "^%s*(.*)")
+        else
+          total = total + 1
+          local noticed
+          for _, test in ipairs(tests_of(file)) do
+            if not passes(build, work, test, object) then
+              noticed = test
+              break
+            end
+          end
+          if noticed then
+            caught = caught + 1
+            print("caught    " .. file .. ": " .. new:match "^%s*(.*)" .. "  by " .. noticed)
+            if reason ~= "" then print("caught after all " .. file .. ": " .. new:match "^%s*(.*)") end
+          else
+            known = known + (reason ~= "" and 1 or 0)
+            survivors[#survivors + 1] = line
+            print("survives  " .. file .. ": " .. old:match "^%s*(.*)" .. "  ->  " .. new:match "^%s*(.*)" .. (reason ~= "" and "  (" .. reason .. ")" or ""))
+          end
+        end
+        io.stdout:flush()
+      end
+    end
+  end
+  print(string.format("part %d of %d: %d mutants, %d caught, %d survive, of them %d with a reason; %d stale", part, parts, total, caught,
+    #survivors, known, stale))
+  os.exit(#survivors == known and stale == 0 and 0 or 1)
+end
+
+if arg[1] == "make" then make(arg[2] or "1")
+else run(arg[2], arg[3], tonumber(arg[4]), tonumber(arg[5]), arg[6]) end
