@@ -104,7 +104,7 @@ local function changes(line, add)
 end
 
 local function is_code(line)
-  return line:find "^    " and not line:find "^%s*[/*#}]" and not line:find '"' and not line:find "^%s*static" and #line < 120
+  return line:find "^    " and not line:find "^%s*[/*#}]" and not line:find '"' and not line:find "prefetch" and not line:find "^%s*static" and #line < 120
 end
 
 local function make(seed)
