@@ -23,7 +23,7 @@ void impact_lua_push_sample(lua_State *L, const impact_sample *sample)
 void impact_lua_push_event(lua_State *L, const impact_event *event, const char *phases)
 {
     luaL_checkstack(L, 6, NULL);
-    lua_createtable(L, 0, 13);
+    lua_createtable(L, 0, 14);
     quat_lua_set_number(L, "t", event->t);
     quat_lua_set_number(L, "impulse_n", event->impulse_normal);
     quat_lua_set_number(L, "impulse_t", event->impulse_tangential);
@@ -37,6 +37,7 @@ void impact_lua_push_event(lua_State *L, const impact_event *event, const char *
     quat_lua_set_string(L, "phases", phases);
     quat_lua_set_vec3(L, "point", event->point);
     quat_lua_set_vec3(L, "normal", event->normal);
+    quat_lua_set_vec3(L, "impulse", event->impulse);
 }
 
 /* ---- keeping rows; the memory is the Lua state's, so that its limit holds ---- */
@@ -86,43 +87,55 @@ bool impact_lua_keep_event(lua_State *L, impact_lua_rows *rows, const impact_eve
 
 /* ---- giving them back ---- */
 
-void impact_lua_push_track(lua_State *L, const impact_lua_rows *rows, int body)
+static const char *const columns[] = {"t", "x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy", "wz"};
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+void impact_lua_begin_columns(lua_State *L)
 {
-    static const char *const columns[] = {"t",  "x",  "y",  "z",  "qw", "qx", "qy",
-                                          "qz", "vx", "vy", "vz", "wx", "wy", "wz"};
-    enum { COLUMNS = sizeof columns / sizeof *columns };
-    luaL_checkstack(L, COLUMNS + 4, NULL);
-    const int first = lua_gettop(L) + 1;
+    luaL_checkstack(L, COLUMNS + 6, NULL);
     for (int c = 0; c < COLUMNS; c++) lua_newtable(L);
-    lua_Integer row = 0;
-    for (size_t i = 0; i < rows->sample_count; i++) {
-        const impact_sample *s = &rows->samples[i];
-        if (s->body != body) continue;
-        const double values[COLUMNS] = {s->t,
-                                        s->position.x,
-                                        s->position.y,
-                                        s->position.z,
-                                        s->orientation.w,
-                                        s->orientation.x,
-                                        s->orientation.y,
-                                        s->orientation.z,
-                                        s->velocity.x,
-                                        s->velocity.y,
-                                        s->velocity.z,
-                                        s->omega.x,
-                                        s->omega.y,
-                                        s->omega.z};
-        row++;
-        for (int c = 0; c < COLUMNS; c++) {
-            lua_pushnumber(L, values[c]);
-            lua_rawseti(L, first + c, row);
-        }
+}
+
+void impact_lua_add_columns(lua_State *L, const impact_sample *s, lua_Integer row)
+{
+    const double values[COLUMNS] = {s->t,
+                                    s->position.x,
+                                    s->position.y,
+                                    s->position.z,
+                                    s->orientation.w,
+                                    s->orientation.x,
+                                    s->orientation.y,
+                                    s->orientation.z,
+                                    s->velocity.x,
+                                    s->velocity.y,
+                                    s->velocity.z,
+                                    s->omega.x,
+                                    s->omega.y,
+                                    s->omega.z};
+    const int first = lua_gettop(L) - COLUMNS + 1;
+    for (int c = 0; c < COLUMNS; c++) {
+        lua_pushnumber(L, values[c]);
+        lua_rawseti(L, first + c, row);
     }
+}
+
+void impact_lua_end_columns(lua_State *L)
+{
+    const int first = lua_gettop(L) - COLUMNS + 1;
     lua_createtable(L, 0, COLUMNS);
     for (int c = 0; c < COLUMNS; c++) {
         lua_pushvalue(L, first + c);
         lua_setfield(L, -2, columns[c]);
     }
+}
+
+void impact_lua_push_track(lua_State *L, const impact_lua_rows *rows, int body)
+{
+    lua_Integer row = 0;
+    impact_lua_begin_columns(L);
+    for (size_t i = 0; i < rows->sample_count; i++)
+        if (rows->samples[i].body == body) impact_lua_add_columns(L, &rows->samples[i], ++row);
+    impact_lua_end_columns(L);
 }
 
 void impact_lua_push_events(lua_State *L, const impact_lua_rows *rows)

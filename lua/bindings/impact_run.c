@@ -79,8 +79,31 @@ static bool on_event(void *context, const impact_event *event)
     if (self->failed || self->stopped) return false;
     self->t_told = event->t;
     if (self->has_csv && !self->csv.event(self->csv.context, event)) return csv_fails(self);
-    if (self->record && !impact_lua_keep_event(self->L, &self->rows, event)) return self->record_failed = true, false;
+    if (self->record &&
+        !(impact_lua_keep_event(self->L, &self->rows, event) && self->keys.event(self->keys.context, event)))
+        return self->record_failed = true, false;
     return !self->event_slot || call_script(self, call_with_event, self->event_slot, event);
+}
+
+static bool on_key(void *context, const impact_key *key)
+{
+    impact_lua_scene *self = context;
+    self->record_failed |= !self->keys.key(self->keys.context, key);
+    return !self->record_failed;
+}
+
+static bool on_held(void *context, const impact_held *contact)
+{
+    impact_lua_scene *self = context;
+    self->record_failed |= !self->keys.held(self->keys.context, contact);
+    return !self->record_failed;
+}
+
+static bool on_account(void *context, double t, const impact_energy *energy)
+{
+    impact_lua_scene *self = context;
+    self->record_failed |= !self->keys.account(self->keys.context, t, energy);
+    return !self->record_failed;
 }
 
 static int call_with_times(lua_State *L)
@@ -113,8 +136,26 @@ static int function_slot(const quat_lua_reader *options, const char *key)
     return lua_gettop(options->L);
 }
 
-/* A name for files that stays in its folder. */
-static bool is_plain(const char *name) { return name[0] && name[0] != '.' && !strchr(name, '/') && strlen(name) < 200; }
+bool impact_lua_is_plain(const char *name)
+{
+    return name[0] && name[0] != '.' && !strchr(name, '/') && strlen(name) < 200;
+}
+
+/* Pushes the path of a file of this name without its ending: in the host's folder, which is then made, when the name is
+ * plain. Raises when it is not, and must be; NULL with a message when the folder cannot be made. */
+static const char *push_path(const quat_lua_reader *options, const char *key, const char *name,
+                             const impact_lua_host *host, const char *ending, char *message, size_t size)
+{
+    lua_State *L = options->L;
+    const bool plain = impact_lua_is_plain(name);
+    if (host && host->confined && !plain)
+        quat_lua_reader_error(options, "%s must be a plain name without '/', got the string '%s'", key, name);
+    const size_t length = strlen(name), tail = strlen(ending);
+    if (length > tail && strcmp(name + length - tail, ending) == 0) name = lua_pushlstring(L, name, length - tail);
+    if (!host || !plain) return lua_pushstring(L, name);
+    if (!host->prepare(host->context, name, message, size)) return NULL;
+    return lua_pushfstring(L, "%s/%s", host->directory, name);
+}
 
 /* Opens NAME.csv and NAME_events.csv; NULL with a message when it cannot. The names they get when the run ends early
  * stand on top of the stack. */
@@ -123,25 +164,35 @@ static impact_csv *open_csv(const quat_lua_reader *options, const impact_lua_hos
     lua_State *L = options->L;
     impact_csv *csv = NULL;
     quat_lua_push(options, "csv"); /* stays on the stack, and so the name stays */
-    const char *name = quat_lua_get_string(options, "csv", "");
-    const bool plain = is_plain(name);
-    if (host && host->confined && !plain)
-        quat_lua_reader_error(options, "csv must be a plain name without '/', got the string '%s'", name);
-    const bool inside = host && plain;
-    const char *directory = inside ? host->directory : "", *slash = inside ? "/" : "";
-    const size_t length = strlen(name);
-    if (length > 4 && strcmp(name + length - 4, ".csv") == 0) name = lua_pushlstring(L, name, length - 4);
-    if (inside && !host->prepare(host->context, name, message, size)) return NULL;
-    const char *samples = lua_pushfstring(L, "%s%s%s.csv", directory, slash, name);
-    const char *events = lua_pushfstring(L, "%s%s%s_events.csv", directory, slash, name);
+    const char *path = push_path(options, "csv", quat_lua_get_string(options, "csv", ""), host, ".csv", message, size);
+    if (!path) return NULL;
+    const char *samples = lua_pushfstring(L, "%s.csv", path);
+    const char *events = lua_pushfstring(L, "%s_events.csv", path);
     const impact_csv_def def = {.samples_path = samples,
                                 .events_path = events,
                                 .quota = host ? host->quota : NULL,
                                 .allocator = host ? host->allocator : NULL};
     if (impact_csv_open_with(&def, &csv, message, size) < 0) csv = NULL;
-    lua_pushfstring(L, "%s%s%s.partial.csv and %s%s%s_events.partial.csv", directory, slash, name, directory, slash,
-                    name);
+    lua_pushfstring(L, "%s.partial.csv and %s_events.partial.csv", path, path);
     return csv;
+}
+
+/* Reads record: true, or the path of a file; *path stays on the stack. False, with a message, when it cannot be. */
+static bool open_record(const quat_lua_reader *options, impact_lua_scene *self, const char **path, char *message,
+                        size_t size)
+{
+    lua_State *L = options->L;
+    *path = NULL;
+    const int type = quat_lua_push(options, "record");
+    if (type != LUA_TNIL && type != LUA_TBOOLEAN && type != LUA_TSTRING)
+        quat_lua_reader_error(options, "record must be true or the name of a file, got a %s", luaL_typename(L, -1));
+    self->record = lua_toboolean(L, -1);
+    self->rows.asked = self->rows.asked || self->record;
+    if (self->record && !self->writer && impact_run_create(self->scene, &self->writer, message, size) < 0) return false;
+    if (self->record) self->keys = impact_run_recorder(self->writer);
+    if (type == LUA_TSTRING)
+        *path = push_path(options, "record", quat_lua_get_string(options, "record", ""), self->host, "", message, size);
+    return type != LUA_TSTRING || *path;
 }
 
 static const char *outcome(const impact_lua_scene *self, impact_status status)
@@ -170,14 +221,16 @@ static impact_status close_files(lua_State *L, impact_lua_scene *self, impact_cs
 
 /* Returns the reason it ended, with a message when that is "inaccurate" or "event limit"; or nil, message, "run" or
  * "output". */
-static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, impact_status status)
+static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, const char *record, impact_status status)
 {
     char message[400] = "";
     const bool good = !self->failed && !self->record_failed && !self->csv_failed && !self->ended_by_host &&
                       (status >= 0 || self->stopped);
     self->L = NULL;
-    const impact_status closed =
-        close_files(L, self, csv, !good || status == IMPACT_EVENT_LIMIT, message, sizeof message);
+    impact_status closed = close_files(L, self, csv, !good || status == IMPACT_EVENT_LIMIT, message, sizeof message);
+    if (good && closed >= 0 && record)
+        closed = impact_run_save(self->writer, outcome(self, status), record, self->host ? self->host->quota : NULL,
+                                 message, sizeof message);
     if (self->failed) {
         lua_settop(L, self->error_slot);
         return lua_error(L);
@@ -205,6 +258,13 @@ static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, impact_
     return 3;
 }
 
+static int output_failure(lua_State *L, const char *message)
+{
+    quat_lua_failure(L, message);
+    lua_pushliteral(L, "output");
+    return 3;
+}
+
 int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index)
 {
     static const char *const keys[] = {"csv", "record", "on_sample", "on_event", "on_progress", NULL};
@@ -220,22 +280,18 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     self->t_end = t_end;
     self->t_told = 0;
     self->samples_told = 0;
-    self->record = quat_lua_get_boolean(&options, "record", false);
-    self->rows.asked = self->rows.asked || self->record;
     self->sample_slot = function_slot(&options, "on_sample");
     self->event_slot = function_slot(&options, "on_event");
     self->progress_slot = function_slot(&options, "on_progress");
     lua_getiuservalue(L, 1, IMPACT_LUA_LAWS);
     self->laws_slot = lua_gettop(L);
     self->failed = self->stopped = self->csv_failed = self->record_failed = self->ended_by_host = self->has_csv = false;
+    char message[400] = "";
+    const char *record;
+    if (!open_record(&options, self, &record, message, sizeof message)) return output_failure(L, message);
     if (quat_lua_has(&options, "csv")) {
-        char message[400] = "";
         csv = open_csv(&options, self->host, message, sizeof message);
-        if (!csv) {
-            quat_lua_failure(L, message[0] ? message : "cannot open the CSV files");
-            lua_pushliteral(L, "output");
-            return 3;
-        }
+        if (!csv) return output_failure(L, message[0] ? message : "cannot open the CSV files");
         self->files_slot = lua_gettop(L);
         self->csv = impact_csv_recorder(csv);
         self->has_csv = true;
@@ -243,6 +299,12 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     lua_pushnil(L);
     self->error_slot = lua_gettop(L);
     self->L = L; /* from here on nothing raises until finish has closed the files */
-    const impact_recorder recorder = {self, on_sample, on_event, on_progress};
-    return finish(L, self, csv, impact_scene_run_to(self->scene, t_end, &recorder));
+    const impact_recorder recorder = {.context = self,
+                                      .sample = on_sample,
+                                      .event = on_event,
+                                      .progress = on_progress,
+                                      .key = self->record ? on_key : NULL,
+                                      .held = self->record ? on_held : NULL,
+                                      .account = self->record ? on_account : NULL};
+    return finish(L, self, csv, record, impact_scene_run_to(self->scene, t_end, &recorder));
 }

@@ -2,9 +2,10 @@
  *
  * impact.scene{...}: making a scene, and what a script can ask of it.
  */
-#include "impact_scene.h"
+#include "impact_record.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- making ---- */
@@ -99,58 +100,35 @@ static int scene_state(lua_State *L)
     return 1;
 }
 
+void impact_lua_push_energy(lua_State *L, const impact_energy *energy)
+{
+    lua_createtable(L, 0, 9);
+    quat_lua_set_number(L, "start", energy->start);
+    quat_lua_set_number(L, "kinetic", energy->kinetic);
+    quat_lua_set_number(L, "potential", energy->potential);
+    quat_lua_set_number(L, "force_work", energy->force_work);
+    quat_lua_set_number(L, "drive_work", energy->drive_work);
+    quat_lua_set_number(L, "damping_loss", energy->damping_loss);
+    quat_lua_set_number(L, "sliding_loss", energy->sliding_loss);
+    quat_lua_set_number(L, "impact_loss", energy->impact_loss);
+}
+
 static int scene_energy(lua_State *L)
 {
     const impact_energy energy = impact_scene_energy(check_scene(L)->scene);
-    const struct {
-        const char *key;
-        double value;
-    } numbers[] = {
-        {"start", energy.start},
-        {"kinetic", energy.kinetic},
-        {"potential", energy.potential},
-        {"force_work", energy.force_work},
-        {"drive_work", energy.drive_work},
-        {"damping_loss", energy.damping_loss},
-        {"sliding_loss", energy.sliding_loss},
-        {"impact_loss", energy.impact_loss},
-    };
-    lua_createtable(L, 0, 8);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        lua_pushnumber(L, numbers[i].value);
-        lua_setfield(L, -2, numbers[i].key);
-    }
+    impact_lua_push_energy(L, &energy);
     return 1;
 }
 
 static int scene_usage(lua_State *L)
 {
     const impact_usage usage = impact_scene_usage(check_scene(L)->scene);
-    const struct {
-        const char *key;
-        long value;
-    } counts[] = {
-        {"ballistic_flights", usage.ballistic_flights},
-        {"integrators", usage.integrators},
-        {"integrator_starts", usage.integrator_starts},
-        {"integrator_steps", usage.integrator_steps},
-        {"integrator_rhs_calls", usage.integrator_rhs_calls},
-        {"gap_closed_form", usage.gap_closed_form},
-        {"gap_newton", usage.gap_newton},
-        {"gap_gjk", usage.gap_gjk},
-        {"gap_fallback", usage.gap_fallback},
-        {"impacts_closed_form", usage.impacts_closed_form},
-        {"impacts_series", usage.impacts_series},
-        {"impacts_cvode", usage.impacts_cvode},
-        {"impacts_simultaneous", usage.impacts_simultaneous},
-        {"impacts_together", usage.impacts_together},
-        {"reactions_chosen", usage.reactions_chosen},
-        {"samples", usage.samples},
-    };
-    lua_createtable(L, 0, 17);
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-        lua_pushinteger(L, counts[i].value);
-        lua_setfield(L, -2, counts[i].key);
+    const char *name;
+    long value;
+    lua_newtable(L);
+    for (int i = 0; impact_usage_entry(&usage, i, &name, &value); i++) {
+        lua_pushinteger(L, value);
+        lua_setfield(L, -2, name);
     }
     lua_createtable(L, 0, IMPACT_EVENT_REST + 1);
     for (int kind = 0; kind <= IMPACT_EVENT_REST; kind++) {
@@ -201,10 +179,30 @@ static int scene_events(lua_State *L)
     return 1;
 }
 
+/* record(): the recorded run, for any time. */
+static int scene_record(lua_State *L)
+{
+    const impact_lua_scene *self = recorded_scene(L);
+    char message[200] = "";
+    void *bytes;
+    size_t size;
+    impact_run **run;
+    impact_lua_push_run(L, NULL);
+    run = lua_touserdata(L, -1);
+    impact_status status = impact_run_bytes(self->writer, "so far", &bytes, &size);
+    if (status < 0) return quat_lua_error(L, "%s", impact_status_string(status));
+    status = impact_run_read(bytes, size, self->name, run, message, sizeof message);
+    free(bytes);
+    if (status < 0) return quat_lua_error(L, "%s", message);
+    return 1;
+}
+
 static int scene_close(lua_State *L)
 {
     impact_lua_scene *self = luaL_checkudata(L, 1, IMPACT_LUA_SCENE);
     if (self->L) return quat_lua_error(L, "scene '%s' is running", self->name);
+    impact_run_discard(self->writer);
+    self->writer = NULL;
     impact_scene_destroy(self->scene);
     self->scene = NULL;
     impact_lua_free_rows(L, &self->rows);
@@ -232,6 +230,7 @@ static void add_defaults(lua_State *L)
         {"tolerance", scene.tolerance},
         {"rest_height", scene.rest_height},
         {"rest_speed", scene.rest_speed},
+        {"key_tolerance", scene.key_tolerance},
         {"max_events", (double)scene.max_events},
         {"density", body.density},
         {"friction", body.friction},
@@ -254,10 +253,13 @@ void impact_lua_open_scene(lua_State *L)
     static const luaL_Reg meta[] = {
         {"__gc", scene_close}, {"__close", scene_close}, {"__tostring", scene_tostring}, {NULL, NULL}};
     static const luaL_Reg methods[] = {
-        {"run", scene_run},     {"run_to", scene_run_to},     {"track", scene_track}, {"events", scene_events},
-        {"time", scene_time},   {"duration", scene_duration}, {"name", scene_name},   {"definition", scene_definition},
-        {"state", scene_state}, {"energy", scene_energy},     {"usage", scene_usage}, {"close", scene_close},
-        {NULL, NULL},
+        {"run", scene_run},       {"run_to", scene_run_to},
+        {"track", scene_track},   {"events", scene_events},
+        {"time", scene_time},     {"duration", scene_duration},
+        {"name", scene_name},     {"definition", scene_definition},
+        {"state", scene_state},   {"energy", scene_energy},
+        {"usage", scene_usage},   {"close", scene_close},
+        {"record", scene_record}, {NULL, NULL},
     };
     luaL_newmetatable(L, IMPACT_LUA_SCENE);
     luaL_setfuncs(L, meta, 0);

@@ -69,6 +69,8 @@ typedef struct impact_lua_scene {
     bool record;
     bool has_csv;
     impact_recorder csv;
+    impact_run_writer *writer; /* of all runs with record */
+    impact_recorder keys;      /* over it */
     const impact_lua_host *host;
 } impact_lua_scene;
 
@@ -86,6 +88,7 @@ bool impact_lua_script_fails(impact_lua_scene *self);
 
 /* Pushes {t=, body=, position=, orientation=, velocity=, omega=}. */
 void impact_lua_push_sample(lua_State *L, const impact_sample *sample);
+void impact_lua_push_energy(lua_State *L, const impact_energy *energy);
 void impact_lua_push_event(lua_State *L, const impact_event *event, const char *phases);
 
 /* False: out of memory. */
@@ -93,6 +96,11 @@ bool impact_lua_keep_sample(lua_State *L, impact_lua_rows *rows, const impact_sa
 bool impact_lua_keep_event(lua_State *L, impact_lua_rows *rows, const impact_event *event);
 void impact_lua_free_rows(lua_State *L, impact_lua_rows *rows);
 
+/* {t=, x=, ... wz=}, columns of rows: begun, a row at a time, and put together on top of the stack; in between what is
+ * on top stays there. */
+void impact_lua_begin_columns(lua_State *L);
+void impact_lua_add_columns(lua_State *L, const impact_sample *sample, lua_Integer row);
+void impact_lua_end_columns(lua_State *L);
 /* Pushes {t=, x=, ... wz=}, columns of the rows kept of one body; the list of the events kept. */
 void impact_lua_push_track(lua_State *L, const impact_lua_rows *rows, int body);
 void impact_lua_push_events(lua_State *L, const impact_lua_rows *rows);
@@ -107,6 +115,8 @@ impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene
 
 /* Runs to t_end, with the table of options at options_index: returns what run returns to the script. The scene is at
  * index 1. */
+/* A name for files that stays in its folder. */
+bool impact_lua_is_plain(const char *name);
 int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index);
 
 #endif

@@ -108,11 +108,13 @@ core.layer()
 ---@field rest_height? number  m
 ---@field rest_speed? number  m/s
 ---@field max_events? integer
+---@field key_tolerance? number  of a recorded run's keys: part of a body's radius, and rad
+---@field view? table  what its page shows: docs/view.md
 ---@field plot? fun(scene: impact.scene): plot.figure
 
 ---@class impact.options
 ---@field csv? string  NAME.csv and NAME_events.csv
----@field record? boolean  keeps the rows for scene:track and scene:events
+---@field record? boolean|string  keeps the run for scene:track, scene:events and scene:record; a string: in this file as well
 ---@field on_sample? fun(state: impact.state): boolean?  false stops the run
 ---@field on_event? fun(event: table): boolean?
 ---@field on_progress? fun(t: number, t_end: number): boolean?
@@ -128,6 +130,21 @@ core.layer()
 ---@field energy fun(self): table  start, kinetic, potential, force_work, drive_work, damping_loss, sliding_loss, impact_loss, J
 ---@field usage fun(self): table  what the run used, by name; and events, by kind
 ---@field events fun(self): table[]  of a recorded run
+---@field record fun(self): impact.run  the recorded run, so far
+---@field close fun(self)
+
+---@class impact.run
+---@field name fun(self): string
+---@field reason fun(self): string  why it ended
+---@field times fun(self): number, number  s: its begin and end
+---@field bodies fun(self): table[]  name, shape, static, mass, moments, shape_position, shape_orientation, friction, restitution
+---@field state fun(self, body: string, t: number): impact.state  exact at any time; at an event, after it
+---@field state_before fun(self, body: string, t: number): impact.state
+---@field columns fun(self, body: string, times: number[]): table  t, x, y, z, qw ... wz at those times
+---@field keys fun(self, body: string): number[]  the times of its keys
+---@field events fun(self): table[]
+---@field contacts fun(self): table[]  held contacts: t, body1, body2, mode, point, normal, force
+---@field account fun(self): table[]  t, and what scene:energy gives, J
 ---@field close fun(self)
 
 ---@alias impact.inertia number[][]|{moments: vec, orientation?: quat|number[]}  world tensor, or principal moments and their axes
@@ -219,6 +236,7 @@ core.layer()
 ---@field wind fun(definition: impact.wind): impact.wind
 ---@field attraction fun(definition?: impact.attraction): impact.attraction
 ---@field force fun(definition: impact.force): impact.force
+---@field open fun(path: string): impact.run?, string?  a recorded run; or nil and what is wrong with it
 ---@field scene fun(definition: impact.definition): impact.scene
 local impact = {}
 for name, value in pairs(core) do
@@ -234,38 +252,6 @@ local event_kinds = { "impact", "contact", "slip", "stick", "liftoff", "force", 
 -- ---- tracks: the recorded rows of a body, as columns ----
 
 local columns = { "t", "x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy", "wz" }
-
---- The quaternion's rate, omega q / 2 with omega in the world.
-local function quaternion_rate(r)
-  return {
-    qw = (-r.wx * r.qx - r.wy * r.qy - r.wz * r.qz) / 2,
-    qx = (r.wx * r.qw + r.wy * r.qz - r.wz * r.qy) / 2,
-    qy = (r.wy * r.qw + r.wz * r.qx - r.wx * r.qz) / 2,
-    qz = (r.wz * r.qw + r.wx * r.qy - r.wy * r.qx) / 2,
-  }
-end
-
-local velocity_of = { x = "vx", y = "vy", z = "vz" }
-
---- The state at part s of the way from row a to row b, h seconds apart: cubic Hermite in x and q, linear in the velocities.
-local function between(a, b, h, s)
-  local row = { t = a.t + s * h }
-  local h00, h10 = (1 + 2 * s) * (1 - s) ^ 2, s * (1 - s) ^ 2
-  local h01, h11 = s * s * (3 - 2 * s), s * s * (s - 1)
-  for place, speed in pairs(velocity_of) do
-    row[place] = h00 * a[place] + h10 * h * a[speed] + h01 * b[place] + h11 * h * b[speed]
-    row[speed] = (1 - s) * a[speed] + s * b[speed]
-  end
-  for _, w in ipairs { "wx", "wy", "wz" } do row[w] = (1 - s) * a[w] + s * b[w] end
-  local rate_a, rate_b, norm = quaternion_rate(a), quaternion_rate(b), 0
-  for _, q in ipairs { "qw", "qx", "qy", "qz" } do
-    row[q] = h00 * a[q] + h10 * h * rate_a[q] + h01 * b[q] + h11 * h * rate_b[q]
-    norm = norm + row[q] ^ 2
-  end
-  norm = math.sqrt(norm)
-  for _, q in ipairs { "qw", "qx", "qy", "qz" } do row[q] = row[q] / norm end
-  return row
-end
 
 local function row_of(track, i)
   local row = {}
@@ -283,7 +269,7 @@ local function is_track(value)
 end
 
 --- The recorded rows of a body as columns t, x, y, z, qw ... wz. With a rate, rows are put between them, at least so many per
---- second, for smooth curves; the recorded rows stay as they are.
+--- second, for smooth curves: exact states, of the run's keys; the recorded rows stay as they are.
 ---@param body string
 ---@param rate? number
 ---@return table
@@ -291,18 +277,26 @@ function methods:track(body, rate)
   local track = recorded_track(self, body)
   if not rate then return track end
   need(type(rate) == "number", "track: rate must be a number", 2)
-  local fine = {}
-  for _, column in ipairs(columns) do fine[column] = {} end
-  local function add(row)
-    for _, column in ipairs(columns) do fine[column][#fine[column] + 1] = row[column] end
+  local times, place = {}, {} -- of the rows put between, and after which recorded row they stand
+  for i = 2, #track.t do
+    local from, to = track.t[i - 1], track.t[i]
+    local steps = math.ceil((to - from) * rate)
+    for k = 1, steps - 1 do
+      times[#times + 1] = from + (to - from) * k / steps
+      place[#times] = i - 1
+    end
   end
-  local a
+  local between, fine, k = self:record():columns(body, times), {}, 1
+  for _, column in ipairs(columns) do fine[column] = {} end
+  local function add(rows, i)
+    for _, column in ipairs(columns) do fine[column][#fine[column] + 1] = rows[column][i] end
+  end
   for i = 1, #track.t do
-    local b = row_of(track, i)
-    local steps = a and math.ceil((b.t - a.t) * rate) or 0
-    for k = 1, steps - 1 do add(between(a, b, b.t - a.t, k / steps)) end
-    add(b)
-    a = b
+    add(track, i)
+    while place[k] == i do
+      add(between, k)
+      k = k + 1
+    end
   end
   return fine
 end

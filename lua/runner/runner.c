@@ -22,6 +22,7 @@ static void usage(FILE *file)
         "is there, NAME.png. A script that returns nothing has done its work itself.\n"
         "\n"
         "  --out DIR         the output folder; made when needed (default: out)\n"
+        "  --record          writes the recorded run, NAME.run, too: every state between events, for viewers\n"
         "  --quiet           no progress, no closing summary\n"
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
         "  --max-time S      bounds the time of the whole run, in seconds\n"
@@ -115,6 +116,8 @@ static int read_command(int count, char **words, impact_runner *runner)
             return usage(stdout), IMPACT_EXIT_OK;
         } else if (strcmp(word, "--version") == 0) {
             return version(), IMPACT_EXIT_OK;
+        } else if (strcmp(word, "--record") == 0) {
+            runner->record = true;
         } else if (strcmp(word, "--quiet") == 0) {
             runner->quiet = true;
         } else if (strcmp(word, "--trust") == 0) {
@@ -225,7 +228,7 @@ static void choose_name(lua_State *L, int scene, const impact_runner *runner, ch
         luaL_error(L, "%s: the scene's name '%s' names the files: it must be plain, without '/'", runner->script, name);
 }
 
-/* scene:run{csv = name, record = whether it has a plot}; an exit code. Pushes the reason it ended. */
+/* scene:run{csv = name, record = NAME.run, or whether it has a plot}; an exit code. Pushes the reason it ended. */
 static int run_scene(lua_State *L, int scene, impact_runner *runner, const char *name, bool plot)
 {
     lua_getfield(L, scene, "run");
@@ -233,7 +236,10 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
     lua_createtable(L, 0, 2);
     lua_pushstring(L, name);
     lua_setfield(L, -2, "csv");
-    lua_pushboolean(L, plot);
+    if (runner->record)
+        lua_pushfstring(L, "%s.run", name);
+    else
+        lua_pushboolean(L, plot);
     lua_setfield(L, -2, "record");
     lua_call(L, 2, 3);
     clear_progress(runner);
@@ -278,6 +284,7 @@ static void summarise(lua_State *L, int scene, const impact_runner *runner, cons
     lua_call(L, 2, 1);
     const char *directory = runner->directory, *text = lua_tostring(L, -1);
     printf("%s  wrote      %s/%s.csv, %s/%s_events.csv", text ? text : "", directory, name, directory, name);
+    if (runner->record) printf(", %s/%s.run", directory, name);
     if (drawn) printf(", %s/%s.png", directory, name);
     putchar('\n');
     lua_pop(L, 1);

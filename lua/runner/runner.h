@@ -29,6 +29,7 @@ typedef struct impact_runner {
     const char *script;
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
+    bool record;          /* NAME.run is written too */
     double max_time;      /* s; 0: no limit */
     double max_megabytes; /* as given, and: */
     size_t max_memory;    /* bytes; 0: no limit */

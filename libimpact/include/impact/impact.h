@@ -17,5 +17,6 @@
 #include "force.h"
 #include "record.h"
 #include "scene.h"
+#include "run.h"
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * record: samples and events of a run, to a caller's sink or to CSV files.
+ * record: samples, events and keys of a run, to a caller's sink or to CSV files (run.h: to one recorded run).
  */
 #ifndef IMPACT_RECORD_H
 #define IMPACT_RECORD_H
@@ -45,10 +45,41 @@ typedef struct impact_event {
     qvec3 point;               /* contact point, world; the body's centre when there is no contact */
     qvec3 normal;              /* from body 2 to body 1; zero when there is none */
     double impulse_normal, impulse_tangential; /* N s */
+    qvec3 impulse;                             /* on body 1, world, N s; zero where none was exchanged */
     double normal_before, normal_after;        /* normal relative velocity, m/s */
     const char *phases;                        /* e.g. "slip-c stick-c stick-r"; "" when there are none */
     double energy_before, energy_after;        /* mechanical energy of the whole scene, J */
 } impact_event;
+
+/* One body where its trajectory is pinned: between two keys no event touches it, and its place and orientation are the
+ * quintic Hermite polynomials of both keys (run.h), to the scene's key_tolerance. Of each body they come in order of
+ * time; two of one t stand before and after an event. SI, world frame. */
+typedef struct impact_key {
+    double t;
+    int body;
+    qvec3 position;
+    quat orientation; /* unit; its sign is continuous along the run */
+    qvec3 velocity, omega;
+    qvec3 acceleration, alpha; /* their rates */
+} impact_key;
+
+typedef enum impact_hold { IMPACT_HOLD_OPEN, IMPACT_HOLD_SLIP, IMPACT_HOLD_STICK } impact_hold;
+
+/* The lower-case word for it; never NULL. */
+IMPACT_API const char *impact_hold_name(impact_hold mode);
+
+/* A held contact at one time, for display: exact at that time, to be drawn by straight lines between rows.
+ * IMPACT_HOLD_OPEN: it ends here. */
+typedef struct impact_held {
+    double t;
+    int body1, body2;
+    impact_hold mode;
+    qvec3 point;  /* world */
+    qvec3 normal; /* from body 2 to body 1 */
+    qvec3 force;  /* on body 1, N */
+} impact_held;
+
+struct impact_energy;
 
 /* Where a run's rows go. Any function may be NULL. A sink returns false to stop the run with IMPACT_ESINK. */
 typedef struct impact_recorder {
@@ -56,6 +87,10 @@ typedef struct impact_recorder {
     bool (*sample)(void *context, const impact_sample *sample);
     bool (*event)(void *context, const impact_event *event);
     bool (*progress)(void *context, double t, double t_end); /* now and then; false stops the run with IMPACT_STOPPED */
+    bool (*key)(void *context, const impact_key *key);
+    bool (*held)(void *context, const impact_held *contact);
+    /* the energy account beside events, and about every hundredth of the run */
+    bool (*account)(void *context, double t, const struct impact_energy *energy);
 } impact_recorder;
 
 /* Bytes that may still be written, by all who are given the same one. */

@@ -83,10 +83,13 @@ typedef struct impact_scene_def {
     long max_events;   /* IMPACT_EVENT_LIMIT after so many */
     const impact_allocator
         *allocator; /* of all memory the scene takes, and its limit; copied; NULL: malloc (memory.h) */
+    /* of the recorder's keys, in [1e-14, 1e-2]: part of a body's bounding radius in place, rad in orientation */
+    double key_tolerance;
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
- * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events. */
+ * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events,
+ * key_tolerance 1e-10. */
 IMPACT_API impact_scene_def impact_default_scene_def(void);
 IMPACT_API impact_body_def impact_default_body_def(void);
 
@@ -110,10 +113,21 @@ IMPACT_API impact_status impact_scene_run_to(impact_scene *scene, double t, cons
 /* The last message, with numbers; "" when there was none. */
 IMPACT_API const char *impact_scene_message(const impact_scene *scene);
 IMPACT_API double impact_scene_time(const impact_scene *scene);
+IMPACT_API const char *impact_scene_name(const impact_scene *scene); /* the definition's; lives as long as the scene */
 /* Index of the body so named, or -1. */
 IMPACT_API int impact_scene_find(const impact_scene *scene, const char *body);
 /* The body's state now. IMPACT_EARGUMENT when there is no such body. */
 IMPACT_API impact_status impact_scene_body(const impact_scene *scene, int body, impact_sample *sample);
+
+/* What was defined, as the scene holds it: mass and moments are numbers (of a static body infinite and zero), density
+ * is NaN, position and orientation are those of now, and name lives as long as the scene. IMPACT_EARGUMENT when there
+ * is no such body. */
+IMPACT_API int impact_scene_body_count(const impact_scene *scene);
+IMPACT_API impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_body_def *def);
+IMPACT_API qvec3 impact_scene_gravity(const impact_scene *scene);
+/* The name of a scene's force, as its events have it; NULL when there is no such force. */
+IMPACT_API const char *impact_scene_force_name(const impact_scene *scene, int force);
+IMPACT_API double impact_scene_key_tolerance(const impact_scene *scene);
 
 /* What the run used; each is 0 where the scene does not need it. */
 typedef struct impact_usage {
@@ -130,10 +144,14 @@ typedef struct impact_usage {
     long reactions_chosen;
     long events[IMPACT_EVENT_REST + 1]; /* by kind */
     long samples;
+    long keys;
+    long keys_unmet; /* of these, so close in time that the tolerance was not met before them */
 } impact_usage;
 
 IMPACT_API impact_usage impact_scene_usage(const impact_scene *scene);
 IMPACT_API impact_memory impact_scene_memory(const impact_scene *scene); /* what it holds now */
+/* Its counts by number, from 0, each with its name above, but for the events; false: there is none of this number. */
+IMPACT_API bool impact_usage_entry(const impact_usage *usage, int number, const char **name, long *value);
 
 /* The energy account, J: kinetic + potential = start + work of forces and of drives - the losses, to the tolerance of
  * the run. */

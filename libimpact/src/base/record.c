@@ -19,6 +19,16 @@ const char *impact_event_name(impact_event_kind kind)
     return "unknown";
 }
 
+const char *impact_hold_name(impact_hold mode)
+{
+    switch (mode) {
+    case IMPACT_HOLD_OPEN: return "open";
+    case IMPACT_HOLD_SLIP: return "slip";
+    case IMPACT_HOLD_STICK: return "stick";
+    }
+    return "unknown";
+}
+
 struct impact_csv {
     imp_arena *arena;
     imp_out_file samples, events;

@@ -71,4 +71,39 @@
 /* Of the load's size: reactions larger than this are none. A slope of mu (1 + 1e-6) shows 1e9 and more. */
 #define IMP_REST_EXCLUDING 1e6
 
+/* ---- keys of a recorded run (motion/key.c) ---- */
+
+/* rad: a body turns less than this from key to key. One turned further could meet a polynomial at the three places
+ * where both are compared by chance; a quintic that keeps 1e-6 rad turns less than this anyway (h^6 (w/2)^6 / 46080 at
+ * w h = 1 is 3e-7), so that no finer tolerance pays for it. */
+#define IMP_KEY_TURN 1.0
+
+/* Roundings of a coordinate that a key's place may be off by: the polynomial is a sum of six products. */
+#define IMP_KEY_ROUNDINGS 8.0
+
+/* Halvings of one piece of motion at most: its length then is below its own rounding. */
+#define IMP_KEY_HALVINGS 40
+
+/* ulp of t: keys closer than this are not halved further. The rates' parts of the polynomial are of the order of
+ * s = (t - t0)/h, whose error is an ulp of t over h: 1/64 in the worst case. */
+#define IMP_KEY_ULPS 64.0
+
+/* ---- rows of a recorded run for display (scene/scene_keys.c) ---- */
+
+/* Part of the force, of the body's radius and of a unit normal that a held contact may change by between two rows: a
+ * pixel in a picture of 100 pixels. */
+#define IMP_HELD_CHANGE 0.01
+
+/* Rows of the account, and of a held contact, in a run's time at most, but for those beside events: with straight lines
+ * between, a curve 300 pixels wide is off by less than one (1/(8 n^2) of its second rate). */
+#define IMP_DISPLAY_ROWS 48.0
+
+/* ---- an opened run (run/run_read.c) ---- */
+
+/* No number in it is larger, so that a quintic's products h^2 f'' stay finite for h up to 1e4 s. */
+#define IMP_RUN_LARGEST 1e150
+
+/* Orientations are written as the motion normalised them, to a few roundings; what is off by more is damage. */
+#define IMP_RUN_UNIT 1e-9
+
 #endif

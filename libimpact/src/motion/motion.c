@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/motion.h"
+#include "motion/motion_trace.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -25,6 +26,7 @@ void imp_motion_close(impact_motion *motion)
     impact_ode_destroy(motion->adams);
     impact_ode_destroy(motion->bdf);
     imp_persist_free(&motion->persist);
+    imp_motion_trace_free(motion->trace, arena);
     imp_arena_give(arena, motion->flyers);
     imp_arena_give(arena, motion->resting);
     imp_arena_give(arena, motion->loads);

@@ -8,6 +8,7 @@
 
 #include "base/ode_in.h"
 #include "contact/persist.h"
+#include "motion/key.h"
 
 typedef enum imp_end_kind {
     IMP_END_TIME,    /* the time asked for */
@@ -33,6 +34,8 @@ typedef struct imp_sampler {
     long next;   /* k of the next sample */
     bool (*emit)(void *context, double t, const imp_state *states);
     bool (*pulse)(void *context, double t); /* called at every step of the integrator; false stops */
+    /* handed every piece of motion that is done, in order; false stops. NULL: no keys are wanted */
+    bool (*piece)(void *context, const imp_piece *piece);
     void *context;
 } imp_sampler;
 
@@ -51,6 +54,7 @@ typedef struct impact_motion {
     char message[256];
 
     struct imp_flyer *flyers; /* bodies in closed form; absent until they are */
+    struct imp_trace *trace;  /* the integrator's last step, for keys; absent until they are wanted */
 
     /* the integrator's side; absent until it is needed */
     impact_ode *ode; /* the one at work: adams or bdf */

@@ -38,6 +38,34 @@ static imp_end find_end(impact_motion *motion, double *dt)
     return end;
 }
 
+/* The stretch as a piece of motion. */
+typedef struct flight_piece {
+    const impact_motion *motion;
+    double t, dt, t_event;
+} flight_piece;
+
+static imp_state state_at(const flight_piece *piece, int body, double s)
+{
+    const imp_world *world = piece->motion->world;
+    const imp_flyer *flyer = &piece->motion->flyers[body];
+    return s > 0 ? imp_flyer_at(flyer, &world->bodies[body], world->gravity, s * piece->dt) : flyer->now;
+}
+
+static double time_at(const flight_piece *piece, double s) { return s < 1 ? piece->t + s * piece->dt : piece->t_event; }
+
+static imp_pose pose_at(void *piece, int body, double s)
+{
+    const imp_state state = state_at(piece, body, s);
+    return (imp_pose){time_at(piece, s), state.x, state.q};
+}
+
+static impact_key key_at(void *piece, int body, double s)
+{
+    const imp_world *world = ((const flight_piece *)piece)->motion->world;
+    const imp_state state = state_at(piece, body, s);
+    return imp_key_of(&world->bodies[body], body, time_at(piece, s), &state, world->gravity, (qvec3){0, 0, 0});
+}
+
 impact_status imp_motion_fly(impact_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
                              imp_end *end)
 {
@@ -58,6 +86,9 @@ impact_status imp_motion_fly(impact_motion *motion, double *t, double t_end, imp
         return status;
     }
     fly(motion, dt, states);
+    flight_piece way = {motion, *t, dt, t_event};
+    const imp_piece piece = {*t, t_event, &way, key_at, pose_at, states, &motion->works};
+    if (sampler->piece && !sampler->piece(sampler->context, &piece)) status = IMPACT_ESINK;
     for (int i = 0; i < world->body_count; i++) {
         motion->flyers[i].now = states[i];
         motion->flyers[i].elapsed += dt;
@@ -68,5 +99,5 @@ impact_status imp_motion_fly(impact_motion *motion, double *t, double t_end, imp
         imp_flyer_leave(&motion->flyers[world->pairs[end->index].body2]);
     }
     *t = t_event;
-    return IMPACT_OK;
+    return status;
 }

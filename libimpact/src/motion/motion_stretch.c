@@ -3,6 +3,7 @@
  * One stretch of integration: which variable and method it needs, its steps, its samples, and the event at its end.
  */
 #include "motion/motion_equations.h"
+#include "motion/motion_trace.h"
 #include "contact/persist_spot.h"
 #include "world/world_gap.h"
 
@@ -194,13 +195,14 @@ static impact_status find_in_last_step(impact_motion *motion, last_step_function
     return status;
 }
 
-/* The state of the last step at time t. */
-static impact_status interpolate_time(impact_motion *motion, double t, double *y)
+/* The state of the last step at time t, and where in the variable of integration that is. */
+static impact_status interpolate_time(impact_motion *motion, double t, double *tau, double *y)
 {
+    *tau = t;
     if (!imp_motion_clocked(motion)) return impact_ode_interpolate(motion->ode, t, 0, y);
-    double low, high, tau;
+    double low, high;
     impact_ode_last_step(motion->ode, &low, &high);
-    return find_in_last_step(motion, (last_step_function){.kind = CLOCK, .t = t}, low, high, &tau, y);
+    return find_in_last_step(motion, (last_step_function){.kind = CLOCK, .t = t}, low, high, tau, y);
 }
 
 /* The event that a root stands for; how deep a gap's closest approach is tells whether its rate's root is one. */
@@ -293,7 +295,8 @@ static impact_status polish_gap(impact_motion *motion, int pair, double *tau, do
 static impact_status emit_until(impact_motion *motion, double t, imp_state *states, imp_sampler *sampler, double *y)
 {
     while (imp_motion_sample_time(sampler) <= t) {
-        impact_status status = interpolate_time(motion, imp_motion_sample_time(sampler), y);
+        double tau;
+        impact_status status = interpolate_time(motion, imp_motion_sample_time(sampler), &tau, y);
         if (status != IMPACT_OK) return status;
         imp_motion_unpack(motion, y, states);
         status = imp_motion_emit(motion, sampler, imp_motion_sample_time(sampler), states);
@@ -358,7 +361,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         if (status != IMPACT_OK) return fail(motion, status);
         if (!clocked) y[Y_TIME] = tau;
         if (y[Y_TIME] > t_end) {
-            status = interpolate_time(motion, t_end, y);
+            status = interpolate_time(motion, t_end, &tau, y);
             if (status != IMPACT_OK) return fail(motion, status);
             y[Y_TIME] = t_end;
             *end = (imp_end){IMP_END_TIME, 0};
@@ -366,6 +369,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         }
         *t = y[Y_TIME];
         memcpy(motion->kept, y, sizeof *y * (size_t)motion->size); /* samples overwrite y */
+        if (sampler->piece && !imp_motion_trace_step(motion, sampler, tau_before, tau, y)) return IMPACT_ESINK;
         status = emit_until(motion, *t, states, sampler, y);
         memcpy(y, motion->kept, sizeof *y * (size_t)motion->size);
         if (status == IMPACT_OK && !sampler->pulse(sampler->context, *t)) status = IMPACT_STOPPED;
@@ -443,6 +447,7 @@ impact_status imp_motion_integrate(impact_motion *motion, double *t, double t_en
     imp_motion_pack(motion, *t, states, motion->y);
     status = choose_tolerance(motion, states);
     if (status == IMPACT_OK) status = impact_ode_start(motion->ode, imp_motion_clocked(motion) ? 0 : *t, motion->y);
+    if (status == IMPACT_OK && sampler->piece) status = imp_motion_trace_start(motion, *t, states);
     if (status != IMPACT_OK) return fail(motion, status);
     status = integrate(motion, t, t_end, motion->y, states, sampler, end);
     imp_motion_unpack(motion, motion->y, states);

@@ -2,6 +2,7 @@
 #include "scene/scene_internal.h"
 #include "scene/scene_check.h"
 #include "scene/scene_crowd.h"
+#include "scene/scene_keys.h"
 #include "world/world_gap.h"
 #include "collide/collide_workspace.h"
 
@@ -82,6 +83,7 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
     scene->rest_height = def->rest_height;
     scene->rest_speed = def->rest_speed;
     scene->max_events = def->max_events;
+    scene->key_tolerance = def->key_tolerance;
     scene->sampler = (imp_sampler){.rate = def->output_rate, .emit = imp_scene_emit, .pulse = pulse, .context = scene};
     status = imp_scene_build(scene, def);
     if (status == IMPACT_OK && def->compliance > 0) { /* impacts are few: as exactly as can be */
@@ -162,7 +164,9 @@ static impact_status check_account(impact_scene *scene, impact_status status)
 impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
 {
     scene->recorder = recorder;
-    const impact_status status = check_account(scene, run(scene, t));
+    impact_status status = imp_scene_keys_begin(scene);
+    if (status == IMPACT_OK) status = check_account(scene, run(scene, t));
+    if (!imp_scene_keys_end(scene) && status >= 0) status = IMPACT_ESINK;
     scene->recorder = NULL;
     if (status == IMPACT_ENOMEM) imp_arena_explain(scene->world.arena, scene->message, sizeof scene->message);
     if (status < 0 && scene->message[0] == '\0')
@@ -176,6 +180,8 @@ impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recor
 }
 
 const char *impact_scene_message(const impact_scene *scene) { return scene->message; }
+
+const char *impact_scene_name(const impact_scene *scene) { return scene->name; }
 
 double impact_scene_time(const impact_scene *scene) { return scene->t; }
 
@@ -194,6 +200,41 @@ impact_status impact_scene_body(const impact_scene *scene, int body, impact_samp
 }
 
 impact_memory impact_scene_memory(const impact_scene *scene) { return imp_arena_memory(scene->world.arena); }
+
+int impact_scene_body_count(const impact_scene *scene) { return scene->world.body_count; }
+
+impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_body_def *def)
+{
+    if (body < 0 || body >= scene->world.body_count) return IMPACT_EARGUMENT;
+    const imp_body *b = &scene->world.bodies[body];
+    const impact_sample now = imp_scene_sample(scene, scene->t, body, scene->states);
+    *def = (impact_body_def){.name = b->name,
+                             .shape = b->shape,
+                             .is_static = b->is_static,
+                             .mass = b->mass,
+                             .density = NAN,
+                             .moments = b->moments,
+                             .position = now.position,
+                             .orientation = now.orientation,
+                             .shape_position = b->offset,
+                             .shape_orientation = b->turn,
+                             .velocity = now.velocity,
+                             .omega = now.omega,
+                             .friction = b->friction,
+                             .restitution = b->restitution,
+                             .linear_damping = -expm1(-b->linear_rate),
+                             .angular_damping = -expm1(-b->angular_rate)};
+    return IMPACT_OK;
+}
+
+qvec3 impact_scene_gravity(const impact_scene *scene) { return scene->world.gravity; }
+
+const char *impact_scene_force_name(const impact_scene *scene, int force)
+{
+    return force >= 0 && force < scene->world.field_count ? scene->world.fields[force].name : NULL;
+}
+
+double impact_scene_key_tolerance(const impact_scene *scene) { return scene->key_tolerance; }
 
 impact_usage impact_scene_usage(const impact_scene *scene) { return scene->world.usage; }
 

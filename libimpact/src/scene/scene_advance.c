@@ -2,7 +2,7 @@
  *
  * From one event of a scene to the next: below the scene's own run and the groups of its crowd alike.
  */
-#include "scene/scene_internal.h"
+#include "scene/scene_keys.h"
 
 #include <stdio.h>
 
@@ -37,7 +37,7 @@ impact_status imp_scene_advance(impact_scene *scene, double t_end)
     enum { MAX_STALLS = 10000 };
     const double t_before = scene->t;
     imp_end end;
-    imp_sampler silent = {.pulse = scene->sampler.pulse, .context = scene};
+    imp_sampler silent = {.pulse = scene->sampler.pulse, .piece = scene->sampler.piece, .context = scene};
     const bool samples = scene->recorder && scene->recorder->sample;
     scene->stop = IMPACT_OK;
     impact_status status =
@@ -46,8 +46,11 @@ impact_status imp_scene_advance(impact_scene *scene, double t_end)
         snprintf(scene->message, sizeof scene->message, "%s", scene->motion.message);
         return status;
     }
+    const bool is_event = end.kind != IMP_END_TIME && end.kind != IMP_END_RENEWAL;
+    if (is_event && !imp_scene_account(scene)) return IMPACT_ESINK;
     status = imp_scene_handle(scene, end);
     while (status == IMPACT_OK && imp_motion_also_crossed(&scene->motion, &end)) status = imp_scene_handle(scene, end);
+    if (status == IMPACT_OK && is_event && !imp_scene_account(scene)) status = IMPACT_ESINK;
     if (status != IMPACT_OK) return status;
     scene->stalls = scene->t > t_before ? 0 : scene->stalls + 1;
     if (scene->stalls < MAX_STALLS) return scene->stop;
@@ -68,6 +71,7 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end, imp_scene_step 
         }
         if (!scene->sampler.pulse(scene->sampler.context, scene->t)) return scene->stop;
         status = step(scene, t_end);
+        if (scene->crowd && !imp_scene_account(scene)) return IMPACT_ESINK;
     }
     return status;
 }

@@ -108,6 +108,8 @@ impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
     imp_arena *arena = world->arena;
     *world = (imp_world){
         .arena = arena, .gravity = def->gravity, .slip_speed = fmax(1e-2 * def->rest_speed, 100 * def->tolerance)};
+    scene->name = imp_arena_copy(arena, def->name ? def->name : "scene");
+    if (!scene->name) return IMPACT_ENOMEM;
     world->onset_speed = 1e5 * world->slip_speed;
     world->flat_height = 100 * def->rest_height;
     world->bodies = imp_arena_take(arena, n, sizeof *world->bodies);

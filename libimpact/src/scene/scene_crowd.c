@@ -6,6 +6,7 @@
  * which a body got further than it was allowed is taken back and tried again with more room.
  */
 #include "scene/scene_crowd.h"
+#include "scene/scene_keys.h"
 #include "world/crowd.h"
 #include "motion/motion_equations.h"
 #include "scene/scene_rows.h"
@@ -26,6 +27,7 @@ typedef struct party {
     int *body, *pair;  /* their indices in the whole scene */
     double *top_speed; /* of each body, m/s */
     impact_recorder recorder;
+    imp_held_line *held; /* per pair; with keys */
     impact_status status;
     bool moved;
     double energy; /* at the start of the while */
@@ -40,6 +42,7 @@ typedef struct imp_scene_crowd {
     int *local; /* scratch: a body's index in its party */
     double *energy, *energy_end;
     imp_rows rows;
+    imp_kept_list kept;
     double while_time; /* s */
     bool escaped, stopped;
     bool spent; /* a group found no memory: it did not move whole, and the scene cannot go on */
@@ -75,6 +78,32 @@ static bool keep_event(void *context, const impact_event *event)
     row->event.body2 = event->body2 < 0 ? -1 : p->body[event->body2];
     snprintf(row->phases, sizeof row->phases, "%s", event->phases);
     return true;
+}
+
+static bool keep_span(void *context, const imp_span *span)
+{
+    party *p = context;
+    imp_kept item = {.group = p->group, .is_span = true, .span = *span};
+    item.span.from.body = item.span.to.body = p->body[span->from.body];
+    imp_kept_add(&p->owner->kept, &item);
+    return true; /* out of memory is told at the end of the while */
+}
+
+static bool keep_held(void *context, const impact_held *row)
+{
+    party *p = context;
+    imp_kept item = {.group = p->group, .held = *row};
+    item.held.body1 = p->body[row->body1];
+    item.held.body2 = p->body[row->body2];
+    imp_kept_add(&p->owner->kept, &item);
+    return true;
+}
+
+static bool keep_piece(void *context, const imp_piece *piece)
+{
+    party *p = context;
+    return imp_scene_spans_of(&p->scene, piece, keep_span, p) &&
+           imp_scene_held_of(&p->scene, piece, p->held, keep_held, p);
 }
 
 static void drop_rows(imp_rows *rows, int group)
@@ -138,6 +167,7 @@ static void free_party(party *p)
     imp_arena_give(arena, p->body);
     imp_arena_give(arena, p->pair);
     imp_arena_give(arena, p->top_speed);
+    imp_arena_give(arena, p->held);
     imp_arena_give(arena, p);
 }
 
@@ -161,8 +191,9 @@ static impact_status allocate_party(party *p, int bodies, int pairs)
     p->body = imp_arena_take(world->arena, n, sizeof *p->body);
     p->pair = imp_arena_take(world->arena, m, sizeof *p->pair);
     p->top_speed = imp_arena_take(world->arena, n, sizeof *p->top_speed);
+    p->held = imp_arena_take(world->arena, m, sizeof *p->held);
     return world->bodies && world->pairs && p->scene.states && p->scene.before && p->scene.modes && p->body &&
-                   p->pair && p->top_speed
+                   p->pair && p->top_speed && p->held
                ? IMPACT_OK
                : IMPACT_ENOMEM;
 }
@@ -253,6 +284,8 @@ static party *make_party(imp_scene_crowd *crowd, int group)
     p->scene.recorder = whole->recorder ? &p->recorder : NULL;
     p->scene.sampler =
         (imp_sampler){.rate = whole->sampler.rate, .emit = imp_scene_emit, .pulse = party_pulse, .context = p};
+    if (whole->sampler.piece) p->scene.sampler.piece = keep_piece;
+    p->scene.key_tolerance = whole->key_tolerance;
     const impact_status status = allocate_party(p, members + pairs, pairs);
     if (status == IMPACT_OK) list_bodies(crowd, p);
     if (status == IMPACT_OK) return p;
@@ -293,6 +326,8 @@ static double move_parties(imp_scene_crowd *crowd, double t_end, party **stopped
             if (p == *stopped || (done && goes_on(p->status))) continue;
             p->moved = true;
             drop_rows(&crowd->rows, p->group);
+            imp_kept_drop(&crowd->kept, p->group);
+            memset(p->held, 0, sizeof *p->held * (size_t)p->scene.world.pair_count);
             if (goes_on(move_party(crowd, p, t_end))) continue;
             crowd->spent = p->status == IMPACT_ENOMEM;
             t_end = p->scene.t;
@@ -385,7 +420,7 @@ static impact_status make_parties(imp_scene_crowd *crowd, double time, double ca
     if (status != IMPACT_OK) return status;
     crowd->parties = imp_arena_take(scene->world.arena, (size_t)crowd->crowd.group_count + 1, sizeof *crowd->parties);
     if (!crowd->parties) return IMPACT_ENOMEM;
-    crowd->rows.count = crowd->rows.next = 0;
+    crowd->rows.count = crowd->rows.next = crowd->kept.count = 0;
     for (; crowd->party_count < crowd->crowd.group_count; crowd->party_count++) {
         crowd->parties[crowd->party_count] = make_party(crowd, crowd->party_count);
         if (!crowd->parties[crowd->party_count]) return IMPACT_ENOMEM;
@@ -405,6 +440,7 @@ static impact_status close_while(imp_scene_crowd *crowd, double t_end, const par
     scene->t = t_end;
     while (imp_motion_sample_time(&scene->sampler) <= t_end) scene->sampler.next++;
     if (status == IMPACT_OK) status = imp_scene_crowd_deliver(scene);
+    if (status == IMPACT_OK) status = imp_kept_deliver(&crowd->kept, scene);
     if (status != IMPACT_OK || !stopped) return status;
     memcpy(scene->message, stopped->scene.message, sizeof scene->message);
     return stopped->status;
@@ -458,6 +494,7 @@ impact_status imp_scene_crowd_open(impact_scene *scene)
     if (!crowd) return IMPACT_ENOMEM;
     *crowd = (imp_scene_crowd){.scene = scene,
                                .rows.arena = arena,
+                               .kept.arena = arena,
                                .held = imp_arena_take(arena, n, sizeof *crowd->held),
                                .local = imp_arena_take(arena, n, sizeof *crowd->local),
                                .energy = imp_arena_take(arena, n, sizeof *crowd->energy),
@@ -473,6 +510,7 @@ void imp_scene_crowd_close(impact_scene *scene)
     free_parties(crowd);
     imp_crowd_close(&crowd->crowd);
     imp_rows_free(&crowd->rows);
+    imp_kept_free(&crowd->kept);
     imp_arena_give(crowd->scene->world.arena, crowd->held);
     imp_arena_give(crowd->scene->world.arena, crowd->local);
     imp_arena_give(crowd->scene->world.arena, crowd->energy);

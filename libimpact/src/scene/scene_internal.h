@@ -10,6 +10,7 @@
 #include "motion/motion.h"
 
 struct impact_scene {
+    char *name;
     imp_world world;
     impact_motion motion;
     imp_state *states;
@@ -26,7 +27,8 @@ struct impact_scene {
     imp_sampler sampler;
     const impact_recorder *recorder; /* of the run under way */
     impact_status stop;              /* why the recorder stopped the run */
-    double energy_start, impact_loss;
+    double energy_start, impact_loss, key_tolerance;
+    struct imp_scene_keys *keys;   /* while a run with keys is under way */
     bool beside_event;             /* the rows that go to the recorder now stand beside an event */
     struct imp_scene_crowd *crowd; /* of many bodies, that are moved in groups; NULL: all at once */
     char message[512];

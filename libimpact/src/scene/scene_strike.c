@@ -86,6 +86,7 @@ static impact_status strike(impact_scene *scene, const imp_meeting *m)
     char words[128];
     event.phases = phases_in_words(&outcome, words, sizeof words);
     event.impulse_normal = outcome.impulse_normal;
+    event.impulse = outcome.impulse;
     event.impulse_tangential = outcome.impulse_tangential;
     event.normal_before = outcome.normal_before;
     event.normal_after = outcome.normal_after;
@@ -135,6 +136,7 @@ static impact_status strike_together(impact_scene *scene)
         impact_event event = imp_scene_event_of_touch(scene, IMPACT_EVENT_IMPACT, &share->touch);
         event.phases = "together";
         event.impulse_normal = share->normal;
+        event.impulse = share->impulse;
         event.impulse_tangential = qvec3_norm(qvec3_axpy(-share->normal, share->touch.normal, share->impulse));
         event.normal_before = qvec3_dot(share->touch.normal, share->before);
         event.normal_after = qvec3_dot(share->touch.normal, share->after);

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * run: the tables of a recorded run, as its writer and its reader agree on them. Internal.
+ */
+#ifndef IMP_RUN_H
+#define IMP_RUN_H
+
+#include <impact/run.h>
+
+#define IMP_RUN_FORMAT "impact-run"
+
+enum { IMP_RUN_VERSION = 1, IMP_RUN_ALIGNMENT = 8 };
+
+enum { IMP_RUN_KEYS, IMP_RUN_EVENTS, IMP_RUN_CONTACTS, IMP_RUN_ACCOUNT, IMP_RUN_TABLES };
+
+enum {
+    IMP_KEY_COLUMNS = 20,
+    IMP_EVENT_COLUMNS = 19,
+    IMP_CONTACT_COLUMNS = 13,
+    IMP_ACCOUNT_COLUMNS = 8,
+    IMP_RUN_MOST_COLUMNS = IMP_KEY_COLUMNS
+};
+
+typedef struct imp_run_table {
+    const char *name;
+    int columns;
+    const char *column[IMP_RUN_MOST_COLUMNS];
+} imp_run_table;
+
+extern const imp_run_table imp_run_tables[IMP_RUN_TABLES];
+
+extern const char *const imp_run_shapes[IMPACT_SUPERELLIPSOID + 1]; /* their names, by kind */
+
+/* Writes a file that is whole or not there: IMPACT_ESINK with a message, IMPACT_ENOMEM. */
+impact_status imp_file_save(const char *path, const void *bytes, size_t size, impact_quota *quota, char *message,
+                            unsigned long message_size);
+
+#endif

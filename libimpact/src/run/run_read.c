@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Opening a record: every offset, count, index and number in it is checked here, so that nothing that asks an open one
+ * has to.
+ */
+#include "run/run_open.h"
+#include "base/tolerances.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct reader {
+    impact_run *run;
+    const char *name; /* of the file, for messages */
+    char *message;
+    unsigned long message_size;
+} reader;
+
+__attribute__((format(printf, 2, 3))) static impact_status refuse(const reader *r, const char *format, ...)
+{
+    char words[200];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(words, sizeof words, format, arguments);
+    va_end(arguments);
+    if (r->message && r->message_size > 0) snprintf(r->message, r->message_size, "'%s': %s", r->name, words);
+    return IMPACT_EARGUMENT;
+}
+
+static impact_status out_of_memory(const reader *r)
+{
+    refuse(r, "%s", impact_status_string(IMPACT_ENOMEM));
+    return IMPACT_ENOMEM;
+}
+
+/* ---- the head ---- */
+
+/* The line of JSON; *data is where the tables begin. */
+static impact_status read_head(const reader *r, size_t *data)
+{
+    static const char start[] = "{\"format\":\"" IMP_RUN_FORMAT "\"";
+    impact_run *run = r->run;
+    const bool begins = run->size >= sizeof start && memcmp(run->bytes, start, sizeof start - 1) == 0;
+    const char *end = begins ? memchr(run->bytes, '\n', run->size) : NULL;
+    if (!end) return refuse(r, "not a recorded run");
+    *data = (size_t)(end - run->bytes) + 1;
+    if (!imp_json_read(run->bytes, *data, &run->head)) return refuse(r, "its first line is not JSON");
+    bool good = true;
+    const double version = imp_json_number(run->head.root, "version", 0, &good);
+    if (!good || !(version >= 1)) return refuse(r, "not a recorded run: it has no version");
+    if (version > IMP_RUN_VERSION)
+        return refuse(r, "version %.0f is newer than this program (%d)", version, IMP_RUN_VERSION);
+    return IMPACT_OK;
+}
+
+static const char *string_of(const imp_json *object, const char *key)
+{
+    const imp_json *string = imp_json_get(object, key, IMP_JSON_STRING);
+    return string ? string->string : NULL;
+}
+
+/* Reads count numbers; false when the list is there and is no list of so many. An absent one leaves them as they are.
+ */
+static bool numbers_of(const imp_json *object, const char *key, double *values, int count, double for_null)
+{
+    const imp_json *list = imp_json_get(object, key, IMP_JSON_ARRAY);
+    if (!list) {
+        bool good = true;
+        imp_json_number(object, key, 0, &good);
+        return good;
+    }
+    if (list->count != count) return false;
+    for (const imp_json *item = list->first; item; item = item->next) {
+        if (item->kind != IMP_JSON_NUMBER && item->kind != IMP_JSON_NULL) return false;
+        *values++ = item->kind == IMP_JSON_NUMBER ? item->number : for_null;
+    }
+    return true;
+}
+
+static bool vector_of(const imp_json *object, const char *key, qvec3 *v)
+{
+    double values[3] = {v->x, v->y, v->z};
+    if (!numbers_of(object, key, values, 3, NAN)) return false;
+    *v = (qvec3){values[0], values[1], values[2]};
+    return isfinite(v->x + v->y + v->z);
+}
+
+static impact_status words_of(const reader *r, const char *key, imp_words *words)
+{
+    const imp_json *list = imp_json_get(r->run->head.root, key, IMP_JSON_ARRAY);
+    if (!list) return refuse(r, "it has no list '%s'", key);
+    words->word = calloc((size_t)list->count + 1, sizeof *words->word);
+    if (!words->word) return out_of_memory(r);
+    for (const imp_json *item = list->first; item; item = item->next) {
+        if (item->kind != IMP_JSON_STRING) return refuse(r, "list '%s' holds what is no string", key);
+        words->word[words->count++] = item->string;
+    }
+    return IMPACT_OK;
+}
+
+/* ---- tables ---- */
+
+/* A whole number up to most; -1 where it is none. */
+static double whole(const imp_json *object, const char *key, double most)
+{
+    bool good = true;
+    const double value = imp_json_number(object, key, -1, &good);
+    return good && value >= 0 && value <= most && value == floor(value) ? value : -1;
+}
+
+static impact_status read_table(const reader *r, int number, size_t data)
+{
+    const imp_run_table *table = &imp_run_tables[number];
+    const impact_run *run = r->run;
+    imp_run_place *place = &r->run->tables[number];
+    const imp_json *tables = imp_json_get(run->head.root, "tables", IMP_JSON_OBJECT);
+    const imp_json *entry = imp_json_get(tables, table->name, IMP_JSON_OBJECT);
+    const imp_json *columns = imp_json_get(entry, "columns", IMP_JSON_ARRAY);
+    const double most = 9007199254740992; /* 2^53: whole numbers end there */
+    if (!columns) return refuse(r, "it has no table '%s'", table->name);
+    const double at = whole(entry, "at", most), rows = whole(entry, "rows", most);
+    if (at < 0 || rows < 0 || fmod(at, IMP_RUN_ALIGNMENT) != 0)
+        return refuse(r, "table '%s': its place is damaged", table->name);
+    const double left = (double)(run->size - data) - at, bytes = rows * columns->count * (double)sizeof(double);
+    if (bytes > 0 && bytes > left)
+        return refuse(r, "cut short: %.0f of %.0f bytes of table '%s'", fmax(left, 0), bytes, table->name);
+    *place = (imp_run_place){.at = bytes > 0 ? run->bytes + data + (size_t)at : run->bytes,
+                             .rows = columns->count > 0 ? (long)rows : 0,
+                             .width = columns->count};
+    for (int c = 0; c < table->columns; c++) {
+        int where = 0;
+        place->column[c] = -1;
+        for (const imp_json *item = columns->first; item; item = item->next, where++)
+            if (item->kind == IMP_JSON_STRING && strcmp(item->string, table->column[c]) == 0) place->column[c] = where;
+        if (place->column[c] < 0 && place->rows > 0)
+            return refuse(r, "table '%s' has no column '%s'", table->name, table->column[c]);
+    }
+    return IMPACT_OK;
+}
+
+/* Every number within bounds, t rising. */
+static impact_status check_rows(const reader *r, int table, long first, long count)
+{
+    double before = -INFINITY, values[IMP_RUN_MOST_COLUMNS];
+    for (long row = first; row < first + count; row++) {
+        imp_run_row(r->run, table, row, values);
+        for (int c = 0; c < imp_run_tables[table].columns; c++)
+            if (!(fabs(values[c]) <= IMP_RUN_LARGEST))
+                return refuse(r, "table '%s', row %ld: %s is not a number that a run can have",
+                              imp_run_tables[table].name, row, imp_run_tables[table].column[c]);
+        if (values[0] < before)
+            return refuse(r, "table '%s', row %ld: t = %.17g comes after %.17g", imp_run_tables[table].name, row,
+                          values[0], before);
+        before = values[0];
+    }
+    return IMPACT_OK;
+}
+
+/* ---- bodies ---- */
+
+static bool read_shape(const imp_json *body, impact_shape *shape, char *why, size_t size)
+{
+    const char *kind = string_of(body, "kind");
+    double axes[3] = {0, 0, 0}, exponents[3] = {2, 2, 2};
+    int k = 0;
+    snprintf(why, size, "its shape is damaged");
+    while (kind && k <= IMPACT_SUPERELLIPSOID && strcmp(kind, imp_run_shapes[k]) != 0) k++;
+    if (!kind || k > IMPACT_SUPERELLIPSOID) return false;
+    if (!numbers_of(body, "axes", axes, 3, INFINITY) || !numbers_of(body, "exponents", exponents, 3, NAN)) return false;
+    *shape = (impact_shape){(impact_shape_kind)k, axes[0], axes[1], axes[2], exponents[0], exponents[1], exponents[2]};
+    return impact_shape_check(shape, why, size) >= 0;
+}
+
+static bool read_numbers(const imp_json *body, impact_body_def *def)
+{
+    const imp_json *is_static = imp_json_get(body, "static", IMP_JSON_TRUE);
+    double turn[4] = {1, 0, 0, 0};
+    bool good = true;
+    def->is_static = is_static != NULL;
+    def->mass = def->is_static ? INFINITY : imp_json_number(body, "mass", NAN, &good);
+    def->friction = imp_json_number(body, "friction", 0, &good);
+    def->restitution = imp_json_number(body, "restitution", 0, &good);
+    def->linear_damping = imp_json_number(body, "linear_damping", 0, &good);
+    def->angular_damping = imp_json_number(body, "angular_damping", 0, &good);
+    def->moments = def->shape_position = def->velocity = def->omega = (qvec3){0, 0, 0};
+    good = good && (def->is_static || (def->mass > 0 && vector_of(body, "moments", &def->moments)));
+    good = good && vector_of(body, "shape_position", &def->shape_position);
+    good = good && numbers_of(body, "shape_orientation", turn, 4, NAN);
+    good = good && vector_of(body, "surface_velocity", &def->velocity) && vector_of(body, "surface_omega", &def->omega);
+    def->shape_orientation = (quat){turn[0], turn[1], turn[2], turn[3]};
+    return good && fabs(quat_norm(def->shape_orientation) - 1) <= IMP_RUN_UNIT;
+}
+
+static impact_status read_body(const reader *r, const imp_json *body, imp_run_body *out)
+{
+    char why[120];
+    double keys[2] = {-1, -1};
+    impact_body_def *def = &out->def;
+    *def = impact_default_body_def();
+    def->name = string_of(body, "name");
+    if (!def->name) return refuse(r, "a body has no name");
+    if (!read_shape(body, &def->shape, why, sizeof why)) return refuse(r, "body '%.80s': %s", def->name, why);
+    if (!read_numbers(body, def)) return refuse(r, "body '%.80s': its numbers are damaged", def->name);
+    const double rows = (double)r->run->tables[IMP_RUN_KEYS].rows;
+    if (!numbers_of(body, "keys", keys, 2, NAN) || !(keys[0] >= 0) || !(keys[1] >= 1) || keys[0] + keys[1] > rows ||
+        keys[0] != floor(keys[0]) || keys[1] != floor(keys[1]))
+        return refuse(r, "body '%.80s': its keys are not in the table", def->name);
+    out->first = (long)keys[0], out->count = (long)keys[1];
+    return IMPACT_OK;
+}
+
+static impact_status check_keys(const reader *r, int body)
+{
+    impact_run *run = r->run;
+    imp_run_body *b = &run->bodies[body];
+    const impact_status status = check_rows(r, IMP_RUN_KEYS, b->first, b->count);
+    if (status != IMPACT_OK) return status;
+    for (long k = 0; k < b->count; k++) {
+        const impact_key key = imp_run_key(run, body, k);
+        if (fabs(quat_norm(key.orientation) - 1) > IMP_RUN_UNIT)
+            return refuse(r, "body '%.80s', t = %.17g: its orientation is not a unit", b->def.name, key.t);
+    }
+    const impact_key first = imp_run_key(run, body, 0), last = imp_run_key(run, body, b->count - 1);
+    b->def.position = first.position;
+    b->def.orientation = first.orientation;
+    if (!b->def.is_static) b->def.velocity = first.velocity, b->def.omega = first.omega;
+    run->begin = fmin(run->begin, first.t);
+    run->end = fmax(run->end, last.t);
+    return IMPACT_OK;
+}
+
+static impact_status read_bodies(const reader *r)
+{
+    impact_run *run = r->run;
+    const imp_json *list = imp_json_get(run->head.root, "bodies", IMP_JSON_ARRAY);
+    if (!list || list->count == 0) return refuse(r, "it has no bodies");
+    run->bodies = calloc((size_t)list->count, sizeof *run->bodies);
+    if (!run->bodies) return out_of_memory(r);
+    run->begin = INFINITY, run->end = -INFINITY;
+    for (const imp_json *body = list->first; body; body = body->next) {
+        impact_status status = read_body(r, body, &run->bodies[run->body_count]);
+        if (status == IMPACT_OK) status = check_keys(r, run->body_count);
+        if (status != IMPACT_OK) return status;
+        run->body_count++;
+    }
+    return IMPACT_OK;
+}
+
+/* ---- indices in rows ---- */
+
+static bool is_index(double value, double least, int count)
+{
+    return value >= least && value < count && value == floor(value);
+}
+
+static impact_status check_events(const reader *r)
+{
+    const impact_run *run = r->run;
+    impact_status status = check_rows(r, IMP_RUN_EVENTS, 0, run->tables[IMP_RUN_EVENTS].rows);
+    for (long row = 0; status == IMPACT_OK && row < run->tables[IMP_RUN_EVENTS].rows; row++) {
+        double v[IMP_EVENT_COLUMNS];
+        imp_run_row(run, IMP_RUN_EVENTS, row, v);
+        if (!is_index(v[1], 0, run->kinds.count) || !is_index(v[2], 0, run->body_count) ||
+            !is_index(v[3], -1, run->body_count) || !is_index(v[4], -1, run->forces.count) ||
+            !is_index(v[16], 0, run->phases.count))
+            status = refuse(r, "table 'events', row %ld: it points at what is not there", row);
+    }
+    return status;
+}
+
+static impact_status check_contacts(const reader *r)
+{
+    const impact_run *run = r->run;
+    impact_status status = check_rows(r, IMP_RUN_CONTACTS, 0, run->tables[IMP_RUN_CONTACTS].rows);
+    for (long row = 0; status == IMPACT_OK && row < run->tables[IMP_RUN_CONTACTS].rows; row++) {
+        double v[IMP_CONTACT_COLUMNS];
+        imp_run_row(run, IMP_RUN_CONTACTS, row, v);
+        if (!is_index(v[1], 0, run->body_count) || !is_index(v[2], 0, run->body_count) ||
+            !is_index(v[3], 0, run->modes.count))
+            status = refuse(r, "table 'contacts', row %ld: it points at what is not there", row);
+    }
+    return status;
+}
+
+/* ---- opening ---- */
+
+static impact_status read_run(const reader *r)
+{
+    impact_run *run = r->run;
+    size_t data = 0;
+    bool good = true;
+    impact_status status = read_head(r, &data);
+    for (int i = 0; status == IMPACT_OK && i < IMP_RUN_TABLES; i++) status = read_table(r, i, data);
+    if (status == IMPACT_OK) status = words_of(r, "kinds", &run->kinds);
+    if (status == IMPACT_OK) status = words_of(r, "modes", &run->modes);
+    if (status == IMPACT_OK) status = words_of(r, "forces", &run->forces);
+    if (status == IMPACT_OK) status = words_of(r, "phases", &run->phases);
+    if (status == IMPACT_OK) status = read_bodies(r);
+    if (status == IMPACT_OK) status = check_events(r);
+    if (status == IMPACT_OK) status = check_contacts(r);
+    if (status == IMPACT_OK) status = check_rows(r, IMP_RUN_ACCOUNT, 0, run->tables[IMP_RUN_ACCOUNT].rows);
+    if (status != IMPACT_OK) return status;
+    run->name = string_of(run->head.root, "name");
+    run->reason = string_of(run->head.root, "reason");
+    run->tolerance = imp_json_number(run->head.root, "tolerance", 0, &good);
+    if (!run->name || !run->reason || !good || !vector_of(run->head.root, "gravity", &run->gravity))
+        return refuse(r, "its name, reason, tolerance or gravity is damaged");
+    return IMPACT_OK;
+}
+
+/* Takes the bytes over. */
+static impact_status open_bytes(char *bytes, size_t size, const char *name, impact_run **out, char *message,
+                                unsigned long message_size)
+{
+    impact_run *run = calloc(1, sizeof *run);
+    const reader r = {run, name, message, message_size};
+    if (!run) {
+        free(bytes);
+        return out_of_memory(&r);
+    }
+    run->bytes = bytes;
+    run->size = size;
+    const impact_status status = read_run(&r);
+    if (status == IMPACT_OK)
+        *out = run;
+    else
+        impact_run_close(run);
+    return status;
+}
+
+impact_status impact_run_read(const void *bytes, size_t size, const char *name, impact_run **run, char *message,
+                              unsigned long message_size)
+{
+    *run = NULL;
+    if (message && message_size > 0) message[0] = '\0';
+    char *copy = malloc(size + 1);
+    const reader r = {NULL, name, message, message_size};
+    if (!copy) return out_of_memory(&r);
+    if (size > 0) memcpy(copy, bytes, size);
+    return open_bytes(copy, size, name, run, message, message_size);
+}
+
+/* All of a file; NULL with errno. */
+static char *read_file(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    char *bytes = NULL;
+    size_t room = 0;
+    *size = 0;
+    while (file && !feof(file)) {
+        if (*size == room) {
+            char *more = realloc(bytes, room = 2 * room + 65536);
+            if (!more) break;
+            bytes = more;
+        }
+        *size += fread(bytes + *size, 1, room - *size, file);
+        if (ferror(file)) break;
+    }
+    const bool whole_file = file && feof(file) && !ferror(file);
+    if (file) fclose(file);
+    if (whole_file) return bytes;
+    free(bytes);
+    return NULL;
+}
+
+impact_status impact_run_open(const char *path, impact_run **run, char *message, unsigned long message_size)
+{
+    size_t size;
+    *run = NULL;
+    errno = 0;
+    char *bytes = read_file(path, &size);
+    if (bytes) return open_bytes(bytes, size, path, run, message, message_size);
+    if (message && message_size > 0) snprintf(message, message_size, "'%s': %s", path, strerror(errno));
+    return IMPACT_ESINK;
+}
+
+void impact_run_close(impact_run *run)
+{
+    if (!run) return;
+    imp_json_free(&run->head);
+    free(run->kinds.word);
+    free(run->modes.word);
+    free(run->forces.word);
+    free(run->phases.word);
+    free(run->bodies);
+    free(run->bytes);
+    free(run);
+}

@@ -1,0 +1,448 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A line of JSON, padded with blanks to a multiple of 8 bytes, then tables of little-endian doubles. Keys come as the
+ * motion makes them and are put body by body when the record is made up.
+ */
+#include "run/run.h"
+#include "base/out_file.h"
+#include "run/text.h"
+#include "scene/scene_internal.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows of one table, in the order they came. */
+typedef struct rows {
+    imp_text bytes;
+    long count;
+} rows;
+
+struct impact_run_writer {
+    const impact_scene *scene;
+    rows tables[IMP_RUN_TABLES];
+    rows key_body; /* whose each key is: an int */
+    imp_text phases;
+    int phase_count;
+};
+
+static bool add_row(impact_run_writer *w, int table, const double *values)
+{
+    rows *r = &w->tables[table];
+    imp_text_put(&r->bytes, values, sizeof *values * (size_t)imp_run_tables[table].columns);
+    r->count++;
+    return !r->bytes.failed;
+}
+
+/* ---- the recorder ---- */
+
+static bool put_key(void *context, const impact_key *k)
+{
+    impact_run_writer *w = context;
+    const double values[IMP_KEY_COLUMNS] = {k->t,
+                                            k->position.x,
+                                            k->position.y,
+                                            k->position.z,
+                                            k->orientation.w,
+                                            k->orientation.x,
+                                            k->orientation.y,
+                                            k->orientation.z,
+                                            k->velocity.x,
+                                            k->velocity.y,
+                                            k->velocity.z,
+                                            k->omega.x,
+                                            k->omega.y,
+                                            k->omega.z,
+                                            k->acceleration.x,
+                                            k->acceleration.y,
+                                            k->acceleration.z,
+                                            k->alpha.x,
+                                            k->alpha.y,
+                                            k->alpha.z};
+    imp_text_put(&w->key_body.bytes, &k->body, sizeof k->body);
+    return add_row(w, IMP_RUN_KEYS, values) && !w->key_body.bytes.failed;
+}
+
+/* The number of these words among all phases, which stand one after another, each with its 0. */
+static int phase_number(impact_run_writer *w, const char *words)
+{
+    int number = 0;
+    for (size_t at = 0; at < w->phases.size; at += strlen(w->phases.bytes + at) + 1, number++)
+        if (strcmp(w->phases.bytes + at, words) == 0) return number;
+    imp_text_put(&w->phases, words, strlen(words) + 1);
+    return w->phase_count++;
+}
+
+static int force_number(const impact_scene *scene, const impact_event *e)
+{
+    if (e->kind != IMPACT_EVENT_FORCE) return -1;
+    for (int i = 0; impact_scene_force_name(scene, i); i++)
+        if (strcmp(impact_scene_force_name(scene, i), e->name2) == 0) return i;
+    return -1;
+}
+
+static bool put_event(void *context, const impact_event *e)
+{
+    impact_run_writer *w = context;
+    const double values[IMP_EVENT_COLUMNS] = {e->t,
+                                              e->kind,
+                                              e->body1,
+                                              e->body2,
+                                              force_number(w->scene, e),
+                                              e->point.x,
+                                              e->point.y,
+                                              e->point.z,
+                                              e->normal.x,
+                                              e->normal.y,
+                                              e->normal.z,
+                                              e->impulse.x,
+                                              e->impulse.y,
+                                              e->impulse.z,
+                                              e->normal_before,
+                                              e->normal_after,
+                                              phase_number(w, e->phases),
+                                              e->energy_before,
+                                              e->energy_after};
+    return add_row(w, IMP_RUN_EVENTS, values) && !w->phases.failed;
+}
+
+static bool put_held(void *context, const impact_held *c)
+{
+    const double values[IMP_CONTACT_COLUMNS] = {c->t,       c->body1,   c->body2,    c->mode,     c->point.x,
+                                                c->point.y, c->point.z, c->normal.x, c->normal.y, c->normal.z,
+                                                c->force.x, c->force.y, c->force.z};
+    return add_row(context, IMP_RUN_CONTACTS, values);
+}
+
+static bool put_account(void *context, double t, const impact_energy *e)
+{
+    const double values[IMP_ACCOUNT_COLUMNS] = {
+        t, e->kinetic, e->potential, e->force_work, e->drive_work, e->damping_loss, e->sliding_loss, e->impact_loss};
+    return add_row(context, IMP_RUN_ACCOUNT, values);
+}
+
+impact_status impact_run_create(const impact_scene *scene, impact_run_writer **writer, char *message,
+                                unsigned long message_size)
+{
+    imp_arena *arena = scene->world.arena;
+    impact_run_writer *w = *writer = imp_arena_take(arena, 1, sizeof *w);
+    if (!w) {
+        if (message) imp_arena_explain(arena, message, message_size);
+        return IMPACT_ENOMEM;
+    }
+    w->scene = scene;
+    w->key_body.bytes.arena = w->phases.arena = arena;
+    for (int i = 0; i < IMP_RUN_TABLES; i++) w->tables[i].bytes.arena = arena;
+    return IMPACT_OK;
+}
+
+impact_recorder impact_run_recorder(impact_run_writer *writer)
+{
+    return (impact_recorder){
+        .context = writer, .event = put_event, .key = put_key, .held = put_held, .account = put_account};
+}
+
+void impact_run_discard(impact_run_writer *writer)
+{
+    if (!writer) return;
+    for (int i = 0; i < IMP_RUN_TABLES; i++) imp_text_free(&writer->tables[i].bytes);
+    imp_text_free(&writer->key_body.bytes);
+    imp_text_free(&writer->phases);
+    imp_arena_give(writer->scene->world.arena, writer);
+}
+
+/* ---- the head ---- */
+
+static void say_key(imp_text *head, const char *key)
+{
+    imp_text_say(head, ",");
+    imp_text_string(head, key);
+    imp_text_say(head, ":");
+}
+
+static void say_number(imp_text *head, const char *key, double value)
+{
+    say_key(head, key);
+    imp_text_number(head, value);
+}
+
+static void say_numbers(imp_text *head, const char *key, const double *values, int count)
+{
+    say_key(head, key);
+    for (int i = 0; i < count; i++) {
+        imp_text_say(head, i ? "," : "[");
+        imp_text_number(head, values[i]);
+    }
+    imp_text_say(head, "]");
+}
+
+static void say_vector(imp_text *head, const char *key, qvec3 v)
+{
+    say_numbers(head, key, (const double[]){v.x, v.y, v.z}, 3);
+}
+
+static void say_body(imp_text *head, const impact_body_def *def, long first_key, long key_count)
+{
+    const impact_shape *s = &def->shape;
+    const quat o = def->shape_orientation;
+    imp_text_say(head, "{\"name\":");
+    imp_text_string(head, def->name);
+    say_key(head, "kind");
+    imp_text_string(head, imp_run_shapes[s->kind]);
+    say_numbers(head, "axes", (const double[]){s->a, s->b, s->c}, 3);
+    say_numbers(head, "exponents", (const double[]){s->r, s->s, s->t}, 3);
+    if (qvec3_norm(def->shape_position) > 0) say_vector(head, "shape_position", def->shape_position);
+    if (o.x != 0 || o.y != 0 || o.z != 0)
+        say_numbers(head, "shape_orientation", (const double[]){o.w, o.x, o.y, o.z}, 4);
+    say_key(head, "static");
+    imp_text_say(head, def->is_static ? "true" : "false");
+    if (!def->is_static) {
+        say_number(head, "mass", def->mass);
+        say_vector(head, "moments", def->moments);
+        say_number(head, "linear_damping", def->linear_damping);
+        say_number(head, "angular_damping", def->angular_damping);
+    } else if (qvec3_norm(def->velocity) > 0 || qvec3_norm(def->omega) > 0) {
+        say_vector(head, "surface_velocity", def->velocity);
+        say_vector(head, "surface_omega", def->omega);
+    }
+    say_number(head, "friction", def->friction);
+    say_number(head, "restitution", def->restitution);
+    say_numbers(head, "keys", (const double[]){(double)first_key, (double)key_count}, 2);
+    imp_text_say(head, "}");
+}
+
+static void say_bodies(imp_text *head, const impact_run_writer *w, const long *first)
+{
+    const int count = impact_scene_body_count(w->scene);
+    say_key(head, "bodies");
+    for (int i = 0; i < count; i++) {
+        impact_body_def def;
+        impact_scene_body_def(w->scene, i, &def);
+        imp_text_say(head, i ? "," : "[");
+        say_body(head, &def, first[i], first[i + 1] - first[i]);
+    }
+    imp_text_say(head, "]");
+}
+
+/* A list of words, the number-th given by word; NULL ends it. */
+static void say_words(imp_text *head, const char *key, const char *(*word)(const void *, int), const void *context)
+{
+    say_key(head, key);
+    imp_text_say(head, "[");
+    for (int i = 0; word(context, i); i++) {
+        if (i) imp_text_say(head, ",");
+        imp_text_string(head, word(context, i));
+    }
+    imp_text_say(head, "]");
+}
+
+static const char *event_word(const void *context, int i)
+{
+    (void)context;
+    return i <= IMPACT_EVENT_REST ? impact_event_name((impact_event_kind)i) : NULL;
+}
+
+static const char *hold_word(const void *context, int i)
+{
+    (void)context;
+    return i <= IMPACT_HOLD_STICK ? impact_hold_name((impact_hold)i) : NULL;
+}
+
+static const char *force_word(const void *context, int i) { return impact_scene_force_name(context, i); }
+
+static const char *phase_word(const void *context, int i)
+{
+    const impact_run_writer *w = context;
+    size_t at = 0;
+    if (i >= w->phase_count) return NULL;
+    while (i-- > 0) at += strlen(w->phases.bytes + at) + 1;
+    return w->phases.bytes + at;
+}
+
+static void say_usage(imp_text *head, const impact_scene *scene)
+{
+    const impact_usage usage = impact_scene_usage(scene);
+    const char *name;
+    long value;
+    say_key(head, "usage");
+    imp_text_say(head, "{");
+    for (int i = 0; impact_usage_entry(&usage, i, &name, &value); i++) {
+        if (i) imp_text_say(head, ",");
+        imp_text_string(head, name);
+        imp_text_say(head, ":");
+        imp_text_number(head, (double)value);
+    }
+    imp_text_say(head, "}");
+}
+
+static const char *column_word(const void *context, int i)
+{
+    const imp_run_table *table = context;
+    return i < table->columns ? table->column[i] : NULL;
+}
+
+static void say_tables(imp_text *head, const impact_run_writer *w)
+{
+    size_t at = 0;
+    say_key(head, "tables");
+    for (int i = 0; i < IMP_RUN_TABLES; i++) {
+        const imp_run_table *table = &imp_run_tables[i];
+        imp_text_say(head, i ? "," : "{");
+        imp_text_string(head, table->name);
+        imp_text_say(head, ":{\"at\":");
+        imp_text_number(head, (double)at);
+        say_number(head, "rows", (double)w->tables[i].count);
+        say_words(head, "columns", column_word, table);
+        imp_text_say(head, "}");
+        at += w->tables[i].bytes.size;
+    }
+    imp_text_say(head, "}");
+}
+
+static void say_head(imp_text *head, const impact_run_writer *w, const char *scene_name, const char *reason,
+                     const long *first)
+{
+    const impact_scene *scene = w->scene;
+    imp_text_say(head, "{\"format\":\"" IMP_RUN_FORMAT "\"");
+    say_number(head, "version", IMP_RUN_VERSION);
+    say_key(head, "name");
+    imp_text_string(head, scene_name);
+    say_number(head, "duration", impact_scene_time(scene));
+    say_vector(head, "gravity", impact_scene_gravity(scene));
+    say_number(head, "tolerance", impact_scene_key_tolerance(scene));
+    say_key(head, "reason");
+    imp_text_string(head, reason);
+    say_bodies(head, w, first);
+    say_words(head, "kinds", event_word, NULL);
+    say_words(head, "modes", hold_word, NULL);
+    say_words(head, "forces", force_word, scene);
+    say_words(head, "phases", phase_word, w);
+    say_usage(head, scene);
+    say_tables(head, w);
+    imp_text_say(head, "}");
+    while (!head->failed && head->size % IMP_RUN_ALIGNMENT != IMP_RUN_ALIGNMENT - 1) imp_text_say(head, " ");
+    imp_text_say(head, "\n");
+}
+
+/* ---- the record ---- */
+
+/* first[i]: the place of body i's first key when keys stand body by body. */
+static void count_keys(const impact_run_writer *w, long *first)
+{
+    const int count = impact_scene_body_count(w->scene);
+    memset(first, 0, sizeof *first * ((size_t)count + 2));
+    for (long k = 0; k < w->tables[IMP_RUN_KEYS].count; k++) {
+        int body;
+        memcpy(&body, w->key_body.bytes.bytes + (size_t)k * sizeof body, sizeof body);
+        first[body + 2]++;
+    }
+    for (int i = 2; i < count + 2; i++) first[i] += first[i - 1];
+}
+
+/* Keys to their places; place[i] begins as first[i], and ends as first[i + 1]. */
+static void sort_keys(const impact_run_writer *w, long *place, char *out)
+{
+    const size_t size = sizeof(double) * IMP_KEY_COLUMNS;
+    for (long k = 0; k < w->tables[IMP_RUN_KEYS].count; k++) {
+        int body;
+        memcpy(&body, w->key_body.bytes.bytes + (size_t)k * sizeof body, sizeof body);
+        memcpy(out + (size_t)place[body]++ * size, w->tables[IMP_RUN_KEYS].bytes.bytes + (size_t)k * size, size);
+    }
+}
+
+/* A held contact's row is told when one that differs follows: rows of several contacts come out of order. */
+typedef struct place {
+    double t;
+    long row;
+} place;
+
+static int in_order(const void *a, const void *b)
+{
+    const place *x = a, *y = b;
+    if (x->t != y->t) return x->t > y->t ? 1 : -1;
+    return (x->row > y->row) - (x->row < y->row);
+}
+
+static impact_status sort_contacts(const rows *contacts, char *out)
+{
+    const size_t size = sizeof(double) * IMP_CONTACT_COLUMNS, count = (size_t)contacts->count;
+    place *places = malloc(sizeof *places * (count + 1));
+    if (!places) return IMPACT_ENOMEM;
+    for (size_t k = 0; k < count; k++) {
+        places[k].row = (long)k;
+        memcpy(&places[k].t, contacts->bytes.bytes + k * size, sizeof(double));
+    }
+    qsort(places, count, sizeof *places, in_order);
+    for (size_t k = 0; k < count; k++)
+        memcpy(out + k * size, contacts->bytes.bytes + (size_t)places[k].row * size, size);
+    free(places);
+    return IMPACT_OK;
+}
+
+impact_status impact_run_bytes(impact_run_writer *w, const char *reason, void **bytes, size_t *size)
+{
+    *bytes = NULL;
+    imp_text all = {0};
+    long *first = malloc(sizeof *first * ((size_t)impact_scene_body_count(w->scene) + 2));
+    if (!first) return IMPACT_ENOMEM;
+    count_keys(w, first);
+    say_head(&all, w, impact_scene_name(w->scene), reason, first + 1);
+    const size_t keys = all.size;
+    for (int i = 0; i < IMP_RUN_TABLES; i++) imp_text_put(&all, w->tables[i].bytes.bytes, w->tables[i].bytes.size);
+    impact_status status = all.failed ? IMPACT_ENOMEM : IMPACT_OK;
+    if (status == IMPACT_OK) sort_keys(w, first + 1, all.bytes + keys);
+    const size_t contacts = keys + w->tables[IMP_RUN_KEYS].bytes.size + w->tables[IMP_RUN_EVENTS].bytes.size;
+    if (status == IMPACT_OK) status = sort_contacts(&w->tables[IMP_RUN_CONTACTS], all.bytes + contacts);
+    free(first);
+    if (status != IMPACT_OK) {
+        imp_text_free(&all);
+        return status;
+    }
+    *bytes = all.bytes;
+    *size = all.size;
+    return IMPACT_OK;
+}
+
+/* ---- the file ---- */
+
+static impact_status sink_error(const char *path, const char *what, char *message, unsigned long size)
+{
+    if (message && size > 0) snprintf(message, size, "%s: %s: %s", path, what, strerror(errno));
+    return IMPACT_ESINK;
+}
+
+impact_status imp_file_save(const char *path, const void *bytes, size_t size, impact_quota *quota, char *message,
+                            unsigned long message_size)
+{
+    imp_arena *arena;
+    imp_out_file file;
+    impact_status status = imp_arena_create(NULL, &arena);
+    if (status != IMPACT_OK) return status;
+    const char *failed = NULL;
+    if (!imp_out_open(&file, arena, path, quota))
+        failed = "cannot be opened";
+    else if (!imp_out_put(&file, bytes, size) || !imp_out_finish(&file, false))
+        failed = "cannot be written";
+    else if (!imp_out_give_name(&file, path))
+        failed = "cannot be given its name";
+    if (failed) status = sink_error(path, failed, message, message_size);
+    imp_out_close(&file);
+    imp_arena_destroy(arena);
+    return status;
+}
+
+impact_status impact_run_save(impact_run_writer *w, const char *reason, const char *path, impact_quota *quota,
+                              char *message, unsigned long message_size)
+{
+    void *bytes;
+    size_t size;
+    impact_status status = impact_run_bytes(w, reason, &bytes, &size);
+    if (status == IMPACT_OK) {
+        status = imp_file_save(path, bytes, size, quota, message, message_size);
+        free(bytes);
+    } else if (message) {
+        snprintf(message, message_size, "%s", impact_status_string(status));
+    }
+    return status;
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+#include "run/text.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void imp_text_free(imp_text *text)
+{
+    if (text->arena)
+        imp_arena_give(text->arena, text->bytes);
+    else
+        free(text->bytes);
+    *text = (imp_text){.arena = text->arena};
+}
+
+/* Room for so many bytes; false when there is none. */
+static bool make_room(imp_text *text, size_t wanted)
+{
+    if (wanted > INT_MAX / 2) return false;
+    if (text->arena) {
+        char *more = imp_arena_grow(text->arena, text->bytes, &text->room, (int)wanted, 1);
+        if (more) text->bytes = more;
+        return more != NULL;
+    }
+    char *more = realloc(text->bytes, 2 * wanted + 256);
+    if (!more) return false;
+    text->bytes = more, text->room = (int)(2 * wanted + 256);
+    return true;
+}
+
+void imp_text_put(imp_text *text, const void *bytes, size_t size)
+{
+    if (text->failed) return;
+    if (text->size + size > (size_t)text->room) text->failed = !make_room(text, text->size + size);
+    if (text->failed) return;
+    if (size > 0) memcpy(text->bytes + text->size, bytes, size);
+    text->size += size;
+}
+
+void imp_text_say(imp_text *text, const char *words) { imp_text_put(text, words, strlen(words)); }
+
+/* The shortest of 15, 16 and 17 digits that gives back the same bits. */
+void imp_text_number(imp_text *text, double value)
+{
+    char word[32];
+    if (!isfinite(value)) {
+        imp_text_say(text, "null");
+        return;
+    }
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(word, sizeof word, "%.*g", digits, value);
+        if (strtod(word, NULL) == value) break;
+    }
+    char *point = word + strspn(word, "+-0123456789e");
+    const size_t size = strcspn(point, "0123456789e"); /* of the locale's decimal point, which may be several bytes */
+    if (size > 0) {
+        memmove(point + 1, point + size, strlen(point + size) + 1);
+        *point = '.';
+    }
+    imp_text_say(text, word);
+}
+
+void imp_text_string(imp_text *text, const char *string)
+{
+    imp_text_say(text, "\"");
+    for (const char *c = string; *c; c++) {
+        char escape[8];
+        if ((unsigned char)*c >= 0x20 && *c != '"' && *c != '\\' && *c != '<' && *c != 0x7f) {
+            imp_text_put(text, c, 1);
+            continue;
+        }
+        snprintf(escape, sizeof escape, "\\u%04x", (unsigned)(unsigned char)*c);
+        imp_text_say(text, escape);
+    }
+    imp_text_say(text, "\"");
+}

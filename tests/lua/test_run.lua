@@ -1,0 +1,94 @@
+-- SPDX-License-Identifier: MIT
+--- Recorded runs from Lua and from the runner: states at any time, files, what is refused; and the lines of Python in docs/run.md.
+package.path = arg[0]:match("^(.*)/[^/]*$") .. "/?.lua;" .. package.path
+local impact = require "impact"
+local check, runner = require "check", require "runner"
+runner.clean()
+
+local function drop()
+  return impact.scene {
+    name = "drop", duration = 1, gravity = { 0, 0, -10 }, output_rate = 10,
+    bodies = {
+      impact.body { name = "floor", shape = impact.plane(), restitution = 1 },
+      impact.body { name = "ball", shape = impact.sphere(0.5), position = { 0, 0, 1.3 }, restitution = 0.5 },
+    },
+  }
+end
+
+-- In memory: between its rows, and on both sides of the first impact at sqrt(2 0.8/10) = 0.4 s.
+local scene = drop()
+check.equal(scene:run { record = true }, "end of time")
+local run = scene:record()
+check.equal(run:name(), "drop")
+check.close(run:state("ball", 0.237).position.z, 1.3 - 5 * 0.237 ^ 2, 1e-15)
+check.close(run:state("ball", 0.237).velocity.z, -2.37, 1e-14)
+local event = run:events()[1]
+check.close(event.t, 0.4, 1e-15)
+check.close(run:state_before("ball", event.t).velocity.z, -4, 1e-14)
+check.close(run:state("ball", event.t).velocity.z, 2, 1e-14)
+check.close(event.impulse.z, scene:definition().bodies[2].shape.volume * 1000 * 6, 1e-10)
+local first, last = run:times()
+check.equal(first, 0)
+check.equal(last, 1)
+check.equal(#run:bodies(), 2)
+check.equal(run:bodies()[2].shape.kind, "sphere")
+local columns = run:columns("ball", { 0, 0.1, 0.2 })
+check.close(columns.z[2], 1.3 - 5 * 0.1 ^ 2, 1e-15)
+check.equal(#columns.qw, 3)
+check.equal(#run:account() > 2, true)
+check.raises("run 'drop' has no body 'bal'", function() local s = run:state("bal", 0) return s end)
+check.raises("run 'drop' has no state at t = 2 s: it goes from 0 to 1 s", function() local s = run:state("ball", 2) return s end)
+run:close()
+check.raises("the recorded run is closed", function() local s = run:state("ball", 0) return s end)
+check.raises("run: record must be true or the name of a file, got a number", function() local r = drop():run { record = 3 } return r end)
+
+-- In a file.
+local path = runner.folder .. "/drop.run"
+check.equal(drop():run { record = path }, "end of time")
+local opened = assert(impact.open(path))
+check.close(opened:state("ball", 0.237).position.z, 1.3 - 5 * 0.237 ^ 2, 1e-15)
+runner.write("no.run", "t,body\n")
+local none, message = impact.open(runner.folder .. "/no.run")
+check.equal(none, nil)
+check.equal(message, string.format("'%s/no.run': not a recorded run", runner.folder))
+check.truth(select(2, impact.open(runner.folder .. "/absent.run")):find("absent.run': ", 1, true), "an absent file is named")
+local reason, why, kind = drop():run { record = runner.folder .. "/none/x.run" }
+check.equal(reason, nil)
+check.truth(why:find("cannot be opened", 1, true), "a folder that is not there")
+check.equal(kind, "output")
+
+-- By the runner: below its folder, and nothing of a run that fails.
+local text = [[
+local impact = require "impact"
+return impact.scene { name = "drop", duration = 1, gravity = { 0, 0, -10 }, bodies = {
+  impact.body { name = "floor", shape = impact.plane(), restitution = 1 },
+  impact.body { name = "ball", shape = impact.sphere(0.5), position = { 0, 0, 1.3 }, restitution = 0.5 } } }]]
+local code, said, complained = runner.script(text, "--record")
+check.equal(code, 0)
+check.equal(complained, "")
+check.truth(said:find("o/drop.run", 1, true), "the file is named")
+check.close(assert(impact.open(runner.folder .. "/o/drop.run")):state("ball", 0.237).position.z, 1.3 - 5 * 0.237 ^ 2, 1e-15)
+check.equal(runner.script((text:gsub("return impact.scene (%b{})", "impact.scene%1:run { record = 'x.run' }"))), 0)
+check.truth(runner.exists("o/x.run"), "a script's own record lies in the folder")
+code, _, complained = runner.script((text:gsub("return impact.scene (%b{})", "impact.scene%1:run { record = '../x.run' }")))
+check.equal(code, 1)
+check.truth(complained:find("record must be a plain name without '/', got the string '../x.run'", 1, true), "nowhere else")
+code = runner.script("require 'impact'.open '../drop.run'")
+check.equal(code, 1)
+text = text:gsub("duration = 1,", "duration = 1, forces = { impact.force { law = function() return { 0 / 0, 0, 0 } end } },")
+check.truth(runner.script(text, "--record") ~= 0, "the force is refused")
+check.truth(not runner.exists("o/drop.run") and not runner.exists("o/drop.run.part"), "no record of a run that failed")
+
+-- The lines of Python that docs/run.md shows give the same keys, where Python has numpy.
+local page = arg[3] and io.open(arg[3] .. "/run.md")
+if page and runner.shell("python3 -c 'import numpy' 2>/dev/null") == 0 then
+  local lines = page:read("a"):match("```python\n(.-)```")
+  runner.write("read.py", lines:gsub("sphere_wall%.run", "drop.run") ..
+    "\nimport sys\nball = head['bodies'][1]['keys']\nrow = keys[ball[0]]\nassert len(row) == 20 and row[3] == 1.3 and row[16] == -10, row\n")
+  check.equal(runner.shell("cd " .. runner.quote(runner.folder) .. " && python3 read.py"), 0)
+else
+  print("run: no Python with numpy: its lines are not tried")
+end
+if page then page:close() end
+
+check.report("run")
