@@ -27,6 +27,7 @@ static void usage(FILE *file)
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
         "  --max-time S      bounds the time of the whole run, in seconds\n"
         "  --max-disk MB     bounds what is written, in all (default: 1024)\n"
+        "  --fence           an error where the kernel cannot fence the program in\n"
         "  --trust           lets the script start programs, open any file and load C modules\n"
         "  --help            this text\n"
         "  --version         versions, and what this build holds\n"
@@ -122,6 +123,8 @@ static int read_command(int count, char **words, impact_runner *runner)
             runner->quiet = true;
         } else if (strcmp(word, "--trust") == 0) {
             runner->trust = true;
+        } else if (strcmp(word, "--fence") == 0) {
+            runner->fence = true;
         } else if (word[0] == '-' && word[1]) {
             return wrong_usage("unknown option '%s'", word);
         } else if (runner->script) {
@@ -131,6 +134,7 @@ static int read_command(int count, char **words, impact_runner *runner)
         }
     }
     if (!runner->script) return usage(stderr), IMPACT_EXIT_USAGE;
+    if (runner->fence && runner->trust) return wrong_usage("%s and --trust exclude each other", "--fence");
     return -1;
 }
 
@@ -287,6 +291,7 @@ static void summarise(lua_State *L, int scene, const impact_runner *runner, cons
     if (runner->record) printf(", %s/%s.run", directory, name);
     if (drawn) printf(", %s/%s.png", directory, name);
     putchar('\n');
+    if (runner->unfenced) printf("  not fenced %s\n", runner->unfenced);
     lua_pop(L, 1);
 }
 
@@ -316,6 +321,15 @@ static int work(lua_State *L)
     impact_runner_open_libraries(L, runner);
     impact_runner_start_clock(L, runner);
     if (luaL_loadfilex(L, runner->script, runner->trust ? NULL : "t") != LUA_OK) return lua_error(L);
+    if (!runner->trust) {
+        impact_runner_open_folder_early(runner);
+        runner->unfenced = impact_runner_fence(runner);
+        if (runner->unfenced && runner->fence) {
+            lua_pushinteger(L,
+                            complain(runner, IMPACT_EXIT_RUN, lua_pushfstring(L, "not fenced: %s", runner->unfenced)));
+            return 1;
+        }
+    }
     lua_call(L, 0, 1);
     int code = IMPACT_EXIT_OK;
     if (luaL_testudata(L, -1, "impact.scene"))
@@ -349,11 +363,16 @@ static int run_script(impact_runner *runner)
 
 int main(int count, char **words)
 {
-    impact_runner runner = {
-        .directory = "out", .folder = -1, .started = impact_runner_now(), .max_disk_megabytes = 1024};
+    impact_runner runner = {.directory = "out",
+                            .folder = -1,
+                            .drawer_link = -1,
+                            .started = impact_runner_now(),
+                            .max_disk_megabytes = 1024};
     int code = read_command(count, words, &runner);
     if (code < 0) {
         runner.quota.left = (unsigned long long)(runner.max_disk_megabytes * 1048576.0);
+        runner.folder_made = access(runner.directory, F_OK) != 0;
+        impact_runner_start_drawer(&runner);
         impact_runner_limit_memory(&runner);
         runner.host = (impact_lua_host){.directory = runner.directory,
                                         .confined = !runner.trust,
@@ -364,6 +383,7 @@ int main(int count, char **words)
                                         .allocator = &runner.allocator,
                                         .context = &runner};
         code = run_script(&runner);
+        impact_runner_end_drawer(&runner);
     }
     if (fflush(stdout) != 0 && code == IMPACT_EXIT_OK) code = IMPACT_EXIT_OUTPUT;
     return code;

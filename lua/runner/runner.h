@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * The runner: impact SCRIPT.lua. Its parts: runner.c (the command), runner_limits.c (memory and time), runner_sandbox.c
- * (what a script can reach), runner_files.c (the output folder), runner_draw.c (pictures by gnuplot).
+ * (what a script can reach), runner_fence.c (what the kernel lets it reach),
+ * runner_files.c (the output folder), runner_draw.c (pictures by gnuplot), runner_drawer.c (which starts it).
  */
 #ifndef IMPACT_RUNNER_H
 #define IMPACT_RUNNER_H
@@ -30,6 +31,8 @@ typedef struct impact_runner {
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
     bool record;          /* NAME.run is written too */
+    bool fence;           /* not without it */
+    const char *unfenced; /* why there is none; NULL: there is */
     double max_time;      /* s; 0: no limit */
     double max_megabytes; /* as given, and: */
     size_t max_memory;    /* bytes; 0: no limit */
@@ -37,8 +40,11 @@ typedef struct impact_runner {
     bool memory_refused;
     double max_disk_megabytes; /* as given, and what is left of it: */
     impact_quota quota;
-    char early[800]; /* how far the last run came that ended early, and where its rows are; or "" */
-    int folder;      /* descriptor of the output folder, or -1 */
+    char early[800];         /* how far the last run came that ended early, and where its rows are; or "" */
+    int folder;              /* descriptor of the output folder, or -1 */
+    bool folder_made;        /* it was not there before */
+    int folder_error;        /* of making it before the fence closed; 0: none */
+    int drawer, drawer_link; /* the process that starts gnuplot, and the way to it; -1: none */
     bool progress_shown;
     double started; /* s, monotonic */
     double progress_at;
@@ -67,6 +73,10 @@ double impact_runner_now(void); /* s, monotonic */
 
 /* Makes and opens the output folder; false with a message. */
 bool impact_runner_open_folder(impact_runner *runner, char *message, size_t size);
+/* The same before the fence closes; what went wrong is told by the next who wants to write. */
+void impact_runner_open_folder_early(impact_runner *runner);
+/* By a process outside the fence: removes a folder that was made for nothing. */
+void impact_runner_leave_folder(const impact_runner *runner);
 /* Opens a file below the output folder, made of plain components; -1 with errno. */
 int impact_runner_open_file(impact_runner *runner, const char *path, int flags);
 /* A name that stands for a file of the folder itself: no '/', no leading '.', no control characters. */
@@ -88,6 +98,21 @@ int impact_runner_io_open(lua_State *L);
 void impact_runner_open_libraries(lua_State *L, impact_runner *runner);
 /* Loads one of the embedded layers: pushes its chunk. */
 bool impact_runner_load_layer(lua_State *L, const char *module);
+
+/* ---- runner_fence.c ---- */
+
+/* Closes it round the process, for good; the output folder is open. NULL, or why it did not close. */
+const char *impact_runner_fence(impact_runner *runner);
+
+/* ---- runner_drawer.c ---- */
+
+enum { IMPACT_NO_PROGRAM = 127 }; /* gnuplot's exit code where there is no gnuplot */
+
+/* Before the fence; false: no pictures. */
+bool impact_runner_start_drawer(impact_runner *runner);
+void impact_runner_end_drawer(impact_runner *runner);
+/* Runs gnuplot on three open files: its exit code, or -1. The picture may grow to what is left of the quota. */
+int impact_runner_gnuplot(impact_runner *runner, int commands, int picture, int complaints);
 
 /* ---- runner_draw.c ---- */
 

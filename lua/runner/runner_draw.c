@@ -4,17 +4,15 @@
  * has touched, and there becomes gnuplot's commands. gnuplot starts without a shell, reads the commands from a file
  * without a name and writes the picture to a descriptor of ours.
  */
-#define _XOPEN_SOURCE 700
+#define _GNU_SOURCE
 #include "runner.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <lualib.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 /* ---- plain data from one state to another ---- */
@@ -116,27 +114,19 @@ static bool make_commands(lua_State *L, int index, impact_runner *runner, FILE *
     return wrong == NULL;
 }
 
-/* ---- the process ---- */
+/* ---- the picture ---- */
 
-enum { NO_PROGRAM = 127 };
-
-static int run_gnuplot(FILE *commands, int picture, FILE *complaints, unsigned long long room)
+/* A file without a name for what is told to gnuplot, and for what it says. */
+static FILE *scratch_file(void)
 {
-    int status = 0;
-    const pid_t child = fork();
-    if (child < 0) return -1;
-    if (child == 0) {
-        const struct rlimit limit = {(rlim_t)room, (rlim_t)room};
-        setrlimit(RLIMIT_FSIZE, &limit);
-        if (dup2(fileno(commands), 0) < 0 || dup2(picture, 1) < 0 || dup2(fileno(complaints), 2) < 0) _exit(NO_PROGRAM);
-        execlp("gnuplot", "gnuplot", "-d", "-", (char *)NULL);
-        _exit(NO_PROGRAM);
-    }
-    while (waitpid(child, &status, 0) < 0) {
-        if (errno != EINTR) return -1;
-        if (impact_runner_time_is_over() || impact_runner_signal()) kill(child, SIGKILL);
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+#if defined(__linux__)
+    const int file = memfd_create("gnuplot", MFD_CLOEXEC); /* the fence leaves no folder but the output's */
+    FILE *stream = file >= 0 ? fdopen(file, "w+") : NULL;
+    if (file >= 0 && !stream) close(file);
+    return stream;
+#else
+    return tmpfile();
+#endif
 }
 
 /* The last line that gnuplot had to say, without its caret. */
@@ -157,17 +147,17 @@ static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, c
     if (!impact_runner_open_folder(runner, message, size)) return IMPACT_DRAW_FAILED;
     bool nameless = false;
     const int picture = impact_runner_new_file(runner, file_name, &nameless);
-    FILE *complaints = picture >= 0 ? tmpfile() : NULL;
+    FILE *complaints = picture >= 0 ? scratch_file() : NULL;
     int code = -1;
     impact_draw_result result = IMPACT_DRAW_FAILED;
     if (!complaints)
         snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, file_name, strerror(errno));
     else
-        code = run_gnuplot(commands, picture, complaints, runner->quota.left);
+        code = impact_runner_gnuplot(runner, fileno(commands), picture, fileno(complaints));
     const off_t length = code == 0 ? lseek(picture, 0, SEEK_END) : 0;
     const bool drawn = length > 0 && impact_runner_spend(runner, (unsigned long long)length);
     if (complaints && !drawn) {
-        if (code == NO_PROGRAM)
+        if (code == IMPACT_NO_PROGRAM)
             snprintf(message, size, "gnuplot is not installed"), result = IMPACT_DRAW_NO_GNUPLOT;
         else
             last_complaint(complaints, message, size);
@@ -186,7 +176,7 @@ impact_draw_result impact_runner_draw(lua_State *L, int index, impact_runner *ru
     char file_name[240];
     impact_draw_result result = IMPACT_DRAW_REFUSED;
     snprintf(file_name, sizeof file_name, "%s.png", name);
-    FILE *commands = tmpfile();
+    FILE *commands = scratch_file();
     if (!commands)
         return snprintf(message, size, "cannot make a temporary file: %s", strerror(errno)), IMPACT_DRAW_FAILED;
     if (make_commands(L, index, runner, commands, message, size))

@@ -34,12 +34,27 @@ static bool make_folder(const char *path)
 bool impact_runner_open_folder(impact_runner *runner, char *message, size_t size)
 {
     if (runner->folder >= 0) return true;
-    if (make_folder(runner->directory)) runner->folder = open(runner->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    errno = runner->folder_error;
+    if (!runner->folder_error && make_folder(runner->directory))
+        runner->folder = open(runner->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (runner->folder >= 0 && faccessat(runner->folder, ".", W_OK | X_OK, 0) == 0) return true;
-    snprintf(message, size, "cannot write to the folder '%s': %s", runner->directory, strerror(errno));
+    const int error = errno;
+    snprintf(message, size, "cannot write to the folder '%s': %s", runner->directory, strerror(error));
     if (runner->folder >= 0) close(runner->folder);
     runner->folder = -1;
+    errno = error;
     return false;
+}
+
+void impact_runner_open_folder_early(impact_runner *runner)
+{
+    char message[16];
+    if (!impact_runner_open_folder(runner, message, sizeof message)) runner->folder_error = errno;
+}
+
+void impact_runner_leave_folder(const impact_runner *runner)
+{
+    if (runner->folder_made) rmdir(runner->directory); /* unless something is in it */
 }
 
 bool impact_runner_is_plain(const char *name)

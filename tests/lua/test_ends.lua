@@ -128,6 +128,23 @@ do
   check.equal(runner.files(), "long.csv long_events.csv")
 end
 
+-- The kernel's fence, where there is one; a word says so where there is none.
+do
+  runner.write("script.lua", "return")
+  local code, _, said = runner.command("script.lua --out o --fence")
+  check.truth(code == 0 and said == "" or code == 3 and said:find("^impact: not fenced: [^\n]+\n$"), "fenced or told: " .. said)
+  local fenced = code == 0
+  runner.write("script.lua", (long():gsub("1e7", "0.01")))
+  local _, out = runner.command("script.lua --out o")
+  check.equal(out:find("\n  not fenced ", 1, true) == nil, fenced)
+  check.equal(runner.command("script.lua --out o --fence --trust"), 2)
+end
+do -- a folder that nothing was written to is not left
+  runner.write("script.lua", "return")
+  check.equal(runner.command("script.lua --out new"), 0)
+  check.truth(not runner.exists("new"), "no empty folder")
+end
+
 -- The list of codes.
 do
   local _, out = runner.command("--help")
