@@ -48,7 +48,7 @@ bool impact_runner_open_folder(impact_runner *runner, char *message, size_t size
 
 void impact_runner_open_folder_early(impact_runner *runner)
 {
-    char message[16];
+    char message[400];
     if (!impact_runner_open_folder(runner, message, sizeof message)) runner->folder_error = errno;
 }
 
