@@ -130,6 +130,8 @@ static int scene_usage(lua_State *L)
         lua_pushinteger(L, value);
         lua_setfield(L, -2, name);
     }
+    lua_pushnumber(L, impact_scene_pile_error(check_scene(L)->scene));
+    lua_setfield(L, -2, "pile_error");
     lua_createtable(L, 0, IMPACT_EVENT_REST + 1);
     for (int kind = 0; kind <= IMPACT_EVENT_REST; kind++) {
         lua_pushinteger(L, usage.events[kind]);

@@ -107,6 +107,8 @@ static const impact_pair_def *read_pairs(const quat_lua_reader *reader, impact_s
     return pairs;
 }
 
+static const char *const piles_words[] = {"auto", "exact", "steps", NULL};
+
 static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
 {
     static const char *const keys[] = {"friction", "restitution", NULL};
@@ -121,6 +123,7 @@ static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
     lua_pop(L, 1);
     def->law = (impact_law)quat_lua_get_choice(reader, "law", law_words, (int)def->law);
     def->solver = (impact_solver)quat_lua_get_choice(reader, "solver", solver_words, (int)def->solver);
+    def->piles = (impact_piles)quat_lua_get_choice(reader, "piles", piles_words, (int)def->piles);
     def->compliance = quat_lua_get_number(reader, "compliance", QUAT_LUA_NOT_NEGATIVE, def->compliance);
 }
 
@@ -138,7 +141,7 @@ impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene
     static const char *const keys[] = {"name",       "gravity",       "duration",   "output_rate", "bodies",
                                        "forces",     "pairs",         "rules",      "law",         "solver",
                                        "tolerance",  "rest_height",   "rest_speed", "max_events",  "plot",
-                                       "compliance", "key_tolerance", "view",       NULL};
+                                       "compliance", "key_tolerance", "view",       "piles",       NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     const impact_lua_host *host = impact_lua_get_host(L);

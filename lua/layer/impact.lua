@@ -110,6 +110,7 @@ core.layer()
 ---@field max_events? integer
 ---@field key_tolerance? number  of a recorded run's keys: part of a body's radius, and rad
 ---@field view? table  what its page shows: docs/view.md
+---@field piles? "auto"|"exact"|"steps"  how bodies are moved that touch each other and do not settle
 ---@field plot? fun(scene: impact.scene): plot.figure
 
 ---@class impact.options
@@ -454,12 +455,15 @@ function methods:summary(reason)
       unused[#unused + 1] = part[2]
     end
   end
+  local stepped = usage.pile_steps > 0 and
+      string.format("\n  stepped    bodies that touch each other, not exactly: %d steps, whose measured errors sum to %.2g m", usage.pile_steps,
+        usage.pile_error) or ""
   local steps = usage.integrator_steps > 0 and
       string.format("\n             CVODE took %d steps from %d starts, with %d evaluations of the forces", usage.integrator_steps,
         usage.integrator_starts, usage.integrator_rhs_calls) or ""
   return string.format("%s: %s, t = %.6g s\n  events     %s\n  energy     %s\n  used       %s%s\n  not used   %s\n", self:name(),
     reason or "so far", self:time(), #happened > 0 and table.concat(happened, ", ") or "none", energy_line(self:energy()),
-    table.concat(used, ", "), steps, #unused > 0 and table.concat(unused, ", ") or "nothing was left out")
+    table.concat(used, ", "), steps .. stepped, #unused > 0 and table.concat(unused, ", ") or "nothing was left out")
 end
 
 return impact

@@ -56,6 +56,13 @@ typedef struct impact_pair_def {
     double friction, restitution;
 } impact_pair_def;
 
+/* How bodies are moved that touch each other and do not settle. */
+typedef enum impact_piles {
+    IMPACT_PILES_AUTO,  /* exactly; by steps once that takes the integrator 4000 steps for a fall of one radius */
+    IMPACT_PILES_EXACT, /* exactly, however long it takes */
+    IMPACT_PILES_STEPS  /* by steps, from the start until all rests */
+} impact_piles;
+
 typedef struct impact_scene_def {
     const char *name;
     qvec3 gravity;      /* m/s^2 */
@@ -85,6 +92,7 @@ typedef struct impact_scene_def {
         *allocator; /* of all memory the scene takes, and its limit; copied; NULL: malloc (memory.h) */
     /* of the recorder's keys, in [1e-14, 1e-2]: part of a body's bounding radius in place, rad in orientation */
     double key_tolerance;
+    impact_piles piles;
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
@@ -142,6 +150,8 @@ typedef struct impact_usage {
     /* instants after which bodies moved on with reactions of friction that are not unique: what follows hangs on the
      * choice */
     long reactions_chosen;
+    long islands_stepped; /* stretches of motion by steps, see impact_piles, and the steps they took */
+    long pile_steps;
     long events[IMPACT_EVENT_REST + 1]; /* by kind */
     long samples;
     long keys;
@@ -152,6 +162,10 @@ IMPACT_API impact_usage impact_scene_usage(const impact_scene *scene);
 IMPACT_API impact_memory impact_scene_memory(const impact_scene *scene); /* what it holds now */
 /* Its counts by number, from 0, each with its name above, but for the events; false: there is none of this number. */
 IMPACT_API bool impact_usage_entry(const impact_usage *usage, int number, const char **name, long *value);
+
+/* m: the measured error of the motion by steps, each step's the farthest any point of a body lies from where two steps
+ * of half its length lead; their sum. 0 where nothing was stepped. How motion goes on after an error is not in it. */
+IMPACT_API double impact_scene_pile_error(const impact_scene *scene);
 
 /* The energy account, J: kinetic + potential = start + work of forces and of drives - the losses, to the tolerance of
  * the run. */

@@ -105,5 +105,23 @@
 
 /* Orientations are written as the motion normalised them, to a few roundings; what is off by more is damage. */
 #define IMP_RUN_UNIT 1e-9
+/* ---- motion: piles that are stepped, docs/cone.md ---- */
+
+/* Of the smallest body's radius: gaps up to this are closed, a tenth of a step's error. Where contacts are more than
+ * motions overlaps that are put back leave gaps elsewhere: taken as open those bodies would fall and be caught for
+ * ever.
+ */
+#define IMP_PILE_SLACK 1e-6
+/* Of the smallest body's radius: what one step and its two halves may differ by. */
+#define IMP_PILE_ERROR 1e-5
+/* Steps in units of the time in which the smallest body falls its radius: the first; the longest, in which contacts
+ * turn by less than .05; and the shortest, in which a fall is 1e-10 of the radius. */
+#define IMP_PILE_FIRST 1e-2
+#define IMP_PILE_LONGEST 5e-2
+#define IMP_PILE_SHORTEST 1e-5
+/* Steps of the integrator, with bodies held on each other, for the time in which the smallest falls its radius: more is
+ * a pile that does not get on. With 1000 two ellipsoids that settle on each other, and balls that roll about in a box,
+ * are stepped too, which the exact motion brings to their end. */
+#define IMP_PILE_PATIENCE 4000
 
 #endif

@@ -411,8 +411,6 @@ impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1
     set(&s, body, motion1, motion2, t_max);
     status = run(&s);
     if (contact) *contact = s.here.contact;
-    const bool wrong = status == IMPACT_OK && s.here.t > 0 && !imp_toi_holds(&s.q, &s.here);
-    if (wrong) status = IMPACT_EUNSETTLED;
-    if (status >= 0 || status == IMPACT_EUNSETTLED) *time = wrong ? 0 : s.here.t;
+    if (status >= 0 || status == IMPACT_EUNSETTLED) *time = s.here.t;
     return status;
 }

@@ -3,6 +3,7 @@
 #include "scene/scene_check.h"
 #include "scene/scene_crowd.h"
 #include "scene/scene_keys.h"
+#include "scene/scene_pile.h"
 #include "world/world_gap.h"
 #include "collide/collide_workspace.h"
 
@@ -13,6 +14,7 @@
 static bool pulse(void *context, double t)
 {
     impact_scene *scene = context;
+    if (imp_scene_pile_pulse(scene)) return false; /* the stretch ends here; the motion goes on by steps */
     if (!scene->recorder || !scene->recorder->progress) return true;
     if (scene->recorder->progress(scene->recorder->context, t, scene->duration)) return true;
     scene->stop = IMPACT_STOPPED;
@@ -104,6 +106,7 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
                      def->name ? def->name : "");
     }
     if (status == IMPACT_OK) status = imp_scene_crowd_open(scene);
+    if (status == IMPACT_OK) status = imp_scene_pile_open(scene, def->piles);
     if (status == IMPACT_ENOMEM && message) imp_arena_explain(scene->world.arena, message, message_size);
     if (status != IMPACT_OK) {
         impact_scene_destroy(scene);

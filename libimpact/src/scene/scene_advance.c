@@ -3,6 +3,7 @@
  * From one event of a scene to the next: below the scene's own run and the groups of its crowd alike.
  */
 #include "scene/scene_keys.h"
+#include "scene/scene_pile.h"
 
 #include <stdio.h>
 
@@ -69,8 +70,9 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end, imp_scene_step 
                      scene->t);
             return IMPACT_EVENT_LIMIT;
         }
-        if (!scene->sampler.pulse(scene->sampler.context, scene->t)) return scene->stop;
-        status = step(scene, t_end);
+        scene->stop = IMPACT_OK;
+        if (!scene->sampler.pulse(scene->sampler.context, scene->t) && scene->stop != IMPACT_OK) return scene->stop;
+        status = imp_scene_pile_stepped(scene) ? imp_scene_pile_advance(scene, t_end) : step(scene, t_end);
         if (scene->crowd && !imp_scene_account(scene)) return IMPACT_ESINK;
     }
     return status;

@@ -210,6 +210,8 @@ impact_status imp_scene_check(const impact_scene_def *def, char *message, unsign
     require(&c, def->key_tolerance >= 1e-14 && def->key_tolerance <= 1e-2, "key_tolerance", def->key_tolerance,
             "must lie in [1e-14, 1e-2]");
     require(&c, def->max_events > 0, "max_events", (double)def->max_events, "must be positive");
+    require(&c, def->piles >= IMPACT_PILES_AUTO && def->piles <= IMPACT_PILES_STEPS, "piles", def->piles,
+            "is no way to move them");
     require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule",
             def->friction_rule, "is no rule");
     require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule",

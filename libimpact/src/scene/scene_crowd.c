@@ -7,6 +7,7 @@
  */
 #include "scene/scene_crowd.h"
 #include "scene/scene_keys.h"
+#include "scene/scene_pile.h"
 #include "world/crowd.h"
 #include "motion/motion_equations.h"
 #include "scene/scene_rows.h"
@@ -44,7 +45,7 @@ typedef struct imp_scene_crowd {
     imp_rows rows;
     imp_kept_list kept;
     double while_time; /* s */
-    bool escaped, stopped;
+    bool escaped, stopped, piled;
     bool spent; /* a group found no memory: it did not move whole, and the scene cannot go on */
 } imp_scene_crowd;
 
@@ -147,7 +148,8 @@ static bool party_pulse(void *context, double t)
     if (recorder && recorder->progress)
         crowd->stopped =
             crowd->stopped || !recorder->progress(recorder->context, fmin(t, crowd->scene->t), crowd->scene->duration);
-    if (!crowd->escaped && !crowd->stopped) return true;
+    crowd->piled = crowd->piled || imp_scene_pile_party(crowd->scene, &p->scene);
+    if (!crowd->escaped && !crowd->stopped && !crowd->piled) return true;
     p->scene.stop = IMPACT_STOPPED;
     return false;
 }
@@ -320,7 +322,8 @@ static double move_parties(imp_scene_crowd *crowd, double t_end, party **stopped
     *stopped = NULL;
     while (again) {
         again = false;
-        for (int g = 0; g < crowd->party_count && !crowd->escaped && !crowd->stopped && !crowd->spent; g++) {
+        for (int g = 0; g < crowd->party_count && !crowd->escaped && !crowd->stopped && !crowd->spent && !crowd->piled;
+             g++) {
             party *p = crowd->parties[g];
             const bool done = p->moved && p->scene.t <= t_end;
             if (p == *stopped || (done && goes_on(p->status))) continue;
@@ -452,7 +455,7 @@ impact_status imp_scene_crowd_advance(impact_scene *scene, double t_end)
     imp_scene_crowd *crowd = scene->crowd;
     const double end = fmin(t_end, scene->t + choose_while(crowd));
     double caution = 3;
-    crowd->stopped = false;
+    crowd->stopped = crowd->piled = false;
     for (int try = 0; try < TRIES; try++, caution *= 2) {
         crowd->escaped = false;
         const impact_status status = make_parties(crowd, end - scene->t, caution);
@@ -461,6 +464,10 @@ impact_status imp_scene_crowd_advance(impact_scene *scene, double t_end)
         const double reached = move_parties(crowd, end, &stopped);
         if (crowd->spent) return IMPACT_ENOMEM;
         if (crowd->stopped) return IMPACT_STOPPED;
+        if (crowd->piled) { /* nothing was taken over yet: by steps, then */
+            crowd->rows.count = crowd->rows.next = crowd->kept.count = 0;
+            return IMPACT_OK;
+        }
         if (!crowd->escaped) return close_while(crowd, stopped ? reached : rest_time(crowd, end), stopped);
     }
     snprintf(scene->message, sizeof scene->message, "a body got faster without bound after t = %.17g", scene->t);

@@ -31,6 +31,7 @@ struct impact_scene {
     struct imp_scene_keys *keys;   /* while a run with keys is under way */
     bool beside_event;             /* the rows that go to the recorder now stand beside an event */
     struct imp_scene_crowd *crowd; /* of many bodies, that are moved in groups; NULL: all at once */
+    struct imp_scene_pile *pile;   /* steps it where the exact method does not get on; NULL: never */
     char message[512];
 };
 

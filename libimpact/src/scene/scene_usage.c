@@ -28,6 +28,8 @@ static const struct {
     ENTRY(impacts_simultaneous),
     ENTRY(impacts_together),
     ENTRY(reactions_chosen),
+    ENTRY(islands_stepped),
+    ENTRY(pile_steps),
     ENTRY(samples),
     ENTRY(keys),
     ENTRY(keys_unmet),

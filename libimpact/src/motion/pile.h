@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * pile: bodies that touch, moved by steps of time where the exact method does not get on. Internal.
+ *
+ * Moreau & Jean's steps with theta = 1/2 (Jean 1999), from (x, v) over h:
+ *
+ *     x_m = x + h v/2      loads F and the contacts with a gap <= 0 at x_m
+ *     u = W p + q,  q = G (v + h M^-1 F)  and, along normals that approach at u_n < 0, less e u_n:   one cone problem
+ *     v' = v + h M^-1 F + M^-1 G^T p      x' = x + h (v + v')/2
+ *
+ * Free flight in uniform gravity is exact. A step is taken once whole and once in two halves; what their ends differ by
+ * is its measured error, and chooses the next. Overlaps that arrivals leave, and gaps by which held contacts
+ * open on round bodies, h² in each step, are put back along normals, least in the metric of mass. The limit h -> 0 is
+ * Coulomb's law with Newton's restitution, at simultaneous contacts Moreau's.
+ */
+#ifndef IMP_PILE_H
+#define IMP_PILE_H
+
+#include "contact/cone_assemble.h"
+#include "contact/rest.h"
+#include "world/field.h"
+
+/* One contact of the last step, kept for the next; world axes. */
+typedef struct imp_pile_memory {
+    bool active, fresh;       /* it was held; by the step at hand */
+    qvec3 reaction, velocity; /* N (impulse over h), m/s */
+} imp_pile_memory;
+
+typedef struct imp_pile {
+    imp_arena *arena;  /* the pile's own */
+    int bodies, pairs; /* there is room for */
+    double step;       /* s: to be tried next; 0: chosen anew */
+    imp_cone_workspace cone;
+    imp_rest_workspace rest;
+    imp_state *middle, *whole, *half, *end;
+    imp_load *loads;
+    int *root, *member; /* per body, per pair */
+    /* per pair: as the accepted step left it, as the step at hand has it, and as the two halves left it */
+    imp_pile_memory *memory[3];
+    int contacts_most; /* there is room for in: */
+    imp_cone_contact *contacts;
+    int *pair_of, *pivots;
+    imp_cone_row *rows;
+    double *gap, *friction, *w, *q, *r, *u, *last_r, *last_u;
+    imp_rest_velocity *velocities;
+    char message[160];
+} imp_pile;
+
+/* What one accepted step did. */
+typedef struct imp_pile_step_result {
+    double taken; /* s */
+    double error; /* m: how far the whole step's end lies from the two halves', any body's point; the measure */
+    double force_work, damping, drive_work; /* J: of the loads and of driven surfaces */
+    int contacts;                           /* at its end */
+    int coupled;                            /* of them between two bodies that move */
+} imp_pile_step_result;
+
+/* Nothing is taken from the arena before it is needed; all of it goes with the arena. */
+void imp_pile_open(imp_pile *pile, imp_arena *arena);
+
+/* s: in which the smallest body falls its radius; without gravity, in which the fastest goes as far. */
+double imp_pile_natural_time(const imp_world *world, const imp_state *states);
+
+/* The next step is the first: nothing of steps before is remembered. */
+void imp_pile_begin(imp_pile *pile);
+
+/* One step from time t of all bodies of the world that move, at most `most` long; the states are its end. Loads
+ * are asked at (t, states). IMPACT_ENOMEM; IMPACT_EDOMAIN: a load refused; IMPACT_EUNSETTLED, with a message: a cone
+ * problem found no answer, however short the step. */
+impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
+                            imp_pile_step_result *result);
+
+/* Whether all bodies of the world that move, being slower than rest_speed (m/s), can stand still where they are: proved
+ * by reactions. */
+bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed);
+
+#endif
