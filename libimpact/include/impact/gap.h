@@ -50,7 +50,7 @@ typedef struct impact_contact {
  * between the positions; an overlap deeper than 5 % of the smallest semi-axis or of the radii at the contact, or of two
  * bodies with edges, is then proved the nearest way out, or one of several equally near. With an answer too:
  * IMPACT_DEEP, a way out that no other is nearer than by more than the bracket; IMPACT_BRACKET, the gap lies in [lower,
- * upper], and no witness points were found. Both brackets of an overlap are at most half a per cent of its depth wide,
+ * upper], and no witness points were found. Both brackets of an overlap are at most one per cent of its depth wide,
  * but where the work allowed is not enough: then upper is the distance of the centres or 0. Two octahedra (all
  * exponents 1) that overlap are solved as the polytopes they are. IMPACT_EDOMAIN: a position that is not finite, an
  * orientation that is zero or not finite. A negative status leaves every number of *contact NaN. Method: docs/gap.md.
@@ -60,10 +60,10 @@ IMPACT_API impact_status impact_gap(const impact_solid *body1, const impact_soli
 
 /* Residuals of an answer in eps (L + |c|); of normal in eps. */
 typedef struct impact_gap_residuals {
-    double normal;           /* |n| - 1; against a plane also its distance from the plane's normal */
-    double dual;             /* lower against g(n) = n.c - h_2(n) - h_1(-n), which is no more than the gap */
-    double primal;           /* apart: the points' distance beyond upper; overlapping: n.(x_1 - x_2) against the gap */
-    double order;            /* of lower, gap and upper */
+    double normal; /* |n| - 1; against a plane also its distance from the plane's normal */
+    double dual;   /* lower against g(n) = n.c - h_2(n) - h_1(-n), which is no more than the gap */
+    double primal; /* apart: the points' distance beyond upper; overlapping: n.(x_1 - x_2) beyond either end */
+    double order;  /* of lower, gap and upper */
     double inside1, inside2; /* the witness points' distances outside their bodies, to first order */
 } impact_gap_residuals;
 

@@ -85,8 +85,10 @@ double impact_gap_receipt(const impact_solid *body1, const impact_solid *body2, 
     const qvec3 v = qvec3_sub(qvec3_add(c, contact->offset1), contact->offset2);
     r.normal /= DBL_EPSILON;
     r.dual = fabs(contact->lower - lower) / unit;
-    r.primal =
-        (contact->gap > 0 ? excess_of(qvec3_norm(v) - contact->upper) : fabs(qvec3_dot(n, v) - contact->gap)) / unit;
+    const double along = qvec3_dot(n, v), apart = qvec3_norm(v);
+    r.primal = excess_of((contact->gap > 0 ? apart : along) - contact->upper);
+    if (!(contact->gap > 0)) r.primal += excess_of(contact->lower - along);
+    r.primal /= unit;
     r.order = (excess_of(contact->lower - contact->gap) + excess_of(contact->gap - contact->upper)) / unit;
     r.inside1 = excess_of(outside_of(body1, contact->offset1)) / unit;
     r.inside2 = excess_of(outside_of(body2, contact->offset2)) / unit;
