@@ -104,7 +104,9 @@ IMPACT_API impact_body_def impact_default_body_def(void);
 typedef struct impact_scene impact_scene;
 
 /* *scene is NULL on failure, and message (may be NULL) says what is wrong with which body, key and value. */
-/* IMPACT_ENOMEM, here and in a run, says how much was wanted. After it a run can go on no more. */
+/* IMPACT_EDOMAIN under flush-to-zero or denormals-are-zero. A host's floating-point traps are switched off within
+ * impact_scene_create and a run, its callbacks included, and its environment is given back as it was, with its flags.
+ * IMPACT_ENOMEM, here and in a run, says how much was wanted. After it a run can go on no more. */
 IMPACT_API impact_status impact_scene_create(const impact_scene_def *def, impact_scene **scene, char *message,
                                              unsigned long message_size);
 IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */

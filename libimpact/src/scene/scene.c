@@ -5,6 +5,7 @@
 #include "scene/scene_keys.h"
 #include "scene/scene_pile.h"
 #include "world/world_gap.h"
+#include "base/floats.h"
 #include "collide/collide_workspace.h"
 
 #include <stdio.h>
@@ -68,11 +69,14 @@ static impact_status open_memory(const impact_scene_def *def, impact_scene **sce
     return IMPACT_ENOMEM;
 }
 
-impact_status impact_scene_create(const impact_scene_def *def, impact_scene **out, char *message,
-                                  unsigned long message_size)
+static impact_status create(const impact_scene_def *def, impact_scene **out, char *message, unsigned long message_size)
 {
-    *out = NULL;
-    if (message && message_size > 0) message[0] = '\0';
+    if (!imp_floats_are_gradual()) {
+        if (message)
+            snprintf(message, message_size,
+                     "the processor flushes small numbers to zero (FTZ or DAZ): switch that off");
+        return IMPACT_EDOMAIN;
+    }
     impact_status status = imp_scene_check(def, message, message_size);
     if (status != IMPACT_OK) return status;
     impact_scene *scene;
@@ -114,6 +118,17 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
     }
     *out = scene;
     return IMPACT_OK;
+}
+
+impact_status impact_scene_create(const impact_scene_def *def, impact_scene **out, char *message,
+                                  unsigned long message_size)
+{
+    const imp_floats floats = imp_floats_hold();
+    *out = NULL;
+    if (message && message_size > 0) message[0] = '\0';
+    const impact_status status = create(def, out, message, message_size);
+    imp_floats_give_back(&floats);
+    return status;
 }
 
 void impact_scene_destroy(impact_scene *scene)
@@ -166,6 +181,7 @@ static impact_status check_account(impact_scene *scene, impact_status status)
 
 impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
 {
+    const imp_floats floats = imp_floats_hold();
     scene->recorder = recorder;
     impact_status status = imp_scene_keys_begin(scene);
     if (status == IMPACT_OK) status = check_account(scene, run(scene, t));
@@ -174,6 +190,7 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     if (status == IMPACT_ENOMEM) imp_arena_explain(scene->world.arena, scene->message, sizeof scene->message);
     if (status < 0 && scene->message[0] == '\0')
         snprintf(scene->message, sizeof scene->message, "%s", impact_status_string(status));
+    imp_floats_give_back(&floats);
     return status;
 }
 
