@@ -4,6 +4,8 @@
  */
 #include "impact_collide.h"
 
+#include <string.h>
+
 const char *const impact_lua_laws[] = {"poisson", "newton", "stronge", NULL};
 const char *const impact_lua_solvers[] = {"auto", "closed_form", "series", "cvode", NULL};
 
@@ -124,6 +126,7 @@ static void push_outcome(lua_State *L, const impact_outcome *o, impact_status st
     quat_lua_set_number(L, "energy_before", o->energy_before);
     quat_lua_set_number(L, "energy_after", o->energy_after);
     quat_lua_set_number(L, "conditioning", o->conditioning);
+    quat_lua_set_number(L, "error", o->error);
     lua_createtable(L, 0, 3);
     quat_lua_set_number(L, "compression", o->work_compression);
     quat_lua_set_number(L, "restitution", o->work_restitution);
@@ -135,11 +138,112 @@ static void push_outcome(lua_State *L, const impact_outcome *o, impact_status st
         lua_rawseti(L, -2, i + 1);
     }
     lua_setfield(L, -2, "phases");
+    lua_createtable(L, o->phase_count, 0);
+    for (int i = 0; i < o->phase_count; i++) {
+        quat_lua_push_vec3(L, o->phase_impulse[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "phase_impulses");
     quat_lua_set_integer(L, "compressions", o->compressions);
     quat_lua_set_boolean(L, "energy_rose", o->energy_rose);
     quat_lua_set_boolean(L, "jammed", o->jammed);
+    quat_lua_set_boolean(L, "second", o->second);
     quat_lua_set_string(L, "solver", impact_solver_name(o->solver));
-    quat_lua_set_string(L, "status", status == IMPACT_SEPARATING ? "separating" : "ok");
+    quat_lua_set_string(L, "status",
+                        status == IMPACT_SEPARATING ? "separating"
+                        : status == IMPACT_SOFT     ? "soft"
+                                                    : "ok");
+}
+
+/* ---- an outcome read back ---- */
+
+/* The words of a list, as phases. */
+static void read_phases(const quat_lua_reader *reader, impact_outcome *o)
+{
+    lua_State *L = reader->L;
+    if (quat_lua_push(reader, "phases") != LUA_TTABLE) quat_lua_reader_error(reader, "phases must be a list");
+    const int list = lua_gettop(L);
+    for (int i = 1; o->phase_count < IMPACT_MAX_PHASES && lua_rawgeti(L, list, i) == LUA_TSTRING; i++) {
+        const char *word = lua_tostring(L, -1);
+        int phase = IMPACT_SLIP_C;
+        while (phase <= IMPACT_REVERSAL && strcmp(word, impact_phase_name((impact_phase)phase)) != 0) phase++;
+        if (phase > IMPACT_REVERSAL) quat_lua_reader_error(reader, "phases: '%s' is no phase", word);
+        o->phases[o->phase_count++] = (unsigned char)phase;
+    }
+    if (quat_lua_push(reader, "phase_impulses") != LUA_TTABLE)
+        quat_lua_reader_error(reader, "phase_impulses must be a list");
+    for (int i = 0; i < o->phase_count; i++) {
+        lua_rawgeti(L, -1, i + 1);
+        o->phase_impulse[i] = quat_lua_arg_vec3(L, lua_gettop(L), "phase_impulses");
+        lua_pop(L, 1);
+    }
+    lua_settop(L, list - 1);
+}
+
+static void read_work(const quat_lua_reader *reader, impact_outcome *o)
+{
+    static const char *const keys[] = {"compression", "restitution", "friction", NULL};
+    quat_lua_need(reader, "work");
+    quat_lua_push(reader, "work");
+    const quat_lua_reader work = quat_lua_read(reader->L, lua_gettop(reader->L), "work", reader->where, keys);
+    o->work_compression = quat_lua_get_number(&work, "compression", QUAT_LUA_FINITE, 0);
+    o->work_restitution = quat_lua_get_number(&work, "restitution", QUAT_LUA_FINITE, 0);
+    o->work_friction = quat_lua_get_number(&work, "friction", QUAT_LUA_FINITE, 0);
+    lua_pop(reader->L, 1);
+}
+
+/* A table as push_outcome makes it. */
+static impact_outcome read_outcome(lua_State *L, int index)
+{
+    static const char *const keys[] = {"v1",
+                                       "w1",
+                                       "v2",
+                                       "w2",
+                                       "impulse",
+                                       "impulse_normal",
+                                       "impulse_tangential",
+                                       "compression_impulse",
+                                       "normal_before",
+                                       "normal_after",
+                                       "energy_before",
+                                       "energy_after",
+                                       "conditioning",
+                                       "error",
+                                       "work",
+                                       "phases",
+                                       "phase_impulses",
+                                       "compressions",
+                                       "energy_rose",
+                                       "jammed",
+                                       "second",
+                                       "solver",
+                                       "status",
+                                       NULL};
+    const quat_lua_reader reader = quat_lua_read(L, index, "outcome", NULL, keys);
+    impact_outcome o = {.compressions = (int)quat_lua_get_integer(&reader, "compressions", 0, 1000, 1)};
+    const qvec3 none = {NAN, NAN, NAN};
+    struct {
+        const char *key;
+        double *value;
+    } const numbers[] = {{"impulse_normal", &o.impulse_normal},
+                         {"impulse_tangential", &o.impulse_tangential},
+                         {"compression_impulse", &o.compression_impulse},
+                         {"normal_before", &o.normal_before},
+                         {"normal_after", &o.normal_after},
+                         {"energy_before", &o.energy_before},
+                         {"energy_after", &o.energy_after}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        quat_lua_need(&reader, numbers[i].key);
+        *numbers[i].value = quat_lua_get_number(&reader, numbers[i].key, QUAT_LUA_FINITE, 0);
+    }
+    o.velocity[0] = quat_lua_get_vec3(&reader, "v1", none);
+    o.velocity[1] = quat_lua_get_vec3(&reader, "v2", none);
+    o.omega[0] = quat_lua_get_vec3(&reader, "w1", none);
+    o.omega[1] = quat_lua_get_vec3(&reader, "w2", none);
+    o.impulse = quat_lua_get_vec3(&reader, "impulse", none);
+    read_work(&reader, &o);
+    read_phases(&reader, &o);
+    return o;
 }
 
 /* ---- the door ---- */
@@ -276,13 +380,34 @@ static int sensitivity(lua_State *L)
     return 1;
 }
 
+/* collide_receipt(collision, outcome): a table of residuals in eps, by identity, and the worst. */
+static int receipt(lua_State *L)
+{
+    const quat_lua_reader reader = quat_lua_read(L, 1, "collision", NULL, collide_keys);
+    impact_collision c;
+    law_call call;
+    luaL_checkany(L, 2);
+    const impact_status status = read_whole(L, &reader, &call, &c);
+    if (status != IMPACT_OK) return quat_lua_failure(L, impact_status_string(status));
+    const impact_outcome o = read_outcome(L, 2);
+    impact_receipt r;
+    impact_collide_receipt(&c, &o, &r);
+    struct {
+        const char *key;
+        double value;
+    } const fields[] = {{"momentum", r.momentum}, {"spin", r.spin},  {"cone", r.cone},   {"energy", r.energy},
+                        {"power", r.power},       {"law", r.law},    {"stick", r.stick}, {"path", r.path},
+                        {"approach", r.approach}, {"worst", r.worst}};
+    lua_createtable(L, 0, 10);
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) quat_lua_set_number(L, fields[i].key, fields[i].value);
+    return 1;
+}
+
 void impact_lua_open_collide(lua_State *L)
 {
-    static const luaL_Reg functions[] = {{"collide", collide},
-                                         {"collide_many", impact_lua_collide_many},
-                                         {"collide_sensitivity", sensitivity},
-                                         {"flow", impact_lua_flow},
-                                         {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"collide", collide},         {"collide_many", impact_lua_collide_many},
+                                         {"collide_receipt", receipt}, {"collide_sensitivity", sensitivity},
+                                         {"flow", impact_lua_flow},    {NULL, NULL}};
     static const luaL_Reg box_methods[] = {{"__gc", close_box}, {"__close", close_box}, {NULL, NULL}};
     luaL_newmetatable(L, workspace_kind);
     luaL_setfuncs(L, box_methods, 0);

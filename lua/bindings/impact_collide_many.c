@@ -4,8 +4,8 @@
  */
 #include "impact_collide.h"
 
-static const char *const keys[] = {"count", "threads", "m1", "J1", "r1",  "v1",  "w1",     "m2",    "J2", "r2",
-                                   "v2",    "w2",      "n",  "mu", "eps", "law", "solver", "order", NULL};
+static const char *const keys[] = {"count", "threads", "m1", "J1", "r1",  "v1",  "w1",     "m2",    "J2",      "r2",
+                                   "v2",    "w2",      "n",  "mu", "eps", "law", "solver", "order", "checked", NULL};
 
 /* A key's value as columns of `width` numbers: one row for all, or one for each. */
 typedef struct column {
@@ -140,6 +140,7 @@ typedef struct batch {
     impact_law law;
     impact_solver solver;
     int order, threads;
+    bool checked; /* by receipts */
 } batch;
 
 static const char *const body_keys[2][5] = {{"m1", "J1", "r1", "v1", "w1"}, {"m2", "J2", "r2", "v2", "w2"}};
@@ -160,11 +161,13 @@ static void open_all(const quat_lua_reader *reader, batch *b, lua_Integer count)
     b->solver = (impact_solver)quat_lua_get_choice(reader, "solver", impact_lua_solvers, IMPACT_SOLVER_AUTO);
     b->order = (int)quat_lua_get_integer(reader, "order", 8, 32, 0);
     b->threads = (int)quat_lua_get_integer(reader, "threads", 0, 256, 1);
+    b->checked = quat_lua_get_boolean(reader, "checked", false);
 }
 
 static void read_one(const quat_lua_reader *reader, const batch *b, lua_Integer row, impact_collision *c)
 {
     *c = (impact_collision){.law = b->law, .solver = b->solver, .series_order = b->order};
+    c->checking = b->checked ? IMPACT_CHECK_ALWAYS : IMPACT_CHECK_NEVER;
     for (int i = 0; i < 2; i++) {
         impact_collider *body = &c->body[i];
         body->mass = number_of(reader, &b->mass[i], row);
@@ -183,15 +186,15 @@ static void read_one(const quat_lua_reader *reader, const batch *b, lua_Integer 
 
 /* ---- results: columns, filled block by block ---- */
 
-enum { VECTORS = 5, NUMBERS = 3, COLUMNS = VECTORS + NUMBERS + 1 };
+enum { VECTORS = 5, NUMBERS = 4, COLUMNS = VECTORS + NUMBERS + 1 };
 
 static const char *const column_keys[COLUMNS] = {
-    "v1", "w1", "v2", "w2", "impulse", "energy_before", "energy_after", "normal_after", "status"};
+    "v1", "w1", "v2", "w2", "impulse", "energy_before", "energy_after", "normal_after", "error", "status"};
 
 static void fill(lua_State *L, int first_column, const impact_outcome *o, impact_status status, lua_Integer row)
 {
     const qvec3 vectors[VECTORS] = {o->velocity[0], o->omega[0], o->velocity[1], o->omega[1], o->impulse};
-    const double numbers[NUMBERS] = {o->energy_before, o->energy_after, o->normal_after};
+    const double numbers[NUMBERS] = {o->energy_before, o->energy_after, o->normal_after, o->error};
     for (int k = 0; k < VECTORS; k++) {
         const double x[3] = {vectors[k].x, vectors[k].y, vectors[k].z};
         for (int i = 0; i < 3; i++) {
@@ -205,6 +208,7 @@ static void fill(lua_State *L, int first_column, const impact_outcome *o, impact
     }
     lua_pushstring(L, status == IMPACT_OK           ? "ok"
                       : status == IMPACT_SEPARATING ? "separating"
+                      : status == IMPACT_SOFT       ? "soft"
                                                     : impact_lua_why_no_outcome(status));
     lua_rawseti(L, first_column + COLUMNS - 1, row + 1);
 }

@@ -142,6 +142,39 @@ do
   check.truth(not ok and tostring(message):find("impact 17", 1, true), tostring(message))
 end
 
+-- The receipt of an answer is small, of a changed one large; arrays have it when asked.
+do
+  local slides = with { J1 = { moments = { 0.1, 0.2, 0.25 } }, r1 = { 0.1, 0.05, -0.3 } }
+  local o = assert(impact.collide(slides))
+  local r = impact.collide_receipt(slides, o)
+  check.truth(r.worst < 100 and o.error > 0 and o.error < 1e-13 and not o.second, tostring(r.worst))
+  for _, field in ipairs { "momentum", "spin", "cone", "energy", "power", "law", "approach", "stick", "path" } do
+    check.truth(r[field] <= r.worst, field)
+  end
+  check.truth(#o.phase_impulses == #o.phases)
+  near(o.phase_impulses[#o.phases].z, o.impulse.z, 1e-14)
+  o.impulse_normal = o.impulse_normal * (1 + 1e-9)
+  check.truth(impact.collide_receipt(slides, o).approach > 1e4)
+  local less = with { J1 = slides.J1, r1 = slides.r1, mu = 0.2 }
+  check.truth(impact.collide_receipt(less, assert(impact.collide(slides))).cone > 1e4)
+  for _, wrong in ipairs { { phases = { "slipping" } }, { impulse_normal = "much" }, { normal_before = 0 / 0 } } do
+    local bad = assert(impact.collide(slides))
+    for key, value in pairs(wrong) do bad[key] = value end
+    local ok, message = pcall(impact.collide_receipt, slides, bad)
+    check.truth(not ok and tostring(message):find((next(wrong)), 1, true), tostring(message))
+  end
+  local array = { count = 2, m1 = 4, J1 = { moments = { 0.1, 0.2, 0.25 } }, r1 = { 0.1, 0.05, -0.3 }, v1 = { 4, 1, -2 }, n = { 0, 0, 1 }, mu = 0.25 }
+  check.truth(assert(impact.collide_many(array)).error[2] == 0)
+  array.checked = true
+  check.truth(assert(impact.collide_many(array)).error[2] > 0)
+end
+
+-- What lies outside of the admitted range is refused in words.
+do
+  local ok, message = pcall(impact.collide, with { J1 = { moments = { 1e-14, 1, 1 } } })
+  check.truth(not ok and tostring(message):find("body 1: moments spread over 1e+14, at most 1e+12", 1, true), tostring(message))
+end
+
 -- The flow as columns.
 do
   local f = assert(impact.flow { a = 2, b = 1, c = 0.3, d = 0.2, m = 1.5, mu = 0.5, u = { 1, 0.5, -1 }, p_end = 8, count = 50 })

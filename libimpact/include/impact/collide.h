@@ -37,6 +37,13 @@ typedef enum impact_solver {
     IMPACT_SOLVER_CVODE
 } impact_solver;
 
+/* Whether an answer is checked by its receipt before it is returned. */
+typedef enum impact_checking {
+    IMPACT_CHECK_AUTO,   /* by impact_collide, not by impact_collide_many */
+    IMPACT_CHECK_ALWAYS, /* by both */
+    IMPACT_CHECK_NEVER   /* only that it is finite and gains no energy */
+} impact_checking;
+
 /* mu at the sliding speed given, m/s; finite and >= 0, smooth for speed > 0; mu(0) decides whether friction
  * can hold. */
 typedef double impact_friction_law(double speed, void *context);
@@ -59,6 +66,7 @@ typedef struct impact_collision {
     void *friction_context;
     /* eta^2, normal over tangential stiffness of the contact: by CVODE (always BDF), Stronge's law; 0: rigid. */
     double tangential_compliance;
+    impact_checking checking;
     impact_collide_workspace *workspace; /* for CVODE; NULL: one is made for the call (it allocates), Adams at 1e-12 */
 } impact_collision;
 
@@ -94,12 +102,37 @@ typedef struct impact_outcome {
     double conditioning;
     bool jammed;      /* friction drove the contact on into compression: u_z fell while it was < 0 */
     bool energy_rose; /* Newton's law only (or a restitution above 1): it can */
+    bool second;      /* answered in 128-bit arithmetic, since the answer in double had not passed */
+    /* An estimate, to first order, of the relative error of the velocities: eps times what the receipt left, times the
+     * conditioning, at least 1 each. 0: not looked at. */
+    double error;
 } impact_outcome;
 
 /* One word for each: "poisson", "closed form", "slip-c" ...; "unknown" for any other value. */
 IMPACT_API const char *impact_law_name(impact_law law);
 IMPACT_API const char *impact_solver_name(impact_solver solver);
 IMPACT_API const char *impact_phase_name(impact_phase phase);
+
+/* The receipt of an answer: how far identities between a collision and its outcome are missed, each over the sizes of
+ * its own terms, in units of eps = 2^-52. What rounding alone leaves is of the order of 1. */
+typedef struct impact_receipt {
+    double momentum; /* m (V - v) = +-P */
+    double spin;     /* J (W - w) = +-(r x P) on each principal axis */
+    double cone;     /* P_n >= 0, |P_t| <= mu P_n */
+    double energy;   /* does not rise (Poisson, Stronge), friction's work is not > 0, energies as reported */
+    double power;    /* change of energy = P.(u- + u+)/2 = sum of the works (and of a moving static body's) */
+    double law;      /* of restitution */
+    double approach; /* u_n before, after and P_n as reported; u_n after >= 0 */
+    double stick;    /* u_t = 0 where the last phase sticks */
+    double path;     /* each phase: its impulse in the cone; u_n = 0 at turns, u_t = 0 at stops; together the impulse */
+    double worst;
+} impact_receipt;
+
+/* The receipt's worst; NaN where anything is. It shares no formula with the solvers. Restitution by Stronge's law is
+ * looked at where the contact was compressed once; of a compliant contact law, stick and path are left out, of a
+ * friction law the cone: they stay 0. For outcomes of IMPACT_OK and IMPACT_SOFT. */
+IMPACT_API double impact_collide_receipt(const impact_collision *collision, const impact_outcome *outcome,
+                                         impact_receipt *receipt);
 
 /* Whether impact_collide would take the collision: IMPACT_OK, or IMPACT_EDOMAIN (NaN or infinity) or IMPACT_EARGUMENT
  * (out of range) with the thing and its value in message[size], cut to fit; size 0: no message. */
@@ -125,8 +158,10 @@ IMPACT_API impact_ode_counts impact_collide_workspace_count(const impact_collide
 /* What it holds; of one that belongs to a scene: what the scene holds. */
 IMPACT_API impact_memory impact_collide_workspace_memory(const impact_collide_workspace *workspace);
 
-/* Solves one impact (docs/collide.md). IMPACT_OK; IMPACT_SEPARATING when the contact points do not approach (outcome:
- * nothing changed); negative: the outcome holds the velocities given and NaN elsewhere: as impact_collide_check;
+/* Solves one impact (docs/collide.md). IMPACT_OK: and the receipt passed; IMPACT_SEPARATING when the contact points do
+ * not approach (outcome: nothing changed); IMPACT_SOFT: the best answer of all solvers, whose receipt did not pass:
+ * impact_collide_receipt says which identity fails; negative: the outcome holds the velocities given and NaN elsewhere:
+ * as impact_collide_check;
  * IMPACT_EARGUMENT also where a closed form was asked for and there is none; IMPACT_EABSENT for CVODE in a build
  * without it; IMPACT_EINTEGRATOR, IMPACT_EUNSETTLED, IMPACT_ENOMEM. A tangential velocity that is rounding of the
  * velocities given counts as none. Sources: Mirtich & Canny 1995; Stronge 2000; the series after Jorba & Zou 2005. */

@@ -115,8 +115,8 @@ IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
  * Samples stand at k/output_rate; two more, just before and just after, beside each event, for the bodies in it.
  * IMPACT_OK: the time was reached; IMPACT_AT_REST: nothing moves any more and nothing will, state stands until the end;
  * IMPACT_SOFT: one of these, but the energy account is off by more than 1e-8 (and 1000 times the tolerance) of the
- * energies in it; other positive statuses: stopped early; negative: failed. See impact_scene_message. A scene at rest
- * or stopped can be run on. */
+ * energies in it, or an impact was soft (usage); other positive statuses: stopped early; negative: failed. See
+ * impact_scene_message. A scene at rest or stopped can be run on. */
 IMPACT_API impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder);
 IMPACT_API impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder);
 
@@ -146,6 +146,7 @@ typedef struct impact_usage {
     long integrator_starts, integrator_steps, integrator_rhs_calls;
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode; /* impacts, by solver */
+    long impacts_second, impacts_soft; /* of these, answered in 128 bits; answered though no receipt passed */
     /* of these, answers to another impact in the same instant, taken in the order of the definition */
     long impacts_simultaneous;
     long impacts_together; /* impulses that many pairs exchanged together, where answers would not end */

@@ -9,7 +9,7 @@ const char *impact_status_string(impact_status status)
     case IMPACT_AT_REST: return "every body is at rest";
     case IMPACT_EVENT_LIMIT: return "event limit reached";
     case IMPACT_SEPARATING: return "the bodies separate: nothing happens";
-    case IMPACT_SOFT: return "answered, but ill-conditioned";
+    case IMPACT_SOFT: return "answered, but not to be trusted to the last digits";
     case IMPACT_BRACKET: return "not settled to full accuracy; a bracket is given";
     case IMPACT_DEEP: return "deep overlap: one of several local answers";
     case IMPACT_NO_CONTACT: return "no contact within the interval";

@@ -25,13 +25,28 @@
 
 /* Largest over smallest moment from which a body is slim: 3 bits of its arm are at stake in J^-1/2 r. */
 #define IMP_COLLIDE_SLIM 8
-/* |M| |M^-1| / 3 from which the impulse's rounding is felt in u: a bit for each of two products. */
-#define IMP_COLLIDE_UNEVEN 4
+/* |M| |M^-1| / 3 from which the impulse's rounding is felt in u: half of the 30 eps that an answer may be off. */
+#define IMP_COLLIDE_UNEVEN 16
 /* Units of eps: a sliding direction turns by no more than rounding of its rate's terms (nine of them). */
 #define IMP_COLLIDE_STRAIGHT 9
 /* sigma: 22 terms of e^sigma hold 2^-60 to 1.4; further than this the last coefficients, which may vanish, are not
  * believed. */
 #define IMP_COLLIDE_FARTHEST 4
+
+/* Relative, of the integrator that is made where none is given: about what Adams' method reaches. */
+#define IMP_COLLIDE_CVODE_FINEST 1e-12
+
+/* Steps of the integrator in one impact: ten times what the longest of the benchmark takes at 1e-14. */
+#define IMP_COLLIDE_CVODE_STEPS 20000
+
+/* ---- collide: receipts ---- */
+
+/* eps: the worst that a receipt may show. Right answers leave 100 at most, but for some of stiff laws (a root of the
+ * work where u_n is steep), 500; what is wrong by 2e-12 or more fails. */
+#define IMP_COLLIDE_RECEIPT 1e4
+/* Conditioning up to which a closed form is looked at briefly: a tenth of the above, so that rounding cannot reach it.
+ */
+#define IMP_COLLIDE_BRIEF 1e3
 
 /* ---- contact: the cone problem, docs/cone.md ---- */
 

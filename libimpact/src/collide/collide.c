@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * The door of the room: scales, picks a solver, and turns a finished course into an outcome.
+ * The door of the room: scales, picks a solver, looks at the answer's receipt, and climbs to better solvers where that
+ * does not pass.
  */
 #include "base/tolerances.h"
 #include "collide/collide_check.h"
 #include "collide/collide_cvode.h"
 #include "collide/collide_direct.h"
 #include "collide/collide_isotropic.h"
+#include "collide/collide_receipt.h"
 #include "collide/collide_report.h"
+#include "collide/collide_second.h"
 #include "collide/collide_series.h"
 #include "collide/collide_units.h"
 
@@ -15,7 +18,7 @@
 
 static void unchanged(const impact_collision *collision, impact_outcome *outcome, double value)
 {
-    *outcome = (impact_outcome){.impulse = {value, value, value}};
+    *outcome = (impact_outcome){.impulse = {value, value, value}, .error = value};
     for (int i = 0; i < 2; i++) {
         outcome->velocity[i] = collision->body[i].velocity;
         outcome->omega[i] = collision->body[i].omega;
@@ -107,57 +110,172 @@ static double sliding_speed(const imp_ready *ready, qvec3 t)
     return s > rounding_of_velocity(ready) ? s : 0;
 }
 
-/* One impact of numbers near 1; u: the velocity of the contact, n: the unit normal. */
-static impact_status collide(const impact_collision *collision, const imp_ready *ready, qvec3 n, qvec3 u,
-                             impact_outcome *outcome)
+/* ---- one answer, and whether it stands ---- */
+
+/* One impact of numbers near 1: the body's view of it, the unit normal, and how fast the contact points slide. */
+typedef struct meeting {
+    const impact_collision *collision;
+    imp_ready ready;
+    qvec3 n, u, t; /* t: u across n */
+    double approach, s;
+    bool checks;
+} meeting;
+
+/* By the kernel in double, all but what needs no frame. */
+static impact_status answer(const meeting *m, impact_outcome *outcome)
 {
-    const double approach = qvec3_dot(u, n), speed = -approach;
-    /* At right angles to n however small it is beside u. */
-    const qvec3 t = qvec3_cross(n, qvec3_cross(u, n));
-    const double s = sliding_speed(ready, t);
-    if (approach < 0 && may_be_closed(collision) && imp_direct_solve(collision, ready, n, t, s, speed, outcome)) {
-        imp_report_push(ready, outcome->impulse, outcome);
-        return IMPACT_OK;
-    }
+    const imp_ready *ready = &m->ready;
     imp_frame frame;
+    imp_course course;
     /* t2 along the slip: what lies across it is eliminated first. */
-    imp_frame_make(n, s > 0 ? qvec3_cross(qvec3_scale(t, 1 / s), n) : imp_frame_across(n), ready, &frame);
-    if (!(approach < 0)) {
-        separate(collision, ready, approach, outcome);
+    const qvec3 t1 = m->s > 0 ? qvec3_cross(qvec3_scale(m->t, 1 / m->s), m->n) : imp_frame_across(m->n);
+    imp_frame_make(m->n, t1, ready, &frame);
+    if (!(m->approach < 0)) {
+        separate(m->collision, ready, m->approach, outcome);
         outcome->conditioning = frame.conditioning;
         return IMPACT_SEPARATING;
     }
-    imp_course course;
-    imp_course_start(&course, &frame, collision, 0, s / speed);
-    const impact_status status = solve(collision, ready, &frame, &course, speed, outcome);
-    if (status != IMPACT_OK) return fail(collision, outcome, status);
+    imp_course_start(&course, &frame, m->collision, 0, m->s / -m->approach);
+    const impact_status status = solve(m->collision, ready, &frame, &course, -m->approach, outcome);
+    if (status != IMPACT_OK) return status;
     imp_course_mark(&course);
-    imp_report_course(collision, ready, &course, speed, outcome);
+    imp_report_course(m->collision, ready, &course, -m->approach, outcome);
+    outcome->second = false;
+    outcome->error = 0;
     return IMPACT_OK;
 }
 
-/* In units in which the numbers are near 1. A friction law knows its own. */
-static impact_status collide_closely(const impact_collision *collision, impact_outcome *outcome)
+/* Finite, and the contact gave no more work than it took, if the law has it so; whatever the receipt says. */
+static bool is_sane(const impact_collision *collision, const impact_outcome *o)
 {
-    imp_ready ready;
+    const bool may_gain = collision->law == IMPACT_NEWTON || collision->restitution > 1;
+    const double works = o->work_compression + o->work_restitution + o->work_friction;
+    const double most = may_gain ? INFINITY : IMP_COLLIDE_RECEIPT * DBL_EPSILON * -o->work_compression;
+    return isfinite(o->energy_after) && isfinite(works) && works <= most;
+}
+
+static double allowed(const impact_collision *collision, const impact_outcome *outcome)
+{
+    if (outcome->solver != IMPACT_SOLVER_CVODE) return IMP_COLLIDE_RECEIPT;
+    return IMP_COLLIDE_RECEIPT * imp_cvode_tolerance(collision->workspace) / DBL_EPSILON;
+}
+
+/* Closed forms are looked at briefly where the conditioning cannot bring rounding to what is allowed. */
+static double worst_of(const meeting *m, const impact_outcome *outcome)
+{
+    impact_receipt receipt;
+    if (outcome->solver == IMPACT_SOLVER_CLOSED_FORM && outcome->conditioning <= IMP_COLLIDE_BRIEF)
+        return imp_receipt_brief(&m->ready, m->n, outcome);
+    return imp_receipt_make(m->collision, outcome, &receipt);
+}
+
+/* The receipt's worst over what is allowed: at most 1 passes. */
+static double look(const meeting *m, impact_outcome *outcome)
+{
+    if (!is_sane(m->collision, outcome)) return INFINITY;
+    if (!m->checks) return 0;
+    const double worst = worst_of(m, outcome);
+    /* Of 113 bits, double's 53 are what remains of a conditioning of 2^60. */
+    const double spread = outcome->conditioning * (outcome->second ? 0x1p-60 : 1);
+    outcome->error = DBL_EPSILON * imp_larger(worst, 1) * imp_larger(spread, 1);
+    return worst / allowed(m->collision, outcome);
+}
+
+/* ---- the ladder ---- */
+
+/* The better of two answers, `worst` being that of the one in *outcome. */
+static double keep_better(const meeting *m, impact_outcome *other, impact_outcome *outcome, double worst)
+{
+    const double its = look(m, other);
+    if (!(its < worst || isnan(worst))) return worst;
+    *outcome = *other;
+    return its;
+}
+
+/* In 128 bits, then by CVODE, until the receipt passes; `worst` is that of *outcome. */
+static impact_status climb(const meeting *m, double worst, impact_outcome *outcome)
+{
+    impact_outcome other = {0};
+    const impact_collision *given = m->collision;
+    if (!needs_cvode(given)) {
+        const impact_status status = imp_second_collide(given, &other);
+        other.second = true;
+        if (status == IMPACT_SEPARATING) {
+            separate(given, &m->ready, m->approach, outcome);
+            return status;
+        }
+        if (status == IMPACT_OK) worst = keep_better(m, &other, outcome, worst);
+        if (worst <= 1) return IMPACT_OK;
+        impact_collision by_cvode = *given;
+        meeting again = *m;
+        by_cvode.solver = IMPACT_SOLVER_CVODE;
+        again.collision = &by_cvode;
+        if (impact_has(IMPACT_PART_CVODE) && answer(&again, &other) == IMPACT_OK)
+            worst = keep_better(&again, &other, outcome, worst);
+    }
+    if (worst <= 1) return IMPACT_OK;
+    return worst < INFINITY ? IMPACT_SOFT : IMPACT_EUNSETTLED;
+}
+
+static impact_status collide(const meeting *m, impact_outcome *outcome)
+{
+    const impact_collision *given = m->collision;
+    const bool near = m->approach < 0 && may_be_closed(given);
+    if (near && imp_direct_solve(given, &m->ready, m->n, m->t, m->s, -m->approach, outcome)) {
+        imp_report_push(&m->ready, outcome->impulse, outcome);
+        outcome->second = false;
+        outcome->error = 0;
+        const double worst = look(m, outcome);
+        return worst <= 1 ? IMPACT_OK : climb(m, worst, outcome);
+    }
+    const impact_status status = answer(m, outcome);
+    if (status == IMPACT_EUNSETTLED) return climb(m, INFINITY, outcome);
+    if (status != IMPACT_OK) return status;
+    const double worst = look(m, outcome);
+    return worst <= 1 ? IMPACT_OK : climb(m, worst, outcome);
+}
+
+/* The collision's numbers are to be near 1. */
+static void meet(const impact_collision *collision, bool checks, meeting *m)
+{
+    m->checks = checks;
+    m->collision = collision;
+    imp_ready_make(collision, &m->ready);
+    m->n = imp_frame_normal(collision);
+    m->u = imp_ready_velocity(&m->ready);
+    m->approach = qvec3_dot(m->u, m->n);
+    /* At right angles to n however small it is beside u. */
+    m->t = qvec3_cross(m->n, qvec3_cross(m->u, m->n));
+    m->s = sliding_speed(&m->ready, m->t);
+}
+
+/* In units in which the numbers are near 1. A friction law knows its own. */
+static impact_status collide_closely(const impact_collision *collision, bool checks, impact_outcome *outcome)
+{
+    meeting m;
     impact_status status = impact_collide_check(collision, NULL, 0);
     if (status != IMPACT_OK) return fail(collision, outcome, status);
     const imp_units units = collision->friction_law ? (imp_units){0, 0, 0} : imp_units_of(collision);
     const impact_collision scaled = imp_units_scaled(collision, units);
-    imp_ready_make(&scaled, &ready);
-    status = collide(&scaled, &ready, imp_frame_normal(&scaled), imp_ready_velocity(&ready), outcome);
+    meet(&scaled, checks, &m);
+    status = collide(&m, outcome);
     if (status < 0) return fail(collision, outcome, status);
     imp_units_restore(outcome, units);
     return finish(collision, status, outcome);
 }
 
+impact_status imp_collide(const impact_collision *collision, bool checks, impact_outcome *outcome)
+{
+    meeting m;
+    if (!imp_collide_is_plain(collision)) return collide_closely(collision, checks, outcome);
+    meet(collision, checks, &m);
+    if (m.approach < 0 && m.approach > -IMP_COLLIDE_ORDINARY_APPROACH)
+        return collide_closely(collision, checks, outcome);
+    const impact_status status = collide(&m, outcome);
+    return status < 0 ? fail(collision, outcome, status) : status;
+}
+
 impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome)
 {
-    imp_ready ready;
-    if (!imp_collide_is_plain(collision)) return collide_closely(collision, outcome);
-    imp_ready_make(collision, &ready);
-    const qvec3 n = imp_frame_normal(collision), u = imp_ready_velocity(&ready);
-    const double approach = qvec3_dot(u, n);
-    if (approach < 0 && approach > -IMP_COLLIDE_ORDINARY_APPROACH) return collide_closely(collision, outcome);
-    return collide(collision, &ready, n, u, outcome);
+    return imp_collide(collision, collision->checking != IMPACT_CHECK_NEVER, outcome);
 }

@@ -7,6 +7,8 @@
  */
 #include "collide/collide_cvode.h"
 
+#include "base/tolerances.h"
+
 enum { LOG_S, THETA, P, PX, PY, WORK, FRICTION, SIZE };
 enum { ROOT_UZ, ROOT_CLIMB, ROOT_END, ROOT_STOP, ROOTS };
 
@@ -22,6 +24,7 @@ struct impact_collide_workspace {
     impact_friction_law *law;
     void *law_context;
     double speed, log_stop;
+    long most_steps;    /* of the integrator, by the end of this impact */
     double climb_shift; /* keeps a zero of Z that was found from being found again */
 };
 
@@ -89,7 +92,8 @@ impact_status imp_collide_workspace_in(imp_arena *arena, impact_ode_method metho
                                 .context = ws,
                                 .method = method,
                                 .relative_tolerance = tolerance,
-                                .absolute_tolerance = tolerance};
+                                .absolute_tolerance = tolerance,
+                                .max_steps = IMP_COLLIDE_CVODE_STEPS};
     const impact_status status = imp_ode_create_in(arena, &def, &ws->ode);
     if (status != IMPACT_OK) {
         imp_arena_give(arena, ws);
@@ -122,7 +126,7 @@ impact_status impact_collide_workspace_create(impact_ode_method method, double t
 
 impact_status imp_cvode_workspace_like(const impact_collide_workspace *pattern, impact_collide_workspace **workspace)
 {
-    if (!pattern) return impact_collide_workspace_create(IMPACT_ODE_ADAMS, 1e-12, workspace);
+    if (!pattern) return impact_collide_workspace_create(IMPACT_ODE_ADAMS, IMP_COLLIDE_CVODE_FINEST, workspace);
     return impact_collide_workspace_create(pattern->method, pattern->tolerance, workspace);
 }
 
@@ -145,6 +149,11 @@ impact_memory impact_collide_workspace_memory(const impact_collide_workspace *wo
 impact_ode_counts impact_collide_workspace_count(const impact_collide_workspace *workspace)
 {
     return impact_ode_count(workspace->ode);
+}
+
+double imp_cvode_tolerance(const impact_collide_workspace *workspace)
+{
+    return workspace ? workspace->tolerance : IMP_COLLIDE_CVODE_FINEST;
 }
 
 /* Takes what was integrated since the last start into the course. */
@@ -187,7 +196,8 @@ static impact_status to_root(const imp_course *course, impact_collide_workspace 
     double tau = 0;
     bool any = false;
     for (double stop = 100 / (rate + course->s); status == IMPACT_OK && !any && !*settled; stop *= 4) {
-        if (stop > 1e30 / (rate + course->s)) return IMPACT_EUNSETTLED;
+        if (stop > 1e30 / (rate + course->s) || impact_ode_count(ws->ode).steps > ws->most_steps)
+            return IMPACT_EUNSETTLED;
         status = impact_ode_advance(ws->ode, stop, &tau, y, found, &any);
         *settled = !any && !ws->law &&
                    fabs(imp_course_turning(frame, mu, cos(y[THETA]), sin(y[THETA]))) <= ws->tolerance * rate;
@@ -209,7 +219,8 @@ static void straight(imp_course *course, impact_collide_workspace *ws)
 static impact_status slide(imp_course *course, impact_collide_workspace *ws)
 {
     ws->climb_shift = 0;
-    while (!course->ended && course->s > 0) {
+    /* Between its roots of Z (two at most), of u_z and of the end a slip has few pieces. */
+    for (int pieces = 0; pieces < 4 * IMPACT_MAX_PHASES && !course->ended && course->s > 0; pieces++) {
         if (over_at_once(course)) {
             course->ended = true;
             return IMPACT_OK;
@@ -266,6 +277,7 @@ impact_status imp_cvode_solve(imp_course *course, const impact_collision *collis
     ws->law = collision->friction_law;
     ws->law_context = collision->friction_context;
     ws->speed = speed;
+    ws->most_steps = impact_ode_count(ws->ode).steps + IMP_COLLIDE_CVODE_STEPS;
     ws->log_stop = log(1e-3 * ws->tolerance * (course->s > 0 ? fmin(course->s, 1) : 1));
     impact_status status =
         collision->tangential_compliance > 0

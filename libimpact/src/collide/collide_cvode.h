@@ -20,6 +20,9 @@ impact_status imp_compliant_solve(imp_arena *arena, imp_course *course, double c
                                   imp_compliant **keep);
 void imp_compliant_destroy(imp_arena *arena, imp_compliant *compliant);
 
+/* A workspace's relative tolerance; NULL: of the one that is made. */
+double imp_cvode_tolerance(const impact_collide_workspace *workspace);
+
 /* A new workspace of the same method and tolerance; NULL: the default ones. */
 impact_status imp_cvode_workspace_like(const impact_collide_workspace *pattern, impact_collide_workspace **workspace);
 

@@ -50,14 +50,26 @@ static friction rub(double mu, double p, double p_c, double s, double l)
     return f;
 }
 
-static int list_phases(const friction *f, bool slides, bool back, unsigned char *phases)
+/* The phases, and the impulse up to the end of each: p along n, q against the sliding e. */
+typedef struct phase_list {
+    qvec3 n, e;
+    impact_outcome *outcome;
+} phase_list;
+
+static inline void add_phase(const phase_list *list, impact_phase phase, double p, double q)
 {
-    int n = 0;
-    if (slides) phases[n++] = IMPACT_SLIP_C;
-    if (f->holds_soon) phases[n++] = IMPACT_STICK_C;
-    if (back && !f->holds_soon) phases[n++] = IMPACT_SLIP_R;
-    if (back && f->holds) phases[n++] = IMPACT_STICK_R;
-    return n;
+    impact_outcome *o = list->outcome;
+    o->phase_impulse[o->phase_count] = qvec3_axpy(-q, list->e, qvec3_scale(list->n, p));
+    o->phases[o->phase_count++] = (unsigned char)phase;
+}
+
+static void list_phases(const phase_list *list, const friction *f, bool slides, double mu, double p_c, double p)
+{
+    const double stop = f->holds ? f->impulse / mu : p;
+    if (slides) add_phase(list, IMPACT_SLIP_C, f->holds_soon ? stop : p_c, f->holds_soon ? f->impulse : mu * p_c);
+    if (f->holds_soon) add_phase(list, IMPACT_STICK_C, p_c, f->impulse);
+    if (p > p_c && !f->holds_soon) add_phase(list, IMPACT_SLIP_R, stop, f->impulse);
+    if (p > p_c && f->holds) add_phase(list, IMPACT_STICK_R, p, f->impulse);
 }
 
 bool imp_direct_solve(const impact_collision *collision, const imp_ready *ready, qvec3 n, qvec3 t, double s,
@@ -74,6 +86,7 @@ bool imp_direct_solve(const impact_collision *collision, const imp_ready *ready,
     const qvec3 normal = qvec3_scale(n, p);
     const friction f = rub(collision->friction, p, p_c, s, l);
     const bool rubs = s > 0 && !smooth;
+    const phase_list list = {n, rubs ? qvec3_scale(t, 1 / s) : (qvec3){0, 0, 0}, outcome};
     outcome->impulse = rubs ? qvec3_axpy(-f.impulse / s, t, normal) : normal;
     outcome->impulse_normal = p;
     outcome->impulse_tangential = rubs ? f.impulse : 0;
@@ -84,7 +97,8 @@ bool imp_direct_solve(const impact_collision *collision, const imp_ready *ready,
     outcome->work_restitution = back;
     outcome->work_friction = rubs ? f.work : 0;
     outcome->compressions = 1;
-    outcome->phase_count = list_phases(&f, smooth || s > 0, eps > 0, outcome->phases);
+    outcome->phase_count = 0;
+    list_phases(&list, &f, smooth || s > 0, collision->friction, p_c, p);
     outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
     outcome->conditioning = smooth ? 1 : conditioning(l / w);
     outcome->jammed = false;

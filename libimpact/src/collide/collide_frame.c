@@ -5,21 +5,6 @@
  */
 #include "collide/collide_frame.h"
 
-static inline imp_vectors lever(imp_pair weight, imp_pair p, const imp_vectors *x, imp_pair q, const imp_vectors *y)
-{
-    p *= weight;
-    q *= weight;
-    return (imp_vectors){p * x->x - q * y->x, p * x->y - q * y->y, p * x->z - q * y->z};
-}
-
-imp_levers imp_frame_levers(const imp_ready *ready)
-{
-    const imp_vectors *axis = ready->axis, *r = &ready->offset, *w = &ready->inverse_moments;
-    return (imp_levers){{lever(imp_pair_sqrt(w->x), r->y, &axis[2], r->z, &axis[1]),
-                         lever(imp_pair_sqrt(w->y), r->z, &axis[0], r->x, &axis[2]),
-                         lever(imp_pair_sqrt(w->z), r->x, &axis[1], r->y, &axis[0])}};
-}
-
 /* sum p.q over both bodies */
 static inline imp_real arms_dot(const imp_vectors *p, const imp_vectors *q)
 {

@@ -24,7 +24,21 @@ typedef struct imp_levers {
     imp_vectors row[3];
 } imp_levers;
 
-imp_levers imp_frame_levers(const imp_ready *ready);
+static inline imp_vectors imp_frame_lever(imp_pair weight, imp_pair p, const imp_vectors *x, imp_pair q,
+                                          const imp_vectors *y)
+{
+    p *= weight;
+    q *= weight;
+    return (imp_vectors){p * x->x - q * y->x, p * x->y - q * y->y, p * x->z - q * y->z};
+}
+
+static inline imp_levers imp_frame_levers(const imp_ready *ready)
+{
+    const imp_vectors *axis = ready->axis, *r = &ready->offset, *w = &ready->inverse_moments;
+    return (imp_levers){{imp_frame_lever(imp_pair_sqrt(w->x), r->y, &axis[2], r->z, &axis[1]),
+                         imp_frame_lever(imp_pair_sqrt(w->y), r->z, &axis[0], r->x, &axis[2]),
+                         imp_frame_lever(imp_pair_sqrt(w->z), r->x, &axis[1], r->y, &axis[0])}};
+}
 
 /* The rows times e. */
 static inline imp_vectors imp_frame_arms(const imp_levers *l, imp_vec e)

@@ -3,6 +3,7 @@
  * Many impacts at once. Each is a pure function of its own input, so that the threads only share the work out: in
  * blocks, by an atomic counter.
  */
+#include "collide/collide_check.h"
 #include "collide/collide_cvode.h"
 
 #include <pthread.h>
@@ -41,7 +42,7 @@ typedef struct own_workspace {
 } own_workspace;
 
 /* By CVODE, as the collision has it or with this thread's own workspace in place of the pattern. */
-static impact_status by_cvode(own_workspace *own, impact_collision c, impact_outcome *outcome)
+static impact_status by_cvode(own_workspace *own, impact_collision c, bool checks, impact_outcome *outcome)
 {
     if (!own->workspace || own->pattern != c.workspace) {
         impact_collide_workspace_destroy(own->workspace);
@@ -50,14 +51,16 @@ static impact_status by_cvode(own_workspace *own, impact_collision c, impact_out
         if (imp_cvode_workspace_like(c.workspace, &own->workspace) != IMPACT_OK) own->workspace = NULL;
     }
     c.workspace = own->workspace;
-    return impact_collide(&c, outcome);
+    return imp_collide(&c, checks, outcome);
 }
 
 static void one(batch *b, size_t i, own_workspace *own)
 {
     const impact_collision *c = &b->collisions[i];
     const bool cvode = c->solver == IMPACT_SOLVER_CVODE || c->friction_law || c->tangential_compliance > 0;
-    const impact_status status = cvode ? by_cvode(own, *c, &b->outcomes[i]) : impact_collide(c, &b->outcomes[i]);
+    const bool checks = c->checking == IMPACT_CHECK_ALWAYS;
+    const impact_status status =
+        cvode ? by_cvode(own, *c, checks, &b->outcomes[i]) : imp_collide(c, checks, &b->outcomes[i]);
     if (b->statuses) b->statuses[i] = status;
     if (status < 0) note_failure(b, i, status);
 }

@@ -16,13 +16,6 @@
 
 enum { ROWS = 9, COLUMNS = 3 };
 
-imp_real imp_report_energy(const imp_ready *ready, const imp_vectors *velocity, const imp_vectors *omega)
-{
-    const imp_vectors momentum = imp_vectors_weigh(&ready->moments, omega);
-    const imp_pair each = 0.5 * (ready->mass * imp_vectors_dot(velocity, velocity) + imp_vectors_dot(&momentum, omega));
-    return each[0] + each[1];
-}
-
 /* impulse on body 1; spin: the change of both angular velocities, local axes. */
 static inline void give(const imp_ready *ready, imp_vec impulse, const imp_vectors *spin, impact_outcome *outcome)
 {

@@ -57,6 +57,8 @@ impact_collision imp_units_scaled(const impact_collision *collision, imp_units u
     return c;
 }
 
+imp_units imp_units_inverse(imp_units units) { return (imp_units){-units.mass, -units.length, -units.speed}; }
+
 void imp_units_restore(impact_outcome *o, imp_units units)
 {
     const int momentum = units.mass + units.speed, energy = momentum + units.speed;

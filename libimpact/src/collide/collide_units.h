@@ -20,6 +20,9 @@ imp_units imp_units_of(const impact_collision *collision);
 
 impact_collision imp_units_scaled(const impact_collision *collision, imp_units units);
 
+/* The other way, and an outcome into them. */
+imp_units imp_units_inverse(imp_units units);
+
 /* An outcome in those units, into the caller's. */
 void imp_units_restore(impact_outcome *outcome, imp_units units);
 

@@ -169,7 +169,8 @@ static impact_status check_account(impact_scene *scene, impact_status status)
     const double off = now - (e.start + e.force_work + e.drive_work - losses);
     const double given = fmax(fabs(e.force_work), fabs(e.drive_work));
     const double scale = fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), fmax(given, fabs(losses))));
-    if ((status != IMPACT_OK && status != IMPACT_AT_REST) || fabs(off) <= tolerance * scale) return status;
+    if (status != IMPACT_OK && status != IMPACT_AT_REST) return status;
+    if (fabs(off) <= tolerance * scale) return scene->world.usage.impacts_soft > 0 ? IMPACT_SOFT : status;
     if (isfinite(off))
         snprintf(scene->message, sizeof scene->message,
                  "the energy account is off by %.2g J of %.2g J: do not trust the digits", off, scale);

@@ -35,12 +35,13 @@ static const char *phases_in_words(const impact_outcome *outcome, char *words, s
     return words;
 }
 
-static void count_solver(impact_scene *scene, impact_solver solver)
+static void count_solver(impact_scene *scene, const impact_outcome *outcome)
 {
     impact_usage *usage = &scene->world.usage;
-    if (solver == IMPACT_SOLVER_CLOSED_FORM) usage->impacts_closed_form++;
-    if (solver == IMPACT_SOLVER_SERIES) usage->impacts_series++;
-    if (solver == IMPACT_SOLVER_CVODE) usage->impacts_cvode++;
+    if (outcome->solver == IMPACT_SOLVER_CLOSED_FORM) usage->impacts_closed_form++;
+    if (outcome->solver == IMPACT_SOLVER_SERIES) usage->impacts_series++;
+    if (outcome->solver == IMPACT_SOLVER_CVODE) usage->impacts_cvode++;
+    if (outcome->second) usage->impacts_second++;
 }
 
 /* Solves the pair's impact. One whose bounce would die out is solved with restitution 0: it then exchanges, at once,
@@ -62,7 +63,11 @@ static impact_status strike(impact_scene *scene, const imp_meeting *m)
         .workspace = scene->springs};
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);
-    if (status != IMPACT_OK) {
+    if (status == IMPACT_SOFT && scene->world.usage.impacts_soft++ == 0)
+        snprintf(scene->message, sizeof scene->message,
+                 "impact of '%s' and '%s' at t = %.17g: no solver's answer passes its receipt, the best is taken",
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, scene->t);
+    if (status != IMPACT_OK && status != IMPACT_SOFT) {
         snprintf(scene->message, sizeof scene->message, "impact of '%s' and '%s' at t = %.17g: %s",
                  world->bodies[touch->body1].name, world->bodies[touch->body2].name, scene->t,
                  status == IMPACT_EARGUMENT && scene->solver == IMPACT_SOLVER_CLOSED_FORM
@@ -82,7 +87,7 @@ static impact_status strike(impact_scene *scene, const imp_meeting *m)
         state->momentum = imp_inertia(body, state->q, outcome.omega[k]);
         scene->motion.resting[bodies[k]] = false;
     }
-    count_solver(scene, outcome.solver);
+    count_solver(scene, &outcome);
     char words[128];
     event.phases = phases_in_words(&outcome, words, sizeof words);
     event.impulse_normal = outcome.impulse_normal;

@@ -25,6 +25,8 @@ static const struct {
     ENTRY(impacts_closed_form),
     ENTRY(impacts_series),
     ENTRY(impacts_cvode),
+    ENTRY(impacts_second),
+    ENTRY(impacts_soft),
     ENTRY(impacts_simultaneous),
     ENTRY(impacts_together),
     ENTRY(reactions_chosen),

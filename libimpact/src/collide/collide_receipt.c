@@ -1,0 +1,303 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The receipt of an impact: identities between what was given and what was answered, from the bodies themselves. No M
+ * is formed and no slip followed: whatever the solver did, these must hold.
+ *
+ *   momentum  m (V - v) = +-P                        spin  J_k (W - w)_k = +-(r x P)_k on each principal axis
+ *   cone      P_n >= 0, |P_t| <= mu P_n              energy  E+ <= E-, W_f <= 0
+ *   power     E+ - E- - D = P.(u- + u+)/2 = W_c + W_r + W_f (M is symmetric); D: work of a static body that moves
+ *   law       P_n = (1 + eps) p_c; u_n+ = -eps u_n-; W_r = eps^2 |W_c| (compressed once)
+ *   approach  u_n- and u_n+ as reported, u_n+ >= 0   stick  u_t+ = 0 where the last phase sticks
+ *   path      the same of each phase: its impulse in the cone, u_t = 0 while it sticks, u_n = 0 where compression
+ *             turns to restitution and back, all phases together P
+ *
+ * Each is divided by the sizes of its own terms, in eps: what rounding of the answer alone would leave is about 1.
+ */
+#include "collide/collide_receipt.h"
+
+#include <float.h>
+#include <math.h>
+#include "collide/collide_check.h"
+#include "collide/collide_units.h"
+
+/* |x| over its terms' sizes, in eps; 0 of nothing. */
+static inline double off(double x, double size) { return x == 0 ? 0 : fabs(x) / (DBL_EPSILON * size); }
+
+/* Only what is below 0 counts. */
+static inline double below(double x, double size) { return x >= 0 ? 0 : off(x, size); }
+
+/* A NaN is the worst, and stays. */
+static inline void note(double *field, double value)
+{
+    if (!(value <= *field || isnan(*field))) *field = value;
+}
+
+static inline double length(qvec3 v) { return sqrt(qvec3_dot(v, v)); }
+
+/* One body: its principal axes, and an impulse's sign. */
+typedef struct part {
+    const impact_collider *body;
+    qvec3 axis[3];
+    double sign, arm;
+    bool moves;
+} part;
+
+typedef struct view {
+    const impact_collision *c;
+    const impact_outcome *o;
+    part part[2];
+    qvec3 n, before, after; /* unit normal; u- and u+ */
+    double size_before, size_after;
+    double drive, drive_size; /* work of static bodies that are moved, on the other */
+} view;
+
+static void make_part(part *p, const impact_collider *body, double sign)
+{
+    const quat q = body->orientation;
+    p->body = body;
+    p->sign = sign;
+    p->arm = length(body->offset);
+    p->moves = body->mass < INFINITY;
+    if (!p->moves) return;
+    const double f = 2 / quat_dot(q, q), w = q.w, x = q.x, y = q.y, z = q.z;
+    p->axis[0] = (qvec3){1 - f * (y * y + z * z), f * (x * y + w * z), f * (x * z - w * y)};
+    p->axis[1] = (qvec3){f * (x * y - w * z), 1 - f * (x * x + z * z), f * (y * z + w * x)};
+    p->axis[2] = (qvec3){f * (x * z + w * y), f * (y * z - w * x), 1 - f * (x * x + y * y)};
+}
+
+static inline qvec3 contact_velocity(const part p[2], const qvec3 v[2], const qvec3 w[2], double *size)
+{
+    qvec3 u[2];
+    *size = 0;
+    for (int i = 0; i < 2; i++) {
+        u[i] = qvec3_add(v[i], qvec3_cross(w[i], p[i].body->offset));
+        *size += length(v[i]) + length(w[i]) * p[i].arm;
+    }
+    return qvec3_sub(u[0], u[1]);
+}
+
+/* A static body's point of contact moves by u_s throughout. */
+static void make_drive(view *s)
+{
+    s->drive = s->drive_size = 0;
+    for (int i = 0; i < 2; i++) {
+        const impact_collider *b = &s->c->body[i];
+        const qvec3 u = qvec3_add(b->velocity, qvec3_cross(b->omega, b->offset));
+        if (s->part[i].moves) continue;
+        s->drive -= s->part[i].sign * qvec3_dot(s->o->impulse, u);
+        s->drive_size += length(s->o->impulse) * (length(b->velocity) + length(b->omega) * s->part[i].arm);
+    }
+}
+
+static void make_view(view *s, const impact_collision *c, const impact_outcome *o)
+{
+    const qvec3 v[2] = {c->body[0].velocity, c->body[1].velocity}, w[2] = {c->body[0].omega, c->body[1].omega};
+    s->c = c;
+    s->o = o;
+    make_part(&s->part[0], &c->body[0], 1);
+    make_part(&s->part[1], &c->body[1], -1);
+    s->n = qvec3_scale(c->normal, 1 / length(c->normal));
+    s->before = contact_velocity(s->part, v, w, &s->size_before);
+    s->after = contact_velocity(s->part, o->velocity, o->omega, &s->size_after);
+    make_drive(s);
+}
+
+/* ---- the bodies ---- */
+
+static inline double entry(qvec3 v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
+
+/* Kinetic energies before and after, and the sizes of their terms: of J_k W_k^2 it is J_k |W_k| |W|, since W_k comes
+ * from world axes. */
+typedef struct energies {
+    double before, after, size;
+} energies;
+
+/* Momentum and spin of one body, and its share of the energies. */
+static void check_body(const view *s, int i, impact_receipt *r, energies *energy)
+{
+    const part *p = &s->part[i];
+    if (!p->moves) return;
+    const impact_collider *b = p->body;
+    const qvec3 P = s->o->impulse, V = s->o->velocity[i], W = s->o->omega[i];
+    const double m = b->mass, size = length(P), speed = length(V) + length(b->velocity);
+    const qvec3 dv = qvec3_axpy(-p->sign / m, P, qvec3_sub(V, b->velocity));
+    note(&r->momentum, off(m * length(dv), size + m * speed));
+    const qvec3 torque = qvec3_cross(b->offset, P), dw = qvec3_sub(W, b->omega);
+    const double w0 = length(b->omega), w1 = length(W), turning = w0 + w1;
+    double before = m * qvec3_dot(b->velocity, b->velocity), after = m * qvec3_dot(V, V), sum = before + after;
+    for (int k = 0; k < 3; k++) {
+        const double j = entry(b->moments, k), from = qvec3_dot(p->axis[k], b->omega), to = qvec3_dot(p->axis[k], W);
+        const double rest = j * qvec3_dot(p->axis[k], dw) - p->sign * qvec3_dot(p->axis[k], torque);
+        note(&r->spin, off(rest, j * turning + p->arm * size));
+        before += j * from * from;
+        after += j * to * to;
+        sum += j * (fabs(from) * w0 + fabs(to) * w1);
+    }
+    energy->before += before / 2;
+    energy->after += after / 2;
+    energy->size += sum / 2;
+}
+
+static void check_energy(const view *s, const energies *energy, impact_receipt *r)
+{
+    const impact_outcome *o = s->o;
+    const double works = o->work_compression + o->work_restitution + o->work_friction,
+                 change = energy->after - energy->before - s->drive;
+    const double all = energy->size + s->drive_size,
+                 done = fabs(o->work_compression) + o->work_restitution - o->work_friction;
+    if (s->c->law != IMPACT_NEWTON && s->c->restitution <= 1) note(&r->energy, below(-change, all));
+    note(&r->energy, below(-o->work_friction, done));
+    note(&r->energy, off(o->energy_before - energy->before, all));
+    note(&r->energy, off(o->energy_after - energy->after, all));
+    const double half = qvec3_dot(o->impulse, qvec3_add(s->before, s->after)) / 2;
+    note(&r->power, off(change - works, all + done));
+    note(&r->power, off(half - works, length(o->impulse) * (s->size_before + s->size_after) + done));
+}
+
+/* ---- friction and restitution ---- */
+
+/* An impulse's normal part, and how far it is outside of the cone. */
+static double outside_cone(const view *s, qvec3 P, double *along)
+{
+    const double mu = s->c->friction;
+    *along = qvec3_dot(P, s->n);
+    const double across = length(qvec3_axpy(-*along, s->n, P)), size = length(P);
+    const double cone = s->c->friction_law ? 0 : below(mu * *along - across, size * (1 + mu));
+    return fmax(below(*along, size), cone);
+}
+
+static void check_approach(const view *s, double along, impact_receipt *r)
+{
+    const impact_outcome *o = s->o;
+    const double u_before = qvec3_dot(s->before, s->n), u_after = qvec3_dot(s->after, s->n);
+    note(&r->approach, off(u_before - o->normal_before, s->size_before));
+    note(&r->approach, off(u_after - o->normal_after, s->size_before + s->size_after));
+    note(&r->approach, below(u_after, s->size_before + s->size_after));
+    note(&r->approach, off(along - o->impulse_normal, length(o->impulse)));
+}
+
+static void check_law(const view *s, impact_receipt *r)
+{
+    const impact_outcome *o = s->o;
+    const double eps = s->c->restitution, u_before = qvec3_dot(s->before, s->n), u_after = qvec3_dot(s->after, s->n);
+    const double due = (1 + eps) * o->compression_impulse, back = eps * eps * fabs(o->work_compression);
+    switch (s->c->law) {
+    case IMPACT_POISSON: note(&r->law, off(o->impulse_normal - due, o->impulse_normal + due)); break;
+    case IMPACT_NEWTON:
+        note(&r->law, off(u_after + eps * u_before, s->size_after + (eps > 1 ? eps : 1) * s->size_before));
+        break;
+    case IMPACT_STRONGE:
+        if (o->compressions == 1) note(&r->law, off(o->work_restitution - back, fabs(o->work_compression) + back));
+        break;
+    }
+}
+
+static bool sticks(unsigned char phase) { return phase == IMPACT_STICK_C || phase == IMPACT_STICK_R; }
+static bool compresses(unsigned char phase) { return phase == IMPACT_SLIP_C || phase == IMPACT_STICK_C; }
+
+/* ---- phase by phase ---- */
+
+/* du = M dP by the bodies; the size of its terms. */
+static qvec3 answer(const view *s, qvec3 P, double *size)
+{
+    qvec3 u = {0, 0, 0};
+    const double impulse = length(P);
+    for (int i = 0; i < 2; i++) {
+        const part *p = &s->part[i];
+        if (!p->moves) continue;
+        const impact_collider *b = p->body;
+        const qvec3 torque = qvec3_cross(b->offset, P);
+        qvec3 w = {0, 0, 0};
+        double turn = 0;
+        for (int k = 0; k < 3; k++) {
+            const double j = entry(b->moments, k);
+            w = qvec3_axpy(qvec3_dot(p->axis[k], torque) / j, p->axis[k], w);
+            turn = fmax(turn, 1 / j);
+        }
+        u = qvec3_add(u, qvec3_axpy(1 / b->mass, P, qvec3_cross(w, b->offset)));
+        *size += impulse * (1 / b->mass + p->arm * p->arm * turn);
+    }
+    return u;
+}
+
+/* u_n = 0 where the phases around turn from compression to restitution or back, u_t = 0 before and after sticking. */
+static void check_phases(const view *s, impact_receipt *r)
+{
+    const impact_outcome *o = s->o;
+    qvec3 u = s->before, from = {0, 0, 0};
+    double along, size = s->size_before;
+    for (int i = 0; i < o->phase_count; i++) {
+        const unsigned char phase = o->phases[i];
+        const qvec3 P = qvec3_sub(o->phase_impulse[i], from);
+        const bool last = i + 1 == o->phase_count;
+        const unsigned char next = last ? phase : o->phases[i + 1];
+        note(&r->path, outside_cone(s, P, &along) * length(P) / length(o->impulse));
+        u = qvec3_add(u, answer(s, P, &size));
+        from = o->phase_impulse[i];
+        const double un = qvec3_dot(u, s->n);
+        const bool turns =
+            !last && phase != IMPACT_REVERSAL && next != IMPACT_REVERSAL && compresses(phase) != compresses(next);
+        if (turns) note(&r->path, off(un, size));
+        if (sticks(phase) || sticks(next) || next == IMPACT_REVERSAL)
+            note(&r->path, off(length(qvec3_axpy(-un, s->n, u)), size));
+    }
+    if (o->phase_count < IMPACT_MAX_PHASES)
+        note(&r->path, off(length(qvec3_sub(from, o->impulse)), length(o->impulse)));
+}
+
+/* What rigid contacts keep; springs keep it to their own tolerance, and are left out. */
+static void check_contact(const view *s, impact_receipt *r)
+{
+    const impact_outcome *o = s->o;
+    check_law(s, r);
+    check_phases(s, r);
+    if (o->phase_count == 0 || !sticks(o->phases[o->phase_count - 1])) return;
+    const qvec3 t = qvec3_axpy(-qvec3_dot(s->after, s->n), s->n, s->after);
+    r->stick = off(length(t), s->size_before + s->size_after);
+}
+
+double imp_receipt_make(const impact_collision *collision, const impact_outcome *outcome, impact_receipt *receipt)
+{
+    view s;
+    energies energy = {0, 0, 0};
+    double along;
+    impact_receipt *r = receipt;
+    *r = (impact_receipt){0};
+    make_view(&s, collision, outcome);
+    for (int i = 0; i < 2; i++) check_body(&s, i, r, &energy);
+    check_energy(&s, &energy, r);
+    r->cone = outside_cone(&s, outcome->impulse, &along);
+    check_approach(&s, along, r);
+    if (!(collision->tangential_compliance > 0)) check_contact(&s, r);
+    const double fields[] = {r->momentum, r->spin,     r->cone,  r->energy, r->power,
+                             r->law,      r->approach, r->stick, r->path};
+    for (int i = 0; i < 9; i++) note(&r->worst, fields[i]);
+    return r->worst;
+}
+
+double impact_collide_receipt(const impact_collision *collision, const impact_outcome *outcome, impact_receipt *receipt)
+{
+    if (imp_collide_is_plain(collision)) return imp_receipt_make(collision, outcome, receipt);
+    const imp_units units = imp_units_of(collision);
+    const impact_collision scaled = imp_units_scaled(collision, units);
+    impact_outcome its = *outcome;
+    imp_units_restore(&its, imp_units_inverse(units));
+    return imp_receipt_make(&scaled, &its, receipt);
+}
+
+double imp_receipt_brief(const imp_ready *ready, qvec3 n, const impact_outcome *outcome)
+{
+    const impact_outcome *o = outcome;
+    const imp_vectors v = imp_vectors_of(o->velocity[0], o->velocity[1]), w = imp_vectors_of(o->omega[0], o->omega[1]);
+    const imp_vectors turn = imp_vectors_cross(&w, &ready->arm), normal = imp_vectors_of(n, n);
+    const imp_pair sizes = imp_vectors_size(&v) + imp_vectors_size(&turn);
+    const imp_pair each = imp_vectors_dot(&v, &normal) + imp_vectors_dot(&turn, &normal);
+    const double size = sizes[0] + sizes[1] - o->normal_before, un = each[0] - each[1];
+    const double works = o->work_compression + o->work_restitution + o->work_friction;
+    /* The work of a static body that moves; the impulse on body 1, its opposite on body 2. */
+    const imp_vectors u = {v.x + turn.x, v.y + turn.y, v.z + turn.z}, P = imp_vectors_of(o->impulse, o->impulse);
+    const imp_pair drives = imp_pair_where(ready->mass == 0, imp_vectors_dot(&P, &u));
+    const double drive = drives[1] - drives[0], all = o->energy_before + o->energy_after + fabs(drive);
+    const double energy = fabs(o->energy_after - o->energy_before - works - drive) / all;
+    return (fabs(un - o->normal_after) / size + energy) / DBL_EPSILON;
+}
