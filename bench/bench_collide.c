@@ -8,8 +8,8 @@
  * median and largest condition number of M of the class, by which rounding of the input can grow. Classes: how the
  * impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones; isotropic: a = b), the
  * scenes S1, S2, S5 that other programs are compared on, and S5e, 300 random ellipsoids on a plane. `loop of`, `array
- * of`: many different impacts by a closed form, the mean time of one. `p_z`: what integration over the normal impulse
- * itself does, by CVODE.
+ * of`: many different impacts by a closed form, the mean time of one. `receipt of`: such impacts, any of them, checked,
+ * and that time over the same unchecked. `p_z`: what integration over the normal impulse itself does, by CVODE.
  */
 #include <pthread.h>
 #include <stdio.h>
@@ -398,6 +398,28 @@ static void closed_forms(void)
     print_loop("loop of all these", "", 6 * COUNT, sum / 6, sphere);
 }
 
+/* Of both kinds of loop in turn, so that what else the machine does meets both. */
+static void receipts(void)
+{
+    enum { COUNT = 2000 };
+    static const case_class classes[] = {CASE_PLAIN,  CASE_ROD,    CASE_WILD,     CASE_SPHERE,
+                                         CASE_SMOOTH, CASE_PLANAR, CASE_ISOTROPIC};
+    static impact_collision c[COUNT];
+    static impact_outcome o[COUNT];
+    for (int k = 0; k < 7; k++) {
+        double best[2] = {INFINITY, INFINITY};
+        for (int i = 0; i < COUNT; i++) c[i] = case_make(classes[k], 107, (uint64_t)i);
+        for (int r = 0; r < 30; r++) {
+            for (int i = 0; i < COUNT; i++) c[i].checking = r % 2 ? IMPACT_CHECK_NEVER : IMPACT_CHECK_ALWAYS;
+            const double from = measure_clock();
+            for (int i = 0; i < COUNT; i++) impact_collide(&c[i], &o[i]);
+            best[r % 2] = fmin(best[r % 2], (measure_clock() - from) / COUNT);
+        }
+        printf("receipt of %s,auto,with over without,%d,0,,,%.3g,%.3g,,\n", case_name(classes[k]), COUNT, 1e6 * best[0],
+               best[0] / best[1]);
+    }
+}
+
 /* The array call: the time of one sphere impact. */
 static void array_call(void)
 {
@@ -437,6 +459,7 @@ int main(void)
     random_ellipsoids(&g);
     closed_forms();
     array_call();
+    receipts();
     gather_straight(&g);
     run_straight(&g);
     gather_isotropic(&g);

@@ -2,13 +2,16 @@
  *
  * report_collide: the campaign of the room collide over random impacts of every class.
  *
- * report_collide [--impacts N] [--seed S] [--threads T] [--cvode N] [--oracle N]
+ * report_collide [--impacts N] [--seed S] [--threads T] [--cvode N] [--oracle N] [--range N]
  * N impacts in all, the classes in turn, on so many threads (by itself as many as there are cores); one in a hundred is
  * solved by CVODE at 1e-12 too and one in two hundred by the 128-bit oracle, or about as many as --cvode and --oracle
  * say. How far it is and how long it will yet take goes to stderr. Every figure but the times depends on N and the seed
  * alone.
  *
- * Three tables, CSV:
+ * Beside the classes, a tenth as many slender and slippery impacts each, and --range N (by itself a thousandth) of
+ * numbers within 1e+-3 ... 1e+-100, most of the time of which goes into 128 bits and CVODE.
+ *
+ * Four tables, CSV:
  * 1. per class: how many impacts, how many failed (a status below 0, or a NaN), what happened in them; the worst energy
  * gain over the energy before (Poisson and Stronge), the worst distance outside of the friction cone over |P|, Newton's
  * gains, and the time of one call in microseconds (the mean leaves out what took above 200: another program had the
@@ -17,14 +20,17 @@
  * many the other solver could not answer, how many are off by more than 1e-12 and more than 10 eps cond, and how many
  * of these by more than ten times the data's own error (see 3) as well;
  * 3. the worst of each class against the oracle: beside the error of ours, data_error is how far the exact answer
- * itself moves when the inputs change by at most one unit in the last place, the largest of 24 such changes. Then all
- * of it in four lines of words.
+ * itself moves when the inputs change by at most one unit in the last place, the largest of 24 such changes;
+ * 4. of the limits: how many were refused, answered, in 128 bits, soft (said so), unsettled; how many broke a promise
+ * with IMPACT_OK: not finite, energy risen by more than 100 eps times the sensitivity, a receipt that fails; the worst
+ * receipt and the longest call. In between all of it in words.
  */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
+#include "report_collide_extremes.h"
 #include "report_collide_tally.h"
 #include "measure.h"
 #include "options.h"
@@ -263,7 +269,7 @@ static long stride(long impacts, long wanted)
 
 int main(int argc, char **argv)
 {
-    static const char *const names[] = {"--impacts", "--seed", "--threads", "--cvode", "--oracle", NULL};
+    static const char *const names[] = {"--impacts", "--seed", "--threads", "--cvode", "--oracle", "--range", NULL};
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     const long impacts = options_count(argc, argv, "--impacts", 1000000), seed = options_count(argc, argv, "--seed", 1);
     const long threads = options_count(argc, argv, "--threads",
@@ -271,10 +277,13 @@ int main(int argc, char **argv)
                                        : cores < MOST_THREADS ? cores
                                                               : MOST_THREADS);
     const long cvode = options_count(argc, argv, "--cvode", impacts / 100),
-               oracle = options_count(argc, argv, "--oracle", impacts / 200);
+               oracle = options_count(argc, argv, "--oracle", impacts / 200),
+               range = options_count(argc, argv, "--range", impacts / 1000);
     if (!options_known(argc, argv, names) || impacts < CASE_CLASSES || seed < 0 || threads < 1 ||
-        threads > MOST_THREADS || cvode < 0 || oracle < 0) {
-        fprintf(stderr, "report_collide [--impacts N >= %d] [--seed S] [--threads 1 ... %d] [--cvode N] [--oracle N]\n",
+        threads > MOST_THREADS || cvode < 0 || oracle < 0 || range < 0) {
+        fprintf(stderr,
+                "report_collide [--impacts N >= %d] [--seed S] [--threads 1 ... %d] [--cvode N] [--oracle N] "
+                "[--range N]\n",
                 CASE_CLASSES, MOST_THREADS);
         return 2;
     }
@@ -296,5 +305,6 @@ int main(int argc, char **argv)
     }
     print_tables(jobs[0].tally, all.seed);
     free(jobs);
+    failures += report_extremes((long[]){impacts / 10, impacts / 10, range}, all.seed, (int)threads);
     return failures > 0;
 }

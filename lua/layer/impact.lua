@@ -188,17 +188,21 @@ core.layer()
 ---@field work {compression: number, restitution: number, friction: number}  J
 ---@field phases string[]  "slip-c", "stick-c", "reversal", "slip-r", "stick-r"
 ---@field compressions integer
+---@field phase_impulses vec3[]  on body 1 up to the end of each phase, N s
 ---@field conditioning number
+---@field error number  estimated relative error of the velocities; 0: not looked at
+---@field second boolean  answered in 128-bit arithmetic
 ---@field energy_rose boolean
 ---@field jammed boolean
 ---@field solver string
----@field status "ok"|"separating"
+---@field status "ok"|"separating"|"soft"
 
 --- The keys of impact.collision (mu a number; not compliance, tolerance, method), each one value for all or a list: numbers, vectors, or
 --- one flat list of 3 count numbers.
 ---@class impact.collisions
 ---@field count integer
 ---@field threads? integer  1 by default; 0: as many as the machine has
+---@field checked? boolean  each answer by its receipt; false by default
 
 ---@class impact.flow_columns
 ---@field p number[]  N s

@@ -161,7 +161,7 @@ IMPACT_API impact_memory impact_collide_workspace_memory(const impact_collide_wo
 /* Solves one impact (docs/collide.md). IMPACT_OK: and the receipt passed; IMPACT_SEPARATING when the contact points do
  * not approach (outcome: nothing changed); IMPACT_SOFT: the best answer of all solvers, whose receipt did not pass:
  * impact_collide_receipt says which identity fails; negative: the outcome holds the velocities given and NaN elsewhere:
- * as impact_collide_check;
+ * as impact_collide_check; IMPACT_EDOMAIN also where velocities or energies would leave double precision;
  * IMPACT_EARGUMENT also where a closed form was asked for and there is none; IMPACT_EABSENT for CVODE in a build
  * without it; IMPACT_EINTEGRATOR, IMPACT_EUNSETTLED, IMPACT_ENOMEM. A tangential velocity that is rounding of the
  * velocities given counts as none. Sources: Mirtich & Canny 1995; Stronge 2000; the series after Jorba & Zou 2005. */

@@ -98,8 +98,11 @@ static bool finite3(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite
 /* An answer beyond double precision is none. */
 static impact_status finish(const impact_collision *collision, impact_status status, impact_outcome *outcome)
 {
-    const bool finite = finite3(outcome->velocity[0]) && finite3(outcome->velocity[1]) && finite3(outcome->omega[0]) &&
-                        finite3(outcome->omega[1]);
+    const impact_outcome *o = outcome;
+    const double works = o->work_compression + o->work_restitution + o->work_friction;
+    const bool finite = finite3(o->velocity[0]) && finite3(o->velocity[1]) && finite3(o->omega[0]) &&
+                        finite3(o->omega[1]) && finite3(o->impulse) && isfinite(works + o->compression_impulse) &&
+                        isfinite(o->energy_before + o->energy_after);
     return finite ? status : fail(collision, outcome, IMPACT_EDOMAIN);
 }
 
@@ -166,7 +169,8 @@ static double worst_of(const meeting *m, const impact_outcome *outcome)
     impact_receipt receipt;
     if (outcome->solver == IMPACT_SOLVER_CLOSED_FORM && outcome->conditioning <= IMP_COLLIDE_BRIEF)
         return imp_receipt_brief(&m->ready, m->n, outcome);
-    return imp_receipt_make(m->collision, outcome, &receipt);
+    const double worst = imp_receipt_make(m->collision, outcome, &receipt);
+    return receipt.energy <= allowed(m->collision, outcome) ? worst : INFINITY;
 }
 
 /* The receipt's worst over what is allowed: at most 1 passes. */

@@ -399,7 +399,7 @@ bool imp_series_solve(imp_course *course, int order)
     if (course->mu == 0) return imp_course_straight(course);
     const imp_real mu = course->mu, small = IMP_EPSILON / 16 * imp_smaller(course->s, 1);
     int events = -1;
-    for (int steps = 0; steps < 400 && course->s > 0 && !course->ended; steps++) {
+    for (int steps = 0; steps < IMP_SERIES_STEPS && course->s > 0 && !course->ended; steps++) {
         const imp_real x = course->ux / course->s, y = course->uy / course->s;
         if (course->s <= small || imp_course_is_straight(frame, mu, x, y)) {
             imp_course_slide(course, x, y);

@@ -8,11 +8,12 @@
 
 #include "collide/collide_course.h"
 
-/* The order itself, and the largest that can be asked for. */
+/* The order itself, and the largest that can be asked for; steps of one impact: three are many, but where the slip
+ * slows down and turns at rates far apart (slender bodies), as many as their ratio. */
 #ifdef IMP_SECOND
-enum { IMP_SERIES_ORDER = 40, IMP_SERIES_MOST = 40 };
+enum { IMP_SERIES_ORDER = 40, IMP_SERIES_MOST = 40, IMP_SERIES_STEPS = 400 };
 #else
-enum { IMP_SERIES_ORDER = 22, IMP_SERIES_MOST = 32 };
+enum { IMP_SERIES_ORDER = 22, IMP_SERIES_MOST = 32, IMP_SERIES_STEPS = 4000 };
 #endif
 
 /* IMP_PAIR reads two numbers that stand side by side. */

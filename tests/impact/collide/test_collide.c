@@ -50,13 +50,13 @@ static void sphere_slides(void **state)
 static void sphere_at_any_speed(void **state)
 {
     (void)state;
-    /* Velocities so large or small that their squares are not numbers: the answer keeps its bits, and so
-     * does friction. */
+    /* Velocities so large or small that squares of theirs are not numbers: the answer keeps its bits, and so does
+     * friction; energies must still be numbers. */
     const impact_collision c = sphere_on_plane((qvec3){4, 1, -2}, (qvec3){1, -2, 5}, 0.25, 0.3);
     impact_outcome o, far;
     assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
     for (int sign = -1; sign <= 1; sign += 2) {
-        const double f = sign < 0 ? 0x1p-530 : 0x1p530;
+        const double f = sign < 0 ? 0x1p-530 : 0x1p505;
         impact_collision d = c;
         d.body[0].velocity = qvec3_scale(c.body[0].velocity, f);
         d.body[0].omega = qvec3_scale(c.body[0].omega, f);
@@ -385,7 +385,7 @@ static void nothing_overflows_unsaid(void **state)
     int refused = 0;
     for (int i = 0; i < 4000; i++) {
         impact_collision c = case_make(i % 2 ? CASE_PLAIN : CASE_SPHERE, 19, (uint64_t)i);
-        const double size = pow(10, 300 + 8.2 * case_random(&g));
+        const double size = pow(10, 150 + 8 * case_random(&g));
         for (int k = 0; k < 2; k++) {
             const double most = DBL_MAX / (4 + qvec3_norm(c.body[k].velocity));
             c.body[k].velocity = qvec3_scale(c.body[k].velocity, fmin(size, most));

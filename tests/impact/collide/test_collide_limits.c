@@ -68,6 +68,27 @@ static void slender_bodies(void **state)
     assert_true(rows >= 200);
 }
 
+/* The sampled sensitivity against the true one: between a quarter and twice of it. */
+static void sensitivity_is_true(void **state)
+{
+    (void)state;
+    FILE *file = fopen(TEST_DATA "/collide_slender.csv", "r");
+    assert_non_null(file);
+    static char heading[4096];
+    assert_non_null(fgets(heading, sizeof heading, file));
+    double x[NUMBERS];
+    while (read_numbers(file, x)) {
+        const impact_collision c = {.body = {body_of(x + 1), body_of(x + 18)},
+                                    .normal = three(x + 35),
+                                    .friction = x[38],
+                                    .restitution = x[39],
+                                    .law = (impact_law)(int)x[40]};
+        const double said = impact_collide_sensitivity(&c) / x[NUMBERS - 1];
+        if (!(said > 0.25 && said < 2)) fail_msg("r = %g: said %.3g times the true %.3g", x[0], said, x[NUMBERS - 1]);
+    }
+    fclose(file);
+}
+
 /* ---- hardly any friction ---- */
 
 static impact_collision without_friction(impact_collision c)
@@ -217,8 +238,9 @@ static void beyond(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slender_bodies),  cmocka_unit_test(slippery),    cmocka_unit_test(a_sliding_egg),
-        cmocka_unit_test(units_scale_out), cmocka_unit_test(any_numbers), cmocka_unit_test(beyond),
+        cmocka_unit_test(slender_bodies), cmocka_unit_test(sensitivity_is_true), cmocka_unit_test(slippery),
+        cmocka_unit_test(a_sliding_egg),  cmocka_unit_test(units_scale_out),     cmocka_unit_test(any_numbers),
+        cmocka_unit_test(beyond),
     };
     return cmocka_run_group_tests_name("impact collide_limits", tests, NULL, NULL);
 }
