@@ -22,7 +22,7 @@ local rooms = {
   { "^libimpact/src/shape/", { "impact_shape", "impact_gap" } },
   { "^libimpact/src/flight/elliptic", { "impact_elliptic", "impact_tumble" } }, { "^libimpact/src/flight/", { "impact_flight", "impact_tumble" } },
   { "^libimpact/src/base/record%.c$", { "impact_record" } }, { "^libimpact/src/gap/gap_strike", { "impact_gap", "impact_toi", "impact_motion" } },
-  { "^libimpact/src/gap/", { "impact_gap", "impact_gjk", "impact_toi" } }, { "^libimpact/src/motion/toi", { "impact_toi" } },
+  { "^libimpact/src/gap/", { "impact_gap", "impact_gap_deep", "impact_gap_receipt", "impact_gjk", "impact_toi" } }, { "^libimpact/src/motion/toi", { "impact_toi" } },
   { "^libimpact/src/collide/", { "impact_collide", "impact_collide_frame", "impact_collide_ready", "impact_collide_direct",
     "impact_collide_inertia", "impact_collide_isotropic", "impact_collide_flow", "impact_collide_course", "impact_collide_series",
     "impact_collide_facts", "impact_collide_sensitivity", "impact_collide_compliant", "impact_collide_many", "impact_collide_cvode" } },

@@ -109,7 +109,8 @@ static void exp_and_log(fuzz_bytes *b)
         HOLD(apart(q, quat_mul(r, r)) <= 2e-15 * n, apart(q, quat_mul(r, r)) / n, 2e-15);
     if (quat_pow(q, in.t, &r) == QUAT_OK) HOLD(quat_isfinite(r), r.w, 0);
     if (quat_pow_quat(in.p, q, &r) == QUAT_OK) HOLD(quat_isfinite(r), r.w, 0);
-    hold_turn(quat_exp_pure(quat_log_unit(in.u)), in.u, 1e-15);
+    /* the logarithm is up to pi long, to its last bit or two, and turns by twice that */
+    hold_turn(quat_exp_pure(quat_log_unit(in.u)), in.u, 2e-15);
     quat_pow_unit(in.u, in.t), quat_log_unit(q);
 }
 
