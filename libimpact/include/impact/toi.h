@@ -26,7 +26,8 @@ IMPACT_API impact_solid impact_motion_at(const impact_solid *body, const impact_
  * passed over is proved free of contact, so that none is missed, however thin or fast the bodies. contact (NULL: not
  * wanted): the contact at *time. IMPACT_OK: *time is when the gap reaches zero, to the gap's or the time's rounding; 0
  * when the bodies touch or overlap at the start. IMPACT_NO_CONTACT: *time = t_max. IMPACT_EUNSETTLED: too many steps (a
- * long near-contact); there is none before *time. Other negative statuses: *time is NaN. */
+ * long near-contact, 2000), or an answer that fails its receipt (then *time = 0): there is none before *time. Other
+ * negative statuses: *time is NaN. */
 IMPACT_API impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1, const impact_solid *body2,
                                     const impact_motion *motion2, double t_max, double *time, impact_contact *contact);
 

@@ -6,7 +6,6 @@
  * bodies.
  */
 #include <quat/rotation.h>
-#include "base/floats.h"
 #include "motion/toi_proof.h"
 
 enum { MAX_STEPS = 2000, MAX_WAITING = 12, MAX_BALL_STEPS = 4 };
@@ -409,11 +408,11 @@ impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1
     if (status == IMPACT_OK) status = imp_gap_check(body1, &body[0].orientation, body2, &body[1].orientation);
     if (status != IMPACT_OK) return status;
     search s;
-    const imp_floats floats = imp_floats_hold();
     set(&s, body, motion1, motion2, t_max);
     status = run(&s);
-    imp_floats_give_back(&floats);
     if (contact) *contact = s.here.contact;
-    if (status >= 0 || status == IMPACT_EUNSETTLED) *time = s.here.t;
+    const bool wrong = status == IMPACT_OK && s.here.t > 0 && !imp_toi_holds(&s.q, &s.here);
+    if (wrong) status = IMPACT_EUNSETTLED;
+    if (status >= 0 || status == IMPACT_EUNSETTLED) *time = wrong ? 0 : s.here.t;
     return status;
 }

@@ -180,3 +180,20 @@ double imp_toi_ball_step(const imp_chase *q, const imp_instant *at, qvec3 n)
     const double apart = qvec3_dot(n, at->c) - q->radius[0] - q->radius[1];
     return apart > 0 ? first_zero(apart, qvec3_dot(n, at->v), -fmin(0, qvec3_dot(n, q->acceleration))) : 0;
 }
+
+/* The gap's rounding, or that of the time; an advance of the bodies that rounding of neither hides; of a length. */
+static double room_of(const imp_instant *at) { return fmax(40 * at->tolerance, 4.5e-16 * at->t * fabs(at->rate)); }
+
+static const double glance_back = 1e-6;
+
+bool imp_toi_holds(const imp_chase *q, const imp_instant *at)
+{
+    const double room = room_of(at);
+    if (!(fabs(at->gap) <= room)) return false;
+    const double back = fmin(at->t, fabs(at->rate) > 0 ? glance_back * q->length / fabs(at->rate) : 0);
+    imp_instant before;
+    impact_contact contact;
+    imp_instant_place(q, at->t - back, true, &before);
+    if (parted(q, &before, at->contact.normal) > -room) return true;
+    return impact_gap(&before.body[0], &before.body[1], NULL, &contact) >= 0 && contact.upper > -room;
+}

@@ -46,4 +46,9 @@ qvec3 imp_toi_turn(qvec3 n0, qvec3 n1, double T);
 double imp_toi_safe_step(const imp_chase *q, const imp_instant *at, qvec3 trend, double limit);
 double imp_toi_ball_step(const imp_chase *q, const imp_instant *at, qvec3 n);
 
+/* The receipt of a contact at an instant later than 0, the bodies placed there and the gap found: it is 0 to rounding,
+ * and the bodies do not overlap a millionth of their length earlier. It knows nothing of how the search went: where a
+ * step passed the contact, or two roots, it fails. */
+bool imp_toi_holds(const imp_chase *q, const imp_instant *at);
+
 #endif

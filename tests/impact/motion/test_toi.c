@@ -6,6 +6,7 @@
 #include <cmocka.h>
 #include <impact/toi.h>
 #include "kit/contact_random.h"
+#include "motion/toi_proof.h"
 
 static impact_solid solid(impact_shape shape, qvec3 position, quat orientation)
 {
@@ -254,6 +255,70 @@ static void contact_is_the_gaps(void **state)
     assert_true(met > 1500);
 }
 
+/* No step of this advancement leans on the search's bounds: the gap never falls faster than the centres and the
+ * bounding balls' rims move. It comes to the contact that was found, and never past it. */
+static void advancement_by_speed_alone(void **state)
+{
+    (void)state;
+    random_stream random = {41};
+    int met = 0, near_it = 0;
+    for (int k = 0; k < 300; k++) {
+        const int family = k % RANDOM_FAMILIES;
+        const impact_solid a = random_solid(&random, family, 2), b = random_solid(&random, family, 0);
+        const impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        double t, at = 0;
+        const double end = 4;
+        if (impact_toi(&a, &ma, &b, &mb, end, &t, NULL) < 0) fail_msg("%d: unsettled", k);
+        const double speed = qvec3_norm(ma.velocity) + qvec3_norm(mb.velocity) +
+                             end * (qvec3_norm(ma.acceleration) + qvec3_norm(mb.acceleration)) +
+                             impact_shape_bounding_radius(&a.shape) * qvec3_norm(ma.omega) +
+                             impact_shape_bounding_radius(&b.shape) * qvec3_norm(mb.omega);
+        for (int step = 0; step < 120 && at < t; step++) {
+            const impact_solid a_at = impact_motion_at(&a, &ma, at), b_at = impact_motion_at(&b, &mb, at);
+            impact_contact c;
+            assert_true(impact_gap(&a_at, &b_at, NULL, &c) >= 0);
+            if (!(c.upper > -1e-14)) fail_msg("%d: gap %g at %.17g, the contact at %.17g", k, c.upper, at, t);
+            at += c.lower / speed;
+        }
+        if (t > 0 && t < end) met++, near_it += t - at < 1e-2;
+        if (t > 0 && t < end && at > t + 1e-14) fail_msg("%d: free of contact to %.17g, contact at %.17g", k, at, t);
+    }
+    if (met < 80 || near_it < 0.8 * met) fail_msg("%d met, %d approached", met, near_it);
+}
+
+/* The receipt of a contact: right ones pass, those of another time fail. */
+static void receipts_tell_wrong_times(void **state)
+{
+    (void)state;
+    random_stream random = {42};
+    int told = 0;
+    for (int k = 0; k < 300; k++) {
+        const impact_solid a = random_solid(&random, RANDOM_MIXED, 3), b = random_solid(&random, RANDOM_MIXED, 0);
+        const impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        double t;
+        impact_contact contact;
+        if (impact_toi(&a, &ma, &b, &mb, 8, &t, &contact) != IMPACT_OK || t == 0) continue;
+        const imp_chase q = {.course = {.body = {&a, &b}, .motion = {&ma, &mb}},
+                             .omega = {ma.omega, mb.omega},
+                             .length = fmax(contact_size(&a.shape), contact_size(&b.shape)),
+                             .acceleration = qvec3_sub(ma.acceleration, mb.acceleration)};
+        const double off[3] = {0, 1e-3, -1e-3};
+        for (int i = 0; i < 3; i++) {
+            imp_instant at;
+            imp_instant_place(&q, t + off[i], true, &at);
+            assert_true(impact_gap(&at.body[0], &at.body[1], NULL, &at.contact) >= 0);
+            at.gap = at.contact.lower;
+            at.rate = impact_gap_rate(&at.contact, at.v, ma.omega, (qvec3){0, 0, 0}, mb.omega);
+            if (fabs(at.rate) < 1e-2) continue;
+            assert_int_equal(imp_toi_holds(&q, &at), i == 0);
+            told++;
+            at.gap = 0; /* were only the gap wrong: the bodies overlap before */
+            if (i == 1) assert_false(imp_toi_holds(&q, &at));
+        }
+    }
+    assert_true(told > 300);
+}
+
 static void bad_input(void **state)
 {
     (void)state;
@@ -281,6 +346,8 @@ int main(void)
         cmocka_unit_test(any_spin),
         cmocka_unit_test(any_motion),
         cmocka_unit_test(contact_is_the_gaps),
+        cmocka_unit_test(advancement_by_speed_alone),
+        cmocka_unit_test(receipts_tell_wrong_times),
         cmocka_unit_test(bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

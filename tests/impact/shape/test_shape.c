@@ -201,6 +201,49 @@ static void surface_points_and_normals(void **state)
     near_relative(normals[4 * 8].z, 1, 1e-15);
 }
 
+/* A plane answers every question, with what it has: no size, no curvature, support along +z alone. */
+static void planes_answer_too(void **state)
+{
+    (void)state;
+    impact_shape plane;
+    qvec3 x;
+    double k1, k2;
+    assert_int_equal(impact_shape_plane(2, 3, &plane), IMPACT_OK);
+    assert_true(impact_shape_support(&plane, (qvec3){0, 0, 2}, &x) == 0 && x.z == 0);
+    assert_true(isinf(impact_shape_support(&plane, (qvec3){0, 0.1, 2}, &x)) && isnan(x.x));
+    assert_true(isinf(impact_shape_support(&plane, (qvec3){0, 0, -1}, NULL)));
+    assert_true(isnan(impact_shape_support_hessian(&plane, (qvec3){0, 0, 1}).m[0][0]));
+    x = impact_shape_point(&plane, -5, 1);
+    assert_true(x.x == -2 && x.y == 1 && x.z == 0);
+    assert_true(impact_shape_normal(&plane, 1, 1).z == 1);
+    assert_true(impact_shape_inside(&plane, (qvec3){9, 9, -0.5}) == 0.5);
+    impact_shape_curvatures(&plane, (qvec3){0, 0, 1}, &k1, &k2);
+    assert_true(k1 == 0 && k2 == 0);
+    assert_true(isinf(impact_shape_volume(&plane)) && isinf(impact_shape_bounding_radius(&plane)));
+    assert_true(isinf(impact_shape_inertia(&plane).x));
+}
+
+/* Flat in one direction and round in the other: an ellipsoid's side whose third exponent is above 2. */
+static void flat_one_way(void **state)
+{
+    (void)state;
+    const impact_shape shape = superquadric(1, 2, 3, 2, 2, 4);
+    double k1, k2;
+    impact_shape_curvatures(&shape, (qvec3){1, 0, 0}, &k1, &k2);
+    near_relative(k1, 0.25, 1e-14); /* a/b^2 */
+    assert_true(k2 == 0);
+    impact_shape_curvatures(&shape, (qvec3){0, 3, 0}, &k1, &k2);
+    near_relative(k1, 2, 1e-14); /* b/a^2 */
+    assert_true(k2 == 0);
+    impact_shape_curvatures(&shape, (qvec3){0, 0, 0}, &k1, &k2);
+    assert_true(isnan(k1) && isnan(k2));
+    impact_shape_curvatures(&shape, (qvec3){0, INFINITY, 0}, &k1, &k2);
+    assert_true(isnan(k1) && isnan(k2));
+    qvec3 points[3 * 3];
+    assert_int_equal(impact_shape_mesh(&shape, 3, 2, points, NULL), IMPACT_OK);
+    assert_int_equal(impact_shape_mesh(&shape, 3, 1, points, NULL), IMPACT_EARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -211,6 +254,8 @@ int main(void)
         cmocka_unit_test(hessian_is_the_derivative),
         cmocka_unit_test(curvatures),
         cmocka_unit_test(surface_points_and_normals),
+        cmocka_unit_test(planes_answer_too),
+        cmocka_unit_test(flat_one_way),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
