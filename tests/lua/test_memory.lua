@@ -1,0 +1,58 @@
+-- SPDX-License-Identifier: MIT
+--- The runner with one of its allocations refused, or all from one on: it ends with 0, or 5 and one line, and never by a signal. Of
+--- SUNDIALS' own, two within SUNContext_Create stop the process (docs/memory.md): a scene may meet each of them once.
+local check = require "check"
+local runner = require "runner"
+local library = arg[3]
+runner.clean()
+
+local body = "impact.body { name = 'ball', shape = impact.sphere(0.1), position = { 0, 0, 0.3 }, restitution = 0.9 }"
+local scripts = {
+  bounce = { text = "local impact = require 'impact' return impact.scene { duration = 0.3, bodies = { " .. body ..
+    ", impact.body { name = 'floor', shape = impact.plane(), restitution = 1 } } }", crashes = 0 },
+  figure = { text = [[local plot = require "quat.plot"
+    local figure = plot.figure { title = "t", plot.panel { title = "p", plot.line { { 0, 1 }, { 0, 1 }, label = "l" } } }
+    local saved, why = plot.save(figure, "a")
+    if not saved and not why:find "gnuplot is not installed" then error(why) end
+    assert(require "quat.csv".save("b", { "x" }, { { 1, 2, 3 } }))]], crashes = 0 },
+}
+if require "impact".has "cvode" then
+  scripts.force = { text = "local impact = require 'impact' return impact.scene { duration = 0.2, forces = { impact.force { law = " ..
+    "function(t, b) return { -b.position.x, 0, 0 } end } }, bodies = { " .. body .. " } }", crashes = 2 }
+end
+
+local function run(variables)
+  local command = string.format("cd %s && timeout 20 env %s LD_PRELOAD=%s %s script.lua --out o --quiet >stdout.txt 2>stderr.txt </dev/null",
+    runner.quote(runner.folder), variables, runner.quote(library), runner.quote(runner.program))
+  local code = runner.shell("( " .. command .. " ) 2>/dev/null")
+  return code, runner.read("stderr.txt")
+end
+
+for name, script in pairs(scripts) do
+  runner.write("script.lua", script.text)
+  local whole, told = run("FAIL_COUNT=1")
+  check.equal(whole, 0)
+  local count = tonumber(told)
+  check.truth(count > 500, name .. " allocates")
+  local crashes, refused = 0, 0
+  local function try(at, once)
+    local code, said = run("FAIL_AT=" .. at .. (once and " FAIL_ONCE=1" or ""))
+    if code == 124 or code == 143 then error(string.format("%s, allocation %d: it hangs", name, at)) end
+    if code >= 128 then
+      crashes = crashes + 1
+    elseif code ~= 0 then
+      refused = refused + 1
+      if not (code == 1 or code == 4 or code == 5) or select(2, said:gsub("\n", "\n")) ~= 1 then
+        error(string.format("%s, allocation %d%s: exit code %d: %s", name, at, once and " alone" or "", code, said))
+      end
+    end
+  end
+  for i = 1, 24 do -- the last ones are the runs', the first the state's
+    try(1 + (i * i * count) // 576, i % 2 == 0)
+    try(count - 3 * i, i % 2 == 1)
+  end
+  check.truth(crashes <= script.crashes, string.format("%s: %d ends by a signal", name, crashes))
+  check.truth(refused > 10, name .. ": refusals are met")
+end
+
+check.report("memory")
