@@ -6,6 +6,7 @@
  * bodies.
  */
 #include <quat/rotation.h>
+#include "base/floats.h"
 #include "motion/toi_proof.h"
 
 enum { MAX_STEPS = 2000, MAX_WAITING = 12, MAX_BALL_STEPS = 4 };
@@ -408,10 +409,12 @@ impact_status impact_toi(const impact_solid *body1, const impact_motion *motion1
     if (status == IMPACT_OK) status = imp_gap_check(body1, &body[0].orientation, body2, &body[1].orientation);
     if (status != IMPACT_OK) return status;
     search s;
+    const imp_floats floats = imp_floats_hold();
     set(&s, body, motion1, motion2, t_max);
     status = run(&s);
-    if (contact) *contact = s.here.contact;
     const bool wrong = status == IMPACT_OK && s.here.t > 0 && !imp_toi_holds(&s.q, &s.here);
+    imp_floats_give_back(&floats);
+    if (contact) *contact = s.here.contact;
     if (wrong) status = IMPACT_EUNSETTLED;
     if (status >= 0 || status == IMPACT_EUNSETTLED) *time = wrong ? 0 : s.here.t;
     return status;
