@@ -6,8 +6,8 @@
 
 static int core_has(lua_State *L)
 {
-    static const char *const words[] = {"cvode", "ccd", NULL};
-    static const impact_part parts[] = {IMPACT_PART_CVODE, IMPACT_PART_CCD};
+    static const char *const words[] = {"cvode", "ccd", "view", NULL};
+    static const impact_part parts[] = {IMPACT_PART_CVODE, IMPACT_PART_CCD, IMPACT_PART_VIEW};
     lua_pushboolean(L, impact_has(parts[quat_lua_arg_choice(L, 1, "part", words)]));
     return 1;
 }

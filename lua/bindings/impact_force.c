@@ -28,6 +28,7 @@ static void read_wind(const quat_lua_reader *reader, impact_force_def *def)
     def->radius = quat_lua_get_number(reader, "radius", QUAT_LUA_POSITIVE_OR_INF, def->radius);
     def->falloff_power = quat_lua_get_number(reader, "falloff_power", QUAT_LUA_NOT_NEGATIVE, def->falloff_power);
     def->falloff_length = quat_lua_get_number(reader, "falloff_length", QUAT_LUA_POSITIVE, def->falloff_length);
+    def->drag = quat_lua_get_number(reader, "drag", QUAT_LUA_NOT_NEGATIVE, def->drag);
 }
 
 static void read_attraction(const quat_lua_reader *reader, impact_force_def *def)
@@ -47,8 +48,9 @@ static void read_custom(const quat_lua_reader *reader)
 
 static void read_kind(lua_State *L, int index, const char *where, impact_force_kind kind, impact_force_def *def)
 {
-    static const char *const wind_keys[] = {"name",  "body",   "origin",        "direction",      "strength",
-                                            "reach", "radius", "falloff_power", "falloff_length", NULL};
+    static const char *const wind_keys[] = {"name",           "body",  "origin", "direction",
+                                            "strength",       "reach", "radius", "falloff_power",
+                                            "falloff_length", "drag",  NULL};
     static const char *const attraction_keys[] = {"name", "body", "constant", "power", "reach", NULL};
     static const char *const custom_keys[] = {"name", "body", "law", NULL};
     static const char *const *const keys[] = {wind_keys, attraction_keys, custom_keys};

@@ -71,6 +71,7 @@ core.layer()
 ---@field radius? number  m from its axis
 ---@field falloff_power? number
 ---@field falloff_length? number  m
+---@field drag? number  N s/m: the wind pulls towards its own speed, strength/drag
 
 ---@class impact.attraction
 ---@field name? string
@@ -146,6 +147,8 @@ core.layer()
 ---@field events fun(self): table[]
 ---@field contacts fun(self): table[]  held contacts: t, body1, body2, mode, point, normal, force
 ---@field account fun(self): table[]  t, and what scene:energy gives, J
+---@field view fun(self, path: string): true?, string?  writes the page of it; or nil and why not
+---@field gltf fun(self, path: string): true?, string?  the same of glTF, to 3e-4 of each body
 ---@field close fun(self)
 
 ---@alias impact.inertia number[][]|{moments: vec, orientation?: quat|number[]}  world tensor, or principal moments and their axes
@@ -223,7 +226,7 @@ core.layer()
 ---@class impactlib
 ---@field version string
 ---@field defaults table  what the library takes for absent keys: gravity, output_rate, tolerance, density, friction ...
----@field has fun(part: "cvode"|"ccd"): boolean  whether this build holds the part
+---@field has fun(part: "cvode"|"ccd"|"view"): boolean  whether this build holds the part
 ---@field sphere fun(radius: number|{radius: number}): impact.shape
 ---@field plane fun(bounds?: {width?: number, depth?: number}): impact.shape
 ---@field ellipsoid fun(axes: {a: number, b: number, c: number}): impact.shape

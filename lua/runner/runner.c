@@ -16,12 +16,18 @@ static void usage(FILE *file)
 {
     fputs(
         "usage: impact SCRIPT.lua [options]\n"
+        "       impact view SCRIPT.lua|FILE.run [options]\n"
+        "       impact gltf SCRIPT.lua|FILE.run [options]\n"
         "\n"
         "Runs the scene that the script returns and writes NAME.csv, NAME_events.csv and, when the scene has a plot "
         "and gnuplot\n"
         "is there, NAME.png. A script that returns nothing has done its work itself.\n"
+        "view: writes NAME.html too, one page that shows the run in any browser, and opens it where there is a "
+        "display.\n"
+        "gltf: writes NAME.glb too, for Blender and others.\n"
         "\n"
         "  --out DIR         the output folder; made when needed (default: out)\n"
+        "  --record          writes the recorded run, NAME.run, too: every state between events, for viewers\n"
         "  --record          writes the recorded run, NAME.run, too: every state between events, for viewers\n"
         "  --quiet           no progress, no closing summary\n"
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
@@ -117,6 +123,10 @@ static int read_command(int count, char **words, impact_runner *runner)
             return usage(stdout), IMPACT_EXIT_OK;
         } else if (strcmp(word, "--version") == 0) {
             return version(), IMPACT_EXIT_OK;
+        } else if (i == 1 && (strcmp(word, "view") == 0 || strcmp(word, "gltf") == 0)) {
+            runner->shown = strcmp(word, "view") == 0 ? "view" : "gltf";
+            runner->ending = strcmp(word, "view") == 0 ? "html" : "glb";
+            runner->record = true;
         } else if (strcmp(word, "--record") == 0) {
             runner->record = true;
         } else if (strcmp(word, "--quiet") == 0) {
@@ -287,12 +297,22 @@ static void summarise(lua_State *L, int scene, const impact_runner *runner, cons
     lua_pushvalue(L, -3); /* the reason */
     lua_call(L, 2, 1);
     const char *directory = runner->directory, *text = lua_tostring(L, -1);
-    printf("%s  wrote      %s/%s.csv, %s/%s_events.csv", text ? text : "", directory, name, directory, name);
+    printf("%s  wrote      ", text ? text : "");
+    if (runner->shown) printf("%s/%s.%s, ", directory, name, runner->ending);
+    printf("%s/%s.csv, %s/%s_events.csv", directory, name, directory, name);
     if (runner->record) printf(", %s/%s.run", directory, name);
     if (drawn) printf(", %s/%s.png", directory, name);
     putchar('\n');
     if (runner->unfenced) printf("  not fenced %s\n", runner->unfenced);
     lua_pop(L, 1);
+}
+
+static int view_scene(lua_State *L, int scene, impact_runner *runner, const char *name)
+{
+    lua_getfield(L, scene, "record");
+    lua_pushvalue(L, scene);
+    lua_call(L, 1, 1);
+    return impact_runner_view(L, lua_gettop(L), runner, name);
 }
 
 static int drive_scene(lua_State *L, int scene, impact_runner *runner)
@@ -308,7 +328,8 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     const int ran = run_scene(L, scene, runner, name, plot);
     if (ran != IMPACT_EXIT_OK && ran != IMPACT_EXIT_INACCURATE) return ran;
     const int reason = lua_gettop(L);
-    const int drew = plot ? draw_scene(L, scene, runner, name, &drawn) : IMPACT_EXIT_OK;
+    int drew = plot ? draw_scene(L, scene, runner, name, &drawn) : IMPACT_EXIT_OK;
+    if (drew == IMPACT_EXIT_OK && runner->shown) drew = view_scene(L, scene, runner, name);
     lua_settop(L, reason);
     if (!runner->quiet) summarise(L, scene, runner, name, drawn);
     return drew != IMPACT_EXIT_OK ? drew : ran;
@@ -320,7 +341,11 @@ static int work(lua_State *L)
     impact_runner *runner = lua_touserdata(L, 1);
     impact_runner_open_libraries(L, runner);
     impact_runner_start_clock(L, runner);
-    if (luaL_loadfilex(L, runner->script, runner->trust ? NULL : "t") != LUA_OK) return lua_error(L);
+    const bool record = impact_runner_is_record(runner);
+    if (record)
+        impact_runner_push_record(L, runner);
+    else if (luaL_loadfilex(L, runner->script, runner->trust ? NULL : "t") != LUA_OK)
+        return lua_error(L);
     if (!runner->trust) {
         impact_runner_open_folder_early(runner);
         runner->unfenced = impact_runner_fence(runner);
@@ -330,10 +355,17 @@ static int work(lua_State *L)
             return 1;
         }
     }
+    if (record) {
+        lua_pushinteger(L, impact_runner_view_record(L, runner));
+        return 1;
+    }
     lua_call(L, 0, 1);
     int code = IMPACT_EXIT_OK;
     if (luaL_testudata(L, -1, "impact.scene"))
         code = drive_scene(L, lua_gettop(L), runner);
+    else if (runner->shown)
+        return luaL_error(L, "%s: %s needs a script that returns a scene, impact.scene{...}", runner->script,
+                          runner->shown);
     else if (!lua_isnil(L, -1))
         return luaL_error(L, "%s: a script returns a scene, impact.scene{...}, or nothing; this one returned a %s",
                           runner->script, luaL_typename(L, -1));

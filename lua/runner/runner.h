@@ -33,6 +33,8 @@ typedef struct impact_runner {
     bool record;          /* NAME.run is written too */
     bool fence;           /* not without it */
     const char *unfenced; /* why there is none; NULL: there is */
+    /* what else is made of the record, by method name and file ending: view, html; gltf, glb; NULL */
+    const char *shown, *ending;
     double max_time;      /* s; 0: no limit */
     double max_megabytes; /* as given, and: */
     size_t max_memory;    /* bytes; 0: no limit */
@@ -98,6 +100,17 @@ int impact_runner_io_open(lua_State *L);
 void impact_runner_open_libraries(lua_State *L, impact_runner *runner);
 /* Loads one of the embedded layers: pushes its chunk. */
 bool impact_runner_load_layer(lua_State *L, const char *module);
+
+/* ---- runner_view.c ---- */
+
+/* Writes the page of the recorded run at index as NAME.html (or its glTF, NAME.glb) in the output folder; an exit code.
+ */
+int impact_runner_view(lua_State *L, int run, impact_runner *runner, const char *name);
+/* Whether the script is a recorded run's file, which view and gltf take too; pushes that, or raises an error; and the
+ * same of it. */
+bool impact_runner_is_record(const impact_runner *runner);
+void impact_runner_push_record(lua_State *L, const impact_runner *runner);
+int impact_runner_view_record(lua_State *L, impact_runner *runner);
 
 /* ---- runner_fence.c ---- */
 

@@ -87,7 +87,7 @@ end
 
 -- Each figure, and the rows it gives.
 local expected = {
-  fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig06 = { "fig06" }, fig07 = { "fig07" }, untwist = { "untwist", "untwist_frames" }, hopf = { "hopf" }, gimbal = { "gimbal" }, fig10 = { "fig10" }, fig11 = { "fig11" }, fig13 = { "fig13" },
+  fig02 = { "fig02" }, fig03 = { "fig03" }, fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig06 = { "fig06" }, fig07 = { "fig07" }, untwist = { "untwist", "untwist_frames" }, hopf = { "hopf" }, gimbal = { "gimbal" }, fig10 = { "fig10" }, fig11 = { "fig11" }, fig13 = { "fig13" },
   fig15 = { "fig15" }, fig16 = { "fig16" }, hodograph = { "hodograph" },
 }
 if pcall(require, "quat.gsl") then

@@ -36,6 +36,9 @@ typedef struct impact_force_def {
     double reach, radius;  /* m; infinite: no edge. attraction uses reach too: no force between bodies further apart */
     double falloff_power;  /* 0: none */
     double falloff_length; /* m, > 0 */
+    /* wind: N s/m, >= 0. With it the wind pulls towards its own speed, strength/drag along its direction: the force is
+     * (1 + d/falloff_length)^(-falloff_power) (strength direction - drag v), v the body's velocity. 0: none. */
+    double drag;
 
     double constant; /* attraction: G in N m^power / kg^2 */
     double power;    /* attraction: 2 for Newton */

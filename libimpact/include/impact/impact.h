@@ -18,5 +18,6 @@
 #include "record.h"
 #include "scene.h"
 #include "run.h"
+#include "view.h"
 
 #endif

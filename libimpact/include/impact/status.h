@@ -36,7 +36,7 @@ typedef enum impact_status {
 /* One short English sentence for a status; never NULL. */
 IMPACT_API const char *impact_status_string(impact_status status);
 
-typedef enum impact_part { IMPACT_PART_CVODE, IMPACT_PART_CCD } impact_part;
+typedef enum impact_part { IMPACT_PART_CVODE, IMPACT_PART_CCD, IMPACT_PART_VIEW } impact_part;
 
 /* Whether this build holds the part. */
 IMPACT_API bool impact_has(impact_part part);

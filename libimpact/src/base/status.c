@@ -33,6 +33,12 @@ bool impact_has(impact_part part)
 #else
         return false;
 #endif
+    case IMPACT_PART_VIEW:
+#ifdef IMPACT_WITH_VIEW
+        return true;
+#else
+        return false;
+#endif
     case IMPACT_PART_CCD:
 #ifdef IMPACT_WITH_CCD
         return true;

@@ -159,6 +159,7 @@ static void check_force(check *c, const impact_scene_def *def, const impact_forc
         require(c, isfinite(force->falloff_power), "falloff_power", force->falloff_power, "must be finite");
         require(c, isfinite(force->falloff_length) && force->falloff_length > 0, "falloff_length",
                 force->falloff_length, "must be positive and finite");
+        require(c, isfinite(force->drag) && force->drag >= 0, "drag", force->drag, "must be finite and not negative");
         break;
     case IMPACT_FORCE_ATTRACTION:
         require_words(c, !force->body, "an attraction acts on every two bodies: it takes no 'body'");

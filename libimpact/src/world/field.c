@@ -8,11 +8,17 @@ static bool acts_on(const imp_field *field, const imp_world *world, int body)
 
 /* ---- wind ---- */
 
-static qvec3 wind(const impact_force_def *def, qvec3 x)
+/* What is left of it there. */
+static double wind_fall(const impact_force_def *def, qvec3 x)
 {
     const double along = fabs(qvec3_dot(qvec3_sub(x, def->origin), def->direction));
-    const double fall = def->falloff_power == 0 ? 1 : pow(1 + along / def->falloff_length, -def->falloff_power);
-    return qvec3_scale(def->direction, def->strength * fall);
+    return def->falloff_power == 0 ? 1 : pow(1 + along / def->falloff_length, -def->falloff_power);
+}
+
+static qvec3 wind(const impact_force_def *def, const imp_state *state)
+{
+    const qvec3 pull = qvec3_axpy(-def->drag, state->v, qvec3_scale(def->direction, def->strength));
+    return qvec3_scale(pull, wind_fall(def, state->x));
 }
 
 /* ---- attraction: the slot of bodies i < j is i + j (j - 1)/2 ---- */
@@ -56,7 +62,7 @@ static bool add_to_body(const imp_field *field, const imp_world *world, double t
     qvec3 force = {0, 0, 0}, torque = {0, 0, 0};
     if (field->def.kind == IMPACT_FORCE_WIND) {
         if (!field->inside[i]) return true;
-        force = wind(&field->def, states[i].x);
+        force = wind(&field->def, &states[i]);
     } else if (!field->def.function(t, i, body->mass, states[i].x, states[i].q, states[i].v, omega, &force, &torque,
                                     field->def.context)) {
         return false;
@@ -131,12 +137,18 @@ double imp_field_brake(const imp_world *world, double t, const imp_state *states
 {
     double rate = 0;
     *turning = 0;
-    for (int k = 0; k < world->field_count; k++)
-        for (int i = 0; i < world->body_count && world->fields[k].def.kind == IMPACT_FORCE_CUSTOM; i++) {
-            if (!acts_on(&world->fields[k], world, i)) continue;
-            if (!brake_of(&world->fields[k], world, t, &states[i], i, &rate)) return 0;
+    for (int k = 0; k < world->field_count; k++) {
+        const imp_field *field = &world->fields[k];
+        for (int i = 0; i < world->body_count && field->def.kind == IMPACT_FORCE_WIND; i++)
+            if (acts_on(field, world, i) && field->inside[i])
+                rate =
+                    fmax(rate, field->def.drag * wind_fall(&field->def, states[i].x) * world->bodies[i].inverse_mass);
+        for (int i = 0; i < world->body_count && field->def.kind == IMPACT_FORCE_CUSTOM; i++) {
+            if (!acts_on(field, world, i)) continue;
+            if (!brake_of(field, world, t, &states[i], i, &rate)) return 0;
             *turning = fmax(*turning, qvec3_norm(imp_omega(&world->bodies[i], &states[i])));
         }
+    }
     return rate;
 }
 

@@ -97,6 +97,32 @@ static void wind_does_the_integral_of_its_force(void **state)
     }
 }
 
+/* A wind that drags pulls to its own speed u = F/c: v = u + (v0 - u) exp(-c t/m), at any angle to it, gently or fast.
+ */
+static void wind_pulls_to_its_own_speed(void **state)
+{
+    (void)state;
+    random_stream random = {7};
+    for (int i = 0; i < 40; i++) {
+        const qvec3 v0 = qvec3_scale(random_direction(&random), 3 * random_unit(&random));
+        const impact_body_def body = small_ball((qvec3){0, 0, 0}, v0);
+        impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND);
+        wind.direction = random_direction(&random);
+        wind.strength = random_log(&random, 0.1, 10);
+        wind.drag = random_log(&random, 1e-3, 1e4);
+        const double t = 2, rate = wind.drag / mass, left = exp(-rate * t);
+        const qvec3 u = qvec3_scale(wind.direction, wind.strength / wind.drag), off = qvec3_sub(v0, u);
+        const impact_scene_def def = scene_of(&body, 1, &wind, t);
+        impact_energy energy;
+        scene_log log = {0};
+        const impact_sample end = run_scene(&def, &log, &energy);
+        const qvec3 x = qvec3_axpy(t, u, qvec3_scale(off, -expm1(-rate * t) / rate));
+        assert_near3(end.velocity, qvec3_axpy(left, off, u), 1e-11 * (1 + qvec3_norm(u)));
+        assert_near3(end.position, x, 1e-11 * (1 + qvec3_norm(x)));
+        free_log(&log);
+    }
+}
+
 /* Across a tube of any radius, at a distance from its axis: the wind blows for 2 sqrt(R^2 - b^2)/speed. */
 static void wind_blows_within_its_radius(void **state)
 {
@@ -504,6 +530,7 @@ int main(void)
     };
     const struct CMUnitTest integrated[] = {
         cmocka_unit_test(wind_does_the_integral_of_its_force),
+        cmocka_unit_test(wind_pulls_to_its_own_speed),
         cmocka_unit_test(wind_blows_within_its_radius),
         cmocka_unit_test(wind_turns_back_what_comes_against_it),
         cmocka_unit_test(a_force_may_have_one_body),

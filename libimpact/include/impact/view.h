@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * view: what makes a recorded run visible elsewhere: a page for any browser, glTF for Blender. Without
+ * IMPACT_WITH_VIEW both answer IMPACT_EABSENT.
+ */
+#ifndef IMPACT_VIEW_H
+#define IMPACT_VIEW_H
+
+#include "run.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes the run as one page of HTML that needs nothing else: no network, no other file (docs/view.md). IMPACT_ESINK,
+ * with a message (may be NULL); IMPACT_EARGUMENT: the page would be larger than 20 MB. quota: what
+ * may be written still; NULL: no limit. */
+IMPACT_API impact_status impact_view_write(const impact_run *run, const char *path, impact_quota *quota, char *message,
+                                           unsigned long message_size);
+
+/* Writes the run as glTF 2.0 in one binary file (.glb), for Blender and others (docs/view.md). Straight lines and
+ * slerp between its keys meet the run within tolerance, in [1e-7, 0.1], of each body's size and rad, but at keys closer
+ * than a hundredth of a frame. IMPACT_EARGUMENT, IMPACT_ESINK, with a message (may be NULL). */
+IMPACT_API impact_status impact_gltf_write(const impact_run *run, double tolerance, const char *path,
+                                           impact_quota *quota, char *message, unsigned long message_size);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

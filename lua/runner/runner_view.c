@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * impact view, impact gltf: the page of a run, and its glTF.
+ */
+#include "runner.h"
+
+#include <string.h>
+
+static const char ending_of_records[] = ".run";
+
+int impact_runner_view(lua_State *L, int run, impact_runner *runner, const char *name)
+{
+    lua_pushfstring(L, "%s.%s", name, runner->ending);
+    lua_getfield(L, run, runner->shown);
+    lua_pushvalue(L, run);
+    lua_pushvalue(L, -3);
+    lua_call(L, 2, 2);
+    if (!lua_isnil(L, -2)) return IMPACT_EXIT_OK;
+    fprintf(stderr, "impact: no %s.%s: %s\n", name, runner->ending, lua_tostring(L, -1));
+    return IMPACT_EXIT_OUTPUT;
+}
+
+bool impact_runner_is_record(const impact_runner *runner)
+{
+    const size_t length = strlen(runner->script), tail = sizeof ending_of_records - 1;
+    return runner->shown && length > tail && strcmp(runner->script + length - tail, ending_of_records) == 0;
+}
+
+void impact_runner_push_record(lua_State *L, const impact_runner *runner)
+{
+    char message[400] = "";
+    impact_run **run = lua_newuserdatauv(L, sizeof *run, 0);
+    *run = NULL;
+    luaL_setmetatable(L, "impact.run");
+    if (impact_run_open(runner->script, run, message, sizeof message) < 0) luaL_error(L, "%s", message);
+}
+
+int impact_runner_view_record(lua_State *L, impact_runner *runner)
+{
+    char name[256];
+    const char *slash = strrchr(runner->script, '/');
+    snprintf(name, sizeof name, "%s", slash ? slash + 1 : runner->script);
+    char *tail = strrchr(name, '.');
+    if (tail) *tail = '\0';
+    const int code = impact_runner_view(L, lua_gettop(L), runner, name);
+    if (code == IMPACT_EXIT_OK && !runner->quiet) printf("wrote %s/%s.%s\n", runner->directory, name, runner->ending);
+    return code;
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// A convex shape's octant, the corner of a cube blown up to the surface, mirrored by the eight signs. The point n of the unit sphere
+// goes to A_i |n_i|^(2/p_i), which lies on sum |x_i/A_i|^p_i = 1 for any exponents; its normal is p_i/A_i |n_i|^(2 - 2/p_i).
+// Superellipsoids (Barr 1981): across by r, along z by t, with rho = |(n_x, n_y)|.
+function surface(body) {
+  const [a, b, c] = body.axes, [r, s, t] = body.exponents, pow = (x, p) => x > 0 ? Math.pow(x, p) : p > 0 ? 0 : 1;
+  if (body.kind !== 'superellipsoid') return n => [
+    [a, b, c].map((A, i) => A * pow(n[i], 2 / [r, s, t][i])), unit([a, b, c].map((A, i) => [r, s, t][i] / A * pow(n[i], 2 - 2 / [r, s, t][i])))];
+  return n => {
+    const rho = Math.hypot(n[0], n[1]), k = pow(rho, 2 / t), x = rho > 0 ? n[0] / rho : 1, y = rho > 0 ? n[1] / rho : 0;
+    const across = pow(rho, 2 - 2 * r / t) * pow(k, r - 1);
+    return [[a * k * pow(x, 2 / r), b * k * pow(y, 2 / r), c * pow(n[2], 2 / t)],
+      unit([across * pow(x, 2 - 2 / r) / a, across * pow(y, 2 - 2 / r) / b, pow(n[2], 2 - 2 / t) / c])];
+  };
+}
+// One octant on three grids of equal angles, n by n each: [point, normal] by rows.
+function octant(body, n) {
+  const f = surface(body), grids = [];
+  for (let face = 0; face < 3; face++) {
+    const grid = [];
+    for (let j = 0; j <= n; j++) for (let i = 0; i <= n; i++) {
+      const d = [1, Math.tan(i / n * Math.PI / 4), Math.tan(j / n * Math.PI / 4)];
+      grid.push(f(unit([d[(3 - face) % 3], d[(4 - face) % 3], d[(5 - face) % 3]])));
+    }
+    grids.push(grid);
+  }
+  return grids;
+}
+// Whether neighbouring normals differ by less than 5 degrees, or stand closer than a hundredth of the body.
+function fine(grids, n, size) {
+  return grids.every(g => g.every(([p, m], k) => [k + 1, k + n + 1].every(l => l >= g.length || (l === k + 1 && l % (n + 1) === 0) ||
+    dot(m, g[l][1]) > 0.9962 || norm(sub(p, g[l][0])) < 0.01 * size)));
+}
+// { points: position and normal by vertex, index }
+function mesh(body, most) {
+  let n = 4;
+  while (2 * n <= most && !fine(octant(body, n), n, Math.max(...body.axes))) n *= 2;
+  n = Math.min(2 * n, most);
+  const grids = octant(body, n), points = [], index = [];
+  for (let sign = 0; sign < 8; sign++) {
+    const m = [sign & 1 ? -1 : 1, sign & 2 ? -1 : 1, sign & 4 ? -1 : 1], flip = m[0] * m[1] * m[2] < 0;
+    for (const grid of grids) {
+      const base = points.length / 6;
+      for (const [p, q] of grid) points.push(...p.map((x, i) => x * m[i]), ...q.map((x, i) => x * m[i]));
+      for (let j = 0; j < n; j++) for (let i = 0; i < n; i++) {
+        const k = base + j * (n + 1) + i, quad = [k, k + 1, k + n + 2, k, k + n + 2, k + n + 1];
+        index.push(...(flip ? quad.reverse() : quad));
+      }
+    }
+  }
+  return { points, index };
+}
+// Along z from 0 to 1: a shaft and a head, radius 1 in the head.
+function arrowMesh() {
+  const points = [], index = [], n = 20, rings = [[0.4, 0, 0], [0.4, 0.75, 0], [1, 0.75, 0.7], [0, 1, 0.7]];
+  rings.forEach(([r, z, up]) => {
+    for (let i = 0; i <= n; i++) {
+      const c = Math.cos(2 * Math.PI * i / n), s = Math.sin(2 * Math.PI * i / n);
+      points.push(r * c, r * s, z, c, s, up);
+    }
+  });
+  for (let k = 0; k < 3; k++) for (let i = 0; i < n; i++) {
+    const a = k * (n + 1) + i, b = a + n + 1;
+    index.push(a, a + 1, b + 1, a, b + 1, b);
+  }
+  return { points, index };
+}
+const quadMesh = { points: [-1, -1, 0, 0, 0, 1, 1, -1, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, -1, 1, 0, 0, 0, 1], index: [0, 1, 2, 0, 2, 3] };

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// A recorded run as a source: { head, bodies, begin, end, events, contacts, account, state(body, t, before) } (docs/run.md).
+async function unpack(text) {
+  const packed = new Blob([Uint8Array.from(atob(text), c => c.charCodeAt(0))]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(packed).arrayBuffer());
+}
+function openRecord(bytes) {
+  const end = bytes.indexOf(10) + 1;
+  const head = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
+  const tables = {};
+  for (const [name, table] of Object.entries(head.tables)) {
+    const width = table.columns.length, data = new Float64Array(bytes.buffer, bytes.byteOffset + end + table.at, table.rows * width);
+    tables[name] = { rows: table.rows, get: (row, column) => data[row * width + table.columns.indexOf(column)],
+      list: (row, columns) => columns.map(c => data[row * width + table.columns.indexOf(c)]) };
+  }
+  const keys = tables.keys, X = ['x', 'y', 'z'], Q = ['qw', 'qx', 'qy', 'qz'], N = ['nx', 'ny', 'nz'], P = ['px', 'py', 'pz'];
+  const rate = (w, q) => scale(qmul([0, ...w], q), 0.5);
+  const key = row => {
+    const q = keys.list(row, Q), w = keys.list(row, ['wx', 'wy', 'wz']), dw = keys.list(row, ['dwx', 'dwy', 'dwz']), q1 = rate(w, q);
+    return { t: keys.get(row, 't'), x: keys.list(row, X), v: keys.list(row, ['vx', 'vy', 'vz']), a: keys.list(row, ['ax', 'ay', 'az']),
+      q, w, q1, q2: add(rate(dw, q), rate(w, q1)) };
+  };
+  const bodies = head.bodies.map(b => {
+    const list = Array.from({ length: b.keys[1] }, (_, i) => key(b.keys[0] + i));
+    return { ...b, list, turn: b.shape_orientation || [1, 0, 0, 0], offset: b.shape_position || [0, 0, 0] };
+  });
+  // f and f' at part s of h: the quintic Hermite polynomial of f, f', f'' at both ends.
+  const quintic = (f0, d0, c0, f1, d1, c1, h, s) => {
+    const r = 1 - s, ss = s * s, e = ss * s * (10 - s * (15 - 6 * s)), de = 30 * ss * r * r / h;
+    const a = h * s * (1 - ss * (6 - s * (8 - 3 * s))), da = 1 - ss * (18 - s * (32 - 15 * s));
+    const b = h * h * ss * r * r * r / 2, db = h * s * r * r * (2 - 5 * s) / 2;
+    const c = h * ss * s * (-4 + s * (7 - 3 * s)), dc = ss * (-12 + s * (28 - 15 * s));
+    const d = h * h * ss * s * r * r / 2, dd = h * ss * r * (3 - 5 * s) / 2;
+    const mix = (e, a, b, c, d) => f0.map((_, i) => e * (f1[i] - f0[i]) + a * d0[i] + b * c0[i] + c * d1[i] + d * c1[i]);
+    return [add(f0, mix(e, a, b, c, d)), mix(de, da, db, dc, dd)];
+  };
+  const state = (i, t, before) => {
+    const list = bodies[i].list;
+    let low = 0, high = list.length;
+    while (low < high) {
+      const m = (low + high) >> 1;
+      if (list[m].t < t || (!before && list[m].t === t)) low = m + 1; else high = m;
+    }
+    const next = Math.max(low, 1), a = list[next - 1], b = list[next];
+    if (!b || t <= a.t) return { x: a.x, q: a.q, v: a.v, w: a.w };
+    if (t >= b.t) return { x: b.x, q: b.q, v: b.v, w: b.w };
+    const h = b.t - a.t, s = (t - a.t) / h, [x, v] = quintic(a.x, a.v, a.a, b.x, b.v, b.a, h, s);
+    const [p, dp] = quintic(a.q, a.q1, a.q2, b.q, b.q1, b.q2, h, s);
+    return { x, v, q: unit(p), w: scale(qmul(dp, conj(p)).slice(1), 2 / dot(p, p)) };
+  };
+  const name = i => i < 0 ? '' : bodies[i].name;
+  const events = Array.from({ length: tables.events.rows }, (_, row) => {
+    const e = tables.events, n = e.list(row, N), [body1, body2, force] = e.list(row, ['body1', 'body2', 'force']);
+    return { t: e.get(row, 't'), kind: head.kinds[e.get(row, 'kind')], body1, body2, name1: name(body1), point: e.list(row, P), n,
+      name2: force >= 0 ? head.forces[force] : name(body2), impulse: e.list(row, ['jx', 'jy', 'jz']), phases: head.phases[e.get(row, 'phases')] };
+  });
+  const contacts = new Map(); // of each pair its rows
+  for (let row = 0; row < tables.contacts.rows; row++) {
+    const c = tables.contacts, [t, body1, body2, mode] = c.list(row, ['t', 'body1', 'body2', 'mode']), pair = body1 + ' ' + body2;
+    if (!contacts.has(pair)) contacts.set(pair, []);
+    contacts.get(pair).push({ t, body1, mode: head.modes[mode], point: c.list(row, P), n: c.list(row, N), force: c.list(row, ['fx', 'fy', 'fz']) });
+  }
+  // The contacts held at t, between rows by straight lines.
+  const held = t => [...contacts.values()].flatMap(rows => {
+    const next = rows.findIndex(r => r.t > t), i = (next < 0 ? rows.length : next) - 1, a = rows[i], b = rows[i + 1];
+    if (!a || a.mode === 'open') return [];
+    const s = b ? (t - a.t) / (b.t - a.t) : 0, mix = k => b && b.mode !== 'open' ? add(a[k], scale(sub(b[k], a[k]), s)) : a[k];
+    return [{ mode: a.mode, body1: a.body1, point: mix('point'), n: a.n, force: mix('force') }];
+  });
+  const A = tables.account, losses = ['damping_loss', 'sliding_loss', 'impact_loss'];
+  const account = Array.from({ length: A.rows }, (_, row) => ({ t: A.get(row, 't'), E: A.get(row, 'kinetic') + A.get(row, 'potential'),
+    kinetic: A.get(row, 'kinetic'), potential: A.get(row, 'potential'), losses: A.list(row, losses) }));
+  const times = bodies.flatMap(b => [b.list[0].t, b.list[b.list.length - 1].t]);
+  return { head, bodies, events, held, account, state, begin: Math.min(...times), end: Math.max(...times) };
+}

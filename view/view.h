@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * view: the page's fixed parts, before the title, between title and record, and after it (embed.cmake). Internal.
+ */
+#ifndef IMP_VIEW_H
+#define IMP_VIEW_H
+
+extern const unsigned char imp_view_part_0[], imp_view_part_1[], imp_view_part_2[];
+extern const unsigned long imp_view_size_0, imp_view_size_1, imp_view_size_2;
+
+#endif
