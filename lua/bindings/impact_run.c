@@ -227,10 +227,11 @@ static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, const c
     const bool good = !self->failed && !self->record_failed && !self->csv_failed && !self->ended_by_host &&
                       (status >= 0 || self->stopped);
     self->L = NULL;
+    self->reason = good ? outcome(self, status) : NULL;
     impact_status closed = close_files(L, self, csv, !good || status == IMPACT_EVENT_LIMIT, message, sizeof message);
     if (good && closed >= 0 && record)
-        closed = impact_run_save(self->writer, outcome(self, status), record, self->host ? self->host->quota : NULL,
-                                 message, sizeof message);
+        closed = impact_run_save(self->writer, self->reason, record, self->host ? self->host->quota : NULL, message,
+                                 sizeof message);
     if (self->failed) {
         lua_settop(L, self->error_slot);
         return lua_error(L);

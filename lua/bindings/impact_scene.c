@@ -191,7 +191,7 @@ static int scene_record(lua_State *L)
     impact_run **run;
     impact_lua_push_run(L, NULL);
     run = lua_touserdata(L, -1);
-    impact_status status = impact_run_bytes(self->writer, "so far", &bytes, &size);
+    impact_status status = impact_run_bytes(self->writer, self->reason ? self->reason : "so far", &bytes, &size);
     if (status < 0) return quat_lua_error(L, "%s", impact_status_string(status));
     status = impact_run_read(bytes, size, self->name, run, message, sizeof message);
     free(bytes);

@@ -71,6 +71,7 @@ typedef struct impact_lua_scene {
     impact_recorder csv;
     impact_run_writer *writer; /* of all runs with record */
     impact_recorder keys;      /* over it */
+    const char *reason;        /* why the last run ended, for the record; NULL: it failed, or there was none */
     const impact_lua_host *host;
 } impact_lua_scene;
 

@@ -29,6 +29,9 @@ bool impact_runner_is_record(const impact_runner *runner)
 void impact_runner_push_record(lua_State *L, const impact_runner *runner)
 {
     char message[400] = "";
+    lua_getglobal(L, "require"); /* gives recorded runs their methods */
+    lua_pushliteral(L, "impact");
+    lua_call(L, 1, 0);
     impact_run **run = lua_newuserdatauv(L, sizeof *run, 0);
     *run = NULL;
     luaL_setmetatable(L, "impact.run");
