@@ -38,7 +38,7 @@ const lineFragment = `#version 300 es
 precision highp float; in float late, across; out vec4 color; uniform vec4 one; uniform float width;
 void main() { float d = (1. - abs(across)) * (width + 1.5) * .5; color = vec4(one.rgb, one.a * (late > 0. ? .28 : 1.) * clamp(d, 0., 1.)); }`;
 function makeGraphics(canvas) {
-  const gl = canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: true });
+  const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, preserveDrawingBuffer: true });
   if (!gl) return null;
   const size = 2048, buffers = new Set();
   const program = (vertex, fragment) => {

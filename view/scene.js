@@ -44,7 +44,7 @@ function makeScene(run, canvas) {
   const east = qrot(turned, [1, 0, 0]), north = qrot(turned, [0, 1, 0]);
   const free = planes.filter(p => !p.floor).reduce((sum, p) => add(sum, p.n), [0, 0, 0]);
   const front = Math.hypot(dot(free, east), dot(free, north)) > 1e-9 ? Math.atan2(dot(free, north), dot(free, east)) + 0.95 : -1.1;
-  const home = { yaw: front, pitch: 0.32, distance: 2.9 * radius, target: [0, 0, 0] };
+  const home = { yaw: front, pitch: 0.32, distance: 2.2 * radius, target: [0, 0, 0] };
   const camera = { ...home };
   const G = makeGraphics(canvas);
   if (!G) return { camera, home, center, radius, up, moving, color, step, draw: () => null };
@@ -85,7 +85,7 @@ function makeScene(run, canvas) {
     const solid = (m, model, one, two, kind, grid = [0, 0, 1, 1]) => { G.solid.set({ model, one, two, kind, grid }); G.draw(m); };
     const stroke = (m, one, width, now = 1e30) => { G.lines.set({ view, size: [w / 2, h / 2], one, width: width * w / canvas.clientWidth, now }); G.drawLine(m); };
     solids.forEach((s, i) => s && solid(s.mesh, models[i], s.one, mixed(s.one, [1, 1, 1, 1], 0.72), 1));
-    const ground = p => solid(quad, p.model, rgb(dark ? '#2b2f36' : p.floor ? '#e4e1da' : '#c3ccd6', p.floor ? 1 : 0.5), rgb(ink, 0.2), 2, [0, 0, p.half[0] / step, p.half[1] / step]);
+    const ground = p => solid(quad, p.model, rgb(dark ? '#2b2f36' : p.floor ? '#e4e1da' : '#c3ccd6', p.floor ? 1 : 0.35), rgb(ink, 0.2), 2, [0, 0, p.half[0] / step, p.half[1] / step]);
     const seen = p => dot(p.n, sub(eye, p.x)) > 0;
     planes.filter(p => p.floor && seen(p)).forEach(ground);
     gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);

@@ -45,7 +45,7 @@ check.raises("sphere: radius must be a positive number, got nan", impact.sphere,
 check.raises("sphere: radius is missing", impact.sphere, {})
 check.raises("unknown key 'radus' in sphere (did you mean 'radius'?)", impact.sphere, { radus = 1 })
 check.raises("unknown key [1] in plane (its values have names: width, depth)", impact.plane, { 3, 3 })
-check.raises("argument 'part' must be one of 'cvode', 'ccd', got the string 'gsl'", impact.has, "gsl")
+check.raises("argument 'part' must be one of 'cvode', 'ccd', 'view', got the string 'gsl'", impact.has, "gsl")
 
 -- Tables of numbers, and logarithmic axes.
 local csv, plot = require "quat.csv", require "quat.plot"
