@@ -1,22 +1,33 @@
 /* SPDX-License-Identifier: MIT */
 #include "world/world_gap.h"
 
-impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
+static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_body *b2, const imp_state *s2,
+                            impact_gap_cache *cache, impact_usage *usage, impact_contact *contact)
 {
-    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
-    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const impact_solid solid1 = imp_solid_of(b1, s1), solid2 = imp_solid_of(b2, s2);
-    const impact_status status = impact_gap(&solid1, &solid2, &pair->cache, contact);
+    const impact_status status = impact_gap(&solid1, &solid2, cache, contact);
     contact->offset1 = qvec3_add(contact->offset1, imp_shape_offset(b1, s1));
     contact->offset2 = qvec3_add(contact->offset2, imp_shape_offset(b2, s2));
     switch (contact->path) {
-    case IMPACT_PATH_CLOSED_FORM: world->usage.gap_closed_form++; break;
-    case IMPACT_PATH_NEWTON: world->usage.gap_newton++; break;
-    case IMPACT_PATH_GJK: world->usage.gap_gjk++; break;
-    case IMPACT_PATH_FALLBACK: world->usage.gap_fallback++; break;
+    case IMPACT_PATH_CLOSED_FORM: usage->gap_closed_form++; break;
+    case IMPACT_PATH_NEWTON: usage->gap_newton++; break;
+    case IMPACT_PATH_GJK: usage->gap_gjk++; break;
+    case IMPACT_PATH_FALLBACK: usage->gap_fallback++; break;
     case IMPACT_PATH_NONE: break;
     }
     return status;
+}
+
+impact_status imp_gap_of(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
+                         impact_usage *usage, impact_contact *contact)
+{
+    return gap_of(body1, state1, body2, state2, NULL, usage, contact);
+}
+
+impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
+{
+    return gap_of(&world->bodies[pair->body1], &states[pair->body1], &world->bodies[pair->body2], &states[pair->body2],
+                  &pair->cache, &world->usage, contact);
 }
 
 double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point)
@@ -46,7 +57,7 @@ double imp_world_reach(const imp_world *world, const imp_pair *pair, const imp_s
 
 double imp_world_touching_distance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    return 1e-12 * imp_world_reach(world, pair, states);
+    return IMP_TOUCHING * imp_world_reach(world, pair, states);
 }
 
 double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, const imp_state *states)

@@ -10,12 +10,19 @@
 /* The pair's contact, counted by the road that answered. */
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact);
 
+/* The contact of two bodies, from no cache; the same count. */
+impact_status imp_gap_of(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
+                         impact_usage *usage, impact_contact *contact);
+
 /* The support function of the body's surface about its centre of mass, in its own axes: see impact_shape_support. */
 double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point);
 
 /* d(gap)/dt at a contact of the pair. */
 double imp_world_gap_rate(const imp_world *world, const imp_pair *pair, const imp_state *states,
                           const impact_contact *contact);
+
+/* Gaps of a pair up to this part of body 1's reach are rounding. */
+#define IMP_TOUCHING 1e-12
 
 /* m: how far body 1 reaches from the origin: places are known relative to it. */
 double imp_world_reach(const imp_world *world, const imp_pair *pair, const imp_state *states);

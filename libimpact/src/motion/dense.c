@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/dense.h"
+
+#include <string.h>
+
+static double value_of(const imp_dense *dense, double s, int i)
+{
+    double y = 0;
+    for (int j = dense->terms - 1; j >= 0; j--) y = y * s + dense->c[j * dense->size + i];
+    return y;
+}
+
+/* Time rises with tau: Newton's iteration within a bracket, by halves where it leaves that. */
+double imp_dense_tau(const imp_dense *dense, double t)
+{
+    enum { MOST = 100 };
+    if (!dense->clocked) return t;
+    double low = -1, high = 0, s = -0.5;
+    for (int i = 0; i < MOST; i++) {
+        double value = 0, rate = 0;
+        for (int j = dense->terms - 1; j >= 0; j--) {
+            rate = rate * s + value;
+            value = value * s + dense->c[j * dense->size];
+        }
+        if (value == t) break;
+        *(value < t ? &low : &high) = s;
+        double next = s - (value - t) / rate;
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        if (next == s || next == low || next == high) break;
+        s = next;
+    }
+    return dense->end + s * dense->h;
+}
+
+static double place_of(const imp_dense *dense, double t) { return (imp_dense_tau(dense, t) - dense->end) / dense->h; }
+
+void imp_dense_at(const imp_dense *dense, double t, int first, int count, double *y)
+{
+    const double s = dense->h > 0 ? place_of(dense, t) : 0;
+    for (int i = 0; i < count; i++) y[i] = value_of(dense, s, first + i);
+}
+
+/* The polynomial's terms about s, by repeated division; and the sums of their sizes over a window w of s on. */
+static imp_dense_rate rates_of(const imp_dense *dense, double s, double w, int i)
+{
+    double c[IMP_DENSE_TERMS] = {0};
+    const int n = dense->terms;
+    for (int j = 0; j < n; j++) c[j] = dense->c[j * dense->size + i];
+    for (int k = 0; k < n; k++)
+        for (int j = n - 2; j >= k; j--) c[j] += s * c[j + 1];
+    imp_dense_rate r = {.value = c[0], .rate = n > 1 ? c[1] : 0};
+    for (int j = n - 1; j >= 0; j--) {
+        r.most = r.most * w + fabs(c[j]);
+        if (j > 0) r.most_rate = r.most_rate * w + j * fabs(c[j]);
+        if (j > 1) r.most_second = r.most_second * w + j * (j - 1) * fabs(c[j]);
+    }
+    const double h = dense->h;
+    r.rate /= h, r.most_rate /= h, r.most_second /= h * h;
+    return r;
+}
+
+void imp_dense_rates(const imp_dense *dense, double t, double window, int first, int count, imp_dense_rate *rates)
+{
+    if (!(dense->h > 0)) {
+        memset(rates, 0, (size_t)count * sizeof *rates);
+        imp_dense_at(dense, t, first, 1, &rates[0].value);
+        return;
+    }
+    const double s = place_of(dense, t), last = fmin(t + window, dense->t1);
+    const double w = last > t ? fmax(place_of(dense, last) - s, 0) : 0;
+    for (int i = 0; i < count; i++) rates[i] = rates_of(dense, s, w, first + i);
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * dense: the polynomial of one step of the integrator, y(tau) = sum over j of c_j s^j, s = (tau - end)/h in [-1, 0]: of
+ * the whole state of an island (motion_equations.h). The variable tau is time, or where the clock is slowed a variable
+ * of its own with t = y[0]. Internal.
+ */
+#ifndef IMP_DENSE_H
+#define IMP_DENSE_H
+
+#include "world/world.h"
+
+enum { IMP_DENSE_TERMS = 13 }; /* CVODE's Adams methods go to order 12 */
+
+typedef struct imp_dense {
+    double t0, t1;   /* s: the part of the step that the segment is */
+    double end, h;   /* tau at the end of the step, and its length */
+    int size, terms; /* of y; of the polynomial */
+    bool clocked;    /* tau is not time */
+    double *c;       /* terms x size */
+    int room;        /* doubles that c has room for */
+} imp_dense;
+
+/* y at the time t, of the components first .. first + count - 1. */
+void imp_dense_at(const imp_dense *dense, double t, int first, int count, double *y);
+/* tau where y[0] = t. */
+double imp_dense_tau(const imp_dense *dense, double t);
+/* One component over [t, t + window], in tau: its value and rate at t, and no less than the sizes of its value, rate
+ * and second derivative over the window, from the sums of the polynomial's terms about t. */
+typedef struct imp_dense_rate {
+    double value, rate, most, most_rate, most_second;
+} imp_dense_rate;
+void imp_dense_rates(const imp_dense *dense, double t, double window, int first, int count, imp_dense_rate *rates);
+
+#endif

@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Balls that fall alike, and a ball over a plane: a quadratic. All others by conservative advancement. From a time at
+ * which the gap is g, with normal n, w = n . (v1 - v2), a = a1 - a2 and J no less than the centres' jerks over a window
+ * W, m = n in a body's axes, h its support function and r its radius: for T <= W
+ *
+ *     psi(T) = g + w T - A T^2/2 - sum over the bodies that turn [h(m + m' T) - h(m) + e(T)],  A = max(0, -n.a + J W/3)
+ *     e(T) = h(m'') T^2/2 + r j T^3/6 where j >= |m'''| for the whole segment (FREE), r M T^2/2, M >= |m''|, elsewhere
+ *
+ * is concave and never more than the gap T later, as h is convex and subadditive: psi(T) >= 0 proves that there is no
+ * contact until then. Steps to the zero of psi converge quadratically and never pass the contact.
+ *
+ * On the integrator's polynomials J W does not vanish, and bodies that stay next to each other would be followed in
+ * steps of sqrt(2 g/A). Where the gap is all but closed and its rate alone would not close it in a 64th of the segment,
+ * a step is that long at least: what dips below zero and rises again within it, by less than A (W/64)^2/8, is passed
+ * over.
+ */
+#include "motion/search.h"
+#include "world/world_gap.h"
+
+#include <impact/flight.h>
+
+/* ---- closed forms ---- */
+
+static bool falls(const imp_segment *s) { return s->kind == IMP_SEGMENT_FREE || s->kind == IMP_SEGMENT_ROLL; }
+
+static bool same(qvec3 a, qvec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+static qvec3 fall_of(const imp_segment *s) { return s->kind == IMP_SEGMENT_REST ? (qvec3){0, 0, 0} : s->acceleration; }
+
+/* Centres on a straight line towards each other. */
+static bool fall_alike(const imp_search *s)
+{
+    const imp_segment *a = s->segment[0], *b = s->segment[1];
+    return (falls(a) || a->kind == IMP_SEGMENT_REST) && (falls(b) || b->kind == IMP_SEGMENT_REST) &&
+           same(fall_of(a), fall_of(b));
+}
+
+static bool is_plane(const imp_body *body) { return body->shape.kind == IMPACT_PLANE; }
+
+static qvec3 apart(const imp_search *s, double t, qvec3 *velocity)
+{
+    qvec3 v1, v2;
+    const qvec3 x1 = imp_segment_place(s->segment[0], s->body[0], t, &v1);
+    const qvec3 x2 = imp_segment_place(s->segment[1], s->body[1], t, &v2);
+    *velocity = qvec3_sub(v1, v2);
+    return qvec3_sub(x1, x2);
+}
+
+/* The time in which two balls at d with the velocity w come to the distance R: (d.d - R^2)/(b + sqrt(w.w R^2 - |d x
+ * w|^2)), b = -d.w. */
+static double line_time(qvec3 d, qvec3 w, double R)
+{
+    const double b = -qvec3_dot(d, w);
+    if (!(b > 0)) return INFINITY;
+    const qvec3 aside = qvec3_cross(d, w);
+    const double left = qvec3_dot(w, w) * R * R - qvec3_dot(aside, aside);
+    if (!(left >= 0)) return INFINITY;
+    return fmax(qvec3_dot(d, d) - R * R, 0) / (b + sqrt(left));
+}
+
+static qvec3 plane_normal(const imp_search *s) { return quat_rotate(s->segment[1]->start.q, (qvec3){0, 0, 1}); }
+
+/* Nothing can happen before this: of the bounding balls, a little too large so that the time is never late. */
+static double balls_meet(const imp_search *s, double from)
+{
+    const double larger = 1e-6, reach = s->body[0]->radius + (is_plane(s->body[1]) ? 0 : s->body[1]->radius);
+    qvec3 w;
+    if (s->beyond) return 0;
+    const qvec3 d = apart(s, from, &w);
+    if (is_plane(s->body[1])) {
+        if (!falls(s->segment[0])) return 0;
+        const qvec3 n = plane_normal(s);
+        const double bound = qvec3_dot(n, d) - reach * (1 + larger);
+        return bound > 0 ? impact_flight_fall_time(bound, qvec3_dot(n, w), qvec3_dot(n, s->segment[0]->acceleration))
+                         : 0;
+    }
+    if (!fall_alike(s)) return 0;
+    const double edge = reach * (1 + larger);
+    return qvec3_dot(d, d) > edge * edge ? line_time(d, w, edge) : 0;
+}
+
+/* ---- psi ---- */
+
+typedef struct turning {
+    const imp_body *body;
+    qvec3 m, rate;
+    double h;
+} turning;
+
+typedef struct proof {
+    double gap, slope; /* psi and its derivative at 0 */
+    double speed;      /* w */
+    double bend, jerk; /* of -T^2/2 and -T^3/6 */
+    double spread;     /* no less than the turning's part of bend, either way */
+    turning body[2];
+    int count;
+} proof;
+
+static bool turns(const imp_search *s, int k)
+{
+    if (imp_is_ball(s->body[k]) || s->segment[k]->kind == IMP_SEGMENT_REST) return false;
+    const qvec3 L = s->segment[k]->start.momentum;
+    return s->segment[k]->kind == IMP_SEGMENT_DENSE || L.x != 0 || L.y != 0 || L.z != 0;
+}
+
+static void add_turning(proof *p, const imp_search *s, int k, const imp_state *state, qvec3 towards,
+                        const imp_bounds *bounds)
+{
+    if (!turns(s, k)) return;
+    const imp_body *body = s->body[k];
+    turning *b = &p->body[p->count++];
+    b->body = body;
+    b->m = quat_rotate_inverse(state->q, towards);
+    const qvec3 momentum = quat_rotate_inverse(state->q, state->momentum), i = body->inverse_moments;
+    const qvec3 omega = {momentum.x * i.x, momentum.y * i.y, momentum.z * i.z};
+    b->rate = qvec3_cross(b->m, omega);
+    qvec3 point;
+    b->h = imp_world_support(body, b->m, &point);
+    p->slope -= qvec3_dot(b->rate, point);
+    if (s->segment[k]->kind != IMP_SEGMENT_FREE) {
+        p->bend += body->radius * bounds->spin_up;
+        p->spread += body->radius * bounds->spin_up;
+        return;
+    }
+    const qvec3 torque = qvec3_cross(momentum, omega), spin_up = {torque.x * i.x, torque.y * i.y, torque.z * i.z};
+    const qvec3 second = qvec3_add(qvec3_cross(b->rate, omega), qvec3_cross(b->m, spin_up));
+    p->spread += body->radius * qvec3_norm(second);
+    if (qvec3_norm(second) > 0) p->bend += imp_world_support(body, second, &point);
+    p->jerk += body->radius * s->segment[k]->jerk;
+}
+
+static double psi(const proof *p, double T, double *derivative)
+{
+    double value = p->gap + T * (p->speed - T * (0.5 * p->bend + T * p->jerk / 6)),
+           d = p->speed - T * (p->bend + 0.5 * T * p->jerk);
+    for (int k = 0; k < p->count; k++) {
+        qvec3 point;
+        value -=
+            imp_world_support(p->body[k].body, qvec3_axpy(T, p->body[k].rate, p->body[k].m), &point) - p->body[k].h;
+        d -= qvec3_dot(p->body[k].rate, point);
+    }
+    *derivative = d;
+    return value;
+}
+
+/* The largest T <= limit, or next to it, with psi(T) >= 0. Newton's iteration comes down on the zero of the concave
+ * psi from the right; a chord over its last half leads to before it. */
+static double safe_step(const proof *p, double limit)
+{
+    enum { TRIES = 60 };
+    double derivative, T = fmin(limit, impact_flight_fall_time(p->gap, p->slope, -p->bend)), value = 0;
+    if (p->jerk > 0) T = fmin(T, fmax(cbrt(12 * p->gap / p->jerk), sqrt(12 * fmax(0, p->slope) / p->jerk)));
+    if (!isfinite(T)) return T;
+    for (int i = 0; i < TRIES && T > 0; i++) {
+        value = psi(p, T, &derivative);
+        if (value >= 0) return T;
+        if (value > -1e-3 * p->gap) break;
+        const double next = T - value / derivative;
+        if (!(next < T * (1 - 1e-12))) break;
+        T = fmax(next, 0);
+    }
+    double half = 0.5 * T, at_half = psi(p, half, &derivative);
+    for (int i = 0; i < TRIES && at_half < 0; i++) {
+        T = half, value = at_half;
+        half = 0.5 * T, at_half = psi(p, half, &derivative);
+    }
+    return at_half < 0 ? 0 : half + (T - half) * (at_half / (at_half - value));
+}
+
+/* ---- advancement ---- */
+
+/* What is known at one time of the search. */
+typedef struct look {
+    imp_state state[2];
+    imp_bounds bounds[2];
+    impact_contact contact;
+    double rate;   /* d(gap)/dt */
+    double window; /* s: to the end of the shorter segment */
+    qvec3 pull;    /* relative acceleration */
+    double jerk;   /* of both centres, where one of them is no parabola */
+    bool parabola;
+} look;
+
+static void look_at(const imp_search *s, double t, look *l)
+{
+    l->window = fmin(s->segment[0]->t1, s->segment[1]->t1) - t;
+    l->parabola = true;
+    l->jerk = 0;
+    for (int k = 0; k < 2; k++) {
+        const imp_segment *segment = s->segment[k];
+        l->state[k] = imp_segment_at(segment, s->body[k], t);
+        l->bounds[k] = imp_segment_bounds(segment, s->body[k], t, l->window);
+        if (falls(segment) || segment->kind == IMP_SEGMENT_REST) continue;
+        l->parabola = false;
+        /* damping's acceleration keeps its direction and only falls: it bends by no more than it does now, and by
+         * nothing back */
+        l->jerk += segment->kind == IMP_SEGMENT_DAMPED ? 0 : l->bounds[k].jerk;
+    }
+    l->pull = qvec3_sub(l->bounds[0].acceleration, l->bounds[1].acceleration);
+    imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->usage, &l->contact);
+    const qvec3 still = {0, 0, 0};
+    const qvec3 omega1 = imp_omega(s->body[0], &l->state[0]);
+    const qvec3 omega2 = s->body[1]->is_static ? still : imp_omega(s->body[1], &l->state[1]);
+    l->rate = impact_gap_rate(&l->contact, l->state[0].v, omega1, l->state[1].v, omega2);
+}
+
+/* A, where the centres move on no parabolas; each damped one's falls by itself. */
+static double bend_of(const imp_search *s, const look *l, qvec3 n)
+{
+    if (l->parabola) return fmax(0, -qvec3_dot(n, l->pull));
+    double bend = 0, others = 0;
+    for (int k = 0; k < 2; k++) {
+        const double along = qvec3_dot(k ? qvec3_neg(n) : n, l->bounds[k].acceleration);
+        if (s->segment[k]->kind == IMP_SEGMENT_DAMPED)
+            bend += fmax(0, -along);
+        else
+            others += along;
+    }
+    const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0;
+    return bend + fmax(0, drift - others);
+}
+
+/* A step over which the gap cannot fall to zero; of bodies that do not turn, on parabolas, the one in which it does. */
+static double step_before(const imp_search *s, const look *l, double gap)
+{
+    const qvec3 n = l->contact.normal;
+    const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
+    if (l->parabola && !turns(s, 0) && !turns(s, 1)) return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
+    proof p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
+    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), &l->bounds[0]);
+    add_turning(&p, s, 1, &l->state[1], n, &l->bounds[1]);
+    return safe_step(&p, l->window);
+}
+
+/* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its
+ * tangents. */
+static double step_behind(const imp_search *s, const look *l)
+{
+    const qvec3 n = l->contact.normal;
+    const double deep = fmax(0, -l->contact.gap);
+    const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0, pull = qvec3_dot(n, l->pull);
+    proof p = {.slope = qvec3_dot(n, l->state[0].v)};
+    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), &l->bounds[0]);
+    const double bend = p.count > 0 || !l->parabola ? fmax(0, pull) + drift + p.spread : pull;
+    double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
+    if (p.jerk == 0) return high;
+    high = fmin(high, 2 * fmax(cbrt(6 * deep / p.jerk), fmax(sqrt(6 * fmax(0, -p.slope) / p.jerk), 0)));
+    for (int i = 0; i < 100 && high > low * (1 + 1e-9); i++) {
+        const double T = 0.5 * (low + high);
+        *(T * (p.slope + T * (0.5 * bend + T * p.jerk / 6)) < deep ? &low : &high) = T;
+    }
+    return low;
+}
+
+/* A rate of the gap that only rounding makes. */
+static double still_rate(const imp_search *s, const look *l)
+{
+    double speed = 0;
+    for (int k = 0; k < 2; k++)
+        if (turns(s, k)) speed += qvec3_norm(l->state[k].v) + s->body[k]->radius * l->bounds[k].omega;
+    return s->still + 1e-9 * speed;
+}
+
+static double reach_of(const imp_search *s, const look *l) { return qvec3_norm(l->state[0].x) + s->body[0]->radius; }
+
+/* Between a time before the contact and one behind it, where the gap is below the slack: the Illinois form of regula
+ * falsi. */
+static double bisect(const imp_search *s, double low, double gap_low, double high, double gap_high, double slack)
+{
+    enum { MOST = 100 };
+    look l;
+    for (int i = 0, side = 0; i < MOST && gap_low != gap_high; i++) {
+        double t = (gap_low * high - gap_high * low) / (gap_low - gap_high);
+        if (!(t > low && t < high)) t = 0.5 * (low + high);
+        if (t == low || t == high) break;
+        look_at(s, t, &l);
+        const double gap = l.contact.gap + slack;
+        if (gap == 0) return t;
+        if (gap < 0) {
+            high = t, gap_high = gap;
+            if (side == 1) gap_low *= 0.5;
+            side = 1;
+        } else {
+            low = t, gap_low = gap;
+            if (side == -1) gap_high *= 0.5;
+            side = -1;
+        }
+    }
+    return high;
+}
+
+static double shortest_step(const imp_search *s)
+{
+    double longest = INFINITY;
+    for (int k = 0; k < 2; k++)
+        if (s->segment[k]->kind == IMP_SEGMENT_DENSE) longest = fmin(longest, s->segment[k]->t1 - s->segment[k]->t0);
+    return isfinite(longest) ? longest / 64 : 0;
+}
+
+/* Of body 1's reach: at 10 m/s^2 a step from there is 1e-5 s for a body of 1 m. */
+static const double all_but_closed = 1e-9;
+
+static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->segment[1]->t0); }
+
+static imp_found advance(const imp_search *s, double from, double until)
+{
+    enum { STEPS = 2000 };
+    const imp_found never = {INFINITY, false};
+    const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), least = shortest_step(s), start = start_of(s);
+    double t = from + (from == start ? balls_meet(s, from) : 0), slack = 0, before = t, gap_before = INFINITY;
+    bool leaving = false;
+    for (int i = 0; i < STEPS && t <= end; i++) {
+        if (t > until && !leaving && least == 0) return (imp_found){t, false};
+        look l;
+        look_at(s, t, &l);
+        double step, gap = l.contact.lower;
+        if (s->beyond) {
+            step = step_behind(s, &l);
+        } else {
+            const double touching = IMP_TOUCHING * reach_of(s, &l);
+            if (t == start) {
+                const bool still = fabs(l.rate) <= still_rate(s, &l);
+                slack = touching + fmax(0, -gap); /* of bodies that began with an overlap */
+                leaving = fabs(gap) <= slack && (still || (l.rate > 0 && (turns(s, 0) || turns(s, 1))));
+            }
+            leaving = leaving && gap <= touching;
+            const double rounding = 2.5e-16 * (qvec3_norm(l.contact.offset1) + qvec3_norm(l.contact.offset2));
+            if (leaving) gap += slack;
+            if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
+                return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};
+            if (gap <= rounding && l.rate < 0) return (imp_found){t, true};
+            step = step_before(s, &l, fmax(gap, 0)); /* they part from where they are */
+        }
+        before = t, gap_before = gap;
+        if (l.window <= 0) return never;
+        const bool crawls = step < least && gap <= all_but_closed * reach_of(s, &l) && gap + l.rate * least > 0;
+        if (crawls) step = fmin(least, l.window);
+        if (!(t + step <= end) || step == INFINITY) return never;
+        if (t + step == t) return (imp_found){t, true};
+        t += step;
+    }
+    return t <= end ? (imp_found){t, false} : never;
+}
+
+imp_found imp_search_contact(const imp_search *s, double from, double until)
+{
+    const bool balls = imp_is_ball(s->body[0]) && imp_is_ball(s->body[1]);
+    if (balls && fall_alike(s)) {
+        qvec3 w;
+        const qvec3 d = apart(s, from, &w);
+        const double R = s->body[0]->radius + s->body[1]->radius, T = line_time(d, w, R);
+        const double end = fmin(s->segment[0]->t1, s->segment[1]->t1);
+        if (T == INFINITY) return (imp_found){INFINITY, false};
+        const double rate = qvec3_dot(d, w) / R, slack = IMP_TOUCHING * (qvec3_norm(s->segment[0]->start.x) + R);
+        const double met = T > 0 || rate < -s->still ? from + T : from - slack / rate; /* what only rounding brings */
+        return met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
+    }
+    return advance(s, from, until);
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * search: when two bodies next touch, from their segments alone: nothing that other bodies do, and no moment at which
+ * the question is asked, changes a bit of the answer. Internal.
+ */
+#ifndef IMP_SEARCH_H
+#define IMP_SEARCH_H
+
+#include "motion/segment.h"
+
+/* Body 1 moves; a plane is body 2. */
+typedef struct imp_search {
+    const imp_body *body[2];
+    const imp_segment *segment[2];
+    bool beyond;         /* body 1 is behind a plane, beside its bounds: the search is for its return before it */
+    double still;        /* m/s: rates of the gap that only rounding makes: imp_world's slip_speed */
+    impact_usage *usage; /* gap queries are counted there */
+} imp_search;
+
+typedef struct imp_found {
+    double t;     /* infinite: nothing before one of the segments ends */
+    bool touches; /* false: nothing before t, from where the search goes on */
+} imp_found;
+
+/* From the time `from`: where both segments have begun, or where an earlier search stopped; stops behind `until`. */
+imp_found imp_search_contact(const imp_search *search, double from, double until);
+
+#endif

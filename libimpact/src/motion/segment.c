@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/segment.h"
+#include "motion/motion_equations.h"
+
+/* ---- the functions of damping ---- */
+
+double imp_phi1(double k, double T) { return k > 0 ? -expm1(-k * T) / k : T; }
+
+/* For small k T the difference cancels: the series T^2 (1/2 - kT/6 + (kT)^2/24 - ...), to under a rounding at kT = 1.
+ */
+double imp_phi2(double k, double T)
+{
+    enum { TERMS = 18 };
+    const double z = k * T;
+    if (z > 1) return (T - imp_phi1(k, T)) / k;
+    double sum = 0;
+    for (int n = TERMS; n >= 0; n--) sum = (1 - z * sum) / (n + 2);
+    return T * T * sum;
+}
+
+/* ---- making ---- */
+
+/* |m'''| <= |omega|^3 + 3 |omega| |omega'| + |omega''| from Euler's equations and the largest components of omega. */
+static double jerk_of(const impact_tumble *tumble)
+{
+    if (tumble->steady) return pow(qvec3_norm(tumble->turn), 3);
+    const double I[3] = {tumble->moments.x, tumble->moments.y, tumble->moments.z};
+    double w[3], rate[3], second[3];
+    for (int k = 0; k < 3; k++)
+        w[tumble->axis[k]] = fabs(tumble->amplitude[k]) * qvec3_norm(tumble->momentum) / I[tumble->axis[k]];
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        rate[i] = fabs(I[j] - I[k]) / I[i] * w[j] * w[k];
+    }
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        second[i] = fabs(I[j] - I[k]) / I[i] * (rate[j] * w[k] + w[j] * rate[k]);
+    }
+    const double omega = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    const double rates = sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
+    const double seconds = sqrt(second[0] * second[0] + second[1] * second[1] + second[2] * second[2]);
+    return omega * omega * omega + 3 * omega * rates + seconds;
+}
+
+static bool is_zero(qvec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+
+imp_segment imp_segment_rest(double t0, const imp_state *start)
+{
+    return (imp_segment){.kind = IMP_SEGMENT_REST, .t0 = t0, .t1 = INFINITY, .start = *start};
+}
+
+imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *start, qvec3 acceleration,
+                            impact_tumble *tumble)
+{
+    imp_segment s = imp_segment_rest(t0, start);
+    if (body->is_static) return s;
+    s.kind = body->linear_rate != 0 || body->angular_rate != 0 ? IMP_SEGMENT_DAMPED : IMP_SEGMENT_FREE;
+    s.acceleration = acceleration;
+    if (is_zero(start->momentum) || body->spherical) {
+        s.jerk = body->spherical ? pow(qvec3_norm(imp_omega(body, start)), 3) : 0;
+        return s;
+    }
+    impact_tumble_make(body->moments, start->q, start->momentum, tumble);
+    s.tumble = tumble;
+    s.jerk = jerk_of(tumble);
+    return s;
+}
+
+imp_segment imp_segment_roll(double t0, double t1, const imp_state *start, qvec3 acceleration, qvec3 spin_up)
+{
+    imp_segment s = imp_segment_rest(t0, start);
+    s.kind = IMP_SEGMENT_ROLL;
+    s.t1 = t1;
+    s.acceleration = acceleration;
+    s.spin_up = spin_up;
+    return s;
+}
+
+imp_segment imp_segment_dense(const imp_dense *dense, int place, const imp_state *start)
+{
+    return (imp_segment){
+        .kind = IMP_SEGMENT_DENSE, .t0 = dense->t0, .t1 = dense->t1, .start = *start, .dense = dense, .place = place};
+}
+
+/* ---- a state ---- */
+
+static int first_of(const imp_segment *s) { return Y_BODIES + Y_PER_BODY * s->place; }
+
+static imp_state dense_state(const imp_segment *s, double t)
+{
+    double b[Y_PER_BODY];
+    imp_dense_at(s->dense, t, first_of(s), Y_PER_BODY, b);
+    imp_state state = {{b[0], b[1], b[2]}, {b[3], b[4], b[5], b[6]}, {b[7], b[8], b[9]}, {b[10], b[11], b[12]}};
+    quat_normalize(state.q, &state.q);
+    return state;
+}
+
+/* The rotation that omega0 and omega0 + alpha tau make up in the time T. Where they are parallel it is about their
+ * line; else by Magnus' series to the fourth order, in steps so short that what it leaves out is under a rounding of
+ * the angle: the commutator of omega and omega' is all that turns the axis, |omega x alpha| h^3/12 a step, and the next
+ * term smaller by (|omega| h)^2/10. */
+static quat roll_turn(quat q, qvec3 omega, qvec3 alpha, double T)
+{
+    const qvec3 cross = qvec3_cross(omega, alpha);
+    if (is_zero(cross))
+        return quat_mul(quat_from_rotation_vector(qvec3_scale(qvec3_axpy(0.5 * T, alpha, omega), T)), q);
+    const double fastest = qvec3_norm(omega) + T * qvec3_norm(alpha), longest = 0.01 / fastest;
+    const long steps = (long)fmin(ceil(T / longest), 1e7);
+    const double h = T / (double)steps;
+    for (long i = 0; i < steps; i++) {
+        const qvec3 middle = qvec3_axpy(((double)i + 0.5) * h, alpha, omega);
+        const qvec3 turn = qvec3_axpy(-h * h * h / 12, cross, qvec3_scale(middle, h));
+        q = quat_mul(quat_from_rotation_vector(turn), q);
+    }
+    return q;
+}
+
+static quat turned(const imp_segment *s, const imp_body *body, double clock)
+{
+    if (s->tumble) return impact_tumble_at(s->tumble, clock);
+    if (is_zero(s->start.momentum)) return s->start.q;
+    const qvec3 turn = qvec3_scale(imp_omega(body, &s->start), clock);
+    return quat_unit(quat_mul(quat_from_rotation_vector(turn), s->start.q));
+}
+
+qvec3 imp_segment_place_of(const imp_segment *s, const imp_body *body, double t, qvec3 *velocity)
+{
+    const double T = t - s->t0;
+    switch (s->kind) {
+    case IMP_SEGMENT_REST: break;
+    case IMP_SEGMENT_FREE:
+    case IMP_SEGMENT_ROLL:
+        *velocity = qvec3_axpy(T, s->acceleration, s->start.v);
+        return qvec3_axpy(T, qvec3_axpy(0.5 * T, s->acceleration, s->start.v), s->start.x);
+    case IMP_SEGMENT_DAMPED: {
+        const double k = body->linear_rate, one = imp_phi1(k, T);
+        *velocity = qvec3_axpy(one, s->acceleration, qvec3_scale(s->start.v, exp(-k * T)));
+        return qvec3_axpy(one, s->start.v, qvec3_axpy(imp_phi2(k, T), s->acceleration, s->start.x));
+    }
+    case IMP_SEGMENT_DENSE: {
+        double x[Y_PER_BODY];
+        imp_dense_at(s->dense, t, first_of(s), Y_VELOCITY + 3, x);
+        *velocity = (qvec3){x[Y_VELOCITY], x[Y_VELOCITY + 1], x[Y_VELOCITY + 2]};
+        return (qvec3){x[0], x[1], x[2]};
+    }
+    }
+    *velocity = s->start.v;
+    return s->start.x;
+}
+
+imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
+{
+    imp_state state = s->start;
+    const double T = t - s->t0;
+    if (s->kind == IMP_SEGMENT_REST || T == 0) return state;
+    if (s->kind == IMP_SEGMENT_DENSE) return dense_state(s, t);
+    state.x = imp_segment_place(s, body, t, &state.v);
+    if (s->kind == IMP_SEGMENT_ROLL) {
+        const qvec3 omega = imp_omega(body, &s->start);
+        state.q = quat_unit(roll_turn(s->start.q, omega, s->spin_up, T));
+        state.momentum = qvec3_axpy(T * body->moments.x, s->spin_up, s->start.momentum);
+        return state;
+    }
+    const double kappa = s->kind == IMP_SEGMENT_DAMPED ? body->angular_rate : 0;
+    state.q = turned(s, body, imp_phi1(kappa, T));
+    if (kappa > 0) state.momentum = qvec3_scale(state.momentum, exp(-kappa * T));
+    return state;
+}
+
+/* ---- bounds ---- */
+
+static double least_moment(const imp_body *body)
+{
+    return fmin(body->moments.x, fmin(body->moments.y, body->moments.z));
+}
+
+/* |omega'| <= (|L'| + |omega| |L|)/I. */
+static void bound_spin(const imp_body *body, double momentum, double torque, imp_bounds *b)
+{
+    const double least = least_moment(body);
+    b->omega = momentum / least;
+    const double rate = body->spherical ? torque / least : (torque + b->omega * momentum) / least;
+    b->spin_up = rate + b->omega * b->omega;
+}
+
+static imp_bounds dense_bounds(const imp_segment *s, const imp_body *body, double t, double window)
+{
+    imp_dense_rate time, r[6];
+    imp_dense_rates(s->dense, t, window, Y_TIME, 1, &time);
+    imp_dense_rates(s->dense, t, window, first_of(s) + Y_VELOCITY, 6, r);
+    if (!s->dense->clocked) time = (imp_dense_rate){.rate = 1, .most_rate = 1};
+    /* the clock is slowest where it may have come from here at its fastest change, and no slower than a tenth: within a
+     * step of the integrator it changes by less */
+    const double span = imp_dense_tau(s->dense, fmin(t + window, s->t1)) - imp_dense_tau(s->dense, t);
+    const double slowest = fmax(0.1 * time.rate, time.rate - span * time.most_second);
+    double rate = 0, second = 0, momentum = 0, torque = 0;
+    for (int k = 0; k < 3; k++) {
+        rate += r[k].most_rate * r[k].most_rate;
+        second += r[k].most_second * r[k].most_second;
+        momentum += r[3 + k].most * r[3 + k].most;
+        torque += r[3 + k].most_rate * r[3 + k].most_rate;
+    }
+    imp_bounds b = {.acceleration = qvec3_scale((qvec3){r[0].rate, r[1].rate, r[2].rate}, 1 / time.rate),
+                    .torque = qvec3_scale((qvec3){r[3].rate, r[4].rate, r[5].rate}, 1 / time.rate)};
+    b.jerk = (sqrt(second) + sqrt(rate) * time.most_second / slowest) / (slowest * slowest);
+    bound_spin(body, sqrt(momentum), sqrt(torque) / slowest, &b);
+    return b;
+}
+
+imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double t, double window)
+{
+    imp_bounds b = {.acceleration = s->acceleration};
+    const double L = qvec3_norm(s->start.momentum), T = t - s->t0;
+    switch (s->kind) {
+    case IMP_SEGMENT_REST: return (imp_bounds){.jerk = 0};
+    case IMP_SEGMENT_DENSE: return dense_bounds(s, body, t, window);
+    case IMP_SEGMENT_FREE: bound_spin(body, L, 0, &b); break;
+    case IMP_SEGMENT_DAMPED: {
+        const double k = body->linear_rate, left = L * exp(-body->angular_rate * T);
+        qvec3 v;
+        imp_segment_place(s, body, t, &v);
+        b.acceleration = qvec3_axpy(-k, v, s->acceleration);
+        b.torque = qvec3_scale(s->start.momentum, -body->angular_rate * exp(-body->angular_rate * T));
+        b.jerk = k * qvec3_norm(b.acceleration); /* both only fall */
+        bound_spin(body, left, body->angular_rate * left, &b);
+        break;
+    }
+    case IMP_SEGMENT_ROLL: {
+        const double alpha = qvec3_norm(s->spin_up), I = body->moments.x;
+        b.torque = qvec3_scale(s->spin_up, I);
+        bound_spin(body, L + I * alpha * (T + window), I * alpha, &b);
+        break;
+    }
+    }
+    return b;
+}
+
+double imp_segment_top_speed(const imp_segment *s, const imp_body *body, double t)
+{
+    qvec3 v;
+    imp_segment_place(s, body, t, &v);
+    const double speed = qvec3_norm(v);
+    if (s->kind == IMP_SEGMENT_REST) return 0;
+    if (s->kind == IMP_SEGMENT_DAMPED && body->linear_rate > 0)
+        return fmax(speed, qvec3_norm(s->acceleration) / body->linear_rate); /* towards g/k, on a line */
+    if (s->kind != IMP_SEGMENT_DENSE) return is_zero(s->acceleration) ? speed : INFINITY;
+    imp_dense_rate r[3];
+    imp_dense_rates(s->dense, t, s->t1 - t, first_of(s) + Y_VELOCITY, 3, r);
+    return sqrt(r[0].most * r[0].most + r[1].most * r[1].most + r[2].most * r[2].most);
+}

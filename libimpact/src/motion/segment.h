@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * segment: the motion of one body over [t0, t1], fixed once it is made. All that is asked of a motion (samples,
+ * contacts, energies, where a box is left) is asked of its segment. With T = t - t0, g the constant acceleration, k and
+ * kappa the rates of damping: REST    nothing changes FREE    x = x0 + v0 T + g T^2/2, L = L0: the rotation is a tumble
+ * (impact/tumble.h) DAMPED  v' = g - k v, L' = -kappa L: v = v0 e^(-kT) + g phi1(k, T), x = x0 + v0 phi1(k, T) + g
+ * phi2(k, T), L = L0 e^(-kappa T) q = the tumble of L0 at the clock phi1(kappa, T): with L = e^(-kappa T) M, dM/dtau
+ * and dq/dtau are torque-free ROLL    a ball that rolls or slides in a line on a plane: x as FREE, omega = omega0 +
+ * alpha T DENSE   the polynomial of an integrator's step (motion/dense.h) phi1(k, T) = (1 - e^(-kT))/k, phi2(k, T) = (T
+ * - phi1)/k; T and T^2/2 at k = 0. Internal.
+ */
+#ifndef IMP_SEGMENT_H
+#define IMP_SEGMENT_H
+
+#include <impact/tumble.h>
+#include "motion/dense.h"
+
+typedef enum imp_segment_kind {
+    IMP_SEGMENT_REST,
+    IMP_SEGMENT_FREE,
+    IMP_SEGMENT_DAMPED,
+    IMP_SEGMENT_ROLL,
+    IMP_SEGMENT_DENSE
+} imp_segment_kind;
+
+typedef struct imp_segment {
+    imp_segment_kind kind;
+    double t0, t1;               /* s; t1 is infinite where the form holds for ever */
+    imp_state start;             /* at t0 */
+    qvec3 acceleration;          /* FREE, ROLL: of the centre; DAMPED: g, m/s^2 */
+    qvec3 spin_up;               /* ROLL: alpha, 1/s^2 */
+    const impact_tumble *tumble; /* FREE, DAMPED of unequal moments that turn; else NULL */
+    double jerk;                 /* FREE with a tumble: |m'''| of any unit vector m seen from the body, 1/s^3 */
+    const imp_dense *dense;      /* DENSE: its island's step, and */
+    int place;                   /* the body's place in it */
+} imp_segment;
+
+/* A body that nothing touches, under a constant acceleration, from its state at t0: FREE, or DAMPED where it is damped;
+ * a static body rests. tumble: room for a body that turns with unequal moments, which has to live as long as the
+ * segment. */
+imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *start, qvec3 acceleration,
+                            impact_tumble *tumble);
+/* A body that stays where it is. */
+imp_segment imp_segment_rest(double t0, const imp_state *start);
+/* A ball's constant accelerations, until t1. */
+imp_segment imp_segment_roll(double t0, double t1, const imp_state *start, qvec3 acceleration, qvec3 spin_up);
+/* The body at this place of an integrator's step, from its state at t0. */
+imp_segment imp_segment_dense(const imp_dense *dense, int place, const imp_state *start);
+
+/* The state at t; before t0 and after t1 the form is continued. */
+imp_state imp_segment_at(const imp_segment *segment, const imp_body *body, double t);
+/* The centre's place and velocity alone. */
+qvec3 imp_segment_place_of(const imp_segment *segment, const imp_body *body, double t, qvec3 *velocity);
+
+static inline qvec3 imp_segment_place(const imp_segment *segment, const imp_body *body, double t, qvec3 *velocity)
+{
+    if (segment->kind != IMP_SEGMENT_FREE) return imp_segment_place_of(segment, body, t, velocity);
+    const double T = t - segment->t0;
+    *velocity = qvec3_axpy(T, segment->acceleration, segment->start.v);
+    return qvec3_axpy(T, qvec3_axpy(0.5 * T, segment->acceleration, segment->start.v), segment->start.x);
+}
+
+/* What the body can do over [t, t + window], no less. */
+typedef struct imp_bounds {
+    qvec3 acceleration; /* at t, m/s^2 */
+    qvec3 torque;       /* at t, N m */
+    double jerk;        /* |x'''|, m/s^3 */
+    double omega;       /* 1/s */
+    double spin_up;     /* |omega'| + |omega|^2 >= |m''|, m fixed in the world seen from the body, 1/s^2 */
+} imp_bounds;
+imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, double t, double window);
+
+/* No speed of the centre over [t, t1] is greater, m/s; infinite for FREE under an acceleration. */
+double imp_segment_top_speed(const imp_segment *segment, const imp_body *body, double t);
+
+/* (1 - e^(-kT))/k and (T - phi1)/k, to rounding, k T >= 0. */
+double imp_phi1(double k, double T);
+double imp_phi2(double k, double T);
+
+#endif

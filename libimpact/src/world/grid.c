@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: MIT */
+#include "world/grid.h"
+
+#include <math.h>
+#include <stdint.h>
+
+impact_status imp_grid_open(imp_grid *grid, imp_arena *arena, int entries)
+{
+    unsigned buckets = 16;
+    while (buckets < 2u * (unsigned)entries) buckets *= 2;
+    *grid = (imp_grid){.arena = arena,
+                       .entries = imp_arena_take(arena, (size_t)entries, sizeof *grid->entries),
+                       .count = entries,
+                       .buckets = imp_arena_take(arena, buckets, sizeof *grid->buckets),
+                       .bucket_mask = buckets - 1};
+    if (!grid->entries || !grid->buckets) return IMPACT_ENOMEM;
+    for (unsigned k = 0; k < buckets; k++) grid->buckets[k] = -1;
+    for (int i = 0; i < entries; i++) grid->entries[i].level = -1;
+    return IMPACT_OK;
+}
+
+/* Far out the last cell goes on for ever. */
+static int64_t cell_of(double x, const imp_grid_level *level)
+{
+    const double most = 0x1p62, cell = floor(x * level->scale);
+    return cell > -most && cell < most ? (int64_t)cell : (int64_t)(cell > 0 ? most : -most);
+}
+
+static int *bucket_of(const imp_grid *grid, int exponent, int x, int y, int z)
+{
+    uint64_t h = (uint64_t)(uint32_t)x * 0x9e3779b97f4a7c15u;
+    h = (h ^ (h >> 29) ^ (uint32_t)y) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ (h >> 32) ^ (uint32_t)z) * 0x94d049bb133111ebu;
+    h ^= (h >> 31) ^ (uint64_t)(uint32_t)exponent * 0x2545f491u;
+    return &grid->buckets[h & grid->bucket_mask];
+}
+
+static int *bucket_at(const imp_grid *grid, const imp_grid_entry *e)
+{
+    return bucket_of(grid, grid->levels[e->level].exponent, e->cell[0], e->cell[1], e->cell[2]);
+}
+
+static void take_away(imp_grid *grid, imp_grid_entry *e)
+{
+    if (e->level < 0) return;
+    imp_grid_level *level = &grid->levels[e->level];
+    *(e->previous < 0 ? bucket_at(grid, e) : &grid->entries[e->previous].next) = e->next;
+    if (e->next >= 0) grid->entries[e->next].previous = e->previous;
+    *(e->before_level < 0 ? &level->first : &grid->entries[e->before_level].next_level) = e->next_level;
+    if (e->next_level >= 0) grid->entries[e->next_level].before_level = e->before_level;
+    level->count--;
+    e->level = -1;
+}
+
+static int level_of(imp_grid *grid, int exponent)
+{
+    for (int k = 0; k < grid->level_count; k++)
+        if (grid->levels[k].exponent == exponent) return k;
+    imp_grid_level *levels =
+        imp_arena_grow(grid->arena, grid->levels, &grid->level_room, grid->level_count + 1, sizeof *levels);
+    if (!levels) return -1;
+    grid->levels = levels;
+    grid->levels[grid->level_count] = (imp_grid_level){exponent, ldexp(1, -exponent), 0, -1};
+    return grid->level_count++;
+}
+
+impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
+{
+    imp_grid_entry *e = &grid->entries[entry];
+    take_away(grid, e);
+    double side = 0x1p-1000; /* whose cells' scale is finite */
+    for (int k = 0; k < 3; k++) side = fmax(side, box->high[k] - box->low[k]);
+    int exponent;
+    frexp(side, &exponent);
+    const int level = level_of(grid, exponent);
+    if (level < 0) return IMPACT_ENOMEM;
+    e->box = *box;
+    for (int k = 0; k < 3; k++) e->cell[k] = (int)(uint32_t)(uint64_t)cell_of(box->low[k], &grid->levels[level]);
+    e->level = level;
+    int *bucket = bucket_at(grid, e), *first = &grid->levels[level].first;
+    e->next = *bucket, e->next_level = *first;
+    e->previous = e->before_level = -1;
+    if (*bucket >= 0) grid->entries[*bucket].previous = entry;
+    if (*first >= 0) grid->entries[*first].before_level = entry;
+    *bucket = *first = entry;
+    grid->levels[level].count++;
+    return IMPACT_OK;
+}
+
+static bool take(imp_grid *grid, int entry, const imp_box *box)
+{
+    if (!imp_boxes_overlap(&grid->entries[entry].box, box)) return true;
+    int *found = imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + 1, sizeof *found);
+    if (!found) return false;
+    grid->found = found;
+    grid->found[grid->found_count++] = entry;
+    return true;
+}
+
+static bool look_through(imp_grid *grid, int level, const imp_box *box)
+{
+    for (int i = grid->levels[level].first; i >= 0; i = grid->entries[i].next_level)
+        if (!take(grid, i, box)) return false;
+    return true;
+}
+
+static bool look_in_cell(imp_grid *grid, int level, const int cell[3], const imp_box *box)
+{
+    for (int i = *bucket_of(grid, grid->levels[level].exponent, cell[0], cell[1], cell[2]); i >= 0;
+         i = grid->entries[i].next) {
+        const imp_grid_entry *e = &grid->entries[i];
+        const bool here = e->level == level && e->cell[0] == cell[0] && e->cell[1] == cell[1] && e->cell[2] == cell[2];
+        if (here && !take(grid, i, box)) return false;
+    }
+    return true;
+}
+
+static bool look_on_level(imp_grid *grid, int level, const imp_box *box)
+{
+    int64_t low[3], high[3];
+    double cells = 1;
+    for (int k = 0; k < 3; k++) {
+        low[k] = cell_of(box->low[k], &grid->levels[level]) - 1;
+        high[k] = cell_of(box->high[k], &grid->levels[level]);
+        cells *= (double)high[k] - (double)low[k] + 1;
+    }
+    if (cells > grid->levels[level].count) return look_through(grid, level, box);
+    for (int64_t x = low[0]; x <= high[0]; x++)
+        for (int64_t y = low[1]; y <= high[1]; y++)
+            for (int64_t z = low[2]; z <= high[2]; z++) {
+                const int cell[3] = {(int)(uint32_t)(uint64_t)x, (int)(uint32_t)(uint64_t)y,
+                                     (int)(uint32_t)(uint64_t)z};
+                if (!look_in_cell(grid, level, cell, box)) return false;
+            }
+    return true;
+}
+
+impact_status imp_grid_query(imp_grid *grid, const imp_box *box)
+{
+    grid->found_count = 0;
+    for (int level = 0; level < grid->level_count; level++)
+        if (grid->levels[level].count > 0 && !look_on_level(grid, level, box)) return IMPACT_ENOMEM;
+    return IMPACT_OK;
+}

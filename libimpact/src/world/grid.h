@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * grid: which boxes overlap. A hierarchical hash grid: a box lies on the level whose cells are as long as its longest
+ * side or up to twice that, in the one cell of its low corner; so that it reaches into the next cell at most, and a
+ * query looks at the cells from one before its own low corner to its high one, on every level that is occupied. Where
+ * those are more cells than the level has boxes, its boxes are looked through one by one. Internal.
+ */
+#ifndef IMP_GRID_H
+#define IMP_GRID_H
+
+#include "base/arena.h"
+
+typedef struct imp_box {
+    double low[3], high[3];
+} imp_box;
+
+static inline bool imp_boxes_overlap(const imp_box *a, const imp_box *b)
+{
+    return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] && b->low[1] <= a->high[1] &&
+           a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
+}
+
+typedef struct imp_grid_entry {
+    imp_box box;
+    int level;                    /* in the grid's list; -1: not in the grid */
+    int cell[3];                  /* the low 32 bits of its numbers */
+    int next, previous;           /* in its bucket */
+    int next_level, before_level; /* on its level */
+} imp_grid_entry;
+
+typedef struct imp_grid_level {
+    int exponent; /* cells of 2^exponent m */
+    double scale; /* 2^-exponent */
+    int count, first;
+} imp_grid_level;
+
+typedef struct imp_grid {
+    imp_arena *arena;
+    imp_grid_entry *entries;
+    int count;
+    int *buckets;
+    unsigned bucket_mask;
+    imp_grid_level *levels;
+    int level_count, level_room;
+    int *found; /* of the last query */
+    int found_count, found_room;
+} imp_grid;
+
+impact_status imp_grid_open(imp_grid *grid, imp_arena *arena, int entries);
+
+/* Puts the entry where the box is, which is finite; takes it away from where it was. IMPACT_ENOMEM: it is then away. */
+impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box);
+
+/* Lists in grid->found the entries whose boxes overlap this one, itself if it is in the grid too, in no order. */
+impact_status imp_grid_query(imp_grid *grid, const imp_box *box);
+
+#endif

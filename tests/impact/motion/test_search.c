@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The search: the first contact of two segments, against balls' closed form, against damped balls' by the clock in
+ * which they move on lines, and of shapes that tumble against a close look at all times before it.
+ */
+#include "motion/search.h"
+#include "world/world_gap.h"
+#include "kit/contact_random.h"
+#include "kit/near.h"
+
+static imp_body make_body(impact_shape shape, double linear_rate, double angular_rate)
+{
+    const qvec3 unit = impact_shape_inertia(&shape);
+    return (imp_body){.shape = shape,
+                      .mass = 1,
+                      .inverse_mass = 1,
+                      .moments = unit,
+                      .inverse_moments = {1 / unit.x, 1 / unit.y, 1 / unit.z},
+                      .spherical = shape.kind == IMPACT_SPHERE,
+                      .radius = impact_shape_bounding_radius(&shape),
+                      .turn = {1, 0, 0, 0},
+                      .linear_rate = linear_rate,
+                      .angular_rate = angular_rate};
+}
+
+static imp_body make_ball(double radius, double rate)
+{
+    impact_shape shape;
+    impact_shape_sphere(radius, &shape);
+    return make_body(shape, rate, 0);
+}
+
+typedef struct couple {
+    imp_body body[2];
+    imp_segment segment[2];
+    impact_tumble tumble[2];
+    impact_usage usage;
+} couple;
+
+static imp_search search_of(couple *c)
+{
+    return (imp_search){.body = {&c->body[0], &c->body[1]},
+                        .segment = {&c->segment[0], &c->segment[1]},
+                        .still = 1e-11,
+                        .usage = &c->usage};
+}
+
+static void begin(couple *c, int k, double t0, qvec3 x, qvec3 v, qvec3 omega, qvec3 g)
+{
+    imp_state state = {x, {1, 0, 0, 0}, v, {0, 0, 0}};
+    state.momentum = imp_inertia(&c->body[k], state.q, omega);
+    c->segment[k] = imp_segment_fly(&c->body[k], t0, &state, g, &c->tumble[k]);
+}
+
+/* Where |d + w T| = R in long double, or infinity. */
+static double line_time(qvec3 d, qvec3 w, double R)
+{
+    const long double a = (long double)w.x * w.x + (long double)w.y * w.y + (long double)w.z * w.z,
+                      b = (long double)d.x * w.x + (long double)d.y * w.y + (long double)d.z * w.z,
+                      e = (long double)d.x * d.x + (long double)d.y * d.y + (long double)d.z * d.z - (long double)R * R,
+                      left = b * b - a * e;
+    return b < 0 && left >= 0 ? (double)(e / (-b + sqrtl(left))) : INFINITY;
+}
+
+/* Begun at different times, falling alike: the second, seen from the first, goes on a line. */
+static void balls_meet_on_a_line(void **state)
+{
+    (void)state;
+    random_stream random = {31};
+    const qvec3 g = {0, 0, -9.8};
+    int met = 0;
+    for (int i = 0; i < 20000; i++) {
+        couple c = {.body = {make_ball(random_log(&random, 1e-2, 1), 0), make_ball(random_log(&random, 1e-2, 1), 0)}};
+        const qvec3 d = random_vector(&random, 2.1, 20), v = random_vector(&random, 0.1, 10), none = {0, 0, 0};
+        const qvec3 w = qvec3_axpy(0.1 * qvec3_norm(d), random_direction(&random), qvec3_neg(d));
+        const double late = i % 2 ? 0 : 0.25;
+        begin(&c, 0, late, d, qvec3_axpy(late, g, qvec3_add(v, w)), none, g);
+        begin(&c, 1, 0, qvec3_axpy(-late, qvec3_axpy(0.5 * late, g, v), none), v, none, g);
+        const imp_search s = search_of(&c);
+        const double R = c.body[0].radius + c.body[1].radius, wanted = late + line_time(d, w, R);
+        const imp_found found = imp_search_contact(&s, late, INFINITY);
+        const double graze = fabs(R - qvec3_norm(qvec3_cross(d, w)) / qvec3_norm(w));
+        if (graze < 1e-6 * R) continue;
+        assert_int_equal(found.touches, isfinite(wanted));
+        if (!found.touches) continue;
+        assert_near(found.t, wanted, 1e-13 * (1 + wanted) * R / graze * 10);
+        met++;
+        /* named the other way round the bits are the same */
+        couple other = {.body = {c.body[1], c.body[0]}, .segment = {c.segment[1], c.segment[0]}};
+        const imp_search t = search_of(&other);
+        assert_true(imp_search_contact(&t, late, INFINITY).t == found.t);
+    }
+    assert_true(met > 3000);
+}
+
+/* Damped alike and without weight they move on lines in the clock (1 - e^(-kt))/k. */
+static void damped_balls_meet(void **state)
+{
+    (void)state;
+    random_stream random = {32};
+    int met = 0;
+    for (int i = 0; i < 3000; i++) {
+        const double k = random_log(&random, 1e-3, 1);
+        couple c = {.body = {make_ball(0.3, k), make_ball(0.2, k)}};
+        const qvec3 d = random_vector(&random, 1, 5), none = {0, 0, 0};
+        const qvec3 w = qvec3_axpy(0.2 * qvec3_norm(d), random_direction(&random), qvec3_scale(d, -1.5));
+        begin(&c, 0, 0, d, w, none, none);
+        begin(&c, 1, 0, none, none, none, none);
+        const imp_search s = search_of(&c);
+        const double graze = fabs(0.5 - qvec3_norm(qvec3_cross(d, w)) / qvec3_norm(w));
+        const double clock = line_time(d, w, 0.5), wanted = k * clock < 1 ? -log1p(-k * clock) / k : INFINITY;
+        if (graze < 1e-4 || fabs(k * clock - 1) < 1e-3) continue;
+        imp_found found = imp_search_contact(&s, 0, INFINITY);
+        for (int again = 0; again < 100 && !found.touches && isfinite(found.t); again++)
+            found = imp_search_contact(&s, found.t, INFINITY);
+        assert_int_equal(found.touches, isfinite(wanted));
+        if (found.touches) assert_near(found.t, wanted, 1e-10 * (1 + wanted));
+        met += found.touches;
+    }
+    assert_true(met > 1000);
+}
+
+/* What tumbles, damped or not: at the time found the gap is zero to rounding, and at none of many before it less. */
+static void nothing_is_passed_over(void **state)
+{
+    (void)state;
+    random_stream random = {33};
+    int met = 0;
+    for (int i = 0; i < 300; i++) {
+        couple c = {0};
+        for (int k = 0; k < 2; k++)
+            c.body[k] = make_body(random_smooth_shape(&random, false), i % 2 ? 0.3 : 0, i % 2 ? 0.2 : 0);
+        const double reach = c.body[0].radius + c.body[1].radius;
+        const qvec3 d = qvec3_scale(random_direction(&random), 3 * reach);
+        const qvec3 w =
+            qvec3_scale(qvec3_axpy(0.2, random_direction(&random), qvec3_scale(d, -1 / (3 * reach))), reach);
+        begin(&c, 0, 0, d, w, random_vector(&random, 1, 20), (qvec3){0, 0, -1});
+        begin(&c, 1, 0, (qvec3){0, 0, 0}, (qvec3){0, 0, 0}, random_vector(&random, 1, 20), (qvec3){0, 0, -1});
+        const imp_search s = search_of(&c);
+        imp_found found = imp_search_contact(&s, 0, 10);
+        for (int again = 0; again < 100 && !found.touches && found.t < 10; again++)
+            found = imp_search_contact(&s, found.t, 10);
+        const double last = fmin(found.t, 5);
+        for (int k = 0; k <= 200; k++) {
+            const double t = last * k / 200;
+            const imp_state a = imp_segment_at(&c.segment[0], &c.body[0], t),
+                            b = imp_segment_at(&c.segment[1], &c.body[1], t);
+            impact_contact contact;
+            imp_gap_of(&c.body[0], &a, &c.body[1], &b, &c.usage, &contact);
+            assert_true(contact.gap > -1e-12 * reach);
+            if (k == 200 && found.touches && last == found.t) assert_near(contact.gap, 0, 1e-12 * reach);
+        }
+        met += found.touches;
+    }
+    assert_true(met > 100);
+}
+
+/* Stopped on the way and taken up again, the answer has the same bits. */
+static void pauses_change_no_bits(void **state)
+{
+    (void)state;
+    random_stream random = {34};
+    for (int i = 0; i < 200; i++) {
+        couple c = {0};
+        for (int k = 0; k < 2; k++) c.body[k] = make_body(random_smooth_shape(&random, false), 0, 0);
+        const double reach = c.body[0].radius + c.body[1].radius;
+        const qvec3 d = qvec3_scale(random_direction(&random), 3 * reach);
+        begin(&c, 0, 0, d, qvec3_scale(d, -0.5), random_vector(&random, 1, 20), (qvec3){0, 0, -1});
+        begin(&c, 1, 0, (qvec3){0, 0, 0}, (qvec3){0, 0, 0}, random_vector(&random, 1, 20), (qvec3){0, 0, -1});
+        const imp_search s = search_of(&c);
+        const imp_found whole = imp_search_contact(&s, 0, INFINITY);
+        imp_found part = imp_search_contact(&s, 0, 0.1);
+        for (int again = 0; again < 10000 && !part.touches && isfinite(part.t); again++)
+            part = imp_search_contact(&s, part.t, part.t);
+        assert_true(whole.t == part.t && whole.touches == part.touches);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(balls_meet_on_a_line),
+        cmocka_unit_test(damped_balls_meet),
+        cmocka_unit_test(nothing_is_passed_over),
+        cmocka_unit_test(pauses_change_no_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
