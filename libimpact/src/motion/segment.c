@@ -96,9 +96,8 @@ static imp_state dense_state(const imp_segment *s, double t)
 }
 
 /* The rotation that omega0 and omega0 + alpha tau make up in the time T. Where they are parallel it is about their
- * line; else by Magnus' series to the fourth order, in steps so short that what it leaves out is under a rounding of
- * the angle: the commutator of omega and omega' is all that turns the axis, |omega x alpha| h^3/12 a step, and the next
- * term smaller by (|omega| h)^2/10. */
+ * line; else by Magnus' series to the fourth order, the commutator |omega x alpha| h^3/12 a step, in steps of a
+ * hundredth of a radian: 1e-11 of the angle turned through, which moves nothing of a ball. */
 static quat roll_turn(quat q, qvec3 omega, qvec3 alpha, double T)
 {
     const qvec3 cross = qvec3_cross(omega, alpha);
