@@ -111,6 +111,31 @@ static void a_ball_slides_until_it_rolls(void **state)
     assert_account(&o.energy);
 }
 
+/* Out of the tube of a wind: the force ends within a step, on the way that the exact motion goes. */
+static void forces_end_where_they_reach(void **state)
+{
+    (void)state;
+    impact_body_def body = ball("ball", (qvec3){0, 0, 0}, 0.3, 0.5);
+    body.velocity = (qvec3){1, 0, 0};
+    impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND);
+    wind.direction = (qvec3){1, 0, 0};
+    wind.strength = 5;
+    wind.reach = 0.5;
+    double end[2], work[2];
+    for (int k = 0; k < 2; k++) {
+        impact_scene_def def = scene_of(&body, 1, 1, k ? IMPACT_PILES_STEPS : IMPACT_PILES_EXACT);
+        def.gravity = (qvec3){0, 0, 0};
+        def.forces = &wind;
+        def.force_count = 1;
+        const outcome o = run(&def);
+        end[k] = o.samples[0].position.x;
+        work[k] = o.energy.force_work;
+    }
+    assert_true(work[0] > 0.1);
+    assert_near(work[1], work[0], 0.02 * work[0]);
+    assert_near(end[1], end[0], 1e-2 * end[0]);
+}
+
 /* ---- the pile ---- */
 
 /* Five balls fall into a shaft as wide as two and a bit, and jam. */
@@ -209,6 +234,7 @@ int main(void)
         cmocka_unit_test(flight_is_exact),
         cmocka_unit_test(bounces_rise_as_high_as_they_should),
         cmocka_unit_test(a_ball_slides_until_it_rolls),
+        cmocka_unit_test(forces_end_where_they_reach),
         cmocka_unit_test(a_shaft_of_balls_comes_to_rest),
         cmocka_unit_test(what_rests_is_at_rest_at_once),
         cmocka_unit_test(exact_motion_takes_no_steps),
