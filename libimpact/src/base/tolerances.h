@@ -44,6 +44,9 @@
 /* eps: the worst that a receipt may show. Right answers leave 100 at most, but for some of stiff laws (a root of the
  * work where u_n is steep), 500; what is wrong by 2e-12 or more fails. */
 #define IMP_COLLIDE_RECEIPT 1e4
+/* Times a receipt's energy: that may rise by 100 eps of its terms, of which right answers of ordinary bodies show 11.
+ */
+#define IMP_COLLIDE_ENERGY 100
 /* Conditioning up to which a closed form is looked at briefly: a tenth of the above, so that rounding cannot reach it.
  */
 #define IMP_COLLIDE_BRIEF 1e3

@@ -148,19 +148,20 @@ static impact_status answer(const meeting *m, impact_outcome *outcome)
     return IMPACT_OK;
 }
 
+/* What a receipt may show, in eps: CVODE answers to its tolerance. */
+static double allowed(const impact_collision *collision, const impact_outcome *outcome)
+{
+    if (outcome->solver != IMPACT_SOLVER_CVODE) return IMP_COLLIDE_RECEIPT;
+    return IMP_COLLIDE_RECEIPT * imp_cvode_tolerance(collision->workspace) / DBL_EPSILON;
+}
+
 /* Finite, and the contact gave no more work than it took, if the law has it so; whatever the receipt says. */
 static bool is_sane(const impact_collision *collision, const impact_outcome *o)
 {
     const bool may_gain = collision->law == IMPACT_NEWTON || collision->restitution > 1;
     const double works = o->work_compression + o->work_restitution + o->work_friction;
-    const double most = may_gain ? INFINITY : IMP_COLLIDE_RECEIPT * DBL_EPSILON * -o->work_compression;
+    const double most = may_gain ? INFINITY : allowed(collision, o) * DBL_EPSILON * -o->work_compression;
     return isfinite(o->energy_after) && isfinite(works) && works <= most;
-}
-
-static double allowed(const impact_collision *collision, const impact_outcome *outcome)
-{
-    if (outcome->solver != IMPACT_SOLVER_CVODE) return IMP_COLLIDE_RECEIPT;
-    return IMP_COLLIDE_RECEIPT * imp_cvode_tolerance(collision->workspace) / DBL_EPSILON;
 }
 
 /* Closed forms are looked at briefly where the conditioning cannot bring rounding to what is allowed. */
@@ -169,8 +170,10 @@ static double worst_of(const meeting *m, const impact_outcome *outcome)
     impact_receipt receipt;
     if (outcome->solver == IMPACT_SOLVER_CLOSED_FORM && outcome->conditioning <= IMP_COLLIDE_BRIEF)
         return imp_receipt_brief(&m->ready, m->n, outcome);
-    const double worst = imp_receipt_make(m->collision, outcome, &receipt);
-    return receipt.energy <= allowed(m->collision, outcome) ? worst : INFINITY;
+    const double worst = imp_receipt_make(m->collision, outcome, &receipt), most = allowed(m->collision, outcome);
+    if (outcome->solver == IMPACT_SOLVER_CVODE) return receipt.energy <= most ? worst : INFINITY;
+    /* Energy is held to a hundredth of the rest. */
+    return receipt.energy <= most ? imp_larger(worst, IMP_COLLIDE_ENERGY * receipt.energy) : INFINITY;
 }
 
 /* The receipt's worst over what is allowed: at most 1 passes. */
