@@ -19,6 +19,7 @@ void impact_lua_open_body(lua_State *L);
 void impact_lua_open_force(lua_State *L);
 void impact_lua_open_scene(lua_State *L);
 void impact_lua_open_collide(lua_State *L);
+void impact_lua_open_arguments(lua_State *L);
 void impact_lua_open_record(lua_State *L);
 
 /* Pushes a shape userdata. */

@@ -15,7 +15,7 @@
 static void usage(FILE *file)
 {
     fputs(
-        "usage: impact SCRIPT.lua [options]\n"
+        "usage: impact SCRIPT.lua [options] [-- key=value ...]\n"
         "       impact view SCRIPT.lua|FILE.run [options]\n"
         "       impact gltf SCRIPT.lua|FILE.run [options]\n"
         "\n"
@@ -135,6 +135,9 @@ static int read_command(int count, char **words, impact_runner *runner)
             runner->trust = true;
         } else if (strcmp(word, "--fence") == 0) {
             runner->fence = true;
+        } else if (strcmp(word, "--") == 0) {
+            runner->arguments = &words[i + 1];
+            break;
         } else if (word[0] == '-' && word[1]) {
             return wrong_usage("unknown option '%s'", word);
         } else if (runner->script) {
@@ -335,12 +338,26 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     return drew != IMPACT_EXIT_OK ? drew : ran;
 }
 
+/* The table arg, as lua has it. */
+static void set_arguments(lua_State *L, const impact_runner *runner)
+{
+    lua_newtable(L);
+    lua_pushstring(L, runner->script);
+    lua_rawseti(L, -2, 0);
+    for (int i = 0; runner->arguments && runner->arguments[i]; i++) {
+        lua_pushstring(L, runner->arguments[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setglobal(L, "arg");
+}
+
 /* Protected: (runner) -> exit code */
 static int work(lua_State *L)
 {
     impact_runner *runner = lua_touserdata(L, 1);
     impact_runner_open_libraries(L, runner);
     impact_runner_start_clock(L, runner);
+    set_arguments(L, runner);
     const bool record = impact_runner_is_record(runner);
     if (record)
         impact_runner_push_record(L, runner);

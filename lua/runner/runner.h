@@ -28,6 +28,7 @@ enum {
 
 typedef struct impact_runner {
     const char *script;
+    char **arguments;      /* key=value, after --; ended by NULL; NULL: none */
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
     bool record;          /* NAME.run is written too */

@@ -175,4 +175,31 @@ check.truth(runner.exists("p/toss.csv"), "--out=DIR")
 _, out = runner.command("script.lua --quiet --out q")
 check.equal(out, "")
 
+-- Arguments after --: over the defaults, which say what there is.
+do
+  local script = [[local impact = require "impact"
+local given = impact.arguments { mu = 0.3, n = 10, name = "ball", spin = false }
+assert(arg[0] == "script.lua" and given.n == 10 and math.type(given.n) == "integer")
+io.write(string.format("%g %s %s", given.mu, given.name, given.spin))]]
+  local function told(options, wanted_code, wanted_out, wanted_said)
+    local code, out, said = runner.script(script, options)
+    check.equal(said, wanted_said)
+    check.equal(code, wanted_code)
+    check.equal(out, wanted_out)
+  end
+  told("", 0, "0.3 ball false", "")
+  told("--", 0, "0.3 ball false", "")
+  told("-- mu=1e-3 name=a=b spin=true", 0, "0.001 a=b true", "")
+  told("-- mu=2 n=10 name=", 0, "2  false", "")
+  local function refused_argument(word, why)
+    told("-- " .. word, 1, "", "impact: script.lua:2: " .. why .. "\n")
+  end
+  refused_argument("um=1", "unknown argument 'um' (did you mean 'mu'?)")
+  refused_argument("velocity=1", "unknown argument 'velocity'")
+  refused_argument("mu=fast", "argument 'mu' must be a number, got 'fast'")
+  refused_argument("n=1.5", "argument 'n' must be a whole number, got '1.5'")
+  refused_argument("spin=yes", "argument 'spin' must be true or false, got 'yes'")
+  refused_argument("--quiet", "an argument has the form key=value, got '--quiet'")
+end
+
 check.report("mistakes")
