@@ -63,5 +63,7 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
 /* Whether the value at index was made with impact.wind, impact.attraction or impact.force. */
 bool impact_lua_is_force(lua_State *L, int index);
 void impact_lua_read_force(lua_State *L, int index, const char *where, const char *item, impact_force_def *def);
+/* The switches of a custom force at index, as many as its definition says; they live as long as the value pushed. */
+const double *impact_lua_push_switches(lua_State *L, int index, const char *where, const impact_force_def *def);
 
 #endif

@@ -17,6 +17,9 @@ static const char *const words[] = {
     [IMPACT_FORCE_CUSTOM] = "force",
 };
 
+static const char *const custom_keys[] = {"name",   "body",   "law",  "max_step", "switches",
+                                          "period", "steady", "edge", NULL};
+
 static void read_wind(const quat_lua_reader *reader, impact_force_def *def)
 {
     def->origin = quat_lua_get_vec3(reader, "origin", def->origin);
@@ -38,12 +41,40 @@ static void read_attraction(const quat_lua_reader *reader, impact_force_def *def
     def->reach = quat_lua_get_number(reader, "reach", QUAT_LUA_POSITIVE_OR_INF, def->reach);
 }
 
-static void read_custom(const quat_lua_reader *reader)
+/* The switches' list into times[count]; NULL: checks and counts it only. */
+static int read_switches(const quat_lua_reader *reader, double *times)
 {
+    lua_State *L = reader->L;
+    const int type = quat_lua_push(reader, "switches");
+    if (type != LUA_TNIL && type != LUA_TTABLE)
+        quat_lua_reader_error(reader, "switches must be a list of times, got a %s", luaL_typename(L, -1));
+    const lua_Unsigned count = type == LUA_TTABLE ? lua_rawlen(L, -1) : 0;
+    if (count > 1000000) quat_lua_reader_error(reader, "switches must be at most a million times");
+    for (lua_Unsigned i = 1; i <= count; i++) {
+        lua_rawgeti(L, -1, (lua_Integer)i);
+        if (lua_type(L, -1) != LUA_TNUMBER)
+            quat_lua_reader_error(reader, "switches[%d] must be a number, got a %s", (int)i, luaL_typename(L, -1));
+        if (times) times[i - 1] = lua_tonumber(L, -1);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return (int)count;
+}
+
+static void read_custom(const quat_lua_reader *reader, impact_force_def *def)
+{
+    lua_State *L = reader->L;
     quat_lua_need(reader, "law");
     if (quat_lua_push(reader, "law") != LUA_TFUNCTION)
-        quat_lua_reader_error(reader, "law must be a function(t, body), got a %s", luaL_typename(reader->L, -1));
-    lua_pop(reader->L, 1);
+        quat_lua_reader_error(reader, "law must be a function(t, body), got a %s", luaL_typename(L, -1));
+    const int edge = quat_lua_push(reader, "edge");
+    if (edge != LUA_TNIL && edge != LUA_TFUNCTION)
+        quat_lua_reader_error(reader, "edge must be a function(t, body), got a %s", luaL_typename(L, -1));
+    lua_pop(L, 2);
+    def->max_step = quat_lua_get_number(reader, "max_step", QUAT_LUA_POSITIVE_OR_INF, def->max_step);
+    def->switch_period = quat_lua_get_number(reader, "period", QUAT_LUA_POSITIVE, def->switch_period);
+    def->steady = quat_lua_get_boolean(reader, "steady", def->steady);
+    def->switch_count = read_switches(reader, NULL);
 }
 
 static void read_kind(lua_State *L, int index, const char *where, impact_force_kind kind, impact_force_def *def)
@@ -52,7 +83,6 @@ static void read_kind(lua_State *L, int index, const char *where, impact_force_k
                                             "strength",       "reach", "radius", "falloff_power",
                                             "falloff_length", "drag",  NULL};
     static const char *const attraction_keys[] = {"name", "body", "constant", "power", "reach", NULL};
-    static const char *const custom_keys[] = {"name", "body", "law", NULL};
     static const char *const *const keys[] = {wind_keys, attraction_keys, custom_keys};
     const quat_lua_reader reader = quat_lua_read(L, index, words[kind], where, keys[kind]);
     *def = impact_default_force_def(kind);
@@ -61,8 +91,16 @@ static void read_kind(lua_State *L, int index, const char *where, impact_force_k
     switch (kind) {
     case IMPACT_FORCE_WIND: read_wind(&reader, def); break;
     case IMPACT_FORCE_ATTRACTION: read_attraction(&reader, def); break;
-    case IMPACT_FORCE_CUSTOM: read_custom(&reader); break;
+    case IMPACT_FORCE_CUSTOM: read_custom(&reader, def); break;
     }
+}
+
+const double *impact_lua_push_switches(lua_State *L, int index, const char *where, const impact_force_def *def)
+{
+    const quat_lua_reader reader = quat_lua_read(L, index, words[IMPACT_FORCE_CUSTOM], where, custom_keys);
+    double *times = lua_newuserdatauv(L, ((size_t)def->switch_count + 1) * sizeof *times, 0);
+    read_switches(&reader, times);
+    return times;
 }
 
 bool impact_lua_is_force(lua_State *L, int index)

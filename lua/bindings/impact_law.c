@@ -29,6 +29,9 @@ void impact_lua_push_law(lua_State *L, const impact_force_def *force)
     lua_rawseti(L, -2, IMPACT_LUA_LAW_WHERE);
     lua_pushstring(L, force->name);
     lua_rawseti(L, -2, IMPACT_LUA_LAW_NAME);
+    lua_pushliteral(L, "edge");
+    lua_rawget(L, table);
+    lua_rawseti(L, -2, IMPACT_LUA_LAW_EDGE);
 }
 
 typedef struct law_call {
@@ -81,10 +84,9 @@ static qvec3 returned_vec3(lua_State *L, int index, const char *what)
     return (qvec3){0, 0, 0};
 }
 
-/* Protected: (law_call *, the law's entry) */
-static int call_law(lua_State *L)
+/* Pushes the body as the script sees it. The law's entry is at index 2. */
+static int push_state(lua_State *L, const law_call *call)
 {
-    const law_call *call = lua_touserdata(L, 1);
     luaL_checkstack(L, 12, NULL);
     lua_rawgeti(L, 2, IMPACT_LUA_LAW_STATE);
     const int state = lua_gettop(L);
@@ -93,11 +95,22 @@ static int call_law(lua_State *L)
     lua_setfield(L, state, "orientation");
     lua_pushstring(L, call->body);
     lua_setfield(L, state, "name");
-    lua_pushnumber(L, call->mass);
+    if (isfinite(call->mass))
+        lua_pushnumber(L, call->mass);
+    else
+        lua_pushnil(L);
     lua_setfield(L, state, "mass");
     set_vec3(L, 2, state, IMPACT_LUA_LAW_POSITION, "position", call->position);
     set_vec3(L, 2, state, IMPACT_LUA_LAW_VELOCITY, "velocity", call->velocity);
     set_vec3(L, 2, state, IMPACT_LUA_LAW_OMEGA, "omega", call->omega);
+    return state;
+}
+
+/* Protected: (law_call *, the law's entry) */
+static int call_law(lua_State *L)
+{
+    const law_call *call = lua_touserdata(L, 1);
+    const int state = push_state(L, call);
     lua_rawgeti(L, 2, IMPACT_LUA_LAW_FUNCTION);
     lua_pushnumber(L, call->t);
     lua_pushvalue(L, state);
@@ -106,6 +119,30 @@ static int call_law(lua_State *L)
     *call->force = returned_vec3(L, result, "force");
     *call->torque = returned_vec3(L, result + 1, "torque");
     return 0;
+}
+
+/* Protected: (law_call *, the law's entry, double *) */
+static int call_edge(lua_State *L)
+{
+    const law_call *call = lua_touserdata(L, 1);
+    double *value = lua_touserdata(L, 3);
+    const int state = push_state(L, call);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_EDGE);
+    lua_pushnumber(L, call->t);
+    lua_pushvalue(L, state);
+    lua_call(L, 2, 1);
+    *value = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
+    if (isfinite(*value)) return 0;
+    char got[40];
+    if (lua_type(L, -1) == LUA_TNUMBER)
+        snprintf(got, sizeof got, "%g", positive_nan(*value));
+    else
+        snprintf(got, sizeof got, "a %s", luaL_typename(L, -1));
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_WHERE);
+    lua_rawgeti(L, 2, IMPACT_LUA_LAW_NAME);
+    lua_pushfstring(L, "%sforce '%s': the edge must be a finite number, got %s", lua_tostring(L, -2),
+                    lua_tostring(L, -1), got);
+    return lua_error(L);
 }
 
 bool impact_lua_script_fails(impact_lua_scene *self)
@@ -129,4 +166,21 @@ bool impact_lua_call_law(double t, int body, double mass, qvec3 position, quat o
     lua_rawgeti(L, self->laws_slot, law->index);
     if (lua_pcall(L, 2, 0, 0) == LUA_OK) return true;
     return impact_lua_script_fails(self);
+}
+
+double impact_lua_call_edge(double t, const impact_sample *body, void *context)
+{
+    const impact_lua_law *law = context;
+    impact_lua_scene *self = law->owner;
+    lua_State *L = self->L;
+    double value = NAN;
+    if (!L || self->failed || !lua_checkstack(L, 8)) return NAN;
+    law_call call = {t,    body->name, NAN, &body->position, &body->velocity, &body->omega, &body->orientation,
+                     NULL, NULL};
+    lua_pushcfunction(L, call_edge);
+    lua_pushlightuserdata(L, &call);
+    lua_rawgeti(L, self->laws_slot, law->index);
+    lua_pushlightuserdata(L, &value);
+    if (lua_pcall(L, 3, 0, 0) != LUA_OK) impact_lua_script_fails(self);
+    return value;
 }

@@ -120,6 +120,44 @@ static int scene_energy(lua_State *L)
     return 1;
 }
 
+/* Returns "ok" or "inaccurate", and the table of residuals. */
+static int scene_receipt(lua_State *L)
+{
+    impact_scene_residuals r;
+    const bool good = impact_scene_receipt(check_scene(L)->scene, &r) == IMPACT_OK;
+    const struct {
+        const char *key;
+        double value, limit;
+    } numbers[] = {
+        {"unit", r.unit, r.limit_unit},
+        {"gap", r.gap, r.limit_gap},
+        {"contact", r.contact, r.limit_contact},
+        {"energy", r.energy, r.limit_energy},
+        {"loss_fallen", r.loss_fallen, NAN},
+        {"begin", r.begin, NAN},
+        {"end", r.end, NAN},
+        {"stretches", (double)r.stretches, NAN},
+    };
+    lua_pushstring(L, good ? "ok" : "inaccurate");
+    lua_newtable(L);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        lua_pushnumber(L, numbers[i].value);
+        lua_setfield(L, -2, numbers[i].key);
+        if (isnan(numbers[i].limit)) continue;
+        lua_pushfstring(L, "limit_%s", numbers[i].key);
+        lua_pushnumber(L, numbers[i].limit);
+        lua_settable(L, -3);
+    }
+    if (good) return 2;
+    lua_pushstring(L, r.failed);
+    lua_setfield(L, -2, "failed");
+    lua_pushnumber(L, r.failed_begin);
+    lua_setfield(L, -2, "failed_begin");
+    lua_pushnumber(L, r.failed_end);
+    lua_setfield(L, -2, "failed_end");
+    return 2;
+}
+
 static int scene_usage(lua_State *L)
 {
     const impact_usage usage = impact_scene_usage(check_scene(L)->scene);
@@ -255,13 +293,21 @@ void impact_lua_open_scene(lua_State *L)
     static const luaL_Reg meta[] = {
         {"__gc", scene_close}, {"__close", scene_close}, {"__tostring", scene_tostring}, {NULL, NULL}};
     static const luaL_Reg methods[] = {
-        {"run", scene_run},       {"run_to", scene_run_to},
-        {"track", scene_track},   {"events", scene_events},
-        {"time", scene_time},     {"duration", scene_duration},
-        {"name", scene_name},     {"definition", scene_definition},
-        {"state", scene_state},   {"energy", scene_energy},
-        {"usage", scene_usage},   {"close", scene_close},
-        {"record", scene_record}, {NULL, NULL},
+        {"run", scene_run},
+        {"run_to", scene_run_to},
+        {"track", scene_track},
+        {"events", scene_events},
+        {"time", scene_time},
+        {"duration", scene_duration},
+        {"name", scene_name},
+        {"definition", scene_definition},
+        {"state", scene_state},
+        {"energy", scene_energy},
+        {"usage", scene_usage},
+        {"close", scene_close},
+        {"record", scene_record},
+        {"receipt", scene_receipt},
+        {NULL, NULL},
     };
     luaL_newmetatable(L, IMPACT_LUA_SCENE);
     luaL_setfuncs(L, meta, 0);

@@ -40,7 +40,8 @@ enum {
     IMPACT_LUA_LAW_ORIENTATION,
     IMPACT_LUA_LAW_WHERE,
     IMPACT_LUA_LAW_NAME,
-    IMPACT_LUA_LAW_SIZE = IMPACT_LUA_LAW_NAME
+    IMPACT_LUA_LAW_EDGE,
+    IMPACT_LUA_LAW_SIZE = IMPACT_LUA_LAW_EDGE
 };
 
 /* The context of one custom force. */
@@ -82,6 +83,8 @@ typedef struct impact_lua_scene {
 void impact_lua_push_law(lua_State *L, const impact_force_def *force);
 /* The force function that calls a script's law. */
 impact_force_function impact_lua_call_law;
+/* The edge function that calls a script's edge; NaN where that fails. */
+impact_edge_function impact_lua_call_edge;
 /* Keeps the error on top of the stack for the end of the run; false. */
 bool impact_lua_script_fails(impact_lua_scene *self);
 

@@ -51,6 +51,15 @@ static const impact_body_def *read_bodies(const quat_lua_reader *reader, impact_
     return bodies;
 }
 
+static bool has_edge(lua_State *L, int index)
+{
+    index = lua_absindex(L, index);
+    lua_pushliteral(L, "edge");
+    const bool has = lua_rawget(L, index) != LUA_TNIL;
+    lua_pop(L, 1);
+    return has;
+}
+
 /* laws: the stack place of the table of laws. */
 static const impact_force_def *read_forces(const quat_lua_reader *reader, impact_scene_def *def, impact_lua_scene *self,
                                            int laws)
@@ -63,6 +72,8 @@ static const impact_force_def *read_forces(const quat_lua_reader *reader, impact
     impact_lua_law *contexts = hold(L, def->force_count, sizeof *contexts);
     lua_pushvalue(L, -1);
     lua_setfield(L, laws, "contexts"); /* keeps them alive with the scene */
+    lua_newtable(L);                   /* the switches, until the scene has copied them */
+    const int kept = lua_gettop(L);
     for (int i = 0; i < def->force_count; i++) {
         char item[40];
         luaL_checkstack(L, 12, NULL);
@@ -75,6 +86,9 @@ static const impact_force_def *read_forces(const quat_lua_reader *reader, impact
             contexts[i] = (impact_lua_law){self, i + 1};
             forces[i].function = impact_lua_call_law;
             forces[i].context = &contexts[i];
+            if (has_edge(L, -1)) forces[i].edge = impact_lua_call_edge;
+            forces[i].switches = impact_lua_push_switches(L, -1, NULL, &forces[i]);
+            lua_rawseti(L, kept, i + 1);
             impact_lua_push_law(L, &forces[i]);
             lua_rawseti(L, laws, i + 1);
         }
@@ -138,10 +152,10 @@ static void read_plot(const quat_lua_reader *reader)
 
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws)
 {
-    static const char *const keys[] = {"name",       "gravity",       "duration",   "output_rate", "bodies",
-                                       "forces",     "pairs",         "rules",      "law",         "solver",
-                                       "tolerance",  "rest_height",   "rest_speed", "max_events",  "plot",
-                                       "compliance", "key_tolerance", "view",       "piles",       NULL};
+    static const char *const keys[] = {
+        "name",  "gravity",    "duration",      "output_rate", "bodies",      "forces",     "pairs",
+        "rules", "law",        "solver",        "tolerance",   "rest_height", "rest_speed", "max_events",
+        "plot",  "compliance", "key_tolerance", "view",        "piles",       "max_steps",  NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     const impact_lua_host *host = impact_lua_get_host(L);
@@ -157,6 +171,7 @@ impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene
     def.rest_speed = quat_lua_get_number(&reader, "rest_speed", QUAT_LUA_NOT_NEGATIVE, def.rest_speed);
     def.max_events = (long)quat_lua_get_integer(&reader, "max_events", 1, 1000000000, def.max_events);
     def.key_tolerance = quat_lua_get_number(&reader, "key_tolerance", QUAT_LUA_POSITIVE, def.key_tolerance);
+    def.max_steps = (long)quat_lua_get_integer(&reader, "max_steps", 1, 1000000000000, def.max_steps);
     read_plot(&reader);
     def.bodies = read_bodies(&reader, &def);
     def.forces = read_forces(&reader, &def, self, laws);

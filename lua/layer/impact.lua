@@ -84,6 +84,11 @@ core.layer()
 ---@field name? string
 ---@field body? string
 ---@field law fun(t: number, body: impact.state): vec?, vec?  force (N) and torque (N m); the state is valid during the call only
+---@field max_step? number  s; a thousandth of the duration by default, math.huge: as long as the integrator likes
+---@field switches? number[]  s, rising: when the law jumps or has a corner
+---@field period? number  s: the switches again and again; alone: at its multiples
+---@field edge? fun(t: number, body: impact.state): number  zero where the law has a corner
+---@field steady? boolean  does not depend on t
 
 ---@class impact.state
 ---@field t number
@@ -131,6 +136,7 @@ core.layer()
 ---@field state fun(self, body: string): impact.state
 ---@field energy fun(self): table  start, kinetic, potential, force_work, drive_work, damping_loss, sliding_loss, impact_loss, J
 ---@field usage fun(self): table  what the run used, by name; and events, by kind
+---@field receipt fun(self): string, table  "ok" or "inaccurate"; residuals and their limits
 ---@field events fun(self): table[]  of a recorded run
 ---@field record fun(self): impact.run  the recorded run, so far
 ---@field close fun(self)

@@ -6,6 +6,7 @@
 #define IMPACT_FORCE_H
 
 #include <quat/quat.h>
+#include "record.h"
 #include "status.h"
 
 #ifdef __cplusplus
@@ -19,10 +20,15 @@ typedef enum impact_force_kind {
 } impact_force_kind;
 
 /* Force (N, world, at the centre) and torque (N m, world) of a custom force at time t; both are zero on entry. They
- * must be smooth along the motion. They are asked at velocities nearby too: forces that brake fast beside the motion
- * are followed by BDF, not Adams. Return false to stop the run with an error. */
+ * must be smooth along the motion but at the switches and edges of the definition. They are asked at velocities nearby
+ * too: forces that brake fast beside the motion are followed by BDF, not Adams. Return false to stop the run with an
+ * error. */
 typedef bool impact_force_function(double t, int body, double mass, qvec3 position, quat orientation, qvec3 velocity,
                                    qvec3 omega, qvec3 *force, qvec3 *torque, void *context);
+
+/* Where a custom force has a corner or a jump along the motion of a body: zero there, of other signs on its two sides;
+ * in any unit, finite (else the run ends with IMPACT_EDOMAIN). */
+typedef double impact_edge_function(double t, const impact_sample *body, void *context);
 
 typedef struct impact_force_def {
     impact_force_kind kind;
@@ -44,7 +50,18 @@ typedef struct impact_force_def {
     double power;    /* attraction: 2 for Newton */
 
     impact_force_function *function; /* custom */
-    void *context;
+    void *context;                   /* handed to function and edge */
+    /* custom: between two times at which the force is asked lie at most max_step seconds (> 0; NaN: a thousandth of the
+     * scene's duration) and the time in which the body moves by its radius, if that is no less than a thousandth of
+     * max_step; infinite: neither holds. What is narrower can be stepped over, unless it is declared: */
+    double max_step;
+    /* custom: the times at which the force jumps or has a corner, s, rising, finite, copied. Between them it is asked
+     * at times inside alone, by at least eight roundings. */
+    const double *switches;
+    int switch_count;
+    double switch_period;       /* s; > 0: they come again and again, before and after, in periods; 0: once */
+    impact_edge_function *edge; /* custom: NULL: none. A zero is an event of the kind IMPACT_EVENT_FORCE. */
+    bool steady; /* custom: does not depend on t, so that what rests under it rests for ever; else it is asked on */
 } impact_force_def;
 
 /* Defaults: wind along +x of strength 0 with no edge and no falloff; attraction with Newton's G = 6.67430e-11 and power

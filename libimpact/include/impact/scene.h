@@ -88,6 +88,7 @@ typedef struct impact_scene_def {
     double rest_height;
     double rest_speed; /* m/s (and rad/s times the bounding radius): slower than this and unaccelerated is at rest */
     long max_events;   /* IMPACT_EVENT_LIMIT after so many */
+    long max_steps;    /* IMPACT_EUNSETTLED after so many stretches of motion and steps of integrators */
     const impact_allocator
         *allocator; /* of all memory the scene takes, and its limit; copied; NULL: malloc (memory.h) */
     /* of the recorder's keys, in [1e-14, 1e-2]: part of a body's bounding radius in place, rad in orientation */
@@ -97,7 +98,7 @@ typedef struct impact_scene_def {
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
  * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events,
- * key_tolerance 1e-10. */
+ * 1e8 steps, key_tolerance 1e-10. */
 IMPACT_API impact_scene_def impact_default_scene_def(void);
 IMPACT_API impact_body_def impact_default_body_def(void);
 
@@ -114,9 +115,9 @@ IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
 /* Runs on to the definition's duration, or to time t, which is not over. Rows go to the recorder (NULL: nowhere).
  * Samples stand at k/output_rate; two more, just before and just after, beside each event, for the bodies in it.
  * IMPACT_OK: the time was reached; IMPACT_AT_REST: nothing moves any more and nothing will, state stands until the end;
- * IMPACT_SOFT: one of these, but the energy account is off by more than 1e-8 (and 1000 times the tolerance) of the
- * energies in it, or an impact was soft (usage); other positive statuses: stopped early; negative: failed. See
- * impact_scene_message. A scene at rest or stopped can be run on. */
+ * IMPACT_SOFT: one of these, but the scene's receipt failed (impact_scene_receipt and the message), or an impact was
+ * soft (usage); other positive statuses: stopped early; negative: failed. See impact_scene_message. A scene at rest or
+ * stopped can be run on. */
 IMPACT_API impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder);
 IMPACT_API impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder);
 
@@ -179,6 +180,26 @@ typedef struct impact_energy {
     double drive_work;                              /* done by static bodies whose surface moves */
     double damping_loss, sliding_loss, impact_loss; /* each >= 0 */
 } impact_energy;
+
+/* What the scene finds when it looks at its own answer, after every event and at the end: the worst of the run so far,
+ * by identities that the solvers do not use. */
+typedef struct impact_scene_residuals {
+    double begin, end; /* s: of the stretch looked at last */
+    long stretches;    /* looked at so far */
+    double unit;       /* | |q| - 1 | of an orientation */
+    double gap;        /* |gap| of a held contact, over the size of the places it is made of */
+    double contact;    /* how far held contacts' forces leave their cone (pull, or rub more than the friction), over the
+                        * greatest of them */
+    double energy;     /* what the energy account is off by, over the greatest term in it */
+    double loss_fallen; /* J: by how much sliding_loss, damping_loss and impact_loss have fallen, each fall added up */
+    double limit_unit, limit_gap, limit_contact, limit_energy; /* what is good; loss_fallen's is limit_energy too, over
+                                                                * the greatest term */
+    const char *failed;                                        /* the first field that was not; NULL: none was */
+    double failed_begin, failed_end;                           /* s: in which stretch */
+} impact_scene_residuals;
+
+/* IMPACT_OK, or IMPACT_SOFT where the receipt has failed. */
+IMPACT_API impact_status impact_scene_receipt(const impact_scene *scene, impact_scene_residuals *residuals);
 
 IMPACT_API impact_energy impact_scene_energy(const impact_scene *scene);
 

@@ -1,10 +1,103 @@
 /* SPDX-License-Identifier: MIT
  *
  * Every threshold of the library, with its unit, its reason and what it is derived from. eps is the unit in the last
- * place of 1 (2^-52; of the second precision, 2^-112).
+ * place of 1 (2^-52; of the second precision, 2^-112). A scene's `tolerance` is not among them: it sets how closely the
+ * integrator goes, and decides nothing.
  */
 #ifndef IMP_TOLERANCES_H
 #define IMP_TOLERANCES_H
+
+/* Unit roundoff of double: what one operation errs by, relative. */
+#define IMP_ROUNDOFF 0x1p-53
+
+/* ---- places ---- */
+
+/* A gap along the normal n of bodies at x1, x2 with bounding radii r1, r2 is made of numbers as large as
+ * sum_k |n_k| (|x1_k| + |x2_k|) + r1 + r2, m (imp_world_place_scale), and rounds by about 4 units of it. Two contacts
+ * that come in one instant are found in places that differ by a thousand times that: their bodies got there by
+ * a thousand steps, each rounded. Gaps below this part of the scale touch. */
+#define IMP_TOUCHING (4096 * IMP_ROUNDOFF)
+/* Gaps below this part of the scale cannot be told from 0: what comes nearer has come. */
+#define IMP_GAP_ROUNDING (2 * IMP_ROUNDOFF)
+/* Bodies may overlap by this part of the scale at the start: places are given by hand, to nine digits. */
+#define IMP_OVERLAP_AT_START 1e-9
+
+/* ---- speeds ---- */
+
+/* Slip slower than this part of the rest speed, m/s, is none: what ends as rest has stuck before, by a margin that the
+ * last changes of mode on the way there do not fill. */
+#define IMP_SLIP_OF_REST_SPEED 1e-2
+/* Slip that begins from rest is led by its acceleration up to so many times the slip speed. There the direction of slip
+ * has come to within 1e-5 of that of its acceleration, and the stiffness of the direction, (friction
+ * acceleration)/slip, is one that BDF follows. */
+#define IMP_ONSET_OF_SLIP_SPEED 1e5
+/* A distance that opens no faster than this part of the motion's speed stays as it is: rates are differences of
+ * velocities with the errors of a thousand steps. */
+#define IMP_STILL_OF_SPEED 1e-9
+
+/* ---- times ---- */
+
+/* A force is asked so far inside its piece, of the switch's time: four operations of its own, each rounded, may tell on
+ * which side it stands. */
+#define IMP_SWITCH_ROUNDING (16 * IMP_ROUNDOFF)
+/* max_step of a custom force that gives none, of the duration. */
+#define IMP_MAX_STEP_OF_DURATION 1e-3
+/* A body's radius over its speed bounds a step no more than this part of max_step does: a million steps in a run are
+ * the most that is spent on looking. */
+#define IMP_LEAST_OF_MAX_STEP 1e-3
+
+/* ---- heights ---- */
+
+/* Rocking on a face or along a line that lifts the body by fewer rest heights than this is lying: the rest height is
+ * that of a bounce about a point, and of rocking the lift of the centre is the smaller part. */
+#define IMP_LYING_OF_REST_HEIGHT 100
+
+/* ---- the integrator ---- */
+
+/* Sliding contacts are integrated at least this closely, whatever the scene's tolerance: slip is the difference of two
+ * velocities of order 1 m/s and must be told from nothing at IMP_SLIP_OF_REST_SPEED of the default rest speed, 1e-11
+ * m/s. A tolerance looser than this would decide between slip and stick. */
+#define IMP_SLIDING_TOLERANCE 1e-13
+/* And so is a stretch that begins with a bounce: a flight of rest height, 1e-12 m, of a body of 1 m must come down
+ * where it falls, or bounces die out never or too soon. */
+#define IMP_BOUNCE_TOLERANCE 3e-12
+/* Accelerations by forces under this, m/s^2, are none: over 1e10 s they do less than 1e-60 of the least absolute
+ * tolerance, and their squares over it underflow. */
+#define IMP_LEAST_ACCELERATION 1e-100
+/* Of what an integrator's component passes zero by, over the relative tolerance. */
+#define IMP_ABSOLUTE_OF_RELATIVE 1e-2
+/* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing
+ * holds is integrated closer than asked by IMP_FLIGHT_OF_TOLERANCE, and down to what doubles hold. */
+#define IMP_FLIGHT_OF_TOLERANCE 0.03
+#define IMP_FLIGHT_TOLERANCE 1e-15
+/* A step's defect between its ends, over the error allowed in it, beyond which a custom force did there what the step
+ * did not see. Of smooth forces Adams' polynomials of order 12 show up to a few hundred; a pulse that the step missed
+ * shows its whole impulse, 1e10 and more. */
+#define IMP_DEFECT 1e4
+/* Contact forces pull, or leave their cone, where they do so by more than this part of the greatest of them: they are
+ * the solutions of linear systems with conditions up to 1e4. */
+#define IMP_MODE_ROUNDING 1e-12
+/* A loss that falls in a step by more than so many of the errors allowed in it falls in earnest. */
+#define IMP_LOSS_ERRORS 1e3
+/* So many steps without a fall later what fell is over, and the next fall is looked at anew: about a restart's. */
+#define IMP_TRUSTED_STEPS 100
+/* Steps that are shorter than this in the mean over 1e5, in parts of t, are stuck. Near a pole of a force, where t is
+ * subtracted from a constant, the error test then sees t's rounding over the step: 1e-4. (Slip that dies out takes a
+ * hundred such steps, and all contacts of a heap may stick and slip at almost one instant.) */
+#define IMP_SHORTEST_STEP (8192 * IMP_ROUNDOFF)
+
+/* ---- a scene's receipt ---- */
+
+/* Orientations are normalised where they are used, to two roundings; a flight's are products of two. */
+#define IMP_RECEIPT_UNIT (16 * IMP_ROUNDOFF)
+/* Held contacts are put back exactly at every event, to the gap's own error on bodies with edges. */
+#define IMP_RECEIPT_GAP 1e-9
+/* Reactions are asked for their cones to 1e-12 of the greatest where modes are chosen, and onsets to 1e-9. */
+#define IMP_RECEIPT_CONTACT 1e-8
+/* The account is a sum of as many terms as there are steps; 1e8 of them, each off by a rounding. */
+#define IMP_RECEIPT_ENERGY 1e-8
+/* And each off by the integrator's tolerance: a run has about as many steps in one direction of error. */
+#define IMP_RECEIPT_ERRORS 1e3
 
 /* ---- collide: the range an impact is taken in, docs/collide.md ---- */
 

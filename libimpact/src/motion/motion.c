@@ -35,6 +35,8 @@ void imp_motion_close(impact_motion *motion)
     imp_arena_give(arena, motion->kept);
     imp_arena_give(arena, motion->y);
     imp_arena_give(arena, motion->found);
+    imp_arena_give(arena, motion->probe);
+    imp_arena_give(arena, motion->absolute);
     *motion = (impact_motion){0};
 }
 
@@ -74,12 +76,14 @@ impact_status imp_motion_emit(impact_motion *motion, imp_sampler *sampler, doubl
 void imp_motion_set_slack(impact_motion *motion, const imp_state *states)
 {
     imp_world *world = motion->world;
+    motion->bounces = false;
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
         pair->slack = imp_world_touching_distance(world, pair, states);
-        if (imp_is_held(pair) || pair->beyond || imp_world_distance_bound(world, pair, states) > 0) continue;
+        if (imp_is_held(pair) || pair->beyond || imp_world_distance_bound(world, pair, states) > pair->slack) continue;
         impact_contact contact;
         imp_world_gap(world, pair, states, &contact);
+        motion->bounces = motion->bounces || contact.gap <= pair->slack;
         pair->slack += fmax(0, -contact.gap); /* of bodies that began with an overlap */
     }
 }

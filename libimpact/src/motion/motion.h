@@ -19,7 +19,7 @@ typedef enum imp_end_kind {
     IMP_END_SLIP,    /* a rolling contact's friction reached its cone */
     IMP_END_STICK,   /* a sliding contact's slip died out */
     IMP_END_EDGE,    /* a body crossed the edge of a field's reach */
-    IMP_END_SLOW,    /* a body that rolls or rests became slower than the rest speed */
+    IMP_END_SLOW,    /* a body that rolls or rests became slower than the rest speed, or one at rest faster */
     IMP_END_RENEWAL  /* many steps of a held contact: it is to be put back exactly */
 } imp_end_kind;
 
@@ -64,9 +64,18 @@ typedef struct impact_motion {
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
     int *found;
     imp_state *scratch, *sampled;
-    bool sliding;      /* slip slows the clock: see motion_equations.c */
-    bool creeping;     /* contacts that move fast over flat places do */
-    bool stiff;        /* some slip has just begun */
+    bool sliding;                      /* slip slows the clock: see motion_equations.c */
+    bool creeping;                     /* contacts that move fast over flat places do */
+    bool stiff;                        /* some slip has just begun */
+    bool bounces;                      /* the stretch begins with an open pair that touches */
+    double *probe;                     /* 4 size: of a step that is looked into */
+    double relative, *absolute;        /* tolerances of the stretch */
+    bool distrusted;                   /* a loss fell: the next stretch is for the other method */
+    bool retried;                      /* that was done not long ago: */
+    long steady_steps;                 /* steps since a loss fell */
+    double last_fall, fallen, fell_at; /* J: by how much losses have fallen in steps that were kept; s: when first */
+    long pace_steps;                   /* steps since time was looked at last, and when that was, s: */
+    double pace_began;
     long steps_before; /* of the stretch at hand, before its contacts were put back; and when it began, s: */
     double began;
     double slip_scale;  /* m/s */
@@ -97,7 +106,7 @@ impact_status imp_motion_emit(impact_motion *motion, imp_sampler *sampler, doubl
 
 /* Nothing but uniform gravity acts, and nothing is held: the motion is in closed form. */
 bool imp_motion_is_ballistic(const impact_motion *motion);
-/* Sets every pair's slack for the stretch that begins. */
+/* Sets every pair's slack, and whether one bounces, for the stretch that begins. */
 void imp_motion_set_slack(impact_motion *motion, const imp_state *states);
 
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */

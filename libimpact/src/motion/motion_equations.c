@@ -16,6 +16,7 @@
 #include "contact/persist_spot.h"
 #include "world/world_gap.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* ---- the integrated state ---- */
@@ -230,6 +231,17 @@ static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_
     if (touch->lined) value[2] = fmin(value[2], imp_line_spare(world, touch, states, loads));
 }
 
+/* A custom force's edge may answer anything. */
+static bool edges_are_finite(impact_motion *motion, double t, const double *value, int count)
+{
+    for (int k = 0; k < count; k++) {
+        if (isfinite(value[k])) continue;
+        snprintf(motion->message, sizeof motion->message, "the edge of a custom force is not finite at t = %.17g", t);
+        return false;
+    }
+    return true;
+}
+
 int imp_motion_root_values(double tau, const double *y, double *value, void *context)
 {
     impact_motion *motion = context;
@@ -247,9 +259,15 @@ int imp_motion_root_values(double tau, const double *y, double *value, void *con
         else
             open_pair_roots(world, &world->pairs[p], states, value);
     }
-    imp_field_edges(world, states, value);
-    value += ROOTS_PER_EDGE * imp_field_edge_count(world);
-    for (int i = 0; i < world->body_count; i++)
-        value[i] = motion->resting[i] ? 1 : imp_motion_speed(&world->bodies[i], &states[i]) - motion->rest_speed;
+    const int edges = ROOTS_PER_EDGE * imp_field_edge_count(world);
+    const double t = imp_motion_clocked(motion) ? y[Y_TIME] : tau;
+    imp_field_edges(world, t, states, value);
+    if (!edges_are_finite(motion, t, value, edges)) return -1;
+    value += edges;
+    const bool wakes = imp_field_unsteady(world);
+    for (int i = 0; i < world->body_count; i++) {
+        const double speed = imp_motion_speed(&world->bodies[i], &states[i]);
+        value[i] = !motion->resting[i] ? speed - motion->rest_speed : wakes ? 2 * motion->rest_speed - speed : 1;
+    }
     return 0;
 }

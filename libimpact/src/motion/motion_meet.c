@@ -243,7 +243,7 @@ imp_meeting_time imp_motion_meet(imp_world *world, imp_pair *pair, const imp_fly
             const bool still = fabs(rate) <= still_rate(world, pair, flyers, states);
             if (dt == 0) leaving = fabs(gap) <= pair->slack && (still || (rate > 0 && turns(pair, flyers)));
             leaving = leaving && gap <= touching;
-            const double rounding = 2.5e-16 * (qvec3_norm(contact.offset1) + qvec3_norm(contact.offset2));
+            const double rounding = IMP_GAP_ROUNDING * imp_world_place_scale(world, pair, states);
             if (leaving) gap += pair->slack;
             if (gap <= rounding && (dt > 0 || rate < 0)) return (imp_meeting_time){dt, true};
             if (dt >= horizon) return never;

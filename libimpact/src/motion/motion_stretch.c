@@ -3,6 +3,7 @@
  * One stretch of integration: which variable and method it needs, its steps, its samples, and the event at its end.
  */
 #include "motion/motion_equations.h"
+#include "motion/motion_guard.h"
 #include "motion/motion_trace.h"
 #include "contact/persist_spot.h"
 #include "world/world_gap.h"
@@ -27,8 +28,11 @@ static impact_status allocate_state(impact_motion *motion)
         ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * imp_field_edge_count(world) + world->body_count;
     motion->kept = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->kept);
     motion->found = imp_arena_take(world->arena, (size_t)motion->roots, sizeof *motion->found);
+    motion->absolute = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->absolute);
+    motion->probe = imp_arena_take(world->arena, 4 * (size_t)motion->size, sizeof *motion->probe);
     motion->y = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->y);
-    return motion->kept && motion->y && motion->found ? IMPACT_OK : IMPACT_ENOMEM;
+    const bool room = motion->kept && motion->y && motion->found && motion->absolute && motion->probe;
+    return room ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
 /* Makes the integrator of the method the one at work, creating it when it is first needed. */
@@ -44,7 +48,7 @@ static impact_status choose_integrator(impact_motion *motion, impact_ode_method 
                                     .context = motion,
                                     .method = method,
                                     .relative_tolerance = motion->tolerance,
-                                    .absolute_tolerance = 1e-2 * motion->tolerance,
+                                    .absolute_tolerance = IMP_ABSOLUTE_OF_RELATIVE * motion->tolerance,
                                     .falling_roots_only = true};
         status = imp_ode_create_in(motion->world->arena, &def, ode);
         if (status == IMPACT_EABSENT)
@@ -118,6 +122,25 @@ static bool end_onsets(impact_motion *motion)
     return ended;
 }
 
+/* Friction turns with the slip whose onset has ended: whether a contact now pulls, or rolls with more friction than it
+ * has. No root function tells, for it does not fall through zero: it jumps. */
+static bool modes_break(impact_motion *motion, double t, const double *y)
+{
+    imp_persist *persist = &motion->persist;
+    double greatest = 0;
+    bool breaks = false;
+    imp_motion_unpack(motion, y, motion->scratch);
+    if (!imp_motion_load(motion, t, motion->scratch)) return true;
+    imp_persist_solve(persist, motion->world, motion->scratch, motion->loads);
+    for (int c = 0; c < persist->count; c++) greatest = fmax(greatest, qvec3_norm(persist->touches[c].force));
+    for (int c = 0; c < persist->count; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        const double spare = touch->mode == IMP_ROLL ? fmin(touch->pressure, touch->margin) : touch->pressure;
+        breaks = breaks || (!touch->still && spare < -IMP_MODE_ROUNDING * greatest);
+    }
+    return breaks;
+}
+
 /* The speed below which slip slows the clock: small against the motion and the weight of the sliding bodies. */
 static double slip_scale(const impact_motion *motion, const imp_state *states)
 {
@@ -159,7 +182,7 @@ static double last_step_value(impact_motion *motion, last_step_function f, const
 {
     if (f.kind == CLOCK) return y[Y_TIME] - f.t;
     imp_motion_unpack(motion, y, motion->scratch);
-    if (f.kind == FIELD_EDGE) return imp_field_edge(motion->world, motion->scratch, f.index);
+    if (f.kind == FIELD_EDGE) return imp_field_edge(motion->world, y[Y_TIME], motion->scratch, f.index);
     impact_contact contact;
     imp_world_gap(motion->world, &motion->world->pairs[f.index], motion->scratch, &contact);
     return contact.gap;
@@ -305,27 +328,23 @@ static impact_status emit_until(impact_motion *motion, double t, imp_state *stat
     return IMPACT_OK;
 }
 
-static impact_status fail(impact_motion *motion, impact_status status)
+/* What the integrator has to say is of its own insides. */
+static impact_status fail(impact_motion *motion, impact_status status, double t)
 {
-    if (motion->message[0] == '\0')
-        snprintf(motion->message, sizeof motion->message, "%s", impact_ode_message(motion->ode));
+    if (status == IMPACT_EINTEGRATOR || status == IMPACT_EDOMAIN)
+        return imp_motion_stuck(motion, "the integrator cannot go on: the motion is not smooth, or without bound,", t);
     return status;
-}
-
-static impact_status limit_step(impact_motion *motion, const double *y)
-{
-    imp_motion_unpack(motion, y, motion->scratch);
-    const double limit = imp_field_step_limit(motion->world, motion->scratch, motion->loads);
-    return impact_ode_limit_step(motion->ode, isfinite(limit) ? limit : 0);
 }
 
 static impact_status too_rough(impact_motion *motion, double from, double to, long steps)
 {
-    snprintf(motion->message, sizeof motion->message,
-             "%ld steps from t = %.17g came to t = %.17g only: the motion is too rough (a face that "
-             "rocks, or masses too different that press on each other?)",
-             steps, from, to);
-    return IMPACT_EUNSETTLED;
+    char what[160];
+    snprintf(
+        what, sizeof what,
+        "%ld steps from t = %.17g got nowhere: the motion is too rough (a face that rocks, or masses too different "
+        "that press on each other?)",
+        steps, from);
+    return imp_motion_stuck(motion, what, to);
 }
 
 /* Steps until an event or t_end; y at the end is the state at *t. */
@@ -347,8 +366,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
     for (long step = steps_before; still < MAX_STILL; step++) {
         const double tau_before = tau;
         bool found;
-        impact_status status = limit_step(motion, y);
-        if (status == IMPACT_OK) status = impact_ode_step(motion->ode, stop, &tau, y, motion->found, &found);
+        impact_status status = imp_motion_step(motion, stop, &tau, y, &found);
         if (motion->message[0] != '\0') return IMPACT_EDOMAIN;        /* a load was refused */
         if (status == IMPACT_EINTEGRATOR && passed) return IMPACT_OK; /* another root close by: begin anew from here */
         if (status == IMPACT_EINTEGRATOR && *t > t_start &&
@@ -358,16 +376,24 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
         }
         if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);
         if (status == IMPACT_OK && end->kind == IMP_END_GAP) status = polish_gap(motion, end->index, &tau, y);
-        if (status != IMPACT_OK) return fail(motion, status);
+        if (status != IMPACT_OK) return fail(motion, status, *t);
         if (!clocked) y[Y_TIME] = tau;
         if (y[Y_TIME] > t_end) {
             status = interpolate_time(motion, t_end, &tau, y);
-            if (status != IMPACT_OK) return fail(motion, status);
+            if (status != IMPACT_OK) return fail(motion, status, *t);
             y[Y_TIME] = t_end;
             *end = (imp_end){IMP_END_TIME, 0};
             memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots);
         }
+        if (!imp_motion_finite_or_back(motion, y))
+            return imp_motion_stuck(motion, "the motion has left double precision", *t);
+        if (imp_motion_loss_falls(motion, y) && *t > t_start && imp_motion_take_back(motion, y)) {
+            *end = (imp_end){IMP_END_RENEWAL, 0};
+            return IMPACT_OK;
+        }
         *t = y[Y_TIME];
+        if (!imp_motion_gains(motion, *t))
+            return imp_motion_stuck(motion, "time all but stands: 100000 steps were too short to tell", *t);
         memcpy(motion->kept, y, sizeof *y * (size_t)motion->size); /* samples overwrite y */
         if (sampler->piece && !imp_motion_trace_step(motion, sampler, tau_before, tau, y)) return IMPACT_ESINK;
         status = emit_until(motion, *t, states, sampler, y);
@@ -378,8 +404,11 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
             *end = (imp_end){IMP_END_RENEWAL, 0};
             return IMPACT_OK;
         }
-        if (end_onsets(motion) || (motion->stiff && slowest_slip(motion, true) > grown_up * motion->slip_scale))
+        if (end_onsets(motion)) {
+            if (modes_break(motion, *t, y)) *end = (imp_end){IMP_END_RENEWAL, 0};
             return IMPACT_OK;
+        }
+        if (motion->stiff && slowest_slip(motion, true) > grown_up * motion->slip_scale) return IMPACT_OK;
         if (motion->stiff && !motion->sliding && young_fades(motion)) return IMPACT_OK;
         still = tau > tau_before ? 0 : still + 1;
         passed = found;
@@ -393,9 +422,7 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
             return IMPACT_OK;
         }
     }
-    snprintf(motion->message, sizeof motion->message,
-             "the integrator cannot get past t = %.17g: the motion is not smooth there", *t);
-    return IMPACT_EUNSETTLED;
+    return imp_motion_stuck(motion, "the integrator does not advance: the motion is not smooth", *t);
 }
 
 /* Whether custom forces brake so much faster than the motion goes on that Adams' short steps, a hundredth of their
@@ -418,22 +445,29 @@ static impact_status choose_road(impact_motion *motion, double t, double t_end, 
     motion->sliding = motion->sliding || young_fades(motion);
     motion->creep_scale = creep_scale(motion, states);
     motion->creeping = motion->creep_scale > 0;
-    const bool stiff = motion->stiff || is_braked(motion, t, t_end, states);
-    return choose_integrator(motion, stiff ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
+    const bool stiff = motion->stiff || is_braked(motion, t, t_end, states), other = motion->distrusted;
+    motion->distrusted = false;
+    return choose_integrator(motion, stiff != other ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
 }
 
-/* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing
- * holds is integrated as closely as doubles let it be, at a fifth more steps. Reactions are not that smooth. */
+static double stretch_tolerance(const impact_motion *motion)
+{
+    double tolerance = motion->tolerance;
+    if (motion->persist.count == 0)
+        tolerance = fmin(tolerance, fmax(IMP_FLIGHT_TOLERANCE, IMP_FLIGHT_OF_TOLERANCE * tolerance));
+    if (motion->bounces) tolerance = fmin(tolerance, IMP_BOUNCE_TOLERANCE);
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
+            tolerance = fmin(tolerance, IMP_SLIDING_TOLERANCE);
+    return tolerance;
+}
+
 static impact_status choose_tolerance(impact_motion *motion, const imp_state *states)
 {
-    const double closest = 1e-15;
-    const double tolerance = motion->persist.count > 0
-                                 ? motion->tolerance
-                                 : fmax(fmin(closest, motion->tolerance), 0.03 * motion->tolerance);
-    double *absolute = motion->kept; /* free until there are samples */
-    imp_motion_measures(motion, states, absolute);
-    for (int i = 0; i < motion->size; i++) absolute[i] *= 1e-2 * tolerance;
-    return impact_ode_set_tolerances(motion->ode, tolerance, absolute);
+    motion->relative = stretch_tolerance(motion);
+    imp_motion_measures(motion, states, motion->absolute);
+    for (int i = 0; i < motion->size; i++) motion->absolute[i] *= IMP_ABSOLUTE_OF_RELATIVE * motion->relative;
+    return impact_ode_set_tolerances(motion->ode, motion->relative, motion->absolute);
 }
 
 impact_status imp_motion_integrate(impact_motion *motion, double *t, double t_end, imp_state *states,
@@ -448,7 +482,7 @@ impact_status imp_motion_integrate(impact_motion *motion, double *t, double t_en
     status = choose_tolerance(motion, states);
     if (status == IMPACT_OK) status = impact_ode_start(motion->ode, imp_motion_clocked(motion) ? 0 : *t, motion->y);
     if (status == IMPACT_OK && sampler->piece) status = imp_motion_trace_start(motion, *t, states);
-    if (status != IMPACT_OK) return fail(motion, status);
+    if (status != IMPACT_OK) return fail(motion, status, *t);
     status = integrate(motion, t, t_end, motion->y, states, sampler, end);
     imp_motion_unpack(motion, motion->y, states);
     motion->works.force = motion->y[Y_FORCE_WORK];

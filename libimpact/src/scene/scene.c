@@ -4,6 +4,7 @@
 #include "scene/scene_crowd.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_pile.h"
+#include "scene/scene_receipt.h"
 #include "world/world_gap.h"
 #include "base/floats.h"
 #include "collide/collide_workspace.h"
@@ -12,14 +13,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool pulse(void *context, double t)
+bool imp_scene_told(impact_scene *scene, double t)
 {
-    impact_scene *scene = context;
-    if (imp_scene_pile_pulse(scene)) return false; /* the stretch ends here; the motion goes on by steps */
+    if (++scene->steps > scene->max_steps) {
+        scene->stop = IMPACT_EUNSETTLED;
+        snprintf(scene->message, sizeof scene->message, "%ld steps by t = %.17g: the limit, max_steps",
+                 scene->max_steps, t);
+        return false;
+    }
     if (!scene->recorder || !scene->recorder->progress) return true;
     if (scene->recorder->progress(scene->recorder->context, t, scene->duration)) return true;
     scene->stop = IMPACT_STOPPED;
     return false;
+}
+
+static bool pulse(void *context, double t)
+{
+    impact_scene *scene = context;
+    if (imp_scene_pile_pulse(scene)) return false; /* the stretch ends here; the motion goes on by steps */
+    return imp_scene_told(scene, t);
 }
 
 /* A touch of a few rounding errors is no overlap. */
@@ -38,10 +50,10 @@ static impact_status check_overlaps(impact_scene *scene, char *message, unsigned
                          impact_status_string(status));
             return status;
         }
-        const double size = qvec3_norm(scene->states[pair->body1].x) + b1->radius;
+        const double size = imp_world_place_scale(world, pair, scene->states);
         if (imp_world_inside_bounds(world, pair, scene->states, &contact) < 0) {
             pair->beyond = contact.gap < 0;
-        } else if (contact.gap < -1e-9 * size) {
+        } else if (contact.gap < -IMP_OVERLAP_AT_START * size) {
             if (message)
                 snprintf(message, message_size, "body '%s': overlaps '%s' by %.6g m at the start", b1->name, b2->name,
                          -contact.gap);
@@ -90,8 +102,10 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
     scene->rest_speed = def->rest_speed;
     scene->max_events = def->max_events;
     scene->key_tolerance = def->key_tolerance;
+    scene->max_steps = def->max_steps;
     scene->sampler = (imp_sampler){.rate = def->output_rate, .emit = imp_scene_emit, .pulse = pulse, .context = scene};
     status = imp_scene_build(scene, def);
+    imp_scene_receipt_begin(scene);
     if (status == IMPACT_OK && def->compliance > 0) { /* impacts are few: as exactly as can be */
         status = imp_collide_workspace_in(scene->world.arena, IMPACT_ODE_BDF, 1e-14, &scene->springs);
         if (status == IMPACT_EABSENT && message)
@@ -99,7 +113,7 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
                      "compliance needs CVODE, and this build has none (IMPACT_WITH_CVODE is off)");
     }
     if (status == IMPACT_OK) {
-        imp_field_locate(&scene->world, scene->states);
+        imp_field_locate(&scene->world, scene->t, scene->states, false);
         scene->energy_start = imp_scene_total_energy(scene);
         status = check_overlaps(scene, message, message_size);
     }
@@ -143,6 +157,7 @@ void impact_scene_destroy(impact_scene *scene)
 static impact_status run(impact_scene *scene, double t_end)
 {
     scene->message[0] = '\0';
+    scene->stop = IMPACT_OK;
     if (!isfinite(t_end)) return IMPACT_EDOMAIN;
     if (t_end < scene->t) {
         snprintf(scene->message, sizeof scene->message, "t = %.15g is over: the scene stands at %.15g s", t_end,
@@ -151,33 +166,14 @@ static impact_status run(impact_scene *scene, double t_end)
     }
     const double due = ceil(scene->t * scene->sampler.rate);
     if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
+    if (!scene->begun) imp_field_locate(&scene->world, scene->t, scene->states, true);
+    scene->begun = true;
     impact_status status = scene->crowd ? imp_scene_crowd_deliver(scene) : IMPACT_OK;
     if (status == IMPACT_OK) status = imp_scene_settle(scene);
     if (status == IMPACT_OK && scene->crowd) imp_scene_crowd_begin(scene);
     if (status != IMPACT_OK) return status;
+    imp_scene_receipt_look(scene, scene->t);
     return imp_scene_go_on(scene, t_end, scene->crowd ? imp_scene_crowd_advance : imp_scene_advance);
-}
-
-/* The run's check on itself: the energy that is there against the energy that was given and taken. Held contacts
- * of two bodies on each other that are flat along an axis (exponents over 2) can pass that spot faster than the
- * integrator sees. */
-static impact_status check_account(impact_scene *scene, impact_status status)
-{
-    const double tolerance = 1e-8 + 1e3 * scene->motion.tolerance;
-    const impact_energy e = impact_scene_energy(scene);
-    const double losses = e.damping_loss + e.sliding_loss + e.impact_loss, now = e.kinetic + e.potential;
-    const double off = now - (e.start + e.force_work + e.drive_work - losses);
-    const double given = fmax(fabs(e.force_work), fabs(e.drive_work));
-    const double scale = fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), fmax(given, fabs(losses))));
-    if (status != IMPACT_OK && status != IMPACT_AT_REST) return status;
-    if (fabs(off) <= tolerance * scale) return scene->world.usage.impacts_soft > 0 ? IMPACT_SOFT : status;
-    if (isfinite(off))
-        snprintf(scene->message, sizeof scene->message,
-                 "the energy account is off by %.2g J of %.2g J: do not trust the digits", off, scale);
-    else
-        snprintf(scene->message, sizeof scene->message,
-                 "the motion has left double precision: do not trust the digits");
-    return IMPACT_SOFT;
 }
 
 impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
@@ -185,7 +181,7 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     const imp_floats floats = imp_floats_hold();
     scene->recorder = recorder;
     impact_status status = imp_scene_keys_begin(scene);
-    if (status == IMPACT_OK) status = check_account(scene, run(scene, t));
+    if (status == IMPACT_OK) status = imp_scene_receipt_judge(scene, run(scene, t));
     if (!imp_scene_keys_end(scene) && status >= 0) status = IMPACT_ESINK;
     scene->recorder = NULL;
     if (status == IMPACT_ENOMEM) imp_arena_explain(scene->world.arena, scene->message, sizeof scene->message);

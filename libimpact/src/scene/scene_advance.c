@@ -4,8 +4,20 @@
  */
 #include "scene/scene_keys.h"
 #include "scene/scene_pile.h"
+#include "scene/scene_receipt.h"
 
 #include <stdio.h>
+
+bool imp_scene_good_row(impact_scene *scene, const impact_sample *s)
+{
+    const double sum = s->t + s->position.x + s->position.y + s->position.z + s->orientation.w + s->orientation.x +
+                       s->orientation.y + s->orientation.z + s->velocity.x + s->velocity.y + s->velocity.z +
+                       s->omega.x + s->omega.y + s->omega.z;
+    if (isfinite(sum)) return true;
+    snprintf(scene->message, sizeof scene->message, "the motion of '%s' has left double precision at t = %.17g",
+             s->name, s->t);
+    return false;
+}
 
 bool imp_scene_emit(void *context, double t, const imp_state *states)
 {
@@ -14,6 +26,10 @@ bool imp_scene_emit(void *context, double t, const imp_state *states)
     for (int i = 0; recorder->sample && i < scene->world.body_count; i++) {
         if (scene->world.bodies[i].is_static) continue;
         const impact_sample sample = imp_scene_sample(scene, t, i, states);
+        if (!imp_scene_good_row(scene, &sample)) {
+            scene->stop = IMPACT_EDOMAIN;
+            return false;
+        }
         scene->world.usage.samples++;
         if (recorder->sample(recorder->context, &sample)) continue;
         scene->stop = IMPACT_ESINK;
@@ -22,9 +38,11 @@ bool imp_scene_emit(void *context, double t, const imp_state *states)
     return true;
 }
 
+/* Nothing moves, and no force may ever move anything. */
 static bool all_at_rest(const impact_scene *scene)
 {
     bool any = false;
+    if (imp_field_unsteady(&scene->world)) return false;
     for (int i = 0; i < scene->world.body_count; i++) {
         if (scene->world.bodies[i].is_static) continue;
         if (!scene->motion.resting[i]) return false;
@@ -40,7 +58,6 @@ impact_status imp_scene_advance(impact_scene *scene, double t_end)
     imp_end end;
     imp_sampler silent = {.pulse = scene->sampler.pulse, .piece = scene->sampler.piece, .context = scene};
     const bool samples = scene->recorder && scene->recorder->sample;
-    scene->stop = IMPACT_OK;
     impact_status status =
         imp_motion_advance(&scene->motion, &scene->t, t_end, scene->states, samples ? &scene->sampler : &silent, &end);
     if (status < 0) {
@@ -53,6 +70,7 @@ impact_status imp_scene_advance(impact_scene *scene, double t_end)
     while (status == IMPACT_OK && imp_motion_also_crossed(&scene->motion, &end)) status = imp_scene_handle(scene, end);
     if (status == IMPACT_OK && is_event && !imp_scene_account(scene)) status = IMPACT_ESINK;
     if (status != IMPACT_OK) return status;
+    imp_scene_receipt_look(scene, t_before);
     scene->stalls = scene->t > t_before ? 0 : scene->stalls + 1;
     if (scene->stalls < MAX_STALLS) return scene->stop;
     snprintf(scene->message, sizeof scene->message, "%d events at the one instant t = %.17g brought no end", MAX_STALLS,

@@ -80,6 +80,14 @@ static impact_status build_pairs(imp_world *world, const impact_scene_def *def)
     return IMPACT_OK;
 }
 
+static double *copy_times(imp_arena *arena, const impact_force_def *def)
+{
+    const size_t count = def->kind == IMPACT_FORCE_CUSTOM ? (size_t)def->switch_count : 0;
+    double *times = imp_arena_take(arena, count + 1, sizeof *times);
+    if (times && count > 0) memcpy(times, def->switches, count * sizeof *times);
+    return times;
+}
+
 static impact_status build_fields(imp_world *world, const impact_scene_def *def)
 {
     world->fields = imp_arena_take(world->arena, (size_t)def->force_count + 1, sizeof *world->fields);
@@ -93,11 +101,15 @@ static impact_status build_fields(imp_world *world, const impact_scene_def *def)
             const qvec3 d = field->def.direction;
             field->def.direction = qvec3_scale(d, 1 / qvec3_norm(d));
         }
+        if (isnan(field->def.max_step)) field->def.max_step = IMP_MAX_STEP_OF_DURATION * def->duration;
+        field->switches = copy_times(world->arena, &def->forces[k]);
+        field->def.switches = NULL;
         field->name = imp_arena_copy(world->arena, def->forces[k].name ? def->forces[k].name : "force");
         field->slots = imp_field_slots(&field->def, world->body_count);
         field->inside = imp_arena_take(world->arena, (size_t)field->slots + 1, sizeof *field->inside);
-        if (!field->name || !field->inside) return IMPACT_ENOMEM;
+        if (!field->name || !field->inside || !field->switches) return IMPACT_ENOMEM;
     }
+    imp_field_enter(world, 0);
     return IMPACT_OK;
 }
 
@@ -106,12 +118,12 @@ impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
     imp_world *world = &scene->world;
     const size_t n = (size_t)def->body_count;
     imp_arena *arena = world->arena;
-    *world = (imp_world){
-        .arena = arena, .gravity = def->gravity, .slip_speed = fmax(1e-2 * def->rest_speed, 100 * def->tolerance)};
+    *world =
+        (imp_world){.arena = arena, .gravity = def->gravity, .slip_speed = IMP_SLIP_OF_REST_SPEED * def->rest_speed};
     scene->name = imp_arena_copy(arena, def->name ? def->name : "scene");
     if (!scene->name) return IMPACT_ENOMEM;
-    world->onset_speed = 1e5 * world->slip_speed;
-    world->flat_height = 100 * def->rest_height;
+    world->onset_speed = IMP_ONSET_OF_SLIP_SPEED * world->slip_speed;
+    world->flat_height = IMP_LYING_OF_REST_HEIGHT * def->rest_height;
     world->bodies = imp_arena_take(arena, n, sizeof *world->bodies);
     scene->states = imp_arena_take(arena, n, sizeof *scene->states);
     scene->before = imp_arena_take(arena, n, sizeof *scene->before);

@@ -142,6 +142,26 @@ static void check_bodies(check *c, const impact_scene_def *def)
     }
 }
 
+static void check_custom(check *c, const impact_force_def *force)
+{
+    require_words(c, force->function != NULL, "a custom force needs a function");
+    require(c, isnan(force->max_step) || force->max_step > 0, "max_step", force->max_step, "must be positive");
+    require(c, isfinite(force->switch_period) && force->switch_period >= 0, "switch_period", force->switch_period,
+            "must be >= 0 and finite");
+    require(c, force->switch_count >= 0, "switch_count", force->switch_count, "must be >= 0");
+    require_words(c, force->switch_count <= 0 || force->switches != NULL, "has no switches, but a switch_count");
+    for (int i = 0; c->status == IMPACT_OK && i < force->switch_count; i++) {
+        char key[40];
+        snprintf(key, sizeof key, "switches[%d]", i + 1);
+        require(c, isfinite(force->switches[i]), key, force->switches[i], "must be finite");
+        require(c, i == 0 || force->switches[i] > force->switches[i - 1], key, force->switches[i],
+                "does not come after the one before it: switches must rise");
+    }
+    const bool fits = force->switch_period == 0 || force->switch_count == 0 ||
+                      force->switches[force->switch_count - 1] - force->switches[0] < force->switch_period;
+    require(c, fits, "switch_period", force->switch_period, "is shorter than the switches in it");
+}
+
 static void check_force(check *c, const impact_scene_def *def, const impact_force_def *force)
 {
     char stranger[160];
@@ -166,7 +186,7 @@ static void check_force(check *c, const impact_scene_def *def, const impact_forc
         require(c, isfinite(force->constant), "constant", force->constant, "must be finite");
         require(c, isfinite(force->power), "power", force->power, "must be finite");
         break;
-    case IMPACT_FORCE_CUSTOM: require_words(c, force->function != NULL, "a custom force needs a function"); break;
+    case IMPACT_FORCE_CUSTOM: check_custom(c, force); break;
     default: require_words(c, false, "is of no known kind");
     }
 }
@@ -213,6 +233,7 @@ impact_status imp_scene_check(const impact_scene_def *def, char *message, unsign
     require(&c, def->max_events > 0, "max_events", (double)def->max_events, "must be positive");
     require(&c, def->piles >= IMPACT_PILES_AUTO && def->piles <= IMPACT_PILES_STEPS, "piles", def->piles,
             "is no way to move them");
+    require(&c, def->max_steps > 0, "max_steps", (double)def->max_steps, "must be positive");
     require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule",
             def->friction_rule, "is no rule");
     require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule",

@@ -10,6 +10,7 @@
 #include "scene/scene_pile.h"
 #include "world/crowd.h"
 #include "motion/motion_equations.h"
+#include "scene/scene_receipt.h"
 #include "scene/scene_rows.h"
 #include "world/world_gap.h"
 
@@ -142,12 +143,9 @@ static bool party_pulse(void *context, double t)
 {
     party *p = context;
     imp_scene_crowd *crowd = p->owner;
-    const impact_recorder *recorder = crowd->scene->recorder;
     crowd->escaped = crowd->escaped || !within(p, p->scene.states);
     crowd->escaped = crowd->escaped || !integrated_within(p);
-    if (recorder && recorder->progress)
-        crowd->stopped =
-            crowd->stopped || !recorder->progress(recorder->context, fmin(t, crowd->scene->t), crowd->scene->duration);
+    crowd->stopped = crowd->stopped || !imp_scene_told(crowd->scene, fmin(t, crowd->scene->t));
     crowd->piled = crowd->piled || imp_scene_pile_party(crowd->scene, &p->scene);
     if (!crowd->escaped && !crowd->stopped && !crowd->piled) return true;
     p->scene.stop = IMPACT_STOPPED;
@@ -252,11 +250,13 @@ static impact_status gather(imp_scene_crowd *crowd, party *p)
     own->t = whole->t;
     own->max_events = whole->max_events - whole->event_count;
     own->event_count = own->stalls = 0;
-    own->impact_loss = 0;
+    own->impact_loss = own->impact_loss_before = own->impact_loss_fallen = 0;
+    own->greatest_energy = whole->greatest_energy;
+    imp_scene_receipt_begin(own);
     own->sampler.next = whole->sampler.next;
     own->stop = IMPACT_OK;
     own->message[0] = '\0';
-    p->energy = imp_scene_total_energy(own);
+    p->energy = own->energy_start = imp_scene_total_energy(own);
     return imp_persist_reserve(&own->motion.persist, &own->world, own->states);
 }
 
@@ -280,6 +280,8 @@ static party *make_party(imp_scene_crowd *crowd, int group)
                                  .flat_height = whole->world.flat_height};
     p->scene.duration = whole->duration;
     p->scene.law = whole->law;
+    p->scene.compliance = whole->compliance;
+    p->scene.springs = whole->springs;
     p->scene.solver = whole->solver;
     p->scene.rest_height = whole->rest_height;
     p->scene.rest_speed = whole->rest_speed;
@@ -372,6 +374,7 @@ static void scatter(imp_scene_crowd *crowd, party *p)
     whole->motion.works.damping += own->motion.works.damping;
     whole->motion.works.sliding += own->motion.works.sliding;
     whole->motion.works.drive += own->motion.works.drive;
+    imp_scene_receipt_add(whole, own);
     whole->impact_loss += own->impact_loss;
     whole->event_count += own->event_count;
     add_usage(&whole->world.usage, &own->world.usage);
@@ -463,7 +466,7 @@ impact_status imp_scene_crowd_advance(impact_scene *scene, double t_end)
         party *stopped;
         const double reached = move_parties(crowd, end, &stopped);
         if (crowd->spent) return IMPACT_ENOMEM;
-        if (crowd->stopped) return IMPACT_STOPPED;
+        if (crowd->stopped) return scene->stop;
         if (crowd->piled) { /* nothing was taken over yet: by steps, then */
             crowd->rows.count = crowd->rows.next = crowd->kept.count = 0;
             return IMPACT_OK;

@@ -18,6 +18,7 @@ impact_scene_def impact_default_scene_def(void)
         .rest_height = 1e-12,
         .rest_speed = 1e-9,
         .max_events = 1000000,
+        .max_steps = 100000000,
         .key_tolerance = 1e-10,
         .piles = IMPACT_PILES_AUTO,
     };

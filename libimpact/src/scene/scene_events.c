@@ -22,13 +22,20 @@ impact_sample imp_scene_sample(const impact_scene *scene, double t, int body, co
         t, body, b->name, s->x, s->q, b->is_static ? b->drift : s->v, b->is_static ? b->spin : imp_omega(b, s)};
 }
 
-static bool record_rows(impact_scene *scene, int body, const imp_state *states)
+static impact_status record_row(impact_scene *scene, int body, const imp_state *states)
 {
     const impact_recorder *recorder = scene->recorder;
-    if (body < 0 || scene->world.bodies[body].is_static || !recorder->sample) return true;
+    if (body < 0 || scene->world.bodies[body].is_static || !recorder->sample) return IMPACT_OK;
     const impact_sample sample = imp_scene_sample(scene, scene->t, body, states);
+    if (!imp_scene_good_row(scene, &sample)) return IMPACT_EDOMAIN;
     scene->world.usage.samples++;
-    return recorder->sample(recorder->context, &sample);
+    return recorder->sample(recorder->context, &sample) ? IMPACT_OK : IMPACT_ESINK;
+}
+
+static impact_status record_rows(impact_scene *scene, int body1, int body2, const imp_state *states)
+{
+    const impact_status status = record_row(scene, body1, states);
+    return status == IMPACT_OK ? record_row(scene, body2, states) : status;
 }
 
 impact_status imp_scene_record(impact_scene *scene, const impact_event *event)
@@ -38,12 +45,13 @@ impact_status imp_scene_record(impact_scene *scene, const impact_event *event)
     if (!scene->recorder) return IMPACT_OK;
     const int other = event->kind == IMPACT_EVENT_FORCE ? -1 : event->body2;
     scene->beside_event = true;
-    const bool taken = record_rows(scene, event->body1, scene->before) && record_rows(scene, other, scene->before) &&
-                       (!scene->recorder->event || scene->recorder->event(scene->recorder->context, event)) &&
-                       record_rows(scene, event->body1, scene->states) && record_rows(scene, other, scene->states);
+    impact_status status = record_rows(scene, event->body1, other, scene->before);
+    if (status == IMPACT_OK && scene->recorder->event && !scene->recorder->event(scene->recorder->context, event))
+        status = IMPACT_ESINK;
+    if (status == IMPACT_OK) status = record_rows(scene, event->body1, other, scene->states);
     scene->beside_event = false;
     memcpy(scene->before, scene->states, sizeof *scene->states * (size_t)scene->world.body_count);
-    return taken ? IMPACT_OK : IMPACT_ESINK;
+    return status;
 }
 
 impact_event imp_scene_event_of_touch(const impact_scene *scene, impact_event_kind kind, const imp_touch *touch)

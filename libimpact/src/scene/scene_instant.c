@@ -91,11 +91,21 @@ static bool tips(impact_scene *scene, int p)
     return false;
 }
 
+/* A few roundings of t on: a law that compares for itself where it stands is then asked beyond its edge. */
+static void step_over(impact_scene *scene, int body)
+{
+    const double later = scene->t + IMP_SWITCH_ROUNDING * fabs(scene->t);
+    imp_state *state = &scene->states[body];
+    state->x = qvec3_axpy(later - scene->t, state->v, state->x);
+    scene->t = fmin(later, scene->duration);
+}
+
 static impact_status cross_edge(impact_scene *scene, int edge)
 {
     int field, body;
     imp_scene_remember(scene);
     imp_field_cross(&scene->world, edge, &field, &body);
+    if (scene->world.fields[field].def.kind == IMPACT_FORCE_CUSTOM) step_over(scene, body);
     impact_event event = imp_scene_event_of_body(scene, IMPACT_EVENT_FORCE, body);
     event.name2 = scene->world.fields[field].name;
     const impact_status status = imp_scene_record(scene, &event);
@@ -126,7 +136,10 @@ impact_status imp_scene_handle(impact_scene *scene, imp_end end)
     case IMP_END_SLIP: return begin_slide(scene, end.index);
     case IMP_END_STICK: return change_mode(scene, end.index, IMP_ROLL);
     case IMP_END_EDGE: return cross_edge(scene, end.index);
-    case IMP_END_SLOW: imp_scene_remember(scene); return imp_scene_hold(scene, -1, true);
+    case IMP_END_SLOW:
+        imp_scene_remember(scene);
+        scene->motion.resting[end.index] = false; /* it wakes, or comes to rest only now */
+        return imp_scene_hold(scene, -1, true);
     case IMP_END_RENEWAL: return renew(scene);
     }
     return IMPACT_OK;

@@ -28,6 +28,11 @@ struct impact_scene {
     const impact_recorder *recorder; /* of the run under way */
     impact_status stop;              /* why the recorder stopped the run */
     double energy_start, impact_loss, key_tolerance;
+    double impact_loss_before, impact_loss_fallen; /* as the receipt saw it last; the sum of its falls */
+    double greatest_energy;                        /* the greatest term of the account so far */
+    impact_scene_residuals receipt;
+    long steps, max_steps;         /* calls of imp_scene_told */
+    bool begun;                    /* it has run */
     struct imp_scene_keys *keys;   /* while a run with keys is under way */
     bool beside_event;             /* the rows that go to the recorder now stand beside an event */
     struct imp_scene_crowd *crowd; /* of many bodies, that are moved in groups; NULL: all at once */
@@ -43,6 +48,12 @@ impact_status imp_scene_advance(impact_scene *scene, double t_end);
 typedef impact_status (*imp_scene_step)(impact_scene *scene, double t_end);
 /* On to the time t_end by such steps, as far as it goes: IMPACT_OK there, IMPACT_AT_REST, or why not. */
 impact_status imp_scene_go_on(impact_scene *scene, double t_end, imp_scene_step step);
+/* Before every stretch and after every step of an integrator: counts it, and tells the recorder how far the run is.
+ * False: it is to stop. */
+bool imp_scene_told(impact_scene *scene, double t);
+/* Whether all of the row's numbers are finite, as every row is that is handed on; else the message says whose are not.
+ */
+bool imp_scene_good_row(impact_scene *scene, const impact_sample *sample);
 /* Puts every body's row into the recorder; for the sampler. */
 bool imp_scene_emit(void *scene, double t, const imp_state *states);
 

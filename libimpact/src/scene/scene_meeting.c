@@ -69,9 +69,7 @@ bool imp_scene_dies_out(const impact_scene *scene, const imp_meeting *m, double 
 {
     enum { MOST = 10 };
     const imp_pair *pair = &scene->world.pairs[m->touch.pair];
-    double late = imp_world_touching_distance(&scene->world, pair, scene->states);
-    if (!imp_motion_is_ballistic(&scene->motion))
-        late = fmax(late, scene->motion.tolerance * imp_world_reach(&scene->world, pair, scene->states));
+    const double late = imp_world_touching_distance(&scene->world, pair, scene->states);
     const double gain = 1 / (1 - pair->restitution * pair->restitution);
     const double height = fmax(scene->rest_height, late * fmin(gain, MOST));
     return m->acceleration < 0 && speed * speed < 2 * lasting_press(scene, m) * height;

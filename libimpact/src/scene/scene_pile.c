@@ -167,7 +167,9 @@ static impact_status take_step(impact_scene *scene, double t_end, imp_pile_step_
     struct imp_scene_pile *p = scene->pile;
     const double energy = imp_scene_total_energy(scene), most = t_end - scene->t;
     memcpy(scene->before, scene->states, sizeof *scene->states * (size_t)scene->world.body_count);
-    imp_field_locate(&scene->world, scene->states); /* a step's forces are those of where it begins */
+    /* a step's forces are those of where and when it begins */
+    imp_field_enter(&scene->world, scene->t);
+    for (int custom = 0; custom < 2; custom++) imp_field_locate(&scene->world, scene->t, scene->states, custom);
     const impact_status status = imp_pile_step(&p->pile, &scene->world, scene->t, most, scene->states, result);
     if (status != IMPACT_OK) {
         if (status == IMPACT_ENOMEM)

@@ -105,11 +105,8 @@ static int find_approach(impact_scene *scene, bool answering, imp_meeting *m)
 {
     for (int p = 0; p < scene->world.pair_count; p++) {
         if (!imp_scene_meets(scene, p, m)) continue;
-        const bool open = !imp_is_held(&scene->world.pairs[p]), held = answering || !open;
-        /* what is open and pressed together would fall through, however loose the tolerance */
-        const double slow = open && m->acceleration < 0 ? fmin(scene->world.slip_speed, 1e-2 * scene->rest_speed)
-                                                        : scene->world.slip_speed;
-        if (m->velocity < -slow && !(held && imp_scene_dies_out(scene, m, m->velocity))) return p;
+        const bool held = answering || imp_is_held(&scene->world.pairs[p]);
+        if (m->velocity < -scene->world.slip_speed && !(held && imp_scene_dies_out(scene, m, m->velocity))) return p;
     }
     return -1;
 }

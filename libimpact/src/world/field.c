@@ -54,6 +54,13 @@ static void add_attraction(const imp_world *world, const imp_field *field, const
 
 /* ---- all of them ---- */
 
+/* Without what is nothing beside any tolerance: an integrator squares it, and then divides zero by zero. */
+static qvec3 felt(qvec3 f, double unit)
+{
+    const double least = IMP_LEAST_ACCELERATION * unit;
+    return (qvec3){fabs(f.x) < least ? 0 : f.x, fabs(f.y) < least ? 0 : f.y, fabs(f.z) < least ? 0 : f.z};
+}
+
 static bool add_to_body(const imp_field *field, const imp_world *world, double t, const imp_state *states, int i,
                         imp_load *load)
 {
@@ -63,10 +70,12 @@ static bool add_to_body(const imp_field *field, const imp_world *world, double t
     if (field->def.kind == IMPACT_FORCE_WIND) {
         if (!field->inside[i]) return true;
         force = wind(&field->def, &states[i]);
-    } else if (!field->def.function(t, i, body->mass, states[i].x, states[i].q, states[i].v, omega, &force, &torque,
-                                    field->def.context)) {
+    } else if (!field->def.function(imp_field_inner_time(field, t), i, body->mass, states[i].x, states[i].q,
+                                    states[i].v, omega, &force, &torque, field->def.context)) {
         return false;
     }
+    force = felt(force, body->mass);
+    torque = felt(torque, body->mass * body->radius);
     load->force = qvec3_add(load->force, force);
     load->torque = qvec3_add(load->torque, torque);
     load->work_rate += qvec3_dot(force, states[i].v) + qvec3_dot(torque, omega);
@@ -116,6 +125,7 @@ static bool brake_of(const imp_field *field, const imp_world *world, double t, c
     const double size = qvec3_norm(state->v) + body->radius * qvec3_norm(omega);
     const double nudge = 0x1p-20 * (size > 0 ? size : body->radius);
     qvec3 force = {0, 0, 0}, torque = {0, 0, 0};
+    t = imp_field_inner_time(field, t);
     if (!field->def.function(t, i, body->mass, state->x, state->q, state->v, omega, &force, &torque,
                              field->def.context))
         return false;
@@ -177,7 +187,7 @@ int imp_field_slots(const impact_force_def *def, int body_count)
     switch (def->kind) {
     case IMPACT_FORCE_WIND: return body_count;
     case IMPACT_FORCE_ATTRACTION: return body_count * (body_count - 1) / 2;
-    case IMPACT_FORCE_CUSTOM: return 0;
+    case IMPACT_FORCE_CUSTOM: return def->edge ? body_count : 0;
     }
     return 0;
 }
@@ -215,8 +225,18 @@ static field_edge wind_edge(const impact_force_def *def, const imp_state *state)
     return end.value < side.value ? end : side;
 }
 
-static field_edge edge_of(const imp_world *world, const imp_field *field, const imp_state *states, int slot)
+/* A root of the value ends the step; that one comes and goes within a step is for max_step to prevent. */
+static field_edge custom_edge(const imp_world *world, const imp_field *field, double t, const imp_state *s, int body)
 {
+    const imp_body *b = &world->bodies[body];
+    if (!acts_on(field, world, body)) return no_edge;
+    const impact_sample sample = {t, body, b->name, s->x, s->q, s->v, imp_omega(b, s)};
+    return (field_edge){field->def.edge(imp_field_inner_time(field, t), &sample, field->def.context), 0, 0};
+}
+
+static field_edge edge_of(const imp_world *world, const imp_field *field, double t, const imp_state *states, int slot)
+{
+    if (field->def.kind == IMPACT_FORCE_CUSTOM) return custom_edge(world, field, t, &states[slot], slot);
     if (field->def.kind == IMPACT_FORCE_WIND)
         return acts_on(field, world, slot) && (isfinite(field->def.reach) || isfinite(field->def.radius))
                    ? wind_edge(&field->def, &states[slot])
@@ -231,22 +251,23 @@ static field_edge edge_of(const imp_world *world, const imp_field *field, const 
     return (field_edge){field->def.reach - distance, -qvec3_dot(d, v) / distance, qvec3_norm(v)};
 }
 
-void imp_field_edges(const imp_world *world, const imp_state *states, double *value)
+void imp_field_edges(const imp_world *world, double t, const imp_state *states, double *value)
 {
     for (int k = 0; k < world->field_count; k++)
         for (int slot = 0; slot < world->fields[k].slots; slot++) {
-            const field_edge e = edge_of(world, &world->fields[k], states, slot);
+            const field_edge e = edge_of(world, &world->fields[k], t, states, slot);
             const double sign = world->fields[k].inside[slot] ? 1 : -1;
             *value++ = sign * e.value;
-            *value++ = imp_still_rate(world, e.speed) - sign * e.rate;
+            *value++ =
+                world->fields[k].def.kind == IMPACT_FORCE_CUSTOM ? 1 : imp_still_rate(world, e.speed) - sign * e.rate;
         }
 }
 
-double imp_field_edge(const imp_world *world, const imp_state *states, int number)
+double imp_field_edge(const imp_world *world, double t, const imp_state *states, int number)
 {
     int k = 0;
     while (number >= world->fields[k].slots) number -= world->fields[k++].slots;
-    const double value = edge_of(world, &world->fields[k], states, number).value;
+    const double value = edge_of(world, &world->fields[k], t, states, number).value;
     return world->fields[k].inside[number] ? value : -value;
 }
 
@@ -282,11 +303,12 @@ double imp_field_step_limit(const imp_world *world, const imp_state *states, con
     return limit;
 }
 
-void imp_field_locate(imp_world *world, const imp_state *states)
+void imp_field_locate(imp_world *world, double t, const imp_state *states, bool custom)
 {
     for (int k = 0; k < world->field_count; k++)
         for (int slot = 0; slot < world->fields[k].slots; slot++) {
-            const field_edge e = edge_of(world, &world->fields[k], states, slot);
+            if ((world->fields[k].def.kind == IMPACT_FORCE_CUSTOM) != custom) continue;
+            const field_edge e = edge_of(world, &world->fields[k], t, states, slot);
             world->fields[k].inside[slot] = e.value > 0 || (e.value == 0 && e.rate >= 0);
         }
 }

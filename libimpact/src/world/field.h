@@ -25,15 +25,25 @@ double imp_field_brake(const imp_world *world, double t, const imp_state *states
 double imp_field_potential(const imp_world *world, const imp_state *states);
 
 /* How many edges the fields have; for each its value, > 0 on the side where the motion now is, and minus the value's
- * rate; one's value. */
+ * rate (of a custom force's: 1); one's value. */
 int imp_field_edge_count(const imp_world *world);
-void imp_field_edges(const imp_world *world, const imp_state *states, double *value);
-double imp_field_edge(const imp_world *world, const imp_state *states, int edge);
+void imp_field_edges(const imp_world *world, double t, const imp_state *states, double *value);
+double imp_field_edge(const imp_world *world, double t, const imp_state *states, int edge);
 /* A step, s, so short that no body within an edge can leave and come back in it unseen; infinite when there
  * are none. */
 double imp_field_step_limit(const imp_world *world, const imp_state *states, const imp_load *loads);
-/* Sets every inside flag from where the bodies are. */
-void imp_field_locate(imp_world *world, const imp_state *states);
+/* The same for what may not be stepped over of custom forces: max_step, and a body's radius over its speed. */
+double imp_field_custom_step_limit(const imp_world *world, const imp_state *states, const imp_load *loads);
+/* Sets the inside flags of the custom forces, or of all others, from where the bodies are. */
+void imp_field_locate(imp_world *world, double t, const imp_state *states, bool custom);
+/* Sets every custom force's piece to the one that begins at t or before, and ends after it. */
+void imp_field_enter(imp_world *world, double t);
+/* Where the first of them ends, s; infinite when there are no switches. */
+double imp_field_next_switch(const imp_world *world);
+/* t, or the time nearest to it that lies inside the field's piece. */
+double imp_field_inner_time(const imp_field *field, double t);
+/* Whether some force may move, some time, what rests under it now. */
+bool imp_field_unsteady(const imp_world *world);
 /* Edge was crossed: turns its flag, and tells whose edge it is. */
 void imp_field_cross(imp_world *world, int edge, int *field, int *body);
 

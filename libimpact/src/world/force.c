@@ -16,5 +16,6 @@ impact_force_def impact_default_force_def(impact_force_kind kind)
         .falloff_length = 1,
         .constant = 6.67430e-11,
         .power = 2,
+        .max_step = NAN,
     };
 }

@@ -5,6 +5,8 @@
 #ifndef IMP_WORLD_H
 #define IMP_WORLD_H
 
+#include "base/tolerances.h"
+
 #include <quat/rotation.h>
 #include <impact/force.h>
 #include <impact/gap.h>
@@ -80,6 +82,8 @@ typedef struct imp_field {
     int only; /* the one body it acts on, or -1 */
     int slots;
     bool *inside;
+    double *switches; /* custom: owned */
+    double piece[2];  /* custom: between which switches the motion is now, s */
 } imp_field;
 
 typedef struct imp_world {
@@ -156,6 +160,9 @@ static inline impact_solid imp_solid_of(const imp_body *body, const imp_state *s
 
 /* A rate, of motion at this speed, up to which a distance does not open, m/s: what only rounding moves stays where it
  * is. */
-static inline double imp_still_rate(const imp_world *world, double speed) { return world->slip_speed + 1e-9 * speed; }
+static inline double imp_still_rate(const imp_world *world, double speed)
+{
+    return world->slip_speed + IMP_STILL_OF_SPEED * speed;
+}
 
 #endif

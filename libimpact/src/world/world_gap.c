@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "world/world_gap.h"
+#include "base/tolerances.h"
 
 static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_body *b2, const imp_state *s2,
                             impact_gap_cache *cache, impact_usage *usage, impact_contact *contact)
@@ -50,14 +51,28 @@ double imp_world_gap_rate(const imp_world *world, const imp_pair *pair, const im
                            omega_of(world, states, pair->body2));
 }
 
-double imp_world_reach(const imp_world *world, const imp_pair *pair, const imp_state *states)
+/* Of a plane its normal; of others the last contact's, or before there was one the line of centres. */
+static qvec3 about_normal(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    return qvec3_norm(states[pair->body1].x) + world->bodies[pair->body1].radius;
+    if (world->bodies[pair->body2].shape.kind == IMPACT_PLANE)
+        return quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1});
+    if (pair->cache.valid) return pair->cache.normal;
+    const qvec3 d = qvec3_sub(states[pair->body1].x, states[pair->body2].x);
+    const double distance = qvec3_norm(d);
+    return distance > 0 ? qvec3_scale(d, 1 / distance) : (qvec3){1, 1, 1};
+}
+
+double imp_world_place_scale(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const qvec3 n = about_normal(world, pair, states), x1 = states[pair->body1].x, x2 = states[pair->body2].x;
+    return fabs(n.x) * (fabs(x1.x) + fabs(x2.x)) + fabs(n.y) * (fabs(x1.y) + fabs(x2.y)) +
+           fabs(n.z) * (fabs(x1.z) + fabs(x2.z)) + b1->radius + (isfinite(b2->radius) ? b2->radius : 0);
 }
 
 double imp_world_touching_distance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    return IMP_TOUCHING * imp_world_reach(world, pair, states);
+    return IMP_TOUCHING * imp_world_place_scale(world, pair, states);
 }
 
 double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, const imp_state *states)

@@ -21,11 +21,9 @@ double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point);
 double imp_world_gap_rate(const imp_world *world, const imp_pair *pair, const imp_state *states,
                           const impact_contact *contact);
 
-/* Gaps of a pair up to this part of body 1's reach are rounding. */
-#define IMP_TOUCHING 1e-12
-
-/* m: how far body 1 reaches from the origin: places are known relative to it. */
-double imp_world_reach(const imp_world *world, const imp_pair *pair, const imp_state *states);
+/* m: the size of the numbers that the pair's gap is made of, along its normal: far away along a floor counts for
+ * nothing. */
+double imp_world_place_scale(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
 /* Gaps of the pair up to this are rounding, m. */
 double imp_world_touching_distance(const imp_world *world, const imp_pair *pair, const imp_state *states);

@@ -43,6 +43,7 @@ static impact_force_def idle_force(void)
 {
     impact_force_def force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
     force.function = nothing;
+    force.max_step = INFINITY;
     return force;
 }
 
