@@ -146,6 +146,26 @@ static void angular_velocities(void **state)
     assert_bound("angular velocity of squad", squad, 1e-13);
 }
 
+/* nlerp is the chord, made unit: near ends and far ones, and the given way round where it is the long one. */
+static void nlerp_is_the_chord(void **state)
+{
+    (void)state;
+    random_state r = {55};
+    double near = 0, given = 0;
+    for (int n = 0; n < 5000; n++) {
+        const quat p = random_unit(&r), q = at_angle(&r, p, random_between(&r, 0, 2.9));
+        const double t = random_uniform(&r);
+        const wquat want = wide_nlerp(wide_quat(p), wide_quat(quat_nearest(q, p)), t);
+        worse(&near, (double)wide_norm(wide_sub(wide_quat(quat_nlerp(p, n % 2 ? q : quat_neg(q), t)), want)));
+        const wquat chord = wide_add(wide_scale(wide_quat(p), 1 - (wide)t), wide_scale(wide_quat(q), t));
+        const double length = (double)wide_norm(chord);
+        const wquat off = wide_sub(wide_quat(quat_nlerp_as_given(p, q, t)), wide_unit(chord));
+        worse(&given, (double)wide_norm(off) * length);
+    }
+    assert_bound("nlerp", near, 1e-15);
+    assert_bound("nlerp as given, times the chord's length", given, 1e-15);
+}
+
 static double apart(qvec3 a, qvec3 b) { return qvec3_norm(qvec3_sub(a, b)); }
 
 static void angular_velocities_keep_their_identities(void **state)
@@ -226,13 +246,10 @@ static void unflip_follows_a_curve(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slerp_is_within_its_bar),
-        cmocka_unit_test(ends_are_exact),
-        cmocka_unit_test(slerp_keeps_its_identities),
-        cmocka_unit_test(angular_velocities),
-        cmocka_unit_test(angular_velocities_keep_their_identities),
-        cmocka_unit_test(squad_joins_smoothly),
-        cmocka_unit_test(unflip_follows_a_curve),
+        cmocka_unit_test(slerp_is_within_its_bar),    cmocka_unit_test(ends_are_exact),
+        cmocka_unit_test(slerp_keeps_its_identities), cmocka_unit_test(nlerp_is_the_chord),
+        cmocka_unit_test(angular_velocities),         cmocka_unit_test(angular_velocities_keep_their_identities),
+        cmocka_unit_test(squad_joins_smoothly),       cmocka_unit_test(unflip_follows_a_curve),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
