@@ -28,7 +28,6 @@ static void usage(FILE *file)
         "\n"
         "  --out DIR         the output folder; made when needed (default: out)\n"
         "  --record          writes the recorded run, NAME.run, too: every state between events, for viewers\n"
-        "  --record          writes the recorded run, NAME.run, too: every state between events, for viewers\n"
         "  --quiet           no progress, no closing summary\n"
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
         "  --max-time S      bounds the time of the whole run, in seconds\n"

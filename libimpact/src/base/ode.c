@@ -25,8 +25,10 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 enum {
-    VECTORS_ADAMS = 32, /* CVODE has 27 at once at most, of order 12 (6.4.1; test_ode.c asks that some are left) */
-    VECTORS_BDF = 24,   /* 21, of order 5 */
+    /* CVODE has 27 of Adams at once at most (order 12), 21 of BDF (order 5), by 6.4.1; for want of one a step answers
+     * IMPACT_ENOMEM. */
+    VECTORS_ADAMS = 32,
+    VECTORS_BDF = 24,
     /* CVODE takes steps too short to change t, and calls them done: before a jump it comes to them by cutting its step,
      * and goes on, because they show no error and the step grows tenfold in 13 of them at most (order 12). A right-hand
      * side that jumps for good would hold it so for ever. */
