@@ -68,14 +68,14 @@ def check(scene, path):
             scene.frame_set(math.floor(frame), subframe=frame - math.floor(frame))
             worst = max(worst, (body.matrix_world.translation - Vector(x)).length)
             turned = max(turned, body.matrix_world.to_quaternion().rotation_difference(Quaternion(q) @ upright).angle)
-    print("worst of the keys in Blender: %.2g m, %.2g rad" % (worst, min(turned, 2 * math.pi - turned)))
+    print("worst of the keys in Blender: %.2g m, %.2g rad" % (worst, abs(min(turned, 2 * math.pi - turned))))
 
 
 def light_and_camera(scene):
     corners = [o.matrix_world @ Vector(c) for o in scene.objects if o.animation_data for c in o.bound_box]
     middle = sum(corners, Vector()) / max(1, len(corners))
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy, sun.data.angle, sun.rotation_euler = 3.0, 0.1, (0.6, -0.5, 0)
+    sun.data.energy, sun.data.angle, sun.rotation_euler = 4.0, 0.05, (0.5, -0.6, 0)
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.location = middle + Vector((-1.5, -6, 2.2))
     camera.rotation_euler = (Vector((1.2, 0, -0.3)) + middle - camera.location).to_track_quat("-Z", "Y").to_euler()
@@ -84,7 +84,8 @@ def light_and_camera(scene):
     scene.camera = camera
     scene.world = bpy.data.worlds.new("sky")
     scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.75, 0.8, 0.9, 1)
+    color, strength = scene.world.node_tree.nodes["Background"].inputs[:2]
+    color.default_value, strength.default_value = (0.75, 0.8, 0.9, 1), 0.5
 
 
 def main():
