@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Random scenes: each ends, or says why not; what is called good is finite, has a receipt that holds, and no more
+ * energy than it was given. More of them: ./run report scenes.
+ */
+#include "kit/near.h"
+#include "kit/random_scene.h"
+
+static void assert_finite(const impact_scene *scene, int bodies)
+{
+    for (int i = 0; i < bodies; i++) {
+        impact_sample s;
+        assert_int_equal(impact_scene_body(scene, i, &s), IMPACT_OK);
+        const double sum = s.position.x + s.position.y + s.position.z + s.velocity.x + s.velocity.y + s.velocity.z +
+                           s.omega.x + s.omega.y + s.omega.z;
+        assert_true(isfinite(sum));
+        assert_near(quat_norm(s.orientation), 1, 1e-14);
+    }
+}
+
+static void every_scene_ends_or_says_why_not(void **state)
+{
+    (void)state;
+    for (unsigned long seed = 1; seed <= 40; seed++) {
+        random_scene s;
+        random_scene_make(seed, &s);
+        s.def.max_steps = 3000;
+        impact_scene *scene;
+        char message[300];
+        if (impact_scene_create(&s.def, &scene, message, sizeof message) != IMPACT_OK)
+            fail_msg("seed %lu: %s", seed, message);
+        const impact_status status = impact_scene_run(scene, NULL);
+        assert_finite(scene, s.def.body_count);
+        impact_scene_residuals r;
+        const bool holds = impact_scene_receipt(scene, &r) == IMPACT_OK;
+        const impact_energy e = impact_scene_energy(scene);
+        if (status == IMPACT_OK || status == IMPACT_AT_REST) {
+            assert_true(holds);
+            const double scale = fabs(e.start) + fabs(e.force_work) + e.kinetic + fabs(e.potential);
+            assert_true(e.kinetic + e.potential <= e.start + e.force_work + 1e-8 * scale);
+        } else if (impact_scene_message(scene)[0] == '\0') {
+            fail_msg("seed %lu: status %d without a word", seed, status);
+        }
+        impact_scene_destroy(scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_scene_ends_or_says_why_not)};
+    return cmocka_run_group_tests_name("impact.random_scenes", tests, NULL, NULL);
+}
