@@ -8,7 +8,7 @@
 #define _GNU_SOURCE
 #include "runner.h"
 
-#if defined(__linux__) && defined(__has_include) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__linux__) && defined(__has_include) && !defined(__SANITIZE_ADDRESS__) && !defined(IMPACT_RUNNER_MEASURED)
 #if __has_include(<linux/landlock.h>) && __has_include(<linux/seccomp.h>)
 #define FENCE
 #endif
@@ -19,7 +19,7 @@
 const char *impact_runner_fence(impact_runner *runner)
 {
     (void)runner;
-    return "this build has no fence (it is Linux' own, and sanitizers do not live within it)";
+    return "this build has no fence (it is Linux' own, and neither sanitizers nor coverage live within it)";
 }
 
 #else
