@@ -3,6 +3,7 @@
  * The door of the room: scales, picks a solver, looks at the answer's receipt, and climbs to better solvers where that
  * does not pass.
  */
+#include "base/numbers.h"
 #include "base/tolerances.h"
 #include "collide/collide_check.h"
 #include "collide/collide_cvode.h"
@@ -33,7 +34,7 @@ static void unchanged(const impact_collision *collision, impact_outcome *outcome
  * 0. */
 static double rounding_of_velocity(const imp_ready *ready)
 {
-    const imp_pair each =
+    const imp_lanes each =
         imp_vectors_size(&ready->velocity) + imp_vectors_size(&ready->omega) * imp_vectors_size(&ready->arm);
     return DBL_MIN + 0x1p-51 * (each[0] + each[1]);
 }
@@ -93,16 +94,14 @@ static void separate(const impact_collision *collision, const imp_ready *ready, 
     outcome->normal_before = outcome->normal_after = approach;
 }
 
-static bool finite3(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
-
 /* An answer beyond double precision is none. */
 static impact_status finish(const impact_collision *collision, impact_status status, impact_outcome *outcome)
 {
     const impact_outcome *o = outcome;
     const double works = o->work_compression + o->work_restitution + o->work_friction;
-    const bool finite = finite3(o->velocity[0]) && finite3(o->velocity[1]) && finite3(o->omega[0]) &&
-                        finite3(o->omega[1]) && finite3(o->impulse) && isfinite(works + o->compression_impulse) &&
-                        isfinite(o->energy_before + o->energy_after);
+    const bool finite = imp_all_finite(o->velocity[0]) && imp_all_finite(o->velocity[1]) &&
+                        imp_all_finite(o->omega[0]) && imp_all_finite(o->omega[1]) && imp_all_finite(o->impulse) &&
+                        isfinite(works + o->compression_impulse) && isfinite(o->energy_before + o->energy_after);
     return finite ? status : fail(collision, outcome, IMPACT_EDOMAIN);
 }
 

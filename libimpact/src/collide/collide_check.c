@@ -5,6 +5,7 @@
 #include "collide/collide_check.h"
 
 #include <stdio.h>
+#include "base/numbers.h"
 #include "base/tolerances.h"
 #include "collide/collide_series.h"
 #include "collide/collide_units.h"
@@ -20,11 +21,9 @@ impact_status imp_collide_refuse(char *message, size_t size, impact_status statu
     return status;
 }
 
-static bool finite3(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
-
 static impact_status check_vector(const char *name, int number, qvec3 v, char *message, size_t size)
 {
-    if (finite3(v)) return IMPACT_OK;
+    if (imp_all_finite(v)) return IMPACT_OK;
     return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "body %d: %s is (%g, %g, %g), must be finite", number,
                               name, v.x, v.y, v.z);
 }
@@ -87,7 +86,7 @@ static impact_status check_extras(const impact_collision *collision, char *messa
 static impact_status check_contact(const impact_collision *collision, char *message, size_t size)
 {
     const qvec3 n = collision->normal;
-    if (!finite3(n))
+    if (!imp_all_finite(n))
         return imp_collide_refuse(message, size, IMPACT_EDOMAIN, "normal is (%g, %g, %g), must be finite", n.x, n.y,
                                   n.z);
     if (n.x == 0 && n.y == 0 && n.z == 0)
@@ -121,11 +120,11 @@ static bool plain_bodies(const impact_collider *one, const impact_collider *two)
     const imp_vectors omega = imp_vectors_of(one->omega, two->omega);
     const imp_vectors j = imp_vectors_of(one->moments, two->moments);
     const quat p = one->orientation, q = two->orientation;
-    const imp_pair mass = {one->mass, two->mass}, length2 = {quat_dot(p, p), quat_dot(q, q)};
-    const imp_pair slowest = imp_pair_smaller(imp_pair_smaller(j.x, j.y), j.z), all = j.x + j.y + j.z;
+    const imp_lanes mass = {one->mass, two->mass}, length2 = {quat_dot(p, p), quat_dot(q, q)};
+    const imp_lanes slowest = imp_lanes_smaller(imp_lanes_smaller(j.x, j.y), j.z), all = j.x + j.y + j.z;
     const imp_mask known = imp_vectors_size(&offset) + (imp_vectors_size(&velocity) + imp_vectors_size(&omega)) <= most;
     const imp_mask moves = (mass <= most) & (slowest >= least) & (all <= most) &
-                           (all <= IMP_COLLIDE_MOMENTS_APART * slowest) & (imp_pair_size(length2 - 1) <= 1e-6);
+                           (all <= IMP_COLLIDE_MOMENTS_APART * slowest) & (imp_lanes_size(length2 - 1) <= 1e-6);
     const bool near = mass[0] == INFINITY || mass[1] == INFINITY ||
                       (mass[0] <= IMP_COLLIDE_MASSES_APART * mass[1] && mass[1] <= IMP_COLLIDE_MASSES_APART * mass[0]);
     return near && imp_mask_all(known & (mass >= least) & ((mass == INFINITY) | moves)) && imp_mask_any(moves);

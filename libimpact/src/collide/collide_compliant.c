@@ -11,8 +11,9 @@
  */
 #include "collide/collide_cvode.h"
 
-enum { DELTA, A, B, P, PX, PY, WORK, FRICTION, SIZE }; /* (A, B): f while sticking, phi in A while sliding */
-enum { ROOT_UZ, ROOT_OFF, ROOT_RELOAD, ROOT_GRIP, ROOTS };
+/* (A, B): f while sticking, phi in A while sliding. */
+enum { SPRING_DELTA, SPRING_A, SPRING_B, SPRING_P, SPRING_PX, SPRING_PY, SPRING_WORK, SPRING_FRICTION, SPRING_SIZE };
+enum { EVENT_UZ, EVENT_OFF, EVENT_RELOAD, EVENT_GRIP, EVENTS };
 
 struct imp_compliant {
     impact_ode *ode;
@@ -26,30 +27,30 @@ struct imp_compliant {
 static void velocity(const imp_compliant *c, const double *y, double *u)
 {
     const imp_frame *m = c->frame;
-    u[0] = c->u[0] + (m->a * y[PX] + m->c * y[P]);
-    u[1] = c->u[1] + (m->b * y[PY] + m->d * y[P]);
-    u[2] = c->u[2] + (m->c * y[PX] + m->d * y[PY] + y[P]);
+    u[0] = c->u[0] + (m->a * y[SPRING_PX] + m->c * y[SPRING_P]);
+    u[1] = c->u[1] + (m->b * y[SPRING_PY] + m->d * y[SPRING_P]);
+    u[2] = c->u[2] + (m->c * y[SPRING_PX] + m->d * y[SPRING_PY] + y[SPRING_P]);
 }
 
 static double force(const imp_compliant *c, const double *y)
 {
-    return c->loading ? y[DELTA] : c->force_c - (c->delta_c - y[DELTA]) / c->eps2;
+    return c->loading ? y[SPRING_DELTA] : c->force_c - (c->delta_c - y[SPRING_DELTA]) / c->eps2;
 }
 
 static double force_rate(const imp_compliant *c, double uz) { return c->loading ? -uz : -uz / c->eps2; }
 
 static void tangential(const imp_compliant *c, const double *y, double F, double *f)
 {
-    f[0] = c->sliding ? -c->mu * F * cos(y[A]) : y[A];
-    f[1] = c->sliding ? -c->mu * F * sin(y[A]) : y[B];
+    f[0] = c->sliding ? -c->mu * F * cos(y[SPRING_A]) : y[SPRING_A];
+    f[1] = c->sliding ? -c->mu * F * sin(y[SPRING_A]) : y[SPRING_B];
 }
 
 static double slide_speed(const imp_compliant *c, const double *y, const double *u)
 {
-    return u[0] * cos(y[A]) + u[1] * sin(y[A]) - c->mu * force_rate(c, u[2]) / c->k;
+    return u[0] * cos(y[SPRING_A]) + u[1] * sin(y[SPRING_A]) - c->mu * force_rate(c, u[2]) / c->k;
 }
 
-static int rates(double t, const double *y, double *rate, void *context)
+static int spring_rates(double t, const double *y, double *rate, void *context)
 {
     (void)t;
     const imp_compliant *c = context;
@@ -57,35 +58,36 @@ static int rates(double t, const double *y, double *rate, void *context)
     velocity(c, y, u);
     const double F = force(c, y);
     tangential(c, y, F, f);
-    rate[DELTA] = -u[2];
-    rate[P] = F;
-    rate[PX] = f[0];
-    rate[PY] = f[1];
-    rate[WORK] = F * u[2];
-    rate[FRICTION] = f[0] * u[0] + f[1] * u[1];
+    rate[SPRING_DELTA] = -u[2];
+    rate[SPRING_P] = F;
+    rate[SPRING_PX] = f[0];
+    rate[SPRING_PY] = f[1];
+    rate[SPRING_WORK] = F * u[2];
+    rate[SPRING_FRICTION] = f[0] * u[0] + f[1] * u[1];
     if (c->sliding) {
         /* Where the force is small phi follows u_t at once; beyond a rate of 1e6 how fast makes no difference. */
         const double least = 1e-6 * c->k * hypot(u[0], u[1]) + 1e-12;
-        rate[A] = c->k * (u[1] * cos(y[A]) - u[0] * sin(y[A])) / fmax(c->mu * F, least);
-        rate[B] = 0;
+        rate[SPRING_A] = c->k * (u[1] * cos(y[SPRING_A]) - u[0] * sin(y[SPRING_A])) / fmax(c->mu * F, least);
+        rate[SPRING_B] = 0;
     } else {
-        rate[A] = -c->k * u[0];
-        rate[B] = -c->k * u[1];
+        rate[SPRING_A] = -c->k * u[0];
+        rate[SPRING_B] = -c->k * u[1];
     }
     return 0;
 }
 
-static int root_functions(double t, const double *y, double *value, void *context)
+static int spring_events(double t, const double *y, double *value, void *context)
 {
     (void)t;
     const imp_compliant *c = context;
     double u[3];
     velocity(c, y, u);
     const double F = force(c, y);
-    value[ROOT_UZ] = u[2];
-    value[ROOT_OFF] = c->loading ? 1 : F - 1e-8 * c->force_c;
-    value[ROOT_RELOAD] = c->loading ? -1 : y[DELTA] - c->delta_c;
-    value[ROOT_GRIP] = c->sliding ? slide_speed(c, y, u) : c->mu * c->mu * F * F - (y[A] * y[A] + y[B] * y[B]);
+    value[EVENT_UZ] = u[2];
+    value[EVENT_OFF] = c->loading ? 1 : F - 1e-8 * c->force_c;
+    value[EVENT_RELOAD] = c->loading ? -1 : y[SPRING_DELTA] - c->delta_c;
+    value[EVENT_GRIP] = c->sliding ? slide_speed(c, y, u)
+                                   : c->mu * c->mu * F * F - (y[SPRING_A] * y[SPRING_A] + y[SPRING_B] * y[SPRING_B]);
     return 0;
 }
 
@@ -94,10 +96,10 @@ static impact_status make(imp_arena *arena, double tolerance, imp_compliant **ou
     imp_compliant *c = imp_arena_take(arena, 1, sizeof *c);
     *out = NULL;
     if (!c) return IMPACT_ENOMEM;
-    const impact_ode_def def = {.size = SIZE,
-                                .roots = ROOTS,
-                                .rhs = rates,
-                                .root_functions = root_functions,
+    const impact_ode_def def = {.size = SPRING_SIZE,
+                                .roots = EVENTS,
+                                .rhs = spring_rates,
+                                .root_functions = spring_events,
                                 .context = c,
                                 .method = IMPACT_ODE_BDF,
                                 .relative_tolerance = tolerance,
@@ -133,15 +135,15 @@ static void begin(imp_compliant *c, const imp_course *course, double *y)
     c->delta_c = c->force_c = 0;
     const double x = course->s > 0 ? course->ux / course->s : 1, z = course->s > 0 ? course->uy / course->s : 0;
     const double pull = c->sliding ? c->mu : c->k * course->s;
-    for (int i = 0; i < SIZE; i++) y[i] = 0;
-    y[DELTA] = t;
-    y[A] = c->sliding ? atan2(z, x) : -pull * x * t;
-    y[B] = c->sliding ? 0 : -pull * z * t;
-    y[P] = t * t / 2;
-    y[PX] = -pull * x * y[P];
-    y[PY] = -pull * z * y[P];
-    y[WORK] = -y[P];
-    y[FRICTION] = -pull * course->s * y[P];
+    for (int i = 0; i < SPRING_SIZE; i++) y[i] = 0;
+    y[SPRING_DELTA] = t;
+    y[SPRING_A] = c->sliding ? atan2(z, x) : -pull * x * t;
+    y[SPRING_B] = c->sliding ? 0 : -pull * z * t;
+    y[SPRING_P] = t * t / 2;
+    y[SPRING_PX] = -pull * x * y[SPRING_P];
+    y[SPRING_PY] = -pull * z * y[SPRING_P];
+    y[SPRING_WORK] = -y[SPRING_P];
+    y[SPRING_FRICTION] = -pull * course->s * y[SPRING_P];
 }
 
 /* Takes what came since the last event into the course. */
@@ -152,14 +154,15 @@ static void book(imp_course *course, const imp_compliant *c, const double *y, do
     const bool cp = course->compressing;
     imp_course_phase(course,
                      c->sliding ? (cp ? IMPACT_SLIP_C : IMPACT_SLIP_R) : (cp ? IMPACT_STICK_C : IMPACT_STICK_R));
-    imp_course_book(course, y[P] - before[P], y[WORK] - before[WORK], y[FRICTION] - before[FRICTION]);
-    course->px = y[PX];
-    course->py = y[PY];
+    imp_course_book(course, y[SPRING_P] - before[SPRING_P], y[SPRING_WORK] - before[SPRING_WORK],
+                    y[SPRING_FRICTION] - before[SPRING_FRICTION]);
+    course->px = y[SPRING_PX];
+    course->py = y[SPRING_PY];
     course->ux = u[0];
     course->uy = u[1];
     course->s = hypot(u[0], u[1]);
     imp_course_reach(course, u[2]);
-    for (int i = 0; i < SIZE; i++) before[i] = y[i];
+    for (int i = 0; i < SPRING_SIZE; i++) before[i] = y[i];
 }
 
 /* Lets go of what little force is left: impulse F^2 / (2 |F'|), at the edge of the cone. */
@@ -169,11 +172,11 @@ static void let_go(imp_course *course, imp_compliant *c, double *y, double *befo
     velocity(c, y, u);
     const double F = fmax(force(c, y), 0), dp = u[2] > 0 ? F * F * c->eps2 / (2 * u[2]) : 0;
     tangential(c, y, F, f);
-    y[P] += dp;
-    y[WORK] += u[2] * dp;
+    y[SPRING_P] += dp;
+    y[SPRING_WORK] += u[2] * dp;
     if (F > 0) {
-        y[PX] += f[0] / F * dp;
-        y[PY] += f[1] / F * dp;
+        y[SPRING_PX] += f[0] / F * dp;
+        y[SPRING_PY] += f[1] / F * dp;
     }
     book(course, c, y, before);
     course->ended = true;
@@ -182,22 +185,22 @@ static void let_go(imp_course *course, imp_compliant *c, double *y, double *befo
 static void change_grip(imp_compliant *c, double *y)
 {
     if (c->sliding) {
-        const double F = force(c, y), x = cos(y[A]), z = sin(y[A]);
-        y[A] = -c->mu * F * x;
-        y[B] = -c->mu * F * z;
+        const double F = force(c, y), x = cos(y[SPRING_A]), z = sin(y[SPRING_A]);
+        y[SPRING_A] = -c->mu * F * x;
+        y[SPRING_B] = -c->mu * F * z;
     } else {
-        y[A] = atan2(-y[B], -y[A]);
-        y[B] = 0;
+        y[SPRING_A] = atan2(-y[SPRING_B], -y[SPRING_A]);
+        y[SPRING_B] = 0;
     }
     c->sliding = !c->sliding;
 }
 
-static impact_status follow(imp_course *course, imp_compliant *c)
+static impact_status follow_springs(imp_course *course, imp_compliant *c)
 {
-    double y[SIZE], before[SIZE] = {0}, t = 0;
+    double y[SPRING_SIZE], before[SPRING_SIZE] = {0}, t = 0;
     begin(c, course, y);
     for (int events = 0; events < 200; events++) {
-        int found[ROOTS];
+        int found[EVENTS];
         bool any = false;
         impact_status status = impact_ode_start(c->ode, t, y);
         for (double stop = t + 10; status == IMPACT_OK && !any; stop += 10) {
@@ -206,25 +209,25 @@ static impact_status follow(imp_course *course, imp_compliant *c)
         }
         if (status != IMPACT_OK) return status;
         book(course, c, y, before);
-        if (found[ROOT_OFF] < 0) {
+        if (found[EVENT_OFF] < 0) {
             let_go(course, c, y, before);
             return IMPACT_OK;
         }
-        if (found[ROOT_UZ] && course->compressing == (found[ROOT_UZ] > 0)) {
+        if (found[EVENT_UZ] && course->compressing == (found[EVENT_UZ] > 0)) {
             imp_course_turn(course);
             if (c->eps2 == 0) {
                 course->ended = true;
                 return IMPACT_OK;
             }
             if (c->loading) {
-                c->force_c = y[DELTA];
-                c->delta_c = y[DELTA];
+                c->force_c = y[SPRING_DELTA];
+                c->delta_c = y[SPRING_DELTA];
                 c->loading = false;
             }
         }
         /* Past delta_c the virgin line goes on from where it was left. */
-        if (found[ROOT_RELOAD] > 0 && course->compressing) c->loading = true;
-        if (found[ROOT_GRIP] < 0) change_grip(c, y);
+        if (found[EVENT_RELOAD] > 0 && course->compressing) c->loading = true;
+        if (found[EVENT_GRIP] < 0) change_grip(c, y);
     }
     return IMPACT_EUNSETTLED;
 }
@@ -237,5 +240,5 @@ impact_status imp_compliant_solve(imp_arena *arena, imp_course *course, double c
         if (status != IMPACT_OK) return status;
     }
     (*keep)->k = 1 / compliance;
-    return follow(course, *keep);
+    return follow_springs(course, *keep);
 }

@@ -38,8 +38,8 @@ void imp_course_turn_frame(imp_course *course, const imp_ready *ready, imp_frame
 {
     const imp_vec e = frame->t2;
     imp_frame_turn(ready, frame);
-    course->ux = course->from_x = course->s * imp_dot(e, frame->t1);
-    course->uy = course->from_y = course->s * imp_dot(e, frame->t2);
+    course->ux = course->from_x = course->s * imp_vec_dot(e, frame->t1);
+    course->uy = course->from_y = course->s * imp_vec_dot(e, frame->t2);
 }
 
 void imp_course_mark(imp_course *course)

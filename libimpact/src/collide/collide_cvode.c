@@ -9,7 +9,7 @@
 
 #include "base/tolerances.h"
 
-enum { LOG_S, THETA, P, PX, PY, WORK, FRICTION, SIZE };
+enum { SLIP_LOG_S, SLIP_THETA, SLIP_P, SLIP_PX, SLIP_PY, SLIP_WORK, SLIP_FRICTION, SLIP_SIZE };
 enum { ROOT_UZ, ROOT_CLIMB, ROOT_END, ROOT_STOP, ROOTS };
 
 struct impact_collide_workspace {
@@ -36,40 +36,41 @@ static double friction_at(const impact_collide_workspace *ws, double s)
 static double uz_of(const impact_collide_workspace *ws, const double *y)
 {
     const imp_frame *frame = ws->course->frame;
-    return ws->course->uz + (frame->c * y[PX] + frame->d * y[PY] + y[P]);
+    return ws->course->uz + (frame->c * y[SLIP_PX] + frame->d * y[SLIP_PY] + y[SLIP_P]);
 }
 
-static int rates(double tau, const double *y, double *rate, void *context)
+static int slip_rates(double tau, const double *y, double *rate, void *context)
 {
     (void)tau;
     const impact_collide_workspace *ws = context;
-    const double s = exp(y[LOG_S]), x = cos(y[THETA]), z = sin(y[THETA]), mu = friction_at(ws, s);
+    const double s = exp(y[SLIP_LOG_S]), x = cos(y[SLIP_THETA]), z = sin(y[SLIP_THETA]), mu = friction_at(ws, s);
     if (!(mu >= 0 && isfinite(mu))) return -1;
-    rate[LOG_S] = imp_course_sliding(ws->course->frame, mu, x, z).R;
-    rate[THETA] = imp_course_turning(ws->course->frame, mu, x, z);
-    rate[P] = s;
-    rate[PX] = -mu * s * x;
-    rate[PY] = -mu * s * z;
-    rate[WORK] = s * uz_of(ws, y);
-    rate[FRICTION] = -mu * s * s;
+    rate[SLIP_LOG_S] = imp_course_sliding(ws->course->frame, mu, x, z).R;
+    rate[SLIP_THETA] = imp_course_turning(ws->course->frame, mu, x, z);
+    rate[SLIP_P] = s;
+    rate[SLIP_PX] = -mu * s * x;
+    rate[SLIP_PY] = -mu * s * z;
+    rate[SLIP_WORK] = s * uz_of(ws, y);
+    rate[SLIP_FRICTION] = -mu * s * s;
     return 0;
 }
 
-static int root_functions(double tau, const double *y, double *value, void *context)
+static int slip_roots(double tau, const double *y, double *value, void *context)
 {
     (void)tau;
     const impact_collide_workspace *ws = context;
     const imp_course *course = ws->course;
-    const double mu = friction_at(ws, exp(y[LOG_S]));
+    const double mu = friction_at(ws, exp(y[SLIP_LOG_S]));
     value[ROOT_UZ] = uz_of(ws, y);
-    value[ROOT_CLIMB] = ws->climb_shift + imp_course_sliding(course->frame, mu, cos(y[THETA]), sin(y[THETA])).Z;
-    value[ROOT_STOP] = y[LOG_S] - ws->log_stop;
+    value[ROOT_CLIMB] =
+        ws->climb_shift + imp_course_sliding(course->frame, mu, cos(y[SLIP_THETA]), sin(y[SLIP_THETA])).Z;
+    value[ROOT_STOP] = y[SLIP_LOG_S] - ws->log_stop;
     value[ROOT_END] = -1;
     if (course->compressing) return 0;
     switch (course->law) {
-    case IMPACT_POISSON: value[ROOT_END] = y[P] - imp_course_left_poisson(course); break;
+    case IMPACT_POISSON: value[ROOT_END] = y[SLIP_P] - imp_course_left_poisson(course); break;
     case IMPACT_NEWTON: value[ROOT_END] = value[ROOT_UZ] - imp_course_target_newton(course); break;
-    case IMPACT_STRONGE: value[ROOT_END] = y[WORK] - imp_course_left_stronge(course); break;
+    case IMPACT_STRONGE: value[ROOT_END] = y[SLIP_WORK] - imp_course_left_stronge(course); break;
     }
     return 0;
 }
@@ -85,10 +86,10 @@ impact_status imp_collide_workspace_in(imp_arena *arena, impact_ode_method metho
     ws->arena = arena;
     ws->tolerance = tolerance;
     ws->method = method;
-    const impact_ode_def def = {.size = SIZE,
+    const impact_ode_def def = {.size = SLIP_SIZE,
                                 .roots = ROOTS,
-                                .rhs = rates,
-                                .root_functions = root_functions,
+                                .rhs = slip_rates,
+                                .root_functions = slip_roots,
                                 .context = ws,
                                 .method = method,
                                 .relative_tolerance = tolerance,
@@ -161,13 +162,13 @@ static void take(imp_course *course, const impact_collide_workspace *ws, const d
 {
     const double uz = uz_of(ws, y);
     imp_course_phase(course, course->compressing ? IMPACT_SLIP_C : IMPACT_SLIP_R);
-    imp_course_book(course, y[P], y[WORK], y[FRICTION]);
-    course->px += y[PX];
-    course->py += y[PY];
+    imp_course_book(course, y[SLIP_P], y[SLIP_WORK], y[SLIP_FRICTION]);
+    course->px += y[SLIP_PX];
+    course->py += y[SLIP_PY];
     imp_course_reach(course, uz);
-    course->s = exp(y[LOG_S]);
-    course->ux = course->s * cos(y[THETA]);
-    course->uy = course->s * sin(y[THETA]);
+    course->s = exp(y[SLIP_LOG_S]);
+    course->ux = course->s * cos(y[SLIP_THETA]);
+    course->uy = course->s * sin(y[SLIP_THETA]);
 }
 
 static bool over_at_once(const imp_course *course)
@@ -188,9 +189,9 @@ static impact_status to_root(const imp_course *course, impact_collide_workspace 
     const imp_frame *frame = course->frame;
     const double mu = friction_at(ws, course->s);
     const double rate = fabs(frame->c) + fabs(frame->d) + mu * fmax(frame->a, frame->b);
-    y[LOG_S] = log(course->s);
-    y[THETA] = atan2(course->uy, course->ux);
-    for (int i = P; i < SIZE; i++) y[i] = 0;
+    y[SLIP_LOG_S] = log(course->s);
+    y[SLIP_THETA] = atan2(course->uy, course->ux);
+    for (int i = SLIP_P; i < SLIP_SIZE; i++) y[i] = 0;
     *settled = false;
     impact_status status = impact_ode_start(ws->ode, 0, y);
     double tau = 0;
@@ -200,7 +201,7 @@ static impact_status to_root(const imp_course *course, impact_collide_workspace 
             return IMPACT_EUNSETTLED;
         status = impact_ode_advance(ws->ode, stop, &tau, y, found, &any);
         *settled = !any && !ws->law &&
-                   fabs(imp_course_turning(frame, mu, cos(y[THETA]), sin(y[THETA]))) <= ws->tolerance * rate;
+                   fabs(imp_course_turning(frame, mu, cos(y[SLIP_THETA]), sin(y[SLIP_THETA]))) <= ws->tolerance * rate;
     }
     return status;
 }
@@ -225,7 +226,7 @@ static impact_status slide(imp_course *course, impact_collide_workspace *ws)
             course->ended = true;
             return IMPACT_OK;
         }
-        double y[SIZE];
+        double y[SLIP_SIZE];
         int found[ROOTS];
         bool settled;
         const impact_status status = to_root(course, ws, y, found, &settled);
@@ -242,7 +243,7 @@ static impact_status slide(imp_course *course, impact_collide_workspace *ws)
     return IMPACT_OK;
 }
 
-static impact_status follow(imp_course *course, impact_collide_workspace *ws)
+static impact_status follow_slips(imp_course *course, impact_collide_workspace *ws)
 {
     for (int slips = 0; slips < 16; slips++) {
         if (course->s > 0) {
@@ -282,7 +283,7 @@ impact_status imp_cvode_solve(imp_course *course, const impact_collision *collis
     impact_status status =
         collision->tangential_compliance > 0
             ? imp_compliant_solve(ws->arena, course, collision->tangential_compliance, ws->tolerance, &ws->compliant)
-            : follow(course, ws);
+            : follow_slips(course, ws);
     if (status == IMPACT_OK && !course->ended) status = IMPACT_EUNSETTLED;
     ws->course = NULL;
     if (!collision->workspace) impact_collide_workspace_destroy(ws);

@@ -13,9 +13,9 @@ static bool central(const imp_ready *ready, qvec3 n, double *l)
 {
     if (!ready->round) return false;
     const imp_vectors *r = &ready->offset, normal = imp_vectors_of(n, n), x = imp_vectors_cross(r, &normal);
-    const imp_pair r2 = imp_vectors_dot(r, r), aside = imp_vectors_dot(&x, &x);
+    const imp_lanes r2 = imp_vectors_dot(r, r), aside = imp_vectors_dot(&x, &x);
     if (imp_mask_any(aside > 16 * DBL_EPSILON * DBL_EPSILON * r2)) return false;
-    const imp_pair each = ready->inverse_mass + r2 * ready->inverse_moments.x;
+    const imp_lanes each = ready->inverse_mass + r2 * ready->inverse_moments.x;
     *l = each[0] + each[1];
     return true;
 }
@@ -26,12 +26,12 @@ static double along_normal(const imp_ready *ready, qvec3 n)
     const imp_vectors each = imp_vectors_of(n, n), there = imp_ready_local(ready, &each);
     const imp_vectors x = imp_vectors_cross(&ready->offset, &there);
     const imp_vectors turn = imp_vectors_weigh(&ready->inverse_moments, &x);
-    const imp_pair w = ready->inverse_mass + imp_vectors_dot(&x, &turn);
+    const imp_lanes w = ready->inverse_mass + imp_vectors_dot(&x, &turn);
     return w[0] + w[1];
 }
 
 /* |M| |M^-1| / 3 of M = diag(l, l, 1). */
-static double conditioning(double l) { return sqrt((2 * l * l + 1) * (2 + l * l)) / (3 * l); }
+static double diagonal_conditioning(double l) { return sqrt((2 * l * l + 1) * (2 + l * l)) / (3 * l); }
 
 /* The impulse of friction on the tangential velocity t: how large, its work, and whether it stops it, in compression or
  * at all. */
@@ -100,7 +100,7 @@ bool imp_direct_solve(const impact_collision *collision, const imp_ready *ready,
     outcome->phase_count = 0;
     list_phases(&list, &f, smooth || s > 0, collision->friction, p_c, p);
     outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
-    outcome->conditioning = smooth ? 1 : conditioning(l / w);
+    outcome->conditioning = smooth ? 1 : diagonal_conditioning(l / w);
     outcome->jammed = false;
     outcome->energy_rose = back - work + outcome->work_friction > 1e-12 * work;
     return true;

@@ -8,7 +8,7 @@
 /* sum p.q over both bodies */
 static inline imp_real arms_dot(const imp_vectors *p, const imp_vectors *q)
 {
-    const imp_pair sum = imp_vectors_dot(p, q);
+    const imp_lanes sum = imp_vectors_dot(p, q);
     return sum[0] + sum[1];
 }
 
@@ -17,7 +17,7 @@ static inline imp_vectors arms_mix(imp_real x, const imp_vectors *p, imp_real y,
     return (imp_vectors){x * p->x + y * q->x, x * p->y + y * q->y, x * p->z + y * q->z};
 }
 
-static inline imp_pair both(imp_real x) { return (imp_pair){x, x}; }
+static inline imp_lanes both(imp_real x) { return (imp_lanes){x, x}; }
 
 /* Without a branch that jumps near the poles (Duff et al. 2017). */
 imp_vec imp_frame_across(imp_vec n)
@@ -41,9 +41,9 @@ static inline imp_real conditioning(const imp_frame *m, imp_real shear, imp_real
 imp_vec imp_frame_normal(const impact_collision *collision)
 {
     const imp_vec given = imp_vec_of(collision->normal);
-    const imp_real length2 = imp_dot(given, given);
+    const imp_real length2 = imp_vec_dot(given, given);
     /* Most are of unit length but for rounding: no root, no division. The square of what is left is below eps. */
-    if (imp_abs(length2 - 1) < 45 * IMP_EPSILON) return imp_scale(given, 1.5 - 0.5 * length2);
+    if (imp_abs(length2 - 1) < 45 * IMP_EPSILON) return imp_vec_scale(given, 1.5 - 0.5 * length2);
     const bool squares = length2 > 1e-200 && length2 < 1e200;
     const imp_real length = squares ? imp_sqrt(length2) : qvec3_norm(collision->normal);
     return (imp_vec){given.x / length, given.y / length, given.z / length};
@@ -68,7 +68,7 @@ static inline elimination eliminate(imp_real w, const imp_vectors *x, const imp_
 void imp_frame_make(imp_vec n, imp_vec t1, const imp_ready *ready, imp_frame *frame)
 {
     const imp_real w = ready->inverse_mass[0] + ready->inverse_mass[1];
-    const imp_vec t2 = imp_cross(n, t1);
+    const imp_vec t2 = imp_vec_cross(n, t1);
     const imp_levers l = imp_frame_levers(ready);
     const imp_vectors x = imp_frame_arms(&l, t1), y = imp_frame_arms(&l, t2), z = imp_frame_arms(&l, n);
     const imp_real a = w + arms_dot(&x, &x), m = w + arms_dot(&z, &z), e = arms_dot(&x, &y), c = arms_dot(&x, &z);
@@ -108,8 +108,8 @@ void imp_frame_turn(const imp_ready *ready, imp_frame *frame)
         const imp_vec old_t1 = t1;
         x = arms_mix(cs, &old, -sn, &y);
         y = arms_mix(sn, &old, cs, &y);
-        t1 = imp_axpy(-sn, t2, imp_scale(old_t1, cs));
-        t2 = imp_axpy(sn, old_t1, imp_scale(t2, cs));
+        t1 = imp_vec_axpy(-sn, t2, imp_vec_scale(old_t1, cs));
+        t2 = imp_vec_axpy(sn, old_t1, imp_vec_scale(t2, cs));
         a = (w + arms_dot(&x, &x)) * f;
         b = (w + arms_dot(&y, &y)) * f;
         e = arms_dot(&x, &y) * f;

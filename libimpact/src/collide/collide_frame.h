@@ -24,7 +24,7 @@ typedef struct imp_levers {
     imp_vectors row[3];
 } imp_levers;
 
-static inline imp_vectors imp_frame_lever(imp_pair weight, imp_pair p, const imp_vectors *x, imp_pair q,
+static inline imp_vectors imp_frame_lever(imp_lanes weight, imp_lanes p, const imp_vectors *x, imp_lanes q,
                                           const imp_vectors *y)
 {
     p *= weight;
@@ -35,9 +35,9 @@ static inline imp_vectors imp_frame_lever(imp_pair weight, imp_pair p, const imp
 static inline imp_levers imp_frame_levers(const imp_ready *ready)
 {
     const imp_vectors *axis = ready->axis, *r = &ready->offset, *w = &ready->inverse_moments;
-    return (imp_levers){{imp_frame_lever(imp_pair_sqrt(w->x), r->y, &axis[2], r->z, &axis[1]),
-                         imp_frame_lever(imp_pair_sqrt(w->y), r->z, &axis[0], r->x, &axis[2]),
-                         imp_frame_lever(imp_pair_sqrt(w->z), r->x, &axis[1], r->y, &axis[0])}};
+    return (imp_levers){{imp_frame_lever(imp_lanes_sqrt(w->x), r->y, &axis[2], r->z, &axis[1]),
+                         imp_frame_lever(imp_lanes_sqrt(w->y), r->z, &axis[0], r->x, &axis[2]),
+                         imp_frame_lever(imp_lanes_sqrt(w->z), r->x, &axis[1], r->y, &axis[0])}};
 }
 
 /* The rows times e. */

@@ -102,7 +102,7 @@ static double work_at(const whirl *w, const powers *at, double tau, double I3)
            0.5 * w->Y * w->Y_climb * at->I2 * at->I2 + w->X * w->Y * both;
 }
 
-typedef enum target { TARGET_UZ, TARGET_P, TARGET_WORK } target;
+typedef enum sought { SOUGHT_UZ, SOUGHT_P, SOUGHT_WORK } sought;
 
 /* A function of tau less what is wanted, and its first two derivatives; the first by the shares of its two
  * exponentials. */
@@ -110,14 +110,14 @@ typedef struct jet {
     double value, first[2], second;
 } jet;
 
-static jet value_at(const whirl *w, target what, double wanted, const powers *at, double tau)
+static jet value_at(const whirl *w, sought what, double wanted, const powers *at, double tau)
 {
     const double s1 = w->X * at->A, s2 = w->Y * at->B, z1 = w->X_climb * at->A, z2 = w->Y_climb * at->B;
     const double bend_s = w->alpha * s1 - w->beta * s2;
     switch (what) {
-    case TARGET_UZ: return (jet){(w->course->uz - wanted) + rise_at(w, at), {z1, z2}, w->alpha * z1 - w->beta * z2};
-    case TARGET_P: return (jet){p_at(w, at) - wanted, {s1, s2}, bend_s};
-    case TARGET_WORK: break;
+    case SOUGHT_UZ: return (jet){(w->course->uz - wanted) + rise_at(w, at), {z1, z2}, w->alpha * z1 - w->beta * z2};
+    case SOUGHT_P: return (jet){p_at(w, at) - wanted, {s1, s2}, bend_s};
+    case SOUGHT_WORK: break;
     }
     const double uz = w->course->uz + rise_at(w, at);
     const double I3 = integral_of_both(w, shed_by(w, at, tau));
@@ -147,7 +147,7 @@ static double step_from(const whirl *w, const jet *f, double tau, double *miss)
 
 /* The root of a function that is monotone on [low, high] and has another sign at high, from `start` inside a bracket; a
  * step that misses it by no more than rounding is the last. *at: the exponentials there. */
-static double find_root(const whirl *w, target what, double wanted, double low, double high, double start, powers *at)
+static double find_tau(const whirl *w, sought what, double wanted, double low, double high, double start, powers *at)
 {
     double tau = start, miss;
     *at = powers_at(w, low);
@@ -210,7 +210,7 @@ static double find_turn(whirl *w)
 }
 
 /* Moves on to tau within one phase; INFINITY: to the end of the slip. */
-static void move_to(whirl *w, double tau, const powers *at)
+static void move_to_tau(whirl *w, double tau, const powers *at)
 {
     if (!(tau > 0)) return;
     imp_course *course = w->course;
@@ -249,12 +249,12 @@ static bool ends_by(const whirl *w, double to, const powers *at_to, double *wher
     *where = 0;
     *at = (powers){1, 1, 0, 0};
     if (newton ? course->uz >= wanted : wanted <= 0) return true;
-    const target what = poisson ? TARGET_P : newton ? TARGET_UZ : TARGET_WORK;
+    const sought what = poisson ? SOUGHT_P : newton ? SOUGHT_UZ : SOUGHT_WORK;
     /* Without end nothing is out of reach but where sliding stops. */
     if (to < INFINITY || w->alpha < 0) {
         if (value_at(w, what, wanted, at_to, to).value < 0) return false;
     }
-    *where = find_root(w, what, wanted, 0, to, what == TARGET_WORK ? guess_work(w, wanted) : 0, at);
+    *where = find_tau(w, what, wanted, 0, to, what == SOUGHT_WORK ? guess_work(w, wanted) : 0, at);
     return true;
 }
 
@@ -269,16 +269,16 @@ void imp_isotropic_solve(imp_course *course)
         powers at = without_end ? (powers){NAN, NAN, NAN, NAN} : powers_at(&w, to);
         const double uz_to = without_end ? INFINITY : course->uz + rise_at(&w, &at);
         const bool turns = course->compressing ? rises && uz_to >= 0 : !rises && uz_to < 0;
-        if (turns) to = find_root(&w, TARGET_UZ, 0, 0, to, 0, &at);
+        if (turns) to = find_tau(&w, SOUGHT_UZ, 0, 0, to, 0, &at);
         double where;
         powers at_end;
         if (!course->compressing && ends_by(&w, to, &at, &where, &at_end)) {
-            move_to(&w, where, &at_end);
+            move_to_tau(&w, where, &at_end);
             if (course->law == IMPACT_NEWTON) course->uz = imp_course_target_newton(course);
             course->ended = true;
             return;
         }
-        move_to(&w, to, &at);
+        move_to_tau(&w, to, &at);
         if (turns)
             imp_course_turn(course);
         else if (to == INFINITY)

@@ -6,12 +6,12 @@
 #define IMP_COLLIDE_READY_H
 
 #include <impact/collide.h>
-#include "collide/collide_pair.h"
+#include "collide/collide_lanes.h"
 
 /* A static body has mass, moments, inverses and offset 0. Local axes: `axis`; of a round or static body,
  * the world's. */
 typedef struct imp_ready {
-    imp_pair mass, inverse_mass;
+    imp_lanes mass, inverse_mass;
     imp_vectors moments, inverse_moments;
     imp_vectors velocity, omega, arm; /* arm: contact point from the centre; world */
     imp_vectors offset;               /* the same, local axes */
@@ -42,7 +42,7 @@ static inline imp_vectors imp_ready_world(const imp_ready *ready, const imp_vect
 static inline imp_vec imp_ready_velocity(const imp_ready *ready)
 {
     const imp_vectors turn = imp_vectors_cross(&ready->omega, &ready->arm);
-    const imp_pair x = ready->velocity.x + turn.x, y = ready->velocity.y + turn.y, z = ready->velocity.z + turn.z;
+    const imp_lanes x = ready->velocity.x + turn.x, y = ready->velocity.y + turn.y, z = ready->velocity.z + turn.z;
     return (imp_vec){x[0] - x[1], y[0] - y[1], z[0] - z[1]};
 }
 

@@ -55,15 +55,15 @@ typedef struct imp_vec {
 
 static inline imp_vec imp_vec_of(qvec3 v) { return (imp_vec){v.x, v.y, v.z}; }
 static inline qvec3 imp_vec_rounded(imp_vec v) { return (qvec3){(double)v.x, (double)v.y, (double)v.z}; }
-static inline imp_real imp_dot(imp_vec a, imp_vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static inline imp_vec imp_scale(imp_vec a, imp_real f) { return (imp_vec){a.x * f, a.y * f, a.z * f}; }
-static inline imp_vec imp_neg(imp_vec a) { return (imp_vec){-a.x, -a.y, -a.z}; }
+static inline imp_real imp_vec_dot(imp_vec a, imp_vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline imp_vec imp_vec_scale(imp_vec a, imp_real f) { return (imp_vec){a.x * f, a.y * f, a.z * f}; }
+static inline imp_vec imp_vec_neg(imp_vec a) { return (imp_vec){-a.x, -a.y, -a.z}; }
 /* f a + b */
-static inline imp_vec imp_axpy(imp_real f, imp_vec a, imp_vec b)
+static inline imp_vec imp_vec_axpy(imp_real f, imp_vec a, imp_vec b)
 {
     return (imp_vec){f * a.x + b.x, f * a.y + b.y, f * a.z + b.z};
 }
-static inline imp_vec imp_cross(imp_vec a, imp_vec b)
+static inline imp_vec imp_vec_cross(imp_vec a, imp_vec b)
 {
     return (imp_vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -84,11 +84,11 @@ static inline imp_real imp_copysign(imp_real x, imp_real y) { return copysign(x,
 typedef qvec3 imp_vec;
 static inline imp_vec imp_vec_of(qvec3 v) { return v; }
 static inline qvec3 imp_vec_rounded(imp_vec v) { return v; }
-static inline imp_real imp_dot(imp_vec a, imp_vec b) { return qvec3_dot(a, b); }
-static inline imp_vec imp_scale(imp_vec a, imp_real f) { return qvec3_scale(a, f); }
-static inline imp_vec imp_neg(imp_vec a) { return qvec3_neg(a); }
-static inline imp_vec imp_axpy(imp_real f, imp_vec a, imp_vec b) { return qvec3_axpy(f, a, b); }
-static inline imp_vec imp_cross(imp_vec a, imp_vec b) { return qvec3_cross(a, b); }
+static inline imp_real imp_vec_dot(imp_vec a, imp_vec b) { return qvec3_dot(a, b); }
+static inline imp_vec imp_vec_scale(imp_vec a, imp_real f) { return qvec3_scale(a, f); }
+static inline imp_vec imp_vec_neg(imp_vec a) { return qvec3_neg(a); }
+static inline imp_vec imp_vec_axpy(imp_real f, imp_vec a, imp_vec b) { return qvec3_axpy(f, a, b); }
+static inline imp_vec imp_vec_cross(imp_vec a, imp_vec b) { return qvec3_cross(a, b); }
 
 #endif
 

@@ -113,7 +113,7 @@ typedef struct energies {
 } energies;
 
 /* Momentum and spin of one body, and its share of the energies. */
-static void check_body(const view *s, int i, impact_receipt *r, energies *energy)
+static void examine_body(const view *s, int i, impact_receipt *r, energies *energy)
 {
     const part *p = &s->part[i];
     if (!p->moves) return;
@@ -198,7 +198,7 @@ static bool compresses(unsigned char phase) { return phase == IMPACT_SLIP_C || p
 /* ---- phase by phase ---- */
 
 /* du = M dP by the bodies; the size of its terms. */
-static qvec3 answer(const view *s, qvec3 P, double *size)
+static qvec3 velocity_change(const view *s, qvec3 P, double *size)
 {
     qvec3 u = {0, 0, 0};
     const double impulse = length(P);
@@ -232,7 +232,7 @@ static void check_phases(const view *s, impact_receipt *r)
         const bool last = i + 1 == o->phase_count;
         const unsigned char next = last ? phase : o->phases[i + 1];
         note(&r->path, outside_cone(s, P, &along) * length(P) / length(o->impulse));
-        u = qvec3_add(u, answer(s, P, &size));
+        u = qvec3_add(u, velocity_change(s, P, &size));
         from = o->phase_impulse[i];
         const double un = qvec3_dot(u, s->n);
         const bool turns =
@@ -246,7 +246,7 @@ static void check_phases(const view *s, impact_receipt *r)
 }
 
 /* What rigid contacts keep; springs keep it to their own tolerance, and are left out. */
-static void check_contact(const view *s, impact_receipt *r)
+static void examine_contact(const view *s, impact_receipt *r)
 {
     const impact_outcome *o = s->o;
     check_law(s, r);
@@ -264,11 +264,11 @@ double imp_receipt_make(const impact_collision *collision, const impact_outcome 
     impact_receipt *r = receipt;
     *r = (impact_receipt){0};
     make_view(&s, collision, outcome);
-    for (int i = 0; i < 2; i++) check_body(&s, i, r, &energy);
+    for (int i = 0; i < 2; i++) examine_body(&s, i, r, &energy);
     check_energy(&s, &energy, r);
     r->cone = outside_cone(&s, outcome->impulse, &along);
     check_approach(&s, along, r);
-    if (!(collision->tangential_compliance > 0)) check_contact(&s, r);
+    if (!(collision->tangential_compliance > 0)) examine_contact(&s, r);
     const double fields[] = {r->momentum, r->spin,     r->cone,  r->energy, r->power,
                              r->law,      r->approach, r->stick, r->path};
     for (int i = 0; i < 9; i++) note(&r->worst, fields[i]);
@@ -290,13 +290,13 @@ double imp_receipt_brief(const imp_ready *ready, qvec3 n, const impact_outcome *
     const impact_outcome *o = outcome;
     const imp_vectors v = imp_vectors_of(o->velocity[0], o->velocity[1]), w = imp_vectors_of(o->omega[0], o->omega[1]);
     const imp_vectors turn = imp_vectors_cross(&w, &ready->arm), normal = imp_vectors_of(n, n);
-    const imp_pair sizes = imp_vectors_size(&v) + imp_vectors_size(&turn);
-    const imp_pair each = imp_vectors_dot(&v, &normal) + imp_vectors_dot(&turn, &normal);
+    const imp_lanes sizes = imp_vectors_size(&v) + imp_vectors_size(&turn);
+    const imp_lanes each = imp_vectors_dot(&v, &normal) + imp_vectors_dot(&turn, &normal);
     const double size = sizes[0] + sizes[1] - o->normal_before, un = each[0] - each[1];
     const double works = o->work_compression + o->work_restitution + o->work_friction;
     /* The work of a static body that moves; the impulse on body 1, its opposite on body 2. */
     const imp_vectors u = {v.x + turn.x, v.y + turn.y, v.z + turn.z}, P = imp_vectors_of(o->impulse, o->impulse);
-    const imp_pair drives = imp_pair_where(ready->mass == 0, imp_vectors_dot(&P, &u));
+    const imp_lanes drives = imp_lanes_where(ready->mass == 0, imp_vectors_dot(&P, &u));
     const double drive = drives[1] - drives[0], all = o->energy_before + o->energy_after + fabs(drive);
     const double energy = fabs(o->energy_after - o->energy_before - works - drive) / all;
     return (fabs(un - o->normal_after) / size + energy) / DBL_EPSILON;

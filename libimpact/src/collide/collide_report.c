@@ -19,10 +19,10 @@ enum { ROWS = 9, COLUMNS = 3 };
 /* impulse on body 1; spin: the change of both angular velocities, local axes. */
 static inline void give(const imp_ready *ready, imp_vec impulse, const imp_vectors *spin, impact_outcome *outcome)
 {
-    const imp_vectors each = imp_vectors_of(impulse, imp_neg(impulse)), out = imp_ready_world(ready, spin);
+    const imp_vectors each = imp_vectors_of(impulse, imp_vec_neg(impulse)), out = imp_ready_world(ready, spin);
     const imp_vectors velocity = imp_vectors_add(&ready->velocity, ready->inverse_mass, &each);
     const imp_vectors before = imp_ready_local(ready, &ready->omega);
-    const imp_pair one = {1, 1};
+    const imp_lanes one = {1, 1};
     const imp_vectors after = imp_vectors_add(&before, one, spin), omega = imp_vectors_add(&ready->omega, one, &out);
     outcome->energy_before = (double)imp_report_energy(ready, &ready->velocity, &before);
     outcome->energy_after = (double)imp_report_energy(ready, &velocity, &after);
@@ -34,7 +34,7 @@ static inline void give(const imp_ready *ready, imp_vec impulse, const imp_vecto
 
 void imp_report_push(const imp_ready *ready, imp_vec impulse, impact_outcome *outcome)
 {
-    const imp_vectors each = imp_vectors_of(impulse, imp_neg(impulse)), there = imp_ready_local(ready, &each);
+    const imp_vectors each = imp_vectors_of(impulse, imp_vec_neg(impulse)), there = imp_ready_local(ready, &each);
     const imp_vectors turn = imp_vectors_cross(&ready->offset, &there);
     const imp_vectors spin = imp_vectors_weigh(&ready->inverse_moments, &turn);
     give(ready, impulse, &spin, outcome);
@@ -44,7 +44,7 @@ void imp_report_push(const imp_ready *ready, imp_vec impulse, impact_outcome *ou
 
 static inline imp_vec in_world(const imp_frame *frame, imp_real x, imp_real y, imp_real z)
 {
-    return imp_axpy(x, frame->t1, imp_axpy(y, frame->t2, imp_scale(frame->n, z)));
+    return imp_vec_axpy(x, frame->t1, imp_vec_axpy(y, frame->t2, imp_vec_scale(frame->n, z)));
 }
 
 typedef struct root_of_mass {
@@ -54,7 +54,7 @@ typedef struct root_of_mass {
 
 static inline void set_rows(imp_real row[ROWS][COLUMNS], int column, const imp_vectors *arms, imp_real w)
 {
-    const imp_pair arm[3] = {arms->x, arms->y, arms->z};
+    const imp_lanes arm[3] = {arms->x, arms->y, arms->z};
     for (int k = 0; k < 3; k++) {
         row[k][column] = k == column ? w : 0;
         row[3 + k][column] = arm[k][0];
@@ -201,9 +201,9 @@ static void push_to(const imp_ready *ready, const imp_course *course, const imp_
     mend(&b, du, rough, u, z);
     const imp_vec impulse = in_world(frame, z[0] / w * speed, z[1] / w * speed, z[2] / w * speed);
     const imp_vectors *j = &ready->inverse_moments;
-    const imp_vectors spin = {imp_pair_sqrt(j->x) * (imp_pair){z[3], -z[6]} * speed,
-                              imp_pair_sqrt(j->y) * (imp_pair){z[4], -z[7]} * speed,
-                              imp_pair_sqrt(j->z) * (imp_pair){z[5], -z[8]} * speed};
+    const imp_vectors spin = {imp_lanes_sqrt(j->x) * (imp_lanes){z[3], -z[6]} * speed,
+                              imp_lanes_sqrt(j->y) * (imp_lanes){z[4], -z[7]} * speed,
+                              imp_lanes_sqrt(j->z) * (imp_lanes){z[5], -z[8]} * speed};
     outcome->impulse = imp_vec_rounded(impulse);
     give(ready, impulse, &spin, outcome);
 }

@@ -18,7 +18,8 @@ void imp_report_course(const impact_collision *collision, const imp_ready *ready
 static inline imp_real imp_report_energy(const imp_ready *ready, const imp_vectors *velocity, const imp_vectors *omega)
 {
     const imp_vectors momentum = imp_vectors_weigh(&ready->moments, omega);
-    const imp_pair each = 0.5 * (ready->mass * imp_vectors_dot(velocity, velocity) + imp_vectors_dot(&momentum, omega));
+    const imp_lanes each =
+        0.5 * (ready->mass * imp_vectors_dot(velocity, velocity) + imp_vectors_dot(&momentum, omega));
     return each[0] + each[1];
 }
 

@@ -59,9 +59,9 @@
 /* A sliding velocity that is rounding of those given is none. */
 static imp_real sliding(const imp_ready *ready, imp_vec t)
 {
-    const imp_pair each =
+    const imp_lanes each =
         imp_vectors_size(&ready->velocity) + imp_vectors_size(&ready->omega) * imp_vectors_size(&ready->arm);
-    const imp_real s = imp_sqrt(imp_dot(t, t));
+    const imp_real s = imp_sqrt(imp_vec_dot(t, t));
     return s > 2 * IMP_EPSILON * (each[0] + each[1]) ? s : 0;
 }
 
@@ -70,12 +70,12 @@ impact_status imp_second_collide(const impact_collision *collision, impact_outco
     imp_ready ready;
     imp_ready_make(collision, &ready);
     const imp_vec n = imp_frame_normal(collision), u = imp_ready_velocity(&ready);
-    const imp_real approach = imp_dot(u, n);
+    const imp_real approach = imp_vec_dot(u, n);
     if (!(approach < 0)) return IMPACT_SEPARATING;
-    const imp_vec t = imp_axpy(-approach, n, u);
+    const imp_vec t = imp_vec_axpy(-approach, n, u);
     const imp_real s = sliding(&ready, t);
     imp_frame frame;
-    imp_frame_make(n, s > 0 ? imp_cross(imp_scale(t, 1 / s), n) : imp_frame_across(n), &ready, &frame);
+    imp_frame_make(n, s > 0 ? imp_vec_cross(imp_vec_scale(t, 1 / s), n) : imp_frame_across(n), &ready, &frame);
     imp_course course;
     imp_course_start(&course, &frame, collision, 0, -s / approach);
     if (!imp_course_straight(&course)) {

@@ -45,11 +45,11 @@ void imp_taylor_make(imp_taylor *taylor, const imp_frame *frame, imp_real mu, im
                    rate = 1 / lambda;
     const imp_real ma = mu * frame->a * rate, mb = mu * frame->b * rate, c = frame->c * rate, d = frame->d * rate;
     const imp_real half = 0.5 / s;
-    imp_pair u[IMP_SERIES_ROOM]; /* x and y */
-    const imp_pair pull = {c, d}, drag = {ma, mb};
+    imp_lanes u[IMP_SERIES_ROOM]; /* x and y */
+    const imp_lanes pull = {c, d}, drag = {ma, mb};
     taylor->order = order;
     taylor->rate = rate;
-    u[0] = (imp_pair){ux, uy};
+    u[0] = (imp_lanes){ux, uy};
     x[0] = ux;
     y[0] = uy;
     v[0] = s;
@@ -60,7 +60,7 @@ void imp_taylor_make(imp_taylor *taylor, const imp_frame *frame, imp_real mu, im
         x[n] = u[n][0];
         y[n] = u[n][1];
         /* s^2 = x^2 + y^2, term n; every product but the middle one stands twice. */
-        imp_pair q = {0, 0};
+        imp_lanes q = {0, 0};
         imp_real r = 0;
         for (int i = 1; 2 * i < n; i++) {
             q += u[i] * u[n - i];
@@ -85,8 +85,8 @@ imp_real imp_taylor_value(const imp_real *coefficient, int order, imp_real t)
 {
     const imp_real t2 = t * t;
     int k = order - order % 2;
-    imp_pair sum = IMP_PAIR(coefficient + k);
-    for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMP_PAIR(coefficient + k);
+    imp_lanes sum = IMP_LANES(coefficient + k);
+    for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMP_LANES(coefficient + k);
     return sum[0] + t * sum[1];
 }
 
@@ -94,8 +94,8 @@ imp_real imp_taylor_integral(const imp_real *coefficient, int order, imp_real t)
 {
     const imp_real t2 = t * t;
     int k = order - order % 2;
-    imp_pair sum = IMP_PAIR(coefficient + k) * IMP_PAIR(inverse + k + 1);
-    for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMP_PAIR(coefficient + k) * IMP_PAIR(inverse + k + 1);
+    imp_lanes sum = IMP_LANES(coefficient + k) * IMP_LANES(inverse + k + 1);
+    for (k -= 2; k >= 0; k -= 2) sum = sum * t2 + IMP_LANES(coefficient + k) * IMP_LANES(inverse + k + 1);
     return (sum[0] + t * sum[1]) * t;
 }
 
@@ -130,8 +130,8 @@ static void make_power(step *st)
     uz[0] = st->uz0 * rate;
     for (int k = 0; k <= order; k++) uz[k + 1] = st->taylor.climb[k] * inverse[k + 1] * rate;
     for (int k = 0; k <= order; k += 2) {
-        imp_pair sum = {0, uz[k + 1] * s[0]};
-        for (int i = 0; i <= k; i++) sum += uz[i] * IMP_PAIR(s + k - i);
+        imp_lanes sum = {0, uz[k + 1] * s[0]};
+        for (int i = 0; i <= k; i++) sum += uz[i] * IMP_LANES(s + k - i);
         power[k] = sum[0];
         power[k + 1] = sum[1];
     }
@@ -139,7 +139,7 @@ static void make_power(step *st)
     st->has_power = true;
 }
 
-static imp_real work_at(step *st, imp_real t)
+static imp_real work_until(step *st, imp_real t)
 {
     if (!st->has_power) make_power(st);
     return imp_taylor_integral(st->power, st->taylor.order, t);
@@ -157,7 +157,7 @@ static imp_real target_value(step *st, target what, imp_real t, imp_real wanted,
     case TARGET_P:
         *slope = ty->rate * imp_taylor_value(ty->s, n, t);
         return ty->rate * imp_taylor_integral(ty->s, n, t) - wanted;
-    case TARGET_WORK: *slope = imp_taylor_value(st->power, n, t); return work_at(st, t) - wanted;
+    case TARGET_WORK: *slope = imp_taylor_value(st->power, n, t); return work_until(st, t) - wanted;
     case TARGET_CLIMB:
         *slope = 0;
         for (int k = n; k >= 1; k--) *slope = *slope * t + k * ty->climb[k];
@@ -179,7 +179,7 @@ static imp_real target_value(step *st, target what, imp_real t, imp_real wanted,
 
 /* The root of a monotone function on [low, high] whose signs differ at the ends: Newton kept inside a shrinking
  * bracket. */
-static imp_real find_root(step *st, target what, imp_real wanted, imp_real low, imp_real high)
+static imp_real find_sigma(step *st, target what, imp_real wanted, imp_real low, imp_real high)
 {
     imp_real slope, f_low = target_value(st, what, low, wanted, &slope);
     const imp_real f_high = target_value(st, what, high, wanted, &slope);
@@ -207,11 +207,11 @@ static totals totals_at(step *st, imp_real t)
     if (!st->has_power) make_power(st);
     const imp_taylor *ty = &st->taylor;
     imp_real work = 0;
-    imp_pair slide = {0, 0}, speed = {0, 0};
+    imp_lanes slide = {0, 0}, speed = {0, 0};
     for (int k = ty->order; k >= 0; k--) {
         const imp_real f = inverse[k + 1];
-        slide = slide * t + (imp_pair){ty->x[k], ty->y[k]} * f;
-        speed = speed * t + (imp_pair){ty->s[k], ty->squared[k]} * f;
+        slide = slide * t + (imp_lanes){ty->x[k], ty->y[k]} * f;
+        speed = speed * t + (imp_lanes){ty->s[k], ty->squared[k]} * f;
         work = work * t + st->power[k] * f;
     }
     const imp_real tau = ty->rate * t, rub = -st->course->mu * tau;
@@ -219,7 +219,7 @@ static totals totals_at(step *st, imp_real t)
 }
 
 /* Moves the course on to sigma = t within one phase. */
-static void move_to(step *st, imp_real t)
+static void move_to_sigma(step *st, imp_real t)
 {
     imp_course *course = st->course;
     if (!(t > st->at)) return;
@@ -245,7 +245,7 @@ static bool end_by(step *st, imp_real to, imp_real *where)
             return true;
         }
         if (st->taylor.rate * imp_taylor_integral(st->taylor.s, st->taylor.order, to) < wanted) return false;
-        *where = find_root(st, TARGET_P, wanted, st->at, to);
+        *where = find_sigma(st, TARGET_P, wanted, st->at, to);
         return true;
     }
     case IMPACT_NEWTON: {
@@ -255,7 +255,7 @@ static bool end_by(step *st, imp_real to, imp_real *where)
             return true;
         }
         if (uz_at(st, to) < wanted) return false;
-        *where = find_root(st, TARGET_UZ, wanted, st->at, to);
+        *where = find_sigma(st, TARGET_UZ, wanted, st->at, to);
         return true;
     }
     case IMPACT_STRONGE: {
@@ -264,8 +264,8 @@ static bool end_by(step *st, imp_real to, imp_real *where)
             *where = st->at;
             return true;
         }
-        if (work_at(st, to) < st->done.work + more) return false;
-        *where = find_root(st, TARGET_WORK, st->done.work + more, st->at, to);
+        if (work_until(st, to) < st->done.work + more) return false;
+        *where = find_sigma(st, TARGET_WORK, st->done.work + more, st->at, to);
         return true;
     }
     }
@@ -286,25 +286,25 @@ static void monotone_piece(step *st, imp_real to)
         const imp_real uz_to = uz_at(st, to);
         if (course->compressing) {
             if (uz_to < 0 || !climbs(st, to)) break;
-            move_to(st, find_root(st, TARGET_UZ, 0, st->at, to));
+            move_to_sigma(st, find_sigma(st, TARGET_UZ, 0, st->at, to));
             imp_course_turn(course);
             if (course->law == IMPACT_STRONGE) return;
             continue;
         }
         const bool turns = uz_to < 0 && !climbs(st, to);
-        const imp_real turn = turns ? find_root(st, TARGET_UZ, 0, st->at, to) : to;
+        const imp_real turn = turns ? find_sigma(st, TARGET_UZ, 0, st->at, to) : to;
         imp_real end;
         if (end_by(st, turn, &end)) {
-            move_to(st, end);
+            move_to_sigma(st, end);
             if (course->law == IMPACT_NEWTON) course->uz = imp_course_target_newton(course);
             course->ended = true;
             return;
         }
         if (!turns) break;
-        move_to(st, turn);
+        move_to_sigma(st, turn);
         imp_course_turn(course);
     }
-    if (!course->ended) move_to(st, to);
+    if (!course->ended) move_to_sigma(st, to);
 }
 
 /* A step that stops short of its end at a turn (Stronge's law) goes on as a new one: the work given back is then an
@@ -317,7 +317,7 @@ static void split_at_climb(step *st, imp_real to)
     const imp_real low = imp_taylor_value(st->taylor.climb, n, st->at),
                    high = imp_taylor_value(st->taylor.climb, n, to);
     if ((low > 0 && high < 0) || (low < 0 && high > 0)) {
-        const imp_real split = find_root(st, TARGET_CLIMB, 0, st->at, to);
+        const imp_real split = find_sigma(st, TARGET_CLIMB, 0, st->at, to);
         monotone_piece(st, split);
         if (stopped(st, split)) return;
     }
@@ -332,7 +332,7 @@ static void follow_step(step *st)
     const imp_real h = st->taylor.h, x = imp_taylor_value(st->taylor.x, n, h), y = imp_taylor_value(st->taylor.y, n, h);
     const imp_real before = frame->c * course->uy - frame->d * course->ux, after = frame->c * y - frame->d * x;
     if ((before > 0 && after < 0) || (before < 0 && after > 0)) {
-        const imp_real split = find_root(st, TARGET_CROSS, 0, 0, h);
+        const imp_real split = find_sigma(st, TARGET_CROSS, 0, 0, h);
         split_at_climb(st, split);
         if (!stopped(st, split)) split_at_climb(st, h);
     } else {

@@ -16,10 +16,10 @@ enum { IMP_SERIES_ORDER = 40, IMP_SERIES_MOST = 40, IMP_SERIES_STEPS = 400 };
 enum { IMP_SERIES_ORDER = 22, IMP_SERIES_MOST = 32, IMP_SERIES_STEPS = 4000 };
 #endif
 
-/* IMP_PAIR reads two numbers that stand side by side. */
-typedef imp_real imp_pair_anywhere
+/* IMP_LANES reads two numbers that stand side by side. */
+typedef imp_real imp_lanes_anywhere
     __attribute__((vector_size(2 * sizeof(imp_real)), aligned(sizeof(imp_real)), may_alias));
-#define IMP_PAIR(from) ((imp_pair) * (const imp_pair_anywhere *)(from))
+#define IMP_LANES(from) ((imp_lanes) * (const imp_lanes_anywhere *)(from))
 
 /* Coefficients to the order, and a zero after the last. */
 enum { IMP_SERIES_ROOM = IMP_SERIES_MOST + 2 };

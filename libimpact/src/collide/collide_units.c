@@ -99,7 +99,7 @@ static impact_status check_speeds(const impact_collision *scaled, char *message,
 {
     imp_ready ready;
     imp_ready_make(scaled, &ready);
-    const double approach = -imp_dot(imp_ready_velocity(&ready), imp_frame_normal(scaled));
+    const double approach = -imp_vec_dot(imp_ready_velocity(&ready), imp_frame_normal(scaled));
     if (!(approach > 0 && approach < 1 / IMP_COLLIDE_RANGE)) return IMPACT_OK;
     return imp_collide_refuse(message, size, IMPACT_EARGUMENT,
                               "the contact points approach at %.3g of the fastest velocity, at least %g", approach,

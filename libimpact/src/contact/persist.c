@@ -328,7 +328,7 @@ static int worst_onset(const imp_persist *persist, const imp_world *world)
     return worst;
 }
 
-static bool all_slide(const imp_persist *persist)
+static bool onsets_slide(const imp_persist *persist)
 {
     for (int c = 0; c < persist->count; c++)
         if (persist->touches[c].onset && persist->touches[c].drive < 1 - 1e-9) return false;
@@ -391,8 +391,8 @@ impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const 
             pair->onset = false;
             pair->tried = true;
         } else {
-            if (!all_slide(persist)) status = imp_persist_try_modes(persist, world, states, loads);
-            persist->lenient = !all_slide(persist);
+            if (!onsets_slide(persist)) status = imp_persist_try_modes(persist, world, states, loads);
+            persist->lenient = !onsets_slide(persist);
             return status;
         }
     }

@@ -256,7 +256,7 @@ static bool stops(const imp_world *world, imp_pair *pair, imp_state *states, con
     return true;
 }
 
-static bool lay(const imp_world *world, imp_pair *pair, imp_state *states, const imp_load *load)
+static bool lay_flat(const imp_world *world, imp_pair *pair, imp_state *states, const imp_load *load)
 {
     const imp_body *body = &world->bodies[pair->body1];
     imp_state *state = &states[pair->body1];
@@ -291,7 +291,7 @@ bool imp_flat_lay(imp_world *world, imp_state *states, const imp_load *loads)
     bool any = false;
     for (int p = 0; p < world->pair_count; p++)
         if (imp_flat_suits(world, &world->pairs[p]))
-            any = lay(world, &world->pairs[p], states, &loads[world->pairs[p].body1]) || any;
+            any = lay_flat(world, &world->pairs[p], states, &loads[world->pairs[p].body1]) || any;
     return any;
 }
 

@@ -110,7 +110,7 @@ static const imp_touch *touch_of(const imp_persist *persist, const imp_world *wo
     return NULL;
 }
 
-static bool lay(imp_persist *persist, imp_world *world, imp_pair *pair, imp_state *states, const imp_load *loads)
+static bool lay_lined(imp_persist *persist, imp_world *world, imp_pair *pair, imp_state *states, const imp_load *loads)
 {
     const qvec3 n = quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1});
     const double enough = -qvec3_dot(loads[pair->body1].force, n) * world->flat_height;
@@ -140,7 +140,7 @@ bool imp_line_lay(imp_persist *persist, imp_world *world, imp_state *states, con
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
         if (!pair->flat && !pair->lined && imp_flat_suits(world, pair))
-            any = lay(persist, world, pair, states, loads) || any;
+            any = lay_lined(persist, world, pair, states, loads) || any;
     }
     return any;
 }

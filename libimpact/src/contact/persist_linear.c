@@ -36,7 +36,7 @@ static void swap_columns(imp_linear *system, int i, int j)
     system->columns[i] = system->columns[j], system->columns[j] = swap;
 }
 
-static void begin(imp_linear *system)
+static void begin_elimination(imp_linear *system)
 {
     system->rank = system->n;
     system->sign = 1;
@@ -100,7 +100,7 @@ static bool reduce_panel(imp_linear *system, int first, int width, double least)
 static bool reduce_regular(imp_linear *system, double least)
 {
     const int n = system->n;
-    begin(system);
+    begin_elimination(system);
     for (int first = 0; first < n; first += PANEL) {
         const int width = n - first < PANEL ? n - first : PANEL, next = first + width;
         if (!reduce_panel(system, first, width, least)) return false;
@@ -118,7 +118,7 @@ static void reduce_singular(imp_linear *system, double least)
 {
     const int n = system->n;
     const double *a = system->matrix;
-    begin(system);
+    begin_elimination(system);
     for (int k = 0; k < n; k++) {
         int row = k, column = k;
         for (int i = k; i < n; i++)

@@ -173,7 +173,7 @@ static void keep_turns(const imp_persist *persist, imp_world *world)
 
 /* Sets every onset's drive; whether all of them go on sliding. Newton's method also finds directions against which slip
  * would be accelerated: none of Coulomb's. */
-static bool all_slide(imp_persist *persist, const imp_world *world, const imp_state *states)
+static bool drive_onsets(imp_persist *persist, const imp_world *world, const imp_state *states)
 {
     bool all = true;
     for (int c = 0; c < persist->count; c++) {
@@ -203,10 +203,10 @@ static bool solve_anew(imp_persist *persist, imp_world *world, const imp_state *
 static void solve_onsets(imp_persist *persist, imp_world *world, const imp_state *states)
 {
     bool settled = recall_turns(persist, world) && turn_together(persist, world, states);
-    bool good = settled && (all_slide(persist, world, states) || persist->lenient);
+    bool good = settled && (drive_onsets(persist, world, states) || persist->lenient);
     if (!good) {
         settled = solve_anew(persist, world, states);
-        good = settled && (all_slide(persist, world, states) || persist->lenient);
+        good = settled && (drive_onsets(persist, world, states) || persist->lenient);
     }
     if (good) keep_turns(persist, world);
 }

@@ -66,7 +66,7 @@ static qvec3 acceleration(const imp_touch *touch, const body_rate *rates)
 }
 
 /* Response of a contact to its own force: along the normal, and no less than the most across it. */
-static contact_response own_response(const imp_world *world, const imp_state *states, const imp_touch *touch)
+static contact_response touch_response(const imp_world *world, const imp_state *states, const imp_touch *touch)
 {
     const qvec3 t = imp_tangent(touch->normal), axes[3] = {touch->normal, t, qvec3_cross(touch->normal, t)};
     const bool round = world->bodies[touch->body1].spherical && world->bodies[touch->body2].spherical;
@@ -92,8 +92,8 @@ static double greatest(const imp_persist *persist, const imp_world *world, int i
 
 /* Gives the touch the pressure under which its bodies do not approach, then the friction that does most against their
  * slip. Returns by how much accelerations changed. */
-static double improve(const imp_world *world, const imp_state *states, imp_touch *touch, contact_response response,
-                      body_rate *rates)
+static double improve_reaction(const imp_world *world, const imp_state *states, imp_touch *touch,
+                               contact_response response, body_rate *rates)
 {
     const qvec3 n = touch->normal;
     const double pressure = fmax(0, touch->pressure - qvec3_dot(n, acceleration(touch, rates)) / response.along);
@@ -119,8 +119,8 @@ static qvec3 last_reaction(const imp_world *world, const imp_touch *touch)
 
 /* Gives the island's touches reactions to begin with, those they had or none; returns the acceleration that they leave.
  */
-static double begin(imp_persist *persist, const imp_world *world, const imp_state *states, int island, bool anew,
-                    workspace *work)
+static double begin_reactions(imp_persist *persist, const imp_world *world, const imp_state *states, int island,
+                              bool anew, workspace *work)
 {
     for (int c = 0; c < persist->count; c++) {
         imp_touch *touch = &persist->touches[c];
@@ -128,7 +128,7 @@ static double begin(imp_persist *persist, const imp_world *world, const imp_stat
         const qvec3 before = anew ? touch->force : (qvec3){0, 0, 0};
         touch->force = anew ? (qvec3){0, 0, 0} : last_reaction(world, touch);
         touch->pressure = qvec3_dot(touch->normal, touch->force);
-        work->responses[c] = own_response(world, states, touch);
+        work->responses[c] = touch_response(world, states, touch);
         push(world, states, touch, qvec3_sub(touch->force, before), work->rates);
     }
     return greatest(persist, world, island, work->rates);
@@ -142,19 +142,20 @@ typedef enum answer {
 
 /* Looks for the reactions of the island's touches: those that they had, if they balance the loads, or else from none at
  * all. */
-static answer sweep(imp_persist *persist, const imp_world *world, const imp_state *states, int island, workspace *work,
-                    double load)
+static answer sweep_reactions(imp_persist *persist, const imp_world *world, const imp_state *states, int island,
+                              workspace *work, double load)
 {
     enum { SWEEPS = 20000, CHECK = 50 };
     const double balanced = 1e-10 * load, settled = 1e-13 * load, progress = 0.98;
-    if (begin(persist, world, states, island, false, work) <= balanced) return BALANCED;
-    begin(persist, world, states, island, true, work);
+    if (begin_reactions(persist, world, states, island, false, work) <= balanced) return BALANCED;
+    begin_reactions(persist, world, states, island, true, work);
     double before = INFINITY;
     for (int k = 1; k <= SWEEPS; k++) {
         double change = 0;
         for (int c = 0; c < persist->count; c++)
             if (persist->island[c] == island)
-                change = fmax(change, improve(world, states, &persist->touches[c], work->responses[c], work->rates));
+                change = fmax(change,
+                              improve_reaction(world, states, &persist->touches[c], work->responses[c], work->rates));
         if (change <= settled) return greatest(persist, world, island, work->rates) <= balanced ? BALANCED : MOVES;
         if (k % CHECK != 0) continue;
         if (change > progress * before) return UNKNOWN;
@@ -216,7 +217,7 @@ static void begin_rates(const imp_world *world, const imp_state *states, const i
 static void settle(imp_persist *persist, imp_world *world, const imp_state *states, int island, workspace *work)
 {
     const double load = greatest(persist, world, island, work->rates);
-    const answer found = sweep(persist, world, states, island, work, load);
+    const answer found = sweep_reactions(persist, world, states, island, work, load);
     if (found == BALANCED) make_still(persist, world, island);
     if (found == MOVES) open_parting(persist, world, island, work, load);
 }

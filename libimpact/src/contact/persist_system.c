@@ -160,7 +160,7 @@ static qvec3 force_direction(const imp_touch *touch, int i, bool with_friction)
 }
 
 /* What the row sees of a force along itself. */
-static double own_response(const imp_world *world, const imp_state *states, const imp_unknown *u)
+static double row_response(const imp_world *world, const imp_state *states, const imp_unknown *u)
 {
     double response = 0;
     for (int k = 0; k < 2; k++) {
@@ -202,7 +202,7 @@ static int list_unknowns(imp_persist *persist, const imp_world *world, const imp
         double response = 0;
         for (int i = 0; i < count; i++) {
             fill_unknown(world, states, touch, i, with_friction, &persist->unknowns[n + i]);
-            response += own_response(world, states, &persist->unknowns[n + i]);
+            response += row_response(world, states, &persist->unknowns[n + i]);
         }
         for (int i = 0; i < count; i++) {
             persist->unknowns[n + i].touch = c;

@@ -33,8 +33,8 @@ static void apply(const imp_world *world, imp_state *states, const imp_touch *to
 }
 
 /* Response of the contact to its own impulse: along the normal, and the most across it. */
-static void own_response(const imp_world *world, const imp_state *states, const imp_touch *touch, double *along,
-                         double *across)
+static void share_response(const imp_world *world, const imp_state *states, const imp_touch *touch, double *along,
+                           double *across)
 {
     const qvec3 t1 = imp_tangent(touch->normal), t2 = qvec3_cross(touch->normal, t1);
     *along = qvec3_dot(touch->normal, imp_system_response(world, states, touch, touch, touch->normal));
@@ -46,7 +46,7 @@ static void own_response(const imp_world *world, const imp_state *states, const 
 
 /* Solves one share against the others as they are: along the normal, then across it; returns by how much velocities
  * changed. */
-static double improve(const imp_world *world, imp_state *states, imp_share *share, double along, double across)
+static double improve_share(const imp_world *world, imp_state *states, imp_share *share, double along, double across)
 {
     const imp_touch *touch = &share->touch;
     const qvec3 n = touch->normal;
@@ -73,13 +73,13 @@ static double improve(const imp_world *world, imp_state *states, imp_share *shar
 
 /* One sweep over the shares; true when it moved nothing but roundings: of the velocities, and of what the impulses make
  * of them. */
-static bool sweep(const imp_world *world, imp_state *states, imp_share *shares, int count, double speed)
+static bool sweep_shares(const imp_world *world, imp_state *states, imp_share *shares, int count, double speed)
 {
     bool settled = true;
     for (int c = 0; c < count; c++) {
         double along, across;
-        own_response(world, states, &shares[c].touch, &along, &across);
-        const double moved = improve(world, states, &shares[c], along, across);
+        share_response(world, states, &shares[c].touch, &along, &across);
+        const double moved = improve_share(world, states, &shares[c], along, across);
         settled = settled && moved <= 1e-14 * speed + 4 * DBL_EPSILON * shares[c].normal * along;
     }
     return settled;
@@ -88,7 +88,7 @@ static bool sweep(const imp_world *world, imp_state *states, imp_share *shares, 
 static bool sweep_until(const imp_world *world, imp_state *states, imp_share *shares, int count, double speed, int most)
 {
     bool settled = false;
-    for (int k = 0; k < most && !settled; k++) settled = sweep(world, states, shares, count, speed);
+    for (int k = 0; k < most && !settled; k++) settled = sweep_shares(world, states, shares, count, speed);
     return settled;
 }
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "flight/elliptic.h"
+#include "base/numbers.h"
 
 #include <math.h>
 
 enum { TERMS = IMPACT_THETA_TERMS };
-static const double pi = 3.14159265358979323846;
 
 /* Each step halves the logarithm of b/a, at most 744 in size, and then doubles the digits: 16 would do. */
 enum { MAX_MEANS = 24 };
@@ -42,11 +42,11 @@ static void make_series(impact_elliptic *e, double nome)
 
 void imp_elliptic_make(double m, double m1, impact_elliptic *e)
 {
-    const double half_pi = 0.5 * pi, mean = agm(sqrt(m1)), complementary = agm(sqrt(m));
+    const double half_pi = 0.5 * IMP_PI, mean = agm(sqrt(m1)), complementary = agm(sqrt(m));
     e->K = half_pi / mean;
-    e->hyperbolic = pi * mean < 2.302585092994046 * complementary; /* exp(-pi K'/K) > 0.1 */
-    e->scale = e->hyperbolic ? complementary : mean;               /* pi/(2 K') or pi/(2 K) */
-    make_series(e, exp(-pi * (e->hyperbolic ? complementary / mean : mean / complementary)));
+    e->hyperbolic = IMP_PI * mean < 2.302585092994046 * complementary; /* exp(-pi K'/K) > 0.1 */
+    e->scale = e->hyperbolic ? complementary : mean;                   /* pi/(2 K') or pi/(2 K) */
+    make_series(e, exp(-IMP_PI * (e->hyperbolic ? complementary / mean : mean / complementary)));
 }
 
 static void at_circular(const impact_elliptic *e, double u, double *sn, double *cn, double *dn)

@@ -179,8 +179,8 @@ impact_status imp_gap_check(const impact_solid *body1, quat *q1, const impact_so
     return body1->shape.kind == IMPACT_PLANE && body2->shape.kind == IMPACT_PLANE ? IMPACT_EARGUMENT : IMPACT_OK;
 }
 
-static impact_status solve(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache, bool glance,
-                           impact_contact *contact)
+static impact_status solve_pair(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
+                                bool glance, impact_contact *contact)
 {
     *contact = no_contact();
     quat q1, q2;
@@ -204,13 +204,13 @@ static impact_status solve(const impact_solid *body1, const impact_solid *body2,
 impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                          impact_contact *contact)
 {
-    return solve(body1, body2, cache, false, contact);
+    return solve_pair(body1, body2, cache, false, contact);
 }
 
 impact_status imp_gap_glance(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                              impact_contact *contact)
 {
-    return solve(body1, body2, cache, true, contact);
+    return solve_pair(body1, body2, cache, true, contact);
 }
 
 double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2, qvec3 omega2)

@@ -5,7 +5,7 @@
 enum { UNKNOWNS = 5 };
 
 /* a x = b of n unknowns by Gauss with complete pivoting; unknowns the equations do not see are left at zero. */
-static inline void solve(int n, double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS], double x[UNKNOWNS])
+static inline void solve_pivoting(int n, double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS], double x[UNKNOWNS])
 {
     int column[UNKNOWNS] = {0, 1, 2, 3, 4}, rank = n;
     double first = 0;
@@ -151,7 +151,7 @@ void imp_face_step(const imp_gap_solids *pair, const imp_face *face, double step
 {
     double a[UNKNOWNS][UNKNOWNS], b[UNKNOWNS], x[UNKNOWNS], scale[UNKNOWNS];
     set_up(pair, face, 4, a, b, scale);
-    solve(4, a, b, x);
+    solve_pivoting(4, a, b, x);
     for (int c = 0; c < 4; c++) step[c / 2][c % 2] = x[c] * scale[c];
 }
 
@@ -177,14 +177,14 @@ void imp_face_strike(const imp_gap_solids *pair, const imp_face *face, const imp
         if (!solve_plainly(work, right, x)) {
             memcpy(work, a, sizeof work);
             memcpy(right, b, sizeof right);
-            solve(UNKNOWNS, work, right, x);
+            solve_pivoting(UNKNOWNS, work, right, x);
         }
         *dt = x[4] * scale[4];
     }
     if (!(*dt > least && *dt < most)) {
         *dt = *dt >= most ? most : least;
         for (int i = 0; i < 4; i++) b[i] -= time[i] * *dt;
-        solve(4, a, b, x);
+        solve_pivoting(4, a, b, x);
     }
     for (int c = 0; c < 4; c++) step[c / 2][c % 2] = x[c] * scale[c];
 }
@@ -275,7 +275,7 @@ static double stiffness(const imp_gap_solids *pair, const imp_face *face, double
 }
 
 /* Whether the point x_A + part (x_B + c - x_A) is in body k, with room for rounding. */
-static bool holds(const imp_gap_solids *pair, const imp_face *face, int k, double part)
+static bool body_holds(const imp_gap_solids *pair, const imp_face *face, int k, double part)
 {
     double world[3], body[3];
     for (int i = 0; i < 3; i++) world[i] = face->chart[k].x[i] + (k ? part - 1 : part) * face->v[i];
@@ -290,8 +290,8 @@ static bool holds(const imp_gap_solids *pair, const imp_face *face, int k, doubl
  */
 static bool share_a_point(const imp_gap_solids *pair, const imp_face *face)
 {
-    return (holds(pair, face, 0, 0.5) && holds(pair, face, 1, 0.5)) || holds(pair, face, 1, 0) ||
-           holds(pair, face, 0, 1);
+    return (body_holds(pair, face, 0, 0.5) && body_holds(pair, face, 1, 0.5)) || body_holds(pair, face, 1, 0) ||
+           body_holds(pair, face, 0, 1);
 }
 
 /* Of the reach: 20 eps; right answers of all families stay below 4. */

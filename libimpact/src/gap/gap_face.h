@@ -10,6 +10,10 @@
 #include "gap/gap_chart.h"
 #include "gap/gap_solver.h"
 
+/* Newton's steps, of the halves u and e that move, converge quadratically: after one smaller than this the next, about
+ * its square, is below rounding. */
+#define IMP_GAP_LAST_STEP 1e-10
+
 typedef struct imp_face {
     imp_chart chart[2];
     double m[3], t[2][3];     /* bisector of the normals, and across it */

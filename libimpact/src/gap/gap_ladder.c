@@ -365,7 +365,7 @@ static bool surround(search *s)
     return climb(s, exact_slack * s->pair->reach) && settle_low(s);
 }
 
-static bool holds(const imp_form *form, const double x[3])
+static bool form_holds(const imp_form *form, const double x[3])
 {
     double body[3];
     for (int i = 0; i < 3; i++)
@@ -381,7 +381,7 @@ static bool face(const imp_gap_solids *pair, const double n[3], double gap, doub
     for (int k = 0; k < 2; k++) {
         double moved[3];
         for (int i = 0; i < 3; i++) moved[i] = x[k][i] + (k ? -1 : 1) * (v[i] - gap * n[i]);
-        if (!holds(&pair->form[k], moved)) continue;
+        if (!form_holds(&pair->form[k], moved)) continue;
         memcpy(x[k], moved, sizeof moved);
         return true;
     }

@@ -4,8 +4,7 @@
  */
 #include "gap/gap_face.h"
 
-static const double finest_step = 1e-10;
-enum { MAX_ITERATIONS = 16, MORE_ITERATIONS = 8 }; /* more when the steps have become small */
+enum { NEWTON_STEPS = 16, MORE_NEWTON_STEPS = 8 }; /* more when the steps have become small */
 
 bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double (*x)[3], imp_gap_bracket *meeting)
 {
@@ -13,11 +12,11 @@ bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double 
     imp_face_start(pair, n, x, s);
     double last = INFINITY;
     int settled = 0; /* how often it has: while the bracket is wider than rounding, a few more steps may close it */
-    for (int i = 0, end = MAX_ITERATIONS; i < end; i++) {
+    for (int i = 0, end = NEWTON_STEPS; i < end; i++) {
         imp_face face;
         if (!imp_face_look(pair, s, &face)) return settled > 0;
-        if (i == MAX_ITERATIONS - 1 && last < 1e-2) end += MORE_ITERATIONS;
-        if (last < finest_step || i == end - 1) {
+        if (i == NEWTON_STEPS - 1 && last < 1e-2) end += MORE_NEWTON_STEPS;
+        if (last < IMP_GAP_LAST_STEP || i == end - 1) {
             imp_gap_bracket now;
             if (imp_face_judge(pair, &face, &now)) {
                 if (settled++ == 0 || now.upper - now.lower < meeting->upper - meeting->lower) *meeting = now;

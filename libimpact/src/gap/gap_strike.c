@@ -5,8 +5,7 @@
  */
 #include "gap/gap_face.h"
 
-static const double finest_step = 1e-10;
-enum { MAX_ITERATIONS = 32, MAX_TURNS = 3, MAX_TRIMS = 4 };
+enum { STRIKE_STEPS = 32, MAX_TURNS = 3, MAX_TRIMS = 4 };
 
 typedef struct strike {
     const imp_gap_course *course;
@@ -99,9 +98,9 @@ bool imp_gap_strike(const imp_gap_course *course, double low, double high, qvec3
     place(&s, false);
     imp_face_start(&s.pair, normal, NULL, surface);
     double last = INFINITY;
-    for (int i = 0, turns = 0, trims = 0; i < MAX_ITERATIONS; i++) {
-        if (!look(&s, last < finest_step, surface)) return false;
-        if (last < finest_step) {
+    for (int i = 0, turns = 0, trims = 0; i < STRIKE_STEPS; i++) {
+        if (!look(&s, last < IMP_GAP_LAST_STEP, surface)) return false;
+        if (last < IMP_GAP_LAST_STEP) {
             if (trim(&s, surface, low, high, t, contact)) return true;
             if (++trims == MAX_TURNS) return false;
         }

@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-impact_status imp_motion_open(impact_motion *motion, imp_world *world, double tolerance, double rest_speed)
+impact_status imp_motion_open(imp_motion *motion, imp_world *world, double tolerance, double rest_speed)
 {
-    *motion = (impact_motion){
-        .world = world, .persist.arena = world->arena, .tolerance = tolerance, .rest_speed = rest_speed};
+    *motion =
+        (imp_motion){.world = world, .persist.arena = world->arena, .tolerance = tolerance, .rest_speed = rest_speed};
     const size_t n = (size_t)world->body_count;
     motion->resting = imp_arena_take(world->arena, n, sizeof *motion->resting);
     motion->loads = imp_arena_take(world->arena, n, sizeof *motion->loads);
@@ -19,7 +19,7 @@ impact_status imp_motion_open(impact_motion *motion, imp_world *world, double to
     return motion->resting && motion->loads && motion->sampled && motion->scratch ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
-void imp_motion_close(impact_motion *motion)
+void imp_motion_close(imp_motion *motion)
 {
     if (!motion->world) return;
     imp_arena *arena = motion->world->arena;
@@ -37,10 +37,10 @@ void imp_motion_close(impact_motion *motion)
     imp_arena_give(arena, motion->found);
     imp_arena_give(arena, motion->probe);
     imp_arena_give(arena, motion->absolute);
-    *motion = (impact_motion){0};
+    *motion = (imp_motion){0};
 }
 
-bool imp_motion_load(impact_motion *motion, double t, const imp_state *states)
+bool imp_motion_load(imp_motion *motion, double t, const imp_state *states)
 {
     imp_world *world = motion->world;
     if (!imp_field_loads(world, t, states, motion->loads)) {
@@ -62,7 +62,7 @@ double imp_motion_sample_time(const imp_sampler *sampler)
 }
 
 /* Emits the states with the held contacts put back exactly. */
-impact_status imp_motion_emit(impact_motion *motion, imp_sampler *sampler, double t, const imp_state *states)
+impact_status imp_motion_emit(imp_motion *motion, imp_sampler *sampler, double t, const imp_state *states)
 {
     sampler->next++;
     if (states != motion->sampled) memcpy(motion->sampled, states, sizeof *states * (size_t)motion->world->body_count);
@@ -73,7 +73,7 @@ impact_status imp_motion_emit(impact_motion *motion, imp_sampler *sampler, doubl
     return sampler->emit(sampler->context, t, motion->sampled) ? IMPACT_OK : IMPACT_STOPPED;
 }
 
-void imp_motion_set_slack(impact_motion *motion, const imp_state *states)
+void imp_motion_set_slack(imp_motion *motion, const imp_state *states)
 {
     imp_world *world = motion->world;
     motion->bounces = false;
@@ -88,7 +88,7 @@ void imp_motion_set_slack(impact_motion *motion, const imp_state *states)
     }
 }
 
-bool imp_motion_is_ballistic(const impact_motion *motion)
+bool imp_motion_is_ballistic(const imp_motion *motion)
 {
     return motion->persist.count == 0 && !imp_field_any(motion->world);
 }

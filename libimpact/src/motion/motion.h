@@ -44,7 +44,7 @@ typedef struct imp_works {
     double force, damping, sliding, drive;
 } imp_works;
 
-typedef struct impact_motion {
+typedef struct imp_motion {
     imp_world *world;
     double tolerance, rest_speed;
     bool *resting; /* per body: no longer watched for rest */
@@ -80,36 +80,36 @@ typedef struct impact_motion {
     double began;
     double slip_scale;  /* m/s */
     double creep_scale; /* 1/s */
-} impact_motion;
+} imp_motion;
 
-impact_status imp_motion_open(impact_motion *motion, imp_world *world, double tolerance, double rest_speed);
-void imp_motion_close(impact_motion *motion); /* of one that was not opened: nothing */
+impact_status imp_motion_open(imp_motion *motion, imp_world *world, double tolerance, double rest_speed);
+void imp_motion_close(imp_motion *motion); /* of one that was not opened: nothing */
 
 /* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet:
  * the restarted integrator would never see it. False when there is none. */
-bool imp_motion_also_crossed(impact_motion *motion, imp_end *end);
+bool imp_motion_also_crossed(imp_motion *motion, imp_end *end);
 
 /* motion_advance.c, by one of two roads below. */
 /* Advances the states (consistent modes: see imp_persist_resolve) from *t to the next event, at most to t_end. */
-impact_status imp_motion_advance(impact_motion *motion, double *t, double t_end, imp_state *states,
-                                 imp_sampler *sampler, imp_end *end);
+impact_status imp_motion_advance(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
+                                 imp_end *end);
 /* In closed form: motion_flight.c; by the integrator: motion_stretch.c. */
-impact_status imp_motion_fly(impact_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
+impact_status imp_motion_fly(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
                              imp_end *end);
-impact_status imp_motion_integrate(impact_motion *motion, double *t, double t_end, imp_state *states,
-                                   imp_sampler *sampler, imp_end *end);
+impact_status imp_motion_integrate(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
+                                   imp_end *end);
 
 /* When the next sample is due; infinite when none is. */
 double imp_motion_sample_time(const imp_sampler *sampler);
 /* Emits one, with the held contacts put back exactly. */
-impact_status imp_motion_emit(impact_motion *motion, imp_sampler *sampler, double t, const imp_state *states);
+impact_status imp_motion_emit(imp_motion *motion, imp_sampler *sampler, double t, const imp_state *states);
 
 /* Nothing but uniform gravity acts, and nothing is held: the motion is in closed form. */
-bool imp_motion_is_ballistic(const impact_motion *motion);
+bool imp_motion_is_ballistic(const imp_motion *motion);
 /* Sets every pair's slack, and whether one bounces, for the stretch that begins. */
-void imp_motion_set_slack(impact_motion *motion, const imp_state *states);
+void imp_motion_set_slack(imp_motion *motion, const imp_state *states);
 
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
-bool imp_motion_load(impact_motion *motion, double t, const imp_state *states);
+bool imp_motion_load(imp_motion *motion, double t, const imp_state *states);
 
 #endif

@@ -21,7 +21,7 @@
 
 /* ---- the integrated state ---- */
 
-void imp_motion_pack(const impact_motion *motion, double t, const imp_state *states, double *y)
+void imp_motion_pack(const imp_motion *motion, double t, const imp_state *states, double *y)
 {
     y[Y_TIME] = t;
     y[Y_FORCE_WORK] = motion->works.force;
@@ -48,7 +48,7 @@ void imp_motion_pack(const impact_motion *motion, double t, const imp_state *sta
  * as error. */
 static double measure_of(double size) { return size > 1e3 ? size : 1; }
 
-void imp_motion_measures(const impact_motion *motion, const imp_state *states, double *measure)
+void imp_motion_measures(const imp_motion *motion, const imp_state *states, double *measure)
 {
     for (int i = 0; i < motion->size; i++) measure[i] = 1;
     double *b = measure + Y_BODIES;
@@ -68,7 +68,7 @@ void imp_motion_measures(const impact_motion *motion, const imp_state *states, d
 }
 
 /* Static bodies' states are left as they are. */
-void imp_motion_unpack(const impact_motion *motion, const double *y, imp_state *states)
+void imp_motion_unpack(const imp_motion *motion, const double *y, imp_state *states)
 {
     const double *b = y + Y_BODIES;
     for (int i = 0; i < motion->world->body_count; i++) {
@@ -102,7 +102,7 @@ static double rubbing(const imp_persist *persist, int contact)
 }
 
 /* dt/dtau. */
-double imp_motion_clock(const impact_motion *motion)
+double imp_motion_clock(const imp_motion *motion)
 {
     double slowness = 1;
     for (int c = 0; c < motion->persist.count && motion->creeping; c++)
@@ -132,7 +132,7 @@ static void body_rates(const imp_body *body, const imp_state *s, const imp_load 
 }
 
 /* Of the contacts that are carried, in the order of their pairs, as the touches are. */
-static void spot_rates(const impact_motion *motion, double clock, double *rate)
+static void spot_rates(const imp_motion *motion, double clock, double *rate)
 {
     const imp_world *world = motion->world;
     for (int p = 0, c = 0; p < world->pair_count; p++) {
@@ -143,7 +143,7 @@ static void spot_rates(const impact_motion *motion, double clock, double *rate)
 }
 
 /* What is still is balanced by its reactions. */
-static void clear_still_loads(impact_motion *motion)
+static void clear_still_loads(imp_motion *motion)
 {
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
@@ -155,7 +155,7 @@ static void clear_still_loads(impact_motion *motion)
 
 int imp_motion_rates(double tau, const double *y, double *rate, void *context)
 {
-    impact_motion *motion = context;
+    imp_motion *motion = context;
     imp_world *world = motion->world;
     imp_motion_unpack(motion, y, motion->scratch);
     if (!imp_motion_load(motion, imp_motion_clocked(motion) ? y[Y_TIME] : tau, motion->scratch)) return -1;
@@ -232,7 +232,7 @@ static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_
 }
 
 /* A custom force's edge may answer anything. */
-static bool edges_are_finite(impact_motion *motion, double t, const double *value, int count)
+static bool edges_are_finite(imp_motion *motion, double t, const double *value, int count)
 {
     for (int k = 0; k < count; k++) {
         if (isfinite(value[k])) continue;
@@ -244,7 +244,7 @@ static bool edges_are_finite(impact_motion *motion, double t, const double *valu
 
 int imp_motion_root_values(double tau, const double *y, double *value, void *context)
 {
-    impact_motion *motion = context;
+    imp_motion *motion = context;
     imp_world *world = motion->world;
     imp_state *states = motion->scratch;
     imp_motion_unpack(motion, y, states);

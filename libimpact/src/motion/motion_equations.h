@@ -21,20 +21,20 @@ enum {
 };
 
 /* Where a driven world's y ends: the drives' work. */
-static inline int imp_motion_drive(const impact_motion *motion) { return motion->size - 1; }
+static inline int imp_motion_drive(const imp_motion *motion) { return motion->size - 1; }
 
 /* Between the bodies' states and the integrated state y; static bodies' states are left as they are. */
-void imp_motion_pack(const impact_motion *motion, double t, const imp_state *states, double *y);
-void imp_motion_unpack(const impact_motion *motion, const double *y, imp_state *states);
+void imp_motion_pack(const imp_motion *motion, double t, const imp_state *states, double *y);
+void imp_motion_unpack(const imp_motion *motion, const double *y, imp_state *states);
 /* What each component of y is measured by where it passes zero: 1, or of a large body its size, speed and angular
  * momentum. */
-void imp_motion_measures(const impact_motion *motion, const imp_state *states, double *measure);
+void imp_motion_measures(const imp_motion *motion, const imp_state *states, double *measure);
 
 /* Whether the variable of integration is not time. */
-static inline bool imp_motion_clocked(const impact_motion *motion) { return motion->sliding || motion->creeping; }
+static inline bool imp_motion_clocked(const imp_motion *motion) { return motion->sliding || motion->creeping; }
 
 /* dt/dtau, for the touches as they stand. */
-double imp_motion_clock(const impact_motion *motion);
+double imp_motion_clock(const imp_motion *motion);
 
 /* How fast any point of the body moves at most, m/s. */
 double imp_motion_speed(const imp_body *body, const imp_state *state);

@@ -7,7 +7,7 @@
 #include "motion/motion_meet.h"
 
 /* Every body's flight from here; a body whose flight nothing has changed goes on with it. */
-static impact_status board(impact_motion *motion, const imp_state *states)
+static impact_status board(imp_motion *motion, const imp_state *states)
 {
     const imp_world *world = motion->world;
     if (!motion->flyers)
@@ -17,7 +17,7 @@ static impact_status board(impact_motion *motion, const imp_state *states)
     return IMPACT_OK;
 }
 
-static void fly(const impact_motion *motion, double dt, imp_state *states)
+static void fly(const imp_motion *motion, double dt, imp_state *states)
 {
     const imp_world *world = motion->world;
     for (int i = 0; i < world->body_count; i++)
@@ -25,7 +25,7 @@ static void fly(const impact_motion *motion, double dt, imp_state *states)
 }
 
 /* What ends the stretch first; *dt is shortened to it. */
-static imp_end find_end(impact_motion *motion, double *dt)
+static imp_end find_end(imp_motion *motion, double *dt)
 {
     imp_world *world = motion->world;
     imp_end end = {IMP_END_TIME, 0};
@@ -40,7 +40,7 @@ static imp_end find_end(impact_motion *motion, double *dt)
 
 /* The stretch as a piece of motion. */
 typedef struct flight_piece {
-    const impact_motion *motion;
+    const imp_motion *motion;
     double t, dt, t_event;
 } flight_piece;
 
@@ -53,20 +53,20 @@ static imp_state state_at(const flight_piece *piece, int body, double s)
 
 static double time_at(const flight_piece *piece, double s) { return s < 1 ? piece->t + s * piece->dt : piece->t_event; }
 
-static imp_pose pose_at(void *piece, int body, double s)
+static imp_pose flight_pose(void *piece, int body, double s)
 {
     const imp_state state = state_at(piece, body, s);
     return (imp_pose){time_at(piece, s), state.x, state.q};
 }
 
-static impact_key key_at(void *piece, int body, double s)
+static impact_key flight_key(void *piece, int body, double s)
 {
     const imp_world *world = ((const flight_piece *)piece)->motion->world;
     const imp_state state = state_at(piece, body, s);
     return imp_key_of(&world->bodies[body], body, time_at(piece, s), &state, world->gravity, (qvec3){0, 0, 0});
 }
 
-impact_status imp_motion_fly(impact_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
+impact_status imp_motion_fly(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
                              imp_end *end)
 {
     imp_world *world = motion->world;
@@ -87,7 +87,7 @@ impact_status imp_motion_fly(impact_motion *motion, double *t, double t_end, imp
     }
     fly(motion, dt, states);
     flight_piece way = {motion, *t, dt, t_event};
-    const imp_piece piece = {*t, t_event, &way, key_at, pose_at, states, &motion->works};
+    const imp_piece piece = {*t, t_event, &way, flight_key, flight_pose, states, &motion->works};
     if (sampler->piece && !sampler->piece(sampler->context, &piece)) status = IMPACT_ESINK;
     for (int i = 0; i < world->body_count; i++) {
         motion->flyers[i].now = states[i];

@@ -12,9 +12,9 @@
 
 /* ---- steps ---- */
 
-static double *state_before(const impact_motion *motion) { return motion->probe + 3 * motion->size; }
+static double *state_before(const imp_motion *motion) { return motion->probe + 3 * motion->size; }
 
-double imp_motion_step_limit(impact_motion *motion, const double *y)
+double imp_motion_step_limit(imp_motion *motion, const double *y)
 {
     imp_motion_unpack(motion, y, motion->scratch);
     return fmin(imp_field_step_limit(motion->world, motion->scratch, motion->loads),
@@ -29,7 +29,7 @@ static bool has_custom_force(const imp_world *world)
 }
 
 /* The last step's defect at tau, over the error that is allowed. */
-static double defect(impact_motion *motion, double tau, double h)
+static double defect(imp_motion *motion, double tau, double h)
 {
     const int size = motion->size;
     double *p = motion->probe, *slope = p + size, *rate = slope + size, worst = 0;
@@ -42,7 +42,7 @@ static double defect(impact_motion *motion, double tau, double h)
 }
 
 /* Asked at thirds of the step. Leaves the touches as they are at the step's end. */
-static bool step_is_seen(impact_motion *motion, double tau, const double *y)
+static bool step_is_seen(imp_motion *motion, double tau, const double *y)
 {
     if (!has_custom_force(motion->world)) return true;
     double low, high;
@@ -53,7 +53,7 @@ static bool step_is_seen(impact_motion *motion, double tau, const double *y)
     return seen;
 }
 
-impact_status imp_motion_step(impact_motion *motion, double stop, double *tau, double *y, bool *found)
+impact_status imp_motion_step(imp_motion *motion, double stop, double *tau, double *y, bool *found)
 {
     enum { REFUSALS = 10 };
     const double tau_before = *tau;
@@ -73,7 +73,7 @@ impact_status imp_motion_step(impact_motion *motion, double stop, double *tau, d
 
 /* ---- losses ---- */
 
-bool imp_motion_loss_falls(impact_motion *motion, const double *y)
+bool imp_motion_loss_falls(imp_motion *motion, const double *y)
 {
     const double *before = state_before(motion);
     motion->last_fall = 0;
@@ -90,7 +90,7 @@ bool imp_motion_loss_falls(impact_motion *motion, const double *y)
     return true;
 }
 
-bool imp_motion_take_back(impact_motion *motion, double *y)
+bool imp_motion_take_back(imp_motion *motion, double *y)
 {
     motion->distrusted = !motion->retried;
     if (motion->retried) return false;
@@ -102,7 +102,7 @@ bool imp_motion_take_back(impact_motion *motion, double *y)
 
 /* ---- time ---- */
 
-bool imp_motion_finite_or_back(const impact_motion *motion, double *y)
+bool imp_motion_finite_or_back(const imp_motion *motion, double *y)
 {
     double sum = 0;
     for (int i = 0; i < motion->size; i++) sum += 0 * y[i];
@@ -111,7 +111,7 @@ bool imp_motion_finite_or_back(const impact_motion *motion, double *y)
     return false;
 }
 
-bool imp_motion_gains(impact_motion *motion, double t)
+bool imp_motion_gains(imp_motion *motion, double t)
 {
     enum { WINDOW = 100000 };
     if (++motion->pace_steps < WINDOW) return true;
@@ -124,14 +124,14 @@ bool imp_motion_gains(impact_motion *motion, double t)
 /* ---- words ---- */
 
 /* How fast a body crosses its own size, 1/s. */
-static double quickness(const impact_motion *motion, int i)
+static double quickness(const imp_motion *motion, int i)
 {
     const imp_body *body = &motion->world->bodies[i];
     const double push = qvec3_norm(motion->loads[i].force) * body->inverse_mass;
     return imp_motion_speed(body, &motion->scratch[i]) / body->radius + sqrt(push / body->radius);
 }
 
-impact_status imp_motion_stuck(impact_motion *motion, const char *what, double t)
+impact_status imp_motion_stuck(imp_motion *motion, const char *what, double t)
 {
     const imp_world *world = motion->world;
     int quickest = -1;

@@ -11,6 +11,7 @@
  * same where omega is constant.
  */
 #include "motion/motion_meet.h"
+#include "motion/psi.h"
 #include "world/world_gap.h"
 
 #include <impact/flight.h>
@@ -68,26 +69,10 @@ imp_state imp_flyer_at(const imp_flyer *flyer, const imp_body *body, qvec3 gravi
 
 /* ---- psi ---- */
 
-/* One turning body's part of it. */
-typedef struct turning {
-    const imp_body *body;
-    qvec3 m, rate;
-    double h;
-} turning;
-
-typedef struct proof {
-    double gap, slope; /* psi and its derivative at 0 */
-    double speed;      /* n.v */
-    double bend, jolt; /* of -T^2/2 and -T^3/6 */
-    double spread;     /* no less than the turning's part of bend, either way */
-    turning body[2];
-    int count;
-} proof;
-
-static void add_turning(proof *p, const imp_body *body, const imp_flyer *flyer, const imp_state *state, qvec3 towards)
+static void add_flyer(imp_psi *p, const imp_body *body, const imp_flyer *flyer, const imp_state *state, qvec3 towards)
 {
     if (!flyer->turns) return;
-    turning *b = &p->body[p->count++];
+    imp_turning *b = &p->body[p->count++];
     b->body = body;
     b->m = quat_rotate_inverse(state->q, towards);
     const qvec3 momentum = quat_rotate_inverse(state->q, state->momentum), i = body->inverse_moments;
@@ -100,50 +85,14 @@ static void add_turning(proof *p, const imp_body *body, const imp_flyer *flyer, 
     p->slope -= qvec3_dot(b->rate, point);
     p->spread += body->radius * qvec3_norm(second);
     if (qvec3_norm(second) > 0) p->bend += imp_world_support(body, second, &point);
-    p->jolt += body->radius * flyer->jolt;
-}
-
-static double psi(const proof *p, double T, double *derivative)
-{
-    double value = p->gap + T * (p->speed - T * (0.5 * p->bend + T * p->jolt / 6)),
-           d = p->speed - T * (p->bend + 0.5 * T * p->jolt);
-    for (int k = 0; k < p->count; k++) {
-        qvec3 point;
-        value -=
-            imp_world_support(p->body[k].body, qvec3_axpy(T, p->body[k].rate, p->body[k].m), &point) - p->body[k].h;
-        d -= qvec3_dot(p->body[k].rate, point);
-    }
-    *derivative = d;
-    return value;
-}
-
-/* The largest T <= limit, or next to it, with psi(T) >= 0. Newton's iteration comes down on the zero of the concave
- * psi from the right; a chord over its last half leads to before it. */
-static double safe_step(const proof *p, double limit)
-{
-    enum { TRIES = 60 };
-    double derivative, T = fmin(limit, impact_flight_fall_time(p->gap, p->slope, -p->bend)), value = 0;
-    for (int i = 0; i < TRIES && T > 0; i++) {
-        value = psi(p, T, &derivative);
-        if (value >= 0) return T;
-        if (value > -1e-3 * p->gap) break;
-        const double next = T - value / derivative;
-        if (!(next < T * (1 - 1e-12))) break;
-        T = fmax(next, 0);
-    }
-    double half = 0.5 * T, at_half = psi(p, half, &derivative);
-    for (int i = 0; i < TRIES && at_half < 0; i++) {
-        T = half, value = at_half;
-        half = 0.5 * T, at_half = psi(p, half, &derivative);
-    }
-    return at_half < 0 ? 0 : half + (T - half) * (at_half / (at_half - value));
+    p->jerk += body->radius * flyer->jolt;
 }
 
 /* ---- far away: bounding balls ---- */
 
 /* Nothing can happen before this: of two bodies that fall alike, which move in a straight line to each other; of a
  * body and a plane. The balls are a little too large, so that the time is never late. */
-static double balls_meet(const imp_world *world, const imp_pair *pair, const imp_state *states)
+static double balls_fly_until(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const double larger = 1e-6;
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
@@ -166,7 +115,8 @@ static double balls_meet(const imp_world *world, const imp_pair *pair, const imp
 /* ---- advancement ---- */
 
 /* A rate of the gap that only rounding makes. */
-static double still_rate(const imp_world *world, const imp_pair *pair, const imp_flyer *flyers, const imp_state *states)
+static double flyers_still_rate(const imp_world *world, const imp_pair *pair, const imp_flyer *flyers,
+                                const imp_state *states)
 {
     double speed = 0;
     for (int k = 0; k < 2; k++) {
@@ -178,44 +128,44 @@ static double still_rate(const imp_world *world, const imp_pair *pair, const imp
     return imp_still_rate(world, speed);
 }
 
-static bool turns(const imp_pair *pair, const imp_flyer *flyers)
+static bool either_turns(const imp_pair *pair, const imp_flyer *flyers)
 {
     return flyers[pair->body1].turns || flyers[pair->body2].turns;
 }
 
 /* A step over which the gap cannot fall to zero; of bodies that do not turn, the one in which the parabola along the
  * normal does. */
-static double step_before(const imp_world *world, const imp_pair *pair, const imp_flyer *flyers,
-                          const imp_state *states, const impact_contact *contact, double gap, double limit)
+static double flight_step_before(const imp_world *world, const imp_pair *pair, const imp_flyer *flyers,
+                                 const imp_state *states, const impact_contact *contact, double gap, double limit)
 {
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const qvec3 n = contact->normal;
     const double speed = qvec3_dot(n, qvec3_sub(s1->v, s2->v));
     const double pull = b2->is_static ? qvec3_dot(n, world->gravity) : 0;
-    if (!turns(pair, flyers)) return impact_flight_fall_time(gap, speed, pull);
-    proof p = {.gap = gap, .speed = speed, .slope = speed, .bend = fmax(0, -pull)};
-    add_turning(&p, b1, &flyers[pair->body1], s1, qvec3_neg(n));
-    add_turning(&p, b2, &flyers[pair->body2], s2, n);
-    return safe_step(&p, limit);
+    if (!either_turns(pair, flyers)) return impact_flight_fall_time(gap, speed, pull);
+    imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = fmax(0, -pull)};
+    add_flyer(&p, b1, &flyers[pair->body1], s1, qvec3_neg(n));
+    add_flyer(&p, b2, &flyers[pair->body2], s2, n);
+    return imp_psi_safe_step(&p, fmin(limit, impact_flight_fall_time(p.gap, p.slope, -p.bend)));
 }
 
 /* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its
  * tangents. */
-static double step_behind(const imp_world *world, const imp_pair *pair, const imp_flyer *flyers,
-                          const imp_state *states, const impact_contact *contact)
+static double flight_step_behind(const imp_world *world, const imp_pair *pair, const imp_flyer *flyers,
+                                 const imp_state *states, const impact_contact *contact)
 {
     const qvec3 n = contact->normal;
     const double deep = fmax(0, -contact->gap), pull = qvec3_dot(n, world->gravity);
-    proof p = {.slope = qvec3_dot(n, states[pair->body1].v)};
-    add_turning(&p, &world->bodies[pair->body1], &flyers[pair->body1], &states[pair->body1], qvec3_neg(n));
+    imp_psi p = {.slope = qvec3_dot(n, states[pair->body1].v)};
+    add_flyer(&p, &world->bodies[pair->body1], &flyers[pair->body1], &states[pair->body1], qvec3_neg(n));
     const double bend = p.count > 0 ? fmax(0, pull) + p.spread : pull;
     double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
-    if (p.jolt == 0) return high;
-    high = fmin(high, 2 * fmax(cbrt(6 * deep / p.jolt), fmax(sqrt(6 * fmax(0, -p.slope) / p.jolt), 0)));
+    if (p.jerk == 0) return high;
+    high = fmin(high, 2 * fmax(cbrt(6 * deep / p.jerk), fmax(sqrt(6 * fmax(0, -p.slope) / p.jerk), 0)));
     for (int i = 0; i < 100 && high > low * (1 + 1e-9); i++) {
         const double T = 0.5 * (low + high);
-        *(T * (p.slope + T * (0.5 * bend + T * p.jolt / 6)) < deep ? &low : &high) = T;
+        *(T * (p.slope + T * (0.5 * bend + T * p.jerk / 6)) < deep ? &low : &high) = T;
     }
     return low;
 }
@@ -228,7 +178,7 @@ imp_meeting_time imp_motion_meet(imp_world *world, imp_pair *pair, const imp_fly
     const int body[2] = {pair->body1, pair->body2};
     for (int k = 0; k < 2; k++) states[body[k]] = flyers[body[k]].now;
     const double touching = imp_world_touching_distance(world, pair, states);
-    double dt = balls_meet(world, pair, states);
+    double dt = balls_fly_until(world, pair, states);
     bool leaving = false;
     for (int i = 0; i < STEPS && dt <= horizon; i++) {
         for (int k = 0; k < 2; k++)
@@ -237,17 +187,17 @@ imp_meeting_time imp_motion_meet(imp_world *world, imp_pair *pair, const imp_fly
         imp_world_gap(world, pair, states, &contact);
         double step, gap = contact.lower;
         if (pair->beyond) {
-            step = step_behind(world, pair, flyers, states, &contact);
+            step = flight_step_behind(world, pair, flyers, states, &contact);
         } else {
             const double rate = imp_world_gap_rate(world, pair, states, &contact);
-            const bool still = fabs(rate) <= still_rate(world, pair, flyers, states);
-            if (dt == 0) leaving = fabs(gap) <= pair->slack && (still || (rate > 0 && turns(pair, flyers)));
+            const bool still = fabs(rate) <= flyers_still_rate(world, pair, flyers, states);
+            if (dt == 0) leaving = fabs(gap) <= pair->slack && (still || (rate > 0 && either_turns(pair, flyers)));
             leaving = leaving && gap <= touching;
             const double rounding = IMP_GAP_ROUNDING * imp_world_place_scale(world, pair, states);
             if (leaving) gap += pair->slack;
             if (gap <= rounding && (dt > 0 || rate < 0)) return (imp_meeting_time){dt, true};
             if (dt >= horizon) return never;
-            step = step_before(world, pair, flyers, states, &contact, gap, horizon - dt);
+            step = flight_step_before(world, pair, flyers, states, &contact, gap, horizon - dt);
         }
         if (!(dt + step <= horizon)) return never;
         if (dt + step == dt) return (imp_meeting_time){dt, true};

@@ -15,7 +15,7 @@
 /* Slip faster than this part of the slip scale turns no faster than the motion goes. */
 static const double grown_up = 1e-2;
 
-static impact_status allocate_state(impact_motion *motion)
+static impact_status allocate_state(imp_motion *motion)
 {
     const imp_world *world = motion->world;
     if (motion->y) return IMPACT_OK;
@@ -36,7 +36,7 @@ static impact_status allocate_state(impact_motion *motion)
 }
 
 /* Makes the integrator of the method the one at work, creating it when it is first needed. */
-static impact_status choose_integrator(impact_motion *motion, impact_ode_method method)
+static impact_status choose_integrator(imp_motion *motion, impact_ode_method method)
 {
     impact_ode **ode = method == IMPACT_ODE_ADAMS ? &motion->adams : &motion->bdf;
     impact_status status = allocate_state(motion);
@@ -60,7 +60,7 @@ static impact_status choose_integrator(impact_motion *motion, impact_ode_method 
     return status;
 }
 
-static void count_work(impact_motion *motion)
+static void count_work(imp_motion *motion)
 {
     impact_ode_counts adams = {0}, bdf = {0};
     if (motion->adams) adams = impact_ode_count(motion->adams);
@@ -73,7 +73,7 @@ static void count_work(impact_motion *motion)
 
 /* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does.
  * young: of those alone whose slip has just begun, or of the others. */
-static double slowest_slip(const impact_motion *motion, bool young)
+static double slowest_slip(const imp_motion *motion, bool young)
 {
     double slowest = INFINITY;
     for (int c = 0; c < motion->persist.count; c++) {
@@ -86,7 +86,7 @@ static double slowest_slip(const impact_motion *motion, bool young)
 }
 
 /* Whether some slip dies out again that has just begun. */
-static bool young_fades(const impact_motion *motion)
+static bool young_fades(const imp_motion *motion)
 {
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
@@ -98,7 +98,7 @@ static bool young_fades(const impact_motion *motion)
 }
 
 /* What has its direction from itself again is not young any more. */
-static void grow_up(impact_motion *motion)
+static void grow_up(imp_motion *motion)
 {
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
@@ -109,7 +109,7 @@ static void grow_up(impact_motion *motion)
 }
 
 /* Ends the onset of every contact that slides fast enough to have a direction of its own; tells whether one did. */
-static bool end_onsets(impact_motion *motion)
+static bool end_onsets(imp_motion *motion)
 {
     bool ended = false;
     for (int c = 0; c < motion->persist.count; c++) {
@@ -124,7 +124,7 @@ static bool end_onsets(impact_motion *motion)
 
 /* Friction turns with the slip whose onset has ended: whether a contact now pulls, or rolls with more friction than it
  * has. No root function tells, for it does not fall through zero: it jumps. */
-static bool modes_break(impact_motion *motion, double t, const double *y)
+static bool modes_break(imp_motion *motion, double t, const double *y)
 {
     imp_persist *persist = &motion->persist;
     double greatest = 0;
@@ -142,7 +142,7 @@ static bool modes_break(impact_motion *motion, double t, const double *y)
 }
 
 /* The speed below which slip slows the clock: small against the motion and the weight of the sliding bodies. */
-static double slip_scale(const impact_motion *motion, const imp_state *states)
+static double slip_scale(const imp_motion *motion, const imp_state *states)
 {
     double scale = 0;
     for (int c = 0; c < motion->persist.count; c++) {
@@ -157,7 +157,7 @@ static double slip_scale(const impact_motion *motion, const imp_state *states)
 
 /* How fast a carried contact may move over its surface before it slows the clock, 1/s: as the body itself moves, about;
  * 0: none is. */
-static double creep_scale(const impact_motion *motion, const imp_state *states)
+static double creep_scale(const imp_motion *motion, const imp_state *states)
 {
     double scale = 0;
     for (int c = 0; c < motion->persist.count; c++) {
@@ -178,7 +178,7 @@ typedef struct last_step_function {
     double t;  /* the clock's zero */
 } last_step_function;
 
-static double last_step_value(impact_motion *motion, last_step_function f, const double *y)
+static double last_step_value(imp_motion *motion, last_step_function f, const double *y)
 {
     if (f.kind == CLOCK) return y[Y_TIME] - f.t;
     imp_motion_unpack(motion, y, motion->scratch);
@@ -189,8 +189,8 @@ static double last_step_value(impact_motion *motion, last_step_function f, const
 }
 
 /* Interpolates the last step where f changes sign between tau = low and high, by the Illinois form of regula falsi. */
-static impact_status find_in_last_step(impact_motion *motion, last_step_function f, double low, double high,
-                                       double *tau, double *y)
+static impact_status find_in_last_step(imp_motion *motion, last_step_function f, double low, double high, double *tau,
+                                       double *y)
 {
     impact_status status = impact_ode_interpolate(motion->ode, low, 0, y);
     double f_low = last_step_value(motion, f, y);
@@ -219,7 +219,7 @@ static impact_status find_in_last_step(impact_motion *motion, last_step_function
 }
 
 /* The state of the last step at time t, and where in the variable of integration that is. */
-static impact_status interpolate_time(impact_motion *motion, double t, double *tau, double *y)
+static impact_status interpolate_time(imp_motion *motion, double t, double *tau, double *y)
 {
     *tau = t;
     if (!imp_motion_clocked(motion)) return impact_ode_interpolate(motion->ode, t, 0, y);
@@ -229,7 +229,7 @@ static impact_status interpolate_time(impact_motion *motion, double t, double *t
 }
 
 /* The event that a root stands for; how deep a gap's closest approach is tells whether its rate's root is one. */
-static imp_end end_of_root(const impact_motion *motion, int root)
+static imp_end end_of_root(const imp_motion *motion, int root)
 {
     const imp_world *world = motion->world;
     if (root < ROOTS_PER_PAIR * world->pair_count) {
@@ -248,7 +248,7 @@ static imp_end end_of_root(const impact_motion *motion, int root)
 
 /* Whether a root is that of a value's rate: the value is lowest here. If it is below its slack, both its zeros lie in
  * the step. */
-static bool is_lowest_point(const impact_motion *motion, int root, last_step_function *value, double *slack)
+static bool is_lowest_point(const imp_motion *motion, int root, last_step_function *value, double *slack)
 {
     const imp_world *world = motion->world;
     const int pair = root / ROOTS_PER_PAIR, edge_root = root - ROOTS_PER_PAIR * world->pair_count;
@@ -264,7 +264,7 @@ static bool is_lowest_point(const impact_motion *motion, int root, last_step_fun
 
 /* Looks through the roots found at *tau for the event that ends the stretch; a zero that the step hid moves *tau and y
  * back to it. */
-static impact_status pick_event(impact_motion *motion, double tau_before, double *tau, double *y, imp_end *end)
+static impact_status pick_event(imp_motion *motion, double tau_before, double *tau, double *y, imp_end *end)
 {
     for (int root = 0; root < motion->roots; root++) {
         last_step_function value;
@@ -284,7 +284,7 @@ static impact_status pick_event(impact_motion *motion, double tau_before, double
     return IMPACT_OK;
 }
 
-bool imp_motion_also_crossed(impact_motion *motion, imp_end *end)
+bool imp_motion_also_crossed(imp_motion *motion, imp_end *end)
 {
     const int first = ROOTS_PER_PAIR * motion->world->pair_count, edges = imp_field_edge_count(motion->world);
     for (int edge = 0; motion->found && edge < edges; edge++) {
@@ -299,7 +299,7 @@ bool imp_motion_also_crossed(impact_motion *motion, imp_end *end)
 
 /* From the root that was watched for, the slack below zero and to 1e-14 of the step, one Newton step back to where the
  * gap is zero. */
-static impact_status polish_gap(impact_motion *motion, int pair, double *tau, double *y)
+static impact_status polish_gap(imp_motion *motion, int pair, double *tau, double *y)
 {
     imp_world *world = motion->world;
     impact_contact contact;
@@ -315,7 +315,7 @@ static impact_status polish_gap(impact_motion *motion, int pair, double *tau, do
     return impact_ode_interpolate(motion->ode, polished, 0, y);
 }
 
-static impact_status emit_until(impact_motion *motion, double t, imp_state *states, imp_sampler *sampler, double *y)
+static impact_status emit_until(imp_motion *motion, double t, imp_state *states, imp_sampler *sampler, double *y)
 {
     while (imp_motion_sample_time(sampler) <= t) {
         double tau;
@@ -329,14 +329,14 @@ static impact_status emit_until(impact_motion *motion, double t, imp_state *stat
 }
 
 /* What the integrator has to say is of its own insides. */
-static impact_status fail(impact_motion *motion, impact_status status, double t)
+static impact_status fail(imp_motion *motion, impact_status status, double t)
 {
     if (status == IMPACT_EINTEGRATOR || status == IMPACT_EDOMAIN)
         return imp_motion_stuck(motion, "the integrator cannot go on: the motion is not smooth, or without bound,", t);
     return status;
 }
 
-static impact_status too_rough(impact_motion *motion, double from, double to, long steps)
+static impact_status too_rough(imp_motion *motion, double from, double to, long steps)
 {
     char what[160];
     snprintf(
@@ -348,7 +348,7 @@ static impact_status too_rough(impact_motion *motion, double from, double to, lo
 }
 
 /* Steps until an event or t_end; y at the end is the state at *t. */
-static impact_status integrate(impact_motion *motion, double *t, double t_end, double *y, imp_state *states,
+static impact_status integrate(imp_motion *motion, double *t, double t_end, double *y, imp_state *states,
                                imp_sampler *sampler, imp_end *end)
 {
     enum { MAX_STILL = 1000, LOOK = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
@@ -427,14 +427,14 @@ static impact_status integrate(impact_motion *motion, double *t, double t_end, d
 
 /* Whether custom forces brake so much faster than the motion goes on that Adams' short steps, a hundredth of their
  * time, would cost more than BDF's many. */
-static bool is_braked(const impact_motion *motion, double t, double t_end, const imp_state *states)
+static bool is_braked(const imp_motion *motion, double t, double t_end, const imp_state *states)
 {
     double turning;
     return imp_field_brake(motion->world, t, states, &turning) > 30 * turning + 50 / (t_end - t);
 }
 
 /* Which variable and which method the stretch needs. */
-static impact_status choose_road(impact_motion *motion, double t, double t_end, const imp_state *states)
+static impact_status choose_road(imp_motion *motion, double t, double t_end, const imp_state *states)
 {
     if (motion->persist.count > 0) imp_persist_solve(&motion->persist, motion->world, states, motion->loads);
     motion->slip_scale = slip_scale(motion, states);
@@ -450,7 +450,7 @@ static impact_status choose_road(impact_motion *motion, double t, double t_end, 
     return choose_integrator(motion, stiff != other ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
 }
 
-static double stretch_tolerance(const impact_motion *motion)
+static double stretch_tolerance(const imp_motion *motion)
 {
     double tolerance = motion->tolerance;
     if (motion->persist.count == 0)
@@ -462,7 +462,7 @@ static double stretch_tolerance(const impact_motion *motion)
     return tolerance;
 }
 
-static impact_status choose_tolerance(impact_motion *motion, const imp_state *states)
+static impact_status choose_tolerance(imp_motion *motion, const imp_state *states)
 {
     motion->relative = stretch_tolerance(motion);
     imp_motion_measures(motion, states, motion->absolute);
@@ -470,8 +470,8 @@ static impact_status choose_tolerance(impact_motion *motion, const imp_state *st
     return impact_ode_set_tolerances(motion->ode, motion->relative, motion->absolute);
 }
 
-impact_status imp_motion_integrate(impact_motion *motion, double *t, double t_end, imp_state *states,
-                                   imp_sampler *sampler, imp_end *end)
+impact_status imp_motion_integrate(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
+                                   imp_end *end)
 {
     memcpy(motion->scratch, states,
            sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */

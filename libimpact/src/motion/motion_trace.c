@@ -36,7 +36,7 @@ void imp_motion_trace_free(struct imp_trace *trace, imp_arena *arena)
     imp_arena_give(arena, trace);
 }
 
-static impact_status make_trace(impact_motion *motion)
+static impact_status make_trace(imp_motion *motion)
 {
     if (motion->trace) return IMPACT_OK;
     imp_arena *arena = motion->world->arena;
@@ -57,7 +57,7 @@ static impact_status make_trace(impact_motion *motion)
 }
 
 /* The bodies' accelerations and torques from the rates of y. */
-static void take_rates(const impact_motion *motion, const double *rate, slot *place)
+static void take_rates(const imp_motion *motion, const double *rate, slot *place)
 {
     const double clock = imp_motion_clocked(motion) ? 1 / rate[Y_TIME] : 1;
     const double *b = rate + Y_BODIES + Y_VELOCITY;
@@ -69,7 +69,7 @@ static void take_rates(const impact_motion *motion, const double *rate, slot *pl
     }
 }
 
-static void fill(impact_motion *motion, slot *place, double s, double tau, const double *y)
+static void fill(imp_motion *motion, slot *place, double s, double tau, const double *y)
 {
     memcpy(place->states, motion->scratch, sizeof *place->states * (size_t)motion->world->body_count);
     imp_motion_unpack(motion, y, place->states);
@@ -83,7 +83,7 @@ static double tau_at(const struct imp_trace *trace, double s)
     return s < 1 ? trace->tau[0] + s * (trace->tau[1] - trace->tau[0]) : trace->tau[1];
 }
 
-static slot *slot_at(impact_motion *motion, double s)
+static slot *slot_at(imp_motion *motion, double s)
 {
     struct imp_trace *trace = motion->trace;
     const int quarter = (int)(QUARTERS * s);
@@ -94,15 +94,15 @@ static slot *slot_at(impact_motion *motion, double s)
     return place;
 }
 
-static imp_pose pose_at(void *context, int body, double s)
+static imp_pose trace_pose(void *context, int body, double s)
 {
     const slot *place = slot_at(context, s);
     return (imp_pose){place->t, place->states[body].x, place->states[body].q};
 }
 
-static impact_key key_at(void *context, int body, double s)
+static impact_key trace_key(void *context, int body, double s)
 {
-    impact_motion *motion = context;
+    imp_motion *motion = context;
     slot *place = slot_at(motion, s);
     if (!place->rated) {
         impact_ode_interpolate(motion->ode, tau_at(motion->trace, s), 1, motion->trace->rate);
@@ -113,7 +113,7 @@ static impact_key key_at(void *context, int body, double s)
                       place->torque[body]);
 }
 
-impact_status imp_motion_trace_start(impact_motion *motion, double t, const imp_state *states)
+impact_status imp_motion_trace_start(imp_motion *motion, double t, const imp_state *states)
 {
     const impact_status status = make_trace(motion);
     if (status != IMPACT_OK) return status;
@@ -128,7 +128,7 @@ impact_status imp_motion_trace_start(impact_motion *motion, double t, const imp_
     return IMPACT_OK;
 }
 
-bool imp_motion_trace_step(impact_motion *motion, const imp_sampler *sampler, double tau_before, double tau,
+bool imp_motion_trace_step(imp_motion *motion, const imp_sampler *sampler, double tau_before, double tau,
                            const double *y)
 {
     struct imp_trace *trace = motion->trace;
@@ -138,8 +138,8 @@ bool imp_motion_trace_step(impact_motion *motion, const imp_sampler *sampler, do
     const imp_works works = {y[Y_FORCE_WORK], y[Y_DAMPING], y[Y_SLIDING],
                              motion->world->driven ? y[imp_motion_drive(motion)] : 0};
     const imp_piece piece = {
-        trace->slots[0].t, y[Y_TIME], motion, key_at, pose_at, trace->slots[QUARTERS].states, &works};
-    key_at(motion, 0, 1); /* the next step begins with these rates */
+        trace->slots[0].t, y[Y_TIME], motion, trace_key, trace_pose, trace->slots[QUARTERS].states, &works};
+    trace_key(motion, 0, 1); /* the next step begins with these rates */
     const bool taken = sampler->piece(sampler->context, &piece);
     const slot end = trace->slots[QUARTERS]; /* where the next step begins */
     trace->slots[QUARTERS] = trace->slots[0];

@@ -108,7 +108,7 @@ static int root_of(int *root, int i)
 }
 
 /* Where the pair stands: its gap (m), and whether that counts, within the bounds of a plane. */
-static bool look(imp_world *world, int p, const imp_state *states, impact_contact *contact)
+static bool pair_gap(imp_world *world, int p, const imp_state *states, impact_contact *contact)
 {
     return imp_world_gap(world, &world->pairs[p], states, contact) >= 0 &&
            imp_world_inside_bounds(world, &world->pairs[p], states, contact) >= 0;
@@ -135,7 +135,7 @@ static int find_closed(imp_pile *pile, imp_world *world, const imp_state *states
         impact_contact contact;
         const bool held = next && pile->memory[1][p].active;
         if (!held && imp_world_distance_bound(world, pair, states) > slack) continue;
-        if (!look(world, p, states, &contact)) continue;
+        if (!pair_gap(world, p, states, &contact)) continue;
         if (!(contact.gap <= slack) && !goes_on(pile, world, p, next, h, &contact)) continue;
         pile->member[count++] = p;
         if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)

@@ -16,6 +16,7 @@
  * over.
  */
 #include "motion/search.h"
+#include "motion/psi.h"
 #include "world/world_gap.h"
 
 #include <impact/flight.h>
@@ -38,7 +39,7 @@ static bool fall_alike(const imp_search *s)
 
 static bool is_plane(const imp_body *body) { return body->shape.kind == IMPACT_PLANE; }
 
-static qvec3 apart(const imp_search *s, double t, qvec3 *velocity)
+static qvec3 centres_apart(const imp_search *s, double t, qvec3 *velocity)
 {
     qvec3 v1, v2;
     const qvec3 x1 = imp_segment_place(s->segment[0], s->body[0], t, &v1);
@@ -67,7 +68,7 @@ static double balls_meet(const imp_search *s, double from)
     const double larger = 1e-6, reach = s->body[0]->radius + (is_plane(s->body[1]) ? 0 : s->body[1]->radius);
     qvec3 w;
     if (s->beyond) return 0;
-    const qvec3 d = apart(s, from, &w);
+    const qvec3 d = centres_apart(s, from, &w);
     if (is_plane(s->body[1])) {
         if (!falls(s->segment[0])) return 0;
         const qvec3 n = plane_normal(s);
@@ -82,21 +83,6 @@ static double balls_meet(const imp_search *s, double from)
 
 /* ---- psi ---- */
 
-typedef struct turning {
-    const imp_body *body;
-    qvec3 m, rate;
-    double h;
-} turning;
-
-typedef struct proof {
-    double gap, slope; /* psi and its derivative at 0 */
-    double speed;      /* w */
-    double bend, jerk; /* of -T^2/2 and -T^3/6 */
-    double spread;     /* no less than the turning's part of bend, either way */
-    turning body[2];
-    int count;
-} proof;
-
 static bool turns(const imp_search *s, int k)
 {
     if (imp_is_ball(s->body[k]) || s->segment[k]->kind == IMP_SEGMENT_REST) return false;
@@ -104,12 +90,12 @@ static bool turns(const imp_search *s, int k)
     return s->segment[k]->kind == IMP_SEGMENT_DENSE || L.x != 0 || L.y != 0 || L.z != 0;
 }
 
-static void add_turning(proof *p, const imp_search *s, int k, const imp_state *state, qvec3 towards,
+static void add_turning(imp_psi *p, const imp_search *s, int k, const imp_state *state, qvec3 towards,
                         const imp_bounds *bounds)
 {
     if (!turns(s, k)) return;
     const imp_body *body = s->body[k];
-    turning *b = &p->body[p->count++];
+    imp_turning *b = &p->body[p->count++];
     b->body = body;
     b->m = quat_rotate_inverse(state->q, towards);
     const qvec3 momentum = quat_rotate_inverse(state->q, state->momentum), i = body->inverse_moments;
@@ -130,48 +116,18 @@ static void add_turning(proof *p, const imp_search *s, int k, const imp_state *s
     p->jerk += body->radius * s->segment[k]->jerk;
 }
 
-static double psi(const proof *p, double T, double *derivative)
+/* The largest T <= limit, or next to it, with psi(T) >= 0. */
+static double safe_step(const imp_psi *p, double limit)
 {
-    double value = p->gap + T * (p->speed - T * (0.5 * p->bend + T * p->jerk / 6)),
-           d = p->speed - T * (p->bend + 0.5 * T * p->jerk);
-    for (int k = 0; k < p->count; k++) {
-        qvec3 point;
-        value -=
-            imp_world_support(p->body[k].body, qvec3_axpy(T, p->body[k].rate, p->body[k].m), &point) - p->body[k].h;
-        d -= qvec3_dot(p->body[k].rate, point);
-    }
-    *derivative = d;
-    return value;
-}
-
-/* The largest T <= limit, or next to it, with psi(T) >= 0. Newton's iteration comes down on the zero of the concave
- * psi from the right; a chord over its last half leads to before it. */
-static double safe_step(const proof *p, double limit)
-{
-    enum { TRIES = 60 };
-    double derivative, T = fmin(limit, impact_flight_fall_time(p->gap, p->slope, -p->bend)), value = 0;
+    double T = fmin(limit, impact_flight_fall_time(p->gap, p->slope, -p->bend));
     if (p->jerk > 0) T = fmin(T, fmax(cbrt(12 * p->gap / p->jerk), sqrt(12 * fmax(0, p->slope) / p->jerk)));
-    if (!isfinite(T)) return T;
-    for (int i = 0; i < TRIES && T > 0; i++) {
-        value = psi(p, T, &derivative);
-        if (value >= 0) return T;
-        if (value > -1e-3 * p->gap) break;
-        const double next = T - value / derivative;
-        if (!(next < T * (1 - 1e-12))) break;
-        T = fmax(next, 0);
-    }
-    double half = 0.5 * T, at_half = psi(p, half, &derivative);
-    for (int i = 0; i < TRIES && at_half < 0; i++) {
-        T = half, value = at_half;
-        half = 0.5 * T, at_half = psi(p, half, &derivative);
-    }
-    return at_half < 0 ? 0 : half + (T - half) * (at_half / (at_half - value));
+    return isfinite(T) ? imp_psi_safe_step(p, T) : T;
 }
 
 /* ---- advancement ---- */
 
 /* What is known at one time of the search. */
-typedef struct look {
+typedef struct sight {
     imp_state state[2];
     imp_bounds bounds[2];
     impact_contact contact;
@@ -180,9 +136,9 @@ typedef struct look {
     qvec3 pull;    /* relative acceleration */
     double jerk;   /* of both centres, where one of them is no parabola */
     bool parabola;
-} look;
+} sight;
 
-static void look_at(const imp_search *s, double t, look *l)
+static void look_at(const imp_search *s, double t, sight *l)
 {
     l->window = fmin(s->segment[0]->t1, s->segment[1]->t1) - t;
     l->parabola = true;
@@ -206,7 +162,7 @@ static void look_at(const imp_search *s, double t, look *l)
 }
 
 /* A, where the centres move on no parabolas; each damped one's falls by itself. */
-static double bend_of(const imp_search *s, const look *l, qvec3 n)
+static double bend_of(const imp_search *s, const sight *l, qvec3 n)
 {
     if (l->parabola) return fmax(0, -qvec3_dot(n, l->pull));
     double bend = 0, others = 0;
@@ -222,12 +178,12 @@ static double bend_of(const imp_search *s, const look *l, qvec3 n)
 }
 
 /* A step over which the gap cannot fall to zero; of bodies that do not turn, on parabolas, the one in which it does. */
-static double step_before(const imp_search *s, const look *l, double gap)
+static double step_before(const imp_search *s, const sight *l, double gap)
 {
     const qvec3 n = l->contact.normal;
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     if (l->parabola && !turns(s, 0) && !turns(s, 1)) return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
-    proof p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
+    imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
     add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), &l->bounds[0]);
     add_turning(&p, s, 1, &l->state[1], n, &l->bounds[1]);
     return safe_step(&p, l->window);
@@ -235,12 +191,12 @@ static double step_before(const imp_search *s, const look *l, double gap)
 
 /* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its
  * tangents. */
-static double step_behind(const imp_search *s, const look *l)
+static double step_behind(const imp_search *s, const sight *l)
 {
     const qvec3 n = l->contact.normal;
     const double deep = fmax(0, -l->contact.gap);
     const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0, pull = qvec3_dot(n, l->pull);
-    proof p = {.slope = qvec3_dot(n, l->state[0].v)};
+    imp_psi p = {.slope = qvec3_dot(n, l->state[0].v)};
     add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), &l->bounds[0]);
     const double bend = p.count > 0 || !l->parabola ? fmax(0, pull) + drift + p.spread : pull;
     double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
@@ -254,7 +210,7 @@ static double step_behind(const imp_search *s, const look *l)
 }
 
 /* A rate of the gap that only rounding makes. */
-static double still_rate(const imp_search *s, const look *l)
+static double still_rate(const imp_search *s, const sight *l)
 {
     double speed = 0;
     for (int k = 0; k < 2; k++)
@@ -262,14 +218,14 @@ static double still_rate(const imp_search *s, const look *l)
     return s->still + 1e-9 * speed;
 }
 
-static double reach_of(const imp_search *s, const look *l) { return qvec3_norm(l->state[0].x) + s->body[0]->radius; }
+static double reach_of(const imp_search *s, const sight *l) { return qvec3_norm(l->state[0].x) + s->body[0]->radius; }
 
 /* Between a time before the contact and one behind it, where the gap is below the slack: the Illinois form of regula
  * falsi. */
 static double bisect(const imp_search *s, double low, double gap_low, double high, double gap_high, double slack)
 {
     enum { MOST = 100 };
-    look l;
+    sight l;
     for (int i = 0, side = 0; i < MOST && gap_low != gap_high; i++) {
         double t = (gap_low * high - gap_high * low) / (gap_low - gap_high);
         if (!(t > low && t < high)) t = 0.5 * (low + high);
@@ -312,7 +268,7 @@ static imp_found advance(const imp_search *s, double from, double until)
     bool leaving = false;
     for (int i = 0; i < STEPS && t <= end; i++) {
         if (t > until && !leaving && least == 0) return (imp_found){t, false};
-        look l;
+        sight l;
         look_at(s, t, &l);
         double step, gap = l.contact.lower;
         if (s->beyond) {
@@ -348,7 +304,7 @@ imp_found imp_search_contact(const imp_search *s, double from, double until)
     const bool balls = imp_is_ball(s->body[0]) && imp_is_ball(s->body[1]);
     if (balls && fall_alike(s)) {
         qvec3 w;
-        const qvec3 d = apart(s, from, &w);
+        const qvec3 d = centres_apart(s, from, &w);
         const double R = s->body[0]->radius + s->body[1]->radius, T = line_time(d, w, R);
         const double end = fmin(s->segment[0]->t1, s->segment[1]->t1);
         if (T == INFINITY) return (imp_found){INFINITY, false};

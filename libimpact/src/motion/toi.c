@@ -7,6 +7,7 @@
  */
 #include <quat/rotation.h>
 #include "base/floats.h"
+#include "base/numbers.h"
 #include "motion/toi_proof.h"
 
 enum { MAX_STEPS = 2000, MAX_WAITING = 12, MAX_BALL_STEPS = 4 };
@@ -49,8 +50,6 @@ static double outer_radius(const impact_shape *shape)
     return hypot(round, boxy);
 }
 
-static bool all_finite(qvec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
-
 static bool still(const impact_motion *m)
 {
     return qvec3_norm(m->velocity) == 0 && qvec3_norm(m->acceleration) == 0 && qvec3_norm(m->omega) == 0;
@@ -58,7 +57,7 @@ static bool still(const impact_motion *m)
 
 static impact_status check(const impact_solid *body, const impact_motion *motion)
 {
-    if (!all_finite(motion->velocity) || !all_finite(motion->acceleration) || !all_finite(motion->omega))
+    if (!imp_all_finite(motion->velocity) || !imp_all_finite(motion->acceleration) || !imp_all_finite(motion->omega))
         return IMPACT_EDOMAIN;
     return body->shape.kind == IMPACT_PLANE && !still(motion) ? IMPACT_EARGUMENT : IMPACT_OK;
 }
@@ -321,7 +320,7 @@ static bool near_enough(const imp_instant *at)
 }
 
 /* The time to which the bodies' bounding balls stay apart, and the line of their centres there. */
-static double balls_meet(const search *s, qvec3 *line)
+static double balls_apart_until(const search *s, qvec3 *line)
 {
     imp_instant at = {.t = 0};
     for (int i = 0; i < MAX_BALL_STEPS; i++) {
@@ -341,7 +340,7 @@ static impact_status set_out(search *s)
     imp_instant *here = &s->here;
     qvec3 n = {0, 0, 0};
     const bool plane = s->q.plane[0] || s->q.plane[1];
-    imp_instant_place(&s->q, plane ? 0 : balls_meet(s, &n), true, here);
+    imp_instant_place(&s->q, plane ? 0 : balls_apart_until(s, &n), true, here);
     if (plane || here->t >= s->t_max) return solve(&s->q, NULL, false, here);
     n = imp_gap_guess(&here->body[0], &here->body[1]);
     return imp_instant_sketch(&s->q, n, here) ? IMPACT_OK : solve(&s->q, &n, false, here);

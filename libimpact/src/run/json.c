@@ -12,27 +12,27 @@
 
 enum { DEEPEST = 32 };
 
-typedef struct reader {
+typedef struct scanner {
     const char *at, *end;
     imp_json *nodes;
     size_t used;
     char *strings;
-} reader;
+} scanner;
 
-static void skip_blanks(reader *r)
+static void skip_blanks(scanner *r)
 {
     while (r->at < r->end && strchr(" \t\r\n", *r->at) && *r->at) r->at++;
 }
 
 /* Takes the character when it is next. */
-static bool take(reader *r, char c)
+static bool take(scanner *r, char c)
 {
     if (r->at == r->end || *r->at != c) return false;
     r->at++;
     return true;
 }
 
-static bool take_word(reader *r, const char *word)
+static bool take_word(scanner *r, const char *word)
 {
     const size_t size = strlen(word);
     if ((size_t)(r->end - r->at) < size || memcmp(r->at, word, size) != 0) return false;
@@ -50,7 +50,7 @@ static const char *skip_digits(const char *at, const char *end)
 
 /* Digits as a whole number, then a power of ten: strtod would ask the locale for the decimal point. The text's form is
  * checked here; its value is left to strtod of a copy with no point: d digits after it are 10^-d. */
-static bool read_number(reader *r, double *value)
+static bool read_number(scanner *r, double *value)
 {
     char copy[64];
     size_t used = 0;
@@ -100,7 +100,7 @@ static int hex(char c)
 }
 
 /* The four digits of \uXXXX; -1: they are none. */
-static int read_unit(reader *r)
+static int read_unit(scanner *r)
 {
     int unit = 0;
     if (r->end - r->at < 4) return -1;
@@ -113,7 +113,7 @@ static int read_unit(reader *r)
 }
 
 /* One byte stands for itself: the writer escapes bytes, and leaves the rest of UTF-8 as it is. */
-static bool read_escape(reader *r)
+static bool read_escape(scanner *r)
 {
     static const char from[] = "\"\\/bfnrt", to[] = "\"\\/\b\f\n\r\t";
     if (r->at == r->end) return false;
@@ -129,7 +129,7 @@ static bool read_escape(reader *r)
     return true;
 }
 
-static const char *read_string(reader *r)
+static const char *read_string(scanner *r)
 {
     const char *begin = r->strings;
     if (!take(r, '"')) return NULL;
@@ -144,10 +144,10 @@ static const char *read_string(reader *r)
     return take(r, '"') ? begin : NULL;
 }
 
-static imp_json *read_value(reader *r, int depth);
+static imp_json *read_value(scanner *r, int depth);
 
 /* The members of an array or object, whose bracket is taken. */
-static bool read_members(reader *r, imp_json *node, char close, int depth)
+static bool read_members(scanner *r, imp_json *node, char close, int depth)
 {
     const imp_json **link = &node->first;
     skip_blanks(r);
@@ -171,7 +171,7 @@ static bool read_members(reader *r, imp_json *node, char close, int depth)
     return take(r, close);
 }
 
-static imp_json *read_value(reader *r, int depth)
+static imp_json *read_value(scanner *r, int depth)
 {
     if (depth > DEEPEST) return NULL;
     skip_blanks(r);
@@ -203,7 +203,7 @@ bool imp_json_read(const char *text, size_t size, imp_json_document *document)
     if (size > SIZE_MAX / sizeof(imp_json) - 2) return false;
     document->nodes = malloc((size + 1) * sizeof *document->nodes);
     document->strings = malloc(size + 1);
-    reader r = {text, text + size, document->nodes, 0, document->strings};
+    scanner r = {text, text + size, document->nodes, 0, document->strings};
     if (document->nodes && document->strings) document->root = read_value(&r, 0);
     skip_blanks(&r);
     if (document->root && r.at == r.end) return true;

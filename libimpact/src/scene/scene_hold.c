@@ -106,7 +106,7 @@ static void stop(impact_scene *scene, int body)
 /* What stands still, or is so jammed that it stops before it has gone the rest height. */
 static impact_status find_still(impact_scene *scene)
 {
-    impact_motion *motion = &scene->motion;
+    imp_motion *motion = &scene->motion;
     imp_world *world = &scene->world;
     const double jam_speed = fmax(scene->rest_speed, sqrt(2 * qvec3_norm(world->gravity) * scene->rest_height));
     const impact_status status =
@@ -123,7 +123,7 @@ static impact_status find_still(impact_scene *scene)
 /* Puts the constraints of the contacts that are held in order, and opens those that would pull. */
 static impact_status make_consistent(impact_scene *scene)
 {
-    impact_motion *motion = &scene->motion;
+    imp_motion *motion = &scene->motion;
     imp_persist_stir(&scene->world);
     impact_status status = imp_persist_reserve(&motion->persist, &scene->world, scene->states);
     if (status == IMPACT_OK) status = imp_scene_load(scene);

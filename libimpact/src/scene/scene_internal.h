@@ -12,7 +12,7 @@
 struct impact_scene {
     char *name;
     imp_world world;
-    impact_motion motion;
+    imp_motion motion;
     imp_state *states;
     imp_state *before; /* as the states were when the event at hand came */
     imp_mode *modes;   /* as the pairs' modes were then */

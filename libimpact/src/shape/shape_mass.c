@@ -3,8 +3,7 @@
  * Volume, inertia and bounding ball. Volumes and second moments are Dirichlet integrals; Barr's by layers in z.
  */
 #include <impact/shape.h>
-
-static const double pi = 3.14159265358979323846;
+#include "base/numbers.h"
 
 /* Mean of (x/a)^2 over the superquadric, sigma = 1/r + 1/s + 1/t. */
 static double mean_square(double r, double sigma)
@@ -16,10 +15,10 @@ double impact_shape_volume(const impact_shape *shape)
 {
     const double box = 8 * shape->a * shape->b * shape->c, r = shape->r, s = shape->s, t = shape->t;
     switch (shape->kind) {
-    case IMPACT_SPHERE: return 4.0 / 3.0 * pi * shape->a * shape->a * shape->a;
+    case IMPACT_SPHERE: return 4.0 / 3.0 * IMP_PI * shape->a * shape->a * shape->a;
     case IMPACT_PLANE: return INFINITY;
     case IMPACT_SUPERQUADRIC:
-        if (r == 2 && s == 2 && t == 2) return box * (pi / 6);
+        if (r == 2 && s == 2 && t == 2) return box * (IMP_PI / 6);
         return box * (tgamma(1 + 1 / r) * tgamma(1 + 1 / s) * tgamma(1 + 1 / t) / tgamma(1 + 1 / r + 1 / s + 1 / t));
     case IMPACT_SUPERELLIPSOID:
         return box * (tgamma(1 + 1 / r) * tgamma(1 + 1 / r) / tgamma(1 + 2 / r)) *

@@ -3,9 +3,8 @@
  * The shape as a surface: support, curvature, parametrisation, mesh.
  */
 #include <impact/shape.h>
+#include "base/numbers.h"
 #include "shape/support.h"
-
-static const double pi = 3.14159265358979323846;
 
 static imp_form form_of(const impact_shape *shape)
 {
@@ -117,7 +116,7 @@ impact_status impact_shape_mesh(const impact_shape *shape, int nu, int nv, qvec3
     if (nu < 3 || nv < 2) return IMPACT_EARGUMENT;
     for (int j = 0; j <= nv; j++)
         for (int i = 0; i < nu; i++) {
-            const double u = -pi + 2 * pi * i / nu, v = -pi / 2 + pi * j / nv;
+            const double u = -IMP_PI + 2 * IMP_PI * i / nu, v = -IMP_PI / 2 + IMP_PI * j / nv;
             points[j * nu + i] = impact_shape_point(shape, u, v);
             if (normals) normals[j * nu + i] = impact_shape_normal(shape, u, v);
         }
