@@ -58,7 +58,8 @@ static double pair_at(const sets *s, size_t i, qvec3 *u, qvec3 *v)
 {
     const qvec3 a = qvec3_scale(arm_a(s, i), s->sa), b = qvec3_scale(arm_b(s, i), s->sb);
     const double la = qvec3_norm(a), lb = qvec3_norm(b);
-    const bool useful = (qvec3_normalize(a, u) == QUAT_OK) & (qvec3_normalize(b, v) == QUAT_OK);
+    const quat_status first = qvec3_normalize(a, u), second = qvec3_normalize(b, v);
+    const bool useful = first == QUAT_OK && second == QUAT_OK;
     if (!useful) return 0;
     return s->weights ? s->weights[i] * (la * lb / s->heaviest) : la * lb / s->heaviest;
 }
