@@ -152,10 +152,10 @@ static void read_plot(const quat_lua_reader *reader)
 
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws)
 {
-    static const char *const keys[] = {
-        "name",  "gravity",    "duration",      "output_rate", "bodies",      "forces",     "pairs",
-        "rules", "law",        "solver",        "tolerance",   "rest_height", "rest_speed", "max_events",
-        "plot",  "compliance", "key_tolerance", "view",        "piles",       "max_steps",  NULL};
+    static const char *const keys[] = {"name",       "gravity",       "duration",   "output_rate", "bodies",
+                                       "forces",     "pairs",         "rules",      "law",         "solver",
+                                       "tolerance",  "rest_height",   "rest_speed", "max_events",  "plot",
+                                       "compliance", "key_tolerance", "piles",      "max_steps",   NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     const impact_lua_host *host = impact_lua_get_host(L);

@@ -12,35 +12,13 @@
  */
 #include "motion/motion_meet.h"
 #include "motion/psi.h"
+#include "motion/segment.h"
 #include "world/world_gap.h"
 
 #include <impact/flight.h>
 #include <string.h>
 
 /* ---- one body ---- */
-
-static double triangle(double a, double b, double c) { return sqrt(a * a + b * b + c * c); }
-
-/* |m'''| <= |omega|^3 + 3 |omega| |omega'| + |omega''| from Euler's equations and the largest components of omega. */
-static double find_jolt(const impact_tumble *tumble)
-{
-    if (tumble->steady) return pow(qvec3_norm(tumble->turn), 3);
-    const double I[3] = {tumble->moments.x, tumble->moments.y, tumble->moments.z};
-    double w[3], rate[3], second[3];
-    for (int k = 0; k < 3; k++)
-        w[tumble->axis[k]] = fabs(tumble->amplitude[k]) * qvec3_norm(tumble->momentum) / I[tumble->axis[k]];
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        rate[i] = fabs(I[j] - I[k]) / I[i] * w[j] * w[k];
-    }
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        second[i] = fabs(I[j] - I[k]) / I[i] * (rate[j] * w[k] + w[j] * rate[k]);
-    }
-    const double omega = triangle(w[0], w[1], w[2]);
-    return omega * omega * omega + 3 * omega * triangle(rate[0], rate[1], rate[2]) +
-           triangle(second[0], second[1], second[2]);
-}
 
 void imp_flyer_board(imp_flyer *flyer, const imp_body *body, const imp_state *state)
 {
@@ -51,7 +29,7 @@ void imp_flyer_board(imp_flyer *flyer, const imp_body *body, const imp_state *st
     const qvec3 moments = body->spherical ? (qvec3){mean, mean, mean} : body->moments;
     impact_tumble_make(moments, state->q, state->momentum, &flyer->tumble);
     flyer->turns = !imp_is_ball(body);
-    if (flyer->turns) flyer->jolt = find_jolt(&flyer->tumble);
+    if (flyer->turns) flyer->jerk = imp_segment_tumble_jerk(&flyer->tumble);
 }
 
 void imp_flyer_leave(imp_flyer *flyer) { flyer->now.q.w = NAN; }
@@ -85,7 +63,7 @@ static void add_flyer(imp_psi *p, const imp_body *body, const imp_flyer *flyer, 
     p->slope -= qvec3_dot(b->rate, point);
     p->spread += body->radius * qvec3_norm(second);
     if (qvec3_norm(second) > 0) p->bend += imp_world_support(body, second, &point);
-    p->jerk += body->radius * flyer->jolt;
+    p->jerk += body->radius * flyer->jerk;
 }
 
 /* ---- far away: bounding balls ---- */

@@ -14,7 +14,7 @@ typedef struct imp_flyer {
     double elapsed;
     bool turns; /* its surface moves as it turns */
     impact_tumble tumble;
-    double jolt; /* bound of the third derivative of a unit vector seen from the body, 1/s^3 */
+    double jerk; /* bound of the third derivative of a unit vector seen from the body, 1/s^3 */
 } imp_flyer;
 
 /* Begins a flight from the state, or goes on with the one that led to just this state. */

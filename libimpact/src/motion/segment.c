@@ -20,8 +20,7 @@ double imp_phi2(double k, double T)
 
 /* ---- making ---- */
 
-/* |m'''| <= |omega|^3 + 3 |omega| |omega'| + |omega''| from Euler's equations and the largest components of omega. */
-static double jerk_of(const impact_tumble *tumble)
+double imp_segment_tumble_jerk(const impact_tumble *tumble)
 {
     if (tumble->steady) return pow(qvec3_norm(tumble->turn), 3);
     const double I[3] = {tumble->moments.x, tumble->moments.y, tumble->moments.z};
@@ -62,7 +61,7 @@ imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *st
     }
     impact_tumble_make(body->moments, start->q, start->momentum, tumble);
     s.tumble = tumble;
-    s.jerk = jerk_of(tumble);
+    s.jerk = imp_segment_tumble_jerk(tumble);
     return s;
 }
 

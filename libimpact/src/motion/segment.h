@@ -47,6 +47,10 @@ imp_segment imp_segment_roll(double t0, double t1, const imp_state *start, qvec3
 /* The body at this place of an integrator's step, from its state at t0. */
 imp_segment imp_segment_dense(const imp_dense *dense, int place, const imp_state *start);
 
+/* A bound of |m'''| of any unit vector m seen from a tumbling body, 1/s^3: |omega|^3 + 3 |omega| |omega'| + |omega''|
+ * from Euler's equations and the largest components of omega. */
+double imp_segment_tumble_jerk(const impact_tumble *tumble);
+
 /* The state at t; before t0 and after t1 the form is continued. */
 imp_state imp_segment_at(const imp_segment *segment, const imp_body *body, double t);
 /* The centre's place and velocity alone. */
