@@ -15,8 +15,9 @@ static int core_has(lua_State *L)
 int luaopen_impact_core(lua_State *L)
 {
     static void (*const rooms[])(lua_State *) = {
-        impact_lua_open_shape, impact_lua_open_gap,     impact_lua_open_body,   impact_lua_open_force,
-        impact_lua_open_scene, impact_lua_open_collide, impact_lua_open_record, impact_lua_open_arguments};
+        impact_lua_open_shape,   impact_lua_open_faces,  impact_lua_open_gap,
+        impact_lua_open_body,    impact_lua_open_force,  impact_lua_open_scene,
+        impact_lua_open_collide, impact_lua_open_record, impact_lua_open_arguments};
     static const luaL_Reg functions[] = {{"has", core_has}, {"layer", quat_lua_layer}, {NULL, NULL}};
     luaL_checkversion(L); /* header against library */
     luaL_newlib(L, functions);

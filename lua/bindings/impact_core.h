@@ -14,6 +14,7 @@
 IMPACT_API int luaopen_impact_core(lua_State *L);
 
 void impact_lua_open_shape(lua_State *L);
+void impact_lua_open_faces(lua_State *L); /* after impact_lua_open_shape */
 void impact_lua_open_gap(lua_State *L);
 void impact_lua_open_body(lua_State *L);
 void impact_lua_open_force(lua_State *L);
@@ -21,6 +22,9 @@ void impact_lua_open_scene(lua_State *L);
 void impact_lua_open_collide(lua_State *L);
 void impact_lua_open_arguments(lua_State *L);
 void impact_lua_open_record(lua_State *L);
+
+/* Pushes what a polyhedron has beside other shapes: vertices, faces, dropped, center, axes; false for another key. */
+bool impact_lua_push_hull_value(lua_State *L, const impact_hull *hull, const char *key);
 
 /* Pushes a shape userdata. */
 void impact_lua_push_shape(lua_State *L, const impact_shape *shape);

@@ -6,7 +6,7 @@
 
 void impact_lua_push_shape(lua_State *L, const impact_shape *shape)
 {
-    impact_shape *place = lua_newuserdatauv(L, sizeof *shape, 0);
+    impact_shape *place = lua_newuserdatauv(L, sizeof *shape, 1);
     *place = *shape;
     luaL_setmetatable(L, IMPACT_LUA_SHAPE);
 }
@@ -70,7 +70,8 @@ static int shape_ellipsoid(lua_State *L)
     static const char *const keys[] = {"a", "b", "c", NULL};
     const quat_lua_reader reader = quat_lua_read(L, 1, "ellipsoid", NULL, keys);
     const double a = semi_axis(&reader, "a"), b = semi_axis(&reader, "b"), c = semi_axis(&reader, "c");
-    return push_good(&reader, (impact_shape){IMPACT_SUPERQUADRIC, a, b, c, 2, 2, 2});
+    return push_good(&reader,
+                     (impact_shape){.kind = IMPACT_SUPERQUADRIC, .a = a, .b = b, .c = c, .r = 2, .s = 2, .t = 2});
 }
 
 /* superquadric{a=, b=, c=, r=, s=, t=}: exponents of 2 where they are left out */
@@ -82,7 +83,8 @@ static int shape_superquadric(lua_State *L)
     const double r = quat_lua_get_number(&reader, "r", QUAT_LUA_FINITE, 2),
                  s = quat_lua_get_number(&reader, "s", QUAT_LUA_FINITE, 2),
                  t = quat_lua_get_number(&reader, "t", QUAT_LUA_FINITE, 2);
-    return push_good(&reader, (impact_shape){IMPACT_SUPERQUADRIC, a, b, c, r, s, t});
+    return push_good(&reader,
+                     (impact_shape){.kind = IMPACT_SUPERQUADRIC, .a = a, .b = b, .c = c, .r = r, .s = s, .t = t});
 }
 
 /* superellipsoid{a=, b=, c=, eps1=, eps2=}: 1 where they are left out */
@@ -95,7 +97,10 @@ static int shape_superellipsoid(lua_State *L)
                  eps2 = quat_lua_get_number(&reader, "eps2", QUAT_LUA_POSITIVE, 1);
     if (eps1 > 2) return quat_lua_reader_error(&reader, "eps1 = %.17g > 2 is not convex", eps1);
     if (eps2 > 2) return quat_lua_reader_error(&reader, "eps2 = %.17g > 2 is not convex", eps2);
-    return push_good(&reader, (impact_shape){IMPACT_SUPERELLIPSOID, a, b, c, 2 / eps2, 2 / eps2, 2 / eps1});
+    return push_good(
+        &reader,
+        (impact_shape){
+            .kind = IMPACT_SUPERELLIPSOID, .a = a, .b = b, .c = c, .r = 2 / eps2, .s = 2 / eps2, .t = 2 / eps1});
 }
 
 /* ---- what a shape can be asked ---- */
@@ -198,9 +203,14 @@ static const char *const kind_words[] = {
     [IMPACT_PLANE] = "plane",
     [IMPACT_SUPERQUADRIC] = "superquadric",
     [IMPACT_SUPERELLIPSOID] = "superellipsoid",
+    [IMPACT_BOX] = "box",
+    [IMPACT_CYLINDER] = "cylinder",
+    [IMPACT_CONE] = "cone",
+    [IMPACT_CAPSULE] = "capsule",
+    [IMPACT_POLYHEDRON] = "polyhedron",
 };
 
-/* shape.kind, .a .b .c .r .s .t, .volume, .inertia (per unit mass), .bounding_radius, and the methods */
+/* shape.kind, .a .b .c .r .s .t .rounding, .volume, .inertia (per unit mass), .bounding_radius, and the methods */
 static int shape_index(lua_State *L)
 {
     const impact_shape *shape = luaL_checkudata(L, 1, IMPACT_LUA_SHAPE);
@@ -208,8 +218,13 @@ static int shape_index(lua_State *L)
     const struct {
         const char *key;
         double value;
-    } numbers[] = {{"a", shape->a}, {"b", shape->b}, {"c", shape->c},
-                   {"r", shape->r}, {"s", shape->s}, {"t", shape->t}};
+    } numbers[] = {{"a", shape->a},
+                   {"b", shape->b},
+                   {"c", shape->c},
+                   {"r", shape->r},
+                   {"s", shape->s},
+                   {"t", shape->t},
+                   {"rounding", shape->rounding}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         if (strcmp(key, numbers[i].key) == 0) {
             lua_pushnumber(L, numbers[i].value);
@@ -224,7 +239,7 @@ static int shape_index(lua_State *L)
         quat_lua_push_vec3(L, impact_shape_inertia(shape));
     else if (strcmp(key, "bounding_radius") == 0)
         lua_pushnumber(L, impact_shape_bounding_radius(shape));
-    else
+    else if (!shape->hull || !impact_lua_push_hull_value(L, shape->hull, key))
         lua_getfield(L, lua_upvalueindex(1), key);
     return 1;
 }

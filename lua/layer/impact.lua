@@ -10,6 +10,12 @@ core.layer()
 
 ---@class impact.shape
 ---@field kind string
+---@field rounding number  m
+---@field vertices vec3[]  polyhedra: in the shape's frame, m
+---@field faces integer[][]  polyhedra: the corners of each, counter-clockwise seen from outside
+---@field dropped integer  polyhedra: points given that are no vertices
+---@field center vec3  polyhedra: the shape's origin in the frame of the points given, m
+---@field axes quat  polyhedra: the shape's axes to those of the points given
 ---@field volume number  m^3
 ---@field inertia vec3  per unit mass, m^2
 ---@field bounding_radius number  m
@@ -238,7 +244,12 @@ core.layer()
 ---@field ellipsoid fun(axes: {a: number, b: number, c: number}): impact.shape
 ---@field superquadric fun(axes: {a: number, b: number, c: number, r?: number, s?: number, t?: number}): impact.shape
 ---@field superellipsoid fun(axes: {a: number, b: number, c: number, eps1?: number, eps2?: number}): impact.shape
----@field shape table  the five above, by the same names
+---@field box fun(sizes: {a: number, b: number, c: number, rounding?: number}): impact.shape  half sides of the whole
+---@field cylinder fun(sizes: {radius: number, half_height: number, rounding?: number}): impact.shape
+---@field cone fun(sizes: {radius: number, height: number, rounding?: number}): impact.shape  z = 0 is the centroid
+---@field capsule fun(sizes: {radius: number, half_height: number}): impact.shape  half_height: of the segment inside
+---@field polyhedron fun(points: {vertices: vec[], rounding?: number}): impact.shape  their hull, about its centroid
+---@field shape table  the ten above, by the same names
 ---@field gap fun(first: impact.solid, second: impact.solid): impact.contact?, string?
 ---@field gap_receipt fun(first: impact.solid, second: impact.solid, contact: impact.contact): table  its residuals in eps; `worst`
 ---@field toi fun(first: impact.solid, second: impact.solid, t_max: number): number?, impact.contact|string

@@ -13,7 +13,7 @@
 static inline impact_shape take_shape(fuzz_bytes *b)
 {
     static const double steep[] = {1, 1, 2, 2, 1e6, 100, 4, 1.0000001};
-    impact_shape s = {IMPACT_SPHERE, 1, 1, 1, 2, 2, 2};
+    impact_shape s = {.kind = IMPACT_SPHERE, .a = 1, .b = 1, .c = 1, .r = 2, .s = 2, .t = 2};
     const double a = take_positive(b, 4), m = take_positive(b, 2), n = take_positive(b, 2);
     switch (take_below(b, 6)) {
     case 0: impact_shape_sphere(a, &s); break;

@@ -80,7 +80,7 @@ static inline const char *random_family_name(int family)
 
 static inline impact_shape random_shape(random_stream *random, int family)
 {
-    impact_shape shape = {IMPACT_SPHERE, 1, 1, 1, 2, 2, 2};
+    impact_shape shape = {.kind = IMPACT_SPHERE, .a = 1, .b = 1, .c = 1, .r = 2, .s = 2, .t = 2};
     const double low = family == RANDOM_NEEDLE ? 1e-6 : family == RANDOM_EXTREME ? 1e-3 : 0.2;
     const double a = random_log(random, low, 1), b = random_log(random, low, 1), c = random_log(random, low, 1);
     double f[3];

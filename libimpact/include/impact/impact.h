@@ -7,6 +7,7 @@
 
 #include "status.h"
 #include "memory.h"
+#include "hull.h"
 #include "shape.h"
 #include "gap.h"
 #include "toi.h"

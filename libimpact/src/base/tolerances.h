@@ -22,6 +22,21 @@
 /* Bodies may overlap by this part of the scale at the start: places are given by hand, to nine digits. */
 #define IMP_OVERLAP_AT_START 1e-9
 
+/* ---- shapes with faces, docs/faces.md ---- */
+
+/* Of the products' sum: what a sign of an orientation's determinant may be off by, (7 + 56 eps) eps/2 (Shewchuk 1997).
+ */
+#define IMP_ORIENTATION_BOUND ((7 + 112 * IMP_ROUNDOFF) * IMP_ROUNDOFF)
+/* Of the distance of a hull's farthest corner: corners given in doubles lie in their plane to some roundings of their coordinates, three each, and
+ * those of a pattern that was turned or divided to a dozen. */
+#define IMP_HULL_FLAT (64 * IMP_ROUNDOFF)
+/* Of a hull's size, and of its second moments: a centroid and axes off by less are sums' rounding. */
+#define IMP_HULL_FRAME (64 * IMP_ROUNDOFF)
+/* Of a core's size: vertices whose heights differ by less are reached together: three products and two sums each. */
+#define IMP_CORE_TIE (8 * IMP_ROUNDOFF)
+/* Jacobi's sweeps of a 3 by 3 matrix: it converges quadratically, in four or five. */
+#define IMP_HULL_SWEEPS 12
+
 /* ---- speeds ---- */
 
 /* Slip slower than this part of the rest speed, m/s, is none: what ends as rest has stuck before, by a margin that the

@@ -75,9 +75,9 @@ static void body_plane(const impact_solid *body, quat body_orientation, const im
     imp_surface surface;
     double x[3];
     imp_form_make(&body->shape, scale, body_orientation, &form);
-    const double h = imp_form_support_world(&form, down, x, &surface) / scale;
+    const double h = imp_form_support_world(&form, down, x, &surface) / scale, r = body->shape.rounding;
     const qvec3 offset = {x[0] / scale, x[1] / scale, x[2] / scale};
-    on_plane(body, plane, normal, h, offset, contact);
+    on_plane(body, plane, normal, h + r, qvec3_axpy(-r, normal, offset), contact);
 }
 
 static impact_contact swapped(impact_contact c)
@@ -176,7 +176,9 @@ impact_status imp_gap_check(const impact_solid *body1, quat *q1, const impact_so
     impact_status status = check(body1, q1);
     if (status == IMPACT_OK) status = check(body2, q2);
     if (status != IMPACT_OK) return status;
-    return body1->shape.kind == IMPACT_PLANE && body2->shape.kind == IMPACT_PLANE ? IMPACT_EARGUMENT : IMPACT_OK;
+    const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
+    const bool core = body1->shape.kind >= IMPACT_BOX || body2->shape.kind >= IMPACT_BOX;
+    return (plane1 && plane2) || (core && !plane1 && !plane2) ? IMPACT_EARGUMENT : IMPACT_OK;
 }
 
 static impact_status solve_pair(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,

@@ -29,7 +29,7 @@ typedef struct imp_run_table {
 
 extern const imp_run_table imp_run_tables[IMP_RUN_TABLES];
 
-extern const char *const imp_run_shapes[IMPACT_SUPERELLIPSOID + 1]; /* their names, by kind */
+extern const char *const imp_run_shapes[IMPACT_SHAPE_KINDS]; /* their names, by kind */
 
 /* Writes a file that is whole or not there: IMPACT_ESINK with a message, IMPACT_ENOMEM. */
 impact_status imp_file_save(const char *path, const void *bytes, size_t size, impact_quota *quota, char *message,

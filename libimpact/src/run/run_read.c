@@ -170,7 +170,13 @@ static bool read_shape(const imp_json *body, impact_shape *shape, char *why, siz
     while (kind && k <= IMPACT_SUPERELLIPSOID && strcmp(kind, imp_run_shapes[k]) != 0) k++;
     if (!kind || k > IMPACT_SUPERELLIPSOID) return false;
     if (!numbers_of(body, "axes", axes, 3, INFINITY) || !numbers_of(body, "exponents", exponents, 3, NAN)) return false;
-    *shape = (impact_shape){(impact_shape_kind)k, axes[0], axes[1], axes[2], exponents[0], exponents[1], exponents[2]};
+    *shape = (impact_shape){.kind = (impact_shape_kind)k,
+                            .a = axes[0],
+                            .b = axes[1],
+                            .c = axes[2],
+                            .r = exponents[0],
+                            .s = exponents[1],
+                            .t = exponents[2]};
     return impact_shape_check(shape, why, size) >= 0;
 }
 

@@ -16,9 +16,14 @@ const imp_run_table imp_run_tables[IMP_RUN_TABLES] = {
      {"t", "kinetic", "potential", "force_work", "surface_work", "damping_loss", "sliding_loss", "impact_loss"}},
 };
 
-const char *const imp_run_shapes[IMPACT_SUPERELLIPSOID + 1] = {
+const char *const imp_run_shapes[IMPACT_SHAPE_KINDS] = {
     [IMPACT_SPHERE] = "sphere",
     [IMPACT_PLANE] = "plane",
     [IMPACT_SUPERQUADRIC] = "superquadric",
     [IMPACT_SUPERELLIPSOID] = "superellipsoid",
+    [IMPACT_BOX] = "box",
+    [IMPACT_CYLINDER] = "cylinder",
+    [IMPACT_CONE] = "cone",
+    [IMPACT_CAPSULE] = "capsule",
+    [IMPACT_POLYHEDRON] = "polyhedron",
 };

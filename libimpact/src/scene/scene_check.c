@@ -119,6 +119,7 @@ static void check_body(check *c, const impact_body_def *body)
     require_words(c, body->is_static || body->shape.kind != IMPACT_PLANE, "a plane must be static");
     char why[200];
     require_words(c, impact_shape_check(&body->shape, why, sizeof why) == IMPACT_OK, why);
+    require_words(c, body->shape.kind < IMPACT_BOX, "shapes with faces are not for scenes yet: see impact_gap");
     if (c->status != IMPACT_OK) return;
     if (!body->is_static) check_solid(c, body);
     const char *refusal = imp_drive_refusal(body);

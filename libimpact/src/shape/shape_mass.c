@@ -4,6 +4,7 @@
  */
 #include <impact/shape.h>
 #include "base/numbers.h"
+#include "shape/solid.h"
 
 /* Mean of (x/a)^2 over the superquadric, sigma = 1/r + 1/s + 1/t. */
 static double mean_square(double r, double sigma)
@@ -23,8 +24,8 @@ double impact_shape_volume(const impact_shape *shape)
     case IMPACT_SUPERELLIPSOID:
         return box * (tgamma(1 + 1 / r) * tgamma(1 + 1 / r) / tgamma(1 + 2 / r)) *
                (tgamma(1 + 1 / t) * tgamma(1 + 2 / t) / tgamma(1 + 3 / t));
+    default: return imp_has_core(shape) ? imp_solid_volume(shape) : NAN;
     }
-    return NAN;
 }
 
 /* <(x/a)^2>, <(y/b)^2>, <(z/c)^2>. */
@@ -45,6 +46,7 @@ static qvec3 mean_squares(const impact_shape *shape)
 qvec3 impact_shape_inertia(const impact_shape *shape)
 {
     if (shape->kind == IMPACT_PLANE) return (qvec3){INFINITY, INFINITY, INFINITY};
+    if (imp_has_core(shape)) return imp_solid_inertia(shape);
     const qvec3 mean = mean_squares(shape);
     const double x2 = mean.x * shape->a * shape->a, y2 = mean.y * shape->b * shape->b,
                  z2 = mean.z * shape->c * shape->c;
@@ -155,6 +157,7 @@ double impact_shape_bounding_radius(const impact_shape *shape)
 {
     if (shape->kind == IMPACT_PLANE) return INFINITY;
     if (shape->kind == IMPACT_SPHERE) return shape->a;
+    if (imp_has_core(shape)) return imp_solid_radius(shape);
     const double scale = fmax(shape->a, fmax(shape->b, shape->c));
     const double axis[3] = {shape->a / scale, shape->b / scale, shape->c / scale};
     const double exponent[3] = {shape->r, shape->s, shape->t};

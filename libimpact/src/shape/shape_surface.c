@@ -4,6 +4,8 @@
  */
 #include <impact/shape.h>
 #include "base/numbers.h"
+#include "base/tolerances.h"
+#include "shape/solid.h"
 #include "shape/support.h"
 
 static imp_form form_of(const impact_shape *shape)
@@ -26,8 +28,10 @@ double impact_shape_support(const impact_shape *shape, qvec3 direction, qvec3 *p
     double x[3], normal[3];
     const double h = imp_form_support(&form, d, &s);
     imp_surface_point(&form, &s, x, normal);
+    const double length = shape->rounding > 0 ? qvec3_norm(direction) : 0, r = shape->rounding;
     if (point) *point = (qvec3){x[0], x[1], x[2]};
-    return h;
+    if (point && length > 0) *point = qvec3_axpy(r / length, direction, *point);
+    return h + r * length;
 }
 
 qmat3 impact_shape_support_hessian(const impact_shape *shape, qvec3 direction)
@@ -37,6 +41,8 @@ qmat3 impact_shape_support_hessian(const impact_shape *shape, qvec3 direction)
     const imp_form form = form_of(shape);
     const double d[3] = {direction.x, direction.y, direction.z};
     imp_form_hessian(&form, d, out.m);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) out.m[i][j] += shape->rounding * ((i == j) - d[i] * d[j]);
     return out;
 }
 
@@ -46,8 +52,29 @@ static double signed_power(double s, double m) { return copysign(pow(fabs(s), m)
 /* cos and sin of u and v, exact zeros at the quarter turns. */
 static double quarter(double value) { return fabs(value) < 2.5e-16 ? 0 : value; }
 
+static qvec3 globe(double u, double v)
+{
+    const double across = quarter(cos(v));
+    return (qvec3){across * quarter(cos(u)), across * quarter(sin(u)), quarter(sin(v))};
+}
+
+/* The middle of what a core's normal n has, and the ball's point there. */
+static qvec3 core_point(const impact_shape *shape, qvec3 n)
+{
+    short vertex[IMPACT_HULL_POINTS];
+    qvec3 x;
+    impact_shape_support(shape, n, &x);
+    if (shape->kind != IMPACT_POLYHEDRON) return x;
+    const double d[3] = {n.x, n.y, n.z}, size = fmax(shape->a, fmax(shape->b, shape->c));
+    const imp_form form = form_of(shape);
+    double mean[3];
+    imp_core_reached(&form.core, d, IMP_CORE_TIE * size, vertex, mean);
+    return (qvec3){mean[0] + shape->rounding * n.x, mean[1] + shape->rounding * n.y, mean[2] + shape->rounding * n.z};
+}
+
 qvec3 impact_shape_point(const impact_shape *shape, double u, double v)
 {
+    if (imp_has_core(shape)) return core_point(shape, globe(u, v));
     if (shape->kind == IMPACT_PLANE)
         return (qvec3){fmax(-shape->a, fmin(shape->a, u)), fmax(-shape->b, fmin(shape->b, v)), 0};
     const double cu = quarter(cos(u)), su = quarter(sin(u)), cv = quarter(cos(v)), sv = quarter(sin(v));
@@ -61,6 +88,7 @@ qvec3 impact_shape_point(const impact_shape *shape, double u, double v)
 qvec3 impact_shape_normal(const impact_shape *shape, double u, double v)
 {
     if (shape->kind == IMPACT_PLANE) return (qvec3){0, 0, 1};
+    if (imp_has_core(shape)) return globe(u, v);
     const double cu = quarter(cos(u)), su = quarter(sin(u)), cv = quarter(cos(v)), sv = quarter(sin(v));
     const bool nested = shape->kind == IMPACT_SUPERELLIPSOID;
     const double r = 2 - 2 / shape->r, s = 2 - 2 / shape->s, t = 2 - 2 / shape->t;
@@ -78,11 +106,35 @@ double impact_shape_inside(const impact_shape *shape, qvec3 x)
     if (shape->kind == IMPACT_PLANE) return 1 + x.z;
     const imp_form form = form_of(shape);
     const double at[3] = {x.x, x.y, x.z};
-    return imp_form_inside(&form, at);
+    if (!imp_has_core(shape)) return imp_form_inside(&form, at);
+    return 1 + (imp_core_distance(&form, at) - shape->rounding) / fmax(shape->a, fmax(shape->b, shape->c));
 }
 
 /* 1/radius with 1/0 = inf and 1/inf = 0. */
 static double curvature_of(double radius) { return radius > 0 ? 1 / radius : INFINITY; }
+
+/* Radii rounding + R/rho and rounding on a rim; rounding + R and infinite on a side (half R/rho in the middle of a
+ * cone's); of a polytope rounding across an edge and infinite along it: by the dimension of what is reached. */
+static void core_curvatures(const impact_shape *shape, qvec3 n, double *k1, double *k2)
+{
+    const double d[3] = {n.x, n.y, n.z}, r = shape->rounding, size = fmax(shape->a, fmax(shape->b, shape->c));
+    const imp_form form = form_of(shape);
+    if (form.kind == IMP_FORM_CYLINDER || form.kind == IMP_FORM_CONE) {
+        const bool cone = form.kind == IMP_FORM_CONE;
+        const double across = hypot(n.x, n.y), tilt = cone ? form.axis[0] * across - form.axis[2] * n.z : n.z;
+        const bool cap = across == 0 && (!cone || n.z < 0),
+                   side = !cap && fabs(tilt) <= IMP_CORE_TIE * (cone ? size : 1);
+        const double radius = cone && tilt < 0 && !side ? 0 : form.axis[0] / across;
+        *k1 = cap ? 0 : side ? curvature_of(r + form.axis[0] / across / (cone ? 2 : 1)) : curvature_of(r);
+        *k2 = cap || side ? 0 : curvature_of(r + radius);
+        return;
+    }
+    short vertex[IMPACT_HULL_POINTS];
+    double mean[3];
+    const int count = imp_core_reached(&form.core, d, IMP_CORE_TIE * size, vertex, mean);
+    *k1 = count > 2 ? 0 : curvature_of(r);
+    *k2 = count > 1 ? 0 : curvature_of(r);
+}
 
 void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double *k1, double *k2)
 {
@@ -91,6 +143,10 @@ void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double 
     if (!(length > 0) || !isfinite(length)) return;
     if (shape->kind == IMPACT_PLANE) {
         *k1 = *k2 = 0;
+        return;
+    }
+    if (imp_has_core(shape)) {
+        core_curvatures(shape, qvec3_scale(direction, 1 / length), k1, k2);
         return;
     }
     const qmat3 H = impact_shape_support_hessian(shape, qvec3_scale(direction, 1 / length));

@@ -5,9 +5,37 @@
  */
 #include "shape/support.h"
 #include <quat/rotation.h>
+#include "base/tolerances.h"
+#include "shape/solid.h"
+
+/* ---- forms ---- */
+
+static const impact_hull *hull_of(const impact_shape *shape)
+{
+    return shape->kind == IMPACT_BOX ? &imp_hull_box : shape->kind == IMPACT_CAPSULE ? &imp_hull_segment : shape->hull;
+}
+
+static void make_core(const impact_shape *shape, double scale, imp_form *form)
+{
+    static const imp_form_kind kinds[IMPACT_SHAPE_KINDS] = {[IMPACT_BOX] = IMP_FORM_BOX,
+                                                            [IMPACT_CYLINDER] = IMP_FORM_CYLINDER,
+                                                            [IMPACT_CONE] = IMP_FORM_CONE,
+                                                            [IMPACT_CAPSULE] = IMP_FORM_POLYTOPE,
+                                                            [IMPACT_POLYHEDRON] = IMP_FORM_POLYTOPE};
+    *form = (imp_form){.kind = kinds[shape->kind], .p = {2, 2, 2, 2}, .base = shape->base * scale};
+    imp_core_axes(shape, form->axis);
+    for (int k = 0; k < 3; k++) form->axis[k] *= scale;
+    form->core = (imp_core){.hull = hull_of(shape), .even = shape->kind == IMPACT_POLYHEDRON};
+    for (int k = 0; k < 3; k++) form->core.axis[k] = form->core.even ? scale : form->axis[k];
+}
 
 void imp_form_make(const impact_shape *shape, double scale, quat orientation, imp_form *form)
 {
+    if (imp_has_core(shape)) {
+        make_core(shape, scale, form);
+        imp_form_turn(form, orientation);
+        return;
+    }
     *form = (imp_form){.nested = shape->kind == IMPACT_SUPERELLIPSOID && shape->r != shape->t,
                        .axis = {shape->a * scale, shape->b * scale, shape->c * scale},
                        .p = {shape->r, shape->s, shape->t, shape->t}};
@@ -150,7 +178,7 @@ static double mixed_dual_norm(const double *p, const double *w, double *u, doubl
     return lambda * h;
 }
 
-/* ---- forms ---- */
+/* ---- supports ---- */
 
 static double nested_support(const imp_form *form, const double w[3], imp_surface *s)
 {
@@ -163,8 +191,57 @@ static double nested_support(const imp_form *form, const double w[3], imp_surfac
     return h;
 }
 
+/* The middle of what a core reaches along d where that is an edge, side or cap. */
+static double box_support(const imp_form *form, const double d[3], double x[3])
+{
+    double h = 0;
+    for (int i = 0; i < 3; i++) {
+        x[i] = d[i] > 0 ? form->axis[i] : d[i] < 0 ? -form->axis[i] : 0;
+        h += form->axis[i] * fabs(d[i]);
+    }
+    return h;
+}
+
+static double disc_support(double radius, const double d[3], double x[3])
+{
+    const double across = sqrt(d[0] * d[0] + d[1] * d[1]), inverse = across > 0 ? radius / across : 0;
+    x[0] = d[0] * inverse, x[1] = d[1] * inverse;
+    return radius * across;
+}
+
+static double cylinder_support(const imp_form *form, const double d[3], double x[3])
+{
+    x[2] = d[2] > 0 ? form->axis[2] : d[2] < 0 ? -form->axis[2] : 0;
+    return disc_support(form->axis[0], d, x) + form->axis[2] * fabs(d[2]);
+}
+
+static double cone_support(const imp_form *form, const double d[3], double x[3])
+{
+    const double rim = disc_support(form->axis[0], d, x), top = form->axis[2] * d[2];
+    x[2] = form->base;
+    if (rim >= top) return rim + form->base * d[2];
+    x[0] = x[1] = 0, x[2] += form->axis[2];
+    return x[2] * d[2];
+}
+
+static double core_support(const imp_form *form, const double d[3], imp_surface *s)
+{
+    int vertex;
+    double h = 0;
+    switch (form->kind) {
+    case IMP_FORM_BOX: h = box_support(form, d, s->u); break;
+    case IMP_FORM_CYLINDER: h = cylinder_support(form, d, s->u); break;
+    case IMP_FORM_CONE: h = cone_support(form, d, s->u); break;
+    default: h = imp_core_support(&form->core, d, &vertex); imp_core_vertex(&form->core, vertex, s->u);
+    }
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int i = 0; i < 3; i++) s->e[i] = d[i] / length;
+    return h;
+}
+
 double imp_form_support(const imp_form *form, const double d[3], imp_surface *s)
 {
+    if (form->kind != IMP_FORM_QUADRIC) return core_support(form, d, s);
     double w[3], largest = 0;
     for (int i = 0; i < 3; i++) {
         w[i] = form->axis[i] * fabs(d[i]);
@@ -187,6 +264,10 @@ double imp_form_support(const imp_form *form, const double d[3], imp_surface *s)
 
 void imp_surface_point(const imp_form *form, const imp_surface *s, double x[3], double normal[3])
 {
+    if (form->kind != IMP_FORM_QUADRIC) {
+        for (int i = 0; i < 3; i++) x[i] = s->u[i], normal[i] = s->e[i];
+        return;
+    }
     if (form->nested) {
         const double k = s->u[IMP_SECTION], ek = s->e[IMP_SECTION];
         for (int i = 0; i < 2; i++) {
@@ -311,8 +392,45 @@ static void nested_hessian(const imp_form *form, const double d[3], const imp_su
     }
 }
 
+/* Where a core has a vertex 0. On edges, sides and faces, infinite along what they hold: each coordinate for itself,
+ * which is exact where they lie along an axis. On a cylinder's or cone's rim the circle's radius along it, R/rho for
+ * d = (rho, z) unit. */
+static void core_hessian(const imp_form *form, const double d[3], double H[3][3])
+{
+    short vertex[IMPACT_HULL_POINTS];
+    double mean[3], x[3], low[3], high[3];
+    const double across = d[0] * d[0] + d[1] * d[1];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) H[i][j] = 0;
+    if (form->kind == IMP_FORM_CYLINDER || form->kind == IMP_FORM_CONE) {
+        imp_surface s;
+        core_support(form, d, &s);
+        const double rim = across > 0 ? sqrt(s.u[0] * s.u[0] + s.u[1] * s.u[1]) / (across * sqrt(across)) : INFINITY;
+        if (across > 0 && rim > 0) {
+            H[0][0] = d[1] * d[1] * rim, H[1][1] = d[0] * d[0] * rim;
+            H[0][1] = H[1][0] = -d[0] * d[1] * rim;
+        }
+        if (across == 0 && (d[2] < 0 || form->kind == IMP_FORM_CYLINDER)) H[0][0] = H[1][1] = INFINITY;
+        if (form->kind == IMP_FORM_CYLINDER && d[2] == 0) H[2][2] = INFINITY;
+        return;
+    }
+    const double slack = IMP_CORE_TIE * fmax(form->axis[0], fmax(form->axis[1], form->axis[2]));
+    const int count = imp_core_reached(&form->core, d, slack, vertex, mean);
+    for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (int i = 0; i < count; i++) {
+        imp_core_vertex(&form->core, vertex[i], x);
+        for (int k = 0; k < 3; k++) low[k] = fmin(low[k], x[k]), high[k] = fmax(high[k], x[k]);
+    }
+    for (int k = 0; k < 3; k++)
+        if (high[k] - low[k] > slack) H[k][k] = INFINITY;
+}
+
 void imp_form_hessian(const imp_form *form, const double d[3], double H[3][3])
 {
+    if (form->kind != IMP_FORM_QUADRIC) {
+        core_hessian(form, d, H);
+        return;
+    }
     imp_surface s;
     const double h = imp_form_support(form, d, &s);
     if (form->nested)

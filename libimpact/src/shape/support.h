@@ -10,23 +10,38 @@
 #define IMP_SUPPORT_H
 
 #include <impact/shape.h>
+#include "shape/core.h"
 
 enum { IMP_AXES = 3, IMP_SECTION = 3 };
 
+/* What a form's surface is made of. */
+typedef enum imp_form_kind {
+    IMP_FORM_QUADRIC, /* sphere, superquadric, superellipsoid */
+    IMP_FORM_BOX,
+    IMP_FORM_POLYTOPE, /* a hull, or a capsule's segment */
+    IMP_FORM_CYLINDER,
+    IMP_FORM_CONE
+} imp_form_kind;
+
 typedef struct imp_form {
-    bool nested;  /* superellipsoid */
-    bool round;   /* every exponent is 2 */
-    bool uniform; /* every exponent is p[0] */
-    double axis[3];
+    imp_form_kind kind;
+    bool nested;           /* superellipsoid */
+    bool round;            /* every exponent is 2 */
+    bool uniform;          /* every exponent is p[0] */
+    double axis[3];        /* of cores: imp_core_axes */
     double p[4];           /* p[IMP_SECTION] is t of a superellipsoid */
     double rotation[3][3]; /* body to world */
+    double base;           /* of a cone */
+    imp_core core;         /* of boxes and polytopes */
 } imp_form;
 
+/* Of a core: u is the point, e the unit normal. */
 typedef struct imp_surface {
     double u[4], e[4];
 } imp_surface;
 
-/* Semi-axes are multiplied by scale. Spheres are ellipsoids here; planes have no form. */
+/* Semi-axes are multiplied by scale. Spheres are ellipsoids here; planes have no form; of rounded shapes it is the
+ * core. */
 void imp_form_make(const impact_shape *shape, double scale, quat orientation, imp_form *form);
 
 /* The same body with another orientation. */
@@ -44,7 +59,7 @@ void imp_surface_point(const imp_form *form, const imp_surface *surface, double 
 /* Hessian of h at d (body axes) into H. */
 void imp_form_hessian(const imp_form *form, const double d[3], double H[3][3]);
 
-/* The left-hand side of the shape's inequality at x, body axes. */
+/* The left-hand side of the inequality of a quadric at x, body axes. */
 double imp_form_inside(const imp_form *form, const double x[3]);
 
 #endif

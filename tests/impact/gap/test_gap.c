@@ -49,7 +49,8 @@ static void expect_gap(const impact_solid *body1, const impact_solid *body2, dou
 
 static void read_body(const double *v, impact_solid *body)
 {
-    body->shape = (impact_shape){(impact_shape_kind)v[0], v[1], v[2], v[3], v[4], v[5], v[6]};
+    body->shape = (impact_shape){
+        .kind = (impact_shape_kind)v[0], .a = v[1], .b = v[2], .c = v[3], .r = v[4], .s = v[5], .t = v[6]};
     body->position = (qvec3){v[7], v[8], v[9]};
     body->orientation = (quat){v[10], v[11], v[12], v[13]};
 }

@@ -472,7 +472,7 @@ static void bad_definitions_are_named(void **state)
     bodies[1].position.y = NAN;
     expect_refusal(&def, "body 'coin': position.y = nan: must be finite");
     bodies[1] = ball_body("coin", (qvec3){0, 0, 1}, 1, 0);
-    bodies[1].shape = (impact_shape){IMPACT_SUPERQUADRIC, 1, 1, 1, 2, 0.5, 2};
+    bodies[1].shape = (impact_shape){.kind = IMPACT_SUPERQUADRIC, .a = 1, .b = 1, .c = 1, .r = 2, .s = 0.5, .t = 2};
     expect_refusal(&def, "body 'coin': exponent s = 0.5 < 1 is not convex");
     bodies[1] = ball_body("floor", (qvec3){0, 0, 1}, 1, 0);
     expect_refusal(&def, "body 'floor': the name is taken by another body");

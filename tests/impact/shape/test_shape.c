@@ -27,7 +27,7 @@ static impact_shape superquadric(double a, double b, double c, double r, double 
 static void refusals(void **state)
 {
     (void)state;
-    impact_shape shape = {IMPACT_SPHERE, 1, 1, 1, 2, 2, 2};
+    impact_shape shape = {.kind = IMPACT_SPHERE, .a = 1, .b = 1, .c = 1, .r = 2, .s = 2, .t = 2};
     const impact_shape before = shape;
     assert_int_equal(impact_shape_sphere(-1, &shape), IMPACT_EARGUMENT);
     assert_int_equal(impact_shape_sphere(INFINITY, &shape), IMPACT_EDOMAIN);
@@ -43,7 +43,7 @@ static void refusals(void **state)
     assert_true(shape.r == before.r && shape.s == before.s && shape.t == before.t);
 
     char message[80];
-    const impact_shape bad = {IMPACT_SUPERQUADRIC, 1, 1, 1, 0.5, 2, 2};
+    const impact_shape bad = {.kind = IMPACT_SUPERQUADRIC, .a = 1, .b = 1, .c = 1, .r = 0.5, .s = 2, .t = 2};
     assert_int_equal(impact_shape_check(&bad, message, sizeof message), IMPACT_EARGUMENT);
     assert_string_equal(message, "exponent r = 0.5 < 1 is not convex");
     assert_int_equal(impact_shape_check(&before, message, sizeof message), IMPACT_OK);
