@@ -27,8 +27,8 @@
 /* Of the products' sum: what a sign of an orientation's determinant may be off by, (7 + 56 eps) eps/2 (Shewchuk 1997).
  */
 #define IMP_ORIENTATION_BOUND ((7 + 112 * IMP_ROUNDOFF) * IMP_ROUNDOFF)
-/* Of the distance of a hull's farthest corner: corners given in doubles lie in their plane to some roundings of their coordinates, three each, and
- * those of a pattern that was turned or divided to a dozen. */
+/* Of the distance of a hull's farthest corner: corners given in doubles lie in their plane to some roundings of their
+ * coordinates, three each, and those of a pattern that was turned or divided to a dozen. */
 #define IMP_HULL_FLAT (64 * IMP_ROUNDOFF)
 /* Of a hull's size, and of its second moments: a centroid and axes off by less are sums' rounding. */
 #define IMP_HULL_FRAME (64 * IMP_ROUNDOFF)

@@ -75,9 +75,9 @@ static void body_plane(const impact_solid *body, quat body_orientation, const im
     imp_surface surface;
     double x[3];
     imp_form_make(&body->shape, scale, body_orientation, &form);
-    const double h = imp_form_support_world(&form, down, x, &surface) / scale, r = body->shape.rounding;
+    const double h = imp_form_support_world(&form, down, x, &surface) / scale;
     const qvec3 offset = {x[0] / scale, x[1] / scale, x[2] / scale};
-    on_plane(body, plane, normal, h + r, qvec3_axpy(-r, normal, offset), contact);
+    on_plane(body, plane, normal, h, offset, contact);
 }
 
 static impact_contact swapped(impact_contact c)

@@ -28,10 +28,8 @@ double impact_shape_support(const impact_shape *shape, qvec3 direction, qvec3 *p
     double x[3], normal[3];
     const double h = imp_form_support(&form, d, &s);
     imp_surface_point(&form, &s, x, normal);
-    const double length = shape->rounding > 0 ? qvec3_norm(direction) : 0, r = shape->rounding;
     if (point) *point = (qvec3){x[0], x[1], x[2]};
-    if (point && length > 0) *point = qvec3_axpy(r / length, direction, *point);
-    return h + r * length;
+    return h;
 }
 
 qmat3 impact_shape_support_hessian(const impact_shape *shape, qvec3 direction)
@@ -41,8 +39,6 @@ qmat3 impact_shape_support_hessian(const impact_shape *shape, qvec3 direction)
     const imp_form form = form_of(shape);
     const double d[3] = {direction.x, direction.y, direction.z};
     imp_form_hessian(&form, d, out.m);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) out.m[i][j] += shape->rounding * ((i == j) - d[i] * d[j]);
     return out;
 }
 

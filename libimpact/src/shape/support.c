@@ -22,7 +22,10 @@ static void make_core(const impact_shape *shape, double scale, imp_form *form)
                                                             [IMPACT_CONE] = IMP_FORM_CONE,
                                                             [IMPACT_CAPSULE] = IMP_FORM_POLYTOPE,
                                                             [IMPACT_POLYHEDRON] = IMP_FORM_POLYTOPE};
-    *form = (imp_form){.kind = kinds[shape->kind], .p = {2, 2, 2, 2}, .base = shape->base * scale};
+    *form = (imp_form){.kind = kinds[shape->kind],
+                       .p = {2, 2, 2, 2},
+                       .base = shape->base * scale,
+                       .rounding = shape->rounding * scale};
     imp_core_axes(shape, form->axis);
     for (int k = 0; k < 3; k++) form->axis[k] *= scale;
     form->core = (imp_core){.hull = hull_of(shape), .even = shape->kind == IMPACT_POLYHEDRON};
@@ -236,7 +239,7 @@ static double core_support(const imp_form *form, const double d[3], imp_surface 
     }
     const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     for (int i = 0; i < 3; i++) s->e[i] = d[i] / length;
-    return h;
+    return h + form->rounding * length;
 }
 
 double imp_form_support(const imp_form *form, const double d[3], imp_surface *s)
@@ -265,7 +268,7 @@ double imp_form_support(const imp_form *form, const double d[3], imp_surface *s)
 void imp_surface_point(const imp_form *form, const imp_surface *s, double x[3], double normal[3])
 {
     if (form->kind != IMP_FORM_QUADRIC) {
-        for (int i = 0; i < 3; i++) x[i] = s->u[i], normal[i] = s->e[i];
+        for (int i = 0; i < 3; i++) x[i] = s->u[i] + form->rounding * s->e[i], normal[i] = s->e[i];
         return;
     }
     if (form->nested) {
@@ -425,10 +428,17 @@ static void core_hessian(const imp_form *form, const double d[3], double H[3][3]
         if (high[k] - low[k] > slack) H[k][k] = INFINITY;
 }
 
+static void ball_hessian(double radius, const double d[3], double H[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) H[i][j] += radius * ((i == j) - d[i] * d[j]);
+}
+
 void imp_form_hessian(const imp_form *form, const double d[3], double H[3][3])
 {
     if (form->kind != IMP_FORM_QUADRIC) {
         core_hessian(form, d, H);
+        if (form->rounding > 0) ball_hessian(form->rounding, d, H);
         return;
     }
     imp_surface s;

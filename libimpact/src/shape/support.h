@@ -32,16 +32,16 @@ typedef struct imp_form {
     double p[4];           /* p[IMP_SECTION] is t of a superellipsoid */
     double rotation[3][3]; /* body to world */
     double base;           /* of a cone */
+    double rounding;       /* of a core: the ball's radius */
     imp_core core;         /* of boxes and polytopes */
 } imp_form;
 
-/* Of a core: u is the point, e the unit normal. */
+/* Of a core: u is the core's point, e the unit normal. */
 typedef struct imp_surface {
     double u[4], e[4];
 } imp_surface;
 
-/* Semi-axes are multiplied by scale. Spheres are ellipsoids here; planes have no form; of rounded shapes it is the
- * core. */
+/* Semi-axes are multiplied by scale. Spheres are ellipsoids here; planes have no form. */
 void imp_form_make(const impact_shape *shape, double scale, quat orientation, imp_form *form);
 
 /* The same body with another orientation. */
