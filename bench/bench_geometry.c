@@ -172,21 +172,21 @@ int main(void)
     measure("stereographic there and back", POINTS, stereographic);
     measure("belt frames", POINTS, belt);
     measure("rolling strokes", POINTS, ball);
-    measure("curve points, derivatives known", POINTS, points_known);
-    measure("curve points, x alone", POINTS, points_guessed);
+    measure("curve points: derivatives known", POINTS, points_known);
+    measure("curve points: x alone", POINTS, points_guessed);
     measure("minimal frames", POINTS, minimal);
     measure("length of an ellipse", 1, length);
     measure("even points", 257, even);
-    measure("surface points, derivatives known", SIDE * SIDE, curvatures_known);
-    measure("surface points, x alone", SIDE * SIDE, curvatures_guessed);
+    measure("surface points: derivatives known", SIDE * SIDE, curvatures_known);
+    measure("surface points: x alone", SIDE * SIDE, curvatures_guessed);
     measure("totals of an ellipsoid", 1, ellipsoid);
     measure("totals of a disc of 1 : 1e4", 1, disc);
     quat_saddle(1, 2, &family, &surface);
     quat_surface_patch(&surface, -2, 2, -2, 2, SIDE, SIDE, places, nodes, triangles[0]);
-    measure("saddle, least length", SIDE * SIDE, least_length);
-    measure("saddle, least area", SIDE * SIDE, least_area);
+    measure("saddle: least length", SIDE * SIDE, least_length);
+    measure("saddle: least area", SIDE * SIDE, least_area);
     quat_torus(2, 0.8, &family, &surface);
     quat_surface_patch(&surface, 0, 2 * pi, 0, 2 * pi, SIDE, SIDE, places, nodes, triangles[0]);
-    measure("whole torus, least area", SIDE * SIDE, least_area);
+    measure("whole torus: least area", SIDE * SIDE, least_area);
     return 0;
 }

@@ -2,6 +2,16 @@
 --- What the tests of the pages share: reading files, lists of them, tables, and complaints counted to the end.
 local pages = { complaints = 0 }
 
+--- Of a file; nil where there is none and it may be so.
+function pages.lines(path)
+  local file = io.open(path, "r")
+  if not file then return end
+  local list = {}
+  for line in file:lines() do list[#list + 1] = line end
+  file:close()
+  return list
+end
+
 function pages.read(path)
   local file = assert(io.open(path, "rb"))
   local text = file:read "a"

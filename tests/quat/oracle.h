@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 #include <quat/quat.h>
+#include "kit/figures.h"
 
 #ifdef __clang__
 /* clang calls the type by another name, and glibc's header then hides its functions, though they are there. */
@@ -200,7 +201,7 @@ static inline void worse(double *worst, double error)
 #define assert_bound(name, worst, bound)                                                                               \
     do {                                                                                                               \
         const double worst_ = (worst), bound_ = (bound);                                                               \
-        if (getenv("QUAT_TEST_SHOW")) printf("%-44s %10.3g  (bound %g)\n", name, worst_, bound_);                      \
+        show_bounded(name, worst_, bound_);                                                                            \
         if (!(worst_ <= bound_))                                                                                       \
             fail_msg("%s: wanted at most %g, got %g, ratio %g", name, bound_, worst_, worst_ / bound_);                \
     } while (0)

@@ -363,9 +363,9 @@ static void samples_stand_for_their_curve(void **state)
             worse(&torsion[fine], fabs(want.torsion - got.torsion));
         }
     }
-    if (getenv("QUAT_TEST_SHOW"))
-        printf("samples, orders: position %.2f, curvature %.2f, torsion %.2f\n", log2(position[0] / position[1]),
-               log2(curvature[0] / curvature[1]), log2(torsion[0] / torsion[1]));
+    show_figure("samples: order of position", log2(position[0] / position[1]));
+    show_figure("samples: order of curvature", log2(curvature[0] / curvature[1]));
+    show_figure("samples: order of torsion", log2(torsion[0] / torsion[1]));
     assert_bound("256 samples: position", position[1], 1e-11);
     assert_bound("256 samples: curvature", curvature[1], 1e-8);
     assert_bound("256 samples: torsion", torsion[1], 1e-6);

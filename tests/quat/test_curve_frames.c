@@ -94,7 +94,8 @@ static void minimal_frames_are_of_order_four(void **state)
         if (n > 33) least = fmin(least, log2(before / error)), most = fmax(most, log2(before / error));
         before = error;
     }
-    if (getenv("QUAT_TEST_SHOW")) printf("order of the double reflection: %.3f ... %.3f\n", least, most);
+    show_figure("least order of the double reflection", least);
+    show_figure("greatest order of the double reflection", most);
     assert_true(least > 3.95 && most < 4.05);
     assert_bound("minimal frame, 513 steps a turn", before, 1e-10);
     assert_bound("its tangent", tangent, 3e-15);

@@ -148,8 +148,6 @@ static void from_the_rim(double reach)
             worse(&off_by[gauge], quat_rotation_distance(common, s));
         }
     }
-    if (getenv("QUAT_TEST_SHOW"))
-        printf("from the rim: energy %g by shortest rotations, %g least\n", energy[0], energy[1]);
     assert_true(energy[QUAT_MINIMAL_LENGTH] <= energy[QUAT_SHORTEST] * (1 + 1e-13));
     assert_bound("least length from the rim, rad", off_by[QUAT_MINIMAL_LENGTH], 1e-14);
     assert_bound("least area from the rim, rad", off_by[QUAT_MINIMAL_AREA], 1e-14);
@@ -182,9 +180,7 @@ static void least_area(void **state)
         assert_int_equal(status, QUAT_OK);
         assert_int_equal(report.torn, 0);
         area[gauge] = report.area, energy[gauge] = report.energy;
-        if (getenv("QUAT_TEST_SHOW"))
-            printf("saddle, gauge %d: energy %.9f, area %.9f, %zu rounds\n", gauge, report.energy, report.area,
-                   report.rounds);
+        if (gauge == QUAT_MINIMAL_AREA) show_figure("saddle, rounds to least area", (double)report.rounds);
     }
     assert_true(energy[QUAT_MINIMAL_LENGTH] < energy[QUAT_SHORTEST] &&
                 energy[QUAT_MINIMAL_LENGTH] < energy[QUAT_MINIMAL_AREA]);
@@ -290,7 +286,7 @@ static void whole_tori(void **state)
     static size_t triangle[m][3];
     const double radius[3] = {0.1, 0.8, 1.9};
     random_state r = {411};
-    double least = 0, apart = 0, again = 0;
+    double least = 0, apart = 0, again = 0, fewest = INFINITY, most = 0;
     for (int which = 0; which < 3; which++) {
         quat_family f;
         quat_surface s;
@@ -313,9 +309,11 @@ static void whole_tori(void **state)
         if (which == 0) least = report[2].area;
         worse(&apart, fabs(report[2].area / least - 1));
         worse(&again, fabs(report[3].area / report[2].area - 1));
-        if (getenv("QUAT_TEST_SHOW"))
-            printf("torus, r = %g: area %.9f, %zu rounds\n", radius[which], report[2].area, report[2].rounds);
+        most = fmax(most, (double)report[2].rounds);
+        fewest = fmin(fewest, (double)report[2].rounds);
     }
+    show_figure("torus, fewest rounds to least area", fewest);
+    show_figure("torus, most rounds to least area", most);
     assert_bound("least area of tori, thin and thick", apart, 1e-8);
     assert_bound("and from any frames", again, 1e-13);
 }

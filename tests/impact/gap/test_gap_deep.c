@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <impact/gap.h>
 #include "kit/contact_random.h"
+#include "kit/figures.h"
 
 static double thinnest(const impact_shape *s) { return fmin(s->a, fmin(s->b, s->c)); }
 
@@ -135,7 +136,7 @@ static void octahedra_against_all_features(void **state)
         const qvec3 v = qvec3_sub(qvec3_add(qvec3_sub(body[0].position, body[1].position), c.offset1), c.offset2);
         assert_true(qvec3_norm(qvec3_axpy(-c.gap, c.normal, v)) <= 1e-14 * reach_of(body));
     }
-    if (getenv("TEST_SHOW")) printf("octahedra against all features, relative: %.2g\n", worst);
+    show_figure("octahedra against all features, relative", worst);
 }
 #endif
 
@@ -187,9 +188,13 @@ static void check_overlap(random_stream *random, const impact_solid body[2], int
 
 static void report(const char *name, const tally *t)
 {
-    if (getenv("TEST_SHOW"))
-        printf("%s: %d asked, %d ok, %d deep, %d bracket, widest over depth %.2g\n", name, t->asked, t->ok, t->deep,
-               t->bracket, t->widest);
+    const char *const what[] = {"asked", "ok", "deep", "bracket", "widest over depth"};
+    const double values[] = {t->asked, t->ok, t->deep, t->bracket, t->widest};
+    for (int i = 0; i < 5; i++) {
+        char line[80];
+        snprintf(line, sizeof line, "%s, %s", name, what[i]);
+        show_figure(line, values[i]);
+    }
 }
 
 /* Exponents under 2, and others, overlapped by a hundredth of the thinnest axis and up to concentric. */
