@@ -9,7 +9,8 @@
  * impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones; isotropic: a = b), the
  * scenes S1, S2, S5 that other programs are compared on, and S5e, 300 random ellipsoids on a plane. `loop of`, `array
  * of`: many different impacts by a closed form, the mean time of one. `receipt of`: such impacts, any of them, checked,
- * and that time over the same unchecked. `p_z`: what integration over the normal impulse itself does, by CVODE.
+ * and that time over the same unchecked. `sensitivity of`: impact_collide_sensitivity, over such an impact. `p_z`: what
+ * integration over the normal impulse itself does, by CVODE.
  */
 #include <pthread.h>
 #include <stdio.h>
@@ -432,6 +433,28 @@ static void receipts(void)
     }
 }
 
+/* The derivative of an answer, over the answer. */
+static void sensitivities(void)
+{
+    enum { COUNT = 200 };
+    static const case_class classes[] = {CASE_PLAIN,  CASE_ROD,       CASE_WILD,   CASE_SPHERE,
+                                         CASE_PLANAR, CASE_ISOTROPIC, CASE_SLENDER};
+    static impact_collision c[COUNT];
+    for (int k = 0; k < 7; k++) {
+        double best = INFINITY, plain = INFINITY, sum = 0;
+        for (int i = 0; i < COUNT; i++) c[i] = case_make(classes[k], 109, (uint64_t)i);
+        for (int r = 0; r < 5; r++) {
+            const double from = measure_clock();
+            for (int i = 0; i < COUNT; i++) sum += impact_collide_sensitivity(&c[i]);
+            best = fmin(best, measure_clock() - from);
+            plain = best_of(c, COUNT, IMPACT_CHECK_ALWAYS, plain);
+        }
+        if (isnan(sum)) exit(1);
+        printf("sensitivity of %s,auto,over the answer,%d,0,,,%.3g,%.3g,,\n", case_name(classes[k]), COUNT,
+               1e6 * best / COUNT, best / plain);
+    }
+}
+
 /* The array call: the time of one sphere impact. */
 static void array_call(void)
 {
@@ -472,6 +495,7 @@ int main(void)
     closed_forms();
     array_call();
     receipts();
+    sensitivities();
     gather_straight(&g);
     run_straight(&g);
     gather_isotropic(&g);

@@ -175,12 +175,17 @@ IMPACT_API impact_status impact_collide(const impact_collision *collision, impac
 IMPACT_API impact_status impact_collide_many(const impact_collision *collisions, size_t count, int threads,
                                              impact_outcome *outcomes, impact_status *statuses);
 
-/* How far the velocities after the impact follow its data: their relative change over that of the data, the largest of
- * eight tries with every number (both bodies', the normal, friction, restitution) changed by 2^-36 of itself up or down
- * at random, always the same; the size of velocities is the root of the sum over both bodies of |v|^2 + rho^2
- * |omega|^2, rho^2 the mean moment over the mass. Times 2^-52 it is what rounding of the data alone leaves open: it
- * knows of M, of slim bodies, of velocities that nearly vanish, and of events that are about to happen. Takes as long
- * as nine impacts. 0 where nothing moves; NaN where impact_collide refuses. */
+/* How far the velocities after the impact follow its data, to first order: each number x of the data (both bodies', the
+ * normal, friction, restitution) changed by the part h of itself moves them by h c_x of their size; the root of the sum
+ * of all c_x^2, which is what changes up or down at random come to. Times 2^-52 it is what rounding of the data alone
+ * leaves open: it knows of M, of slim bodies, of velocities that nearly vanish. The size of velocities is the root of
+ * the sum over both bodies of |v|^2 + rho^2 |omega|^2, rho^2 the mean moment over the mass.
+ * By the derivative of the flow (Leine & Nijmeijer 2004); in 128 bits where M is ill-conditioned; by differences, to
+ * 1e-5, where CVODE answers alone. INFINITY where the answer jumps or has no derivative to the last bits of the data:
+ * the impact ends just as the contact is compressed again, or u_n only touches 0, or Newton's value. Where it has one
+ * on each side, that of the phases that are: sticking or not, an end of sliding at an event. From u_t = 0 where
+ * friction does not hold, near both (along the slip). 1 where the points do not approach, 0 where nothing moves; NaN
+ * where impact_collide refuses. */
 IMPACT_API double impact_collide_sensitivity(const impact_collision *collision);
 
 /* ---- sliding itself, as data for plotting ---- */

@@ -159,6 +159,18 @@
  */
 #define IMP_COLLIDE_BRIEF 1e3
 
+/* ---- collide: sensitivity ---- */
+
+/* eps, of the terms of du_n/dp: below it is rounding of the data (a product of three and a sum, of two bodies), and
+ * u_n only touches 0. */
+#define IMP_COLLIDE_TIE 16
+/* |M| |M^-1| / 3 from which derivatives are taken in 128 bits: in double eps times its square, 2e-4, is the most that
+ * cancellation between the entries of M leaves (1e-6 was seen). */
+#define IMP_COLLIDE_VARIED_IN_DOUBLE 1e6
+/* Relative, where answers come to CVODE's tolerance, 1e-12: differences over this are derivatives to 1e-5, and a
+ * quaternion changed by it is still taken for one of unit length (1e-6). */
+#define IMP_COLLIDE_NUDGE 0x1p-22
+
 /* ---- contact: the cone problem, docs/cone.md ---- */
 
 /* The residual of what is solved: some 450 eps of the largest reaction and velocity. W itself is rounded, in sums of as

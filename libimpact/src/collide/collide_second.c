@@ -35,11 +35,17 @@
 #define imp_taylor_make imp_second_taylor_make
 #define imp_tail_make imp_second_tail_make
 #define imp_series_solve imp_second_series_solve
+#define imp_swerve_over imp_second_swerve_over
+#define imp_swerve_from_rest imp_second_swerve_from_rest
+#define imp_swerve_to_rest imp_second_swerve_to_rest
+#define imp_variation_make imp_second_variation_make
+#define imp_columns_sensitivity imp_second_columns_sensitivity
 #define imp_report_push imp_second_report_push
 #define imp_report_course imp_second_report_course
 
 #include "collide/collide_second.h"
 
+#include "collide/collide_columns.h"
 #include "collide/collide_real.h"
 
 #if IMP_HAS_SECOND
@@ -49,12 +55,15 @@
  */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
+#include "collide/collide_columns.c"
 #include "collide/collide_course.c"
 #include "collide/collide_frame.c"
 #include "collide/collide_ready.c"
 #include "collide/collide_report.c"
 #include "collide/collide_series.c"
+#include "collide/collide_swerve.c"
 #include "collide/collide_tail.c"
+#include "collide/collide_variation.c"
 
 /* A sliding velocity that is rounding of those given is none. */
 static imp_real sliding(const imp_ready *ready, imp_vec t)
@@ -95,6 +104,12 @@ impact_status imp_second_collide(const impact_collision *collision, impact_outco
 {
     (void)collision, (void)outcome;
     return IMPACT_EABSENT;
+}
+
+double imp_second_columns_sensitivity(const impact_collision *collision, const impact_outcome *outcome)
+{
+    (void)collision, (void)outcome;
+    return NAN;
 }
 
 #endif

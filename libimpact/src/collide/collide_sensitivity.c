@@ -1,58 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * How far the answer follows its data, by trying: cond(M) alone knows neither of slim bodies, nor of a velocity that
- * nearly vanishes, nor of events that are about to happen or not.
+ * How far the answer follows its data: cond(M) alone knows neither of slim bodies, nor of a velocity that nearly
+ * vanishes. By the derivative of the flow (collide_variation.c), in double, and in 113 bits where cancellation between
+ * the entries of M would show; where CVODE answers alone (a friction law, compliance), by differences.
  */
-#include <impact/collide.h>
-
-#include <stdint.h>
-
-/* Far above the rounding of an impact, far below what bends its answer. */
-static const double nudge = 0x1p-36;
-enum { TRIES = 8 };
-
-/* x (1 + nudge) or x (1 - nudge), by one bit of the generator (splitmix64; Steele, Lea & Flood 2014). */
-static double nudged(double x, uint64_t *state)
-{
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return x + (z >> 63 ? nudge : -nudge) * x;
-}
-
-static qvec3 nudged3(qvec3 v, uint64_t *state)
-{
-    const double x = nudged(v.x, state), y = nudged(v.y, state), z = nudged(v.z, state);
-    return (qvec3){x, y, z};
-}
-
-static void nudge_body(impact_collider *body, uint64_t *state)
-{
-    const qvec3 j = body->moments;
-    body->offset = nudged3(body->offset, state);
-    body->velocity = nudged3(body->velocity, state);
-    body->omega = nudged3(body->omega, state);
-    if (isinf(body->mass)) return;
-    body->mass = nudged(body->mass, state);
-    body->moments = nudged3(j, state);
-    /* A round body stays round. */
-    if (j.x == j.y && j.y == j.z) body->moments.y = body->moments.z = body->moments.x;
-    quat *q = &body->orientation;
-    q->w = nudged(q->w, state);
-    q->x = nudged(q->x, state);
-    q->y = nudged(q->y, state);
-    q->z = nudged(q->z, state);
-}
-
-static void nudge_all(impact_collision *c, uint64_t *state)
-{
-    nudge_body(&c->body[0], state);
-    nudge_body(&c->body[1], state);
-    c->normal = nudged3(c->normal, state);
-    c->friction = nudged(c->friction, state);
-    const double eps = nudged(c->restitution, state);
-    if (eps <= 1 || c->any_restitution) c->restitution = eps;
-}
+#include "base/tolerances.h"
+#include "collide/collide_columns.h"
+#include "collide/collide_units.h"
 
 /* sum of |v|^2 + rho^2 |omega|^2 over the bodies that move, rho^2 the mean moment over the mass; of the difference to
  * `other` if given. */
@@ -70,18 +24,61 @@ static double size2(const impact_collision *c, const impact_outcome *o, const im
     return sum;
 }
 
+/* ---- by differences ---- */
+
+enum { NUMBERS_OF_BODY = 17 };
+
+static double *number_of_body(impact_collider *b, int k)
+{
+    double *const all[NUMBERS_OF_BODY] = {
+        &b->mass,     &b->moments.x,     &b->moments.y,     &b->moments.z,     &b->offset.x,     &b->offset.y,
+        &b->offset.z, &b->velocity.x,    &b->velocity.y,    &b->velocity.z,    &b->omega.x,      &b->omega.y,
+        &b->omega.z,  &b->orientation.w, &b->orientation.x, &b->orientation.y, &b->orientation.z};
+    return all[k];
+}
+
+/* Number k of a collision's data; NULL after the last. */
+static double *number_of(impact_collision *c, int k)
+{
+    double *const all[] = {&c->normal.x, &c->normal.y,    &c->normal.z,
+                           &c->friction, &c->restitution, &c->tangential_compliance};
+    if (k < 2 * NUMBERS_OF_BODY) return number_of_body(&c->body[k / NUMBERS_OF_BODY], k % NUMBERS_OF_BODY);
+    return k < 2 * NUMBERS_OF_BODY + 6 ? all[k - 2 * NUMBERS_OF_BODY] : NULL;
+}
+
+/* Every number made a little smaller in turn, which keeps each of them admitted. */
+static double by_differences(const impact_collision *collision, const impact_outcome *outcome)
+{
+    double sum = 0;
+    impact_collision c = *collision;
+    for (int k = 0; number_of(&c, k); k++) {
+        impact_outcome other;
+        double *const number = number_of(&c, k), given = *number;
+        if (given == 0 || isinf(given)) continue;
+        *number -= IMP_COLLIDE_NUDGE * given;
+        if (impact_collide(&c, &other) < 0) return NAN;
+        *number = given;
+        sum += size2(collision, outcome, &other);
+    }
+    return sum == 0 ? 0 : sqrt(sum / size2(collision, outcome, NULL)) / IMP_COLLIDE_NUDGE;
+}
+
+/* ---- by the derivative ---- */
+
 double impact_collide_sensitivity(const impact_collision *collision)
 {
-    impact_outcome outcome, other;
-    if (impact_collide(collision, &outcome) < 0) return NAN;
-    uint64_t state = 1;
-    double worst = 0;
-    for (int i = 0; i < TRIES; i++) {
-        impact_collision c = *collision;
-        nudge_all(&c, &state);
-        if (impact_collide(&c, &other) < 0) return NAN;
-        const double moved = size2(collision, &outcome, &other);
-        if (moved > worst) worst = moved;
-    }
-    return worst == 0 ? 0 : sqrt(worst / size2(collision, &outcome, NULL)) / nudge;
+    impact_outcome outcome;
+    const impact_status status = impact_collide(collision, &outcome);
+    if (status < 0) return NAN;
+    /* What is not struck keeps the velocities given. */
+    if (status == IMPACT_SEPARATING) return size2(collision, &outcome, NULL) > 0 ? 1 : 0;
+    if (collision->friction_law || (collision->tangential_compliance > 0 && collision->friction > 0))
+        return by_differences(collision, &outcome);
+    const imp_units units = imp_units_of(collision);
+    const impact_collision scaled = imp_units_scaled(collision, units);
+    imp_units_restore(&outcome, imp_units_inverse(units));
+    double s = NAN;
+    if (outcome.conditioning <= IMP_COLLIDE_VARIED_IN_DOUBLE) s = imp_columns_sensitivity(&scaled, &outcome);
+    if (!isfinite(s)) s = imp_second_columns_sensitivity(&scaled, &outcome);
+    return isnan(s) ? by_differences(&scaled, &outcome) : s;
 }

@@ -68,7 +68,8 @@ static void slender_bodies(void **state)
     assert_true(rows >= 200);
 }
 
-/* The sampled sensitivity against the true one: between a quarter and twice of it. */
+/* The sensitivity against that by differences in 128 bits, to the six digits written, and
+ * the bend of a change by 2^-24 of what nearly vanishes. */
 static void sensitivity_is_true(void **state)
 {
     (void)state;
@@ -83,8 +84,8 @@ static void sensitivity_is_true(void **state)
                                     .friction = x[38],
                                     .restitution = x[39],
                                     .law = (impact_law)(int)x[40]};
-        const double said = impact_collide_sensitivity(&c) / x[NUMBERS - 1];
-        if (!(said > 0.25 && said < 2)) fail_msg("r = %g: said %.3g times the true %.3g", x[0], said, x[NUMBERS - 1]);
+        const double said = impact_collide_sensitivity(&c), wanted = x[NUMBERS - 1], most = 6e-6 + 0x1p-24 * wanted;
+        if (!(fabs(said / wanted - 1) <= most)) fail_msg("r = %g: said %.9g, not %.9g", x[0], said, wanted);
     }
     fclose(file);
 }
@@ -107,12 +108,15 @@ static void slippery(void **state)
         impact_outcome o, without;
         assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
         assert_int_equal(impact_collide(&smooth, &without), IMPACT_OK);
-        const double s = fmax(1, impact_collide_sensitivity(&c));
-        assert_true(o.energy_after <= o.energy_before * (1 + 100 * DBL_EPSILON * s));
         assert_true(o.normal_after >= 0);
-        if (c.friction * o.conditioning > DBL_EPSILON) continue;
-        assert_at_most(velocities_off(&c, &o, &without), 30 * DBL_EPSILON * s);
-        compared++;
+        const bool shows = c.friction * o.conditioning > DBL_EPSILON;
+        const double rise = o.energy_after / o.energy_before - 1, off = velocities_off(&c, &o, &without);
+        compared += !shows;
+        /* Most need no more than 1. */
+        if (rise <= 100 * DBL_EPSILON && (shows || off <= 30 * DBL_EPSILON)) continue;
+        const double s = impact_collide_sensitivity(&c);
+        assert_at_most(rise, 100 * DBL_EPSILON * s);
+        if (!shows) assert_at_most(off, 30 * DBL_EPSILON * s);
     }
     assert_true(compared > 15000);
 }
