@@ -19,6 +19,27 @@ local function cells(line)
   return row
 end
 
+-- The energies of events of one instant, as they are when the events come in the order of the list.
+local function chain_energies(header, list)
+  local before, after = #header - 1, #header
+  if header[before] ~= "energy_before" then return end
+  local instant, energy
+  for i, row in ipairs(list) do
+    local now = row.key:match("%S+")
+    local same = now == instant
+    if not same then
+      energy = -math.huge
+      for k = i, #list do
+        if list[k].key:match("%S+") ~= now then break end
+        energy = math.max(energy, tonumber(list[k][before]))
+      end
+    end
+    local lost = row[before] - row[after]
+    row[before], row[after] = string.format("%.17g", energy), string.format("%.17g", energy - lost)
+    instant, energy = now, energy - lost
+  end
+end
+
 -- Of two bodies that do the same at the same time, rounding alone says who comes first: within 1e-9 s, rows go by body.
 local function rows(path)
   local file = assert(io.open(path))
@@ -31,6 +52,7 @@ local function rows(path)
   end
   file:close()
   table.sort(list, function(a, b) return a.key < b.key end)
+  chain_energies(header, list)
   table.insert(list, 1, header)
   return list
 end

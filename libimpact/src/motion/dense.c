@@ -3,6 +3,13 @@
 
 #include <string.h>
 
+impact_status imp_dense_reserve(imp_dense *dense, imp_arena *arena, int size)
+{
+    double *c = imp_arena_grow(arena, dense->c, &dense->room, IMP_DENSE_TERMS * size, sizeof *c);
+    if (c) dense->c = c;
+    return c ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
 static double value_of(const imp_dense *dense, double s, int i)
 {
     double y = 0;

@@ -20,6 +20,9 @@ typedef struct imp_dense {
     int room;        /* doubles that c has room for */
 } imp_dense;
 
+/* Room for all terms of so many components; what was there before is lost. */
+impact_status imp_dense_reserve(imp_dense *dense, imp_arena *arena, int size);
+
 /* y at the time t, of the components first .. first + count - 1. */
 void imp_dense_at(const imp_dense *dense, double t, int first, int count, double *y);
 /* tau where y[0] = t. */

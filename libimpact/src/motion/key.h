@@ -30,8 +30,6 @@ typedef struct imp_piece {
     void *context;
     impact_key (*at)(void *context, int body, double s);
     imp_pose (*pose)(void *context, int body, double s);
-    const imp_state *end;          /* every body's state at its end */
-    const struct imp_works *works; /* the work done by then */
 } imp_piece;
 
 /* A part of a piece on which the polynomial of its ends meets the trajectory, and where the trajectory was inside it.

@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * motion: from one event of the world to the next, in closed form where flight has one, by the integrator elsewhere.
- * Internal.
+ * motion: the motion of an island (of a world of few bodies) that has no closed form: the integrator, step by step,
+ * each step a segment (dense.h); and the loads and reactions at one instant. Internal.
  */
 #ifndef IMP_MOTION_H
 #define IMP_MOTION_H
 
 #include "base/ode_in.h"
 #include "contact/persist.h"
-#include "motion/key.h"
+#include "motion/dense.h"
 
 typedef enum imp_end_kind {
-    IMP_END_TIME,    /* the time asked for */
-    IMP_END_GAP,     /* an open pair's gap fell to zero */
-    IMP_END_RETURN,  /* a body that had passed beside a plane's bounds is before the plane again */
+    IMP_END_TIME,    /* nothing: the motion goes on */
+    IMP_END_GAP,     /* an open pair's gap fell to zero: no integrator says so, but a search (search.h) */
     IMP_END_BOUNDS,  /* a held contact left its plane's bounds */
     IMP_END_LIFTOFF, /* a held contact's pressure fell to zero */
     IMP_END_SLIP,    /* a rolling contact's friction reached its cone */
@@ -28,21 +27,21 @@ typedef struct imp_end {
     int index; /* pair, edge or body */
 } imp_end;
 
-/* Where samples go on the way: emit is called at every k/rate up to where the motion ends. */
-typedef struct imp_sampler {
-    double rate; /* 0: never */
-    long next;   /* k of the next sample */
-    bool (*emit)(void *context, double t, const imp_state *states);
-    bool (*pulse)(void *context, double t); /* called at every step of the integrator; false stops */
-    /* handed every piece of motion that is done, in order; false stops. NULL: no keys are wanted */
-    bool (*piece)(void *context, const imp_piece *piece);
-    void *context;
-} imp_sampler;
-
 /* Work since the start of the run, J. */
 typedef struct imp_works {
     double force, damping, sliding, drive;
 } imp_works;
+
+/* Where the integrator stands in its stretch: one run of it, between two starts. */
+typedef struct imp_stride {
+    double t, tau;      /* now; tau is its variable */
+    double from, t_end; /* where the stretch began, and will end at the latest */
+    double began;       /* where the motion began that the steps are counted of */
+    long steps;
+    int still;    /* steps in a row that did not advance */
+    bool passed;  /* the last step ended at a root that is no event */
+    bool restart; /* the next step begins a new stretch */
+} imp_stride;
 
 typedef struct imp_motion {
     imp_world *world;
@@ -53,21 +52,30 @@ typedef struct imp_motion {
     imp_works works;
     char message[256];
 
-    struct imp_flyer *flyers; /* bodies in closed form; absent until they are */
-    struct imp_trace *trace;  /* the integrator's last step, for keys; absent until they are wanted */
+    int room;        /* of the arrays over bodies */
+    imp_dense dense; /* the last step */
+    imp_stride stride;
+    impact_ode_counts counted; /* in the world's usage already */
 
     /* the integrator's side; absent until it is needed */
     impact_ode *ode; /* the one at work: adams or bdf */
     impact_ode *adams,
         *bdf; /* for smooth motion; for what is stiff: slow slip after an onset, forces that brake hard */
     int size, roots;
-    double *y, *kept; /* the integrated state, and a copy while samples are interpolated */
+    double *y, *kept; /* the integrated state, and a copy while samples are interpolated; */
+    imp_touch *kept_touches;
+    imp_pair *kept_pairs;
+    int kept_room[2];
     int *found;
     imp_state *scratch, *sampled;
-    bool sliding;                      /* slip slows the clock: see motion_equations.c */
-    bool creeping;                     /* contacts that move fast over flat places do */
-    bool stiff;                        /* some slip has just begun */
-    bool bounces;                      /* the stretch begins with an open pair that touches */
+    bool sliding;       /* slip slows the clock: see motion_equations.c */
+    bool creeping;      /* contacts that move fast over flat places do */
+    bool stiff;         /* some slip has just begun */
+    bool bounces;       /* the motion begins with an open pair that touches */
+    double slip_scale;  /* m/s */
+    double creep_scale; /* 1/s */
+
+    /* what is seen of its own work: motion_guard.h */
     double *probe;                     /* 4 size: of a step that is looked into */
     double relative, *absolute;        /* tolerances of the stretch */
     bool distrusted;                   /* a loss fell: the next stretch is for the other method */
@@ -76,38 +84,37 @@ typedef struct imp_motion {
     double last_fall, fallen, fell_at; /* J: by how much losses have fallen in steps that were kept; s: when first */
     long pace_steps;                   /* steps since time was looked at last, and when that was, s: */
     double pace_began;
-    long steps_before; /* of the stretch at hand, before its contacts were put back; and when it began, s: */
-    double began;
-    double slip_scale;  /* m/s */
-    double creep_scale; /* 1/s */
 } imp_motion;
 
-impact_status imp_motion_open(imp_motion *motion, imp_world *world, double tolerance, double rest_speed);
-void imp_motion_close(imp_motion *motion); /* of one that was not opened: nothing */
+/* Room for so many bodies in all that is kept of each. */
+bool imp_motion_reserve(imp_motion *motion, imp_arena *arena, int bodies);
+/* Nothing has happened yet in this world. */
+void imp_motion_reset(imp_motion *motion, imp_world *world, double tolerance, double rest_speed);
+/* Room for the integrated state of the world as it is; integrators of another size are of no use. */
+impact_status imp_motion_make_room(imp_motion *motion);
+/* Frees the integrators and what belongs to them; and all. */
+void imp_motion_forget(imp_motion *motion);
+void imp_motion_close(imp_motion *motion);
 
 /* A force's edge that was crossed in the same instant as the event that ended the last stretch and is not handled yet:
  * the restarted integrator would never see it. False when there is none. */
 bool imp_motion_also_crossed(imp_motion *motion, imp_end *end);
 
-/* motion_advance.c, by one of two roads below. */
-/* Advances the states (consistent modes: see imp_persist_resolve) from *t to the next event, at most to t_end. */
-impact_status imp_motion_advance(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
-                                 imp_end *end);
-/* In closed form: motion_flight.c; by the integrator: motion_stretch.c. */
-impact_status imp_motion_fly(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
-                             imp_end *end);
-impact_status imp_motion_integrate(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
-                                   imp_end *end);
+/* The motion begins anew at t (consistent modes: see imp_persist_resolve), and is followed to t_end at most: that alone
+ * of what is asked bears on how the integrator steps. renewed: only put back exactly, the count of its steps goes on.
+ */
+void imp_motion_depart(imp_motion *motion, double t, double t_end, bool renewed);
+/* The next step: its polynomial in motion->dense, the states at its end, and what ends it. */
+impact_status imp_motion_next(imp_motion *motion, imp_state *states, imp_end *end);
+/* States and works at t, in the last step; the motion has to depart anew from there. */
+void imp_motion_go_to(imp_motion *motion, double t, imp_state *states);
+/* Works at t, in the last step. */
+imp_works imp_motion_works(const imp_motion *motion, double t);
+/* The states at t, in the last step, with the held contacts put back exactly; nothing else changes. */
+impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states);
 
-/* When the next sample is due; infinite when none is. */
-double imp_motion_sample_time(const imp_sampler *sampler);
-/* Emits one, with the held contacts put back exactly. */
-impact_status imp_motion_emit(imp_motion *motion, imp_sampler *sampler, double t, const imp_state *states);
-
-/* Nothing but uniform gravity acts, and nothing is held: the motion is in closed form. */
+/* Nothing but gravity and damping acts, and nothing is held: the motion is in closed form. */
 bool imp_motion_is_ballistic(const imp_motion *motion);
-/* Sets every pair's slack, and whether one bounces, for the stretch that begins. */
-void imp_motion_set_slack(imp_motion *motion, const imp_state *states);
 
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
 bool imp_motion_load(imp_motion *motion, double t, const imp_state *states);

@@ -48,9 +48,22 @@ void imp_motion_pack(const imp_motion *motion, double t, const imp_state *states
  * as error. */
 static double measure_of(double size) { return size > 1e3 ? size : 1; }
 
+/* Works are differences of energies: that which moves, and what the loads do over the bodies' sizes, J. */
+static double energy_scale(const imp_motion *motion, const imp_state *states)
+{
+    double scale = imp_world_kinetic_energy(motion->world, states);
+    for (int i = 0; i < motion->world->body_count; i++)
+        if (!motion->world->bodies[i].is_static)
+            scale += motion->world->bodies[i].radius * qvec3_norm(motion->loads[i].force);
+    return scale > 0 ? scale : 1;
+}
+
 void imp_motion_measures(const imp_motion *motion, const imp_state *states, double *measure)
 {
     for (int i = 0; i < motion->size; i++) measure[i] = 1;
+    const double energy = energy_scale(motion, states) / IMP_ABSOLUTE_OF_RELATIVE;
+    for (int k = Y_FORCE_WORK; k <= Y_SLIDING; k++) measure[k] = energy;
+    if (motion->world->driven) measure[imp_motion_drive(motion)] = energy;
     double *b = measure + Y_BODIES;
     for (int i = 0; i < motion->world->body_count; i++) {
         const imp_body *body = &motion->world->bodies[i];
@@ -195,26 +208,6 @@ double imp_motion_speed(const imp_body *body, const imp_state *state)
     return qvec3_norm(state->v) + body->radius * qvec3_norm(imp_omega(body, state));
 }
 
-/* The gap with its slack, and minus its rate. Far apart, of the bounding balls, or of the bounding ball and the plane.
- */
-static void open_pair_roots(imp_world *world, imp_pair *pair, const imp_state *states, double *value)
-{
-    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
-    const double bound = imp_world_distance_bound(world, pair, states);
-    const double speed =
-        imp_motion_speed(b1, &states[pair->body1]) + (b2->is_static ? 0 : imp_motion_speed(b2, &states[pair->body2]));
-    const double still = imp_still_rate(world, speed);
-    if (bound > b1->radius) {
-        value[0] = pair->beyond ? -bound : bound;
-        value[1] = pair->beyond ? 1 : still - imp_world_distance_bound_rate(world, pair, states);
-        return;
-    }
-    impact_contact contact;
-    imp_world_gap(world, pair, states, &contact);
-    value[0] = pair->beyond ? -contact.gap : contact.gap + pair->slack;
-    value[1] = pair->beyond ? 1 : still - imp_world_gap_rate(world, pair, states, &contact);
-}
-
 static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_state *states, const imp_load *loads,
                             double *value)
 {
@@ -257,7 +250,7 @@ int imp_motion_root_values(double tau, const double *y, double *value, void *con
         if (imp_is_held(&world->pairs[p]))
             held_pair_roots(world, &motion->persist.touches[c++], states, motion->loads, value);
         else
-            open_pair_roots(world, &world->pairs[p], states, value);
+            value[0] = value[1] = 1; /* found by search.h */
     }
     const int edges = ROOTS_PER_EDGE * imp_field_edge_count(world);
     const double t = imp_motion_clocked(motion) ? y[Y_TIME] : tau;

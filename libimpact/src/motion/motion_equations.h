@@ -27,7 +27,7 @@ static inline int imp_motion_drive(const imp_motion *motion) { return motion->si
 void imp_motion_pack(const imp_motion *motion, double t, const imp_state *states, double *y);
 void imp_motion_unpack(const imp_motion *motion, const double *y, imp_state *states);
 /* What each component of y is measured by where it passes zero: 1, or of a large body its size, speed and angular
- * momentum. */
+ * momentum; works by the energy that is there, as closely as that itself. */
 void imp_motion_measures(const imp_motion *motion, const imp_state *states, double *measure);
 
 /* Whether the variable of integration is not time. */
@@ -39,11 +39,10 @@ double imp_motion_clock(const imp_motion *motion);
 /* How fast any point of the body moves at most, m/s. */
 double imp_motion_speed(const imp_body *body, const imp_state *state);
 
-/* For impact_ode: the rates of y, and the root functions: ROOTS_PER_PAIR for each pair (open: its gap and slack, minus
- * its gap's rate; held: its pressure, what is left of its mode, its distance from the plane's bounds), ROOTS_PER_EDGE
- * for each edge of a field (its value, minus the value's rate), one for each body (its speed over the rest speed).
- * Every one falls through zero when its event comes; a rate's root is where a value that fell and rose within one step
- * is lowest. */
+/* For impact_ode: the rates of y, and the root functions: ROOTS_PER_PAIR for each pair that is held (its pressure, what
+ * is left of its mode, its distance from the plane's bounds), ROOTS_PER_EDGE for each edge of a field (its value, minus
+ * the value's rate), one for each body (its speed over the rest speed). Every one falls through zero when its event
+ * comes; a rate's root is where a value that fell and rose within one step is lowest. */
 int imp_motion_rates(double tau, const double *y, double *rate, void *motion);
 int imp_motion_root_values(double tau, const double *y, double *value, void *motion);
 

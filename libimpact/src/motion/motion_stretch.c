@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * One stretch of integration: which variable and method it needs, its steps, its samples, and the event at its end.
+ * Integration: which variable and method a stretch of it needs, its steps as segments, and the event at the end of one.
  */
 #include "motion/motion_equations.h"
 #include "motion/motion_guard.h"
-#include "motion/motion_trace.h"
 #include "contact/persist_spot.h"
 #include "world/world_gap.h"
 
@@ -15,17 +14,19 @@
 /* Slip faster than this part of the slip scale turns no faster than the motion goes. */
 static const double grown_up = 1e-2;
 
-static impact_status allocate_state(imp_motion *motion)
+impact_status imp_motion_make_room(imp_motion *motion)
 {
     const imp_world *world = motion->world;
-    if (motion->y) return IMPACT_OK;
     int moving = 0;
     for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
     int spots = 0;
     for (int p = 0; p < world->pair_count; p++) spots += imp_spot_suits(world, &world->pairs[p]);
-    motion->size = Y_BODIES + Y_PER_BODY * moving + Y_PER_SPOT * spots + world->driven;
-    motion->roots =
+    const int size = Y_BODIES + Y_PER_BODY * moving + Y_PER_SPOT * spots + world->driven;
+    const int roots =
         ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * imp_field_edge_count(world) + world->body_count;
+    if (motion->y && size == motion->size && roots == motion->roots) return IMPACT_OK;
+    imp_motion_forget(motion);
+    motion->size = size, motion->roots = roots;
     motion->kept = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->kept);
     motion->found = imp_arena_take(world->arena, (size_t)motion->roots, sizeof *motion->found);
     motion->absolute = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->absolute);
@@ -39,7 +40,7 @@ static impact_status allocate_state(imp_motion *motion)
 static impact_status choose_integrator(imp_motion *motion, impact_ode_method method)
 {
     impact_ode **ode = method == IMPACT_ODE_ADAMS ? &motion->adams : &motion->bdf;
-    impact_status status = allocate_state(motion);
+    impact_status status = imp_motion_make_room(motion);
     if (status == IMPACT_OK && !*ode) {
         const impact_ode_def def = {.size = motion->size,
                                     .roots = motion->roots,
@@ -65,10 +66,13 @@ static void count_work(imp_motion *motion)
     impact_ode_counts adams = {0}, bdf = {0};
     if (motion->adams) adams = impact_ode_count(motion->adams);
     if (motion->bdf) bdf = impact_ode_count(motion->bdf);
+    const long starts = adams.starts + bdf.starts, steps = adams.steps + bdf.steps,
+               calls = adams.rhs_calls + bdf.rhs_calls;
     impact_usage *usage = &motion->world->usage;
-    usage->integrator_starts = adams.starts + bdf.starts;
-    usage->integrator_steps = adams.steps + bdf.steps;
-    usage->integrator_rhs_calls = adams.rhs_calls + bdf.rhs_calls;
+    usage->integrator_starts += starts - motion->counted.starts;
+    usage->integrator_steps += steps - motion->counted.steps;
+    usage->integrator_rhs_calls += calls - motion->counted.rhs_calls;
+    motion->counted = (impact_ode_counts){.starts = starts, .steps = steps, .rhs_calls = calls};
 }
 
 /* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does.
@@ -173,8 +177,8 @@ static double creep_scale(const imp_motion *motion, const imp_state *states)
 
 /* The function of the interpolated state whose zero is looked for in the last step. */
 typedef struct last_step_function {
-    enum { CLOCK, PAIR_GAP, FIELD_EDGE } kind;
-    int index; /* pair or edge */
+    enum { CLOCK, FIELD_EDGE } kind;
+    int index; /* edge */
     double t;  /* the clock's zero */
 } last_step_function;
 
@@ -182,10 +186,7 @@ static double last_step_value(imp_motion *motion, last_step_function f, const do
 {
     if (f.kind == CLOCK) return y[Y_TIME] - f.t;
     imp_motion_unpack(motion, y, motion->scratch);
-    if (f.kind == FIELD_EDGE) return imp_field_edge(motion->world, y[Y_TIME], motion->scratch, f.index);
-    impact_contact contact;
-    imp_world_gap(motion->world, &motion->world->pairs[f.index], motion->scratch, &contact);
-    return contact.gap;
+    return imp_field_edge(motion->world, y[Y_TIME], motion->scratch, f.index);
 }
 
 /* Interpolates the last step where f changes sign between tau = low and high, by the Illinois form of regula falsi. */
@@ -228,17 +229,15 @@ static impact_status interpolate_time(imp_motion *motion, double t, double *tau,
     return find_in_last_step(motion, (last_step_function){.kind = CLOCK, .t = t}, low, high, tau, y);
 }
 
-/* The event that a root stands for; how deep a gap's closest approach is tells whether its rate's root is one. */
+/* The event that a root stands for. */
 static imp_end end_of_root(const imp_motion *motion, int root)
 {
     const imp_world *world = motion->world;
     if (root < ROOTS_PER_PAIR * world->pair_count) {
         const int p = root / ROOTS_PER_PAIR, slot = root % ROOTS_PER_PAIR;
-        const imp_pair *pair = &world->pairs[p];
-        if (!imp_is_held(pair)) return (imp_end){pair->beyond ? IMP_END_RETURN : IMP_END_GAP, p};
         if (slot == 0) return (imp_end){IMP_END_LIFTOFF, p};
         if (slot == 2) return (imp_end){IMP_END_BOUNDS, p};
-        return (imp_end){pair->mode == IMP_ROLL ? IMP_END_SLIP : IMP_END_STICK, p};
+        return (imp_end){world->pairs[p].mode == IMP_ROLL ? IMP_END_SLIP : IMP_END_STICK, p};
     }
     root -= ROOTS_PER_PAIR * world->pair_count;
     const int edges = ROOTS_PER_EDGE * imp_field_edge_count(world);
@@ -246,38 +245,30 @@ static imp_end end_of_root(const imp_motion *motion, int root)
     return (imp_end){IMP_END_SLOW, root - edges};
 }
 
-/* Whether a root is that of a value's rate: the value is lowest here. If it is below its slack, both its zeros lie in
- * the step. */
-static bool is_lowest_point(const imp_motion *motion, int root, last_step_function *value, double *slack)
+/* Whether a root is that of an edge's rate: its value is lowest here. If it is below zero, both its zeros lie in the
+ * step. */
+static bool is_lowest_point(const imp_motion *motion, int root, last_step_function *value)
 {
-    const imp_world *world = motion->world;
-    const int pair = root / ROOTS_PER_PAIR, edge_root = root - ROOTS_PER_PAIR * world->pair_count;
-    if (edge_root < 0) {
-        *value = (last_step_function){.kind = PAIR_GAP, .index = pair};
-        *slack = world->pairs[pair].slack;
-        return root % ROOTS_PER_PAIR == 1 && !imp_is_held(&world->pairs[pair]);
-    }
+    const int edge_root = root - ROOTS_PER_PAIR * motion->world->pair_count;
     *value = (last_step_function){.kind = FIELD_EDGE, .index = edge_root / ROOTS_PER_EDGE};
-    *slack = 0;
-    return edge_root % ROOTS_PER_EDGE == 1 && value->index < imp_field_edge_count(world);
+    return edge_root >= 0 && edge_root % ROOTS_PER_EDGE == 1 && value->index < imp_field_edge_count(motion->world);
 }
 
-/* Looks through the roots found at *tau for the event that ends the stretch; a zero that the step hid moves *tau and y
+/* Looks through the roots found at *tau for the event that ends the segment; a zero that the step hid moves *tau and y
  * back to it. */
 static impact_status pick_event(imp_motion *motion, double tau_before, double *tau, double *y, imp_end *end)
 {
     for (int root = 0; root < motion->roots; root++) {
         last_step_function value;
-        double slack;
         if (motion->found[root] == 0) continue;
-        if (!is_lowest_point(motion, root, &value, &slack)) {
+        if (!is_lowest_point(motion, root, &value)) {
             if (end->kind != IMP_END_TIME) continue;
             *end = end_of_root(motion, root);
             motion->found[root] = 0;
             continue;
         }
-        if (last_step_value(motion, value, y) >= -slack) continue;
-        *end = (imp_end){value.kind == PAIR_GAP ? IMP_END_GAP : IMP_END_EDGE, value.index};
+        if (last_step_value(motion, value, y) >= 0) continue;
+        *end = (imp_end){IMP_END_EDGE, value.index};
         memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
         return find_in_last_step(motion, value, tau_before, *tau, tau, y);
     }
@@ -297,42 +288,12 @@ bool imp_motion_also_crossed(imp_motion *motion, imp_end *end)
     return false;
 }
 
-/* From the root that was watched for, the slack below zero and to 1e-14 of the step, one Newton step back to where the
- * gap is zero. */
-static impact_status polish_gap(imp_motion *motion, int pair, double *tau, double *y)
-{
-    imp_world *world = motion->world;
-    impact_contact contact;
-    imp_motion_unpack(motion, y, motion->scratch);
-    imp_world_gap(world, &world->pairs[pair], motion->scratch, &contact);
-    const double rate =
-        imp_world_gap_rate(world, &world->pairs[pair], motion->scratch, &contact) * imp_motion_clock(motion);
-    double low, high;
-    impact_ode_last_step(motion->ode, &low, &high);
-    const double polished = *tau - contact.gap / rate;
-    if (!(polished >= low && polished <= high) || rate >= 0) return IMPACT_OK; /* a gap that was never open */
-    *tau = polished;
-    return impact_ode_interpolate(motion->ode, polished, 0, y);
-}
-
-static impact_status emit_until(imp_motion *motion, double t, imp_state *states, imp_sampler *sampler, double *y)
-{
-    while (imp_motion_sample_time(sampler) <= t) {
-        double tau;
-        impact_status status = interpolate_time(motion, imp_motion_sample_time(sampler), &tau, y);
-        if (status != IMPACT_OK) return status;
-        imp_motion_unpack(motion, y, states);
-        status = imp_motion_emit(motion, sampler, imp_motion_sample_time(sampler), states);
-        if (status != IMPACT_OK) return status;
-    }
-    return IMPACT_OK;
-}
-
 /* What the integrator has to say is of its own insides. */
-static impact_status fail(imp_motion *motion, impact_status status, double t)
+static impact_status fail(imp_motion *motion, impact_status status)
 {
     if (status == IMPACT_EINTEGRATOR || status == IMPACT_EDOMAIN)
-        return imp_motion_stuck(motion, "the integrator cannot go on: the motion is not smooth, or without bound,", t);
+        return imp_motion_stuck(motion, "the integrator cannot go on: the motion is not smooth, or without bound,",
+                                motion->stride.t);
     return status;
 }
 
@@ -347,82 +308,90 @@ static impact_status too_rough(imp_motion *motion, double from, double to, long 
     return imp_motion_stuck(motion, what, to);
 }
 
-/* Steps until an event or t_end; y at the end is the state at *t. */
-static impact_status integrate(imp_motion *motion, double *t, double t_end, double *y, imp_state *states,
-                               imp_sampler *sampler, imp_end *end)
+/* What held contacts want: to be put back exactly, before a restart. */
+static impact_status renew(imp_end *end)
 {
-    enum { MAX_STILL = 1000, LOOK = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
+    *end = (imp_end){IMP_END_RENEWAL, 0};
+    return IMPACT_OK;
+}
+
+/* Held contacts drift apart otherwise, and forces may brake as they did not before. */
+static impact_status look_back(imp_motion *motion, imp_end *end)
+{
+    enum { LOOK = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
     const double least = 1e-6; /* of the time left, gained in so many steps */
+    const imp_stride *s = &motion->stride;
     const long renewal = motion->creeping ? CARRIED_RENEWAL : RENEWAL;
-    const long steps_before = motion->steps_before;
-    const double t_start = steps_before > 0 ? motion->began : *t;
-    motion->steps_before = 0;
-    int still = 0;
-    bool passed = false; /* the last step ended at a root that is no event */
-    const bool clocked = imp_motion_clocked(motion);
-    double tau = clocked ? 0 : *t;
-    const double stop = clocked ? 1000 * (t_end - *t) + 1000 : t_end;
+    if (s->steps % renewal != 0) return IMPACT_OK;
+    const bool looks = s->steps >= LOOK; /* long runs are the caller's to stop, unless they get nowhere */
+    if (looks && s->t - s->began < least * (s->t_end - s->began)) return too_rough(motion, s->began, s->t, LOOK);
+    if (looks) motion->stride.steps = 0;
+    return renew(end);
+}
+
+/* The part of the step that lies behind the end of the stretch is not taken. */
+static impact_status cut_off(imp_motion *motion, double *y, imp_end *end)
+{
+    imp_stride *s = &motion->stride;
+    if (!(y[Y_TIME] > s->t_end)) return IMPACT_OK;
+    const impact_status status = interpolate_time(motion, s->t_end, &s->tau, y);
+    y[Y_TIME] = s->t_end;
     *end = (imp_end){IMP_END_TIME, 0};
-    for (long step = steps_before; still < MAX_STILL; step++) {
-        const double tau_before = tau;
-        bool found;
-        impact_status status = imp_motion_step(motion, stop, &tau, y, &found);
-        if (motion->message[0] != '\0') return IMPACT_EDOMAIN;        /* a load was refused */
-        if (status == IMPACT_EINTEGRATOR && passed) return IMPACT_OK; /* another root close by: begin anew from here */
-        if (status == IMPACT_EINTEGRATOR && *t > t_start &&
-            motion->persist.count > 0) { /* reactions that went a corner */
-            *end = (imp_end){IMP_END_RENEWAL, 0};
-            return IMPACT_OK;
-        }
-        if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &tau, y, end);
-        if (status == IMPACT_OK && end->kind == IMP_END_GAP) status = polish_gap(motion, end->index, &tau, y);
-        if (status != IMPACT_OK) return fail(motion, status, *t);
-        if (!clocked) y[Y_TIME] = tau;
-        if (y[Y_TIME] > t_end) {
-            status = interpolate_time(motion, t_end, &tau, y);
-            if (status != IMPACT_OK) return fail(motion, status, *t);
-            y[Y_TIME] = t_end;
-            *end = (imp_end){IMP_END_TIME, 0};
-            memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots);
-        }
-        if (!imp_motion_finite_or_back(motion, y))
-            return imp_motion_stuck(motion, "the motion has left double precision", *t);
-        if (imp_motion_loss_falls(motion, y) && *t > t_start && imp_motion_take_back(motion, y)) {
-            *end = (imp_end){IMP_END_RENEWAL, 0};
-            return IMPACT_OK;
-        }
-        *t = y[Y_TIME];
-        if (!imp_motion_gains(motion, *t))
-            return imp_motion_stuck(motion, "time all but stands: 100000 steps were too short to tell", *t);
-        memcpy(motion->kept, y, sizeof *y * (size_t)motion->size); /* samples overwrite y */
-        if (sampler->piece && !imp_motion_trace_step(motion, sampler, tau_before, tau, y)) return IMPACT_ESINK;
-        status = emit_until(motion, *t, states, sampler, y);
-        memcpy(y, motion->kept, sizeof *y * (size_t)motion->size);
-        if (status == IMPACT_OK && !sampler->pulse(sampler->context, *t)) status = IMPACT_STOPPED;
-        if (status != IMPACT_OK || *t >= t_end || end->kind != IMP_END_TIME) return status;
-        if (tau == stop) { /* slip so slow that time all but stands, and that does not die out: does anything move? */
-            *end = (imp_end){IMP_END_RENEWAL, 0};
-            return IMPACT_OK;
-        }
-        if (end_onsets(motion)) {
-            if (modes_break(motion, *t, y)) *end = (imp_end){IMP_END_RENEWAL, 0};
-            return IMPACT_OK;
-        }
-        if (motion->stiff && slowest_slip(motion, true) > grown_up * motion->slip_scale) return IMPACT_OK;
-        if (motion->stiff && !motion->sliding && young_fades(motion)) return IMPACT_OK;
-        still = tau > tau_before ? 0 : still + 1;
-        passed = found;
-        /* Held contacts drift apart otherwise, and forces may brake as they did not before. */
-        if (step + 1 == steps_before + renewal) {
-            const bool looks = step + 1 >= LOOK; /* long runs are the caller's to stop, unless they get nowhere */
-            if (looks && *t - t_start < least * (t_end - t_start)) return too_rough(motion, t_start, *t, LOOK);
-            motion->steps_before = looks ? 0 : step + 1;
-            motion->began = t_start;
-            *end = (imp_end){IMP_END_RENEWAL, 0};
-            return IMPACT_OK;
-        }
+    memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots);
+    return status;
+}
+
+/* Whether what the integrator follows changes at the end of this step, so that it begins anew; or the contacts have to
+ * be put back. */
+static void see_changes(imp_motion *motion, const double *y, imp_end *end)
+{
+    imp_stride *s = &motion->stride;
+    if (end_onsets(motion)) {
+        s->restart = true;
+        if (modes_break(motion, s->t, y)) renew(end);
     }
-    return imp_motion_stuck(motion, "the integrator does not advance: the motion is not smooth", *t);
+    const bool grown = motion->stiff && slowest_slip(motion, true) > grown_up * motion->slip_scale;
+    s->restart = s->restart || grown || (motion->stiff && !motion->sliding && young_fades(motion));
+}
+
+/* One step, to an event or to t_end at most; y at the end is the state at stride.t. */
+static impact_status step_on(imp_motion *motion, double *y, imp_end *end)
+{
+    enum { MAX_STILL = 1000 };
+    imp_stride *s = &motion->stride;
+    const bool clocked = imp_motion_clocked(motion);
+    const double tau_before = s->tau, stop = clocked ? 1000 * (s->t_end - s->from) + 1000 : s->t_end;
+    bool found;
+    *end = (imp_end){IMP_END_TIME, 0};
+    impact_status status = imp_motion_step(motion, stop, &s->tau, y, &found);
+    if (motion->message[0] != '\0') return IMPACT_EDOMAIN; /* a load was refused */
+    if (status == IMPACT_EINTEGRATOR && s->passed) {       /* another root close by: begin anew from here */
+        s->restart = true;
+        return IMPACT_OK;
+    }
+    if (status == IMPACT_EINTEGRATOR && s->t > s->began && motion->persist.count > 0) return renew(end); /* a corner */
+    if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &s->tau, y, end);
+    if (status != IMPACT_OK) return fail(motion, status);
+    if (!clocked) y[Y_TIME] = s->tau;
+    status = cut_off(motion, y, end);
+    if (status != IMPACT_OK) return fail(motion, status);
+    if (!imp_motion_finite_or_back(motion, y))
+        return imp_motion_stuck(motion, "the motion has left double precision", s->t);
+    if (imp_motion_loss_falls(motion, y) && s->t > s->from && imp_motion_take_back(motion, y)) return renew(end);
+    s->t = y[Y_TIME];
+    s->steps++;
+    if (!imp_motion_gains(motion, s->t))
+        return imp_motion_stuck(motion, "time all but stands: 100000 steps were too short to tell", s->t);
+    if (s->t >= s->t_end) s->restart = true;
+    if (end->kind != IMP_END_TIME || s->restart) return IMPACT_OK;
+    if (s->tau == stop) return renew(end); /* slip so slow that time all but stands, and that does not die out */
+    see_changes(motion, y, end);
+    if (s->restart) return IMPACT_OK;
+    s->still = s->tau > tau_before ? 0 : s->still + 1;
+    s->passed = found;
+    if (s->still == MAX_STILL)
+        return imp_motion_stuck(motion, "the integrator does not advance: the motion is not smooth", s->t);
+    return look_back(motion, end);
 }
 
 /* Whether custom forces brake so much faster than the motion goes on that Adams' short steps, a hundredth of their
@@ -452,9 +421,8 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
 
 static double stretch_tolerance(const imp_motion *motion)
 {
-    double tolerance = motion->tolerance;
-    if (motion->persist.count == 0)
-        tolerance = fmin(tolerance, fmax(IMP_FLIGHT_TOLERANCE, IMP_FLIGHT_OF_TOLERANCE * tolerance));
+    const double part = motion->persist.count == 0 ? IMP_FLIGHT_OF_TOLERANCE : IMP_HELD_OF_TOLERANCE;
+    double tolerance = fmin(motion->tolerance, fmax(IMP_FLIGHT_TOLERANCE, part * motion->tolerance));
     if (motion->bounces) tolerance = fmin(tolerance, IMP_BOUNCE_TOLERANCE);
     for (int c = 0; c < motion->persist.count; c++)
         if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
@@ -470,25 +438,157 @@ static impact_status choose_tolerance(imp_motion *motion, const imp_state *state
     return impact_ode_set_tolerances(motion->ode, motion->relative, motion->absolute);
 }
 
-impact_status imp_motion_integrate(imp_motion *motion, double *t, double t_end, imp_state *states, imp_sampler *sampler,
-                                   imp_end *end)
+/* Whether an open pair touches: what bounced a moment ago is to come down where it falls. */
+static bool has_bounced(const imp_motion *motion, const imp_state *states)
 {
+    imp_world *world = motion->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        imp_pair *pair = &world->pairs[p];
+        const double touching = imp_world_touching_distance(world, pair, states);
+        if (imp_is_held(pair) || pair->beyond || imp_world_distance_bound(world, pair, states) > touching) continue;
+        impact_contact contact;
+        imp_world_gap(world, pair, states, &contact);
+        if (contact.gap <= touching) return true;
+    }
+    return false;
+}
+
+static impact_status start(imp_motion *motion, const imp_state *states)
+{
+    imp_stride *s = &motion->stride;
+    motion->message[0] = '\0';
+    if (!imp_motion_load(motion, s->t, states)) return IMPACT_EDOMAIN;
     memcpy(motion->scratch, states,
            sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
-    imp_motion_set_slack(motion, states);
-    impact_status status = choose_road(motion, *t, t_end, states);
+    motion->bounces = has_bounced(motion, states);
+    impact_status status = choose_road(motion, s->t, s->t_end, states);
     if (status != IMPACT_OK) return status;
-    imp_motion_pack(motion, *t, states, motion->y);
+    imp_motion_pack(motion, s->t, states, motion->y);
     status = choose_tolerance(motion, states);
-    if (status == IMPACT_OK) status = impact_ode_start(motion->ode, imp_motion_clocked(motion) ? 0 : *t, motion->y);
-    if (status == IMPACT_OK && sampler->piece) status = imp_motion_trace_start(motion, *t, states);
-    if (status != IMPACT_OK) return fail(motion, status, *t);
-    status = integrate(motion, t, t_end, motion->y, states, sampler, end);
+    s->tau = imp_motion_clocked(motion) ? 0 : s->t;
+    s->from = s->t;
+    s->still = 0;
+    s->passed = s->restart = false;
+    if (status == IMPACT_OK) status = impact_ode_start(motion->ode, s->tau, motion->y);
+    return status == IMPACT_OK ? status : fail(motion, status);
+}
+
+/* ---- the step as a segment ---- */
+
+/* Nothing moved: the state alone. */
+static void keep_still(imp_dense *dense, const double *y)
+{
+    dense->terms = 1;
+    dense->h = 0;
+    memcpy(dense->c, y, sizeof *y * (size_t)dense->size);
+}
+
+/* y^(j) h^j/j! at the end of the step, as far as the method's order goes. */
+static impact_status keep_step(imp_motion *motion, double t0, double t1)
+{
+    imp_dense *dense = &motion->dense;
+    const impact_status status = imp_dense_reserve(dense, motion->world->arena, motion->size);
+    if (status != IMPACT_OK) return status;
+    double begin;
+    impact_ode_last_step(motion->ode, &begin, &dense->end);
+    dense->h = dense->end - begin;
+    dense->t0 = t0, dense->t1 = t1;
+    dense->size = motion->size;
+    dense->clocked = imp_motion_clocked(motion);
+    if (!(t1 > t0)) {
+        keep_still(dense, motion->y);
+        return IMPACT_OK;
+    }
+    double scale = 1;
+    for (dense->terms = 0; dense->terms < IMP_DENSE_TERMS; dense->terms++) {
+        double *c = dense->c + (size_t)dense->terms * (size_t)dense->size;
+        if (impact_ode_interpolate(motion->ode, dense->end, dense->terms, c) != IMPACT_OK) break;
+        for (int i = 0; i < dense->size; i++) c[i] *= scale;
+        scale *= dense->h / (dense->terms + 1);
+    }
+    return dense->terms > 0 ? IMPACT_OK : IMPACT_EINTEGRATOR;
+}
+
+static imp_works works_of(const imp_motion *motion, const double *y)
+{
+    const double drive = motion->world->driven ? y[imp_motion_drive(motion)] : motion->works.drive;
+    return (imp_works){y[Y_FORCE_WORK], y[Y_DAMPING], y[Y_SLIDING], drive};
+}
+
+imp_works imp_motion_works(const imp_motion *motion, double t)
+{
+    double y[Y_BODIES], drive = motion->works.drive;
+    imp_dense_at(&motion->dense, t, 0, Y_BODIES, y);
+    if (motion->world->driven) imp_dense_at(&motion->dense, t, imp_motion_drive(motion), 1, &drive);
+    return (imp_works){y[Y_FORCE_WORK], y[Y_DAMPING], y[Y_SLIDING], drive};
+}
+
+void imp_motion_depart(imp_motion *motion, double t, double t_end, bool renewed)
+{
+    imp_stride *s = &motion->stride;
+    if (!renewed) *s = (imp_stride){.began = t};
+    s->t = t;
+    s->t_end = fmin(t_end, imp_field_next_switch(motion->world));
+    s->restart = true;
+}
+
+impact_status imp_motion_next(imp_motion *motion, imp_state *states, imp_end *end)
+{
+    const double t0 = motion->stride.t;
+    if (motion->stride.restart) {
+        const impact_status status = start(motion, states);
+        if (status != IMPACT_OK) return status;
+    }
+    impact_status status = step_on(motion, motion->y, end);
     imp_motion_unpack(motion, motion->y, states);
-    motion->works.force = motion->y[Y_FORCE_WORK];
-    motion->works.damping = motion->y[Y_DAMPING];
-    motion->works.sliding = motion->y[Y_SLIDING];
-    if (motion->world->driven) motion->works.drive = motion->y[imp_motion_drive(motion)];
     count_work(motion);
+    if (status == IMPACT_OK && motion->stride.t >= imp_field_next_switch(motion->world)) {
+        imp_field_enter(motion->world, motion->stride.t);
+        if (end->kind == IMP_END_TIME) renew(end); /* other loads: which contacts hold? */
+    }
+    if (status == IMPACT_OK) status = keep_step(motion, t0, motion->stride.t);
+    motion->works = works_of(motion, motion->y);
     return status;
+}
+
+void imp_motion_go_to(imp_motion *motion, double t, imp_state *states)
+{
+    if (t == motion->dense.t1) return; /* the states are there */
+    imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
+    imp_motion_unpack(motion, motion->kept, states);
+    motion->works = works_of(motion, motion->kept);
+}
+
+/* Contacts and pairs as they are, and back: to look must leave no traces. */
+static bool keep_contacts(imp_motion *motion)
+{
+    imp_arena *arena = motion->world->arena;
+    const int touches = motion->persist.count, pairs = motion->world->pair_count;
+    imp_touch *kept = imp_arena_grow(arena, motion->kept_touches, &motion->kept_room[0], touches, sizeof *kept);
+    if (kept) motion->kept_touches = kept;
+    imp_pair *kept_pairs = imp_arena_grow(arena, motion->kept_pairs, &motion->kept_room[1], pairs, sizeof *kept_pairs);
+    if (kept_pairs) motion->kept_pairs = kept_pairs;
+    if (!kept || !kept_pairs) return false;
+    memcpy(kept, motion->persist.touches, sizeof *kept * (size_t)touches);
+    memcpy(kept_pairs, motion->world->pairs, sizeof *kept_pairs * (size_t)pairs);
+    return true;
+}
+
+static void restore_contacts(imp_motion *motion)
+{
+    memcpy(motion->persist.touches, motion->kept_touches, sizeof *motion->kept_touches * (size_t)motion->persist.count);
+    memcpy(motion->world->pairs, motion->kept_pairs, sizeof *motion->kept_pairs * (size_t)motion->world->pair_count);
+}
+
+impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states)
+{
+    const bool held = motion->persist.count > 0;
+    if (held && !keep_contacts(motion)) return IMPACT_ENOMEM;
+    imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
+    imp_motion_unpack(motion, motion->kept, states);
+    if (!held) return IMPACT_OK;
+    const bool loaded = imp_motion_load(motion, t, states);
+    if (loaded) imp_persist_project(&motion->persist, motion->world, states, motion->loads);
+    restore_contacts(motion);
+    return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }

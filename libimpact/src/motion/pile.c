@@ -465,6 +465,7 @@ bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state 
         if (!is_touched(pile, world, i, closed)) return false;
     }
     if (!reserve_contacts(pile, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count)) return false;
+    for (int k = 0; k < closed; k++) pile->memory[0][pile->member[k]].active = true;
     for (int k = 0; k < closed; k++) {
         if (pile->member[k] < 0) continue;
         const int count = gather_island(pile, world, states, k, closed);

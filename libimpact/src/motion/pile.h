@@ -70,6 +70,12 @@ void imp_pile_begin(imp_pile *pile);
 impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
                             imp_pile_step_result *result);
 
+/* Whether the last step held the pair, or it was found touching when all were found to rest. */
+static inline bool imp_pile_holds(const imp_pile *pile, int pair)
+{
+    return pair < pile->pairs && pile->memory[0][pair].active;
+}
+
 /* Whether all bodies of the world that move, being slower than rest_speed (m/s), can stand still where they are: proved
  * by reactions. */
 bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed);

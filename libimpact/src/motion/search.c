@@ -218,7 +218,10 @@ static double still_rate(const imp_search *s, const sight *l)
     return s->still + 1e-9 * speed;
 }
 
-static double reach_of(const imp_search *s, const sight *l) { return qvec3_norm(l->state[0].x) + s->body[0]->radius; }
+static double scale_of(const imp_search *s, const sight *l)
+{
+    return imp_place_scale(s->body[0], l->state[0].x, s->body[1], l->state[1].x, l->contact.normal);
+}
 
 /* Between a time before the contact and one behind it, where the gap is below the slack: the Illinois form of regula
  * falsi. */
@@ -254,7 +257,7 @@ static double shortest_step(const imp_search *s)
     return isfinite(longest) ? longest / 64 : 0;
 }
 
-/* Of body 1's reach: at 10 m/s^2 a step from there is 1e-5 s for a body of 1 m. */
+/* Of the size of the places: at 10 m/s^2 a step from there is 1e-5 s for a body of 1 m. */
 static const double all_but_closed = 1e-9;
 
 static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->segment[1]->t0); }
@@ -274,14 +277,14 @@ static imp_found advance(const imp_search *s, double from, double until)
         if (s->beyond) {
             step = step_behind(s, &l);
         } else {
-            const double touching = IMP_TOUCHING * reach_of(s, &l);
+            const double touching = IMP_TOUCHING * scale_of(s, &l);
             if (t == start) {
                 const bool still = fabs(l.rate) <= still_rate(s, &l);
                 slack = touching + fmax(0, -gap); /* of bodies that began with an overlap */
                 leaving = fabs(gap) <= slack && (still || (l.rate > 0 && (turns(s, 0) || turns(s, 1))));
             }
             leaving = leaving && gap <= touching;
-            const double rounding = 2.5e-16 * (qvec3_norm(l.contact.offset1) + qvec3_norm(l.contact.offset2));
+            const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l);
             if (leaving) gap += slack;
             if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
                 return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};
@@ -290,7 +293,7 @@ static imp_found advance(const imp_search *s, double from, double until)
         }
         before = t, gap_before = gap;
         if (l.window <= 0) return never;
-        const bool crawls = step < least && gap <= all_but_closed * reach_of(s, &l) && gap + l.rate * least > 0;
+        const bool crawls = step < least && gap <= all_but_closed * scale_of(s, &l) && gap + l.rate * least > 0;
         if (crawls) step = fmin(least, l.window);
         if (!(t + step <= end) || step == INFINITY) return never;
         if (t + step == t) return (imp_found){t, true};
@@ -299,18 +302,22 @@ static imp_found advance(const imp_search *s, double from, double until)
     return t <= end ? (imp_found){t, false} : never;
 }
 
+/* Two balls in a straight line to each other. Such as touch and come no nearer than rounding brings them meet where
+ * they overlap by more than that. */
+static imp_found meet_in_line(const imp_search *s, double from)
+{
+    qvec3 w;
+    const qvec3 d = centres_apart(s, from, &w);
+    const double R = s->body[0]->radius + s->body[1]->radius, end = fmin(s->segment[0]->t1, s->segment[1]->t1);
+    const qvec3 n = qvec3_scale(d, 1 / R), x1 = s->segment[0]->start.x, x2 = s->segment[1]->start.x;
+    const double slack = IMP_TOUCHING * imp_place_scale(s->body[0], x1, s->body[1], x2, n);
+    const bool touches = qvec3_dot(d, d) <= R * (R + 2 * slack), still = qvec3_dot(n, w) >= -s->still;
+    const double met = from + line_time(d, w, touches && still ? R - slack : R);
+    return isfinite(met) && met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
+}
+
 imp_found imp_search_contact(const imp_search *s, double from, double until)
 {
     const bool balls = imp_is_ball(s->body[0]) && imp_is_ball(s->body[1]);
-    if (balls && fall_alike(s)) {
-        qvec3 w;
-        const qvec3 d = centres_apart(s, from, &w);
-        const double R = s->body[0]->radius + s->body[1]->radius, T = line_time(d, w, R);
-        const double end = fmin(s->segment[0]->t1, s->segment[1]->t1);
-        if (T == INFINITY) return (imp_found){INFINITY, false};
-        const double rate = qvec3_dot(d, w) / R, slack = IMP_TOUCHING * (qvec3_norm(s->segment[0]->start.x) + R);
-        const double met = T > 0 || rate < -s->still ? from + T : from - slack / rate; /* what only rounding brings */
-        return met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
-    }
-    return advance(s, from, until);
+    return balls && fall_alike(s) ? meet_in_line(s, from) : advance(s, from, until);
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_internal.h"
 #include "scene/scene_check.h"
-#include "scene/scene_crowd.h"
 #include "scene/scene_keys.h"
-#include "scene/scene_pile.h"
 #include "scene/scene_receipt.h"
 #include "world/world_gap.h"
 #include "base/floats.h"
@@ -13,52 +11,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool imp_scene_told(impact_scene *scene, double t)
-{
-    if (++scene->steps > scene->max_steps) {
-        scene->stop = IMPACT_EUNSETTLED;
-        snprintf(scene->message, sizeof scene->message, "%ld steps by t = %.17g: the limit, max_steps",
-                 scene->max_steps, t);
-        return false;
-    }
-    if (!scene->recorder || !scene->recorder->progress) return true;
-    if (scene->recorder->progress(scene->recorder->context, t, scene->duration)) return true;
-    scene->stop = IMPACT_STOPPED;
-    return false;
-}
-
-static bool pulse(void *context, double t)
-{
-    impact_scene *scene = context;
-    if (imp_scene_pile_pulse(scene)) return false; /* the stretch ends here; the motion goes on by steps */
-    return imp_scene_told(scene, t);
-}
-
 /* A touch of a few rounding errors is no overlap. */
 static impact_status check_overlaps(impact_scene *scene, char *message, unsigned long message_size)
 {
-    imp_world *world = &scene->world;
-    for (int p = 0; p < world->pair_count; p++) {
-        imp_pair *pair = &world->pairs[p];
-        const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
-        if (imp_world_distance_bound(world, pair, scene->states) > 0) continue;
+    const imp_world *world = &scene->world;
+    for (int n = 0; n < scene->tracks.near_count; n++) {
+        const imp_near *near = &scene->tracks.near[n];
+        const imp_body *b1 = &world->bodies[near->body[0]], *b2 = &world->bodies[near->body[1]];
         impact_contact contact;
-        const impact_status status = imp_world_gap(world, pair, scene->states, &contact);
+        const impact_status status = imp_gap_of(b1, &scene->states[near->body[0]], b2, &scene->states[near->body[1]],
+                                                &scene->world.usage, &contact);
         if (status < 0) {
             if (message)
                 snprintf(message, message_size, "bodies '%s' and '%s': %s", b1->name, b2->name,
                          impact_status_string(status));
             return status;
         }
-        const double size = imp_world_place_scale(world, pair, scene->states);
-        if (imp_world_inside_bounds(world, pair, scene->states, &contact) < 0) {
-            pair->beyond = contact.gap < 0;
-        } else if (contact.gap < -IMP_OVERLAP_AT_START * size) {
-            if (message)
-                snprintf(message, message_size, "body '%s': overlaps '%s' by %.6g m at the start", b1->name, b2->name,
-                         -contact.gap);
-            return IMPACT_EARGUMENT;
-        }
+        const double size =
+            imp_place_scale(b1, scene->states[near->body[0]].x, b2, scene->states[near->body[1]].x, contact.normal);
+        if (near->beyond || contact.gap >= -IMP_OVERLAP_AT_START * size) continue;
+        if (message)
+            snprintf(message, message_size, "body '%s': overlaps '%s' by %.6g m at the start", b1->name, b2->name,
+                     -contact.gap);
+        return IMPACT_EARGUMENT;
     }
     return IMPACT_OK;
 }
@@ -100,10 +75,12 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
     scene->solver = def->solver;
     scene->rest_height = def->rest_height;
     scene->rest_speed = def->rest_speed;
+    scene->tolerance = def->tolerance;
     scene->max_events = def->max_events;
-    scene->key_tolerance = def->key_tolerance;
     scene->max_steps = def->max_steps;
-    scene->sampler = (imp_sampler){.rate = def->output_rate, .emit = imp_scene_emit, .pulse = pulse, .context = scene};
+    scene->piles = def->piles;
+    scene->key_tolerance = def->key_tolerance;
+    scene->output_rate = def->output_rate;
     status = imp_scene_build(scene, def);
     imp_scene_receipt_begin(scene);
     if (status == IMPACT_OK && def->compliance > 0) { /* impacts are few: as exactly as can be */
@@ -114,8 +91,8 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
     }
     if (status == IMPACT_OK) {
         imp_field_locate(&scene->world, scene->t, scene->states, false);
-        scene->energy_start = imp_scene_total_energy(scene);
-        status = check_overlaps(scene, message, message_size);
+        scene->energy_start =
+            imp_world_kinetic_energy(&scene->world, scene->states) + imp_field_potential(&scene->world, scene->states);
     }
     if (status == IMPACT_OK && !isfinite(scene->energy_start)) {
         status = IMPACT_EDOMAIN;
@@ -123,8 +100,8 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
             snprintf(message, message_size, "scene '%s': its energy lies beyond double precision: take other units",
                      def->name ? def->name : "");
     }
-    if (status == IMPACT_OK) status = imp_scene_crowd_open(scene);
-    if (status == IMPACT_OK) status = imp_scene_pile_open(scene, def->piles);
+    if (status == IMPACT_OK) status = imp_tracks_begin(&scene->tracks, 0, scene->states);
+    if (status == IMPACT_OK) status = check_overlaps(scene, message, message_size);
     if (status == IMPACT_ENOMEM && message) imp_arena_explain(scene->world.arena, message, message_size);
     if (status != IMPACT_OK) {
         impact_scene_destroy(scene);
@@ -148,8 +125,9 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
 void impact_scene_destroy(impact_scene *scene)
 {
     if (!scene) return;
-    imp_scene_crowd_close(scene);
-    imp_motion_close(&scene->motion);
+    for (int k = 0; k < scene->island_count; k++)
+        if (scene->islands[k]) imp_motion_forget(&scene->islands[k]->motion);
+    for (int k = 0; k < scene->spare_count; k++) imp_motion_forget(&scene->spares[k]->motion);
     impact_collide_workspace_destroy(scene->springs);
     imp_arena_destroy(scene->world.arena); /* with everything else */
 }
@@ -164,16 +142,7 @@ static impact_status run(impact_scene *scene, double t_end)
                  scene->t);
         return IMPACT_EARGUMENT;
     }
-    const double due = ceil(scene->t * scene->sampler.rate);
-    if ((double)scene->sampler.next < due) scene->sampler.next = (long)due;
-    if (!scene->begun) imp_field_locate(&scene->world, scene->t, scene->states, true);
-    scene->begun = true;
-    impact_status status = scene->crowd ? imp_scene_crowd_deliver(scene) : IMPACT_OK;
-    if (status == IMPACT_OK) status = imp_scene_settle(scene);
-    if (status == IMPACT_OK && scene->crowd) imp_scene_crowd_begin(scene);
-    if (status != IMPACT_OK) return status;
-    imp_scene_receipt_look(scene, scene->t);
-    return imp_scene_go_on(scene, t_end, scene->crowd ? imp_scene_crowd_advance : imp_scene_advance);
+    return imp_scene_go_on(scene, t_end);
 }
 
 impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
@@ -181,7 +150,10 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     const imp_floats floats = imp_floats_hold();
     scene->recorder = recorder;
     impact_status status = imp_scene_keys_begin(scene);
-    if (status == IMPACT_OK) status = imp_scene_receipt_judge(scene, run(scene, t));
+    if (status == IMPACT_OK) {
+        const impact_status ran = run(scene, t), seen = imp_scene_look(scene, scene->t);
+        status = imp_scene_receipt_judge(scene, ran == IMPACT_OK ? seen : ran);
+    }
     if (!imp_scene_keys_end(scene) && status >= 0) status = IMPACT_ESINK;
     scene->recorder = NULL;
     if (status == IMPACT_ENOMEM) imp_arena_explain(scene->world.arena, scene->message, sizeof scene->message);
@@ -212,7 +184,7 @@ int impact_scene_find(const impact_scene *scene, const char *body)
 impact_status impact_scene_body(const impact_scene *scene, int body, impact_sample *sample)
 {
     if (body < 0 || body >= scene->world.body_count) return IMPACT_EARGUMENT;
-    *sample = imp_scene_sample(scene, scene->t, body, scene->states);
+    *sample = imp_scene_sample(&scene->world.bodies[body], scene->t, &scene->states[body]);
     return IMPACT_OK;
 }
 
@@ -224,7 +196,7 @@ impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_
 {
     if (body < 0 || body >= scene->world.body_count) return IMPACT_EARGUMENT;
     const imp_body *b = &scene->world.bodies[body];
-    const impact_sample now = imp_scene_sample(scene, scene->t, body, scene->states);
+    const impact_sample now = imp_scene_sample(b, scene->t, &scene->states[body]);
     *def = (impact_body_def){.name = b->name,
                              .shape = b->shape,
                              .is_static = b->is_static,
@@ -255,14 +227,20 @@ double impact_scene_key_tolerance(const impact_scene *scene) { return scene->key
 
 impact_usage impact_scene_usage(const impact_scene *scene) { return scene->world.usage; }
 
+double impact_scene_pile_error(const impact_scene *scene) { return scene->pile_error; }
+
 impact_energy impact_scene_energy(const impact_scene *scene)
 {
+    const imp_works works = imp_scene_works(scene);
+    double impact_loss = scene->impact_loss;
+    for (int k = 0; k < scene->island_count; k++)
+        if (scene->islands[k]) impact_loss += imp_island_loss(scene->islands[k], scene->t);
     return (impact_energy){.start = scene->energy_start,
                            .kinetic = imp_world_kinetic_energy(&scene->world, scene->states),
                            .potential = imp_field_potential(&scene->world, scene->states),
-                           .force_work = scene->motion.works.force,
-                           .drive_work = scene->motion.works.drive,
-                           .damping_loss = scene->motion.works.damping,
-                           .sliding_loss = scene->motion.works.sliding,
-                           .impact_loss = scene->impact_loss};
+                           .force_work = works.force,
+                           .drive_work = works.drive,
+                           .damping_loss = works.damping,
+                           .sliding_loss = works.sliding,
+                           .impact_loss = impact_loss};
 }

@@ -3,19 +3,7 @@
 #include "world/drive.h"
 #include "scene/scene_check.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-static double joined(impact_pair_rule rule, double a, double b)
-{
-    switch (rule) {
-    case IMPACT_PRODUCT: return a * b;
-    case IMPACT_GEOMETRIC_MEAN: return sqrt(a * b);
-    case IMPACT_MINIMUM: return fmin(a, b);
-    case IMPACT_MAXIMUM: return fmax(a, b);
-    }
-    return 0;
-}
 
 /* Three equal moments, but for the rounding of the formulas that gave them. */
 static bool equal_moments(qvec3 m) { return fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x; }
@@ -47,37 +35,6 @@ static bool build_body(imp_arena *arena, const impact_body_def *def, imp_body *b
     state->v = def->velocity;
     state->momentum = imp_inertia(body, state->q, def->omega);
     return body->name != NULL;
-}
-
-static const impact_pair_def *find_own_rule(const impact_scene_def *def, int i, int j)
-{
-    for (int k = 0; k < def->pair_count; k++) {
-        const int a = imp_scene_def_find(def, def->pairs[k].body1), b = imp_scene_def_find(def, def->pairs[k].body2);
-        if ((a == i && b == j) || (a == j && b == i)) return &def->pairs[k];
-    }
-    return NULL;
-}
-
-/* Every two bodies of which one moves, in order; a moving body comes first, a plane last. */
-static impact_status build_pairs(imp_world *world, const impact_scene_def *def)
-{
-    const int n = world->body_count;
-    world->pairs = imp_arena_take(world->arena, (size_t)n * (size_t)n / 2 + 1, sizeof *world->pairs);
-    if (!world->pairs) return IMPACT_ENOMEM;
-    for (int i = 0; i < n; i++)
-        for (int j = i + 1; j < n; j++) {
-            const imp_body *a = &world->bodies[i], *b = &world->bodies[j];
-            if (a->is_static && b->is_static) continue;
-            const impact_pair_def *own = find_own_rule(def, i, j);
-            imp_pair *pair = &world->pairs[world->pair_count++];
-            *pair = (imp_pair){.body1 = a->is_static ? j : i,
-                               .body2 = a->is_static ? i : j,
-                               .friction = joined(def->friction_rule, a->friction, b->friction),
-                               .restitution = joined(def->restitution_rule, a->restitution, b->restitution)};
-            if (own && !isnan(own->friction)) pair->friction = own->friction;
-            if (own && !isnan(own->restitution)) pair->restitution = own->restitution;
-        }
-    return IMPACT_OK;
 }
 
 static double *copy_times(imp_arena *arena, const impact_force_def *def)
@@ -113,29 +70,45 @@ static impact_status build_fields(imp_world *world, const impact_scene_def *def)
     return IMPACT_OK;
 }
 
+static impact_status build_bodies(impact_scene *scene, const impact_scene_def *def)
+{
+    imp_world *world = &scene->world;
+    imp_arena *arena = world->arena;
+    const size_t n = (size_t)def->body_count;
+    world->bodies = imp_arena_take(arena, n, sizeof *world->bodies);
+    scene->states = imp_arena_take(arena, n, sizeof *scene->states);
+    scene->members = imp_arena_take(arena, n, sizeof *scene->members);
+    scene->root = imp_arena_take(arena, n, sizeof *scene->root);
+    if (!world->bodies || !scene->states || !scene->members || !scene->root) return IMPACT_ENOMEM;
+    for (int i = 0; i < def->body_count; i++) {
+        imp_body *body = &world->bodies[i];
+        world->body_count++;
+        scene->root[i] = -1;
+        if (!build_body(arena, &def->bodies[i], body, &scene->states[i])) return IMPACT_ENOMEM;
+        body->index = i;
+        world->driven = world->driven || body->driven;
+        scene->movable += !body->is_static;
+    }
+    scene->moving = scene->movable;
+    return IMPACT_OK;
+}
+
 impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
 {
     imp_world *world = &scene->world;
-    const size_t n = (size_t)def->body_count;
-    imp_arena *arena = world->arena;
-    *world =
-        (imp_world){.arena = arena, .gravity = def->gravity, .slip_speed = IMP_SLIP_OF_REST_SPEED * def->rest_speed};
-    scene->name = imp_arena_copy(arena, def->name ? def->name : "scene");
+    *world = (imp_world){
+        .arena = world->arena, .gravity = def->gravity, .slip_speed = IMP_SLIP_OF_REST_SPEED * def->rest_speed};
+    scene->name = imp_arena_copy(world->arena, def->name ? def->name : "scene");
     if (!scene->name) return IMPACT_ENOMEM;
     world->onset_speed = IMP_ONSET_OF_SLIP_SPEED * world->slip_speed;
     world->flat_height = IMP_LYING_OF_REST_HEIGHT * def->rest_height;
-    world->bodies = imp_arena_take(arena, n, sizeof *world->bodies);
-    scene->states = imp_arena_take(arena, n, sizeof *scene->states);
-    scene->before = imp_arena_take(arena, n, sizeof *scene->before);
-    if (!world->bodies || !scene->states || !scene->before) return IMPACT_ENOMEM;
-    for (int i = 0; i < def->body_count; i++) {
-        world->body_count++;
-        if (!build_body(arena, &def->bodies[i], &world->bodies[i], &scene->states[i])) return IMPACT_ENOMEM;
-        world->driven = world->driven || world->bodies[i].driven;
-    }
-    impact_status status = build_pairs(world, def);
+    scene->queue.arena = world->arena;
+    impact_status status = build_bodies(scene, def);
     if (status == IMPACT_OK) status = build_fields(world, def);
-    if (status == IMPACT_OK) status = imp_motion_open(&scene->motion, world, def->tolerance, def->rest_speed);
-    scene->modes = imp_arena_take(arena, (size_t)world->pair_count + 1, sizeof *scene->modes);
-    return status == IMPACT_OK && !scene->modes ? IMPACT_ENOMEM : status;
+    scene->unsteady = imp_field_unsteady(world);
+    if (status == IMPACT_OK) status = imp_rules_open(&scene->rules, world->arena, def);
+    if (status == IMPACT_OK) status = imp_account_open(&scene->account, world->arena, def->body_count);
+    if (status == IMPACT_OK && imp_queue_add(&scene->queue) < 0) status = IMPACT_ENOMEM;
+    if (status == IMPACT_OK) status = imp_tracks_open(&scene->tracks, world, &scene->queue);
+    return status;
 }

@@ -1,93 +1,103 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_events.h"
-#include "world/world_gap.h"
 
 #include <string.h>
 
-double imp_scene_total_energy(const impact_scene *scene)
+double imp_scene_total_energy(const imp_island *island) { return imp_island_energy(island); }
+
+double imp_scene_undriven_energy(const imp_island *island)
 {
-    return imp_world_kinetic_energy(&scene->world, scene->states) + imp_field_potential(&scene->world, scene->states);
+    return imp_scene_total_energy(island) - island->motion.works.drive;
 }
 
-double imp_scene_undriven_energy(const impact_scene *scene)
+impact_sample imp_scene_sample(const imp_body *body, double t, const imp_state *s)
 {
-    return imp_scene_total_energy(scene) - scene->motion.works.drive;
+    return (impact_sample){t,
+                           body->index,
+                           body->name,
+                           s->x,
+                           s->q,
+                           body->is_static ? body->drift : s->v,
+                           body->is_static ? body->spin : imp_omega(body, s)};
 }
 
-impact_sample imp_scene_sample(const impact_scene *scene, double t, int body, const imp_state *states)
+static impact_status record_row(imp_island *island, int body, const imp_state *states)
 {
-    const imp_state *s = &states[body];
-    const imp_body *b = &scene->world.bodies[body];
-    return (impact_sample){
-        t, body, b->name, s->x, s->q, b->is_static ? b->drift : s->v, b->is_static ? b->spin : imp_omega(b, s)};
+    const impact_recorder *recorder = island->scene->recorder;
+    if (body < 0 || island->world.bodies[body].is_static || !recorder->sample) return IMPACT_OK;
+    const impact_sample sample = imp_scene_sample(&island->world.bodies[body], island->t, &states[body]);
+    if (!imp_scene_good_row(island->scene, &sample)) return IMPACT_EDOMAIN;
+    island->world.usage.samples++;
+    if (!recorder->sample(recorder->context, &sample)) island->scene->refused = true;
+    return IMPACT_OK;
 }
 
-static impact_status record_row(impact_scene *scene, int body, const imp_state *states)
+static impact_status record_rows(imp_island *island, int body1, int body2, const imp_state *states)
 {
-    const impact_recorder *recorder = scene->recorder;
-    if (body < 0 || scene->world.bodies[body].is_static || !recorder->sample) return IMPACT_OK;
-    const impact_sample sample = imp_scene_sample(scene, scene->t, body, states);
-    if (!imp_scene_good_row(scene, &sample)) return IMPACT_EDOMAIN;
-    scene->world.usage.samples++;
-    return recorder->sample(recorder->context, &sample) ? IMPACT_OK : IMPACT_ESINK;
+    const impact_status status = record_row(island, body1, states);
+    return status == IMPACT_OK ? record_row(island, body2, states) : status;
 }
 
-static impact_status record_rows(impact_scene *scene, int body1, int body2, const imp_state *states)
+/* The event as the caller knows its bodies, with the energy of those elsewhere. */
+static void record_event(const imp_island *island, const impact_event *event)
 {
-    const impact_status status = record_row(scene, body1, states);
-    return status == IMPACT_OK ? record_row(scene, body2, states) : status;
+    const impact_recorder *recorder = island->scene->recorder;
+    if (!recorder->event) return;
+    impact_event told = *event;
+    told.body1 = island->world.bodies[event->body1].index;
+    if (event->body2 >= 0) told.body2 = island->world.bodies[event->body2].index;
+    told.energy_before += island->outside;
+    told.energy_after += island->outside;
+    if (!recorder->event(recorder->context, &told)) island->scene->refused = true;
 }
 
-impact_status imp_scene_record(impact_scene *scene, const impact_event *event)
+impact_status imp_scene_record(imp_island *island, const impact_event *event)
 {
-    scene->world.usage.events[event->kind]++;
-    scene->event_count++;
-    if (!scene->recorder) return IMPACT_OK;
+    island->world.usage.events[event->kind]++;
+    island->scene->event_count++;
+    if (!island->scene->recorder) return IMPACT_OK;
     const int other = event->kind == IMPACT_EVENT_FORCE ? -1 : event->body2;
-    scene->beside_event = true;
-    impact_status status = record_rows(scene, event->body1, other, scene->before);
-    if (status == IMPACT_OK && scene->recorder->event && !scene->recorder->event(scene->recorder->context, event))
-        status = IMPACT_ESINK;
-    if (status == IMPACT_OK) status = record_rows(scene, event->body1, other, scene->states);
-    scene->beside_event = false;
-    memcpy(scene->before, scene->states, sizeof *scene->states * (size_t)scene->world.body_count);
+    impact_status status = record_rows(island, event->body1, other, island->before);
+    if (status == IMPACT_OK) record_event(island, event);
+    if (status == IMPACT_OK) status = record_rows(island, event->body1, other, island->states);
+    memcpy(island->before, island->states, sizeof *island->states * (size_t)island->world.body_count);
     return status;
 }
 
-impact_event imp_scene_event_of_touch(const impact_scene *scene, impact_event_kind kind, const imp_touch *touch)
+impact_event imp_scene_event_of_touch(const imp_island *island, impact_event_kind kind, const imp_touch *touch)
 {
-    const imp_world *world = &scene->world;
-    const double energy = imp_scene_total_energy(scene);
-    return (impact_event){.t = scene->t,
+    const imp_world *world = &island->world;
+    const double energy = imp_scene_total_energy(island);
+    return (impact_event){.t = island->t,
                           .kind = kind,
                           .body1 = touch->body1,
                           .body2 = touch->body2,
                           .name1 = world->bodies[touch->body1].name,
                           .name2 = world->bodies[touch->body2].name,
-                          .point = qvec3_add(scene->states[touch->body1].x, touch->r1),
+                          .point = qvec3_add(island->states[touch->body1].x, touch->r1),
                           .normal = touch->normal,
                           .phases = "",
                           .energy_before = energy,
                           .energy_after = energy};
 }
 
-impact_event imp_scene_event_of_body(const impact_scene *scene, impact_event_kind kind, int body)
+impact_event imp_scene_event_of_body(const imp_island *island, impact_event_kind kind, int body)
 {
-    const double energy = imp_scene_total_energy(scene);
-    return (impact_event){.t = scene->t,
+    const double energy = imp_scene_total_energy(island);
+    return (impact_event){.t = island->t,
                           .kind = kind,
                           .body1 = body,
                           .body2 = -1,
-                          .name1 = scene->world.bodies[body].name,
+                          .name1 = island->world.bodies[body].name,
                           .name2 = "",
-                          .point = scene->states[body].x,
+                          .point = island->states[body].x,
                           .phases = "",
                           .energy_before = energy,
                           .energy_after = energy};
 }
 
-void imp_scene_remember(impact_scene *scene)
+void imp_scene_remember(imp_island *island)
 {
-    memcpy(scene->before, scene->states, sizeof *scene->states * (size_t)scene->world.body_count);
-    for (int p = 0; p < scene->world.pair_count; p++) scene->modes[p] = scene->world.pairs[p].mode;
+    memcpy(island->before, island->states, sizeof *island->states * (size_t)island->world.body_count);
+    for (int p = 0; p < island->world.pair_count; p++) island->modes[p] = island->world.pairs[p].mode;
 }

@@ -8,16 +8,17 @@
 #include "scene/scene_internal.h"
 
 /* Kinetic + potential less what drives gave on the way, J: what impacts alone take from. */
-double imp_scene_undriven_energy(const impact_scene *scene);
+double imp_scene_undriven_energy(const imp_island *island);
 
 /* Keeps the states and modes as they are, for the rows before an event. */
-void imp_scene_remember(impact_scene *scene);
+void imp_scene_remember(imp_island *island);
 
 /* An event now; its energies are the present ones. */
-impact_event imp_scene_event_of_touch(const impact_scene *scene, impact_event_kind kind, const imp_touch *touch);
-impact_event imp_scene_event_of_body(const impact_scene *scene, impact_event_kind kind, int body);
+impact_event imp_scene_event_of_touch(const imp_island *island, impact_event_kind kind, const imp_touch *touch);
+impact_event imp_scene_event_of_body(const imp_island *island, impact_event_kind kind, int body);
 
-/* Counts the event, and hands it on between its bodies' rows before and after. */
-impact_status imp_scene_record(impact_scene *scene, const impact_event *event);
+/* Counts the event, and hands it on between its bodies' rows before and after. A recorder that refuses is not obeyed
+ * before all is done that happens at this instant (scene->refused): the scene then stands where it can go on. */
+impact_status imp_scene_record(imp_island *island, const impact_event *event);
 
 #endif

@@ -9,12 +9,12 @@
 
 /* Tentative modes: what touches and does not leave is held; those that would pull are opened again when the reactions
  * are known. */
-void imp_scene_choose_modes(impact_scene *scene);
+void imp_scene_choose_modes(imp_island *island);
 
 /* From tentative modes to consistent ones. What opened a moment ago, and is pressed together again now that other
  * contacts have changed their modes, is held again at once: it would come back in less than can be told from rounding,
  * and again and again. Each pair is given one such chance in an instant. opened: the pair that has just lifted off, or
  * -1; rejoin: whether to look for such pairs. */
-impact_status imp_scene_hold(impact_scene *scene, int opened, bool rejoin);
+impact_status imp_scene_hold(imp_island *island, int opened, bool rejoin);
 
 #endif

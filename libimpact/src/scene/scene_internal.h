@@ -1,70 +1,118 @@
 /* SPDX-License-Identifier: MIT
  *
- * The scene as its own source files see it: scene_build.c makes it, scene_instant.c does what happens at one instant
- * (scene_strike.c: impacts; scene_hold.c: held contacts), scene_advance.c goes from one to the next, scene.c runs it.
- * Internal.
+ * The scene core: every body has its own clock, only near pairs exist, one queue, nothing is ever taken back, and the
+ * bits of a body's motion depend on its own events alone.
+ *
+ *   segment (motion/)  how a body moves on [t0, t1], fixed once made: closed forms, or a step of the integrator
+ *   search  (motion/)  when two bodies next touch, from their two segments alone
+ *   tracks             every body's segment, its fat box, and the pairs of bodies whose boxes overlap
+ *   queue              one time for each body (its next contact; where it leaves its box), for each island that an
+ *                      integrator moves (its segment ends), and for the samples
+ *   island             bodies tied by held contacts or forces between them
+ *   encounter          what happens where two bodies meet or an island's segment ends in an event
+ *
+ * An island makes its next step when the queue reaches the end of its last, so that every segment covers [now, t1], and
+ * an event at t changes segments after t only: queue times never fall, and what a cut drops nobody has seen.
+ *
+ * scene_build.c makes a scene, scene_run.c goes through the queue, encounter.c gathers what meets and sets what moves
+ * on; what happens in an island at one instant is scene_instant.c's (scene_strike.c: impacts; scene_hold.c: held
+ * contacts). Internal.
  */
 #ifndef IMP_SCENE_INTERNAL_H
 #define IMP_SCENE_INTERNAL_H
 
-#include "motion/motion.h"
+#include "scene/account.h"
+#include "scene/island.h"
+#include "scene/rules.h"
+#include "scene/tracks.h"
 
 struct impact_scene {
     char *name;
-    imp_world world;
-    imp_motion motion;
-    imp_state *states;
-    imp_state *before; /* as the states were when the event at hand came */
-    imp_mode *modes;   /* as the pairs' modes were then */
+    imp_world world; /* all bodies and forces; pairs are the tracks' and the islands' */
+    imp_rules rules; /* coefficients of two bodies */
+    imp_queue queue; /* slot 0: the samples; then the bodies; then the islands */
+    imp_tracks tracks;
+    imp_island **islands; /* by their numbers; NULL: a number that is free */
+    int island_count, island_room;
+    imp_island **spares; /* islands without a number, to be used again */
+    int spare_count, spare_room;
+    int *members; /* scratch: the bodies of an encounter */
+    int member_count;
+    imp_pair *touching; /* scratch: its pairs, by the scene's indices */
+    int touching_count, touching_room;
+    int *root; /* scratch, by the island's index of a body: its component */
+    imp_account account;
+    imp_works works; /* of islands that are no more */
+    double impact_loss;
+    double greatest_energy;                    /* J: the greatest term of the account so far; */
+    double impact_loss_fallen, sliding_fallen; /* by how much losses that only rise have fallen */
+    impact_scene_residuals receipt;
+    imp_state *states; /* of all bodies, as they were asked for last */
+
     double t, duration;
+    bool begun;    /* it has run */
+    bool unsteady; /* some force may move, some time, what rests under it now */
     impact_law law;
     double compliance;
     impact_collide_workspace *springs; /* solves impacts with compliance; absent without it */
     impact_solver solver;
-    double rest_height, rest_speed;
-    long max_events, event_count;
-    long stalls; /* events since time last moved */
-    imp_sampler sampler;
+    double tolerance, rest_height, rest_speed;
+    long max_events, event_count, max_steps, steps; /* steps: slots of the queue */
+    impact_piles piles;
+    double pile_error;               /* m, of all steps of piles */
+    double output_rate;              /* samples per second; 0: none */
+    long next_sample;                /* k of the next, at k/output_rate */
+    int movable, moving;             /* bodies that are not static; not at rest */
     const impact_recorder *recorder; /* of the run under way */
-    impact_status stop;              /* why the recorder stopped the run */
-    double energy_start, impact_loss, key_tolerance;
-    double impact_loss_before, impact_loss_fallen; /* as the receipt saw it last; the sum of its falls */
-    double greatest_energy;                        /* the greatest term of the account so far */
-    impact_scene_residuals receipt;
-    long steps, max_steps;         /* calls of imp_scene_told */
-    bool begun;                    /* it has run */
-    struct imp_scene_keys *keys;   /* while a run with keys is under way */
-    bool beside_event;             /* the rows that go to the recorder now stand beside an event */
-    struct imp_scene_crowd *crowd; /* of many bodies, that are moved in groups; NULL: all at once */
-    struct imp_scene_pile *pile;   /* steps it where the exact method does not get on; NULL: never */
+    impact_status stop;              /* why it refused to go on */
+    bool refused;                    /* it did not take a row of the instant at hand */
+    struct imp_scene_keys *keys;     /* while a run with keys is under way */
+    double energy_start, key_tolerance;
     char message[512];
 };
 
 /* The world, in its arena, of a definition that imp_scene_check has passed. */
 impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def);
 
-/* One stretch of motion and the event at its end. */
-impact_status imp_scene_advance(impact_scene *scene, double t_end);
-typedef impact_status (*imp_scene_step)(impact_scene *scene, double t_end);
-/* On to the time t_end by such steps, as far as it goes: IMPACT_OK there, IMPACT_AT_REST, or why not. */
-impact_status imp_scene_go_on(impact_scene *scene, double t_end, imp_scene_step step);
-/* Before every stretch and after every step of an integrator: counts it, and tells the recorder how far the run is.
- * False: it is to stop. */
-bool imp_scene_told(impact_scene *scene, double t);
+/* Goes on to t_end. IMPACT_OK there; IMPACT_AT_REST, or why not. */
+impact_status imp_scene_go_on(impact_scene *scene, double t_end);
+/* Every body's state at t, in scene->states. */
+impact_status imp_scene_look(impact_scene *scene, double t);
+/* Kinetic + potential of all bodies but the island's at t, J. */
+double imp_scene_energy_beside(impact_scene *scene, const imp_island *island, double t);
+
+/* Counts a step, and tells the recorder how far the run is; false: it is to stop, for scene->stop. */
+bool imp_scene_told(impact_scene *scene);
 /* Whether all of the row's numbers are finite, as every row is that is handed on; else the message says whose are not.
  */
 bool imp_scene_good_row(impact_scene *scene, const impact_sample *sample);
-/* Puts every body's row into the recorder; for the sampler. */
-bool imp_scene_emit(void *scene, double t, const imp_state *states);
 
-/* Kinetic + potential, J. */
-double imp_scene_total_energy(const impact_scene *scene);
-impact_sample imp_scene_sample(const impact_scene *scene, double t, int body, const imp_state *states);
+/* Works since the start, of all that moves, at the scene's time. */
+imp_works imp_scene_works(const impact_scene *scene);
+/* What damping has taken of a body alone since its segment began, J. */
+double imp_scene_damped(const impact_scene *scene, int body, double t);
 
-/* At the scene's time: all impacts there are, in the order of the pairs, then which contacts are held, in
- * which mode. */
-impact_status imp_scene_settle(impact_scene *scene);
-/* At the scene's time: what the end of a stretch of motion stands for. */
-impact_status imp_scene_handle(impact_scene *scene, imp_end end);
+static inline int imp_scene_island_slot(const impact_scene *scene, int number)
+{
+    return 1 + scene->world.body_count + number;
+}
+
+/* encounter.c */
+/* All that touch at the start. */
+impact_status imp_scene_first_encounters(impact_scene *scene);
+/* The pair touches at t. */
+impact_status imp_scene_meet(impact_scene *scene, int near, double t);
+/* The island's segment ends now. */
+impact_status imp_scene_continue(impact_scene *scene, imp_island *island);
+
+/* At the island's time: all impacts there are, in the order of the pairs, then which contacts are held, in which mode.
+ */
+impact_status imp_scene_settle(imp_island *island);
+/* At the island's time: what the end of a segment stands for. */
+impact_status imp_scene_handle(imp_island *island, imp_end end);
+
+/* Kinetic + potential of the island, J. */
+double imp_scene_total_energy(const imp_island *island);
+impact_sample imp_scene_sample(const imp_body *body, double t, const imp_state *state);
 
 #endif

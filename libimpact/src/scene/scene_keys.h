@@ -5,6 +5,7 @@
 #ifndef IMP_SCENE_KEYS_H
 #define IMP_SCENE_KEYS_H
 
+#include "motion/key.h"
 #include "scene/scene_internal.h"
 
 /* The rows of one pair's held contact: of those that differ little only the last is kept, until one differs. */
@@ -18,48 +19,25 @@ typedef bool imp_held_sink(void *context, const impact_held *row);
 /* What is under way on the way to the recorder. */
 typedef struct imp_scene_keys {
     imp_key_line *lines; /* per body */
-    imp_held_line *held; /* per pair */
-    double accounted;    /* s: the last account row */
+    double *from;        /* per body, s: up to where its motion has been handed on */
+    imp_held_line *held; /* per pair of the tracks */
+    int held_room;
+    double accounted; /* s: the last account row */
 } imp_scene_keys;
 
 /* Before and after a run with a recorder that wants any of them. */
 impact_status imp_scene_keys_begin(impact_scene *scene);
 bool imp_scene_keys_end(impact_scene *scene);
 
-/* For the sampler of a scene: spans become keys. */
-bool imp_scene_piece(void *scene, const imp_piece *piece);
-/* The account as it stands, at the scene's time. */
+/* A body's segment is done at t, where its state is `end`: the one place that every trajectory goes through. False: a
+ * sink refused. */
+bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_state *end);
+/* The rows of the contacts that an island holds up to its time. */
+bool imp_scene_held_until(imp_island *island);
+/* The pair is held no more at t. */
+bool imp_scene_held_ends(impact_scene *scene, int near, double t);
+/* The account as it stands, at the scene's time: beside events; and where the last is a while ago. */
 bool imp_scene_account(impact_scene *scene);
-
-/* A body's next span, and the row of a held contact, as the pieces of motion have them. */
-bool imp_scene_add_span(impact_scene *scene, const imp_span *span);
-bool imp_scene_add_held(impact_scene *scene, const impact_held *row);
-
-/* A piece as spans of all bodies that move; as rows of held contacts, by the lines given. False: a sink refused. */
-bool imp_scene_spans_of(impact_scene *scene, const imp_piece *piece, imp_span_sink *sink, void *context);
-bool imp_scene_held_of(impact_scene *scene, const imp_piece *piece, imp_held_line *lines, imp_held_sink *sink,
-                       void *context);
-
-/* ---- spans and rows of the groups of a crowd, kept until their while is over ---- */
-
-typedef struct imp_kept {
-    int group;
-    bool is_span;
-    imp_span span;
-    impact_held held;
-} imp_kept;
-
-typedef struct imp_kept_list {
-    imp_arena *arena;
-    imp_kept *items;
-    int count, room;
-    bool failed; /* out of memory */
-} imp_kept_list;
-
-void imp_kept_add(imp_kept_list *list, const imp_kept *item);
-void imp_kept_drop(imp_kept_list *list, int group);
-void imp_kept_free(imp_kept_list *list);
-/* Hands all of them to the scene. */
-impact_status imp_kept_deliver(imp_kept_list *list, impact_scene *scene);
+bool imp_scene_account_now_and_then(impact_scene *scene);
 
 #endif

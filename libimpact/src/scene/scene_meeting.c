@@ -4,38 +4,38 @@
 
 #include <string.h>
 
-impact_status imp_scene_load(impact_scene *scene)
+impact_status imp_scene_load(imp_island *island)
 {
-    if (imp_motion_load(&scene->motion, scene->t, scene->states)) return IMPACT_OK;
-    memcpy(scene->message, scene->motion.message, sizeof scene->motion.message);
+    if (imp_motion_load(&island->motion, island->t, island->states)) return IMPACT_OK;
+    memcpy(island->scene->message, island->motion.message, sizeof island->motion.message);
     return IMPACT_EDOMAIN;
 }
 
-impact_status imp_scene_load_with_reactions(impact_scene *scene)
+impact_status imp_scene_load_with_reactions(imp_island *island)
 {
-    imp_persist *persist = &scene->motion.persist;
-    impact_status status = imp_persist_reserve(persist, &scene->world, scene->states);
-    if (status == IMPACT_OK) status = imp_scene_load(scene);
+    imp_persist *persist = &island->motion.persist;
+    impact_status status = imp_persist_reserve(persist, &island->world, island->states);
+    if (status == IMPACT_OK) status = imp_scene_load(island);
     if (status != IMPACT_OK || persist->count == 0) return status;
-    imp_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
-    imp_persist_add_reactions(persist, scene->motion.loads);
+    imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
+    imp_persist_add_reactions(persist, island->motion.loads);
     return IMPACT_OK;
 }
 
-bool imp_scene_meets(impact_scene *scene, int p, imp_meeting *m)
+bool imp_scene_meets(imp_island *island, int p, imp_meeting *m)
 {
-    imp_world *world = &scene->world;
+    imp_world *world = &island->world;
     imp_pair *pair = &world->pairs[p];
-    if (pair->beyond || imp_world_distance_bound(world, pair, scene->states) > world->bodies[pair->body1].radius)
+    if (pair->beyond || imp_world_distance_bound(world, pair, island->states) > world->bodies[pair->body1].radius)
         return false;
     impact_contact contact;
-    imp_world_gap(world, pair, scene->states, &contact);
-    if (!imp_is_held(pair) && (contact.gap > imp_world_touching_distance(world, pair, scene->states) ||
-                               imp_world_inside_bounds(world, pair, scene->states, &contact) < 0))
+    imp_world_gap(world, pair, island->states, &contact);
+    if (!imp_is_held(pair) && (contact.gap > imp_world_touching_distance(world, pair, island->states) ||
+                               imp_world_inside_bounds(world, pair, island->states, &contact) < 0))
         return false;
-    m->touch = imp_persist_touch(world, p, scene->states, scene->motion.loads);
-    m->velocity = imp_persist_approach(world, &m->touch, scene->states);
-    m->own = imp_persist_own_acceleration(&scene->motion.persist, world, scene->states, p);
+    m->touch = imp_persist_touch(world, p, island->states, island->motion.loads);
+    m->velocity = imp_persist_approach(world, &m->touch, island->states);
+    m->own = imp_persist_own_acceleration(&island->motion.persist, world, island->states, p);
     m->acceleration =
         qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip) - m->own;
     return true;
@@ -44,15 +44,15 @@ bool imp_scene_meets(impact_scene *scene, int p, imp_meeting *m)
 /* The acceleration that presses two bodies together and goes on doing so: about edges and over faces the normal turns
  * fast, but not for long. Surfaces rounder than a thousandth of the body press no more than this. The loads hold the
  * pair's own reaction, which its acceleration does not. */
-static double lasting_press(const impact_scene *scene, const imp_meeting *m)
+static double lasting_press(const imp_island *island, const imp_meeting *m)
 {
     const double roundest = 1e-3;
     const int body[2] = {m->touch.body1, m->touch.body2};
-    const imp_state *states = scene->states;
+    const imp_state *states = island->states;
     double speed = qvec3_norm(qvec3_sub(states[body[0]].v, states[body[1]].v)), pull = fabs(m->own), radius = INFINITY;
     for (int k = 0; k < 2; k++) {
-        const imp_body *b = &scene->world.bodies[body[k]];
-        const imp_load *l = &scene->motion.loads[body[k]];
+        const imp_body *b = &island->world.bodies[body[k]];
+        const imp_load *l = &island->motion.loads[body[k]];
         if (b->is_static) continue;
         speed += b->radius * qvec3_norm(imp_omega(b, &states[body[k]]));
         pull += qvec3_norm(l->force) * b->inverse_mass;
@@ -60,17 +60,17 @@ static double lasting_press(const impact_scene *scene, const imp_meeting *m)
         radius = fmin(radius, b->radius);
     }
     /* of a face that is about to be rolled over the reaction is without bound, for no time */
-    const double passing = 1e6 * qvec3_norm(scene->world.gravity);
+    const double passing = 1e6 * qvec3_norm(island->world.gravity);
     if (passing > 0) pull = fmin(pull, passing);
     return fmin(-m->acceleration, pull + speed * speed / (roundest * radius));
 }
 
-bool imp_scene_dies_out(const impact_scene *scene, const imp_meeting *m, double speed)
+bool imp_scene_dies_out(const imp_island *island, const imp_meeting *m, double speed)
 {
     enum { MOST = 10 };
-    const imp_pair *pair = &scene->world.pairs[m->touch.pair];
-    const double late = imp_world_touching_distance(&scene->world, pair, scene->states);
+    const imp_pair *pair = &island->world.pairs[m->touch.pair];
+    const double late = imp_world_touching_distance(&island->world, pair, island->states);
     const double gain = 1 / (1 - pair->restitution * pair->restitution);
-    const double height = fmax(scene->rest_height, late * fmin(gain, MOST));
-    return m->acceleration < 0 && speed * speed < 2 * lasting_press(scene, m) * height;
+    const double height = fmax(island->scene->rest_height, late * fmin(gain, MOST));
+    return m->acceleration < 0 && speed * speed < 2 * lasting_press(island, m) * height;
 }

@@ -15,15 +15,15 @@ typedef struct imp_meeting {
 } imp_meeting;
 
 /* The loads on all bodies now; and with the reactions of the contacts that are held. */
-impact_status imp_scene_load(impact_scene *scene);
-impact_status imp_scene_load_with_reactions(impact_scene *scene);
+impact_status imp_scene_load(imp_island *island);
+impact_status imp_scene_load_with_reactions(imp_island *island);
 
 /* Fills the meeting of a held pair, or of an open one that touches within its plane's bounds; false otherwise. */
-bool imp_scene_meets(impact_scene *scene, int p, imp_meeting *m);
+bool imp_scene_meets(imp_island *island, int p, imp_meeting *m);
 
 /* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies
  * together. Bounces that are met a rounding d late gain what they fall by it, and never rise less than d e^2/(1 - e^2):
  * that counts as rest too. */
-bool imp_scene_dies_out(const impact_scene *scene, const imp_meeting *m, double speed);
+bool imp_scene_dies_out(const imp_island *island, const imp_meeting *m, double speed);
 
 #endif

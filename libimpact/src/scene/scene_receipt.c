@@ -13,7 +13,7 @@
 
 void imp_scene_receipt_begin(impact_scene *scene)
 {
-    const double tolerance = scene->motion.tolerance;
+    const double tolerance = scene->tolerance;
     scene->receipt = (impact_scene_residuals){.limit_unit = IMP_RECEIPT_UNIT,
                                               .limit_gap = IMP_RECEIPT_GAP + IMP_RECEIPT_ERRORS * tolerance,
                                               .limit_contact = IMP_RECEIPT_CONTACT,
@@ -30,36 +30,36 @@ static void look_at(impact_scene *scene, const char *field, double *worst, doubl
     r->failed_begin = r->begin, r->failed_end = r->end;
 }
 
-static double worst_unit(const impact_scene *scene)
+static double worst_unit(const imp_island *island, const imp_state *states)
 {
     double worst = 0;
-    for (int i = 0; i < scene->world.body_count; i++) worst = fmax(worst, fabs(quat_norm(scene->states[i].q) - 1));
+    for (int i = 0; i < island->world.body_count; i++) worst = fmax(worst, fabs(quat_norm(states[i].q) - 1));
     return worst;
 }
 
 /* The kernel's gap of what is held, asked with a pair of its own: what is found does not touch the run. */
-static double worst_gap(impact_scene *scene)
+static double worst_gap(imp_island *island, const imp_state *states)
 {
-    imp_world *world = &scene->world;
+    imp_world *world = &island->world;
     const impact_usage usage = world->usage;
     double worst = 0;
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair pair = world->pairs[p];
         if (!imp_is_held(&pair)) continue;
         impact_contact contact;
-        imp_world_gap(world, &pair, scene->states, &contact);
-        worst = fmax(worst, fabs(contact.gap) / imp_world_place_scale(world, &pair, scene->states));
+        imp_world_gap(world, &pair, states, &contact);
+        worst = fmax(worst, fabs(contact.gap) / imp_world_place_scale(world, &pair, states));
     }
     world->usage = usage;
     return worst;
 }
 
-static double worst_contact(impact_scene *scene)
+static double worst_contact(imp_island *island)
 {
-    imp_persist *persist = &scene->motion.persist;
+    imp_persist *persist = &island->motion.persist;
     double greatest = 0, worst = 0;
-    if (persist->count == 0 || imp_scene_load(scene) != IMPACT_OK) return 0;
-    imp_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
+    if (persist->count == 0 || imp_scene_load(island) != IMPACT_OK) return 0;
+    imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
     for (int c = 0; c < persist->count; c++) greatest = fmax(greatest, qvec3_norm(persist->touches[c].force));
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
@@ -70,61 +70,73 @@ static double worst_contact(impact_scene *scene)
     return greatest > 0 ? worst / greatest : 0;
 }
 
+static double largest_of(double a, double b, double c, double d)
+{
+    return fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(d)));
+}
+
+/* What impacts took must not come back; friction's and damping's part is seen step by step (motion_guard). */
+static double fallen(imp_island *island)
+{
+    impact_scene *scene = island->scene;
+    scene->impact_loss_fallen += fmax(0, island->loss_before - island->impact_loss);
+    island->loss_before = island->impact_loss;
+    return scene->impact_loss_fallen + scene->sliding_fallen + island->motion.fallen;
+}
+
+void imp_scene_receipt_look(imp_island *island)
+{
+    impact_scene *scene = island->scene;
+    impact_scene_residuals *r = &scene->receipt;
+    const imp_works *works = &island->motion.works;
+    const double off = imp_island_balance(island) - island->balance;
+    scene->greatest_energy =
+        fmax(scene->greatest_energy, largest_of(imp_island_energy(island), works->force, works->drive,
+                                                works->damping + works->sliding + island->impact_loss));
+    const double scale = scene->greatest_energy;
+    r->begin = island->looked_at, r->end = island->looked_at = island->t;
+    r->stretches++;
+    look_at(scene, "unit", &r->unit, worst_unit(island, island->states), r->limit_unit);
+    look_at(scene, "gap", &r->gap, worst_gap(island, island->states), r->limit_gap);
+    look_at(scene, "contact", &r->contact, worst_contact(island), r->limit_contact);
+    look_at(scene, "energy", &r->energy, scale > 0 ? fabs(off) / scale : fabs(off), r->limit_energy);
+    look_at(scene, "loss_fallen", &r->loss_fallen, fallen(island), r->limit_energy * scale);
+}
+
+/* ---- the whole ---- */
+
 /* What the account is off by, and the greatest term that it has had. */
 static double account(impact_scene *scene, double *scale)
 {
     const impact_energy e = impact_scene_energy(scene);
     const double losses = e.damping_loss + e.sliding_loss + e.impact_loss, now = e.kinetic + e.potential;
-    const double given = fmax(fabs(e.force_work), fabs(e.drive_work));
-    const double greatest = fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), fmax(given, fabs(losses))));
-    *scale = scene->greatest_energy = fmax(scene->greatest_energy, greatest);
+    const double greatest = fmax(largest_of(e.start, e.kinetic, e.potential, losses), fabs(e.drive_work));
+    *scale = scene->greatest_energy = fmax(scene->greatest_energy, fmax(greatest, fabs(e.force_work)));
     return now - (e.start + e.force_work + e.drive_work - losses);
 }
 
-/* What impacts took must not come back; friction's and damping's part is seen step by step (motion_guard). */
-static double fallen(impact_scene *scene)
-{
-    if (scene->impact_loss < scene->impact_loss_before)
-        scene->impact_loss_fallen += scene->impact_loss_before - scene->impact_loss;
-    scene->impact_loss_before = scene->impact_loss;
-    return scene->impact_loss_fallen + scene->motion.fallen;
-}
-
-void imp_scene_receipt_look(impact_scene *scene, double begin)
+/* What no event has shown: islands as they are on their way, and all that flies. Reactions are not solved for: that
+ * would leave its traces, and a run in parts is to be the whole, bit for bit. */
+static void look_at_all(impact_scene *scene)
 {
     impact_scene_residuals *r = &scene->receipt;
     double scale;
+    r->begin = 0, r->end = scene->t;
+    for (int k = 0; k < scene->island_count; k++) {
+        imp_island *island = scene->islands[k];
+        if (!island || island->stepped) continue;
+        look_at(scene, "unit", &r->unit, worst_unit(island, island->motion.sampled), r->limit_unit);
+        look_at(scene, "gap", &r->gap, worst_gap(island, island->motion.sampled), r->limit_gap);
+    }
     const double off = account(scene, &scale);
-    r->begin = begin, r->end = scene->t;
-    r->stretches++;
-    look_at(scene, "unit", &r->unit, worst_unit(scene), r->limit_unit);
-    look_at(scene, "gap", &r->gap, worst_gap(scene), r->limit_gap);
-    look_at(scene, "contact", &r->contact, worst_contact(scene), r->limit_contact);
     look_at(scene, "energy", &r->energy, scale > 0 ? fabs(off) / scale : fabs(off), r->limit_energy);
-    look_at(scene, "loss_fallen", &r->loss_fallen, fallen(scene), r->limit_energy * scale);
-}
-
-void imp_scene_receipt_add(impact_scene *scene, const impact_scene *part)
-{
-    impact_scene_residuals *sum = &scene->receipt;
-    const impact_scene_residuals *r = &part->receipt;
-    sum->stretches += r->stretches;
-    sum->unit = fmax(sum->unit, r->unit);
-    sum->gap = fmax(sum->gap, r->gap);
-    sum->contact = fmax(sum->contact, r->contact);
-    scene->greatest_energy = fmax(scene->greatest_energy, part->greatest_energy);
-    scene->motion.fallen += part->motion.fallen;
-    scene->impact_loss_fallen += part->impact_loss_fallen;
-    scene->impact_loss_before += part->impact_loss;
-    if (sum->failed || !r->failed) return;
-    sum->failed = r->failed;
-    sum->failed_begin = r->failed_begin, sum->failed_end = r->failed_end;
 }
 
 impact_status imp_scene_receipt_judge(impact_scene *scene, impact_status status)
 {
     const impact_scene_residuals *r = &scene->receipt;
     if (status != IMPACT_OK && status != IMPACT_AT_REST) return status;
+    look_at_all(scene);
     if (!r->failed) return scene->world.usage.impacts_soft > 0 ? IMPACT_SOFT : status;
     double scale;
     const double off = account(scene, &scale);

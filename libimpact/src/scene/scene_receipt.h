@@ -9,13 +9,11 @@
 
 void imp_scene_receipt_begin(impact_scene *scene);
 
-/* Looks at the scene as it stands at the end of a stretch that began at time begin. */
-void imp_scene_receipt_look(impact_scene *scene, double begin);
+/* Looks at the island as it stands after an event. */
+void imp_scene_receipt_look(imp_island *island);
 
-/* What a part of the scene, moved on its own, found. */
-void imp_scene_receipt_add(impact_scene *scene, const impact_scene *part);
-
-/* The status of a run that reached its end; IMPACT_SOFT, with a message, where the receipt has failed. */
+/* At the end of a run, whose states have been looked up (imp_scene_look): its status, or IMPACT_SOFT with a message
+ * where the receipt has failed. */
 impact_status imp_scene_receipt_judge(impact_scene *scene, impact_status status);
 
 #endif

@@ -8,19 +8,19 @@
 #include <stdio.h>
 
 /* A static body's drive does work with the impulse on body 1. */
-static double drive_impulse(impact_scene *scene, const imp_touch *touch, qvec3 impulse)
+static double drive_impulse(imp_island *island, const imp_touch *touch, qvec3 impulse)
 {
-    const double work = qvec3_dot(impulse, imp_surface_velocity(&scene->world.bodies[touch->body2], touch->r2));
-    scene->motion.works.drive += work;
+    const double work = qvec3_dot(impulse, imp_surface_velocity(&island->world.bodies[touch->body2], touch->r2));
+    island->motion.works.drive += work;
     return work;
 }
 
 /* ---- one impact ---- */
 
-static impact_collider collider(const impact_scene *scene, int body, qvec3 offset)
+static impact_collider collider(const imp_island *island, int body, qvec3 offset)
 {
-    const imp_body *b = &scene->world.bodies[body];
-    const imp_state *s = &scene->states[body];
+    const imp_body *b = &island->world.bodies[body];
+    const imp_state *s = &island->states[body];
     if (b->is_static) return (impact_collider){b->mass, b->moments, s->q, offset, b->drift, b->spin};
     return (impact_collider){b->mass, b->moments, s->q, offset, s->v, imp_omega(b, s)};
 }
@@ -35,9 +35,9 @@ static const char *phases_in_words(const impact_outcome *outcome, char *words, s
     return words;
 }
 
-static void count_solver(impact_scene *scene, const impact_outcome *outcome)
+static void count_solver(imp_island *island, const impact_outcome *outcome)
 {
-    impact_usage *usage = &scene->world.usage;
+    impact_usage *usage = &island->world.usage;
     if (outcome->solver == IMPACT_SOLVER_CLOSED_FORM) usage->impacts_closed_form++;
     if (outcome->solver == IMPACT_SOLVER_SERIES) usage->impacts_series++;
     if (outcome->solver == IMPACT_SOLVER_CVODE) usage->impacts_cvode++;
@@ -47,47 +47,47 @@ static void count_solver(impact_scene *scene, const impact_outcome *outcome)
 /* Solves the pair's impact. One whose bounce would die out is solved with restitution 0: it then exchanges, at once,
  * the whole impulse of the infinitely many bounces that would follow, less what the pressing force brings while they
  * last: the sum m w (1 + e)(1 + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
-static impact_status strike(impact_scene *scene, const imp_meeting *m)
+static impact_status strike(imp_island *island, const imp_meeting *m)
 {
-    imp_world *world = &scene->world;
+    imp_world *world = &island->world;
     const imp_touch *touch = &m->touch;
     const double restitution = world->pairs[touch->pair].restitution;
     const impact_collision collision = {
-        .body = {collider(scene, touch->body1, touch->r1), collider(scene, touch->body2, touch->r2)},
+        .body = {collider(island, touch->body1, touch->r1), collider(island, touch->body2, touch->r2)},
         .normal = touch->normal,
         .friction = touch->friction,
-        .restitution = imp_scene_dies_out(scene, m, restitution * m->velocity) ? 0 : restitution,
-        .law = scene->law,
-        .solver = scene->solver,
-        .tangential_compliance = scene->compliance,
-        .workspace = scene->springs};
+        .restitution = imp_scene_dies_out(island, m, restitution * m->velocity) ? 0 : restitution,
+        .law = island->scene->law,
+        .solver = island->scene->solver,
+        .tangential_compliance = island->scene->compliance,
+        .workspace = island->scene->springs};
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);
-    if (status == IMPACT_SOFT && scene->world.usage.impacts_soft++ == 0)
-        snprintf(scene->message, sizeof scene->message,
+    if (status == IMPACT_SOFT && island->world.usage.impacts_soft++ == 0)
+        snprintf(island->scene->message, sizeof island->scene->message,
                  "impact of '%s' and '%s' at t = %.17g: no solver's answer passes its receipt, the best is taken",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, scene->t);
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, island->t);
     if (status != IMPACT_OK && status != IMPACT_SOFT) {
-        snprintf(scene->message, sizeof scene->message, "impact of '%s' and '%s' at t = %.17g: %s",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, scene->t,
-                 status == IMPACT_EARGUMENT && scene->solver == IMPACT_SOLVER_CLOSED_FORM
+        snprintf(island->scene->message, sizeof island->scene->message, "impact of '%s' and '%s' at t = %.17g: %s",
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, island->t,
+                 status == IMPACT_EARGUMENT && island->scene->solver == IMPACT_SOLVER_CLOSED_FORM
                      ? "it has no closed form, and the scene asks for no other solver"
                      : impact_status_string(status));
         return status < 0 ? status : IMPACT_EUNSETTLED;
     }
-    impact_event event = imp_scene_event_of_touch(scene, IMPACT_EVENT_IMPACT, touch);
+    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
     const int bodies[2] = {touch->body1, touch->body2};
-    drive_impulse(scene, touch, outcome.impulse);
+    drive_impulse(island, touch, outcome.impulse);
     imp_persist_stir(world);
     for (int k = 0; k < 2; k++) {
         const imp_body *body = &world->bodies[bodies[k]];
-        imp_state *state = &scene->states[bodies[k]];
+        imp_state *state = &island->states[bodies[k]];
         if (body->is_static) continue;
         state->v = outcome.velocity[k];
         state->momentum = imp_inertia(body, state->q, outcome.omega[k]);
-        scene->motion.resting[bodies[k]] = false;
+        island->motion.resting[bodies[k]] = false;
     }
-    count_solver(scene, &outcome);
+    count_solver(island, &outcome);
     char words[128];
     event.phases = phases_in_words(&outcome, words, sizeof words);
     event.impulse_normal = outcome.impulse_normal;
@@ -95,18 +95,18 @@ static impact_status strike(impact_scene *scene, const imp_meeting *m)
     event.impulse_tangential = outcome.impulse_tangential;
     event.normal_before = outcome.normal_before;
     event.normal_after = outcome.normal_after;
-    event.energy_after = imp_scene_total_energy(scene);
-    return imp_scene_record(scene, &event);
+    event.energy_after = imp_scene_total_energy(island);
+    return imp_scene_record(island, &event);
 }
 
 /* The first touching pair that approaches in earnest, or -1. Those that barely do are put right by projection where
  * they are held, or (answering) will be: what answers another impact so softly would not rise again. */
-static int find_approach(impact_scene *scene, bool answering, imp_meeting *m)
+static int find_approach(imp_island *island, bool answering, imp_meeting *m)
 {
-    for (int p = 0; p < scene->world.pair_count; p++) {
-        if (!imp_scene_meets(scene, p, m)) continue;
-        const bool held = answering || imp_is_held(&scene->world.pairs[p]);
-        if (m->velocity < -scene->world.slip_speed && !(held && imp_scene_dies_out(scene, m, m->velocity))) return p;
+    for (int p = 0; p < island->world.pair_count; p++) {
+        if (!imp_scene_meets(island, p, m)) continue;
+        const bool held = answering || imp_is_held(&island->world.pairs[p]);
+        if (m->velocity < -island->world.slip_speed && !(held && imp_scene_dies_out(island, m, m->velocity))) return p;
     }
     return -1;
 }
@@ -114,28 +114,28 @@ static int find_approach(impact_scene *scene, bool answering, imp_meeting *m)
 /* ---- many impacts in one instant ---- */
 
 /* All touching pairs answer together what is left of the instant's impacts, without restitution. */
-static impact_status strike_together(impact_scene *scene)
+static impact_status strike_together(imp_island *island)
 {
-    imp_world *world = &scene->world;
+    imp_world *world = &island->world;
     imp_share *shares = imp_arena_take(world->arena, (size_t)world->pair_count, sizeof *shares);
     if (!shares) return IMPACT_ENOMEM;
     imp_persist_stir(world);
     int count = 0;
     imp_meeting m;
     for (int p = 0; p < world->pair_count; p++)
-        if (imp_scene_meets(scene, p, &m)) shares[count++].touch = m.touch;
-    double energy = imp_scene_total_energy(scene);
+        if (imp_scene_meets(island, p, &m)) shares[count++].touch = m.touch;
+    double energy = imp_scene_total_energy(island);
     impact_status status = IMPACT_OK;
-    if (!imp_answer_together(world, scene->states, shares, count) && world->driven) {
-        snprintf(scene->message, sizeof scene->message,
+    if (!imp_answer_together(world, island->states, shares, count) && world->driven) {
+        snprintf(island->scene->message, sizeof island->scene->message,
                  "no impulses end the impacts at t = %.17g: do moving surfaces draw a body in where it jams?",
-                 scene->t);
+                 island->t);
         status = IMPACT_EUNSETTLED;
     }
     for (int c = 0; status == IMPACT_OK && c < count; c++) {
         const imp_share *share = &shares[c];
         if (!(share->normal > 0)) continue;
-        impact_event event = imp_scene_event_of_touch(scene, IMPACT_EVENT_IMPACT, &share->touch);
+        impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, &share->touch);
         event.phases = "together";
         event.impulse_normal = share->normal;
         event.impulse = share->impulse;
@@ -143,10 +143,10 @@ static impact_status strike_together(impact_scene *scene)
         event.normal_before = qvec3_dot(share->touch.normal, share->before);
         event.normal_after = qvec3_dot(share->touch.normal, share->after);
         event.energy_before = energy;
-        event.energy_after = energy += share->work + drive_impulse(scene, &share->touch, share->impulse);
-        scene->motion.resting[share->touch.body1] = scene->motion.resting[share->touch.body2] = false;
+        event.energy_after = energy += share->work + drive_impulse(island, &share->touch, share->impulse);
+        island->motion.resting[share->touch.body1] = island->motion.resting[share->touch.body2] = false;
         world->usage.impacts_together++;
-        status = imp_scene_record(scene, &event);
+        status = imp_scene_record(island, &event);
     }
     imp_arena_give(world->arena, shares);
     return status;
@@ -154,46 +154,53 @@ static impact_status strike_together(impact_scene *scene)
 
 /* Whether the impacts of this instant have gone round among the pairs that struck often enough, and lose energy as they
  * go. */
-static bool goes_round(const impact_scene *scene, int impacts)
+static bool goes_round(const imp_island *island, int impacts)
 {
     int struck = 0;
     bool elastic = true;
-    for (int p = 0; p < scene->world.pair_count; p++) {
-        struck += scene->world.pairs[p].struck;
-        elastic = elastic && (!scene->world.pairs[p].struck || scene->world.pairs[p].restitution == 1);
+    for (int p = 0; p < island->world.pair_count; p++) {
+        struck += island->world.pairs[p].struck;
+        elastic = elastic && (!island->world.pairs[p].struck || island->world.pairs[p].restitution == 1);
     }
     return !elastic && impacts > 10 * struck;
 }
 
-impact_status imp_scene_strike_all(impact_scene *scene)
+/* The only pair of the island parts after its impact: there is no other to answer. */
+static bool parts_alone(const imp_island *island, const imp_meeting *m)
+{
+    return island->world.pair_count == 1 && imp_persist_approach(&island->world, &m->touch, island->states) > 0;
+}
+
+impact_status imp_scene_strike_all(imp_island *island)
 {
     enum { MAX_IMPACTS = 100000 };
-    imp_world *world = &scene->world;
+    imp_world *world = &island->world;
     imp_meeting m;
     bool fresh = true; /* the loads know of the last impact */
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].struck = false;
-    impact_status status = imp_scene_load_with_reactions(scene);
+    impact_status status = imp_scene_load_with_reactions(island);
     for (int count = 0; status == IMPACT_OK; count++) {
-        int p = find_approach(scene, count > 0, &m);
+        int p = find_approach(island, count > 0, &m);
         if (p < 0 && !fresh) {
-            status = imp_scene_load_with_reactions(scene);
-            p = status == IMPACT_OK ? find_approach(scene, count > 0, &m) : -1;
+            status = imp_scene_load_with_reactions(island);
+            p = status == IMPACT_OK ? find_approach(island, count > 0, &m) : -1;
             fresh = true;
         }
         if (p < 0) return status;
-        if (goes_round(scene, count)) {
-            status = strike_together(scene);
-            return status == IMPACT_OK ? imp_scene_load_with_reactions(scene) : status;
+        if (goes_round(island, count)) {
+            status = strike_together(island);
+            return status == IMPACT_OK ? imp_scene_load_with_reactions(island) : status;
         }
         if (count > 0) world->usage.impacts_simultaneous++;
         if (count == MAX_IMPACTS) {
-            snprintf(scene->message, sizeof scene->message, "%d impacts in the one instant t = %.17g brought no end",
-                     count, scene->t);
+            snprintf(island->scene->message, sizeof island->scene->message,
+                     "%d impacts in the one instant t = %.17g brought no end", count, island->t);
             return IMPACT_EUNSETTLED;
         }
-        status = strike(scene, &m);
+        status = strike(island, &m);
         world->pairs[p].struck = true;
         fresh = false;
+        if (parts_alone(island, &m)) return status;
     }
     return status;
 }

@@ -9,6 +9,6 @@
 
 /* One impact after another, in the order of the pairs, until no touching pair approaches. Restitution that has gone
  * round among the same few pairs time and again is spent: the rest of it is answered by all together. */
-impact_status imp_scene_strike_all(impact_scene *scene);
+impact_status imp_scene_strike_all(imp_island *island);
 
 #endif

@@ -70,7 +70,7 @@ static bool add_to_body(const imp_field *field, const imp_world *world, double t
     if (field->def.kind == IMPACT_FORCE_WIND) {
         if (!field->inside[i]) return true;
         force = wind(&field->def, &states[i]);
-    } else if (!field->def.function(imp_field_inner_time(field, t), i, body->mass, states[i].x, states[i].q,
+    } else if (!field->def.function(imp_field_inner_time(field, t), body->index, body->mass, states[i].x, states[i].q,
                                     states[i].v, omega, &force, &torque, field->def.context)) {
         return false;
     }
@@ -126,7 +126,7 @@ static bool brake_of(const imp_field *field, const imp_world *world, double t, c
     const double nudge = 0x1p-20 * (size > 0 ? size : body->radius);
     qvec3 force = {0, 0, 0}, torque = {0, 0, 0};
     t = imp_field_inner_time(field, t);
-    if (!field->def.function(t, i, body->mass, state->x, state->q, state->v, omega, &force, &torque,
+    if (!field->def.function(t, body->index, body->mass, state->x, state->q, state->v, omega, &force, &torque,
                              field->def.context))
         return false;
     for (int k = 0; k < 6; k++) {
@@ -134,7 +134,8 @@ static bool brake_of(const imp_field *field, const imp_world *world, double t, c
         const qvec3 e = axes[k % 3], v = turns ? state->v : qvec3_axpy(nudge, e, state->v);
         const qvec3 w = turns ? qvec3_axpy(nudge / body->radius, e, omega) : omega;
         qvec3 f = {0, 0, 0}, g = {0, 0, 0};
-        if (!field->def.function(t, i, body->mass, state->x, state->q, v, w, &f, &g, field->def.context)) return false;
+        if (!field->def.function(t, body->index, body->mass, state->x, state->q, v, w, &f, &g, field->def.context))
+            return false;
         const qvec3 change = turns
                                  ? imp_inverse_inertia(body, state->q, qvec3_scale(qvec3_sub(g, torque), body->radius))
                                  : qvec3_scale(qvec3_sub(f, force), body->inverse_mass);
@@ -192,14 +193,6 @@ int imp_field_slots(const impact_force_def *def, int body_count)
     return 0;
 }
 
-bool imp_field_any(const imp_world *world)
-{
-    for (int i = 0; i < world->body_count; i++)
-        if (!world->bodies[i].is_static && (world->bodies[i].linear_rate != 0 || world->bodies[i].angular_rate != 0))
-            return true;
-    return world->field_count > 0;
-}
-
 int imp_field_edge_count(const imp_world *world)
 {
     int count = 0;
@@ -230,7 +223,7 @@ static field_edge custom_edge(const imp_world *world, const imp_field *field, do
 {
     const imp_body *b = &world->bodies[body];
     if (!acts_on(field, world, body)) return no_edge;
-    const impact_sample sample = {t, body, b->name, s->x, s->q, s->v, imp_omega(b, s)};
+    const impact_sample sample = {t, b->index, b->name, s->x, s->q, s->v, imp_omega(b, s)};
     return (field_edge){field->def.edge(imp_field_inner_time(field, t), &sample, field->def.context), 0, 0};
 }
 

@@ -49,7 +49,5 @@ void imp_field_cross(imp_world *world, int edge, int *field, int *body);
 
 /* Slots of a field over so many bodies; for allocation. */
 int imp_field_slots(const impact_force_def *def, int body_count);
-/* Whether any force but uniform gravity acts on any body. */
-bool imp_field_any(const imp_world *world);
 
 #endif

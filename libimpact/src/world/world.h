@@ -23,7 +23,8 @@ typedef struct imp_state {
 
 /* What does not change of a body. */
 typedef struct imp_body {
-    char *name;
+    char *name; /* the scene's */
+    int index;  /* in the scene's definition */
     impact_shape shape;
     bool is_static;
     bool spherical; /* three equal principal moments: omega is parallel to the angular momentum */
@@ -50,9 +51,7 @@ typedef struct imp_pair {
     int body1, body2;
     double friction, restitution;
     imp_mode mode;
-    bool beyond; /* IMP_OPEN: body 1 passed beside the bounds of the plane and is behind it */
-    /* m: rounding of the gap; a stretch of motion watches for a gap below -slack, and then goes back to zero */
-    double slack;
+    bool beyond;     /* IMP_OPEN: body 1 passed beside the bounds of the plane and is behind it */
     bool onset;      /* IMP_SLIDE: from rest, and slower than the world's onset_speed yet */
     qvec3 direction; /* IMP_SLIDE, onset: about where the slip goes */
     bool young;      /* IMP_SLIDE: just past its onset, and too slow yet for its direction to change smoothly */
@@ -71,6 +70,7 @@ typedef struct imp_pair {
     bool tried;     /* scratch: sticks again after its slip was to begin */
     bool struck;    /* scratch: exchanged an impulse in this instant */
     bool settled;   /* scratch: had its chance to be held again in this instant */
+    bool met;       /* by the steps of a pile: it was closed since the pile was looked at last */
     impact_gap_cache cache;
 } imp_pair;
 
@@ -79,7 +79,8 @@ typedef struct imp_pair {
 typedef struct imp_field {
     impact_force_def def; /* name is owned; body is not used: see only */
     char *name;
-    int only; /* the one body it acts on, or -1 */
+    int only;   /* the one body it acts on, or -1 */
+    int number; /* among the scene's */
     int slots;
     bool *inside;
     double *switches; /* custom: owned */
@@ -123,6 +124,13 @@ static inline qvec3 imp_inertia(const imp_body *body, quat q, qvec3 a)
 static inline qvec3 imp_omega(const imp_body *body, const imp_state *state)
 {
     return imp_inverse_inertia(body, state->q, state->momentum);
+}
+
+/* Kinetic + potential in uniform gravity of a body that moves, J. */
+static inline double imp_body_energy(const imp_body *body, const imp_state *state, qvec3 g)
+{
+    return body->mass * (0.5 * qvec3_dot(state->v, state->v) - qvec3_dot(g, state->x)) +
+           0.5 * qvec3_dot(state->momentum, imp_omega(body, state));
 }
 
 /* Velocity of a static body's surface at r from its centre. */

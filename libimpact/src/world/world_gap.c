@@ -62,12 +62,16 @@ static qvec3 about_normal(const imp_world *world, const imp_pair *pair, const im
     return distance > 0 ? qvec3_scale(d, 1 / distance) : (qvec3){1, 1, 1};
 }
 
-double imp_world_place_scale(const imp_world *world, const imp_pair *pair, const imp_state *states)
+double imp_place_scale(const imp_body *b1, qvec3 x1, const imp_body *b2, qvec3 x2, qvec3 n)
 {
-    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
-    const qvec3 n = about_normal(world, pair, states), x1 = states[pair->body1].x, x2 = states[pair->body2].x;
     return fabs(n.x) * (fabs(x1.x) + fabs(x2.x)) + fabs(n.y) * (fabs(x1.y) + fabs(x2.y)) +
            fabs(n.z) * (fabs(x1.z) + fabs(x2.z)) + b1->radius + (isfinite(b2->radius) ? b2->radius : 0);
+}
+
+double imp_world_place_scale(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    return imp_place_scale(&world->bodies[pair->body1], states[pair->body1].x, &world->bodies[pair->body2],
+                           states[pair->body2].x, about_normal(world, pair, states));
 }
 
 double imp_world_touching_distance(const imp_world *world, const imp_pair *pair, const imp_state *states)

@@ -21,8 +21,11 @@ double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point);
 double imp_world_gap_rate(const imp_world *world, const imp_pair *pair, const imp_state *states,
                           const impact_contact *contact);
 
-/* m: the size of the numbers that the pair's gap is made of, along its normal: far away along a floor counts for
- * nothing. */
+/* m: the size of the numbers that the gap of two bodies with these centres is made of, along its normal: far away along
+ * a floor counts for nothing. */
+double imp_place_scale(const imp_body *body1, qvec3 x1, const imp_body *body2, qvec3 x2, qvec3 normal);
+
+/* The same of a pair, with the normal as it is known. */
 double imp_world_place_scale(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
 /* Gaps of the pair up to this are rounding, m. */

@@ -4,8 +4,8 @@
  * and what is dropped there slides, rocks and rests without a stall.
  */
 #include "contact/persist_system.h"
-#include "scene/scene_internal.h"
 #include "kit/held_bodies.h"
+#include "kit/islands.h"
 
 enum { LEFT, RIGHT, EGG, BODIES };
 
@@ -48,10 +48,10 @@ static void set_down(groove *g)
 
 /* Signorini's conditions and Coulomb's law of the touches as solved for, in accelerations; by how much of the load they
  * are off. */
-static double off_coulomb(const impact_scene *scene)
+static double off_coulomb(const imp_island *island)
 {
-    const imp_persist *persist = &scene->motion.persist;
-    const double load = mass * qvec3_norm(scene->world.gravity), pull = qvec3_norm(scene->world.gravity);
+    const imp_persist *persist = &island->motion.persist;
+    const double load = mass * qvec3_norm(island->world.gravity), pull = qvec3_norm(island->world.gravity);
     double off = 0;
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
@@ -83,11 +83,14 @@ static void modes_obey_coulomb(void **state)
         set_down(&g);
         g.def.gravity = (qvec3){random_unit(&random) - 0.5, random_unit(&random) - 0.5, -random_unit(&random)};
         impact_scene *scene = make_scene(&g.def);
-        assert_int_equal(imp_scene_settle(scene), IMPACT_OK);
-        assert_true(scene->motion.persist.count > 0 || g.def.gravity.z > -0.5);
-        imp_field_loads(&scene->world, 0, scene->states, scene->motion.loads);
-        imp_persist_solve(&scene->motion.persist, &scene->world, scene->states, scene->motion.loads);
-        assert_at_most(off_coulomb(scene), 1e-9);
+        imp_island *island = whole_island(scene);
+        imp_motion *motion = &island->motion;
+        assert_int_equal(imp_scene_settle(island), IMPACT_OK);
+        assert_true(motion->persist.count > 0 || g.def.gravity.z > -0.5);
+        imp_field_loads(&island->world, 0, island->states, motion->loads);
+        imp_persist_solve(&motion->persist, &island->world, island->states, motion->loads);
+        assert_at_most(off_coulomb(island), 1e-9);
+        imp_motion_close(&island->motion);
         impact_scene_destroy(scene);
     }
 }

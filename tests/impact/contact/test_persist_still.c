@@ -4,8 +4,8 @@
  * reactions that balance; and what does not rest.
  */
 #include "contact/persist_still.h"
-#include "scene/scene_internal.h"
 #include "kit/held_bodies.h"
+#include "kit/islands.h"
 
 enum { WALLS = 4, MOST = 8 };
 
@@ -35,12 +35,13 @@ static void make_slot(slot *s, double friction, qvec3 pull, quat q)
 /* Newton and Euler for the bodies that move, from the reactions as the touches have them. */
 static void assert_balanced(const impact_scene *scene)
 {
-    const imp_persist *persist = &scene->motion.persist;
-    for (int i = 0; i < scene->world.body_count; i++) {
-        const imp_body *body = &scene->world.bodies[i];
+    const imp_persist *persist = &island_of(scene, WALLS)->motion.persist;
+    const imp_world *world = &island_of(scene, WALLS)->world;
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
         if (body->is_static) continue;
-        const double weight = body->mass * qvec3_norm(scene->world.gravity);
-        qvec3 force = qvec3_scale(scene->world.gravity, body->mass), torque = {0, 0, 0};
+        const double weight = body->mass * qvec3_norm(world->gravity);
+        qvec3 force = qvec3_scale(world->gravity, body->mass), torque = {0, 0, 0};
         for (int c = 0; c < persist->count; c++) {
             const imp_touch *touch = &persist->touches[c];
             if (touch->body1 != i && touch->body2 != i) continue;
@@ -73,8 +74,8 @@ static void a_clamped_ball_rests_however_it_is_turned(void **state)
         if (status != IMPACT_AT_REST) fail_msg("turn %d: status %d: %s", k, status, impact_scene_message(scene));
         assert_true(impact_scene_time(scene) == 0);
         assert_int_equal(impact_scene_usage(scene).integrator_starts, 0);
-        assert_int_equal(scene->motion.persist.count, WALLS);
-        for (int p = 0; p < WALLS; p++) assert_true(scene->world.pairs[p].still);
+        assert_int_equal(island_of(scene, WALLS)->motion.persist.count, WALLS);
+        for (int p = 0; p < WALLS; p++) assert_true(island_of(scene, WALLS)->world.pairs[p].still);
         assert_balanced(scene);
         impact_scene_destroy(scene);
     }
@@ -165,7 +166,7 @@ static void nothing_is_still_under_other_forces(void **state)
     s.def.force_count = 1;
     impact_scene *scene = make_scene(&s.def);
     assert_true(impact_scene_run(scene, NULL) >= 0);
-    for (int p = 0; p < WALLS; p++) assert_false(scene->world.pairs[p].still);
+    for (int p = 0; p < WALLS; p++) assert_false(island_of(scene, WALLS)->world.pairs[p].still);
     impact_scene_destroy(scene);
 }
 

@@ -3,24 +3,24 @@
  * The reactions of held contacts at one instant: against Newton and Euler in long double, and against finite
  * differences of the gap.
  */
-#include "scene/scene_internal.h"
 #include "kit/held_bodies.h"
+#include "kit/islands.h"
 
 /* The only pair's reactions in the mode given, as the scene's states are. */
-static imp_touch solve_touch(impact_scene *scene, imp_mode mode)
+static imp_touch solve_touch(imp_island *island, imp_mode mode)
 {
-    imp_persist *persist = &scene->motion.persist;
-    scene->world.pairs[0].mode = mode;
-    assert_int_equal(imp_persist_reserve(persist, &scene->world, scene->states), IMPACT_OK);
-    assert_true(imp_field_loads(&scene->world, 0, scene->states, scene->motion.loads));
-    imp_persist_solve(persist, &scene->world, scene->states, scene->motion.loads);
+    imp_persist *persist = &island->motion.persist;
+    island->world.pairs[0].mode = mode;
+    assert_int_equal(imp_persist_reserve(persist, &island->world, island->states), IMPACT_OK);
+    assert_true(imp_field_loads(&island->world, 0, island->states, island->motion.loads));
+    imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
     assert_int_equal(persist->count, 1);
     return persist->touches[0];
 }
 
-static void turn_at(impact_scene *scene, int body, qvec3 omega)
+static void turn_at(imp_island *island, int body, qvec3 omega)
 {
-    scene->states[body].momentum = imp_inertia(&scene->world.bodies[body], scene->states[body].q, omega);
+    island->states[body].momentum = imp_inertia(&island->world.bodies[body], island->states[body].q, omega);
 }
 
 typedef long double real;
@@ -169,7 +169,8 @@ static void reactions_by_newton_and_euler(void **state)
         bodies[0].position.z = 2;
         const impact_scene_def def = scene_of(bodies, 2, 1);
         impact_scene *scene = make_scene(&def);
-        imp_state *s = &scene->states[0];
+        imp_island *island = whole_island(scene);
+        imp_state *s = &island->states[0];
         const qvec3 w = random_vector(&random, 0.05, 5);
         spinner twin = {.axes = {a, b, c}};
         to_real(w, twin.w);
@@ -178,16 +179,16 @@ static void reactions_by_newton_and_euler(void **state)
             to_real(quat_rotate(s->q, (qvec3){axis == 0, axis == 1, axis == 2}), e);
             for (int i = 0; i < 3; i++) twin.e[i][axis] = e[i];
         }
-        const qvec3 moments = scene->world.bodies[0].moments;
+        const qvec3 moments = island->world.bodies[0].moments;
         to_real(moments, twin.moments);
         real r[3], wanted[3];
         s->x.z = (double)lowest_point(&twin, 0, r);
-        turn_at(scene, 0, w);
+        turn_at(island, 0, w);
         const qvec3 arm = {(double)r[0], (double)r[1], (double)r[2]}, rolling = qvec3_neg(qvec3_cross(w, arm));
         const double angle = 6.3 * random_unit(&random), speed = slides ? random_log(&random, 1e-3, 10) : 0;
         const qvec3 slip = {speed * cos(angle), speed * sin(angle), 0};
         s->v = qvec3_add(rolling, slip);
-        const imp_touch touch = solve_touch(scene, slides ? IMP_SLIDE : IMP_ROLL);
+        const imp_touch touch = solve_touch(island, slides ? IMP_SLIDE : IMP_ROLL);
         assert_near3(touch.slip, slip, 1e-14 * (1 + qvec3_norm(s->v)));
         real u[3];
         to_real(touch.slip, u);
@@ -203,16 +204,17 @@ static void reactions_by_newton_and_euler(void **state)
             const qvec3 tangential = {touch.force.x, touch.force.y, 0};
             assert_near(qvec3_dot(tangential, slip), -mu * touch.pressure * speed, 1e-12 * scale * speed);
         }
+        imp_motion_close(&island->motion);
         impact_scene_destroy(scene);
     }
 }
 
 /* Both bodies after dt, as the loads and reactions move them. */
-static void move(const impact_scene *scene, const imp_load *loads, double dt, imp_state *moved)
+static void move(const imp_island *island, const imp_load *loads, double dt, imp_state *moved)
 {
-    for (int i = 0; i < scene->world.body_count; i++) {
-        const imp_body *body = &scene->world.bodies[i];
-        const imp_state *s = &scene->states[i];
+    for (int i = 0; i < island->world.body_count; i++) {
+        const imp_body *body = &island->world.bodies[i];
+        const imp_state *s = &island->states[i];
         moved[i] = *s;
         if (body->is_static) continue;
         const qvec3 acceleration = qvec3_scale(loads[i].force, body->inverse_mass), w = imp_omega(body, s);
@@ -225,9 +227,9 @@ static void move(const impact_scene *scene, const imp_load *loads, double dt, im
 }
 
 /* Relative velocity of the contact points, at the contact as it then is. */
-static qvec3 contact_velocity(impact_scene *scene, const imp_state *states, double *rate)
+static qvec3 contact_velocity(imp_island *island, const imp_state *states, double *rate)
 {
-    imp_world *world = &scene->world;
+    imp_world *world = &island->world;
     imp_pair *pair = &world->pairs[0];
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
@@ -273,38 +275,40 @@ static void reactions_keep_the_contact(void **state)
             on_plane ? quat_rotate(bodies[1].orientation, (qvec3){0, 0, 3}) : qvec3_scale(random_direction(&random), 3);
         const impact_scene_def def = scene_of(bodies, 2, 1);
         impact_scene *scene = make_scene(&def);
-        imp_state *s = scene->states;
+        imp_island *island = whole_island(scene);
+        imp_state *s = island->states;
         impact_contact contact;
         for (int i = 0; i < 3; i++) { /* together */
-            const impact_solid one = imp_solid_of(&scene->world.bodies[0], &s[0]),
-                               two = imp_solid_of(&scene->world.bodies[1], &s[1]);
+            const impact_solid one = imp_solid_of(&island->world.bodies[0], &s[0]),
+                               two = imp_solid_of(&island->world.bodies[1], &s[1]);
             assert_true(impact_gap(&one, &two, NULL, &contact) >= 0);
             s[0].x = qvec3_axpy(-contact.gap, contact.normal, s[0].x);
         }
-        for (int i = 0; i < 2; i++) turn_at(scene, i, random_vector(&random, 0.05, 1));
-        if (!scene->world.bodies[1].is_static)
+        for (int i = 0; i < 2; i++) turn_at(island, i, random_vector(&random, 0.05, 1));
+        if (!island->world.bodies[1].is_static)
             s[1].v = random_vector(&random, 0.1, 1);
         else
             s[1].momentum = (qvec3){0, 0, 0};
         double rate;
-        const qvec3 u = contact_velocity(scene, s, &rate);
+        const qvec3 u = contact_velocity(island, s, &rate);
         s[0].v = qvec3_sub(s[0].v, u);
         if (slides) s[0].v = qvec3_add(s[0].v, qvec3_cross(contact.normal, random_vector(&random, 0.1, 1)));
-        solve_touch(scene, slides ? IMP_SLIDE : IMP_ROLL);
-        imp_load loads[2] = {scene->motion.loads[0], scene->motion.loads[1]};
-        imp_persist_add_reactions(&scene->motion.persist, loads);
+        solve_touch(island, slides ? IMP_SLIDE : IMP_ROLL);
+        imp_load loads[2] = {island->motion.loads[0], island->motion.loads[1]};
+        imp_persist_add_reactions(&island->motion.persist, loads);
         const double h = 3e-4;
         qvec3 velocity[4];
         double rates[4];
         for (int i = 0; i < 4; i++) {
             imp_state moved[2];
-            move(scene, loads, h * (const double[]){-2, -1, 1, 2}[i], moved);
-            velocity[i] = contact_velocity(scene, moved, &rates[i]);
+            move(island, loads, h * (const double[]){-2, -1, 1, 2}[i], moved);
+            velocity[i] = contact_velocity(island, moved, &rates[i]);
         }
         const qvec3 change =
             qvec3_sub(qvec3_scale(qvec3_sub(velocity[2], velocity[1]), 8), qvec3_sub(velocity[3], velocity[0]));
         assert_near((8 * (rates[2] - rates[1]) - (rates[3] - rates[0])) / (12 * h), 0, 2e-7);
         if (!slides) assert_near(qvec3_norm(change) / (12 * h), 0, 2e-7);
+        imp_motion_close(&island->motion);
         impact_scene_destroy(scene);
     }
 }

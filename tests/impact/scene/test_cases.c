@@ -267,8 +267,8 @@ static bool count_pulse(void *context, double t, double t_end)
     return ++count->calls <= count->allowed;
 }
 
-/* The progress function is called at each step and each stretch: steps + stretches + 1 times at most, and never more
- * than max_steps. */
+/* The progress function is called at each slot of the queue: steps, stretches, samples, and where a body leaves its
+ * box; and never more than max_steps. */
 static void calls_of_progress_are_bounded(void **state)
 {
     (void)state;
@@ -284,7 +284,8 @@ static void calls_of_progress_are_bounded(void **state)
         const impact_recorder recorder = {.context = &count, .progress = count_pulse};
         const impact_status status = impact_scene_run(scene, &recorder);
         const impact_usage u = impact_scene_usage(scene);
-        assert_true(count.calls <= u.integrator_steps + u.integrator_starts + u.ballistic_flights + 1);
+        enum { BOXES = 16 }; /* they grow by half each time that the lone ball leaves one */
+        assert_true(count.calls <= u.integrator_steps + u.integrator_starts + u.ballistic_flights + BOXES);
         assert_true(count.calls <= def.max_steps);
         if (status == IMPACT_EUNSETTLED)
             assert_non_null(strstr(impact_scene_message(scene), "max_steps"));

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A step of a pile as a segment. With s = (t - t1)/h from -1 to 0, every body's place and orientation is the quintic
+ * that has the values, rates and second rates of both ends, its velocity the place's rate, its angular momentum a
+ * straight line: the acceleration of a step is (v1 - v0)/h, its torque (L1 - L0)/h.
+ */
+#include "motion/motion_equations.h"
+#include "motion/motion_pile.h"
+
+#include <string.h>
+
+/* y, h y' and h^2 y'' at one end. */
+typedef struct jet {
+    double y, first, second;
+} jet;
+
+/* c_j of sum c_j s^j: Taylor's to s^2 at s = 0, and s^3 (alpha + beta s + gamma s^2) that meets the jet at s = -1. */
+static void hermite(jet from, jet to, double c[6])
+{
+    c[0] = to.y, c[1] = to.first, c[2] = 0.5 * to.second;
+    const double a = -(from.y - (c[0] - c[1] + c[2])), e1 = from.first - (c[1] - 2 * c[2]), e2 = from.second - 2 * c[2];
+    c[3] = 10 * a - 4 * e1 - 0.5 * e2;
+    c[4] = 15 * a - 7 * e1 - e2;
+    c[5] = 6 * a - 3 * e1 - 0.5 * e2;
+}
+
+/* One end of a body's step. */
+typedef struct body_end {
+    jet place[3], turn[4];
+} body_end;
+
+static jet jet_of(double y, double first, double second) { return (jet){y, first, second}; }
+
+static body_end end_of(const imp_body *body, const imp_state *state, qvec3 acceleration, qvec3 torque, double h)
+{
+    const qvec3 w = imp_omega(body, state);
+    const qvec3 alpha = imp_inverse_inertia(body, state->q, qvec3_sub(torque, qvec3_cross(w, state->momentum)));
+    const quat q = state->q, first = quat_scale(quat_mul((quat){0, w.x, w.y, w.z}, q), 0.5 * h);
+    const quat bend = quat_scale(quat_mul((quat){0, alpha.x, alpha.y, alpha.z}, q), 0.5 * h * h),
+               second = quat_add(bend, quat_scale(quat_mul((quat){0, w.x, w.y, w.z}, first), 0.5 * h));
+    const qvec3 x = state->x, v = qvec3_scale(state->v, h), a = qvec3_scale(acceleration, h * h);
+    return (body_end){{jet_of(x.x, v.x, a.x), jet_of(x.y, v.y, a.y), jet_of(x.z, v.z, a.z)},
+                      {jet_of(q.w, first.w, second.w), jet_of(q.x, first.x, second.x), jet_of(q.y, first.y, second.y),
+                       jet_of(q.z, first.z, second.z)}};
+}
+
+static void put(imp_dense *dense, int i, const double *c, int terms)
+{
+    for (int j = 0; j < dense->terms; j++) dense->c[j * dense->size + i] = j < terms ? c[j] : 0;
+}
+
+static void put_line(imp_dense *dense, int i, double from, double to) { put(dense, i, (double[]){to, to - from}, 2); }
+
+static void put_body(imp_dense *dense, int first, const imp_body *body, const imp_state *from, const imp_state *to)
+{
+    const double h = dense->h;
+    const qvec3 acceleration = qvec3_scale(qvec3_sub(to->v, from->v), 1 / h),
+                torque = qvec3_scale(qvec3_sub(to->momentum, from->momentum), 1 / h);
+    const body_end a = end_of(body, from, acceleration, torque, h), b = end_of(body, to, acceleration, torque, h);
+    double c[6];
+    for (int k = 0; k < 3; k++) {
+        hermite(a.place[k], b.place[k], c);
+        put(dense, first + k, c, 6);
+        const double rate[5] = {c[1] / h, 2 * c[2] / h, 3 * c[3] / h, 4 * c[4] / h, 5 * c[5] / h};
+        put(dense, first + Y_VELOCITY + k, rate, 5);
+    }
+    for (int k = 0; k < 4; k++) {
+        hermite(a.turn[k], b.turn[k], c);
+        put(dense, first + 3 + k, c, 6);
+    }
+    put_line(dense, first + Y_VELOCITY + 3, from->momentum.x, to->momentum.x);
+    put_line(dense, first + Y_VELOCITY + 4, from->momentum.y, to->momentum.y);
+    put_line(dense, first + Y_VELOCITY + 5, from->momentum.z, to->momentum.z);
+}
+
+static void put_works(imp_motion *motion, const imp_works *before)
+{
+    imp_dense *dense = &motion->dense;
+    const imp_works *after = &motion->works;
+    put_line(dense, Y_TIME, dense->t0, dense->t1);
+    put_line(dense, Y_FORCE_WORK, before->force, after->force);
+    put_line(dense, Y_DAMPING, before->damping, after->damping);
+    put_line(dense, Y_SLIDING, before->sliding, after->sliding);
+    if (motion->world->driven) put_line(dense, imp_motion_drive(motion), before->drive, after->drive);
+}
+
+static impact_status keep_pile_step(imp_motion *motion, double t0, const imp_works *before, const imp_state *from,
+                                    const imp_state *to)
+{
+    enum { TERMS = 6 };
+    imp_dense *dense = &motion->dense;
+    impact_status status = imp_motion_make_room(motion);
+    if (status == IMPACT_OK) status = imp_dense_reserve(dense, motion->world->arena, motion->size);
+    if (status != IMPACT_OK) return status;
+    const double t1 = motion->stride.t;
+    dense->t0 = t0, dense->t1 = dense->end = t1;
+    dense->h = t1 - t0;
+    dense->size = motion->size;
+    dense->terms = TERMS;
+    dense->clocked = false;
+    memset(dense->c, 0, sizeof *dense->c * TERMS * (size_t)dense->size);
+    put_works(motion, before);
+    for (int i = 0, first = Y_BODIES; i < motion->world->body_count; i++) {
+        if (motion->world->bodies[i].is_static) continue;
+        put_body(dense, first, &motion->world->bodies[i], &from[i], &to[i]);
+        first += Y_PER_BODY;
+    }
+    return IMPACT_OK;
+}
+
+impact_status imp_motion_next_by_steps(imp_motion *motion, imp_pile *pile, const imp_state *before, imp_state *states,
+                                       imp_pile_step_result *result)
+{
+    imp_world *world = motion->world;
+    imp_stride *s = &motion->stride;
+    const double t0 = s->t, most = s->t_end - t0;
+    const imp_works works = motion->works;
+    /* a step's forces are those of where and when it begins */
+    imp_field_enter(world, t0);
+    for (int custom = 0; custom < 2; custom++) imp_field_locate(world, t0, states, custom);
+    const impact_status status = imp_pile_step(pile, world, t0, most, states, result);
+    if (status != IMPACT_OK) return status;
+    s->t = result->taken >= most ? s->t_end : t0 + result->taken;
+    s->restart = s->t >= s->t_end;
+    motion->works.force += result->force_work;
+    motion->works.damping += result->damping;
+    motion->works.drive += result->drive_work;
+    return keep_pile_step(motion, t0, &works, before, states);
+}

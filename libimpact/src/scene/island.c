@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/island.h"
+#include "motion/motion_equations.h"
+#include "scene/scene_internal.h"
+#include "scene/stepped.h"
+#include "world/world_gap.h"
+
+#include <string.h>
+
+static impact_status reserve_bodies(imp_island *island, int bodies)
+{
+    imp_arena *arena = island->scene->world.arena;
+    int room[3] = {island->body_room, island->body_room, island->body_room};
+    imp_body *list = imp_arena_grow(arena, island->world.bodies, &room[0], bodies, sizeof *list);
+    if (list) island->world.bodies = list;
+    imp_state *states = imp_arena_grow(arena, island->states, &room[1], bodies, sizeof *states);
+    if (states) island->states = states;
+    imp_state *before = imp_arena_grow(arena, island->before, &room[2], bodies, sizeof *before);
+    if (before) island->before = before;
+    if (!list || !states || !before) return IMPACT_ENOMEM;
+    island->body_room = room[0];
+    return imp_motion_reserve(&island->motion, arena, bodies) ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
+static impact_status reserve_pairs(imp_island *island, int pairs)
+{
+    imp_arena *arena = island->scene->world.arena;
+    int room[2] = {island->pair_room, island->pair_room};
+    imp_pair *list = imp_arena_grow(arena, island->world.pairs, &room[0], pairs, sizeof *list);
+    if (list) island->world.pairs = list;
+    imp_mode *modes = imp_arena_grow(arena, island->modes, &room[1], pairs, sizeof *modes);
+    if (modes) island->modes = modes;
+    if (!list || !modes) return IMPACT_ENOMEM;
+    island->pair_room = room[0];
+    return IMPACT_OK;
+}
+
+impact_status imp_island_reserve(imp_island *island, int bodies, int pairs)
+{
+    const impact_status status = reserve_bodies(island, bodies);
+    return status == IMPACT_OK ? reserve_pairs(island, pairs) : status;
+}
+
+void imp_island_clear(imp_island *island)
+{
+    imp_world *world = &island->world;
+    const imp_world *whole = &island->scene->world;
+    world->arena = whole->arena;
+    world->body_count = world->pair_count = 0;
+    world->gravity = whole->gravity;
+    world->driven = false;
+    world->slip_speed = whole->slip_speed;
+    world->onset_speed = whole->onset_speed;
+    world->flat_height = whole->flat_height;
+    island->number = -1;
+    island->impact_loss = island->loss_before = island->outside = 0;
+    island->rests = island->rolls = island->stepped = island->moves = false;
+    island->patience = (imp_patience){0};
+    island->end = (imp_end){IMP_END_TIME, 0};
+    imp_motion_reset(&island->motion, world, island->scene->tolerance, island->scene->rest_speed);
+}
+
+static void free_fields(imp_world *world)
+{
+    for (int k = 0; k < world->field_count; k++) imp_arena_give(world->arena, world->fields[k].inside);
+    imp_arena_give(world->arena, world->fields);
+    world->fields = NULL;
+    world->field_count = 0;
+}
+
+int imp_island_add_body(imp_island *island, int body, const imp_state *state)
+{
+    imp_world *world = &island->world;
+    const int i = world->body_count++;
+    world->bodies[i] = island->scene->world.bodies[body];
+    world->driven = world->driven || world->bodies[i].driven;
+    island->states[i] = *state;
+    island->motion.resting[i] = false;
+    return i;
+}
+
+int imp_island_find(const imp_island *island, int body)
+{
+    int low = 0, high = island->world.body_count - 1;
+    while (low <= high) {
+        const int middle = (low + high) / 2, there = island->world.bodies[middle].index;
+        if (there == body) return middle;
+        if (there < body)
+            low = middle + 1;
+        else
+            high = middle - 1;
+    }
+    return -1;
+}
+
+/* ---- forces ---- */
+
+/* Whether the scene's force acts on one of the island's bodies; the island's index of the only one it acts on. */
+static bool acts_here(const imp_island *island, const imp_field *field, int *only)
+{
+    *only = field->only < 0 ? -1 : imp_island_find(island, field->only);
+    return field->only < 0 || *only >= 0;
+}
+
+/* The scene's slot of the island's. */
+static int slot_of(const imp_island *island, const imp_field *field, int slot)
+{
+    const imp_body *bodies = island->world.bodies;
+    if (field->def.kind != IMPACT_FORCE_ATTRACTION) return bodies[slot].index;
+    int j = 1, first = 0;
+    while (slot >= first + j) first += j++;
+    const int low = bodies[slot - first].index, high = bodies[j].index;
+    return low + high * (high - 1) / 2;
+}
+
+impact_status imp_island_take_forces(imp_island *island)
+{
+    const imp_world *whole = &island->scene->world;
+    imp_world *world = &island->world;
+    free_fields(world);
+    if (whole->field_count == 0) return IMPACT_OK;
+    world->fields = imp_arena_take(world->arena, (size_t)whole->field_count, sizeof *world->fields);
+    if (!world->fields) return IMPACT_ENOMEM;
+    for (int k = 0; k < whole->field_count; k++) {
+        int only;
+        if (!acts_here(island, &whole->fields[k], &only)) continue;
+        imp_field *field = &world->fields[world->field_count++];
+        *field = whole->fields[k];
+        field->only = only;
+        field->slots = imp_field_slots(&field->def, world->body_count);
+        field->number = k;
+        field->inside = imp_arena_take(world->arena, (size_t)field->slots + 1, sizeof *field->inside);
+        if (!field->inside) return IMPACT_ENOMEM;
+        for (int s = 0; s < field->slots; s++) field->inside[s] = whole->fields[k].inside[slot_of(island, field, s)];
+    }
+    imp_field_enter(world, island->t);
+    return IMPACT_OK;
+}
+
+void imp_island_give_forces(imp_island *island)
+{
+    for (int k = 0; k < island->world.field_count; k++) {
+        const imp_field *field = &island->world.fields[k];
+        imp_field *own = &island->scene->world.fields[field->number];
+        for (int s = 0; s < field->slots; s++) own->inside[slot_of(island, field, s)] = field->inside[s];
+    }
+}
+
+/* ---- its clock ---- */
+
+impact_status imp_island_look(imp_island *island, double t)
+{
+    imp_motion *motion = &island->motion;
+    const imp_tracks *tracks = &island->scene->tracks;
+    const imp_world *world = &island->world;
+    if (island->rests || island->rolls) {
+        for (int i = 0; i < world->body_count; i++)
+            motion->sampled[i] = imp_segment_at(&tracks->tracks[world->bodies[i].index].segment, &world->bodies[i], t);
+        return IMPACT_OK;
+    }
+    memcpy(motion->sampled, island->states, (size_t)world->body_count * sizeof *island->states); /* static ones */
+    if (!island->moves) return IMPACT_OK;
+    return imp_motion_look(motion, t, motion->sampled);
+}
+
+void imp_island_go_to(imp_island *island, double t)
+{
+    const imp_tracks *tracks = &island->scene->tracks;
+    const imp_world *world = &island->world;
+    if (island->rests || island->rolls) {
+        const double energy = imp_island_energy(island);
+        for (int i = 0; i < world->body_count; i++)
+            island->states[i] = imp_segment_at(&tracks->tracks[world->bodies[i].index].segment, &world->bodies[i], t);
+        if (island->rolls) island->motion.works.sliding += energy - imp_island_energy(island);
+    } else {
+        imp_motion_go_to(&island->motion, t, island->states);
+        if (island->stepped)
+            island->impact_loss = imp_island_stepped_loss(island, island->states, &island->motion.works);
+    }
+    island->t = t;
+}
+
+imp_works imp_island_works(const imp_island *island, double t)
+{
+    const bool constant = island->rests || island->rolls || !island->moves;
+    return constant ? island->motion.works : imp_motion_works(&island->motion, t);
+}
+
+double imp_island_loss(const imp_island *island, double t)
+{
+    if (!island->stepped || island->rests || !island->moves) return island->impact_loss;
+    const imp_works works = imp_island_works(island, t);
+    return imp_island_stepped_loss(island, island->motion.sampled, &works);
+}
+
+double imp_island_energy(const imp_island *island)
+{
+    return imp_world_kinetic_energy(&island->world, island->states) +
+           imp_field_potential(&island->world, island->states);
+}
+
+double imp_island_balance(const imp_island *island)
+{
+    const imp_works *works = &island->motion.works;
+    return imp_island_energy(island) + island->impact_loss + works->damping + works->sliding - works->force -
+           works->drive;
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * island: bodies tied by held contacts or by forces between them, and the static ones they touch, as a world of their
+ * own with its clock: what strikes and holds at one instant is settled in it (scene_strike.c, scene_hold.c), and from
+ * one instant to the next it moves as its bodies' segments say. What meets at an instant is gathered in one island;
+ * what is held in it afterwards stays together, and all else goes its own way (encounter.c). Internal.
+ */
+#ifndef IMP_ISLAND_H
+#define IMP_ISLAND_H
+
+#include "motion/motion.h"
+#include "motion/pile.h"
+#include "motion/segment.h"
+
+/* Steps of the integrator in which a pile has not got on, and since when, s. */
+typedef struct imp_patience {
+    double since;
+    long steps;
+} imp_patience;
+
+typedef struct imp_island {
+    struct impact_scene *scene;
+    struct imp_island *next; /* scratch: of a list */
+    imp_world world;         /* bodies by their index, their pairs that touch, the forces that act on them */
+    imp_motion motion;       /* of this world */
+    imp_state *states;       /* at t */
+    imp_state *before;       /* as the states were when the event at hand came */
+    imp_mode *modes;         /* as the pairs' modes were then */
+    int body_room, pair_room;
+    double t;
+    imp_end end;        /* what its segments end in */
+    double impact_loss; /* J, not given to the scene yet; */
+    double loss_before; /* as the receipt saw it last */
+    double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
+    double looked_at;   /* s: by the receipt */
+    imp_patience patience;
+    bool stepped;   /* it moves by steps (stepped.h): */
+    imp_pile *pile; /* absent until then */
+    long steps;
+    double outside;    /* J: of all other bodies, for the rows of events */
+    int number;        /* among the scene's; -1: of none */
+    bool rests, rolls; /* no integrator is at work: its bodies' segments say all */
+    bool moves;        /* it has segments; false where its next step failed */
+    bool leaving;      /* scratch: its bodies go over to another */
+} imp_island;
+
+/* Room for so many bodies, pairs and the scene's forces; the rest as it was. */
+impact_status imp_island_reserve(imp_island *island, int bodies, int pairs);
+/* No body, no pair. */
+void imp_island_clear(imp_island *island);
+
+/* Adds the scene's body, by its state; its index in the island. To be added in the order of their indices. */
+int imp_island_add_body(imp_island *island, int body, const imp_state *state);
+/* The island's index of the scene's body, or -1. */
+int imp_island_find(const imp_island *island, int body);
+/* The forces that act on its bodies, with the scene's knowledge of who is within their edges; and back. */
+impact_status imp_island_take_forces(imp_island *island);
+void imp_island_give_forces(imp_island *island);
+
+/* All its bodies' states at t, in a segment that covers it, held contacts put back exactly: in motion.sampled. */
+impact_status imp_island_look(imp_island *island, double t);
+/* Its own clock to t: states and works. */
+void imp_island_go_to(imp_island *island, double t);
+
+/* Its works since they were given to the scene last, as they are at t, J; what impacts took by t, when its bodies'
+ * states then are in motion.sampled. */
+imp_works imp_island_works(const imp_island *island, double t);
+double imp_island_loss(const imp_island *island, double t);
+
+/* Kinetic + potential of its bodies at its clock, J; and with all losses, less all that was given: it stays. */
+double imp_island_energy(const imp_island *island);
+double imp_island_balance(const imp_island *island);
+
+#endif

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Through the queue, from slot to slot.
+ */
+#include "scene/scene_keys.h"
+#include "world/world_gap.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- all bodies at one time ---- */
+
+impact_status imp_scene_look(impact_scene *scene, double t)
+{
+    for (int i = 0; i < scene->world.body_count; i++) {
+        const imp_track *track = &scene->tracks.tracks[i];
+        if (track->island < 0) scene->states[i] = imp_segment_at(&track->segment, &scene->world.bodies[i], t);
+    }
+    for (int k = 0; k < scene->island_count; k++) {
+        imp_island *island = scene->islands[k];
+        if (!island) continue;
+        const impact_status status = imp_island_look(island, t);
+        if (status != IMPACT_OK) return status;
+        for (int i = 0; i < island->world.body_count; i++)
+            scene->states[island->world.bodies[i].index] = island->motion.sampled[i];
+    }
+    return IMPACT_OK;
+}
+
+double imp_scene_energy_beside(impact_scene *scene, const imp_island *except, double t)
+{
+    double energy = imp_account_sum(&scene->account);
+    for (int k = 0; k < scene->account.live_count; k++) {
+        const int i = scene->account.live[k];
+        const imp_state state = imp_segment_at(&scene->tracks.tracks[i].segment, &scene->world.bodies[i], t);
+        energy += imp_body_energy(&scene->world.bodies[i], &state, scene->world.gravity);
+    }
+    for (int k = 0; k < scene->island_count; k++) {
+        imp_island *island = scene->islands[k];
+        if (!island || island == except || island->rests || imp_island_look(island, t) != IMPACT_OK) continue;
+        energy += imp_world_kinetic_energy(&island->world, island->motion.sampled) +
+                  imp_field_potential(&island->world, island->motion.sampled);
+    }
+    return energy;
+}
+
+static void add_works(imp_works *sum, imp_works part)
+{
+    sum->force += part.force;
+    sum->damping += part.damping;
+    sum->sliding += part.sliding;
+    sum->drive += part.drive;
+}
+
+imp_works imp_scene_works(const impact_scene *scene)
+{
+    imp_works works = scene->works;
+    for (int k = 0; k < scene->account.live_count; k++)
+        works.damping += imp_scene_damped(scene, scene->account.live[k], scene->t);
+    for (int k = 0; k < scene->island_count; k++)
+        if (scene->islands[k]) add_works(&works, imp_island_works(scene->islands[k], scene->t));
+    return works;
+}
+
+double imp_scene_damped(const impact_scene *scene, int body, double t)
+{
+    const imp_segment *s = &scene->tracks.tracks[body].segment;
+    const imp_body *b = &scene->world.bodies[body];
+    const imp_state now = imp_segment_at(s, b, t);
+    return imp_body_energy(b, &s->start, scene->world.gravity) - imp_body_energy(b, &now, scene->world.gravity);
+}
+
+/* ---- samples ---- */
+
+static double sample_time(const impact_scene *scene)
+{
+    const bool wanted = scene->recorder && scene->recorder->sample && scene->output_rate > 0;
+    return wanted ? (double)scene->next_sample / scene->output_rate : INFINITY;
+}
+
+bool imp_scene_good_row(impact_scene *scene, const impact_sample *s)
+{
+    const double sum = s->t + s->position.x + s->position.y + s->position.z + s->orientation.w + s->orientation.x +
+                       s->orientation.y + s->orientation.z + s->velocity.x + s->velocity.y + s->velocity.z +
+                       s->omega.x + s->omega.y + s->omega.z;
+    if (isfinite(sum)) return true;
+    snprintf(scene->message, sizeof scene->message, "the motion of '%s' has left double precision at t = %.17g",
+             s->name, s->t);
+    return false;
+}
+
+static impact_status emit(impact_scene *scene, double t)
+{
+    const impact_recorder *recorder = scene->recorder;
+    const impact_status status = imp_scene_look(scene, t);
+    scene->next_sample++;
+    imp_queue_set(&scene->queue, 0, sample_time(scene));
+    for (int i = 0; status == IMPACT_OK && i < scene->world.body_count; i++) {
+        if (scene->world.bodies[i].is_static) continue;
+        const impact_sample sample = imp_scene_sample(&scene->world.bodies[i], t, &scene->states[i]);
+        if (!imp_scene_good_row(scene, &sample)) return IMPACT_EDOMAIN;
+        scene->world.usage.samples++;
+        if (!recorder->sample(recorder->context, &sample)) return IMPACT_ESINK;
+    }
+    return status;
+}
+
+/* ---- slots ---- */
+
+static impact_status body_due(impact_scene *scene, int body, double t)
+{
+    int touching;
+    const impact_status status = imp_tracks_due(&scene->tracks, body, t, &touching);
+    return status == IMPACT_OK && touching >= 0 ? imp_scene_meet(scene, touching, t) : status;
+}
+
+/* A step that ends where the run does is followed by no other yet. */
+static impact_status island_due(impact_scene *scene, int slot, double t, double t_end)
+{
+    imp_island *island = scene->islands[slot - imp_scene_island_slot(scene, 0)];
+    if (t < t_end || island->end.kind != IMP_END_TIME) return imp_scene_continue(scene, island);
+    imp_queue_set(&scene->queue, slot, nextafter(t, INFINITY));
+    return IMPACT_OK;
+}
+
+static impact_status due(impact_scene *scene, int slot, double t, double t_end)
+{
+    if (slot == 0) return emit(scene, t);
+    if (slot <= scene->world.body_count) return body_due(scene, slot - 1, t);
+    return island_due(scene, slot, t, t_end);
+}
+
+bool imp_scene_told(impact_scene *scene)
+{
+    const impact_recorder *recorder = scene->recorder;
+    if (++scene->steps > scene->max_steps) {
+        scene->stop = IMPACT_EUNSETTLED;
+        snprintf(scene->message, sizeof scene->message, "%ld steps by t = %.17g: the limit, max_steps",
+                 scene->max_steps, scene->t);
+        return false;
+    }
+    if (!recorder || !recorder->progress || recorder->progress(recorder->context, scene->t, scene->duration))
+        return true;
+    scene->stop = IMPACT_STOPPED;
+    return false;
+}
+
+/* Samples begin with the first that is not before now. */
+static void begin_samples(impact_scene *scene)
+{
+    const double first = ceil(scene->t * scene->output_rate);
+    if ((double)scene->next_sample < first) scene->next_sample = (long)first;
+    imp_queue_set(&scene->queue, 0, sample_time(scene));
+}
+
+impact_status imp_scene_go_on(impact_scene *scene, double t_end)
+{
+    impact_status status = IMPACT_OK;
+    scene->refused = false;
+    if (!scene->begun) {
+        imp_field_locate(&scene->world, scene->t, scene->states, true);
+        status = imp_scene_first_encounters(scene);
+    }
+    scene->begun = true;
+    begin_samples(scene);
+    if (status == IMPACT_OK && scene->refused) status = IMPACT_ESINK;
+    while (status == IMPACT_OK) {
+        const double t = imp_queue_time(&scene->queue);
+        if (scene->moving == 0 && scene->movable > 0 && !scene->unsteady) return IMPACT_AT_REST;
+        if (t > t_end) break;
+        if (scene->event_count >= scene->max_events) {
+            snprintf(scene->message, sizeof scene->message, "%ld events by t = %.17g: the limit", scene->event_count,
+                     scene->t);
+            return IMPACT_EVENT_LIMIT;
+        }
+        if (!imp_scene_told(scene)) return scene->stop;
+        scene->t = fmax(scene->t, t);
+        status = due(scene, imp_queue_first(&scene->queue), t, t_end);
+        if (status == IMPACT_OK && (scene->refused || !imp_scene_account_now_and_then(scene))) status = IMPACT_ESINK;
+    }
+    if (status == IMPACT_OK) scene->t = t_end;
+    return status;
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/stepped.h"
+#include "base/tolerances.h"
+#include "motion/motion_pile.h"
+#include "scene/scene_internal.h"
+#include "world/world_gap.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- when ---- */
+
+/* Whether bodies that move are held on each other with friction, and by three contacts in all: fewer are no pile. */
+static bool is_pile(const imp_world *world)
+{
+    int held = 0;
+    bool rough = false;
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *pair = &world->pairs[p];
+        if (!imp_is_held(pair)) continue;
+        held++;
+        rough = rough || (!world->bodies[pair->body2].is_static && pair->friction > 0);
+    }
+    return rough && held >= 3;
+}
+
+bool imp_island_loses_patience(imp_island *island)
+{
+    imp_patience *patience = &island->patience;
+    if (island->scene->piles == IMPACT_PILES_EXACT || !is_pile(&island->world)) return false;
+    if (!(fabs(island->t - patience->since) <= imp_pile_natural_time(&island->world, island->states)))
+        *patience = (imp_patience){.since = island->t};
+    return ++patience->steps >= IMP_PILE_PATIENCE;
+}
+
+impact_status imp_island_begin_steps(imp_island *island)
+{
+    imp_arena *arena = island->scene->world.arena;
+    if (!island->pile) {
+        island->pile = imp_arena_take(arena, 1, sizeof *island->pile);
+        if (!island->pile) return IMPACT_ENOMEM;
+        imp_pile_open(island->pile, arena);
+    }
+    imp_pile_begin(island->pile);
+    island->steps = 0;
+    island->patience = (imp_patience){.since = island->t};
+    for (int i = 0; i < island->world.body_count; i++) island->motion.resting[i] = false;
+    for (int p = 0; p < island->world.pair_count; p++) {
+        imp_pair *pair = &island->world.pairs[p];
+        *pair = (imp_pair){
+            .body1 = pair->body1, .body2 = pair->body2, .friction = pair->friction, .restitution = pair->restitution};
+    }
+    return IMPACT_OK;
+}
+
+/* ---- steps ---- */
+
+double imp_island_stepped_loss(const imp_island *island, const imp_state *states, const imp_works *works)
+{
+    const double energy =
+        imp_world_kinetic_energy(&island->world, states) + imp_field_potential(&island->world, states);
+    return island->balance + works->force + works->drive - works->damping - works->sliding - energy;
+}
+
+/* Which pairs touch, of those that the pile has held since it was looked at last. */
+static void mark_met(imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++)
+        if (imp_pile_holds(island->pile, p)) island->world.pairs[p].met = true;
+}
+
+impact_status imp_island_step(imp_island *island)
+{
+    impact_scene *scene = island->scene;
+    imp_motion *motion = &island->motion;
+    imp_pile_step_result result;
+    island->balance = imp_island_balance(island);
+    const impact_status status =
+        imp_motion_next_by_steps(motion, island->pile, island->before, island->states, &result);
+    if (status == IMPACT_ENOMEM) return status;
+    if (status != IMPACT_OK) {
+        snprintf(scene->message, sizeof scene->message, "by steps from t = %.17g: %s", motion->stride.t,
+                 island->pile->message[0] ? island->pile->message : impact_status_string(status));
+        return status;
+    }
+    island->impact_loss = imp_island_stepped_loss(island, island->states, &motion->works);
+    island->end = (imp_end){IMP_END_TIME, 0};
+    scene->pile_error += result.error;
+    scene->world.usage.pile_steps++;
+    mark_met(island);
+    return IMPACT_OK;
+}
+
+bool imp_island_can_stand(imp_island *island)
+{
+    const double speed = island->scene->rest_speed;
+    if (!imp_pile_rests(island->pile, &island->world, island->t, island->states, speed)) return false;
+    imp_island_forget_met(island);
+    mark_met(island);
+    return true;
+}
+
+imp_stepped imp_island_after_step(imp_island *island)
+{
+    enum { LOOK = 64 };
+    if (imp_island_can_stand(island)) return IMP_STEPPED_REST;
+    return ++island->steps % LOOK == 0 ? IMP_STEPPED_LOOK : IMP_STEPPED_ON;
+}
+
+void imp_island_forget_met(imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++) island->world.pairs[p].met = false;
+}
