@@ -37,6 +37,25 @@
 /* Jacobi's sweeps of a 3 by 3 matrix: it converges quadratically, in four or five. */
 #define IMP_HULL_SWEEPS 12
 
+/* ---- gap of polytopes, docs/faces.md ---- */
+
+/* Of the reach: what distance and dual bound may differ by, 18 u; the first answers of nearly parallel pairs that miss
+ * it (1.4 %) are found again by all features. */
+#define IMP_CORE_ACCEPTED 4e-15
+/* Of the reach: a distance under this may be an overlap's rounding: then the facets are asked as well. */
+#define IMP_CORE_TOUCHING 1e-13
+/* Of the reach and the distance: the next tip is no nearer than this: rounding of its products. */
+#define IMP_CORE_CLOSED (4 * IMP_ROUNDOFF)
+/* Sine: ends of an arc on another's circle to this, rounding of unit normals and edges; a crossing that is then missed
+ * costs as much of the size. */
+#define IMP_CORE_ARC (64 * IMP_ROUNDOFF)
+/* Simplices on the way to the nearest point; each is of new vertices and nearer, of a box met after 5 in the mean. */
+#define IMP_CORE_STEPS 100
+/* Of the reach: heights of a face's corners along its own normal, and the widest that a normal of nearly parallel edges
+ * leaves. */
+#define IMP_CORE_LEVEL (4 * IMP_ROUNDOFF)
+#define IMP_CORE_LEVEL_MOST 1e-12
+
 /* ---- speeds ---- */
 
 /* Slip slower than this part of the rest speed, m/s, is none: what ends as rest has stuck before, by a margin that the

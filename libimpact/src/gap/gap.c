@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/gap.h>
 #include <quat/rotation.h>
+#include "gap/gap_core.h"
 #include "gap/gap_solver.h"
+#include "shape/solid.h"
 
 static impact_contact no_contact(void)
 {
@@ -177,8 +179,9 @@ impact_status imp_gap_check(const impact_solid *body1, quat *q1, const impact_so
     if (status == IMPACT_OK) status = check(body2, q2);
     if (status != IMPACT_OK) return status;
     const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
-    const bool core = body1->shape.kind >= IMPACT_BOX || body2->shape.kind >= IMPACT_BOX;
-    return (plane1 && plane2) || (core && !plane1 && !plane2) ? IMPACT_EARGUMENT : IMPACT_OK;
+    const bool core = imp_has_core(&body1->shape) || imp_has_core(&body2->shape);
+    const bool none = core && !plane1 && !plane2 && !imp_core_takes(&body1->shape, &body2->shape);
+    return (plane1 && plane2) || none ? IMPACT_EARGUMENT : IMPACT_OK;
 }
 
 static impact_status solve_pair(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
@@ -200,6 +203,8 @@ static impact_status solve_pair(const impact_solid *body1, const impact_solid *b
         *contact = swapped(*contact);
         return IMPACT_OK;
     }
+    if (imp_core_takes(&body1->shape, &body2->shape))
+        return imp_core_contact(body1, q1, body2, q2, imp_gap_scale(body1, body2), cache, contact);
     return smooth_pair(body1, q1, body2, q2, cache, glance, contact);
 }
 

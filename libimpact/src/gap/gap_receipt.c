@@ -8,6 +8,7 @@
 #include <quat/rotation.h>
 #include <float.h>
 #include "gap/gap_solver.h"
+#include "shape/solid.h"
 
 /* |x/a|^p */
 static double mass_of(double ratio, double p) { return p == 2 ? ratio * ratio : p == 1 ? ratio : pow(ratio, p); }
@@ -42,6 +43,7 @@ double imp_gap_outside(const imp_form *form, const double x[3])
     double body[3];
     for (int i = 0; i < 3; i++)
         body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
+    if (form->kind != IMP_FORM_QUADRIC) return imp_core_distance(form, body) - form->rounding;
     return form->nested ? nested_excess(form, body) : plain_excess(form, body);
 }
 

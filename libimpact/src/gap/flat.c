@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT */
+#include "gap/flat.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* > 0 where p is left of the line from a to b: twice the area. */
+static double turn_at(const double a[2], const double b[2], const double p[2])
+{
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+}
+
+static double beside(const double a[2], const double b[2], const double p[2])
+{
+    return turn_at(a, b, p) / hypot(b[0] - a[0], b[1] - a[1]);
+}
+
+typedef struct numbered {
+    double p[2];
+    short from;
+} numbered;
+
+static int by_place(const void *one, const void *other)
+{
+    const numbered *a = one, *b = other;
+    const int x = (a->p[0] > b->p[0]) - (a->p[0] < b->p[0]), y = (a->p[1] > b->p[1]) - (a->p[1] < b->p[1]);
+    return x ? x : y ? y : a->from - b->from;
+}
+
+/* One chain of Andrew's algorithm onto the corners from `first` on. */
+static int chain(const numbered *at, int count, bool back, double slack, int first, imp_flat *flat)
+{
+    int size = first;
+    for (int i = 0; i < count; i++) {
+        const numbered *next = &at[back ? count - 1 - i : i];
+        while (size >= first + 2 && !(beside(flat->p[size - 2], flat->p[size - 1], next->p) > slack)) size--;
+        if (size > first && hypot(next->p[0] - flat->p[size - 1][0], next->p[1] - flat->p[size - 1][1]) <= slack)
+            continue;
+        memcpy(flat->p[size], next->p, sizeof next->p);
+        flat->from[size++] = next->from;
+    }
+    return size;
+}
+
+void imp_flat_hull(imp_flat *flat, double slack)
+{
+    numbered at[IMP_FLAT_CORNERS];
+    const int count = flat->count;
+    for (int i = 0; i < count; i++) {
+        memcpy(at[i].p, flat->p[i], sizeof at[i].p);
+        at[i].from = flat->from[i];
+    }
+    qsort(at, (size_t)count, sizeof *at, by_place);
+    imp_flat made = {.count = 0};
+    const int there = chain(at, count, false, slack, 0, &made);
+    if (there < 2) {
+        made.count = there;
+    } else { /* the ends of both chains are one */
+        const int back = chain(at, count, true, slack, there - 1, &made);
+        made.count = back - 1;
+    }
+    *flat = made;
+}
+
+/* What is left of the line, or by no more than slack right of it (Sutherland & Hodgman 1974); `from` of a corner that
+ * comes about is -1. */
+static void cut(imp_flat *flat, const double a[2], const double b[2], double slack)
+{
+    imp_flat part = {.count = 0};
+    for (int i = 0; i < flat->count; i++) {
+        const int next = (i + 1) % flat->count;
+        const double *p = flat->p[i], *q = flat->p[next], at_p = beside(a, b, p) + slack,
+                     at_q = beside(a, b, q) + slack;
+        if (at_p >= 0 && part.count < IMP_FLAT_CORNERS) {
+            memcpy(part.p[part.count], p, sizeof part.p[0]);
+            part.from[part.count++] = flat->from[i];
+        }
+        if ((at_p < 0) != (at_q < 0) && part.count < IMP_FLAT_CORNERS && !(flat->count == 2 && i == 1)) {
+            const double share = at_p / (at_p - at_q);
+            for (int j = 0; j < 2; j++) part.p[part.count][j] = p[j] + (q[j] - p[j]) * share;
+            part.from[part.count++] = -1;
+        }
+    }
+    *flat = part;
+}
+
+/* Between both sides of a segment's line, and its ends. */
+static void cut_to_segment(imp_flat *one, const double a[2], const double b[2], double slack)
+{
+    const double across[2] = {a[1] - b[1], b[0] - a[0]};
+    const double a_up[2] = {a[0] + across[0], a[1] + across[1]}, b_up[2] = {b[0] + across[0], b[1] + across[1]};
+    cut(one, a, b, slack);
+    cut(one, b, a, slack);
+    cut(one, a_up, a, slack);
+    cut(one, b, b_up, slack);
+}
+
+static bool holds(const imp_flat *flat, const double p[2], double slack)
+{
+    if (flat->count == 1) return hypot(p[0] - flat->p[0][0], p[1] - flat->p[0][1]) <= slack;
+    imp_flat point = {.count = 1, .from = {0}};
+    memcpy(point.p[0], p, sizeof point.p[0]);
+    if (flat->count == 2)
+        cut_to_segment(&point, flat->p[0], flat->p[1], slack);
+    else
+        for (int i = 0; i < flat->count; i++) cut(&point, flat->p[i], flat->p[(i + 1) % flat->count], slack);
+    return point.count > 0;
+}
+
+/* New corners that are the other's own get its number. */
+static void name_corners(imp_flat *one, const imp_flat *other, double slack, int offset)
+{
+    for (int i = 0; i < one->count; i++)
+        for (int j = 0; one->from[i] < 0 && j < other->count; j++)
+            if (hypot(one->p[i][0] - other->p[j][0], one->p[i][1] - other->p[j][1]) <= slack)
+                one->from[i] = (short)(other->from[j] + offset);
+}
+
+void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offset)
+{
+    if (other->count == 1 || (other->count == 2 && one->count > 2)) { /* what is smaller is clipped */
+        imp_flat part = *other;
+        if (other->count == 1 && !holds(one, other->p[0], slack)) part.count = 0;
+        if (other->count == 2)
+            for (int i = 0; i < one->count; i++) cut(&part, one->p[i], one->p[(i + 1) % one->count], slack);
+        for (int i = 0; i < part.count; i++)
+            if (part.from[i] >= 0) part.from[i] = (short)(part.from[i] + offset);
+        *one = part;
+        return;
+    }
+    if (other->count == 2)
+        cut_to_segment(one, other->p[0], other->p[1], slack);
+    else
+        for (int i = 0; i < other->count && one->count > 0; i++)
+            cut(one, other->p[i], other->p[(i + 1) % other->count], slack);
+    name_corners(one, other, 2 * slack, offset);
+}
+
+double imp_flat_area(const imp_flat *flat)
+{
+    double sum = 0;
+    for (int i = 1; i + 1 < flat->count; i++) sum += turn_at(flat->p[0], flat->p[i], flat->p[i + 1]);
+    return sum;
+}
+
+void imp_flat_thin(imp_flat *flat, int most)
+{
+    while (flat->count > most) {
+        int least = 0;
+        double cost = INFINITY;
+        for (int i = 0; i < flat->count; i++) {
+            const double *p = flat->p[(i + flat->count - 1) % flat->count], *q = flat->p[(i + 1) % flat->count];
+            const double area = turn_at(p, flat->p[i], q);
+            if (area < cost) cost = area, least = i;
+        }
+        flat->count--;
+        for (int i = least; i < flat->count; i++) {
+            memcpy(flat->p[i], flat->p[i + 1], sizeof flat->p[i]);
+            flat->from[i] = flat->from[i + 1];
+        }
+    }
+}

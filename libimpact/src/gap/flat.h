@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * flat (internal): points, segments and convex polygons in a plane, counter-clockwise.
+ */
+#ifndef IMP_FLAT_H
+#define IMP_FLAT_H
+
+#include <impact/hull.h>
+
+enum { IMP_FLAT_CORNERS = 2 * IMPACT_HULL_POINTS };
+
+typedef struct imp_flat {
+    int count;
+    double p[IMP_FLAT_CORNERS][2];
+    short from[IMP_FLAT_CORNERS]; /* what a corner is: the caller's number; -1 where two borders cross */
+} imp_flat;
+
+/* The convex hull of the corners, in place, those within slack of a side left out. */
+void imp_flat_hull(imp_flat *flat, double slack);
+
+/* What of one lies in the other (a point, segment or polygon), or by no more than slack outside. Corners of the other
+ * that lie in it get the number from + offset. */
+void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offset);
+
+/* Signed area times 2; 0 of a segment. */
+double imp_flat_area(const imp_flat *flat);
+
+/* Leaves out the corners that cost least area until so many are left. */
+void imp_flat_thin(imp_flat *flat, int most);
+
+#endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The facets of c + B - A. Boxes: 15 axes (Gottschalk 1996), each cross with its own length, so that nothing cancels
+ * however parallel the edges are: only a cross that is exactly 0 is left out. Others: the pairs of edges whose arcs on
+ * the sphere of normals cross (Gregorius 2013).
+ */
+#include "base/tolerances.h"
+#include "gap/gap_chart.h"
+#include "gap/gap_core.h"
+#include <string.h>
+
+typedef struct best_axis {
+    double g, n[3];
+} best_axis;
+
+static void offer(best_axis *best, double g, double sign, double x, double y, double z)
+{
+    if (!(g > best->g)) return;
+    best->g = g;
+    best->n[0] = sign * x, best->n[1] = sign * y, best->n[2] = sign * z;
+}
+
+static void cross_axes(const imp_core_pair *pair, int i, best_axis *best)
+{
+    const double *a = pair->core[0].axis, *b = pair->core[1].axis;
+    const double(*R)[3] = pair->R;
+    const int j = (i + 1) % 3, l = (i + 2) % 3;
+    for (int k = 0; k < 3; k++) { /* e_i x R_k */
+        const double y = -R[l][k], z = R[j][k], length = sqrt(y * y + z * z);
+        if (!(length > 0)) continue;
+        const int p = (k + 1) % 3, q = (k + 2) % 3;
+        const double at = y * pair->c[j] + z * pair->c[l];
+        const double h = a[j] * fabs(y) + a[l] * fabs(z) + b[p] * fabs(y * R[j][p] + z * R[l][p]) +
+                         b[q] * fabs(y * R[j][q] + z * R[l][q]);
+        double n[3] = {0, 0, 0};
+        n[j] = y / length, n[l] = z / length;
+        offer(best, (fabs(at) - h) / length, at < 0 ? -1 : 1, n[0], n[1], n[2]);
+    }
+}
+
+double imp_core_box_axes(const imp_core_pair *pair, double n[3])
+{
+    const double *a = pair->core[0].axis, *b = pair->core[1].axis, *c = pair->c;
+    const double(*R)[3] = pair->R;
+    best_axis best = {.g = -INFINITY};
+    for (int i = 0; i < 3; i++) {
+        const double h = a[i] + b[0] * fabs(R[i][0]) + b[1] * fabs(R[i][1]) + b[2] * fabs(R[i][2]);
+        offer(&best, fabs(c[i]) - h, c[i] < 0 ? -1 : 1, i == 0, i == 1, i == 2);
+    }
+    for (int k = 0; k < 3; k++) {
+        const double at = c[0] * R[0][k] + c[1] * R[1][k] + c[2] * R[2][k];
+        const double h = b[k] + a[0] * fabs(R[0][k]) + a[1] * fabs(R[1][k]) + a[2] * fabs(R[2][k]);
+        offer(&best, fabs(at) - h, at < 0 ? -1 : 1, R[0][k], R[1][k], R[2][k]);
+    }
+    for (int i = 0; i < 3; i++) cross_axes(pair, i, &best);
+    memcpy(n, best.n, sizeof best.n);
+    return best.g;
+}
+
+static void try_axis(const imp_core_pair *pair, const double n[3], double sign, best_axis *best)
+{
+    const double length = imp_norm(n);
+    if (!(length > 0)) return;
+    const double m[3] = {sign * n[0] / length, sign * n[1] / length, sign * n[2] / length};
+    imp_core_tip tip;
+    offer(best, imp_core_height_between(pair, m, &tip), 1, m[0], m[1], m[2]);
+}
+
+/* What the crossing of arcs needs of an edge: its direction and the normals beside it, of B reversed. */
+typedef struct arc {
+    double e[3], n[2][3];
+    bool whole; /* a segment's: the circle */
+} arc;
+
+static void arcs_of(const imp_core_pair *pair, int body, arc *arcs)
+{
+    const impact_hull *hull = pair->core[body].hull;
+    double normal[2 * IMPACT_HULL_POINTS][3];
+    for (int f = 0; f < hull->face_count; f++) {
+        imp_core_face(pair, body, f, normal[f]);
+        for (int k = 0; body == 1 && k < 3; k++) normal[f][k] = -normal[f][k];
+    }
+    for (int i = 0; i < hull->edge_count; i++) {
+        imp_core_edge(pair, body, i, arcs[i].e);
+        const double length = imp_norm(arcs[i].e);
+        for (int k = 0; k < 3; k++) arcs[i].e[k] /= length;
+        arcs[i].whole = hull->edge[i].f[0] < 0;
+        for (int side = 0; side < 2 && !arcs[i].whole; side++)
+            memcpy(arcs[i].n[side], normal[hull->edge[i].f[side]], sizeof normal[0]);
+    }
+}
+
+/* Whether the ends of an arc are on both sides of the other's circle, or by rounding on it. */
+static bool apart(double first, double second)
+{
+    return first * second < 0 || fabs(first) < IMP_CORE_ARC || fabs(second) < IMP_CORE_ARC;
+}
+
+/* Whether they may cross: each has its ends on both sides of the other's circle, and on the same half of the sphere. */
+static bool arcs_cross(const arc *a, const arc *b)
+{
+    double d[4] = {0, 0, 0, 0};
+    if (!b->whole) {
+        d[0] = imp_dot(b->n[0], a->e), d[1] = imp_dot(b->n[1], a->e);
+        if (!apart(d[0], d[1])) return false;
+    }
+    if (!a->whole) {
+        d[2] = imp_dot(a->n[0], b->e), d[3] = imp_dot(a->n[1], b->e);
+        if (!apart(d[2], d[3])) return false;
+    }
+    if (a->whole || b->whole) return true;
+    const double sum[3] = {a->n[0][0] + a->n[1][0], a->n[0][1] + a->n[1][1], a->n[0][2] + a->n[1][2]},
+                 other[3] = {b->n[0][0] + b->n[1][0], b->n[0][1] + b->n[1][1], b->n[0][2] + b->n[1][2]};
+    double cross[3];
+    imp_core_cross(a->e, b->e, cross);
+    return imp_dot(cross, sum) * imp_dot(cross, other) > -IMP_CORE_ARC;
+}
+
+static void edge_axes(const imp_core_pair *pair, best_axis *best)
+{
+    enum { EDGES = 3 * IMPACT_HULL_POINTS };
+    arc arcs[2][EDGES];
+    arcs_of(pair, 0, arcs[0]);
+    arcs_of(pair, 1, arcs[1]);
+    for (int i = 0; i < pair->core[0].hull->edge_count; i++)
+        for (int j = 0; j < pair->core[1].hull->edge_count; j++) {
+            const arc *a = &arcs[0][i], *b = &arcs[1][j];
+            double n[3];
+            if (!arcs_cross(a, b)) continue;
+            imp_core_cross(a->e, b->e, n);
+            if (a->whole || b->whole) {
+                try_axis(pair, n, 1, best);
+                try_axis(pair, n, -1, best);
+            } else {
+                const double along = imp_dot(n, a->n[0]) + imp_dot(n, a->n[1]);
+                try_axis(pair, n, along < 0 ? -1 : 1, best);
+            }
+        }
+}
+
+double imp_core_axes_of_all(const imp_core_pair *pair, double n[3])
+{
+    best_axis best = {.g = -INFINITY};
+    for (int body = 0; body < 2; body++)
+        for (int f = 0; f < pair->core[body].hull->face_count; f++) {
+            imp_core_face(pair, body, f, n);
+            try_axis(pair, n, body ? -1 : 1, &best);
+        }
+    edge_axes(pair, &best);
+    memcpy(n, best.n, sizeof best.n);
+    return best.g;
+}
