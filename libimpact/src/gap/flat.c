@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "gap/flat.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* > 0 where p is left of the line from a to b: twice the area. */
@@ -15,16 +14,39 @@ static double beside(const double a[2], const double b[2], const double p[2])
     return turn_at(a, b, p) / hypot(b[0] - a[0], b[1] - a[1]);
 }
 
+static void copy(imp_flat *to, const imp_flat *from)
+{
+    to->count = from->count;
+    memcpy(to->p, from->p, (size_t)from->count * sizeof from->p[0]);
+    memcpy(to->from, from->from, (size_t)from->count * sizeof from->from[0]);
+}
+
+static void put_corner(imp_flat *flat, double x, double y, short from)
+{
+    if (flat->count == IMP_FLAT_CORNERS) return;
+    flat->p[flat->count][0] = x, flat->p[flat->count][1] = y;
+    flat->from[flat->count++] = from;
+}
+
 typedef struct numbered {
     double p[2];
     short from;
 } numbered;
 
-static int by_place(const void *one, const void *other)
+static bool before(const numbered *a, const numbered *b)
 {
-    const numbered *a = one, *b = other;
-    const int x = (a->p[0] > b->p[0]) - (a->p[0] < b->p[0]), y = (a->p[1] > b->p[1]) - (a->p[1] < b->p[1]);
-    return x ? x : y ? y : a->from - b->from;
+    return a->p[0] < b->p[0] || (a->p[0] == b->p[0] && a->p[1] < b->p[1]);
+}
+
+/* By x, then y: few, and mostly in order. */
+static void sort(numbered *at, int count)
+{
+    for (int i = 1; i < count; i++) {
+        const numbered moving = at[i];
+        int j = i;
+        for (; j > 0 && before(&moving, &at[j - 1]); j--) at[j] = at[j - 1];
+        at[j] = moving;
+    }
 }
 
 /* One chain of Andrew's algorithm onto the corners from `first` on. */
@@ -50,8 +72,8 @@ void imp_flat_hull(imp_flat *flat, double slack)
         memcpy(at[i].p, flat->p[i], sizeof at[i].p);
         at[i].from = flat->from[i];
     }
-    qsort(at, (size_t)count, sizeof *at, by_place);
-    imp_flat made = {.count = 0};
+    sort(at, count);
+    imp_flat made;
     const int there = chain(at, count, false, slack, 0, &made);
     if (there < 2) {
         made.count = there;
@@ -59,29 +81,25 @@ void imp_flat_hull(imp_flat *flat, double slack)
         const int back = chain(at, count, true, slack, there - 1, &made);
         made.count = back - 1;
     }
-    *flat = made;
+    copy(flat, &made);
 }
 
 /* What is left of the line, or by no more than slack right of it (Sutherland & Hodgman 1974); `from` of a corner that
  * comes about is -1. */
 static void cut(imp_flat *flat, const double a[2], const double b[2], double slack)
 {
-    imp_flat part = {.count = 0};
+    imp_flat part;
+    part.count = 0;
     for (int i = 0; i < flat->count; i++) {
         const int next = (i + 1) % flat->count;
         const double *p = flat->p[i], *q = flat->p[next], at_p = beside(a, b, p) + slack,
                      at_q = beside(a, b, q) + slack;
-        if (at_p >= 0 && part.count < IMP_FLAT_CORNERS) {
-            memcpy(part.p[part.count], p, sizeof part.p[0]);
-            part.from[part.count++] = flat->from[i];
-        }
-        if ((at_p < 0) != (at_q < 0) && part.count < IMP_FLAT_CORNERS && !(flat->count == 2 && i == 1)) {
-            const double share = at_p / (at_p - at_q);
-            for (int j = 0; j < 2; j++) part.p[part.count][j] = p[j] + (q[j] - p[j]) * share;
-            part.from[part.count++] = -1;
-        }
+        if (at_p >= 0) put_corner(&part, p[0], p[1], flat->from[i]);
+        if ((at_p < 0) == (at_q < 0) || (flat->count == 2 && i == 1)) continue;
+        const double share = at_p / (at_p - at_q);
+        put_corner(&part, p[0] + (q[0] - p[0]) * share, p[1] + (q[1] - p[1]) * share, -1);
     }
-    *flat = part;
+    copy(flat, &part);
 }
 
 /* Between both sides of a segment's line, and its ends. */
@@ -98,8 +116,9 @@ static void cut_to_segment(imp_flat *one, const double a[2], const double b[2], 
 static bool holds(const imp_flat *flat, const double p[2], double slack)
 {
     if (flat->count == 1) return hypot(p[0] - flat->p[0][0], p[1] - flat->p[0][1]) <= slack;
-    imp_flat point = {.count = 1, .from = {0}};
-    memcpy(point.p[0], p, sizeof point.p[0]);
+    imp_flat point;
+    point.count = 0;
+    put_corner(&point, p[0], p[1], 0);
     if (flat->count == 2)
         cut_to_segment(&point, flat->p[0], flat->p[1], slack);
     else
@@ -119,13 +138,14 @@ static void name_corners(imp_flat *one, const imp_flat *other, double slack, int
 void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offset)
 {
     if (other->count == 1 || (other->count == 2 && one->count > 2)) { /* what is smaller is clipped */
-        imp_flat part = *other;
+        imp_flat part;
+        copy(&part, other);
         if (other->count == 1 && !holds(one, other->p[0], slack)) part.count = 0;
         if (other->count == 2)
             for (int i = 0; i < one->count; i++) cut(&part, one->p[i], one->p[(i + 1) % one->count], slack);
         for (int i = 0; i < part.count; i++)
             if (part.from[i] >= 0) part.from[i] = (short)(part.from[i] + offset);
-        *one = part;
+        copy(one, &part);
         return;
     }
     if (other->count == 2)

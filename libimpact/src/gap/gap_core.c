@@ -76,7 +76,7 @@ static bool settled(const imp_core_pair *pair, const imp_core_gap *answer)
 }
 
 /* The told gap lies between: where the features fix the normal g is the more exact, else the distance. */
-static impact_status apart(const imp_core_pair *pair, imp_core_gap *answer)
+static impact_status told_apart(const imp_core_pair *pair, imp_core_gap *answer)
 {
     if (!settled(pair, answer)) imp_core_enumerate(pair, answer);
     answer->upper = fmax(answer->upper, answer->lower);
@@ -118,11 +118,11 @@ static void stray_normal(const imp_core_pair *pair, double n[3])
 static impact_status thin_pair(const imp_core_pair *pair, imp_core_gap *answer)
 {
     imp_core_enumerate(pair, answer);
-    if (answer->upper > IMP_CORE_ACCEPTED * pair->reach) return apart(pair, answer);
+    if (answer->upper > IMP_CORE_ACCEPTED * pair->reach) return told_apart(pair, answer);
     imp_core_tip tip;
     stray_normal(pair, answer->n);
     answer->lower = imp_core_height_between(pair, answer->n, &tip);
-    return apart(pair, answer);
+    return told_apart(pair, answer);
 }
 
 impact_status imp_core_solve(const imp_core_pair *pair, const double *cached, imp_core_gap *answer)
@@ -140,14 +140,14 @@ impact_status imp_core_solve(const imp_core_pair *pair, const double *cached, im
         memcpy(answer->n, cached, sizeof answer->n);
     }
     if (imp_core_nearest(pair, answer)) {
-        if (answer->lower > 0 && settled(pair, answer)) return apart(pair, answer);
-        if (answer->upper > IMP_CORE_TOUCHING * pair->reach) return apart(pair, answer);
+        if (answer->lower > 0 && settled(pair, answer)) return told_apart(pair, answer);
+        if (answer->upper > IMP_CORE_TOUCHING * pair->reach) return told_apart(pair, answer);
     }
     if (!boxes) {
         double n[3];
         const double g = imp_core_axes_of_all(pair, n);
         if (g > answer->lower) answer->lower = g, answer->firm = true, memcpy(answer->n, n, sizeof n);
     }
-    if (answer->upper < INFINITY && answer->lower > 0) return apart(pair, answer);
+    if (answer->upper < INFINITY && answer->lower > 0) return told_apart(pair, answer);
     return overlapping(pair, answer);
 }

@@ -63,7 +63,7 @@ bool imp_core_witness(const imp_core_pair *pair, imp_core_gap *answer);
 /* All of it, from a direction to begin with (NULL: none). */
 impact_status imp_core_solve(const imp_core_pair *pair, const double *cached, imp_core_gap *answer);
 
-/* Whether two shapes are such, and not both of those that other ways take; and their contact. */
+/* Whether two shapes are such (a sphere only beside a shape with a core); and their contact. */
 bool imp_core_takes(const impact_shape *one, const impact_shape *other);
 impact_status imp_core_contact(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double scale,
                                impact_gap_cache *cache, impact_contact *contact);

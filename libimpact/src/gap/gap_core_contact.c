@@ -4,6 +4,7 @@
  */
 #include <quat/rotation.h>
 #include "gap/gap_core.h"
+#include "shape/solid.h"
 
 static bool is_octahedron(const impact_shape *s)
 {
@@ -12,27 +13,24 @@ static bool is_octahedron(const impact_shape *s)
 
 static bool is_polytope(const impact_shape *s)
 {
-    return s->kind == IMPACT_BOX || s->kind == IMPACT_CAPSULE || s->kind == IMPACT_POLYHEDRON;
+    return s->kind == IMPACT_BOX || s->kind == IMPACT_CAPSULE || s->kind == IMPACT_POLYHEDRON || is_octahedron(s);
 }
 
 bool imp_core_takes(const impact_shape *one, const impact_shape *other)
 {
-    return (is_polytope(one) && (is_polytope(other) || is_octahedron(other) || other->kind == IMPACT_SPHERE)) ||
-           (is_polytope(other) && (is_octahedron(one) || one->kind == IMPACT_SPHERE));
+    const bool first = is_polytope(one), second = is_polytope(other);
+    return (first && second) || (first && other->kind == IMPACT_SPHERE && imp_has_core(one)) ||
+           (second && one->kind == IMPACT_SPHERE && imp_has_core(other));
 }
 
 /* The core, and the ball's radius. */
 static double core_of(const impact_shape *shape, double scale, imp_core *core)
 {
-    if (shape->kind == IMPACT_SPHERE) {
-        *core = (imp_core){.hull = &imp_hull_point, .axis = {1, 1, 1}, .even = true};
-        return shape->a;
-    }
-    imp_form form;
-    imp_form_make(shape, scale, quat_identity(), &form);
-    *core = form.core;
-    if (is_octahedron(shape))
-        *core = (imp_core){.hull = &imp_hull_octahedron, .axis = {form.axis[0], form.axis[1], form.axis[2]}};
+    const bool even = shape->kind == IMPACT_SPHERE || shape->kind == IMPACT_POLYHEDRON;
+    *core = (imp_core){.hull = imp_core_hull(shape), .axis = {scale, scale, scale}, .even = even};
+    if (even) return shape->kind == IMPACT_SPHERE ? shape->a : shape->rounding;
+    imp_core_axes(shape, core->axis);
+    for (int k = 0; k < 3; k++) core->axis[k] *= scale;
     return shape->rounding;
 }
 

@@ -431,8 +431,6 @@ static impact_status answer(const search *s, bool over, imp_gap_bracket *meeting
 impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting,
                              impact_gap_path *path)
 {
-    *path = IMPACT_PATH_CLOSED_FORM;
-    if (imp_gap_are_octahedra(pair) && imp_gap_octahedra(pair, meeting)) return IMPACT_OK;
     search s = {.pair = pair,
                 .low = -INFINITY,
                 .most = INFINITY,

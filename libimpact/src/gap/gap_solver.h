@@ -96,10 +96,6 @@ typedef enum imp_proof { IMP_PROOF_NEAREST, IMP_PROOF_AGAINST, IMP_PROOF_OPEN } 
 imp_proof imp_gap_prove(const imp_gap_solids *pair, imp_gap_peaks *peaks, double slack, bool climb, double *gap,
                         double n[3]);
 
-/* Two octahedra: whether they are such, and their gap where they overlap (false where they do not). */
-bool imp_gap_are_octahedra(const imp_gap_solids *pair);
-bool imp_gap_octahedra(const imp_gap_solids *pair, imp_gap_bracket *meeting);
-
 /* How far x (world, relative to the centre) is outside the body, to first order; negative inside. */
 double imp_gap_outside(const imp_form *form, const double x[3]);
 

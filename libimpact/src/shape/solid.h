@@ -15,6 +15,9 @@ static inline bool imp_has_core(const impact_shape *shape) { return shape->kind 
  * height; of a capsule's 0, 0 and half its length; a hull's half-extents. */
 void imp_core_axes(const impact_shape *shape, double axis[3]);
 
+/* The hull whose stretched image the core is; of a superquadric that is an octahedron, and of spheres, theirs too. */
+const impact_hull *imp_core_hull(const impact_shape *shape);
+
 /* Volume and the principal moments of inertia per unit mass of a shape with a core. */
 double imp_solid_volume(const impact_shape *shape);
 qvec3 imp_solid_inertia(const impact_shape *shape);

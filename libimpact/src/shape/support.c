@@ -10,9 +10,15 @@
 
 /* ---- forms ---- */
 
-static const impact_hull *hull_of(const impact_shape *shape)
+const impact_hull *imp_core_hull(const impact_shape *shape)
 {
-    return shape->kind == IMPACT_BOX ? &imp_hull_box : shape->kind == IMPACT_CAPSULE ? &imp_hull_segment : shape->hull;
+    switch (shape->kind) {
+    case IMPACT_SPHERE: return &imp_hull_point;
+    case IMPACT_CAPSULE: return &imp_hull_segment;
+    case IMPACT_BOX: return &imp_hull_box;
+    case IMPACT_SUPERQUADRIC: return &imp_hull_octahedron;
+    default: return shape->hull;
+    }
 }
 
 static void make_core(const impact_shape *shape, double scale, imp_form *form)
@@ -28,7 +34,7 @@ static void make_core(const impact_shape *shape, double scale, imp_form *form)
                        .rounding = shape->rounding * scale};
     imp_core_axes(shape, form->axis);
     for (int k = 0; k < 3; k++) form->axis[k] *= scale;
-    form->core = (imp_core){.hull = hull_of(shape), .even = shape->kind == IMPACT_POLYHEDRON};
+    form->core = (imp_core){.hull = imp_core_hull(shape), .even = shape->kind == IMPACT_POLYHEDRON};
     for (int k = 0; k < 3; k++) form->core.axis[k] = form->core.even ? scale : form->axis[k];
 }
 
