@@ -124,8 +124,7 @@ static inline face_pair random_face_pair(random_stream *random, int family)
     if (family == PAIR_TURNED || family == PAIR_TILTED || family == PAIR_SOLIDS)
         *r = common, *q = quat_mul(common, cube_rotation(random));
     if (family == PAIR_NORMAL) *q = quat_mul(*r, about(own, 3 * random_unit(random)));
-    if (family == PAIR_TILTED)
-        *q = quat_mul(about(random_direction(random), random_log(random, 1e-16, 1e-1)), *q);
+    if (family == PAIR_TILTED) *q = quat_mul(about(random_direction(random), random_log(random, 1e-16, 1e-1)), *q);
     const qvec3 n = random_unit(random) < 0.5 ? random_direction(random) : quat_rotate(*r, own);
     const double size = contact_size(&pair.body[1].shape);
     double gap = size * (random_unit(random) < 0.5 ? random_log(random, 1e-3, 1) : -random_log(random, 1e-3, 1));

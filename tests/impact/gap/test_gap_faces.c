@@ -84,8 +84,7 @@ static void rounded_is_core_less_ball(void **state)
         assert_int_equal(impact_gap(&pair.body[0], &pair.body[1], NULL, &round), IMPACT_OK);
         assert_int_equal(impact_gap(&sharp.body[0], &sharp.body[1], NULL, &core), IMPACT_OK);
         const double wanted = core.gap - r - r;
-        if (round.gap != wanted)
-            fail_msg("%d: %.17g, core less balls %.17g", i, round.gap, wanted);
+        if (round.gap != wanted) fail_msg("%d: %.17g, core less balls %.17g", i, round.gap, wanted);
         assert_memory_equal(&round.normal, &core.normal, sizeof core.normal);
     }
 }
