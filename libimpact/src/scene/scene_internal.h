@@ -14,9 +14,9 @@
  * An island makes its next step when the queue reaches the end of its last, so that every segment covers [now, t1], and
  * an event at t changes segments after t only: queue times never fall, and what a cut drops nobody has seen.
  *
- * scene_build.c makes a scene, scene_run.c goes through the queue, encounter.c gathers what meets and sets what moves
- * on; what happens in an island at one instant is scene_instant.c's (scene_strike.c: impacts; scene_hold.c: held
- * contacts). Internal.
+ * scene_build.c makes a scene, scene_run.c goes through the queue, encounter.c answers what is due: gather.c makes one
+ * island of all that meets, scene_instant.c settles it (scene_strike.c: impacts; scene_hold.c: held contacts),
+ * parting.c takes it apart, following.c gives each part its next segments. Internal.
  */
 #ifndef IMP_SCENE_INTERNAL_H
 #define IMP_SCENE_INTERNAL_H
@@ -96,14 +96,6 @@ static inline int imp_scene_island_slot(const impact_scene *scene, int number)
 {
     return 1 + scene->world.body_count + number;
 }
-
-/* encounter.c */
-/* All that touch at the start. */
-impact_status imp_scene_first_encounters(impact_scene *scene);
-/* The pair touches at t. */
-impact_status imp_scene_meet(impact_scene *scene, int near, double t);
-/* The island's segment ends now. */
-impact_status imp_scene_continue(impact_scene *scene, imp_island *island);
 
 /* At the island's time: all impacts there are, in the order of the pairs, then which contacts are held, in which mode.
  */

@@ -2,6 +2,7 @@
  *
  * Through the queue, from slot to slot.
  */
+#include "scene/encounter.h"
 #include "scene/scene_keys.h"
 #include "world/world_gap.h"
 

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * encounter: what happens where two bodies meet, or where an island's segment ends: all that touch are gathered,
+ * settled (scene_instant.c), and go their ways. Internal.
+ */
+#ifndef IMP_ENCOUNTER_H
+#define IMP_ENCOUNTER_H
+
+#include "scene/scene_internal.h"
+
+/* All that touch at the start. */
+impact_status imp_scene_first_encounters(impact_scene *scene);
+/* The pair touches at t. */
+impact_status imp_scene_meet(impact_scene *scene, int near, double t);
+/* The island's segment ends now. */
+impact_status imp_scene_continue(impact_scene *scene, imp_island *island);
+
+#endif
