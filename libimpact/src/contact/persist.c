@@ -147,6 +147,19 @@ static impact_contact carried_contact(const imp_world *world, const imp_pair *pa
     return contact;
 }
 
+imp_touch imp_persist_meet(const imp_world *world, int p, const impact_contact *contact)
+{
+    const imp_pair *pair = &world->pairs[p];
+    return (imp_touch){.pair = p,
+                       .body1 = pair->body1,
+                       .body2 = pair->body2,
+                       .mode = pair->mode,
+                       .friction = pair->friction,
+                       .normal = contact->normal,
+                       .r1 = contact->offset1,
+                       .r2 = contact->offset2};
+}
+
 imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, const imp_load *loads)
 {
     imp_pair *pair = &world->pairs[p];
@@ -160,16 +173,9 @@ imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, co
         contact = carried_contact(world, pair, states, &spot);
     else
         imp_world_gap(world, pair, states, &contact);
-    imp_touch touch = {.pair = p,
-                       .body1 = pair->body1,
-                       .body2 = pair->body2,
-                       .mode = pair->mode,
-                       .friction = pair->friction,
-                       .normal = contact.normal,
-                       .r1 = contact.offset1,
-                       .r2 = contact.offset2,
-                       .carried = carried,
-                       .still = imp_is_held(pair) && pair->still};
+    imp_touch touch = imp_persist_meet(world, p, &contact);
+    touch.carried = carried;
+    touch.still = imp_is_held(pair) && pair->still;
     const qvec3 u = qvec3_sub(imp_point_velocity(b1, s1, touch.r1), imp_point_velocity(b2, s2, touch.r2));
     touch.slip = qvec3_axpy(-qvec3_dot(u, touch.normal), touch.normal, u);
     touch.speed = qvec3_norm(touch.slip);

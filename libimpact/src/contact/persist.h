@@ -82,6 +82,8 @@ void imp_persist_add_reactions(const imp_persist *persist, imp_load *loads);
 double imp_persist_own_acceleration(const imp_persist *persist, const imp_world *world, const imp_state *states,
                                     int pair);
 
+/* Where the pair touches, and no more. */
+imp_touch imp_persist_meet(const imp_world *world, int pair, const impact_contact *contact);
 /* The contact as it is, whether held or not; its bias without any reaction. */
 imp_touch imp_persist_touch(imp_world *world, int pair, const imp_state *states, const imp_load *loads);
 

@@ -309,6 +309,7 @@ static imp_found meet_in_line(const imp_search *s, double from)
     qvec3 w;
     const qvec3 d = centres_apart(s, from, &w);
     const double R = s->body[0]->radius + s->body[1]->radius, end = fmin(s->segment[0]->t1, s->segment[1]->t1);
+    if (!(qvec3_dot(d, w) < 0)) return (imp_found){INFINITY, false};
     const qvec3 n = qvec3_scale(d, 1 / R), x1 = s->segment[0]->start.x, x2 = s->segment[1]->start.x;
     const double slack = IMP_TOUCHING * imp_place_scale(s->body[0], x1, s->body[1], x2, n);
     const bool touches = qvec3_dot(d, d) <= R * (R + 2 * slack), still = qvec3_dot(n, w) >= -s->still;
@@ -316,8 +317,26 @@ static imp_found meet_in_line(const imp_search *s, double from)
     return isfinite(met) && met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
 }
 
+/* A ball over a plane, on a parabola: the same. */
+static imp_found meet_plane(const imp_search *s, double from)
+{
+    qvec3 w;
+    const qvec3 d = centres_apart(s, from, &w), n = plane_normal(s);
+    const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), rate = qvec3_dot(n, w),
+                 pull = qvec3_dot(n, s->segment[0]->acceleration), gap = qvec3_dot(n, d) - s->body[0]->radius;
+    const double slack = IMP_TOUCHING * imp_place_scale(s->body[0], qvec3_add(s->segment[1]->start.x, d), s->body[1],
+                                                        s->segment[1]->start.x, n);
+    const bool touches = gap <= slack, still = rate >= -s->still && rate <= s->still;
+    if (touches && rate < -s->still) return (imp_found){from, true};
+    const double deep = touches && still ? slack + fmax(0, -gap) : 0;
+    const double met = from + impact_flight_fall_time(fmax(gap, 0) + deep, rate, pull);
+    return isfinite(met) && met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
+}
+
 imp_found imp_search_contact(const imp_search *s, double from, double until)
 {
-    const bool balls = imp_is_ball(s->body[0]) && imp_is_ball(s->body[1]);
-    return balls && fall_alike(s) ? meet_in_line(s, from) : advance(s, from, until);
+    const bool ball = imp_is_ball(s->body[0]);
+    if (ball && imp_is_ball(s->body[1]) && fall_alike(s)) return meet_in_line(s, from);
+    if (ball && is_plane(s->body[1]) && falls(s->segment[0]) && !s->beyond) return meet_plane(s, from);
+    return advance(s, from, until);
 }

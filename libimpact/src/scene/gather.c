@@ -41,6 +41,9 @@ bool imp_gather_touches(impact_scene *scene, const imp_near *near, double t)
     const qvec3 x1 = imp_segment_place(s1, b1, t, &v), x2 = imp_segment_place(s2, b2, t, &v), d = qvec3_sub(x1, x2);
     const bool plane = b2->shape.kind == IMPACT_PLANE;
     const double reach = plane ? b1->radius : b1->radius + b2->radius, distance = sqrt(qvec3_dot(d, d));
+    const double far =
+        fabs(x1.x) + fabs(x1.y) + fabs(x1.z) + distance; /* no place scale is more than 3 (far + reach) */
+    if (!plane && distance - reach > IMP_TOUCHING * 3 * (far + reach)) return false;
     const qvec3 n =
         plane ? quat_rotate(s2->start.q, (qvec3){0, 0, 1}) : qvec3_scale(d, distance > 0 ? 1 / distance : 0);
     const double touching = IMP_TOUCHING * imp_place_scale(b1, x1, b2, x2, n);

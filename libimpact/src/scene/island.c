@@ -9,6 +9,7 @@
 
 static impact_status reserve_bodies(imp_island *island, int bodies)
 {
+    if (bodies <= island->body_room && bodies <= island->motion.room) return IMPACT_OK;
     imp_arena *arena = island->scene->world.arena;
     int room[3] = {island->body_room, island->body_room, island->body_room};
     imp_body *list = imp_arena_grow(arena, island->world.bodies, &room[0], bodies, sizeof *list);
@@ -24,6 +25,7 @@ static impact_status reserve_bodies(imp_island *island, int bodies)
 
 static impact_status reserve_pairs(imp_island *island, int pairs)
 {
+    if (pairs <= island->pair_room) return IMPACT_OK;
     imp_arena *arena = island->scene->world.arena;
     int room[2] = {island->pair_room, island->pair_room};
     imp_pair *list = imp_arena_grow(arena, island->world.pairs, &room[0], pairs, sizeof *list);

@@ -64,10 +64,20 @@ impact_status imp_scene_record(imp_island *island, const impact_event *event)
     return status;
 }
 
+bool imp_scene_tells_events(const imp_island *island)
+{
+    return island->scene->recorder && island->scene->recorder->event;
+}
+
+static double energy_told(const imp_island *island)
+{
+    return imp_scene_tells_events(island) ? imp_scene_total_energy(island) : 0;
+}
+
 impact_event imp_scene_event_of_touch(const imp_island *island, impact_event_kind kind, const imp_touch *touch)
 {
     const imp_world *world = &island->world;
-    const double energy = imp_scene_total_energy(island);
+    const double energy = energy_told(island);
     return (impact_event){.t = island->t,
                           .kind = kind,
                           .body1 = touch->body1,
@@ -83,7 +93,7 @@ impact_event imp_scene_event_of_touch(const imp_island *island, impact_event_kin
 
 impact_event imp_scene_event_of_body(const imp_island *island, impact_event_kind kind, int body)
 {
-    const double energy = imp_scene_total_energy(island);
+    const double energy = energy_told(island);
     return (impact_event){.t = island->t,
                           .kind = kind,
                           .body1 = body,

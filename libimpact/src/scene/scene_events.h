@@ -13,6 +13,9 @@ double imp_scene_undriven_energy(const imp_island *island);
 /* Keeps the states and modes as they are, for the rows before an event. */
 void imp_scene_remember(imp_island *island);
 
+/* Whether someone wants to know of events: their energies and words are not made for nobody. */
+bool imp_scene_tells_events(const imp_island *island);
+
 /* An event now; its energies are the present ones. */
 impact_event imp_scene_event_of_touch(const imp_island *island, impact_event_kind kind, const imp_touch *touch);
 impact_event imp_scene_event_of_body(const imp_island *island, impact_event_kind kind, int body);

@@ -22,6 +22,7 @@ void imp_scene_choose_modes(imp_island *island)
         imp_meeting m;
         imp_pair *pair = &world->pairs[p];
         if (!imp_scene_meets(island, p, &m)) continue;
+        imp_scene_press(island, &m);
         const bool stays =
             m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= world->slip_speed;
         const bool slides = m.touch.speed > world->slip_speed || (imp_is_held(pair) && m.touch.onset);
@@ -154,6 +155,7 @@ static int find_pressed(imp_island *island, imp_meeting *m)
         const double push1 = qvec3_norm(island->motion.loads[pair->body1].force) * b1->inverse_mass,
                      push2 = qvec3_norm(island->motion.loads[pair->body2].force) * b2->inverse_mass;
         const double pressed = -1e-9 * (push1 + push2);
+        imp_scene_press(island, m);
         if (m->acceleration < pressed && imp_scene_dies_out(island, m, m->velocity)) return p;
     }
     return -1;

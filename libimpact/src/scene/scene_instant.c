@@ -15,8 +15,9 @@ impact_status imp_scene_settle(imp_island *island)
 {
     imp_scene_remember(island);
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
-    impact_status status = imp_scene_strike_all(island);
-    if (status == IMPACT_OK) {
+    bool parted;
+    impact_status status = imp_scene_strike_all(island, &parted);
+    if (status == IMPACT_OK && !parted) {
         imp_scene_choose_modes(island);
         status = imp_scene_hold(island, -1, false);
     }

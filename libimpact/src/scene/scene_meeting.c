@@ -33,44 +33,69 @@ bool imp_scene_meets(imp_island *island, int p, imp_meeting *m)
     if (!imp_is_held(pair) && (contact.gap > imp_world_touching_distance(world, pair, island->states) ||
                                imp_world_inside_bounds(world, pair, island->states, &contact) < 0))
         return false;
-    m->touch = imp_persist_touch(world, p, island->states, island->motion.loads);
+    m->touch = imp_persist_meet(world, p, &contact);
     m->velocity = imp_persist_approach(world, &m->touch, island->states);
     m->own = imp_persist_own_acceleration(&island->motion.persist, world, island->states, p);
-    m->acceleration =
-        qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip) - m->own;
+    m->pressed = false;
     return true;
 }
 
-/* The acceleration that presses two bodies together and goes on doing so: about edges and over faces the normal turns
- * fast, but not for long. Surfaces rounder than a thousandth of the body press no more than this. The loads hold the
- * pair's own reaction, which its acceleration does not. */
-static double lasting_press(const imp_island *island, const imp_meeting *m)
+void imp_scene_press(imp_island *island, imp_meeting *m)
+{
+    if (m->pressed) return;
+    m->touch = imp_persist_touch(&island->world, m->touch.pair, island->states, island->motion.loads);
+    m->acceleration =
+        qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip) - m->own;
+    m->pressed = true;
+}
+
+/* Of what is no larger than 1e150, which all but overflows otherwise. */
+static double length(qvec3 v) { return sqrt(qvec3_dot(v, v)); }
+
+/* No acceleration presses two bodies together for longer than this: about edges and over faces the normal turns fast,
+ * but not for long. Surfaces rounder than a thousandth of the body press no more. The loads hold the pair's own
+ * reaction, which its acceleration does not. */
+static double most_lasting_press(const imp_island *island, const imp_meeting *m)
 {
     const double roundest = 1e-3;
     const int body[2] = {m->touch.body1, m->touch.body2};
     const imp_state *states = island->states;
-    double speed = qvec3_norm(qvec3_sub(states[body[0]].v, states[body[1]].v)), pull = fabs(m->own), radius = INFINITY;
+    double speed = length(qvec3_sub(states[body[0]].v, states[body[1]].v)), pull = fabs(m->own), radius = INFINITY;
     for (int k = 0; k < 2; k++) {
         const imp_body *b = &island->world.bodies[body[k]];
         const imp_load *l = &island->motion.loads[body[k]];
         if (b->is_static) continue;
-        speed += b->radius * qvec3_norm(imp_omega(b, &states[body[k]]));
-        pull += qvec3_norm(l->force) * b->inverse_mass;
-        pull += b->radius * qvec3_norm(imp_inverse_inertia(b, states[body[k]].q, l->torque));
+        speed += b->radius * length(imp_omega(b, &states[body[k]]));
+        pull += length(l->force) * b->inverse_mass;
+        pull += b->radius * length(imp_inverse_inertia(b, states[body[k]].q, l->torque));
         radius = fmin(radius, b->radius);
     }
     /* of a face that is about to be rolled over the reaction is without bound, for no time */
-    const double passing = 1e6 * qvec3_norm(island->world.gravity);
+    const double passing = 1e6 * length(island->world.gravity);
     if (passing > 0) pull = fmin(pull, passing);
-    return fmin(-m->acceleration, pull + speed * speed / (roundest * radius));
+    return pull + speed * speed / (roundest * radius);
 }
 
-bool imp_scene_dies_out(const imp_island *island, const imp_meeting *m, double speed)
+/* How high the pair's bounce has to rise to be one, m. */
+static double least_rise(const imp_island *island, const imp_meeting *m)
 {
     enum { MOST = 10 };
     const imp_pair *pair = &island->world.pairs[m->touch.pair];
     const double late = imp_world_touching_distance(&island->world, pair, island->states);
     const double gain = 1 / (1 - pair->restitution * pair->restitution);
-    const double height = fmax(island->scene->rest_height, late * fmin(gain, MOST));
-    return m->acceleration < 0 && speed * speed < 2 * lasting_press(island, m) * height;
+    return fmax(island->scene->rest_height, late * fmin(gain, MOST));
+}
+
+bool imp_scene_leaves_for_good(const imp_island *island, const imp_meeting *m, double speed)
+{
+    return speed > 0 && speed * speed >= 2 * most_lasting_press(island, m) * least_rise(island, m);
+}
+
+bool imp_scene_dies_out(imp_island *island, imp_meeting *m, double speed)
+{
+    if (imp_scene_leaves_for_good(island, m, fabs(speed))) return false;
+    imp_scene_press(island, m);
+    if (!(m->acceleration < 0)) return false;
+    const double press = fmin(-m->acceleration, most_lasting_press(island, m));
+    return speed * speed < 2 * press * least_rise(island, m);
 }

@@ -8,10 +8,11 @@
 #include "scene/scene_internal.h"
 
 typedef struct imp_meeting {
-    imp_touch touch;
-    double velocity;     /* d(gap)/dt, m/s */
-    double acceleration; /* d2(gap)/dt2 under the loads and the other contacts' reactions, m/s^2 */
-    double own;          /* what the pair's own reaction adds to it */
+    imp_touch touch; /* until it is pressed no more than where it is */
+    double velocity; /* d(gap)/dt, m/s */
+    double own;      /* m/s^2: what the pair's own reaction adds to d2(gap)/dt2 */
+    bool pressed;
+    double acceleration; /* then: d2(gap)/dt2 under the loads and the other contacts' reactions, m/s^2 */
 } imp_meeting;
 
 /* The loads on all bodies now; and with the reactions of the contacts that are held. */
@@ -20,10 +21,14 @@ impact_status imp_scene_load_with_reactions(imp_island *island);
 
 /* Fills the meeting of a held pair, or of an open one that touches within its plane's bounds; false otherwise. */
 bool imp_scene_meets(imp_island *island, int p, imp_meeting *m);
+/* Finds what presses the pair together, and its whole touch, if that is not known yet. */
+void imp_scene_press(imp_island *island, imp_meeting *m);
 
 /* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies
  * together. Bounces that are met a rounding d late gain what they fall by it, and never rise less than d e^2/(1 - e^2):
  * that counts as rest too. */
-bool imp_scene_dies_out(const imp_island *island, const imp_meeting *m, double speed);
+bool imp_scene_dies_out(imp_island *island, imp_meeting *m, double speed);
+/* Whether the pair parts at this speed so fast that no acceleration there could make it die out. */
+bool imp_scene_leaves_for_good(const imp_island *island, const imp_meeting *m, double speed);
 
 #endif

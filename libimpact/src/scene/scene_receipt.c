@@ -33,8 +33,9 @@ static void look_at(impact_scene *scene, const char *field, double *worst, doubl
 static double worst_unit(const imp_island *island, const imp_state *states)
 {
     double worst = 0;
-    for (int i = 0; i < island->world.body_count; i++) worst = fmax(worst, fabs(quat_norm(states[i].q) - 1));
-    return worst;
+    for (int i = 0; i < island->world.body_count; i++)
+        if (!island->world.bodies[i].is_static) worst = fmax(worst, fabs(quat_dot(states[i].q, states[i].q) - 1));
+    return 0.5 * worst; /* | |q| - 1 |, but for its square */
 }
 
 /* The kernel's gap of what is held, asked with a pair of its own: what is found does not touch the run. */
@@ -89,10 +90,9 @@ void imp_scene_receipt_look(imp_island *island)
     impact_scene *scene = island->scene;
     impact_scene_residuals *r = &scene->receipt;
     const imp_works *works = &island->motion.works;
-    const double off = imp_island_balance(island) - island->balance;
-    scene->greatest_energy =
-        fmax(scene->greatest_energy, largest_of(imp_island_energy(island), works->force, works->drive,
-                                                works->damping + works->sliding + island->impact_loss));
+    const double taken = works->damping + works->sliding + island->impact_loss, given = works->force + works->drive;
+    const double energy = imp_island_energy(island), off = energy + taken - given - island->balance;
+    scene->greatest_energy = fmax(scene->greatest_energy, largest_of(energy, works->force, works->drive, taken));
     const double scale = scene->greatest_energy;
     r->begin = island->looked_at, r->end = island->looked_at = island->t;
     r->stretches++;

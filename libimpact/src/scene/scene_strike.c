@@ -47,7 +47,7 @@ static void count_solver(imp_island *island, const impact_outcome *outcome)
 /* Solves the pair's impact. One whose bounce would die out is solved with restitution 0: it then exchanges, at once,
  * the whole impulse of the infinitely many bounces that would follow, less what the pressing force brings while they
  * last: the sum m w (1 + e)(1 + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
-static impact_status strike(imp_island *island, const imp_meeting *m)
+static impact_status strike(imp_island *island, imp_meeting *m)
 {
     imp_world *world = &island->world;
     const imp_touch *touch = &m->touch;
@@ -88,14 +88,16 @@ static impact_status strike(imp_island *island, const imp_meeting *m)
         island->motion.resting[bodies[k]] = false;
     }
     count_solver(island, &outcome);
-    char words[128];
-    event.phases = phases_in_words(&outcome, words, sizeof words);
+    char words[128] = "";
+    if (imp_scene_tells_events(island)) {
+        event.phases = phases_in_words(&outcome, words, sizeof words);
+        event.energy_after = imp_scene_total_energy(island);
+    }
     event.impulse_normal = outcome.impulse_normal;
     event.impulse = outcome.impulse;
     event.impulse_tangential = outcome.impulse_tangential;
     event.normal_before = outcome.normal_before;
     event.normal_after = outcome.normal_after;
-    event.energy_after = imp_scene_total_energy(island);
     return imp_scene_record(island, &event);
 }
 
@@ -123,7 +125,7 @@ static impact_status strike_together(imp_island *island)
     int count = 0;
     imp_meeting m;
     for (int p = 0; p < world->pair_count; p++)
-        if (imp_scene_meets(island, p, &m)) shares[count++].touch = m.touch;
+        if (imp_scene_meets(island, p, &m)) imp_scene_press(island, &m), shares[count++].touch = m.touch;
     double energy = imp_scene_total_energy(island);
     impact_status status = IMPACT_OK;
     if (!imp_answer_together(world, island->states, shares, count) && world->driven) {
@@ -165,18 +167,13 @@ static bool goes_round(const imp_island *island, int impacts)
     return !elastic && impacts > 10 * struck;
 }
 
-/* The only pair of the island parts after its impact: there is no other to answer. */
-static bool parts_alone(const imp_island *island, const imp_meeting *m)
-{
-    return island->world.pair_count == 1 && imp_persist_approach(&island->world, &m->touch, island->states) > 0;
-}
-
-impact_status imp_scene_strike_all(imp_island *island)
+impact_status imp_scene_strike_all(imp_island *island, bool *parted)
 {
     enum { MAX_IMPACTS = 100000 };
     imp_world *world = &island->world;
     imp_meeting m;
     bool fresh = true; /* the loads know of the last impact */
+    *parted = false;
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].struck = false;
     impact_status status = imp_scene_load_with_reactions(island);
     for (int count = 0; status == IMPACT_OK; count++) {
@@ -200,7 +197,10 @@ impact_status imp_scene_strike_all(imp_island *island)
         status = strike(island, &m);
         world->pairs[p].struck = true;
         fresh = false;
-        if (parts_alone(island, &m)) return status;
+        if (world->pair_count > 1) continue;
+        const double speed = imp_persist_approach(world, &m.touch, island->states);
+        *parted = imp_scene_leaves_for_good(island, &m, speed);
+        if (speed > 0) return status;
     }
     return status;
 }

@@ -8,7 +8,8 @@
 #include "scene/scene_internal.h"
 
 /* One impact after another, in the order of the pairs, until no touching pair approaches. Restitution that has gone
- * round among the same few pairs time and again is spent: the rest of it is answered by all together. */
-impact_status imp_scene_strike_all(imp_island *island);
+ * round among the same few pairs time and again is spent: the rest of it is answered by all together. parted: there was
+ * one pair, and nothing will hold it. */
+impact_status imp_scene_strike_all(imp_island *island, bool *parted);
 
 #endif

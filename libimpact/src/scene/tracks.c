@@ -8,8 +8,8 @@
 /* Of a box, in the radius of its body: how far the body goes in it. Below the least the boxes would be made anew more
  * often than anything else happens; between them it is for the number of pairs to say. */
 static const double first_fatness = 1, least_fatness = 0.5, most_fatness = 0x1p60;
-static const double margin = 0.2; /* of the fatness, around the path */
-enum { FEW_NEAR = 4, MANY_NEAR = 12 };
+static const double margin = 0.2;     /* of the fatness, around the path */
+enum { FEW_NEAR = 2, MANY_NEAR = 7 }; /* least instructions in a gas of balls, a tenth filled (./run bench crowd) */
 
 /* ---- memory ---- */
 
@@ -33,7 +33,7 @@ impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *q
                              .paired_with = -1,
                              .last_event = -INFINITY,
                              .fatness = first_fatness};
-        if (body->shape.kind == IMPACT_PLANE) tracks->planes[tracks->plane_count++] = i;
+        if (body->shape.kind == IMPACT_PLANE) tracks->planes[tracks->plane_count++].body = i;
         const bool tumbles = !body->is_static && !body->spherical;
         if (tumbles) track->tumble = imp_arena_take(world->arena, 1, sizeof *track->tumble);
         if (tumbles && !track->tumble) return IMPACT_ENOMEM;
@@ -277,21 +277,31 @@ static double leave_time(const imp_track *track, const imp_body *body, const imp
     return t + time;
 }
 
-/* Whether the box reaches over the plane. */
-static bool box_meets_plane(const imp_box *box, const imp_state *plane)
+static void place_plane(imp_wide *plane, const imp_state *state)
 {
-    double n[3], x[3], low = 0;
-    store(quat_rotate(plane->q, (qvec3){0, 0, 1}), n);
-    store(plane->x, x);
-    for (int k = 0; k < 3; k++) low += n[k] * ((n[k] > 0 ? box->low[k] : box->high[k]) - x[k]);
-    return low <= 0;
+    store(quat_rotate(state->q, (qvec3){0, 0, 1}), plane->n);
+    plane->d = plane->n[0] * state->x.x + plane->n[1] * state->x.y + plane->n[2] * state->x.z;
+}
+
+/* Whether the box reaches over the plane, or to where rounding might have it. */
+static bool box_meets_plane(const imp_box *box, const imp_wide *plane)
+{
+    double low = -plane->d, size = fabs(plane->d);
+    for (int k = 0; k < 3; k++) {
+        const double x = plane->n[k] > 0 ? box->low[k] : box->high[k];
+        low += plane->n[k] * x;
+        size += fabs(plane->n[k] * x);
+    }
+    return low <= 8 * DBL_EPSILON * size;
 }
 
 static bool boxes_meet(const imp_tracks *tracks, int other, const imp_box *box)
 {
-    if (tracks->world->bodies[other].shape.kind == IMPACT_PLANE)
-        return box_meets_plane(box, &tracks->tracks[other].segment.start);
-    return imp_boxes_overlap(box, &tracks->grid.entries[other].box);
+    if (tracks->world->bodies[other].shape.kind != IMPACT_PLANE)
+        return imp_boxes_overlap(box, &tracks->grid.entries[other].box);
+    int k = 0;
+    while (tracks->planes[k].body != other) k++;
+    return box_meets_plane(box, &tracks->planes[k]);
 }
 
 int imp_tracks_find(const imp_tracks *tracks, int i, int j)
@@ -323,9 +333,9 @@ static impact_status renew_pairs(imp_tracks *tracks, int body, double t)
         if (tracks->tracks[other].paired_with != body) status = make_near(tracks, body, other, t);
     }
     for (int k = 0; status == IMPACT_OK && !is_static && k < tracks->plane_count; k++) {
-        const int plane = tracks->planes[k];
-        if (tracks->tracks[plane].paired_with != body && box_meets_plane(&box, &tracks->tracks[plane].segment.start))
-            status = make_near(tracks, body, plane, t);
+        const imp_wide *plane = &tracks->planes[k];
+        if (tracks->tracks[plane->body].paired_with != body && box_meets_plane(&box, plane))
+            status = make_near(tracks, body, plane->body, t);
     }
     return status;
 }
@@ -358,6 +368,7 @@ impact_status imp_tracks_begin(imp_tracks *tracks, double t, const imp_state *st
     for (int i = 0; i < world->body_count; i++)
         tracks->tracks[i].segment =
             imp_segment_fly(&world->bodies[i], t, &states[i], world->gravity, tracks->tracks[i].tumble);
+    for (int k = 0; k < tracks->plane_count; k++) place_plane(&tracks->planes[k], &states[tracks->planes[k].body]);
     for (int i = 0; status == IMPACT_OK && i < world->body_count; i++) {
         if (world->bodies[i].shape.kind == IMPACT_PLANE) continue;
         const imp_box box = world->bodies[i].is_static ? static_box(&world->bodies[i], &states[i])

@@ -37,13 +37,19 @@ typedef struct imp_track {
     double fatness; /* of its box: the part of its radius that it goes before the box is made anew */
 } imp_track;
 
+/* A body without a box: the plane n . x = d. */
+typedef struct imp_wide {
+    int body;
+    double n[3], d;
+} imp_wide;
+
 typedef struct imp_tracks {
     imp_world *world; /* bodies, gravity, slip_speed, usage */
     imp_track *tracks;
     imp_near *near;
     int near_count, near_room, near_free; /* near_free: first of a list through place[0], or -1 */
     imp_grid grid;
-    int *planes; /* bodies without a box */
+    imp_wide *planes;
     int plane_count;
     imp_queue *queue; /* slot first_slot + i is body i's */
     int first_slot;

@@ -26,18 +26,23 @@ static int64_t cell_of(double x, const imp_grid_level *level)
     return cell > -most && cell < most ? (int64_t)cell : (int64_t)(cell > 0 ? most : -most);
 }
 
-static int *bucket_of(const imp_grid *grid, int exponent, int x, int y, int z)
+/* One coordinate's part of a cell's key. */
+static uint64_t part_of(int64_t cell, int axis)
 {
-    uint64_t h = (uint64_t)(uint32_t)x * 0x9e3779b97f4a7c15u;
-    h = (h ^ (h >> 29) ^ (uint32_t)y) * 0xbf58476d1ce4e5b9u;
-    h = (h ^ (h >> 32) ^ (uint32_t)z) * 0x94d049bb133111ebu;
-    h ^= (h >> 31) ^ (uint64_t)(uint32_t)exponent * 0x2545f491u;
-    return &grid->buckets[h & grid->bucket_mask];
+    static const uint64_t odd[3] = {0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u, 0x94d049bb133111ebu};
+    return (uint64_t)(uint32_t)cell * odd[axis];
+}
+
+static int *bucket_of(const imp_grid *grid, int exponent, uint64_t key)
+{
+    const uint64_t h = (key ^ (uint64_t)(uint32_t)exponent * 0x2545f4914f6cdd1du) * 0xd6e8feb86659fd93u;
+    return &grid->buckets[(h >> 32) & grid->bucket_mask];
 }
 
 static int *bucket_at(const imp_grid *grid, const imp_grid_entry *e)
 {
-    return bucket_of(grid, grid->levels[e->level].exponent, e->cell[0], e->cell[1], e->cell[2]);
+    return bucket_of(grid, grid->levels[e->level].exponent,
+                     part_of(e->cell[0], 0) ^ part_of(e->cell[1], 1) ^ part_of(e->cell[2], 2));
 }
 
 static void take_away(imp_grid *grid, imp_grid_entry *e)
@@ -87,9 +92,8 @@ impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
     return IMPACT_OK;
 }
 
-static bool take(imp_grid *grid, int entry, const imp_box *box)
+static bool list_found(imp_grid *grid, int entry)
 {
-    if (!imp_boxes_overlap(&grid->entries[entry].box, box)) return true;
     int *found = imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + 1, sizeof *found);
     if (!found) return false;
     grid->found = found;
@@ -100,17 +104,17 @@ static bool take(imp_grid *grid, int entry, const imp_box *box)
 static bool look_through(imp_grid *grid, int level, const imp_box *box)
 {
     for (int i = grid->levels[level].first; i >= 0; i = grid->entries[i].next_level)
-        if (!take(grid, i, box)) return false;
+        if (imp_boxes_overlap(&grid->entries[i].box, box) && !list_found(grid, i)) return false;
     return true;
 }
 
-static bool look_in_cell(imp_grid *grid, int level, const int cell[3], const imp_box *box)
+static bool look_in_cell(imp_grid *grid, int level, const int cell[3], uint64_t key, const imp_box *box)
 {
-    for (int i = *bucket_of(grid, grid->levels[level].exponent, cell[0], cell[1], cell[2]); i >= 0;
-         i = grid->entries[i].next) {
+    for (int i = *bucket_of(grid, grid->levels[level].exponent, key); i >= 0; i = grid->entries[i].next) {
         const imp_grid_entry *e = &grid->entries[i];
+        if (!imp_boxes_overlap(&e->box, box)) continue;
         const bool here = e->level == level && e->cell[0] == cell[0] && e->cell[1] == cell[1] && e->cell[2] == cell[2];
-        if (here && !take(grid, i, box)) return false;
+        if (here && !list_found(grid, i)) return false;
     }
     return true;
 }
@@ -126,12 +130,14 @@ static bool look_on_level(imp_grid *grid, int level, const imp_box *box)
     }
     if (cells > grid->levels[level].count) return look_through(grid, level, box);
     for (int64_t x = low[0]; x <= high[0]; x++)
-        for (int64_t y = low[1]; y <= high[1]; y++)
+        for (int64_t y = low[1]; y <= high[1]; y++) {
+            const uint64_t key = part_of(x, 0) ^ part_of(y, 1);
             for (int64_t z = low[2]; z <= high[2]; z++) {
                 const int cell[3] = {(int)(uint32_t)(uint64_t)x, (int)(uint32_t)(uint64_t)y,
                                      (int)(uint32_t)(uint64_t)z};
-                if (!look_in_cell(grid, level, cell, box)) return false;
+                if (!look_in_cell(grid, level, cell, key ^ part_of(z, 2), box)) return false;
             }
+        }
     return true;
 }
 
