@@ -171,8 +171,8 @@ static double worst_of(const meeting *m, const impact_outcome *outcome)
         return imp_receipt_brief(&m->ready, m->n, outcome);
     const double worst = imp_receipt_make(m->collision, outcome, &receipt), most = allowed(m->collision, outcome);
     if (outcome->solver == IMPACT_SOLVER_CVODE) return receipt.energy <= most ? worst : INFINITY;
-    /* Energy is held to a hundredth of the rest. */
-    return receipt.energy <= most ? imp_larger(worst, IMP_COLLIDE_ENERGY * receipt.energy) : INFINITY;
+    /* A NaN is no receipt, and imp_larger would drop it. Energy is held to a hundredth of the rest. */
+    return receipt.energy <= most && !isnan(worst) ? imp_larger(worst, IMP_COLLIDE_ENERGY * receipt.energy) : INFINITY;
 }
 
 /* The receipt's worst over what is allowed: at most 1 passes. */

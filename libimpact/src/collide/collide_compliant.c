@@ -9,6 +9,7 @@
  * phi), mu F phi' = k u_t . (-sin phi, cos phi), at the speed v = u_t . (cos phi, sin phi) - mu F' / k, as long as v >
  * 0.
  */
+#include "base/tolerances.h"
 #include "collide/collide_cvode.h"
 
 /* (A, B): f while sticking, phi in A while sliding. */
@@ -198,6 +199,7 @@ static void change_grip(imp_compliant *c, double *y)
 static impact_status follow_springs(imp_course *course, imp_compliant *c)
 {
     double y[SPRING_SIZE], before[SPRING_SIZE] = {0}, t = 0;
+    const long most_steps = impact_ode_count(c->ode).steps + IMP_COLLIDE_COMPLIANT_STEPS;
     begin(c, course, y);
     for (int events = 0; events < 200; events++) {
         int found[EVENTS];
@@ -205,7 +207,7 @@ static impact_status follow_springs(imp_course *course, imp_compliant *c)
         impact_status status = impact_ode_start(c->ode, t, y);
         for (double stop = t + 10; status == IMPACT_OK && !any; stop += 10) {
             status = impact_ode_advance(c->ode, stop, &t, y, found, &any);
-            if (stop > 1e7) return IMPACT_EUNSETTLED;
+            if (stop > 1e7 || impact_ode_count(c->ode).steps > most_steps) return IMPACT_EUNSETTLED;
         }
         if (status != IMPACT_OK) return status;
         book(course, c, y, before);

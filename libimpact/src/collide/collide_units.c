@@ -6,8 +6,10 @@
  */
 #include "collide/collide_units.h"
 
+#include <float.h>
 #include "base/tolerances.h"
 #include "collide/collide_frame.h"
+#include "collide/collide_report.h"
 
 /* The exponent of the largest entry, or `otherwise` for none. */
 static int exponent3(qvec3 v, int otherwise)
@@ -95,10 +97,22 @@ static impact_status check_moments(const impact_collider *body, int number, char
     return IMPACT_OK;
 }
 
-static impact_status check_speeds(const impact_collision *scaled, char *message, size_t size)
+/* The outcome tells energies in the caller's units. */
+static impact_status check_energy_range(const imp_ready *ready, imp_units units, char *message, size_t size)
+{
+    const imp_vectors omega = imp_ready_local(ready, &ready->omega);
+    const double power = log2(imp_report_energy(ready, &ready->velocity, &omega)) + units.mass + 2.0 * units.speed;
+    if (!(power >= DBL_MAX_EXP)) return IMPACT_OK;
+    return imp_collide_refuse(message, size, IMPACT_EDOMAIN,
+                              "the kinetic energy is about 1e%+.0f J, must be below %.2g", power * log10(2), DBL_MAX);
+}
+
+static impact_status check_speeds(const impact_collision *scaled, imp_units units, char *message, size_t size)
 {
     imp_ready ready;
     imp_ready_make(scaled, &ready);
+    const impact_status status = check_energy_range(&ready, units, message, size);
+    if (status != IMPACT_OK) return status;
     const double approach = -imp_vec_dot(imp_ready_velocity(&ready), imp_frame_normal(scaled));
     if (!(approach > 0 && approach < 1 / IMP_COLLIDE_RANGE)) return IMPACT_OK;
     return imp_collide_refuse(message, size, IMPACT_EARGUMENT,
@@ -118,10 +132,11 @@ impact_status imp_units_check(const impact_collision *collision, char *message, 
     if (!(collision->restitution <= IMP_COLLIDE_RANGE))
         return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "restitution is %g, must be at most %g",
                                   collision->restitution, IMP_COLLIDE_RANGE);
-    const impact_collision scaled = imp_units_scaled(collision, imp_units_of(collision));
+    const imp_units units = imp_units_of(collision);
+    const impact_collision scaled = imp_units_scaled(collision, units);
     for (int i = 0; i < 2; i++) {
         const impact_status status = check_moments(&scaled.body[i], i + 1, message, size);
         if (status != IMPACT_OK) return status;
     }
-    return check_speeds(&scaled, message, size);
+    return check_speeds(&scaled, units, message, size);
 }

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <impact/collide.h>
+#include "generators/collide_cases.h"
 
 static const impact_collision nan_was_answered_as_ok = {
     .body = {{.mass = 0x1.999999999999ap-3,
@@ -175,9 +176,20 @@ static void units_change_no_more_than_the_error_told(void **state)
         }
 }
 
+/* In double rounding took all of its impulse, and what that left of its receipt was NaN, which passed. */
+static void an_impulse_lost_to_rounding(void **state)
+{
+    (void)state;
+    const impact_collision hit = case_make(CASE_RANGE, 7, 90214);
+    right_or_refused(&hit);
+    impact_outcome out;
+    assert_true(impact_collide(&hit, &out) != IMPACT_OK || qvec3_norm(out.impulse) > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_impulse_lost_to_rounding),
         cmocka_unit_test(kept_impacts_are_right_or_refused),
         cmocka_unit_test(so_are_their_neighbours),
         cmocka_unit_test(units_change_no_more_than_the_error_told),

@@ -233,6 +233,15 @@ static void beyond(void **state)
     c.body[1] = still;
     c.body[0].velocity = (qvec3){1, 0, -0x1p-340};
     refuses(&c, "the contact points approach at 4.46e-103 of the fastest velocity, at least 1e-100");
+    c = good;
+    c.body[0].velocity = (qvec3){0, 0, -1e160};
+    char message[200];
+    assert_int_equal(impact_collide_check(&c, message, sizeof message), IMPACT_EDOMAIN);
+    assert_string_equal(message, "the kinetic energy is about 1e+320 J, must be below 1.8e+308");
+    c.body[0].velocity = (qvec3){0, 0, -1e153};
+    assert_int_equal(impact_collide_check(&c, message, sizeof message), IMPACT_OK);
+    c = good;
+    c.body[1] = still;
     c.body[0].velocity = (qvec3){1, 0, -1e-99};
     impact_outcome o;
     assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
