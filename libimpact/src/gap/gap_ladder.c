@@ -373,7 +373,8 @@ static bool form_holds(const imp_form *form, const double x[3])
     return imp_form_inside(form, body) <= 1 + 1e-14;
 }
 
-/* Moves one of the points that the normal touches across it to face the other; false when it leaves its body. */
+/* Moves one of the points that the normal touches across it to face the other; false when it leaves its body, or the
+ * other is not in its own: at exponents near 1 a point follows its normal by 1/(exponent - 1) of rounding. */
 static bool face(const imp_gap_solids *pair, const double n[3], double gap, double x[2][3])
 {
     double v[3];
@@ -381,11 +382,17 @@ static bool face(const imp_gap_solids *pair, const double n[3], double gap, doub
     for (int k = 0; k < 2; k++) {
         double moved[3];
         for (int i = 0; i < 3; i++) moved[i] = x[k][i] + (k ? -1 : 1) * (v[i] - gap * n[i]);
-        if (!form_holds(&pair->form[k], moved)) continue;
+        if (!form_holds(&pair->form[k], moved) || !form_holds(&pair->form[1 - k], x[1 - k])) continue;
         memcpy(x[k], moved, sizeof moved);
         return true;
     }
     return false;
+}
+
+static bool in_bodies(const imp_gap_solids *pair, const double x[2][3])
+{
+    return imp_gap_outside(&pair->form[0], x[0]) <= exact_slack * pair->reach &&
+           imp_gap_outside(&pair->form[1], x[1]) <= exact_slack * pair->reach;
 }
 
 /* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies.
@@ -397,7 +404,9 @@ static impact_status bracket(const search *s, double upper, imp_gap_bracket *mee
     meeting->lower = meeting->gap = imp_pair_gap(s->pair, meeting->n, meeting->x);
     difference(s->pair, (const double(*)[3])meeting->x, v);
     const double apart = distance_of(v);
-    meeting->upper = fmax(fmin(s->most, fmin(upper, apart)), meeting->lower);
+    /* Points that leave their bodies, as they may at exponents near 1, bound nothing; the centres do. */
+    const bool held = in_bodies(s->pair, (const double(*)[3])meeting->x);
+    meeting->upper = fmax(held ? fmin(s->most, fmin(upper, apart)) : distance_of(s->pair->c), meeting->lower);
     meeting->stiffness = 0;
     if (!(meeting->upper - meeting->lower <= 2e-14 * s->pair->reach)) return IMPACT_BRACKET;
     return apart - fabs(meeting->gap) <= 2e-14 * s->pair->reach || face(s->pair, meeting->n, meeting->gap, meeting->x)

@@ -36,6 +36,26 @@ static void random_solids(random_stream *random, int k, impact_solid body[2])
     if (k % 30 == 7) impact_shape_plane(INFINITY, INFINITY, &body[1].shape);
 }
 
+/* With an exponent of 1 + 1e-13 the point follows the normal by 2e-3 of rounding, and leaves its body: what is said is
+ * a bracket that holds. */
+static void a_point_that_leaves_its_body(void **state)
+{
+    (void)state;
+    const impact_solid one = {
+        .shape = {IMPACT_SPHERE, 1, 1, 1, 2, 2, 2},
+        .position = {-0.025118864315095794, 0.4685201574755089, 5.3129216907122414},
+        .orientation = {-0.85749292571254321, 4.902576684311408e-09, -0.51449575542752801, 5.3058470622339199e-09}};
+    impact_solid two = {
+        .shape = {IMPACT_SUPERQUADRIC, 1, 0.14630573442793054, 1, 1.0000000000001306, 2, 2.0977507858516189},
+        .position = {-1, 0, -4.7546795773833423},
+        .orientation = {0, -3.392663629998558e-16, -0.763959932992747, 0.64526368314179716}};
+    impact_contact c, near;
+    assert_int_equal(impact_gap(&one, &two, NULL, &c), IMPACT_BRACKET);
+    two.shape.r = 1.0001;
+    assert_int_equal(impact_gap(&one, &two, NULL, &near), IMPACT_OK);
+    assert_true(c.lower <= near.gap + 1e-4 && near.gap - 1e-4 <= c.upper);
+}
+
 static void right_answers_pass(void **state)
 {
     (void)state;
@@ -93,6 +113,7 @@ static void spoilt_answers_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_point_that_leaves_its_body),
         cmocka_unit_test(right_answers_pass),
         cmocka_unit_test(spoilt_answers_fail),
     };
