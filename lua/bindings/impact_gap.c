@@ -98,6 +98,50 @@ static int gap_receipt(lua_State *L)
     return 1;
 }
 
+static const char *const feature_words[] = {[IMPACT_SMOOTH] = "smooth",
+                                            [IMPACT_VERTEX] = "vertex",
+                                            [IMPACT_EDGE] = "edge",
+                                            [IMPACT_RIM] = "rim",
+                                            [IMPACT_FACE] = "face"};
+
+static void push_patch_point(lua_State *L, const impact_patch_point *p)
+{
+    lua_createtable(L, 0, 6);
+    quat_lua_set_vec3(L, "offset1", p->offset1);
+    quat_lua_set_vec3(L, "offset2", p->offset2);
+    quat_lua_set_number(L, "height", p->height);
+    quat_lua_set_boolean(L, "closed", p->closed);
+    quat_lua_set_string(L, "feature1", feature_words[p->feature1.kind]);
+    quat_lua_set_string(L, "feature2", feature_words[p->feature2.kind]);
+}
+
+/* patch(A, B[, height]): {dimension=, normal=, gap=, disc=, points={...}}, or nil, message; height in m, 1e-12 when
+ * left out */
+static int patch(lua_State *L)
+{
+    impact_solid body[2];
+    read_solids(L, body);
+    const double height = quat_lua_arg_number_or(L, 3, "height", QUAT_LUA_NOT_NEGATIVE, 1e-12);
+    if (both_planes(body)) return quat_lua_failure(L, no_gap);
+    impact_contact contact;
+    impact_patch p;
+    impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
+    if (status >= 0) status = impact_patch_find(&body[0], &body[1], &contact, height, &p);
+    if (status < 0) return quat_lua_failure(L, impact_status_string(status));
+    lua_createtable(L, 0, 5);
+    quat_lua_set_integer(L, "dimension", p.dimension);
+    quat_lua_set_vec3(L, "normal", p.normal);
+    quat_lua_set_number(L, "gap", contact.gap);
+    if (p.disc > 0) quat_lua_set_number(L, "disc", p.disc);
+    lua_createtable(L, p.count, 0);
+    for (int i = 0; i < p.count; i++) {
+        push_patch_point(L, &p.point[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "points");
+    return 1;
+}
+
 /* toi(A, B, t_max): time, contact; or nil, message when they do not meet by then */
 static int toi(lua_State *L)
 {
@@ -126,6 +170,7 @@ static int toi(lua_State *L)
 
 void impact_lua_open_gap(lua_State *L)
 {
-    static const luaL_Reg functions[] = {{"gap", gap}, {"gap_receipt", gap_receipt}, {"toi", toi}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {
+        {"gap", gap}, {"gap_receipt", gap_receipt}, {"toi", toi}, {"patch", patch}, {NULL, NULL}};
     luaL_setfuncs(L, functions, 0);
 }

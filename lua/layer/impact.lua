@@ -27,6 +27,13 @@ core.layer()
 ---@field curvatures fun(self, direction: vec): number, number  1/m, larger first, where the normal is along direction
 ---@field mesh fun(self, nu: integer, nv: integer): vec3[], vec3[]  points and normals, nv + 1 rows of nu
 
+---@class impact.patch
+---@field dimension integer  of the closed points: -1 none, 0 a point, 1 a segment, 2 a polygon or disc
+---@field normal vec3  from the second body to the first
+---@field gap number  m
+---@field disc? number  radius, where the patch is a whole disc
+---@field points {offset1: vec3, offset2: vec3, height: number, closed: boolean, feature1: string, feature2: string}[]
+
 ---@class impact.solid
 ---@field shape impact.shape
 ---@field position? vec  m
@@ -250,6 +257,7 @@ core.layer()
 ---@field capsule fun(sizes: {radius: number, half_height: number}): impact.shape  half_height: of the segment inside
 ---@field polyhedron fun(points: {vertices: vec[], rounding?: number}): impact.shape  their hull, about its centroid
 ---@field shape table  the ten above, by the same names
+---@field patch fun(A: impact.solid, B: impact.solid, height?: number): impact.patch?, string?  where they lie on each other
 ---@field gap fun(first: impact.solid, second: impact.solid): impact.contact?, string?
 ---@field gap_receipt fun(first: impact.solid, second: impact.solid, contact: impact.contact): table  its residuals in eps; `worst`
 ---@field toi fun(first: impact.solid, second: impact.solid, t_max: number): number?, impact.contact|string

@@ -56,6 +56,16 @@
 #define IMP_CORE_LEVEL (4 * IMP_ROUNDOFF)
 #define IMP_CORE_LEVEL_MOST 1e-12
 
+/* ---- patches, docs/faces.md ---- */
+
+/* |d| - 1 of a direction that is taken for unit: a normal of a gap, turned twice. */
+#define IMP_FACE_UNIT 1e-9
+/* The least exponent along a superquadric's face for its flat place to be one: within 1e-12 of a side it is 1e-4 of it
+ * wide for 3, and 1e-6, as on a ball, for 2. */
+#define IMP_FLAT_EXPONENT 3
+/* Of the bodies' distance and size: places of corners in the plane of a patch, three products and sums each. */
+#define IMP_PATCH_BORDER (16 * IMP_ROUNDOFF)
+
 /* ---- speeds ---- */
 
 /* Slip slower than this part of the rest speed, m/s, is none: what ends as rest has stuck before, by a margin that the

@@ -49,54 +49,81 @@ static void sort(numbered *at, int count)
     }
 }
 
+/* Without those within slack of one before. */
+static int distinct(numbered *at, int count, double slack)
+{
+    int kept = 0;
+    for (int i = 0; i < count; i++) {
+        bool known = false;
+        for (int j = kept - 1; j >= 0 && at[i].p[0] - at[j].p[0] <= slack; j--)
+            known = known || hypot(at[i].p[0] - at[j].p[0], at[i].p[1] - at[j].p[1]) <= slack;
+        if (!known) at[kept++] = at[i];
+    }
+    return kept;
+}
+
 /* One chain of Andrew's algorithm onto the corners from `first` on. */
-static int chain(const numbered *at, int count, bool back, double slack, int first, imp_flat *flat)
+static int chain(const numbered *at, int count, bool back, int first, imp_flat *flat)
 {
     int size = first;
     for (int i = 0; i < count; i++) {
         const numbered *next = &at[back ? count - 1 - i : i];
-        while (size >= first + 2 && !(beside(flat->p[size - 2], flat->p[size - 1], next->p) > slack)) size--;
-        if (size > first && hypot(next->p[0] - flat->p[size - 1][0], next->p[1] - flat->p[size - 1][1]) <= slack)
-            continue;
+        while (size >= first + 2 && !(turn_at(flat->p[size - 2], flat->p[size - 1], next->p) > 0)) size--;
         memcpy(flat->p[size], next->p, sizeof next->p);
         flat->from[size++] = next->from;
     }
     return size;
 }
 
+static void leave_out(imp_flat *flat, int corner)
+{
+    flat->count--;
+    for (int i = corner; i < flat->count; i++) {
+        memcpy(flat->p[i], flat->p[i + 1], sizeof flat->p[i]);
+        flat->from[i] = flat->from[i + 1];
+    }
+}
+
+/* Corners within slack of the line through both beside them. */
+static void straighten(imp_flat *flat, double slack)
+{
+    for (int i = 0; i < flat->count && flat->count > 2;) {
+        const double *p = flat->p[(i + flat->count - 1) % flat->count], *q = flat->p[(i + 1) % flat->count];
+        if (fabs(beside(p, q, flat->p[i])) <= slack)
+            leave_out(flat, i), i = 0;
+        else
+            i++;
+    }
+}
+
 void imp_flat_hull(imp_flat *flat, double slack)
 {
     numbered at[IMP_FLAT_CORNERS];
-    const int count = flat->count;
-    for (int i = 0; i < count; i++) {
+    imp_flat made;
+    for (int i = 0; i < flat->count; i++) {
         memcpy(at[i].p, flat->p[i], sizeof at[i].p);
         at[i].from = flat->from[i];
     }
-    sort(at, count);
-    imp_flat made;
-    const int there = chain(at, count, false, slack, 0, &made);
-    if (there < 2) {
-        made.count = there;
-    } else { /* the ends of both chains are one */
-        const int back = chain(at, count, true, slack, there - 1, &made);
-        made.count = back - 1;
-    }
+    sort(at, flat->count);
+    const int count = distinct(at, flat->count, slack);
+    made.count = chain(at, count, false, 0, &made);
+    if (made.count > 1) made.count = chain(at, count, true, made.count - 1, &made) - 1; /* the ends of both are one */
+    straighten(&made, slack);
     copy(flat, &made);
 }
 
-/* What is left of the line, or by no more than slack right of it (Sutherland & Hodgman 1974); `from` of a corner that
- * comes about is -1. */
+/* What is left of the line, or by no more than slack right of it (Sutherland & Hodgman 1974); a corner that comes about
+ * lies on the line, its `from` is -1. */
 static void cut(imp_flat *flat, const double a[2], const double b[2], double slack)
 {
     imp_flat part;
     part.count = 0;
     for (int i = 0; i < flat->count; i++) {
         const int next = (i + 1) % flat->count;
-        const double *p = flat->p[i], *q = flat->p[next], at_p = beside(a, b, p) + slack,
-                     at_q = beside(a, b, q) + slack;
-        if (at_p >= 0) put_corner(&part, p[0], p[1], flat->from[i]);
-        if ((at_p < 0) == (at_q < 0) || (flat->count == 2 && i == 1)) continue;
-        const double share = at_p / (at_p - at_q);
+        const double *p = flat->p[i], *q = flat->p[next], at_p = beside(a, b, p), at_q = beside(a, b, q);
+        if (at_p >= -slack) put_corner(&part, p[0], p[1], flat->from[i]);
+        if ((at_p < -slack) == (at_q < -slack) || (flat->count == 2 && i == 1)) continue;
+        const double share = fmax(0, fmin(1, at_p / (at_p - at_q)));
         put_corner(&part, p[0] + (q[0] - p[0]) * share, p[1] + (q[1] - p[1]) * share, -1);
     }
     copy(flat, &part);
@@ -173,10 +200,6 @@ void imp_flat_thin(imp_flat *flat, int most)
             const double area = turn_at(p, flat->p[i], q);
             if (area < cost) cost = area, least = i;
         }
-        flat->count--;
-        for (int i = least; i < flat->count; i++) {
-            memcpy(flat->p[i], flat->p[i + 1], sizeof flat->p[i]);
-            flat->from[i] = flat->from[i + 1];
-        }
+        leave_out(flat, least);
     }
 }

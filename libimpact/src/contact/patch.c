@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Both faces are brought into the plane across the normal, where they are convex polygons, segments or points, and
+ * clipped against one another. Each face is the plane z(x, y) through its points; heights are the difference.
+ */
+#include <impact/patch.h>
+#include <quat/rotation.h>
+#include "base/tolerances.h"
+#include "gap/flat.h"
+#include "gap/gap_chart.h"
+
+typedef struct face_side {
+    impact_face face;
+    quat turn;
+    qvec3 center; /* from body 2's */
+    imp_flat flat;
+    double z, slope[2]; /* height over the plane across the normal: z + slope.(x, y) */
+} face_side;
+
+typedef struct patch_frame {
+    qvec3 n, x, y;
+    double slack, room; /* rounding of places; how far from the centres a patch can be */
+} patch_frame;
+
+static qvec3 placed(const face_side *s, int i) { return qvec3_add(s->center, quat_rotate(s->turn, s->face.point[i])); }
+
+/* The plane through three points of the face that are far from a line, or the line through two. */
+static void lay_plane(face_side *s, const patch_frame *f)
+{
+    const int count = s->face.count;
+    s->slope[0] = s->slope[1] = 0;
+    s->z = count > 0 ? qvec3_dot(f->n, placed(s, 0)) : qvec3_dot(f->n, s->center);
+    if (count < 2) return;
+    const qvec3 a = placed(s, 0), b = placed(s, count / 3 > 0 ? count / 3 : 1), c = placed(s, 2 * count / 3);
+    const qvec3 u = qvec3_sub(b, a), v = count > 2 ? qvec3_sub(c, a) : qvec3_cross(f->n, u);
+    const double ux = qvec3_dot(u, f->x), uy = qvec3_dot(u, f->y), vx = qvec3_dot(v, f->x), vy = qvec3_dot(v, f->y),
+                 area = ux * vy - uy * vx, uz = qvec3_dot(u, f->n), vz = qvec3_dot(v, f->n);
+    if (!(fabs(area) > 0)) return;
+    s->slope[0] = (uz * vy - uy * vz) / area, s->slope[1] = (ux * vz - uz * vx) / area;
+    s->z -= s->slope[0] * qvec3_dot(a, f->x) + s->slope[1] * qvec3_dot(a, f->y);
+}
+
+static bool lay_face(const impact_solid *body, qvec3 center, qvec3 direction, double height, const patch_frame *f,
+                    face_side *s)
+{
+    impact_shape shape = body->shape;
+    s->turn = quat_unit(body->orientation), s->center = center;
+    if (shape.kind == IMPACT_PLANE) shape.a = fmin(shape.a, f->room), shape.b = fmin(shape.b, f->room);
+    if (impact_shape_face(&shape, quat_rotate_inverse(s->turn, direction), height, &s->face) < 0) return false;
+    lay_plane(s, f);
+    s->flat.count = s->face.count;
+    for (int i = 0; i < s->face.count; i++) {
+        const qvec3 p = placed(s, i);
+        s->flat.p[i][0] = qvec3_dot(p, f->x), s->flat.p[i][1] = qvec3_dot(p, f->y);
+        s->flat.from[i] = (short)i;
+    }
+    if (s->face.count > 1) imp_flat_hull(&s->flat, 0);
+    return true;
+}
+
+/* What of the body is at a place of the plane: a corner, a side or the inside of its face. */
+static impact_feature feature_at(const face_side *s, const double p[2], double slack)
+{
+    const imp_flat *flat = &s->flat;
+    for (int i = 0; i < flat->count; i++)
+        if (hypot(p[0] - flat->p[i][0], p[1] - flat->p[i][1]) <= slack) return s->face.corner[flat->from[i]];
+    for (int i = 0; s->face.dimension == 2 && i < flat->count; i++) {
+        const double *a = flat->p[i], *b = flat->p[(i + 1) % flat->count];
+        const double x = b[0] - a[0], y = b[1] - a[1];
+        if (fabs(x * (p[1] - a[1]) - y * (p[0] - a[0])) > slack * hypot(x, y)) continue;
+        const impact_feature_kind kind = s->face.corner[flat->from[i]].kind;
+        return (impact_feature){kind == IMPACT_VERTEX ? IMPACT_EDGE : kind, -1};
+    }
+    return s->face.feature;
+}
+
+static double height_at(const face_side *s, const double p[2])
+{
+    return s->z + s->slope[0] * p[0] + s->slope[1] * p[1];
+}
+
+static void put_point(const face_side s[2], const patch_frame *f, const double p[2], double height, impact_patch *patch)
+{
+    const double z1 = height_at(&s[0], p), z2 = height_at(&s[1], p);
+    const qvec3 flat = qvec3_axpy(p[0], f->x, qvec3_scale(f->y, p[1]));
+    patch->point[patch->count++] = (impact_patch_point){.offset1 = qvec3_sub(qvec3_axpy(z1, f->n, flat), s[0].center),
+                                                        .offset2 = qvec3_axpy(z2, f->n, flat),
+                                                        .height = z1 - z2,
+                                                        .feature1 = feature_at(&s[0], p, f->slack),
+                                                        .feature2 = feature_at(&s[1], p, f->slack),
+                                                        .closed = z1 - z2 <= height};
+}
+
+/* The contact's own points. */
+static void lone_point(const face_side s[2], const impact_contact *contact, double height, impact_patch *patch)
+{
+    patch->count = 1;
+    patch->point[0] = (impact_patch_point){.offset1 = contact->offset1,
+                                           .offset2 = contact->offset2,
+                                           .height = contact->gap,
+                                           .feature1 = s[0].face.feature,
+                                           .feature2 = s[1].face.feature,
+                                           .closed = contact->gap <= height};
+}
+
+static int patch_dimension(const impact_patch *patch)
+{
+    int closed = 0;
+    for (int i = 0; i < patch->count; i++) closed += patch->point[i].closed;
+    return closed > 2 ? 2 : closed - 1;
+}
+
+/* Of a disc that lies on the other face as a whole. */
+static double whole_disc(const face_side s[2], const imp_flat *common)
+{
+    for (int k = 0; k < 2; k++) {
+        int kept = 0;
+        for (int i = 0; s[k].face.disc > 0 && i < common->count; i++)
+            kept += common->from[i] >= 0 && (common->from[i] >= IMPACT_FACE_POINTS) == (k == 1);
+        if (kept == IMPACT_FACE_RIM && common->count == kept) return s[k].face.disc;
+    }
+    return 0;
+}
+
+static void clip_faces(face_side s[2], const patch_frame *f, double height, impact_patch *patch)
+{
+    imp_flat common = s[0].flat;
+    imp_flat_clip(&common, &s[1].flat, f->slack, IMPACT_FACE_POINTS);
+    if (common.count > 1) imp_flat_hull(&common, f->slack);
+    patch->disc = whole_disc(s, &common);
+    patch->thinned = common.count > IMPACT_PATCH_POINTS ? common.count - IMPACT_PATCH_POINTS : 0;
+    imp_flat_thin(&common, IMPACT_PATCH_POINTS);
+    for (int i = 0; i < common.count; i++) put_point(s, f, common.p[i], height, patch);
+}
+
+static patch_frame frame_of(const impact_solid *body1, const impact_solid *body2, const impact_contact *contact)
+{
+    const double n[3] = {contact->normal.x, contact->normal.y, contact->normal.z};
+    double t[2][3];
+    imp_across(n, t);
+    const double r1 = impact_shape_bounding_radius(&body1->shape), r2 = impact_shape_bounding_radius(&body2->shape);
+    const double size = fmin(r1, r2) + qvec3_norm(qvec3_sub(body1->position, body2->position));
+    return (patch_frame){.n = contact->normal, /* x, y, n: right-handed */
+                         .x = {t[0][0], t[0][1], t[0][2]},
+                         .y = qvec3_cross(contact->normal, (qvec3){t[0][0], t[0][1], t[0][2]}),
+                         .slack = IMP_PATCH_BORDER * size,
+                         .room = 2 * size};
+}
+
+impact_status impact_patch_find(const impact_solid *body1, const impact_solid *body2, const impact_contact *contact,
+                                double height, impact_patch *patch)
+{
+    const qvec3 n = contact->normal, none = {0, 0, 0};
+    face_side s[2];
+    *patch = (impact_patch){.dimension = -1, .normal = n};
+    if (!isfinite(height) || !isfinite(contact->gap) || !(fabs(qvec3_norm(n) - 1) <= IMP_FACE_UNIT))
+        return IMPACT_EDOMAIN;
+    if (height < 0) return IMPACT_EARGUMENT;
+    const patch_frame f = frame_of(body1, body2, contact);
+    const qvec3 c = qvec3_sub(body1->position, body2->position);
+    if (!lay_face(body1, c, qvec3_neg(n), height, &f, &s[0]) || !lay_face(body2, none, n, height, &f, &s[1]))
+        return IMPACT_EARGUMENT;
+    if (s[0].face.dimension > 0 && s[1].face.dimension > 0) clip_faces(s, &f, height, patch);
+    if (patch->count == 0) lone_point(s, contact, height, patch);
+    patch->dimension = patch_dimension(patch);
+    return IMPACT_OK;
+}
