@@ -41,7 +41,7 @@ static void lay_plane(face_side *s, const patch_frame *f)
 }
 
 static bool lay_face(const impact_solid *body, qvec3 center, qvec3 direction, double height, const patch_frame *f,
-                    face_side *s)
+                     face_side *s)
 {
     impact_shape shape = body->shape;
     s->turn = quat_unit(body->orientation), s->center = center;
