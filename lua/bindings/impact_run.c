@@ -266,7 +266,7 @@ static int output_failure(lua_State *L, const char *message)
     return 3;
 }
 
-int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index)
+int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index, impact_event *event)
 {
     static const char *const keys[] = {"csv", "record", "on_sample", "on_event", "on_progress", NULL};
     impact_csv *csv = NULL;
@@ -307,5 +307,7 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
                                       .key = self->record ? on_key : NULL,
                                       .held = self->record ? on_held : NULL,
                                       .account = self->record ? on_account : NULL};
-    return finish(L, self, csv, record, impact_scene_run_to(self->scene, t_end, &recorder));
+    const impact_status status = event ? impact_scene_step(self->scene, t_end, &recorder, event)
+                                       : impact_scene_run_to(self->scene, t_end, &recorder);
+    return finish(L, self, csv, record, status);
 }

@@ -55,8 +55,7 @@ static int scene_new(lua_State *L) { return quat_lua_quietly(L, make_scene); }
 
 /* ---- asking ---- */
 
-/* The scene at index 1; an error when it is closed or is running. */
-static impact_lua_scene *check_scene(lua_State *L)
+impact_lua_scene *impact_lua_check_scene(lua_State *L)
 {
     impact_lua_scene *self = luaL_checkudata(L, 1, IMPACT_LUA_SCENE);
     if (!self->scene) quat_lua_error(L, "the scene is closed");
@@ -66,32 +65,32 @@ static impact_lua_scene *check_scene(lua_State *L)
 
 static int scene_time(lua_State *L)
 {
-    lua_pushnumber(L, impact_scene_time(check_scene(L)->scene));
+    lua_pushnumber(L, impact_scene_time(impact_lua_check_scene(L)->scene));
     return 1;
 }
 
 static int scene_duration(lua_State *L)
 {
-    lua_pushnumber(L, check_scene(L)->duration);
+    lua_pushnumber(L, impact_lua_check_scene(L)->duration);
     return 1;
 }
 
 static int scene_name(lua_State *L)
 {
-    lua_pushstring(L, check_scene(L)->name);
+    lua_pushstring(L, impact_lua_check_scene(L)->name);
     return 1;
 }
 
 static int scene_definition(lua_State *L)
 {
-    check_scene(L);
+    impact_lua_check_scene(L);
     lua_getiuservalue(L, 1, IMPACT_LUA_DEFINITION);
     return 1;
 }
 
 static int scene_state(lua_State *L)
 {
-    const impact_lua_scene *self = check_scene(L);
+    const impact_lua_scene *self = impact_lua_check_scene(L);
     const char *name = luaL_checkstring(L, 2);
     impact_sample sample;
     if (impact_scene_body(self->scene, impact_scene_find(self->scene, name), &sample) < 0)
@@ -115,7 +114,7 @@ void impact_lua_push_energy(lua_State *L, const impact_energy *energy)
 
 static int scene_energy(lua_State *L)
 {
-    const impact_energy energy = impact_scene_energy(check_scene(L)->scene);
+    const impact_energy energy = impact_scene_energy(impact_lua_check_scene(L)->scene);
     impact_lua_push_energy(L, &energy);
     return 1;
 }
@@ -124,7 +123,7 @@ static int scene_energy(lua_State *L)
 static int scene_receipt(lua_State *L)
 {
     impact_scene_residuals r;
-    const bool good = impact_scene_receipt(check_scene(L)->scene, &r) == IMPACT_OK;
+    const bool good = impact_scene_receipt(impact_lua_check_scene(L)->scene, &r) == IMPACT_OK;
     const struct {
         const char *key;
         double value, limit;
@@ -160,7 +159,7 @@ static int scene_receipt(lua_State *L)
 
 static int scene_usage(lua_State *L)
 {
-    const impact_usage usage = impact_scene_usage(check_scene(L)->scene);
+    const impact_usage usage = impact_scene_usage(impact_lua_check_scene(L)->scene);
     const char *name;
     long value;
     lua_newtable(L);
@@ -168,7 +167,7 @@ static int scene_usage(lua_State *L)
         lua_pushinteger(L, value);
         lua_setfield(L, -2, name);
     }
-    lua_pushnumber(L, impact_scene_pile_error(check_scene(L)->scene));
+    lua_pushnumber(L, impact_scene_pile_error(impact_lua_check_scene(L)->scene));
     lua_setfield(L, -2, "pile_error");
     lua_createtable(L, 0, IMPACT_EVENT_REST + 1);
     for (int kind = 0; kind <= IMPACT_EVENT_REST; kind++) {
@@ -183,20 +182,20 @@ static int scene_usage(lua_State *L)
 
 static int scene_run(lua_State *L)
 {
-    impact_lua_scene *self = check_scene(L);
-    return impact_lua_run(L, self, self->duration, 2);
+    impact_lua_scene *self = impact_lua_check_scene(L);
+    return impact_lua_run(L, self, self->duration, 2, NULL);
 }
 
 static int scene_run_to(lua_State *L)
 {
-    impact_lua_scene *self = check_scene(L);
-    return impact_lua_run(L, self, quat_lua_arg_number(L, 2, "t", QUAT_LUA_NOT_NEGATIVE), 3);
+    impact_lua_scene *self = impact_lua_check_scene(L);
+    return impact_lua_run(L, self, quat_lua_arg_number(L, 2, "t", QUAT_LUA_NOT_NEGATIVE), 3, NULL);
 }
 
 /* Raises when no run was recorded: empty rows would be taken for an answer. */
 static const impact_lua_scene *recorded_scene(lua_State *L)
 {
-    const impact_lua_scene *self = check_scene(L);
+    const impact_lua_scene *self = impact_lua_check_scene(L);
     if (!self->rows.asked) quat_lua_error(L, "scene '%s' has no rows: run it with record = true", self->name);
     return self;
 }
@@ -312,6 +311,7 @@ void impact_lua_open_scene(lua_State *L)
     luaL_newmetatable(L, IMPACT_LUA_SCENE);
     luaL_setfuncs(L, meta, 0);
     luaL_newlib(L, methods);
+    impact_lua_add_interaction(L);
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "__index");
     lua_setfield(L, -3, "scene_methods"); /* the layer adds its own */

@@ -115,12 +115,22 @@ void impact_lua_push_events(lua_State *L, const impact_lua_rows *rows);
  * the stack place of the table of laws, which is filled. */
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws);
 
+/* ---- impact_scene.c ---- */
+
+/* The scene at index 1; an error when it is closed or is running. */
+impact_lua_scene *impact_lua_check_scene(lua_State *L);
+
+/* ---- impact_interact.c ---- */
+
+/* Adds step, held, set, push, save and load to the table of methods on top of the stack. */
+void impact_lua_add_interaction(lua_State *L);
+
 /* ---- impact_run.c ---- */
 
-/* Runs to t_end, with the table of options at options_index: returns what run returns to the script. The scene is at
- * index 1. */
 /* A name for files that stays in its folder. */
 bool impact_lua_is_plain(const char *name);
-int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index);
+/* Runs to t_end, with the table of options at options_index: returns what run returns to the script. The scene is at
+ * index 1. event, unless NULL: to the next event only, which goes there. */
+int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index, impact_event *event);
 
 #endif

@@ -16,6 +16,30 @@ local function drop(rest)
   return impact.scene(definition)
 end
 
+-- Event by event: the first of each instant of one run, and the weight once it lies.
+do
+  local scene, whole = drop { duration = 2 }, drop { duration = 2 }
+  whole:run { record = true }
+  local events = whole:events()
+  for k = 1, #events do
+    if k == 1 or events[k].t > events[k - 1].t then
+      local event, reason = scene:step()
+      check.equal(event.t, events[k].t)
+      check.equal(event.event, events[k].event)
+      check.equal(event.phases, events[k].phases)
+      check.equal(reason, event.event == "contact" and "at rest" or "end of time")
+    end
+  end
+  local held = scene:held()
+  check.equal(#held, 1)
+  check.equal(held[1].body1 .. held[1].body2 .. held[1].mode, "ballfloorstick")
+  check.close(held[1].force.z, 20, 1e-12)
+  check.close(held[1].point.z, 0, 1e-15)
+  local event, reason = drop():step(0.1)
+  check.equal(event, nil)
+  check.equal(reason, "end of time")
+end
+
 -- A drop of 0.5 m: the first bounce at t = sqrt(0.1) s with sqrt(10) m/s, half of it back.
 do
   local scene, samples, impacts, progress = drop(), 0, {}, 0

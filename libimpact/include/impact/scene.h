@@ -121,6 +121,19 @@ IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
 IMPACT_API impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder);
 IMPACT_API impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder);
 
+/* Runs on to the next instant at which there is an event, and through all that happens at it; to t_max at most, which
+ * is not over. *event (NULL: unwanted) is the first of that instant, body1 -1 where none came by t_max; the recorder
+ * (NULL: nowhere) gets every row on the way. Its words live until the next step. Returns as impact_scene_run_to to the
+ * event's time does, and changes no more bits than that: none. */
+IMPACT_API impact_status impact_scene_step(impact_scene *scene, double t_max, const impact_recorder *recorder,
+                                           impact_event *event);
+
+/* Contacts held now, with the forces that hold them now, those of resting bodies too; fills up to `room` of them (held
+ * may be NULL for 0) and returns how many there are, in the order of no promise but the same for the same scene; below
+ * 0 a status: IMPACT_ENOMEM, or IMPACT_EDOMAIN where a custom force refuses. Where reactions are not unique it is one
+ * choice of them. Before a run begins nothing is held. Changes no bit of the motion. */
+IMPACT_API int impact_scene_held(const impact_scene *scene, impact_held *held, int room);
+
 /* The last message, with numbers; "" when there was none. */
 IMPACT_API const char *impact_scene_message(const impact_scene *scene);
 IMPACT_API double impact_scene_time(const impact_scene *scene);

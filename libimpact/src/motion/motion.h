@@ -113,6 +113,10 @@ imp_works imp_motion_works(const imp_motion *motion, double t);
 /* The states at t, in the last step, with the held contacts put back exactly; nothing else changes. */
 impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states);
 
+/* What is held at t, where the states are, with the reactions that hold then: touches has room for persist.count.
+ * Nothing else changes. */
+impact_status imp_motion_touches(imp_motion *motion, double t, const imp_state *states, imp_touch *touches);
+
 /* Nothing but gravity and damping acts, and nothing is held: the motion is in closed form. */
 bool imp_motion_is_ballistic(const imp_motion *motion);
 

@@ -592,3 +592,19 @@ impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states)
     restore_contacts(motion);
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }
+
+impact_status imp_motion_touches(imp_motion *motion, double t, const imp_state *states, imp_touch *touches)
+{
+    imp_persist *persist = &motion->persist;
+    const impact_usage usage = motion->world->usage;
+    const bool lenient = persist->lenient, redundant = persist->redundant;
+    if (persist->count == 0) return IMPACT_OK;
+    if (!keep_contacts(motion)) return IMPACT_ENOMEM;
+    const bool loaded = imp_motion_load(motion, t, states);
+    if (loaded) imp_persist_solve(persist, motion->world, states, motion->loads);
+    memcpy(touches, persist->touches, sizeof *touches * (size_t)persist->count);
+    restore_contacts(motion);
+    persist->lenient = lenient, persist->redundant = redundant;
+    motion->world->usage = usage;
+    return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
+}

@@ -454,6 +454,17 @@ static bool is_touched(const imp_pile *pile, const imp_world *world, int body, i
     return false;
 }
 
+/* The reactions that balance the loads of those that were gathered last. */
+static void remember_rest(imp_pile *pile, int count)
+{
+    for (int c = 0; c < count; c++) {
+        imp_pile_memory *m = &pile->memory[0][pile->pair_of[c]];
+        *m = (imp_pile_memory){.active = true};
+        for (int k = 0; k < 3; k++)
+            m->reaction = qvec3_axpy(pile->r[3 * c + k], pile->contacts[c].axes[k], m->reaction);
+    }
+}
+
 bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed)
 {
     if (!reserve_bodies(pile, world) || !imp_field_loads(world, t, states, pile->loads)) return false;
@@ -472,6 +483,7 @@ bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state 
         const imp_rest_outcome outcome = imp_rest_solve(world, states, pile->contacts, pile->friction, count,
                                                         pile->loads, &pile->rest, pile->r, pile->velocities);
         if (outcome.status != IMP_REST_RESTS) return false;
+        remember_rest(pile, count);
     }
     return true;
 }

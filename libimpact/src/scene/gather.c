@@ -211,7 +211,8 @@ double imp_gather_energy_outside(impact_scene *scene, const imp_island *island, 
 {
     for (int i = 0; i < island->world.body_count; i++)
         imp_account_set(&scene->account, island->world.bodies[i].index, 0);
-    return scene->recorder && scene->recorder->event ? imp_scene_energy_beside(scene, island, t) : 0;
+    const bool told = scene->first_event || (scene->recorder && scene->recorder->event);
+    return told ? imp_scene_energy_beside(scene, island, t) : 0;
 }
 
 /* The members' islands to the time t; their held contacts join those that touch. */

@@ -163,6 +163,18 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     return status;
 }
 
+impact_status impact_scene_step(impact_scene *scene, double t_max, const impact_recorder *recorder, impact_event *event)
+{
+    impact_event unwanted;
+    scene->first_event = event ? event : &unwanted;
+    *scene->first_event = (impact_event){.t = t_max, .body1 = -1, .body2 = -1, .name1 = "", .name2 = "", .phases = ""};
+    scene->one_event = true;
+    const impact_status status = impact_scene_run_to(scene, t_max, recorder);
+    scene->one_event = false;
+    scene->first_event = NULL;
+    return status;
+}
+
 impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder)
 {
     return impact_scene_run_to(scene, fmax(scene->duration, scene->t), recorder);

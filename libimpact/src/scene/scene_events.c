@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_events.h"
 
+#include <stdio.h>
 #include <string.h>
 
 double imp_scene_total_energy(const imp_island *island) { return imp_island_energy(island); }
@@ -38,24 +39,38 @@ static impact_status record_rows(imp_island *island, int body1, int body2, const
     return status == IMPACT_OK ? record_row(island, body2, states) : status;
 }
 
+/* The first event of a run that is to end with it; its words live as long as the scene. */
+static void keep_first(impact_scene *scene, const impact_event *event)
+{
+    *scene->first_event = *event;
+    snprintf(scene->first_phases, sizeof scene->first_phases, "%s", event->phases);
+    scene->first_event->phases = scene->first_phases;
+    scene->first_event = NULL;
+}
+
 /* The event as the caller knows its bodies, with the energy of those elsewhere. */
 static void record_event(const imp_island *island, const impact_event *event)
 {
-    const impact_recorder *recorder = island->scene->recorder;
-    if (!recorder->event) return;
+    impact_scene *scene = island->scene;
+    const impact_recorder *recorder = scene->recorder;
+    if (!scene->first_event && !(recorder && recorder->event)) return;
     impact_event told = *event;
     told.body1 = island->world.bodies[event->body1].index;
     if (event->body2 >= 0) told.body2 = island->world.bodies[event->body2].index;
     told.energy_before += island->outside;
     told.energy_after += island->outside;
-    if (!recorder->event(recorder->context, &told)) island->scene->refused = true;
+    if (scene->first_event) keep_first(scene, &told);
+    if (recorder && recorder->event && !recorder->event(recorder->context, &told)) scene->refused = true;
 }
 
 impact_status imp_scene_record(imp_island *island, const impact_event *event)
 {
     island->world.usage.events[event->kind]++;
     island->scene->event_count++;
-    if (!island->scene->recorder) return IMPACT_OK;
+    if (!island->scene->recorder) {
+        record_event(island, event);
+        return IMPACT_OK;
+    }
     const int other = event->kind == IMPACT_EVENT_FORCE ? -1 : event->body2;
     impact_status status = record_rows(island, event->body1, other, island->before);
     if (status == IMPACT_OK) record_event(island, event);

@@ -66,6 +66,9 @@ struct impact_scene {
     const impact_recorder *recorder; /* of the run under way */
     impact_status stop;              /* why it refused to go on */
     bool refused;                    /* it did not take a row of the instant at hand */
+    bool one_event;                  /* the run ends with the first instant that has an event: */
+    impact_event *first_event;       /* where that goes, its phases here; or NULL */
+    char first_phases[128];
     struct imp_scene_keys *keys;     /* while a run with keys is under way */
     double energy_start, key_tolerance;
     char message[512];

@@ -157,6 +157,7 @@ static void begin_samples(impact_scene *scene)
 impact_status imp_scene_go_on(impact_scene *scene, double t_end)
 {
     impact_status status = IMPACT_OK;
+    const long events = scene->event_count;
     scene->refused = false;
     if (!scene->begun) {
         imp_field_locate(&scene->world, scene->t, scene->states, true);
@@ -167,6 +168,7 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end)
     if (status == IMPACT_OK && scene->refused) status = IMPACT_ESINK;
     while (status == IMPACT_OK) {
         const double t = imp_queue_time(&scene->queue);
+        if (scene->one_event && scene->event_count > events) t_end = scene->t; /* with all else of that instant */
         if (scene->moving == 0 && scene->movable > 0 && !scene->unsteady) return IMPACT_AT_REST;
         if (t > t_end) break;
         if (scene->event_count >= scene->max_events) {

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is held now, and by which forces: of islands that an integrator moves the reactions are solved for at the
+ * scene's time, of piles they are those of the step at hand, or those that proved its rest.
+ */
+#include "base/floats.h"
+#include "scene/scene_internal.h"
+#include "world/world_gap.h"
+
+#include <string.h>
+
+/* Rows go to the first `room` places, and are counted beyond. */
+typedef struct held_rows {
+    impact_held *held;
+    int room, count;
+} held_rows;
+
+static void add_row(held_rows *rows, const impact_held *row)
+{
+    if (rows->count < rows->room) rows->held[rows->count] = *row;
+    rows->count++;
+}
+
+static impact_held row_of(const imp_island *island, double t, const imp_touch *touch)
+{
+    const imp_body *bodies = island->world.bodies;
+    return (impact_held){.t = t,
+                         .body1 = bodies[touch->body1].index,
+                         .body2 = bodies[touch->body2].index,
+                         .mode = touch->mode == IMP_ROLL ? IMPACT_HOLD_STICK : IMPACT_HOLD_SLIP,
+                         .point = qvec3_add(island->motion.sampled[touch->body1].x, touch->r1),
+                         .normal = touch->normal,
+                         .force = touch->force};
+}
+
+static impact_status exact_rows(imp_island *island, double t, held_rows *rows)
+{
+    const size_t count = (size_t)island->motion.persist.count;
+    imp_touch *touches = imp_arena_take(island->world.arena, count + 1, sizeof *touches);
+    if (!touches) return IMPACT_ENOMEM;
+    const impact_status status = imp_motion_touches(&island->motion, t, island->motion.sampled, touches);
+    for (size_t c = 0; status == IMPACT_OK && c < count; c++) {
+        const impact_held row = row_of(island, t, &touches[c]);
+        add_row(rows, &row);
+    }
+    imp_arena_give(island->world.arena, touches);
+    return status;
+}
+
+/* What a pile's last step held, where its bodies are now. */
+static void pile_rows(imp_island *island, double t, held_rows *rows)
+{
+    imp_world *world = &island->world;
+    const impact_usage usage = world->usage;
+    for (int p = 0; p < world->pair_count; p++) {
+        if (!imp_pile_holds(island->pile, p)) continue;
+        imp_pair pair = world->pairs[p]; /* what is found does not touch the run */
+        const imp_pile_memory *memory = &island->pile->memory[0][p];
+        impact_contact contact;
+        imp_world_gap(world, &pair, island->motion.sampled, &contact);
+        const qvec3 u = memory->velocity, along = qvec3_axpy(-qvec3_dot(u, contact.normal), contact.normal, u);
+        const bool slips = pair.friction == 0 || qvec3_norm(along) > world->slip_speed;
+        const impact_held row = {.t = t,
+                                 .body1 = world->bodies[pair.body1].index,
+                                 .body2 = world->bodies[pair.body2].index,
+                                 .mode = slips ? IMPACT_HOLD_SLIP : IMPACT_HOLD_STICK,
+                                 .point = qvec3_add(island->motion.sampled[pair.body1].x, contact.offset1),
+                                 .normal = contact.normal,
+                                 .force = memory->reaction};
+        add_row(rows, &row);
+    }
+    world->usage = usage;
+}
+
+int impact_scene_held(const impact_scene *scene, impact_held *held, int room)
+{
+    const imp_floats floats = imp_floats_hold();
+    held_rows rows = {held, room, 0};
+    impact_status status = IMPACT_OK;
+    for (int k = 0; status == IMPACT_OK && k < scene->island_count; k++) {
+        imp_island *island = scene->islands[k];
+        if (!island) continue;
+        status = imp_island_look(island, scene->t);
+        if (status != IMPACT_OK) break;
+        if (island->stepped)
+            pile_rows(island, scene->t, &rows);
+        else
+            status = exact_rows(island, scene->t, &rows);
+    }
+    imp_floats_give_back(&floats);
+    return status == IMPACT_OK ? rows.count : (int)status;
+}
