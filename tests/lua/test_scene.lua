@@ -27,7 +27,7 @@ do
       check.equal(event.t, events[k].t)
       check.equal(event.event, events[k].event)
       check.equal(event.phases, events[k].phases)
-      check.equal(reason, event.event == "contact" and "at rest" or "end of time")
+      check.equal(reason, event.t == events[#events].t and "at rest" or "end of time")
     end
   end
   local held = scene:held()

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/gather.h"
 #include "scene/islands.h"
+#include "scene/scene_events.h"
 #include "scene/scene_keys.h"
 #include "scene/stepped.h"
 #include "world/world_gap.h"
@@ -211,8 +212,7 @@ double imp_gather_energy_outside(impact_scene *scene, const imp_island *island, 
 {
     for (int i = 0; i < island->world.body_count; i++)
         imp_account_set(&scene->account, island->world.bodies[i].index, 0);
-    const bool told = scene->first_event || (scene->recorder && scene->recorder->event);
-    return told ? imp_scene_energy_beside(scene, island, t) : 0;
+    return imp_scene_tells_events(island) ? imp_scene_energy_beside(scene, island, t) : 0;
 }
 
 /* The members' islands to the time t; their held contacts join those that touch. */

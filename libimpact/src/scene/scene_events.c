@@ -39,6 +39,12 @@ static impact_status record_rows(imp_island *island, int body1, int body2, const
     return status == IMPACT_OK ? record_row(island, body2, states) : status;
 }
 
+bool imp_scene_tells_events(const imp_island *island)
+{
+    const impact_scene *scene = island->scene;
+    return scene->first_event || (scene->recorder && scene->recorder->event);
+}
+
 /* The first event of a run that is to end with it; its words live as long as the scene. */
 static void keep_first(impact_scene *scene, const impact_event *event)
 {
@@ -53,7 +59,7 @@ static void record_event(const imp_island *island, const impact_event *event)
 {
     impact_scene *scene = island->scene;
     const impact_recorder *recorder = scene->recorder;
-    if (!scene->first_event && !(recorder && recorder->event)) return;
+    if (!imp_scene_tells_events(island)) return;
     impact_event told = *event;
     told.body1 = island->world.bodies[event->body1].index;
     if (event->body2 >= 0) told.body2 = island->world.bodies[event->body2].index;
@@ -77,11 +83,6 @@ impact_status imp_scene_record(imp_island *island, const impact_event *event)
     if (status == IMPACT_OK) status = record_rows(island, event->body1, other, island->states);
     memcpy(island->before, island->states, sizeof *island->states * (size_t)island->world.body_count);
     return status;
-}
-
-bool imp_scene_tells_events(const imp_island *island)
-{
-    return island->scene->recorder && island->scene->recorder->event;
 }
 
 static double energy_told(const imp_island *island)
