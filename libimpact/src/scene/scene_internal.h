@@ -69,7 +69,7 @@ struct impact_scene {
     bool one_event;                  /* the run ends with the first instant that has an event: */
     impact_event *first_event;       /* where that goes, its phases here; or NULL */
     char first_phases[128];
-    struct imp_scene_keys *keys;     /* while a run with keys is under way */
+    struct imp_scene_keys *keys; /* while a run with keys is under way */
     double energy_start, key_tolerance;
     char message[512];
 };
