@@ -30,13 +30,12 @@ static void unchanged(const impact_collision *collision, impact_outcome *outcome
     outcome->conditioning = value;
 }
 
-/* A tangential velocity below this is what is left of larger ones that cancel: the contact rolls, and starts from u_t =
- * 0. */
-static double rounding_of_velocity(const imp_ready *ready)
+/* The size of the terms that the contact points' velocities are sums of. */
+static double size_of_velocity(const imp_ready *ready)
 {
     const imp_lanes each =
         imp_vectors_size(&ready->velocity) + imp_vectors_size(&ready->omega) * imp_vectors_size(&ready->arm);
-    return DBL_MIN + 0x1p-51 * (each[0] + each[1]);
+    return each[0] + each[1];
 }
 
 static impact_status fail(const impact_collision *collision, impact_outcome *outcome, impact_status status)
@@ -105,11 +104,12 @@ static impact_status finish(const impact_collision *collision, impact_status sta
     return finite ? status : fail(collision, outcome, IMPACT_EDOMAIN);
 }
 
-/* |t|, how fast the contact points slide; 0 where that is but rounding. */
-static double sliding_speed(const imp_ready *ready, qvec3 t)
+/* |t|, how fast the contact points slide. What is left of larger velocities that cancel is 0: the contact rolls, and
+ * starts from u_t = 0. */
+static double sliding_speed(double size, qvec3 t)
 {
     const double s2 = qvec3_dot(t, t), s = s2 > DBL_MIN && s2 < DBL_MAX ? sqrt(s2) : qvec3_norm(t);
-    return s > rounding_of_velocity(ready) ? s : 0;
+    return s > DBL_MIN + 0x1p-51 * size ? s : 0;
 }
 
 /* ---- one answer, and whether it stands ---- */
@@ -118,8 +118,8 @@ static double sliding_speed(const imp_ready *ready, qvec3 t)
 typedef struct meeting {
     const impact_collision *collision;
     imp_ready ready;
-    qvec3 n, u, t; /* t: u across n */
-    double approach, s;
+    qvec3 n, u, t;            /* t: u across n */
+    double approach, s, size; /* size: of the velocities' terms */
     bool checks;
 } meeting;
 
@@ -154,21 +154,34 @@ static double allowed(const impact_collision *collision, const impact_outcome *o
     return IMP_COLLIDE_RECEIPT * imp_cvode_tolerance(collision->workspace) / DBL_EPSILON;
 }
 
-/* Finite, and the contact gave no more work than it took, if the law has it so; whatever the receipt says. */
-static bool is_sane(const impact_collision *collision, const impact_outcome *o)
+/* Whether the contact gave no more work than it took, if the law has it so; of `most` eps. */
+static bool gains_nothing(const impact_collision *collision, const impact_outcome *o, double works, double most)
 {
     const bool may_gain = collision->law == IMPACT_NEWTON || collision->restitution > 1;
-    const double works = o->work_compression + o->work_restitution + o->work_friction;
-    const double most = may_gain ? INFINITY : allowed(collision, o) * DBL_EPSILON * -o->work_compression;
-    return isfinite(o->energy_after) && isfinite(works) && works <= most;
+    return may_gain ? works < INFINITY : works <= most * DBL_EPSILON * -o->work_compression;
 }
 
-/* Closed forms are looked at briefly where the conditioning cannot bring rounding to what is allowed. */
+/* Finite, and without gain; whatever the receipt says. */
+static bool is_sane(const impact_collision *collision, const impact_outcome *o)
+{
+    const double works = o->work_compression + o->work_restitution + o->work_friction;
+    return imp_is_finite(works + o->energy_after) && gains_nothing(collision, o, works, allowed(collision, o));
+}
+
+/* Closed forms are looked at briefly where the conditioning (1 at least) cannot bring rounding to what is allowed. Over
+ * that: at most 1 passes, and what is not finite does not. */
+static double look_briefly(const meeting *m, impact_outcome *outcome)
+{
+    double works;
+    const double worst = imp_receipt_brief(&m->ready, m->n, m->size, outcome, &works);
+    if (!gains_nothing(m->collision, outcome, works, IMP_COLLIDE_RECEIPT)) return INFINITY;
+    outcome->error = DBL_EPSILON * imp_larger(worst, 1) * outcome->conditioning;
+    return worst * (1 / IMP_COLLIDE_RECEIPT);
+}
+
 static double worst_of(const meeting *m, const impact_outcome *outcome)
 {
     impact_receipt receipt;
-    if (outcome->solver == IMPACT_SOLVER_CLOSED_FORM && outcome->conditioning <= IMP_COLLIDE_BRIEF)
-        return imp_receipt_brief(&m->ready, m->n, outcome);
     const double worst = imp_receipt_make(m->collision, outcome, &receipt), most = allowed(m->collision, outcome);
     if (outcome->solver == IMPACT_SOLVER_CVODE) return receipt.energy <= most ? worst : INFINITY;
     /* A NaN is no receipt, and imp_larger would drop it. Energy is held to a hundredth of the rest. */
@@ -178,8 +191,10 @@ static double worst_of(const meeting *m, const impact_outcome *outcome)
 /* The receipt's worst over what is allowed: at most 1 passes. */
 static double look(const meeting *m, impact_outcome *outcome)
 {
+    if (!m->checks) return is_sane(m->collision, outcome) ? 0 : INFINITY;
+    if (outcome->solver == IMPACT_SOLVER_CLOSED_FORM && outcome->conditioning <= IMP_COLLIDE_BRIEF)
+        return look_briefly(m, outcome);
     if (!is_sane(m->collision, outcome)) return INFINITY;
-    if (!m->checks) return 0;
     const double worst = worst_of(m, outcome);
     /* Of 113 bits, double's 53 are what remains of a conditioning of 2^60. */
     const double spread = outcome->conditioning * (outcome->second ? 0x1p-60 : 1);
@@ -252,7 +267,8 @@ static void meet(const impact_collision *collision, bool checks, meeting *m)
     m->approach = qvec3_dot(m->u, m->n);
     /* At right angles to n however small it is beside u. */
     m->t = qvec3_cross(m->n, qvec3_cross(m->u, m->n));
-    m->s = sliding_speed(&m->ready, m->t);
+    m->size = size_of_velocity(&m->ready);
+    m->s = sliding_speed(m->size, m->t);
 }
 
 /* In units in which the numbers are near 1. A friction law knows its own. */

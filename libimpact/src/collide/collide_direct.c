@@ -63,13 +63,31 @@ static inline void add_phase(const phase_list *list, impact_phase phase, double 
     o->phases[o->phase_count++] = (unsigned char)phase;
 }
 
+/* The last one ends with the whole impulse. */
+static inline void end_phase(impact_outcome *o, impact_phase phase)
+{
+    o->phase_impulse[o->phase_count] = o->impulse;
+    o->phases[o->phase_count++] = (unsigned char)phase;
+}
+
 static void list_phases(const phase_list *list, const friction *f, bool slides, double mu, double p_c, double p)
 {
-    const double stop = f->holds ? f->impulse / mu : p;
-    if (slides) add_phase(list, IMPACT_SLIP_C, f->holds_soon ? stop : p_c, f->holds_soon ? f->impulse : mu * p_c);
-    if (f->holds_soon) add_phase(list, IMPACT_STICK_C, p_c, f->impulse);
-    if (p > p_c && !f->holds_soon) add_phase(list, IMPACT_SLIP_R, stop, f->impulse);
-    if (p > p_c && f->holds) add_phase(list, IMPACT_STICK_R, p, f->impulse);
+    const bool restores = p > p_c;
+    impact_outcome *o = list->outcome;
+    o->phase_count = 0;
+    if (slides && f->holds_soon)
+        add_phase(list, IMPACT_SLIP_C, f->impulse / mu, f->impulse);
+    else if (slides && restores)
+        add_phase(list, IMPACT_SLIP_C, p_c, mu * p_c);
+    if (!restores) {
+        end_phase(o, f->holds_soon ? IMPACT_STICK_C : IMPACT_SLIP_C);
+        return;
+    }
+    if (f->holds_soon)
+        add_phase(list, IMPACT_STICK_C, p_c, f->impulse);
+    else if (f->holds)
+        add_phase(list, IMPACT_SLIP_R, f->impulse / mu, f->impulse);
+    end_phase(o, f->holds ? IMPACT_STICK_R : IMPACT_SLIP_R);
 }
 
 bool imp_direct_solve(const impact_collision *collision, const imp_ready *ready, qvec3 n, qvec3 t, double s,
@@ -97,7 +115,6 @@ bool imp_direct_solve(const impact_collision *collision, const imp_ready *ready,
     outcome->work_restitution = back;
     outcome->work_friction = rubs ? f.work : 0;
     outcome->compressions = 1;
-    outcome->phase_count = 0;
     list_phases(&list, &f, smooth || s > 0, collision->friction, p_c, p);
     outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
     outcome->conditioning = smooth ? 1 : diagonal_conditioning(l / w);

@@ -285,19 +285,19 @@ double impact_collide_receipt(const impact_collision *collision, const impact_ou
     return imp_receipt_make(&scaled, &its, receipt);
 }
 
-double imp_receipt_brief(const imp_ready *ready, qvec3 n, const impact_outcome *outcome)
+double imp_receipt_brief(const imp_ready *ready, qvec3 n, double size, const impact_outcome *outcome, double *works)
 {
     const impact_outcome *o = outcome;
     const imp_vectors v = imp_vectors_of(o->velocity[0], o->velocity[1]), w = imp_vectors_of(o->omega[0], o->omega[1]);
-    const imp_vectors turn = imp_vectors_cross(&w, &ready->arm), normal = imp_vectors_of(n, n);
-    const imp_lanes sizes = imp_vectors_size(&v) + imp_vectors_size(&turn);
-    const imp_lanes each = imp_vectors_dot(&v, &normal) + imp_vectors_dot(&turn, &normal);
-    const double size = sizes[0] + sizes[1] - o->normal_before, un = each[0] - each[1];
-    const double works = o->work_compression + o->work_restitution + o->work_friction;
+    const imp_vectors turn = imp_vectors_cross(&w, &ready->arm), u = {v.x + turn.x, v.y + turn.y, v.z + turn.z};
+    const imp_lanes each = n.x * u.x + n.y * u.y + n.z * u.z;
+    const double un = each[0] - each[1];
+    *works = o->work_compression + o->work_restitution + o->work_friction;
     /* The work of a static body that moves; the impulse on body 1, its opposite on body 2. */
-    const imp_vectors u = {v.x + turn.x, v.y + turn.y, v.z + turn.z}, P = imp_vectors_of(o->impulse, o->impulse);
-    const imp_lanes drives = imp_lanes_where(ready->mass == 0, imp_vectors_dot(&P, &u));
-    const double drive = drives[1] - drives[0], all = o->energy_before + o->energy_after + fabs(drive);
-    const double energy = fabs(o->energy_after - o->energy_before - works - drive) / all;
+    double drive = 0;
+    if (ready->mass[1] == 0) drive = o->impulse.x * u.x[1] + o->impulse.y * u.y[1] + o->impulse.z * u.z[1];
+    if (ready->mass[0] == 0) drive = -(o->impulse.x * u.x[0] + o->impulse.y * u.y[0] + o->impulse.z * u.z[0]);
+    const double all = o->energy_before + o->energy_after + fabs(drive);
+    const double energy = fabs(o->energy_after - o->energy_before - *works - drive) / all;
     return (fabs(un - o->normal_after) / size + energy) / DBL_EPSILON;
 }
