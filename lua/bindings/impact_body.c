@@ -138,17 +138,32 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
     def->angular_damping = quat_lua_get_number(&reader, "angular_damping", QUAT_LUA_BELOW_ONE, def->angular_damping);
 }
 
-static int read_new(lua_State *L)
+/* What is read is a copy that no finaliser of the script's can reach: the collector need not rest, which would make it
+ * begin anew with each of many bodies. */
+static void push_copy(lua_State *L, int table)
 {
-    impact_body_def def;
-    lua_settop(L, 1);
-    impact_lua_read_body(L, 1, NULL, &def);
-    impact_lua_mark(L, 1, BODY);
-    return 1;
+    lua_newtable(L);
+    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+        lua_pushvalue(L, -2);
+        lua_pushvalue(L, -2);
+        lua_rawset(L, -5);
+    }
 }
 
 /* body{name=, shape=, ...}: the same table, checked. */
-static int body_new(lua_State *L) { return quat_lua_quietly(L, read_new); }
+static int body_new(lua_State *L)
+{
+    impact_body_def def;
+    lua_settop(L, 1);
+    if (lua_istable(L, 1))
+        push_copy(L, 1);
+    else
+        lua_pushvalue(L, 1);
+    impact_lua_read_body(L, 2, NULL, &def);
+    impact_lua_mark(L, 1, BODY);
+    lua_settop(L, 1);
+    return 1;
+}
 
 void impact_lua_open_body(lua_State *L)
 {

@@ -4,6 +4,7 @@
  */
 #include "impact_scene.h"
 
+#include <limits.h>
 #include <stdio.h>
 
 static const char *const rule_words[] = {"product", "geometric_mean", "minimum", "maximum", NULL};
@@ -24,7 +25,7 @@ static int push_list(const quat_lua_reader *reader, const char *key)
             quat_lua_reader_error(reader, "%s must be a list, without names for its members", key);
         count++;
     }
-    if (count != length || length > 100000) quat_lua_reader_error(reader, "%s must be a list without holes", key);
+    if (count != length || length > INT_MAX) quat_lua_reader_error(reader, "%s must be a list without holes", key);
     return (int)length;
 }
 

@@ -92,6 +92,13 @@ local function refused_by_library(text, start)
   check.truth(said:find("\n") == #said, "one line")
 end
 refused_by_library(scene(good, "bodies = { floor, coin, coin },"), "impact: script.lua:")
+-- A crowd is a list like any other, whatever its length; and each of its names is looked at.
+refused_by_library([[
+local impact = require "impact"
+local coin, bodies = impact.body { name = "coin", shape = impact.sphere(1) }, {}
+for i = 1, 200000 do bodies[i] = coin end
+impact.scene { name = "crowd", duration = 1, bodies = bodies }]],
+  "impact: script.lua:2: body 'coin': the name is taken by another body")
 refused_by_library(scene(good, "forces = { impact.wind { strength = 1, body = 'cone' } },"), "impact: script.lua:6: ")
 refused_by_library(scene(good, "pairs = { { bodies = { 'coin', 'cone' } } },"), "impact: script.lua:6: ")
 refused_by_library(scene("shape = impact.plane(), static = false,"), "impact: script.lua:2: body 'coin': ")

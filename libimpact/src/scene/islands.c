@@ -58,6 +58,7 @@ void imp_islands_release(imp_island *island)
     imp_islands_give_account(island);
     if (island->number >= 0) {
         scene->islands[island->number] = NULL;
+        if (island->number < scene->first_free) scene->first_free = island->number;
         imp_queue_set(&scene->queue, imp_scene_island_slot(scene, island->number), INFINITY);
     }
     island->number = -1;
@@ -68,7 +69,7 @@ impact_status imp_islands_number(imp_island *island)
 {
     impact_scene *scene = island->scene;
     if (island->number >= 0) return IMPACT_OK;
-    int number = 0;
+    int number = scene->first_free;
     while (number < scene->island_count && scene->islands[number]) number++;
     if (number == scene->island_count) {
         imp_island **islands =
@@ -79,6 +80,7 @@ impact_status imp_islands_number(imp_island *island)
         scene->island_count++;
     }
     scene->islands[number] = island;
+    scene->first_free = number + 1;
     island->number = number;
     return IMPACT_OK;
 }

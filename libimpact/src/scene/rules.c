@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/rules.h"
-#include "scene/scene_check.h"
 
 #include <stdlib.h>
 
@@ -12,14 +11,14 @@ static int by_rule_bodies(const void *a, const void *b)
     return (x->order > y->order) - (x->order < y->order);
 }
 
-impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_scene_def *def)
+impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_scene_def *def, const imp_names *names)
 {
     *rules = (imp_rules){.friction = def->friction_rule,
                          .restitution = def->restitution_rule,
                          .own = imp_arena_take(arena, (size_t)def->pair_count, sizeof *rules->own)};
     if (!rules->own) return IMPACT_ENOMEM;
     for (int k = 0; k < def->pair_count; k++) {
-        const int i = imp_scene_def_find(def, def->pairs[k].body1), j = imp_scene_def_find(def, def->pairs[k].body2);
+        const int i = imp_names_find(names, def->pairs[k].body1), j = imp_names_find(names, def->pairs[k].body2);
         rules->own[rules->own_count++] =
             (imp_own_rule){i < j ? i : j, i < j ? j : i, k, def->pairs[k].friction, def->pairs[k].restitution};
     }

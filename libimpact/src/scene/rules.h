@@ -6,6 +6,7 @@
 #define IMP_RULES_H
 
 #include <impact/scene.h>
+#include "scene/names.h"
 #include "world/world.h"
 
 typedef struct imp_own_rule {
@@ -20,7 +21,7 @@ typedef struct imp_rules {
     int own_count;
 } imp_rules;
 
-impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_scene_def *def);
+impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_scene_def *def, const imp_names *names);
 
 /* An open pair of the world's bodies i and j: one that moves first, else as the definition has them. */
 imp_pair imp_rules_pair(const imp_rules *rules, const imp_world *world, int i, int j);

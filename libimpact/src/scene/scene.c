@@ -64,11 +64,15 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
                      "the processor flushes small numbers to zero (FTZ or DAZ): switch that off");
         return IMPACT_EDOMAIN;
     }
-    impact_status status = imp_scene_check(def, message, message_size);
-    if (status != IMPACT_OK) return status;
     impact_scene *scene;
-    status = open_memory(def, &scene, message, message_size);
+    impact_status status = open_memory(def, &scene, message, message_size);
     if (status != IMPACT_OK) return status;
+    status = imp_scene_check(def, scene->world.arena, &scene->names, message, message_size);
+    if (status != IMPACT_OK) {
+        if (status == IMPACT_ENOMEM && message) imp_arena_explain(scene->world.arena, message, message_size);
+        impact_scene_destroy(scene);
+        return status;
+    }
     scene->duration = def->duration;
     scene->law = def->law;
     scene->compliance = def->compliance;
@@ -186,12 +190,7 @@ const char *impact_scene_name(const impact_scene *scene) { return scene->name; }
 
 double impact_scene_time(const impact_scene *scene) { return scene->t; }
 
-int impact_scene_find(const impact_scene *scene, const char *body)
-{
-    for (int i = 0; i < scene->world.body_count; i++)
-        if (strcmp(scene->world.bodies[i].name, body) == 0) return i;
-    return -1;
-}
+int impact_scene_find(const impact_scene *scene, const char *body) { return imp_names_find(&scene->names, body); }
 
 impact_status impact_scene_body(const impact_scene *scene, int body, impact_sample *sample)
 {

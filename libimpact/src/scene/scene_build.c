@@ -8,9 +8,9 @@
 /* Three equal moments, but for the rounding of the formulas that gave them. */
 static bool equal_moments(qvec3 m) { return fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x; }
 
-static bool build_body(imp_arena *arena, const impact_body_def *def, imp_body *body, imp_state *state)
+static void build_body(const impact_body_def *def, char *name, imp_body *body, imp_state *state)
 {
-    *body = (imp_body){.name = imp_arena_copy(arena, def->name),
+    *body = (imp_body){.name = name,
                        .shape = def->shape,
                        .is_static = def->is_static,
                        .mass = INFINITY,
@@ -26,7 +26,7 @@ static bool build_body(imp_arena *arena, const impact_body_def *def, imp_body *b
     body->shifted = imp_scene_shape_stands_aside(def);
     if (body->is_static) {
         imp_drive_make(def, body);
-        return body->name != NULL;
+        return;
     }
     body->mass = imp_scene_body_mass(def, &body->moments);
     body->inverse_mass = 1 / body->mass;
@@ -34,7 +34,6 @@ static bool build_body(imp_arena *arena, const impact_body_def *def, imp_body *b
     body->spherical = equal_moments(body->moments);
     state->v = def->velocity;
     state->momentum = imp_inertia(body, state->q, def->omega);
-    return body->name != NULL;
 }
 
 static double *copy_times(imp_arena *arena, const impact_force_def *def)
@@ -45,14 +44,14 @@ static double *copy_times(imp_arena *arena, const impact_force_def *def)
     return times;
 }
 
-static impact_status build_fields(imp_world *world, const impact_scene_def *def)
+static impact_status build_fields(imp_world *world, const impact_scene_def *def, const imp_names *names)
 {
     world->fields = imp_arena_take(world->arena, (size_t)def->force_count + 1, sizeof *world->fields);
     if (!world->fields) return IMPACT_ENOMEM;
     for (int k = 0; k < def->force_count; k++) {
         imp_field *field = &world->fields[world->field_count++];
         field->def = def->forces[k];
-        field->only = def->forces[k].body ? imp_scene_def_find(def, def->forces[k].body) : -1;
+        field->only = imp_names_find(names, def->forces[k].body);
         field->def.body = NULL;
         if (field->def.kind == IMPACT_FORCE_WIND) {
             const qvec3 d = field->def.direction;
@@ -84,7 +83,7 @@ static impact_status build_bodies(impact_scene *scene, const impact_scene_def *d
         imp_body *body = &world->bodies[i];
         world->body_count++;
         scene->root[i] = -1;
-        if (!build_body(arena, &def->bodies[i], body, &scene->states[i])) return IMPACT_ENOMEM;
+        build_body(&def->bodies[i], scene->names.names[i], body, &scene->states[i]);
         body->index = i;
         world->driven = world->driven || body->driven;
         scene->movable += !body->is_static;
@@ -104,9 +103,9 @@ impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
     world->flat_height = IMP_LYING_OF_REST_HEIGHT * def->rest_height;
     scene->queue.arena = world->arena;
     impact_status status = build_bodies(scene, def);
-    if (status == IMPACT_OK) status = build_fields(world, def);
+    if (status == IMPACT_OK) status = build_fields(world, def, &scene->names);
     scene->unsteady = imp_field_unsteady(world);
-    if (status == IMPACT_OK) status = imp_rules_open(&scene->rules, world->arena, def);
+    if (status == IMPACT_OK) status = imp_rules_open(&scene->rules, world->arena, def, &scene->names);
     if (status == IMPACT_OK) status = imp_account_open(&scene->account, world->arena, def->body_count);
     if (status == IMPACT_OK && imp_queue_add(&scene->queue) < 0) status = IMPACT_ENOMEM;
     if (status == IMPACT_OK) status = imp_tracks_open(&scene->tracks, world, &scene->queue);

@@ -13,6 +13,7 @@ typedef struct check {
     size_t size;
     const char *kind, *name; /* "body", "coin" */
     impact_status status;
+    imp_names *names; /* of the bodies passed so far */
 } check;
 
 /* Every test below goes through here: the first failure is kept. */
@@ -38,16 +39,10 @@ static void require_vector(check *c, qvec3 v, const char *key)
     const double values[3] = {v.x, v.y, v.z};
     for (int i = 0; i < 3; i++) {
         char component[64];
+        if (isfinite(values[i])) continue;
         snprintf(component, sizeof component, "%s.%c", key, "xyz"[i]);
-        require(c, isfinite(values[i]), component, values[i], "must be finite");
+        require(c, false, component, values[i], "must be finite");
     }
-}
-
-int imp_scene_def_find(const impact_scene_def *def, const char *name)
-{
-    for (int i = 0; i < def->body_count; i++)
-        if (name && def->bodies[i].name && strcmp(def->bodies[i].name, name) == 0) return i;
-    return -1;
 }
 
 static void check_mass(check *c, const impact_body_def *body)
@@ -126,9 +121,10 @@ static void check_body(check *c, const impact_body_def *body)
     require_words(c, !refusal, refusal);
 }
 
-static void check_bodies(check *c, const impact_scene_def *def)
+static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena)
 {
     require(c, def->body_count >= 1 && def->bodies, "bodies", def->body_count, "a scene needs at least one body");
+    if (c->status == IMPACT_OK) c->status = imp_names_open(c->names, arena, def->body_count);
     for (int i = 0; c->status == IMPACT_OK && i < def->body_count; i++) {
         const impact_body_def *body = &def->bodies[i];
         char number[32];
@@ -138,8 +134,9 @@ static void check_bodies(check *c, const impact_scene_def *def)
         require_words(c, body->name && body->name[0] != '\0', "has no name");
         if (c->status != IMPACT_OK) return;
         c->name = body->name;
-        require_words(c, imp_scene_def_find(def, body->name) == i, "the name is taken by another body");
+        require_words(c, imp_names_find(c->names, body->name) < 0, "the name is taken by another body");
         check_body(c, body);
+        if (c->status == IMPACT_OK) c->status = imp_names_add(c->names, body->name);
     }
 }
 
@@ -163,12 +160,12 @@ static void check_custom(check *c, const impact_force_def *force)
     require(c, fits, "switch_period", force->switch_period, "is shorter than the switches in it");
 }
 
-static void check_force(check *c, const impact_scene_def *def, const impact_force_def *force)
+static void check_force(check *c, const impact_force_def *force)
 {
     char stranger[160];
     snprintf(stranger, sizeof stranger, "acts on body '%s', which the scene does not have",
              force->body ? force->body : "");
-    require_words(c, !force->body || imp_scene_def_find(def, force->body) >= 0, stranger);
+    require_words(c, !force->body || imp_names_find(c->names, force->body) >= 0, stranger);
     require(c, force->reach > 0, "reach", force->reach, "must be positive");
     switch (force->kind) {
     case IMPACT_FORCE_WIND:
@@ -192,9 +189,9 @@ static void check_force(check *c, const impact_scene_def *def, const impact_forc
     }
 }
 
-static void check_pair(check *c, const impact_scene_def *def, const impact_pair_def *pair)
+static void check_pair(check *c, const impact_pair_def *pair)
 {
-    const int i = imp_scene_def_find(def, pair->body1), j = imp_scene_def_find(def, pair->body2);
+    const int i = imp_names_find(c->names, pair->body1), j = imp_names_find(c->names, pair->body2);
     c->name = pair->body1 ? pair->body1 : "";
     require_words(c, i >= 0, "the scene has no such body");
     c->name = pair->body2 ? pair->body2 : "";
@@ -206,13 +203,15 @@ static void check_pair(check *c, const impact_scene_def *def, const impact_pair_
             pair->restitution, "must lie in [0, 1]");
 }
 
-impact_status imp_scene_check(const impact_scene_def *def, char *message, unsigned long message_size)
+impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp_names *names, char *message,
+                              unsigned long message_size)
 {
     check c = {.message = message,
                .size = message_size,
                .kind = "scene",
                .name = def->name ? def->name : "",
-               .status = IMPACT_OK};
+               .status = IMPACT_OK,
+               .names = names};
     require_vector(&c, def->gravity, "gravity");
     require(&c, isfinite(def->duration) && def->duration > 0, "duration", def->duration, "must be positive and finite");
     require(&c, isfinite(def->output_rate) && def->output_rate >= 0, "output_rate", def->output_rate,
@@ -239,15 +238,15 @@ impact_status imp_scene_check(const impact_scene_def *def, char *message, unsign
             def->friction_rule, "is no rule");
     require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule",
             def->restitution_rule, "is no rule");
-    check_bodies(&c, def);
+    check_bodies(&c, def, arena);
     for (int k = 0; c.status == IMPACT_OK && k < def->force_count; k++) {
         c.kind = "force";
         c.name = def->forces[k].name ? def->forces[k].name : "";
-        check_force(&c, def, &def->forces[k]);
+        check_force(&c, &def->forces[k]);
     }
     for (int k = 0; c.status == IMPACT_OK && k < def->pair_count; k++) {
         c.kind = "pair with";
-        check_pair(&c, def, &def->pairs[k]);
+        check_pair(&c, &def->pairs[k]);
     }
     return c.status;
 }

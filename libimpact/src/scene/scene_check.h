@@ -6,12 +6,11 @@
 #define IMP_SCENE_CHECK_H
 
 #include <impact/scene.h>
+#include "scene/names.h"
 
-/* IMPACT_OK, or a failure with its message. */
-impact_status imp_scene_check(const impact_scene_def *def, char *message, unsigned long message_size);
-
-/* Index of the named body of the definition, or -1. */
-int imp_scene_def_find(const impact_scene_def *def, const char *name);
+/* IMPACT_OK, with the bodies' names in the arena; or a failure with its message, but for IMPACT_ENOMEM. */
+impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp_names *names, char *message,
+                              unsigned long message_size);
 
 /* The mass of a body that moves, kg, and its principal moments, kg m^2: as given, or of the uniform solid. */
 double imp_scene_body_mass(const impact_body_def *body, qvec3 *moments);

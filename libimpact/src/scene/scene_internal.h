@@ -29,12 +29,13 @@
 struct impact_scene {
     char *name;
     imp_world world; /* all bodies and forces; pairs are the tracks' and the islands' */
+    imp_names names; /* of the bodies */
     imp_rules rules; /* coefficients of two bodies */
     imp_queue queue; /* slot 0: the samples; then the bodies; then the islands */
     imp_tracks tracks;
-    imp_island **islands; /* by their numbers; NULL: a number that is free */
-    int island_count, island_room;
-    imp_island **spares; /* islands without a number, to be used again */
+    imp_island **islands;                      /* by their numbers; NULL: a number that is free */
+    int island_count, island_room, first_free; /* no number below first_free is free */
+    imp_island **spares;                       /* islands without a number, to be used again */
     int spare_count, spare_room;
     int *members; /* scratch: the bodies of an encounter */
     int member_count;
