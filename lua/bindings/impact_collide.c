@@ -405,9 +405,13 @@ static int receipt(lua_State *L)
 
 void impact_lua_open_collide(lua_State *L)
 {
-    static const luaL_Reg functions[] = {{"collide", collide},         {"collide_many", impact_lua_collide_many},
-                                         {"collide_receipt", receipt}, {"collide_sensitivity", sensitivity},
-                                         {"flow", impact_lua_flow},    {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"collide", collide},
+                                         {"collide_many", impact_lua_collide_many},
+                                         {"collide_receipt", receipt},
+                                         {"collide_sensitivity", sensitivity},
+                                         {"collide_together", impact_lua_collide_together},
+                                         {"flow", impact_lua_flow},
+                                         {NULL, NULL}};
     static const luaL_Reg box_methods[] = {{"__gc", close_box}, {"__close", close_box}, {NULL, NULL}};
     luaL_newmetatable(L, workspace_kind);
     luaL_setfuncs(L, box_methods, 0);

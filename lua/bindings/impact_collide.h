@@ -24,6 +24,9 @@ const char *impact_lua_why_no_outcome(impact_status status);
 /* impact.flow{} */
 int impact_lua_flow(lua_State *L);
 
+/* impact.collide_together{} */
+int impact_lua_collide_together(lua_State *L);
+
 /* impact.collide_many{} */
 int impact_lua_collide_many(lua_State *L);
 

@@ -242,6 +242,28 @@ core.layer()
 ---@field t2 vec3
 ---@field normal vec3
 
+---@class impact.encounter  docs/together.md
+---@field bodies {name?: string, m?: number, J?: table, v?: vec3, w?: vec3}[]  as m1, J1, v1, w1 of an impact; without m: static
+---@field contacts {body1: integer, body2: integer, n: vec3, r1?: vec3, r2?: vec3, mu?: number, eps?: number, k?: number}[]  bodies from 1; k: stiffness (1)
+---@field law? "springs"|"moreau"|"sequence"  (springs)
+---@field exponent? number  of the springs, 1 to 3 (3/2)
+---@field restitution? "poisson"|"newton"|"stronge"  of the law sequence (poisson)
+
+---@class impact.encounter_outcome
+---@field v vec3[]  of the bodies, after
+---@field w vec3[]
+---@field contacts {impulse: vec3, normal_before: number, normal_after: number, work: table, phases: string[], compressions: integer, group: integer, merged: boolean}[]
+---@field energy_before number
+---@field energy_after number
+---@field residual number  the receipt's
+---@field error number
+---@field groups integer
+---@field events integer
+---@field steps integer
+---@field chosen boolean  reactions are not unique
+---@field solver "none"|"alone"|"series"|"cone"|"sweeps"
+---@field status "ok"|"separating"|"soft"
+
 ---@class impactlib
 ---@field version string
 ---@field defaults table  what the library takes for absent keys: gravity, output_rate, tolerance, density, friction ...
@@ -264,6 +286,7 @@ core.layer()
 ---@field body fun(definition: impact.body): impact.body
 ---@field collide fun(collision: impact.collision): impact.outcome?, string?  one impact; or nil and why there is no answer
 ---@field collide_many fun(collisions: impact.collisions): table  columns v1, w1, v2, w2, impulse (flat), energy_before, energy_after, normal_after, error, status; checked = true: each by its receipt
+---@field collide_together fun(encounter: impact.encounter): impact.encounter_outcome?, string?  many contacts struck at one instant; or nil and why there is no answer
 ---@field collide_receipt fun(collision: impact.collision, outcome: impact.outcome): {momentum: number, spin: number, cone: number, energy: number, power: number, law: number, approach: number, stick: number, path: number, worst: number}  how far identities are missed, in 2^-52 of their own terms
 ---@field collide_sensitivity fun(collision: impact.collision): number?, string?  relative change of the velocities after over that of each number of the data, root of the sum of squares; times 2^-52: what the data's rounding leaves open
 ---@field flow fun(flow: table): impact.flow_columns?, string?  {a=, b=, c=, d=, m=, mu=, u=, p_end=, count=}, or a collision with p_end and count

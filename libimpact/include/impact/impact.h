@@ -14,6 +14,7 @@
 #include "patch.h"
 #include "toi.h"
 #include "collide.h"
+#include "together.h"
 #include "ode.h"
 #include "flight.h"
 #include "tumble.h"

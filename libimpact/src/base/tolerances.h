@@ -205,6 +205,61 @@
  * quaternion changed by it is still taken for one of unit length (1e-6). */
 #define IMP_COLLIDE_NUDGE 0x1p-22
 
+/* ---- contact: stiff springs, docs/together.md; in units in which velocities and W are of order 1 ---- */
+
+/* Of u, the last terms of a step's series: 1/64 eps, so that hundreds of steps err by a few eps together. */
+#define IMP_SPRINGS_TRUNCATION 0x1p-58
+/* The energy under which a spring counts as open. Met at a speed u it changes that by 2^-90/u, by less than eps down to
+ * u = 1e-11; what grazes slower is off by 2^-45 at most. */
+#define IMP_SPRINGS_ENERGY 0x1p-90
+/* The same of a linear spring without friction, which is analytic: only told from 0. */
+#define IMP_SPRINGS_ENERGY_LINEAR 0x1p-200
+/* Of tiny: contacts that close or open within this part of it do so together, as they would but for rounding. */
+#define IMP_SPRINGS_TOGETHER 1e-12
+/* Of tiny: how far a contact is from it just as it closes or opens, so that only its return counts. */
+#define IMP_SPRINGS_JUST 1e-3
+/* Velocities that are none: 4 eps, what u = u0 + W p leaves of a stop. */
+#define IMP_SPRINGS_STILL 0x1p-50
+/* Of the depth of its turn: a spring is loaded on once it is deeper by more than rounding. */
+#define IMP_SPRINGS_PAST (1 + 0x1p-50)
+/* Slip slower than this may go straight to its stop: what remains takes so little time that accelerations change over
+ * it by their last bits alone. */
+#define IMP_SPRINGS_SLOW 0x1p-26
+/* Of W: a response across a slip under this turns it by rounding only. W of a planar encounter that is turned in space
+ * has a few eps, times the condition of what sticks. */
+#define IMP_SPRINGS_STRAIGHT 0x1p-46
+/* Rank of what sticks: of the largest pivot. W is rounded to eps, and pivots are its differences. */
+#define IMP_SPRINGS_RANK 1e-11
+/* Accelerations of slip that begins, of the largest: under it friction gives way by and by. The cone solver is good to
+ * 1e-13 of that. */
+#define IMP_SPRINGS_WEAK 1e-11
+/* Of (mu lambda)^2: the margin that rounding leaves where slip is just held. */
+#define IMP_SPRINGS_MARGIN 0x1p-48
+/* Of mu lambda: friction that is smaller by this part of it holds, whatever a root of its margin says. A root that is
+ * real is right to 1e-8, the square root of rounding, at the worst. */
+#define IMP_SPRINGS_HELD 1e-6
+/* Of a step's time, where reactions are not unique: friction that gives way sooner after they were chosen anew gives
+ * way. */
+#define IMP_SPRINGS_ONWARD 1e-9
+/* tau: further than this no step goes; where the last terms vanish they bound nothing. */
+#define IMP_SPRINGS_FARTHEST 4.0
+/* The least restitution of springs: what unloads is 1/eps times as stiff in time as what loads, and a pressed contact
+ * then swings that much faster. Less counts as this much; what comes back is off by as much of the approach, and told. */
+#define IMP_SPRINGS_LEAST 1e-3
+/* Events after which a group is asked whether it is wedged: more than all but a few have in all. */
+#define IMP_SPRINGS_LONG 2000
+/* Steps and events of one group: a hundred times what the longest random encounters with ratios of 1e4 take. */
+#define IMP_SPRINGS_STEPS 200000
+
+/* ---- contact: encounters, docs/together.md ---- */
+
+/* The receipt of what is answered as OK: a hundred times what rounding leaves of a thousand steps. */
+#define IMP_ENCOUNTER_RECEIPT 1e-11
+/* One after another: of the fastest approach, what is none. */
+#define IMP_SEQUENCE_STILL 0x1p-48
+/* Sweeps down the list: bodies of masses 1e4 apart take some thousands. */
+#define IMP_SEQUENCE_SWEEPS 100000
+
 /* ---- contact: the cone problem, docs/cone.md ---- */
 
 /* The residual of what is solved: some 450 eps of the largest reaction and velocity. W itself is rounded, in sums of as

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * encounter: the contacts of an encounter in an order of their own, in groups tied by moving bodies. Internal.
+ *
+ * Per contact the axes n, t1, t2; u = G v the velocity of body 1's point over body 2's along them, f the force or p the
+ * impulse on body 1, body 2 getting the opposite:
+ *
+ *     u = u0 + W p,    W = G M^-1 G^T,    the rows of G M^-1/2 per body: six numbers
+ */
+#ifndef IMP_ENCOUNTER_H
+#define IMP_ENCOUNTER_H
+
+#include <math.h>
+#include <stdint.h>
+#include <impact/together.h>
+#include "base/arena.h"
+#include "contact/cone.h"
+
+/* One contact of a group. */
+typedef struct imp_contact {
+    int source;          /* its place among the caller's meetings */
+    int body[2];         /* among the caller's bodies */
+    qvec3 axes[3];       /* n, t1, t2: world, orthonormal */
+    qvec3 arm[2];        /* m, world */
+    double row[2][3][6]; /* G M^-1/2; zero of a static body */
+    double friction, restitution, stiffness;
+} imp_contact;
+
+/* What a solver finds of a contact, beside its impulse. */
+typedef struct imp_finding {
+    double work[3]; /* compression, restitution, friction */
+    int compressions, phase_count;
+    unsigned char phases[IMPACT_MAX_PHASES];
+} imp_finding;
+
+/* Contacts tied by moving bodies, in canonical order, with W and u0; the solvers write p, in N s, and the findings. */
+typedef struct imp_group {
+    int count;
+    const imp_contact *contacts;
+    const double *w;  /* (3 count)^2, symmetric to the bit, 1/kg */
+    const double *u0; /* 3 count, m/s */
+    double *p;        /* 3 count */
+    imp_finding *findings;
+    long events, steps;
+    bool chosen, wedged;
+    double error; /* of restitution */
+} imp_group;
+
+/* Memory that is cut up anew each time. */
+typedef struct imp_block {
+    unsigned char *bytes;
+    size_t size, used;
+} imp_block;
+
+struct impact_together_workspace {
+    imp_arena *arena;
+    imp_block plan, work; /* of a call; of one group */
+    imp_cone_workspace cone;
+};
+
+/* count * size bytes of the group's work, zeroed; NULL: there is no more. */
+void *imp_encounter_take(impact_together_workspace *workspace, size_t count, size_t size);
+
+/* The contacts in canonical order, and each group together. */
+typedef struct imp_order {
+    int count;         /* contacts, without those that are the same as another */
+    int *meeting;      /* count: places among the caller's meetings */
+    int *group;        /* count, never falling: 0, 1, ... */
+    int *merged;       /* meeting_count: where its impulse is; its own place where it has one */
+    int groups, large; /* how many; contacts of the largest */
+} imp_order;
+
+/* order: its arrays given. keys[meeting_count + 2 body_count], parents[body_count + meeting_count]: scratch. */
+void imp_encounter_sort(const impact_encounter *encounter, imp_order *order, uint64_t *keys, int *parents);
+
+/* The first meeting of the same bodies at the same place: itself, or an earlier one. */
+int imp_encounter_same(const impact_encounter *encounter, int meeting);
+
+/* The meeting as one impact, of the bodies with the velocities given (NULL: their own). */
+impact_collision imp_encounter_collision(const impact_encounter *encounter, int meeting, const qvec3 *velocity,
+                                         const qvec3 *omega);
+
+/* The axes, arms and rows of the meeting; the frictions and so on copied. */
+imp_contact imp_encounter_contact(const impact_encounter *encounter, int meeting);
+
+/* The relative velocity of the contact's points along its axes. */
+void imp_encounter_velocity(const imp_contact *contact, const qvec3 *velocity, const qvec3 *omega, double u[3]);
+
+/* The power of two at or under the value; 1 where that is none. */
+double imp_encounter_unit(double value);
+
+/* The receipt's residual of the outcome, which has velocities, meetings and energies. It shares no formula with the
+ * solvers. */
+double imp_encounter_receipt(const impact_encounter *encounter, const impact_together_outcome *outcome);
+
+/* Kinetic energy of the bodies that move, J. */
+double imp_encounter_energy(const impact_encounter *encounter, const qvec3 *velocity, const qvec3 *omega);
+
+static inline bool imp_encounter_is_static(const impact_collider *body) { return isinf(body->mass); }
+
+/* J^-1 a, for a vector in the world frame; 0 for a static body. */
+qvec3 imp_encounter_turn(const impact_collider *body, qvec3 a);
+
+/* ---- encounter_moreau.c: compression and restitution by the cone solver ---- */
+impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *workspace);
+
+#endif

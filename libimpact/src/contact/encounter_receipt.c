@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The receipt of an encounter, from the data, the velocities and the impulses alone:
+ *
+ *     m (V' - V) = sum +-P,   J (W' - W) = sum +-r x P         momentum and spin of each body that moves
+ *     P_n >= 0,  |P_t| <= mu P_n                               cones
+ *     E' - E = sum of works - sum +-P . (a static body's)      power; the sum of the works, which is <= 0
+ *     P . (u + u')/2 summed: the same, by impulses             (E is a quadratic form)
+ *     u_n' >= 0                                                nothing approaches
+ *
+ * each over the sizes of its own terms.
+ */
+#include "contact/encounter.h"
+
+#include <quat/rotation.h>
+#include "base/tolerances.h"
+
+typedef struct tally {
+    double worst;
+} tally;
+
+static void miss(tally *t, double off, double size)
+{
+    const double part = off == 0 ? 0 : off / size;
+    if (!(part <= t->worst)) t->worst = part; /* NaN too */
+}
+
+static void check_body(const impact_encounter *e, const impact_together_outcome *o, int b, tally *t)
+{
+    const impact_collider *body = &e->bodies[b];
+    if (imp_encounter_is_static(body)) return;
+    qvec3 push = {0, 0, 0}, turn = {0, 0, 0};
+    double pushes = 0, turns = 0;
+    for (int i = 0; i < e->meeting_count; i++) {
+        const impact_meeting *m = &e->meetings[i];
+        if (m->body1 != b && m->body2 != b) continue;
+        const qvec3 p = m->body1 == b ? o->meetings[i].impulse : qvec3_neg(o->meetings[i].impulse);
+        const qvec3 arm = m->body1 == b ? m->offset1 : m->offset2;
+        push = qvec3_add(push, p);
+        turn = qvec3_add(turn, qvec3_cross(arm, p));
+        pushes += qvec3_norm(p);
+        turns += qvec3_norm(arm) * qvec3_norm(p);
+    }
+    const double speeds = body->mass * (qvec3_norm(o->velocity[b]) + qvec3_norm(body->velocity));
+    const qvec3 gained = qvec3_scale(qvec3_sub(o->velocity[b], body->velocity), body->mass);
+    miss(t, qvec3_norm(qvec3_sub(gained, push)), pushes + speeds);
+    const qvec3 j = body->moments, w = quat_rotate_inverse(body->orientation, o->omega[b]),
+                w0 = quat_rotate_inverse(body->orientation, body->omega),
+                by = quat_rotate_inverse(body->orientation, turn);
+    const qvec3 spun = {j.x * (w.x - w0.x), j.y * (w.y - w0.y), j.z * (w.z - w0.z)};
+    const qvec3 sizes = {j.x * (fabs(w.x) + fabs(w0.x)), j.y * (fabs(w.y) + fabs(w0.y)),
+                         j.z * (fabs(w.z) + fabs(w0.z))};
+    miss(t, qvec3_norm(qvec3_sub(spun, by)), turns + qvec3_norm(sizes));
+}
+
+/* The relative velocity of the contact points, and how large its terms are. */
+static qvec3 slip_of(const impact_encounter *e, const impact_meeting *m, const qvec3 *velocity, const qvec3 *omega,
+                     double *size)
+{
+    const int pair[2] = {m->body1, m->body2};
+    const qvec3 arms[2] = {m->offset1, m->offset2};
+    qvec3 u = {0, 0, 0};
+    for (int s = 0; s < 2; s++) {
+        const qvec3 v = velocity ? velocity[pair[s]] : e->bodies[pair[s]].velocity,
+                    w = omega ? omega[pair[s]] : e->bodies[pair[s]].omega;
+        const qvec3 part = qvec3_add(v, qvec3_cross(w, arms[s]));
+        u = s == 0 ? qvec3_add(u, part) : qvec3_sub(u, part);
+        *size += qvec3_norm(v) + qvec3_norm(w) * qvec3_norm(arms[s]);
+    }
+    return u;
+}
+
+/* The power that a static body which moves puts in: its velocity times the impulse on it. */
+static double driven_work(const impact_encounter *e, const impact_meeting *m, qvec3 impulse)
+{
+    double work = 0;
+    const int pair[2] = {m->body1, m->body2};
+    const qvec3 arms[2] = {m->offset1, m->offset2};
+    for (int s = 0; s < 2; s++) {
+        const impact_collider *body = &e->bodies[pair[s]];
+        if (!imp_encounter_is_static(body)) continue;
+        const double power = qvec3_dot(qvec3_add(body->velocity, qvec3_cross(body->omega, arms[s])), impulse);
+        work += s == 0 ? -power : power;
+    }
+    return work;
+}
+
+typedef struct energies {
+    double works, positive, by_impulses, driven, terms;
+} energies;
+
+static void check_meeting_of(const impact_encounter *e, const impact_together_outcome *o, int i, double most,
+                             energies *sum, tally *t)
+{
+    const impact_meeting *m = &e->meetings[i];
+    const impact_meeting_outcome *own = &o->meetings[i];
+    qvec3 n;
+    (void)qvec3_normalize(m->normal, &n);
+    const double normal = qvec3_dot(n, own->impulse), across = qvec3_norm(qvec3_axpy(-normal, n, own->impulse));
+    miss(t, fmax(0, -normal), most);
+    miss(t, fmax(0, across - m->friction * normal), most * fmax(1, m->friction));
+    double size = 0;
+    const qvec3 before = slip_of(e, m, NULL, NULL, &size), after = slip_of(e, m, o->velocity, o->omega, &size);
+    miss(t, fmax(0, -qvec3_dot(n, after)), size);
+    sum->works += own->work_compression + own->work_restitution + own->work_friction;
+    sum->terms += fabs(own->work_compression) + own->work_restitution + fabs(own->work_friction) +
+                  size * qvec3_norm(own->impulse);
+    sum->by_impulses += 0.5 * qvec3_dot(own->impulse, qvec3_add(before, after));
+    sum->driven += driven_work(e, m, own->impulse);
+    miss(t, fmax(0, own->work_compression), fabs(own->work_compression) + size * qvec3_norm(own->impulse));
+    miss(t, fmax(0, own->work_friction), fabs(own->work_friction) + size * qvec3_norm(own->impulse));
+}
+
+double imp_encounter_receipt(const impact_encounter *encounter, const impact_together_outcome *outcome)
+{
+    tally t = {0};
+    energies sum = {0};
+    double most = 0;
+    for (int i = 0; i < encounter->meeting_count; i++) most = fmax(most, qvec3_norm(outcome->meetings[i].impulse));
+    for (int b = 0; b < encounter->body_count; b++) check_body(encounter, outcome, b, &t);
+    for (int i = 0; i < encounter->meeting_count; i++) check_meeting_of(encounter, outcome, i, most, &sum, &t);
+    const double change = outcome->energy_after - outcome->energy_before,
+                 size = outcome->energy_after + outcome->energy_before + sum.terms;
+    /* E' - E = P . (u + u')/2 less what goes into static bodies */
+    miss(&t, fabs(change - (sum.works - sum.driven)), size);
+    miss(&t, fabs(change - (sum.by_impulses - sum.driven)), size);
+    miss(&t, fmax(0, sum.works), size);
+    return t.worst;
+}

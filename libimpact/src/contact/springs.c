@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The springs of a group, from the first closing until nothing presses and nothing approaches. Units: the mean of W_nn,
+ * the greatest velocity and the greatest stiffness, the first two rounded to powers of two, so that units of the data
+ * which are powers of two apart change no bit.
+ */
+#include "contact/springs.h"
+
+#include <math.h>
+#include "base/tolerances.h"
+
+typedef struct units {
+    double velocity, mobility, stiffness;
+} units;
+
+static units find_units(const imp_group *group)
+{
+    const size_t n = 3 * (size_t)group->count;
+    units u = {0, 0, 0};
+    for (int i = 0; i < group->count; i++) {
+        const imp_contact *c = &group->contacts[i];
+        for (int j = 0; j < (c->friction > 0 ? 3 : 1); j++) u.velocity = fmax(u.velocity, fabs(group->u0[3 * i + j]));
+        u.mobility += group->w[(size_t)(3 * i) * (n + 1)] / group->count;
+        u.stiffness = fmax(u.stiffness, c->stiffness);
+    }
+    return (units){imp_encounter_unit(u.velocity), imp_encounter_unit(u.mobility), u.stiffness};
+}
+
+/* ---- room ---- */
+
+static bool take_room(imp_springs *s, impact_together_workspace *workspace)
+{
+    const size_t n = (size_t)s->count, width = 3 * n;
+    s->springs = imp_encounter_take(workspace, n, sizeof *s->springs);
+    s->row_start = imp_encounter_take(workspace, width + 1, sizeof *s->row_start);
+    s->column = imp_encounter_take(workspace, width * width, sizeof *s->column);
+    s->value = imp_encounter_take(workspace, width * width, sizeof *s->value);
+    s->stick = imp_encounter_take(workspace, 2 * n, sizeof *s->stick);
+    s->inverse = imp_encounter_take(workspace, 4 * n * n, sizeof *s->inverse);
+    s->now = imp_encounter_take(workspace, width, sizeof *s->now);
+    s->scratch = imp_encounter_take(workspace, width, sizeof *s->scratch);
+    s->factor = imp_encounter_take(workspace, 12 * n * n + 10 * n, sizeof *s->factor);
+    s->begin = imp_encounter_take(workspace, n, sizeof *s->begin);
+    s->turning = imp_encounter_take(workspace, 2 * n * n + n, sizeof *s->turning);
+    s->modes = imp_encounter_take(workspace, n, sizeof *s->modes);
+    s->cone = &workspace->cone;
+    return s->springs && s->row_start && s->column && s->value && s->stick && s->inverse && s->now && s->scratch &&
+           s->factor && s->begin && s->turning && s->modes && imp_cone_reserve(s->cone, s->count);
+}
+
+/* W's rows without zeros and without columns that never push. */
+static void pack_rows(imp_springs *s)
+{
+    const int width = 3 * s->count;
+    int filled = 0;
+    for (int i = 0; i < width; i++) {
+        s->row_start[i] = filled;
+        for (int j = 0; j < width; j++) {
+            const double entry = s->w[(size_t)i * (size_t)width + (size_t)j];
+            if (entry == 0 || (j % 3 > 0 && s->springs[j / 3].friction == 0)) continue;
+            s->column[filled] = j;
+            s->value[filled++] = entry;
+        }
+    }
+    s->row_start[width] = filled;
+}
+
+static void set_up(imp_springs *s, const imp_group *group, const units *unit, double *w, double *u0)
+{
+    const size_t width = 3 * (size_t)group->count;
+    for (size_t i = 0; i < width * width; i++) w[i] = group->w[i] / unit->mobility;
+    for (size_t i = 0; i < width; i++) u0[i] = group->u0[i] / unit->velocity;
+    s->w = w, s->u0 = u0;
+    for (int i = 0; i < s->count; i++) {
+        imp_spring *c = &s->springs[i];
+        c->friction = group->contacts[i].friction;
+        c->restitution = fmax(group->contacts[i].restitution, IMP_SPRINGS_LEAST);
+        c->stiffness = group->contacts[i].stiffness / unit->stiffness;
+        c->finding = &group->findings[i];
+        imp_springs_take_branch(s, i, IMP_SPRING_OPEN, 0, c->stiffness);
+        for (int j = 0; j < 3; j++) c->u[j] = u0[3 * i + j];
+    }
+    pack_rows(s);
+}
+
+/* ---- the answer ---- */
+
+static void report(const imp_springs *s, const units *unit, imp_group *group)
+{
+    for (int i = 0; i < s->count; i++) {
+        for (int j = 0; j < 3; j++) group->p[3 * i + j] = s->springs[i].p[j] * (unit->velocity / unit->mobility);
+        for (int j = 0; j < 3; j++) group->findings[i].work[j] *= unit->velocity * (unit->velocity / unit->mobility);
+    }
+    for (int i = 0; i < s->count; i++)
+        group->error = fmax(group->error, s->springs[i].restitution - group->contacts[i].restitution);
+    group->events += s->events;
+    group->steps += s->steps;
+    group->chosen = group->chosen || s->chosen;
+}
+
+/* Whether no motion takes all contacts apart, G v > 0: W r - 1 >= 0 has no solution r >= 0 then (Gordan). What is
+ * wedged bounces in its dents for ever. */
+static bool is_wedged(imp_springs *s)
+{
+    const size_t n = (size_t)s->count, width = 3 * n;
+    double *q = s->factor, *friction = q + width, *r = friction + n, *u = r + width;
+    for (size_t i = 0; i < width; i++) q[i] = i % 3 == 0 ? -1 : 0;
+    for (size_t i = 0; i < n; i++) friction[i] = 0;
+    const imp_cone_problem problem = {.count = s->count, .w = s->w, .q = q, .friction = friction};
+    return imp_cone_solve(&problem, s->cone, r, u, NULL).status == IMP_CONE_NO_SOLUTION;
+}
+
+impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)
+{
+    const size_t width = 3 * (size_t)group->count;
+    imp_springs s = {.count = group->count, .exponent = exponent};
+    double *w = imp_encounter_take(workspace, width * width, sizeof *w),
+           *u0 = imp_encounter_take(workspace, width, sizeof *u0);
+    if (!w || !u0 || !take_room(&s, workspace)) return IMPACT_ENOMEM;
+    const units unit = find_units(group);
+    set_up(&s, group, &unit, w, u0);
+    bool asked = false;
+    while (s.steps < IMP_SPRINGS_STEPS && s.events < IMP_SPRINGS_STEPS) {
+        if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
+        if (!asked && s.events > IMP_SPRINGS_LONG) {
+            asked = true;
+            group->wedged = is_wedged(&s);
+            if (group->wedged) return IMPACT_EUNSETTLED;
+        }
+        if (imp_springs_pressed(&s)) {
+            if (!imp_springs_step(&s)) return IMPACT_EUNSETTLED;
+        } else if (!imp_springs_drift(&s)) {
+            report(&s, &unit, group);
+            return IMPACT_OK;
+        }
+    }
+    return IMPACT_EUNSETTLED;
+}

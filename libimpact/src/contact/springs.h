@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * springs: the limit of stiff springs at the contacts of a group. Internal; equations in docs/together.md.
+ *
+ * In units in which the mean of W_nn, the greatest speed and the greatest stiffness are of order 1, K -> infinity with
+ * ratios kept stretches time so that
+ *
+ *     delta' = -u_n,   p' = F = (lambda, f_t),   u = u0 + W p,   lambda = kappa (delta - base)^eta or 0
+ *     kappa, base = k, 0 while loading;  k eps^(-2 eta), (1 - eps^2) delta_m after u_n has turned at delta_m
+ *     u_t != 0:  f_t = -mu lambda u_t/|u_t|       u_t = 0:  |f_t| <= mu lambda, leaving the least u_t'
+ *
+ * Between events all is smooth, and p, delta are Taylor series in tau, dt = g dtau. g is 1, or what is about to vanish:
+ *   w = sqrt(delta - base) of Hertz's force near opening or closing: delta^(3/2) is then w^3, w' = -u_n/2;
+ *   s = |u_t| of slip about to stop:  g f_t = -mu lambda u_t.
+ */
+#ifndef IMP_SPRINGS_H
+#define IMP_SPRINGS_H
+
+#include "contact/encounter.h"
+
+enum { IMP_SPRINGS_ORDER = 22, IMP_SPRINGS_TERMS = IMP_SPRINGS_ORDER + 2 };
+
+typedef enum imp_spring_normal { IMP_SPRING_OPEN, IMP_SPRING_LOADS, IMP_SPRING_UNLOADS } imp_spring_normal;
+
+typedef enum imp_spring_slip {
+    IMP_SPRING_SMOOTH,   /* no friction, or no force */
+    IMP_SPRING_STICKS,   /* u_t = 0 */
+    IMP_SPRING_SLIDES,   /* u_t != 0 */
+    IMP_SPRING_STRAIGHT, /* u_t along `along`, from which nothing turns it */
+    IMP_SPRING_BEGINS    /* u_t = 0 here, and then along `along` */
+} imp_spring_slip;
+
+typedef double imp_terms[IMP_SPRINGS_TERMS];
+
+/* One contact, in the solver's units. */
+typedef struct imp_spring {
+    double friction, restitution, stiffness;
+    double tiny; /* x = delta - base up to which the force does nothing that a double would hold */
+    imp_spring_normal normal;
+    imp_spring_slip slip;
+    double x, base, kappa, deepest; /* delta = x + base */
+    double u[3], p[3];
+    bool still;      /* u_t is zero: it came to a stop, or was never more than rounding */
+    bool weak;       /* BEGINS: from no acceleration, u_t ~ t^2; else u_t ~ t */
+    double along[2]; /* of slip; STICKS: the friction's ratio to lambda where reactions are not unique */
+    double stored;   /* energy in the spring */
+    imp_finding *finding;
+    /* Series in tau. */
+    imp_terms velocity[3]; /* u */
+    imp_terms depth;       /* x */
+    imp_terms root;        /* w, of the leading contact */
+    imp_terms force;       /* lambda */
+    imp_terms push[3];     /* g F = dp/dtau */
+    imp_terms speed;       /* s */
+    imp_terms ratio;       /* g lambda/s */
+    imp_terms angle;       /* BEGINS: of u_t from `along`; its cosine and sine */
+    imp_terms cosine, sine;
+} imp_spring;
+
+/* What leads: the factor g of time. */
+typedef enum imp_spring_lead { IMP_SPRING_TIME, IMP_SPRING_ROOT, IMP_SPRING_SPEED } imp_spring_lead;
+
+typedef struct imp_springs {
+    int count;
+    double exponent;
+    imp_spring *springs;
+    const double *w; /* (3 count)^2, without units */
+    const double *u0;
+    /* W by rows without its zeros, columns of contacts without friction left out where they are tangential */
+    int *row_start, *column;
+    double *value;
+    /* What sticks: its components, and the pseudo-inverse of their part of W. */
+    int stick_count, *stick;
+    double *inverse;
+    bool deficient; /* which is none: reactions are not unique */
+    double *now;    /* 3 count: the forces of one order */
+    double *scratch, *factor;
+    imp_spring_lead lead;
+    int leader;
+    int begin_count, *begin; /* contacts that begin to slip */
+    double *turning;         /* their system */
+    imp_cone_workspace *cone;
+    imp_cone_mode *modes;
+    bool stopped; /* a slip has: what sticks must be chosen anew */
+    long events, steps;
+    bool chosen;
+} imp_springs;
+
+/* ---- springs_modes.c ---- */
+
+/* The system of what sticks, anew. */
+void imp_springs_tie(imp_springs *s);
+/* push[..][k] of the sticking contacts from those of the others. */
+void imp_springs_hold(imp_springs *s, int k);
+/* Row i of W times the forces of order k. */
+double imp_springs_row(const imp_springs *s, int i);
+/* Chooses what sticks and what slips among the still contacts that press: forces as of now. False: not settled. */
+bool imp_springs_choose(imp_springs *s);
+/* The accelerations of now: forces into `now`; du/dt of contact c, component i by imp_springs_row. */
+void imp_springs_forces(imp_springs *s);
+/* Which slips go straight. */
+void imp_springs_straighten(imp_springs *s);
+
+/* ---- springs_series.c ---- */
+
+/* The series from here on; their usable length in tau. */
+double imp_springs_expand(imp_springs *s);
+
+/* ---- springs_events.c ---- */
+
+/* The first time in [0, h] at which sum c_k t^k, k <= order, falls to 0, or h where it does not: none is missed. *found
+ * tells. c[0] <= 0 falls at 0. */
+double imp_springs_first_fall(const double *c, int order, double h, bool *found);
+
+/* ---- springs_changes.c ---- */
+
+/* The force's branch; delta stays as it is. */
+void imp_springs_take_branch(imp_springs *s, int contact, imp_spring_normal normal, double base, double kappa);
+double imp_springs_energy(const imp_springs *s, const imp_spring *c, double x);
+/* x from which an unloading spring is loaded on. */
+double imp_springs_again(const imp_spring *c);
+/* Whether any is closed. */
+bool imp_springs_pressed(const imp_springs *s);
+/* Everything that is due now: turns, closings, openings, stops, and then what sticks. False: not settled. */
+bool imp_springs_settle(imp_springs *s);
+
+/* ---- springs_step.c ---- */
+
+/* To the next event, or as far as the series reach, and what happens there. False: not settled. */
+bool imp_springs_step(imp_springs *s);
+/* Nothing presses: to the next closing. False: there is none. */
+bool imp_springs_drift(imp_springs *s);
+/* u = u0 + W p */
+void imp_springs_find_velocities(imp_springs *s);
+
+/* ---- springs.c ---- */
+
+/* IMPACT_OK, IMPACT_EUNSETTLED, IMPACT_ENOMEM. */
+impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace);
+
+#endif

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Changes of mode: contacts close (delta = base), turn (u_n = 0), are loaded on beyond where they turned (delta =
+ * delta_m), open; slips stop, what is still sticks or begins to slip.
+ *
+ * A spring whose energy is under 2^-90, where u is of order 1, counts as open, x <= tiny: Hertz's force is not analytic
+ * there, and does nothing that a double would hold. Where a spring turns the part 1 - eps^2 of its energy is lost.
+ */
+#include "contact/springs.h"
+
+#include <math.h>
+#include "base/tolerances.h"
+
+double imp_springs_energy(const imp_springs *s, const imp_spring *c, double x)
+{
+    return x > 0 ? c->kappa * pow(x, s->exponent + 1) / (s->exponent + 1) : 0;
+}
+
+void imp_springs_take_branch(imp_springs *s, int contact, imp_spring_normal normal, double base, double kappa)
+{
+    imp_spring *c = &s->springs[contact];
+    const double own = s->w[(size_t)(3 * contact) * (3 * (size_t)s->count + 1)];
+    c->normal = normal;
+    c->x += c->base - base;
+    c->base = base;
+    c->kappa = kappa;
+    const double least = s->exponent == 1 && c->friction == 0 ? IMP_SPRINGS_ENERGY_LINEAR : IMP_SPRINGS_ENERGY;
+    c->tiny = pow((s->exponent + 1) * least / (kappa * own), 1 / (s->exponent + 1));
+}
+
+double imp_springs_again(const imp_spring *c)
+{
+    return IMP_SPRINGS_PAST * c->restitution * c->restitution * c->deepest;
+}
+
+static void turn_spring(imp_springs *s, int contact)
+{
+    imp_spring *c = &s->springs[contact];
+    const double square = c->restitution * c->restitution;
+    c->deepest = c->x;
+    imp_springs_take_branch(s, contact, IMP_SPRING_UNLOADS, (1 - square) * c->deepest,
+                            c->stiffness * pow(c->restitution, -2 * s->exponent));
+    c->x = square * c->deepest; /* without the difference's rounding */
+    c->stored = imp_springs_energy(s, c, c->x);
+    c->finding->compressions++;
+}
+
+static void open_spring(imp_spring *c)
+{
+    c->normal = IMP_SPRING_OPEN;
+    c->slip = IMP_SPRING_SMOOTH;
+    c->still = false;
+    c->stored = 0;
+}
+
+static void close_spring(imp_springs *s, imp_spring *c)
+{
+    c->normal = c->deepest > 0 ? IMP_SPRING_UNLOADS : IMP_SPRING_LOADS;
+    c->x = fmax(c->x, c->tiny);
+    c->stored = imp_springs_energy(s, c, c->x);
+    c->still = c->friction > 0 && hypot(c->u[1], c->u[2]) <= IMP_SPRINGS_STILL;
+    c->slip = c->friction == 0 ? IMP_SPRING_SMOOTH : c->still ? IMP_SPRING_STICKS : IMP_SPRING_SLIDES;
+    c->along[0] = c->along[1] = 0;
+}
+
+/* What is due of the contact's normal; whether anything was. Where nothing is pressed, approach that is rounding is
+ * none. */
+static bool settle_normal(imp_springs *s, int contact, bool pressed)
+{
+    imp_spring *c = &s->springs[contact];
+    const double again = imp_springs_again(c);
+    if (c->normal == IMP_SPRING_OPEN) {
+        if (c->x < c->tiny * (1 - IMP_SPRINGS_TOGETHER) || c->u[0] >= (pressed ? 0 : -IMP_SPRINGS_STILL)) return false;
+        close_spring(s, c);
+    } else if (c->x <= c->tiny * (1 + IMP_SPRINGS_TOGETHER) && c->u[0] >= 0) {
+        open_spring(c);
+    } else if (c->normal == IMP_SPRING_LOADS && c->restitution < 1 && c->u[0] >= 0) {
+        turn_spring(s, contact);
+    } else if (c->normal == IMP_SPRING_UNLOADS && c->x >= again && c->u[0] < 0) {
+        imp_springs_take_branch(s, contact, IMP_SPRING_LOADS, 0, c->stiffness);
+        c->stored = imp_springs_energy(s, c, c->x);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
+ * What it still turns by is under rounding. */
+static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
+{
+    if (c->normal == IMP_SPRING_OPEN || c->slip != IMP_SPRING_SLIDES) return false;
+    const double speed = hypot(c->u[1], c->u[2]);
+    if (speed <= IMP_SPRINGS_STILL) {
+        c->still = true;
+        return true;
+    }
+    if (speed > IMP_SPRINGS_SLOW) return false;
+    const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
+    const double e[2] = {c->u[1] / speed, c->u[2] / speed};
+    const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
+    if (along < 0 && speed * across <= -IMP_SPRINGS_STILL * along) {
+        c->slip = IMP_SPRING_STRAIGHT;
+        c->along[0] = e[0], c->along[1] = e[1];
+    }
+    return false;
+}
+
+static bool is_undecided(const imp_spring *c)
+{
+    return c->normal != IMP_SPRING_OPEN && c->still && c->slip != IMP_SPRING_BEGINS;
+}
+
+bool imp_springs_pressed(const imp_springs *s)
+{
+    for (int i = 0; i < s->count; i++)
+        if (s->springs[i].normal != IMP_SPRING_OPEN) return true;
+    return false;
+}
+
+bool imp_springs_settle(imp_springs *s)
+{
+    bool changed = s->stopped, undecided = s->stopped, frictional = false;
+    const bool pressed = imp_springs_pressed(s);
+    s->stopped = false;
+    for (int i = 0; i < s->count; i++) {
+        const bool was = is_undecided(&s->springs[i]);
+        if (settle_normal(s, i, pressed)) {
+            changed = true;
+            s->events++;
+        }
+        undecided = undecided || (!was && is_undecided(&s->springs[i]));
+        frictional = frictional || (s->springs[i].normal != IMP_SPRING_OPEN && s->springs[i].friction > 0);
+    }
+    if (!frictional) {
+        s->stick_count = 0;
+        return true;
+    }
+    if (changed && !undecided) imp_springs_tie(s);
+    if (changed && undecided && !imp_springs_choose(s)) return false;
+    if (changed) imp_springs_straighten(s);
+    imp_springs_forces(s);
+    for (int i = 0; i < s->count; i++) s->stopped = settle_slip(s, i, &s->springs[i]) || s->stopped;
+    return !s->stopped || imp_springs_settle(s);
+}

@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One stretch of the springs' motion: to the first event, as a root of the series, or as far as they reach. What
+ * happens at the event itself is seen from where the contacts are then (springs_changes.c), but for slip, which is told
+ * here: that it stopped, or that friction no longer holds it.
+ */
+#include "contact/springs.h"
+
+#include <math.h>
+#include "base/tolerances.h"
+
+typedef enum event { EVENT_NONE, EVENT_TURN, EVENT_OPEN, EVENT_CLOSE, EVENT_AGAIN, EVENT_STOP, EVENT_GIVE } event;
+
+typedef struct first_event {
+    event what;
+    int contact;
+    double when;
+} first_event;
+
+static double poly(const double *c, int order, double t)
+{
+    double f = c[order];
+    for (int k = order - 1; k >= 0; k--) f = f * t + c[k];
+    return f;
+}
+
+/* ---- which event comes first ---- */
+
+static void see(first_event *first, event what, int contact, const double *f)
+{
+    bool found;
+    const double when = imp_springs_first_fall(f, IMP_SPRINGS_ORDER, first->when, &found);
+    if (found && (first->what == EVENT_NONE || when < first->when)) *first = (first_event){what, contact, when};
+}
+
+/* sign * terms + shift */
+static void shifted(const double *terms, double sign, double shift, double *f)
+{
+    for (int k = 0; k <= IMP_SPRINGS_ORDER; k++) f[k] = sign * terms[k];
+    f[0] += shift;
+}
+
+/* mu^2 lambda^2 - |f_t|^2, times g^2; rounding at its beginning is none of its falling. */
+static void find_margin(const imp_spring *c, double *f)
+{
+    const double square = c->friction * c->friction;
+    for (int k = 0; k <= IMP_SPRINGS_ORDER; k++) {
+        f[k] = 0;
+        if (k == IMP_SPRINGS_ORDER) break;
+        for (int i = 0; i <= k; i++)
+            f[k] += square * c->push[0][i] * c->push[0][k - i] - c->push[1][i] * c->push[1][k - i] -
+                    c->push[2][i] * c->push[2][k - i];
+    }
+    const double rounding = IMP_SPRINGS_MARGIN * square * c->push[0][0] * c->push[0][0];
+    if (f[0] < rounding) f[0] = rounding;
+}
+
+static void see_normal(const imp_springs *s, int i, first_event *first)
+{
+    const imp_spring *c = &s->springs[i];
+    imp_terms f;
+    if (c->normal == IMP_SPRING_OPEN) {
+        shifted(c->depth, -1, c->tiny, f);
+        if (f[0] <= 0) f[0] = IMP_SPRINGS_JUST * c->tiny; /* it has just opened, or touches */
+        see(first, EVENT_CLOSE, i, f);
+        return;
+    }
+    const bool root = s->lead == IMP_SPRING_ROOT && s->leader == i;
+    shifted(root ? c->root : c->depth, 1, root ? -sqrt(c->tiny) : -c->tiny, f);
+    if (f[0] <= 0) f[0] = IMP_SPRINGS_JUST * c->tiny; /* it has just closed */
+    see(first, EVENT_OPEN, i, f);
+    if (c->normal == IMP_SPRING_LOADS && c->restitution < 1) {
+        shifted(c->velocity[0], -1, 0, f);
+        see(first, EVENT_TURN, i, f);
+    }
+    if (c->normal == IMP_SPRING_UNLOADS) {
+        shifted(c->depth, -1, imp_springs_again(c), f);
+        if (f[0] > 0) see(first, EVENT_AGAIN, i, f);
+    }
+}
+
+static void see_slip(const imp_springs *s, int i, first_event *first)
+{
+    const imp_spring *c = &s->springs[i];
+    imp_terms f;
+    if (c->normal == IMP_SPRING_OPEN) return;
+    if (c->slip == IMP_SPRING_STICKS) {
+        find_margin(c, f);
+        see(first, EVENT_GIVE, i, f);
+    } else if (c->slip == IMP_SPRING_STRAIGHT) {
+        for (int k = 0; k <= IMP_SPRINGS_ORDER; k++)
+            f[k] = c->along[0] * c->velocity[1][k] + c->along[1] * c->velocity[2][k];
+        if (f[0] < IMP_SPRINGS_STILL) f[0] = IMP_SPRINGS_STILL; /* it begins */
+        see(first, EVENT_STOP, i, f);
+    }
+}
+
+/* ---- to there ---- */
+
+static void note_phase(imp_spring *c, bool compressing)
+{
+    const bool sticks = c->slip == IMP_SPRING_STICKS;
+    const unsigned char phase = (unsigned char)(compressing ? sticks ? IMPACT_STICK_C : IMPACT_SLIP_C
+                                                : sticks    ? IMPACT_STICK_R
+                                                            : IMPACT_SLIP_R);
+    imp_finding *f = c->finding;
+    if (f->phase_count > 0 && f->phases[f->phase_count - 1] == phase) return;
+    if (f->phase_count < IMPACT_MAX_PHASES) f->phases[f->phase_count++] = phase;
+}
+
+static void book_energy(imp_spring *c, double energy)
+{
+    const double rise = energy - c->stored;
+    c->finding->work[rise > 0 ? 0 : 1] -= rise;
+    c->stored = energy;
+}
+
+/* The spring's work to t; where u_n changes its sign on the way the energy has an extreme. */
+static void book_spring(const imp_springs *s, imp_spring *c, double t, double after)
+{
+    const double before = c->velocity[0][0];
+    if (before != 0) note_phase(c, before < 0);
+    if (before * after < 0) {
+        imp_terms f;
+        bool found;
+        shifted(c->velocity[0], before < 0 ? -1 : 1, 0, f);
+        const double extreme = imp_springs_first_fall(f, IMP_SPRINGS_ORDER, t, &found);
+        book_energy(c, imp_springs_energy(s, c, poly(c->depth, IMP_SPRINGS_ORDER, extreme)));
+        c->finding->compressions += before < 0;
+    }
+    if (before == 0 || before * after < 0) note_phase(c, after < 0);
+    book_energy(c, imp_springs_energy(s, c, c->x));
+}
+
+static void book_friction(imp_spring *c, double t)
+{
+    if (c->slip < IMP_SPRING_SLIDES) return;
+    double sum = 0;
+    for (int k = IMP_SPRINGS_ORDER - 1; k >= 0; k--) {
+        double power = 0;
+        for (int i = 0; i <= k; i++)
+            power += c->push[1][i] * c->velocity[1][k - i] + c->push[2][i] * c->velocity[2][k - i];
+        sum = sum * t + power / (k + 1);
+    }
+    c->finding->work[2] += sum * t;
+}
+
+static void push_on(imp_spring *c, double t)
+{
+    for (int j = 0; j < 3; j++) {
+        if (j > 0 && c->slip == IMP_SPRING_SMOOTH) continue;
+        double sum = 0;
+        for (int k = IMP_SPRINGS_ORDER - 1; k >= 0; k--) sum = sum * t + c->push[j][k] / (k + 1);
+        c->p[j] += sum * t;
+    }
+}
+
+void imp_springs_find_velocities(imp_springs *s)
+{
+    for (int i = 0; i < s->count; i++)
+        for (int j = 0; j < 3; j++) s->now[3 * i + j] = s->springs[i].p[j];
+    for (int i = 0; i < s->count; i++)
+        for (int j = 0; j < 3; j++) s->springs[i].u[j] = s->u0[3 * i + j] + imp_springs_row(s, 3 * i + j);
+}
+
+static void move_on(imp_springs *s, double t)
+{
+    for (int i = 0; i < s->count; i++) {
+        imp_spring *c = &s->springs[i];
+        const bool root = s->lead == IMP_SPRING_ROOT && s->leader == i && c->normal != IMP_SPRING_OPEN;
+        const double w = root ? poly(c->root, IMP_SPRINGS_ORDER, t) : 0;
+        c->x = root ? w * w : poly(c->depth, IMP_SPRINGS_ORDER, t);
+        if (c->normal == IMP_SPRING_OPEN) continue;
+        push_on(c, t);
+        book_friction(c, t);
+    }
+    imp_springs_find_velocities(s);
+    for (int i = 0; i < s->count; i++) {
+        imp_spring *c = &s->springs[i];
+        if (c->normal == IMP_SPRING_OPEN) continue;
+        book_spring(s, c, t, c->u[0]);
+        if (c->slip < IMP_SPRING_SLIDES || hypot(c->u[1], c->u[2]) <= IMP_SPRINGS_STILL) continue;
+        c->still = false;
+        if (c->slip == IMP_SPRING_BEGINS) c->slip = IMP_SPRING_SLIDES;
+    }
+}
+
+/* ---- what happens there ---- */
+
+/* Friction no longer holds: it slips against what held it; where reactions are not unique, others may hold it yet.
+ * Where the contact is about to open the margin vanishes with lambda^2, and its zero may be rounding. */
+static bool give_way(imp_springs *s, imp_spring *c, double t)
+{
+    const double x = poly(c->push[1], IMP_SPRINGS_ORDER - 1, t), y = poly(c->push[2], IMP_SPRINGS_ORDER - 1, t),
+                 size = hypot(x, y);
+    if (size < (1 - IMP_SPRINGS_HELD) * c->friction * poly(c->push[0], IMP_SPRINGS_ORDER - 1, t)) return true;
+    if (s->deficient && t > IMP_SPRINGS_ONWARD) {
+        s->stopped = true;
+        return true;
+    }
+    c->slip = IMP_SPRING_BEGINS;
+    c->weak = true;
+    c->along[0] = -x / size, c->along[1] = -y / size;
+    imp_springs_tie(s);
+    imp_springs_straighten(s);
+    return size > 0;
+}
+
+static bool take_event(imp_springs *s, const first_event *first)
+{
+    imp_spring *c = &s->springs[first->contact];
+    s->events++;
+    switch (first->what) {
+    case EVENT_TURN: c->u[0] = fmax(c->u[0], 0); break;
+    case EVENT_OPEN: c->x = c->tiny; break;
+    case EVENT_CLOSE: c->x = fmax(c->x, c->tiny); break;
+    case EVENT_AGAIN: c->x = fmax(c->x, imp_springs_again(c)); break;
+    case EVENT_STOP:
+        c->still = true;
+        c->slip = IMP_SPRING_STICKS;
+        s->stopped = true;
+        break;
+    case EVENT_GIVE: return give_way(s, c, first->when);
+    case EVENT_NONE: s->events--; break;
+    }
+    return true;
+}
+
+bool imp_springs_step(imp_springs *s)
+{
+    const double h = imp_springs_expand(s);
+    s->steps++;
+    if (isnan(h)) return false;
+    first_event first = {EVENT_NONE, 0, isfinite(h) ? h : IMP_SPRINGS_FARTHEST};
+    for (int i = 0; i < s->count; i++) {
+        see_normal(s, i, &first);
+        see_slip(s, i, &first);
+    }
+    move_on(s, first.when);
+    return take_event(s, &first);
+}
+
+bool imp_springs_drift(imp_springs *s)
+{
+    double soonest = INFINITY;
+    int next = -1;
+    for (int i = 0; i < s->count; i++) {
+        const imp_spring *c = &s->springs[i];
+        const double time = c->u[0] < -IMP_SPRINGS_STILL ? fmax(0, c->tiny - c->x) / -c->u[0] : INFINITY;
+        if (time < soonest) soonest = time, next = i;
+    }
+    if (next < 0) return false;
+    for (int i = 0; i < s->count; i++) s->springs[i].x -= s->springs[i].u[0] * soonest;
+    s->springs[next].x = fmax(s->springs[next].x, s->springs[next].tiny);
+    return true;
+}

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The springs against a plain integration of their equations in 80 bits (tests/kit/springs_oracle.h), and of one
+ * contact against impact_collide, whatever exponent and stiffness.
+ */
+#include "kit/near.h"
+
+#include <string.h>
+#include "contact/cone_assemble.h"
+#include "contact/springs.h"
+#include "kit/encounter_random.h"
+#include "kit/springs_oracle.h"
+
+/* ---- the first fall ---- */
+
+static void the_first_zero_of_a_polynomial_is_found(void **state)
+{
+    (void)state;
+    random_stream random = {1};
+    for (int run = 0; run < 2000; run++) {
+        double c[6] = {1}, first = INFINITY;
+        const int pairs = 1 + run % 5;
+        for (int i = 0; i < pairs; i++) { /* (1 - t/a) for each root */
+            const double root = random_log(&random, 1e-3, 10);
+            first = fmin(first, root);
+            for (int k = i + 1; k >= 1; k--) c[k] -= c[k - 1] / root;
+        }
+        bool found;
+        const double at = imp_springs_first_fall(c, 5, 20, &found);
+        assert_true(found);
+        assert_near(at / first, 1, 1e-9);
+        if (first > 0.5) assert_near(imp_springs_first_fall(c, 5, first / 2, &found), first / 2, 0);
+    }
+}
+
+static void what_touches_zero_from_above_is_not_passed(void **state)
+{
+    (void)state;
+    const double just_misses[] = {1.0000001, -2, 1}, just_falls[] = {0.9999999, -2, 1}; /* (t - 1)^2 +- 1e-7 */
+    bool found;
+    assert_near(imp_springs_first_fall(just_misses, 2, 3, &found), 3, 0);
+    assert_false(found);
+    assert_near(imp_springs_first_fall(just_falls, 2, 3, &found), 1 - sqrt(1e-7), 1e-9);
+    assert_true(found);
+    const double late[] = {1e-30, 0, 0, -1}; /* flat at its beginning */
+    assert_near(imp_springs_first_fall(late, 3, 1, &found), 1e-10, 1e-20);
+}
+
+/* ---- one contact ---- */
+
+static impact_collider any_body(random_stream *random, bool is_static)
+{
+    static const encounter_ranges ranges = {.mass_ratio = 100};
+    impact_collider body = encounter_body(random, &ranges, is_static);
+    if (is_static) body.mass = INFINITY;
+    body.offset = random_vector(random, 0.3, 1);
+    return body;
+}
+
+/* The springs' impulse of one contact, which impact_collide_together would hand to impact_collide. */
+static impact_status by_springs(const impact_collision *c, double exponent, impact_together_workspace *workspace,
+                                double p[3])
+{
+    static unsigned char bytes[1 << 18];
+    const impact_meeting m = {.body1 = 0,
+                              .body2 = 1,
+                              .normal = c->normal,
+                              .offset1 = c->body[0].offset,
+                              .offset2 = c->body[1].offset,
+                              .friction = c->friction,
+                              .restitution = c->restitution,
+                              .stiffness = 3};
+    const impact_encounter e = {.bodies = c->body, .body_count = 2, .meetings = &m, .meeting_count = 1};
+    const imp_contact contact = imp_encounter_contact(&e, 0);
+    const qvec3 v[2] = {c->body[0].velocity, c->body[1].velocity}, omega[2] = {c->body[0].omega, c->body[1].omega};
+    double w[9] = {0}, u0[3];
+    imp_finding finding = {.compressions = 0};
+    imp_group group = {.count = 1, .contacts = &contact, .w = w, .u0 = u0, .p = p, .findings = &finding};
+    imp_encounter_velocity(&contact, v, omega, u0);
+    for (int s = 0; s < 2; s++)
+        for (int i = 0; i < 9; i++)
+            for (int k = 0; k < 6; k++) w[i] += contact.row[s][i / 3][k] * contact.row[s][i % 3][k];
+    p[0] = p[1] = p[2] = 0;
+    workspace->work = (imp_block){bytes, sizeof bytes, 0};
+    return imp_springs_solve(&group, exponent, workspace);
+}
+
+static void one_contact_is_impact_collide(void **state)
+{
+    (void)state;
+    impact_together_workspace *workspace;
+    assert_int_equal(impact_together_workspace_create(NULL, &workspace), IMPACT_OK);
+    random_stream random = {7};
+    const double exponents[] = {1, 1.5, 2.2};
+    int seen[IMPACT_REVERSAL + 1] = {0};
+    for (int run = 0; run < 2000; run++) {
+        impact_collision c = {.body = {any_body(&random, false), any_body(&random, run % 3 == 0)},
+                              .normal = random_direction(&random),
+                              .friction = run % 7 == 0 ? 0 : random_log(&random, 0.05, 3),
+                              .restitution = run % 13 == 0 ? 1 : random_log(&random, 0.05, 1),
+                              .law = IMPACT_STRONGE};
+        impact_outcome o;
+        if (impact_collide(&c, &o) != IMPACT_OK) continue;
+        double p[3];
+        assert_int_equal(by_springs(&c, exponents[run % 3], workspace, p), IMPACT_OK);
+        qvec3 normal, axes[3];
+        (void)qvec3_normalize(c.normal, &normal);
+        imp_cone_find_axes(normal, axes);
+        for (int k = 0; k < 3; k++)
+            assert_near(p[k] / o.impulse_normal, qvec3_dot(axes[k], o.impulse) / o.impulse_normal, 1e-12);
+        for (int k = 0; k < o.phase_count; k++) seen[o.phases[k]]++;
+    }
+    for (int k = IMPACT_SLIP_C; k <= IMPACT_STICK_R; k++) assert_true(seen[k] > 100);
+    assert_true(seen[IMPACT_REVERSAL] > 0);
+    workspace->work = (imp_block){NULL, 0, 0};
+    impact_together_workspace_destroy(workspace);
+}
+
+/* ---- many ---- */
+
+/* The worst difference of velocities over so many random encounters; *followed: how many the oracle went through. */
+static double worst_of(encounter_ranges ranges, double exponent, bool planar, uint64_t seed, int runs, int *followed)
+{
+    static oracle o;
+    random_stream random = {seed};
+    double worst = 0;
+    *followed = 0;
+    for (int run = 0; run < runs; run++) {
+        random_encounter e = encounter_draw(&random, &ranges);
+        if (planar) encounter_flatten(&e);
+        impact_encounter encounter = encounter_of(&e, IMPACT_TOGETHER_SPRINGS);
+        encounter.exponent = exponent;
+        qvec3 v[ENCOUNTER_BODIES], omega[ENCOUNTER_BODIES];
+        impact_together_outcome outcome = {.velocity = v, .omega = omega};
+        const impact_status status = impact_collide_together(&encounter, &outcome);
+        if (status == IMPACT_SEPARATING || outcome.wedged >= 0) continue;
+        assert_int_equal(status, IMPACT_OK);
+        if (!oracle_run(&o, &encounter, exponent, planar)) continue;
+        ++*followed;
+        for (int b = 0; b < e.body_count; b++) {
+            const double got[6] = {v[b].x, v[b].y, v[b].z, omega[b].x, omega[b].y, omega[b].z};
+            for (int k = 0; k < 6; k++) worst = fmax(worst, fabs(got[k] - (double)o.y[6 * b + k]));
+        }
+    }
+    return worst;
+}
+
+static void random_encounters_are_the_oracle_s(void **state)
+{
+    (void)state;
+    const encounter_ranges smooth = {2, 3, 0, 0.3, 4, 4}, rough = {2, 3, 1, 0.3, 4, 4};
+    int followed;
+    assert_at_most(worst_of(smooth, 1, false, 5, 30, &followed), 1e-14);
+    assert_true(followed >= 25);
+    assert_at_most(worst_of(smooth, 1.5, false, 5, 25, &followed), 1e-14);
+    assert_true(followed >= 20);
+    assert_at_most(worst_of(rough, 1, false, 5, 30, &followed), 1e-13);
+    assert_true(followed >= 25);
+    assert_at_most(worst_of(rough, 1.5, false, 5, 30, &followed), 1e-13);
+    assert_true(followed >= 25);
+    assert_at_most(worst_of(rough, 1, true, 5, 11, &followed), 1e-13);
+    assert_true(followed >= 7);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_first_zero_of_a_polynomial_is_found),
+        cmocka_unit_test(what_touches_zero_from_above_is_not_passed),
+        cmocka_unit_test(one_contact_is_impact_collide),
+        cmocka_unit_test(random_encounters_are_the_oracle_s),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
