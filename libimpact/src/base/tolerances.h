@@ -244,7 +244,8 @@
 /* tau: further than this no step goes; where the last terms vanish they bound nothing. */
 #define IMP_SPRINGS_FARTHEST 4.0
 /* The least restitution of springs: what unloads is 1/eps times as stiff in time as what loads, and a pressed contact
- * then swings that much faster. Less counts as this much; what comes back is off by as much of the approach, and told. */
+ * then swings that much faster. Less counts as this much; what comes back is off by as much of the approach, and told.
+ */
 #define IMP_SPRINGS_LEAST 1e-3
 /* Events after which a group is asked whether it is wedged: more than all but a few have in all. */
 #define IMP_SPRINGS_LONG 2000

@@ -7,8 +7,8 @@
  *
  *     u = u0 + W p,    W = G M^-1 G^T,    the rows of G M^-1/2 per body: six numbers
  */
-#ifndef IMP_ENCOUNTER_H
-#define IMP_ENCOUNTER_H
+#ifndef IMP_CONTACT_ENCOUNTER_H
+#define IMP_CONTACT_ENCOUNTER_H
 
 #include <math.h>
 #include <stdint.h>
