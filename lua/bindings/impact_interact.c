@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A scene between runs: event by event, what is held.
+ * A scene between runs: event by event, what is held, pushes and states that a script sets.
  */
 #include "impact_scene.h"
 
@@ -86,8 +86,49 @@ static int scene_held(lua_State *L)
     return 1;
 }
 
+/* ---- changes ---- */
+
+/* The state of the body that argument 2 names. */
+static impact_sample named_state(lua_State *L, const impact_lua_scene *self)
+{
+    const char *name = luaL_checkstring(L, 2);
+    impact_sample sample;
+    if (impact_scene_body(self->scene, impact_scene_find(self->scene, name), &sample) < 0)
+        quat_lua_error(L, "scene '%s' has no body '%s'", self->name, name);
+    return sample;
+}
+
+/* set(body, {position=, orientation=, velocity=, omega=}): what is absent stays. */
+static int scene_set(lua_State *L)
+{
+    static const char *const keys[] = {"position", "orientation", "velocity", "omega", NULL};
+    impact_lua_scene *self = impact_lua_check_scene(L);
+    impact_sample sample = named_state(L, self);
+    const quat_lua_reader reader = quat_lua_read(L, 3, "state", NULL, keys);
+    sample.position = quat_lua_get_vec3(&reader, "position", sample.position);
+    sample.orientation = quat_lua_get_quat(&reader, "orientation", sample.orientation);
+    sample.velocity = quat_lua_get_vec3(&reader, "velocity", sample.velocity);
+    sample.omega = quat_lua_get_vec3(&reader, "omega", sample.omega);
+    begin_calls(L, self);
+    end_calls(L, self, impact_scene_set_state(self->scene, sample.body, &sample));
+    return 0;
+}
+
+/* push(body, impulse, point): at the centre, unless a point is given. */
+static int scene_push(lua_State *L)
+{
+    impact_lua_scene *self = impact_lua_check_scene(L);
+    const impact_sample sample = named_state(L, self);
+    const qvec3 impulse = quat_lua_arg_vec3(L, 3, "impulse");
+    const qvec3 point = lua_isnoneornil(L, 4) ? sample.position : quat_lua_arg_vec3(L, 4, "point");
+    begin_calls(L, self);
+    end_calls(L, self, impact_scene_push(self->scene, sample.body, impulse, point));
+    return 0;
+}
+
 void impact_lua_add_interaction(lua_State *L)
 {
-    static const luaL_Reg methods[] = {{"step", scene_step}, {"held", scene_held}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {
+        {"step", scene_step}, {"held", scene_held}, {"set", scene_set}, {"push", scene_push}, {NULL, NULL}};
     luaL_setfuncs(L, methods, 0);
 }

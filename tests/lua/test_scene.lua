@@ -40,6 +40,39 @@ do
   check.equal(reason, "end of time")
 end
 
+-- Set and pushed between runs; a law of the script is asked then too, and its error comes out where it was asked.
+do
+  local scene = drop { duration = 2 }
+  scene:run()
+  scene:push("ball", { 0, 0, 4 })
+  check.equal(scene:state("ball").velocity[3], 2)
+  check.equal(#scene:held(), 0)
+  scene:set("ball", { position = { 3, 0, 0.6 }, velocity = { 0, 0, 0 } })
+  local t = scene:time()
+  check.close(scene:step(t + 1).t, t + math.sqrt(0.1), 1e-14)
+  scene:push("ball", { 0, 1, 0 }, { 3, 0, 0.2 })
+  check.close(scene:state("ball").omega[1], -0.1 / (0.4 * 2 * 0.01), 1e-11)
+  check.raises("body 'ball': there it overlaps 'floor' by 0.05 m", scene.set, scene, "ball", { position = { 0, 0, 0.05 } })
+  check.raises("scene 'drop' has no body 'bell'", scene.push, scene, "bell", { 0, 0, 1 })
+  check.raises("unknown key 'place' in state (keys: position, orientation, velocity, omega)", scene.set, scene, "ball",
+    { place = { 0, 0, 1 } })
+  check.raises("body 'floor': it is static, nothing moves it", scene.push, scene, "floor", { 0, 0, 1 })
+  local asked = 0
+  local forced = drop {
+    forces = { impact.force { name = "law", law = function()
+      asked = asked + 1
+      if asked > 1e4 then error "enough" end
+      return { 0, 0, 0 }
+    end } },
+  }
+  forced:run_to(0.1)
+  asked = 0
+  forced:push("ball", { 0, 0, 1 })
+  check.truth(asked > 0, "the law was asked")
+  asked = 1e4
+  check.raises("enough", forced.push, forced, "ball", { 0, 0, 1 })
+end
+
 -- A drop of 0.5 m: the first bounce at t = sqrt(0.1) s with sqrt(10) m/s, half of it back.
 do
   local scene, samples, impacts, progress = drop(), 0, {}, 0

@@ -134,6 +134,21 @@ IMPACT_API impact_status impact_scene_step(impact_scene *scene, double t_max, co
  * choice of them. Before a run begins nothing is held. Changes no bit of the motion. */
 IMPACT_API int impact_scene_held(const impact_scene *scene, impact_held *held, int room);
 
+/* Puts a body that moves into another state, now: position, orientation (normalised), velocity and omega of the sample;
+ * its t, body and name do not count. What held the body is let go, what it touches there is settled as at a start;
+ * all else goes on with the same bits. The energy that comes or goes is work of forces in the account. Events of the
+ * change are counted (usage) and go to no recorder.
+ * IMPACT_EDOMAIN: a number is not finite, or the body would overlap another: the message names both; IMPACT_EARGUMENT:
+ * there is no such body, it is static, its orientation is zero, or its energy lies beyond double precision. Nothing is
+ * changed then. Other failures are those of a run. */
+IMPACT_API impact_status impact_scene_set_state(impact_scene *scene, int body, const impact_sample *state);
+
+/* Gives a body that moves an impulse, N s, world, at a point, m, world, now: v += impulse/mass, L += (point - x) x
+ * impulse. With the contacts it holds that is an encounter: where it drives bodies together they answer by the law of
+ * impact, where it drives them apart they part. Its work is the forces' in the account. Events are counted (usage) and
+ * go to no recorder. Fails as impact_scene_set_state. */
+IMPACT_API impact_status impact_scene_push(impact_scene *scene, int body, qvec3 impulse, qvec3 point);
+
 /* The last message, with numbers; "" when there was none. */
 IMPACT_API const char *impact_scene_message(const impact_scene *scene);
 IMPACT_API double impact_scene_time(const impact_scene *scene);
@@ -189,7 +204,7 @@ IMPACT_API double impact_scene_pile_error(const impact_scene *scene);
 typedef struct impact_energy {
     double start;                                   /* kinetic + potential at t = 0 */
     double kinetic, potential;                      /* now; potential of uniform gravity and of attraction */
-    double force_work;                              /* done by wind and custom forces */
+    double force_work;                              /* done by wind, custom forces, pushes and set states */
     double drive_work;                              /* done by static bodies whose surface moves */
     double damping_loss, sliding_loss, impact_loss; /* each >= 0 */
 } impact_energy;

@@ -95,6 +95,11 @@ impact_status imp_scene_meet(impact_scene *scene, int n, double t)
     return conclude(island, IMPACT_OK);
 }
 
+impact_status imp_scene_conclude(imp_island *island)
+{
+    return island->stepped ? conclude_steps(island) : conclude(island, imp_scene_settle(island));
+}
+
 /* The island's segments are done. */
 static bool finish(imp_island *island)
 {
@@ -191,7 +196,7 @@ impact_status imp_scene_first_encounters(impact_scene *scene)
         status = imp_gather(scene, -1, scene->t, scene->piles == IMPACT_PILES_STEPS, &island);
         if (status != IMPACT_OK) break;
         island->outside = imp_gather_energy_outside(scene, island, scene->t);
-        status = island->stepped ? conclude_steps(island) : conclude(island, imp_scene_settle(island));
+        status = imp_scene_conclude(island);
     }
     return status;
 }

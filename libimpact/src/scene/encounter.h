@@ -12,6 +12,8 @@
 impact_status imp_scene_first_encounters(impact_scene *scene);
 /* The pair touches at t. */
 impact_status imp_scene_meet(impact_scene *scene, int near, double t);
+/* An island that was gathered is settled, or goes by steps, and its parts go their ways. */
+impact_status imp_scene_conclude(imp_island *island);
 /* The island's segment ends now. */
 impact_status imp_scene_continue(impact_scene *scene, imp_island *island);
 

@@ -199,7 +199,8 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
         fresh = false;
         if (world->pair_count > 1) continue;
         const double speed = imp_persist_approach(world, &m.touch, island->states);
-        *parted = imp_scene_leaves_for_good(island, &m, speed);
+        const bool was_held = m.touch.mode != IMP_OPEN; /* by a push: it has to be let go yet */
+        *parted = !was_held && imp_scene_leaves_for_good(island, &m, speed);
         if (speed > 0) return status;
     }
     return status;

@@ -394,6 +394,13 @@ impact_status imp_tracks_follow(imp_tracks *tracks, int body, const imp_segment 
     return status == IMPACT_OK ? renew_pairs(tracks, body, t) : status;
 }
 
+impact_status imp_tracks_leap(imp_tracks *tracks, int body, double t)
+{
+    const imp_track *track = &tracks->tracks[body];
+    while (track->near_count > 0) drop_near(tracks, track->near[track->near_count - 1]);
+    return renew_box(tracks, body, t);
+}
+
 void imp_tracks_look_ahead(imp_tracks *tracks, int body, double t)
 {
     const imp_track *track = &tracks->tracks[body];

@@ -65,6 +65,9 @@ impact_status imp_tracks_begin(imp_tracks *tracks, double t, const imp_state *st
 impact_status imp_tracks_follow(imp_tracks *tracks, int body, const imp_segment *segment, double t);
 void imp_tracks_look_ahead(imp_tracks *tracks, int body, double t);
 
+/* The body stands elsewhere than a moment ago, by its segment at t: its pairs are made anew. */
+impact_status imp_tracks_leap(imp_tracks *tracks, int body, double t);
+
 /* At the body's time in the queue: what is due there. A pair that touches is returned, -1 for none; the rest is done.
  */
 impact_status imp_tracks_due(imp_tracks *tracks, int body, double t, int *touching);
