@@ -21,7 +21,7 @@ static impact_status refuse(impact_scene *scene, int body, const char *words)
     return IMPACT_EARGUMENT;
 }
 
-static impact_status check_body(impact_scene *scene, int body)
+static impact_status check_movable(impact_scene *scene, int body)
 {
     scene->message[0] = '\0';
     if (body < 0 || body >= scene->world.body_count) {
@@ -33,7 +33,7 @@ static impact_status check_body(impact_scene *scene, int body)
     return IMPACT_OK;
 }
 
-static impact_status check_vector(impact_scene *scene, int body, const char *what, qvec3 v)
+static impact_status check_finite(impact_scene *scene, int body, const char *what, qvec3 v)
 {
     if (isfinite(v.x + v.y + v.z)) return IMPACT_OK;
     snprintf(scene->message, sizeof scene->message, "body '%s': %s = (%g, %g, %g): must be finite",
@@ -189,10 +189,10 @@ static impact_status change(impact_scene *scene, int body, const imp_state *stat
 
 static impact_status set_state(impact_scene *scene, int body, const impact_sample *sample)
 {
-    impact_status status = check_body(scene, body);
-    if (status == IMPACT_OK) status = check_vector(scene, body, "position", sample->position);
-    if (status == IMPACT_OK) status = check_vector(scene, body, "velocity", sample->velocity);
-    if (status == IMPACT_OK) status = check_vector(scene, body, "omega", sample->omega);
+    impact_status status = check_movable(scene, body);
+    if (status == IMPACT_OK) status = check_finite(scene, body, "position", sample->position);
+    if (status == IMPACT_OK) status = check_finite(scene, body, "velocity", sample->velocity);
+    if (status == IMPACT_OK) status = check_finite(scene, body, "omega", sample->omega);
     if (status != IMPACT_OK) return status;
     imp_state state = {.x = sample->position, .v = sample->velocity};
     if (quat_normalize(sample->orientation, &state.q) != QUAT_OK)
@@ -215,9 +215,9 @@ impact_status impact_scene_set_state(impact_scene *scene, int body, const impact
 
 static impact_status push(impact_scene *scene, int body, qvec3 impulse, qvec3 point)
 {
-    impact_status status = check_body(scene, body);
-    if (status == IMPACT_OK) status = check_vector(scene, body, "impulse", impulse);
-    if (status == IMPACT_OK) status = check_vector(scene, body, "point", point);
+    impact_status status = check_movable(scene, body);
+    if (status == IMPACT_OK) status = check_finite(scene, body, "impulse", impulse);
+    if (status == IMPACT_OK) status = check_finite(scene, body, "point", point);
     if (status != IMPACT_OK) return status;
     imp_state state = scene->states[body];
     state.v = qvec3_axpy(scene->world.bodies[body].inverse_mass, impulse, state.v);
