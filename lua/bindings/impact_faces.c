@@ -15,10 +15,14 @@ static double length_of(const quat_lua_reader *reader, const char *key)
     return quat_lua_get_number(reader, key, QUAT_LUA_POSITIVE, 0);
 }
 
-static int push_good(const quat_lua_reader *reader, const impact_shape *shape)
+/* Pushes the shape that was made, or raises what is wrong with the numbers. */
+static int push_made(const quat_lua_reader *reader, impact_status status, const impact_shape *shape,
+                     const impact_shape *numbers)
 {
     char message[120];
-    if (impact_shape_check(shape, message, sizeof message) < 0) return quat_lua_reader_error(reader, "%s", message);
+    if (status < 0 && impact_shape_check(numbers, message, sizeof message) < 0)
+        return quat_lua_reader_error(reader, "%s", message);
+    if (status < 0) return quat_lua_reader_error(reader, "%s", impact_status_string(status));
     impact_lua_push_shape(reader->L, shape);
     return 1;
 }
@@ -39,8 +43,10 @@ static int shape_box(lua_State *L)
     static const char *const keys[] = {"a", "b", "c", "rounding", NULL};
     const quat_lua_reader reader = quat_lua_read(L, 1, "box", NULL, keys);
     const double a = length_of(&reader, "a"), b = length_of(&reader, "b"), c = length_of(&reader, "c");
-    const impact_shape shape = plain(IMPACT_BOX, a, b, c, rounding_of(&reader));
-    return push_good(&reader, &shape);
+    const impact_shape numbers = plain(IMPACT_BOX, a, b, c, rounding_of(&reader));
+    impact_shape shape;
+    const impact_status status = impact_shape_box(a, b, c, numbers.rounding, &shape);
+    return push_made(&reader, status, &shape, &numbers);
 }
 
 /* cylinder{radius=, half_height=, rounding=} */
@@ -49,8 +55,10 @@ static int shape_cylinder(lua_State *L)
     static const char *const keys[] = {"radius", "half_height", "rounding", NULL};
     const quat_lua_reader reader = quat_lua_read(L, 1, "cylinder", NULL, keys);
     const double radius = length_of(&reader, "radius"), half = length_of(&reader, "half_height");
-    const impact_shape shape = plain(IMPACT_CYLINDER, radius, radius, half, rounding_of(&reader));
-    return push_good(&reader, &shape);
+    const impact_shape numbers = plain(IMPACT_CYLINDER, radius, radius, half, rounding_of(&reader));
+    impact_shape shape;
+    const impact_status status = impact_shape_cylinder(radius, half, numbers.rounding, &shape);
+    return push_made(&reader, status, &shape, &numbers);
 }
 
 /* cone{radius=, height=, rounding=} */
@@ -58,11 +66,11 @@ static int shape_cone(lua_State *L)
 {
     static const char *const keys[] = {"radius", "height", "rounding", NULL};
     const quat_lua_reader reader = quat_lua_read(L, 1, "cone", NULL, keys);
-    const double radius = length_of(&reader, "radius"), height = length_of(&reader, "height"),
-                 rounding = rounding_of(&reader);
-    impact_shape shape = plain(IMPACT_CONE, radius, radius, height, rounding);
-    if (impact_shape_cone(radius, height, rounding, &shape) < 0) shape.base = -height / 4; /* the check says what */
-    return push_good(&reader, &shape);
+    const double radius = length_of(&reader, "radius"), height = length_of(&reader, "height");
+    const impact_shape numbers = plain(IMPACT_CONE, radius, radius, height, rounding_of(&reader));
+    impact_shape shape;
+    const impact_status status = impact_shape_cone(radius, height, numbers.rounding, &shape);
+    return push_made(&reader, status, &shape, &numbers);
 }
 
 /* capsule{radius=, half_height=} */
@@ -71,8 +79,10 @@ static int shape_capsule(lua_State *L)
     static const char *const keys[] = {"radius", "half_height", NULL};
     const quat_lua_reader reader = quat_lua_read(L, 1, "capsule", NULL, keys);
     const double radius = length_of(&reader, "radius"), half = length_of(&reader, "half_height");
-    const impact_shape shape = plain(IMPACT_CAPSULE, radius, radius, half, radius);
-    return push_good(&reader, &shape);
+    const impact_shape numbers = plain(IMPACT_CAPSULE, radius, radius, half + radius, radius);
+    impact_shape shape;
+    const impact_status status = impact_shape_capsule(radius, half, &shape);
+    return push_made(&reader, status, &shape, &numbers);
 }
 
 /* ---- polyhedra ---- */
@@ -115,7 +125,7 @@ static int shape_polyhedron(lua_State *L)
         return quat_lua_reader_error(&reader, "%s", message);
     impact_shape shape;
     impact_shape_polyhedron(*place, &shape);
-    push_good(&reader, &shape);
+    impact_lua_push_shape(L, &shape);
     lua_insert(L, -2);
     lua_setiuservalue(L, -2, 1); /* the shape keeps its hull */
     return 1;

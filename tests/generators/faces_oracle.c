@@ -93,7 +93,9 @@ static void make(body *b, const impact_solid *solid)
     b->ball = s->rounding;
     switch (s->kind) {
     case IMPACT_SPHERE: add_vertex(b, 0, 0, 0), b->ball = s->a; break;
-    case IMPACT_CAPSULE: add_vertex(b, 0, 0, -s->c), add_vertex(b, 0, 0, s->c), add_edge(b, 0, 1); break;
+    case IMPACT_CAPSULE:
+        add_vertex(b, 0, 0, (real)s->a - s->c), add_vertex(b, 0, 0, (real)s->c - s->a), add_edge(b, 0, 1);
+        break;
     case IMPACT_BOX: make_box(b, s); break;
     case IMPACT_POLYHEDRON: make_hull(b, s->hull); break;
     default: make_octahedron(b, s);

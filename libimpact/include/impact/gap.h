@@ -51,9 +51,10 @@ typedef struct impact_contact {
  * bodies with edges, is then proved the nearest way out, or one of several equally near. With an answer too:
  * IMPACT_DEEP, a way out that no other is nearer than by more than the bracket; IMPACT_BRACKET, the gap lies in [lower,
  * upper], and no witness points were found. Both brackets of an overlap are at most one per cent of its depth wide,
- * but where the work allowed is not enough: then upper is the distance of the centres or 0. Two octahedra (all
- * exponents 1) that overlap are solved as the polytopes they are. IMPACT_EDOMAIN: a position that is not finite, an
- * orientation that is zero or not finite. A negative status leaves every number of *contact NaN. Method: docs/gap.md.
+ * but where the work allowed is not enough: then upper is the distance of the centres or 0. Two
+ * polytopes (boxes, polyhedra, capsules, octahedra, and spheres with them) are exact in any overlap. IMPACT_EDOMAIN: a
+ * position that is not finite, an orientation that is zero or not finite. A negative status leaves every number of
+ * *contact NaN. Method: docs/gap.md.
  */
 IMPACT_API impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                                     impact_contact *contact);

@@ -23,8 +23,8 @@ typedef enum impact_shape_kind {
     IMPACT_BOX,       /* |x| <= a, |y| <= b, |z| <= c, edges and corners rounded inside of that */
     IMPACT_CYLINDER,  /* x^2 + y^2 <= a^2, |z| <= c, its rims rounded inside of that */
     IMPACT_CONE,      /* radius a at its base, height c along +z, rounded inside of that; z = 0 is its centroid */
-    IMPACT_CAPSULE,   /* the segment |z| <= c and a ball of radius a = rounding */
-    IMPACT_POLYHEDRON /* a hull and a ball; a, b, c: the hull's half-extents along x, y, z */
+    IMPACT_CAPSULE,   /* the segment |z| <= c - a and a ball of radius a = rounding */
+    IMPACT_POLYHEDRON /* a hull and a ball */
 } impact_shape_kind;
 
 enum { IMPACT_SHAPE_KINDS = IMPACT_POLYHEDRON + 1 };
@@ -33,8 +33,8 @@ enum { IMPACT_SHAPE_KINDS = IMPACT_POLYHEDRON + 1 };
 typedef struct impact_shape {
     impact_shape_kind kind;
     double a, b, c;  /* semi-axes, m; sphere: all the radius; plane: half-extents of its bounds along x and y (infinite:
-                        none), c = 0 */
-    double r, s, t;  /* exponents; 2 where the kind has none */
+                        none), c = 0; with a core: half-extents of the whole (a cone's c: its height) */
+    double r, s, t;  /* exponents; 2 where the kind has none, infinite where it is flat */
     double rounding; /* m; 0: sharp, and of kinds that have none */
     double base;     /* cone: z of its core's base, m; else 0 */
     const impact_hull *hull; /* polyhedron: borrowed, it must outlive every use of the shape; else NULL */

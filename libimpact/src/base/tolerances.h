@@ -56,6 +56,12 @@
 #define IMP_CORE_LEVEL (4 * IMP_ROUNDOFF)
 #define IMP_CORE_LEVEL_MOST 1e-12
 
+/* Of a body's size: a point so near a face is taken to be on it where a walk begins: what simplices leave. */
+#define IMP_WALK_START 1e-6
+
+/* Of the reach: a point in a core, but for rounding. */
+#define IMP_WALK_INSIDE (32 * IMP_ROUNDOFF)
+
 /* ---- patches, docs/faces.md ---- */
 
 /* |d| - 1 of a direction that is taken for unit: a normal of a gap, turned twice. */

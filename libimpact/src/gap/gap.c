@@ -3,7 +3,6 @@
 #include <quat/rotation.h>
 #include "gap/gap_core.h"
 #include "gap/gap_solver.h"
-#include "shape/solid.h"
 
 static impact_contact no_contact(void)
 {
@@ -101,6 +100,7 @@ void imp_gap_pair(const impact_solid *body1, quat q1, const impact_solid *body2,
 {
     imp_form_make(&body2->shape, scale, q2, &pair->form[0]);
     imp_form_make(&body1->shape, scale, q1, &pair->form[1]);
+    pair->form[0].rounding = pair->form[1].rounding = 0; /* of the cores */
     pair->size = 0;
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) pair->size = fmax(pair->size, pair->form[k].axis[i]);
@@ -134,6 +134,18 @@ void imp_gap_contact(const impact_solid *body1, const impact_solid *body2, doubl
     contact->lower = meeting->lower * back, contact->upper = meeting->upper * back;
 }
 
+/* From the cores' contact to that of the bodies. */
+static void put_balls(const impact_solid *body1, const impact_solid *body2, impact_contact *contact)
+{
+    const double r1 = body1->shape.rounding, r2 = body2->shape.rounding;
+    if (r1 == 0 && r2 == 0) return;
+    contact->gap -= r1 + r2, contact->lower -= r1 + r2, contact->upper -= r1 + r2;
+    contact->offset1 = qvec3_axpy(-r1, contact->normal, contact->offset1);
+    contact->offset2 = qvec3_axpy(r2, contact->normal, contact->offset2);
+    contact->point1 = qvec3_add(body1->position, contact->offset1);
+    contact->point2 = qvec3_add(body2->position, contact->offset2);
+}
+
 static impact_status smooth_pair(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2,
                                  impact_gap_cache *cache, bool glance, impact_contact *contact)
 {
@@ -150,6 +162,7 @@ static impact_status smooth_pair(const impact_solid *body1, quat q1, const impac
     else if (!imp_gap_first(&pair, seed, &meeting, &path))
         return IMPACT_BRACKET;
     imp_gap_contact(body1, body2, scale, &meeting, path, contact);
+    put_balls(body1, body2, contact);
     if (cache) *cache = (impact_gap_cache){true, contact->normal};
     return status;
 }
@@ -178,10 +191,7 @@ impact_status imp_gap_check(const impact_solid *body1, quat *q1, const impact_so
     impact_status status = check(body1, q1);
     if (status == IMPACT_OK) status = check(body2, q2);
     if (status != IMPACT_OK) return status;
-    const bool plane1 = body1->shape.kind == IMPACT_PLANE, plane2 = body2->shape.kind == IMPACT_PLANE;
-    const bool core = imp_has_core(&body1->shape) || imp_has_core(&body2->shape);
-    const bool none = core && !plane1 && !plane2 && !imp_core_takes(&body1->shape, &body2->shape);
-    return (plane1 && plane2) || none ? IMPACT_EARGUMENT : IMPACT_OK;
+    return body1->shape.kind == IMPACT_PLANE && body2->shape.kind == IMPACT_PLANE ? IMPACT_EARGUMENT : IMPACT_OK;
 }
 
 static impact_status solve_pair(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "gap/gap_chart.h"
+#include "gap/gap_walk.h"
+#include <string.h>
 
 static double exponent(const imp_form *form, int i) { return form->nested && i < 2 ? form->p[0] : form->p[i]; }
 
@@ -86,7 +88,11 @@ static void nested_chart(const imp_form *form, const imp_surface *s, double x[3]
 void imp_chart_make(const imp_form *form, const imp_surface *s, imp_chart *c)
 {
     double x[3], N[3], P[2][3], Q[2][3];
-    if (form->nested)
+    if (form->kind != IMP_FORM_QUADRIC) {
+        imp_walk_chart(form, s, P, Q);
+        memcpy(x, s->u, sizeof x);
+        memcpy(N, s->e, sizeof N);
+    } else if (form->nested)
         nested_chart(form, s, x, N, P, Q, c);
     else
         plain_chart(form, s, x, N, P, Q, c);
@@ -156,6 +162,10 @@ static bool settle_pivot(double p, double rest, double *u, double *e)
 
 bool imp_chart_move(const imp_form *form, const imp_chart *c, const double step[2], imp_surface *s)
 {
+    if (form->kind != IMP_FORM_QUADRIC) {
+        imp_walk_move(form, step, s);
+        return true;
+    }
     for (int j = 0; j < 2; j++) {
         const int i = c->index[j];
         move_pair(exponent(form, i), c->primal[j], step[j], &s->u[i], &s->e[i]);
@@ -197,8 +207,13 @@ static void use_point(const imp_form *form, const double x[3], imp_surface *s)
 
 void imp_chart_start(const imp_form *form, const double d[3], const double *x, imp_surface *s)
 {
-    double body[3];
+    double body[3], point[3];
     imp_to_body(form->rotation, d, body);
+    if (form->kind != IMP_FORM_QUADRIC) {
+        if (x) imp_to_body(form->rotation, x, point);
+        imp_walk_start(form, body, x ? point : NULL, s);
+        return;
+    }
     imp_form_support(form, body, s);
     if (!x || form->nested) return;
     imp_to_body(form->rotation, x, body);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "gap/gap_face.h"
+#include "base/tolerances.h"
+#include "shape/solid.h"
 #include <string.h>
 
 enum { UNKNOWNS = 5 };
@@ -281,6 +283,7 @@ static bool body_holds(const imp_gap_solids *pair, const imp_face *face, int k, 
     for (int i = 0; i < 3; i++) world[i] = face->chart[k].x[i] + (k ? part - 1 : part) * face->v[i];
     const imp_form *form = &pair->form[k];
     imp_to_body(form->rotation, world, body);
+    if (form->kind != IMP_FORM_QUADRIC) return imp_core_distance(form, body) <= IMP_WALK_INSIDE * pair->reach;
     const double thin = fmin(form->axis[0], fmin(form->axis[1], form->axis[2]));
     const double steepest = fmax(fmax(form->p[0], form->p[1]), fmax(form->p[2], form->p[3]));
     return imp_form_inside(form, body) <= 1 + 4e-15 * steepest * pair->size / thin;

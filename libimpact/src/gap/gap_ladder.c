@@ -5,6 +5,9 @@
  */
 #include "gap/gap_chart.h"
 #include "gap/gap_solver.h"
+#include "base/tolerances.h"
+#include "gap/gap_walk.h"
+#include "shape/solid.h"
 #include <string.h>
 
 /* Deeper than this part of the smallest semi-axis, or of the smallest radius of both surfaces together at the contact,
@@ -43,8 +46,12 @@ static double distance_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * 
  * 1 - |grad f| |z|^2/(2 r) + F |z|^2/2 at x + z of the ball of radius r. 0: none is known. */
 static double inner_radius(const imp_form *form, const double x[3], double depth)
 {
-    double slope = 0, bend = 0;
+    double slope = 0, bend = 0, body[3];
     if (form->nested) return 0;
+    if (form->kind != IMP_FORM_QUADRIC) {
+        imp_to_body(form->rotation, x, body);
+        return imp_walk_inner_radius(form, body);
+    }
     for (int i = 0; i < 3; i++) {
         const double place =
             fabs(form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2]);
@@ -69,7 +76,7 @@ static bool edge_at(const imp_form *form, const double x[3], const double n[3], 
 {
     const double(*m)[3] = form->rotation;
     int found = 0;
-    if (form->nested) return false;
+    if (form->nested || form->kind != IMP_FORM_QUADRIC) return false;
     for (int i = 0; i < 3; i++) {
         const double place = fabs(m[0][i] * x[0] + m[1][i] * x[1] + m[2][i] * x[2]);
         if (form->p[i] < 2 && place < 20 * depth) e->axis = i, found++;
@@ -184,11 +191,17 @@ static void centre_line(const imp_gap_solids *pair, double n[3])
     for (int i = 0; i < 3; i++) n[i] = distance > 0 ? pair->c[i] / distance : i == 2;
 }
 
-/* M = R diag(axis^2) R^T, the ellipsoid a body is taken for here. */
+/* A semi-axis of the ellipsoid a body is taken for here: of a segment a little in every direction. */
+static double seed_axis(const imp_form *form, int k)
+{
+    return fmax(form->axis[k], 1e-3 * fmax(form->axis[0], fmax(form->axis[1], form->axis[2])));
+}
+
+/* M = R diag(axis^2) R^T. */
 static void add_ellipsoid(const imp_form *form, double scale, double M[3][3])
 {
     for (int k = 0; k < 3; k++) {
-        const double square = scale * form->axis[k] * form->axis[k];
+        const double square = scale * seed_axis(form, k) * seed_axis(form, k);
         for (int i = 0; i < 3; i++)
             for (int j = i; j < 3; j++) M[i][j] += square * form->rotation[i][k] * form->rotation[j][k];
     }
@@ -198,8 +211,8 @@ static double ellipsoid_height(const imp_form *form, const double n[3])
 {
     double sum = 0;
     for (int k = 0; k < 3; k++) {
-        const double w =
-            form->axis[k] * (form->rotation[0][k] * n[0] + form->rotation[1][k] * n[1] + form->rotation[2][k] * n[2]);
+        const double w = seed_axis(form, k) *
+                         (form->rotation[0][k] * n[0] + form->rotation[1][k] * n[1] + form->rotation[2][k] * n[2]);
         sum += w * w;
     }
     return sqrt(sum);
@@ -294,6 +307,7 @@ static bool try_homotopy(search *s)
         imp_gap_solids eased = *s->pair;
         for (int k = 0; k < 2; k++) {
             imp_form *form = &eased.form[k];
+            if (form->kind != IMP_FORM_QUADRIC) continue;
             for (int i = 0; i < 4; i++) form->p[i] = 1 + pow(form->p[i] - 1, stage / 8.0);
             if (stage == 0) form->round = form->uniform = true, form->nested = false;
         }
@@ -353,11 +367,29 @@ static bool settle_low(search *s)
     return false;
 }
 
+/* The normals of a body's faces and caps: a deep overlap's nearest way out is along one of them, or near an edge. */
+static void look_along_faces(search *s, int body)
+{
+    const imp_form *form = &s->pair->form[body];
+    const bool turned = form->kind == IMP_FORM_CYLINDER || form->kind == IMP_FORM_CONE;
+    const int count = turned ? 2 : form->kind == IMP_FORM_QUADRIC ? 0 : form->core.hull->face_count;
+    for (int f = 0; f < count; f++) {
+        double own[3] = {0, 0, f ? 1 : -1}, n[3];
+        if (!turned) imp_core_normal(&form->core, f, own);
+        imp_to_world(form->rotation, own, n);
+        for (int k = 0; body == 1 && k < 3; k++) n[k] = -n[k];
+        note_low(s, imp_pair_gap(s->pair, n, NULL), n);
+    }
+}
+
 /* An overlap without a proof: bounded from both sides, and the nearest way out looked for over the whole sphere. True
  * when it is proved. */
 static bool surround(search *s)
 {
     if (s->found) note_low(s, s->best.gap, s->best.n);
+    look_along_faces(s, 0);
+    look_along_faces(s, 1);
+    if (s->sharp && (!s->found || s->low > s->best.gap) && settle_low(s) && prove_best(s)) return true;
     climb(s, fmax(exact_slack * s->pair->reach, fmin(coarse_depth * -s->low, coarse_size * s->pair->size)));
     if (!s->found || s->low > s->best.gap) newton_from(s, s->low_n, NULL, IMPACT_PATH_FALLBACK);
     if (s->found && s->best.gap >= s->low - exact_slack * s->pair->reach && prove_best(s)) return true;
@@ -370,6 +402,9 @@ static bool form_holds(const imp_form *form, const double x[3])
     double body[3];
     for (int i = 0; i < 3; i++)
         body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
+    if (form->kind != IMP_FORM_QUADRIC)
+        return imp_core_distance(form, body) <=
+               IMP_WALK_INSIDE * fmax(form->axis[0], fmax(form->axis[1], form->axis[2]));
     return imp_form_inside(form, body) <= 1 + 1e-14;
 }
 
@@ -444,7 +479,8 @@ impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, i
                 .low = -INFINITY,
                 .most = INFINITY,
                 .thin = INFINITY,
-                .sharp = is_sharp(&pair->form[0]) && is_sharp(&pair->form[1])};
+                .sharp = pair->form[0].kind != IMP_FORM_QUADRIC || pair->form[1].kind != IMP_FORM_QUADRIC ||
+                         (is_sharp(&pair->form[0]) && is_sharp(&pair->form[1]))};
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) s.thin = fmin(s.thin, pair->form[k].axis[i]);
     double n[3], upper = distance_of(pair->c);

@@ -90,6 +90,7 @@ static void reins(const strike *s, double low, double high, double *least, doubl
 
 bool imp_gap_strike(const imp_gap_course *course, double low, double high, qvec3 n, double *t, impact_contact *contact)
 {
+    if (course->body[0]->shape.rounding > 0 || course->body[1]->shape.rounding > 0) return false; /* of cores alone */
     strike s = {.course = course, .scale = imp_gap_scale(course->body[0], course->body[1]), .t = *t};
     const double normal[3] = {n.x, n.y, n.z};
     imp_surface surface[2];

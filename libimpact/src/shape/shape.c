@@ -76,9 +76,10 @@ static impact_status check_turned(const impact_shape *shape, char *message, size
     if (shape->b != shape->a)
         return say(IMPACT_EARGUMENT, message, size, "b", shape->b, "is not a, the radius, as a round body needs");
     if (shape->kind == IMPACT_CAPSULE)
-        return shape->rounding == shape->a
+        return shape->rounding == shape->a && shape->c > shape->a
                    ? IMPACT_OK
-                   : say(IMPACT_EARGUMENT, message, size, "rounding", shape->rounding, "is not a capsule's radius");
+                   : say(IMPACT_EARGUMENT, message, size, "rounding", shape->rounding,
+                         "is not a capsule's radius, or c not above it");
     status = check_rounding(shape->rounding, fmin(shape->a, cone ? shape->c / 2 : shape->c),
                             "is not below the radius and half the height", message, size);
     if (status != IMPACT_OK || !cone) return status;
@@ -156,48 +157,42 @@ impact_status impact_shape_superellipsoid(double a, double b, double c, double e
         shape);
 }
 
-impact_status impact_shape_box(double a, double b, double c, double rounding, impact_shape *shape)
+static impact_shape with_core(impact_shape_kind kind, double a, double b, double c, double rounding)
 {
-    return keep_if_good(
-        (impact_shape){.kind = IMPACT_BOX, .a = a, .b = b, .c = c, .r = 2, .s = 2, .t = 2, .rounding = rounding},
-        shape);
+    const bool round = kind != IMPACT_BOX && kind != IMPACT_POLYHEDRON;
+    const double across = round ? 2 : INFINITY, along = kind == IMPACT_CAPSULE ? 2 : INFINITY;
+    return (impact_shape){
+        .kind = kind, .a = a, .b = b, .c = c, .r = across, .s = across, .t = along, .rounding = rounding};
 }
 
-static impact_shape turned(impact_shape_kind kind, double radius, double height, double rounding)
+impact_status impact_shape_box(double a, double b, double c, double rounding, impact_shape *shape)
 {
-    return (impact_shape){
-        .kind = kind, .a = radius, .b = radius, .c = height, .r = 2, .s = 2, .t = 2, .rounding = rounding};
+    return keep_if_good(with_core(IMPACT_BOX, a, b, c, rounding), shape);
 }
 
 impact_status impact_shape_cylinder(double radius, double half_height, double rounding, impact_shape *shape)
 {
-    return keep_if_good(turned(IMPACT_CYLINDER, radius, half_height, rounding), shape);
+    return keep_if_good(with_core(IMPACT_CYLINDER, radius, radius, half_height, rounding), shape);
 }
 
 impact_status impact_shape_cone(double radius, double height, double rounding, impact_shape *shape)
 {
-    impact_shape cone = turned(IMPACT_CONE, radius, height, rounding);
+    impact_shape cone = with_core(IMPACT_CONE, radius, radius, height, rounding);
     cone.base = imp_cone_base(radius, height, rounding);
     return keep_if_good(cone, shape);
 }
 
 impact_status impact_shape_capsule(double radius, double half_height, impact_shape *shape)
 {
-    return keep_if_good(turned(IMPACT_CAPSULE, radius, half_height, radius), shape);
+    if (!(half_height > 0)) return isnan(half_height) ? IMPACT_EDOMAIN : IMPACT_EARGUMENT;
+    return keep_if_good(with_core(IMPACT_CAPSULE, radius, radius, half_height + radius, radius), shape);
 }
 
 impact_status impact_shape_polyhedron(const impact_hull *hull, impact_shape *shape)
 {
     if (!hull) return IMPACT_EARGUMENT;
-    const double *e = hull->extent;
-    return keep_if_good((impact_shape){.kind = IMPACT_POLYHEDRON,
-                                       .a = e[0],
-                                       .b = e[1],
-                                       .c = e[2],
-                                       .r = 2,
-                                       .s = 2,
-                                       .t = 2,
-                                       .rounding = hull->rounding,
-                                       .hull = hull},
-                        shape);
+    const double *e = hull->extent, r = hull->rounding;
+    impact_shape polyhedron = with_core(IMPACT_POLYHEDRON, e[0] + r, e[1] + r, e[2] + r, r);
+    polyhedron.hull = hull;
+    return keep_if_good(polyhedron, shape);
 }

@@ -19,9 +19,9 @@ void imp_core_axes(const impact_shape *shape, double axis[3])
 {
     const double r = shape->rounding;
     const double all[3] = {shape->a, shape->b, shape->c};
-    for (int k = 0; k < 3; k++) axis[k] = shape->kind == IMPACT_POLYHEDRON ? all[k] : all[k] - r;
+    for (int k = 0; k < 3; k++) axis[k] = all[k] - r;
     if (shape->kind == IMPACT_CONE) axis[2] = shape->c - 2 * r;
-    if (shape->kind == IMPACT_CAPSULE) axis[0] = axis[1] = 0, axis[2] = shape->c;
+    if (shape->kind == IMPACT_CAPSULE) axis[0] = axis[1] = 0;
 }
 
 static double box_volume(double a, double b, double c, double r)
@@ -171,7 +171,7 @@ double imp_solid_radius(const impact_shape *shape)
     case IMPACT_BOX: return hypot(hypot(axis[0], axis[1]), axis[2]) + r;
     case IMPACT_CYLINDER: return hypot(axis[0], axis[2]) + r;
     case IMPACT_CONE: return fmax(hypot(axis[0], shape->base), shape->base + axis[2]) + r;
-    case IMPACT_CAPSULE: return shape->c + r;
+    case IMPACT_CAPSULE: return shape->c;
     case IMPACT_POLYHEDRON: return shape->hull->radius + r;
     default: return NAN;
     }

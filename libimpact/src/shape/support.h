@@ -36,9 +36,10 @@ typedef struct imp_form {
     imp_core core;         /* of boxes and polytopes */
 } imp_form;
 
-/* Of a core: u is the core's point, e the unit normal. */
+/* Of a core: u is the core's point, e the unit normal; kind and index the feature it is on (gap_walk.h). */
 typedef struct imp_surface {
     double u[4], e[4];
+    short kind, index;
 } imp_surface;
 
 /* Semi-axes are multiplied by scale. Spheres are ellipsoids here; planes have no form. */

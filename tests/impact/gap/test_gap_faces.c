@@ -28,7 +28,7 @@ static void against_all_features(void **state)
     (void)state;
     random_stream random = {1};
     for (int family = 0; family < PAIR_FAMILIES; family++)
-        for (int i = 0; i < (family < PAIR_HULLS ? 600 : 60); i++) {
+        for (int i = 0; i < (family < PAIR_HULLS ? 120 : 12); i++) {
             face_pair pair = random_face_pair(&random, family);
             impact_contact contact;
             const impact_status status = impact_gap(&pair.body[0], &pair.body[1], NULL, &contact);

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Shapes with faces beside smooth ones and round ones. Truth by construction: a feature of the first body, a normal in
+ * its cone and a point on it; the second body stands with its support point opposite, the gap away.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include "kit/mixed_pairs.h"
+
+/* 1: the answer is told not to be settled, with a bracket that holds what was made. */
+static int check_pair(const mixed_pair *pair, const char *what, int i)
+{
+    impact_contact contact;
+    const impact_status status = impact_gap(&pair->body[0], &pair->body[1], NULL, &contact);
+    const double error = (contact.gap - pair->gap) / pair->reach;
+    const double receipt = impact_gap_receipt(&pair->body[0], &pair->body[1], &contact, NULL);
+    /* apart the gap is what was made; overlapping it is no less */
+    if (status == IMPACT_OK && (pair->gap >= 0 ? fabs(error) : -error) <= 1e-14 && receipt <= 20) return 0;
+    if (pair->gap < 0 && (status == IMPACT_BRACKET || status == IMPACT_DEEP) && contact.upper >= pair->gap) return 1;
+    fail_msg("%s %d (kinds %d, %d): status %d, gap %.17g, made %.17g, error %.3g, receipt %.3g", what, i,
+             (int)pair->body[0].shape.kind, (int)pair->body[1].shape.kind, (int)status, contact.gap, pair->gap, error,
+             receipt);
+    return 1;
+}
+
+static void apart(void **state)
+{
+    (void)state;
+    random_stream random = {1};
+    for (int i = 0; i < 6000; i++) {
+        mixed_pair pair = random_mixed_pair(&random, i % MIXED_FAMILIES, random_log(&random, 1e-6, 1));
+        check_pair(&pair, mixed_family_name(i % MIXED_FAMILIES), i);
+        end_mixed_pair(&pair);
+    }
+}
+
+static void shallow_overlap(void **state)
+{
+    (void)state;
+    random_stream random = {2};
+    int flagged = 0;
+    for (int i = 0; i < 2000; i++) {
+        mixed_pair pair = random_mixed_pair(&random, i % MIXED_FAMILIES, -random_log(&random, 1e-9, 1e-3));
+        flagged += check_pair(&pair, mixed_family_name(i % MIXED_FAMILIES), i);
+        end_mixed_pair(&pair);
+    }
+    assert_true(flagged < 20); /* a cone's edge on a polyhedron's */
+}
+
+/* Deep: right, or a bracket that says so; no normal of many contradicts either. */
+static void deep_overlap(void **state)
+{
+    (void)state;
+    random_stream random = {3};
+    int flagged = 0;
+    for (int i = 0; i < 400; i++) {
+        mixed_pair pair = random_mixed_pair(&random, i % MIXED_FAMILIES, 1);
+        pair.body[0].position = qvec3_scale(random_direction(&random), 0.2 * random_unit(&random));
+        pair.body[1].position = (qvec3){0, 0, 0};
+        impact_contact contact;
+        const impact_status status = impact_gap(&pair.body[0], &pair.body[1], NULL, &contact);
+        flagged += status != IMPACT_OK;
+        assert_true(status == IMPACT_OK || status == IMPACT_DEEP || status == IMPACT_BRACKET);
+        const double size = contact_size(&pair.body[0].shape) + contact_size(&pair.body[1].shape);
+        assert_true(contact.upper - contact.lower <= 0.011 * size);
+        for (int k = 0; k < 300; k++) {
+            const qvec3 n = random_direction(&random),
+                        v = qvec3_add(
+                            qvec3_sub(pair.body[0].position, pair.body[1].position),
+                            qvec3_sub(contact_support(&pair.body[0], qvec3_neg(n)), contact_support(&pair.body[1], n)));
+            if (qvec3_dot(n, v) > contact.upper + 1e-14 * size)
+                fail_msg("%s %d: %.17g along a normal, upper %.17g, status %d", mixed_family_name(i % MIXED_FAMILIES),
+                         i, qvec3_dot(n, v), contact.upper, (int)status);
+        }
+        end_mixed_pair(&pair);
+    }
+    assert_true(flagged < 60);
+}
+
+static void swapped(void **state)
+{
+    (void)state;
+    random_stream random = {4};
+    for (int i = 0; i < 2000; i++) {
+        mixed_pair pair = random_mixed_pair(&random, i % MIXED_FAMILIES, random_log(&random, 1e-6, 1));
+        const impact_solid first = pair.body[0];
+        impact_contact one, other;
+        assert_int_equal(impact_gap(&pair.body[0], &pair.body[1], NULL, &one), IMPACT_OK);
+        pair.body[0] = pair.body[1], pair.body[1] = first;
+        assert_int_equal(impact_gap(&pair.body[0], &pair.body[1], NULL, &other), IMPACT_OK);
+        assert_true(fabs(one.gap - other.gap) <= 2e-14 * pair.reach);
+        end_mixed_pair(&pair);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(apart),
+        cmocka_unit_test(shallow_overlap),
+        cmocka_unit_test(deep_overlap),
+        cmocka_unit_test(swapped),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
