@@ -468,6 +468,7 @@ end
 
 local parts = {
   { "ballistic_flights", "flight in closed form", "stretch", "stretches" },
+  { "rolls", "rolling and sliding in closed form", "stretch", "stretches" },
   { "integrators", "CVODE for the motion", "integrator", "integrators" },
   { "gap_closed_form", "gaps in closed form", "query", "queries" },
   { "gap_newton", "gaps by Newton", "query", "queries" },

@@ -171,6 +171,7 @@ IMPACT_API double impact_scene_key_tolerance(const impact_scene *scene);
 /* What the run used; each is 0 where the scene does not need it. */
 typedef struct impact_usage {
     long ballistic_flights; /* stretches of flight in closed form */
+    long rolls;             /* stretches in which a ball rolls or slides on a plane, in closed form */
     long integrators;       /* CVODE integrators created for the motion */
     long integrator_starts, integrator_steps, integrator_rhs_calls;
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */

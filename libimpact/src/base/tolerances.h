@@ -72,6 +72,11 @@
 /* Of the bodies' distance and size: places of corners in the plane of a patch, three products and sums each. */
 #define IMP_PATCH_BORDER (16 * IMP_ROUNDOFF)
 
+/* A plane whose slope is less than this is level, and directions that differ by less are one line: of a ball that has
+ * slid through hundreds of turns, each put back on its plane with a few roundings; and as closely as slip is integrated
+ * (IMP_SLIDING_TOLERANCE). */
+#define IMP_LEVEL (1024 * IMP_ROUNDOFF)
+
 /* ---- speeds ---- */
 
 /* Slip slower than this part of the rest speed, m/s, is none: what ends as rest has stuck before, by a margin that the

@@ -149,7 +149,9 @@ static impact_status continue_steps(imp_island *island)
 
 impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
 {
-    const double t = island->t = island->motion.stride.t;
+    const double t = island->motion.stride.t;
+    if (island->rolls) imp_island_go_to(island, t);
+    island->t = t;
     if (!finish(island)) return IMPACT_ESINK;
     if (island->stepped) return continue_steps(island);
     if (imp_island_loses_patience(island)) return turn_to_steps(scene, island, t);

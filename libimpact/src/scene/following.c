@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/following.h"
 #include "scene/islands.h"
+#include "scene/rolling.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_meeting.h"
 #include "scene/stepped.h"
@@ -103,6 +104,24 @@ impact_status imp_island_fail(imp_island *island, impact_status status)
     return status;
 }
 
+/* The one body that moves in it has this segment. What friction does not take from has its energy in the account. */
+static impact_status roll(imp_island *island, const imp_segment *segment)
+{
+    impact_scene *scene = island->scene;
+    int i = 0;
+    while (island->world.bodies[i].is_static) i++;
+    const imp_touch *touch = &island->motion.persist.touches[0];
+    island->rolls = island->moves = true;
+    island->loses = touch->mode == IMP_SLIDE && touch->friction > 0;
+    island->begun_with = imp_island_energy(island);
+    island->motion.stride.t = segment->t1;
+    imp_motion_forget(&island->motion);
+    imp_account_set(&scene->account, island->world.bodies[i].index, island->loses ? 0 : island->begun_with);
+    scene->world.usage.rolls++;
+    imp_queue_set(&scene->queue, imp_scene_island_slot(scene, island->number), segment->t1);
+    return follow(island, i, segment);
+}
+
 /* The next step, of the integrator or of a pile. */
 impact_status imp_island_step_on(imp_island *island)
 {
@@ -160,7 +179,10 @@ impact_status imp_island_start(imp_island *island)
         if (!island->world.bodies[i].is_static)
             scene->tracks.tracks[island->world.bodies[i].index].island = island->number;
     island->rests = imp_island_all_rest(island) && !may_wake(island);
+    island->rolls = island->loses = false;
     if (island->rests) return stand(island);
+    imp_segment segment;
+    if (!island->stepped && imp_island_rolls(island, &segment, &island->end)) return roll(island, &segment);
     if (island->stepped) hold_near(island);
     imp_motion_depart(&island->motion, island->t, horizon(scene, island->t), island->end.kind == IMP_END_RENEWAL);
     return imp_island_step_on(island);

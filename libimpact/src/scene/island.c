@@ -56,7 +56,7 @@ void imp_island_clear(imp_island *island)
     world->flat_height = whole->flat_height;
     island->number = -1;
     island->impact_loss = island->loss_before = island->outside = 0;
-    island->rests = island->rolls = island->stepped = island->moves = false;
+    island->rests = island->rolls = island->loses = island->stepped = island->moves = false;
     island->patience = (imp_patience){0};
     island->end = (imp_end){IMP_END_TIME, 0};
     imp_motion_reset(&island->motion, world, island->scene->tolerance, island->scene->rest_speed);
@@ -170,10 +170,11 @@ void imp_island_go_to(imp_island *island, double t)
     const imp_tracks *tracks = &island->scene->tracks;
     const imp_world *world = &island->world;
     if (island->rests || island->rolls) {
-        const double energy = imp_island_energy(island);
         for (int i = 0; i < world->body_count; i++)
             island->states[i] = imp_segment_at(&tracks->tracks[world->bodies[i].index].segment, &world->bodies[i], t);
-        if (island->rolls) island->motion.works.sliding += energy - imp_island_energy(island);
+        const double left = island->loses ? imp_island_energy(island) : island->begun_with;
+        if (island->loses) island->motion.works.sliding += island->begun_with - left;
+        island->begun_with = left;
     } else {
         imp_motion_go_to(&island->motion, t, island->states);
         if (island->stepped)
@@ -182,10 +183,25 @@ void imp_island_go_to(imp_island *island, double t)
     island->t = t;
 }
 
+/* What friction has taken of a ball since its segment began, at t, J. */
+static double rubbed_off(const imp_island *island, double t)
+{
+    double left = 0;
+    for (int i = 0; i < island->world.body_count; i++) {
+        const imp_body *body = &island->world.bodies[i];
+        if (body->is_static) continue;
+        const imp_state now = imp_segment_at(&island->scene->tracks.tracks[body->index].segment, body, t);
+        left += imp_body_energy(body, &now, island->world.gravity);
+    }
+    return island->begun_with - left;
+}
+
 imp_works imp_island_works(const imp_island *island, double t)
 {
-    const bool constant = island->rests || island->rolls || !island->moves;
-    return constant ? island->motion.works : imp_motion_works(&island->motion, t);
+    imp_works works = island->motion.works;
+    if (!island->rests && !island->rolls && island->moves) return imp_motion_works(&island->motion, t);
+    if (island->rolls && island->loses && island->moves) works.sliding += rubbed_off(island, t);
+    return works;
 }
 
 double imp_island_loss(const imp_island *island, double t)

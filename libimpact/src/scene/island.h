@@ -39,7 +39,9 @@ typedef struct imp_island {
     long steps;
     double outside;    /* J: of all other bodies, for the rows of events */
     int number;        /* among the scene's; -1: of none */
-    bool rests, rolls; /* no integrator is at work: its bodies' segments say all */
+    bool rests, rolls;  /* no integrator is at work: its bodies' segments say all */
+    bool loses;         /* it rolls, and friction takes energy: what there was when its segment began, J */
+    double begun_with;
     bool moves;        /* it has segments; false where its next step failed */
     bool leaving;      /* scratch: its bodies go over to another */
 } imp_island;

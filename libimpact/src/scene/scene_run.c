@@ -38,7 +38,8 @@ double imp_scene_energy_beside(impact_scene *scene, const imp_island *except, do
     }
     for (int k = 0; k < scene->island_count; k++) {
         imp_island *island = scene->islands[k];
-        if (!island || island == except || island->rests || imp_island_look(island, t) != IMPACT_OK) continue;
+        const bool constant = island && (island->rests || (island->rolls && !island->loses)); /* in the account */
+        if (!island || island == except || constant || imp_island_look(island, t) != IMPACT_OK) continue;
         energy += imp_world_kinetic_energy(&island->world, island->motion.sampled) +
                   imp_field_potential(&island->world, island->motion.sampled);
     }

@@ -14,6 +14,7 @@ static const struct {
     size_t offset;
 } entries[] = {
     ENTRY(ballistic_flights),
+    ENTRY(rolls),
     ENTRY(integrators),
     ENTRY(integrator_starts),
     ENTRY(integrator_steps),
