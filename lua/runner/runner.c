@@ -433,6 +433,9 @@ int main(int count, char **words)
         code = run_script(&runner);
         impact_runner_end_drawer(&runner);
     }
-    if (fflush(stdout) != 0 && code == IMPACT_EXIT_OK) code = IMPACT_EXIT_OUTPUT;
+    if (fflush(stdout) != 0 && code == IMPACT_EXIT_OK) {
+        fprintf(stderr, "impact: cannot write to the standard output: %s\n", strerror(errno));
+        code = IMPACT_EXIT_OUTPUT;
+    }
     return code;
 }
