@@ -422,7 +422,7 @@ static void receipts(void)
         for (int from = 0; from < COUNT; from += PORTION) {
             double best[2] = {INFINITY, INFINITY};
             for (int r = 0; r < ROUNDS; r++) {
-                best[0] = best_of(c + from, PORTION, IMPACT_CHECK_ALWAYS, best[0]);
+                best[0] = best_of(c + from, PORTION, IMPACT_CHECK_AUTO, best[0]);
                 best[1] = best_of(c + from, PORTION, IMPACT_CHECK_NEVER, best[1]);
             }
             with += best[0];

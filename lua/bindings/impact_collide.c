@@ -395,10 +395,11 @@ static int receipt(lua_State *L)
     struct {
         const char *key;
         double value;
-    } const fields[] = {{"momentum", r.momentum}, {"spin", r.spin},  {"cone", r.cone},   {"energy", r.energy},
-                        {"power", r.power},       {"law", r.law},    {"stick", r.stick}, {"path", r.path},
-                        {"approach", r.approach}, {"worst", r.worst}};
-    lua_createtable(L, 0, 10);
+    } const fields[] = {{"momentum", r.momentum},   {"spin", r.spin},   {"cone", r.cone},
+                        {"energy", r.energy},       {"power", r.power}, {"law", r.law},
+                        {"stick", r.stick},         {"path", r.path},   {"approach", r.approach},
+                        {"hodograph", r.hodograph}, {"slips", r.slips}, {"worst", r.worst}};
+    lua_createtable(L, 0, 12);
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) quat_lua_set_number(L, fields[i].key, fields[i].value);
     return 1;
 }

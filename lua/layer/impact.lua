@@ -287,7 +287,7 @@ core.layer()
 ---@field collide fun(collision: impact.collision): impact.outcome?, string?  one impact; or nil and why there is no answer
 ---@field collide_many fun(collisions: impact.collisions): table  columns v1, w1, v2, w2, impulse (flat), energy_before, energy_after, normal_after, error, status; checked = true: each by its receipt
 ---@field collide_together fun(encounter: impact.encounter): impact.encounter_outcome?, string?  many contacts struck at one instant; or nil and why there is no answer
----@field collide_receipt fun(collision: impact.collision, outcome: impact.outcome): {momentum: number, spin: number, cone: number, energy: number, power: number, law: number, approach: number, stick: number, path: number, worst: number}  how far identities are missed, in 2^-52 of their own terms
+---@field collide_receipt fun(collision: impact.collision, outcome: impact.outcome): {momentum: number, spin: number, cone: number, energy: number, power: number, law: number, approach: number, stick: number, path: number, hodograph: number, slips: number, worst: number}  how far identities are missed, in 2^-52 of their own terms
 ---@field collide_sensitivity fun(collision: impact.collision): number?, string?  relative change of the velocities after over that of each number of the data, root of the sum of squares; times 2^-52: what the data's rounding leaves open
 ---@field flow fun(flow: table): impact.flow_columns?, string?  {a=, b=, c=, d=, m=, mu=, u=, p_end=, count=}, or a collision with p_end and count
 ---@field wind fun(definition: impact.wind): impact.wind

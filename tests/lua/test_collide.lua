@@ -155,6 +155,7 @@ do
   near(o.phase_impulses[#o.phases].z, o.impulse.z, 1e-14)
   o.impulse_normal = o.impulse_normal * (1 + 1e-9)
   check.truth(impact.collide_receipt(slides, o).approach > 1e4)
+  check.truth(r.hodograph <= r.worst and math.type(r.slips) == "float" and r.slips >= 0)
   local less = with { J1 = slides.J1, r1 = slides.r1, mu = 0.2 }
   check.truth(impact.collide_receipt(less, assert(impact.collide(slides))).cone > 1e4)
   for _, wrong in ipairs { { phases = { "slipping" } }, { impulse_normal = "much" }, { normal_before = 0 / 0 } } do

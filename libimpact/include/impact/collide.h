@@ -39,8 +39,8 @@ typedef enum impact_solver {
 
 /* Whether an answer is checked by its receipt before it is returned. */
 typedef enum impact_checking {
-    IMPACT_CHECK_AUTO,   /* by impact_collide, not by impact_collide_many */
-    IMPACT_CHECK_ALWAYS, /* by both */
+    IMPACT_CHECK_AUTO,   /* by impact_collide, but for the hodograph; not by impact_collide_many */
+    IMPACT_CHECK_ALWAYS, /* by both, all of it */
     IMPACT_CHECK_NEVER   /* only that it is finite and gains no energy */
 } impact_checking;
 
@@ -125,6 +125,10 @@ typedef struct impact_receipt {
     double approach; /* u_n before, after and P_n as reported; u_n after >= 0 */
     double stick;    /* u_t = 0 where the last phase sticks */
     double path;     /* each phase: its impulse in the cone; u_n = 0 at turns, u_t = 0 at stops; together the impulse */
+    /* A slip that turns: |u_t| against its direction at the end of each phase, by the closed hodograph; of how many
+     * phases that was known (roots that are apart, a direction that is not one of them). */
+    double hodograph;
+    int slips;
     double worst;
 } impact_receipt;
 

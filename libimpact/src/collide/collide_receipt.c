@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The receipt of an impact: identities between what was given and what was answered, from the bodies themselves. No M
- * is formed and no slip followed: whatever the solver did, these must hold.
+ * The receipt of an impact: identities between what was given and what was answered, from the bodies themselves. No
+ * slip is followed: whatever the solver did, these must hold.
  *
  *   momentum  m (V - v) = +-P                        spin  J_k (W - w)_k = +-(r x P)_k on each principal axis
  *   cone      P_n >= 0, |P_t| <= mu P_n              energy  E+ <= E-, W_f <= 0
@@ -10,6 +10,7 @@
  *   approach  u_n- and u_n+ as reported, u_n+ >= 0   stick  u_t+ = 0 where the last phase sticks
  *   path      the same of each phase: its impulse in the cone, u_t = 0 while it sticks, u_n = 0 where compression
  *             turns to restitution and back, all phases together P
+ *   hodograph a slip that turns: |u_t| against its direction, in closed form (collide_hodograph.h)
  *
  * Each is divided by the sizes of its own terms, in eps: what rounding of the answer alone would leave is about 1.
  */
@@ -18,6 +19,7 @@
 #include <float.h>
 #include <math.h>
 #include "collide/collide_check.h"
+#include "collide/collide_hodograph.h"
 #include "collide/collide_units.h"
 
 /* |x| over its terms' sizes, in eps; 0 of nothing. */
@@ -39,6 +41,7 @@ typedef struct part {
     const impact_collider *body;
     qvec3 axis[3];
     double sign, arm;
+    double inverse_mass, inverse_j[3], largest; /* largest: of M's terms */
     bool moves;
 } part;
 
@@ -59,6 +62,13 @@ static void make_part(part *p, const impact_collider *body, double sign)
     p->arm = length(body->offset);
     p->moves = body->mass < INFINITY;
     if (!p->moves) return;
+    const qvec3 j = body->moments;
+    p->inverse_mass = 1 / body->mass;
+    p->inverse_j[0] = 1 / j.x;
+    p->inverse_j[1] = 1 / j.y;
+    p->inverse_j[2] = 1 / j.z;
+    const double least = j.x < j.y ? j.x : j.y;
+    p->largest = p->inverse_mass + p->arm * p->arm / (least < j.z ? least : j.z);
     const double f = 2 / quat_dot(q, q), w = q.w, x = q.x, y = q.y, z = q.z;
     p->axis[0] = (qvec3){1 - f * (y * y + z * z), f * (x * y + w * z), f * (x * z - w * y)};
     p->axis[1] = (qvec3){f * (x * y - w * z), 1 - f * (x * x + z * z), f * (y * z + w * x)};
@@ -162,8 +172,9 @@ static double outside_cone(const view *s, qvec3 P, double *along)
     const double mu = s->c->friction;
     *along = qvec3_dot(P, s->n);
     const double across = length(qvec3_axpy(-*along, s->n, P)), size = length(P);
-    const double cone = s->c->friction_law ? 0 : below(mu * *along - across, size * (1 + mu));
-    return fmax(below(*along, size), cone);
+    double outside = below(*along, size);
+    if (!s->c->friction_law) note(&outside, below(mu * *along - across, size * (1 + mu)));
+    return outside;
 }
 
 static void check_approach(const view *s, double along, impact_receipt *r)
@@ -205,17 +216,11 @@ static qvec3 velocity_change(const view *s, qvec3 P, double *size)
     for (int i = 0; i < 2; i++) {
         const part *p = &s->part[i];
         if (!p->moves) continue;
-        const impact_collider *b = p->body;
-        const qvec3 torque = qvec3_cross(b->offset, P);
+        const qvec3 r = p->body->offset, torque = qvec3_cross(r, P);
         qvec3 w = {0, 0, 0};
-        double turn = 0;
-        for (int k = 0; k < 3; k++) {
-            const double j = entry(b->moments, k);
-            w = qvec3_axpy(qvec3_dot(p->axis[k], torque) / j, p->axis[k], w);
-            turn = fmax(turn, 1 / j);
-        }
-        u = qvec3_add(u, qvec3_axpy(1 / b->mass, P, qvec3_cross(w, b->offset)));
-        *size += impulse * (1 / b->mass + p->arm * p->arm * turn);
+        for (int k = 0; k < 3; k++) w = qvec3_axpy(qvec3_dot(p->axis[k], torque) * p->inverse_j[k], p->axis[k], w);
+        u = qvec3_add(u, qvec3_axpy(p->inverse_mass, P, qvec3_cross(w, r)));
+        *size += impulse * p->largest;
     }
     return u;
 }
@@ -245,6 +250,45 @@ static void check_phases(const view *s, impact_receipt *r)
         note(&r->path, off(length(qvec3_sub(from, o->impulse)), length(o->impulse)));
 }
 
+/* ---- the way of a slip ---- */
+
+static void make_felt_mass(const view *s, qvec3 t1, qvec3 t2, imp_felt_mass *f)
+{
+    const qvec3 e[3] = {t1, t2, s->n};
+    *f = (imp_felt_mass){.friction = s->c->friction};
+    for (int i = 0; i < 3; i++) {
+        double size = 0;
+        const qvec3 u = velocity_change(s, e[i], &size);
+        for (int k = 0; k < 3; k++) f->m[k][i] = qvec3_dot(e[k], u);
+        f->rounding = fmax(f->rounding, size);
+    }
+}
+
+/* The first slip, as far as each of its phases: what comes after a stop goes straight. */
+static void check_hodograph(const view *s, impact_receipt *r)
+{
+    const impact_outcome *o = s->o;
+    const qvec3 t = qvec3_axpy(-qvec3_dot(s->before, s->n), s->n, s->before), x = qvec3_cross(t, s->n);
+    double size = s->size_before;
+    const double speed = length(x);
+    if (s->c->friction == 0 || s->c->friction_law || !(speed > DBL_EPSILON * size)) return;
+    const qvec3 t1 = qvec3_scale(x, 1 / speed), t2 = qvec3_cross(s->n, t1);
+    const imp_slip from = {0, speed, size};
+    imp_felt_mass f;
+    make_felt_mass(s, t1, t2, &f);
+    qvec3 u = s->before, P = {0, 0, 0};
+    for (int i = 0; i < o->phase_count && (o->phases[i] == IMPACT_SLIP_C || o->phases[i] == IMPACT_SLIP_R); i++) {
+        const bool stops = i + 1 < o->phase_count && (sticks(o->phases[i + 1]) || o->phases[i + 1] == IMPACT_REVERSAL);
+        double off = 0;
+        if (stops) return;
+        u = qvec3_add(u, velocity_change(s, qvec3_sub(o->phase_impulse[i], P), &size));
+        P = o->phase_impulse[i];
+        if (!imp_hodograph_residual(&f, from, (imp_slip){qvec3_dot(u, t1), qvec3_dot(u, t2), size}, &off)) continue;
+        note(&r->hodograph, off);
+        r->slips++;
+    }
+}
+
 /* What rigid contacts keep; springs keep it to their own tolerance, and are left out. */
 static void examine_contact(const view *s, impact_receipt *r)
 {
@@ -256,7 +300,8 @@ static void examine_contact(const view *s, impact_receipt *r)
     r->stick = off(length(t), s->size_before + s->size_after);
 }
 
-double imp_receipt_make(const impact_collision *collision, const impact_outcome *outcome, impact_receipt *receipt)
+double imp_receipt_make(const impact_collision *collision, const impact_outcome *outcome, bool follows,
+                        impact_receipt *receipt)
 {
     view s;
     energies energy = {0, 0, 0};
@@ -268,21 +313,24 @@ double imp_receipt_make(const impact_collision *collision, const impact_outcome 
     check_energy(&s, &energy, r);
     r->cone = outside_cone(&s, outcome->impulse, &along);
     check_approach(&s, along, r);
-    if (!(collision->tangential_compliance > 0)) examine_contact(&s, r);
+    if (!(collision->tangential_compliance > 0)) {
+        examine_contact(&s, r);
+        if (follows) check_hodograph(&s, r);
+    }
     const double fields[] = {r->momentum, r->spin,     r->cone,  r->energy, r->power,
-                             r->law,      r->approach, r->stick, r->path};
-    for (int i = 0; i < 9; i++) note(&r->worst, fields[i]);
+                             r->law,      r->approach, r->stick, r->path,   r->hodograph};
+    for (int i = 0; i < 10; i++) note(&r->worst, fields[i]);
     return r->worst;
 }
 
 double impact_collide_receipt(const impact_collision *collision, const impact_outcome *outcome, impact_receipt *receipt)
 {
-    if (imp_collide_is_plain(collision)) return imp_receipt_make(collision, outcome, receipt);
+    if (imp_collide_is_plain(collision)) return imp_receipt_make(collision, outcome, true, receipt);
     const imp_units units = imp_units_of(collision);
     const impact_collision scaled = imp_units_scaled(collision, units);
     impact_outcome its = *outcome;
     imp_units_restore(&its, imp_units_inverse(units));
-    return imp_receipt_make(&scaled, &its, receipt);
+    return imp_receipt_make(&scaled, &its, true, receipt);
 }
 
 double imp_receipt_brief(const imp_ready *ready, qvec3 n, double size, const impact_outcome *outcome, double *works)

@@ -7,8 +7,9 @@
 
 #include "collide/collide_ready.h"
 
-/* impact_collide_receipt of numbers near 1. */
-double imp_receipt_make(const impact_collision *collision, const impact_outcome *outcome, impact_receipt *receipt);
+/* impact_collide_receipt of numbers near 1; follows: the hodograph is looked at too. */
+double imp_receipt_make(const impact_collision *collision, const impact_outcome *outcome, bool follows,
+                        impact_receipt *receipt);
 
 /* Of closed forms, where the whole receipt would cost what the answer does: u_n+ as reported, and the energy against
  * the works, in eps; not finite: NaN. n: the unit normal; size: of the velocities' terms before the impact (energy does

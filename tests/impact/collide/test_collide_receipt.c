@@ -30,6 +30,51 @@ static void right_answers(void **state)
     assert_true(over * 2000 <= count);
 }
 
+/* Of slips that turn most are known by the hodograph, to a unit or two of what rounding leaves. */
+static void hodographs(void **state)
+{
+    (void)state;
+    static const case_class classes[] = {CASE_PLAIN, CASE_WILD, CASE_ROD, CASE_TANGENT, CASE_SLENDER};
+    for (int k = 0; k < 5; k++) {
+        int count = 0, known = 0;
+        for (uint64_t i = 0; i < 4000; i++) {
+            const impact_collision c = case_make(classes[k], 53, i);
+            impact_outcome o;
+            impact_receipt r;
+            assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+            if (o.solver != IMPACT_SOLVER_SERIES) continue;
+            impact_collide_receipt(&c, &o, &r);
+            assert_at_most(r.hodograph, 10);
+            count++;
+            known += r.slips > 0;
+        }
+        assert_true(2 * known > count);
+    }
+}
+
+/* Slid with a tenth less friction than there is, an impact keeps every other identity, the cone among them. */
+static void only_the_hodograph_sees_a_wrong_way(void **state)
+{
+    (void)state;
+    int seen = 0, known = 0;
+    for (uint64_t i = 0; i < 2000; i++) {
+        const impact_collision c = case_make(CASE_PLAIN, 59, i);
+        impact_collision less = c;
+        impact_outcome o;
+        impact_receipt r;
+        less.friction *= 0.9;
+        assert_int_equal(impact_collide(&less, &o), IMPACT_OK);
+        if (o.solver != IMPACT_SOLVER_SERIES || o.conditioning > 10) continue;
+        impact_collide_receipt(&c, &o, &r);
+        if (r.slips == 0) continue;
+        known++;
+        seen += r.hodograph > limit;
+        const double others[] = {r.momentum, r.spin, r.cone, r.energy, r.power, r.law, r.approach, r.stick, r.path};
+        for (int k = 0; k < 9; k++) assert_true(others[k] <= limit);
+    }
+    assert_true(known > 1000 && seen * 100 >= known * 99);
+}
+
 /* What has no closed form, sticks at the end and was compressed once, so that every identity has something to say. */
 static impact_collision telling(uint64_t i, impact_outcome *o)
 {
@@ -222,6 +267,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(right_answers),
+        cmocka_unit_test(hodographs),
+        cmocka_unit_test(only_the_hodograph_sees_a_wrong_way),
         cmocka_unit_test(lies_are_noticed),
         cmocka_unit_test(energy_that_rises),
         cmocka_unit_test(nan_never_passes),
