@@ -84,7 +84,7 @@ typedef struct impact_together_outcome {
     long events;  /* springs: changes of a contact's mode; sequence: impacts */
     long steps;   /* springs: Taylor steps; Moreau: linear systems */
     bool chosen;  /* reactions are not unique; those of least norm where they could be chosen */
-    int wedged;   /* IMPACT_EUNSETTLED: a contact of a group that no motion takes apart; -1: none */
+    int wedged;   /* IMPACT_EUNSETTLED: a contact of a group whose contacts no motion takes apart; -1: none */
     impact_together_solver solver;
 } impact_together_outcome;
 

@@ -254,12 +254,17 @@
 #define IMP_SPRINGS_ONWARD 1e-9
 /* tau: further than this no step goes; where the last terms vanish they bound nothing. */
 #define IMP_SPRINGS_FARTHEST 4.0
+/* Radii of a power's series that a step goes: 5^22 eps is .5, of a force that is small where the radius is. */
+#define IMP_SPRINGS_REACH 5
 /* The least restitution of springs: what unloads is 1/eps times as stiff in time as what loads, and a pressed contact
  * then swings that much faster. Less counts as this much; what comes back is off by as much of the approach, and told.
  */
 #define IMP_SPRINGS_LEAST 1e-3
-/* Events after which a group is asked whether it is wedged: more than all but a few have in all. */
-#define IMP_SPRINGS_LONG 2000
+/* Steps and events after which a group is asked whether it is wedged, ten times that with friction: more than all but
+ * a few take in all. */
+#define IMP_SPRINGS_LONG 4000
+/* Steps that look for a motion out of a wedge: one of a hundredth of the contacts' own mobility is found. */
+#define IMP_WEDGE_STEPS 20000
 /* Steps and events of one group: a hundred times what the longest random encounters with ratios of 1e4 take. */
 #define IMP_SPRINGS_STEPS 200000
 

@@ -98,16 +98,13 @@ static void report(const imp_springs *s, const units *unit, imp_group *group)
     group->chosen = group->chosen || s->chosen;
 }
 
-/* Whether no motion takes all contacts apart, G v > 0: W r - 1 >= 0 has no solution r >= 0 then (Gordan). What is
- * wedged bounces in its dents for ever. */
-static bool is_wedged(imp_springs *s)
+/* Asked once after many events of the normals alone, and once after very many with friction: what is wedged bounces in
+ * its dents for ever. */
+static bool is_wedged(imp_springs *s, int *asked)
 {
-    const size_t n = (size_t)s->count, width = 3 * n;
-    double *q = s->factor, *friction = q + width, *r = friction + n, *u = r + width;
-    for (size_t i = 0; i < width; i++) q[i] = i % 3 == 0 ? -1 : 0;
-    for (size_t i = 0; i < n; i++) friction[i] = 0;
-    const imp_cone_problem problem = {.count = s->count, .w = s->w, .q = q, .friction = friction};
-    return imp_cone_solve(&problem, s->cone, r, u, NULL).status == IMP_CONE_NO_SOLUTION;
+    const long work = s->events + s->steps;
+    const bool now = *asked == 0 ? work > IMP_SPRINGS_LONG : *asked == 1 && work > 10 * IMP_SPRINGS_LONG;
+    return now && imp_springs_wedged(s, (*asked)++ == 1);
 }
 
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)
@@ -119,14 +116,11 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     if (!w || !u0 || !take_room(&s, workspace)) return IMPACT_ENOMEM;
     const units unit = find_units(group);
     set_up(&s, group, &unit, w, u0);
-    bool asked = false;
+    int asked = 0;
     while (s.steps < IMP_SPRINGS_STEPS && s.events < IMP_SPRINGS_STEPS) {
         if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
-        if (!asked && s.events > IMP_SPRINGS_LONG) {
-            asked = true;
-            group->wedged = is_wedged(&s);
-            if (group->wedged) return IMPACT_EUNSETTLED;
-        }
+        group->wedged = is_wedged(&s, &asked);
+        if (group->wedged) return IMPACT_EUNSETTLED;
         if (imp_springs_pressed(&s)) {
             if (!imp_springs_step(&s)) return IMPACT_EUNSETTLED;
         } else if (!imp_springs_drift(&s)) {

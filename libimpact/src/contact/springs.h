@@ -133,6 +133,11 @@ bool imp_springs_drift(imp_springs *s);
 /* u = u0 + W p */
 void imp_springs_find_velocities(imp_springs *s);
 
+/* ---- springs_wedge.c ---- */
+
+/* Whether no motion takes the contacts that were pressed apart; rough: with friction against it. */
+bool imp_springs_wedged(imp_springs *s, bool rough);
+
 /* ---- springs.c ---- */
 
 /* IMPACT_OK, IMPACT_EUNSETTLED, IMPACT_ENOMEM. */

@@ -325,13 +325,27 @@ static double last_term(const imp_springs *s, int k)
     return size;
 }
 
+/* The recurrence of x^eta carries errors on as (1/r)^k, r = x_0/|x_1| about where x was 0 or will be, though the terms
+ * themselves fall where contacts closed together: no step goes farther than some r. */
+static double reach_of_powers(const imp_springs *s)
+{
+    double reach = INFINITY;
+    for (int i = 0; i < s->count && s->exponent != 1; i++) {
+        const imp_spring *c = &s->springs[i];
+        const bool leads = s->lead == IMP_SPRING_ROOT && s->leader == i;
+        if (c->normal == IMP_SPRING_OPEN || leads) continue;
+        reach = fmin(reach, IMP_SPRINGS_REACH * c->depth[0] / fabs(c->depth[1]));
+    }
+    return reach;
+}
+
 double imp_springs_expand(imp_springs *s)
 {
     choose_lead(s);
     begin(s);
     const double *factor = find_factor(s);
     for (int k = 0; k < IMP_SPRINGS_ORDER; k++) step_order(s, factor, k);
-    double h = INFINITY;
+    double h = reach_of_powers(s);
     for (int k = IMP_SPRINGS_ORDER - LAST + 1; k <= IMP_SPRINGS_ORDER; k++) {
         const double size = last_term(s, k);
         if (!isfinite(size)) return NAN;

@@ -356,6 +356,23 @@ static void receipts_hold_over_random_encounters(void **state)
     impact_together_workspace_destroy(workspace);
 }
 
+static void elastic_encounters_without_friction_keep_energy(void **state)
+{
+    (void)state;
+    const encounter_ranges ranges = {2, 3, 0, 1, 1e4, 1e4};
+    random_stream random = {29};
+    int answered = 0;
+    for (int run = 0; run < 600; run++) {
+        const random_encounter e = encounter_draw(&random, &ranges);
+        const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, run % 2 ? 1 : 1.5, NULL);
+        if (a.status == IMPACT_SEPARATING) continue;
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_near(a.outcome.energy_after / a.outcome.energy_before, 1, 1e-13);
+        answered++;
+    }
+    assert_true(answered > 500);
+}
+
 /* ---- groups, duplicates, wedges ---- */
 
 static void groups_are_apart_and_one_contact_is_impact_collide(void **state)
@@ -411,6 +428,31 @@ static void a_wedged_ball_is_told(void **state)
     assert_int_equal(impact_collide_together(&e, &o), IMPACT_EUNSETTLED);
     assert_true(o.wedged >= 0);
     assert_near3(v[0], bodies[0].velocity, 0);
+}
+
+/* A disc of friction in a groove whose walls, 60 degrees apart, hold it by friction alone: mu > tan 30 degrees locks.
+ */
+static void what_friction_locks_is_told(void **state)
+{
+    (void)state;
+    const double c = cos(0.5236), s = sin(0.5236);
+    impact_collider bodies[2] = {ball(0), {.mass = INFINITY, .orientation = {1, 0, 0, 0}}};
+    bodies[0].velocity = (qvec3){0.1, 0, -1};
+    impact_meeting m[2];
+    for (int i = 0; i < 2; i++)
+        m[i] = (impact_meeting){.body1 = 0,
+                                .body2 = 1,
+                                .normal = {i ? c : -c, 0, s},
+                                .offset1 = {i ? -c : c, 0, -s},
+                                .friction = 3,
+                                .restitution = 0.5,
+                                .stiffness = 1};
+    impact_together_outcome o = {.velocity = NULL};
+    const impact_encounter e = {.bodies = bodies, .body_count = 2, .meetings = m, .meeting_count = 2};
+    assert_int_equal(impact_collide_together(&e, &o), IMPACT_EUNSETTLED);
+    assert_true(o.wedged >= 0);
+    for (int i = 0; i < 2; i++) m[i].friction = 0.2;
+    assert_int_equal(impact_collide_together(&e, &o), IMPACT_OK);
 }
 
 /* ---- memory ---- */
@@ -501,8 +543,10 @@ int main(void)
         cmocka_unit_test(numbering_and_order_change_no_bit),
         cmocka_unit_test(turning_the_scene_and_changing_units_changes_nothing),
         cmocka_unit_test(receipts_hold_over_random_encounters),
+        cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
         cmocka_unit_test(groups_are_apart_and_one_contact_is_impact_collide),
         cmocka_unit_test(a_wedged_ball_is_told),
+        cmocka_unit_test(what_friction_locks_is_told),
         cmocka_unit_test(a_workspace_takes_memory_once_and_keeps_its_limit),
         cmocka_unit_test(bad_input_is_named_in_words),
     };
