@@ -154,7 +154,7 @@ static bool same_look(const impact_body_def *a, const impact_body_def *b)
 {
     const impact_shape *s = &a->shape, *t = &b->shape;
     return a->is_static == b->is_static && s->kind == t->kind && s->a == t->a && s->b == t->b && s->c == t->c &&
-           s->r == t->r && s->s == t->s && s->t == t->t &&
+           s->r == t->r && s->s == t->s && s->t == t->t && s->rounding == t->rounding && s->hull == t->hull &&
            qvec3_norm(qvec3_sub(a->shape_position, b->shape_position)) == 0 &&
            quat_norm(quat_sub(a->shape_orientation, b->shape_orientation)) == 0;
 }

@@ -31,8 +31,72 @@ function fine(grids, n, size) {
   return grids.every(g => g.every(([p, m], k) => [k + 1, k + n + 1].every(l => l >= g.length || (l === k + 1 && l % (n + 1) === 0) ||
     dot(m, g[l][1]) > 0.9962 || norm(sub(p, g[l][0])) < 0.01 * size)));
 }
+// Rows of [point, normal] joined to a mesh; each row as long as the first.
+function joined(rows) {
+  const points = rows.flat().flatMap(([p, n]) => [...p, ...n]), index = [], w = rows[0].length;
+  for (let j = 0; j + 1 < rows.length; j++) for (let i = 0; i + 1 < w; i++) {
+    const k = j * w + i;
+    index.push(k, k + 1, k + w + 1, k, k + w + 1, k + w);
+  }
+  return { points, index };
+}
+// A profile of [rho, z, normal] around z.
+function turned(profile) {
+  return joined(profile.map(([rho, z, out, up]) => Array.from({ length: 65 }, (_, i) => {
+    const c = Math.cos(i * Math.PI / 32), s = Math.sin(i * Math.PI / 32);
+    return [[rho * c, rho * s, z], [out * c, out * s, up]];
+  })));
+}
+const arc = (rho, z, r, from, to) => Array.from({ length: 9 }, (_, i) => {
+  const a = from + (to - from) * i / 8, c = Math.cos(a), s = Math.sin(a);
+  return [rho + r * c, z + r * s, c, s];
+});
+function roundMesh(body) {
+  const [a, , c] = body.axes, r = body.rounding || 0, half = Math.PI / 2;
+  if (body.kind === 'cone') {
+    const R = a - r, H = c - 2 * r, z = body.base, tilt = Math.atan2(R, H);
+    return turned([[0, z - r, 0, -1], ...arc(R, z, r, -half, tilt), ...arc(0, z + H, r, tilt, half)]);
+  }
+  return turned([[0, -c, 0, -1], ...arc(a - r, r - c, r, -half, 0), ...arc(a - r, c - r, r, 0, half), [0, c, 0, 1]]);
+}
+// Flat faces a rounding away from the core's, a strip of the ball along each edge, a fan of it on each corner.
+function flatMesh(vertices, faces, r) {
+  const points = [], index = [], beside = new Map(), around = vertices.map(() => []);
+  const put = (v, n) => (points.push(...add(v, scale(n, r)), ...n), points.length / 6 - 1);
+  const between = (n, m, s) => unit(add(scale(n, 1 - s), scale(m, s)));
+  const normals = faces.map(f => unit(f.slice(2).reduce((sum, v, i) =>
+    add(sum, cross(sub(vertices[f[i + 1]], vertices[f[0]]), sub(vertices[v], vertices[f[0]]))), [0, 0, 0])));
+  faces.forEach((f, number) => {
+    const at = f.map(v => put(vertices[v], normals[number]));
+    for (let i = 1; i + 1 < at.length; i++) index.push(at[0], at[i], at[i + 1]);
+    f.forEach((v, i) => { beside.set(v + ' ' + f[(i + 1) % f.length], number); around[v].push(number); });
+  });
+  if (!(r > 0)) return { points, index };
+  beside.forEach((left, pair) => {
+    const [u, v] = pair.split(' ').map(Number), right = beside.get(v + ' ' + u);
+    const middle = [u, v].map(w => unit(around[w].reduce((sum, f) => add(sum, normals[f]), [0, 0, 0])));
+    for (let i = 0; i < 6; i++) {
+      const n = between(normals[left], normals[right], i / 6), m = between(normals[left], normals[right], (i + 1) / 6);
+      if (u < v) { const q = [put(vertices[u], m), put(vertices[v], m), put(vertices[v], n), put(vertices[u], n)]; index.push(q[0], q[1], q[2], q[0], q[2], q[3]); }
+      for (let k = 0; k < 6; k++) { // the corner at u, from the edge's arc to its middle
+        const [a, b, c, d] = [[n, k], [n, k + 1], [m, k + 1], [m, k]].map(([x, j]) => put(vertices[u], between(x, middle[0], j / 6)));
+        index.push(a, b, c, a, c, d);
+      }
+    }
+  });
+  return { points, index };
+}
+const boxFaces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+function coreMesh(body) {
+  const r = body.rounding || 0;
+  if (body.kind === 'polyhedron') return flatMesh(body.vertices, body.faces, r);
+  if (body.kind !== 'box') return roundMesh(body);
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(i => body.axes.map((a, k) => (i >> k & 1 ? 1 : -1) * (a - r)));
+  return flatMesh(corners, boxFaces, r);
+}
 // { points: position and normal by vertex, index }
 function mesh(body, most) {
+  if (['box', 'cylinder', 'cone', 'capsule', 'polyhedron'].includes(body.kind)) return coreMesh(body);
   let n = 4;
   while (2 * n <= most && !fine(octant(body, n), n, Math.max(...body.axes))) n *= 2;
   n = Math.min(2 * n, most);

@@ -7,7 +7,7 @@ function makeScene(run, canvas) {
   const g = run.head.gravity, up = norm(g) > 0 ? unit(scale(g, -1)) : [0, 0, 1], turned = turnTo(up);
   const moving = run.bodies.map((b, i) => i).filter(i => !run.bodies[i].static);
   const color = i => okabeIto[Math.max(0, moving.indexOf(i)) % okabeIto.length];
-  const reach = b => (b.kind === 'plane' ? 0 : Math.max(...b.axes) * (b.exponents.every(e => e <= 2) ? 1 : 1.5) + norm(b.offset));
+  const reach = b => (b.kind === 'plane' ? 0 : Math.max(...b.axes) * (b.exponents.every(e => e !== null && e <= 2) ? 1 : 1.5) + norm(b.offset));
   // The box of the motion, and where bodies are at many times for the trails.
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], paths = new Map();
   run.bodies.forEach((b, i) => {
@@ -51,7 +51,7 @@ function makeScene(run, canvas) {
   const shapes = new Map(), most = clamp(Math.floor(Math.sqrt(60000 / (48 * Math.max(1, run.bodies.length - planes.length)))), 3, 40);
   const solids = run.bodies.map((b, i) => {
     if (b.kind === 'plane') return null;
-    const id = JSON.stringify([b.kind, b.axes, b.exponents]);
+    const id = JSON.stringify([b.kind, b.axes, b.exponents, b.rounding, b.vertices]);
     if (!shapes.has(id)) shapes.set(id, G.upload(mesh(b, most)));
     return { mesh: shapes.get(id), one: b.static ? rgb('#8a8f98') : rgb(color(i)), i };
   });

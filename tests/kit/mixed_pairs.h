@@ -26,9 +26,8 @@ enum {
 
 static inline const char *mixed_family_name(int family)
 {
-    static const char *const names[] = {"box, smooth",      "box, ellipsoid", "hull, smooth",    "box, boxy",
-                                        "cylinder, smooth", "cone, smooth",   "capsule, smooth", "cylinder, box",
-                                        "cone, hull",       "turned bodies"};
+    static const char *const names[] = {"box-smooth",  "box-ellipsoid",  "hull-smooth",  "box-boxy",  "cylinder-smooth",
+                                        "cone-smooth", "capsule-smooth", "cylinder-box", "cone-hull", "turned bodies"};
     return names[family];
 }
 

@@ -18,6 +18,7 @@ typedef struct imp_run_place {
 
 typedef struct imp_run_body {
     impact_body_def def;
+    impact_hull *hull; /* the shape's, or NULL */
     long first, count; /* of its keys */
 } imp_run_body;
 

@@ -161,15 +161,37 @@ static impact_status check_rows(const reader *r, int table, long first, long cou
 
 /* ---- bodies ---- */
 
-static bool read_shape(const imp_json *body, impact_shape *shape, char *why, size_t size)
+/* The hull of a polyhedron's corners, in whose frame they stand. */
+static bool read_hull(const imp_json *body, double rounding, impact_hull **hull, impact_shape *shape, char *why,
+                      size_t size)
+{
+    const imp_json *list = imp_json_get(body, "vertices", IMP_JSON_ARRAY);
+    qvec3 points[IMPACT_HULL_POINTS];
+    size_t count = 0;
+    if (!list || list->count > IMPACT_HULL_POINTS) return false;
+    for (const imp_json *item = list->first; item; item = item->next) {
+        const imp_json *number = item->kind == IMP_JSON_ARRAY && item->count == 3 ? item->first : NULL;
+        double x[3];
+        for (int k = 0; k < 3; k++, number = number->next) {
+            if (!number || number->kind != IMP_JSON_NUMBER) return false;
+            x[k] = number->number;
+        }
+        points[count++] = (qvec3){x[0], x[1], x[2]};
+    }
+    if (impact_hull_create(points, count, rounding, NULL, hull, why, size) < 0) return false;
+    return impact_shape_polyhedron(*hull, shape) >= 0;
+}
+
+static bool read_shape(const imp_json *body, impact_shape *shape, impact_hull **hull, char *why, size_t size)
 {
     const char *kind = string_of(body, "kind");
     double axes[3] = {0, 0, 0}, exponents[3] = {2, 2, 2};
     int k = 0;
     snprintf(why, size, "its shape is damaged");
-    while (kind && k <= IMPACT_SUPERELLIPSOID && strcmp(kind, imp_run_shapes[k]) != 0) k++;
-    if (!kind || k > IMPACT_SUPERELLIPSOID) return false;
-    if (!numbers_of(body, "axes", axes, 3, INFINITY) || !numbers_of(body, "exponents", exponents, 3, NAN)) return false;
+    while (kind && k < IMPACT_SHAPE_KINDS && strcmp(kind, imp_run_shapes[k]) != 0) k++;
+    if (!kind || k == IMPACT_SHAPE_KINDS) return false;
+    if (!numbers_of(body, "axes", axes, 3, INFINITY) || !numbers_of(body, "exponents", exponents, 3, INFINITY))
+        return false;
     *shape = (impact_shape){.kind = (impact_shape_kind)k,
                             .a = axes[0],
                             .b = axes[1],
@@ -177,7 +199,11 @@ static bool read_shape(const imp_json *body, impact_shape *shape, char *why, siz
                             .r = exponents[0],
                             .s = exponents[1],
                             .t = exponents[2]};
-    return impact_shape_check(shape, why, size) >= 0;
+    bool good = true;
+    shape->rounding = imp_json_number(body, "rounding", 0, &good);
+    shape->base = imp_json_number(body, "base", 0, &good);
+    if (good && k == IMPACT_POLYHEDRON) return read_hull(body, shape->rounding, hull, shape, why, size);
+    return good && impact_shape_check(shape, why, size) >= 0;
 }
 
 static bool read_numbers(const imp_json *body, impact_body_def *def)
@@ -208,7 +234,8 @@ static impact_status read_body(const reader *r, const imp_json *body, imp_run_bo
     *def = impact_default_body_def();
     def->name = string_of(body, "name");
     if (!def->name) return refuse(r, "a body has no name");
-    if (!read_shape(body, &def->shape, why, sizeof why)) return refuse(r, "body '%.80s': %s", def->name, why);
+    if (!read_shape(body, &def->shape, &out->hull, why, sizeof why))
+        return refuse(r, "body '%.80s': %s", def->name, why);
     if (!read_numbers(body, def)) return refuse(r, "body '%.80s': its numbers are damaged", def->name);
     const double rows = (double)r->run->tables[IMP_RUN_KEYS].rows;
     if (!numbers_of(body, "keys", keys, 2, NAN) || !(keys[0] >= 0) || !(keys[1] >= 1) || keys[0] + keys[1] > rows ||
@@ -391,6 +418,7 @@ void impact_run_close(impact_run *run)
     free(run->modes.word);
     free(run->forces.word);
     free(run->phases.word);
+    for (int i = 0; run->bodies && i < run->body_count; i++) impact_hull_destroy(run->bodies[i].hull);
     free(run->bodies);
     free(run->bytes);
     free(run);

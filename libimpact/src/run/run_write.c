@@ -167,9 +167,8 @@ static void say_number(imp_text *head, const char *key, double value)
     imp_text_number(head, value);
 }
 
-static void say_numbers(imp_text *head, const char *key, const double *values, int count)
+static void say_list(imp_text *head, const double *values, int count)
 {
-    say_key(head, key);
     for (int i = 0; i < count; i++) {
         imp_text_say(head, i ? "," : "[");
         imp_text_number(head, values[i]);
@@ -177,9 +176,38 @@ static void say_numbers(imp_text *head, const char *key, const double *values, i
     imp_text_say(head, "]");
 }
 
+static void say_numbers(imp_text *head, const char *key, const double *values, int count)
+{
+    say_key(head, key);
+    say_list(head, values, count);
+}
+
 static void say_vector(imp_text *head, const char *key, qvec3 v)
 {
     say_numbers(head, key, (const double[]){v.x, v.y, v.z}, 3);
+}
+
+/* The corners, and for whoever draws it the faces. */
+static void say_hull(imp_text *head, const impact_hull *hull)
+{
+    const impact_hull_info info = impact_hull_describe(hull);
+    int vertex[IMPACT_HULL_POINTS];
+    say_key(head, "vertices");
+    for (int i = 0; i < info.vertices; i++) {
+        const qvec3 v = impact_hull_vertex(hull, i);
+        imp_text_say(head, i ? "," : "[");
+        say_list(head, (const double[]){v.x, v.y, v.z}, 3);
+    }
+    imp_text_say(head, "]");
+    say_key(head, "faces");
+    for (int f = 0; f < info.faces; f++) {
+        double number[IMPACT_HULL_POINTS];
+        const int count = impact_hull_face(hull, f, vertex, NULL);
+        for (int i = 0; i < count; i++) number[i] = vertex[i];
+        imp_text_say(head, f ? "," : "[");
+        say_list(head, number, count);
+    }
+    imp_text_say(head, "]");
 }
 
 static void say_body(imp_text *head, const impact_body_def *def, long first_key, long key_count)
@@ -192,6 +220,9 @@ static void say_body(imp_text *head, const impact_body_def *def, long first_key,
     imp_text_string(head, imp_run_shapes[s->kind]);
     say_numbers(head, "axes", (const double[]){s->a, s->b, s->c}, 3);
     say_numbers(head, "exponents", (const double[]){s->r, s->s, s->t}, 3);
+    if (s->rounding > 0) say_number(head, "rounding", s->rounding);
+    if (s->kind == IMPACT_CONE) say_number(head, "base", s->base);
+    if (s->hull) say_hull(head, s->hull);
     if (qvec3_norm(def->shape_position) > 0) say_vector(head, "shape_position", def->shape_position);
     if (o.x != 0 || o.y != 0 || o.z != 0)
         say_numbers(head, "shape_orientation", (const double[]){o.w, o.x, o.y, o.z}, 4);
