@@ -11,12 +11,13 @@
 
 typedef struct best_axis {
     double g, n[3];
+    int axis;
 } best_axis;
 
-static void offer(best_axis *best, double g, double sign, double x, double y, double z)
+static void offer(best_axis *best, int axis, double g, double sign, double x, double y, double z)
 {
     if (!(g > best->g)) return;
-    best->g = g;
+    best->g = g, best->axis = axis;
     best->n[0] = sign * x, best->n[1] = sign * y, best->n[2] = sign * z;
 }
 
@@ -34,27 +35,51 @@ static void cross_axes(const imp_core_pair *pair, int i, best_axis *best)
                          b[q] * fabs(y * R[j][q] + z * R[l][q]);
         double n[3] = {0, 0, 0};
         n[j] = y / length, n[l] = z / length;
-        offer(best, (fabs(at) - h) / length, at < 0 ? -1 : 1, n[0], n[1], n[2]);
+        offer(best, 6, (fabs(at) - h) / length, at < 0 ? -1 : 1, n[0], n[1], n[2]);
     }
 }
 
-double imp_core_box_axes(const imp_core_pair *pair, double n[3])
+double imp_core_box_axes(const imp_core_pair *pair, double n[3], int *axis)
 {
     const double *a = pair->core[0].axis, *b = pair->core[1].axis, *c = pair->c;
     const double(*R)[3] = pair->R;
     best_axis best = {.g = -INFINITY};
     for (int i = 0; i < 3; i++) {
         const double h = a[i] + b[0] * fabs(R[i][0]) + b[1] * fabs(R[i][1]) + b[2] * fabs(R[i][2]);
-        offer(&best, fabs(c[i]) - h, c[i] < 0 ? -1 : 1, i == 0, i == 1, i == 2);
+        offer(&best, i, fabs(c[i]) - h, c[i] < 0 ? -1 : 1, i == 0, i == 1, i == 2);
     }
     for (int k = 0; k < 3; k++) {
         const double at = c[0] * R[0][k] + c[1] * R[1][k] + c[2] * R[2][k];
         const double h = b[k] + a[0] * fabs(R[0][k]) + a[1] * fabs(R[1][k]) + a[2] * fabs(R[2][k]);
-        offer(&best, fabs(at) - h, at < 0 ? -1 : 1, R[0][k], R[1][k], R[2][k]);
+        offer(&best, 3 + k, fabs(at) - h, at < 0 ? -1 : 1, R[0][k], R[1][k], R[2][k]);
     }
     for (int i = 0; i < 3; i++) cross_axes(pair, i, &best);
     memcpy(n, best.n, sizeof best.n);
+    *axis = best.axis;
     return best.g;
+}
+
+bool imp_core_box_face(const imp_core_pair *pair, int axis, imp_core_gap *answer)
+{
+    if (axis > 5) return false;
+    const int face_body = axis / 3;
+    const double *n = answer->n, *half = pair->core[face_body].axis, gap = answer->lower;
+    imp_core_tip tip;
+    double a[3], b[3], from[3];
+    imp_core_height_between(pair, n, &tip);
+    imp_core_place(pair, 0, tip.vertex[0], a);
+    imp_core_place(pair, 1, tip.vertex[1], b);
+    for (int k = 0; k < 3; k++) from[k] = face_body ? a[k] - pair->c[k] : b[k] + pair->c[k]; /* about the face's body */
+    for (int j = 0; j < 3; j++) {
+        const double at = face_body ? imp_dot(from, (double[3]){pair->R[0][j], pair->R[1][j], pair->R[2][j]}) : from[j];
+        if (j != axis % 3 && !(fabs(at) <= half[j])) return false;
+    }
+    for (int k = 0; k < 3; k++) {
+        answer->x[0][k] = face_body ? a[k] : from[k] - gap * n[k];
+        answer->x[1][k] = face_body ? from[k] + gap * n[k] : b[k];
+    }
+    answer->gap = answer->upper = gap;
+    return true;
 }
 
 static void try_axis(const imp_core_pair *pair, const double n[3], double sign, best_axis *best)
@@ -63,7 +88,7 @@ static void try_axis(const imp_core_pair *pair, const double n[3], double sign, 
     if (!(length > 0)) return;
     const double m[3] = {sign * n[0] / length, sign * n[1] / length, sign * n[2] / length};
     imp_core_tip tip;
-    offer(best, imp_core_height_between(pair, m, &tip), 1, m[0], m[1], m[2]);
+    offer(best, 6, imp_core_height_between(pair, m, &tip), 1, m[0], m[1], m[2]);
 }
 
 /* What the crossing of arcs needs of an edge: its direction and the normals beside it, of B reversed. */

@@ -133,8 +133,10 @@ impact_status imp_core_solve(const imp_core_pair *pair, const double *cached, im
     if (pair->core[0].hull->face_count + pair->core[1].hull->face_count == 0) return thin_pair(pair, answer);
     const bool boxes = pair->box[0] && pair->box[1];
     if (boxes) {
-        answer->lower = imp_core_box_axes(pair, answer->n);
+        int axis;
+        answer->lower = imp_core_box_axes(pair, answer->n, &axis);
         answer->firm = true;
+        if (imp_core_box_face(pair, axis, answer)) return IMPACT_OK;
         if (!(answer->lower > 0)) return overlapping(pair, answer);
     } else if (cached) {
         memcpy(answer->n, cached, sizeof answer->n);

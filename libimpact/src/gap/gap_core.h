@@ -46,9 +46,14 @@ void imp_core_face(const imp_core_pair *pair, int body, int face, double n[3]);
 /* a x b, each component right to two roundings of itself (Kahan's ab - cd). */
 void imp_core_cross(const double a[3], const double b[3], double c[3]);
 
-/* The best of all faces' normals and crosses of edges, and its g: of two boxes; of any two, one of which has faces. */
-double imp_core_box_axes(const imp_core_pair *pair, double n[3]);
+/* The best of all faces' normals and crosses of edges, and its g: of two boxes (axis: 0 to 2 of A's faces, 3 to 5 of
+ * B's, 6 of two edges); of any two, one of which has faces. */
+double imp_core_box_axes(const imp_core_pair *pair, double n[3], int *axis);
 double imp_core_axes_of_all(const imp_core_pair *pair, double n[3]);
+
+/* The answer at such an axis of a box's face, when the vertex of the other that reaches it is over the face: then the
+ * distance is g, in either sign. */
+bool imp_core_box_face(const imp_core_pair *pair, int axis, imp_core_gap *answer);
 
 /* The point of c + B - A nearest to 0, from the direction n, with a normal made of the features met: false when 0 is
  * seen inside, or so near that no direction is left. *answer: upper, x and, when better than *lower's, lower and n. */

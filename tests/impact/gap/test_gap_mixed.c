@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <impact/toi.h>
 #include "kit/mixed_pairs.h"
 
 /* 1: the answer is told not to be settled, with a bracket that holds what was made. */
@@ -96,13 +97,44 @@ static void swapped(void **state)
     }
 }
 
+/* Tumbling bodies that fly at each other: the gap is 0 at the time told, and they do not overlap at any of many before.
+ */
+static void times_of_impact(void **state)
+{
+    (void)state;
+    random_stream random = {5};
+    int met = 0;
+    for (int i = 0; i < 300; i++) {
+        mixed_pair pair = random_mixed_pair(&random, i % MIXED_FAMILIES, 1);
+        impact_motion motion[2];
+        for (int k = 0; k < 2; k++) motion[k] = (impact_motion){.omega = qvec3_scale(random_direction(&random), 3)};
+        pair.body[0].position = qvec3_scale(random_direction(&random), 8);
+        motion[0].velocity = qvec3_scale(pair.body[0].position, -0.25);
+        double time;
+        impact_contact contact;
+        const impact_status status =
+            impact_toi(&pair.body[0], &motion[0], &pair.body[1], &motion[1], 4, &time, &contact);
+        assert_true(status == IMPACT_OK || status == IMPACT_EUNSETTLED);
+        met += status == IMPACT_OK;
+        for (int k = 0; status == IMPACT_OK && k < 50; k++) {
+            const double t = time * k / 50;
+            const impact_solid one = impact_motion_at(&pair.body[0], &motion[0], t),
+                               two = impact_motion_at(&pair.body[1], &motion[1], t);
+            impact_contact before;
+            if (impact_gap(&one, &two, NULL, &before) == IMPACT_OK && before.gap < -1e-12)
+                fail_msg("%d: overlap of %g at %g, told %g", i, -before.gap, t, time);
+        }
+        if (status == IMPACT_OK) assert_true(fabs(contact.gap) < 1e-13);
+        end_mixed_pair(&pair);
+    }
+    assert_true(met > 290);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(apart),
-        cmocka_unit_test(shallow_overlap),
-        cmocka_unit_test(deep_overlap),
-        cmocka_unit_test(swapped),
+        cmocka_unit_test(apart),   cmocka_unit_test(shallow_overlap), cmocka_unit_test(deep_overlap),
+        cmocka_unit_test(swapped), cmocka_unit_test(times_of_impact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
