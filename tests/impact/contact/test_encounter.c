@@ -430,8 +430,7 @@ static void a_wedged_ball_is_told(void **state)
     assert_near3(v[0], bodies[0].velocity, 0);
 }
 
-/* A disc of friction in a groove whose walls, 60 degrees apart, hold it by friction alone: mu > tan 30 degrees locks.
- */
+/* A ball in a groove of 60 degrees: friction of 3 holds it by pressures of its own, of .2 does not. */
 static void what_friction_locks_is_told(void **state)
 {
     (void)state;
