@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * A scene between runs: event by event, what is held, pushes and states that a script sets.
+ * A scene between runs: event by event, what is held, pushes and states that a script sets, saves.
  */
 #include "impact_scene.h"
 
@@ -126,9 +126,37 @@ static int scene_push(lua_State *L)
     return 0;
 }
 
+/* ---- saving ---- */
+
+/* save(): a string of bytes. */
+static int scene_save(lua_State *L)
+{
+    impact_lua_scene *self = impact_lua_check_scene(L);
+    size_t size = 0;
+    begin_calls(L, self);
+    end_calls(L, self, impact_scene_save(self->scene, NULL, &size));
+    void *bytes = lua_newuserdatauv(L, size, 0);
+    begin_calls(L, self);
+    end_calls(L, self, impact_scene_save(self->scene, bytes, &size));
+    lua_pushlstring(L, bytes, size);
+    return 1;
+}
+
+/* load(bytes): goes on from there. */
+static int scene_load(lua_State *L)
+{
+    impact_lua_scene *self = impact_lua_check_scene(L);
+    size_t size;
+    const char *bytes = luaL_checklstring(L, 2, &size);
+    begin_calls(L, self);
+    end_calls(L, self, impact_scene_load(self->scene, bytes, size));
+    return 0;
+}
+
 void impact_lua_add_interaction(lua_State *L)
 {
-    static const luaL_Reg methods[] = {
-        {"step", scene_step}, {"held", scene_held}, {"set", scene_set}, {"push", scene_push}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {{"step", scene_step}, {"held", scene_held}, {"set", scene_set},
+                                       {"push", scene_push}, {"save", scene_save}, {"load", scene_load},
+                                       {NULL, NULL}};
     luaL_setfuncs(L, methods, 0);
 }

@@ -40,6 +40,26 @@ do
   check.equal(reason, "end of time")
 end
 
+-- Saved and loaded: the same bits to the end, laws of the script among them.
+do
+  local function forced()
+    return drop { duration = 2, forces = { impact.force { name = "law", law = function(t) return { math.sin(t), 0, 0 } end } } }
+  end
+  local a, b = forced(), forced()
+  a:run_to(0.7)
+  local bytes = a:save()
+  b:load(bytes)
+  check.equal(b:time(), 0.7)
+  check.equal(a:run(), b:run())
+  for _, key in ipairs { "position", "velocity", "omega" } do
+    for i = 1, 3 do check.equal(a:state("ball")[key][i], b:state("ball")[key][i]) end
+  end
+  check.equal(a:energy().force_work, b:energy().force_work)
+  check.raises("scene 'drop' cannot go on from these bytes: they are no saved scene", b.load, b, "bytes")
+  check.raises("scene 'drop' cannot go on from these bytes: its definition was another one when it was saved", b.load, b,
+    drop():save())
+end
+
 -- Set and pushed between runs; a law of the script is asked then too, and its error comes out where it was asked.
 do
   local scene = drop { duration = 2 }

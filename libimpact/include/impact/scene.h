@@ -149,6 +149,22 @@ IMPACT_API impact_status impact_scene_set_state(impact_scene *scene, int body, c
  * go to no recorder. Fails as impact_scene_set_state. */
 IMPACT_API impact_status impact_scene_push(impact_scene *scene, int body, qvec3 impulse, qvec3 point);
 
+/* Saves all that decides how the scene goes on, and its books. bytes NULL: *size is set to how many there will be,
+ * nothing changes. Else *size is the room in bytes, IMPACT_EARGUMENT where that is too little, and is set to how many
+ * were written. An integrator's history is not saved: what an integrator or a pile's steps move departs anew from where
+ * it is, in the scene that is saved too, so that both go on with the same bits; what flies, damped or not, and what
+ * rests goes on with the bits of the run without a save. IMPACT_EARGUMENT: its run has failed, or was stopped amid an
+ * instant.
+ */
+IMPACT_API impact_status impact_scene_save(impact_scene *scene, void *bytes, size_t *size);
+
+/* Goes on from what was saved: of a scene made of the same definition (but for max_events, max_steps, key_tolerance and
+ * the allocator) by the same version of the library, whatever this one has done meanwhile; custom forces call this
+ * scene's functions. A recorder's rows begin anew at that time. IMPACT_EARGUMENT, with a message: any changed byte, a
+ * part of the bytes, another scene's, numbers that can be no state of it; nothing is changed then. IMPACT_ENOMEM, and
+ * other failures where the motion departs: the scene can run on no more. */
+IMPACT_API impact_status impact_scene_load(impact_scene *scene, const void *bytes, size_t size);
+
 /* The last message, with numbers; "" when there was none. */
 IMPACT_API const char *impact_scene_message(const impact_scene *scene);
 IMPACT_API double impact_scene_time(const impact_scene *scene);

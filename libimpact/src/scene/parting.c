@@ -76,6 +76,7 @@ static impact_status split_off(imp_island *island, const int *root, int componen
     if (!part) return IMPACT_ENOMEM;
     part->t = part->looked_at = island->t;
     part->patience = island->patience;
+    part->motion.persist.lenient = island->motion.persist.lenient;
     part->stepped = stays_stepped(island, root, component);
     impact_status status = imp_island_reserve(part, world->body_count, world->pair_count);
     if (status != IMPACT_OK) return status;
@@ -95,7 +96,7 @@ static impact_status split_off(imp_island *island, const int *root, int componen
         pair->body2 = imp_island_find(part, world->bodies[pair->body2].index);
     }
     status = imp_island_take_forces(part);
-    return status == IMPACT_OK && part->stepped && !imp_island_all_rest(part) ? imp_island_begin_steps(part) : status;
+    return status == IMPACT_OK && part->stepped ? imp_island_resume_steps(part) : status;
 }
 
 void imp_island_count_moving(imp_island *island)

@@ -3,6 +3,7 @@
 #include "scene/scene_check.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_receipt.h"
+#include "scene/saved.h"
 #include "world/world_gap.h"
 #include "base/floats.h"
 #include "collide/collide_workspace.h"
@@ -84,6 +85,7 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
     scene->max_steps = def->max_steps;
     scene->piles = def->piles;
     scene->key_tolerance = def->key_tolerance;
+    scene->print = imp_scene_print(def);
     scene->output_rate = def->output_rate;
     status = imp_scene_build(scene, def);
     imp_scene_receipt_begin(scene);
@@ -146,7 +148,9 @@ static impact_status run(impact_scene *scene, double t_end)
                  scene->t);
         return IMPACT_EARGUMENT;
     }
-    return imp_scene_go_on(scene, t_end);
+    const impact_status status = imp_scene_go_on(scene, t_end);
+    scene->failed = scene->failed || (status < 0 && status != IMPACT_ESINK);
+    return status;
 }
 
 impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)

@@ -21,6 +21,8 @@
 #ifndef IMP_SCENE_INTERNAL_H
 #define IMP_SCENE_INTERNAL_H
 
+#include <stdint.h>
+
 #include "scene/account.h"
 #include "scene/island.h"
 #include "scene/rules.h"
@@ -52,6 +54,7 @@ struct impact_scene {
 
     double t, duration;
     bool begun;    /* it has run */
+    bool failed;   /* and will run on no more */
     bool unsteady; /* some force may move, some time, what rests under it now */
     impact_law law;
     double compliance;
@@ -72,6 +75,7 @@ struct impact_scene {
     char first_phases[128];
     struct imp_scene_keys *keys; /* while a run with keys is under way */
     double energy_start, key_tolerance;
+    uint64_t print; /* of its definition */
     char message[512];
 };
 

@@ -2,7 +2,7 @@
 #include "scene/stepped.h"
 #include "base/tolerances.h"
 #include "motion/motion_pile.h"
-#include "scene/scene_internal.h"
+#include "scene/following.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -33,7 +33,8 @@ bool imp_island_loses_patience(imp_island *island)
     return ++patience->steps >= IMP_PILE_PATIENCE;
 }
 
-impact_status imp_island_begin_steps(imp_island *island)
+/* A pile that remembers nothing. */
+static impact_status open_pile(imp_island *island)
 {
     imp_arena *arena = island->scene->world.arena;
     if (!island->pile) {
@@ -42,6 +43,13 @@ impact_status imp_island_begin_steps(imp_island *island)
         imp_pile_open(island->pile, arena);
     }
     imp_pile_begin(island->pile);
+    return IMPACT_OK;
+}
+
+impact_status imp_island_begin_steps(imp_island *island)
+{
+    const impact_status status = open_pile(island);
+    if (status != IMPACT_OK) return status;
     island->steps = 0;
     island->patience = (imp_patience){.since = island->t};
     for (int i = 0; i < island->world.body_count; i++) island->motion.resting[i] = false;
@@ -51,6 +59,16 @@ impact_status imp_island_begin_steps(imp_island *island)
             .body1 = pair->body1, .body2 = pair->body2, .friction = pair->friction, .restitution = pair->restitution};
     }
     return IMPACT_OK;
+}
+
+/* One that rests keeps what touched, and gets the reactions that hold it from the proof of its rest. */
+impact_status imp_island_resume_steps(imp_island *island)
+{
+    if (!imp_island_all_rest(island)) return imp_island_begin_steps(island);
+    const impact_status status = open_pile(island);
+    if (status == IMPACT_OK)
+        imp_pile_rests(island->pile, &island->world, island->t, island->states, island->scene->rest_speed);
+    return status;
 }
 
 /* ---- steps ---- */

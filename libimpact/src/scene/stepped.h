@@ -16,6 +16,9 @@ bool imp_island_loses_patience(imp_island *island);
 /* The island, which has just been gathered with all its bodies' near pairs, begins its steps. */
 impact_status imp_island_begin_steps(imp_island *island);
 
+/* The same of an island that is part of one that went by steps: it may rest, and stay so. */
+impact_status imp_island_resume_steps(imp_island *island);
+
 /* Whether all its bodies stand still, and can go on so. */
 bool imp_island_can_stand(imp_island *island);
 

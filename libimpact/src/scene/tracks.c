@@ -361,17 +361,26 @@ static impact_status renew_box(imp_tracks *tracks, int body, double t)
 
 /* ---- following ---- */
 
-impact_status imp_tracks_begin(imp_tracks *tracks, double t, const imp_state *states)
+void imp_tracks_clear(imp_tracks *tracks)
+{
+    imp_grid_clear(&tracks->grid);
+    tracks->near_count = 0, tracks->near_free = -1;
+    for (int i = 0; i < tracks->world->body_count; i++) {
+        imp_track *track = &tracks->tracks[i];
+        track->near_count = 0;
+        track->leave = track->meet = INFINITY;
+        track->first_near = track->island = track->paired_with = -1;
+        track->fatness = first_fatness;
+    }
+}
+
+impact_status imp_tracks_renew(imp_tracks *tracks, double t)
 {
     const imp_world *world = tracks->world;
     impact_status status = IMPACT_OK;
-    for (int i = 0; i < world->body_count; i++)
-        tracks->tracks[i].segment =
-            imp_segment_fly(&world->bodies[i], t, &states[i], world->gravity, tracks->tracks[i].tumble);
-    for (int k = 0; k < tracks->plane_count; k++) place_plane(&tracks->planes[k], &states[tracks->planes[k].body]);
     for (int i = 0; status == IMPACT_OK && i < world->body_count; i++) {
         if (world->bodies[i].shape.kind == IMPACT_PLANE) continue;
-        const imp_box box = world->bodies[i].is_static ? static_box(&world->bodies[i], &states[i])
+        const imp_box box = world->bodies[i].is_static ? static_box(&world->bodies[i], &tracks->tracks[i].segment.start)
                                                        : fat_box(&tracks->tracks[i], &world->bodies[i], t);
         status = imp_grid_put(&tracks->grid, i, &box);
         put_slot(tracks, i, t);
@@ -379,6 +388,16 @@ impact_status imp_tracks_begin(imp_tracks *tracks, double t, const imp_state *st
     for (int i = 0; status == IMPACT_OK && i < world->body_count; i++)
         if (!world->bodies[i].is_static) status = renew_pairs(tracks, i, t);
     return status;
+}
+
+impact_status imp_tracks_begin(imp_tracks *tracks, double t, const imp_state *states)
+{
+    const imp_world *world = tracks->world;
+    for (int i = 0; i < world->body_count; i++)
+        tracks->tracks[i].segment =
+            imp_segment_fly(&world->bodies[i], t, &states[i], world->gravity, tracks->tracks[i].tumble);
+    for (int k = 0; k < tracks->plane_count; k++) place_plane(&tracks->planes[k], &states[tracks->planes[k].body]);
+    return imp_tracks_renew(tracks, t);
 }
 
 impact_status imp_tracks_follow(imp_tracks *tracks, int body, const imp_segment *segment, double t)

@@ -60,6 +60,11 @@ impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *q
 /* Every body's first segment; then all boxes and pairs. */
 impact_status imp_tracks_begin(imp_tracks *tracks, double t, const imp_state *states);
 
+/* Nobody has a box or a pair. */
+void imp_tracks_clear(imp_tracks *tracks);
+/* Everybody's box by his segment from t on, and all pairs, where there are none. */
+impact_status imp_tracks_renew(imp_tracks *tracks, double t);
+
 /* The body goes on by this segment from the time t: after all that change at t have been told so, each is looked ahead
  * for. */
 impact_status imp_tracks_follow(imp_tracks *tracks, int body, const imp_segment *segment, double t);

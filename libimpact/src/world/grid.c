@@ -14,9 +14,15 @@ impact_status imp_grid_open(imp_grid *grid, imp_arena *arena, int entries)
                        .buckets = imp_arena_take(arena, buckets, sizeof *grid->buckets),
                        .bucket_mask = buckets - 1};
     if (!grid->entries || !grid->buckets) return IMPACT_ENOMEM;
-    for (unsigned k = 0; k < buckets; k++) grid->buckets[k] = -1;
-    for (int i = 0; i < entries; i++) grid->entries[i].level = -1;
+    imp_grid_clear(grid);
     return IMPACT_OK;
+}
+
+void imp_grid_clear(imp_grid *grid)
+{
+    for (unsigned k = 0; k <= grid->bucket_mask; k++) grid->buckets[k] = -1;
+    for (int i = 0; i < grid->count; i++) grid->entries[i].level = -1;
+    grid->level_count = 0;
 }
 
 /* Far out the last cell goes on for ever. */

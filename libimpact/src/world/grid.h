@@ -48,6 +48,9 @@ typedef struct imp_grid {
 
 impact_status imp_grid_open(imp_grid *grid, imp_arena *arena, int entries);
 
+/* No entry is in it any more. */
+void imp_grid_clear(imp_grid *grid);
+
 /* Puts the entry where the box is, which is finite; takes it away from where it was. IMPACT_ENOMEM: it is then away. */
 impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box);
 
