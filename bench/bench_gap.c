@@ -3,12 +3,13 @@
  * bench_gap: time per query of our ways and of libccd's, on the pairs of the campaign, with each way's error beside it.
  * CSV: family, method, setting, time in us (median of repeats of a batch), error of the gap relative to L + |c| (p50,
  * p99, worst), error of the normal in rad (p50), share of the pairs not answered or answered as touching where they are
- * apart.
+ * apart. `receipt`: what an answer's own check adds to it, over the whole.
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <impact/toi.h>
+#include "gap/gap_solver.h"
 #include "../tests/kit/contact_random.h"
 #include "peers_gap.h"
 #include "measure.h"
@@ -111,6 +112,36 @@ static double measure(const char *family, const char *kind, const char *name, ga
     return time;
 }
 
+/* Whether both witness points lie in their bodies: the part of an answer that is there for its check alone. Of two
+ * spheres nothing is checked. */
+static void measure_receipt(const char *family, const char *kind, const gap_case *cases, double ours)
+{
+    static imp_gap_solids pairs[PAIRS];
+    static double points[PAIRS][2][3], times[REPEATS];
+    double outside = 0;
+    if (cases[0].body[0].shape.kind == IMPACT_SPHERE && cases[0].body[1].shape.kind == IMPACT_SPHERE) return;
+    for (int i = 0; i < PAIRS; i++) {
+        const impact_solid *one = &cases[i].body[0], *two = &cases[i].body[1];
+        const double scale = imp_gap_scale(one, two);
+        impact_contact c;
+        if (impact_gap(one, two, NULL, &c) != IMPACT_OK) c.offset1 = c.offset2 = (qvec3){0, 0, 0};
+        imp_gap_pair(one, one->orientation, two, two->orientation, scale, &pairs[i]);
+        const qvec3 x[2] = {c.offset2, c.offset1};
+        for (int k = 0; k < 2; k++) {
+            const double at[3] = {scale * x[k].x, scale * x[k].y, scale * x[k].z};
+            memcpy(points[i][k], at, sizeof at);
+        }
+    }
+    for (int repeat = 0; repeat < REPEATS; repeat++) {
+        const double start = measure_clock();
+        for (int i = 0; i < PAIRS; i++)
+            for (int k = 0; k < 2; k++) outside = fmax(outside, imp_gap_outside(&pairs[i].form[k], points[i][k]));
+        times[repeat] = (measure_clock() - start) / PAIRS * 1e6;
+    }
+    const double time = measure_quantile(times, REPEATS, 0.5);
+    printf("%s,%s,impact receipt,0,%.3g,nan,nan,%.2g,nan,0,%.2g\n", family, kind, time, outside, time / ours);
+}
+
 /* Time of impact of tumbling bodies that fly at each other; the error is the gap left at the time found. */
 static void measure_toi(void)
 {
@@ -190,6 +221,7 @@ int main(int argc, char **argv)
             make_pairs(cases, family, overlap);
             const double ours = measure(name, kind, "impact cold", ours_cold, 0, cases, 0);
             measure(name, kind, "impact warm", ours_warm, 0, cases, ours);
+            measure_receipt(name, kind, cases, ours);
             measure_peers(name, kind, gap_peers_ccd, family, overlap, cases, ours);
             measure_peers(name, kind, gap_peers_fcl, family, overlap, cases, ours);
         }
