@@ -217,7 +217,6 @@ static void make_side(const imp_ready *ready, const impact_collision *c, int i, 
         own_axes(b->given->orientation, b->axis);
         b->offset = local_of(b, imp_vectors_at(&ready->arm, i));
     }
-    b->velocity = imp_vectors_at(&ready->velocity, i);
     b->omega = imp_vectors_at(&ready->omega, i);
     b->arm[0] = imp_vec_cross(b->offset, local_of(b, frame->t1));
     b->arm[1] = imp_vec_cross(b->offset, local_of(b, frame->t2));
