@@ -302,18 +302,26 @@ static imp_found advance(const imp_search *s, double from, double until)
     return t <= end ? (imp_found){t, false} : never;
 }
 
+/* Whether the line from d along w passes the origin at the distance R at most: most do not. */
+static bool passes_within(qvec3 d, qvec3 w, double R)
+{
+    const qvec3 aside = qvec3_cross(d, w);
+    return qvec3_dot(w, w) * R * R - qvec3_dot(aside, aside) >= 0;
+}
+
 /* Two balls in a straight line to each other. Such as touch and come no nearer than rounding brings them meet where
  * they overlap by more than that. */
 static imp_found meet_in_line(const imp_search *s, double from)
 {
     qvec3 w;
     const qvec3 d = centres_apart(s, from, &w);
-    const double R = s->body[0]->radius + s->body[1]->radius, end = fmin(s->segment[0]->t1, s->segment[1]->t1);
-    if (!(qvec3_dot(d, w) < 0)) return (imp_found){INFINITY, false};
+    const double R = s->body[0]->radius + s->body[1]->radius;
+    if (!(qvec3_dot(d, w) < 0) || !passes_within(d, w, R)) return (imp_found){INFINITY, false};
     const qvec3 n = qvec3_scale(d, 1 / R), x1 = s->segment[0]->start.x, x2 = s->segment[1]->start.x;
     const double slack = IMP_TOUCHING * imp_place_scale(s->body[0], x1, s->body[1], x2, n);
     const bool touches = qvec3_dot(d, d) <= R * (R + 2 * slack), still = qvec3_dot(n, w) >= -s->still;
     const double met = from + line_time(d, w, touches && still ? R - slack : R);
+    const double end = fmin(s->segment[0]->t1, s->segment[1]->t1);
     return isfinite(met) && met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
 }
 

@@ -11,6 +11,10 @@ static const double first_fatness = 1, least_fatness = 0.5, most_fatness = 0x1p6
 static const double margin = 0.2;     /* of the fatness, around the path */
 enum { FEW_NEAR = 2, MANY_NEAR = 7 }; /* least instructions in a gas of balls, a tenth filled (./run bench crowd) */
 
+/* fmin and fmax of what is no NaN: those are calls. */
+static double smaller(double a, double b) { return a < b ? a : b; }
+static double larger(double a, double b) { return a > b ? a : b; }
+
 /* ---- memory ---- */
 
 impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *queue)
@@ -80,21 +84,18 @@ static void leave_list(imp_tracks *tracks, int near, int k)
 static void set_slot(imp_tracks *tracks, int body)
 {
     const imp_track *track = &tracks->tracks[body];
-    imp_queue_set(tracks->queue, tracks->first_slot + body, fmin(track->leave, track->meet));
+    imp_queue_set(tracks->queue, tracks->first_slot + body, smaller(track->leave, track->meet));
 }
 
 /* The first of its pairs' times; of several the pair's that was made first. */
-static void find_first(imp_tracks *tracks, int body)
+static void find_first(const imp_tracks *tracks, imp_track *track)
 {
-    imp_track *track = &tracks->tracks[body];
     track->meet = INFINITY;
     track->first_near = -1;
-    if (tracks->world->bodies[body].is_static) return; /* its pairs' other bodies know */
     for (int k = 0; k < track->near_count; k++) {
         const double t = tracks->near[track->near[k]].t;
         if (t < track->meet) track->meet = t, track->first_near = track->near[k];
     }
-    set_slot(tracks, body);
 }
 
 static void drop_near(imp_tracks *tracks, int near)
@@ -102,25 +103,36 @@ static void drop_near(imp_tracks *tracks, int near)
     const int body[2] = {tracks->near[near].body[0], tracks->near[near].body[1]};
     for (int k = 0; k < 2; k++) tracks->tracks[body[k]].paired_with = -1;
     for (int k = 0; k < 2; k++) leave_list(tracks, near, k);
-    for (int k = 0; k < 2; k++)
-        if (tracks->tracks[body[k]].first_near == near) find_first(tracks, body[k]);
+    for (int k = 0; k < 2; k++) {
+        imp_track *track = &tracks->tracks[body[k]];
+        if (track->first_near != near) continue;
+        find_first(tracks, track);
+        set_slot(tracks, body[k]);
+    }
     tracks->near[near].place[0] = tracks->near_free;
     tracks->near_free = near;
 }
 
-/* Told a new time of one of its pairs. */
-static void hear(imp_tracks *tracks, int body, int near)
+/* Told a new time of one of its pairs; whether its own changes. A static body's pairs' other bodies know. */
+static bool hear(imp_tracks *tracks, int body, int near)
 {
     imp_track *track = &tracks->tracks[body];
     const double t = tracks->near[near].t;
-    if (tracks->world->bodies[body].is_static) return;
     if (t <= track->meet) {
+        if (tracks->world->bodies[body].is_static) return false;
         track->meet = t;
         track->first_near = t < INFINITY ? near : -1;
-        set_slot(tracks, body);
-    } else if (track->first_near == near) {
-        find_first(tracks, body);
+        return true;
     }
+    if (track->first_near != near) return false;
+    find_first(tracks, track);
+    return true;
+}
+
+static void tell(imp_tracks *tracks, int near)
+{
+    for (int k = 0; k < 2; k++)
+        if (hear(tracks, tracks->near[near].body[k], near)) set_slot(tracks, tracks->near[near].body[k]);
 }
 
 static bool stands(const imp_tracks *tracks, int body) { return tracks->tracks[body].segment.kind == IMP_SEGMENT_REST; }
@@ -139,19 +151,18 @@ static void search(imp_tracks *tracks, imp_near *near, double from)
                           .beyond = near->beyond,
                           .still = tracks->world->slip_speed,
                           .usage = &tracks->world->usage};
-    const imp_found found = imp_search_contact(&s, from, fmin(a->leave, b->leave));
+    const imp_found found = imp_search_contact(&s, from, smaller(a->leave, b->leave));
     near->t = found.t, near->touches = found.touches;
 }
 
-void imp_tracks_predict(imp_tracks *tracks, int n, double t)
+/* The pair's next contact, from t on; false: there is none, as there was none. */
+static bool predict(imp_tracks *tracks, imp_near *near, double t)
 {
-    imp_near *near = &tracks->near[n];
     const double before = near->t;
     const double t0 = tracks->tracks[near->body[0]].segment.t0, t1 = tracks->tracks[near->body[1]].segment.t0;
-    search(tracks, near, fmax(t0, t1));
+    search(tracks, near, larger(t0, t1));
     if (near->t < t) near->t = t; /* what began as an overlap by a rounding is met now */
-    if (near->t == INFINITY && before == INFINITY) return;
-    for (int k = 0; k < 2; k++) hear(tracks, near->body[k], n);
+    return near->t < INFINITY || before < INFINITY;
 }
 
 /* Which of them stands first: what moves before what is static, a plane last; else as the definition has them. */
@@ -187,7 +198,7 @@ static impact_status make_near(imp_tracks *tracks, int i, int j, double t)
     for (int k = 0; k < 2; k++)
         if (!list_near(tracks->world->arena, &tracks->tracks[near->body[k]], n, &near->place[k])) return IMPACT_ENOMEM;
     near->beyond = is_beyond(tracks, near, t);
-    imp_tracks_predict(tracks, n, t);
+    if (predict(tracks, near, t)) tell(tracks, n);
     return IMPACT_OK;
 }
 
@@ -195,16 +206,16 @@ static impact_status make_near(imp_tracks *tracks, int i, int j, double t)
 
 static void store(qvec3 v, double out[3]) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
 
-static double rounding(qvec3 x) { return 64 * DBL_EPSILON * qvec3_norm(x); }
+static double rounding(qvec3 x) { return 64 * DBL_EPSILON * (fabs(x.x) + fabs(x.y) + fabs(x.z)); }
 
 /* Lowest and highest of a + b t + c t^2/2 over [0, T]. */
 static void range(double a, double b, double c, double T, double *low, double *high)
 {
     const double end = a + T * (b + 0.5 * T * c), turn = -b / c;
-    *low = fmin(a, end), *high = fmax(a, end);
+    *low = smaller(a, end), *high = larger(a, end);
     if (!(turn > 0 && turn < T)) return;
     const double there = a + 0.5 * turn * b;
-    *low = fmin(*low, there), *high = fmax(*high, there);
+    *low = smaller(*low, there), *high = larger(*high, there);
 }
 
 static imp_box static_box(const imp_body *body, const imp_state *state)
@@ -230,7 +241,7 @@ static double time_in_box(const imp_track *track, const imp_body *body, qvec3 v,
                  pull = qvec3_norm(track->segment.acceleration);
     double time = way / (speed + sqrt(pull * way));
     if (!isfinite(time)) time = 0; /* it stands */
-    return fmax(time, 1e3 * DBL_EPSILON * fabs(t));
+    return larger(time, 1e3 * DBL_EPSILON * fabs(t));
 }
 
 static imp_box fat_box(const imp_track *track, const imp_body *body, double t)
@@ -240,7 +251,7 @@ static imp_box fat_box(const imp_track *track, const imp_body *body, double t)
     const qvec3 place = imp_segment_place(s, body, t, &velocity);
     const double around = body->radius * (1 + margin * track->fatness) + rounding(place);
     double time = time_in_box(track, body, velocity, t), x[3], v[3], a[3] = {0, 0, 0};
-    if (s->kind == IMP_SEGMENT_DENSE) time = fmax(time, s->t1 - t);
+    if (s->kind == IMP_SEGMENT_DENSE) time = larger(time, s->t1 - t);
     store(place, x), store(velocity, v);
     if (is_parabola(s)) store(s->acceleration, a);
     const double top = is_parabola(s) || s->kind == IMP_SEGMENT_REST ? 0 : imp_segment_top_speed(s, body, t);
@@ -267,11 +278,11 @@ static double leave_time(const imp_track *track, const imp_body *body, const imp
     if (is_parabola(s)) store(s->acceleration, a);
     for (int k = 0; k < 3; k++) {
         const double up = box->high[k] - body->radius - x[k], down = x[k] - box->low[k] - body->radius;
-        room = fmin(room, fmin(up, down));
+        room = smaller(room, smaller(up, down));
         if (!(up > 0 && down > 0)) return t;
         if (!is_parabola(s)) continue;
-        if (v[k] > 0 || a[k] > 0) time = fmin(time, impact_flight_fall_time(up, -v[k], -a[k]));
-        if (v[k] < 0 || a[k] < 0) time = fmin(time, impact_flight_fall_time(down, v[k], a[k]));
+        if (v[k] > 0 || a[k] > 0) time = smaller(time, impact_flight_fall_time(up, -v[k], -a[k]));
+        if (v[k] < 0 || a[k] < 0) time = smaller(time, impact_flight_fall_time(down, v[k], a[k]));
     }
     if (!is_parabola(s)) time = room / imp_segment_top_speed(s, body, t);
     return t + time;
@@ -351,8 +362,8 @@ static void put_slot(imp_tracks *tracks, int body, double t)
 static impact_status renew_box(imp_tracks *tracks, int body, double t)
 {
     imp_track *track = &tracks->tracks[body];
-    if (track->near_count < FEW_NEAR) track->fatness = fmin(1.5 * track->fatness, most_fatness);
-    if (track->near_count > MANY_NEAR) track->fatness = fmax(0.8 * track->fatness, least_fatness);
+    if (track->near_count < FEW_NEAR) track->fatness = smaller(1.5 * track->fatness, most_fatness);
+    if (track->near_count > MANY_NEAR) track->fatness = larger(0.8 * track->fatness, least_fatness);
     const imp_box box = fat_box(track, &tracks->world->bodies[body], t);
     impact_status status = imp_grid_put(&tracks->grid, body, &box);
     put_slot(tracks, body, t);
@@ -423,7 +434,14 @@ impact_status imp_tracks_leap(imp_tracks *tracks, int body, double t)
 void imp_tracks_look_ahead(imp_tracks *tracks, int body, double t)
 {
     const imp_track *track = &tracks->tracks[body];
-    for (int k = 0; k < track->near_count; k++) imp_tracks_predict(tracks, track->near[k], t);
+    bool changed = false;
+    for (int k = 0; k < track->near_count; k++) {
+        const int n = track->near[k], other = imp_near_other(&tracks->near[n], body);
+        if (!predict(tracks, &tracks->near[n], t)) continue;
+        if (hear(tracks, other, n)) set_slot(tracks, other);
+        changed |= hear(tracks, body, n);
+    }
+    if (changed) set_slot(tracks, body);
 }
 
 impact_status imp_tracks_due(imp_tracks *tracks, int body, double t, int *touching)
@@ -438,6 +456,6 @@ impact_status imp_tracks_due(imp_tracks *tracks, int body, double t, int *touchi
     }
     const int n = track->first_near;
     search(tracks, near, near->t);
-    for (int k = 0; k < 2; k++) hear(tracks, tracks->near[n].body[k], n);
+    tell(tracks, n);
     return IMPACT_OK;
 }

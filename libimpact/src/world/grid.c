@@ -80,7 +80,8 @@ impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
     imp_grid_entry *e = &grid->entries[entry];
     take_away(grid, e);
     double side = 0x1p-1000; /* whose cells' scale is finite */
-    for (int k = 0; k < 3; k++) side = fmax(side, box->high[k] - box->low[k]);
+    for (int k = 0; k < 3; k++)
+        if (box->high[k] - box->low[k] > side) side = box->high[k] - box->low[k];
     int exponent;
     frexp(side, &exponent);
     const int level = level_of(grid, exponent);
@@ -100,9 +101,11 @@ impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
 
 static bool list_found(imp_grid *grid, int entry)
 {
-    int *found = imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + 1, sizeof *found);
-    if (!found) return false;
-    grid->found = found;
+    if (grid->found_count == grid->found_room) {
+        int *found = imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + 1, sizeof *found);
+        if (!found) return false;
+        grid->found = found;
+    }
     grid->found[grid->found_count++] = entry;
     return true;
 }
