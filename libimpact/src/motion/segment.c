@@ -55,8 +55,9 @@ imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *st
     if (body->is_static) return s;
     s.kind = body->linear_rate != 0 || body->angular_rate != 0 ? IMP_SEGMENT_DAMPED : IMP_SEGMENT_FREE;
     s.acceleration = acceleration;
-    if (is_zero(start->momentum) || body->spherical) {
-        s.jerk = body->spherical ? pow(qvec3_norm(imp_omega(body, start)), 3) : 0;
+    if (is_zero(start->momentum)) return s;
+    if (body->spherical) {
+        s.jerk = pow(qvec3_norm(imp_omega(body, start)), 3);
         return s;
     }
     impact_tumble_make(body->moments, start->q, start->momentum, tumble);

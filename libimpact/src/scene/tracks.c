@@ -8,8 +8,8 @@
 /* Of a box, in the radius of its body: how far the body goes in it. Below the least the boxes would be made anew more
  * often than anything else happens; between them it is for the number of pairs to say. */
 static const double first_fatness = 1, least_fatness = 0.5, most_fatness = 0x1p60;
-static const double margin = 0.2;     /* of the fatness, around the path */
-enum { FEW_NEAR = 2, MANY_NEAR = 7 }; /* least instructions in a gas of balls, a tenth filled (./run bench crowd) */
+static const double margin = 0.1;     /* of the fatness, around the path */
+enum { FEW_NEAR = 2, MANY_NEAR = 8 }; /* least instructions in a gas of balls, a tenth filled (./run bench crowd) */
 
 /* fmin and fmax of what is no NaN: those are calls. */
 static double smaller(double a, double b) { return a < b ? a : b; }
@@ -50,9 +50,11 @@ impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *q
 
 static bool list_near(imp_arena *arena, imp_track *track, int near, int *place)
 {
-    int *list = imp_arena_grow(arena, track->near, &track->near_room, track->near_count + 1, sizeof *list);
-    if (!list) return false;
-    track->near = list;
+    if (track->near_count == track->near_room) {
+        int *list = imp_arena_grow(arena, track->near, &track->near_room, track->near_count + 1, sizeof *list);
+        if (!list) return false;
+        track->near = list;
+    }
     *place = track->near_count;
     track->near[track->near_count++] = near;
     return true;

@@ -117,12 +117,14 @@ static bool look_through(imp_grid *grid, int level, const imp_box *box)
     return true;
 }
 
-static bool look_in_cell(imp_grid *grid, int level, const int cell[3], uint64_t key, const imp_box *box)
+/* The boxes in one cell; others lie in the same bucket. */
+static bool look_in_cell(imp_grid *grid, int level, const uint32_t cell[3], uint64_t key, const imp_box *box)
 {
-    for (int i = *bucket_of(grid, grid->levels[level].exponent, key); i >= 0; i = grid->entries[i].next) {
-        const imp_grid_entry *e = &grid->entries[i];
-        if (!imp_boxes_overlap(&e->box, box)) continue;
-        const bool here = e->level == level && e->cell[0] == cell[0] && e->cell[1] == cell[1] && e->cell[2] == cell[2];
+    const imp_grid_entry *entries = grid->entries;
+    for (int i = *bucket_of(grid, grid->levels[level].exponent, key); i >= 0; i = entries[i].next) {
+        const imp_grid_entry *e = &entries[i];
+        if (!imp_boxes_overlap(&e->box, box) || e->level != level) continue;
+        const bool here = e->cell[0] == (int)cell[0] && e->cell[1] == (int)cell[1] && e->cell[2] == (int)cell[2];
         if (here && !list_found(grid, i)) return false;
     }
     return true;
@@ -142,8 +144,7 @@ static bool look_on_level(imp_grid *grid, int level, const imp_box *box)
         for (int64_t y = low[1]; y <= high[1]; y++) {
             const uint64_t key = part_of(x, 0) ^ part_of(y, 1);
             for (int64_t z = low[2]; z <= high[2]; z++) {
-                const int cell[3] = {(int)(uint32_t)(uint64_t)x, (int)(uint32_t)(uint64_t)y,
-                                     (int)(uint32_t)(uint64_t)z};
+                const uint32_t cell[3] = {(uint32_t)x, (uint32_t)y, (uint32_t)z};
                 if (!look_in_cell(grid, level, cell, key ^ part_of(z, 2), box)) return false;
             }
         }
