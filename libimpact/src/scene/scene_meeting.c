@@ -30,8 +30,9 @@ bool imp_scene_meets(imp_island *island, int p, imp_meeting *m)
         return false;
     impact_contact contact;
     imp_world_gap(world, pair, island->states, &contact);
-    if (!imp_is_held(pair) && (contact.gap > imp_world_touching_distance(world, pair, island->states) ||
-                               imp_world_inside_bounds(world, pair, island->states, &contact) < 0))
+    m->touching = imp_world_touching_distance(world, pair, island->states);
+    if (!imp_is_held(pair) &&
+        (contact.gap > m->touching || imp_world_inside_bounds(world, pair, island->states, &contact) < 0))
         return false;
     m->touch = imp_persist_meet(world, p, &contact);
     m->velocity = imp_persist_approach(world, &m->touch, island->states);
@@ -81,9 +82,8 @@ static double least_rise(const imp_island *island, const imp_meeting *m)
 {
     enum { MOST = 10 };
     const imp_pair *pair = &island->world.pairs[m->touch.pair];
-    const double late = imp_world_touching_distance(&island->world, pair, island->states);
     const double gain = 1 / (1 - pair->restitution * pair->restitution);
-    return fmax(island->scene->rest_height, late * fmin(gain, MOST));
+    return fmax(island->scene->rest_height, m->touching * fmin(gain, MOST));
 }
 
 bool imp_scene_leaves_for_good(const imp_island *island, const imp_meeting *m, double speed)

@@ -10,6 +10,7 @@
 typedef struct imp_meeting {
     imp_touch touch; /* until it is pressed no more than where it is */
     double velocity; /* d(gap)/dt, m/s */
+    double touching; /* m: gaps up to this are rounding */
     double own;      /* m/s^2: what the pair's own reaction adds to d2(gap)/dt2 */
     bool pressed;
     double acceleration; /* then: d2(gap)/dt2 under the loads and the other contacts' reactions, m/s^2 */
