@@ -90,7 +90,10 @@ static imp_state dense_state(const imp_segment *s, double t)
 {
     double b[Y_PER_BODY];
     imp_dense_at(s->dense, t, first_of(s), Y_PER_BODY, b);
-    imp_state state = {{b[0], b[1], b[2]}, {b[3], b[4], b[5], b[6]}, {b[7], b[8], b[9]}, {b[10], b[11], b[12]}};
+    imp_state state = {.x = {b[0], b[1], b[2]},
+                       .v = {b[7], b[8], b[9]},
+                       .q = {b[3], b[4], b[5], b[6]},
+                       .momentum = {b[10], b[11], b[12]}};
     quat_normalize(state.q, &state.q);
     return state;
 }

@@ -26,8 +26,8 @@ typedef enum imp_segment_kind {
 typedef struct imp_segment {
     imp_segment_kind kind;
     double t0, t1;               /* s; t1 is infinite where the form holds for ever */
-    imp_state start;             /* at t0 */
     qvec3 acceleration;          /* FREE, ROLL: of the centre; DAMPED: g, m/s^2 */
+    imp_state start;             /* at t0 */
     qvec3 spin_up;               /* ROLL: alpha, 1/s^2 */
     const impact_tumble *tumble; /* FREE, DAMPED of unequal moments that turn; else NULL */
     double jerk;                 /* FREE with a tumble: |m'''| of any unit vector m seen from the body, 1/s^3 */

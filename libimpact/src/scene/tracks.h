@@ -21,18 +21,19 @@ typedef struct imp_near {
     bool held;    /* an island's: nothing is searched for */
 } imp_near;
 
+/* What the pairs' other bodies ask stands side by side at the front. */
 typedef struct imp_track {
-    imp_segment segment;
-    impact_tumble *tumble; /* room, for a body of unequal moments */
-    int *near;             /* its pairs */
-    int near_count, near_room;
     double leave;    /* when it leaves its box */
     double meet;     /* the first of its pairs' times */
     int first_near;  /* that pair, or -1 */
-    int island;      /* or -1: alone */
     int paired_with; /* scratch: a body known to be its pair's other one, or -1 */
-    bool resting;    /* it has come to rest */
-    int stalls;      /* events at the time of the last one, and that: */
+    int *near;       /* its pairs */
+    int near_count, near_room;
+    imp_segment segment;
+    impact_tumble *tumble; /* room, for a body of unequal moments */
+    int island;            /* or -1: alone */
+    bool resting;          /* it has come to rest */
+    int stalls;            /* events at the time of the last one, and that: */
     double last_event;
     double fatness; /* of its box: the part of its radius that it goes before the box is made anew */
 } imp_track;

@@ -2,18 +2,27 @@
 #include "world/grid.h"
 
 #include <math.h>
-#include <stdint.h>
+
+/* The arena aligns as malloc does; the entries stand on the next line of the cache. */
+static imp_grid_entry *take_entries(imp_arena *arena, int entries)
+{
+    const size_t line = _Alignof(imp_grid_entry);
+    char *block = imp_arena_take(arena, (size_t)entries + 1, sizeof(imp_grid_entry));
+    if (!block) return NULL;
+    return (imp_grid_entry *)(void *)(block + (line - (uintptr_t)block % line) % line);
+}
 
 impact_status imp_grid_open(imp_grid *grid, imp_arena *arena, int entries)
 {
     unsigned buckets = 16;
     while (buckets < 2u * (unsigned)entries) buckets *= 2;
     *grid = (imp_grid){.arena = arena,
-                       .entries = imp_arena_take(arena, (size_t)entries, sizeof *grid->entries),
+                       .entries = take_entries(arena, entries),
+                       .places = imp_arena_take(arena, (size_t)entries, sizeof *grid->places),
                        .count = entries,
                        .buckets = imp_arena_take(arena, buckets, sizeof *grid->buckets),
                        .bucket_mask = buckets - 1};
-    if (!grid->entries || !grid->buckets) return IMPACT_ENOMEM;
+    if (!grid->entries || !grid->places || !grid->buckets) return IMPACT_ENOMEM;
     imp_grid_clear(grid);
     return IMPACT_OK;
 }
@@ -39,6 +48,14 @@ static uint64_t part_of(int64_t cell, int axis)
     return (uint64_t)(uint32_t)cell * odd[axis];
 }
 
+/* Tells the cells of a query apart, which are no more than CELL_MASK along each axis. */
+enum { CELL_BITS = 10, CELL_MASK = (1 << CELL_BITS) - 1 };
+static uint32_t short_cell(int64_t x, int64_t y, int64_t z)
+{
+    return (uint32_t)(x & CELL_MASK) | (uint32_t)(y & CELL_MASK) << CELL_BITS |
+           (uint32_t)(z & CELL_MASK) << 2 * CELL_BITS;
+}
+
 static int *bucket_of(const imp_grid *grid, int exponent, uint64_t key)
 {
     const uint64_t h = (key ^ (uint64_t)(uint32_t)exponent * 0x2545f4914f6cdd1du) * 0xd6e8feb86659fd93u;
@@ -47,8 +64,10 @@ static int *bucket_of(const imp_grid *grid, int exponent, uint64_t key)
 
 static int *bucket_at(const imp_grid *grid, const imp_grid_entry *e)
 {
-    return bucket_of(grid, grid->levels[e->level].exponent,
-                     part_of(e->cell[0], 0) ^ part_of(e->cell[1], 1) ^ part_of(e->cell[2], 2));
+    const imp_grid_level *level = &grid->levels[e->level];
+    uint64_t key = 0;
+    for (int k = 0; k < 3; k++) key ^= part_of(cell_of(e->box.low[k], level), k);
+    return bucket_of(grid, level->exponent, key);
 }
 
 static void take_away(imp_grid *grid, imp_grid_entry *e)
@@ -57,8 +76,9 @@ static void take_away(imp_grid *grid, imp_grid_entry *e)
     imp_grid_level *level = &grid->levels[e->level];
     *(e->previous < 0 ? bucket_at(grid, e) : &grid->entries[e->previous].next) = e->next;
     if (e->next >= 0) grid->entries[e->next].previous = e->previous;
-    *(e->before_level < 0 ? &level->first : &grid->entries[e->before_level].next_level) = e->next_level;
-    if (e->next_level >= 0) grid->entries[e->next_level].before_level = e->before_level;
+    const imp_grid_place *place = &grid->places[e - grid->entries];
+    *(place->previous < 0 ? &level->first : &grid->places[place->previous].next) = place->next;
+    if (place->next >= 0) grid->places[place->next].previous = place->previous;
     level->count--;
     e->level = -1;
 }
@@ -87,13 +107,15 @@ impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
     const int level = level_of(grid, exponent);
     if (level < 0) return IMPACT_ENOMEM;
     e->box = *box;
-    for (int k = 0; k < 3; k++) e->cell[k] = (int)(uint32_t)(uint64_t)cell_of(box->low[k], &grid->levels[level]);
     e->level = level;
+    int64_t cell[3];
+    for (int k = 0; k < 3; k++) cell[k] = cell_of(box->low[k], &grid->levels[level]);
+    e->cell = short_cell(cell[0], cell[1], cell[2]);
     int *bucket = bucket_at(grid, e), *first = &grid->levels[level].first;
-    e->next = *bucket, e->next_level = *first;
-    e->previous = e->before_level = -1;
+    e->next = *bucket, e->previous = -1;
+    grid->places[entry] = (imp_grid_place){*first, -1};
     if (*bucket >= 0) grid->entries[*bucket].previous = entry;
-    if (*first >= 0) grid->entries[*first].before_level = entry;
+    if (*first >= 0) grid->places[*first].previous = entry;
     *bucket = *first = entry;
     grid->levels[level].count++;
     return IMPACT_OK;
@@ -112,20 +134,19 @@ static bool list_found(imp_grid *grid, int entry)
 
 static bool look_through(imp_grid *grid, int level, const imp_box *box)
 {
-    for (int i = grid->levels[level].first; i >= 0; i = grid->entries[i].next_level)
+    for (int i = grid->levels[level].first; i >= 0; i = grid->places[i].next)
         if (imp_boxes_overlap(&grid->entries[i].box, box) && !list_found(grid, i)) return false;
     return true;
 }
 
 /* The boxes in one cell; others lie in the same bucket. */
-static bool look_in_cell(imp_grid *grid, int level, const uint32_t cell[3], uint64_t key, const imp_box *box)
+static bool look_in_cell(imp_grid *grid, int level, uint32_t cell, uint64_t key, const imp_box *box)
 {
     const imp_grid_entry *entries = grid->entries;
     for (int i = *bucket_of(grid, grid->levels[level].exponent, key); i >= 0; i = entries[i].next) {
         const imp_grid_entry *e = &entries[i];
-        if (!imp_boxes_overlap(&e->box, box) || e->level != level) continue;
-        const bool here = e->cell[0] == (int)cell[0] && e->cell[1] == (int)cell[1] && e->cell[2] == (int)cell[2];
-        if (here && !list_found(grid, i)) return false;
+        if (!imp_boxes_overlap(&e->box, box) || e->level != level || e->cell != cell) continue;
+        if (!list_found(grid, i)) return false;
     }
     return true;
 }
@@ -137,15 +158,15 @@ static bool look_on_level(imp_grid *grid, int level, const imp_box *box)
     for (int k = 0; k < 3; k++) {
         low[k] = cell_of(box->low[k], &grid->levels[level]) - 1;
         high[k] = cell_of(box->high[k], &grid->levels[level]);
-        cells *= (double)high[k] - (double)low[k] + 1;
+        const double along = (double)high[k] - (double)low[k] + 1;
+        cells *= along <= CELL_MASK ? along : INFINITY; /* no two cells of one query have the same short numbers */
     }
     if (cells > grid->levels[level].count) return look_through(grid, level, box);
     for (int64_t x = low[0]; x <= high[0]; x++)
         for (int64_t y = low[1]; y <= high[1]; y++) {
             const uint64_t key = part_of(x, 0) ^ part_of(y, 1);
             for (int64_t z = low[2]; z <= high[2]; z++) {
-                const uint32_t cell[3] = {(uint32_t)x, (uint32_t)y, (uint32_t)z};
-                if (!look_in_cell(grid, level, cell, key ^ part_of(z, 2), box)) return false;
+                if (!look_in_cell(grid, level, short_cell(x, y, z), key ^ part_of(z, 2), box)) return false;
             }
         }
     return true;

@@ -10,6 +10,8 @@
 
 #include "base/arena.h"
 
+#include <stdint.h>
+
 typedef struct imp_box {
     double low[3], high[3];
 } imp_box;
@@ -20,13 +22,17 @@ static inline bool imp_boxes_overlap(const imp_box *a, const imp_box *b)
            a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
 }
 
+/* One line of a processor's cache: a query looks at dozens of them. */
 typedef struct imp_grid_entry {
-    imp_box box;
-    int level;                    /* in the grid's list; -1: not in the grid */
-    int cell[3];                  /* the low 32 bits of its numbers */
-    int next, previous;           /* in its bucket */
-    int next_level, before_level; /* on its level */
+    _Alignas(64) imp_box box;
+    int level;          /* in the grid's list; -1: not in the grid */
+    int next, previous; /* in its bucket */
+    uint32_t cell;      /* the last ten bits of each of its three numbers */
 } imp_grid_entry;
+
+typedef struct imp_grid_place {
+    int next, previous; /* on its level */
+} imp_grid_place;
 
 typedef struct imp_grid_level {
     int exponent; /* cells of 2^exponent m */
@@ -37,6 +43,7 @@ typedef struct imp_grid_level {
 typedef struct imp_grid {
     imp_arena *arena;
     imp_grid_entry *entries;
+    imp_grid_place *places; /* of the entries */
     int count;
     int *buckets;
     unsigned bucket_mask;

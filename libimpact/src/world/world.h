@@ -15,29 +15,28 @@
 
 /* What moves of a body. The angular momentum, not omega, is the state: it is what torque-free motion keeps. */
 typedef struct imp_state {
-    qvec3 x;
+    qvec3 x, v; /* side by side: they are looked at most */
     quat q;
-    qvec3 v;
     qvec3 momentum; /* angular, about the centre, world */
 } imp_state;
 
-/* What does not change of a body. */
+/* What does not change of a body. What others ask of it, as they pass by, stands side by side at the front. */
 typedef struct imp_body {
-    char *name; /* the scene's */
-    int index;  /* in the scene's definition */
-    impact_shape shape;
+    double radius; /* of the bounding ball about the centre of mass */
+    int index;     /* in the scene's definition */
     bool is_static;
     bool spherical; /* three equal principal moments: omega is parallel to the angular momentum */
+    bool shifted;   /* the shape stands aside of the body's frame: by offset and turn */
+    bool driven;    /* static, and its surface moves along itself: by drift and spin */
+    impact_shape shape;
+    char *name; /* the scene's */
     double mass, inverse_mass;
     qvec3 moments, inverse_moments;
-    double radius; /* of the bounding ball about the centre of mass */
-    bool shifted;  /* the shape stands aside of the body's frame: */
-    qvec3 offset;  /* its centre, body axes */
-    quat turn;     /* its axes to the body's */
+    qvec3 offset; /* the shape's centre, body axes */
+    quat turn;    /* its axes to the body's */
     double friction, restitution;
     double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
-    bool driven;                      /* static, and its surface moves along itself: */
-    qvec3 drift, spin;                /* the point at r from the centre by drift + spin x r */
+    qvec3 drift, spin;                /* the surface's point at r from the centre by drift + spin x r */
 } imp_body;
 
 typedef enum imp_mode {

@@ -47,7 +47,7 @@ static imp_search search_of(couple *c)
 
 static void begin(couple *c, int k, double t0, qvec3 x, qvec3 v, qvec3 omega, qvec3 g)
 {
-    imp_state state = {x, {1, 0, 0, 0}, v, {0, 0, 0}};
+    imp_state state = {.x = x, .q = {1, 0, 0, 0}, .v = v};
     state.momentum = imp_inertia(&c->body[k], state.q, omega);
     c->segment[k] = imp_segment_fly(&c->body[k], t0, &state, g, &c->tumble[k]);
 }

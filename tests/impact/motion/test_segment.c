@@ -59,8 +59,10 @@ static imp_body solid(qvec3 moments, double linear_rate, double angular_rate)
 
 static imp_state random_state(random_stream *random)
 {
-    return (imp_state){random_vector(random, 0.1, 10), random_rotation(random), random_vector(random, 0.1, 10),
-                       random_vector(random, 0.01, 1)};
+    return (imp_state){.x = random_vector(random, 0.1, 10),
+                       .q = random_rotation(random),
+                       .v = random_vector(random, 0.1, 10),
+                       .momentum = random_vector(random, 0.01, 1)};
 }
 
 static imp_body random_solid(random_stream *random, bool damped)
