@@ -167,6 +167,11 @@ static bool predict(imp_tracks *tracks, imp_near *near, double t)
     return near->t < INFINITY || before < INFINITY;
 }
 
+void imp_tracks_predict(imp_tracks *tracks, int near, double t)
+{
+    if (predict(tracks, &tracks->near[near], t)) tell(tracks, near);
+}
+
 /* Which of them stands first: what moves before what is static, a plane last; else as the definition has them. */
 static void name_bodies(const imp_tracks *tracks, int i, int j, imp_near *near)
 {
@@ -200,7 +205,7 @@ static impact_status make_near(imp_tracks *tracks, int i, int j, double t)
     for (int k = 0; k < 2; k++)
         if (!list_near(tracks->world->arena, &tracks->tracks[near->body[k]], n, &near->place[k])) return IMPACT_ENOMEM;
     near->beyond = is_beyond(tracks, near, t);
-    if (predict(tracks, near, t)) tell(tracks, n);
+    imp_tracks_predict(tracks, n, t);
     return IMPACT_OK;
 }
 

@@ -78,6 +78,9 @@ impact_status imp_tracks_leap(imp_tracks *tracks, int body, double t);
  */
 impact_status imp_tracks_due(imp_tracks *tracks, int body, double t, int *touching);
 
+/* The pair's next contact is searched for anew. */
+void imp_tracks_predict(imp_tracks *tracks, int near, double t);
+
 /* The pair of two bodies, or -1. */
 int imp_tracks_find(const imp_tracks *tracks, int i, int j);
 
