@@ -26,7 +26,10 @@ void impact_lua_open_record(lua_State *L);
 /* Pushes what a polyhedron has beside other shapes: vertices, faces, dropped, center, axes; false for another key. */
 bool impact_lua_push_hull_value(lua_State *L, const impact_hull *hull, const char *key);
 
-/* Pushes a shape userdata. */
+/* Pushes a userdata that holds the hull (NULL: to be filled) until it is collected. */
+impact_hull **impact_lua_push_hull(lua_State *L, const impact_hull *hull);
+
+/* Pushes a shape userdata, which holds its hull. */
 void impact_lua_push_shape(lua_State *L, const impact_shape *shape);
 
 /* ---- who runs the scripts ---- */

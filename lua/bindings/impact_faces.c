@@ -109,6 +109,15 @@ static size_t read_points(const quat_lua_reader *reader, qvec3 *points)
     return count;
 }
 
+impact_hull **impact_lua_push_hull(lua_State *L, const impact_hull *hull)
+{
+    impact_hull **place = lua_newuserdatauv(L, sizeof *place, 0);
+    *place = NULL;
+    luaL_setmetatable(L, HULL);
+    if (hull) *place = impact_hull_share(hull);
+    return place;
+}
+
 /* polyhedron{vertices={{x, y, z}, ...}, rounding=}: their hull, about its centroid, along its principal axes */
 static int shape_polyhedron(lua_State *L)
 {
@@ -118,16 +127,12 @@ static int shape_polyhedron(lua_State *L)
     char message[120];
     const size_t count = read_points(&reader, points);
     const double rounding = rounding_of(&reader);
-    impact_hull **place = lua_newuserdatauv(L, sizeof *place, 0);
-    *place = NULL;
-    luaL_setmetatable(L, HULL);
+    impact_hull **place = impact_lua_push_hull(L, NULL);
     if (impact_hull_create(points, count, rounding, NULL, place, message, sizeof message) < 0)
         return quat_lua_reader_error(&reader, "%s", message);
     impact_shape shape;
     impact_shape_polyhedron(*place, &shape);
     impact_lua_push_shape(L, &shape);
-    lua_insert(L, -2);
-    lua_setiuservalue(L, -2, 1); /* the shape keeps its hull */
     return 1;
 }
 

@@ -28,12 +28,23 @@ static int refuse_scene(lua_State *L, const impact_scene_def *def, const char *m
     return quat_lua_error(L, "%s", message);
 }
 
+/* A table that holds the polyhedra's hulls, whatever the script does with its shapes. */
+static void push_hulls(lua_State *L, const impact_scene_def *def)
+{
+    lua_newtable(L);
+    for (int i = 0; i < def->body_count; i++) {
+        if (!def->bodies[i].shape.hull) continue;
+        impact_lua_push_hull(L, def->bodies[i].shape.hull);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
 static int make_scene(lua_State *L)
 {
     char message[400] = "";
     lua_settop(L, 1);
     luaL_checkstack(L, 24, NULL);
-    impact_lua_scene *self = lua_newuserdatauv(L, sizeof *self, 2);
+    impact_lua_scene *self = lua_newuserdatauv(L, sizeof *self, 3);
     memset(self, 0, sizeof *self);
     luaL_setmetatable(L, IMPACT_LUA_SCENE);
     lua_newtable(L);
@@ -47,6 +58,8 @@ static int make_scene(lua_State *L)
     lua_setiuservalue(L, 2, IMPACT_LUA_DEFINITION);
     lua_pushvalue(L, 3);
     lua_setiuservalue(L, 2, IMPACT_LUA_LAWS);
+    push_hulls(L, &def);
+    lua_setiuservalue(L, 2, IMPACT_LUA_HULLS);
     lua_settop(L, 2);
     return 1;
 }

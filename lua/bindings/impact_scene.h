@@ -12,7 +12,7 @@
 #define IMPACT_LUA_SCENE "impact.scene"
 
 /* The user values of a scene userdata. */
-enum { IMPACT_LUA_DEFINITION = 1, IMPACT_LUA_LAWS = 2 };
+enum { IMPACT_LUA_DEFINITION = 1, IMPACT_LUA_LAWS = 2, IMPACT_LUA_HULLS = 3 };
 
 /* An event with its words copied. */
 typedef struct impact_lua_event {

@@ -9,6 +9,9 @@ void impact_lua_push_shape(lua_State *L, const impact_shape *shape)
     impact_shape *place = lua_newuserdatauv(L, sizeof *shape, 1);
     *place = *shape;
     luaL_setmetatable(L, IMPACT_LUA_SHAPE);
+    if (!shape->hull) return;
+    impact_lua_push_hull(L, shape->hull);
+    lua_setiuservalue(L, -2, 1);
 }
 
 static int push_checked(lua_State *L, impact_status status, const impact_shape *shape)

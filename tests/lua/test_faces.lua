@@ -36,4 +36,16 @@ patch = impact.patch({ shape = impact.cylinder { radius = 1, half_height = 2 }, 
 check.truth(patch.disc == 1 and #patch.points == 16, "a disc")
 check.truth(select(2, impact.patch(floor, floor)):find "two planes", "no patch of planes")
 
+
+-- What a scene flies, and what a record shows, outlives the script's own shapes.
+local definition = impact.body { name = "b", shape = body.shape, omega = { 1, 2, 3 } }
+local scene = impact.scene { bodies = { definition }, duration = 1 }
+definition.shape, body, tetrahedron = impact.sphere(1), nil, nil
+collectgarbage()
+scene:run { record = true }
+local seen = scene:record():bodies()[1].shape
+scene = nil
+collectgarbage()
+check.truth(seen.kind == "polyhedron" and #seen.vertices == 4 and #seen.faces == 4, "a shape of a record")
+
 check.report "faces"

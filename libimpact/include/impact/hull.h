@@ -29,7 +29,9 @@ enum { IMPACT_HULL_POINTS = 256 }; /* at most */
 IMPACT_API impact_status impact_hull_create(const qvec3 *points, size_t count, double rounding,
                                             const impact_allocator *allocator, impact_hull **hull, char *message,
                                             size_t size);
-/* No shape may use it any more; NULL is fine. */
+/* One more holder of the hull, from any thread: it lives until each has destroyed it. */
+IMPACT_API impact_hull *impact_hull_share(const impact_hull *hull);
+/* Ends the caller's hold; the last one's frees it, when no shape may use it any more. NULL is fine. */
 IMPACT_API void impact_hull_destroy(impact_hull *hull);
 
 typedef struct impact_hull_info {

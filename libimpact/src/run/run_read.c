@@ -276,7 +276,10 @@ static impact_status read_bodies(const reader *r)
     for (const imp_json *body = list->first; body; body = body->next) {
         impact_status status = read_body(r, body, &run->bodies[run->body_count]);
         if (status == IMPACT_OK) status = check_keys(r, run->body_count);
-        if (status != IMPACT_OK) return status;
+        if (status != IMPACT_OK) {
+            impact_hull_destroy(run->bodies[run->body_count].hull);
+            return status;
+        }
         run->body_count++;
     }
     return IMPACT_OK;

@@ -7,6 +7,7 @@
 #define IMP_CORE_H
 
 #include <impact/hull.h>
+#include <stdatomic.h>
 
 typedef struct imp_hull_edge {
     short v[2], f[2]; /* from v[0] to v[1] with the face f[0] on its left, f[1] on its right; -1: no face */
@@ -24,6 +25,7 @@ struct impact_hull {
     quat axes;
     impact_allocator allocator;
     size_t bytes;
+    atomic_int holders;
 };
 
 extern const impact_hull imp_hull_point, imp_hull_segment, imp_hull_box, imp_hull_octahedron;

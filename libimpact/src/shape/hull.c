@@ -242,6 +242,7 @@ static impact_status assemble(imp_hull_work *w, double unit, const double middle
     if (!made) return IMPACT_ENOMEM;
     *made = counts;
     made->bytes = bytes;
+    atomic_init(&made->holders, 1);
     if (allocator) made->allocator = *allocator;
     layout(made, corners, &a);
     fill(w, number, &a, made);
@@ -279,9 +280,16 @@ impact_status impact_hull_create(const qvec3 *points, size_t count, double round
     return status;
 }
 
+impact_hull *impact_hull_share(const impact_hull *hull)
+{
+    impact_hull *shared = (impact_hull *)(uintptr_t)hull;
+    atomic_fetch_add(&shared->holders, 1);
+    return shared;
+}
+
 void impact_hull_destroy(impact_hull *hull)
 {
-    if (!hull) return;
+    if (!hull || atomic_fetch_sub(&hull->holders, 1) > 1) return;
     const impact_allocator allocator = hull->allocator;
     give(&allocator, hull, hull->bytes);
 }
