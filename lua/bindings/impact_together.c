@@ -117,6 +117,7 @@ static void push_together(lua_State *L, const impact_encounter *e, const impact_
     quat_lua_set_integer(L, "events", o->events);
     quat_lua_set_integer(L, "steps", o->steps);
     quat_lua_set_boolean(L, "chosen", o->chosen);
+    quat_lua_set_boolean(L, "energy_rose", o->energy_rose);
     quat_lua_set_string(L, "solver", impact_together_solver_name(o->solver));
     quat_lua_set_string(L, "status",
                         status == IMPACT_SEPARATING ? "separating"

@@ -261,6 +261,7 @@ core.layer()
 ---@field events integer
 ---@field steps integer
 ---@field chosen boolean  reactions are not unique
+---@field energy_rose boolean  not by springs
 ---@field solver "none"|"alone"|"series"|"cone"|"sweeps"
 ---@field status "ok"|"separating"|"soft"
 

@@ -79,12 +79,13 @@ typedef struct impact_together_outcome {
     /* The receipt: the largest of what the answer misses momentum, spin, cones, energy, works and separation by, over
      * the sizes of their own terms. Rounding leaves 1e-15 to 1e-13. */
     double residual;
-    double error; /* of the velocities, of the fastest approach: springs take a restitution under 0.001 as 0.001 */
-    int groups;   /* of contacts tied by moving bodies */
-    long events;  /* springs: changes of a contact's mode; sequence: impacts */
-    long steps;   /* springs: Taylor steps; Moreau: linear systems */
-    bool chosen;  /* reactions are not unique; those of least norm where they could be chosen */
-    int wedged;   /* IMPACT_EUNSETTLED: a contact of a group whose contacts no motion takes apart; -1: none */
+    double error;     /* of the velocities, of the fastest approach: springs take a restitution under 0.001 as 0.001 */
+    int groups;       /* of contacts tied by moving bodies */
+    long events;      /* springs: changes of a contact's mode; sequence: impacts */
+    long steps;       /* springs: Taylor steps; Moreau: linear systems */
+    bool energy_rose; /* not by springs: Moreau's law with different restitutions, and Newton's, can */
+    bool chosen;      /* reactions are not unique; those of least norm where they could be chosen */
+    int wedged;       /* IMPACT_EUNSETTLED: a contact of a group whose contacts no motion takes apart; -1: none */
     impact_together_solver solver;
 } impact_together_outcome;
 

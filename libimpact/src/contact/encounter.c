@@ -402,6 +402,12 @@ static impact_status solve_plan(plan *call, impact_together_workspace *workspace
                                            .energy_before = o->energy_before,
                                            .energy_after = o->energy_after};
     o->residual = imp_encounter_receipt(e, &whole);
+    double works = 0;
+    for (int i = 0; i < e->meeting_count; i++) {
+        const impact_meeting_outcome *m = &call->meetings[i];
+        works += m->work_compression + m->work_restitution + m->work_friction;
+    }
+    o->energy_rose = works > IMP_ENCOUNTER_RECEIPT * o->energy_before;
     hand_over(call, o);
     return status == IMPACT_OK && !(o->residual <= IMP_ENCOUNTER_RECEIPT) ? IMPACT_SOFT : status;
 }

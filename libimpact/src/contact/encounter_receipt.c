@@ -4,7 +4,7 @@
  *
  *     m (V' - V) = sum +-P,   J (W' - W) = sum +-r x P         momentum and spin of each body that moves
  *     P_n >= 0,  |P_t| <= mu P_n                               cones
- *     E' - E = sum of works - sum +-P . (a static body's)      power; the sum of the works, which is <= 0
+ *     E' - E = sum of works - sum +-P . (a static body's)      power; by springs works of friction and all are <= 0
  *     P . (u + u')/2 summed: the same, by impulses             (E is a quadratic form)
  *     u_n' >= 0                                                nothing approaches
  *
@@ -107,8 +107,8 @@ static void check_meeting_of(const impact_encounter *e, const impact_together_ou
                   size * qvec3_norm(own->impulse);
     sum->by_impulses += 0.5 * qvec3_dot(own->impulse, qvec3_add(before, after));
     sum->driven += driven_work(e, m, own->impulse);
-    miss(t, fmax(0, own->work_compression), fabs(own->work_compression) + size * qvec3_norm(own->impulse));
-    miss(t, fmax(0, own->work_friction), fabs(own->work_friction) + size * qvec3_norm(own->impulse));
+    if (e->law == IMPACT_TOGETHER_SPRINGS) /* an impulse against the slip at its end may have been with it before */
+        miss(t, fmax(0, own->work_friction), fabs(own->work_friction) + size * qvec3_norm(own->impulse));
 }
 
 double imp_encounter_receipt(const impact_encounter *encounter, const impact_together_outcome *outcome)
@@ -124,6 +124,6 @@ double imp_encounter_receipt(const impact_encounter *encounter, const impact_tog
     /* E' - E = P . (u + u')/2 less what goes into static bodies */
     miss(&t, fabs(change - (sum.works - sum.driven)), size);
     miss(&t, fabs(change - (sum.by_impulses - sum.driven)), size);
-    miss(&t, fmax(0, sum.works), size);
+    if (encounter->law == IMPACT_TOGETHER_SPRINGS) miss(&t, fmax(0, sum.works), size);
     return t.worst;
 }

@@ -56,7 +56,7 @@ static void open_spring(imp_spring *c)
 static void close_spring(imp_springs *s, imp_spring *c)
 {
     c->normal = c->deepest > 0 ? IMP_SPRING_UNLOADS : IMP_SPRING_LOADS;
-    c->x = fmax(c->x, c->tiny);
+    c->x = c->tiny; /* after a long flight x is rounded by far more */
     c->stored = imp_springs_energy(s, c, c->x);
     c->still = c->friction > 0 && hypot(c->u[1], c->u[2]) <= IMP_SPRINGS_STILL;
     c->slip = c->friction == 0 ? IMP_SPRING_SMOOTH : c->still ? IMP_SPRING_STICKS : IMP_SPRING_SLIDES;

@@ -213,7 +213,7 @@ static bool take_event(imp_springs *s, const first_event *first)
     switch (first->what) {
     case EVENT_TURN: c->u[0] = fmax(c->u[0], 0); break;
     case EVENT_OPEN: c->x = c->tiny; break;
-    case EVENT_CLOSE: c->x = fmax(c->x, c->tiny); break;
+    case EVENT_CLOSE: c->x = c->tiny; break;
     case EVENT_AGAIN: c->x = fmax(c->x, imp_springs_again(c)); break;
     case EVENT_STOP:
         c->still = true;
@@ -251,6 +251,6 @@ bool imp_springs_drift(imp_springs *s)
     }
     if (next < 0) return false;
     for (int i = 0; i < s->count; i++) s->springs[i].x -= s->springs[i].u[0] * soonest;
-    s->springs[next].x = fmax(s->springs[next].x, s->springs[next].tiny);
+    s->springs[next].x = s->springs[next].tiny;
     return true;
 }

@@ -348,10 +348,13 @@ static void receipts_hold_over_random_encounters(void **state)
         if (a.status != IMPACT_OK) continue;
         answered[law]++;
         assert_at_most(a.outcome.residual, law == IMPACT_TOGETHER_SPRINGS ? 1e-13 : 1e-11);
-        assert_at_most(a.outcome.energy_after, a.outcome.energy_before * (1 + 1e-14));
+        assert_true(law == IMPACT_TOGETHER_MOREAU || !a.outcome.energy_rose);
+        if (!a.outcome.energy_rose) assert_at_most(a.outcome.energy_after, a.outcome.energy_before * (1 + 1e-11));
+        if (law == IMPACT_TOGETHER_SPRINGS)
+            assert_at_most(a.outcome.energy_after, a.outcome.energy_before * (1 + 1e-14));
     }
     assert_true(answered[IMPACT_TOGETHER_SPRINGS] > 450);
-    assert_true(answered[IMPACT_TOGETHER_MOREAU] > 300);
+    assert_true(answered[IMPACT_TOGETHER_MOREAU] > 450);
     assert_true(answered[IMPACT_TOGETHER_SEQUENCE] > 300);
     impact_together_workspace_destroy(workspace);
 }
@@ -371,6 +374,19 @@ static void elastic_encounters_without_friction_keep_energy(void **state)
         answered++;
     }
     assert_true(answered > 500);
+}
+
+/* Three contacts of one body in a plane, held by friction: it goes from one to the other over gaps that grow, a
+ * thousand times its dents and more, and comes back where it closed. */
+static void long_flights_come_back_to_where_contacts_close(void **state)
+{
+    (void)state;
+    const encounter_ranges ranges = {2, 3, 10, 0.05, 1e4, 1e4};
+    random_stream random = {1 + 0x9e3779b97f4a7c15u * 644u};
+    const random_encounter e = encounter_draw(&random, &ranges);
+    const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, 1, NULL);
+    assert_int_equal(a.status, IMPACT_OK);
+    assert_at_most(a.outcome.residual, 1e-14);
 }
 
 /* ---- groups, duplicates, wedges ---- */
@@ -543,6 +559,7 @@ int main(void)
         cmocka_unit_test(turning_the_scene_and_changing_units_changes_nothing),
         cmocka_unit_test(receipts_hold_over_random_encounters),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
+        cmocka_unit_test(long_flights_come_back_to_where_contacts_close),
         cmocka_unit_test(groups_are_apart_and_one_contact_is_impact_collide),
         cmocka_unit_test(a_wedged_ball_is_told),
         cmocka_unit_test(what_friction_locks_is_told),
