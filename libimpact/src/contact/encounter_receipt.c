@@ -8,15 +8,17 @@
  *     P . (u + u')/2 summed: the same, by impulses             (E is a quadratic form)
  *     u_n' >= 0                                                nothing approaches
  *
- * each over the sizes of its own terms.
+ * each over the sizes of its own terms and the largest impulse or velocity that is there.
  */
 #include "contact/encounter.h"
 
 #include <quat/rotation.h>
 #include "base/tolerances.h"
 
+/* The largest of the encounter: what is as small as their rounding is none. */
 typedef struct tally {
     double worst;
+    double impulse, arm, speed;
 } tally;
 
 static void miss(tally *t, double off, double size)
@@ -43,14 +45,14 @@ static void check_body(const impact_encounter *e, const impact_together_outcome 
     }
     const double speeds = body->mass * (qvec3_norm(o->velocity[b]) + qvec3_norm(body->velocity));
     const qvec3 gained = qvec3_scale(qvec3_sub(o->velocity[b], body->velocity), body->mass);
-    miss(t, qvec3_norm(qvec3_sub(gained, push)), pushes + speeds);
+    miss(t, qvec3_norm(qvec3_sub(gained, push)), pushes + speeds + t->impulse);
     const qvec3 j = body->moments, w = quat_rotate_inverse(body->orientation, o->omega[b]),
                 w0 = quat_rotate_inverse(body->orientation, body->omega),
                 by = quat_rotate_inverse(body->orientation, turn);
     const qvec3 spun = {j.x * (w.x - w0.x), j.y * (w.y - w0.y), j.z * (w.z - w0.z)};
     const qvec3 sizes = {j.x * (fabs(w.x) + fabs(w0.x)), j.y * (fabs(w.y) + fabs(w0.y)),
                          j.z * (fabs(w.z) + fabs(w0.z))};
-    miss(t, qvec3_norm(qvec3_sub(spun, by)), turns + qvec3_norm(sizes));
+    miss(t, qvec3_norm(qvec3_sub(spun, by)), turns + qvec3_norm(sizes) + t->impulse * t->arm);
 }
 
 /* The relative velocity of the contact points, and how large its terms are. */
@@ -101,7 +103,7 @@ static void check_meeting_of(const impact_encounter *e, const impact_together_ou
     miss(t, fmax(0, across - m->friction * normal), most * fmax(1, m->friction));
     double size = 0;
     const qvec3 before = slip_of(e, m, NULL, NULL, &size), after = slip_of(e, m, o->velocity, o->omega, &size);
-    miss(t, fmax(0, -qvec3_dot(n, after)), size);
+    miss(t, fmax(0, -qvec3_dot(n, after)), size + t->speed);
     sum->works += own->work_compression + own->work_restitution + own->work_friction;
     sum->terms += fabs(own->work_compression) + own->work_restitution + fabs(own->work_friction) +
                   size * qvec3_norm(own->impulse);
@@ -115,10 +117,16 @@ double imp_encounter_receipt(const impact_encounter *encounter, const impact_tog
 {
     tally t = {0};
     energies sum = {0};
-    double most = 0;
-    for (int i = 0; i < encounter->meeting_count; i++) most = fmax(most, qvec3_norm(outcome->meetings[i].impulse));
+    for (int i = 0; i < encounter->meeting_count; i++) {
+        const impact_meeting *m = &encounter->meetings[i];
+        double size = 0;
+        (void)slip_of(encounter, m, NULL, NULL, &size);
+        t.impulse = fmax(t.impulse, qvec3_norm(outcome->meetings[i].impulse));
+        t.arm = fmax(t.arm, fmax(qvec3_norm(m->offset1), qvec3_norm(m->offset2)));
+        t.speed = fmax(t.speed, size);
+    }
     for (int b = 0; b < encounter->body_count; b++) check_body(encounter, outcome, b, &t);
-    for (int i = 0; i < encounter->meeting_count; i++) check_meeting_of(encounter, outcome, i, most, &sum, &t);
+    for (int i = 0; i < encounter->meeting_count; i++) check_meeting_of(encounter, outcome, i, t.impulse, &sum, &t);
     const double change = outcome->energy_after - outcome->energy_before,
                  size = outcome->energy_after + outcome->energy_before + sum.terms;
     /* E' - E = P . (u + u')/2 less what goes into static bodies */
