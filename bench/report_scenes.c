@@ -4,14 +4,15 @@
  * not know? CSV, a line for each way to end: scenes that ended so, the longest of them in seconds of the processor's
  * time and its seed, the worst residuals of those that are good, and of these (without forces) how many part from
  * the same motion by the integrator by more than 1e4 tolerances, up to twenty events: chaos does the rest.
- * --scenes N, --seed S (the first), --steps M (max_steps).
+ * What is not good, or takes over three seconds, is told on stderr. --scenes N, --seed S (the first), --steps M
+ * (max_steps).
  */
 #include <string.h>
 #include <time.h>
 #include "../tests/kit/random_scene.h"
 #include "options.h"
 
-enum { STATUSES = 64, FEW_EVENTS = 20 };
+enum { STATUSES = 64, FEW_EVENTS = 20, SLOW = 3 };
 
 typedef struct tally {
     const char *words;
@@ -27,6 +28,7 @@ typedef struct ending {
     qvec3 place[RANDOM_SCENE_BODIES];
     long events;
     impact_scene_residuals residuals;
+    char message[512];
 } ending;
 
 /* False where the definition is refused; that is an ending too. */
@@ -40,6 +42,7 @@ static bool run(const impact_scene_def *def, ending *e)
     e->status = impact_scene_run(scene, NULL);
     e->seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
     impact_scene_receipt(scene, &e->residuals);
+    snprintf(e->message, sizeof e->message, "%s", impact_scene_message(scene));
     const impact_usage usage = impact_scene_usage(scene);
     for (int kind = 0; kind <= IMPACT_EVENT_REST; kind++) e->events += usage.events[kind];
     for (int i = 1; i < def->body_count; i++) {
@@ -93,6 +96,8 @@ static void count(unsigned long seed, long steps, tally *tallies)
     t->contact = fmax(t->contact, e.residuals.contact);
     t->energy = fmax(t->energy, e.residuals.energy);
     t->fallen = fmax(t->fallen, e.residuals.loss_fallen);
+    if (!is_good(e.status) || e.seconds > SLOW)
+        fprintf(stderr, "seed %lu: %s after %.2f s: %s\n", seed, t->words, e.seconds, e.message);
     if (is_good(e.status) && s.def.force_count == 0 && e.events <= FEW_EVENTS) compare(&s, &e, t);
 }
 

@@ -100,7 +100,7 @@ static const impact_force_def *read_forces(const quat_lua_reader *reader, impact
 
 static const impact_pair_def *read_pairs(const quat_lua_reader *reader, impact_scene_def *def)
 {
-    static const char *const keys[] = {"bodies", "friction", "restitution", NULL};
+    static const char *const keys[] = {"bodies", "friction", "restitution", "stiffness", NULL};
     lua_State *L = reader->L;
     def->pair_count = push_list(reader, "pairs");
     const int list = lua_gettop(L);
@@ -117,12 +117,14 @@ static const impact_pair_def *read_pairs(const quat_lua_reader *reader, impact_s
         pairs[i].body2 = lua_tostring(L, -1);
         pairs[i].friction = quat_lua_get_number(&pair, "friction", QUAT_LUA_NOT_NEGATIVE, NAN);
         pairs[i].restitution = quat_lua_get_number(&pair, "restitution", QUAT_LUA_FRACTION, NAN);
+        pairs[i].stiffness = quat_lua_get_number(&pair, "stiffness", QUAT_LUA_POSITIVE, NAN);
         lua_pop(L, 4);
     }
     return pairs;
 }
 
 static const char *const piles_words[] = {"auto", "exact", "steps", NULL};
+static const char *const together_words[] = {"auto", "springs", "moreau", "sequence", NULL};
 
 static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
 {
@@ -139,6 +141,7 @@ static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
     def->law = (impact_law)quat_lua_get_choice(reader, "law", law_words, (int)def->law);
     def->solver = (impact_solver)quat_lua_get_choice(reader, "solver", solver_words, (int)def->solver);
     def->piles = (impact_piles)quat_lua_get_choice(reader, "piles", piles_words, (int)def->piles);
+    def->together = (impact_scene_together)quat_lua_get_choice(reader, "together", together_words, (int)def->together);
     def->compliance = quat_lua_get_number(reader, "compliance", QUAT_LUA_NOT_NEGATIVE, def->compliance);
 }
 
@@ -153,10 +156,10 @@ static void read_plot(const quat_lua_reader *reader)
 
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws)
 {
-    static const char *const keys[] = {"name",       "gravity",       "duration",   "output_rate", "bodies",
-                                       "forces",     "pairs",         "rules",      "law",         "solver",
-                                       "tolerance",  "rest_height",   "rest_speed", "max_events",  "plot",
-                                       "compliance", "key_tolerance", "piles",      "max_steps",   NULL};
+    static const char *const keys[] = {
+        "name",  "gravity",    "duration",      "output_rate", "bodies",      "forces",     "pairs",
+        "rules", "law",        "solver",        "tolerance",   "rest_height", "rest_speed", "max_events",
+        "plot",  "compliance", "key_tolerance", "piles",       "max_steps",   "together",   NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     const impact_lua_host *host = impact_lua_get_host(L);

@@ -119,7 +119,7 @@ core.layer()
 ---@field gravity? vec  m/s^2
 ---@field output_rate? number  samples per second
 ---@field rules? {friction?: impact.rule, restitution?: impact.rule}
----@field pairs? {bodies: string[], friction?: number, restitution?: number}[]
+---@field pairs? {bodies: string[], friction?: number, restitution?: number, stiffness?: number}[]
 ---@field law? "poisson"|"newton"|"stronge"
 ---@field solver? "auto"|"closed_form"|"series"|"cvode"
 ---@field compliance? number  eta^2 of every contact, with law = "stronge"; 0: rigid
@@ -129,6 +129,7 @@ core.layer()
 ---@field max_events? integer
 ---@field key_tolerance? number  of a recorded run's keys: part of a body's radius, and rad
 ---@field view? table  what its page shows: docs/view.md
+---@field together? "auto"|"springs"|"moreau"|"sequence"  what answers contacts struck at one instant: docs/together.md
 ---@field piles? "auto"|"exact"|"steps"  how bodies are moved that touch each other and do not settle
 ---@field plot? fun(scene: impact.scene): plot.figure
 

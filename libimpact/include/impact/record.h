@@ -49,6 +49,7 @@ typedef struct impact_event {
     double normal_before, normal_after;        /* normal relative velocity, m/s */
     const char *phases;                        /* e.g. "slip-c stick-c stick-r"; "" when there are none */
     double energy_before, energy_after;        /* mechanical energy of the whole scene, J */
+    long encounter; /* impacts that were answered together share a number, 1, 2, ...; 0: it was answered alone */
 } impact_event;
 
 /* One body where its trajectory is pinned: between two keys no event touches it, and its place and orientation are the

@@ -54,7 +54,18 @@ typedef enum impact_pair_rule {
 typedef struct impact_pair_def {
     const char *body1, *body2;
     double friction, restitution;
+    double stiffness; /* of springs that answer together, any unit: only ratios count; 0 or NaN: Hertz's, of bodies of
+                       * one modulus */
 } impact_pair_def;
+
+/* What answers contacts that are struck at one instant: docs/together.md. */
+typedef enum impact_scene_together {
+    IMPACT_SCENE_TOGETHER_AUTO, /* by the law of restitution: Poisson's: MOREAU; Stronge's: SPRINGS; Newton's, and with
+                                 * compliance or a solver by name: SEQUENCE */
+    IMPACT_SCENE_SPRINGS,       /* with Stronge's law only */
+    IMPACT_SCENE_MOREAU,        /* with Poisson's law only */
+    IMPACT_SCENE_SEQUENCE       /* one after another, in the order of the bodies */
+} impact_scene_together;
 
 /* How bodies are moved that touch each other and do not settle. */
 typedef enum impact_piles {
@@ -94,6 +105,7 @@ typedef struct impact_scene_def {
     /* of the recorder's keys, in [1e-14, 1e-2]: part of a body's bounding radius in place, rad in orientation */
     double key_tolerance;
     impact_piles piles;
+    impact_scene_together together;
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),

@@ -13,19 +13,23 @@
 
 /* ---- memory ---- */
 
+impact_status imp_together_workspace_in(imp_arena *arena, impact_together_workspace **workspace)
+{
+    *workspace = imp_arena_take(arena, 1, sizeof **workspace);
+    if (!*workspace) return IMPACT_ENOMEM;
+    (*workspace)->arena = (*workspace)->cone.arena = arena;
+    return IMPACT_OK;
+}
+
 impact_status impact_together_workspace_create(const impact_allocator *allocator, impact_together_workspace **workspace)
 {
     imp_arena *arena;
     *workspace = NULL;
-    const impact_status status = imp_arena_create(allocator, &arena);
+    impact_status status = imp_arena_create(allocator, &arena);
     if (status != IMPACT_OK) return status;
-    *workspace = imp_arena_take(arena, 1, sizeof **workspace);
-    if (!*workspace) {
-        imp_arena_destroy(arena);
-        return IMPACT_ENOMEM;
-    }
-    (*workspace)->arena = (*workspace)->cone.arena = arena;
-    return IMPACT_OK;
+    status = imp_together_workspace_in(arena, workspace);
+    if (status != IMPACT_OK) imp_arena_destroy(arena);
+    return status;
 }
 
 void impact_together_workspace_destroy(impact_together_workspace *workspace)

@@ -58,6 +58,9 @@ struct impact_together_workspace {
     imp_cone_workspace cone;
 };
 
+/* A workspace in the arena, with which it goes: not to be destroyed. */
+impact_status imp_together_workspace_in(imp_arena *arena, impact_together_workspace **workspace);
+
 /* count * size bytes of the group's work, zeroed; NULL: there is no more. */
 void *imp_encounter_take(impact_together_workspace *workspace, size_t count, size_t size);
 

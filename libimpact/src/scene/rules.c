@@ -20,7 +20,8 @@ impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_sc
     for (int k = 0; k < def->pair_count; k++) {
         const int i = imp_names_find(names, def->pairs[k].body1), j = imp_names_find(names, def->pairs[k].body2);
         rules->own[rules->own_count++] =
-            (imp_own_rule){i < j ? i : j, i < j ? j : i, k, def->pairs[k].friction, def->pairs[k].restitution};
+            (imp_own_rule){i < j ? i : j,          i < j ? j : i, k, def->pairs[k].friction, def->pairs[k].restitution,
+                           def->pairs[k].stiffness};
     }
     qsort(rules->own, (size_t)rules->own_count, sizeof *rules->own, by_rule_bodies);
     return IMPACT_OK;
@@ -63,5 +64,6 @@ imp_pair imp_rules_pair(const imp_rules *rules, const imp_world *world, int i, i
     const imp_own_rule *own = rules->own_count > 0 ? own_of(rules, low, high) : NULL;
     if (own && !isnan(own->friction)) pair.friction = own->friction;
     if (own && !isnan(own->restitution)) pair.restitution = own->restitution;
+    if (own && own->stiffness > 0) pair.stiffness = own->stiffness;
     return pair;
 }

@@ -12,7 +12,7 @@
 typedef struct imp_own_rule {
     int low, high; /* the bodies' indices */
     int order;     /* in the definition: the first of a pair counts */
-    double friction, restitution;
+    double friction, restitution, stiffness;
 } imp_own_rule;
 
 typedef struct imp_rules {

@@ -89,6 +89,7 @@ static void walk_scalars(imp_archive *a, imp_saved *s)
     imp_archive_bool(a, &s->begun);
     imp_archive_long(a, &s->next_sample);
     imp_archive_long(a, &s->event_count);
+    imp_archive_long(a, &s->encounter_count);
     imp_archive_long(a, &s->steps);
     walk_works(a, &s->works);
     walk_receipt(a, &s->receipt);

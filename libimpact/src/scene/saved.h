@@ -37,7 +37,7 @@ typedef struct imp_saved_island {
 typedef struct imp_saved {
     double t;
     bool begun;
-    long next_sample, event_count, steps;
+    long next_sample, encounter_count, event_count, steps;
     imp_works works;
     double impact_loss, greatest_energy, impact_loss_fallen, sliding_fallen, pile_error, energy_start;
     impact_scene_residuals receipt;

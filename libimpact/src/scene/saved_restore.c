@@ -100,6 +100,7 @@ static void collect_scalars(imp_saved *s, const impact_scene *scene)
                      .begun = scene->begun,
                      .next_sample = scene->next_sample,
                      .event_count = scene->event_count,
+                     .encounter_count = scene->encounter_count,
                      .steps = scene->steps,
                      .works = scene->works,
                      .impact_loss = scene->impact_loss,
@@ -153,6 +154,7 @@ static void restore_scalars(const imp_saved *s, impact_scene *scene)
     scene->begun = s->begun;
     scene->next_sample = s->next_sample;
     scene->event_count = s->event_count;
+    scene->encounter_count = s->encounter_count;
     scene->steps = s->steps;
     scene->works = s->works;
     scene->impact_loss = s->impact_loss;
@@ -220,6 +222,7 @@ static void restore_pair(imp_island *island, const imp_pair *from)
     pair->body1 = imp_island_find(island, from->body1);
     pair->body2 = imp_island_find(island, from->body2);
     pair->friction = rules.friction;
+    pair->stiffness = rules.stiffness;
     pair->restitution = rules.restitution;
     pair->cache = rules.cache;
     pair->tried = pair->struck = pair->settled = false;

@@ -4,6 +4,7 @@
 #include "scene/scene_keys.h"
 #include "scene/scene_receipt.h"
 #include "scene/saved.h"
+#include "scene/scene_together.h"
 #include "world/world_gap.h"
 #include "base/floats.h"
 #include "collide/collide_workspace.h"
@@ -78,6 +79,7 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
     scene->law = def->law;
     scene->compliance = def->compliance;
     scene->solver = def->solver;
+    scene->together = imp_scene_together_of(def);
     scene->rest_height = def->rest_height;
     scene->rest_speed = def->rest_speed;
     scene->tolerance = def->tolerance;

@@ -202,6 +202,8 @@ static void check_pair(check *c, const impact_pair_def *pair)
             "must be >= 0 and finite");
     require(c, isnan(pair->restitution) || (pair->restitution >= 0 && pair->restitution <= 1), "restitution",
             pair->restitution, "must lie in [0, 1]");
+    require(c, isnan(pair->stiffness) || (pair->stiffness >= 0 && isfinite(pair->stiffness)), "stiffness",
+            pair->stiffness, "must be finite and not negative");
 }
 
 impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp_names *names, char *message,
@@ -234,6 +236,12 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
     require(&c, def->max_events > 0, "max_events", (double)def->max_events, "must be positive");
     require(&c, def->piles >= IMPACT_PILES_AUTO && def->piles <= IMPACT_PILES_STEPS, "piles", def->piles,
             "is no way to move them");
+    require(&c, def->together >= IMPACT_SCENE_TOGETHER_AUTO && def->together <= IMPACT_SCENE_SEQUENCE, "together",
+            def->together, "is no law");
+    require_words(&c, def->together != IMPACT_SCENE_SPRINGS || (def->law == IMPACT_STRONGE && def->compliance == 0),
+                  "together = \"springs\" needs law = \"stronge\", without compliance");
+    require_words(&c, def->together != IMPACT_SCENE_MOREAU || def->law == IMPACT_POISSON,
+                  "together = \"moreau\" needs law = \"poisson\"");
     require(&c, def->max_steps > 0, "max_steps", (double)def->max_steps, "must be positive");
     require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule",
             def->friction_rule, "is no rule");

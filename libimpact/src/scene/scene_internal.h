@@ -23,6 +23,7 @@
 
 #include <stdint.h>
 
+#include <impact/together.h>
 #include "scene/account.h"
 #include "scene/island.h"
 #include "scene/rules.h"
@@ -58,7 +59,10 @@ struct impact_scene {
     bool unsteady; /* some force may move, some time, what rests under it now */
     impact_law law;
     double compliance;
-    impact_collide_workspace *springs; /* solves impacts with compliance; absent without it */
+    impact_collide_workspace *springs;             /* solves impacts with compliance; absent without it */
+    impact_scene_together together;                /* never AUTO */
+    impact_together_workspace *together_workspace; /* absent until it is needed */
+    long encounter_count;
     impact_solver solver;
     double tolerance, rest_height, rest_speed;
     long max_events, event_count, max_steps, steps; /* steps: slots of the queue */

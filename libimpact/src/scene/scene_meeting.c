@@ -99,3 +99,49 @@ bool imp_scene_dies_out(imp_island *island, imp_meeting *m, double speed)
     const double press = fmin(-m->acceleration, most_lasting_press(island, m));
     return speed * speed < 2 * press * least_rise(island, m);
 }
+
+/* ---- an impact of the pair ---- */
+
+impact_collider imp_scene_collider(const imp_island *island, int body, qvec3 offset)
+{
+    const imp_body *b = &island->world.bodies[body];
+    const imp_state *s = &island->states[body];
+    if (b->is_static) return (impact_collider){b->mass, b->moments, s->q, offset, b->drift, b->spin};
+    return (impact_collider){b->mass, b->moments, s->q, offset, s->v, imp_omega(b, s)};
+}
+
+/* One whose bounce would die out is solved with restitution 0: it then exchanges, at once, the whole impulse of the
+ * infinitely many bounces that would follow, less what the pressing force brings while they last: the sum m w (1 + e)(1
+ * + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
+impact_collision imp_scene_collision(imp_island *island, imp_meeting *m)
+{
+    const double restitution = island->world.pairs[m->touch.pair].restitution;
+    const bool dies = imp_scene_dies_out(island, m, restitution * m->velocity);
+    const imp_touch *touch = &m->touch;
+    return (impact_collision){.body = {imp_scene_collider(island, touch->body1, touch->r1),
+                                       imp_scene_collider(island, touch->body2, touch->r2)},
+                              .normal = touch->normal,
+                              .friction = touch->friction,
+                              .restitution = dies ? 0 : restitution,
+                              .law = island->scene->law,
+                              .solver = island->scene->solver,
+                              .tangential_compliance = island->scene->compliance,
+                              .workspace = island->scene->springs};
+}
+
+void imp_scene_set_velocities(imp_island *island, int i, qvec3 velocity, qvec3 omega)
+{
+    const imp_body *body = &island->world.bodies[i];
+    imp_state *state = &island->states[i];
+    if (body->is_static) return;
+    state->v = velocity;
+    state->momentum = imp_inertia(body, state->q, omega);
+}
+
+/* A static body's drive does work with the impulse on body 1. */
+double imp_scene_drive_impulse(imp_island *island, const imp_touch *touch, qvec3 impulse)
+{
+    const double work = qvec3_dot(impulse, imp_surface_velocity(&island->world.bodies[touch->body2], touch->r2));
+    island->motion.works.drive += work;
+    return work;
+}

@@ -32,4 +32,13 @@ bool imp_scene_dies_out(imp_island *island, imp_meeting *m, double speed);
 /* Whether the pair parts at this speed so fast that no acceleration there could make it die out. */
 bool imp_scene_leaves_for_good(const imp_island *island, const imp_meeting *m, double speed);
 
+/* The pair's impact as it is to be solved; a body as one of its sides. */
+impact_collision imp_scene_collision(imp_island *island, imp_meeting *m);
+impact_collider imp_scene_collider(const imp_island *island, int body, qvec3 offset);
+
+/* After an impact; a static body keeps its own. */
+void imp_scene_set_velocities(imp_island *island, int body, qvec3 velocity, qvec3 omega);
+/* The work of the static body's drive with the impulse on body 1 is booked, J. */
+double imp_scene_drive_impulse(imp_island *island, const imp_touch *touch, qvec3 impulse);
+
 #endif

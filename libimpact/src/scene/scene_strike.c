@@ -3,27 +3,12 @@
 #include "contact/persist_still.h"
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
+#include "scene/scene_together.h"
 #include "contact/together.h"
 
 #include <stdio.h>
 
-/* A static body's drive does work with the impulse on body 1. */
-static double drive_impulse(imp_island *island, const imp_touch *touch, qvec3 impulse)
-{
-    const double work = qvec3_dot(impulse, imp_surface_velocity(&island->world.bodies[touch->body2], touch->r2));
-    island->motion.works.drive += work;
-    return work;
-}
-
 /* ---- one impact ---- */
-
-static impact_collider collider(const imp_island *island, int body, qvec3 offset)
-{
-    const imp_body *b = &island->world.bodies[body];
-    const imp_state *s = &island->states[body];
-    if (b->is_static) return (impact_collider){b->mass, b->moments, s->q, offset, b->drift, b->spin};
-    return (impact_collider){b->mass, b->moments, s->q, offset, s->v, imp_omega(b, s)};
-}
 
 static const char *phases_in_words(const impact_outcome *outcome, char *words, size_t size)
 {
@@ -44,23 +29,11 @@ static void count_solver(imp_island *island, const impact_outcome *outcome)
     if (outcome->second) usage->impacts_second++;
 }
 
-/* Solves the pair's impact. One whose bounce would die out is solved with restitution 0: it then exchanges, at once,
- * the whole impulse of the infinitely many bounces that would follow, less what the pressing force brings while they
- * last: the sum m w (1 + e)(1 + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
 static impact_status strike(imp_island *island, imp_meeting *m)
 {
     imp_world *world = &island->world;
     const imp_touch *touch = &m->touch;
-    const double restitution = world->pairs[touch->pair].restitution;
-    const impact_collision collision = {
-        .body = {collider(island, touch->body1, touch->r1), collider(island, touch->body2, touch->r2)},
-        .normal = touch->normal,
-        .friction = touch->friction,
-        .restitution = imp_scene_dies_out(island, m, restitution * m->velocity) ? 0 : restitution,
-        .law = island->scene->law,
-        .solver = island->scene->solver,
-        .tangential_compliance = island->scene->compliance,
-        .workspace = island->scene->springs};
+    const impact_collision collision = imp_scene_collision(island, m);
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);
     if (status == IMPACT_SOFT && island->world.usage.impacts_soft++ == 0)
@@ -77,14 +50,10 @@ static impact_status strike(imp_island *island, imp_meeting *m)
     }
     impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
     const int bodies[2] = {touch->body1, touch->body2};
-    drive_impulse(island, touch, outcome.impulse);
+    imp_scene_drive_impulse(island, touch, outcome.impulse);
     imp_persist_stir(world);
     for (int k = 0; k < 2; k++) {
-        const imp_body *body = &world->bodies[bodies[k]];
-        imp_state *state = &island->states[bodies[k]];
-        if (body->is_static) continue;
-        state->v = outcome.velocity[k];
-        state->momentum = imp_inertia(body, state->q, outcome.omega[k]);
+        imp_scene_set_velocities(island, bodies[k], outcome.velocity[k], outcome.omega[k]);
         island->motion.resting[bodies[k]] = false;
     }
     count_solver(island, &outcome);
@@ -145,7 +114,7 @@ static impact_status strike_together(imp_island *island)
         event.normal_before = qvec3_dot(share->touch.normal, share->before);
         event.normal_after = qvec3_dot(share->touch.normal, share->after);
         event.energy_before = energy;
-        event.energy_after = energy += share->work + drive_impulse(island, &share->touch, share->impulse);
+        event.energy_after = energy += share->work + imp_scene_drive_impulse(island, &share->touch, share->impulse);
         island->motion.resting[share->touch.body1] = island->motion.resting[share->touch.body2] = false;
         world->usage.impacts_together++;
         status = imp_scene_record(island, &event);
@@ -188,6 +157,10 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
             status = strike_together(island);
             return status == IMPACT_OK ? imp_scene_load_with_reactions(island) : status;
         }
+        bool answered;
+        fresh = false;
+        status = imp_scene_answer_together(island, &m, &answered);
+        if (status != IMPACT_OK || answered) continue;
         if (count > 0) world->usage.impacts_simultaneous++;
         if (count == MAX_IMPACTS) {
             snprintf(island->scene->message, sizeof island->scene->message,
@@ -196,7 +169,6 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
         }
         status = strike(island, &m);
         world->pairs[p].struck = true;
-        fresh = false;
         if (world->pair_count > 1) continue;
         const double speed = imp_persist_approach(world, &m.touch, island->states);
         const bool was_held = m.touch.mode != IMP_OPEN; /* by a push: it has to be let go yet */

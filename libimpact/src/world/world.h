@@ -49,6 +49,7 @@ typedef enum imp_mode {
 typedef struct imp_pair {
     int body1, body2;
     double friction, restitution;
+    double stiffness; /* 0: Hertz's */
     imp_mode mode;
     bool beyond;     /* IMP_OPEN: body 1 passed beside the bounds of the plane and is behind it */
     bool onset;      /* IMP_SLIDE: from rest, and slower than the world's onset_speed yet */

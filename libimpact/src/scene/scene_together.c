@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/scene_together.h"
+#include "contact/encounter.h"
+#include "contact/persist_still.h"
+#include "scene/scene_events.h"
+
+#include <stdio.h>
+#include <string.h>
+
+impact_scene_together imp_scene_together_of(const impact_scene_def *def)
+{
+    if (def->together != IMPACT_SCENE_TOGETHER_AUTO) return def->together;
+    if (def->solver != IMPACT_SOLVER_AUTO || def->compliance > 0) return IMPACT_SCENE_SEQUENCE;
+    if (def->law == IMPACT_POISSON) return IMPACT_SCENE_MOREAU;
+    return def->law == IMPACT_STRONGE ? IMPACT_SCENE_SPRINGS : IMPACT_SCENE_SEQUENCE;
+}
+
+/* All that touch at the island's time, and the room for their answer. */
+typedef struct gathering {
+    int count;
+    imp_meeting *met;
+    impact_meeting *meetings;
+    impact_meeting_outcome *outcomes;
+    impact_collider *bodies;
+    qvec3 *velocity, *omega;
+} gathering;
+
+static void give_gathering(imp_arena *arena, gathering *g)
+{
+    imp_arena_give(arena, g->met);
+    imp_arena_give(arena, g->meetings);
+    imp_arena_give(arena, g->outcomes);
+    imp_arena_give(arena, g->bodies);
+    imp_arena_give(arena, g->velocity);
+    imp_arena_give(arena, g->omega);
+}
+
+static impact_status make_gathering(imp_island *island, gathering *g)
+{
+    imp_world *world = &island->world;
+    imp_arena *arena = world->arena;
+    const size_t pairs = (size_t)world->pair_count, bodies = (size_t)world->body_count;
+    *g = (gathering){.met = imp_arena_take(arena, pairs, sizeof *g->met),
+                     .meetings = imp_arena_take(arena, pairs, sizeof *g->meetings),
+                     .outcomes = imp_arena_take(arena, pairs, sizeof *g->outcomes),
+                     .bodies = imp_arena_take(arena, bodies, sizeof *g->bodies),
+                     .velocity = imp_arena_take(arena, bodies, sizeof *g->velocity),
+                     .omega = imp_arena_take(arena, bodies, sizeof *g->omega)};
+    if (!g->met || !g->meetings || !g->outcomes || !g->bodies || !g->velocity || !g->omega) return IMPACT_ENOMEM;
+    for (int p = 0; p < world->pair_count; p++)
+        if (imp_scene_meets(island, p, &g->met[g->count])) g->count++;
+    for (int i = 0; i < world->body_count; i++) g->bodies[i] = imp_scene_collider(island, i, (qvec3){0, 0, 0});
+    return IMPACT_OK;
+}
+
+/* ---- whether one impact alone is the answer ---- */
+
+static bool approaches(imp_island *island, imp_meeting *m)
+{
+    return m->velocity < -island->world.slip_speed &&
+           !(imp_is_held(&island->world.pairs[m->touch.pair]) && imp_scene_dies_out(island, m, m->velocity));
+}
+
+/* Whether the struck pair's impact alone, of all that touch, leaves none approaching. */
+static bool suffices_alone(imp_island *island, gathering *g, imp_meeting *struck)
+{
+    const imp_touch *touch = &struck->touch;
+    for (int c = 0; c < g->count; c++)
+        if (g->met[c].touch.pair != touch->pair && approaches(island, &g->met[c])) return false;
+    impact_outcome outcome;
+    const impact_collision collision = imp_scene_collision(island, struck);
+    if (impact_collide(&collision, &outcome) < 0) return true; /* for that one to be told */
+    imp_state kept[2];
+    const int body[2] = {touch->body1, touch->body2};
+    for (int k = 0; k < 2; k++) {
+        kept[k] = island->states[body[k]];
+        imp_scene_set_velocities(island, body[k], outcome.velocity[k], outcome.omega[k]);
+    }
+    bool alone = true;
+    for (int c = 0; c < g->count; c++)
+        alone = alone &&
+                imp_persist_approach(&island->world, &g->met[c].touch, island->states) >= -island->world.slip_speed;
+    for (int k = 0; k < 2; k++) island->states[body[k]] = kept[k];
+    return alone;
+}
+
+/* ---- all together ---- */
+
+/* Of Hertz's springs of one modulus, up to a factor: the root of the radius of the two surfaces' mean curvature, or
+ * where that is nothing of the smaller body. */
+static double hertz_stiffness(const imp_island *island, const imp_touch *touch)
+{
+    const int body[2] = {touch->body1, touch->body2};
+    double bent = 0, smaller = INFINITY;
+    for (int k = 0; k < 2; k++) {
+        const imp_body *b = &island->world.bodies[body[k]];
+        const qvec3 towards = k == 0 ? qvec3_neg(touch->normal) : touch->normal;
+        double k1, k2;
+        smaller = fmin(smaller, b->radius);
+        if (b->shape.kind == IMPACT_PLANE) continue;
+        impact_shape_curvatures(&b->shape, quat_rotate_inverse(imp_shape_axes(b, &island->states[body[k]]), towards),
+                                &k1, &k2);
+        bent += 0.5 * (k1 + k2);
+    }
+    return sqrt(bent > 0 && isfinite(bent) ? 1 / bent : smaller);
+}
+
+static void describe(imp_island *island, gathering *g)
+{
+    for (int c = 0; c < g->count; c++) {
+        imp_meeting *m = &g->met[c];
+        const imp_pair *pair = &island->world.pairs[m->touch.pair];
+        const bool dies = imp_scene_dies_out(island, m, pair->restitution * m->velocity);
+        g->meetings[c] =
+            (impact_meeting){.body1 = m->touch.body1,
+                             .body2 = m->touch.body2,
+                             .normal = m->touch.normal,
+                             .offset1 = m->touch.r1,
+                             .offset2 = m->touch.r2,
+                             .friction = pair->friction,
+                             .restitution = dies ? 0 : pair->restitution,
+                             .stiffness = pair->stiffness > 0 ? pair->stiffness : hertz_stiffness(island, &m->touch)};
+    }
+}
+
+static const char *words_of(const impact_meeting_outcome *o, const char *law, char *words, size_t size)
+{
+    size_t used = 0;
+    if (o->phase_count == 0) return law;
+    words[0] = '\0';
+    for (int i = 0; i < o->phase_count && used < size; i++)
+        used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "",
+                                 impact_phase_name((impact_phase)o->phases[i]));
+    return words;
+}
+
+/* A row for each contact that exchanged an impulse; all share the encounter's number. */
+static impact_status record_all(imp_island *island, const gathering *g, impact_together_law law, double energy)
+{
+    impact_status status = IMPACT_OK;
+    const long number = ++island->scene->encounter_count;
+    for (int c = 0; status == IMPACT_OK && c < g->count; c++) {
+        const impact_meeting_outcome *o = &g->outcomes[c];
+        const imp_touch *touch = &g->met[c].touch;
+        char words[128];
+        if (qvec3_dot(o->impulse, o->impulse) == 0) continue;
+        impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
+        event.encounter = number;
+        event.phases = words_of(o, impact_together_law_name(law), words, sizeof words);
+        event.impulse = o->impulse;
+        event.impulse_normal = qvec3_dot(touch->normal, o->impulse);
+        event.impulse_tangential = qvec3_norm(qvec3_axpy(-event.impulse_normal, touch->normal, o->impulse));
+        event.normal_before = o->normal_before;
+        event.normal_after = o->normal_after;
+        event.energy_before = energy;
+        energy += o->work_compression + o->work_restitution + o->work_friction +
+                  imp_scene_drive_impulse(island, touch, o->impulse);
+        event.energy_after = energy;
+        island->motion.resting[touch->body1] = island->motion.resting[touch->body2] = false;
+        island->world.pairs[touch->pair].struck = true;
+        island->world.usage.impacts_together++;
+        status = imp_scene_record(island, &event);
+    }
+    return status;
+}
+
+/* Below zero nothing was answered. */
+static impact_status answer(imp_island *island, gathering *g, impact_together_law law)
+{
+    impact_scene *scene = island->scene;
+    imp_world *world = &island->world;
+    if (!scene->together_workspace) {
+        const impact_status status = imp_together_workspace_in(scene->world.arena, &scene->together_workspace);
+        if (status != IMPACT_OK) return status;
+    }
+    describe(island, g);
+    const double energy = imp_scene_tells_events(island) ? imp_scene_total_energy(island) : 0;
+    const impact_encounter encounter = {.bodies = g->bodies,
+                                        .body_count = world->body_count,
+                                        .meetings = g->meetings,
+                                        .meeting_count = g->count,
+                                        .law = law,
+                                        .restitution = scene->law,
+                                        .workspace = scene->together_workspace};
+    impact_together_outcome outcome = {.velocity = g->velocity, .omega = g->omega, .meetings = g->outcomes};
+    const impact_status status = impact_collide_together(&encounter, &outcome);
+    if (status < 0 || status == IMPACT_SEPARATING) return status;
+    if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0)
+        snprintf(scene->message, sizeof scene->message,
+                 "%d contacts at t = %.17g: their answer together does not pass its receipt", g->count, island->t);
+    for (int i = 0; i < world->body_count; i++) imp_scene_set_velocities(island, i, g->velocity[i], g->omega[i]);
+    imp_persist_stir(world);
+    return record_all(island, g, law, energy);
+}
+
+impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck, bool *answered)
+{
+    const impact_scene_together law = island->scene->together;
+    *answered = false;
+    if (law == IMPACT_SCENE_SEQUENCE || island->world.pair_count < 2) return IMPACT_OK;
+    gathering g;
+    impact_status status = make_gathering(island, &g);
+    if (status == IMPACT_OK && g.count > 1 && !suffices_alone(island, &g, struck)) {
+        status = answer(island, &g, law == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU);
+        *answered = status >= 0;
+        /* what the law has no answer for is answered one after another, as those that come later are */
+        if (status == IMPACT_EUNSETTLED || status > 0) status = IMPACT_OK;
+    }
+    give_gathering(island->world.arena, &g);
+    return status;
+}

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Scenes whose contacts are struck at one instant, answered together: against answers known in closed form or to many
+ * digits (docs/together.md), in any order of the definition.
+ */
+#include <math.h>
+#include "kit/scene_log.h"
+
+static const double radius = 0.3;
+
+static impact_body_def smooth_ball(const char *name, qvec3 position, qvec3 velocity)
+{
+    impact_body_def body = ball_body(name, position, 0, 1);
+    body.velocity = velocity;
+    return body;
+}
+
+static impact_scene_def scene_of(const impact_body_def *bodies, int count, impact_scene_together together)
+{
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, 0};
+    def.bodies = bodies;
+    def.body_count = count;
+    def.duration = 0.1;
+    def.law = together == IMPACT_SCENE_SPRINGS ? IMPACT_STRONGE : IMPACT_POISSON;
+    def.together = together;
+    return def;
+}
+
+static void run_scene(const impact_scene_def *def, scene_log *log, impact_sample *ends)
+{
+    impact_scene *scene = make_scene(def);
+    const impact_recorder recorder = log_recorder(log);
+    assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_OK);
+    for (int i = 0; i < def->body_count; i++) assert_int_equal(impact_scene_body(scene, i, &ends[i]), IMPACT_OK);
+    const impact_energy e = impact_scene_energy(scene);
+    assert_near(e.kinetic + e.impact_loss, e.start, 1e-13 * e.start);
+    impact_scene_destroy(scene);
+}
+
+/* Bernoulli: a ball that meets two at once, 30 degrees to either side of its way, turns back at a fifth of its speed,
+ * whatever the order of the definition. */
+static void a_ball_meets_two(void **state)
+{
+    (void)state;
+    static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    const double c = 2 * radius * cos(M_PI / 6), s = 2 * radius * sin(M_PI / 6);
+    const impact_body_def all[3] = {smooth_ball("striker", (qvec3){-0.05, 0, 0}, (qvec3){1, 0, 0}),
+                                    smooth_ball("left", (qvec3){c, s, 0}, (qvec3){0, 0, 0}),
+                                    smooth_ball("right", (qvec3){c, -s, 0}, (qvec3){0, 0, 0})};
+    for (int law = IMPACT_SCENE_SPRINGS; law <= IMPACT_SCENE_MOREAU; law++)
+        for (int k = 0; k < 6; k++) {
+            impact_body_def bodies[3];
+            impact_sample ends[3];
+            scene_log log = {0};
+            for (int i = 0; i < 3; i++) bodies[i] = all[orders[k][i]];
+            const impact_scene_def def = scene_of(bodies, 3, (impact_scene_together)law);
+            run_scene(&def, &log, ends);
+            const int first = find_event(&log, IMPACT_EVENT_IMPACT, NULL, 0),
+                      second = find_event(&log, IMPACT_EVENT_IMPACT, NULL, 1);
+            assert_true(first >= 0 && second >= 0 && find_event(&log, IMPACT_EVENT_IMPACT, NULL, 2) < 0);
+            assert_true(log.events[first].t == log.events[second].t);
+            assert_true(log.events[first].encounter == 1 && log.events[second].encounter == 1);
+            for (int i = 0; i < 3; i++) {
+                const qvec3 v = ends[i].velocity;
+                const double side = orders[k][i] == 1 ? 1 : -1;
+                if (orders[k][i] == 0)
+                    assert_near3(v, (qvec3){-0.2, 0, 0}, 1e-12);
+                else
+                    assert_near3(v, (qvec3){0.6, side * 0.6 * tan(M_PI / 6), 0}, 1e-12);
+            }
+            free_log(&log);
+        }
+}
+
+/* A ball into two that touch: Hertz's springs send it back (the digits: many_contacts in docs/together.md); after
+ * Moreau's law the two go on together. */
+static void a_cradle(void **state)
+{
+    (void)state;
+    const impact_body_def bodies[3] = {smooth_ball("striker", (qvec3){-2 * radius - 0.05, 0, 0}, (qvec3){1, 0, 0}),
+                                       smooth_ball("middle", (qvec3){0, 0, 0}, (qvec3){0, 0, 0}),
+                                       smooth_ball("end", (qvec3){2 * radius, 0, 0}, (qvec3){0, 0, 0})};
+    impact_sample ends[3];
+    scene_log log = {0};
+    impact_scene_def def = scene_of(bodies, 3, IMPACT_SCENE_SPRINGS);
+    run_scene(&def, &log, ends);
+    assert_near(ends[0].velocity.x, -0.0710, 5e-5);
+    assert_near(ends[1].velocity.x, 0.0764, 5e-5);
+    assert_near(ends[2].velocity.x, 0.9945, 1e-4);
+    free_log(&log);
+    def = scene_of(bodies, 3, IMPACT_SCENE_SEQUENCE);
+    run_scene(&def, &log, ends);
+    assert_near(ends[0].velocity.x, 0, 1e-15);
+    assert_near(ends[2].velocity.x, 1, 1e-15);
+    for (int k = 0; k < log.event_count; k++) assert_int_equal(log.events[k].encounter, 0);
+    free_log(&log);
+    def = scene_of(bodies, 3, IMPACT_SCENE_MOREAU);
+    run_scene(&def, &log, ends);
+    assert_near(ends[0].velocity.x + ends[1].velocity.x + ends[2].velocity.x, 1, 1e-13);
+    assert_true(ends[0].velocity.x < 0 && ends[1].velocity.x <= ends[2].velocity.x + 1e-12);
+    free_log(&log);
+}
+
+static void laws_that_do_not_fit_are_refused(void **state)
+{
+    (void)state;
+    const impact_body_def body = smooth_ball("ball", (qvec3){0, 0, 0}, (qvec3){0, 0, 0});
+    char message[256];
+    impact_scene *scene;
+    impact_scene_def def = scene_of(&body, 1, IMPACT_SCENE_SPRINGS);
+    def.law = IMPACT_POISSON;
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+    assert_non_null(strstr(message, "stronge"));
+    def.law = IMPACT_NEWTON;
+    def.together = IMPACT_SCENE_MOREAU;
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+    assert_non_null(strstr(message, "poisson"));
+    def.together = (impact_scene_together)9;
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_ball_meets_two),
+        cmocka_unit_test(a_cradle),
+        cmocka_unit_test(laws_that_do_not_fit_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
