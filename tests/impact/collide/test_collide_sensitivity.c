@@ -37,6 +37,10 @@ static void a_ball_on_paper(void **state)
     assert_true(impact_collide_sensitivity(&stops) == 0);
     stops.body[0].velocity.z = 1;
     assert_true(impact_collide_sensitivity(&stops) == 1);
+    /* The floor comes up at 1 m/s: V = w + eps (w - v) = 2, and w is no answer. */
+    impact_collision lifted = c;
+    lifted.body[1].velocity.z = 1;
+    assert_near(impact_collide_sensitivity(&lifted), sqrt(0.25 + 2.25 + 1) / 2, 1e-15);
     impact_collision sticky = c;
     sticky.friction = 0.3;
     assert_near(impact_collide_sensitivity(&sticky), sqrt(2), 1e-15);
