@@ -123,6 +123,7 @@ static const impact_pair_def *read_pairs(const quat_lua_reader *reader, impact_s
     return pairs;
 }
 
+static const char *const samples_words[] = {"all", "moving", NULL};
 static const char *const piles_words[] = {"auto", "exact", "steps", NULL};
 static const char *const together_words[] = {"auto", "springs", "moreau", "sequence", NULL};
 
@@ -142,6 +143,7 @@ static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
     def->solver = (impact_solver)quat_lua_get_choice(reader, "solver", solver_words, (int)def->solver);
     def->piles = (impact_piles)quat_lua_get_choice(reader, "piles", piles_words, (int)def->piles);
     def->together = (impact_scene_together)quat_lua_get_choice(reader, "together", together_words, (int)def->together);
+    def->samples = (impact_samples)quat_lua_get_choice(reader, "samples", samples_words, (int)def->samples);
     def->compliance = quat_lua_get_number(reader, "compliance", QUAT_LUA_NOT_NEGATIVE, def->compliance);
 }
 
@@ -157,9 +159,9 @@ static void read_plot(const quat_lua_reader *reader)
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws)
 {
     static const char *const keys[] = {
-        "name",  "gravity",    "duration",      "output_rate", "bodies",      "forces",     "pairs",
-        "rules", "law",        "solver",        "tolerance",   "rest_height", "rest_speed", "max_events",
-        "plot",  "compliance", "key_tolerance", "piles",       "max_steps",   "together",   NULL};
+        "name",          "gravity", "duration",  "output_rate", "bodies",     "forces",     "pairs", "rules",
+        "law",           "solver",  "tolerance", "rest_height", "rest_speed", "max_events", "plot",  "compliance",
+        "key_tolerance", "piles",   "max_steps", "together",    "samples",    NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     const impact_lua_host *host = impact_lua_get_host(L);

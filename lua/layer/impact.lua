@@ -131,6 +131,7 @@ core.layer()
 ---@field view? table  what its page shows: docs/view.md
 ---@field together? "auto"|"springs"|"moreau"|"sequence"  what answers contacts struck at one instant: docs/together.md
 ---@field piles? "auto"|"exact"|"steps"  how bodies are moved that touch each other and do not settle
+---@field samples? "all"|"moving"  which bodies have rows: every one, or only those that do not rest
 ---@field plot? fun(scene: impact.scene): plot.figure
 
 ---@class impact.options

@@ -78,6 +78,7 @@ refused(scene(good, "forces = { impact.force { name = 'pull' } },"), "script.lua
 refused(scene(good, "forces = { impact.force { name = 'pull', law = 3 } },"),
   "script.lua:7: force 'pull': law must be a function(t, body), got a number")
 refused(scene(good, "pairs = { { bodies = { 'coin' } } },"), "script.lua:6: pair: bodies must be the names of two bodies")
+refused(scene(good, "samples = 'some',"), "script.lua:6: scene 'toss': samples must be one of 'all', 'moving', got the string 'some'")
 refused(scene(good, "plot = 3,"), "script.lua:6: scene 'toss': plot must be a function(scene) that returns a figure, got a number")
 refused(scene(good, "bodies = { a = coin },"), "script.lua:6: scene 'toss': bodies must be a list, without names for its members")
 refused('return require "impact".scene { name = "toss", duration = 1 }', "script.lua:1: scene 'toss': bodies is missing")

@@ -74,6 +74,14 @@ typedef enum impact_piles {
     IMPACT_PILES_STEPS  /* by steps, from the start until all rests */
 } impact_piles;
 
+/* Which bodies have a row at k/output_rate. */
+typedef enum impact_samples {
+    IMPACT_SAMPLES_ALL, /* every one that is not static: the same bodies at each time */
+    /* Those that move. One that has come to rest has a row the first time after that, and at the definition's duration;
+     * beside each event all have theirs, so that what is left out stands as in the row before */
+    IMPACT_SAMPLES_MOVING
+} impact_samples;
+
 typedef struct impact_scene_def {
     const char *name;
     qvec3 gravity;      /* m/s^2 */
@@ -106,11 +114,12 @@ typedef struct impact_scene_def {
     double key_tolerance;
     impact_piles piles;
     impact_scene_together together;
+    impact_samples samples;
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
  * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events,
- * 1e8 steps, key_tolerance 1e-10. */
+ * 1e8 steps, key_tolerance 1e-10, every body's samples. */
 IMPACT_API impact_scene_def impact_default_scene_def(void);
 IMPACT_API impact_body_def impact_default_body_def(void);
 

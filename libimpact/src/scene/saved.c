@@ -112,6 +112,7 @@ static void walk_body(imp_archive *a, imp_saved_body *b)
     imp_archive_double(a, &b->t0);
     walk_state(a, &b->state);
     imp_archive_bool(a, &b->resting);
+    imp_archive_bool(a, &b->told);
     imp_archive_int(a, &b->stalls, 0, INT32_MAX);
     imp_archive_double(a, &b->last_event);
 }

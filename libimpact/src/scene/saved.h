@@ -13,7 +13,7 @@
 typedef struct imp_saved_body {
     double t0;
     imp_state state;
-    bool resting;
+    bool resting, told;
     int stalls;
     double last_event;
 } imp_saved_body;

@@ -50,6 +50,7 @@ static void collect_bodies(imp_saved *s, const impact_scene *scene)
         s->bodies[i] = (imp_saved_body){.t0 = alone ? track->segment.t0 : scene->t,
                                         .state = alone ? track->segment.start : scene->states[i],
                                         .resting = track->resting,
+                                        .told = track->told,
                                         .stalls = track->stalls,
                                         .last_event = track->last_event};
     }
@@ -290,5 +291,6 @@ impact_status imp_saved_restore(const imp_saved *s, impact_scene *scene)
     if (status != IMPACT_OK) return status;
     restore_beyond(s, scene);
     status = restore_islands(s, scene);
+    for (int i = 0; i < s->body_count; i++) scene->tracks.tracks[i].told = s->bodies[i].told;
     return status == IMPACT_OK ? imp_scene_look(scene, s->t) : status;
 }

@@ -86,6 +86,7 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
     scene->max_events = def->max_events;
     scene->max_steps = def->max_steps;
     scene->piles = def->piles;
+    scene->samples = def->samples;
     scene->key_tolerance = def->key_tolerance;
     scene->print = imp_scene_print(def);
     scene->output_rate = def->output_rate;

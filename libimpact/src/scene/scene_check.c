@@ -242,6 +242,8 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
                   "together = \"springs\" needs law = \"stronge\", without compliance");
     require_words(&c, def->together != IMPACT_SCENE_MOREAU || def->law == IMPACT_POISSON,
                   "together = \"moreau\" needs law = \"poisson\"");
+    require(&c, def->samples == IMPACT_SAMPLES_ALL || def->samples == IMPACT_SAMPLES_MOVING, "samples", def->samples,
+            "are neither all nor those that move");
     require(&c, def->max_steps > 0, "max_steps", (double)def->max_steps, "must be positive");
     require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule",
             def->friction_rule, "is no rule");

@@ -22,6 +22,7 @@ impact_scene_def impact_default_scene_def(void)
         .key_tolerance = 1e-10,
         .piles = IMPACT_PILES_AUTO,
         .together = IMPACT_SCENE_SEQUENCE,
+        .samples = IMPACT_SAMPLES_ALL,
     };
 }
 

@@ -67,6 +67,7 @@ struct impact_scene {
     double tolerance, rest_height, rest_speed;
     long max_events, event_count, max_steps, steps; /* steps: slots of the queue */
     impact_piles piles;
+    impact_samples samples;
     double pile_error;               /* m, of all steps of piles */
     double output_rate;              /* samples per second; 0: none */
     long next_sample;                /* k of the next, at k/output_rate */

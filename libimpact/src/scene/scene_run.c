@@ -91,6 +91,16 @@ bool imp_scene_good_row(impact_scene *scene, const impact_sample *s)
     return false;
 }
 
+/* Whether the body has a row at the sample time t; of what rests, the first since then. */
+static bool takes_row(impact_scene *scene, int body, double t)
+{
+    imp_track *track = &scene->tracks.tracks[body];
+    const bool stood = track->told;
+    if (scene->world.bodies[body].is_static) return false;
+    track->told = track->segment.kind == IMP_SEGMENT_REST;
+    return scene->samples == IMPACT_SAMPLES_ALL || !stood || t >= scene->duration;
+}
+
 static impact_status emit(impact_scene *scene, double t)
 {
     const impact_recorder *recorder = scene->recorder;
@@ -98,7 +108,7 @@ static impact_status emit(impact_scene *scene, double t)
     scene->next_sample++;
     imp_queue_set(&scene->queue, 0, sample_time(scene));
     for (int i = 0; status == IMPACT_OK && i < scene->world.body_count; i++) {
-        if (scene->world.bodies[i].is_static) continue;
+        if (!takes_row(scene, i, t)) continue;
         const impact_sample sample = imp_scene_sample(&scene->world.bodies[i], t, &scene->states[i]);
         if (!imp_scene_good_row(scene, &sample)) return IMPACT_EDOMAIN;
         scene->world.usage.samples++;

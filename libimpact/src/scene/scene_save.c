@@ -87,7 +87,7 @@ uint64_t imp_scene_print(const impact_scene_def *def)
         PRINT(&a, def->pairs[k].friction, def->pairs[k].restitution);
     }
     PRINT(&a, def->friction_rule, def->restitution_rule, def->law, def->solver, def->compliance);
-    PRINT(&a, def->tolerance, def->rest_height, def->rest_speed, def->piles);
+    PRINT(&a, def->tolerance, def->rest_height, def->rest_speed, def->piles, def->samples);
     return a.sum;
 }
 

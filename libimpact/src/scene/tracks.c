@@ -421,6 +421,7 @@ impact_status imp_tracks_begin(imp_tracks *tracks, double t, const imp_state *st
 impact_status imp_tracks_follow(imp_tracks *tracks, int body, const imp_segment *segment, double t)
 {
     tracks->tracks[body].segment = *segment;
+    tracks->tracks[body].told = false;
     put_slot(tracks, body, t);
     if (tracks->tracks[body].leave > t &&
         (segment->kind != IMP_SEGMENT_DENSE || tracks->tracks[body].leave == INFINITY))

@@ -33,6 +33,7 @@ typedef struct imp_track {
     impact_tumble *tumble; /* room, for a body of unequal moments */
     int island;            /* or -1: alone */
     bool resting;          /* it has come to rest */
+    bool told;             /* it rests, and has had its row since */
     int stalls;            /* events at the time of the last one, and that: */
     double last_event;
     double fatness; /* of its box: the part of its radius that it goes before the box is made anew */
