@@ -14,7 +14,8 @@
 ---   1e-9 … 1e9<!--r report_extreme/units-->  the ends of a range of rows of the store: PROGRAM/row, whose next part is the number
 ---   <!--t report_cones 3: solved - systems,systems_most-->   before a table: what the cells after the first three are; those three
 ---                                           are the row's name. "-": nothing; commas between the numbers of one cell
---- Every number with an exponent has one of these or stands in docs/given.txt (page, text, reason: tabs between).
+--- Every number with an exponent has one of these or stands in docs/given.txt (page, text, reason: tabs between; a # in
+--- the text is any number).
 --- Code is left out: docs.blocks runs it.
 ---
 --- Keys: PROGRAM/row/column. Tests print name, value and bound with TEST_SHOW; benches and reports print CSV.
@@ -310,13 +311,14 @@ end
 local function excused(page, line, number)
   for _, entry in ipairs(given) do
     if entry.page == page then
-      local from, to = line:find(entry.text, 1, true)
+      local pattern = entry.text:gsub("%p", "%%%0"):gsub("%%#", "[%%d.e-]+")
+      local from, to = line:find(pattern)
       while from do
         if from <= number.from and number.to <= to then
           entry.met = true
           return true
         end
-        from, to = line:find(entry.text, to + 1, true)
+        from, to = line:find(pattern, to + 1)
       end
     end
   end
