@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * psi: the concave lower bound of a gap from which bodies take a step that no contact is in: in a flight
- * (motion_meet.c) and on segments (search.c), which say where its terms come from. Internal.
+ * psi: the concave lower bound of a gap from which bodies take a step that no contact is in; search.c says where its
+ * terms come from. Internal.
  */
 #ifndef IMP_PSI_H
 #define IMP_PSI_H

@@ -20,7 +20,9 @@ double imp_phi2(double k, double T)
 
 /* ---- making ---- */
 
-double imp_segment_tumble_jerk(const impact_tumble *tumble)
+/* A bound of |m'''| of any unit vector m seen from a tumbling body, 1/s^3: |omega|^3 + 3 |omega| |omega'| + |omega''|
+ * from Euler's equations and the largest components of omega. */
+static double tumble_jerk(const impact_tumble *tumble)
 {
     if (tumble->steady) return pow(qvec3_norm(tumble->turn), 3);
     const double I[3] = {tumble->moments.x, tumble->moments.y, tumble->moments.z};
@@ -62,7 +64,7 @@ imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *st
     }
     impact_tumble_make(body->moments, start->q, start->momentum, tumble);
     s.tumble = tumble;
-    s.jerk = imp_segment_tumble_jerk(tumble);
+    s.jerk = tumble_jerk(tumble);
     return s;
 }
 

@@ -2,12 +2,21 @@
  *
  * segment: the motion of one body over [t0, t1], fixed once it is made. All that is asked of a motion (samples,
  * contacts, energies, where a box is left) is asked of its segment. With T = t - t0, g the constant acceleration, k and
- * kappa the rates of damping: REST    nothing changes FREE    x = x0 + v0 T + g T^2/2, L = L0: the rotation is a tumble
- * (impact/tumble.h) DAMPED  v' = g - k v, L' = -kappa L: v = v0 e^(-kT) + g phi1(k, T), x = x0 + v0 phi1(k, T) + g
- * phi2(k, T), L = L0 e^(-kappa T) q = the tumble of L0 at the clock phi1(kappa, T): with L = e^(-kappa T) M, dM/dtau
- * and dq/dtau are torque-free ROLL    a ball that rolls or slides in a line on a plane: x as FREE, omega = omega0 +
- * alpha T DENSE   the polynomial of an integrator's step (motion/dense.h) phi1(k, T) = (1 - e^(-kT))/k, phi2(k, T) = (T
- * - phi1)/k; T and T^2/2 at k = 0. Internal.
+ * kappa the rates of damping:
+ *
+ *     REST    nothing changes
+ *
+ *     FREE    x = x0 + v0 T + g T^2/2,  L = L0: the rotation is a tumble (impact/tumble.h)
+ *
+ *     DAMPED  v' = g - k v:  v = v0 e^(-kT) + g phi1(k, T),  x = x0 + v0 phi1(k, T) + g phi2(k, T)
+ *             L' = -kappa L:  L = L0 e^(-kappa T),  q = the tumble of L0 at the clock phi1(kappa, T),
+ *             for with L = e^(-kappa T) M, dM/dtau and dq/dtau are torque-free
+ *
+ *     ROLL    a ball that rolls or slides in a line on a plane: x as FREE, omega = omega0 + alpha T
+ *
+ *     DENSE   the polynomial of a step, an integrator's or a pile's (motion/dense.h)
+ *
+ * phi1(k, T) = (1 - e^(-kT))/k, phi2(k, T) = (T - phi1)/k; T and T^2/2 at k = 0. Internal.
  */
 #ifndef IMP_SEGMENT_H
 #define IMP_SEGMENT_H
@@ -46,10 +55,6 @@ imp_segment imp_segment_rest(double t0, const imp_state *start);
 imp_segment imp_segment_roll(double t0, double t1, const imp_state *start, qvec3 acceleration, qvec3 spin_up);
 /* The body at this place of an integrator's step, from its state at t0. */
 imp_segment imp_segment_dense(const imp_dense *dense, int place, const imp_state *start);
-
-/* A bound of |m'''| of any unit vector m seen from a tumbling body, 1/s^3: |omega|^3 + 3 |omega| |omega'| + |omega''|
- * from Euler's equations and the largest components of omega. */
-double imp_segment_tumble_jerk(const impact_tumble *tumble);
 
 /* The state at t; before t0 and after t1 the form is continued. */
 imp_state imp_segment_at(const imp_segment *segment, const imp_body *body, double t);

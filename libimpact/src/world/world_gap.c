@@ -88,15 +88,6 @@ double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, co
     return qvec3_norm(d) - b1->radius - b2->radius;
 }
 
-double imp_world_distance_bound_rate(const imp_world *world, const imp_pair *pair, const imp_state *states)
-{
-    const qvec3 v = qvec3_sub(states[pair->body1].v, states[pair->body2].v);
-    if (world->bodies[pair->body2].shape.kind == IMPACT_PLANE)
-        return qvec3_dot(quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1}), v);
-    const qvec3 d = qvec3_sub(states[pair->body1].x, states[pair->body2].x);
-    return qvec3_dot(d, v) / qvec3_norm(d);
-}
-
 double imp_world_inside_bounds(const imp_world *world, const imp_pair *pair, const imp_state *states,
                                const impact_contact *contact)
 {

@@ -34,9 +34,6 @@ double imp_world_touching_distance(const imp_world *world, const imp_pair *pair,
 /* A lower bound of the gap without a query, from the bounding balls; -inf when there is none. */
 double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
-/* Its rate, m/s. */
-double imp_world_distance_bound_rate(const imp_world *world, const imp_pair *pair, const imp_state *states);
-
 /* Whether the contact lies within the bounds of the pair's plane (always, for other shapes); > 0 inside, m. */
 double imp_world_inside_bounds(const imp_world *world, const imp_pair *pair, const imp_state *states,
                                const impact_contact *contact);

@@ -71,7 +71,7 @@ static void a_box_slides_to_rest(void **state)
         }
 }
 
-/* Four bodies are moved in groups: each slides as it does alone. */
+/* Each of four bodies slides as it does alone. */
 static void many_boxes_slide_to_rest(void **state)
 {
     (void)state;

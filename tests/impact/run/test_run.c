@@ -278,9 +278,9 @@ static void test_held_contacts_carry_the_weight(void **state)
     impact_scene_destroy(scene);
 }
 
-/* ---- many bodies, moved in groups ---- */
+/* ---- many bodies ---- */
 
-static void test_groups_of_a_crowd_are_recorded(void **state)
+static void test_a_crowd_is_recorded(void **state)
 {
     (void)state;
     enum { BALLS = 6 };
@@ -508,7 +508,7 @@ int main(void)
         cmocka_unit_test(test_recording_changes_no_bit),
         cmocka_unit_test(test_events_stand_between_two_keys),
         cmocka_unit_test(test_held_contacts_carry_the_weight),
-        cmocka_unit_test(test_groups_of_a_crowd_are_recorded),
+        cmocka_unit_test(test_a_crowd_is_recorded),
         cmocka_unit_test(test_damage_is_named),
         cmocka_unit_test(test_damaged_bytes_are_survived),
         cmocka_unit_test(test_files),

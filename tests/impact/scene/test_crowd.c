@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scenes of many bodies: moved in groups as moved together; momentum, energy, no overlap, the order of the rows.
+ * Scenes of many bodies: moved each for itself as moved together; momentum, energy, no overlap, the order of the rows.
  */
 #include <math.h>
 #include <stdio.h>
@@ -91,7 +91,7 @@ static scene_log run_box(box_scene *s, impact_status expected, impact_energy *en
     return log;
 }
 
-/* ---- in groups as together ---- */
+/* ---- each for itself as together ---- */
 
 /* A wind that is nowhere keeps the bodies together. */
 static void keep_together(box_scene *s)

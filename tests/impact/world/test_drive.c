@@ -400,7 +400,7 @@ static void a_drum_is_a_heavy_body_that_turns(void **state)
 
 /* ---- many ---- */
 
-/* Balls on a belt between walls, in groups and (a force that is none stands by) all together. */
+/* Balls on a belt between walls, each for itself and (a force that is none stands by) by the integrator. */
 static void many_on_a_belt_move_as_together(void **state)
 {
     (void)state;
