@@ -217,6 +217,7 @@ impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_
     const impact_sample now = imp_scene_sample(b, scene->t, &scene->states[body]);
     *def = (impact_body_def){.name = b->name,
                              .shape = b->shape,
+                             .user = b->user,
                              .is_static = b->is_static,
                              .mass = b->mass,
                              .density = NAN,

@@ -12,6 +12,7 @@ static void build_body(const impact_body_def *def, char *name, imp_body *body, i
 {
     *body = (imp_body){.name = name,
                        .shape = def->shape,
+                       .user = def->user,
                        .is_static = def->is_static,
                        .mass = INFINITY,
                        .radius = impact_shape_bounding_radius(&def->shape) + qvec3_norm(def->shape_position),

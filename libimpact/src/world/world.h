@@ -30,6 +30,7 @@ typedef struct imp_body {
     bool driven;    /* static, and its surface moves along itself: by drift and spin */
     impact_shape shape;
     char *name; /* the scene's */
+    void *user; /* the caller's */
     double mass, inverse_mass;
     qvec3 moments, inverse_moments;
     qvec3 offset; /* the shape's centre, body axes */
