@@ -84,10 +84,10 @@ uint64_t imp_scene_print(const impact_scene_def *def)
     for (int k = 0; k < def->pair_count; k++) {
         print_text(&a, def->pairs[k].body1);
         print_text(&a, def->pairs[k].body2);
-        PRINT(&a, def->pairs[k].friction, def->pairs[k].restitution);
+        PRINT(&a, def->pairs[k].friction, def->pairs[k].restitution, def->pairs[k].stiffness);
     }
     PRINT(&a, def->friction_rule, def->restitution_rule, def->law, def->solver, def->compliance);
-    PRINT(&a, def->tolerance, def->rest_height, def->rest_speed, def->piles, def->samples);
+    PRINT(&a, def->tolerance, def->rest_height, def->rest_speed, def->piles, def->together, def->samples);
     return a.sum;
 }
 

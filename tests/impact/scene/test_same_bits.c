@@ -276,7 +276,8 @@ static const field scene_fields[] = {
     FIELD(impact_scene_def, rest_height, NUMBER, true),   FIELD(impact_scene_def, rest_speed, NUMBER, true),
     FIELD(impact_scene_def, max_events, COUNT, false),    FIELD(impact_scene_def, max_steps, COUNT, false),
     FIELD(impact_scene_def, allocator, OTHER, false),     FIELD(impact_scene_def, key_tolerance, NUMBER, false),
-    FIELD(impact_scene_def, piles, CHOICE, true),
+    FIELD(impact_scene_def, piles, CHOICE, true),         FIELD(impact_scene_def, together, CHOICE, true),
+    FIELD(impact_scene_def, samples, CHOICE, true),
 };
 
 static const field body_fields[] = {
@@ -306,10 +307,9 @@ static const field force_fields[] = {
 };
 
 static const field pair_fields[] = {
-    FIELD(impact_pair_def, body1, POINTER, true),
-    FIELD(impact_pair_def, body2, POINTER, true),
-    FIELD(impact_pair_def, friction, NUMBER, true),
-    FIELD(impact_pair_def, restitution, NUMBER, true),
+    FIELD(impact_pair_def, body1, POINTER, true),    FIELD(impact_pair_def, body2, POINTER, true),
+    FIELD(impact_pair_def, friction, NUMBER, true),  FIELD(impact_pair_def, restitution, NUMBER, true),
+    FIELD(impact_pair_def, stiffness, NUMBER, true),
 };
 
 /* Between two fields lies no more than what aligns them: a field that is not listed would stand there. */
@@ -339,7 +339,7 @@ static bool vary(void *thing, const field *f)
         if (f->kind == SHAPE) number = &((impact_shape *)place)->a;
         *number = isfinite(*number) && *number != 0 ? 1.5 * *number : 0.25;
         return true;
-    case CHOICE: ++*(int *)place; return true;
+    case CHOICE: *(int *)place = *(int *)place > 0 ? *(int *)place - 1 : 1; return true;
     case COUNT:
         if (f->size == sizeof(long)) return ++*(long *)place, true;
         return false;
@@ -363,7 +363,7 @@ static void make_definition(whole_definition *d)
     for (int i = 0; i < 2; i++) d->bodies[i] = ball_body(i ? "one" : "two", (qvec3){2.0 * i, 0, 1}, 0.3, 0.5);
     d->forces[0] = impact_default_force_def(IMPACT_FORCE_WIND);
     d->forces[1] = impact_default_force_def(IMPACT_FORCE_CUSTOM);
-    d->pairs[0] = (impact_pair_def){"one", "two", 0.1, 0.2};
+    d->pairs[0] = (impact_pair_def){"one", "two", 0.1, 0.2, 3};
     d->scene.bodies = d->bodies, d->scene.body_count = 2;
     d->scene.forces = d->forces, d->scene.force_count = 2;
     d->scene.pairs = d->pairs, d->scene.pair_count = 1;
@@ -392,10 +392,10 @@ static void every_field_that_decides_is_in_the_print(void **state)
     assert_all_listed(ALL(body_fields), sizeof(impact_body_def));
     assert_all_listed(ALL(force_fields), sizeof(impact_force_def));
     assert_all_listed(ALL(pair_fields), sizeof(impact_pair_def));
-    assert_int_equal(check_prints(ALL(scene_fields), offsetof(whole_definition, scene)), 16);
+    assert_int_equal(check_prints(ALL(scene_fields), offsetof(whole_definition, scene)), 18);
     assert_int_equal(check_prints(ALL(body_fields), offsetof(whole_definition, bodies)), 16);
     assert_int_equal(check_prints(ALL(force_fields), offsetof(whole_definition, forces)), 16);
-    assert_int_equal(check_prints(ALL(pair_fields), offsetof(whole_definition, pairs)), 4);
+    assert_int_equal(check_prints(ALL(pair_fields), offsetof(whole_definition, pairs)), 5);
 }
 
 /* Each setting of the scene another one, and the same bits among far bodies, in parts and saved. */
@@ -408,6 +408,7 @@ static void the_same_bits_with_every_setting(void **state)
         s.def.law = IMPACT_STRONGE;
         const int kind = (int)scene_fields[k].kind;
         if (kind == POINTER || kind == OTHER) continue;
+        if (strcmp(scene_fields[k].name, "together") == 0) s.def.law = IMPACT_POISSON; /* answers by Moreau */
         if (strcmp(scene_fields[k].name, "law") == 0)
             s.def.law = IMPACT_NEWTON;
         else if (strcmp(scene_fields[k].name, "duration") != 0 && !vary(&s.def, &scene_fields[k]))
