@@ -39,11 +39,11 @@ typedef struct imp_island {
     long steps;
     double outside;    /* J: of all other bodies, for the rows of events */
     int number;        /* among the scene's; -1: of none */
-    bool rests, rolls;  /* no integrator is at work: its bodies' segments say all */
-    bool loses;         /* it rolls, and friction takes energy: what there was when its segment began, J */
+    bool rests, rolls; /* no integrator is at work: its bodies' segments say all */
+    bool loses;        /* it rolls, and friction takes energy: what there was when its segment began, J */
     double begun_with;
-    bool moves;        /* it has segments; false where its next step failed */
-    bool leaving;      /* scratch: its bodies go over to another */
+    bool moves;   /* it has segments; false where its next step failed */
+    bool leaving; /* scratch: its bodies go over to another */
 } imp_island;
 
 /* Room for so many bodies, pairs and the scene's forces; the rest as it was. */
