@@ -146,7 +146,8 @@ static void sort_members(impact_scene *scene)
         scene->members[scene->member_count++] = other;
     }
     qsort(scene->members, (size_t)scene->member_count, sizeof *scene->members, ascending);
-    qsort(scene->touching, (size_t)scene->touching_count, sizeof *scene->touching, by_bodies);
+    if (scene->touching_count > 1)
+        qsort(scene->touching, (size_t)scene->touching_count, sizeof *scene->touching, by_bodies);
 }
 
 /* The state of a member at t; and whether it rests. */
