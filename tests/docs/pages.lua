@@ -19,10 +19,10 @@ function pages.read(path)
   return text
 end
 
---- The files that git knows, or without git those that find finds, by the patterns of Lua given.
+--- The files that git knows, or without git those that find finds beside build/ and out/, by the patterns of Lua given.
 function pages.list(root, pattern)
   local list = {}
-  local pipe = assert(io.popen(string.format("cd '%s' && (git ls-files 2>/dev/null || find . -type f | sed 's|^./||')", root)))
+  local pipe = assert(io.popen(string.format("cd '%s' && (git ls-files 2>/dev/null || find . -path ./build -prune -o -path ./out -prune -o -type f -print | sed 's|^./||')", root)))
   for name in pipe:lines() do
     if name:match(pattern) then list[#list + 1] = name end
   end

@@ -2,6 +2,7 @@
 #include "scene/encounter.h"
 #include "scene/following.h"
 #include "scene/gather.h"
+#include "scene/islands.h"
 #include "scene/parting.h"
 #include "scene/scene_events.h"
 #include "scene/scene_keys.h"
@@ -28,6 +29,17 @@ static impact_status check_stall(impact_scene *scene, const imp_island *island)
     return IMPACT_OK;
 }
 
+/* The scene has failed: nothing moves on, and nothing is lost. */
+static void give_up(imp_island *loose)
+{
+    while (loose) {
+        imp_island *part = loose;
+        loose = part->next;
+        part->next = NULL;
+        imp_islands_release(part);
+    }
+}
+
 /* What is settled goes on, whatever became of the rows. */
 static impact_status conclude(imp_island *island, impact_status status)
 {
@@ -37,6 +49,7 @@ static impact_status conclude(imp_island *island, impact_status status)
     if (status != IMPACT_OK) {
         imp_island_fail(island, status);
         imp_island_part_ways(island, &loose);
+        give_up(loose);
         return status;
     }
     if (!island->stepped) imp_scene_receipt_look(island);
@@ -47,6 +60,7 @@ static impact_status conclude(imp_island *island, impact_status status)
         part->next = NULL;
         parted = conclude(part, imp_scene_settle(part));
     }
+    give_up(loose);
     if (parted != IMPACT_OK || stalled != IMPACT_OK) return parted != IMPACT_OK ? parted : stalled;
     return imp_scene_account(scene) ? IMPACT_OK : IMPACT_ESINK;
 }

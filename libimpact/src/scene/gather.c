@@ -264,13 +264,20 @@ impact_status imp_gather(impact_scene *scene, int seed, double t, bool stepped, 
     impact_status status = follow_contacts(scene, seed, t);
     if (status == IMPACT_OK) status = close_old(scene, t, island);
     if (status == IMPACT_OK && island->stepped) status = add_all_near(scene);
-    if (status != IMPACT_OK) return status;
+    if (status != IMPACT_OK) {
+        imp_islands_release(island);
+        return status;
+    }
     sort_members(scene);
     status = fill(island, t);
     release_old(scene);
     clear_members(scene);
     if (status == IMPACT_OK && island->stepped) status = imp_island_begin_steps(island);
+    if (status != IMPACT_OK) {
+        imp_islands_release(island);
+        return status;
+    }
     island->balance = imp_island_balance(island);
     *out = island;
-    return status;
+    return IMPACT_OK;
 }

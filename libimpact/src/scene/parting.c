@@ -160,7 +160,10 @@ impact_status imp_island_part_ways(imp_island *island, imp_island **loose)
     for (imp_island *part = parts; part;) {
         imp_island *next = part->next;
         part->next = NULL;
-        if (status == IMPACT_OK) status = start_part(part, island, loose);
+        if (status == IMPACT_OK)
+            status = start_part(part, island, loose);
+        else
+            imp_islands_release(part);
         part = next;
     }
     if (stays && status == IMPACT_OK) {
