@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Which variable, which method and which tolerances a stretch of integration needs.
+ */
+#include "motion/motion_stretch.h"
+#include "contact/persist_spot.h"
+#include "world/world_gap.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Slip faster than this part of the slip scale turns no faster than the motion goes. */
+static const double grown_up = 1e-2;
+
+impact_status imp_motion_make_room(imp_motion *motion)
+{
+    const imp_world *world = motion->world;
+    int moving = 0;
+    for (int i = 0; i < world->body_count; i++) moving += !world->bodies[i].is_static;
+    int spots = 0;
+    for (int p = 0; p < world->pair_count; p++) spots += imp_spot_suits(world, &world->pairs[p]);
+    const int size = Y_BODIES + Y_PER_BODY * moving + Y_PER_SPOT * spots + world->driven;
+    const int roots =
+        ROOTS_PER_PAIR * world->pair_count + ROOTS_PER_EDGE * imp_field_edge_count(world) + world->body_count;
+    if (motion->y && size == motion->size && roots == motion->roots) return IMPACT_OK;
+    imp_motion_forget(motion);
+    motion->size = size, motion->roots = roots;
+    motion->kept = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->kept);
+    motion->found = imp_arena_take(world->arena, (size_t)motion->roots, sizeof *motion->found);
+    motion->absolute = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->absolute);
+    motion->probe = imp_arena_take(world->arena, 4 * (size_t)motion->size, sizeof *motion->probe);
+    motion->y = imp_arena_take(world->arena, (size_t)motion->size, sizeof *motion->y);
+    const bool room = motion->kept && motion->y && motion->found && motion->absolute && motion->probe;
+    return room ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
+/* Makes the integrator of the method the one at work, creating it when it is first needed. */
+static impact_status choose_integrator(imp_motion *motion, impact_ode_method method)
+{
+    impact_ode **ode = method == IMPACT_ODE_ADAMS ? &motion->adams : &motion->bdf;
+    impact_status status = imp_motion_make_room(motion);
+    if (status == IMPACT_OK && !*ode) {
+        const impact_ode_def def = {.size = motion->size,
+                                    .roots = motion->roots,
+                                    .rhs = imp_motion_rates,
+                                    .root_functions = imp_motion_root_values,
+                                    .context = motion,
+                                    .method = method,
+                                    .relative_tolerance = motion->tolerance,
+                                    .absolute_tolerance = IMP_ABSOLUTE_OF_RELATIVE * motion->tolerance,
+                                    .falling_roots_only = true};
+        status = imp_ode_create_in(motion->world->arena, &def, ode);
+        if (status == IMPACT_EABSENT)
+            snprintf(motion->message, sizeof motion->message,
+                     "this motion needs the integrator, and this build has none (IMPACT_WITH_CVODE is off)");
+        motion->world->usage.integrators += status == IMPACT_OK;
+    }
+    motion->ode = *ode;
+    return status;
+}
+
+void imp_motion_count_work(imp_motion *motion)
+{
+    impact_ode_counts adams = {0}, bdf = {0};
+    if (motion->adams) adams = impact_ode_count(motion->adams);
+    if (motion->bdf) bdf = impact_ode_count(motion->bdf);
+    const long starts = adams.starts + bdf.starts, steps = adams.steps + bdf.steps,
+               calls = adams.rhs_calls + bdf.rhs_calls;
+    impact_usage *usage = &motion->world->usage;
+    usage->integrator_starts += starts - motion->counted.starts;
+    usage->integrator_steps += steps - motion->counted.steps;
+    usage->integrator_rhs_calls += calls - motion->counted.rhs_calls;
+    motion->counted = (impact_ode_counts){.starts = starts, .steps = steps, .rhs_calls = calls};
+}
+
+/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does.
+ * young: of those alone whose slip has just begun, or of the others. */
+static double slowest_slip(const imp_motion *motion, bool young)
+{
+    double slowest = INFINITY;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        if (touch->mode == IMP_SLIDE && !touch->onset && touch->friction > 0 &&
+            motion->world->pairs[touch->pair].young == young)
+            slowest = fmin(slowest, touch->speed);
+    }
+    return slowest;
+}
+
+/* Whether some slip dies out again that has just begun. */
+static bool young_fades(const imp_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        if (touch->mode == IMP_SLIDE && !touch->onset && motion->world->pairs[touch->pair].young &&
+            qvec3_dot(touch->slip_rate, touch->slip) < 0)
+            return true;
+    }
+    return false;
+}
+
+/* What has its direction from itself again is not young any more. */
+static void grow_up(imp_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        imp_pair *pair = &motion->world->pairs[touch->pair];
+        pair->young =
+            pair->young && touch->mode == IMP_SLIDE && !touch->onset && touch->speed < grown_up * motion->slip_scale;
+    }
+}
+
+/* The speed below which slip slows the clock: small against the motion and the weight of the sliding bodies. */
+static double slip_scale(const imp_motion *motion, const imp_state *states)
+{
+    double scale = 0;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        if (touch->mode != IMP_SLIDE) continue;
+        const imp_body *body = &motion->world->bodies[touch->body1];
+        const double fall = fabs(touch->pressure) * body->inverse_mass * body->radius;
+        scale = fmax(scale, 0.05 * (imp_motion_speed(body, &states[touch->body1]) + sqrt(fall)));
+    }
+    return fmax(scale, motion->world->slip_speed);
+}
+
+/* How fast a carried contact may move over its surface before it slows the clock, 1/s: as the body itself moves, about;
+ * 0: none is. */
+static double creep_scale(const imp_motion *motion, const imp_state *states)
+{
+    double scale = 0;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        if (!touch->carried) continue;
+        const imp_body *body = &motion->world->bodies[touch->body1];
+        const double fall = qvec3_norm(motion->loads[touch->body1].force) * body->inverse_mass;
+        const double rate = qvec3_norm(imp_omega(body, &states[touch->body1])) + sqrt(fall / body->radius);
+        scale = fmax(scale, rate);
+    }
+    return scale;
+}
+
+/* Whether custom forces brake so much faster than the motion goes on that Adams' short steps, a hundredth of their
+ * time, would cost more than BDF's many. */
+static bool is_braked(const imp_motion *motion, double t, double t_end, const imp_state *states)
+{
+    double turning;
+    return imp_field_brake(motion->world, t, states, &turning) > 30 * turning + 50 / (t_end - t);
+}
+
+/* Which variable and which method the stretch needs. */
+static impact_status choose_road(imp_motion *motion, double t, double t_end, const imp_state *states)
+{
+    if (motion->persist.count > 0) imp_persist_solve(&motion->persist, motion->world, states, motion->loads);
+    motion->slip_scale = slip_scale(motion, states);
+    grow_up(motion);
+    motion->stiff = isfinite(slowest_slip(motion, true));
+    const double grown = slowest_slip(motion, false);
+    motion->sliding = isfinite(grown) && (!motion->stiff || grown < grown_up * motion->slip_scale);
+    motion->sliding = motion->sliding || young_fades(motion);
+    motion->creep_scale = creep_scale(motion, states);
+    motion->creeping = motion->creep_scale > 0;
+    const bool stiff = motion->stiff || is_braked(motion, t, t_end, states), other = motion->distrusted;
+    motion->distrusted = false;
+    return choose_integrator(motion, stiff != other ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
+}
+
+static double stretch_tolerance(const imp_motion *motion)
+{
+    const double part = motion->persist.count == 0 ? IMP_FLIGHT_OF_TOLERANCE : IMP_HELD_OF_TOLERANCE;
+    double tolerance = fmin(motion->tolerance, fmax(IMP_FLIGHT_TOLERANCE, part * motion->tolerance));
+    if (motion->bounces) tolerance = fmin(tolerance, IMP_BOUNCE_TOLERANCE);
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
+            tolerance = fmin(tolerance, IMP_SLIDING_TOLERANCE);
+    return tolerance;
+}
+
+static impact_status choose_tolerance(imp_motion *motion, const imp_state *states)
+{
+    motion->relative = stretch_tolerance(motion);
+    imp_motion_measures(motion, states, motion->absolute);
+    for (int i = 0; i < motion->size; i++) motion->absolute[i] *= IMP_ABSOLUTE_OF_RELATIVE * motion->relative;
+    return impact_ode_set_tolerances(motion->ode, motion->relative, motion->absolute);
+}
+
+/* Whether an open pair touches: what bounced a moment ago is to come down where it falls. */
+static bool has_bounced(const imp_motion *motion, const imp_state *states)
+{
+    imp_world *world = motion->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        imp_pair *pair = &world->pairs[p];
+        const double touching = imp_world_touching_distance(world, pair, states);
+        if (imp_is_held(pair) || pair->beyond || imp_world_distance_bound(world, pair, states) > touching) continue;
+        impact_contact contact;
+        imp_world_gap(world, pair, states, &contact);
+        if (contact.gap <= touching) return true;
+    }
+    return false;
+}
+
+impact_status imp_motion_choose(imp_motion *motion, const imp_state *states)
+{
+    motion->bounces = has_bounced(motion, states);
+    const impact_status status = choose_road(motion, motion->stride.t, motion->stride.t_end, states);
+    return status == IMPACT_OK ? choose_tolerance(motion, states) : status;
+}
+
+bool imp_motion_outgrows(const imp_motion *motion)
+{
+    if (!motion->stiff) return false;
+    return slowest_slip(motion, true) > grown_up * motion->slip_scale || (!motion->sliding && young_fades(motion));
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A step of the integrator as a segment: its polynomial, and the states, works and contacts at a time in it.
+ */
+#include "motion/motion_stretch.h"
+
+#include <string.h>
+
+/* Nothing moved: the state alone. */
+static void keep_still(imp_dense *dense, const double *y)
+{
+    dense->terms = 1;
+    dense->h = 0;
+    memcpy(dense->c, y, sizeof *y * (size_t)dense->size);
+}
+
+impact_status imp_motion_keep_step(imp_motion *motion, double t0, double t1)
+{
+    imp_dense *dense = &motion->dense;
+    const impact_status status = imp_dense_reserve(dense, motion->world->arena, motion->size);
+    if (status != IMPACT_OK) return status;
+    double begin;
+    impact_ode_last_step(motion->ode, &begin, &dense->end);
+    dense->h = dense->end - begin;
+    dense->t0 = t0, dense->t1 = t1;
+    dense->size = motion->size;
+    dense->clocked = imp_motion_clocked(motion);
+    if (!(t1 > t0)) {
+        keep_still(dense, motion->y);
+        return IMPACT_OK;
+    }
+    double scale = 1;
+    for (dense->terms = 0; dense->terms < IMP_DENSE_TERMS; dense->terms++) {
+        double *c = dense->c + (size_t)dense->terms * (size_t)dense->size;
+        if (impact_ode_interpolate(motion->ode, dense->end, dense->terms, c) != IMPACT_OK) break;
+        for (int i = 0; i < dense->size; i++) c[i] *= scale;
+        scale *= dense->h / (dense->terms + 1);
+    }
+    return dense->terms > 0 ? IMPACT_OK : IMPACT_EINTEGRATOR;
+}
+
+imp_works imp_motion_works_of(const imp_motion *motion, const double *y)
+{
+    const double drive = motion->world->driven ? y[imp_motion_drive(motion)] : motion->works.drive;
+    return (imp_works){y[Y_FORCE_WORK], y[Y_DAMPING], y[Y_SLIDING], drive};
+}
+
+imp_works imp_motion_works(const imp_motion *motion, double t)
+{
+    double y[Y_BODIES], drive = motion->works.drive;
+    imp_dense_at(&motion->dense, t, 0, Y_BODIES, y);
+    if (motion->world->driven) imp_dense_at(&motion->dense, t, imp_motion_drive(motion), 1, &drive);
+    return (imp_works){y[Y_FORCE_WORK], y[Y_DAMPING], y[Y_SLIDING], drive};
+}
+
+void imp_motion_go_to(imp_motion *motion, double t, imp_state *states)
+{
+    if (t == motion->dense.t1) return; /* the states are there */
+    imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
+    imp_motion_unpack(motion, motion->kept, states);
+    motion->works = imp_motion_works_of(motion, motion->kept);
+}
+
+/* Contacts and pairs as they are, and back: to look must leave no traces. */
+static bool keep_contacts(imp_motion *motion)
+{
+    imp_arena *arena = motion->world->arena;
+    const int touches = motion->persist.count, pairs = motion->world->pair_count;
+    imp_touch *kept = imp_arena_grow(arena, motion->kept_touches, &motion->kept_room[0], touches, sizeof *kept);
+    if (kept) motion->kept_touches = kept;
+    imp_pair *kept_pairs = imp_arena_grow(arena, motion->kept_pairs, &motion->kept_room[1], pairs, sizeof *kept_pairs);
+    if (kept_pairs) motion->kept_pairs = kept_pairs;
+    if (!kept || !kept_pairs) return false;
+    memcpy(kept, motion->persist.touches, sizeof *kept * (size_t)touches);
+    memcpy(kept_pairs, motion->world->pairs, sizeof *kept_pairs * (size_t)pairs);
+    return true;
+}
+
+static void restore_contacts(imp_motion *motion)
+{
+    memcpy(motion->persist.touches, motion->kept_touches, sizeof *motion->kept_touches * (size_t)motion->persist.count);
+    memcpy(motion->world->pairs, motion->kept_pairs, sizeof *motion->kept_pairs * (size_t)motion->world->pair_count);
+}
+
+impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states)
+{
+    const bool held = motion->persist.count > 0;
+    if (held && !keep_contacts(motion)) return IMPACT_ENOMEM;
+    imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
+    imp_motion_unpack(motion, motion->kept, states);
+    if (!held) return IMPACT_OK;
+    const bool loaded = imp_motion_load(motion, t, states);
+    if (loaded) imp_persist_project(&motion->persist, motion->world, states, motion->loads);
+    restore_contacts(motion);
+    return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
+}
+
+impact_status imp_motion_touches(imp_motion *motion, double t, const imp_state *states, imp_touch *touches)
+{
+    imp_persist *persist = &motion->persist;
+    const impact_usage usage = motion->world->usage;
+    const bool lenient = persist->lenient, redundant = persist->redundant;
+    if (persist->count == 0) return IMPACT_OK;
+    if (!keep_contacts(motion)) return IMPACT_ENOMEM;
+    const bool loaded = imp_motion_load(motion, t, states);
+    if (loaded) imp_persist_solve(persist, motion->world, states, motion->loads);
+    memcpy(touches, persist->touches, sizeof *touches * (size_t)persist->count);
+    restore_contacts(motion);
+    persist->lenient = lenient, persist->redundant = redundant;
+    motion->world->usage = usage;
+    return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
+}
