@@ -5,6 +5,7 @@
  * with two materials, so that turning is seen; one animation.
  */
 #include "gltf_keys.h"
+#include "mesh.h"
 
 #include <impact/view.h>
 #include <quat/rotation.h>
@@ -16,7 +17,7 @@
 #include "run/run.h"
 #include "run/text.h"
 
-enum { GRID = 12, ROW = GRID + 1, FLOAT = 5126, SHORT = 5123, VERTICES = 34962, INDICES = 34963 };
+enum { FLOAT = 5126, WORD = 5125, SHORT = 5123, VERTICES = 34962, INDICES = 34963 };
 
 /* What a plane without edges shows of itself, m from the middle of the motion, in sizes of that. */
 static const double plane_room = 1.5;
@@ -89,9 +90,6 @@ static int put_floats(gltf *g, const float *values, long count, int width, int t
 
 static void put_vector(float *place, qvec3 v) { place[0] = (float)v.x, place[1] = (float)v.y, place[2] = (float)v.z; }
 
-/* Unit again once it is rounded to floats. */
-static void put_unit(float *place, qvec3 v) { put_vector(place, qvec3_scale(v, 1 / qvec3_norm(v))); }
-
 static void say_primitive(gltf *g, int points, int normals, int index, int material)
 {
     say(&g->meshes, "{\"attributes\":{\"POSITION\":", points);
@@ -101,42 +99,27 @@ static void say_primitive(gltf *g, int points, int normals, int index, int mater
     imp_text_say(&g->meshes, "}");
 }
 
-/* The corners of the octants' grids, eight by eight, and which triangles are of octants of either sign. */
-static void solid_mesh(gltf *g, const impact_body_def *def, int material)
+static bool solid_mesh(gltf *g, const impact_body_def *def, int material)
 {
-    enum { POINTS = 8 * ROW * ROW, CORNERS = 4 * GRID * GRID * 6 };
-    static const double quarter = 1.5707963267948966;
-    float points[3 * POINTS], normals[3 * POINTS];
-    uint16_t index[2][CORNERS];
-    int used[2] = {0, 0};
-    for (int octant = 0; octant < 8; octant++) {
-        const int base = octant * ROW * ROW, kind = (octant + octant / 4) % 2;
-        for (int j = 0; j < ROW; j++)
-            for (int i = 0; i < ROW; i++) {
-                const double u = quarter * (octant % 4 - 2 + (double)i / GRID);
-                const double v = quarter * (octant / 4 - 1 + (double)j / GRID);
-                const qvec3 x = quat_rotate(def->shape_orientation, impact_shape_point(&def->shape, u, v));
-                float *point = points + 3 * (base + j * ROW + i), *normal = normals + 3 * (base + j * ROW + i);
-                put_vector(point, qvec3_add(def->shape_position, x));
-                put_unit(normal, quat_rotate(def->shape_orientation, impact_shape_normal(&def->shape, u, v)));
-            }
-        for (int j = 0; j < GRID; j++)
-            for (int i = 0; i < GRID; i++) {
-                const int a = base + j * ROW + i;
-                const int corners[6] = {a, a + 1, a + ROW + 1, a, a + ROW + 1, a + ROW};
-                for (int c = 0; c < 6; c++) index[kind][used[kind]++] = (uint16_t)corners[c];
-            }
+    imp_mesh mesh;
+    const bool whole = imp_mesh_of(def, &mesh);
+    if (whole) {
+        const long count = (long)(mesh.points.size / (3 * sizeof(float)));
+        const int at = put_floats(g, (const float *)(const void *)mesh.points.bytes, count, 3, VERTICES, true);
+        const int up = put_floats(g, (const float *)(const void *)mesh.normals.bytes, count, 3, VERTICES, false);
+        for (int kind = 0; kind < 2; kind++) {
+            const imp_text *index = &mesh.index[kind];
+            const long corners = (long)(index->size / sizeof(uint32_t));
+            const int list = put_accessor(g, index->bytes, index->size, INDICES, WORD, corners, 1, NULL, NULL);
+            if (kind) imp_text_say(&g->meshes, ",");
+            say_primitive(g, at, up, list, material + kind);
+        }
     }
-    const int at = put_floats(g, points, POINTS, 3, VERTICES, true),
-              up = put_floats(g, normals, POINTS, 3, VERTICES, false);
-    for (int kind = 0; kind < 2; kind++) {
-        const int list = put_accessor(g, index[kind], sizeof index[kind], INDICES, SHORT, CORNERS, 1, NULL, NULL);
-        if (kind) imp_text_say(&g->meshes, ",");
-        say_primitive(g, at, up, list, material + kind);
-    }
+    imp_mesh_free(&mesh);
+    return whole;
 }
 
-static void plane_mesh(gltf *g, const impact_body_def *def, int material)
+static bool plane_mesh(gltf *g, const impact_body_def *def, int material)
 {
     static const uint16_t index[6] = {0, 1, 2, 0, 2, 3};
     const qvec3 off = quat_rotate_inverse(def->orientation, qvec3_sub(g->middle, def->position));
@@ -148,6 +131,7 @@ static void plane_mesh(gltf *g, const impact_body_def *def, int material)
     const int at = put_floats(g, points, 4, 3, VERTICES, true), up = put_floats(g, normals, 4, 3, VERTICES, false);
     const int list = put_accessor(g, index, sizeof index, INDICES, SHORT, 6, 1, NULL, NULL);
     say_primitive(g, at, up, list, material);
+    return true;
 }
 
 static bool same_look(const impact_body_def *a, const impact_body_def *b)
@@ -159,7 +143,7 @@ static bool same_look(const impact_body_def *a, const impact_body_def *b)
            quat_norm(quat_sub(a->shape_orientation, b->shape_orientation)) == 0;
 }
 
-/* The mesh of an earlier body of the same shape and colour, or a new one. */
+/* The mesh of an earlier body of the same shape and colour, or a new one; -1: out of memory. */
 static int mesh_of(gltf *g, int body, const int *meshes, int material)
 {
     impact_body_def def, other;
@@ -169,7 +153,7 @@ static int mesh_of(gltf *g, int body, const int *meshes, int material)
         if (same_look(&other, &def)) return meshes[i];
     }
     imp_text_say(&g->meshes, g->mesh_count ? ",{\"primitives\":[" : "{\"primitives\":[");
-    (def.shape.kind == IMPACT_PLANE ? plane_mesh : solid_mesh)(g, &def, material);
+    if (!(def.shape.kind == IMPACT_PLANE ? plane_mesh : solid_mesh)(g, &def, material)) return -1;
     imp_text_say(&g->meshes, "]}");
     return g->mesh_count++;
 }
@@ -296,8 +280,10 @@ static bool fill(gltf *g, double tolerance)
         impact_body_def def;
         impact_run_body(g->run, i, &def);
         meshes[i] = mesh_of(g, i, meshes, def.is_static ? 2 : 0);
+        whole = meshes[i] >= 0;
         say_node(g, i, meshes[i]);
-        if (!def.is_static && impact_run_end(g->run) > impact_run_begin(g->run)) whole = animate(g, i, tolerance);
+        if (whole && !def.is_static && impact_run_end(g->run) > impact_run_begin(g->run))
+            whole = animate(g, i, tolerance);
     }
     free(meshes);
     return whole;

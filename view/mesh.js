@@ -75,11 +75,12 @@ function flatMesh(vertices, faces, r) {
   beside.forEach((left, pair) => {
     const [u, v] = pair.split(' ').map(Number), right = beside.get(v + ' ' + u);
     const middle = [u, v].map(w => unit(around[w].reduce((sum, f) => add(sum, normals[f]), [0, 0, 0])));
-    for (let i = 0; i < 6; i++) {
-      const n = between(normals[left], normals[right], i / 6), m = between(normals[left], normals[right], (i + 1) / 6);
+    const parts = 1 + Math.floor(Math.acos(clamp(dot(normals[left], normals[right]), -1, 1)) / 0.27);
+    for (let i = 0; i < parts; i++) {
+      const n = between(normals[left], normals[right], i / parts), m = between(normals[left], normals[right], (i + 1) / parts);
       if (u < v) { const q = [put(vertices[u], m), put(vertices[v], m), put(vertices[v], n), put(vertices[u], n)]; index.push(q[0], q[1], q[2], q[0], q[2], q[3]); }
-      for (let k = 0; k < 6; k++) { // the corner at u, from the edge's arc to its middle
-        const [a, b, c, d] = [[n, k], [n, k + 1], [m, k + 1], [m, k]].map(([x, j]) => put(vertices[u], between(x, middle[0], j / 6)));
+      for (let k = 0; k < parts; k++) { // the corner at u, from the edge's arc to its middle
+        const [a, b, c, d] = [[n, k], [n, k + 1], [m, k + 1], [m, k]].map(([x, j]) => put(vertices[u], between(x, middle[0], j / parts)));
         index.push(a, b, c, a, c, d);
       }
     }
