@@ -129,7 +129,7 @@ core.layer()
 ---@field max_events? integer
 ---@field key_tolerance? number  of a recorded run's keys: part of a body's radius, and rad
 ---@field view? table  what its page shows: docs/view.md
----@field together? "auto"|"springs"|"moreau"|"sequence"  what answers contacts struck at one instant: docs/together.md
+---@field together? "auto"|"springs"|"moreau"|"sequence"  what answers contacts struck at one instant, (auto): docs/together.md
 ---@field piles? "auto"|"exact"|"steps"  how bodies are moved that touch each other and do not settle
 ---@field samples? "all"|"moving"  which bodies have rows: every one, or only those that do not rest
 ---@field plot? fun(scene: impact.scene): plot.figure

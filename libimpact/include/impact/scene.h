@@ -215,9 +215,9 @@ typedef struct impact_usage {
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode; /* impacts, by solver */
     long impacts_second, impacts_soft; /* of these, answered in 128 bits; answered though no receipt passed */
-    /* of these, answers to another impact in the same instant, taken in the order of the definition */
+    /* of these, answers to another impact in the same instant, one after another in the order of the definition */
     long impacts_simultaneous;
-    long impacts_together; /* impulses that many pairs exchanged together, where answers would not end */
+    long impacts_together; /* impulses that many pairs exchanged together */
     /* instants after which bodies moved on with reactions of friction that are not unique: what follows hangs on the
      * choice */
     long reactions_chosen;

@@ -272,6 +272,10 @@
 
 /* The receipt of what is answered as OK: a hundred times what rounding leaves of a thousand steps. */
 #define IMP_ENCOUNTER_RECEIPT 1e-11
+/* eps, of the terms of a velocity u0 + W p in a group: their sums' rounding, and that of the bodies' velocities. */
+#define IMP_ENCOUNTER_ROUNDINGS 32
+/* Rounds in which that is taken away, each of what the last one left: the condition of W times eps of it. */
+#define IMP_ENCOUNTER_MENDINGS 3
 /* One after another: of the fastest approach, what is none. */
 #define IMP_SEQUENCE_STILL 0x1p-48
 /* Sweeps down the list: bodies of masses 1e4 apart take some thousands. */

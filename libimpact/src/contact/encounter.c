@@ -164,25 +164,6 @@ static size_t group_bytes(size_t n)
            n * (sizeof(imp_spring) + sizeof(imp_contact) + sizeof(imp_finding) + 1024) + 4096;
 }
 
-static qvec3 world_impulse(const imp_contact *c, const double p[3])
-{
-    qvec3 sum = qvec3_scale(c->axes[0], p[0]);
-    for (int k = 1; k < 3; k++) sum = qvec3_axpy(p[k], c->axes[k], sum);
-    return sum;
-}
-
-static void push_bodies(const plan *call, const imp_contact *c, qvec3 impulse)
-{
-    for (int s = 0; s < 2; s++) {
-        const impact_collider *body = &call->encounter->bodies[c->body[s]];
-        if (imp_encounter_is_static(body)) continue;
-        const qvec3 p = s == 0 ? impulse : qvec3_neg(impulse),
-                    turn = imp_encounter_turn(body, qvec3_cross(c->arm[s], p));
-        call->velocity[c->body[s]] = qvec3_axpy(1 / body->mass, p, call->velocity[c->body[s]]);
-        call->omega[c->body[s]] = qvec3_add(call->omega[c->body[s]], turn);
-    }
-}
-
 static void take_finding(const imp_finding *f, impact_meeting_outcome *m)
 {
     m->work_compression = f->work[0], m->work_restitution = f->work[1], m->work_friction = f->work[2];
@@ -196,9 +177,8 @@ static void take_answer(plan *call, const imp_group *group)
     for (int i = 0; i < group->count; i++) {
         const imp_contact *c = &group->contacts[i];
         impact_meeting_outcome *m = &call->meetings[c->source];
-        m->impulse = world_impulse(c, &group->p[3 * i]);
+        m->impulse = imp_encounter_impulse(c, &group->p[3 * i]);
         take_finding(&group->findings[i], m);
-        push_bodies(call, c, m->impulse);
     }
     call->outcome->error = fmax(call->outcome->error, group->error);
     call->outcome->events += group->events;
@@ -231,7 +211,10 @@ static impact_status solve_group(plan *call, int from, int count, impact_togethe
                        .w = w,
                        .u0 = u0,
                        .p = imp_encounter_take(workspace, 3 * n, sizeof *group.p),
-                       .findings = imp_encounter_take(workspace, n, sizeof *group.findings)};
+                       .findings = imp_encounter_take(workspace, n, sizeof *group.findings),
+                       .bodies = call->encounter->bodies,
+                       .velocity = call->velocity,
+                       .omega = call->omega};
     if (!group.findings) return IMPACT_ENOMEM;
     for (int i = 0; i < count; i++) {
         contacts[i] = imp_encounter_contact(call->encounter, call->order.meeting[from + i]);
@@ -246,6 +229,7 @@ static impact_status solve_group(plan *call, int from, int count, impact_togethe
     if (group.wedged) call->outcome->wedged = contacts[0].source;
     if (status != IMPACT_OK) return status;
     set_solver(call, springs ? IMPACT_TOGETHER_SERIES : IMPACT_TOGETHER_CONE);
+    if (springs) imp_encounter_push(&group, group.p);
     take_answer(call, &group);
     return IMPACT_OK;
 }

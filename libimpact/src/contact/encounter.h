@@ -41,6 +41,8 @@ typedef struct imp_group {
     const double *u0; /* 3 count, m/s */
     double *p;        /* 3 count */
     imp_finding *findings;
+    const impact_collider *bodies; /* the caller's; their velocities now: */
+    qvec3 *velocity, *omega;
     long events, steps;
     bool chosen, wedged;
     double error; /* of restitution */
@@ -104,7 +106,18 @@ static inline bool imp_encounter_is_static(const impact_collider *body) { return
 /* J^-1 a, for a vector in the world frame; 0 for a static body. */
 qvec3 imp_encounter_turn(const impact_collider *body, qvec3 a);
 
-/* ---- encounter_moreau.c: compression and restitution by the cone solver ---- */
+/* ---- encounter_mend.c: velocities of the bodies as impulses change them ---- */
+
+qvec3 imp_encounter_impulse(const imp_contact *contact, const double p[3]); /* world */
+/* The impulses p[3 count] change the velocities. */
+void imp_encounter_push(const imp_group *group, const double *p);
+/* The velocities of the contacts now, u[3 count]. */
+void imp_encounter_look(const imp_group *group, double *u);
+/* p has pushed, after which contacts have the velocities `after` but for rounding: that is taken away, and p changed.
+ */
+void imp_encounter_mend(const imp_group *group, const double *after, double *p, impact_together_workspace *workspace);
+
+/* ---- encounter_moreau.c: compression and restitution by the cone solver; the velocities are pushed ---- */
 impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *workspace);
 
 #endif

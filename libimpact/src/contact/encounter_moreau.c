@@ -12,21 +12,57 @@
  */
 #include "contact/encounter.h"
 
+#include <float.h>
 #include <string.h>
 #include "base/tolerances.h"
 
 typedef struct moreau {
     imp_group *group;
+    impact_together_workspace *workspace;
     imp_cone_workspace *cone;
     double *w, *q, *friction, *r, *v; /* of the second problem: 6 count */
     double *u;                        /* 3 count: after compression */
+    imp_cone_mode *modes;             /* 2 count */
 } moreau;
 
-static bool solved(const imp_cone_outcome *o, imp_group *group)
+/* Whether what r leaves is rounding of W r, though that be more than q: encounter_mend.c takes it away. */
+static bool is_rounding(const imp_cone_problem *problem, double residual, const double *r)
+{
+    const int n = 3 * problem->count;
+    double terms = 0, size = 0;
+    for (int i = 0; i < n; i++) {
+        double sum = 0;
+        for (int j = 0; j < n; j++) sum += fabs(problem->w[(size_t)i * (size_t)n + (size_t)j] * r[j]);
+        terms = fmax(terms, sum);
+        size = fmax(size, fabs(problem->q[i]));
+    }
+    return residual * size <= IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * terms;
+}
+
+static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, const double *r, imp_group *group)
 {
     group->steps += o->factorings;
     group->chosen = group->chosen || o->chosen;
-    return o->status == IMP_CONE_SOLVED || o->status == IMP_CONE_INEXACT;
+    return o->status == IMP_CONE_SOLVED || o->status == IMP_CONE_INEXACT ||
+           (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
+}
+
+/* Works by impulses: p . (u + u')/2, normal and tangential. */
+static void book(imp_finding *f, int phase, const double *p, const double *u, const double *after)
+{
+    const double normal = 0.5 * p[0] * (u[0] + after[0]);
+    f->work[normal < 0 ? 0 : 1] += normal;
+    f->work[2] += 0.5 * (p[1] * (u[1] + after[1]) + p[2] * (u[2] + after[2]));
+    f->compressions += phase == 0 && p[0] > 0;
+}
+
+/* What the modes say is zero, where W r + q leaves the rounding of r; sticks: modes of the problem's friction. */
+static void clean(int count, const imp_cone_mode *modes, const imp_cone_mode *sticks, double *u)
+{
+    for (int i = 0; i < count; i++) {
+        if (modes[i] != IMP_CONE_OPEN) u[3 * i] = 0;
+        if (sticks[i] == IMP_CONE_STICKS) u[3 * i + 1] = u[3 * i + 2] = 0;
+    }
 }
 
 static bool compress(moreau *m)
@@ -34,8 +70,38 @@ static bool compress(moreau *m)
     const int n = m->group->count;
     for (int i = 0; i < n; i++) m->friction[i] = m->group->contacts[i].friction;
     const imp_cone_problem problem = {.count = n, .w = m->group->w, .q = m->group->u0, .friction = m->friction};
-    const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->group->p, m->u, NULL);
-    return solved(&o, m->group);
+    const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->group->p, m->u, m->modes);
+    if (!solved(&problem, &o, m->group->p, m->group)) return false;
+    clean(n, m->modes, m->modes, m->u);
+    imp_encounter_push(m->group, m->group->p);
+    imp_encounter_mend(m->group, m->u, m->group->p, m->workspace);
+    imp_encounter_look(m->group, m->u);
+    for (int i = 0; i < n; i++)
+        book(&m->group->findings[i], 0, &m->group->p[3 * i], &m->group->u0[3 * i], &m->u[3 * i]);
+    return true;
+}
+
+static double least_restitution(const imp_group *g)
+{
+    double least = INFINITY;
+    for (int i = 0; i < g->count; i++) least = fmin(least, g->contacts[i].restitution);
+    return least;
+}
+
+/* u after normal parts eps c_n, their friction apart: c = c_n + c_t leaves W c = u - u0 to rounding of u, where W c_n
+ * would leave that of impulses. */
+static void add_parts(const moreau *m)
+{
+    const imp_group *g = m->group;
+    const size_t n = (size_t)g->count, one = 3 * n;
+    const double least = least_restitution(g);
+    for (size_t i = 0; i < one; i++) {
+        m->q[i] = m->u[i] + least * (m->u[i] - g->u0[i]);
+        for (size_t c = 0; c < n; c++) {
+            const double *row = &g->w[i * one + 3 * c], *p = &g->p[3 * c];
+            m->q[i] += (g->contacts[c].restitution - least) * row[0] * p[0] - least * (row[1] * p[1] + row[2] * p[2]);
+        }
+    }
 }
 
 /* The second problem: contact i is what is more, n + i its part eps c_n. */
@@ -50,21 +116,40 @@ static void set_restitution(moreau *m)
             const bool apart = (i >= one && i % 3 == 0) || (j >= one && j % 3 == 0);
             m->w[i * two + j] = apart ? (i == j ? mean : 0) : g->w[i % one * one + j % one];
         }
-    for (size_t i = 0; i < one; i++) {
-        m->q[i] = m->u[i];
-        for (size_t c = 0; c < n; c++) m->q[i] += g->w[i * one + 3 * c] * (g->contacts[c].restitution * g->p[3 * c]);
+    add_parts(m);
+    for (size_t i = 0; i < one; i++)
         m->q[one + i] = i % 3 == 0 ? -mean * (g->contacts[i / 3].restitution * g->p[i]) : m->q[i];
-    }
     for (size_t i = 0; i < n; i++) m->friction[n + i] = m->friction[i];
 }
 
-/* Works by impulses: p . (u + u')/2, normal and tangential. */
-static void book(imp_finding *f, int phase, const double *p, const double *u, const double *after)
+/* The second problem's answer: of each contact r more than its part, which are with it in p. The last of it is pushed.
+ */
+static void take_restitution(moreau *m)
 {
-    const double normal = 0.5 * p[0] * (u[0] + after[0]);
-    f->work[normal < 0 ? 0 : 1] += normal;
-    f->work[2] += 0.5 * (p[1] * (u[1] + after[1]) + p[2] * (u[2] + after[2]));
-    f->compressions += phase == 0 && p[0] > 0;
+    imp_group *g = m->group;
+    const int n = g->count;
+    double *p = m->r, *after = m->q;
+    for (int i = 0; i < n; i++) {
+        const double *more = &m->r[3 * i], *part = &m->r[3 * (n + i)];
+        const double sum[3] = {more[0] + g->contacts[i].restitution * g->p[3 * i], more[1] + part[1],
+                               more[2] + part[2]};
+        memcpy(&p[3 * i], sum, sizeof sum);
+    }
+    imp_encounter_push(g, p);
+    imp_encounter_mend(g, m->v, p, m->workspace);
+    imp_encounter_look(g, after);
+    for (int i = 0; i < n; i++) {
+        book(&g->findings[i], 1, &p[3 * i], &m->u[3 * i], &after[3 * i]);
+        for (int j = 0; j < 3; j++) g->p[3 * i + j] += p[3 * i + j];
+    }
+}
+
+/* Without restitution r = 0 solves the second problem. */
+static bool restores(const imp_group *g)
+{
+    for (int i = 0; i < g->count; i++)
+        if (g->contacts[i].restitution > 0) return true;
+    return false;
 }
 
 static bool restore(moreau *m)
@@ -73,30 +158,26 @@ static bool restore(moreau *m)
     const int n = g->count;
     set_restitution(m);
     const imp_cone_problem problem = {.count = 2 * n, .w = m->w, .q = m->q, .friction = m->friction};
-    const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->r, m->v, NULL);
-    if (!solved(&o, g)) return false;
-    for (int i = 0; i < n; i++) {
-        const double *more = &m->r[3 * i], *part = &m->r[3 * (n + i)];
-        const double given = g->contacts[i].restitution * g->p[3 * i];
-        const double p[3] = {more[0] + given, more[1] + part[1], more[2] + part[2]};
-        book(&g->findings[i], 0, &g->p[3 * i], &g->u0[3 * i], &m->u[3 * i]);
-        book(&g->findings[i], 1, p, &m->u[3 * i], &m->v[3 * i]);
-        for (int j = 0; j < 3; j++) g->p[3 * i + j] += p[j];
-    }
+    const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->r, m->v, m->modes);
+    clean(n, m->modes, m->modes + n, m->v);
+    if (!solved(&problem, &o, m->r, g)) return false;
+    take_restitution(m);
     return true;
 }
 
 impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *workspace)
 {
     const size_t n = (size_t)group->count;
-    moreau m = {.group = group, .cone = &workspace->cone};
+    moreau m = {.group = group, .workspace = workspace, .cone = &workspace->cone};
     m.w = imp_encounter_take(workspace, 36 * n * n, sizeof *m.w);
     m.q = imp_encounter_take(workspace, 6 * n, sizeof *m.q);
     m.friction = imp_encounter_take(workspace, 2 * n, sizeof *m.friction);
     m.r = imp_encounter_take(workspace, 6 * n, sizeof *m.r);
     m.v = imp_encounter_take(workspace, 6 * n, sizeof *m.v);
     m.u = imp_encounter_take(workspace, 3 * n, sizeof *m.u);
-    if (!m.u || !imp_cone_reserve(m.cone, 2 * group->count)) return IMPACT_ENOMEM;
-    if (!compress(&m) || !restore(&m)) return IMPACT_EUNSETTLED;
+    m.modes = imp_encounter_take(workspace, 2 * n, sizeof *m.modes);
+    if (!m.modes || !imp_cone_reserve(m.cone, 2 * group->count)) return IMPACT_ENOMEM;
+    if (!compress(&m)) return IMPACT_EUNSETTLED;
+    if (restores(group) && !restore(&m)) return IMPACT_EUNSETTLED;
     return IMPACT_OK;
 }

@@ -4,7 +4,7 @@
  *
  *     m (V' - V) = sum +-P,   J (W' - W) = sum +-r x P         momentum and spin of each body that moves
  *     P_n >= 0,  |P_t| <= mu P_n                               cones
- *     E' - E = sum of works - sum +-P . (a static body's)      power; by springs works of friction and all are <= 0
+ *     E' - E = sum of works - sum +-P . (a static body's u)    power; by springs works of friction and all are <= 0
  *     P . (u + u')/2 summed: the same, by impulses             (E is a quadratic form)
  *     u_n' >= 0                                                nothing approaches
  *
@@ -72,7 +72,7 @@ static qvec3 slip_of(const impact_encounter *e, const impact_meeting *m, const q
     return u;
 }
 
-/* The power that a static body which moves puts in: its velocity times the impulse on it. */
+/* The work that static bodies which move take up: their velocity times the impulse on them. */
 static double driven_work(const impact_encounter *e, const impact_meeting *m, qvec3 impulse)
 {
     double work = 0;
@@ -82,7 +82,7 @@ static double driven_work(const impact_encounter *e, const impact_meeting *m, qv
         const impact_collider *body = &e->bodies[pair[s]];
         if (!imp_encounter_is_static(body)) continue;
         const double power = qvec3_dot(qvec3_add(body->velocity, qvec3_cross(body->omega, arms[s])), impulse);
-        work += s == 0 ? -power : power;
+        work += s == 0 ? power : -power;
     }
     return work;
 }

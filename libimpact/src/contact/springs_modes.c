@@ -18,6 +18,7 @@
 #include <float.h>
 #include <math.h>
 #include "base/tolerances.h"
+#include "contact/least.h"
 
 static double entry(const imp_springs *s, int i, int j) { return s->w[(size_t)i * 3 * (size_t)s->count + (size_t)j]; }
 
@@ -30,80 +31,7 @@ double imp_springs_row(const imp_springs *s, int i)
     return sum;
 }
 
-/* ---- the pseudo-inverse of what sticks ---- */
-
-/* Cholesky with pivoting of the n x n matrix: columns of L (n x rank, in the rows' own order); returns the rank. */
-static int factor_pivoted(const imp_springs *s, double *l, double *diagonal)
-{
-    const int n = s->stick_count;
-    double most = 0;
-    for (int i = 0; i < n; i++) most = fmax(most, diagonal[i] = entry(s, s->stick[i], s->stick[i]));
-    int rank = 0;
-    for (; rank < n; rank++) {
-        int best = 0;
-        for (int i = 1; i < n; i++)
-            if (diagonal[i] > diagonal[best]) best = i;
-        if (!(diagonal[best] > IMP_SPRINGS_RANK * most)) break;
-        const double pivot = sqrt(diagonal[best]);
-        for (int i = 0; i < n; i++) {
-            double sum = entry(s, s->stick[i], s->stick[best]);
-            for (int k = 0; k < rank; k++) sum -= l[i * n + k] * l[best * n + k];
-            l[i * n + rank] = sum / pivot;
-        }
-        for (int i = 0; i < n; i++) diagonal[i] -= l[i * n + rank] * l[i * n + rank];
-        diagonal[best] = -1;
-        for (int i = 0; i < n; i++)
-            if (diagonal[i] == -1) l[i * n + rank] = i == best ? pivot : l[i * n + rank];
-    }
-    return rank;
-}
-
-/* Solves (L^T L) x = b, r x r, by Cholesky in place; b becomes x. columns right sides by rows. */
-static void solve_normal(double *a, int r, double *b, int columns)
-{
-    for (int k = 0; k < r; k++) {
-        for (int m = 0; m < k; m++) a[k * r + k] -= a[k * r + m] * a[k * r + m];
-        a[k * r + k] = sqrt(a[k * r + k]);
-        for (int i = k + 1; i < r; i++) {
-            for (int m = 0; m < k; m++) a[i * r + k] -= a[i * r + m] * a[k * r + m];
-            a[i * r + k] /= a[k * r + k];
-        }
-    }
-    for (int c = 0; c < columns; c++) {
-        for (int i = 0; i < r; i++) {
-            for (int m = 0; m < i; m++) b[i * columns + c] -= a[i * r + m] * b[m * columns + c];
-            b[i * columns + c] /= a[i * r + i];
-        }
-        for (int i = r - 1; i >= 0; i--) {
-            for (int m = i + 1; m < r; m++) b[i * columns + c] -= a[m * r + i] * b[m * columns + c];
-            b[i * columns + c] /= a[i * r + i];
-        }
-    }
-}
-
-/* W_SS = L L^T, so that W_SS^+ = H H^T with H = L (L^T L)^-1. */
-static void invert_sticks(imp_springs *s)
-{
-    const int n = s->stick_count;
-    double *l = s->factor, *normal = l + n * n, *h = normal + n * n, *diagonal = h + n * n;
-    const int r = factor_pivoted(s, l, diagonal);
-    s->deficient = r < n;
-    for (int i = 0; i < r; i++)
-        for (int j = 0; j < r; j++) {
-            double sum = 0;
-            for (int k = 0; k < n; k++) sum += l[k * n + i] * l[k * n + j];
-            normal[i * r + j] = sum;
-        }
-    for (int i = 0; i < r; i++)
-        for (int j = 0; j < n; j++) h[i * n + j] = l[j * n + i];
-    solve_normal(normal, r, h, n);
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            double sum = 0;
-            for (int k = 0; k < r; k++) sum += h[k * n + i] * h[k * n + j];
-            s->inverse[i * n + j] = sum;
-        }
-}
+/* ---- what sticks ---- */
 
 void imp_springs_tie(imp_springs *s)
 {
@@ -112,7 +40,9 @@ void imp_springs_tie(imp_springs *s)
         if (presses(&s->springs[i]) && s->springs[i].slip == IMP_SPRING_STICKS)
             for (int j = 1; j < 3; j++) s->stick[s->stick_count++] = 3 * i + j;
     s->deficient = false;
-    if (s->stick_count > 0) invert_sticks(s);
+    if (s->stick_count > 0)
+        s->deficient = imp_least_inverse(s->w, 3 * s->count, s->stick, s->stick_count, IMP_SPRINGS_RANK, s->factor,
+                                         s->inverse) < s->stick_count;
     s->chosen = s->chosen || s->deficient;
 }
 

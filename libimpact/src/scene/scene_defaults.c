@@ -21,7 +21,7 @@ impact_scene_def impact_default_scene_def(void)
         .max_steps = 100000000,
         .key_tolerance = 1e-10,
         .piles = IMPACT_PILES_AUTO,
-        .together = IMPACT_SCENE_SEQUENCE,
+        .together = IMPACT_SCENE_TOGETHER_AUTO,
         .samples = IMPACT_SAMPLES_ALL,
     };
 }

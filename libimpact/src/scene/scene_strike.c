@@ -4,7 +4,6 @@
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
 #include "scene/scene_together.h"
-#include "contact/together.h"
 
 #include <stdio.h>
 
@@ -84,45 +83,6 @@ static int find_approach(imp_island *island, bool answering, imp_meeting *m)
 
 /* ---- many impacts in one instant ---- */
 
-/* All touching pairs answer together what is left of the instant's impacts, without restitution. */
-static impact_status strike_together(imp_island *island)
-{
-    imp_world *world = &island->world;
-    imp_share *shares = imp_arena_take(world->arena, (size_t)world->pair_count, sizeof *shares);
-    if (!shares) return IMPACT_ENOMEM;
-    imp_persist_stir(world);
-    int count = 0;
-    imp_meeting m;
-    for (int p = 0; p < world->pair_count; p++)
-        if (imp_scene_meets(island, p, &m)) imp_scene_press(island, &m), shares[count++].touch = m.touch;
-    double energy = imp_scene_total_energy(island);
-    impact_status status = IMPACT_OK;
-    if (!imp_answer_together(world, island->states, shares, count) && world->driven) {
-        snprintf(island->scene->message, sizeof island->scene->message,
-                 "no impulses end the impacts at t = %.17g: do moving surfaces draw a body in where it jams?",
-                 island->t);
-        status = IMPACT_EUNSETTLED;
-    }
-    for (int c = 0; status == IMPACT_OK && c < count; c++) {
-        const imp_share *share = &shares[c];
-        if (!(share->normal > 0)) continue;
-        impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, &share->touch);
-        event.phases = "together";
-        event.impulse_normal = share->normal;
-        event.impulse = share->impulse;
-        event.impulse_tangential = qvec3_norm(qvec3_axpy(-share->normal, share->touch.normal, share->impulse));
-        event.normal_before = qvec3_dot(share->touch.normal, share->before);
-        event.normal_after = qvec3_dot(share->touch.normal, share->after);
-        event.energy_before = energy;
-        event.energy_after = energy += share->work + imp_scene_drive_impulse(island, &share->touch, share->impulse);
-        island->motion.resting[share->touch.body1] = island->motion.resting[share->touch.body2] = false;
-        world->usage.impacts_together++;
-        status = imp_scene_record(island, &event);
-    }
-    imp_arena_give(world->arena, shares);
-    return status;
-}
-
 /* Whether the impacts of this instant have gone round among the pairs that struck often enough, and lose energy as they
  * go. */
 static bool goes_round(const imp_island *island, int impacts)
@@ -154,7 +114,7 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
         }
         if (p < 0) return status;
         if (goes_round(island, count)) {
-            status = strike_together(island);
+            status = imp_scene_end_together(island);
             return status == IMPACT_OK ? imp_scene_load_with_reactions(island) : status;
         }
         bool answered;

@@ -105,12 +105,19 @@ static double hertz_stiffness(const imp_island *island, const imp_touch *touch)
     return sqrt(bent > 0 && isfinite(bent) ? 1 / bent : smaller);
 }
 
-static void describe(imp_island *island, gathering *g)
+/* What answers, as rows name it; spent: their restitution. */
+typedef struct answering {
+    impact_together_law law;
+    const char *name;
+    bool spent;
+} answering;
+
+static void describe(imp_island *island, gathering *g, bool spent)
 {
     for (int c = 0; c < g->count; c++) {
         imp_meeting *m = &g->met[c];
         const imp_pair *pair = &island->world.pairs[m->touch.pair];
-        const bool dies = imp_scene_dies_out(island, m, pair->restitution * m->velocity);
+        const bool dies = spent || imp_scene_dies_out(island, m, pair->restitution * m->velocity);
         g->meetings[c] =
             (impact_meeting){.body1 = m->touch.body1,
                              .body2 = m->touch.body2,
@@ -123,10 +130,10 @@ static void describe(imp_island *island, gathering *g)
     }
 }
 
-static const char *words_of(const impact_meeting_outcome *o, const char *law, char *words, size_t size)
+static const char *words_of(const impact_meeting_outcome *o, const char *name, char *words, size_t size)
 {
     size_t used = 0;
-    if (o->phase_count == 0) return law;
+    if (o->phase_count == 0) return name;
     words[0] = '\0';
     for (int i = 0; i < o->phase_count && used < size; i++)
         used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "",
@@ -135,7 +142,7 @@ static const char *words_of(const impact_meeting_outcome *o, const char *law, ch
 }
 
 /* A row for each contact that exchanged an impulse; all share the encounter's number. */
-static impact_status record_all(imp_island *island, const gathering *g, impact_together_law law, double energy)
+static impact_status record_all(imp_island *island, const gathering *g, const char *name, double energy)
 {
     impact_status status = IMPACT_OK;
     const long number = ++island->scene->encounter_count;
@@ -146,7 +153,7 @@ static impact_status record_all(imp_island *island, const gathering *g, impact_t
         if (qvec3_dot(o->impulse, o->impulse) == 0) continue;
         impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
         event.encounter = number;
-        event.phases = words_of(o, impact_together_law_name(law), words, sizeof words);
+        event.phases = words_of(o, name, words, sizeof words);
         event.impulse = o->impulse;
         event.impulse_normal = qvec3_dot(touch->normal, o->impulse);
         event.impulse_tangential = qvec3_norm(qvec3_axpy(-event.impulse_normal, touch->normal, o->impulse));
@@ -165,7 +172,7 @@ static impact_status record_all(imp_island *island, const gathering *g, impact_t
 }
 
 /* Below zero nothing was answered. */
-static impact_status answer(imp_island *island, gathering *g, impact_together_law law)
+static impact_status answer(imp_island *island, gathering *g, answering how)
 {
     impact_scene *scene = island->scene;
     imp_world *world = &island->world;
@@ -173,13 +180,13 @@ static impact_status answer(imp_island *island, gathering *g, impact_together_la
         const impact_status status = imp_together_workspace_in(scene->world.arena, &scene->together_workspace);
         if (status != IMPACT_OK) return status;
     }
-    describe(island, g);
+    describe(island, g, how.spent);
     const double energy = imp_scene_tells_events(island) ? imp_scene_total_energy(island) : 0;
     const impact_encounter encounter = {.bodies = g->bodies,
                                         .body_count = world->body_count,
                                         .meetings = g->meetings,
                                         .meeting_count = g->count,
-                                        .law = law,
+                                        .law = how.law,
                                         .restitution = scene->law,
                                         .workspace = scene->together_workspace};
     impact_together_outcome outcome = {.velocity = g->velocity, .omega = g->omega, .meetings = g->outcomes};
@@ -190,7 +197,7 @@ static impact_status answer(imp_island *island, gathering *g, impact_together_la
                  "%d contacts at t = %.17g: their answer together does not pass its receipt", g->count, island->t);
     for (int i = 0; i < world->body_count; i++) imp_scene_set_velocities(island, i, g->velocity[i], g->omega[i]);
     imp_persist_stir(world);
-    return record_all(island, g, law, energy);
+    return record_all(island, g, how.name, energy);
 }
 
 impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck, bool *answered)
@@ -201,11 +208,24 @@ impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck,
     gathering g;
     impact_status status = make_gathering(island, &g);
     if (status == IMPACT_OK && g.count > 1 && !suffices_alone(island, &g, struck)) {
-        status = answer(island, &g, law == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU);
+        const impact_together_law by = law == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
+        status = answer(island, &g, (answering){by, impact_together_law_name(by), false});
         *answered = status >= 0;
         /* what the law has no answer for is answered one after another, as those that come later are */
         if (status == IMPACT_EUNSETTLED || status > 0) status = IMPACT_OK;
     }
     give_gathering(island->world.arena, &g);
     return status;
+}
+
+impact_status imp_scene_end_together(imp_island *island)
+{
+    gathering g;
+    impact_status status = make_gathering(island, &g);
+    if (status == IMPACT_OK) status = answer(island, &g, (answering){IMPACT_TOGETHER_MOREAU, "together", true});
+    give_gathering(island->world.arena, &g);
+    if (status == IMPACT_EUNSETTLED)
+        snprintf(island->scene->message, sizeof island->scene->message, "no impulses end the impacts at t = %.17g%s",
+                 island->t, island->world.driven ? ": do moving surfaces draw a body in where it jams?" : "");
+    return status > 0 ? IMPACT_OK : status;
 }

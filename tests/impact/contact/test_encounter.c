@@ -142,6 +142,69 @@ static void three_balls_part_by_symmetry_whatever_the_law(void **state)
     }
 }
 
+/* ---- what moves and is static, what is heavy ---- */
+
+/* Between two walls that move along themselves a ball is driven: the energy that it gains is the walls' work. */
+static void walls_that_move_put_in_energy(void **state)
+{
+    (void)state;
+    for (int run = 0; run < 8; run++) {
+        const bool springs = run % 2;
+        impact_collider bodies[3] = {ball(0), ball(0), ball(run < 4 ? 0.7 : 0)};
+        for (int k = 0; k < 2; k++) bodies[k].mass = INFINITY, bodies[k].velocity.y = k ? -2 : 3;
+        bodies[2].velocity.z = -1;
+        impact_meeting m[2];
+        for (int k = 0; k < 2; k++) {
+            m[k] = (impact_meeting){.body1 = k,
+                                    .body2 = 2,
+                                    .normal = {k ? 1 : -1, 0, -0.5},
+                                    .offset2 = {k ? 0.9 : -0.9, 0, -0.45},
+                                    .friction = 0.3 + 0.2 * k,
+                                    .restitution = 0.5,
+                                    .stiffness = 1};
+            if (run % 4 < 2) { /* the other way round */
+                m[k].body1 = 2, m[k].body2 = k, m[k].normal = qvec3_neg(m[k].normal);
+                m[k].offset1 = m[k].offset2, m[k].offset2 = (qvec3){0, 0, 0};
+            }
+        }
+        qvec3 v[3], omega[3];
+        impact_together_outcome o = {.velocity = v, .omega = omega};
+        const impact_encounter e = {.bodies = bodies,
+                                    .body_count = 3,
+                                    .meetings = m,
+                                    .meeting_count = 2,
+                                    .law = springs ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU};
+        assert_int_equal(impact_collide_together(&e, &o), IMPACT_OK);
+        assert_true(o.residual < 1e-14 && fabs(omega[2].y) > 0.1);
+    }
+}
+
+/* A ball of mass M falls on one of mass 1 that lies on the floor: all stop, and the heavy one bounces by eps. Impulses
+ * M times the light one's momentum leave it still to rounding of the speed; from 1e11 on its part of the bounce is
+ * rounding of those that compressed. */
+static void heavy_on_light_is_right_to_rounding(void **state)
+{
+    (void)state;
+    for (int digits = 0; digits <= 12; digits++)
+        for (int k = 0; k < (digits <= 10 ? 3 : 1); k++) {
+            const double eps = 0.4 * k, heavy = pow(10, digits), c = 0.8;
+            impact_collider bodies[3] = {ball(0), ball(0), ball(0)};
+            bodies[0].mass = INFINITY;
+            bodies[2].mass = heavy, bodies[2].moments = (qvec3){heavy, heavy, heavy};
+            const qvec3 n = {0.6, 0, c};
+            bodies[2].velocity = qvec3_neg(n);
+            const impact_meeting m[2] = {{2, 1, n, qvec3_neg(n), n, 0.1, eps, 1},
+                                         {1, 0, n, qvec3_neg(n), {0, 0, 0}, 0.1, eps, 1}};
+            qvec3 v[3], omega[3];
+            impact_together_outcome o = {.velocity = v, .omega = omega};
+            const impact_encounter e = {
+                .bodies = bodies, .body_count = 3, .meetings = m, .meeting_count = 2, .law = IMPACT_TOGETHER_MOREAU};
+            assert_int_equal(impact_collide_together(&e, &o), IMPACT_OK);
+            assert_near3(v[1], (qvec3){0, 0, 0}, 1e-14);
+            assert_near3(v[2], qvec3_scale(n, eps), 1e-14);
+        }
+}
+
 /* ---- boxes ---- */
 
 /* A box of half sides a, h on the floor z = 0 with mass 1, in the plane x, z; corner 0 at -a, 1 at +a. */
@@ -552,6 +615,8 @@ int main(void)
         cmocka_unit_test(the_other_laws_answer_the_cradle_as_they_must),
         cmocka_unit_test(a_long_line_keeps_energy_and_momentum),
         cmocka_unit_test(three_balls_part_by_symmetry_whatever_the_law),
+        cmocka_unit_test(walls_that_move_put_in_energy),
+        cmocka_unit_test(heavy_on_light_is_right_to_rounding),
         cmocka_unit_test(a_box_rocks_as_housner_has_it),
         cmocka_unit_test(a_box_that_falls_flat_does_not_turn),
         cmocka_unit_test(little_restitution_is_told),

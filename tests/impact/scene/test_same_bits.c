@@ -408,7 +408,8 @@ static void the_same_bits_with_every_setting(void **state)
         s.def.law = IMPACT_STRONGE;
         const int kind = (int)scene_fields[k].kind;
         if (kind == POINTER || kind == OTHER) continue;
-        if (strcmp(scene_fields[k].name, "together") == 0) s.def.law = IMPACT_POISSON; /* answers by Moreau */
+        if (strcmp(scene_fields[k].name, "together") == 0) /* another: by Moreau */
+            s.def.law = IMPACT_POISSON, s.def.together = IMPACT_SCENE_SEQUENCE;
         if (strcmp(scene_fields[k].name, "law") == 0)
             s.def.law = IMPACT_NEWTON;
         else if (strcmp(scene_fields[k].name, "duration") != 0 && !vary(&s.def, &scene_fields[k]))
