@@ -22,7 +22,7 @@ static void read_solid(const quat_lua_reader *reader, impact_solid *solid)
 
 static const char *const path_words[] = {
     [IMPACT_PATH_NONE] = "none", [IMPACT_PATH_CLOSED_FORM] = "closed form", [IMPACT_PATH_NEWTON] = "newton",
-    [IMPACT_PATH_GJK] = "gjk",   [IMPACT_PATH_FALLBACK] = "fallback",
+    [IMPACT_PATH_GJK] = "gjk",   [IMPACT_PATH_FALLBACK] = "fallback",       [IMPACT_PATH_CCD] = "ccd",
 };
 
 static void push_contact(lua_State *L, const impact_contact *c, impact_status status)
@@ -57,14 +57,32 @@ static void read_solids(lua_State *L, impact_solid body[2])
     }
 }
 
-/* gap(A, B): {gap=, normal=, point1=, point2=, ...}, or nil, message */
+/* libccd's tolerance, where options ask for it; 0: not by libccd. */
+static double read_gap_options(lua_State *L, int arg)
+{
+    static const char *const keys[] = {"method", "tolerance", NULL};
+    static const char *const words[] = {"newton", "ccd", NULL};
+    if (lua_isnoneornil(L, arg)) return 0;
+    const quat_lua_reader reader = quat_lua_read(L, arg, "options", NULL, keys);
+    const bool ccd = quat_lua_get_choice(&reader, "method", words, 0) == 1;
+    const double tolerance = quat_lua_get_number(&reader, "tolerance", QUAT_LUA_POSITIVE, 1e-4);
+    if (!ccd && quat_lua_has(&reader, "tolerance"))
+        quat_lua_reader_error(&reader, "tolerance is libccd's: it needs method = \"ccd\"");
+    if (ccd && !(tolerance >= 1e-7 && tolerance <= 1e-2))
+        quat_lua_reader_error(&reader, "tolerance must be in [1e-7, 1e-2]: libccd cannot give another");
+    return ccd ? tolerance : 0;
+}
+
+/* gap(A, B[, {method=, tolerance=}]): {gap=, normal=, point1=, point2=, ...}, or nil, message */
 static int gap(lua_State *L)
 {
     impact_solid body[2];
     read_solids(L, body);
+    const double ccd = read_gap_options(L, 3);
     if (both_planes(body)) return quat_lua_failure(L, no_gap);
     impact_contact contact;
-    const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
+    const impact_status status =
+        ccd > 0 ? impact_gap_ccd(&body[0], &body[1], ccd, &contact) : impact_gap(&body[0], &body[1], NULL, &contact);
     if (status < 0) return quat_lua_failure(L, impact_status_string(status));
     push_contact(L, &contact, status);
     return 1;

@@ -147,6 +147,36 @@ static void read_rules(const quat_lua_reader *reader, impact_scene_def *def)
     def->compliance = quat_lua_get_number(reader, "compliance", QUAT_LUA_NOT_NEGATIVE, def->compliance);
 }
 
+/* Whether both are given, and differ: two names of one key. */
+static void refuse_two_names(const quat_lua_reader *scene, const char *own, const quat_lua_reader *methods,
+                             const char *key, bool differ)
+{
+    if (quat_lua_has(scene, own) && quat_lua_has(methods, key) && differ)
+        quat_lua_reader_error(scene, "%s, and %s in methods, are two names of one key, and differ", own, key);
+}
+
+static void read_methods(const quat_lua_reader *reader, impact_scene_def *def)
+{
+    static const char *const keys[] = {"motion",           "impacts",       "gaps", "tolerance",
+                                       "impact_tolerance", "gap_tolerance", "step", NULL};
+    static const char *const motion_words[] = {"auto", "cvode", "rk4", "steps", NULL};
+    static const char *const gap_words[] = {"newton", "ccd", NULL};
+    if (quat_lua_push(reader, "methods") != LUA_TNIL) {
+        const quat_lua_reader methods = quat_lua_read(reader->L, -1, "methods", reader->where, keys);
+        impact_methods *m = &def->methods;
+        m->motion = (impact_motion_method)quat_lua_get_choice(&methods, "motion", motion_words, (int)m->motion);
+        m->impacts = (impact_solver)quat_lua_get_choice(&methods, "impacts", solver_words, (int)m->impacts);
+        m->gaps = (impact_gap_method)quat_lua_get_choice(&methods, "gaps", gap_words, (int)m->gaps);
+        m->tolerance = quat_lua_get_number(&methods, "tolerance", QUAT_LUA_POSITIVE, m->tolerance);
+        m->impact_tolerance = quat_lua_get_number(&methods, "impact_tolerance", QUAT_LUA_POSITIVE, m->impact_tolerance);
+        m->gap_tolerance = quat_lua_get_number(&methods, "gap_tolerance", QUAT_LUA_POSITIVE, m->gap_tolerance);
+        m->step = quat_lua_get_number(&methods, "step", QUAT_LUA_POSITIVE, m->step);
+        refuse_two_names(reader, "solver", &methods, "impacts", def->solver != m->impacts);
+        refuse_two_names(reader, "tolerance", &methods, "tolerance", def->tolerance != m->tolerance);
+    }
+    lua_pop(reader->L, 1);
+}
+
 static void read_plot(const quat_lua_reader *reader)
 {
     const int type = quat_lua_push(reader, "plot");
@@ -161,7 +191,7 @@ impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene
     static const char *const keys[] = {
         "name",          "gravity", "duration",  "output_rate", "bodies",     "forces",     "pairs", "rules",
         "law",           "solver",  "tolerance", "rest_height", "rest_speed", "max_events", "plot",  "compliance",
-        "key_tolerance", "piles",   "max_steps", "together",    "samples",    NULL};
+        "key_tolerance", "piles",   "max_steps", "together",    "samples",    "methods",    NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     const impact_lua_host *host = impact_lua_get_host(L);
@@ -173,6 +203,7 @@ impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene
     def.output_rate = quat_lua_get_number(&reader, "output_rate", QUAT_LUA_NOT_NEGATIVE, def.output_rate);
     read_rules(&reader, &def);
     def.tolerance = quat_lua_get_number(&reader, "tolerance", QUAT_LUA_POSITIVE, def.tolerance);
+    read_methods(&reader, &def);
     def.rest_height = quat_lua_get_number(&reader, "rest_height", QUAT_LUA_NOT_NEGATIVE, def.rest_height);
     def.rest_speed = quat_lua_get_number(&reader, "rest_speed", QUAT_LUA_NOT_NEGATIVE, def.rest_speed);
     def.max_events = (long)quat_lua_get_integer(&reader, "max_events", 1, 1000000000, def.max_events);

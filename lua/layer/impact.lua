@@ -52,7 +52,7 @@ core.layer()
 ---@field offset1 vec3  the same less the bodies' positions
 ---@field offset2 vec3
 ---@field stiffness number  m; small: the normal is soft
----@field path "closed form"|"newton"|"gjk"|"fallback"
+---@field path "closed form"|"newton"|"gjk"|"fallback"|"ccd"
 ---@field status string  "ok", or what to know about the answer
 
 ---@class impact.body
@@ -111,6 +111,15 @@ core.layer()
 ---@field velocity vec3
 ---@field omega vec3
 
+---@class impact.methods
+---@field motion? "auto"|"cvode"|"rk4"|"steps"  how bodies move between events; "steps": piles by steps
+---@field impacts? "auto"|"closed_form"|"series"|"cvode"  the same as solver
+---@field gaps? "newton"|"ccd"
+---@field tolerance? number  the same as the scene's
+---@field impact_tolerance? number  of impacts = "cvode", 1e-14 to 1e-2; by default the tolerance
+---@field gap_tolerance? number  of gaps = "ccd", 1e-7 to 1e-2 of the larger body; by default 1e-4
+---@field step? number  s, of motion = "rk4"
+
 ---@class impact.definition
 ---@field name? string
 ---@field duration number  s
@@ -124,6 +133,7 @@ core.layer()
 ---@field solver? "auto"|"closed_form"|"series"|"cvode"
 ---@field compliance? number  eta^2 of every contact, with law = "stronge"; 0: rigid
 ---@field tolerance? number
+---@field methods? impact.methods
 ---@field rest_height? number  m
 ---@field rest_speed? number  m/s
 ---@field max_events? integer

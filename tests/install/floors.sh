@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # floors.sh SOURCES: a folder of libimpact/src includes from its own and from lower floors only; folders of one floor do not
-# include each other; only base/ode.c with its pool names SUNDIALS, and only one file libccd.
+# include each other; only base/ode_cvode.c with its pool names SUNDIALS, and only one file libccd.
 set -euo pipefail
 cd "$1"
 floor() {
@@ -32,7 +32,7 @@ only() { # only PATTERN FILES: none but those whose name matches all of it inclu
     others=$(grep -lE "#include <$1" -- */*.[ch] | grep -vxE "$2" || true)
     [ -z "$others" ] || { echo "$1 is included by ${others//$'\n'/ }"; bad=1; }
 }
-only '(cvode|nvector|sundials|sunmatrix|sunlinsol|sunnonlinsol|arkode)/' 'base/ode(_pool)?\.[ch]'
+only '(cvode|nvector|sundials|sunmatrix|sunlinsol|sunnonlinsol|arkode)/' 'base/ode_(cvode|pool)\.[ch]'
 only ccd/ 'gap/gjk\.c'
 echo "$count includes between files"
 [ "$count" -gt 50 ] && [ "$bad" = 0 ]

@@ -14,7 +14,7 @@ case " $* " in *" -DIMPACT_WITH_CCD "*) ccd=1 ;; *) echo "libccd is absent: gap/
 left_out() { # FILE: of another build, or a second compilation of sources that are here already
     case $1 in
     base/ode_absent.c) [ "$cvode" = 1 ] ;;
-    base/ode.c | base/ode_pool.[ch]) [ "$cvode" = 0 ] ;;
+    base/ode_cvode.c | base/ode_pool.[ch]) [ "$cvode" = 0 ] ;;
     gap/gjk_absent.c) [ "$ccd" = 1 ] ;;
     gap/gjk.c) [ "$ccd" = 0 ] ;;
     *_second.c) true ;;

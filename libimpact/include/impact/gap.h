@@ -25,7 +25,8 @@ typedef enum impact_gap_path {
     IMPACT_PATH_CLOSED_FORM,
     IMPACT_PATH_NEWTON, /* from the cached or the centre-line seed */
     IMPACT_PATH_GJK,    /* Newton from libccd's seed */
-    IMPACT_PATH_FALLBACK
+    IMPACT_PATH_FALLBACK,
+    IMPACT_PATH_CCD /* libccd itself: impact_gap_ccd */
 } impact_gap_path;
 
 /* What the last query of one pair leaves for the next. Start from zeros; one per pair; never required (NULL). */
@@ -58,6 +59,19 @@ typedef struct impact_contact {
  */
 IMPACT_API impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                                     impact_contact *contact);
+
+/* The gap as libccd has it, by GJK and EPA on the bodies' support functions: its own depth and direction, of the
+ * bodies' difference inflated by a ball, so that it is seen apart too. tolerance, in [1e-7, 1e-2], is what EPA is asked
+ * for, in units of the larger body's largest semi-axis; it keeps that of well-rounded bodies, but its normal only to
+ * the root of it. The witness points are the support points along the normal; lower = upper = gap; stiffness is NaN.
+ * Pairs with a plane, two spheres and two polytopes are answered in closed form, as impact_gap does. IMPACT_EUNSETTLED:
+ * after several balls its answer is still 30 tolerances off the gap of its own normal, or took more than 600 support
+ * points; *contact is then the last one. IMPACT_EABSENT: this build has no libccd; IMPACT_EARGUMENT: a tolerance out of
+ * its range; else refuses what impact_gap does. libccd takes its polytope by malloc. Slower and less exact than
+ * impact_gap: here to be compared with (docs/report.md). Source: van den Bergen, "Proximity queries and penetration
+ * depth computation on 3D game objects", 2001. */
+IMPACT_API impact_status impact_gap_ccd(const impact_solid *body1, const impact_solid *body2, double tolerance,
+                                        impact_contact *contact);
 
 /* Residuals of an answer in eps (L + |c|); of normal in eps. */
 typedef struct impact_gap_residuals {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ode: a thin face over SUNDIALS' CVODE: y' = f(t, y) to the next root of g(t, y). The only room that names SUNDIALS.
- * Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT.
+ * ode: y' = f(t, y) to the next root of g(t, y), by SUNDIALS' CVODE or by the classical Runge-Kutta method with a fixed
+ * step. Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT to the methods of CVODE.
  */
 #ifndef IMPACT_ODE_H
 #define IMPACT_ODE_H
@@ -16,7 +16,14 @@ extern "C" {
 
 typedef struct impact_ode impact_ode; /* one integrator with its workspace; not shared between threads */
 
-typedef enum impact_ode_method { IMPACT_ODE_ADAMS, IMPACT_ODE_BDF } impact_ode_method;
+typedef enum impact_ode_method {
+    IMPACT_ODE_ADAMS, /* CVODE, orders 1 to 12, with fixed-point iteration */
+    IMPACT_ODE_BDF,   /* CVODE, orders 1 to 5, with Newton and a dense difference-quotient Jacobian */
+    /* The classical method of order 4 with def.step throughout: no error is looked at, tolerances mean nothing, and a
+     * right-hand side that asks for a smaller step ends it. Roots, and samples between the ends, by the step's cubic
+     * Hermite polynomial, of order 4 too. */
+    IMPACT_ODE_RK4
+} impact_ode_method;
 
 /* y' into rate[n]. Return 0; > 0: try a smaller step; < 0: give up. */
 typedef int impact_ode_rhs(double t, const double *y, double *rate, void *context);
@@ -30,8 +37,8 @@ typedef struct impact_ode_def {
     impact_ode_roots *root_functions; /* may be NULL when roots = 0 */
     bool falling_roots_only;          /* report a root function only where it falls through zero */
     void *context;                    /* handed to both */
-    impact_ode_method
-        method; /* Adams with fixed-point iteration, or BDF with Newton and a dense difference-quotient Jacobian */
+    impact_ode_method method;
+    double step;                       /* of RK4, > 0; else 0 */
     double relative_tolerance;         /* > 0 */
     double absolute_tolerance;         /* >= 0, for every component; see also absolute_tolerances */
     const double *absolute_tolerances; /* n values, copied, or NULL */
@@ -44,8 +51,8 @@ typedef struct impact_ode_counts {
 } impact_ode_counts;
 
 /* Copies the definition; *ode is NULL on failure. IMPACT_EARGUMENT: a number out of its range, or a function that is
- * missing. IMPACT_ENOMEM: the allocator, or malloc for SUNDIALS' own objects, has no more. After this call nothing is
- * allocated, by either. */
+ * missing. IMPACT_ENOMEM: the allocator, or malloc for SUNDIALS' own objects, has no more. IMPACT_EABSENT: this build
+ * has not the method. After this call nothing is allocated, by either. */
 IMPACT_API impact_status impact_ode_create(const impact_ode_def *def, impact_ode **ode);
 IMPACT_API void impact_ode_destroy(impact_ode *ode); /* NULL is fine */
 

@@ -83,6 +83,35 @@ typedef enum impact_samples {
     IMPACT_SAMPLES_MOVING
 } impact_samples;
 
+/* How bodies move between events. */
+typedef enum impact_motion_method {
+    IMPACT_MOTION_AUTO,  /* in closed form where there is one: flight, with damping too, and balls that roll or slide;
+                          * else by CVODE; piles as `piles` says */
+    IMPACT_MOTION_CVODE, /* all that moves by CVODE, flight too; no pile by steps */
+    IMPACT_MOTION_RK4,  /* all that moves by the classical Runge-Kutta method with the fixed `step`; no pile by steps */
+    IMPACT_MOTION_STEPS /* AUTO, and piles by steps from the start: piles = IMPACT_PILES_STEPS */
+} impact_motion_method;
+
+/* How gaps without a closed form are found. */
+typedef enum impact_gap_method {
+    IMPACT_GAP_NEWTON, /* impact_gap */
+    IMPACT_GAP_CCD     /* impact_gap_ccd, as it comes; a run whose query fails its check ends with IMPACT_EUNSETTLED */
+} impact_gap_method;
+
+/* The methods of a scene. Together motion = CVODE, impacts = CVODE and gaps = CCD are the textbook's construction:
+ * GJK and EPA on support functions, an integrator with root-finding between impacts and through each. IMPACT_EARGUMENT,
+ * with a message: one that is of no use beside the others, or out of its range; IMPACT_EABSENT: one that this build
+ * lacks. */
+typedef struct impact_methods {
+    impact_motion_method motion;
+    impact_solver impacts; /* the same as the definition's `solver`: one of them may be given, or both alike */
+    impact_gap_method gaps;
+    double tolerance;        /* the same as the definition's; 0: that one */
+    double impact_tolerance; /* of CVODE in impacts, in [1e-14, 1e-2]; 0: tolerance, and 1e-14 with compliance */
+    double gap_tolerance;    /* of libccd, in [1e-7, 1e-2], in units of the larger body; 0: libccd's own, 1e-4 */
+    double step;             /* s, > 0, of RK4; 0 of the others */
+} impact_methods;
+
 typedef struct impact_scene_def {
     const char *name;
     qvec3 gravity;      /* m/s^2 */
@@ -98,10 +127,11 @@ typedef struct impact_scene_def {
 
     impact_pair_rule friction_rule, restitution_rule;
     impact_law law;
-    impact_solver solver; /* of impacts */
+    impact_solver solver; /* of impacts; a short name of methods.impacts */
     double compliance;    /* of every contact, eta^2: see impact_collision; > 0 with Stronge's law only; 0: rigid */
 
-    double tolerance; /* relative, of the motion's integration; a thirtieth of it where no contact is held */
+    double tolerance; /* relative, of the motion's integration (a short name of methods.tolerance); a thirtieth of it
+                         where no contact is held */
     /* m: a bounce that would rise less than this, than a few roundings of the gap, or than the integrator can tell, is
      * the last: the contact is held; a body that rocks on a flat face with less energy than lifts it by a hundred of
      * this lies there */
@@ -116,6 +146,7 @@ typedef struct impact_scene_def {
     impact_piles piles;
     impact_scene_together together;
     impact_samples samples;
+    impact_methods methods;
 } impact_scene_def;
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
@@ -212,8 +243,8 @@ typedef struct impact_usage {
     long rolls;             /* stretches in which a ball rolls or slides on a plane, in closed form */
     long integrators;       /* CVODE integrators created for the motion */
     long integrator_starts, integrator_steps, integrator_rhs_calls;
-    long gap_closed_form, gap_newton, gap_gjk, gap_fallback; /* gap queries, by the road that answered */
-    long impacts_closed_form, impacts_series, impacts_cvode; /* impacts, by solver */
+    long gap_closed_form, gap_newton, gap_gjk, gap_fallback, gap_ccd; /* gap queries, by the road that answered */
+    long impacts_closed_form, impacts_series, impacts_cvode;          /* impacts, by solver */
     long impacts_second, impacts_soft; /* of these, answered in 128 bits; answered though no receipt passed */
     /* of these, answers to another impact in the same instant, one after another in the order of the definition */
     long impacts_simultaneous;

@@ -3,7 +3,7 @@
  * ode_pool: CVODE's vectors, matrices and dense solver on arena memory. SUNDIALS takes what a clone is from the vector
  * that it clones, and stops the process where a clone is NULL; so all clones are made beforehand, and a clone is never
  * NULL. Their operations are those of SUNDIALS' serial vectors and dense matrices: the numbers are the same to the bit.
- * Internal to ode.c; SUNDIALS 6.x or 7.x.
+ * Internal to ode_cvode.c; SUNDIALS 6.x or 7.x.
  */
 #ifndef IMP_ODE_POOL_H
 #define IMP_ODE_POOL_H

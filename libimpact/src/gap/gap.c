@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/gap.h>
 #include <quat/rotation.h>
+#include "base/tolerances.h"
 #include "gap/gap_core.h"
 #include "gap/gap_solver.h"
 
@@ -194,8 +195,14 @@ impact_status imp_gap_check(const impact_solid *body1, quat *q1, const impact_so
     return body1->shape.kind == IMPACT_PLANE && body2->shape.kind == IMPACT_PLANE ? IMPACT_EARGUMENT : IMPACT_OK;
 }
 
+/* How bodies without a closed form are asked. */
+typedef struct gap_question {
+    bool glance; /* imp_gap_glance */
+    double ccd;  /* libccd's tolerance; 0: not by libccd */
+} gap_question;
+
 static impact_status solve_pair(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
-                                bool glance, impact_contact *contact)
+                                gap_question question, impact_contact *contact)
 {
     *contact = no_contact();
     quat q1, q2;
@@ -215,19 +222,32 @@ static impact_status solve_pair(const impact_solid *body1, const impact_solid *b
     }
     if (imp_core_takes(&body1->shape, &body2->shape))
         return imp_core_contact(body1, q1, body2, q2, imp_gap_scale(body1, body2), cache, contact);
-    return smooth_pair(body1, q1, body2, q2, cache, glance, contact);
+    if (question.ccd > 0) {
+        const impact_status answered = imp_gap_by_ccd(body1, q1, body2, q2, question.ccd, contact);
+        if (answered != IMPACT_EABSENT) put_balls(body1, body2, contact);
+        return answered;
+    }
+    return smooth_pair(body1, q1, body2, q2, cache, question.glance, contact);
 }
 
 impact_status impact_gap(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                          impact_contact *contact)
 {
-    return solve_pair(body1, body2, cache, false, contact);
+    return solve_pair(body1, body2, cache, (gap_question){0}, contact);
 }
 
 impact_status imp_gap_glance(const impact_solid *body1, const impact_solid *body2, impact_gap_cache *cache,
                              impact_contact *contact)
 {
-    return solve_pair(body1, body2, cache, true, contact);
+    return solve_pair(body1, body2, cache, (gap_question){.glance = true}, contact);
+}
+
+impact_status impact_gap_ccd(const impact_solid *body1, const impact_solid *body2, double tolerance,
+                             impact_contact *contact)
+{
+    *contact = no_contact();
+    if (!(tolerance >= IMP_LEAST_CCD && tolerance <= IMP_MOST_CCD)) return IMPACT_EARGUMENT;
+    return solve_pair(body1, body2, NULL, (gap_question){.ccd = tolerance}, contact);
 }
 
 double impact_gap_rate(const impact_contact *contact, qvec3 velocity1, qvec3 omega1, qvec3 velocity2, qvec3 omega2)

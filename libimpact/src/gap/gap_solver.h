@@ -78,6 +78,16 @@ imp_simplex_end imp_gap_simplex(const imp_gap_solids *pair, double shrink, doubl
  * False when this build has no libccd or nothing was met. */
 bool imp_gap_harvest(const imp_gap_solids *pair, double n[3]);
 
+/* libccd's own answer: the depth of the origin in the difference c + B - A, inflated by a ball of radius rho, and the
+ * normal n from A to B that leads out. first: the direction to begin with; tolerance: of a length. False: it has none, or was at its end of support calls.
+ */
+bool imp_gap_epa(const imp_gap_solids *pair, double rho, const double first[3], double tolerance, double *depth,
+                 double n[3]);
+
+/* impact_gap_ccd of two bodies without a closed form, with unit orientations. */
+impact_status imp_gap_by_ccd(const impact_solid *body1, quat q1, const impact_solid *body2, quat q2, double tolerance,
+                             impact_contact *contact);
+
 /* Points of the bodies' difference c + B - A, at peaks n of g: there g(n) n is one, but for rounding. asked: for how
  * many Newton was. */
 enum { IMP_MOST_PEAKS = 32 };

@@ -21,11 +21,13 @@ bool imp_motion_reserve(imp_motion *motion, imp_arena *arena, int bodies)
     return true;
 }
 
-void imp_motion_reset(imp_motion *motion, imp_world *world, double tolerance, double rest_speed)
+void imp_motion_reset(imp_motion *motion, imp_world *world, const impact_methods *methods, double rest_speed)
 {
     motion->world = world;
     motion->persist.arena = world->arena;
-    motion->tolerance = tolerance;
+    motion->method = methods->motion;
+    motion->tolerance = methods->tolerance;
+    motion->step = methods->step;
     motion->rest_speed = rest_speed;
     motion->works = (imp_works){0};
     motion->bounces = motion->distrusted = motion->retried = false;
@@ -42,12 +44,13 @@ void imp_motion_forget(imp_motion *motion)
     imp_arena *arena = motion->world->arena;
     impact_ode_destroy(motion->adams);
     impact_ode_destroy(motion->bdf);
+    impact_ode_destroy(motion->rk4);
     imp_arena_give(arena, motion->kept);
     imp_arena_give(arena, motion->y);
     imp_arena_give(arena, motion->found);
     imp_arena_give(arena, motion->probe);
     imp_arena_give(arena, motion->absolute);
-    motion->ode = motion->adams = motion->bdf = NULL;
+    motion->ode = motion->adams = motion->bdf = motion->rk4 = NULL;
     motion->kept = motion->y = motion->probe = motion->absolute = NULL;
     motion->found = NULL;
     motion->counted = (impact_ode_counts){0};

@@ -45,7 +45,8 @@ typedef struct imp_stride {
 
 typedef struct imp_motion {
     imp_world *world;
-    double tolerance, rest_speed;
+    impact_motion_method method; /* AUTO and CVODE are the same here */
+    double tolerance, step, rest_speed;
     bool *resting; /* per body: no longer watched for rest */
     imp_persist persist;
     imp_load *loads;
@@ -58,9 +59,9 @@ typedef struct imp_motion {
     impact_ode_counts counted; /* in the world's usage already */
 
     /* the integrator's side; absent until it is needed */
-    impact_ode *ode; /* the one at work: adams or bdf */
-    impact_ode *adams,
-        *bdf; /* for smooth motion; for what is stiff: slow slip after an onset, forces that brake hard */
+    impact_ode *ode; /* the one at work: adams for smooth motion; bdf for what is stiff: slow slip after an onset,
+                      * forces that brake hard; or rk4, where it was asked for, for all */
+    impact_ode *adams, *bdf, *rk4;
     int size, roots;
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated; */
     imp_touch *kept_touches;
@@ -89,7 +90,7 @@ typedef struct imp_motion {
 /* Room for so many bodies in all that is kept of each. */
 bool imp_motion_reserve(imp_motion *motion, imp_arena *arena, int bodies);
 /* Nothing has happened yet in this world. */
-void imp_motion_reset(imp_motion *motion, imp_world *world, double tolerance, double rest_speed);
+void imp_motion_reset(imp_motion *motion, imp_world *world, const impact_methods *methods, double rest_speed);
 /* Room for the integrated state of the world as it is; integrators of another size are of no use. */
 impact_status imp_motion_make_room(imp_motion *motion);
 /* Frees the integrators and what belongs to them; and all. */

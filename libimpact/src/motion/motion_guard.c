@@ -41,10 +41,10 @@ static double defect(imp_motion *motion, double tau, double h)
     return worst;
 }
 
-/* Asked at thirds of the step. Leaves the touches as they are at the step's end. */
+/* Asked at thirds of the step. Leaves the touches as they are at the step's end. A fixed step is not asked. */
 static bool step_is_seen(imp_motion *motion, double tau, const double *y)
 {
-    if (!has_custom_force(motion->world)) return true;
+    if (!has_custom_force(motion->world) || motion->method == IMPACT_MOTION_RK4) return true;
     double low, high;
     impact_ode_last_step(motion->ode, &low, &high);
     const double h = high - low;
@@ -77,6 +77,7 @@ bool imp_motion_loss_falls(imp_motion *motion, const double *y)
 {
     const double *before = state_before(motion);
     motion->last_fall = 0;
+    if (motion->method == IMPACT_MOTION_RK4) return false; /* there is no other method to go on with */
     for (int k = Y_DAMPING; k <= Y_SLIDING; k++) {
         const double fall = before[k] - y[k];
         const double error = IMP_LOSS_ERRORS * (motion->relative * fabs(y[k]) + motion->absolute[k]);

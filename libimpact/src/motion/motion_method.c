@@ -37,7 +37,9 @@ impact_status imp_motion_make_room(imp_motion *motion)
 /* Makes the integrator of the method the one at work, creating it when it is first needed. */
 static impact_status choose_integrator(imp_motion *motion, impact_ode_method method)
 {
-    impact_ode **ode = method == IMPACT_ODE_ADAMS ? &motion->adams : &motion->bdf;
+    impact_ode **ode = method == IMPACT_ODE_RK4     ? &motion->rk4
+                       : method == IMPACT_ODE_ADAMS ? &motion->adams
+                                                    : &motion->bdf;
     impact_status status = imp_motion_make_room(motion);
     if (status == IMPACT_OK && !*ode) {
         const impact_ode_def def = {.size = motion->size,
@@ -46,6 +48,7 @@ static impact_status choose_integrator(imp_motion *motion, impact_ode_method met
                                     .root_functions = imp_motion_root_values,
                                     .context = motion,
                                     .method = method,
+                                    .step = method == IMPACT_ODE_RK4 ? motion->step : 0,
                                     .relative_tolerance = motion->tolerance,
                                     .absolute_tolerance = IMP_ABSOLUTE_OF_RELATIVE * motion->tolerance,
                                     .falling_roots_only = true};
@@ -61,11 +64,13 @@ static impact_status choose_integrator(imp_motion *motion, impact_ode_method met
 
 void imp_motion_count_work(imp_motion *motion)
 {
-    impact_ode_counts adams = {0}, bdf = {0};
-    if (motion->adams) adams = impact_ode_count(motion->adams);
-    if (motion->bdf) bdf = impact_ode_count(motion->bdf);
-    const long starts = adams.starts + bdf.starts, steps = adams.steps + bdf.steps,
-               calls = adams.rhs_calls + bdf.rhs_calls;
+    const impact_ode *all[] = {motion->adams, motion->bdf, motion->rk4};
+    long starts = 0, steps = 0, calls = 0;
+    for (int k = 0; k < 3; k++) {
+        if (!all[k]) continue;
+        const impact_ode_counts counts = impact_ode_count(all[k]);
+        starts += counts.starts, steps += counts.steps, calls += counts.rhs_calls;
+    }
     impact_usage *usage = &motion->world->usage;
     usage->integrator_starts += starts - motion->counted.starts;
     usage->integrator_steps += steps - motion->counted.steps;
@@ -162,6 +167,7 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     motion->creeping = motion->creep_scale > 0;
     const bool stiff = motion->stiff || is_braked(motion, t, t_end, states), other = motion->distrusted;
     motion->distrusted = false;
+    if (motion->method == IMPACT_MOTION_RK4) return choose_integrator(motion, IMPACT_ODE_RK4);
     return choose_integrator(motion, stiff != other ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
 }
 

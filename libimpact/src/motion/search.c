@@ -154,7 +154,7 @@ static void look_at(const imp_search *s, double t, sight *l)
         l->jerk += segment->kind == IMP_SEGMENT_DAMPED ? 0 : l->bounds[k].jerk;
     }
     l->pull = qvec3_sub(l->bounds[0].acceleration, l->bounds[1].acceleration);
-    imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->usage, &l->contact);
+    imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->gaps, s->usage, &l->contact);
     const qvec3 still = {0, 0, 0};
     const qvec3 omega1 = imp_omega(s->body[0], &l->state[0]);
     const qvec3 omega2 = s->body[1]->is_static ? still : imp_omega(s->body[1], &l->state[1]);
@@ -266,7 +266,8 @@ static imp_found advance(const imp_search *s, double from, double until)
 {
     enum { STEPS = 2000 };
     const imp_found never = {INFINITY, false};
-    const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), least = shortest_step(s), start = start_of(s);
+    const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), least = shortest_step(s), start = start_of(s),
+                 error = imp_gap_error(s->gaps, s->body[0], s->body[1]);
     double t = from + (from == start ? balls_meet(s, from) : 0), slack = 0, before = t, gap_before = INFINITY;
     bool leaving = false;
     for (int i = 0; i < STEPS && t <= end; i++) {
@@ -277,14 +278,14 @@ static imp_found advance(const imp_search *s, double from, double until)
         if (s->beyond) {
             step = step_behind(s, &l);
         } else {
-            const double touching = IMP_TOUCHING * scale_of(s, &l);
+            const double touching = IMP_TOUCHING * scale_of(s, &l) + error;
             if (t == start) {
                 const bool still = fabs(l.rate) <= still_rate(s, &l);
                 slack = touching + fmax(0, -gap); /* of bodies that began with an overlap */
                 leaving = fabs(gap) <= slack && (still || (l.rate > 0 && (turns(s, 0) || turns(s, 1))));
             }
             leaving = leaving && gap <= touching;
-            const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l);
+            const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l) + error;
             if (leaving) gap += slack;
             if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
                 return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};

@@ -14,6 +14,7 @@ typedef struct imp_search {
     const imp_segment *segment[2];
     bool beyond;         /* body 1 is behind a plane, beside its bounds: the search is for its return before it */
     double still;        /* m/s: rates of the gap that only rounding makes: imp_world's slip_speed */
+    imp_gaps *gaps;      /* how gaps are asked for; NULL: by Newton */
     impact_usage *usage; /* gap queries are counted there */
 } imp_search;
 

@@ -6,6 +6,7 @@
 #include "scene/parting.h"
 #include "scene/scene_events.h"
 #include "scene/scene_keys.h"
+#include "scene/scene_methods.h"
 #include "scene/scene_receipt.h"
 #include "scene/stepped.h"
 
@@ -178,10 +179,11 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     return conclude(island, status);
 }
 
-/* Whether anything happens to the body at the start. */
+/* Whether nothing happens to the body at the start, and it may fly. */
 static bool begins_alone(impact_scene *scene, int body)
 {
     const imp_track *track = &scene->tracks.tracks[body];
+    if (imp_scene_integrates_all(&scene->methods)) return false;
     for (int k = 0; k < scene->world.field_count; k++)
         if (scene->world.fields[k].only < 0 || scene->world.fields[k].only == body) return false;
     for (int k = 0; k < track->near_count; k++)

@@ -4,6 +4,7 @@
 #include "scene/rolling.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_meeting.h"
+#include "scene/scene_methods.h"
 #include "scene/stepped.h"
 #include "world/world_gap.h"
 
@@ -182,7 +183,8 @@ impact_status imp_island_start(imp_island *island)
     island->rolls = island->loses = false;
     if (island->rests) return stand(island);
     imp_segment segment;
-    if (!island->stepped && imp_island_rolls(island, &segment, &island->end)) return roll(island, &segment);
+    const bool closed = !island->stepped && !imp_scene_integrates_all(&scene->methods);
+    if (closed && imp_island_rolls(island, &segment, &island->end)) return roll(island, &segment);
     if (island->stepped) hold_near(island);
     imp_motion_depart(&island->motion, island->t, horizon(scene, island->t), island->end.kind == IMP_END_RENEWAL);
     return imp_island_step_on(island);

@@ -52,8 +52,9 @@ bool imp_gather_touches(impact_scene *scene, const imp_near *near, double t)
     if (imp_is_ball(b1) && (plane || imp_is_ball(b2))) return true;
     const imp_state a = imp_segment_at(s1, b1, t), b = imp_segment_at(s2, b2, t);
     impact_contact contact;
-    imp_gap_of(b1, &a, b2, &b, &scene->world.usage, &contact);
-    return contact.gap <= IMP_TOUCHING * imp_place_scale(b1, x1, b2, x2, contact.normal);
+    imp_gap_of(b1, &a, b2, &b, scene->world.gaps, &scene->world.usage, &contact);
+    return contact.gap <=
+           IMP_TOUCHING * imp_place_scale(b1, x1, b2, x2, contact.normal) + imp_gap_error(scene->world.gaps, b1, b2);
 }
 
 static impact_status add_touching(impact_scene *scene, const imp_pair *pair)

@@ -51,6 +51,7 @@ void imp_island_clear(imp_island *island)
     world->body_count = world->pair_count = 0;
     world->gravity = whole->gravity;
     world->driven = false;
+    world->gaps = whole->gaps;
     world->slip_speed = whole->slip_speed;
     world->onset_speed = whole->onset_speed;
     world->flat_height = whole->flat_height;
@@ -59,7 +60,7 @@ void imp_island_clear(imp_island *island)
     island->rests = island->rolls = island->loses = island->stepped = island->moves = false;
     island->patience = (imp_patience){0};
     island->end = (imp_end){IMP_END_TIME, 0};
-    imp_motion_reset(&island->motion, world, island->scene->tolerance, island->scene->rest_speed);
+    imp_motion_reset(&island->motion, world, &island->scene->methods, island->scene->rest_speed);
 }
 
 static void free_fields(imp_world *world)

@@ -2,6 +2,7 @@
 #include "scene/parting.h"
 #include "scene/following.h"
 #include "scene/islands.h"
+#include "scene/scene_methods.h"
 #include "scene/stepped.h"
 
 static int root_of(const int *root, int i)
@@ -35,10 +36,11 @@ static int find_components(const imp_island *island, int *root)
     return count;
 }
 
-/* Whether a contact holds the component, or a force acts on it. */
+/* Whether a contact holds the component, or a force acts on it; or nothing is to fly in closed form. */
 static bool is_tied(const imp_island *island, const int *root, int component)
 {
     const imp_world *world = &island->world;
+    if (imp_scene_integrates_all(&island->scene->methods)) return true;
     for (int p = 0; p < world->pair_count; p++)
         if (imp_island_ties(island, &world->pairs[p]) && root[world->pairs[p].body1] == component) return true;
     for (int k = 0; k < world->field_count; k++)

@@ -4,6 +4,7 @@
 #include "scene/scene_keys.h"
 #include "scene/scene_receipt.h"
 #include "scene/saved.h"
+#include "scene/scene_methods.h"
 #include "scene/scene_together.h"
 #include "world/world_gap.h"
 #include "base/floats.h"
@@ -22,7 +23,7 @@ static impact_status check_overlaps(impact_scene *scene, char *message, unsigned
         const imp_body *b1 = &world->bodies[near->body[0]], *b2 = &world->bodies[near->body[1]];
         impact_contact contact;
         const impact_status status = imp_gap_of(b1, &scene->states[near->body[0]], b2, &scene->states[near->body[1]],
-                                                &scene->world.usage, &contact);
+                                                scene->world.gaps, &scene->world.usage, &contact);
         if (status < 0) {
             if (message)
                 snprintf(message, message_size, "bodies '%s' and '%s': %s", b1->name, b2->name,
@@ -58,6 +59,19 @@ static impact_status open_memory(const impact_scene_def *def, impact_scene **sce
     return IMPACT_ENOMEM;
 }
 
+static impact_status open_workspace(impact_scene *scene, char *message, unsigned long size)
+{
+    const bool springs = scene->compliance > 0;
+    if (!springs && scene->methods.impacts != IMPACT_SOLVER_CVODE) return IMPACT_OK;
+    const impact_ode_method method = springs ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS;
+    const impact_status status =
+        imp_collide_workspace_in(scene->world.arena, method, scene->methods.impact_tolerance, &scene->workspace);
+    if (status == IMPACT_EABSENT && message)
+        snprintf(message, size, "%s CVODE, and this build has none (IMPACT_WITH_CVODE is off)",
+                 springs ? "compliance needs" : "impacts = \"cvode\" in methods, or solver, needs");
+    return status;
+}
+
 static impact_status create(const impact_scene_def *def, impact_scene **out, char *message, unsigned long message_size)
 {
     if (!imp_floats_are_gradual()) {
@@ -78,26 +92,21 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
     scene->duration = def->duration;
     scene->law = def->law;
     scene->compliance = def->compliance;
-    scene->solver = def->solver;
+    scene->methods = imp_scene_methods_of(def);
+    scene->gaps = (imp_gaps){.method = scene->methods.gaps, .tolerance = scene->methods.gap_tolerance};
     scene->together = imp_scene_together_of(def);
     scene->rest_height = def->rest_height;
     scene->rest_speed = def->rest_speed;
-    scene->tolerance = def->tolerance;
     scene->max_events = def->max_events;
     scene->max_steps = def->max_steps;
-    scene->piles = def->piles;
+    scene->piles = imp_scene_piles_of(def);
     scene->samples = def->samples;
     scene->key_tolerance = def->key_tolerance;
     scene->print = imp_scene_print(def);
     scene->output_rate = def->output_rate;
     status = imp_scene_build(scene, def);
     imp_scene_receipt_begin(scene);
-    if (status == IMPACT_OK && def->compliance > 0) { /* impacts are few: as exactly as can be */
-        status = imp_collide_workspace_in(scene->world.arena, IMPACT_ODE_BDF, 1e-14, &scene->springs);
-        if (status == IMPACT_EABSENT && message)
-            snprintf(message, message_size,
-                     "compliance needs CVODE, and this build has none (IMPACT_WITH_CVODE is off)");
-    }
+    if (status == IMPACT_OK) status = open_workspace(scene, message, message_size);
     if (status == IMPACT_OK) {
         imp_field_locate(&scene->world, scene->t, scene->states, false);
         scene->energy_start =
@@ -137,7 +146,7 @@ void impact_scene_destroy(impact_scene *scene)
     for (int k = 0; k < scene->island_count; k++)
         if (scene->islands[k]) imp_motion_forget(&scene->islands[k]->motion);
     for (int k = 0; k < scene->spare_count; k++) imp_motion_forget(&scene->spares[k]->motion);
-    impact_collide_workspace_destroy(scene->springs);
+    impact_collide_workspace_destroy(scene->workspace);
     imp_arena_destroy(scene->world.arena); /* with everything else */
 }
 

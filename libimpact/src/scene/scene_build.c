@@ -96,8 +96,10 @@ static impact_status build_bodies(impact_scene *scene, const impact_scene_def *d
 impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
 {
     imp_world *world = &scene->world;
-    *world = (imp_world){
-        .arena = world->arena, .gravity = def->gravity, .slip_speed = IMP_SLIP_OF_REST_SPEED * def->rest_speed};
+    *world = (imp_world){.arena = world->arena,
+                         .gravity = def->gravity,
+                         .gaps = &scene->gaps,
+                         .slip_speed = IMP_SLIP_OF_REST_SPEED * def->rest_speed};
     scene->name = imp_arena_copy(world->arena, def->name ? def->name : "scene");
     if (!scene->name) return IMPACT_ENOMEM;
     world->onset_speed = IMP_ONSET_OF_SLIP_SPEED * world->slip_speed;

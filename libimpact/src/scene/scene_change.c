@@ -56,7 +56,7 @@ static double overlap_of(impact_scene *scene, int body, const imp_state *state, 
     const imp_body *b1 = &scene->world.bodies[body], *b2 = &scene->world.bodies[other];
     const imp_state *s2 = &scene->states[other];
     impact_contact contact;
-    if (imp_gap_of(b1, state, b2, s2, &scene->world.usage, &contact) < 0) return INFINITY;
+    if (imp_gap_of(b1, state, b2, s2, scene->world.gaps, &scene->world.usage, &contact) < 0) return INFINITY;
     const double size = imp_place_scale(b1, state->x, b2, s2->x, contact.normal);
     if (contact.gap >= -IMP_OVERLAP_AT_START * size) return 0;
     const qvec3 local = quat_rotate_inverse(s2->q, contact.offset2);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_check.h"
+#include "scene/scene_methods.h"
 #include "world/drive.h"
 
 #include <stdio.h>
@@ -206,6 +207,15 @@ static void check_pair(check *c, const impact_pair_def *pair)
             pair->stiffness, "must be finite and not negative");
 }
 
+static void check_methods(check *c, const impact_scene_def *def)
+{
+    char why[200];
+    if (c->status != IMPACT_OK) return;
+    const impact_status status = imp_scene_methods_check(def, why, sizeof why);
+    require_words(c, status == IMPACT_OK, why);
+    c->status = status;
+}
+
 impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp_names *names, char *message,
                               unsigned long message_size)
 {
@@ -244,6 +254,7 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
                   "together = \"moreau\" needs law = \"poisson\"");
     require(&c, def->samples == IMPACT_SAMPLES_ALL || def->samples == IMPACT_SAMPLES_MOVING, "samples", def->samples,
             "are neither all nor those that move");
+    check_methods(&c, def);
     require(&c, def->max_steps > 0, "max_steps", (double)def->max_steps, "must be positive");
     require(&c, def->friction_rule >= IMPACT_PRODUCT && def->friction_rule <= IMPACT_MAXIMUM, "friction_rule",
             def->friction_rule, "is no rule");

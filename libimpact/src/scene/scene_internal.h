@@ -59,12 +59,13 @@ struct impact_scene {
     bool unsteady; /* some force may move, some time, what rests under it now */
     impact_law law;
     double compliance;
-    impact_collide_workspace *springs;             /* solves impacts with compliance; absent without it */
+    impact_collide_workspace *workspace;           /* solves impacts by CVODE; absent where none is asked to be */
     impact_scene_together together;                /* never AUTO */
     impact_together_workspace *together_workspace; /* absent until it is needed */
     long encounter_count;
-    impact_solver solver;
-    double tolerance, rest_height, rest_speed;
+    impact_methods methods; /* filled in: scene_methods.h */
+    imp_gaps gaps;
+    double rest_height, rest_speed;
     long max_events, event_count, max_steps, steps; /* steps: slots of the queue */
     impact_piles piles;
     impact_samples samples;

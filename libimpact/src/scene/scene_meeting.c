@@ -124,9 +124,9 @@ impact_collision imp_scene_collision(imp_island *island, imp_meeting *m)
                               .friction = touch->friction,
                               .restitution = dies ? 0 : restitution,
                               .law = island->scene->law,
-                              .solver = island->scene->solver,
+                              .solver = island->scene->methods.impacts,
                               .tangential_compliance = island->scene->compliance,
-                              .workspace = island->scene->springs};
+                              .workspace = island->scene->workspace};
 }
 
 void imp_scene_set_velocities(imp_island *island, int i, qvec3 velocity, qvec3 omega)

@@ -13,7 +13,7 @@
 
 void imp_scene_receipt_begin(impact_scene *scene)
 {
-    const double tolerance = scene->tolerance;
+    const double tolerance = scene->methods.tolerance;
     scene->receipt = (impact_scene_residuals){.limit_unit = IMP_RECEIPT_UNIT,
                                               .limit_gap = IMP_RECEIPT_GAP + IMP_RECEIPT_ERRORS * tolerance,
                                               .limit_contact = IMP_RECEIPT_CONTACT,

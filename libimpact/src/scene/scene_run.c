@@ -142,6 +142,17 @@ static impact_status due(impact_scene *scene, int slot, double t, double t_end)
     return island_due(scene, slot, t, t_end);
 }
 
+/* Libccd's answers are taken as they come, or not at all. */
+static impact_status gaps_failed(impact_scene *scene)
+{
+    imp_gaps *gaps = &scene->gaps;
+    snprintf(scene->message, sizeof scene->message,
+             "bodies '%s' and '%s' at t = %.17g: libccd's gap is none at gap_tolerance = %g", gaps->failed[0],
+             gaps->failed[1], scene->t, gaps->tolerance);
+    gaps->failed[0] = NULL;
+    return IMPACT_EUNSETTLED;
+}
+
 bool imp_scene_told(impact_scene *scene)
 {
     const impact_recorder *recorder = scene->recorder;
@@ -177,6 +188,7 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end)
     scene->begun = true;
     begin_samples(scene);
     if (status == IMPACT_OK && scene->refused) status = IMPACT_ESINK;
+    if (scene->gaps.failed[0]) return gaps_failed(scene);
     while (status == IMPACT_OK) {
         const double t = imp_queue_time(&scene->queue);
         if (scene->one_event && scene->event_count > events) t_end = scene->t; /* with all else of that instant */
@@ -190,6 +202,7 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end)
         if (!imp_scene_told(scene)) return scene->stop;
         scene->t = fmax(scene->t, t);
         status = due(scene, imp_queue_first(&scene->queue), t, t_end);
+        if (scene->gaps.failed[0]) return gaps_failed(scene);
         if (status == IMPACT_OK && (scene->refused || !imp_scene_account_now_and_then(scene))) status = IMPACT_ESINK;
     }
     if (status == IMPACT_OK) scene->t = t_end;

@@ -5,6 +5,7 @@
  */
 #include "base/floats.h"
 #include "scene/saved.h"
+#include "scene/scene_methods.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -86,8 +87,10 @@ uint64_t imp_scene_print(const impact_scene_def *def)
         print_text(&a, def->pairs[k].body2);
         PRINT(&a, def->pairs[k].friction, def->pairs[k].restitution, def->pairs[k].stiffness);
     }
-    PRINT(&a, def->friction_rule, def->restitution_rule, def->law, def->solver, def->compliance);
-    PRINT(&a, def->tolerance, def->rest_height, def->rest_speed, def->piles, def->together, def->samples);
+    PRINT(&a, def->friction_rule, def->restitution_rule, def->law, def->compliance);
+    const impact_methods m = imp_scene_methods_of(def);
+    PRINT(&a, m.motion, m.impacts, m.gaps, m.tolerance, m.impact_tolerance, m.gap_tolerance, m.step);
+    PRINT(&a, def->rest_height, def->rest_speed, imp_scene_piles_of(def), def->together, def->samples);
     return a.sum;
 }
 

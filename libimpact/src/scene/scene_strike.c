@@ -42,7 +42,7 @@ static impact_status strike(imp_island *island, imp_meeting *m)
     if (status != IMPACT_OK && status != IMPACT_SOFT) {
         snprintf(island->scene->message, sizeof island->scene->message, "impact of '%s' and '%s' at t = %.17g: %s",
                  world->bodies[touch->body1].name, world->bodies[touch->body2].name, island->t,
-                 status == IMPACT_EARGUMENT && island->scene->solver == IMPACT_SOLVER_CLOSED_FORM
+                 status == IMPACT_EARGUMENT && island->scene->methods.impacts == IMPACT_SOLVER_CLOSED_FORM
                      ? "it has no closed form, and the scene asks for no other solver"
                      : impact_status_string(status));
         return status < 0 ? status : IMPACT_EUNSETTLED;

@@ -3,6 +3,7 @@
 #include "contact/encounter.h"
 #include "contact/persist_still.h"
 #include "scene/scene_events.h"
+#include "scene/scene_methods.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +11,7 @@
 impact_scene_together imp_scene_together_of(const impact_scene_def *def)
 {
     if (def->together != IMPACT_SCENE_TOGETHER_AUTO) return def->together;
-    if (def->solver != IMPACT_SOLVER_AUTO || def->compliance > 0) return IMPACT_SCENE_SEQUENCE;
+    if (imp_scene_methods_of(def).impacts != IMPACT_SOLVER_AUTO || def->compliance > 0) return IMPACT_SCENE_SEQUENCE;
     if (def->law == IMPACT_POISSON) return IMPACT_SCENE_MOREAU;
     return def->law == IMPACT_STRONGE ? IMPACT_SCENE_SPRINGS : IMPACT_SCENE_SEQUENCE;
 }

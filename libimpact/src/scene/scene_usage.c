@@ -23,6 +23,7 @@ static const struct {
     ENTRY(gap_newton),
     ENTRY(gap_gjk),
     ENTRY(gap_fallback),
+    ENTRY(gap_ccd),
     ENTRY(impacts_closed_form),
     ENTRY(impacts_series),
     ENTRY(impacts_cvode),

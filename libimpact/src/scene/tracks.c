@@ -152,6 +152,7 @@ static void search(imp_tracks *tracks, imp_near *near, double from)
                           .segment = {&a->segment, &b->segment},
                           .beyond = near->beyond,
                           .still = tracks->world->slip_speed,
+                          .gaps = tracks->world->gaps,
                           .usage = &tracks->world->usage};
     const imp_found found = imp_search_contact(&s, from, smaller(a->leave, b->leave));
     near->t = found.t, near->touches = found.touches;
@@ -190,7 +191,7 @@ static bool is_beyond(imp_tracks *tracks, const imp_near *near, double t)
     state[0] = imp_segment_at(&tracks->tracks[near->body[0]].segment, b1, t);
     state[1] = tracks->tracks[near->body[1]].segment.start;
     impact_contact contact;
-    imp_gap_of(b1, &state[0], b2, &state[1], &tracks->world->usage, &contact);
+    imp_gap_of(b1, &state[0], b2, &state[1], tracks->world->gaps, &tracks->world->usage, &contact);
     const qvec3 local = quat_rotate_inverse(state[1].q, contact.offset2);
     return contact.gap < 0 && (fabs(local.x) > b2->shape.a || fabs(local.y) > b2->shape.b);
 }

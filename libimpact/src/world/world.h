@@ -88,6 +88,13 @@ typedef struct imp_field {
     double piece[2];  /* custom: between which switches the motion is now, s */
 } imp_field;
 
+/* How a scene asks for gaps, and the first pair whose gap was not found so. */
+typedef struct imp_gaps {
+    impact_gap_method method;
+    double tolerance; /* libccd's */
+    const char *failed[2];
+} imp_gaps;
+
 typedef struct imp_world {
     imp_arena *arena; /* the scene's: all memory of the world and of what moves it */
     int body_count, pair_count, field_count;
@@ -99,6 +106,7 @@ typedef struct imp_world {
     double slip_speed;  /* m/s: slip that dies out below this sticks */
     double onset_speed; /* m/s: slip that begins goes the way it is accelerated up to this */
     double flat_height; /* m: bodies that rock on a face and rise less lie on it */
+    imp_gaps *gaps;     /* the scene's; NULL: by Newton */
     impact_usage usage;
 } imp_world;
 

@@ -3,10 +3,13 @@
 #include "base/tolerances.h"
 
 static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_body *b2, const imp_state *s2,
-                            impact_gap_cache *cache, impact_usage *usage, impact_contact *contact)
+                            impact_gap_cache *cache, imp_gaps *gaps, impact_usage *usage, impact_contact *contact)
 {
     const impact_solid solid1 = imp_solid_of(b1, s1), solid2 = imp_solid_of(b2, s2);
-    const impact_status status = impact_gap(&solid1, &solid2, cache, contact);
+    const bool ccd = gaps && gaps->method == IMPACT_GAP_CCD;
+    const impact_status status =
+        ccd ? impact_gap_ccd(&solid1, &solid2, gaps->tolerance, contact) : impact_gap(&solid1, &solid2, cache, contact);
+    if (ccd && status < 0 && !gaps->failed[0]) gaps->failed[0] = b1->name, gaps->failed[1] = b2->name;
     contact->offset1 = qvec3_add(contact->offset1, imp_shape_offset(b1, s1));
     contact->offset2 = qvec3_add(contact->offset2, imp_shape_offset(b2, s2));
     switch (contact->path) {
@@ -14,21 +17,29 @@ static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_b
     case IMPACT_PATH_NEWTON: usage->gap_newton++; break;
     case IMPACT_PATH_GJK: usage->gap_gjk++; break;
     case IMPACT_PATH_FALLBACK: usage->gap_fallback++; break;
+    case IMPACT_PATH_CCD: usage->gap_ccd++; break;
     case IMPACT_PATH_NONE: break;
     }
     return status;
 }
 
 impact_status imp_gap_of(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
-                         impact_usage *usage, impact_contact *contact)
+                         imp_gaps *gaps, impact_usage *usage, impact_contact *contact)
 {
-    return gap_of(body1, state1, body2, state2, NULL, usage, contact);
+    return gap_of(body1, state1, body2, state2, NULL, gaps, usage, contact);
+}
+
+double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body *body2)
+{
+    const bool closed = body2->shape.kind == IMPACT_PLANE || (imp_is_ball(body1) && imp_is_ball(body2));
+    if (!gaps || gaps->method != IMPACT_GAP_CCD || closed) return 0;
+    return gaps->tolerance * fmax(body1->radius, body2->radius);
 }
 
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
 {
     return gap_of(&world->bodies[pair->body1], &states[pair->body1], &world->bodies[pair->body2], &states[pair->body2],
-                  &pair->cache, &world->usage, contact);
+                  &pair->cache, world->gaps, &world->usage, contact);
 }
 
 double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point)
@@ -76,7 +87,8 @@ double imp_world_place_scale(const imp_world *world, const imp_pair *pair, const
 
 double imp_world_touching_distance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    return IMP_TOUCHING * imp_world_place_scale(world, pair, states);
+    return IMP_TOUCHING * imp_world_place_scale(world, pair, states) +
+           imp_gap_error(world->gaps, &world->bodies[pair->body1], &world->bodies[pair->body2]);
 }
 
 double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, const imp_state *states)

@@ -10,9 +10,12 @@
 /* The pair's contact, counted by the road that answered. */
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact);
 
-/* The contact of two bodies, from no cache; the same count. */
+/* The contact of two bodies, from no cache; the same count. gaps may be NULL. */
 impact_status imp_gap_of(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
-                         impact_usage *usage, impact_contact *contact);
+                         imp_gaps *gaps, impact_usage *usage, impact_contact *contact);
+
+/* How far off a gap of the two may be by the tolerance that libccd was given, m; 0 of all others. */
+double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body *body2);
 
 /* The support function of the body's surface about its centre of mass, in its own axes: see impact_shape_support. */
 double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point);

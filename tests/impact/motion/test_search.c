@@ -146,7 +146,7 @@ static void nothing_is_passed_over(void **state)
             const imp_state a = imp_segment_at(&c.segment[0], &c.body[0], t),
                             b = imp_segment_at(&c.segment[1], &c.body[1], t);
             impact_contact contact;
-            imp_gap_of(&c.body[0], &a, &c.body[1], &b, &c.usage, &contact);
+            imp_gap_of(&c.body[0], &a, &c.body[1], &b, NULL, &c.usage, &contact);
             assert_true(contact.gap > -1e-12 * reach);
             if (k == 200 && found.touches && last == found.t) assert_near(contact.gap, 0, 1e-12 * reach);
         }

@@ -277,7 +277,17 @@ static const field scene_fields[] = {
     FIELD(impact_scene_def, max_events, COUNT, false),    FIELD(impact_scene_def, max_steps, COUNT, false),
     FIELD(impact_scene_def, allocator, OTHER, false),     FIELD(impact_scene_def, key_tolerance, NUMBER, false),
     FIELD(impact_scene_def, piles, CHOICE, true),         FIELD(impact_scene_def, together, CHOICE, true),
-    FIELD(impact_scene_def, samples, CHOICE, true),
+    FIELD(impact_scene_def, samples, CHOICE, true),       FIELD(impact_scene_def, methods, OTHER, true),
+};
+
+static const field methods_fields[] = {
+    FIELD(impact_methods, motion, CHOICE, true),
+    FIELD(impact_methods, impacts, CHOICE, true),
+    FIELD(impact_methods, gaps, CHOICE, true),
+    FIELD(impact_methods, tolerance, NUMBER, true),
+    FIELD(impact_methods, impact_tolerance, NUMBER, true),
+    FIELD(impact_methods, gap_tolerance, NUMBER, true),
+    FIELD(impact_methods, step, NUMBER, true),
 };
 
 static const field body_fields[] = {
@@ -389,10 +399,12 @@ static void every_field_that_decides_is_in_the_print(void **state)
 {
     (void)state;
     assert_all_listed(ALL(scene_fields), sizeof(impact_scene_def));
+    assert_all_listed(ALL(methods_fields), sizeof(impact_methods));
     assert_all_listed(ALL(body_fields), sizeof(impact_body_def));
     assert_all_listed(ALL(force_fields), sizeof(impact_force_def));
     assert_all_listed(ALL(pair_fields), sizeof(impact_pair_def));
     assert_int_equal(check_prints(ALL(scene_fields), offsetof(whole_definition, scene)), 18);
+    assert_int_equal(check_prints(ALL(methods_fields), offsetof(whole_definition, scene.methods)), 7);
     assert_int_equal(check_prints(ALL(body_fields), offsetof(whole_definition, bodies)), 16);
     assert_int_equal(check_prints(ALL(force_fields), offsetof(whole_definition, forces)), 16);
     assert_int_equal(check_prints(ALL(pair_fields), offsetof(whole_definition, pairs)), 5);
