@@ -63,7 +63,8 @@ refused("impact_tolerance in methods is CVODE's", { impact_tolerance = 1e-9 })
 refused("step must be a positive number", { motion = "rk4", step = -1 })
 
 -- A gap's own options.
-local body = definition().bodies
+local body = {}
+for i, b in ipairs(definition().bodies) do body[i] = { name = b.name, shape = b.shape, position = b.position } end
 local newton, ccd = impact.gap(body[1], body[2]), impact.gap(body[1], body[2], { method = "ccd", tolerance = 1e-6 })
 check.equal(ccd.path, "ccd")
 check.truth(newton.gap ~= ccd.gap and math.abs(newton.gap - ccd.gap) < 1e-5)
