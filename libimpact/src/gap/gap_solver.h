@@ -79,7 +79,8 @@ imp_simplex_end imp_gap_simplex(const imp_gap_solids *pair, double shrink, doubl
 bool imp_gap_harvest(const imp_gap_solids *pair, double n[3]);
 
 /* libccd's own answer: the depth of the origin in the difference c + B - A, inflated by a ball of radius rho, and the
- * normal n from A to B that leads out. first: the direction to begin with; tolerance: of a length. False: it has none, or was at its end of support calls.
+ * normal n from A to B that leads out. first: the direction to begin with; tolerance: of a length. False: it has none,
+ * or was at its end of support calls.
  */
 bool imp_gap_epa(const imp_gap_solids *pair, double rho, const double first[3], double tolerance, double *depth,
                  double n[3]);
