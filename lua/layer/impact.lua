@@ -319,6 +319,8 @@ for name, value in pairs(core) do
   if name ~= "layer" and name ~= "scene_methods" then impact[name] = value end
 end
 
+for name, value in pairs(require "impact.sweep") do impact[name] = value end
+
 ---@class impact.scene
 local methods = core.scene_methods
 local recorded_track = methods.track

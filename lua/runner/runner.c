@@ -3,7 +3,7 @@
  * impact SCRIPT.lua: runs a scene script, writes its CSV files and its picture, and tells what happened.
  */
 #define _XOPEN_SOURCE 700
-#include "runner.h"
+#include "sweep.h"
 
 #include <errno.h>
 #include <math.h>
@@ -11,144 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-static void usage(FILE *file)
-{
-    fputs(
-        "usage: impact SCRIPT.lua [options] [-- key=value ...]\n"
-        "       impact view SCRIPT.lua|FILE.run [options]\n"
-        "       impact gltf SCRIPT.lua|FILE.run [options]\n"
-        "\n"
-        "Runs the scene that the script returns and writes NAME.csv, NAME_events.csv and, when the scene has a plot "
-        "and gnuplot\n"
-        "is there, NAME.png. A script that returns nothing has done its work itself.\n"
-        "view: writes NAME.html too, one page that shows the run in any browser, and opens it where there is a "
-        "display.\n"
-        "gltf: writes NAME.glb too, for Blender and others.\n"
-        "\n"
-        "  --out DIR         the output folder; made when needed (default: out)\n"
-        "  --record          writes the recorded run, NAME.run, too: every state between events, for viewers\n"
-        "  --quiet           no progress, no closing summary\n"
-        "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
-        "  --max-time S      bounds the time of the whole run, in seconds\n"
-        "  --max-disk MB     bounds what is written, in all (default: 1024)\n"
-        "  --fence           an error where the kernel cannot fence the program in\n"
-        "  --trust           lets the script start programs, open any file and load C modules\n"
-        "  --help            this text\n"
-        "  --version         versions, and what this build holds\n"
-        "\n"
-        "exit codes\n"
-        "  0  done\n"
-        "  1  the script has an error, or one of its functions that a run called: file, line and reason are told\n"
-        "  2  the command line is wrong\n"
-        "  3  the run failed: the integrator stopped, or no answer was found within the allowed work\n"
-        "  4  an output could not be written\n"
-        "  5  a limit was reached: --max-memory, --max-time, --max-disk, or the scene's max_events\n"
-        "  6  done, but the energy account does not close: do not trust the digits\n"
-        "  128 + N  ended by signal N: 130 by Ctrl-C, 129 by a hangup, 131 by SIGQUIT, 143 by SIGTERM\n"
-        "\n"
-        "Each but 0 comes with one line that says why, --quiet or not. A run that ends early keeps the rows it has as\n"
-        "NAME.partial.csv and NAME_events.partial.csv, and the line says how far it came.\n",
-        file);
-}
-
-static void version(void)
-{
-    printf("impact %s (%s; CVODE: %s, libccd: %s)\n", impact_version(), LUA_RELEASE,
-           impact_has(IMPACT_PART_CVODE) ? "yes" : "no", impact_has(IMPACT_PART_CCD) ? "yes" : "no");
-}
-
-/* ---- the command line ---- */
-
-static int wrong_usage(const char *format, const char *value)
-{
-    fputs("impact: ", stderr);
-    fprintf(stderr, format, value);
-    fputs("; see impact --help\n", stderr);
-    return IMPACT_EXIT_USAGE;
-}
-
-/* A positive, finite number, all of the text; NaN otherwise. */
-static double positive(const char *text)
-{
-    char *end = NULL;
-    const double value = strtod(text, &end);
-    return *text && !*end && value > 0 && isfinite(value) ? value : NAN;
-}
-
-/* Takes an option with a value, which loses the slashes at its end; an exit code, or -1. */
-static int take_value(impact_runner *runner, const char *option, char *value)
-{
-    if (strcmp(option, "--out") == 0) {
-        for (size_t end = strlen(value); end > 1 && value[end - 1] == '/'; end--) value[end - 1] = 0;
-        return runner->directory = value, -1;
-    }
-    const double number = positive(value);
-    if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
-    if (strcmp(option, "--max-time") == 0)
-        runner->max_time = number;
-    else if (strcmp(option, "--max-disk") == 0)
-        runner->max_disk_megabytes = number;
-    else
-        runner->max_megabytes = number, runner->max_memory = (size_t)(number * 1048576.0);
-    return -1;
-}
-
-/* The option with a value that the word is, alone or as OPTION=VALUE; NULL: none. */
-static const char *option_of(char *word, char **value)
-{
-    static const char *const options[] = {"--out", "--max-memory", "--max-time", "--max-disk"};
-    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
-        const size_t length = strlen(options[i]);
-        if (strncmp(word, options[i], length) != 0 || (word[length] && word[length] != '=')) continue;
-        *value = word[length] ? word + length + 1 : NULL;
-        return options[i];
-    }
-    return NULL;
-}
-
-/* -1: go on; else exit so. */
-static int read_command(int count, char **words, impact_runner *runner)
-{
-    for (int i = 1; i < count; i++) {
-        char *word = words[i], *value = NULL;
-        const char *option = option_of(word, &value);
-        if (option) {
-            if (!value && i + 1 < count) value = words[++i];
-            if (!value || !*value) return wrong_usage("%s needs a value", option);
-            const int code = take_value(runner, option, value);
-            if (code >= 0) return code;
-        } else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
-            return usage(stdout), IMPACT_EXIT_OK;
-        } else if (strcmp(word, "--version") == 0) {
-            return version(), IMPACT_EXIT_OK;
-        } else if (i == 1 && (strcmp(word, "view") == 0 || strcmp(word, "gltf") == 0)) {
-            runner->shown = strcmp(word, "view") == 0 ? "view" : "gltf";
-            runner->ending = strcmp(word, "view") == 0 ? "html" : "glb";
-            runner->record = true;
-        } else if (strcmp(word, "--record") == 0) {
-            runner->record = true;
-        } else if (strcmp(word, "--quiet") == 0) {
-            runner->quiet = true;
-        } else if (strcmp(word, "--trust") == 0) {
-            runner->trust = true;
-        } else if (strcmp(word, "--fence") == 0) {
-            runner->fence = true;
-        } else if (strcmp(word, "--") == 0) {
-            runner->arguments = &words[i + 1];
-            break;
-        } else if (word[0] == '-' && word[1]) {
-            return wrong_usage("unknown option '%s'", word);
-        } else if (runner->script) {
-            return wrong_usage("one script at a time: '%s' is too many", word);
-        } else {
-            runner->script = word;
-        }
-    }
-    if (!runner->script) return usage(stderr), IMPACT_EXIT_USAGE;
-    if (runner->fence && runner->trust) return wrong_usage("%s and --trust exclude each other", "--fence");
-    return -1;
-}
 
 /* ---- while it runs ---- */
 
@@ -190,7 +52,7 @@ static void on_early_end(void *context, double t, double t_end, const char *file
 }
 
 /* The one line of an end that is not as it should be. */
-static int complain(impact_runner *runner, int code, const char *message)
+int impact_runner_complain(impact_runner *runner, int code, const char *message)
 {
     clear_progress(runner);
     fprintf(stderr, "impact: %s%s\n", message ? message : "unknown error", runner->early);
@@ -198,31 +60,39 @@ static int complain(impact_runner *runner, int code, const char *message)
 }
 
 /* What went wrong, in words: a limit that was reached, or else the code given. */
-static int complain_limits(impact_runner *runner, int code, const char *text)
+int impact_runner_complain_limits(impact_runner *runner, int code, const char *text)
 {
     char message[120];
     const int end = impact_runner_signal();
     if (end) {
         snprintf(message, sizeof message, end == SIGINT ? "interrupted" : "ended by signal %d, %s", end,
                  strsignal(end));
-        return complain(runner, IMPACT_EXIT_SIGNAL + end, message);
+        return impact_runner_complain(runner, IMPACT_EXIT_SIGNAL + end, message);
     }
     if (runner->quota.spent) {
         snprintf(message, sizeof message, "disk limit of %g MB reached", runner->max_disk_megabytes);
-        return complain(runner, IMPACT_EXIT_LIMIT, message);
+        return impact_runner_complain(runner, IMPACT_EXIT_LIMIT, message);
     }
     if (impact_runner_time_is_over()) {
         snprintf(message, sizeof message, "time limit of %g s reached", runner->max_time);
-        return complain(runner, IMPACT_EXIT_LIMIT, message);
+        return impact_runner_complain(runner, IMPACT_EXIT_LIMIT, message);
     }
     if (text && (strstr(text, "not enough memory") || strstr(text, "out of memory"))) {
         snprintf(message, sizeof message, "memory limit of %g MB reached", runner->max_megabytes);
-        return complain(runner, IMPACT_EXIT_LIMIT, runner->memory_refused ? message : "not enough memory");
+        return impact_runner_complain(runner, IMPACT_EXIT_LIMIT, runner->memory_refused ? message : "not enough memory");
     }
-    return complain(runner, code, text);
+    return impact_runner_complain(runner, code, text);
 }
 
 /* ---- a scene ---- */
+
+void impact_runner_base_name(const impact_runner *runner, char *name, size_t size)
+{
+    const char *slash = strrchr(runner->script, '/');
+    snprintf(name, size, "%s", slash ? slash + 1 : runner->script);
+    char *dot = strrchr(name, '.');
+    if (dot && dot != name) *dot = 0;
+}
 
 /* The name of the files: the definition's, else the script's own. */
 static void choose_name(lua_State *L, int scene, const impact_runner *runner, char *name, size_t size)
@@ -234,10 +104,7 @@ static void choose_name(lua_State *L, int scene, const impact_runner *runner, ch
     if (lua_type(L, -1) == LUA_TSTRING) {
         snprintf(name, size, "%s", lua_tostring(L, -1));
     } else {
-        const char *slash = strrchr(runner->script, '/');
-        snprintf(name, size, "%s", slash ? slash + 1 : runner->script);
-        char *dot = strrchr(name, '.');
-        if (dot && dot != name) *dot = 0;
+        impact_runner_base_name(runner, name, size);
     }
     lua_pop(L, 2);
     if (!impact_runner_is_plain(name))
@@ -260,7 +127,7 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
     lua_call(L, 2, 3);
     clear_progress(runner);
     if (!lua_isnil(L, -3) && strcmp(lua_tostring(L, -3), "event limit") == 0)
-        return complain(runner, IMPACT_EXIT_LIMIT, lua_tostring(L, -2));
+        return impact_runner_complain(runner, IMPACT_EXIT_LIMIT, lua_tostring(L, -2));
     if (!lua_isnil(L, -3)) {
         const char *doubt = lua_tostring(L, -2);
         if (doubt) fprintf(stderr, "impact: %s\n", doubt);
@@ -268,7 +135,7 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
         return doubt ? IMPACT_EXIT_INACCURATE : IMPACT_EXIT_OK;
     }
     const char *kind = lua_tostring(L, -1), *message = lua_tostring(L, -2);
-    return complain_limits(runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
+    return impact_runner_complain_limits(runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
 }
 
 /* The picture of a scene with a plot; an exit code. *drawn tells whether there is one. */
@@ -285,10 +152,10 @@ static int draw_scene(lua_State *L, int scene, impact_runner *runner, const char
         return IMPACT_EXIT_OK;
     case IMPACT_DRAW_REFUSED:
         snprintf(text, sizeof text, "%s: the plot of scene '%s': %s", runner->script, name, message);
-        return complain_limits(runner, IMPACT_EXIT_SCRIPT, text);
+        return impact_runner_complain_limits(runner, IMPACT_EXIT_SCRIPT, text);
     default:
         snprintf(text, sizeof text, "no picture: %s", message);
-        return complain_limits(runner, IMPACT_EXIT_OUTPUT, text);
+        return impact_runner_complain_limits(runner, IMPACT_EXIT_OUTPUT, text);
     }
 }
 
@@ -338,7 +205,7 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
 }
 
 /* The table arg, as lua has it. */
-static void set_arguments(lua_State *L, const impact_runner *runner)
+void impact_runner_set_arguments(lua_State *L, const impact_runner *runner)
 {
     lua_newtable(L);
     lua_pushstring(L, runner->script);
@@ -355,8 +222,9 @@ static int work(lua_State *L)
 {
     impact_runner *runner = lua_touserdata(L, 1);
     impact_runner_open_libraries(L, runner);
-    impact_runner_start_clock(L, runner);
-    set_arguments(L, runner);
+    impact_runner_start_clock(runner);
+    impact_runner_watch(L);
+    impact_runner_set_arguments(L, runner);
     const bool record = impact_runner_is_record(runner);
     if (record)
         impact_runner_push_record(L, runner);
@@ -367,7 +235,7 @@ static int work(lua_State *L)
         runner->unfenced = impact_runner_fence(runner);
         if (runner->unfenced && runner->fence) {
             lua_pushinteger(L,
-                            complain(runner, IMPACT_EXIT_RUN, lua_pushfstring(L, "not fenced: %s", runner->unfenced)));
+                            impact_runner_complain(runner, IMPACT_EXIT_RUN, lua_pushfstring(L, "not fenced: %s", runner->unfenced)));
             return 1;
         }
     }
@@ -394,7 +262,7 @@ static int run_script(impact_runner *runner)
     int code;
     lua_State *L = lua_newstate(impact_runner_allocate, runner);
     if (!L)
-        return complain(runner, IMPACT_EXIT_LIMIT,
+        return impact_runner_complain(runner, IMPACT_EXIT_LIMIT,
                         runner->memory_refused ? "the memory limit is too small to start" : "not enough memory");
     lua_pushcfunction(L, work);
     lua_pushlightuserdata(L, runner);
@@ -403,7 +271,7 @@ static int run_script(impact_runner *runner)
     } else {
         const char *text = lua_tostring(L, -1);
         code =
-            complain_limits(runner, IMPACT_EXIT_SCRIPT, text ? text : "the script raised an error that is not a text");
+            impact_runner_complain_limits(runner, IMPACT_EXIT_SCRIPT, text ? text : "the script raised an error that is not a text");
     }
     lua_close(L);
     return code;
@@ -414,12 +282,14 @@ int main(int count, char **words)
     impact_runner runner = {.directory = "out",
                             .folder = -1,
                             .drawer_link = -1,
+                            .threads = 1,
+                            .shards = 1,
                             .started = impact_runner_now(),
                             .max_disk_megabytes = 1024};
-    int code = read_command(count, words, &runner);
+    int code = impact_runner_read_command(count, words, &runner);
     if (code < 0) {
         runner.quota.left = (unsigned long long)(runner.max_disk_megabytes * 1048576.0);
-        runner.folder_made = access(runner.directory, F_OK) != 0;
+        runner.folder_made = runner.command != IMPACT_COMMAND_GATHER && access(runner.directory, F_OK) != 0;
         impact_runner_start_drawer(&runner);
         impact_runner_limit_memory(&runner);
         runner.host = (impact_lua_host){.directory = runner.directory,
@@ -430,7 +300,9 @@ int main(int count, char **words)
                                         .quota = &runner.quota,
                                         .allocator = &runner.allocator,
                                         .context = &runner};
-        code = run_script(&runner);
+        code = runner.command == IMPACT_COMMAND_SWEEP    ? impact_runner_sweep(&runner)
+               : runner.command == IMPACT_COMMAND_GATHER ? impact_runner_gather(&runner)
+                                                         : run_script(&runner);
         impact_runner_end_drawer(&runner);
     }
     if (fflush(stdout) != 0 && code == IMPACT_EXIT_OK) {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The runner: impact SCRIPT.lua. Its parts: runner.c (the command), runner_limits.c (memory and time), runner_sandbox.c
- * (what a script can reach), runner_fence.c (what the kernel lets it reach),
- * runner_files.c (the output folder), runner_draw.c (pictures by gnuplot), runner_drawer.c (which starts it).
+ * The runner: impact SCRIPT.lua. Its parts: runner_command.c (the command line), runner.c (a scene), runner_limits.c
+ * (memory and time), runner_sandbox.c (what a script can reach), runner_fence.c (what the kernel lets it reach),
+ * runner_files.c (the output folder), runner_draw.c (pictures by gnuplot), runner_drawer.c (which starts it), and those
+ * of sweep.h (impact sweep).
  */
 #ifndef IMPACT_RUNNER_H
 #define IMPACT_RUNNER_H
@@ -26,8 +27,15 @@ enum {
     IMPACT_EXIT_SIGNAL = 128 /* + the signal, as a shell tells it */
 };
 
+typedef enum impact_runner_command {
+    IMPACT_COMMAND_RUN,
+    IMPACT_COMMAND_SWEEP,
+    IMPACT_COMMAND_GATHER
+} impact_runner_command;
+
 typedef struct impact_runner {
-    const char *script;
+    impact_runner_command command;
+    const char *script; /* or the folder of rows */
     char **arguments;      /* key=value, after --; ended by NULL; NULL: none */
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
@@ -36,6 +44,8 @@ typedef struct impact_runner {
     const char *unfenced; /* why there is none; NULL: there is */
     /* what else is made of the record, by method name and file ending: view, html; gltf, glb; NULL */
     const char *shown, *ending;
+    int threads, shard, shards; /* of a sweep: 0 <= shard < shards */
+    bool mpi, hdf5;
     double max_time;      /* s; 0: no limit */
     double max_megabytes; /* as given, and: */
     size_t max_memory;    /* bytes; 0: no limit */
@@ -55,6 +65,22 @@ typedef struct impact_runner {
     impact_lua_host host;
 } impact_runner;
 
+/* ---- runner_command.c ---- */
+
+/* Reads the command line; -1: go on; else exit so. */
+int impact_runner_read_command(int count, char **words, impact_runner *runner);
+
+/* ---- runner.c ---- */
+
+/* The one line of an end that is not as it should be; gives back the code. */
+int impact_runner_complain(impact_runner *runner, int code, const char *message);
+/* The same, of a limit that was reached or a signal, where there was one: then with its code. */
+int impact_runner_complain_limits(impact_runner *runner, int code, const char *text);
+/* The table arg, as lua has it. */
+void impact_runner_set_arguments(lua_State *L, const impact_runner *runner);
+/* The script's file name without folder and ending. */
+void impact_runner_base_name(const impact_runner *runner, char *name, size_t size);
+
 /* ---- runner_limits.c ---- */
 
 /* A lua_Alloc whose context is the runner. */
@@ -65,7 +91,8 @@ void impact_runner_limit_memory(impact_runner *runner);
 /* Starts the clock of --max-time: when it is over, Lua code and runs are stopped; what cannot be stopped so is ended
  * with the process, IMPACT_EXIT_LIMIT, a second later. SIGINT, SIGTERM, SIGHUP and SIGQUIT stop them too; another, a
  * second later, ends the process. */
-void impact_runner_start_clock(lua_State *L, const impact_runner *runner);
+void impact_runner_start_clock(const impact_runner *runner);
+void impact_runner_watch(lua_State *L); /* so that the state's code is stopped */
 bool impact_runner_time_is_over(void);
 int impact_runner_signal(void); /* that told the process to end; 0: none */
 /* What is to go when the process is ended at once: NAME.part of both CSV files, where they stand under it. */

@@ -141,7 +141,9 @@ static void on_count(lua_State *L, lua_Debug *info)
     luaL_error(L, signal_seen ? "interrupted" : "time limit reached");
 }
 
-void impact_runner_start_clock(lua_State *L, const impact_runner *runner)
+void impact_runner_watch(lua_State *L) { lua_sethook(L, on_count, LUA_MASKCOUNT, 1000); }
+
+void impact_runner_start_clock(const impact_runner *runner)
 {
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
     const struct sigaction to_end = {.sa_handler = on_signal}, ignored = {.sa_handler = SIG_IGN};
@@ -151,7 +153,6 @@ void impact_runner_start_clock(lua_State *L, const impact_runner *runner)
             sigaction(signals[i], &to_end, NULL);
     sigaction(SIGXFSZ, &ignored, NULL); /* a file that has grown too large is told where it is written */
     sigaction(SIGPIPE, &ignored, NULL); /* so is a reader that went away */
-    lua_sethook(L, on_count, LUA_MASKCOUNT, 1000);
     if (!(runner->max_time > 0)) return;
     const struct sigaction action = {.sa_handler = on_alarm};
     const double whole = (double)(long)runner->max_time;

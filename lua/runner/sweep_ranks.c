@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The modules sweep_mpi.so and sweep_hdf5.so, from beside this program, in the build tree or as installed.
+ */
+#define _GNU_SOURCE
+#include "sweep.h"
+
+#include <dlfcn.h>
+#include <string.h>
+#include <unistd.h>
+
+const void *impact_sweep_extra(const char *module, const char *symbol, char *message, size_t size)
+{
+    static const char *const places[] = {"modules", IMPACT_RUNNER_MODULES};
+    char program[4096], path[4096 + 300];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    snprintf(message, size, "this build holds no %s", module);
+    if (length <= 0) return NULL;
+    program[length] = 0;
+    *strrchr(program, '/') = 0;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        snprintf(path, sizeof path, "%s/%s/impact/%s.so", program, places[i], module);
+        if (access(path, R_OK) != 0) continue;
+        void *library = dlopen(path, RTLD_NOW | RTLD_GLOBAL); /* MPI's own parts look for its symbols */
+        const void *extra = library ? dlsym(library, symbol) : NULL;
+        if (!extra) snprintf(message, size, "%s", dlerror());
+        return extra;
+    }
+    return NULL;
+}
