@@ -169,7 +169,7 @@ for _, library in ipairs { "quat", "impact" } do
   end
 end
 pages[#pages + 1] = "\n## Lua\n"
-for _, layer in ipairs { "quat", "impact", "plot=quat.plot", "csv=quat.csv", "portrait=impact.portrait" } do
+for _, layer in ipairs { "quat", "impact", "plot=quat.plot", "csv=quat.csv", "portrait=impact.portrait", "sweep=impact.sweep" } do
   local file, module = layer:match "^(%w+)=(.+)$"
   module = module or layer
   pages[#pages + 1] = ("- [%s](%s)"):format(module, layer_page(("%s/lua/layer/%s.lua"):format(source, file or layer), module))

@@ -283,6 +283,18 @@ core.layer()
 ---@field solver "none"|"alone"|"series"|"cone"|"sweeps"
 ---@field status "ok"|"separating"|"soft"
 
+---@class impact.sweep_definition  docs/sweep.md
+---@field parameters table<string, impact.parameter>  crossed in the order in which they were made
+---@field scene fun(p: table): impact.scene|impact.definition
+---@field reduce? fun(run: impact.sweep_run): table<string, number|string|boolean>  what the row keeps ({t = run.t})
+---@field runs? integer  for each crossing (1)
+---@field seed? integer  (0)
+---@field keep? fun(run: impact.sweep_run): boolean  whether the run is recorded as NAME_run_I.run
+---@field record? boolean  whether `reduce` can ask for tracks and events
+---@field on_event? fun(event: table, p: table): boolean?  false ends the run
+---@field plot? fun(columns: table<string, any[]>): plot.figure  of the whole table
+---@field name? string  of the files (the script's)
+
 ---@class impactlib
 ---@field version string
 ---@field defaults table  what the library takes for absent keys: gravity, output_rate, tolerance, density, friction ...
@@ -314,6 +326,12 @@ core.layer()
 ---@field force fun(definition: impact.force): impact.force
 ---@field open fun(path: string): impact.run?, string?  a recorded run; or nil and what is wrong with it
 ---@field scene fun(definition: impact.definition): impact.scene
+---@field sweep fun(definition: impact.sweep_definition): impact.sweep  many scenes of one form
+---@field grid fun(from: number, to: number, count: integer, spacing?: "linear"|"log"): impact.parameter  of a sweep, as the next four
+---@field range fun(first: integer, last: integer, step?: integer): impact.parameter
+---@field values fun(list: (number|string|boolean)[]): impact.parameter
+---@field sobol fun(from: number, to: number): impact.parameter
+---@field random fun(from: number, to: number): impact.parameter
 local impact = {}
 for name, value in pairs(core) do
   if name ~= "layer" and name ~= "scene_methods" then impact[name] = value end

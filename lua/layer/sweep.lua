@@ -147,7 +147,7 @@ local sweep_meta = { __index = methods, __name = "impact.sweep" }
 
 local keys = {
   name = "string", parameters = "table", runs = "number", seed = "number", scene = "function", reduce = "function", keep = "function",
-  record = "boolean", plot = "function",
+  record = "boolean", on_event = "function", plot = "function",
 }
 
 local function check_keys(definition)
@@ -286,14 +286,14 @@ local run_meta = {
 }
 
 --- Makes and runs the scene; its status and message.
-local function perform(self, i, options)
+local function perform(self, i, record)
   local p = self:parameters(i)
-  local scene = self.definition.scene(p)
+  local scene, on_event = self.definition.scene(p), self.definition.on_event
   if type(scene) == "table" then scene = core.scene(scene) end
   if getmetatable(scene) == nil or type(scene) ~= "userdata" then
     error(format("sweep: scene must return a scene or its definition, got a %s", type(scene)), 0)
   end
-  local reason, message = scene:run(options)
+  local reason, message = scene:run { record = record, on_event = on_event and function(event) return on_event(event, p) end }
   local run = { number = i, parameters = p, scene = scene, status = reason or "failed", message = message or "", t = scene:time() }
   return setmetatable(run, run_meta), reason ~= nil
 end
@@ -327,7 +327,7 @@ function methods:record_name(i) return format("%s_run_%d.run", self.name or self
 ---@param path? string  record_name(i)
 ---@return true?, string?
 function methods:record(i, path)
-  local run, good = perform(self, i, { record = path or self:record_name(i) })
+  local run, good = perform(self, i, path or self:record_name(i))
   run.scene:close()
   if not good then return nil, run.message end
   return true
@@ -339,7 +339,7 @@ end
 function methods:run(i)
   local run, good, results, kept
   local fine, why = pcall(function()
-    run, good = perform(self, i, self.definition.record and { record = true } or nil)
+    run, good = perform(self, i, self.definition.record)
     if good then results, kept = reduced(self, run) end
     run.scene:close()
     if kept then

@@ -79,7 +79,8 @@ int impact_runner_complain_limits(impact_runner *runner, int code, const char *t
     }
     if (text && (strstr(text, "not enough memory") || strstr(text, "out of memory"))) {
         snprintf(message, sizeof message, "memory limit of %g MB reached", runner->max_megabytes);
-        return impact_runner_complain(runner, IMPACT_EXIT_LIMIT, runner->memory_refused ? message : "not enough memory");
+        return impact_runner_complain(runner, IMPACT_EXIT_LIMIT,
+                                      runner->memory_refused ? message : "not enough memory");
     }
     return impact_runner_complain(runner, code, text);
 }
@@ -135,7 +136,8 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
         return doubt ? IMPACT_EXIT_INACCURATE : IMPACT_EXIT_OK;
     }
     const char *kind = lua_tostring(L, -1), *message = lua_tostring(L, -2);
-    return impact_runner_complain_limits(runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
+    return impact_runner_complain_limits(
+        runner, kind && strcmp(kind, "output") == 0 ? IMPACT_EXIT_OUTPUT : IMPACT_EXIT_RUN, message);
 }
 
 /* The picture of a scene with a plot; an exit code. *drawn tells whether there is one. */
@@ -234,8 +236,8 @@ static int work(lua_State *L)
         impact_runner_open_folder_early(runner);
         runner->unfenced = impact_runner_fence(runner);
         if (runner->unfenced && runner->fence) {
-            lua_pushinteger(L,
-                            impact_runner_complain(runner, IMPACT_EXIT_RUN, lua_pushfstring(L, "not fenced: %s", runner->unfenced)));
+            lua_pushinteger(L, impact_runner_complain(runner, IMPACT_EXIT_RUN,
+                                                      lua_pushfstring(L, "not fenced: %s", runner->unfenced)));
             return 1;
         }
     }
@@ -263,15 +265,16 @@ static int run_script(impact_runner *runner)
     lua_State *L = lua_newstate(impact_runner_allocate, runner);
     if (!L)
         return impact_runner_complain(runner, IMPACT_EXIT_LIMIT,
-                        runner->memory_refused ? "the memory limit is too small to start" : "not enough memory");
+                                      runner->memory_refused ? "the memory limit is too small to start"
+                                                             : "not enough memory");
     lua_pushcfunction(L, work);
     lua_pushlightuserdata(L, runner);
     if (lua_pcall(L, 1, 1, 0) == LUA_OK) {
         code = (int)lua_tointeger(L, -1);
     } else {
         const char *text = lua_tostring(L, -1);
-        code =
-            impact_runner_complain_limits(runner, IMPACT_EXIT_SCRIPT, text ? text : "the script raised an error that is not a text");
+        code = impact_runner_complain_limits(runner, IMPACT_EXIT_SCRIPT,
+                                             text ? text : "the script raised an error that is not a text");
     }
     lua_close(L);
     return code;

@@ -8,6 +8,7 @@
 #ifndef IMPACT_RUNNER_H
 #define IMPACT_RUNNER_H
 
+#include <pthread.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -35,7 +36,7 @@ typedef enum impact_runner_command {
 
 typedef struct impact_runner {
     impact_runner_command command;
-    const char *script; /* or the folder of rows */
+    const char *script;    /* or the folder of rows */
     char **arguments;      /* key=value, after --; ended by NULL; NULL: none */
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
@@ -93,6 +94,9 @@ void impact_runner_limit_memory(impact_runner *runner);
  * second later, ends the process. */
 void impact_runner_start_clock(const impact_runner *runner);
 void impact_runner_watch(lua_State *L); /* so that the state's code is stopped */
+/* The same of the calling thread's state (NULL: it has none any more), and what stops it. */
+void impact_runner_watch_thread(lua_State *L);
+void impact_runner_stop_thread(pthread_t thread);
 bool impact_runner_time_is_over(void);
 int impact_runner_signal(void); /* that told the process to end; 0: none */
 /* What is to go when the process is ended at once: NAME.part of both CSV files, where they stand under it. */

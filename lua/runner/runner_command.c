@@ -177,7 +177,8 @@ static int check_command(const impact_runner *runner)
     if (runner->fence && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--fence");
     if (!sweep && (runner->threads != 1 || runner->shards != 1 || runner->mpi || (runner->hdf5 && !gather)))
         return wrong_usage("%s, --shard, --mpi and --hdf5 are options of sweep", "-j");
-    if (sweep && runner->record) return wrong_usage("%s is no option of sweep: its `keep` says what is kept", "--record");
+    if (sweep && runner->record)
+        return wrong_usage("%s is no option of sweep: its `keep` says what is kept", "--record");
     if (sweep && runner->shards > 1 && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--shard");
     return -1;
 }
@@ -185,6 +186,7 @@ static int check_command(const impact_runner *runner)
 /* -1: go on; else exit so. */
 int impact_runner_read_command(int count, char **words, impact_runner *runner)
 {
+    bool first = true; /* no word but options so far */
     for (int i = 1; i < count; i++) {
         char *word = words[i], *value = NULL;
         const char *option = option_of(word, &value);
@@ -200,14 +202,16 @@ int impact_runner_read_command(int count, char **words, impact_runner *runner)
         } else if (strcmp(word, "--") == 0) {
             runner->arguments = &words[i + 1];
             break;
-        } else if ((i == 1 && take_command(runner, word)) || take_flag(runner, word)) {
+        } else if (take_flag(runner, word)) {
             continue;
+        } else if (first && take_command(runner, word)) {
+            first = false;
         } else if (word[0] == '-' && word[1]) {
             return wrong_usage("unknown option '%s'", word);
         } else if (runner->script) {
             return wrong_usage("one script at a time: '%s' is too many", word);
         } else {
-            runner->script = word;
+            runner->script = word, first = false;
         }
     }
     return check_command(runner);

@@ -37,16 +37,19 @@ static const char *without_shebang(const char *script, size_t *size)
     return end ? end : "";
 }
 
-void impact_sweep_load(lua_State *L, impact_runner *runner, const char *script, size_t size, bool fence)
+void impact_sweep_load(lua_State *L, impact_runner *runner, const char *script, size_t size, bool first)
 {
     impact_runner_open_libraries(L, runner);
-    impact_runner_watch(L);
+    if (first)
+        impact_runner_watch(L);
+    else
+        impact_runner_watch_thread(L);
     impact_runner_set_arguments(L, runner);
     script = without_shebang(script, &size);
     lua_pushfstring(L, "@%s", runner->script);
     if (luaL_loadbufferx(L, script, size, lua_tostring(L, -1), runner->trust ? NULL : "t") != LUA_OK) lua_error(L);
-    if (fence) runner->unfenced = impact_runner_fence(runner);
-    if (fence && runner->unfenced && runner->fence) luaL_error(L, "not fenced: %s", runner->unfenced);
+    if (first && !runner->trust && !runner->mpi) runner->unfenced = impact_runner_fence(runner);
+    if (runner->unfenced && runner->fence) luaL_error(L, "not fenced: %s", runner->unfenced);
     lua_call(L, 0, 1);
     const bool named = luaL_getmetafield(L, -1, "__name") == LUA_TSTRING;
     const bool good = named && strcmp(lua_tostring(L, -1), "impact.sweep") == 0;
@@ -101,7 +104,8 @@ static bool list_todo(impact_sweep *sweep)
     const impact_runner *runner = sweep->runner;
     impact_sweep_part *parts;
     impact_sweep_table table;
-    const int count = impact_sweep_read_parts(sweep->runner, sweep->id.name, &parts, sweep->message, sizeof sweep->message);
+    const int count =
+        impact_sweep_read_parts(sweep->runner, sweep->id.name, &parts, sweep->message, sizeof sweep->message);
     if (count < 0) return false;
     bool good = impact_sweep_gather(parts, count, &sweep->id, &table, sweep->message, sizeof sweep->message);
     if (good) sweep->todo = malloc((size_t)sweep->id.runs * sizeof *sweep->todo);
@@ -140,8 +144,8 @@ static tally count_failed(const impact_sweep_table *table)
     return result;
 }
 
-static void tell_table(const impact_runner *runner, const impact_sweep_table *table, const char *name, const tally *failed,
-                       bool drawn)
+static void tell_table(const impact_runner *runner, const impact_sweep_table *table, const char *name,
+                       const tally *failed, bool drawn)
 {
     const char *part = table->rows < table->runs ? ".partial" : "", *folder = runner->directory;
     printf("%s: %ld of %ld runs, %ld failed", name, table->rows, table->runs, failed->failed);
@@ -190,7 +194,8 @@ static int put_together(impact_runner *runner, const impact_sweep_part *parts, i
     if (code == IMPACT_EXIT_OK && failed.failed == table.rows && whole)
         code = impact_runner_complain(runner, IMPACT_EXIT_RUN, "every run of the sweep failed");
     if (code == IMPACT_EXIT_OK && !whole && !L) {
-        snprintf(message, sizeof message, "'%s' has %ld of %ld runs; the rest is to do", id->name, table.rows, table.runs);
+        snprintf(message, sizeof message, "'%s' has %ld of %ld runs; the rest is to do", id->name, table.rows,
+                 table.runs);
         code = impact_runner_complain(runner, IMPACT_EXIT_RUN, message);
     }
     impact_sweep_free_table(&table);
@@ -201,7 +206,8 @@ static const impact_sweep_hdf5 *load_hdf5(impact_runner *runner, int *code)
 {
     char message[400];
     if (!runner->hdf5) return NULL;
-    const impact_sweep_hdf5 *hdf5 = impact_sweep_extra("sweep_hdf5", "impact_sweep_hdf5_writer", message, sizeof message);
+    const impact_sweep_hdf5 *hdf5 =
+        impact_sweep_extra("sweep_hdf5", "impact_sweep_hdf5_writer", message, sizeof message);
     if (!hdf5) *code = impact_runner_complain(runner, IMPACT_EXIT_USAGE, message);
     return hdf5;
 }
@@ -299,7 +305,7 @@ static int run_sweep(lua_State *L)
         code = impact_runner_complain(runner, IMPACT_EXIT_OUTPUT, sweep->message);
     if (code != IMPACT_EXIT_OK) return lua_pushinteger(L, code), 1;
     impact_runner_start_clock(runner);
-    impact_sweep_load(L, runner, sweep->script, sweep->script_size, !runner->trust && !sweep->ranks);
+    impact_sweep_load(L, runner, sweep->script, sweep->script_size, true);
     const int index = lua_gettop(L);
     read_id(L, index, sweep);
     if (!list_todo(sweep)) {

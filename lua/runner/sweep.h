@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * impact sweep, impact gather: many scenes of one script. Its parts: sweep.c (the commands), sweep_workers.c (threads, a
- * Lua state each), sweep_parts.c (rows on the disk, as they are done), sweep_table.c (all parts read as one table),
+ * impact sweep, impact gather: many scenes of one script. Its parts: sweep.c (the commands), sweep_workers.c (threads,
+ * a Lua state each), sweep_parts.c (rows on the disk, as they are done), sweep_table.c (all parts read as one table),
  * sweep_write.c (the table as CSV and for Lua), sweep_ranks.c (what MPI and HDF5 add, loaded when asked for).
  *
- * A process appends its rows to a file of its own, NAME.SHARD-K.rows: a line that says of which sweep they are, then blocks,
- * each with its size and checksum. A block that a dead process left unfinished is not read. What is in the blocks is
- * done; the rest is still to do.
+ * A process appends its rows to a file of its own, NAME.SHARD-K.rows: a line that says of which sweep they are, then
+ * blocks, each with its size and checksum. A block that a dead process left unfinished is not read. What is in the
+ * blocks is done; the rest is still to do.
  */
 #ifndef IMPACT_SWEEP_H
 #define IMPACT_SWEEP_H
@@ -64,7 +64,8 @@ void impact_sweep_free_table(impact_sweep_table *table);
 
 /* ---- sweep_write.c ---- */
 
-/* NAME.csv and NAME_times.csv (of a table with rows missing: NAME.partial.csv ...), and NAME.h5 by hdf5, unless NULL. */
+/* NAME.csv and NAME_times.csv (of a table with rows missing: NAME.partial.csv ...), and NAME.h5 by hdf5, unless NULL.
+ */
 bool impact_sweep_write(impact_runner *runner, const impact_sweep_table *table, const char *name,
                         const impact_sweep_hdf5 *hdf5, char *message, size_t size);
 /* Pushes {column = {...}, ...}. */
@@ -94,8 +95,9 @@ typedef struct impact_sweep {
 
 /* Does what is to do with so many threads; an exit code, with the message when it is not 0. */
 int impact_sweep_work(impact_sweep *sweep, int threads);
-/* Loads the script's text into L, closes the fence when asked, and leaves the sweep that it returns on top. */
-void impact_sweep_load(lua_State *L, impact_runner *runner, const char *script, size_t size, bool fence);
+/* Loads the script's text into L and leaves the sweep that it returns on top. The first state closes the fence, the
+ * others are threads'. */
+void impact_sweep_load(lua_State *L, impact_runner *runner, const char *script, size_t size, bool first);
 
 /* ---- sweep_ranks.c ---- */
 

@@ -141,7 +141,8 @@ static bool write_set(hid_t file, const char *name, layout *self, impact_sweep_s
     return good;
 }
 
-static bool write_runs(hid_t file, const impact_sweep_table *table, impact_sweep_split *split, impact_sweep_plain *plain)
+static bool write_runs(hid_t file, const impact_sweep_table *table, impact_sweep_split *split,
+                       impact_sweep_plain *plain)
 {
     layout self = {.table = table, .count = table->column_count - 1};
     self.offsets = malloc((size_t)self.count * sizeof *self.offsets);

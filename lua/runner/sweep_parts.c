@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rows on the disk: NAME.SHARD-K.rows. "impact sweep 1 HASH RUNS p1,p2,...\n", then blocks "@ SIZE CHECKSUM\n" and SIZE bytes of
- * lines. One process writes a part, and only at its end; another takes the next free K.
+ * Rows on the disk: NAME.SHARD-K.rows. "impact sweep 1 HASH RUNS p1,p2,...\n", then blocks "@ SIZE CHECKSUM\n" and SIZE
+ * bytes of lines. One process writes a part, and only at its end; another takes the next free K.
  */
 #define _GNU_SOURCE
 #include "sweep.h"
@@ -113,7 +113,8 @@ static size_t read_head(const char *text, size_t size, impact_sweep_id *id)
 {
     int at = 0;
     const char *end = memchr(text, '\n', size);
-    if (!end || sscanf(text, "impact sweep 1 %16" SCNx64 " %ld%n", &id->hash, &id->runs, &at) != 2 || text[at++] != ' ') return 0;
+    if (!end || sscanf(text, "impact sweep 1 %16" SCNx64 " %ld%n", &id->hash, &id->runs, &at) != 2 || text[at++] != ' ')
+        return 0;
     const size_t length = (size_t)(end - text);
     if ((size_t)at > length || length - (size_t)at >= sizeof id->parameters || id->runs < 1) return 0;
     memcpy(id->parameters, text + at, length - (size_t)at);
@@ -129,7 +130,8 @@ static size_t join_blocks(char *text, size_t size, size_t at)
         size_t length;
         uint64_t checksum;
         int head = 0;
-        if (sscanf(text + at, "@ %zu %16" SCNx64 "%n", &length, &checksum, &head) != 2 || text[at + (size_t)head] != '\n')
+        if (sscanf(text + at, "@ %zu %16" SCNx64 "%n", &length, &checksum, &head) != 2 ||
+            text[at + (size_t)head] != '\n')
             break;
         at += (size_t)head + 1;
         if (length > size - at || impact_sweep_hash(0, text + at, length) != checksum) break;

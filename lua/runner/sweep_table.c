@@ -176,8 +176,8 @@ bool impact_sweep_gather(const impact_sweep_part *parts, int count, const impact
         qsort(table->columns + before, (size_t)(table->column_count - before), sizeof *table->columns, by_column_name);
     close_ranks(table);
     note_absent(table);
-    good = add_column(table, "status", 6, IMPACT_SWEEP_STRING) && add_column(table, "message", 7, IMPACT_SWEEP_STRING) &&
-           add_column(table, "cpu", 3, IMPACT_SWEEP_NUMBER);
+    good = add_column(table, "status", 6, IMPACT_SWEEP_STRING) &&
+           add_column(table, "message", 7, IMPACT_SWEEP_STRING) && add_column(table, "cpu", 3, IMPACT_SWEEP_NUMBER);
     for (int i = 0; good && i < 2; i++) table->columns[table->column_count - 3 + i].longest = table->longest_words[i];
     if (!good) snprintf(message, size, "not enough memory for '%s'", id->name), impact_sweep_free_table(table);
     return good;

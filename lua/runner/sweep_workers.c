@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { FULL = 1 << 16 };             /* bytes: a block is written when it is as large */
+enum { FULL = 1 << 16 };               /* bytes: a block is written when it is as large */
 static const double keep_back = 0.25;  /* s: or when it is as old */
 static const double poll_every = 1e-3; /* s: messages pass between runs as often */
 
@@ -167,6 +167,7 @@ static void work_in_state(worker *self)
         const char *text = lua_tostring(L, -1);
         stop_all(self->sweep, IMPACT_EXIT_SCRIPT, text ? text : "an error that is not a text");
     }
+    impact_runner_watch_thread(NULL);
     write_block(self);
     lua_close(L);
     free(self->block.text);
@@ -212,8 +213,8 @@ static void tell_progress(const impact_sweep *sweep, double started)
     const long all = sweep->todo_count / sweep->rank_count; /* of this rank, about */
     char left[60] = "";
     if (rate > 0 && all > done) snprintf(left, sizeof left, ", about %.0f s left", (double)(all - done) / rate);
-    fprintf(stderr, "%s%ld of %ld runs, %.4g per second%s, %ld failed%s", isatty(STDERR_FILENO) ? "\r\033[K" : "", done, all,
-            rate, left, failed, isatty(STDERR_FILENO) ? "" : "\n");
+    fprintf(stderr, "%s%ld of %ld runs, %.4g per second%s, %ld failed%s", isatty(STDERR_FILENO) ? "\r\033[K" : "", done,
+            all, rate, left, failed, isatty(STDERR_FILENO) ? "" : "\n");
     fflush(stderr);
 }
 
@@ -224,7 +225,7 @@ static void watch(impact_sweep *sweep, worker *workers, int threads)
     const bool quiet = sweep->runner->quiet || sweep->rank > 0;
     const double started = impact_runner_now(), pause = terminal ? 0.5 : 60;
     double told = started;
-    bool shown = false;
+    bool shown = false, over = false;
     pthread_mutex_lock(&sweep->gate);
     while (sweep->ended < threads) {
         struct timespec until;
@@ -232,6 +233,8 @@ static void watch(impact_sweep *sweep, worker *workers, int threads)
         until.tv_nsec += 200000000;
         if (until.tv_nsec >= 1000000000) until.tv_nsec -= 1000000000, until.tv_sec++;
         pthread_cond_timedwait(&sweep->end, &sweep->gate, &until);
+        for (int i = 0; !over && is_over(sweep) && i < threads; i++) impact_runner_stop_thread(workers[i].thread);
+        over = is_over(sweep);
         if (quiet || impact_runner_now() - told < pause) continue;
         told = impact_runner_now();
         tell_progress(sweep, started);

@@ -99,7 +99,7 @@ do -- random ones: in any order the same, even over [from, to), and neighbours h
 end
 
 -- Bad input is named.
-raises("sweep: unknown key 'run'; there are: keep, name, parameters, plot, record, reduce, runs, scene, seed", impact.sweep,
+raises("sweep: unknown key 'run'; there are: keep, name, on_event, parameters, plot, record, reduce, runs, scene, seed", impact.sweep,
   { run = 3, parameters = {}, scene = none })
 raises("sweep: scene is missing", impact.sweep, { parameters = {} })
 raises("sweep: runs must be a whole number, got 1.5", impact.sweep, { parameters = {}, scene = none, runs = 1.5 })
@@ -291,6 +291,17 @@ do
   check.equal((sweep("--max-disk 0.001", "full")), 5)
   check.equal((sweep("-j 2 --quiet", "ended")), 0)
   same "ended"
+end
+
+-- A script that does not come back is stopped all the same.
+for _, body in ipairs { "while true do end", "pcall(function() while true do end end) return good()" } do
+  runner.write("ever.lua", "local impact = require 'impact' local function good() return { duration = 0.1, bodies = { impact.body { name = 'b', " ..
+    "shape = impact.sphere(1) } } } end return impact.sweep { parameters = { n = impact.range(1, 4) }, scene = function(p) if p.n < 3 then " ..
+    "return good() end " .. body .. " end }")
+  clean "ever"
+  code, _, said = runner.command("sweep ever.lua --out ever -j 2 --max-time 0.7")
+  check.equal(code, 5)
+  check.equal(said, "impact: time limit of 0.7 s reached; 2 of 4 runs done here, the same command goes on\n")
 end
 
 -- ---- what goes wrong ----
