@@ -61,6 +61,9 @@ function(add_house_library name)
     set_target_properties(${target} PROPERTIES
       OUTPUT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${HOUSE_SOVERSION}
       LINKER_LANGUAGE C INSTALL_RPATH ${house_origin})
+    if(EMSCRIPTEN) # has no shared libraries: both are static ones, which need two names
+      set_target_properties(${target} PROPERTIES OUTPUT_NAME ${target})
+    endif()
     target_include_directories(${target} PUBLIC
       $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     foreach(house ${LIB_HOUSE})

@@ -34,6 +34,8 @@ const perspective = (f, aspect, near, far) =>
   [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
 const parallel = (w, near, far) =>
   [1 / w, 0, 0, 0, 0, 1 / w, 0, 0, 0, 0, 2 / (near - far), 0, 0, 0, (far + near) / (near - far), 1];
+// '#rrggbb' as WebGL has colours.
+const rgb = (hex, a = 1) => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16) / 255).concat(a);
 const clamp = (x, a, b) => Math.max(a, Math.min(b, x));
 // A number for people: 4 digits.
 const say = x => x === 0 ? '0' : String(+x.toPrecision(4));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The scene: what is drawn where, at a time t, from a camera { yaw, pitch, distance, target }.
 const okabeIto = ['#d55e00', '#0072b2', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#f0e442'];
-const rgb = (hex, a = 1) => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16) / 255).concat(a);
 const mixed = (c, d, s) => c.map((x, i) => x + s * (d[i] - x));
 function makeScene(run, canvas) {
   const g = run.head.gravity, up = norm(g) > 0 ? unit(scale(g, -1)) : [0, 0, 1], turned = turnTo(up);
@@ -70,7 +69,7 @@ function makeScene(run, canvas) {
     const { gl } = G, w = canvas.width, h = canvas.height, paper = dark ? '#14161a' : '#f7f6f3', ink = dark ? '#e8e6e1' : '#23262b';
     if (follow >= 0) camera.target = here(run.state(follow, at(t), before).x);
     const eye = eyeOf(), far = camera.distance + 6 * radius;
-    const view = mat(perspective(2.2, w / h, Math.max(camera.distance - 3 * radius, camera.distance * 0.02), far), look(eye, camera.target, up));
+    const view = mat(perspective(2.2 * Math.min(1, w / h / 1.3), w / h, Math.max(camera.distance - 3 * radius, camera.distance * 0.02), far), look(eye, camera.target, up));
     const models = solids.map(s => {
       if (!s) return null;
       const b = run.bodies[s.i], k = run.state(s.i, at(t), before);

@@ -62,7 +62,7 @@ local panel_keys = {
 }
 local figure_keys = { title = "string", subtitle = "string", size = numbers(2, 2), grid = numbers(2, 2) }
 local item_keys = {
-  line = { label = "string", color = shade, width = "number", dash = "boolean", fill = "boolean", opacity = "number" },
+  line = { label = "string", color = shade, width = "number", dash = "boolean", fill = "boolean", opacity = "number", tube = "number" },
   points = { label = "string", color = shade, size = "number", shape = one_of(gnuplot.shapes), front = "boolean" },
   arrows = { label = "string", color = shade, width = "number", head = "number", front = "boolean" },
   surface = { label = "string", color = shade, opacity = "number", lines = "boolean", value = "table", range = span },
@@ -131,8 +131,9 @@ end
 ---@field grid? number[]
 
 --- A line through {x, y} or {x, y, z} (lists of numbers; NaN lifts the pen).
---- Also: label, color (a name of plot.colors or "#rrggbb"), width, dash, fill and opacity (a filled polygon, flat panels only).
----@type fun(description: {[1]: number[], [2]: number[], [3]?: number[], label?: string, color?: string, width?: number, dash?: boolean, fill?: boolean, opacity?: number}): plot.item
+--- Also: label, color (a name of plot.colors or "#rrggbb"), width, dash, fill and opacity (a filled polygon, flat panels only), tube (in
+--- space: drawn as a tube of that radius; gnuplot draws the line).
+---@type fun(description: {[1]: number[], [2]: number[], [3]?: number[], label?: string, color?: string, width?: number, dash?: boolean, fill?: boolean, opacity?: number, tube?: number}): plot.item
 plot.line = maker "line"
 --- Points at {x, y[, z]}: label, color, size, shape ("dot", "circle", "square", "triangle", "cross", "star"),
 --- front (not hidden by surfaces).

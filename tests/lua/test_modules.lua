@@ -78,7 +78,7 @@ check.equal(select(2, plot.gnuplot(plot.figure { plot.panel(seven) }):gsub("dt %
 local function refuses(wanted, f, ...)
   check.raises(wanted, function(...) local result = f(...) return result end, ...) -- a place to blame
 end
-refuses("unknown key 'colour' in line (keys: color, dash, fill, label, opacity, width)", plot.line, { { 1 }, { 2 }, colour = "red" })
+refuses("unknown key 'colour' in line (keys: color, dash, fill, label, opacity, tube, width)", plot.line, { { 1 }, { 2 }, colour = "red" })
 refuses("line: 2 or 3 lists of numbers are needed, got 1", plot.line, { { 1 } })
 refuses("line: lists 1 and 2 are of 2 and 1", plot.line, { { 1, 2 }, { 2 } })
 refuses("arrows: item 2 must be a list, got 3", plot.arrows, { {}, 3, {}, {} })

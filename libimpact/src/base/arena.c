@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sizes go in classes, four to an octave: k = 4 e + f stands for (4 + f) 2^e units of 16 bytes, so a block is at most a
- * quarter larger than what was asked for. Each class has its list of blocks that were given back. What a piece has left
- * when the next is taken is cut into blocks of those lists.
+ * Sizes go in classes, four to an octave: k = 4 e + f stands for (4 + f) 2^e units of 16 bytes (8 where pointers have
+ * 4), so a block is at most a quarter larger than what was asked for. Each class has its list of blocks that were given
+ * back. What a piece has left when the next is taken is cut into blocks of those lists.
  *
  * Under AddressSanitizer what is not handed out is poisoned, and a strip behind every block too.
  */
 #include "base/arena.h"
 
 #include <limits.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,9 +32,9 @@ static void show(void *at, size_t size) { (void)at, (void)size; }
 #endif
 
 enum {
-    UNIT = 16,         /* bytes: malloc's alignment where we build, and a header's size */
-    CLASSES = 4 * 56,  /* up to 2^62 bytes */
-    FIRST_PIECE = 4096 /* bytes: a page */
+    UNIT = _Alignof(max_align_t), /* bytes: malloc's alignment, and of a header's size: 16, of 32 bits' 8 */
+    CLASSES = 4 * 56,             /* up to 2^62 bytes */
+    FIRST_PIECE = 4096            /* bytes: a page */
 };
 
 typedef struct header {                        /* stands before its block */
