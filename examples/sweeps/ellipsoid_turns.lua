@@ -34,7 +34,7 @@ return impact.sweep {
       end
     end
     return plot.figure { title = "Turns of a bouncing ellipsoid in two seconds", size = { 1000, 800 },
-      plot.panel { xlabel = "friction", ylabel = "restitution", view = { 0, 0 }, zoom = 1.5,
+      plot.panel { xlabel = "friction", ylabel = "restitution", view = { 0, 0 }, zoom = 1.2,
         plot.surface { x, y, z, value = value, range = { -3, 3 }, lines = false } } }
   end,
 }

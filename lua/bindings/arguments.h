@@ -45,6 +45,9 @@ void quat_lua_where(lua_State *L);
 int quat_lua_layer(lua_State *L);
 /* The same of a chunk by its name, as lua_Debug's source has it. */
 void quat_lua_mark_layer(lua_State *L, const char *source);
+/* no_function(name): an __index for the module of that name, which raises "no function 'boks' in impact (did you mean
+ * 'box'?)". */
+int quat_lua_no_function(lua_State *L);
 /* Raises "file:line: message". Never returns; `return quat_lua_error(...)`. */
 int quat_lua_error(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Returns nil, message to the script: `return quat_lua_failure(L, quat_status_string(status))`. */

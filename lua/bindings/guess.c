@@ -36,7 +36,9 @@ const char *quat_lua_guess(const char *given, const char *const keys[])
     int best_distance = INT_MAX;
     for (int i = 0; keys[i]; i++) {
         const int d = distance(given, keys[i]);
-        const bool near = strlen(keys[i]) == 1 ? is_run(given, keys[i]) : 3 * d <= (int)strlen(keys[i]) + 1;
+        const bool begins =
+            given[0] == keys[i][0] && 2 * d <= (int)strlen(given); /* words are known by their beginnings */
+        const bool near = strlen(keys[i]) == 1 ? is_run(given, keys[i]) : begins || 3 * d <= (int)strlen(keys[i]) + 1;
         if (d < best_distance && near) best = keys[i], best_distance = d;
     }
     return best;

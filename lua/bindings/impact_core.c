@@ -18,7 +18,8 @@ int luaopen_impact_core(lua_State *L)
         impact_lua_open_shape,   impact_lua_open_faces,  impact_lua_open_gap,
         impact_lua_open_body,    impact_lua_open_force,  impact_lua_open_scene,
         impact_lua_open_collide, impact_lua_open_record, impact_lua_open_arguments};
-    static const luaL_Reg functions[] = {{"has", core_has}, {"layer", quat_lua_layer}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {
+        {"has", core_has}, {"layer", quat_lua_layer}, {"no_function", quat_lua_no_function}, {NULL, NULL}};
     luaL_checkversion(L); /* header against library */
     luaL_newlib(L, functions);
     lua_pushstring(L, impact_version());

@@ -43,6 +43,12 @@ typedef struct impact_lua_host {
     bool (*progress)(void *context, double t, double t_end); /* false: the run fails */
     /* A run ended early, at t of t_end; files: where its rows are ("a.csv and b.csv"), or "". */
     void (*ended_early)(void *context, double t, double t_end, const char *files);
+    /* Saves the scene: at the time save_at, and, at_time false, after an event when it is due; false with a message.
+     * NULL: none is to be saved. */
+    bool (*save)(void *context, impact_scene *scene, bool at_time, char *message, size_t size);
+    double save_at;              /* s; NaN: at no time */
+    bool checkpoints;            /* save is asked after each event */
+    bool *ran;                   /* set by every run; NULL: nobody asks */
     impact_quota *quota;         /* of the CSV files; NULL: none */
     impact_allocator *allocator; /* of the scenes and CSV files; NULL: malloc */
     void *context;

@@ -224,8 +224,8 @@ static impact_status close_files(lua_State *L, impact_lua_scene *self, impact_cs
 static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, const char *record, impact_status status)
 {
     char message[400] = "";
-    const bool good = !self->failed && !self->record_failed && !self->csv_failed && !self->ended_by_host &&
-                      (status >= 0 || self->stopped);
+    const bool good = !self->failed && !self->record_failed && !self->csv_failed && !self->save_failed &&
+                      !self->ended_by_host && (status >= 0 || self->stopped);
     self->L = NULL;
     self->reason = good ? outcome(self, status) : NULL;
     impact_status closed = close_files(L, self, csv, !good || status == IMPACT_EVENT_LIMIT, message, sizeof message);
@@ -244,8 +244,10 @@ static int finish(lua_State *L, impact_lua_scene *self, impact_csv *csv, const c
         return 2;
     }
     lua_pushnil(L);
-    if (good || self->csv_failed) {
-        if (self->csv_failed)
+    if (good || self->csv_failed || self->save_failed) {
+        if (self->save_failed)
+            snprintf(message, sizeof message, "%s", self->save_message);
+        else if (self->csv_failed)
             snprintf(message, sizeof message, "cannot write the rows: %s",
                      self->csv_errno == EDQUOT ? "the disk limit is reached" : strerror(self->csv_errno));
         lua_pushstring(L, message);
@@ -266,6 +268,37 @@ static int output_failure(lua_State *L, const char *message)
     return 3;
 }
 
+/* ---- saving on the way ---- */
+
+static bool save(impact_lua_scene *self, bool at_time)
+{
+    const impact_lua_host *host = self->host;
+    if (host->save(host->context, self->scene, at_time, self->save_message, sizeof self->save_message)) return true;
+    return self->save_failed = true, false;
+}
+
+/* To t, event by event where checkpoints are due in between. */
+static impact_status run_to(impact_lua_scene *self, double t, const impact_recorder *recorder)
+{
+    impact_event event;
+    if (!self->host || !self->host->save || !self->host->checkpoints)
+        return impact_scene_run_to(self->scene, t, recorder);
+    for (;;) {
+        const impact_status status = impact_scene_step(self->scene, t, recorder, &event);
+        if (status < 0 || status == IMPACT_EVENT_LIMIT || event.body1 < 0 || self->stopped) return status;
+        if (!save(self, false)) return IMPACT_OK;
+    }
+}
+
+static impact_status run_and_save(impact_lua_scene *self, const impact_recorder *recorder)
+{
+    const double at = self->host && self->host->save ? self->host->save_at : NAN;
+    if (!(at >= impact_scene_time(self->scene) && at <= self->t_end)) return run_to(self, self->t_end, recorder);
+    const impact_status status = run_to(self, at, recorder);
+    if (status < 0 || status == IMPACT_EVENT_LIMIT || self->stopped || self->save_failed) return status;
+    return save(self, true) ? run_to(self, self->t_end, recorder) : IMPACT_OK;
+}
+
 int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index, impact_event *event)
 {
     static const char *const keys[] = {"csv", "record", "on_sample", "on_event", "on_progress", NULL};
@@ -278,6 +311,7 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     luaL_checkstack(L, 24, NULL);
     const quat_lua_reader options = quat_lua_read(L, options_index, "run", NULL, keys);
     self->host = impact_lua_get_host(L);
+    if (self->host && self->host->ran) *self->host->ran = true;
     self->t_end = t_end;
     self->t_told = 0;
     self->samples_told = 0;
@@ -286,7 +320,8 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     self->progress_slot = function_slot(&options, "on_progress");
     lua_getiuservalue(L, 1, IMPACT_LUA_LAWS);
     self->laws_slot = lua_gettop(L);
-    self->failed = self->stopped = self->csv_failed = self->record_failed = self->ended_by_host = self->has_csv = false;
+    self->failed = self->stopped = self->csv_failed = self->record_failed = self->ended_by_host = self->has_csv =
+        self->save_failed = false;
     char message[400] = "";
     const char *record;
     if (!open_record(&options, self, &record, message, sizeof message)) return output_failure(L, message);
@@ -307,7 +342,7 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
                                       .key = self->record ? on_key : NULL,
                                       .held = self->record ? on_held : NULL,
                                       .account = self->record ? on_account : NULL};
-    const impact_status status = event ? impact_scene_step(self->scene, t_end, &recorder, event)
-                                       : impact_scene_run_to(self->scene, t_end, &recorder);
+    const impact_status status =
+        event ? impact_scene_step(self->scene, t_end, &recorder, event) : run_and_save(self, &recorder);
     return finish(L, self, csv, record, status);
 }

@@ -64,6 +64,8 @@ typedef struct impact_lua_scene {
     bool stopped; /* a function of the script answered false */
     bool csv_failed, record_failed, ended_by_host;
     int csv_errno;
+    bool save_failed;
+    char save_message[400];
     double t_end, t_told; /* of the run; of the last row */
     int files_slot;       /* the names of the files of a run that ends early; nil without CSV */
     unsigned long samples_told;

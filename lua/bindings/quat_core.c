@@ -14,6 +14,8 @@ int luaopen_quat_core(lua_State *L)
     lua_newtable(L);
     lua_pushcfunction(L, quat_lua_layer);
     lua_setfield(L, -2, "layer");
+    lua_pushcfunction(L, quat_lua_no_function);
+    lua_setfield(L, -2, "no_function");
     for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) rooms[i](L);
     return 1;
 }

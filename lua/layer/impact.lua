@@ -334,7 +334,7 @@ core.layer()
 ---@field random fun(from: number, to: number): impact.parameter
 local impact = {}
 for name, value in pairs(core) do
-  if name ~= "layer" and name ~= "scene_methods" then impact[name] = value end
+  if name ~= "layer" and name ~= "no_function" and name ~= "scene_methods" then impact[name] = value end
 end
 
 for name, value in pairs(require "impact.sweep") do impact[name] = value end
@@ -562,4 +562,4 @@ function methods:summary(reason)
     table.concat(used, ", "), steps .. stepped, #unused > 0 and table.concat(unused, ", ") or "nothing was left out")
 end
 
-return impact
+return setmetatable(impact, { __index = core.no_function "impact" })

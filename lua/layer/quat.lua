@@ -266,13 +266,14 @@ core.layer()
 ---@field surface? surfacelib
 local quat = {}
 for name, value in pairs(core) do
-  if name ~= "layer" then quat[name] = value end
+  if name ~= "layer" and name ~= "no_function" then quat[name] = value end
 end
 
 -- quat.curve and quat.surface are in quat.gsl, where the build holds it; it loads when one of them is first used.
+local no_function = core.no_function "quat"
 setmetatable(quat, {
   __index = function(self, key)
-    if key ~= "curve" and key ~= "surface" then return nil end
+    if key ~= "curve" and key ~= "surface" then return no_function(self, key) end
     local found, gsl = pcall(require, "quat.gsl")
     if not found or type(gsl) ~= "table" then return nil end
     local value = gsl[key]

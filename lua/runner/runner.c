@@ -191,6 +191,9 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     char name[256];
     bool drawn = false;
     choose_name(L, scene, runner, name, sizeof name);
+    snprintf(runner->run_name, sizeof runner->run_name, "%s", name);
+    impact_runner_resume(L, scene, runner);
+    runner->saved = impact_runner_now();
     lua_getfield(L, scene, "has_plot");
     lua_pushvalue(L, scene);
     lua_call(L, 1, 1);
@@ -198,6 +201,7 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     lua_pop(L, 1);
     const int ran = run_scene(L, scene, runner, name, plot);
     if (ran != IMPACT_EXIT_OK && ran != IMPACT_EXIT_INACCURATE) return ran;
+    impact_runner_drop_checkpoint(runner);
     const int reason = lua_gettop(L);
     int drew = plot ? draw_scene(L, scene, runner, name, &drawn) : IMPACT_EXIT_OK;
     if (drew == IMPACT_EXIT_OK && runner->shown) drew = view_scene(L, scene, runner, name);
@@ -255,6 +259,11 @@ static int work(lua_State *L)
     else if (!lua_isnil(L, -1))
         return luaL_error(L, "%s: a script returns a scene, impact.scene{...}, or nothing; this one returned a %s",
                           runner->script, luaL_typename(L, -1));
+    else if (!runner->used)
+        return luaL_error(L,
+                          "%s: the script returned nothing, ran nothing and wrote nothing: is `return` missing before "
+                          "impact.scene{...}?",
+                          runner->script);
     lua_pushinteger(L, code);
     return 1;
 }
@@ -285,6 +294,7 @@ int main(int count, char **words)
     impact_runner runner = {.directory = "out",
                             .folder = -1,
                             .drawer_link = -1,
+                            .save_at = NAN,
                             .threads = 1,
                             .shards = 1,
                             .started = impact_runner_now(),
@@ -300,13 +310,24 @@ int main(int count, char **words)
                                         .prepare = prepare,
                                         .progress = on_progress,
                                         .ended_early = on_early_end,
+                                        .ran = &runner.used,
+                                        .save = impact_runner_save,
+                                        .save_at = runner.save_at,
+                                        .checkpoints = runner.checkpoint > 0,
                                         .quota = &runner.quota,
                                         .allocator = &runner.allocator,
                                         .context = &runner};
-        code = runner.command == IMPACT_COMMAND_SWEEP    ? impact_runner_sweep(&runner)
-               : runner.command == IMPACT_COMMAND_GATHER ? impact_runner_gather(&runner)
-                                                         : run_script(&runner);
+        code = impact_runner_read_resumed(&runner);
+        if (code != IMPACT_EXIT_OK)
+            ;
+        else if (runner.command == IMPACT_COMMAND_SWEEP)
+            code = impact_runner_sweep(&runner);
+        else if (runner.command == IMPACT_COMMAND_GATHER)
+            code = impact_runner_gather(&runner);
+        else
+            code = run_script(&runner);
         impact_runner_end_drawer(&runner);
+        free(runner.resumed);
     }
     if (fflush(stdout) != 0 && code == IMPACT_EXIT_OK) {
         fprintf(stderr, "impact: cannot write to the standard output: %s\n", strerror(errno));

@@ -40,6 +40,7 @@ typedef struct impact_runner {
     char **arguments;      /* key=value, after --; ended by NULL; NULL: none */
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
+    bool used;            /* the script has run a scene, or written something */
     bool record;          /* NAME.run is written too */
     bool fence;           /* not without it */
     const char *unfenced; /* why there is none; NULL: there is */
@@ -47,6 +48,14 @@ typedef struct impact_runner {
     const char *shown, *ending;
     int threads, shard, shards; /* of a sweep: 0 <= shard < shards */
     bool mpi, hdf5;
+    double save_at; /* s, of the scene; NaN: never */
+    const char *save_name;
+    double checkpoint; /* s; 0: none */
+    double saved;      /* when, s, monotonic */
+    char run_name[256];
+    const char *resume; /* the file, and what is in it; NULL: none */
+    char *resumed;
+    size_t resumed_size;
     double max_time;      /* s; 0: no limit */
     double max_megabytes; /* as given, and: */
     size_t max_memory;    /* bytes; 0: no limit */
@@ -143,6 +152,16 @@ int impact_runner_view(lua_State *L, int run, impact_runner *runner, const char 
 bool impact_runner_is_record(const impact_runner *runner);
 void impact_runner_push_record(lua_State *L, const impact_runner *runner);
 int impact_runner_view_record(lua_State *L, impact_runner *runner);
+
+/* ---- runner_save.c ---- */
+
+/* The host's save function. */
+bool impact_runner_save(void *context, impact_scene *scene, bool at_time, char *message, size_t message_size);
+void impact_runner_drop_checkpoint(const impact_runner *runner);
+/* Reads the file of --resume, before the fence; an exit code. */
+int impact_runner_read_resumed(impact_runner *runner);
+/* The scene at index goes on from there; raises an error where it cannot. */
+void impact_runner_resume(lua_State *L, int scene, const impact_runner *runner);
 
 /* ---- runner_fence.c ---- */
 

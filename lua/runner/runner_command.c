@@ -28,6 +28,10 @@ static void usage(FILE *file)
         "\n"
         "  --out DIR         the output folder; made when needed (default: out)\n"
         "  --record          writes the recorded run, NAME.run, too: every state between events, for viewers\n"
+        "  --save T FILE     saves the scene's state at time T, in seconds, as FILE in the output folder\n"
+        "  --checkpoint S    saves it every S seconds, after an event, as NAME.save; gone when the run came to its "
+        "end\n"
+        "  --resume FILE     goes on from a state that was saved; the rows are those from there on\n"
         "  --quiet           no progress, no closing summary\n"
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
         "  --max-time S      bounds the time of the whole run, in seconds\n"
@@ -101,6 +105,15 @@ static int take_shard(impact_runner *runner, const char *value)
     return wrong_usage("--shard needs I/N with 0 <= I < N, got '%s'", value);
 }
 
+static int take_save_time(impact_runner *runner, const char *value)
+{
+    char *end = NULL;
+    runner->save_at = strtod(value, &end);
+    if (*end || !(runner->save_at >= 0 && runner->save_at < 1e300))
+        return wrong_usage("--save needs a time and a file, '%s' is no time", value);
+    return -1;
+}
+
 static int take_threads(impact_runner *runner, const char *value)
 {
     const char *end;
@@ -115,12 +128,16 @@ static int take_value(impact_runner *runner, const char *option, char *value)
         for (size_t end = strlen(value); end > 1 && value[end - 1] == '/'; end--) value[end - 1] = 0;
         return runner->directory = value, -1;
     }
+    if (strcmp(option, "--resume") == 0) return runner->resume = value, -1;
+    if (strcmp(option, "--save") == 0) return take_save_time(runner, value);
     if (strcmp(option, "--shard") == 0) return take_shard(runner, value);
     if (strcmp(option, "-j") == 0) return take_threads(runner, value);
     const double number = positive(value);
     if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
     if (strcmp(option, "--max-time") == 0)
         runner->max_time = number;
+    else if (strcmp(option, "--checkpoint") == 0)
+        runner->checkpoint = number;
     else if (strcmp(option, "--max-disk") == 0)
         runner->max_disk_megabytes = number;
     else
@@ -131,7 +148,8 @@ static int take_value(impact_runner *runner, const char *option, char *value)
 /* The option with a value that the word is, alone or as OPTION=VALUE; NULL: none. */
 static const char *option_of(char *word, char **value)
 {
-    static const char *const options[] = {"--out", "--max-memory", "--max-time", "--max-disk", "--shard", "-j"};
+    static const char *const options[] = {"--out", "--max-memory", "--max-time",   "--max-disk", "--shard",
+                                          "-j",    "--resume",     "--checkpoint", "--save"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
         const size_t length = strlen(options[i]);
         if (strncmp(word, options[i], length) != 0 || (word[length] && word[length] != '=')) continue;
@@ -177,6 +195,10 @@ static int check_command(const impact_runner *runner)
     if (runner->fence && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--fence");
     if (!sweep && (runner->threads != 1 || runner->shards != 1 || runner->mpi || (runner->hdf5 && !gather)))
         return wrong_usage("%s, --shard, --mpi and --hdf5 are options of sweep", "-j");
+    if (runner->save_name && !impact_runner_is_plain(runner->save_name))
+        return wrong_usage("--save needs a time and a plain name of a file, got '%s'", runner->save_name);
+    if ((sweep || gather) && (runner->save_name || runner->resume || runner->checkpoint > 0))
+        return wrong_usage("%s, --checkpoint and --resume are of one scene's run; a sweep goes on by itself", "--save");
     if (sweep && runner->record)
         return wrong_usage("%s is no option of sweep: its `keep` says what is kept", "--record");
     if (sweep && runner->shards > 1 && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--shard");
@@ -195,6 +217,7 @@ int impact_runner_read_command(int count, char **words, impact_runner *runner)
             if (!value || !*value) return wrong_usage("%s needs a value", option);
             const int code = take_value(runner, option, value);
             if (code >= 0) return code;
+            if (strcmp(option, "--save") == 0) runner->save_name = i + 1 < count ? words[++i] : "";
         } else if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
             return usage(stdout), IMPACT_EXIT_OK;
         } else if (strcmp(word, "--version") == 0) {

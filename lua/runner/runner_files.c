@@ -109,6 +109,7 @@ int impact_runner_new_file(impact_runner *runner, const char *name, bool *namele
 {
     char part[256];
     int file = -1;
+    runner->used = true;
 #if defined(O_TMPFILE)
     if (access("/proc/self/fd", X_OK) == 0) file = openat(runner->folder, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
 #endif

@@ -105,6 +105,37 @@ static void preload(lua_State *L, const char *module, lua_CFunction opener)
     lua_pop(L, 1);
 }
 
+/* Upvalues: the runner, and a function that writes. */
+static int note_use(lua_State *L)
+{
+    ((impact_runner *)lua_touserdata(L, lua_upvalueindex(1)))->used = true;
+    lua_pushvalue(L, lua_upvalueindex(2));
+    lua_insert(L, 1);
+    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+/* The function of that name, of the table on top of the stack. */
+static void note_uses_of(lua_State *L, impact_runner *runner, const char *name)
+{
+    lua_pushlightuserdata(L, runner);
+    lua_getfield(L, -2, name);
+    lua_pushcclosure(L, note_use, 2);
+    lua_setfield(L, -2, name);
+}
+
+static void note_writing(lua_State *L, impact_runner *runner)
+{
+    lua_pushglobaltable(L);
+    note_uses_of(L, runner, "print");
+    lua_getglobal(L, LUA_IOLIBNAME);
+    note_uses_of(L, runner, "write");
+    luaL_getmetatable(L, LUA_FILEHANDLE);
+    lua_getfield(L, -1, "__index");
+    note_uses_of(L, runner, "write");
+    lua_pop(L, 4);
+}
+
 static void preload_ours(lua_State *L, impact_runner *runner)
 {
     for (const impact_runner_layer *layer = impact_runner_layers; layer->module; layer++)
@@ -167,5 +198,6 @@ void impact_runner_open_libraries(lua_State *L, impact_runner *runner)
     luaL_openlibs(L);
     preload_ours(L, runner);
     impact_lua_set_host(L, &runner->host);
+    note_writing(L, runner);
     if (!runner->trust) close_in(L, runner);
 }

@@ -130,7 +130,7 @@ end
 
 -- The kernel's fence, where there is one; a word says so where there is none.
 do
-  runner.write("script.lua", "return")
+  runner.write("script.lua", "print 'done'")
   local code, _, said = runner.command("script.lua --out o --fence")
   check.truth(code == 0 and said == "" or code == 3 and said:find("^impact: not fenced: [^\n]+\n$"), "fenced or told: " .. said)
   local fenced = code == 0
@@ -140,9 +140,66 @@ do
   check.equal(runner.command("script.lua --out o --fence --trust"), 2)
 end
 do -- a folder that nothing was written to is not left
-  runner.write("script.lua", "return")
+  runner.write("script.lua", "io.write 'done'")
   check.equal(runner.command("script.lua --out new"), 0)
   check.truth(not runner.exists("new"), "no empty folder")
+end
+
+-- A script that returns nothing has done its work itself, or says that it has not.
+do
+  local ball = "local impact = require 'impact' local scene = impact.scene { duration = 1, bodies = { impact.body { name = 'ball', shape = impact.sphere(1) } } } "
+  for _, idle in ipairs { "", "return", ball } do
+    local code, _, said = runner.script(idle)
+    check.equal(code, 1)
+    check.equal(said, "impact: script.lua: the script returned nothing, ran nothing and wrote nothing: is `return` missing before impact.scene{...}?\n")
+  end
+  for _, busy in ipairs { "print(1)", "io.write(1)", "io.stdout:write(1)", "io.open('a', 'w'):write(1)", ball .. "scene:run()", ball .. "scene:step()",
+    "assert(require 'quat.csv'.save('a', { 'x' }, { { 1 } }))" } do
+    check.equal((runner.script(busy)), 0)
+  end
+end
+
+-- Saved at a time and after events, and gone on from there: the rows together are those of one run, byte for byte.
+do
+  local bounce = "local impact = require 'impact' return impact.scene { name = 'long', duration = DURATION, output_rate = 50, bodies = { " ..
+    "impact.body { name = 'ball', shape = SHAPE, position = { 0, 0, 1 }, velocity = { 1, 0, 0 }, omega = { 3, 4, 5 }, restitution = 0.8 }, " ..
+    "impact.body { name = 'floor', static = true, shape = impact.plane(), restitution = 0.8 } } }"
+  local function rows(name, from) -- of a CSV file, those after a time
+    local kept = {}
+    for line in runner.read(name):gmatch "[^\n]+" do
+      if (tonumber(line:match "^[^,]*") or 0) > from then kept[#kept + 1] = line end
+    end
+    return table.concat(kept, "\n")
+  end
+  for _, shape in ipairs { "impact.sphere(0.1)", "impact.ellipsoid { a = 0.1, b = 0.12, c = 0.15 }" } do
+    local text = bounce:gsub("SHAPE", shape):gsub("DURATION", "4")
+    check.equal((runner.script(text, "--quiet --save 1.3 half")), 0)
+    check.equal(runner.files(), "half long.csv long_events.csv")
+    check.equal((runner.command("script.lua --quiet --out p --resume o/half")), 0)
+    for _, name in ipairs { "long.csv", "long_events.csv" } do check.equal(rows("p/" .. name, 0), rows("o/" .. name, 1.3)) end
+  end
+  -- A run that is killed leaves its last checkpoint; the run that goes on from there ends as one does that was not.
+  local text = bounce:gsub("SHAPE", "impact.sphere(0.1)"):gsub("DURATION", "2e4"):gsub("0.8 }", "1 }"):gsub("output_rate = 50", "output_rate = 1e-4")
+  runner.write("script.lua", text)
+  check.equal((runner.command("script.lua --quiet --out q --max-time 60 --checkpoint 0.05")), 0)
+  runner.shell(string.format("cd %s && env -u LD_PRELOAD timeout -s KILL 0.6 %s script.lua --out killed --checkpoint 0.05 --quiet 2>/dev/null",
+    runner.quote(runner.folder), runner.quote(runner.program)))
+  if runner.exists "killed/long.save" then
+    check.equal((runner.command("script.lua --quiet --out r --resume killed/long.save")), 0)
+    local last = runner.read("q/long.csv"):match "[^\n]*\n$"
+    check.equal(runner.read("r/long.csv"):match "[^\n]*\n$", last)
+  end
+  check.truth(not runner.exists "q/long.save", "a run that came to its end leaves no checkpoint")
+  local function refused(options, wanted, message)
+    local code, _, said = runner.command("script.lua --out s " .. options)
+    check.equal(code, wanted)
+    check.truth(said:find(message), said)
+  end
+  refused("--resume script.lua", 1, "^impact: cannot go on from script.lua: scene 'long' cannot go on from these bytes: they are no saved scene\n$")
+  refused("--resume absent", 1, "^impact: cannot read absent: No such file or directory\n$")
+  refused("--save 1 a/b", 2, "plain name of a file, got 'a/b'")
+  refused("--save soon a", 2, "'soon' is no time")
+  refused("--checkpoint 0", 2, "'0' is not a positive number")
 end
 
 -- The list of codes.

@@ -3,7 +3,7 @@
 local check = require "check"
 local quat = require "quat"
 local pi = math.pi
-check.equal(quat.no_such_room, nil)
+check.equal(pcall(function() return quat.no_such_module end), false)
 check.equal(package.loaded["quat.gsl"], nil) -- not before it is used
 
 -- ---- curves ----

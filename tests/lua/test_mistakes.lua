@@ -33,6 +33,11 @@ end
 check.equal(runner.script(scene(good)), 0)
 check.truth(runner.exists("o/toss.csv"), "the good scene's CSV")
 
+-- Functions that are not there.
+refused("require 'impact'.boks { a = 1 }", "script.lua:1: no function 'boks' in impact (did you mean 'box'?)")
+refused("require 'quat'.slurp()", "script.lua:1: no function 'slurp' in quat (did you mean 'slerp'?)")
+refused("require 'impact'.weather()", "script.lua:1: no function 'weather' in impact")
+
 -- A body's keys.
 refused(scene(good .. "fricton = 1,"), "script.lua:2: unknown key 'fricton' in body 'coin' (did you mean 'friction'?)")
 local keys = "name, shape, static, mass, density, moments, position, orientation, normal, velocity, omega, friction, restitution, " ..

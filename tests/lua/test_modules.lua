@@ -27,7 +27,7 @@ check.equal(q.w + 10 * q.x + 100 * q.y + 1000 * q.z, 4321)
 check.equal(quat.new({ 1, 2, 3, 4 }).z, 4)
 check.equal(quat.new({ w = 1, x = 2, y = 3, z = 4 }).y, 3)
 check.equal(quat.new(q).x, 2)
-check.equal(quat.no_such_room, nil)
+check.raises("no function 'no_such_module' in quat", function() return quat.no_such_module, nil end)
 check.raises("argument 'q' must be a quaternion or {w, x, y, z} of finite numbers, got {1, 2, 3}", quat.new, { 1, 2, 3 })
 check.raises("argument 'z' must be a finite number, got inf", quat.new, 1, 2, 3, math.huge)
 
