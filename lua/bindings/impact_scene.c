@@ -325,6 +325,7 @@ void impact_lua_open_scene(lua_State *L)
     luaL_setfuncs(L, meta, 0);
     luaL_newlib(L, methods);
     impact_lua_add_interaction(L);
+    impact_lua_add_report(L);
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "__index");
     lua_setfield(L, -3, "scene_methods"); /* the layer adds its own */

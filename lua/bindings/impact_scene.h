@@ -117,6 +117,11 @@ void impact_lua_push_events(lua_State *L, const impact_lua_rows *rows);
  * the stack place of the table of laws, which is filled. */
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws);
 
+/* ---- impact_report.c ---- */
+
+/* Adds scene:report_rows to the methods on top of the stack; the layer makes scene:report of it. */
+void impact_lua_add_report(lua_State *L);
+
 /* ---- impact_scene.c ---- */
 
 /* The scene at index 1; an error when it is closed or is running. */

@@ -489,6 +489,16 @@ function methods:energies(body, track)
   return result
 end
 
+-- ---- report ----
+
+--- What each method gets right of this scene, how sure that is and what it costs (docs/report.md): the scene is made anew from its
+--- definition and run by every method and tolerance. nil and a message where nothing can be compared.
+---@param options? {seconds?: number, times?: integer, rounds?: integer, tolerances?: number[], steps?: number[], methods?: string[], reference?: string, reference_error?: number}
+---@return impact.report?, string?
+function methods:report(options)
+  return require "impact.report".of(self, options)
+end
+
 -- ---- plot and summary ----
 
 --- Whether the definition holds a plot.

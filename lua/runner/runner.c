@@ -178,6 +178,55 @@ static void summarise(lua_State *L, int scene, const impact_runner *runner, cons
     lua_pop(L, 1);
 }
 
+/* The figure on top of the stack as NAME.png; an exit code. */
+static int draw_report(lua_State *L, impact_runner *runner, const char *name, bool *drawn)
+{
+    char message[400] = "", text[600];
+    switch (impact_runner_draw(L, lua_gettop(L), runner, name, message, sizeof message)) {
+    case IMPACT_DRAWN: *drawn = true; return IMPACT_EXIT_OK;
+    case IMPACT_DRAW_NO_GNUPLOT:
+        fprintf(stderr, "impact: gnuplot is not installed: no picture is drawn; the CSV file is complete\n");
+        return IMPACT_EXIT_OK;
+    default: snprintf(text, sizeof text, "no picture: %s", message); return complain(runner, IMPACT_EXIT_OUTPUT, text);
+    }
+}
+
+/* Pushes what the method of the report at the index answers to it. */
+static void ask_report(lua_State *L, int report, const char *method, const char *argument)
+{
+    lua_getfield(L, report, method);
+    lua_pushvalue(L, report);
+    lua_pushstring(L, argument);
+    lua_call(L, 2, 2);
+}
+
+/* The report in the runner's stead: NAME_report.csv, NAME_report.png, and the table. */
+static int report_scene(lua_State *L, int scene, impact_runner *runner, const char *name)
+{
+    char file[280];
+    bool drawn = false;
+    snprintf(file, sizeof file, "%s_report", name);
+    lua_getfield(L, scene, "report");
+    lua_pushvalue(L, scene);
+    lua_createtable(L, 0, 1);
+    if (runner->report_seconds > 0) lua_pushnumber(L, runner->report_seconds), lua_setfield(L, -2, "seconds");
+    lua_call(L, 2, 2);
+    clear_progress(runner);
+    if (lua_isnil(L, -2)) return complain_limits(runner, IMPACT_EXIT_RUN, lua_tostring(L, -1));
+    lua_pop(L, 1);
+    const int report = lua_gettop(L);
+    ask_report(L, report, "csv", file);
+    if (lua_isnil(L, -2)) return complain_limits(runner, IMPACT_EXIT_OUTPUT, lua_tostring(L, -1));
+    ask_report(L, report, "figure", NULL);
+    lua_pop(L, 1);
+    const int code = draw_report(L, runner, file, &drawn);
+    ask_report(L, report, "text", NULL);
+    if (!runner->quiet)
+        printf("%s  wrote       %s/%s.csv%s%s%s%s%s\n", lua_tostring(L, -2), runner->directory, file, drawn ? ", " : "",
+               drawn ? runner->directory : "", drawn ? "/" : "", drawn ? file : "", drawn ? ".png" : "");
+    return code;
+}
+
 static int view_scene(lua_State *L, int scene, impact_runner *runner, const char *name)
 {
     lua_getfield(L, scene, "record");
@@ -191,6 +240,7 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     char name[256];
     bool drawn = false;
     choose_name(L, scene, runner, name, sizeof name);
+    if (runner->report) return report_scene(L, scene, runner, name);
     snprintf(runner->run_name, sizeof runner->run_name, "%s", name);
     impact_runner_resume(L, scene, runner);
     runner->saved = impact_runner_now();

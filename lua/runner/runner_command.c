@@ -32,6 +32,9 @@ static void usage(FILE *file)
         "  --checkpoint S    saves it every S seconds, after an event, as NAME.save; gone when the run came to its "
         "end\n"
         "  --resume FILE     goes on from a state that was saved; the rows are those from there on\n"
+        "  --report          what each method gets right of the scene, how sure that is and what it costs: a table,\n"
+        "                    NAME_report.csv and NAME_report.png instead of a run\n"
+        "  --seconds S       the report's time (default: 20)\n"
         "  --quiet           no progress, no closing summary\n"
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
         "  --max-time S      bounds the time of the whole run, in seconds\n"
@@ -134,7 +137,9 @@ static int take_value(impact_runner *runner, const char *option, char *value)
     if (strcmp(option, "-j") == 0) return take_threads(runner, value);
     const double number = positive(value);
     if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
-    if (strcmp(option, "--max-time") == 0)
+    if (strcmp(option, "--seconds") == 0)
+        runner->report_seconds = number;
+    else if (strcmp(option, "--max-time") == 0)
         runner->max_time = number;
     else if (strcmp(option, "--checkpoint") == 0)
         runner->checkpoint = number;
@@ -149,7 +154,7 @@ static int take_value(impact_runner *runner, const char *option, char *value)
 static const char *option_of(char *word, char **value)
 {
     static const char *const options[] = {"--out", "--max-memory", "--max-time",   "--max-disk", "--shard",
-                                          "-j",    "--resume",     "--checkpoint", "--save"};
+                                          "-j",    "--resume",     "--checkpoint", "--save",     "--seconds"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
         const size_t length = strlen(options[i]);
         if (strncmp(word, options[i], length) != 0 || (word[length] && word[length] != '=')) continue;
@@ -166,7 +171,8 @@ static bool take_flag(impact_runner *runner, const char *word)
         const char *name;
         bool *flag;
     } flags[] = {{"--record", &runner->record}, {"--quiet", &runner->quiet}, {"--trust", &runner->trust},
-                 {"--fence", &runner->fence},   {"--mpi", &runner->mpi},     {"--hdf5", &runner->hdf5}};
+                 {"--fence", &runner->fence},   {"--mpi", &runner->mpi},     {"--hdf5", &runner->hdf5},
+                 {"--report", &runner->report}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         if (strcmp(word, flags[i].name) == 0) return *flags[i].flag = true;
     return false;
@@ -201,6 +207,10 @@ static int check_command(const impact_runner *runner)
         return wrong_usage("%s, --checkpoint and --resume are of one scene's run; a sweep goes on by itself", "--save");
     if (sweep && runner->record)
         return wrong_usage("%s is no option of sweep: its `keep` says what is kept", "--record");
+    if (runner->report &&
+        (sweep || gather || runner->record || runner->save_name || runner->resume || runner->checkpoint > 0))
+        return wrong_usage("%s makes no run: nothing that a run writes goes with it", "--report");
+    if (runner->report_seconds > 0 && !runner->report) return wrong_usage("%s is the report's: --report", "--seconds");
     if (sweep && runner->shards > 1 && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--shard");
     return -1;
 }

@@ -20,6 +20,7 @@
 #include "tumble.h"
 #include "force.h"
 #include "record.h"
+#include "report.h"
 #include "scene.h"
 #include "run.h"
 #include "view.h"

@@ -354,6 +354,16 @@
 /* Orientations are written as the motion normalised them, to a few roundings; what is off by more is damage. */
 #define IMP_RUN_UNIT 1e-9
 
+/* ---- report ---- */
+
+/* The start's displacement, in X: large against its rounding (1e-16), small enough for its effect to be linear. */
+#define IMP_REPORT_NUDGE 1e-11
+/* Two samples of rounding, x + e1 and x + e2, tell of the third by (e1 + e2)/2 - e0, which is small by chance too: in one
+ * of twenty-five cases a twelfth of e0. A certainty of four times it is then a third of the error, at least. */
+#define IMP_REPORT_SPREAD 4.0
+/* Reference and witness have parted: what is left of agreement is no digit worth a comparison. */
+#define IMP_REPORT_PARTING 1e-3
+
 /* ---- gap: libccd's own answer (gap/gap_ccd.c) ---- */
 
 /* Of the larger body, libccd's tolerance: asked for less EPA runs away (1e-8: 1 of 214 pairs of ellipsoids wrong by a

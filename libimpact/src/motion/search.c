@@ -260,6 +260,21 @@ static double shortest_step(const imp_search *s)
 /* Of the size of the places: at 10 m/s^2 a step from there is 1e-5 s for a body of 1 m. */
 static const double all_but_closed = 1e-9;
 
+static bool is_fixed(const imp_search *s, int k)
+{
+    return s->segment[k]->kind == IMP_SEGMENT_DENSE && s->segment[k]->dense->fixed;
+}
+
+/* Where bodies crawl along each other: over a dip that is no deeper than the segment's step allows; of a fixed step,
+ * which is long behind a bounce too, no deeper than what counts as touching: A T^2/8. */
+static double crawl(const imp_search *s, const sight *l, double least, double touching)
+{
+    double step = fmin(least, l->window);
+    const double bend = bend_of(s, l, l->contact.normal);
+    if ((is_fixed(s, 0) || is_fixed(s, 1)) && bend > 0) step = fmin(step, sqrt(8 * touching / bend));
+    return step;
+}
+
 static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->segment[1]->t0); }
 
 static imp_found advance(const imp_search *s, double from, double until)
@@ -295,7 +310,7 @@ static imp_found advance(const imp_search *s, double from, double until)
         before = t, gap_before = gap;
         if (l.window <= 0) return never;
         const bool crawls = step < least && gap <= all_but_closed * scale_of(s, &l) && gap + l.rate * least > 0;
-        if (crawls) step = fmin(least, l.window);
+        if (crawls) step = fmax(step, crawl(s, &l, least, IMP_TOUCHING * scale_of(s, &l) + error));
         if (!(t + step <= end) || step == INFINITY) return never;
         if (t + step == t) return (imp_found){t, true};
         t += step;
