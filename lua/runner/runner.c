@@ -187,7 +187,9 @@ static int draw_report(lua_State *L, impact_runner *runner, const char *name, bo
     case IMPACT_DRAW_NO_GNUPLOT:
         fprintf(stderr, "impact: gnuplot is not installed: no picture is drawn; the CSV file is complete\n");
         return IMPACT_EXIT_OK;
-    default: snprintf(text, sizeof text, "no picture: %s", message); return complain(runner, IMPACT_EXIT_OUTPUT, text);
+    default:
+        snprintf(text, sizeof text, "no picture: %s", message);
+        return impact_runner_complain(runner, IMPACT_EXIT_OUTPUT, text);
     }
 }
 
@@ -212,11 +214,11 @@ static int report_scene(lua_State *L, int scene, impact_runner *runner, const ch
     if (runner->report_seconds > 0) lua_pushnumber(L, runner->report_seconds), lua_setfield(L, -2, "seconds");
     lua_call(L, 2, 2);
     clear_progress(runner);
-    if (lua_isnil(L, -2)) return complain_limits(runner, IMPACT_EXIT_RUN, lua_tostring(L, -1));
+    if (lua_isnil(L, -2)) return impact_runner_complain_limits(runner, IMPACT_EXIT_RUN, lua_tostring(L, -1));
     lua_pop(L, 1);
     const int report = lua_gettop(L);
     ask_report(L, report, "csv", file);
-    if (lua_isnil(L, -2)) return complain_limits(runner, IMPACT_EXIT_OUTPUT, lua_tostring(L, -1));
+    if (lua_isnil(L, -2)) return impact_runner_complain_limits(runner, IMPACT_EXIT_OUTPUT, lua_tostring(L, -1));
     ask_report(L, report, "figure", NULL);
     lua_pop(L, 1);
     const int code = draw_report(L, runner, file, &drawn);
