@@ -358,8 +358,8 @@
 
 /* The start's displacement, in X: large against its rounding (1e-16), small enough for its effect to be linear. */
 #define IMP_REPORT_NUDGE 1e-11
-/* Two samples of rounding, x + e1 and x + e2, tell of the third by (e1 + e2)/2 - e0, which is small by chance too: in one
- * of twenty-five cases a twelfth of e0. A certainty of four times it is then a third of the error, at least. */
+/* Two samples of rounding, x + e1 and x + e2, tell of the third by (e1 + e2)/2 - e0, which is small by chance too: in
+ * one of twenty-five cases a twelfth of e0. A certainty of four times it is then a third of the error, at least. */
 #define IMP_REPORT_SPREAD 4.0
 /* Reference and witness have parted: what is left of agreement is no digit worth a comparison. */
 #define IMP_REPORT_PARTING 1e-3
