@@ -157,11 +157,11 @@ static void find_mobility(const imp_contact *contacts, int count, double *w)
             add_products(&contacts[i], &contacts[j], &w[3 * ((size_t)i * width + (size_t)j)], width);
 }
 
-/* Bytes of a group's work: what the springs take, who take most. */
-static size_t group_bytes(size_t n)
+/* Bytes of a group's work: what the springs take, who take most; linear: what springs_linear.c does. */
+static size_t group_bytes(size_t n, bool linear)
 {
-    return n * n * (3 * 72 + 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8) +
-           n * (sizeof(imp_spring) + sizeof(imp_contact) + sizeof(imp_finding) + 1024) + 4096;
+    const size_t own = n * (sizeof(imp_spring) + sizeof(imp_contact) + sizeof(imp_finding) + 1024) + 4096;
+    return own + n * n * (linear ? 24 : 3 * 72 + 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);
 }
 
 static void take_finding(const imp_finding *f, impact_meeting_outcome *m)
@@ -199,34 +199,56 @@ static void set_solver(plan *call, impact_together_solver solver)
 }
 
 /* The contacts from .. from + count of the order, all of one group. */
-static impact_status solve_group(plan *call, int from, int count, impact_together_workspace *workspace)
+static bool make_group(plan *call, int from, int count, bool linear, impact_together_workspace *workspace,
+                       imp_group *group)
 {
     const size_t n = (size_t)count;
-    if (!clear_block(workspace->arena, &workspace->work, group_bytes(n))) return IMPACT_ENOMEM;
+    if (!clear_block(workspace->arena, &workspace->work, group_bytes(n, linear))) return false;
     imp_contact *contacts = imp_encounter_take(workspace, n, sizeof *contacts);
-    double *w = imp_encounter_take(workspace, 9 * n * n, sizeof *w),
+    double *w = linear ? NULL : imp_encounter_take(workspace, 9 * n * n, sizeof *w),
            *u0 = imp_encounter_take(workspace, 3 * n, sizeof *u0);
-    imp_group group = {.count = count,
-                       .contacts = contacts,
-                       .w = w,
-                       .u0 = u0,
-                       .p = imp_encounter_take(workspace, 3 * n, sizeof *group.p),
-                       .findings = imp_encounter_take(workspace, n, sizeof *group.findings),
-                       .bodies = call->encounter->bodies,
-                       .velocity = call->velocity,
-                       .omega = call->omega};
-    if (!group.findings) return IMPACT_ENOMEM;
+    *group = (imp_group){.count = count,
+                         .contacts = contacts,
+                         .w = w,
+                         .u0 = u0,
+                         .p = imp_encounter_take(workspace, 3 * n, sizeof *group->p),
+                         .findings = imp_encounter_take(workspace, n, sizeof *group->findings),
+                         .bodies = call->encounter->bodies,
+                         .velocity = call->velocity,
+                         .omega = call->omega};
+    if (!group->findings) return false;
     for (int i = 0; i < count; i++) {
         contacts[i] = imp_encounter_contact(call->encounter, call->order.meeting[from + i]);
         imp_encounter_velocity(&contacts[i], call->velocity, call->omega, &u0[3 * i]);
     }
-    if (!approaches(&group)) return IMPACT_SEPARATING;
-    find_mobility(contacts, count, w);
+    if (!linear) find_mobility(contacts, count, w);
+    return true;
+}
+
+/* Whether its springs are linear and smooth. */
+static bool is_linear(const plan *call, int from, int count)
+{
+    const impact_encounter *e = call->encounter;
+    bool linear = e->law == IMPACT_TOGETHER_SPRINGS && e->exponent == 1;
+    for (int i = from; linear && i < from + count; i++) linear = e->meetings[call->order.meeting[i]].friction == 0;
+    return linear;
+}
+
+static impact_status solve_group(plan *call, int from, int count, impact_together_workspace *workspace)
+{
     const bool springs = call->encounter->law == IMPACT_TOGETHER_SPRINGS;
     const double exponent = call->encounter->exponent == 0 ? 1.5 : call->encounter->exponent;
-    const impact_status status =
-        springs ? imp_springs_solve(&group, exponent, workspace) : imp_moreau_solve(&group, workspace);
-    if (group.wedged) call->outcome->wedged = contacts[0].source;
+    const bool linear = is_linear(call, from, count);
+    imp_group group;
+    if (!make_group(call, from, count, linear, workspace, &group)) return IMPACT_ENOMEM;
+    if (!approaches(&group)) return IMPACT_SEPARATING;
+    impact_status status = IMPACT_EUNSETTLED;
+    if (linear) status = imp_springs_solve_linear(&group, workspace);
+    if (status == IMPACT_EUNSETTLED) {
+        if (linear && !make_group(call, from, count, false, workspace, &group)) return IMPACT_ENOMEM;
+        status = springs ? imp_springs_solve(&group, exponent, workspace) : imp_moreau_solve(&group, workspace);
+    }
+    if (group.wedged) call->outcome->wedged = group.contacts[0].source;
     if (status != IMPACT_OK) return status;
     set_solver(call, springs ? IMPACT_TOGETHER_SERIES : IMPACT_TOGETHER_CONE);
     if (springs) imp_encounter_push(&group, group.p);
@@ -266,10 +288,11 @@ static impact_status solve_alone(plan *call, int meeting)
 
 static double normal_velocity(const plan *call, int meeting)
 {
-    const imp_contact c = imp_encounter_contact(call->encounter, meeting);
-    double u[3];
-    imp_encounter_velocity(&c, call->velocity, call->omega, u);
-    return u[0];
+    const impact_meeting *m = &call->encounter->meetings[meeting];
+    qvec3 n;
+    (void)qvec3_normalize(m->normal, &n);
+    return qvec3_dot(n, qvec3_sub(point_velocity(call->velocity[m->body1], call->omega[m->body1], m->offset1),
+                                  point_velocity(call->velocity[m->body2], call->omega[m->body2], m->offset2)));
 }
 
 /* Down the caller's list, again and again, until what approaches is rounding. */

@@ -108,6 +108,11 @@ double imp_springs_expand(imp_springs *s);
 
 /* ---- springs_events.c ---- */
 
+/* h^k */
+void imp_springs_find_powers(double h, imp_terms power);
+/* Whether sum c_k t^k, k < terms, is above zero on (0, h], by its coefficients: the first that count are by more than
+ * what the others take; false where they do not tell. */
+bool imp_springs_stay_above(const double *c, int terms, const double *power);
 /* The first time in [0, h] at which sum c_k t^k, k <= order, falls to 0, or h where it does not: none is missed. *found
  * tells. c[0] <= 0 falls at 0. */
 double imp_springs_first_fall(const double *c, int order, double h, bool *found);
@@ -137,6 +142,12 @@ void imp_springs_find_velocities(imp_springs *s);
 
 /* Whether no motion takes the contacts that were pressed apart; rough: with friction against it. */
 bool imp_springs_wedged(imp_springs *s, bool rough);
+
+/* ---- springs_linear.c ---- */
+
+/* Of a group whose springs are linear, without friction at any contact; group->w is not looked at. IMPACT_OK;
+ * IMPACT_EUNSETTLED: too long, imp_springs_solve will say why; IMPACT_ENOMEM. */
+impact_status imp_springs_solve_linear(imp_group *group, impact_together_workspace *workspace);
 
 /* ---- springs.c ---- */
 

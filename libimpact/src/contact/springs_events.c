@@ -1,23 +1,28 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where a polynomial first falls to zero. With |f''| <= B on [0, h], f(t + d) >= f + f' d - B d^2/2, so that there is
- * no zero before d = (f' + sqrt(f'^2 + 2 B f))/B. Such strides pass no zero, and near a simple one they are Newton's:
- * they end there quadratically.
+ * Where a polynomial first falls to zero. As far as it falls, or bends down, which its coefficients' signs tell, its
+ * zero is the only one, and Newton's in a bracket finds it. Else strides: with |f''| <= B on [0, h],
+ * f(t + d) >= f + f' d - B d^2/2, so that there is no zero before d = (f' + sqrt(f'^2 + 2 B f))/B. They pass no zero,
+ * and near a simple one they are Newton's: they end there quadratically.
  */
 #include "contact/springs.h"
 
 #include <float.h>
 #include <math.h>
 
+/* Even and odd powers apart: two short chains instead of a long one. */
 static double value_and_slope(const double *c, int order, double t, double *slope)
 {
-    double f = c[order], d = 0;
-    for (int k = order - 1; k >= 0; k--) {
-        d = d * t + f;
-        f = f * t + c[k];
+    const double square = t * t;
+    double even = 0, odd = 0, even_slope = 0, odd_slope = 0;
+    for (int k = order - order % 2; k >= 0; k -= 2) {
+        even_slope = even_slope * square + even;
+        even = even * square + c[k];
+        odd_slope = odd_slope * square + odd;
+        odd = odd * square + (k < order ? c[k + 1] : 0);
     }
-    *slope = d;
-    return f;
+    *slope = odd + 2 * t * (even_slope + t * odd_slope);
+    return even + t * odd;
 }
 
 /* A bound of |f''| on [0, h]. */
@@ -28,12 +33,61 @@ static double bound_curvature(const double *c, int order, double h)
     return sum;
 }
 
-/* Whether the terms after the first are too small to reach zero in [0, h]. */
-static bool stays(const double *c, int order, double h)
+/* Whether the terms before the first negative one are more at h than what the negative ones take: at less than h they
+ * are all the more. */
+static bool begins_above(const double *c, int terms, const double *power)
 {
-    double sum = 0;
-    for (int k = order; k >= 1; k--) sum = (sum + fmax(0, -c[k])) * h;
-    return sum < c[0];
+    double gives = 0, takes = 0;
+    int k = 0;
+    for (; k < terms && c[k] >= 0; k++) gives += c[k] * power[k];
+    for (; k < terms; k++) takes += (c[k] < 0 ? -c[k] : 0) * power[k];
+    return gives > takes;
+}
+
+/* Whether a + b t + c t^2 is above zero on [0, h] by more than what the later terms take. */
+static bool is_clear(const double *c, int terms, const double *power)
+{
+    const double h = power[1], end = c[0] + (c[1] + c[2] * h) * h;
+    double least = c[0] < end ? c[0] : end;
+    if (c[2] > 0 && c[1] < 0 && -c[1] < 2 * c[2] * h) least = c[0] - c[1] * c[1] / (4 * c[2]);
+    for (int k = 3; k < terms && least > 0; k++) least += (c[k] < 0 ? c[k] : 0) * power[k];
+    return least > 0;
+}
+
+bool imp_springs_stay_above(const double *c, int terms, const double *power)
+{
+    if (begins_above(c, terms, power)) return true;
+    for (int m = 0; m + 3 <= terms; m++) {
+        if (is_clear(c + m, terms - m, power)) return true;
+        if (c[m] < 0 || c[m + 1] < 0) return false;
+    }
+    return false;
+}
+
+/* Whether f' < 0 on all of (0, h], or f'' < 0. */
+static bool falls_once(const double *c, int order, const double *power)
+{
+    imp_terms slope = {0}, bend = {0};
+    for (int k = 0; k < order; k++) slope[k] = -(k + 1) * c[k + 1];
+    if (imp_springs_stay_above(slope, order, power)) return true;
+    for (int k = 0; k + 1 < order; k++) bend[k] = (k + 1) * slope[k + 1];
+    return imp_springs_stay_above(bend, order - 1, power);
+}
+
+/* The zero in (0, h], where f(h) <= 0 < f(0) and there is but one. */
+static double only_zero(const double *c, int order, double h, double at_end)
+{
+    double low = 0, high = h, t = h * c[0] / (c[0] - at_end), slope;
+    for (int i = 0; i < 100; i++) {
+        if (!(t > low && t < high)) t = 0.5 * (low + high);
+        const double f = value_and_slope(c, order, t, &slope);
+        *(f > 0 ? &low : &high) = t;
+        const double next = t - f / slope;
+        if (fabs(next - t) <= 2 * DBL_EPSILON * t || high - low <= 2 * DBL_EPSILON * t)
+            return fmin(fmax(next, low), high);
+        t = next;
+    }
+    return high;
 }
 
 /* The positive zero of f + slope d - bound d^2/2, of f > 0. */
@@ -59,12 +113,29 @@ static double safe_stride(const double *c, int order, double t, double h)
     return best;
 }
 
+void imp_springs_find_powers(double h, imp_terms power)
+{
+    power[0] = 1;
+    for (int k = 1; k < IMP_SPRINGS_TERMS; k++) power[k] = power[k - 1] * h;
+}
+
 double imp_springs_first_fall(const double *c, int order, double h, bool *found)
 {
     *found = c[0] <= 0;
     if (*found) return 0;
-    if (stays(c, order, h)) return h;
-    double t = 0;
+    imp_terms power;
+    imp_springs_find_powers(h, power);
+    if (imp_springs_stay_above(c, order + 1, power)) return h;
+    double t = 0, slope;
+    for (double end = h; t == 0 && end > h / 16; end /= 2) {
+        if (end < h) imp_springs_find_powers(end, power);
+        if (!falls_once(c, order, power)) continue;
+        const double at_end = value_and_slope(c, order, end, &slope);
+        *found = at_end <= 0;
+        if (*found) return only_zero(c, order, end, at_end);
+        t = end;
+    }
+    if (t == h) return h;
     for (int i = 0; i < 200; i++) {
         const double stride = safe_stride(c, order, t, h);
         if (stride >= h - t) return h;
