@@ -18,7 +18,8 @@
 
 #include "contact/encounter.h"
 
-enum { IMP_SPRINGS_ORDER = 22, IMP_SPRINGS_TERMS = IMP_SPRINGS_ORDER + 2 };
+/* Of a step of some radians no velocity has more zeros than a handful. */
+enum { IMP_SPRINGS_ORDER = 22, IMP_SPRINGS_TERMS = IMP_SPRINGS_ORDER + 2, IMP_SPRINGS_EXTREMES = 8 };
 
 typedef enum imp_spring_normal { IMP_SPRING_OPEN, IMP_SPRING_LOADS, IMP_SPRING_UNLOADS } imp_spring_normal;
 
@@ -116,6 +117,9 @@ bool imp_springs_stay_above(const double *c, int terms, const double *power);
 /* The first time in [0, h] at which sum c_k t^k, k <= order, falls to 0, or h where it does not: none is missed. *found
  * tells. c[0] <= 0 falls at 0. */
 double imp_springs_first_fall(const double *c, int order, double h, bool *found);
+
+/* Where sum c_k t^k changes its sign in (0, t): the times, at most so many; returns how many. */
+int imp_springs_sign_changes(const double *c, int order, double t, double *when, int most);
 
 /* ---- springs_changes.c ---- */
 

@@ -145,3 +145,34 @@ double imp_springs_first_fall(const double *c, int order, double h, bool *found)
     *found = true;
     return t;
 }
+
+/* Terms about t instead of 0. */
+static void shift(double *c, int order, double t)
+{
+    for (int i = 0; i < order; i++)
+        for (int k = order - 1; k >= i; k--) c[k] += t * c[k + 1];
+}
+
+int imp_springs_sign_changes(const double *c, int order, double t, double *when, int most)
+{
+    imp_terms f, power;
+    double at = 0;
+    int n = 0, first = 0;
+    while (first < order && c[first] == 0) first++;
+    const double sign = c[first] < 0 ? -1 : 1;
+    for (int k = 0; k <= order; k++) f[k] = sign * c[k];
+    if (f[0] == 0) f[0] = DBL_MIN; /* it begins at a zero */
+    for (bool found = true; n < most;) {
+        imp_springs_find_powers(t - at, power);
+        if (imp_springs_stay_above(f, order + 1, power)) break;
+        const double further = imp_springs_first_fall(f, order, t - at, &found);
+        if (!found) break;
+        at += further;
+        shift(f, order, further);
+        for (int k = 1; k <= order; k++) f[k] = -f[k];
+        if (f[1] <= 0) break; /* it touches zero, but for rounding */
+        f[0] = DBL_MIN;
+        when[n++] = at;
+    }
+    return n;
+}

@@ -226,24 +226,36 @@ static void book_energy(line *l, double energy)
     l->stored = energy;
 }
 
-/* The spring's work to t; where u changes its sign on the way the energy has an extreme. */
+static double depth_at(const lines *s, int i, double t)
+{
+    double x = 0;
+    for (int k = TERMS - 1; k >= 0; k--) x = x * t + s->depth[k * s->count + i];
+    return x;
+}
+
+/* The spring's work to t; where u changes its sign on the way the energy has an extreme. What loads and will turn has
+ * none before that. */
 static void book(const lines *s, int i, double t)
 {
     line *l = &s->line[i];
-    const double before = -s->depth[s->count + i], x = l->x;
-    if (before != 0) note(l, before < 0 ? IMPACT_SLIP_C : IMPACT_SLIP_R);
-    if (before * l->u < 0) {
+    const double x = l->x;
+    double when[IMP_SPRINGS_EXTREMES];
+    bool compressed = s->depth[s->count + i] > 0 || (s->depth[s->count + i] == 0 && l->u < 0);
+    int changes = 0;
+    if (l->normal != IMP_SPRING_LOADS || l->restitution == 1) {
         imp_terms f;
-        bool found;
-        gather_velocity(s, i, before < 0 ? -1 : 1, f);
-        const double when = imp_springs_first_fall(f, TERMS - 2, t, &found);
-        l->x = 0;
-        for (int k = TERMS - 1; k >= 0; k--) l->x = l->x * when + s->depth[k * s->count + i];
-        book_energy(l, energy_of(l));
-        l->x = x;
-        l->finding->compressions += before < 0;
+        gather_velocity(s, i, 1, f);
+        changes = imp_springs_sign_changes(f, TERMS - 2, t, when, IMP_SPRINGS_EXTREMES);
     }
-    if (before == 0 || before * l->u < 0) note(l, l->u < 0 ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    note(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    for (int k = 0; k < changes; k++) {
+        l->x = depth_at(s, i, when[k]);
+        book_energy(l, energy_of(l));
+        l->finding->compressions += compressed;
+        compressed = !compressed;
+        note(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    }
+    l->x = x;
     book_energy(l, energy_of(l));
 }
 

@@ -115,20 +115,23 @@ static void book_energy(imp_spring *c, double energy)
     c->stored = energy;
 }
 
-/* The spring's work to t; where u_n changes its sign on the way the energy has an extreme. */
+/* The spring's work to t; where u_n changes its sign on the way the energy has an extreme. What loads and will turn has
+ * none before that. */
 static void book_spring(const imp_springs *s, imp_spring *c, double t, double after)
 {
     const double before = c->velocity[0][0];
-    if (before != 0) note_phase(c, before < 0);
-    if (before * after < 0) {
-        imp_terms f;
-        bool found;
-        shifted(c->velocity[0], before < 0 ? -1 : 1, 0, f);
-        const double extreme = imp_springs_first_fall(f, IMP_SPRINGS_ORDER, t, &found);
-        book_energy(c, imp_springs_energy(s, c, poly(c->depth, IMP_SPRINGS_ORDER, extreme)));
-        c->finding->compressions += before < 0;
+    double when[IMP_SPRINGS_EXTREMES];
+    bool compressed = before < 0 || (before == 0 && after < 0);
+    const bool turns = c->normal == IMP_SPRING_LOADS && c->restitution < 1;
+    const int changes =
+        turns ? 0 : imp_springs_sign_changes(c->velocity[0], IMP_SPRINGS_ORDER, t, when, IMP_SPRINGS_EXTREMES);
+    note_phase(c, compressed);
+    for (int k = 0; k < changes; k++) {
+        book_energy(c, imp_springs_energy(s, c, poly(c->depth, IMP_SPRINGS_ORDER, when[k])));
+        c->finding->compressions += compressed;
+        compressed = !compressed;
+        note_phase(c, compressed);
     }
-    if (before == 0 || before * after < 0) note_phase(c, after < 0);
     book_energy(c, imp_springs_energy(s, c, c->x));
 }
 
