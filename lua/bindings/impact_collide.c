@@ -166,8 +166,8 @@ static void read_phases(const quat_lua_reader *reader, impact_outcome *o)
     for (int i = 1; o->phase_count < IMPACT_MAX_PHASES && lua_rawgeti(L, list, i) == LUA_TSTRING; i++) {
         const char *word = lua_tostring(L, -1);
         int phase = IMPACT_SLIP_C;
-        while (phase <= IMPACT_REVERSAL && strcmp(word, impact_phase_name((impact_phase)phase)) != 0) phase++;
-        if (phase > IMPACT_REVERSAL) quat_lua_reader_error(reader, "phases: '%s' is no phase", word);
+        while (phase <= IMPACT_TANGENTIAL && strcmp(word, impact_phase_name((impact_phase)phase)) != 0) phase++;
+        if (phase > IMPACT_TANGENTIAL) quat_lua_reader_error(reader, "phases: '%s' is no phase", word);
         o->phases[o->phase_count++] = (unsigned char)phase;
     }
     if (quat_lua_push(reader, "phase_impulses") != LUA_TTABLE)
@@ -265,6 +265,7 @@ static const char *const collide_keys[] = {"m1",
                                            "solver",
                                            "order",
                                            "any_restitution",
+                                           "pressed",
                                            "compliance",
                                            "tolerance",
                                            "method",
@@ -278,6 +279,7 @@ void impact_lua_read_collision(const quat_lua_reader *reader, impact_collision *
     quat_lua_need(reader, "n");
     c->normal = quat_lua_get_vec3(reader, "n", c->normal);
     c->any_restitution = quat_lua_get_boolean(reader, "any_restitution", false);
+    c->pressed = quat_lua_get_boolean(reader, "pressed", false);
     c->restitution =
         quat_lua_get_number(reader, "eps", c->any_restitution ? QUAT_LUA_NOT_NEGATIVE : QUAT_LUA_FRACTION, 0);
     c->law = (impact_law)quat_lua_get_choice(reader, "law", impact_lua_laws, IMPACT_POISSON);

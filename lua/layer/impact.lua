@@ -208,6 +208,7 @@ core.layer()
 ---@field solver? "auto"|"closed_form"|"series"|"cvode"
 ---@field order? integer  of the series, 8 to 32
 ---@field any_restitution? boolean  lets eps be above 1
+---@field pressed? boolean  other forces press the contact: docs/collide.md
 ---@field compliance? number  eta^2, tangential compliance; with law = "stronge"
 ---@field tolerance? number  of CVODE, 1e-14 to 1e-2
 ---@field method? "adams"|"bdf"  of CVODE
@@ -226,7 +227,7 @@ core.layer()
 ---@field energy_before number  J
 ---@field energy_after number
 ---@field work {compression: number, restitution: number, friction: number}  J
----@field phases string[]  "slip-c", "stick-c", "reversal", "slip-r", "stick-r"
+---@field phases string[]  "slip-c", "stick-c", "reversal", "slip-r", "stick-r", "tangential"
 ---@field compressions integer
 ---@field phase_impulses vec3[]  on body 1 up to the end of each phase, N s
 ---@field conditioning number

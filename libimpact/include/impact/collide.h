@@ -59,6 +59,10 @@ typedef struct impact_collision {
     impact_law law;
     impact_solver solver;
     bool any_restitution; /* take a restitution above 1 too */
+    /* Other forces press the contact, u_n is 0 but for rounding (2^-48 of the speeds there). Where no pressure can withstand them, since sliding
+     * friction draws the contact on (Painleve), it is an impact without approach, phase TANGENTIAL; else nothing
+     * happens, as without `pressed`. */
+    bool pressed;
 
     /* The rest may stay zero. */
     int series_order;                  /* Taylor series: 8 ... 32; 0: 22 */
@@ -71,13 +75,15 @@ typedef struct impact_collision {
 } impact_collision;
 
 /* What happened in order: sliding or sticking in compression (C) and restitution (R). A reversal stands where sliding
- * came to a stop and went on at once in another direction, friction being too weak to hold. */
+ * came to a stop and went on at once in another direction, friction being too weak to hold. TANGENTIAL stands for the
+ * first SLIP_C of what is compressed by its own friction, without approach. */
 typedef enum impact_phase {
     IMPACT_SLIP_C = 1,
     IMPACT_STICK_C,
     IMPACT_SLIP_R,
     IMPACT_STICK_R,
-    IMPACT_REVERSAL
+    IMPACT_REVERSAL,
+    IMPACT_TANGENTIAL
 } impact_phase;
 
 enum { IMPACT_MAX_PHASES = 16 };

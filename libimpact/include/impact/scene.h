@@ -248,6 +248,7 @@ typedef struct impact_usage {
     long impacts_second, impacts_soft; /* of these, answered in 128 bits; answered though no receipt passed */
     /* of these, answers to another impact in the same instant, one after another in the order of the definition */
     long impacts_simultaneous;
+    long lifts_chosen;     /* sliding contacts that lifted off where their friction could have pressed them too */
     long impacts_together; /* impulses that many pairs exchanged together */
     /* instants after which bodies moved on with reactions of friction that are not unique: what follows hangs on the
      * choice */

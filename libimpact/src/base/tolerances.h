@@ -204,6 +204,12 @@
  */
 #define IMP_COLLIDE_BRIEF 1e3
 
+/* ---- collide: impacts without approach ---- */
+
+/* Of the speeds that u is a sum of: an approach that is none, 16 roundings, and that from which an impact without
+ * approach is followed. What comes of it is off by that much. */
+#define IMP_COLLIDE_SEED 0x1p-48
+
 /* ---- collide: sensitivity ---- */
 
 /* eps, of the terms of du_n/dp: below it is rounding of the data (a product of three and a sum, of two bodies), and

@@ -13,6 +13,7 @@
 #include "collide/collide_report.h"
 #include "collide/collide_second.h"
 #include "collide/collide_series.h"
+#include "collide/collide_tangential.h"
 #include "collide/collide_units.h"
 
 #include <float.h>
@@ -302,5 +303,6 @@ impact_status imp_collide(const impact_collision *collision, bool checks, impact
 
 impact_status impact_collide(const impact_collision *collision, impact_outcome *outcome)
 {
+    if (collision->pressed) return imp_collide_pressed(collision, outcome);
     return imp_collide(collision, collision->checking != IMPACT_CHECK_NEVER, outcome);
 }

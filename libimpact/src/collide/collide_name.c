@@ -33,6 +33,7 @@ const char *impact_phase_name(impact_phase phase)
     case IMPACT_SLIP_R: return "slip-r";
     case IMPACT_STICK_R: return "stick-r";
     case IMPACT_REVERSAL: return "reversal";
+    case IMPACT_TANGENTIAL: return "tangential";
     }
     return "unknown";
 }

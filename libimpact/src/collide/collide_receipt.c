@@ -204,7 +204,10 @@ static void check_law(const view *s, impact_receipt *r)
 }
 
 static bool sticks(unsigned char phase) { return phase == IMPACT_STICK_C || phase == IMPACT_STICK_R; }
-static bool compresses(unsigned char phase) { return phase == IMPACT_SLIP_C || phase == IMPACT_STICK_C; }
+static bool compresses(unsigned char phase)
+{
+    return phase == IMPACT_SLIP_C || phase == IMPACT_STICK_C || phase == IMPACT_TANGENTIAL;
+}
 
 /* ---- phase by phase ---- */
 

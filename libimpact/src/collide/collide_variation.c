@@ -437,7 +437,10 @@ static void finish_variation(drift *d, imp_variation *v)
 }
 
 static bool is_stick(unsigned char phase) { return phase == IMPACT_STICK_C || phase == IMPACT_STICK_R; }
-static bool is_loading(unsigned char phase) { return phase == IMPACT_SLIP_C || phase == IMPACT_STICK_C; }
+static bool is_loading(unsigned char phase)
+{
+    return phase == IMPACT_SLIP_C || phase == IMPACT_STICK_C || phase == IMPACT_TANGENTIAL;
+}
 
 static bool follow_phase(drift *d, unsigned char phase, imp_real p, bool stops)
 {

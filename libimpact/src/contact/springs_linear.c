@@ -51,7 +51,7 @@ static void take_branch(line *l, imp_spring_normal normal, double base, double k
     l->tiny = sqrt(2 * IMP_SPRINGS_ENERGY_LINEAR / (kappa * l->own));
 }
 
-static void turn(line *l)
+static void turn_line(line *l)
 {
     const double square = l->restitution * l->restitution;
     l->deepest = l->x;
@@ -60,7 +60,7 @@ static void turn(line *l)
     l->finding->compressions++;
 }
 
-static double again(const line *l) { return IMP_SPRINGS_PAST * l->restitution * l->restitution * l->deepest; }
+static double line_again(const line *l) { return IMP_SPRINGS_PAST * l->restitution * l->restitution * l->deepest; }
 
 /* What is due; whether anything was. */
 static bool settle_line(line *l, bool pressed)
@@ -72,8 +72,8 @@ static bool settle_line(line *l, bool pressed)
     } else if (l->x <= l->tiny * (1 + IMP_SPRINGS_TOGETHER) && l->u >= 0) {
         l->normal = IMP_SPRING_OPEN;
     } else if (l->normal == IMP_SPRING_LOADS && l->restitution < 1 && l->u >= 0) {
-        turn(l);
-    } else if (l->normal == IMP_SPRING_UNLOADS && l->x >= again(l) && l->u < 0) {
+        turn_line(l);
+    } else if (l->normal == IMP_SPRING_UNLOADS && l->x >= line_again(l) && l->u < 0) {
         take_branch(l, IMP_SPRING_LOADS, 0, l->stiffness);
     } else {
         return false;
@@ -89,7 +89,7 @@ static bool any_pressed(const lines *s)
     return false;
 }
 
-static void settle(lines *s)
+static void settle_lines(lines *s)
 {
     const bool pressed = any_pressed(s);
     for (int i = 0; i < s->count; i++) s->events += settle_line(&s->line[i], pressed);
@@ -98,7 +98,7 @@ static void settle(lines *s)
 /* ---- the series ---- */
 
 /* W's entries under what is closed, times kappa. */
-static void press(lines *s)
+static void press_lines(lines *s)
 {
     int filled = 0;
     for (int i = 0; i < s->count; i++) {
@@ -113,10 +113,10 @@ static void press(lines *s)
     s->pressed_start[s->count] = filled;
 }
 
-static void expand(lines *s)
+static void expand_lines(lines *s)
 {
     const int n = s->count;
-    press(s);
+    press_lines(s);
     for (int i = 0; i < n; i++) s->depth[i] = s->line[i].x, s->depth[n + i] = -s->line[i].u;
     for (int k = 0; k + 2 < TERMS; k++) {
         const double *x = &s->depth[k * n], part = -1.0 / ((k + 1) * (k + 2));
@@ -130,7 +130,7 @@ static void expand(lines *s)
     }
 }
 
-static double greatest(const double *terms, int n)
+static double greatest_term(const double *terms, int n)
 {
     double most = 0;
     for (int i = 0; i < n; i++) {
@@ -141,12 +141,12 @@ static double greatest(const double *terms, int n)
 }
 
 /* How far they reach: of a sum of cosines and sines the last even and odd terms tell. */
-static double reach(const lines *s)
+static double reach_of_lines(const lines *s)
 {
     const double most = log2(IMP_SPRINGS_TRUNCATION) / IMP_SPRINGS_ORDER;
     double h = IMP_SPRINGS_FARTHEST;
     for (int k = TERMS - 2; k < TERMS; k++) {
-        const double size = k * greatest(&s->depth[k * s->count], s->count); /* of velocities */
+        const double size = k * greatest_term(&s->depth[k * s->count], s->count); /* of velocities */
         if (isnan(size)) return NAN;
         if (size > 0) h = fmin(h, exp2(most - log2(size) / (k - 1)));
     }
@@ -168,7 +168,7 @@ static void gather_velocity(const lines *s, int i, double sign, imp_terms f)
 /* ---- events ---- */
 
 /* Sooner than *when: f falls to 0; from `just` where it is not above yet. The powers are of *when. */
-static bool falls(lines *s, imp_terms f, double just, double *when)
+static bool line_falls(lines *s, imp_terms f, double just, double *when)
 {
     bool found;
     if (!(f[0] > 0)) f[0] = just;
@@ -189,21 +189,21 @@ static change first_change(lines *s, int i, double *when)
     imp_terms f;
     if (l->normal == IMP_SPRING_LOADS && l->restitution < 1) {
         gather_velocity(s, i, -1, f);
-        return falls(s, f, 0, when) ? CHANGE_TURN : CHANGE_NONE;
+        return line_falls(s, f, 0, when) ? CHANGE_TURN : CHANGE_NONE;
     }
     const double sign = l->normal == IMP_SPRING_OPEN ? -1 : 1;
     gather(s, i, sign, f);
     f[0] -= sign * l->tiny;
-    const change touches = falls(s, f, just, when) ? CHANGE_TOUCH : CHANGE_NONE;
-    if (l->normal != IMP_SPRING_UNLOADS || l->x >= again(l)) return touches;
+    const change touches = line_falls(s, f, just, when) ? CHANGE_TOUCH : CHANGE_NONE;
+    if (l->normal != IMP_SPRING_UNLOADS || l->x >= line_again(l)) return touches;
     gather(s, i, -1, f);
-    f[0] += again(l);
-    return falls(s, f, just, when) ? CHANGE_AGAIN : touches;
+    f[0] += line_again(l);
+    return line_falls(s, f, just, when) ? CHANGE_AGAIN : touches;
 }
 
 /* ---- to there ---- */
 
-static void find_velocities(lines *s)
+static void find_line_velocities(lines *s)
 {
     for (int i = 0; i < s->count; i++) {
         double sum = 0;
@@ -212,14 +212,14 @@ static void find_velocities(lines *s)
     }
 }
 
-static void note(line *l, impact_phase phase)
+static void note_line(line *l, impact_phase phase)
 {
     imp_finding *f = l->finding;
     if (f->phase_count > 0 && f->phases[f->phase_count - 1] == phase) return;
     if (f->phase_count < IMPACT_MAX_PHASES) f->phases[f->phase_count++] = (unsigned char)phase;
 }
 
-static void book_energy(line *l, double energy)
+static void book_line_energy(line *l, double energy)
 {
     const double rise = energy - l->stored;
     l->finding->work[rise > 0 ? 0 : 1] -= rise;
@@ -235,7 +235,7 @@ static double depth_at(const lines *s, int i, double t)
 
 /* The spring's work to t; where u changes its sign on the way the energy has an extreme. What loads and will turn has
  * none before that. */
-static void book(const lines *s, int i, double t)
+static void book_line(const lines *s, int i, double t)
 {
     line *l = &s->line[i];
     const double x = l->x;
@@ -247,16 +247,16 @@ static void book(const lines *s, int i, double t)
         gather_velocity(s, i, 1, f);
         changes = imp_springs_sign_changes(f, TERMS - 2, t, when, IMP_SPRINGS_EXTREMES);
     }
-    note(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+    note_line(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
     for (int k = 0; k < changes; k++) {
         l->x = depth_at(s, i, when[k]);
-        book_energy(l, energy_of(l));
+        book_line_energy(l, energy_of(l));
         l->finding->compressions += compressed;
         compressed = !compressed;
-        note(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
+        note_line(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
     }
     l->x = x;
-    book_energy(l, energy_of(l));
+    book_line_energy(l, energy_of(l));
 }
 
 /* Depths at t, and their integrals up to it. */
@@ -274,7 +274,7 @@ static void sum_terms(lines *s, double t)
     }
 }
 
-static void move_on(lines *s, double t)
+static void move_lines_on(lines *s, double t)
 {
     imp_springs_find_powers(t, s->power);
     sum_terms(s, t);
@@ -283,15 +283,15 @@ static void move_on(lines *s, double t)
         l->x = s->x[i];
         if (l->normal != IMP_SPRING_OPEN) l->p += l->kappa * s->sum[i];
     }
-    find_velocities(s);
+    find_line_velocities(s);
     for (int i = 0; i < s->count; i++)
-        if (s->line[i].normal != IMP_SPRING_OPEN) book(s, i, t);
+        if (s->line[i].normal != IMP_SPRING_OPEN) book_line(s, i, t);
 }
 
-static bool step(lines *s)
+static bool step_lines(lines *s)
 {
-    expand(s);
-    double when = reach(s);
+    expand_lines(s);
+    double when = reach_of_lines(s);
     s->steps++;
     if (isnan(when)) return false;
     imp_springs_find_powers(when, s->power);
@@ -301,16 +301,16 @@ static bool step(lines *s)
         const change own = first_change(s, i, &when);
         if (own != CHANGE_NONE) first = &s->line[i], what = own;
     }
-    move_on(s, when);
+    move_lines_on(s, when);
     s->events += first != NULL;
     if (what == CHANGE_TURN) first->u = fmax(first->u, 0);
     if (what == CHANGE_TOUCH) first->x = first->tiny;
-    if (what == CHANGE_AGAIN) first->x = fmax(first->x, again(first));
+    if (what == CHANGE_AGAIN) first->x = fmax(first->x, line_again(first));
     return true;
 }
 
 /* Nothing presses: to the next closing. False: there is none. */
-static bool drift(lines *s)
+static bool drift_lines(lines *s)
 {
     double soonest = INFINITY;
     line *next = NULL;
@@ -336,7 +336,7 @@ static double normal_product(const imp_contact *a, const imp_contact *b)
     return sum;
 }
 
-static bool lay_out(lines *s, const imp_contact *contacts, impact_together_workspace *workspace)
+static bool lay_out_lines(lines *s, const imp_contact *contacts, impact_together_workspace *workspace)
 {
     const size_t n = (size_t)s->count;
     s->line = imp_encounter_take(workspace, n, sizeof *s->line);
@@ -367,22 +367,22 @@ static bool lay_out(lines *s, const imp_contact *contacts, impact_together_works
     return true;
 }
 
-typedef struct units {
+typedef struct line_units {
     double velocity, mobility, stiffness;
-} units;
+} line_units;
 
-static units find_units(const lines *s, const imp_group *group)
+static line_units find_line_units(const lines *s, const imp_group *group)
 {
-    units u = {0, 0, 0};
+    line_units u = {0, 0, 0};
     for (int i = 0; i < s->count; i++) {
         u.velocity = fmax(u.velocity, fabs(group->u0[3 * i]));
         u.mobility += s->line[i].own / s->count;
         u.stiffness = fmax(u.stiffness, group->contacts[i].stiffness);
     }
-    return (units){imp_encounter_unit(u.velocity), imp_encounter_unit(u.mobility), u.stiffness};
+    return (line_units){imp_encounter_unit(u.velocity), imp_encounter_unit(u.mobility), u.stiffness};
 }
 
-static void set_up(lines *s, const imp_group *group, units unit)
+static void set_up_lines(lines *s, const imp_group *group, line_units unit)
 {
     for (int e = 0; e < s->start[s->count]; e++) s->value[e] /= unit.mobility;
     for (int i = 0; i < s->count; i++) {
@@ -396,7 +396,7 @@ static void set_up(lines *s, const imp_group *group, units unit)
     }
 }
 
-static void report(const lines *s, units unit, imp_group *group)
+static void report_lines(const lines *s, line_units unit, imp_group *group)
 {
     const double impulse = unit.velocity / unit.mobility;
     for (int i = 0; i < s->count; i++) {
@@ -411,15 +411,15 @@ static void report(const lines *s, units unit, imp_group *group)
 impact_status imp_springs_solve_linear(imp_group *group, impact_together_workspace *workspace)
 {
     lines s = {.count = group->count};
-    if (!lay_out(&s, group->contacts, workspace)) return IMPACT_ENOMEM;
-    const units unit = find_units(&s, group);
-    set_up(&s, group, unit);
+    if (!lay_out_lines(&s, group->contacts, workspace)) return IMPACT_ENOMEM;
+    const line_units unit = find_line_units(&s, group);
+    set_up_lines(&s, group, unit);
     while (s.steps + s.events < IMP_SPRINGS_LONG) {
-        settle(&s);
+        settle_lines(&s);
         if (any_pressed(&s)) {
-            if (!step(&s)) return IMPACT_EUNSETTLED;
-        } else if (!drift(&s)) {
-            report(&s, unit, group);
+            if (!step_lines(&s)) return IMPACT_EUNSETTLED;
+        } else if (!drift_lines(&s)) {
+            report_lines(&s, unit, group);
             return IMPACT_OK;
         }
     }

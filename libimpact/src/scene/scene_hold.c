@@ -23,8 +23,10 @@ void imp_scene_choose_modes(imp_island *island)
         imp_pair *pair = &world->pairs[p];
         if (!imp_scene_meets(island, p, &m)) continue;
         imp_scene_press(island, &m);
-        const bool stays =
-            m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= world->slip_speed;
+        const bool leaves = m.acceleration > 0 && imp_scene_draws(island, &m);
+        const bool stays = m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity)
+                                              : m.velocity <= world->slip_speed && !leaves;
+        world->usage.lifts_chosen += leaves;
         const bool slides = m.touch.speed > world->slip_speed || (imp_is_held(pair) && m.touch.onset);
         pair->mode = stays ? held_mode(&m.touch, slides) : IMP_OPEN;
         pair->onset = slides && m.touch.onset && m.touch.speed < world->onset_speed;

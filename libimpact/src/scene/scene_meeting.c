@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_meeting.h"
+#include "collide/collide_tangential.h"
 #include "world/world_gap.h"
 
+#include <float.h>
 #include <string.h>
 
 impact_status imp_scene_load(imp_island *island)
@@ -37,7 +39,7 @@ bool imp_scene_meets(imp_island *island, int p, imp_meeting *m)
     m->touch = imp_persist_meet(world, p, &contact);
     m->velocity = imp_persist_approach(world, &m->touch, island->states);
     m->own = imp_persist_own_acceleration(&island->motion.persist, world, island->states, p);
-    m->pressed = false;
+    m->pressed = m->jams = false;
     return true;
 }
 
@@ -116,7 +118,7 @@ impact_collider imp_scene_collider(const imp_island *island, int body, qvec3 off
 impact_collision imp_scene_collision(imp_island *island, imp_meeting *m)
 {
     const double restitution = island->world.pairs[m->touch.pair].restitution;
-    const bool dies = imp_scene_dies_out(island, m, restitution * m->velocity);
+    const bool dies = !m->jams && imp_scene_dies_out(island, m, restitution * m->velocity);
     const imp_touch *touch = &m->touch;
     return (impact_collision){.body = {imp_scene_collider(island, touch->body1, touch->r1),
                                        imp_scene_collider(island, touch->body2, touch->r2)},
@@ -124,9 +126,44 @@ impact_collision imp_scene_collision(imp_island *island, imp_meeting *m)
                               .friction = touch->friction,
                               .restitution = dies ? 0 : restitution,
                               .law = island->scene->law,
+                              .pressed = m->jams,
                               .solver = island->scene->methods.impacts,
                               .tangential_compliance = island->scene->compliance,
                               .workspace = island->scene->workspace};
+}
+
+/* Whether another held contact has one of the pair's bodies that move. */
+static bool is_held_elsewhere(const imp_world *world, const imp_touch *touch)
+{
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *pair = &world->pairs[p];
+        const int body[2] = {pair->body1, pair->body2};
+        if (p == touch->pair || !imp_is_held(pair)) continue;
+        for (int k = 0; k < 2; k++)
+            if (!world->bodies[body[k]].is_static && (body[k] == touch->body1 || body[k] == touch->body2)) return true;
+    }
+    return false;
+}
+
+/* Whether friction makes no normal velocity of the body's point: it stands in line with the centre. */
+static bool is_in_line(const imp_body *body, qvec3 arm, qvec3 normal)
+{
+    return body->is_static || length(qvec3_cross(arm, normal)) <= 4 * DBL_EPSILON * length(arm);
+}
+
+bool imp_scene_draws(imp_island *island, imp_meeting *m)
+{
+    const imp_world *world = &island->world;
+    const imp_touch *touch = &m->touch;
+    if (!(touch->friction > 0) || fabs(m->velocity) > world->slip_speed || island->scene->compliance > 0) return false;
+    if (is_in_line(&world->bodies[touch->body1], touch->r1, touch->normal) &&
+        is_in_line(&world->bodies[touch->body2], touch->r2, touch->normal))
+        return false;
+    if (is_held_elsewhere(world, touch)) return false;
+    imp_scene_press(island, m);
+    if (!(touch->speed > world->slip_speed) || touch->flat || touch->lined) return false;
+    const impact_collision collision = imp_scene_collision(island, m);
+    return imp_collide_draws(&collision);
 }
 
 void imp_scene_set_velocities(imp_island *island, int i, qvec3 velocity, qvec3 omega)

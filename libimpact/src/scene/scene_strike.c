@@ -81,6 +81,16 @@ static int find_approach(imp_island *island, bool answering, imp_meeting *m)
     return -1;
 }
 
+/* The first touching pair that jams, or -1. */
+static int find_jam(imp_island *island, imp_meeting *m)
+{
+    for (int p = 0; p < island->world.pair_count; p++) {
+        m->jams = imp_scene_meets(island, p, m) && imp_scene_draws(island, m) && m->acceleration < 0;
+        if (m->jams) return p;
+    }
+    return -1;
+}
+
 /* ---- many impacts in one instant ---- */
 
 /* Whether the impacts of this instant have gone round among the pairs that struck often enough, and lose energy as they
@@ -112,6 +122,7 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
             p = status == IMPACT_OK ? find_approach(island, count > 0, &m) : -1;
             fresh = true;
         }
+        if (p < 0 && status == IMPACT_OK) p = find_jam(island, &m);
         if (p < 0) return status;
         if (goes_round(island, count)) {
             status = imp_scene_end_together(island);

@@ -30,6 +30,7 @@ static const struct {
     ENTRY(impacts_second),
     ENTRY(impacts_soft),
     ENTRY(impacts_simultaneous),
+    ENTRY(lifts_chosen),
     ENTRY(impacts_together),
     ENTRY(reactions_chosen),
     ENTRY(islands_stepped),
