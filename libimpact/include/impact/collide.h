@@ -59,9 +59,9 @@ typedef struct impact_collision {
     impact_law law;
     impact_solver solver;
     bool any_restitution; /* take a restitution above 1 too */
-    /* Other forces press the contact, u_n is 0 but for rounding (2^-48 of the speeds there). Where no pressure can withstand them, since sliding
-     * friction draws the contact on (Painleve), it is an impact without approach, phase TANGENTIAL; else nothing
-     * happens, as without `pressed`. */
+    /* Other forces press the contact, u_n is 0 but for rounding (2^-48 of the speeds there). Where no pressure can
+     * withstand them, since sliding friction draws the contact on (Painleve), it is an impact without approach, phase
+     * TANGENTIAL; else nothing happens, as without `pressed`. */
     bool pressed;
 
     /* The rest may stay zero. */
