@@ -8,6 +8,15 @@ target_compile_options(house_rules INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes> $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
   -ffp-contract=off -fno-math-errno)
 
+# No file of a release holds the folder it was built in: two builds of one commit are equal, byte for byte.
+include(CheckCCompilerFlag)
+check_c_compiler_flag(-ffile-prefix-map=a=b HOUSE_HAS_PREFIX_MAP)
+if(HOUSE_HAS_PREFIX_MAP)
+  target_compile_options(house_rules INTERFACE
+    $<$<CONFIG:Release>:-ffile-prefix-map=${PROJECT_BINARY_DIR}=build>
+    $<$<CONFIG:Release>:-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.>)
+endif()
+
 # A shared library names as needed only what it calls, so that loading the algebra loads libm and nothing else.
 check_linker_flag(C -Wl,--as-needed HOUSE_HAS_AS_NEEDED)
 
@@ -35,6 +44,8 @@ endfunction()
 
 # add_house_library(NAME [PACKAGE PACKAGE] SOURCES ... [HOUSE ...] [LIBRARIES ...] [DEFINITIONS ...])
 # compiles the sources once and links them twice: PACKAGE::NAME (shared) and PACKAGE::NAME_static; PACKAGE is NAME unless given.
+# With BUILD_SHARED_LIBS said, once: ON leaves the static one to those of this project that link it, OFF makes PACKAGE::NAME another
+# name of it.
 # HOUSE: this house's own libraries (quat), linked in the matching kind and shown to users; LIBRARIES: all others, kept private.
 # Exports NAME-targets and NAME_static-targets, apart, because only the static one asks a user to have LIBRARIES at hand.
 function(add_house_library name)
@@ -49,7 +60,13 @@ function(add_house_library name)
   target_include_directories(${name}_objects PUBLIC include PRIVATE src)
   target_link_libraries(${name}_objects PRIVATE house_rules ${LIB_LIBRARIES} ${LIB_HOUSE})
 
-  foreach(kind SHARED STATIC)
+  set(kinds SHARED STATIC)
+  if(DEFINED BUILD_SHARED_LIBS AND NOT BUILD_SHARED_LIBS)
+    set(kinds STATIC)
+  elseif(DEFINED BUILD_SHARED_LIBS AND NOT IMPACT_BUILD_LUA AND NOT IMPACT_BUILD_TESTS AND NOT IMPACT_BUILD_BENCH)
+    set(kinds SHARED)
+  endif()
+  foreach(kind ${kinds})
     set(target ${name})
     set(suffix "")
     if(kind STREQUAL STATIC)
@@ -72,13 +89,20 @@ function(add_house_library name)
     target_link_libraries(${target} PRIVATE ${LIB_LIBRARIES})
     # Inline functions in the headers call libm too.
     target_link_libraries(${target} PUBLIC m)
+    if(kind STREQUAL STATIC AND BUILD_SHARED_LIBS)
+      continue()
+    endif()
     install(TARGETS ${target} EXPORT ${target}-targets
-      LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-      RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+      LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
+      ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+      RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
     install(EXPORT ${target}-targets NAMESPACE ${LIB_PACKAGE}::
-      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/${LIB_PACKAGE})
+      DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/${LIB_PACKAGE} COMPONENT development)
   endforeach()
-  if(HOUSE_HAS_AS_NEEDED)
+  if(NOT SHARED IN_LIST kinds)
+    add_library(${name} ALIAS ${name}_static)
+    add_library(${LIB_PACKAGE}::${name} ALIAS ${name}_static)
+  elseif(HOUSE_HAS_AS_NEEDED)
     target_link_options(${name} PRIVATE -Wl,--as-needed)
   endif()
 endfunction()
@@ -90,7 +114,7 @@ function(install_house_package name)
     INSTALL_DESTINATION ${directory} NO_SET_AND_CHECK_MACRO)
   write_basic_package_version_file(${name}-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/${name}-config-version.cmake
-    DESTINATION ${directory})
+    DESTINATION ${directory} COMPONENT development)
 endfunction()
 
 # The flags that link the libraries given as paths: -lNAME, and -LDIRECTORY where the linker would not look by itself.
@@ -125,5 +149,5 @@ function(install_pkg_config name)
   link_flags(PC_PRIVATE ${PC_LIBRARIES})
   set(PC_NAME ${name})
   configure_file(${PROJECT_SOURCE_DIR}/cmake/house.pc.in ${name}.pc @ONLY)
-  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 endfunction()

@@ -13,7 +13,7 @@ cd "$work"
 mv first moved # an installed tree can be moved
 prefix=$work/moved
 libdir=$(dirname "$(find "$prefix" -name libquat.a)")
-if grep -rIl -e "$build" -e "$work/first" "$libdir/cmake" "$libdir/pkgconfig"; then
+if grep -rl -e "$build" -e "$work/first" "$prefix"; then
     echo "these files name the place they were built or installed in"
     exit 1
 fi

@@ -16,6 +16,10 @@
 #include <unistd.h>
 #endif
 
+#if !defined(EDQUOT) /* Windows has no quotas */
+#define EDQUOT ENOSPC
+#endif
+
 enum { BUFFER = 65536 }; /* bytes */
 
 #if defined(__unix__) || defined(__APPLE__)

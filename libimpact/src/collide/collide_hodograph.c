@@ -21,6 +21,10 @@
 #include <float.h>
 #include <math.h>
 
+#if !defined(CMPLX) /* C11 has it, MinGW not */
+#define CMPLX(x, y) __builtin_complex((double)(x), (double)(y))
+#endif
+
 typedef double complex point;
 
 /* T and R, and what rounding of M leaves of them over eps. */

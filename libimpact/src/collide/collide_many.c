@@ -79,9 +79,14 @@ static void *work(void *context)
     return NULL;
 }
 
+/* One where the system does not say how many it has. */
 static int machine_threads(void)
 {
+#if defined(_SC_NPROCESSORS_ONLN)
     const long n = sysconf(_SC_NPROCESSORS_ONLN);
+#else
+    const long n = 1;
+#endif
     return n < 1 ? 1 : n > MOST_THREADS ? MOST_THREADS : (int)n;
 }
 
