@@ -10,29 +10,7 @@ package.loaded["quat.host"] = {
   save = function(figure, name) figures[#figures + 1] = { name = name, figure = figure } return true end,
 }
 
-local escapes = { ['"'] = '\\"', ["\\"] = "\\\\", ["\n"] = "\\n", ["\r"] = "\\r", ["\t"] = "\\t" }
-local function quoted(text)
-  return '"' .. text:gsub('[%c"\\]', function(c) return escapes[c] or string.format("\\u%04x", c:byte()) end) .. '"'
-end
-
---- Lists are arrays; a table with names is an object, whose list, if it has one, is under "items". What is not finite is null.
-local function json(value, depth)
-  local kind = type(value)
-  if kind == "number" then return value - value == 0 and string.format("%.17g", value) or "null" end
-  if kind == "string" then return quoted(value) end
-  if kind == "boolean" then return tostring(value) end
-  if kind ~= "table" or depth > 12 then return "null" end
-  local list, named = {}, {}
-  for i = 1, #value do list[i] = json(value[i], depth + 1) end
-  for key, member in pairs(value) do
-    if type(key) == "string" then named[#named + 1] = quoted(key) .. ":" .. json(member, depth + 1) end
-  end
-  local items = "[" .. table.concat(list, ",") .. "]"
-  if #named == 0 then return items end
-  table.sort(named)
-  if #list > 0 then named[#named + 1] = '"items":' .. items end
-  return "{" .. table.concat(named, ",") .. "}"
-end
+local json = require("quat.page").json
 
 local function numbers(lines)
   local values = {}
@@ -71,5 +49,5 @@ return function(name, source, lines)
     made.scene, made.after = nil, nil
     answer.page = made
   end
-  return json(answer, 0)
+  return json(answer)
 end

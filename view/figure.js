@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Figures of quat.plot, drawn here: a canvas of panels, flat ones (flat.js) and ones in space (space.js), which turn under the hand.
-// A figure is { size, grid, title, subtitle, items: panels }, as playground.lua and page.lua put it into JSON: numbers that are not finite are null.
+// A figure is { size, grid, title, subtitle, items: panels }, as page.lua puts it into JSON: numbers that are not finite are null.
 const inks = { blue: '#0072b2', red: '#d55e00', green: '#009e73', orange: '#e69f00', purple: '#cc79a7', teal: '#56b4e9', grey: '#a0aec0', dark: '#2d3748', black: '#000000' };
 const inkCycle = ['blue', 'red', 'green', 'orange', 'purple', 'teal'];
 const inkOf = (name, fallback) => inks[name || fallback] || name;
@@ -77,10 +77,13 @@ function drawFigure(canvas, figure, views) {
     if (figure.subtitle) letter(d, figure.subtitle, W / 2, 50, { align: 'center', color: '#4a5568' });
     top = (figure.subtitle ? 66 : 45) / H;
   }
-  figure.items.forEach((panel, k) => {
-    const p = placeOf(figure, panel, k, top), box = { x: p.x * W, y: p.y * H, w: p.w * W, h: p.h * H, exact: p.exact };
-    if (isSpace(panel)) drawSpace(d, panel, box, ratio, views[k]); else drawFlat(d, panel, box);
-  });
+  const boxes = figure.items.map((panel, k) => { const p = placeOf(figure, panel, k, top); return { x: p.x * W, y: p.y * H, w: p.w * W, h: p.h * H, exact: p.exact }; });
+  // Panels in space of one range and one size get one scale, the smallest of theirs: found by drawing those once.
+  const kinds = figure.items.map((p, k) => (isSpace(p) && p.equal && p.xrange && p.yrange && p.zrange ? JSON.stringify([p.xrange, p.yrange, p.zrange, Math.round(boxes[k].w), Math.round(boxes[k].h)]) : null));
+  const shared = kinds.filter((kind, k) => kind && kinds.indexOf(kind) !== k), scales = {};
+  const draw = (panel, k) => (isSpace(panel) ? drawSpace(d, panel, boxes[k], ratio, views[k], scales[kinds[k]] || 0) : drawFlat(d, panel, boxes[k]));
+  figure.items.forEach((panel, k) => { if (shared.includes(kinds[k])) scales[kinds[k]] = Math.min(drawSpace(d, panel, boxes[k], ratio, views[k], 0), scales[kinds[k]] || Infinity); });
+  figure.items.forEach(draw);
 }
 // A canvas for a figure; drag turns the panel in space under the hand. turned: views of another canvas of as many panels, or null.
 function figureCanvas(figure, width, turned) {

@@ -21,6 +21,7 @@ void main() {
   if (kind == 1) c = mix(one, two, side(own.x) * side(own.y) * side(own.z) * -.5 + .5);
   if (kind == 2) { vec2 g = own.xy * grid.zw; c.rgb = mix(c.rgb, two.rgb, two.a * max(line(g.x), line(g.y))); }
   if (kind == 3) { color = c; return; }
+  if (kind == 4) { float s = length(up) - 1.; c.rgb = s < .5 ? mix(one.rgb, vec3(.97, .98, .99), 2. * s) : mix(vec3(.97, .98, .99), two.rgb, 2. * s - 1.); }
   float l = max(dot(n, sun), 0.) * shade(), h = pow(max(dot(n, normalize(sun + v)), 0.), 60.) * shade();
   color = vec4(c.rgb * (.5 + .12 * dot(n, sky) + .48 * l) + (kind == 2 ? 0. : .18 * h), c.a);
 }`;

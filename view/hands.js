@@ -104,5 +104,6 @@ function start(bytes) {
       states: (words.get('probe') || String(status.t)).split(',').map(t => states(Number(t))) };
     root.dataset.report = JSON.stringify(report);
   }
+  if (words.has('still') && words.has('strip') && scene.gl) return drawStrip(scene, canvas, words.get('strip').split(',').map(Number), dark);
   requestAnimationFrame(tick);
 }

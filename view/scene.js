@@ -82,7 +82,7 @@ function makeScene(run, canvas) {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.viewport(0, 0, w, h); gl.clearColor(...rgb(paper)); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     G.solid.set({ view, light: lightView, eye, sun, sky: up, depth: 0, texel: 1 / G.size, kind: 1, grid: [0, 0, 0, 0] });
     const solid = (m, model, one, two, kind, grid = [0, 0, 1, 1]) => { G.solid.set({ model, one, two, kind, grid }); G.draw(m); };
-    const stroke = (m, one, width, now = 1e30) => { G.lines.set({ view, size: [w / 2, h / 2], one, width: width * w / canvas.clientWidth, now }); G.drawLine(m); };
+    const stroke = (m, one, width, now = 1e30) => { G.lines.set({ view, size: [w / 2, h / 2], one, width: width * (canvas.clientWidth ? w / canvas.clientWidth : window.devicePixelRatio || 1), now }); G.drawLine(m); };
     solids.forEach((s, i) => s && solid(s.mesh, models[i], s.one, mixed(s.one, [1, 1, 1, 1], 0.72), 1));
     const ground = p => solid(quad, p.model, rgb(dark ? '#2b2f36' : p.floor ? '#e4e1da' : '#c3ccd6', p.floor ? 1 : 0.35), rgb(ink, 0.2), 2, [0, 0, p.half[0] / step, p.half[1] / step]);
     const seen = p => dot(p.n, sub(eye, p.x)) > 0;

@@ -9,14 +9,15 @@ function graphicsOf(w, h) {
   s.canvas.width = w; s.canvas.height = h;
   return s;
 }
-// A grid of points with the normals of its own differences; a hole where a point is none.
-function sheetMesh(at, rows, columns) {
+// A grid of points with the normals of its own differences; a hole where a point is none. part: of a value's range, which the normal's
+// length carries, 1 to 2 (gl.js, kind 4).
+function sheetMesh(at, rows, columns, part) {
   const points = [], index = [], edge = (a, b) => (a && b ? sub(b, a) : [0, 0, 0]);
   for (let j = 0; j < rows; j++) for (let i = 0; i < columns; i++) {
     const p = at(i, j), u = edge(at(Math.max(i - 1, 0), j) || p, at(Math.min(i + 1, columns - 1), j) || p), v = edge(at(i, Math.max(j - 1, 0)) || p, at(i, Math.min(j + 1, rows - 1)) || p);
     let n = cross(u, v);
     if (p && norm(n) < 1e-12 * norm(p)) n = p; // a pole of a grid, where a row is one point
-    points.push(...(p || [0, 0, 0]), ...unit(n));
+    points.push(...(p || [0, 0, 0]), ...scale(unit(n), part ? 1 + part(i, j) : 1));
   }
   for (let j = 0; j + 1 < rows; j++) for (let i = 0; i + 1 < columns; i++) {
     const k = j * columns + i;
@@ -51,7 +52,10 @@ function partsOf(panel) {
       const rows = x.length, columns = x[0].length, raw = (i, j) => [x[j][i], y[j][i], z[j][i]], at = (i, j) => (raw(i, j).every(real) ? put(raw(i, j)) : null);
       for (let j = 0; j < rows; j += 2) for (let i = 0; i < columns; i += 2) if (at(i, j)) parts.all.push(at(i, j));
       const shown = item.lines ? Math.min(0.45, 1.2 * (item.opacity || 0.35)) : item.opacity || 0.35;
-      parts.solids.push({ mesh: sheetMesh(at, rows, columns), ink: item.ink, opacity: shown > 0.9 ? 1 : shown });
+      const [low, high] = item.range || (item.value ? extentOf({ items: [{ kind: 'surface', items: [item.value] }] }, 0) : [0, 1]);
+      const part = item.value ? (i, j) => clamp((item.value[j][i] - low) / (high - low || 1), 0, 1) : null;
+      if (part) parts.bar = [low, high];
+      parts.solids.push({ mesh: sheetMesh(at, rows, columns, part), ink: item.ink, valued: !!part, opacity: part || shown > 0.9 ? 1 : shown });
       const line = (count, f) => { for (let k = 0, run = []; k <= count; k++) { const p = k < count ? f(k) : null; if (p) run.push(p); else { if (run.length > 1) parts.strokes.push({ path: run, ink: item.ink, width: 0.8, opacity: 0.7 }); run = []; } } };
       if (item.lines) { for (let j = 0; j < rows; j += 2) line(columns, i => at(i, j)); for (let i = 0; i < columns; i += 2) line(rows, j => at(i, j)); }
     } else if (item.kind === 'line') runsOf(x, y, z, put).forEach(path => {

@@ -40,7 +40,15 @@ function outward(m) {
   }
   return { points: m.points, index: sum < 0 ? m.index.slice().reverse() : m.index, middle };
 }
-function drawSpace(d, panel, box, ratio, turn) {
+// The colours of values, below: low to high.
+function colorBar(d, [low, high], box) {
+  const x = box.x + 0.28 * box.w, w = 0.44 * box.w, y = box.y + box.h - 30, shade = d.createLinearGradient(x, 0, x + w, 0);
+  [[0, inks.blue], [0.5, '#f7fafc'], [1, inks.red]].forEach(([s, c]) => shade.addColorStop(s, c));
+  d.fillStyle = shade; d.fillRect(x, y, w, 9);
+  ticksOf(low, high, niceStep(high - low, 4)).forEach(v => letter(d, String(+v.toPrecision(4)), x + w * (v - low) / (high - low), y + 19, { size: 9, align: 'center' }));
+}
+// most: pixels for a unit of length at most, so that panels of one range have one scale; 0: as large as it fits. Gives back what it took.
+function drawSpace(d, panel, box, ratio, turn, most) {
   const s = graphicsOf(Math.max(2, Math.round(box.w * ratio)), Math.max(2, Math.round(box.h * ratio))), { G, canvas } = s, w = canvas.width, h = canvas.height;
   if (!G) return letter(d, 'no WebGL 2', box.x + box.w / 2, box.y + box.h / 2, { align: 'center' });
   const parts = panel.parts = panel.parts || partsOf(panel), gl = G.gl, framed = panel.frame !== false;
@@ -54,21 +62,22 @@ function drawSpace(d, panel, box, ratio, turn) {
   const place = (m, p) => { const c = [0, 1, 3].map(r => m[r] * p[0] + m[r + 4] * p[1] + m[r + 8] * p[2] + m[r + 12]); return [c[0] / c[2], c[1] / c[2]]; };
   // Fitted to its place, below the title and with room for the words.
   const flat = fitted.map(p => place(plain, here(p))), ends = [0, 1].map(c => [Math.min(...flat.map(p => p[c])), Math.max(...flat.map(p => p[c]))]);
-  const top = panel.title ? 1 - 60 * ratio / h : 0.97, rooms = [[-0.93, 0.93], [-0.93, top]];
-  const grow = Math.min(...[0, 1].map(c => (rooms[c][1] - rooms[c][0]) / (ends[c][1] - ends[c][0] || 1))), shift = [0, 1].map(c => (rooms[c][0] + rooms[c][1]) / 2 - grow * (ends[c][0] + ends[c][1]) / 2);
+  const top = panel.title ? 1 - 60 * ratio / h : 0.97, rooms = [[-0.93, 0.93], [parts.bar ? 80 * ratio / h - 1 : -0.93, top]];
+  const fit = Math.min(...[0, 1].map(c => (rooms[c][1] - rooms[c][0]) / (ends[c][1] - ends[c][0] || 1))), sight = 2 * h / distance, grow = most ? Math.min(fit, most / sight) : fit;
+  const shift = [0, 1].map(c => (rooms[c][0] + rooms[c][1]) / 2 - grow * (ends[c][0] + ends[c][1]) / 2);
   const view = mat([grow, 0, 0, 0, 0, grow, 0, 0, 0, 0, 1, 0, shift[0], shift[1], 0, 1], plain), pixel = distance / (grow * 4 * h / 2) * ratio;
   const sun = unit(add(add(scale([-Math.sin(turn.yaw), Math.cos(turn.yaw), 0], -0.6), scale(dir, 0.7)), [0, 0, 0.9]));
   gl.viewport(0, 0, w, h); gl.clearColor(1, 1, 1, 1); gl.depthMask(true); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   gl.enable(gl.DEPTH_TEST); gl.depthFunc(gl.LEQUAL); gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1);
   G.solid.set({ view, eye, sun, sky: [0, 0, 1], depth: 0, texel: 0, kind: 0, grid: [0, 0, 0, 0], light: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 10, 10, 1] });
-  const solid = (m, model, ink, a) => { G.solid.set({ model, one: rgb(ink, a), two: rgb(ink, a) }); G.draw(m); };
+  const solid = (m, model, ink, a, valued) => { G.solid.set({ model, kind: valued ? 4 : 0, one: rgb(valued ? inks.blue : ink, a), two: rgb(valued ? inks.red : ink, a) }); G.draw(m); };
   const still = frame(scale(middle, -1), [1, 0, 0, 0], [1, 1, 1]);
   parts.solids.forEach(o => { if (!o.drawn) { const m = outward(o.mesh); o.middle = m.middle; o.drawn = G.upload(m); } });
-  parts.solids.filter(o => o.opacity >= 1).forEach(o => solid(o.drawn, still, o.ink, 1));
+  parts.solids.filter(o => o.opacity >= 1).forEach(o => solid(o.drawn, still, o.ink, 1, o.valued));
   parts.dots.forEach(o => solid(s.ball, frame(here(o.p), [1, 0, 0, 0], [1, 1, 1].map(() => 4.6 * o.size * pixel)), o.ink, 1));
   parts.darts.forEach(o => { const length = norm(o.d), wide = Math.min((3 + 1.2 * o.width) * pixel, 0.2 * length); if (length > 0) solid(s.arrow, frame(here(o.a), turnTo(unit(o.d)), [wide, wide, length]), o.ink, 1); });
   const stroke = (path, ink, a, width) => { G.lines.set({ view, size: [w / 2, h / 2], one: rgb(ink, a), width: width * ratio, now: 1e30 }); G.drawLine(G.uploadLine(path.map(p => [...here(p), -1e30]))); };
-  frameParts.lines.forEach(l => stroke(l, '#a0aec0', 0.7, 1));
+  frameParts.lines.forEach(l => stroke(l, '#a0aec0', 0.7, 0.2));
   parts.strokes.forEach(o => (o.dash ? dashed(o.path, 9 * pixel) : [o.path]).forEach(p => stroke(p, o.ink, o.opacity, o.width)));
   gl.depthMask(false); gl.enable(gl.CULL_FACE);
   const depth = o => dot(sub(o.middle, middle), dir);
@@ -80,4 +89,6 @@ function drawSpace(d, panel, box, ratio, turn) {
   parts.texts.forEach(({ p, item }) => letter(d, item.items[0], ...at(p), { size: item.size || 11, align: item.align || 'left', color: item.ink, halo: true }));
   if (panel.title) letter(d, panel.title, box.x + box.w / 2, box.y + 16, { size: 12, align: 'center', color: '#1a202c' });
   legend(d, panel, colored(panel), box.x, box.y + 20, box.w, box.h - 24);
+  if (parts.bar) colorBar(d, parts.bar, box);
+  return grow * sight;
 }

@@ -38,10 +38,11 @@ flat[#flat + 1] = plot.points { { 0 }, { 1 }, color = "dark", size = 1.7, label 
 
 -- b) the sphere, and the image of its grid as far as the picture goes
 local x, y, z, u, v, w = {}, {}, {}, {}, {}, {}
-for i = 1, 20 do
+local grid = 61
+for i = 1, grid do
   x[i], y[i], z[i], u[i], v[i], w[i] = {}, {}, {}, {}, {}, {}
-  for j = 1, 20 do
-    local theta, phi = (j - 1) * 2 * pi / 19, (i - 1) * pi / 19
+  for j = 1, grid do
+    local theta, phi = (j - 1) * 2 * pi / (grid - 1), (i - 1) * pi / (grid - 1)
     local p = { math.cos(theta) * math.sin(phi), math.sin(theta) * math.sin(phi), math.cos(phi) }
     local image = quat.stereographic_sphere(p)
     x[i][j], y[i][j], z[i][j] = p[1], p[2], p[3]

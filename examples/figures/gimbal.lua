@@ -43,7 +43,7 @@ local function rings(beta, title, box)
   for i = 1, 3 do
     local size = 1.15 - 0.2 * i
     local u, v = axes[i % 3 + 1], axes[(i + 1) % 3 + 1]
-    local circle = { {}, {}, {}, color = colors[i], width = 2.4 }
+    local circle = { {}, {}, {}, color = colors[i], width = 2.4, tube = 0.04 }
     for n = 0, 96 do
       local s = n * math.pi / 48
       local p = turn[i]:rotate {
@@ -58,6 +58,8 @@ local function rings(beta, title, box)
     local reach = i == 3 and 1.42 or 1.15
     panel[#panel + 1] = plot.text { names[i], at = { reach * axis.x, reach * axis.y, reach * axis.z + (i == 1 and -0.16 or 0.04) }, color = colors[i], size = 13 }
   end
+  -- Across the lines of alpha and beta: where gamma should turn, and at the lock does not.
+  panel[#panel + 1] = plot.line { { 0, 0 }, { 0, 0 }, { -1.2, 1.2 }, color = "dark", width = 2, dash = true }
   return plot.panel(panel)
 end
 

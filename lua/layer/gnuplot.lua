@@ -10,14 +10,14 @@ local abs, ceil, floor, log, max, min = math.abs, math.ceil, math.floor, math.lo
 
 local gnuplot = {}
 
---- Colours that stand apart for most eyes, also in grey.
+--- The colours of Okabe and Ito (2008), which stand apart for every eye.
 gnuplot.colors = {
-  blue = "#2b6cb0",
-  red = "#c53030",
-  green = "#2f855a",
-  orange = "#dd6b20",
-  purple = "#6b46c1",
-  teal = "#2c7a7b",
+  blue = "#0072b2",
+  red = "#d55e00",
+  green = "#009e73",
+  orange = "#e69f00",
+  purple = "#cc79a7",
+  teal = "#56b4e9",
   grey = "#a0aec0",
   dark = "#2d3748",
   black = "#000000",
@@ -393,7 +393,7 @@ local function put_panel(out, panel, number_of, place, top)
       local name = format("$panel%d_%d", number_of, i)
       parts[#parts + 1] = clauses[item.kind](out, name, item, three, cycle[(colored - 1) % #cycle + 1], not item.color and colored > #cycle)
       if item.value then
-        out[#out + 1] = "set palette defined (0 '#2b6cb0', 0.5 '#f7fafc', 1 '#c53030')"
+        out[#out + 1] = "set palette defined (0 '#0072b2', 0.5 '#f7fafc', 1 '#d55e00')"
         put_colors(out, panel, item.range, place, top)
       end
     end
@@ -410,17 +410,35 @@ function gnuplot.place(figure, i)
   return { column = at[1], row = at[2], wide = at[3] or 1, high = at[4] or 1, columns = grid[1], rows = grid[2] }
 end
 
---- The commands that draw the figure: to the file `output`, or to standard output.
+--- Whether no panel of the figure is in space.
+---@return boolean
+function gnuplot.is_flat(figure)
+  for _, panel in ipairs(figure) do if is_three(panel) then return false end end
+  return true
+end
+
+-- Of a form of picture, gnuplot's terminal; a picture in print has 96 pixels to the inch.
+local terminals = {
+  png = function(w, h) return format("pngcairo noenhanced size %d,%d", w, h) end,
+  svg = function(w, h) return format("svg noenhanced size %d,%d", w, h) end,
+  pdf = function(w, h) return format("pdfcairo noenhanced size %.4fin,%.4fin", w / 96, h / 96) end,
+}
+
+--- The commands that draw the figure: to the file `output`, or to standard output. form: "png", "svg" or "pdf"; nil of the latter two
+--- for a figure with a panel in space, whose surfaces hide nothing there.
 ---@param figure plot.figure
 ---@param output? string
----@return string
-function gnuplot.commands(figure, output)
+---@param form? string
+---@return string?
+function gnuplot.commands(figure, output, form)
   if type(figure) ~= "table" or figure.kind ~= "figure" then error("a figure is made with plot.figure", 0) end
+  form = form or "png"
+  if form ~= "png" and not gnuplot.is_flat(figure) then return nil end
   local size = figure.size or { 1280, 860 }
   local out = {
     "set encoding utf8",
-    format("set terminal pngcairo noenhanced size %d,%d font 'DejaVu Sans,11' background '#ffffff'",
-      floor(min(8000, max(100, size[1]))), floor(min(8000, max(100, size[2])))),
+    format("set terminal %s font 'DejaVu Sans,11' background '#ffffff'",
+      terminals[form](floor(min(8000, max(100, size[1]))), floor(min(8000, max(100, size[2]))))),
     output and "set output " .. quote(output) or "set output",
     "set multiplot",
   }

@@ -195,7 +195,7 @@ end
 ---@param output? string
 ---@return string
 function plot.gnuplot(figure, output)
-  return gnuplot.commands(figure, output)
+  return assert(gnuplot.commands(figure, output))
 end
 
 --- Draws the figure as NAME.png: in the runner's output folder, or in a stock Lua where the name says.

@@ -40,9 +40,10 @@ typedef struct impact_runner {
     char **arguments;      /* key=value, after --; ended by NULL; NULL: none */
     const char *directory; /* the output folder; made when the first file is */
     bool quiet, trust;
-    bool used;   /* the script has run a scene, or written something */
-    bool record; /* NAME.run is written too */
-    bool report; /* instead of a run, for so long, s; 0: as it likes */
+    bool used;     /* the script has run a scene, or written something */
+    bool record;   /* NAME.run is written too */
+    bool pictures; /* and pictures in other forms beside NAME.png */
+    bool report;   /* instead of a run, for so long, s; 0: as it likes */
     double report_seconds;
     bool fence;           /* not without it */
     const char *unfenced; /* why there is none; NULL: there is */

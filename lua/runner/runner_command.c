@@ -35,6 +35,8 @@ static void usage(FILE *file)
         "  --report          what each method gets right of the scene, how sure that is and what it costs: a table,\n"
         "                    NAME_report.csv and NAME_report.png instead of a run\n"
         "  --seconds S       the report's time (default: 20)\n"
+        "  --pictures        beside NAME.png: flat pictures as NAME.svg and NAME.pdf, others as a page, "
+        "NAME.figure.html\n"
         "  --quiet           no progress, no closing summary\n"
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"
         "  --max-time S      bounds the time of the whole run, in seconds\n"
@@ -170,9 +172,9 @@ static bool take_flag(impact_runner *runner, const char *word)
     const struct {
         const char *name;
         bool *flag;
-    } flags[] = {{"--record", &runner->record}, {"--quiet", &runner->quiet}, {"--trust", &runner->trust},
-                 {"--fence", &runner->fence},   {"--mpi", &runner->mpi},     {"--hdf5", &runner->hdf5},
-                 {"--report", &runner->report}};
+    } flags[] = {{"--record", &runner->record}, {"--quiet", &runner->quiet},      {"--trust", &runner->trust},
+                 {"--fence", &runner->fence},   {"--mpi", &runner->mpi},          {"--hdf5", &runner->hdf5},
+                 {"--report", &runner->report}, {"--pictures", &runner->pictures}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         if (strcmp(word, flags[i].name) == 0) return *flags[i].flag = true;
     return false;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures. A script describes a figure as plain data; the data is copied into a Lua state of our own, which no script
- * has touched, and there becomes gnuplot's commands. gnuplot starts without a shell, reads the commands from a file
- * without a name and writes the picture to a descriptor of ours.
+ * Pictures: by gnuplot, and with --pictures as a page, too. A script describes a figure as plain data; the data is
+ * copied into a Lua state of our own, which no script has touched, and there becomes gnuplot's commands. gnuplot starts
+ * without a shell, reads the commands from a file without a name and writes the picture to a descriptor of ours.
  */
 #define _GNU_SOURCE
 #include "runner.h"
@@ -74,16 +74,36 @@ static const char *copy(lua_State *from, int index, lua_State *to, int depth)
 
 /* ---- gnuplot's commands ---- */
 
-static int write_commands(lua_State *to) /* protected: (FILE *, figure) */
+static const char page_form[] = "figure.html";
+
+static void load_module(lua_State *to, const char *name)
+{
+    impact_runner_load_layer(to, name);
+    lua_call(to, 0, 1);
+    luaL_getsubtable(to, LUA_REGISTRYINDEX, LUA_LOADED_TABLE);
+    lua_pushvalue(to, -2);
+    lua_setfield(to, -2, name);
+    lua_pop(to, 1);
+}
+
+/* Protected: (FILE *, figure, form); nothing is written of a figure that has not this form. */
+static int write_commands(lua_State *to)
 {
     FILE *file = lua_touserdata(to, 1);
+    const char *form = lua_touserdata(to, 3);
     size_t length;
     luaL_openlibs(to);
-    impact_runner_load_layer(to, "quat.gnuplot");
-    lua_call(to, 0, 1);
+    load_module(to, "quat.gnuplot");
+    if (strcmp(form, page_form) == 0) {
+        load_module(to, "quat.page_template");
+        load_module(to, "quat.page");
+    }
     lua_getfield(to, -1, "commands");
     lua_pushvalue(to, 2);
-    lua_call(to, 1, 1);
+    lua_pushnil(to);
+    lua_pushstring(to, form);
+    lua_call(to, 3, 1);
+    if (lua_isnil(to, -1)) return 0;
     const char *text = luaL_checklstring(to, -1, &length);
     if (fwrite(text, 1, length, file) != length || fflush(file) != 0)
         return luaL_error(to, "cannot write gnuplot's commands");
@@ -91,7 +111,8 @@ static int write_commands(lua_State *to) /* protected: (FILE *, figure) */
     return 0;
 }
 
-static bool make_commands(lua_State *L, int index, impact_runner *runner, FILE *file, char *message, size_t size)
+static bool make_commands(lua_State *L, int index, impact_runner *runner, const char *form, FILE *file, char *message,
+                          size_t size)
 {
     lua_State *to = lua_newstate(impact_runner_allocate, runner);
     if (!to) return snprintf(message, size, "not enough memory"), false;
@@ -103,7 +124,8 @@ static bool make_commands(lua_State *L, int index, impact_runner *runner, FILE *
         snprintf(type, sizeof type, "a figure is made with plot.figure; this is a %s", luaL_typename(L, index));
         wrong = type;
     }
-    if (!wrong && lua_pcall(to, 2, 0, 0) != LUA_OK) {
+    if (!wrong) lua_pushlightuserdata(to, (void *)form);
+    if (!wrong && lua_pcall(to, 3, 0, 0) != LUA_OK) {
         const char *text = lua_tostring(to, -1);
         const char *plain =
             text && strncmp(text, "quat.gnuplot:", 13) == 0 ? strchr(text, ' ') : NULL; /* not our line number */
@@ -141,8 +163,21 @@ static void last_complaint(FILE *complaints, char *message, size_t size)
     }
 }
 
-static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, const char *file_name, char *message,
-                                        size_t size)
+/* 0, or IMPACT_NO_PROGRAM, or what else went wrong. */
+static int copy_page(FILE *page, int picture)
+{
+    char bytes[4096];
+    for (size_t length; (length = fread(bytes, 1, sizeof bytes, page)) > 0;)
+        for (size_t done = 0; done < length;) {
+            const ssize_t written = write(picture, bytes + done, length - done);
+            if (written < 0 && errno != EINTR) return 1;
+            if (written > 0) done += (size_t)written;
+        }
+    return 0;
+}
+
+static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, const char *file_name, bool page,
+                                        char *message, size_t size)
 {
     if (!impact_runner_open_folder(runner, message, size)) return IMPACT_DRAW_FAILED;
     bool nameless = false;
@@ -153,7 +188,8 @@ static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, c
     if (!complaints)
         snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, file_name, strerror(errno));
     else
-        code = impact_runner_gnuplot(runner, fileno(commands), picture, fileno(complaints));
+        code = page ? copy_page(commands, picture)
+                    : impact_runner_gnuplot(runner, fileno(commands), picture, fileno(complaints));
     const off_t length = code == 0 ? lseek(picture, 0, SEEK_END) : 0;
     const bool drawn = length > 0 && impact_runner_spend(runner, (unsigned long long)length);
     if (complaints && !drawn) {
@@ -170,19 +206,34 @@ static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, c
     return result;
 }
 
-impact_draw_result impact_runner_draw(lua_State *L, int index, impact_runner *runner, const char *name, char *message,
-                                      size_t size)
+static impact_draw_result draw_form(lua_State *L, int index, impact_runner *runner, const char *name, const char *form,
+                                    char *message, size_t size)
 {
     char file_name[240];
     impact_draw_result result = IMPACT_DRAW_REFUSED;
-    snprintf(file_name, sizeof file_name, "%s.png", name);
+    snprintf(file_name, sizeof file_name, "%s.%s", name, form);
     FILE *commands = scratch_file();
     if (!commands)
         return snprintf(message, size, "cannot make a temporary file: %s", strerror(errno)), IMPACT_DRAW_FAILED;
-    if (make_commands(L, index, runner, commands, message, size))
-        result = draw_commands(commands, runner, file_name, message, size);
+    if (make_commands(L, index, runner, form, commands, message, size)) {
+        const bool any = fseek(commands, 0, SEEK_END) == 0 && ftell(commands) > 0;
+        rewind(commands);
+        result = any ? draw_commands(commands, runner, file_name, strcmp(form, page_form) == 0, message, size)
+                     : IMPACT_DRAWN;
+    }
     fclose(commands);
     return result;
+}
+
+impact_draw_result impact_runner_draw(lua_State *L, int index, impact_runner *runner, const char *name, char *message,
+                                      size_t size)
+{
+    static const char *const others[] = {"svg", "pdf", page_form};
+    const impact_draw_result result = draw_form(L, index, runner, name, "png", message, size);
+    impact_draw_result other = result;
+    for (size_t i = 0; runner->pictures && result == IMPACT_DRAWN && other == IMPACT_DRAWN && i < 3; i++)
+        other = draw_form(L, index, runner, name, others[i], message, size);
+    return other;
 }
 
 /* ---- quat.host ---- */

@@ -77,3 +77,21 @@ void imp_dense_rates(const imp_dense *dense, double t, double window, int first,
     const double w = last > t ? fmax(place_of(dense, last) - s, 0) : 0;
     for (int i = 0; i < count; i++) rates[i] = rates_of(dense, s, w, first + i);
 }
+
+static double slope_of(const imp_dense *dense, double s, int i)
+{
+    double value = 0, rate = 0;
+    for (int j = dense->terms - 1; j >= 0; j--) {
+        rate = rate * s + value;
+        value = value * s + dense->c[j * dense->size + i];
+    }
+    return rate;
+}
+
+/* By s, and then by t, which is y[0] where tau is another. */
+void imp_dense_slopes(const imp_dense *dense, double t, int first, int count, double *slopes)
+{
+    const bool moves = dense->h > 0;
+    const double s = moves ? place_of(dense, t) : 0, rate = dense->clocked && moves ? slope_of(dense, s, 0) : dense->h;
+    for (int i = 0; i < count; i++) slopes[i] = moves ? slope_of(dense, s, first + i) / rate : 0;
+}

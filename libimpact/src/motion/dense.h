@@ -34,5 +34,7 @@ typedef struct imp_dense_rate {
     double value, rate, most, most_rate, most_second;
 } imp_dense_rate;
 void imp_dense_rates(const imp_dense *dense, double t, double window, int first, int count, imp_dense_rate *rates);
+/* dy/dt at t, no bounds: a third of the work. */
+void imp_dense_slopes(const imp_dense *dense, double t, int first, int count, double *slopes);
 
 #endif

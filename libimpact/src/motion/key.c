@@ -262,18 +262,18 @@ static bool is_quarter(const imp_key_line *line, const imp_piece *piece)
     return line->open && 4 * (piece->to - piece->from) <= piece->to - line->last.t;
 }
 
-/* The piece as a span that was not looked into, joined to what is open. */
+/* The piece, not looked into, joined to what is open. */
 static bool join_whole(imp_key_line *line, const imp_piece *piece, int body, imp_key_tolerance tolerance)
 {
     if (!is_quarter(line, piece)) return false;
-    const imp_span span = {.from = piece->at(piece->context, body, 0), .to = piece->at(piece->context, body, 1)};
-    const impact_key keys[2] = {line->last, span.to};
-    if (!same_state(&line->next, &span.from) || !turns_little(keys)) return false;
+    const impact_key from = piece->begin(piece->context, body), to = piece->at(piece->context, body, 1);
+    const impact_key keys[2] = {line->last, to};
+    if (!same_state(&line->next, &from) || !turns_little(keys)) return false;
     const quintic curve = quintic_of(keys);
     const imp_pose middle = pose_of(&line->next);
     if (!meets(&curve, &middle, tolerance) || !all_meet(&curve, line->way, line->count, tolerance)) return false;
     keep_pose(line, middle);
-    line->next = span.to;
+    line->next = to;
     return true;
 }
 

@@ -23,13 +23,15 @@ typedef struct imp_pose {
 } imp_pose;
 
 /* A piece of motion that is done, between two events: at tells where one of its bodies was at part s, 0 to 1, of the
- * way through it; pose is the same without the rates. Time rises with s, not always evenly. At s = 0 and 1 the state is
+ * way through it; pose is the same without the rates, and begin the key at s = 0 without the
+ * accelerations. Time rises with s, not always evenly. At s = 0 and 1 the state is
  * the one that the neighbouring pieces and events have, to the bit. */
 typedef struct imp_piece {
     double from, to; /* s */
     void *context;
     impact_key (*at)(void *context, int body, double s);
     imp_pose (*pose)(void *context, int body, double s);
+    impact_key (*begin)(void *context, int body);
 } imp_piece;
 
 /* A part of a piece on which the polynomial of its ends meets the trajectory, and where the trajectory was inside it.
@@ -56,7 +58,7 @@ typedef struct imp_key_line {
     bool begun, open;
     impact_key last, next; /* handed on; open: the end of the span that may still grow */
     int count;
-    imp_pose way[16]; /* on the way from last to next */
+    imp_pose way[8]; /* on the way from last to next */
 } imp_key_line;
 
 typedef bool imp_key_sink(void *context, const impact_key *key);

@@ -239,6 +239,20 @@ imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double
     return b;
 }
 
+void imp_segment_rates(const imp_segment *s, const imp_body *body, double t, qvec3 *acceleration, qvec3 *torque)
+{
+    if (s->kind == IMP_SEGMENT_DENSE) {
+        double r[6]; /* of v and the momentum, which stand side by side */
+        imp_dense_slopes(s->dense, t, first_of(s) + Y_VELOCITY, 6, r);
+        *acceleration = (qvec3){r[0], r[1], r[2]};
+        *torque = (qvec3){r[3], r[4], r[5]};
+        return;
+    }
+    const imp_bounds b = imp_segment_bounds(s, body, t, 0);
+    *acceleration = b.acceleration;
+    *torque = b.torque;
+}
+
 double imp_segment_top_speed(const imp_segment *s, const imp_body *body, double t)
 {
     qvec3 v;

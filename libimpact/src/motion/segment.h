@@ -78,6 +78,8 @@ typedef struct imp_bounds {
     double spin_up;     /* |omega'| + |omega|^2 >= |m''|, m fixed in the world seen from the body, 1/s^2 */
 } imp_bounds;
 imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, double t, double window);
+/* Its acceleration and torque at t alone. */
+void imp_segment_rates(const imp_segment *segment, const imp_body *body, double t, qvec3 *acceleration, qvec3 *torque);
 
 /* No speed of the centre over [t, t1] is greater, m/s; infinite for FREE under an acceleration. */
 double imp_segment_top_speed(const imp_segment *segment, const imp_body *body, double t);

@@ -47,8 +47,22 @@ static impact_key key_at(void *context, int body, double s)
     const done_piece *piece = context;
     const imp_body *b = &piece->scene->world.bodies[body];
     const imp_state state = state_at(piece, body, s);
-    const imp_bounds rates = imp_segment_bounds(piece->segment, b, time_at(piece, s), 0);
-    return imp_key_of(b, body, time_at(piece, s), &state, rates.acceleration, rates.torque);
+    qvec3 acceleration, torque;
+    imp_segment_rates(piece->segment, b, time_at(piece, s), &acceleration, &torque);
+    return imp_key_of(b, body, time_at(piece, s), &state, acceleration, torque);
+}
+
+static impact_key begin_of(void *context, int body)
+{
+    const done_piece *piece = context;
+    const imp_state state = state_at(piece, body, 0);
+    const qvec3 omega = imp_omega(&piece->scene->world.bodies[body], &state);
+    return (impact_key){.t = piece->from,
+                        .body = body,
+                        .position = state.x,
+                        .orientation = state.q,
+                        .velocity = state.v,
+                        .omega = omega};
 }
 
 bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_state *end)
@@ -59,7 +73,7 @@ bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_s
     keys->from[body] = t;
     if (!(t > from)) return true;
     done_piece way = {scene, &scene->tracks.tracks[body].segment, from, t, end};
-    const imp_piece piece = {from, t, &way, key_at, pose_at};
+    const imp_piece piece = {from, t, &way, key_at, pose_at, begin_of};
     return imp_key_line_add_piece(&keys->lines[body], &piece, body, tolerance_of(scene, body), put_key, scene,
                                   &scene->world.usage.keys_unmet);
 }

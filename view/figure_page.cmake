@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+# figure_page(OUTPUT): figure.html with its scripts, lines of comment left out, as a Lua module that returns the text; quat.page puts a figure in.
+function(figure_page output)
+  set(folder ${PROJECT_SOURCE_DIR}/view)
+  set(script "")
+  foreach(name algebra mesh gl figure flat space space_draw)
+    file(READ ${folder}/${name}.js text)
+    string(REGEX REPLACE "(^|\n) *//[^\n]*" "\\1" text "${text}")
+    string(APPEND script "${text}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/${name}.js)
+  endforeach()
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/figure.html)
+  file(READ ${folder}/figure.html page)
+  string(REPLACE "@SCRIPT@" "${script}" page "${page}")
+  file(GENERATE OUTPUT ${output} CONTENT "return [=====[${page}]=====]\n")
+endfunction()
