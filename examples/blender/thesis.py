@@ -5,7 +5,9 @@
     python3 examples/blender/thesis.py out/sphere_wall.glb --frame 25 --out frame.png     # with `pip install bpy`
     blender --background --python examples/blender/thesis.py -- out/sphere_wall.glb       # or Blender itself
 
-Without --frame all frames are rendered; --check compares the imported motion with the keys in the file, and prints the worst.
+Without --frame all frames are rendered; --check compares the imported motion with the keys in the file, and prints the worst;
+--compare runs Blender's own rigid bodies from the first frame on, from rest and with 10 and 100 substeps a frame, and prints where they
+go beside where the file's go (make one with examples/blender/drop.lua).
 The frame rate is set before the import: glTF has seconds, Blender frames, and its importer converts at once.
 """
 import argparse
@@ -26,6 +28,7 @@ def arguments():
     parser.add_argument("--out", default="frame_####.png")
     parser.add_argument("--samples", type=int, default=32)
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--compare", action="store_true")
     return parser.parse_args(words)
 
 
@@ -71,6 +74,65 @@ def check(scene, path):
     print("worst of the keys in Blender: %.2g m, %.2g rad" % (worst, abs(min(turned, 2 * math.pi - turned))))
 
 
+def facts_of(path):
+    """Of each body: what the file says of its shape, mass, friction and restitution."""
+    blob = open(path, "rb").read()
+    nodes = json.loads(blob[20:20 + struct.unpack_from("<I", blob, 12)[0]])["nodes"]
+    return {node["name"]: node["extras"] for node in nodes if "extras" in node}
+
+
+def own_bodies(path, substeps):
+    """Blender's rigid bodies where the file's begin: places by frame and body."""
+    scene, facts = load(path), facts_of(path)
+    scene.frame_start = 0  # where the file's time begins
+    scene.frame_set(0)
+    bpy.ops.rigidbody.world_add()
+    scene.rigidbody_world.substeps_per_frame = substeps
+    scene.rigidbody_world.point_cache.frame_start, scene.rigidbody_world.point_cache.frame_end = 0, scene.frame_end
+    for body in [o for o in scene.objects if o.name in facts]:
+        here, fact = body.matrix_world.copy(), facts[body.name]
+        body.parent = None
+        body.animation_data_clear()
+        body.matrix_world = here
+        with bpy.context.temp_override(object=body, active_object=body, selected_objects=[body]):
+            bpy.ops.rigidbody.object_add(type="ACTIVE" if "mass" in fact else "PASSIVE")
+        own = body.rigid_body
+        own.collision_shape = {"sphere": "SPHERE", "plane": "MESH"}.get(fact["shape"], "CONVEX_HULL")
+        own.use_margin, own.collision_margin = True, 0.0
+        own.mass, own.friction, own.restitution = fact.get("mass", 1), fact["friction"], fact["restitution"]
+        own.linear_damping = own.angular_damping = 0.0
+        own.use_deactivation = False
+    return places_of(scene, [name for name in facts if "mass" in facts[name]])
+
+
+def places_of(scene, names):
+    places = []
+    for frame in range(scene.frame_end + 1):
+        scene.frame_set(frame)
+        places.append({name: scene.objects[name].matrix_world.translation.copy() for name in names})
+    return places
+
+
+def rebound(heights):
+    """The highest after the first turn upwards."""
+    turn = next((k for k in range(len(heights) - 1) if heights[k + 1] > heights[k] + 1e-6), len(heights) - 1)
+    return max(heights[turn:])
+
+
+def compare(scene, path):
+    names = [name for name, fact in facts_of(path).items() if "mass" in fact]
+    rate, ours = scene.render.fps, places_of(scene, names)
+    few, many = own_bodies(path, 10), own_bodies(path, 100)
+    print("t, s    body                 z, m     Blender, 10   100 substeps   differences, m")
+    for k in range(0, len(ours), max(1, len(ours) // 16)):
+        for name in names:
+            off = [(other[k][name] - ours[k][name]).length for other in (few, many)]
+            print("%6.3f  %-16s %9.5f %12.5f %12.5f %11.5f %9.5f" % (k / rate, name, ours[k][name].z, few[k][name].z, many[k][name].z, *off))
+    for name in names:
+        print("%s comes back to z = %.4f m, Blender's to %.4f (10 substeps) and %.4f (100), as frames show it" % (
+            name, *(rebound([p[name].z for p in way]) for way in (ours, few, many))))
+
+
 def light_and_camera(scene):
     corners = [o.matrix_world @ Vector(c) for o in scene.objects if o.animation_data for c in o.bound_box]
     middle = sum(corners, Vector()) / max(1, len(corners))
@@ -93,6 +155,8 @@ def main():
     scene = load(given.glb)
     if given.check:
         return check(scene, given.glb)
+    if given.compare:
+        return compare(scene, given.glb)
     light_and_camera(scene)
     scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = "CYCLES", given.samples, False
     scene.render.resolution_x, scene.render.resolution_y, scene.render.filepath = 960, 600, given.out
