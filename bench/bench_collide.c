@@ -300,7 +300,7 @@ static void gather(group *g, const char *name, case_class class_, kind *wanted)
 {
     memset(g, 0, sizeof *g);
     g->name = name;
-    for (uint64_t i = 0; g->count < EACH && i < 3000000; i++) {
+    for (uint64_t i = 0; g->count < measure_count(EACH) && i < 3000000; i++) {
         impact_collision c = case_make(class_, 97, i);
         c.law = IMPACT_POISSON;
         impact_outcome o;
@@ -313,8 +313,8 @@ static void gather_straight(group *g)
 {
     memset(g, 0, sizeof *g);
     g->name = "straight";
-    for (uint64_t i = 0; g->count < EACH; i++) {
-        impact_collision c = case_make(g->count < EACH / 2 ? CASE_SPHERE : CASE_PLANAR, 97, i);
+    for (uint64_t i = 0; g->count < measure_count(EACH); i++) {
+        impact_collision c = case_make(g->count < measure_count(EACH) / 2 ? CASE_SPHERE : CASE_PLANAR, 97, i);
         c.law = IMPACT_POISSON;
         impact_outcome o;
         if (c.friction > 0 && impact_collide(&c, &o) == IMPACT_OK && o.solver == IMPACT_SOLVER_CLOSED_FORM)
@@ -327,7 +327,7 @@ static void gather_isotropic(group *g)
 {
     memset(g, 0, sizeof *g);
     g->name = "isotropic";
-    for (uint64_t i = 0; g->count < 4 * EACH; i++) {
+    for (uint64_t i = 0; g->count < 4 * measure_count(EACH); i++) {
         impact_collision c = case_make(CASE_ISOTROPIC, 97, i);
         c.law = IMPACT_POISSON;
         impact_outcome o;
@@ -350,7 +350,7 @@ static void random_ellipsoids(group *g)
     memset(g, 0, sizeof *g);
     g->name = "S5e";
     uint64_t state = 2026;
-    while (g->count < MOST) {
+    while (g->count < measure_count(MOST)) {
         double x[10];
         for (int i = 0; i < 10; i++) x[i] = 2 * case_random(&state) - 1;
         const quat q = {x[0], x[1], x[2], x[3]};

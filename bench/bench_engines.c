@@ -159,19 +159,19 @@ static void row_impact(const char *scene, const engine *e, const impact_collisio
 {
     qvec3 v[2], w[2];
     double times[REPEATS], error = NAN;
-    for (int i = 0; i < REPEATS; i++)
+    for (int i = 0; i < measure_count(REPEATS); i++)
         if (!e->impact(c, e->step, v, w, &times[i])) return;
 #ifdef HAVE_QUADMATH
     oracle_outcome right;
     if (oracle_collide(c, &right)) error = case_error(c, v, w, right.velocity, right.omega);
 #endif
-    print_row(scene, e, error, measure_quantile(times, REPEATS, 0.5));
+    print_row(scene, e, error, measure_quantile(times, measure_count(REPEATS), 0.5));
 }
 
 /* Whole runs are repeated while they are short. */
 static bool wants_more(const double *times, int count)
 {
-    return count < LONG_REPEATS && (count == 0 || count * times[count - 1] < 0.1);
+    return count < measure_count(LONG_REPEATS) && (count == 0 || count * times[count - 1] < 0.1);
 }
 
 static void row_bounce(const engine *e, const bounce_case *c)

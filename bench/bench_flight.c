@@ -19,6 +19,8 @@
 
 enum { BODIES = 24, REPEATS = 9 };
 
+static int body_count(void) { return measure_count(BODIES); }
+
 typedef struct body {
     qvec3 moments, momentum;
     quat orientation, truth;
@@ -28,7 +30,7 @@ typedef struct body {
 static void make_bodies(body *bodies, double angle)
 {
     random_stream random = {1};
-    for (int i = 0; i < BODIES; i++) {
+    for (int i = 0; i < body_count(); i++) {
         body *b = &bodies[i];
         b->moments = (qvec3){random_log(&random, 0.3, 3), random_log(&random, 0.3, 3), random_log(&random, 0.3, 3)};
         b->momentum = random_direction(&random);
@@ -106,7 +108,7 @@ static void *prepare(const method *m, const body *b, impact_tumble *tumble)
 static double measure(const method *m, const body *bodies, double angle, double ours)
 {
     double times[BODIES], errors[BODIES], sum = 0;
-    for (int i = 0; i < BODIES; i++) {
+    for (int i = 0; i < body_count(); i++) {
         impact_tumble tumble;
         void *context = prepare(m, &bodies[i], &tumble);
         double repeats[REPEATS];
@@ -123,8 +125,8 @@ static double measure(const method *m, const body *bodies, double angle, double 
         errors[i] = quat_rotation_distance(q, bodies[i].truth);
         if (m->turn == integrated) impact_ode_destroy(context);
     }
-    const double error = measure_quantile(errors, BODIES, 0.5), time = measure_quantile(times, BODIES, 0.5);
-    printf("%s,%g,%g,%.4g,%.2e,%.2e,%.12g,%.3g\n", m->name, m->tolerance, angle, time, error, errors[BODIES - 1],
+    const double error = measure_quantile(errors, body_count(), 0.5), time = measure_quantile(times, body_count(), 0.5);
+    printf("%s,%g,%g,%.4g,%.2e,%.2e,%.12g,%.3g\n", m->name, m->tolerance, angle, time, error, errors[body_count() - 1],
            sum / (m->batch * REPEATS), ours > 0 ? time / ours : 1);
     fflush(stdout);
     return time;

@@ -16,6 +16,13 @@
 
 enum { PAIRS = 2000, REPEATS = 7 };
 
+static int pair_count(void)
+{
+    static int count;
+    if (count == 0) count = measure_count(PAIRS);
+    return count;
+}
+
 /* Whether the nearest way out is another than the one constructed: the support functions along a normal found say so.
  */
 static bool has_nearer(const gap_case *c)
@@ -32,7 +39,7 @@ static bool has_nearer(const gap_case *c)
 static void make_pairs(gap_case *cases, int family, bool overlap)
 {
     random_stream random = {(uint64_t)family + 100};
-    for (int i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < pair_count(); i++) {
         gap_case *c = &cases[i];
         double size = 0, thin = INFINITY;
         for (int k = 0; k < 2; k++) {
@@ -92,11 +99,11 @@ static double measure(const char *family, const char *kind, const char *name, ga
         double gap;
         qvec3 normal;
         const double start = measure_clock();
-        for (int i = 0; i < PAIRS; i++) answered += method(&cases[i], setting, &gap, &normal);
-        times[repeat] = (measure_clock() - start) / PAIRS * 1e6;
+        for (int i = 0; i < pair_count(); i++) answered += method(&cases[i], setting, &gap, &normal);
+        times[repeat] = (measure_clock() - start) / pair_count() * 1e6;
     }
     int gap_count = 0, normal_count = 0;
-    for (int i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < pair_count(); i++) {
         double gap = NAN;
         qvec3 normal = {NAN, NAN, NAN};
         if (!method(&cases[i], setting, &gap, &normal)) continue;
@@ -107,7 +114,7 @@ static double measure(const char *family, const char *kind, const char *name, ga
                  p99 = measure_quantile(gaps, gap_count, 0.99);
     printf("%s,%s,%s,%g,%.3g,%.2g,%.2g,%.2g,%.2g,%.4f,%.2g\n", family, kind, name, setting, time, p50, p99,
            gap_count ? gaps[gap_count - 1] : NAN, measure_quantile(normals, normal_count, 0.5),
-           1 - (double)answered / PAIRS, ours > 0 ? time / ours : 1);
+           1 - (double)answered / pair_count(), ours > 0 ? time / ours : 1);
     fflush(stdout);
     return time;
 }
@@ -120,7 +127,7 @@ static void measure_receipt(const char *family, const char *kind, const gap_case
     static double points[PAIRS][2][3], times[REPEATS];
     double outside = 0;
     if (cases[0].body[0].shape.kind == IMPACT_SPHERE && cases[0].body[1].shape.kind == IMPACT_SPHERE) return;
-    for (int i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < pair_count(); i++) {
         const impact_solid *one = &cases[i].body[0], *two = &cases[i].body[1];
         const double scale = imp_gap_scale(one, two);
         impact_contact c;
@@ -134,9 +141,9 @@ static void measure_receipt(const char *family, const char *kind, const gap_case
     }
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         const double start = measure_clock();
-        for (int i = 0; i < PAIRS; i++)
+        for (int i = 0; i < pair_count(); i++)
             for (int k = 0; k < 2; k++) outside = fmax(outside, imp_gap_outside(&pairs[i].form[k], points[i][k]));
-        times[repeat] = (measure_clock() - start) / PAIRS * 1e6;
+        times[repeat] = (measure_clock() - start) / pair_count() * 1e6;
     }
     const double time = measure_quantile(times, REPEATS, 0.5);
     printf("%s,%s,impact receipt,0,%.3g,nan,nan,%.2g,nan,0,%.2g\n", family, kind, time, outside, time / ours);
@@ -151,7 +158,7 @@ static void measure_toi(void)
         random_stream random = {(uint64_t)family + 200};
         make_pairs(cases, family, false);
         static impact_motion motion[PAIRS][2];
-        for (int i = 0; i < PAIRS; i++) {
+        for (int i = 0; i < pair_count(); i++) {
             cases[i].body[0].position = qvec3_scale(random_direction(&random), 4);
             for (int k = 0; k < 2; k++)
                 motion[i][k] = (impact_motion){.omega = qvec3_scale(random_direction(&random), 3)};
@@ -161,7 +168,7 @@ static void measure_toi(void)
         for (int repeat = 0; repeat < 3; repeat++) {
             met = 0;
             const double start = measure_clock();
-            for (int i = 0; i < PAIRS; i++) {
+            for (int i = 0; i < pair_count(); i++) {
                 double time;
                 impact_contact c;
                 const impact_status status =
@@ -170,12 +177,12 @@ static void measure_toi(void)
                     left[met++] = fabs(c.gap) /
                                   fmax(contact_size(&cases[i].body[0].shape), contact_size(&cases[i].body[1].shape));
             }
-            times[repeat] = (measure_clock() - start) / PAIRS * 1e6;
+            times[repeat] = (measure_clock() - start) / pair_count() * 1e6;
         }
         const double time = measure_quantile(times, 3, 0.5), p50 = measure_quantile(left, met, 0.5),
                      p99 = measure_quantile(left, met, 0.99);
         printf("%s,toi,impact toi,0,%.3g,%.2g,%.2g,%.2g,nan,%.4f,nan\n", random_family_name(family), time, p50, p99,
-               left[met - 1], 1 - (double)met / PAIRS);
+               left[met - 1], 1 - (double)met / pair_count());
     }
 }
 
@@ -194,7 +201,7 @@ static void print_cases(void)
 {
     static gap_case cases[PAIRS];
     make_pairs(cases, RANDOM_ELLIPSOID, false);
-    for (int i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < pair_count(); i++) {
         for (int k = 0; k < 2; k++) {
             const impact_solid *b = &cases[i].body[k];
             printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,", b->shape.a, b->shape.b, b->shape.c,

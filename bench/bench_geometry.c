@@ -155,12 +155,13 @@ static void measure(const char *name, int n, outcome (*run)(void))
 {
     double times[REPEATS];
     outcome o = run();
-    for (int i = 0; i < REPEATS; i++) {
+    for (int i = 0; i < measure_count(REPEATS); i++) {
         const double start = measure_clock();
         o = run();
         times[i] = (measure_clock() - start) / n * 1e9;
     }
-    printf("%s,%d,%.4g,%.2g,%.12g\n", name, n, measure_quantile(times, REPEATS, 0.5), o.error, o.checksum);
+    printf("%s,%d,%.4g,%.2g,%.12g\n", name, n, measure_quantile(times, measure_count(REPEATS), 0.5), o.error,
+           o.checksum);
 }
 
 int main(void)

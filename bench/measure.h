@@ -9,6 +9,13 @@
 #include <stdlib.h>
 #include <time.h>
 
+/* So many samples; with BENCH_QUICK in the environment a twentieth, of the same rows (./run report --quick). */
+static inline int measure_count(int full)
+{
+    const int few = full / 20;
+    return !getenv("BENCH_QUICK") ? full : few > 1 ? few : 1;
+}
+
 /* Seconds from some fixed time on. */
 static inline double measure_clock(void)
 {

@@ -331,8 +331,8 @@ static impact_status run_entry(work *w, entry *e)
 /* Each method has its share of what time is left, and stops where a run does not end in it. */
 static impact_status run_all(work *w)
 {
-    const double part = 0.5; /* of the budget: the rest is for timing */
-    const double end = w->began + part * w->seconds;
+    const double part = 0.6, began = imp_report_now(); /* of what is left: the rest is for timing */
+    const double end = began + part * (w->began + w->seconds - began);
     for (int m = 0; m < IMPACT_REPORT_METHODS; m++) {
         const double now = imp_report_now(), share = fmax(end - now, 0) / (IMPACT_REPORT_METHODS - m);
         w->report.deadline = now + share;
@@ -587,7 +587,7 @@ impact_status impact_report(const impact_scene_def *def, const impact_report_def
               .began = imp_report_now()};
     *w.summary = (impact_report_summary){0};
     w.seconds = w.how->seconds > 0 ? w.how->seconds : 20;
-    w.report = (imp_report){.arena = arena, .def = *def, .deadline = w.began + 0.25 * w.seconds, .how = w.how};
+    w.report = (imp_report){.arena = arena, .def = *def, .deadline = w.began + 0.5 * w.seconds, .how = w.how};
     w.report.def.methods = (impact_methods){0};
     w.report.def.solver = IMPACT_SOLVER_AUTO;
     w.report.def.tolerance = impact_default_scene_def().tolerance;
