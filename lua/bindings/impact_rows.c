@@ -23,7 +23,7 @@ void impact_lua_push_sample(lua_State *L, const impact_sample *sample)
 void impact_lua_push_event(lua_State *L, const impact_event *event, const char *phases)
 {
     luaL_checkstack(L, 6, NULL);
-    lua_createtable(L, 0, 14);
+    lua_createtable(L, 0, 15);
     quat_lua_set_number(L, "t", event->t);
     quat_lua_set_number(L, "impulse_n", event->impulse_normal);
     quat_lua_set_number(L, "impulse_t", event->impulse_tangential);
@@ -31,6 +31,8 @@ void impact_lua_push_event(lua_State *L, const impact_event *event, const char *
     quat_lua_set_number(L, "un_after", event->normal_after);
     quat_lua_set_number(L, "energy_before", event->energy_before);
     quat_lua_set_number(L, "energy_after", event->energy_after);
+    lua_pushinteger(L, event->encounter);
+    lua_setfield(L, -2, "encounter");
     quat_lua_set_string(L, "event", impact_event_name(event->kind));
     quat_lua_set_string(L, "body1", event->name1);
     quat_lua_set_string(L, "body2", event->name2);

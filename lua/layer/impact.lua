@@ -224,6 +224,7 @@ core.layer()
 ---@field compression_impulse number
 ---@field normal_before number  m/s, < 0
 ---@field normal_after number
+---@field encounter integer  impacts that were answered together share a number, 1, 2, ...; 0: alone
 ---@field energy_before number  J
 ---@field energy_after number
 ---@field work {compression: number, restitution: number, friction: number}  J
@@ -553,6 +554,9 @@ function methods:summary(reason)
   for _, kind in ipairs(event_kinds) do
     local count = usage.events[kind] or 0
     if count > 0 then happened[#happened + 1] = string.format("%d %s", count, kind) end
+  end
+  if usage.encounters > 0 then
+    happened[#happened + 1] = string.format("%d instant%s answered together", usage.encounters, usage.encounters == 1 and "" or "s")
   end
   for _, part in ipairs(parts) do
     local count = usage[part[1]]

@@ -87,6 +87,45 @@ do
   end
 end
 
+-- ---- the cradle: the textbook's answer, and the laws' where the balls touch ----
+do
+  local function after_first(arguments)
+    local scene = variant(example("newtons_cradle", arguments), { duration = 0.45 })
+    scene:run { record = true }
+    local v = {}
+    for i = 1, 7 do v[i] = scene:state("ball " .. i).velocity.x end
+    return v, scene
+  end
+  local function ball(speed) return { m = 1, J = { moments = { 1, 1, 1 } }, v = { speed, 0, 0 } } end
+  for _, gap in ipairs { 1e-4, 1e-9 } do
+    local v, scene = after_first { string.format("gap=%.17g", gap) }
+    check.equal(scene:usage().encounters, 0)
+    for i, wanted in ipairs { 1, 0, 0, 0, 0, 0, 1 } do check.close(v[i], wanted, 1e-15) end
+  end
+  for law, together in pairs { stronge = "springs", poisson = "moreau" } do
+    local v, scene = after_first { "gap=0.0", "law=" .. law }
+    local bodies, contacts = {}, {}
+    for i = 2, 7 do bodies[i - 1] = ball(i == 2 and 1 or 0) end
+    for i = 1, 5 do
+      contacts[i] = { body1 = i, body2 = i + 1, n = { -1, 0, 0 }, r1 = { 0.05, 0, 0 }, r2 = { -0.05, 0, 0 }, eps = 1 }
+    end
+    local answer = impact.collide_together { bodies = bodies, contacts = contacts, law = together }
+    for i = 2, 7 do check.close(v[i], answer.v[i - 1].x, 1e-12) end
+    check.truth(v[2] < -0.05, "the striker comes back")
+    check.equal(scene:usage().encounters, 1)
+    local struck = 0
+    for _, event in ipairs(scene:events()) do
+      struck = struck + event.encounter
+      if event.encounter == 1 then check.close(event.t, 0.403, 1e-12) end
+    end
+    check.equal(struck, 5)
+    check.truth(scene:summary():find "1 instant answered together", "the summary counts encounters")
+  end
+  local v, scene = after_first { "gap=0.0", "together=sequence" }
+  check.equal(scene:usage().encounters, 0)
+  for i, wanted in ipairs { 1, 0, 0, 0, 0, 0, 1 } do check.close(v[i], wanted, 1e-15) end
+end
+
 -- ---- the T-handle: a thousand turn-overs ----
 do
   local short = example "t_handle"

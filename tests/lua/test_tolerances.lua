@@ -3,6 +3,7 @@
 local check = require "check"
 local impact = require "impact"
 local scenes = arg[1] .. "/scenes/"
+arg = {} -- the scenes' own: none
 
 local make, tolerance = impact.scene, nil
 impact.scene = function(definition)

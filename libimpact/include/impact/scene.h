@@ -249,7 +249,8 @@ typedef struct impact_usage {
     /* of these, answers to another impact in the same instant, one after another in the order of the definition */
     long impacts_simultaneous;
     long lifts_chosen;     /* sliding contacts that lifted off where their friction could have pressed them too */
-    long impacts_together; /* impulses that many pairs exchanged together */
+    long encounters;       /* instants whose contacts were answered together, and */
+    long impacts_together; /* the impulses that they exchanged */
     /* instants after which bodies moved on with reactions of friction that are not unique: what follows hangs on the
      * choice */
     long reactions_chosen;

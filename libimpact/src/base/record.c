@@ -101,8 +101,8 @@ static bool put_event(void *context, const impact_event *e)
                              e->normal_before, e->normal_after};
     return put_number(file, e->t, ',') && put_word(file, impact_event_name(e->kind)) && put_word(file, e->name1) &&
            put_word(file, e->name2) && put_numbers(file, values, sizeof values / sizeof *values, ',') &&
-           put_word(file, e->phases) && put_number(file, e->energy_before, ',') &&
-           put_number(file, e->energy_after, '\n');
+           put_word(file, e->phases) && put_number(file, (double)e->encounter, ',') &&
+           put_number(file, e->energy_before, ',') && put_number(file, e->energy_after, '\n');
 }
 
 impact_recorder impact_csv_recorder(impact_csv *csv)
@@ -162,7 +162,7 @@ static impact_status open_both(impact_csv *csv, const impact_csv_def *def, char 
 {
     static const char samples[] = "t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
     static const char events[] = "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
-                                 "energy_before,energy_after\n";
+                                 "encounter,energy_before,energy_after\n";
     if (!open_one(csv, 0, def->samples_path, def->quota, samples))
         return explain(message, size, def->samples_path, "cannot be written"), IMPACT_ESINK;
     if (!open_one(csv, 1, def->events_path, def->quota, events))

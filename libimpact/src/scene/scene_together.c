@@ -147,6 +147,7 @@ static impact_status record_all(imp_island *island, const gathering *g, const ch
 {
     impact_status status = IMPACT_OK;
     const long number = ++island->scene->encounter_count;
+    island->world.usage.encounters++;
     for (int c = 0; status == IMPACT_OK && c < g->count; c++) {
         const impact_meeting_outcome *o = &g->outcomes[c];
         const imp_touch *touch = &g->met[c].touch;

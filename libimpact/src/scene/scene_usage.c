@@ -31,6 +31,7 @@ static const struct {
     ENTRY(impacts_soft),
     ENTRY(impacts_simultaneous),
     ENTRY(lifts_chosen),
+    ENTRY(encounters),
     ENTRY(impacts_together),
     ENTRY(reactions_chosen),
     ENTRY(islands_stepped),

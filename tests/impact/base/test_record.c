@@ -137,7 +137,7 @@ static const char *skip_header(const char *text, const char *wanted)
 static const char samples_header[] = "t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n";
 static const char events_header[] =
     "t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,"
-    "energy_before,energy_after\n";
+    "encounter,energy_before,energy_after\n";
 
 /* Any finite double; now and then one of the ends of their range. */
 static double any_double(random_stream *random)
@@ -185,6 +185,7 @@ static impact_event any_event(random_stream *random)
                           .impulse_tangential = any_double(random),
                           .normal_before = any_double(random),
                           .normal_after = any_double(random),
+                          .encounter = (long)(random_bits(random) % 1000),
                           .phases = random_bits(random) & 1 ? "" : "slip-c stick-c stick-r",
                           .energy_before = any_double(random),
                           .energy_after = any_double(random)};
@@ -206,7 +207,8 @@ static void check_event_row(const char **text, const impact_event *e)
                                e->normal_before, e->normal_after};
     const char *row = expect_word(expect_number(*text, e->t), impact_event_name(e->kind));
     row = expect_numbers(expect_word(expect_word(row, e->name1), e->name2), values, 10);
-    row = expect_number(expect_number(expect_word(row, e->phases), e->energy_before), e->energy_after);
+    row = expect_number(expect_word(row, e->phases), (double)e->encounter);
+    row = expect_number(expect_number(row, e->energy_before), e->energy_after);
     assert_true(row[-1] == '\n');
     *text = row;
 }
