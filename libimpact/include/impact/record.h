@@ -105,7 +105,8 @@ typedef struct impact_quota {
  * significant digits, one header line, "\n", '.' whatever the locale; a text that a spreadsheet would take for a
  * formula (it begins with = + - @ tab or return) has an apostrophe before it, as has one that begins with an
  * apostrophe. samples: t,body,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz events:
- * t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,encounter,energy_before,energy_after */
+ * t,event,body1,body2,px,py,pz,nx,ny,nz,impulse_n,impulse_t,un_before,un_after,phases,encounter,energy_before,
+ * energy_after */
 typedef struct impact_csv impact_csv;
 
 typedef struct impact_csv_def {
