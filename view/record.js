@@ -22,7 +22,7 @@ function openRecord(bytes) {
   };
   const bodies = head.bodies.map(b => {
     const list = Array.from({ length: b.keys[1] }, (_, i) => key(b.keys[0] + i));
-    return { ...b, list, turn: b.shape_orientation || [1, 0, 0, 0], offset: b.shape_position || [0, 0, 0] };
+    return { ...b, list, turn: b.shape_orientation || [1, 0, 0, 0], offset: b.shape_position || [0, 0, 0], trail: b.trail || [0, 0, 0] };
   });
   // f and f' at part s of h: the quintic Hermite polynomial of f, f', f'' at both ends.
   const quintic = (f0, d0, c0, f1, d1, c1, h, s) => {

@@ -11,13 +11,14 @@ function makeScene(run, canvas) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], paths = new Map();
   run.bodies.forEach((b, i) => {
     if (b.kind === 'plane') return;
-    const times = b.list.map(k => k.t), path = [], most = Math.max(2, Math.ceil(6000 / run.bodies.length));
+    const fine = norm(b.trail) > 0 ? [0, 0.25, 0.5, 0.75] : [0], list = b.list, path = [], most = Math.max(2, Math.ceil(6000 / run.bodies.length));
+    const times = list.flatMap((k, j) => (list[j + 1] ? fine.map(s => k.t + s * (list[j + 1].t - k.t)) : [k.t]));
     for (let k = 0; k <= 400 && !b.static; k++) times.push(Math.min(run.begin + (run.end - run.begin) * k / 400, run.end));
     const some = times.sort((x, y) => x - y), step = Math.max(1, Math.ceil(some.length / most));
     some.forEach((t, k) => {
-      const x = run.state(i, clamp(t, run.begin, run.end)).x, r = reach(b);
+      const { x, q } = run.state(i, clamp(t, run.begin, run.end)), r = reach(b);
       for (let c = 0; c < 3; c++) { low[c] = Math.min(low[c], x[c] - r); high[c] = Math.max(high[c], x[c] + r); }
-      if (k % step === 0 || k === some.length - 1) path.push([...x, t]);
+      if (k % step === 0 || k === some.length - 1) path.push([...add(x, qrot(q, b.trail)), t]);
     });
     if (!b.static) paths.set(i, path);
   });

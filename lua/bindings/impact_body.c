@@ -112,6 +112,7 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
                                        "angular_damping",
                                        "shape_position",
                                        "shape_orientation",
+                                       "trail",
                                        NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "body", where, keys);
     *def = impact_default_body_def();
@@ -130,6 +131,7 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
     read_orientation(&reader, def);
     def->shape_position = quat_lua_get_vec3(&reader, "shape_position", def->shape_position);
     def->shape_orientation = quat_lua_get_quat(&reader, "shape_orientation", def->shape_orientation);
+    def->trail = quat_lua_get_vec3(&reader, "trail", def->trail);
     def->velocity = quat_lua_get_vec3(&reader, "velocity", def->velocity);
     def->omega = quat_lua_get_vec3(&reader, "omega", def->omega);
     def->friction = quat_lua_get_number(&reader, "friction", QUAT_LUA_NOT_NEGATIVE, def->friction);

@@ -133,6 +133,7 @@ static int run_bodies(lua_State *L)
         quat_lua_set_vec3(L, "moments", def.moments);
         quat_lua_set_vec3(L, "shape_position", def.shape_position);
         quat_lua_set_quat(L, "shape_orientation", def.shape_orientation);
+        quat_lua_set_vec3(L, "trail", def.trail);
         quat_lua_set_number(L, "friction", def.friction);
         quat_lua_set_number(L, "restitution", def.restitution);
         impact_lua_push_shape(L, &def.shape);

@@ -64,6 +64,7 @@ core.layer()
 ---@field moments? vec  principal moments, kg m^2; of the uniform solid by default
 ---@field position? vec  of the centre of mass, m
 ---@field orientation? quat|number[]  body to world, {w, x, y, z}
+---@field trail? vec  the point, in the body's frame, whose way viewers draw: 0, 0, 0
 ---@field shape_position? vec  where the shape's centre stands in the body's frame, m
 ---@field shape_orientation? quat|number[]  the shape's axes to the body's principal ones
 ---@field normal? vec  for planes, instead of orientation: where the free side is

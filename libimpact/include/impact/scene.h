@@ -40,6 +40,7 @@ typedef struct impact_body_def {
     double restitution; /* in [0, 1] */
     double linear_damping,
         angular_damping; /* part of the (angular) velocity lost per second, in [0, 1): factor (1 - d)^t */
+    qvec3 trail;         /* body frame, m: whose way viewers draw; no motion depends on it */
     void *user;          /* the caller's own: impact_scene_body_def gives it back, nothing else looks at it */
 } impact_body_def;
 

@@ -217,9 +217,9 @@ static bool read_numbers(const imp_json *body, impact_body_def *def)
     def->restitution = imp_json_number(body, "restitution", 0, &good);
     def->linear_damping = imp_json_number(body, "linear_damping", 0, &good);
     def->angular_damping = imp_json_number(body, "angular_damping", 0, &good);
-    def->moments = def->shape_position = def->velocity = def->omega = (qvec3){0, 0, 0};
+    def->moments = def->shape_position = def->trail = def->velocity = def->omega = (qvec3){0, 0, 0};
     good = good && (def->is_static || (def->mass > 0 && vector_of(body, "moments", &def->moments)));
-    good = good && vector_of(body, "shape_position", &def->shape_position);
+    good = good && vector_of(body, "shape_position", &def->shape_position) && vector_of(body, "trail", &def->trail);
     good = good && numbers_of(body, "shape_orientation", turn, 4, NAN);
     good = good && vector_of(body, "surface_velocity", &def->velocity) && vector_of(body, "surface_omega", &def->omega);
     def->shape_orientation = (quat){turn[0], turn[1], turn[2], turn[3]};

@@ -224,6 +224,7 @@ static void say_body(imp_text *head, const impact_body_def *def, long first_key,
     if (s->kind == IMPACT_CONE) say_number(head, "base", s->base);
     if (s->hull) say_hull(head, s->hull);
     if (qvec3_norm(def->shape_position) > 0) say_vector(head, "shape_position", def->shape_position);
+    if (qvec3_norm(def->trail) > 0) say_vector(head, "trail", def->trail);
     if (o.x != 0 || o.y != 0 || o.z != 0)
         say_numbers(head, "shape_orientation", (const double[]){o.w, o.x, o.y, o.z}, 4);
     say_key(head, "static");

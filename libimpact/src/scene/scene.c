@@ -227,6 +227,7 @@ impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_
     *def = (impact_body_def){.name = b->name,
                              .shape = b->shape,
                              .user = b->user,
+                             .trail = b->trail,
                              .is_static = b->is_static,
                              .mass = b->mass,
                              .density = NAN,

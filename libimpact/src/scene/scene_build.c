@@ -17,6 +17,7 @@ static void build_body(const impact_body_def *def, char *name, imp_body *body, i
                        .mass = INFINITY,
                        .radius = impact_shape_bounding_radius(&def->shape) + qvec3_norm(def->shape_position),
                        .offset = def->shape_position,
+                       .trail = def->trail,
                        .friction = def->friction,
                        .restitution = def->restitution,
                        .linear_rate = -log1p(-def->linear_damping),

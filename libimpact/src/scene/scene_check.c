@@ -97,6 +97,7 @@ static void check_body(check *c, const impact_body_def *body)
     require(c, quat_normalize(body->orientation, &unit) == QUAT_OK, "orientation", size,
             "must be a finite quaternion that is not zero");
     require_vector(c, body->shape_position, "shape_position");
+    require_vector(c, body->trail, "trail");
     require_words(c, quat_normalize(body->shape_orientation, &unit) == QUAT_OK,
                   "shape_orientation must be a finite quaternion that is not zero");
     const bool aside = imp_scene_shape_stands_aside(body);

@@ -34,6 +34,7 @@ typedef struct imp_body {
     double mass, inverse_mass;
     qvec3 moments, inverse_moments;
     qvec3 offset; /* the shape's centre, body axes */
+    qvec3 trail;  /* whose way viewers draw, body axes */
     quat turn;    /* its axes to the body's */
     double friction, restitution;
     double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
