@@ -30,6 +30,13 @@ static int distance(const char *a, const char *b)
 /* Whether the word is nothing but that letter, held too long: "rr" for "r". */
 static bool is_run(const char *word, const char *letter) { return *word && word[strspn(word, letter)] == '\0'; }
 
+/* Of two that are as near, the shorter one, then the first by the alphabet: a table has no order. */
+static bool comes_before(const char *a, const char *b)
+{
+    const size_t m = strlen(a), n = strlen(b);
+    return m < n || (m == n && strcmp(a, b) < 0);
+}
+
 const char *quat_lua_guess(const char *given, const char *const keys[])
 {
     const char *best = NULL;
@@ -39,7 +46,8 @@ const char *quat_lua_guess(const char *given, const char *const keys[])
         const bool begins =
             given[0] == keys[i][0] && 2 * d <= (int)strlen(given); /* words are known by their beginnings */
         const bool near = strlen(keys[i]) == 1 ? is_run(given, keys[i]) : begins || 3 * d <= (int)strlen(keys[i]) + 1;
-        if (d < best_distance && near) best = keys[i], best_distance = d;
+        const bool nearer = d < best_distance || (best && d == best_distance && comes_before(keys[i], best));
+        if (nearer && near) best = keys[i], best_distance = d;
     }
     return best;
 }
