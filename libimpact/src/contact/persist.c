@@ -182,7 +182,10 @@ imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, co
     touch.onset = pair->mode == IMP_SLIDE && pair->onset;
     touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
     qvec3 rate1, rate2 = {0, 0, 0};
-    if (carried)
+    if (pair->placed) { /* a corner, or a place on a face: it goes with its body */
+        rate1 = qvec3_cross(imp_omega(b1, s1), touch.r1);
+        if (!b2->is_static) rate2 = qvec3_cross(imp_omega(b2, s2), touch.r2);
+    } else if (carried)
         carried_rates(world, &touch, states, &spot, &rate1);
     else
         contact_rates(world, &touch, states, &rate1, &rate2);

@@ -12,7 +12,7 @@
 
 void imp_pile_open(imp_pile *pile, imp_arena *arena)
 {
-    *pile = (imp_pile){.arena = arena, .cone.arena = arena, .rest.arena = arena};
+    *pile = (imp_pile){.arena = arena, .cone.arena = arena, .rest.arena = arena, .touching.arena = arena};
 }
 
 static void *replaced(imp_pile *pile, void *old, size_t count, size_t size, bool *there)
@@ -25,19 +25,14 @@ static void *replaced(imp_pile *pile, void *old, size_t count, size_t size, bool
 
 static bool reserve_bodies(imp_pile *pile, const imp_world *world)
 {
-    const size_t bodies = (size_t)world->body_count, pairs = (size_t)world->pair_count;
-    bool there = true;
-    if (world->body_count <= pile->bodies && world->pair_count <= pile->pairs) return true;
+    const size_t bodies = (size_t)world->body_count;
+    bool there = imp_pile_contacts_reserve(&pile->touching, world);
+    if (world->body_count <= pile->bodies) return there;
     imp_state **states[] = {&pile->middle, &pile->whole, &pile->half, &pile->end};
     for (int k = 0; k < 4; k++) *states[k] = replaced(pile, *states[k], bodies, sizeof **states[k], &there);
     pile->loads = replaced(pile, pile->loads, bodies, sizeof *pile->loads, &there);
-    pile->root = replaced(pile, pile->root, bodies, sizeof *pile->root, &there);
     pile->velocities = replaced(pile, pile->velocities, bodies, sizeof *pile->velocities, &there);
-    pile->member = replaced(pile, pile->member, pairs, sizeof *pile->member, &there);
-    for (int k = 0; k < 3; k++)
-        pile->memory[k] = replaced(pile, pile->memory[k], pairs, sizeof *pile->memory[k], &there);
     pile->bodies = there ? world->body_count : 0;
-    pile->pairs = there ? world->pair_count : 0;
     return there;
 }
 
@@ -47,7 +42,7 @@ static bool reserve_contacts(imp_pile *pile, int contacts)
     bool there = true;
     if (contacts <= pile->contacts_most) return true;
     pile->contacts = replaced(pile, pile->contacts, count, sizeof *pile->contacts, &there);
-    pile->pair_of = replaced(pile, pile->pair_of, count, sizeof *pile->pair_of, &there);
+    pile->members = replaced(pile, pile->members, count, sizeof *pile->members, &there);
     pile->rows = replaced(pile, pile->rows, count, sizeof *pile->rows, &there);
     pile->friction = replaced(pile, pile->friction, count, sizeof *pile->friction, &there);
     pile->pivots = replaced(pile, pile->pivots, 2 * count, sizeof *pile->pivots, &there);
@@ -62,7 +57,7 @@ static bool reserve_contacts(imp_pile *pile, int contacts)
 void imp_pile_begin(imp_pile *pile)
 {
     pile->step = 0;
-    if (pile->pairs > 0) memset(pile->memory[0], 0, sizeof *pile->memory[0] * (size_t)pile->pairs);
+    pile->memory[0].count = 0;
 }
 
 /* ---- motion ---- */
@@ -101,75 +96,15 @@ static double smallest(const imp_world *world)
 
 /* ---- contacts ---- */
 
-static int root_of(int *root, int i)
+/* The points of the next island to the front of the arrays, with their gaps; how many. */
+static int gather_island(imp_pile *pile, const imp_world *world)
 {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-}
-
-/* Where the pair stands: its gap (m), and whether that counts, within the bounds of a plane. */
-static bool pair_gap(imp_world *world, int p, const imp_state *states, impact_contact *contact)
-{
-    return imp_world_gap(world, &world->pairs[p], states, contact) >= 0 &&
-           imp_world_inside_bounds(world, &world->pairs[p], states, contact) >= 0;
-}
-
-/* Whether a contact that the last step held goes on: pressed by the loads, it would close within this one. What rolls
- * over a round body leaves it by h² in every step; it is held, not dropped and caught. */
-static bool goes_on(const imp_pile *pile, const imp_world *world, int p, const imp_state *next, double h,
-                    const impact_contact *contact)
-{
-    if (!next || !pile->memory[1][p].active) return false;
-    return contact->gap + 0.5 * h * imp_world_gap_rate(world, &world->pairs[p], next, contact) <= 0;
-}
-
-/* The pairs whose gap is at most the slack, or that go on, into member; bodies that they tie get one root. next: the
- * velocities at the end under the loads alone, or NULL. */
-static int find_closed(imp_pile *pile, imp_world *world, const imp_state *states, const imp_state *next, double h,
-                       double slack)
-{
-    int count = 0;
-    for (int i = 0; i < world->body_count; i++) pile->root[i] = i;
-    for (int p = 0; p < world->pair_count; p++) {
-        imp_pair *pair = &world->pairs[p];
-        impact_contact contact;
-        const bool held = next && pile->memory[1][p].active;
-        if (!held && imp_world_distance_bound(world, pair, states) > slack) continue;
-        if (!pair_gap(world, p, states, &contact)) continue;
-        if (!(contact.gap <= slack) && !goes_on(pile, world, p, next, h, &contact)) continue;
-        pile->member[count++] = p;
-        if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)
-            pile->root[root_of(pile->root, pair->body1)] = root_of(pile->root, pair->body2);
-    }
-    return count;
-}
-
-static int island_of(imp_pile *pile, const imp_world *world, int p)
-{
-    const imp_pair *pair = &world->pairs[p];
-    return root_of(pile->root, world->bodies[pair->body1].is_static ? pair->body2 : pair->body1);
-}
-
-/* The closed contacts of one island, of member[first ...], to the front of the arrays, their gaps with them. Returns
- * how many; what is done is marked -1. */
-static int gather_island(imp_pile *pile, imp_world *world, const imp_state *states, int first, int closed)
-{
-    const int island = island_of(pile, world, pile->member[first]);
-    int count = 0;
-    for (int k = first; k < closed; k++) {
-        const int p = pile->member[k];
-        if (p < 0 || island_of(pile, world, p) != island) continue;
-        imp_pair *pair = &world->pairs[p];
-        impact_contact contact;
-        (void)imp_world_gap(world, pair, states, &contact);
-        imp_cone_contact *own = &pile->contacts[count];
-        *own = (imp_cone_contact){
-            .body1 = pair->body1, .body2 = pair->body2, .arm1 = contact.offset1, .arm2 = contact.offset2};
-        imp_cone_find_axes(contact.normal, own->axes);
-        pile->friction[count] = pair->friction;
-        pile->gap[count] = contact.gap;
-        pile->pair_of[count++] = p;
-        pile->member[k] = -1;
+    const int count = imp_pile_take_island(&pile->touching, world, pile->members);
+    for (int c = 0; c < count; c++) {
+        const imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        pile->contacts[c] = point->contact;
+        pile->friction[c] = world->pairs[point->pair].friction;
+        pile->gap[c] = point->gap;
     }
     return count;
 }
@@ -181,40 +116,35 @@ static double part_of(const imp_cone_contact *contact, const double *v, int k)
     return qvec3_dot(contact->axes[k], (qvec3){v[0], v[1], v[2]});
 }
 
-/* What the contacts' memories hold, along their axes; one that was open begins open. */
-static void recall_step(imp_pile *pile, int count, double h)
+/* What is remembered of the contacts, along their axes; one that was open begins open, and bounces off what it
+ * approaches at the velocities pile->u. What is held does not bounce. */
+static void recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
     for (int c = 0; c < count; c++) {
-        const imp_pile_memory *m = &pile->memory[1][pile->pair_of[c]];
-        const double r[3] = {m->reaction.x, m->reaction.y, m->reaction.z},
-                     u[3] = {m->velocity.x, m->velocity.y, m->velocity.z};
+        const imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        const imp_pile_memory *m = imp_pile_recall(&pile->memory[1], point);
+        if (!m) pile->q[3 * c] += world->pairs[point->pair].restitution * fmin(0, pile->u[3 * c]);
+        const double r[3] = {m ? m->reaction.x : 0, m ? m->reaction.y : 0, m ? m->reaction.z : 0},
+                     u[3] = {m ? m->velocity.x : 0, m ? m->velocity.y : 0, m ? m->velocity.z : 0};
         for (int k = 0; k < 3; k++) {
-            pile->last_r[3 * c + k] = m->active ? h * part_of(&pile->contacts[c], r, k) : 0;
-            pile->last_u[3 * c + k] = m->active ? part_of(&pile->contacts[c], u, k) : pile->q[3 * c + k];
+            pile->last_r[3 * c + k] = h * part_of(&pile->contacts[c], r, k);
+            pile->last_u[3 * c + k] = m ? part_of(&pile->contacts[c], u, k) : pile->q[3 * c + k];
         }
     }
 }
 
-static void remember_step(imp_pile *pile, int count, double h)
+static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count, double h)
 {
     for (int c = 0; c < count; c++) {
-        imp_pile_memory *m = &pile->memory[1][pile->pair_of[c]];
-        *m = (imp_pile_memory){.active = true, .fresh = true};
+        imp_pile_memory *m =
+            imp_pile_remember(pile->arena, memories, &pile->touching.points[pile->members[c]]);
+        if (!m) return false;
         for (int k = 0; k < 3; k++) {
             m->reaction = qvec3_axpy(pile->r[3 * c + k] / h, pile->contacts[c].axes[k], m->reaction);
             m->velocity = qvec3_axpy(pile->u[3 * c + k], pile->contacts[c].axes[k], m->velocity);
         }
     }
-}
-
-/* What this step did not hold is open. */
-static void forget_open(imp_pile *pile, const imp_world *world)
-{
-    for (int p = 0; p < world->pair_count; p++) {
-        imp_pile_memory *m = &pile->memory[1][p];
-        m->active = m->fresh;
-        m->fresh = false;
-    }
+    return true;
 }
 
 /* Work of the static bodies' moving surfaces with the impulses. */
@@ -230,18 +160,13 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
 }
 
 /* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
-static bool answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h, imp_state *next,
+static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h, imp_state *next,
                    imp_pile_step_result *result)
 {
     imp_cone_contact_velocities(world, next, pile->contacts, count, pile->q);
     imp_cone_contact_velocities(world, states, pile->contacts, count, pile->u);
-    for (int c = 0; c < count; c++) {
-        const int p = pile->pair_of[c];
-        if (!pile->memory[1][p].active) /* what is held does not bounce */
-            pile->q[3 * c] += world->pairs[p].restitution * fmin(0, pile->u[3 * c]);
-    }
     imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
-    recall_step(pile, count, h);
+    recall_step(pile, world, count, h);
     const imp_cone_problem problem = {.count = count,
                                       .w = pile->w,
                                       .q = pile->q,
@@ -252,16 +177,16 @@ static bool answer(imp_pile *pile, imp_world *world, const imp_state *states, in
     if (outcome.status != IMP_CONE_SOLVED && outcome.status != IMP_CONE_INEXACT) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
                  imp_cone_status_name(outcome.status));
-        return false;
+        return IMPACT_EUNSETTLED;
     }
     imp_cone_push(world, pile->contacts, count, pile->r, next);
-    remember_step(pile, count, h);
+    if (!remember_step(pile, &pile->memory[2], count, h)) return IMPACT_ENOMEM;
     result->drive_work += drive_work(pile, world, count);
     for (int c = 0; c < count; c++)
         result->coupled +=
             !world->bodies[pile->contacts[c].body1].is_static && !world->bodies[pile->contacts[c].body2].is_static;
     result->contacts += count;
-    return true;
+    return IMPACT_OK;
 }
 
 /* From `from` over h to `to`. */
@@ -279,33 +204,32 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
         result->force_work += h * pile->loads[i].work_rate;
         result->damping += h * pile->loads[i].damping_rate;
     }
-    const int closed = find_closed(pile, world, pile->middle, to, h, IMP_PILE_SLACK * smallest(world));
-    if (!reserve_contacts(pile, closed)) return IMPACT_ENOMEM;
-    for (int k = 0; k < closed; k++) {
-        if (pile->member[k] < 0) continue;
-        const int count = gather_island(pile, world, pile->middle, k, closed);
-        if (!answer(pile, world, pile->middle, count, h, to, result)) return IMPACT_EUNSETTLED;
+    imp_pile_contacts_mark(&pile->touching, world, &pile->memory[1]);
+    pile->memory[2].count = 0;
+    if (!imp_pile_find_points(&pile->touching, world, pile->middle, to, h, IMP_PILE_SLACK * smallest(world), false) ||
+        !reserve_contacts(pile, pile->touching.count))
+        return IMPACT_ENOMEM;
+    for (int count; (count = gather_island(pile, world)) > 0;) {
+        const impact_status status = answer(pile, world, pile->middle, count, h, to, result);
+        if (status != IMPACT_OK) return status;
     }
-    forget_open(pile, world);
+    if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[2])) return IMPACT_ENOMEM;
     drift(world, to, 0.5 * h, to); /* x' = x_m + h v'/2 */
     return IMPACT_OK;
 }
 
 /* ---- constraints put back ---- */
 
-/* The pairs that were held at the end of the step, into member, with the islands that they make. */
-static int find_held(imp_pile *pile, const imp_world *world)
+/* The points that were held at the end of the step. */
+static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states, double h, double slack)
 {
-    int count = 0;
-    for (int i = 0; i < world->body_count; i++) pile->root[i] = i;
-    for (int p = 0; p < world->pair_count; p++) {
-        const imp_pair *pair = &world->pairs[p];
-        if (!pile->memory[0][p].active) continue;
-        pile->member[count++] = p;
-        if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)
-            pile->root[root_of(pile->root, pair->body1)] = root_of(pile->root, pair->body2);
-    }
-    return count;
+    imp_pile_contacts *touching = &pile->touching;
+    imp_pile_contacts_mark(touching, world, &pile->memory[0]);
+    if (!imp_pile_find_points(touching, world, states, states, h, slack, true)) return false;
+    for (int k = 0; k < touching->count; k++)
+        touching->points[k].taken = imp_pile_recall(&pile->memory[0], &touching->points[k]) == NULL;
+    for (int k = 0; k < pile->memory[0].count; k++) pile->memory[0].list[k].taken = false;
+    return true;
 }
 
 /* Impulses of displacement along the normals, that take every gap to zero: the least that do, of those equations that
@@ -357,17 +281,16 @@ static void part_overlaps(imp_pile *pile, const imp_world *world, const imp_stat
 
 /* Moves bodies along normals, least in the metric of mass: what is held to gap zero, where that can be; then overlaps
  * apart. Gaps within the slack may stay. */
-static impact_status project_places(imp_pile *pile, imp_world *world, imp_state *states)
+static impact_status project_places(imp_pile *pile, imp_world *world, double h, imp_state *states)
 {
     const double slack = IMP_PILE_SLACK * smallest(world);
     for (int pass = 0; pass < 2; pass++) {
-        const int closed = pass == 0 ? find_held(pile, world) : find_closed(pile, world, states, NULL, 0, 0);
-        if (!reserve_contacts(pile, closed)) return IMPACT_ENOMEM;
+        const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
+                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, 0, false);
+        if (!found || !reserve_contacts(pile, pile->touching.count)) return IMPACT_ENOMEM;
         memcpy(pile->middle, states, sizeof *states * (size_t)world->body_count);
         for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
-        for (int k = 0; k < closed; k++) {
-            if (pile->member[k] < 0) continue;
-            const int count = gather_island(pile, world, states, k, closed);
+        for (int count; (count = gather_island(pile, world)) > 0;) {
             (pass == 0 ? close_gaps : part_overlaps)(pile, world, states, count);
             if (pass == 0)
                 push_together(pile, world, count, slack);
@@ -408,15 +331,15 @@ double imp_pile_natural_time(const imp_world *world, const imp_state *states)
 static impact_status try_step(imp_pile *pile, imp_world *world, double t, double h, const imp_state *states,
                               imp_pile_step_result *result)
 {
-    const size_t memories = sizeof *pile->memory[0] * (size_t)world->pair_count;
     imp_pile_step_result scratch = {.taken = 0};
     *result = (imp_pile_step_result){.taken = h};
-    memcpy(pile->memory[1], pile->memory[0], memories);
+    if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0])) return IMPACT_ENOMEM;
     impact_status status = step_once(pile, world, t, 0.5 * h, states, pile->half, result);
     if (status == IMPACT_OK) status = step_once(pile, world, t + 0.5 * h, 0.5 * h, pile->half, pile->end, result);
     if (status != IMPACT_OK) return status;
-    memcpy(pile->memory[2], pile->memory[1], memories);
-    memcpy(pile->memory[1], pile->memory[0], memories);
+    if (!imp_pile_copy_memories(pile->arena, &pile->memory[3], &pile->memory[1]) ||
+        !imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0]))
+        return IMPACT_ENOMEM;
     status = step_once(pile, world, t, h, states, pile->whole, &scratch);
     result->error = apart(world, pile->whole, pile->end);
     return status;
@@ -437,29 +360,38 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     }
     if (status != IMPACT_OK) return status;
     memcpy(states, pile->end, sizeof *states * (size_t)world->body_count);
-    memcpy(pile->memory[0], pile->memory[2], sizeof *pile->memory[0] * (size_t)world->pair_count);
+    if (!imp_pile_copy_memories(pile->arena, &pile->memory[0], &pile->memory[3])) return IMPACT_ENOMEM;
     /* h³ where modes stay, h where they change: doubled where the first would allow as much */
     pile->step = result->error < 0.1 * wanted ? 2 * h : h;
-    return project_places(pile, world, states);
+    return project_places(pile, world, h, states);
 }
 
 /* ---- rest ---- */
 
-static bool is_touched(const imp_pile *pile, const imp_world *world, int body, int closed)
+static bool is_touched(const imp_pile_contacts *touching, int body)
 {
-    for (int k = 0; k < closed; k++) {
-        const imp_pair *pair = &world->pairs[pile->member[k]];
-        if (pair->body1 == body || pair->body2 == body) return true;
+    for (int k = 0; k < touching->count; k++) {
+        const imp_cone_contact *contact = &touching->points[k].contact;
+        if (contact->body1 == body || contact->body2 == body) return true;
     }
     return false;
+}
+
+/* Points that touch, without reactions yet. */
+static bool remember_points(imp_pile *pile)
+{
+    const imp_pile_contacts *touching = &pile->touching;
+    pile->memory[0].count = 0;
+    for (int k = 0; k < touching->count; k++)
+        if (!imp_pile_remember(pile->arena, &pile->memory[0], &touching->points[k])) return false;
+    return true;
 }
 
 /* The reactions that balance the loads of those that were gathered last. */
 static void remember_rest(imp_pile *pile, int count)
 {
     for (int c = 0; c < count; c++) {
-        imp_pile_memory *m = &pile->memory[0][pile->pair_of[c]];
-        *m = (imp_pile_memory){.active = true};
+        imp_pile_memory *m = &pile->memory[0].list[pile->members[c]];
         for (int k = 0; k < 3; k++)
             m->reaction = qvec3_axpy(pile->r[3 * c + k], pile->contacts[c].axes[k], m->reaction);
     }
@@ -467,19 +399,22 @@ static void remember_rest(imp_pile *pile, int count)
 
 bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed)
 {
-    if (!reserve_bodies(pile, world) || !imp_field_loads(world, t, states, pile->loads)) return false;
-    const int closed = find_closed(pile, world, states, NULL, 0, IMP_PILE_SLACK * smallest(world));
+    imp_pile_contacts *touching = &pile->touching;
+    if (!reserve_bodies(pile, world)) return false;
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         if (body->is_static) continue;
         if (qvec3_norm(states[i].v) + body->radius * qvec3_norm(imp_omega(body, &states[i])) > rest_speed) return false;
-        if (!is_touched(pile, world, i, closed)) return false;
     }
+    if (!imp_field_loads(world, t, states, pile->loads)) return false;
+    imp_pile_contacts_mark(touching, world, &pile->memory[0]);
+    if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * smallest(world), false)) return false;
+    for (int i = 0; i < world->body_count; i++)
+        if (!world->bodies[i].is_static && !is_touched(touching, i)) return false;
+    const int closed = touching->count;
     if (!reserve_contacts(pile, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count)) return false;
-    for (int k = 0; k < closed; k++) pile->memory[0][pile->member[k]].active = true;
-    for (int k = 0; k < closed; k++) {
-        if (pile->member[k] < 0) continue;
-        const int count = gather_island(pile, world, states, k, closed);
+    if (!remember_points(pile)) return false;
+    for (int count; (count = gather_island(pile, world)) > 0;) {
         const imp_rest_outcome outcome = imp_rest_solve(world, states, pile->contacts, pile->friction, count,
                                                         pile->loads, &pile->rest, pile->r, pile->velocities);
         if (outcome.status != IMP_REST_RESTS) return false;

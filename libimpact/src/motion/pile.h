@@ -16,30 +16,24 @@
 #ifndef IMP_PILE_H
 #define IMP_PILE_H
 
-#include "contact/cone_assemble.h"
 #include "contact/rest.h"
+#include "motion/pile_contacts.h"
 #include "world/field.h"
 
-/* One contact of the last step, kept for the next; world axes. */
-typedef struct imp_pile_memory {
-    bool active, fresh;       /* it was held; by the step at hand */
-    qvec3 reaction, velocity; /* N (impulse over h), m/s */
-} imp_pile_memory;
-
 typedef struct imp_pile {
-    imp_arena *arena;  /* the pile's own */
-    int bodies, pairs; /* there is room for */
+    imp_arena *arena; /* the pile's own */
+    int bodies;       /* there is room for */
     double step;       /* s: to be tried next; 0: chosen anew */
     imp_cone_workspace cone;
     imp_rest_workspace rest;
     imp_state *middle, *whole, *half, *end;
     imp_load *loads;
-    int *root, *member; /* per body, per pair */
-    /* per pair: as the accepted step left it, as the step at hand has it, and as the two halves left it */
-    imp_pile_memory *memory[3];
+    imp_pile_contacts touching;
+    /* as the accepted step left them, those before the step at hand, what it leaves, and what the two halves left */
+    imp_pile_memories memory[4];
     int contacts_most; /* there is room for in: */
     imp_cone_contact *contacts;
-    int *pair_of, *pivots;
+    int *members, *pivots; /* members: the points' numbers in `touching` */
     imp_cone_row *rows;
     double *gap, *friction, *w, *q, *r, *u, *last_r, *last_u;
     imp_rest_velocity *velocities;
@@ -70,11 +64,8 @@ void imp_pile_begin(imp_pile *pile);
 impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
                             imp_pile_step_result *result);
 
-/* Whether the last step held the pair, or it was found touching when all were found to rest. */
-static inline bool imp_pile_holds(const imp_pile *pile, int pair)
-{
-    return pair < pile->pairs && pile->memory[0][pair].active;
-}
+/* The points that the last step held, or that were found touching when all were found to rest. */
+static inline const imp_pile_memories *imp_pile_held(const imp_pile *pile) { return &pile->memory[0]; }
 
 /* Whether all bodies of the world that move, being slower than rest_speed (m/s), can stand still where they are: proved
  * by reactions. */

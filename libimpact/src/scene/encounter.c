@@ -41,10 +41,18 @@ static void give_up(imp_island *loose)
     }
 }
 
+static impact_status conclude_steps(imp_island *island);
+
 /* What is settled goes on, whatever became of the rows. */
 static impact_status conclude(imp_island *island, impact_status status)
 {
     impact_scene *scene = island->scene;
+    if (island->lies && status == IMPACT_OK) {
+        imp_island *stepped;
+        imp_scene_receipt_look(island);
+        status = imp_gather_steps(island, &stepped);
+        if (status == IMPACT_OK) return conclude_steps(stepped);
+    }
     const impact_status stalled = check_stall(scene, island);
     imp_island *loose;
     if (status != IMPACT_OK) {

@@ -282,3 +282,49 @@ impact_status imp_gather(impact_scene *scene, int seed, double t, bool stepped, 
     *out = island;
     return IMPACT_OK;
 }
+
+/* Bodies and pairs of the members, the bodies' states from the island they were in. */
+static impact_status fill_from(imp_island *to, const imp_island *from)
+{
+    impact_scene *scene = to->scene;
+    const impact_status status = imp_island_reserve(to, scene->member_count, scene->touching_count);
+    for (int m = 0; status == IMPACT_OK && m < scene->member_count; m++) {
+        const int body = scene->members[m], i = imp_island_find(from, body);
+        const imp_state *state = i >= 0 ? &from->states[i] : &scene->tracks.tracks[body].segment.start;
+        scene->root[body] = imp_island_add_body(to, body, state);
+    }
+    for (int p = 0; status == IMPACT_OK && p < scene->touching_count; p++) {
+        imp_pair *pair = &to->world.pairs[to->world.pair_count++];
+        *pair = scene->touching[p];
+        pair->body1 = scene->root[pair->body1];
+        pair->body2 = scene->root[pair->body2];
+    }
+    return status == IMPACT_OK ? imp_island_take_forces(to) : status;
+}
+
+impact_status imp_gather_steps(imp_island *island, imp_island **out)
+{
+    impact_scene *scene = island->scene;
+    imp_island *steps = *out = imp_islands_spare(scene);
+    if (!steps) return IMPACT_ENOMEM;
+    steps->t = steps->looked_at = island->t;
+    steps->outside = island->outside;
+    steps->stepped = true;
+    imp_island_give_forces(island);
+    for (int i = 0; i < island->world.body_count; i++) imp_gather_member(scene, island->world.bodies[i].index);
+    impact_status status = add_all_near(scene);
+    if (status == IMPACT_OK) {
+        sort_members(scene);
+        status = fill_from(steps, island);
+    }
+    clear_members(scene);
+    if (status == IMPACT_OK) status = imp_island_begin_steps(steps);
+    if (status != IMPACT_OK) {
+        imp_islands_release(steps);
+        return status;
+    }
+    scene->world.usage.islands_stepped++;
+    steps->balance = imp_island_balance(steps);
+    imp_islands_release(island);
+    return IMPACT_OK;
+}

@@ -34,6 +34,7 @@ typedef struct imp_island {
     double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
     double looked_at;   /* s: by the receipt */
     imp_patience patience;
+    bool lies;      /* bodies with faces stay on each other: it is to be moved by steps */
     bool stepped;   /* it moves by steps (stepped.h): */
     imp_pile *pile; /* absent until then */
     long steps;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/parting.h"
+#include "contact/points.h"
 #include "scene/following.h"
 #include "scene/islands.h"
 #include "scene/scene_methods.h"
@@ -48,14 +49,16 @@ static bool is_tied(const imp_island *island, const int *root, int component)
     return false;
 }
 
-/* Whether the component goes on by steps: bodies that move touch each other in it; by choice, any touches. */
+/* Whether the component goes on by steps: bodies that move, or have faces, touch each other in it; by choice, any
+ * touches. */
 static bool stays_stepped(const imp_island *island, const int *root, int component)
 {
     const imp_world *world = &island->world;
     const bool always = island->scene->piles == IMPACT_PILES_STEPS;
     for (int p = 0; island->stepped && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        const bool counts = pair->met && (always || !world->bodies[pair->body2].is_static);
+        const bool counts = pair->met && (always || !world->bodies[pair->body2].is_static ||
+                                          imp_pair_has_faces(world, pair));
         if (counts && root[pair->body1] == component) return true;
     }
     return false;

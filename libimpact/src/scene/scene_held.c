@@ -5,7 +5,6 @@
  */
 #include "base/floats.h"
 #include "scene/scene_internal.h"
-#include "world/world_gap.h"
 
 #include <string.h>
 
@@ -48,28 +47,24 @@ static impact_status exact_rows(imp_island *island, double t, held_rows *rows)
 }
 
 /* What a pile's last step held, where its bodies are now. */
-static void pile_rows(imp_island *island, double t, held_rows *rows)
+static void pile_rows(const imp_island *island, double t, held_rows *rows)
 {
-    imp_world *world = &island->world;
-    const impact_usage usage = world->usage;
-    for (int p = 0; p < world->pair_count; p++) {
-        if (!imp_pile_holds(island->pile, p)) continue;
-        imp_pair pair = world->pairs[p]; /* what is found does not touch the run */
-        const imp_pile_memory *memory = &island->pile->memory[0][p];
-        impact_contact contact;
-        imp_world_gap(world, &pair, island->motion.sampled, &contact);
-        const qvec3 u = memory->velocity, along = qvec3_axpy(-qvec3_dot(u, contact.normal), contact.normal, u);
-        const bool slips = pair.friction == 0 || qvec3_norm(along) > world->slip_speed;
+    const imp_world *world = &island->world;
+    const imp_pile_memories *held = imp_pile_held(island->pile);
+    for (int k = 0; k < held->count; k++) {
+        const imp_pile_memory *memory = &held->list[k];
+        const imp_pair *pair = &world->pairs[memory->pair];
+        const qvec3 u = memory->velocity, along = qvec3_axpy(-qvec3_dot(u, memory->normal), memory->normal, u);
+        const bool slips = pair->friction == 0 || qvec3_norm(along) > world->slip_speed;
         const impact_held row = {.t = t,
-                                 .body1 = world->bodies[pair.body1].index,
-                                 .body2 = world->bodies[pair.body2].index,
+                                 .body1 = world->bodies[pair->body1].index,
+                                 .body2 = world->bodies[pair->body2].index,
                                  .mode = slips ? IMPACT_HOLD_SLIP : IMPACT_HOLD_STICK,
-                                 .point = qvec3_add(island->motion.sampled[pair.body1].x, contact.offset1),
-                                 .normal = contact.normal,
+                                 .point = qvec3_add(island->motion.sampled[pair->body1].x, memory->arm1),
+                                 .normal = memory->normal,
                                  .force = memory->reaction};
         add_row(rows, &row);
     }
-    world->usage = usage;
 }
 
 int impact_scene_held(const impact_scene *scene, impact_held *held, int room)

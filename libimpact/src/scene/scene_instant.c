@@ -8,16 +8,21 @@
 #include "scene/scene_events.h"
 #include "scene/scene_hold.h"
 #include "scene/scene_meeting.h"
+#include "scene/scene_points.h"
 #include "scene/scene_strike.h"
 #include "world/world_gap.h"
 
 impact_status imp_scene_settle(imp_island *island)
 {
+    impact_status status = imp_scene_place_points(island);
+    if (status != IMPACT_OK) return status;
     imp_scene_remember(island);
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
     bool parted;
-    impact_status status = imp_scene_strike_all(island, &parted);
-    if (status == IMPACT_OK && !parted) {
+    status = imp_scene_strike_all(island, &parted);
+    island->lies = status == IMPACT_OK && !parted && imp_scene_points_stay(island);
+    imp_scene_drop_points(island);
+    if (status == IMPACT_OK && !parted && !island->lies) {
         imp_scene_choose_modes(island);
         status = imp_scene_hold(island, -1, false);
     }

@@ -83,8 +83,8 @@ double imp_island_stepped_loss(const imp_island *island, const imp_state *states
 /* Which pairs touch, of those that the pile has held since it was looked at last. */
 static void mark_met(imp_island *island)
 {
-    for (int p = 0; p < island->world.pair_count; p++)
-        if (imp_pile_holds(island->pile, p)) island->world.pairs[p].met = true;
+    const imp_pile_memories *held = imp_pile_held(island->pile);
+    for (int k = 0; k < held->count; k++) island->world.pairs[held->list[k].pair].met = true;
 }
 
 impact_status imp_island_step(imp_island *island)

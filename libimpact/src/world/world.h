@@ -72,7 +72,9 @@ typedef struct imp_pair {
     bool tried;     /* scratch: sticks again after its slip was to begin */
     bool struck;    /* scratch: exchanged an impulse in this instant */
     bool settled;   /* scratch: had its chance to be held again in this instant */
-    bool met;       /* by the steps of a pile: it was closed since the pile was looked at last */
+    bool placed;    /* it is one of the points of two bodies with faces, at an instant: where it is, and stays */
+    impact_contact place;
+    bool met; /* by the steps of a pile: it was closed since the pile was looked at last */
     impact_gap_cache cache;
 } imp_pair;
 

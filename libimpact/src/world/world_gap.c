@@ -38,6 +38,10 @@ double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body
 
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
 {
+    if (pair->placed) {
+        *contact = pair->place;
+        return IMPACT_OK;
+    }
     return gap_of(&world->bodies[pair->body1], &states[pair->body1], &world->bodies[pair->body2], &states[pair->body2],
                   &pair->cache, world->gaps, &world->usage, contact);
 }

@@ -7,7 +7,7 @@
 
 #include "world/world.h"
 
-/* The pair's contact, counted by the road that answered. */
+/* The pair's contact, counted by the road that answered; of a pair that is placed the one that it has. */
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact);
 
 /* The contact of two bodies, from no cache; the same count. gaps may be NULL. */

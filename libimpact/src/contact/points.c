@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+#include "contact/points.h"
+#include "world/world_gap.h"
+
+bool imp_has_faces(const imp_body *body) { return body->shape.kind >= IMPACT_BOX; }
+
+bool imp_pair_has_faces(const imp_world *world, const imp_pair *pair)
+{
+    return imp_has_faces(&world->bodies[pair->body1]) || imp_has_faces(&world->bodies[pair->body2]);
+}
+
+/* Whether more than a point of the body can lie on a plane. */
+static bool can_lie(const imp_body *body)
+{
+    const impact_shape *s = &body->shape;
+    const bool curved = s->kind == IMPACT_SUPERQUADRIC || s->kind == IMPACT_SUPERELLIPSOID;
+    return s->kind == IMPACT_PLANE || imp_has_faces(body) || (curved && fmax(s->r, fmax(s->s, s->t)) >= 3);
+}
+
+static imp_point point_of(const impact_patch *patch, int i, qvec3 shift1, qvec3 shift2)
+{
+    const impact_patch_point *p = &patch->point[i];
+    return (imp_point){.contact = {.gap = p->height,
+                                   .normal = patch->normal,
+                                   .offset1 = qvec3_add(p->offset1, shift1),
+                                   .offset2 = qvec3_add(p->offset2, shift2)},
+                       .feature = {p->feature1, p->feature2}};
+}
+
+int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, imp_point *points)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    impact_contact contact;
+    (void)imp_world_gap(world, pair, states, &contact);
+    if (!(contact.gap <= height)) return 0;
+    int count = 0;
+    if (can_lie(b1) && can_lie(b2)) {
+        const qvec3 shift1 = imp_shape_offset(b1, s1), shift2 = imp_shape_offset(b2, s2);
+        const impact_solid solid1 = imp_solid_of(b1, s1), solid2 = imp_solid_of(b2, s2);
+        impact_contact shape = contact;
+        shape.offset1 = qvec3_sub(contact.offset1, shift1), shape.offset2 = qvec3_sub(contact.offset2, shift2);
+        impact_patch patch;
+        /* of each body all that lies no higher than the lowest point and this: its part of `height` over the other */
+        const impact_status found = impact_patch_find(&solid1, &solid2, &shape, height - contact.gap, &patch);
+        for (int i = 0; found == IMPACT_OK && i < patch.count; i++)
+            if (patch.point[i].height <= height) points[count++] = point_of(&patch, i, shift1, shift2);
+    }
+    if (count == 0 && imp_world_inside_bounds(world, pair, states, &contact) >= 0)
+        points[count++] = (imp_point){.contact = contact, .feature = {{IMPACT_SMOOTH, -1}, {IMPACT_SMOOTH, -1}}};
+    return count;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * points: the places at which two bodies touch: the extreme points of their patch, where faces or edges lie on each
+ * other, else the one point of their gap. Internal.
+ */
+#ifndef IMP_POINTS_H
+#define IMP_POINTS_H
+
+#include <impact/patch.h>
+#include "world/world.h"
+
+typedef struct imp_point {
+    impact_contact contact;    /* the gap here; offsets from the bodies' centres of mass */
+    impact_feature feature[2]; /* of body 1 and body 2: what tells the point from the pair's others */
+} imp_point;
+
+enum { IMP_POINTS = IMPACT_PATCH_POINTS };
+
+/* The body has faces, edges and corners. */
+bool imp_has_faces(const imp_body *body);
+/* Either body of the pair has. */
+bool imp_pair_has_faces(const imp_world *world, const imp_pair *pair);
+
+/* The pair's points that lie at most `height` (m) apart along the normal, within the bounds of a plane, in points (room
+ * for IMP_POINTS); how many. Where neither body is flat and across bounds there is the one, or none. */
+int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, imp_point *points);
+
+#endif

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/pile_contacts.h"
+#include "world/world_gap.h"
+
+#include <string.h>
+
+bool imp_pile_contacts_reserve(imp_pile_contacts *contacts, const imp_world *world)
+{
+    if (world->body_count > contacts->bodies) {
+        imp_arena_give(contacts->arena, contacts->root);
+        contacts->root = imp_arena_take(contacts->arena, (size_t)world->body_count, sizeof *contacts->root);
+        contacts->bodies = contacts->root ? world->body_count : 0;
+    }
+    if (world->pair_count > contacts->pairs) {
+        imp_arena_give(contacts->arena, contacts->held);
+        contacts->held = imp_arena_take(contacts->arena, (size_t)world->pair_count, sizeof *contacts->held);
+        contacts->pairs = contacts->held ? world->pair_count : 0;
+    }
+    return world->body_count <= contacts->bodies && world->pair_count <= contacts->pairs;
+}
+
+void imp_pile_contacts_mark(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories)
+{
+    for (int p = 0; p < world->pair_count; p++) contacts->held[p] = false;
+    for (int k = 0; k < memories->count; k++) contacts->held[memories->list[k].pair] = true;
+}
+
+/* ---- points ---- */
+
+static int root_of(int *root, int i)
+{
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+}
+
+static bool add_point(imp_pile_contacts *contacts, const imp_world *world, int p, const imp_point *point)
+{
+    imp_pile_point *points =
+        imp_arena_grow(contacts->arena, contacts->points, &contacts->room, contacts->count + 1, sizeof *points);
+    if (!points) return false;
+    contacts->points = points;
+    const imp_pair *pair = &world->pairs[p];
+    imp_pile_point *own = &points[contacts->count++];
+    *own = (imp_pile_point){.pair = p,
+                            .feature = {point->feature[0], point->feature[1]},
+                            .contact = {.body1 = pair->body1,
+                                        .body2 = pair->body2,
+                                        .arm1 = point->contact.offset1,
+                                        .arm2 = point->contact.offset2},
+                            .gap = point->contact.gap};
+    imp_cone_find_axes(point->contact.normal, own->contact.axes);
+    if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)
+        contacts->root[root_of(contacts->root, pair->body1)] = root_of(contacts->root, pair->body2);
+    return true;
+}
+
+/* How far the pair's points may stand off to close within half of the step: as fast as the pair's nearest point does,
+ * or any other of its bodies. */
+static double closing(const imp_world *world, const imp_pair *pair, const imp_state *next, double h)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &next[pair->body1], *s2 = &next[pair->body2];
+    double speed = qvec3_norm(qvec3_sub(s1->v, s2->v)) + b1->radius * qvec3_norm(imp_omega(b1, s1));
+    if (!b2->is_static) speed += b2->radius * qvec3_norm(imp_omega(b2, s2));
+    return 0.5 * h * speed;
+}
+
+bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const imp_state *states, const imp_state *next,
+                          double h, double slack, bool held_only)
+{
+    contacts->count = 0;
+    for (int i = 0; i < world->body_count; i++) contacts->root[i] = i;
+    for (int p = 0; p < world->pair_count; p++) {
+        imp_pair *pair = &world->pairs[p];
+        const bool held = contacts->held[p];
+        if (held_only && !held) continue;
+        const double height = held && next ? slack + closing(world, pair, next, h) : slack;
+        if (imp_world_distance_bound(world, pair, states) > height) continue;
+        imp_point points[IMP_POINTS];
+        const int found = imp_points_find(world, pair, states, height, points);
+        for (int k = 0; k < found; k++) {
+            const impact_contact *c = &points[k].contact;
+            const bool closes =
+                c->gap <= slack ||
+                (held && next && c->gap + 0.5 * h * imp_world_gap_rate(world, pair, next, c) <= 0);
+            if (!closes && !held_only) continue;
+            if (!add_point(contacts, world, p, &points[k])) return false;
+        }
+    }
+    return true;
+}
+
+static int island_of(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_point *point)
+{
+    const int body = world->bodies[point->contact.body1].is_static ? point->contact.body2 : point->contact.body1;
+    return root_of(contacts->root, body);
+}
+
+int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, int *members)
+{
+    int first = 0, count = 0;
+    while (first < contacts->count && contacts->points[first].taken) first++;
+    if (first == contacts->count) return 0;
+    const int island = island_of(contacts, world, &contacts->points[first]);
+    for (int k = first; k < contacts->count; k++) {
+        imp_pile_point *point = &contacts->points[k];
+        if (point->taken || island_of(contacts, world, point) != island) continue;
+        point->taken = true;
+        members[count++] = k;
+    }
+    return count;
+}
+
+/* ---- memory ---- */
+
+static bool same_feature(impact_feature a, impact_feature b) { return a.kind == b.kind && a.index == b.index; }
+
+/* Of the pair's memories of the same features the nearest: a border has no number where it is crossed. */
+imp_pile_memory *imp_pile_recall(imp_pile_memories *memories, const imp_pile_point *point)
+{
+    imp_pile_memory *best = NULL;
+    double least = INFINITY;
+    for (int k = 0; k < memories->count; k++) {
+        imp_pile_memory *m = &memories->list[k];
+        const qvec3 d = qvec3_sub(m->arm1, point->contact.arm1);
+        const double apart = qvec3_dot(d, d);
+        if (m->taken || m->pair != point->pair || !(apart < least)) continue;
+        if (!same_feature(m->feature[0], point->feature[0]) || !same_feature(m->feature[1], point->feature[1])) continue;
+        best = m, least = apart;
+    }
+    if (best) best->taken = true;
+    return best;
+}
+
+imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point)
+{
+    imp_pile_memory *list = imp_arena_grow(arena, memories->list, &memories->room, memories->count + 1, sizeof *list);
+    if (!list) return NULL;
+    memories->list = list;
+    imp_pile_memory *own = &list[memories->count++];
+    *own = (imp_pile_memory){.pair = point->pair,
+                             .feature = {point->feature[0], point->feature[1]},
+                             .arm1 = point->contact.arm1,
+                             .arm2 = point->contact.arm2,
+                             .normal = point->contact.axes[0]};
+    return own;
+}
+
+bool imp_pile_copy_memories(imp_arena *arena, imp_pile_memories *to, const imp_pile_memories *from)
+{
+    to->count = 0;
+    if (from->count == 0) return true;
+    imp_pile_memory *list = imp_arena_grow(arena, to->list, &to->room, from->count, sizeof *list);
+    if (!list) return false;
+    to->list = list;
+    to->count = from->count;
+    memcpy(list, from->list, sizeof *list * (size_t)from->count);
+    for (int k = 0; k < to->count; k++) to->list[k].taken = false;
+    return true;
+}

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * pile_contacts: where the bodies of a pile touch, and what is remembered of it from step to step. Internal.
+ */
+#ifndef IMP_PILE_CONTACTS_H
+#define IMP_PILE_CONTACTS_H
+
+#include "contact/cone_assemble.h"
+#include "contact/points.h"
+
+/* A point at which two bodies touch. */
+typedef struct imp_pile_point {
+    int pair;
+    impact_feature feature[2];
+    imp_cone_contact contact;
+    double gap;  /* m */
+    bool taken;  /* scratch: it is an island's */
+} imp_pile_point;
+
+/* What a step held there; world axes. */
+typedef struct imp_pile_memory {
+    int pair;
+    impact_feature feature[2];
+    qvec3 arm1, arm2, normal;
+    qvec3 reaction, velocity; /* N (impulse over h), m/s */
+    bool taken;               /* scratch: it is a point's */
+} imp_pile_memory;
+
+typedef struct imp_pile_memories {
+    imp_pile_memory *list;
+    int count, room;
+} imp_pile_memories;
+
+typedef struct imp_pile_contacts {
+    imp_arena *arena;
+    int bodies, pairs; /* there is room for */
+    imp_pile_point *points;
+    int count, room;
+    int *root; /* per body: bodies that points tie have the same */
+    bool *held; /* per pair: remembered */
+} imp_pile_contacts;
+
+bool imp_pile_contacts_reserve(imp_pile_contacts *contacts, const imp_world *world);
+
+/* The pairs that the memory names. */
+void imp_pile_contacts_mark(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories);
+
+/* All points whose gap is at most the slack, or, of the pairs marked as held, that close within half of the step h at
+ * the velocities `next` (NULL: none). Pressed by the loads, what rolls over a round body leaves it by h² in every step:
+ * it is held, not dropped and caught. held_only: of the marked pairs alone all points that come as near as that. False:
+ * there is no room. */
+bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const imp_state *states, const imp_state *next,
+                          double h, double slack, bool held_only);
+
+/* The island of the first point that is in none yet: the points' numbers into `members` (count), which are taken then.
+ * How many; 0: all are taken. */
+int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, int *members);
+
+/* What is remembered of the point, which is then the point's; NULL: nothing. */
+imp_pile_memory *imp_pile_recall(imp_pile_memories *memories, const imp_pile_point *point);
+
+/* One more; NULL: there is no room. */
+imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point);
+bool imp_pile_copy_memories(imp_arena *arena, imp_pile_memories *to, const imp_pile_memories *from);
+
+#endif
