@@ -228,21 +228,6 @@ static void recall_answer(imp_cone_system *system)
 
 /* ---- the proof ---- */
 
-/* The nearest point of |v_t| <= mu v_n. */
-static void project(double friction, const double *v, double *to)
-{
-    const double across = friction > 0 ? sqrt(v[1] * v[1] + v[2] * v[2]) : 0;
-    to[0] = to[1] = to[2] = 0;
-    if (v[0] >= 0 && across <= friction * v[0]) {
-        to[0] = v[0];
-        if (friction > 0) to[1] = v[1], to[2] = v[2];
-        return;
-    }
-    if (v[0] <= -friction * across) return;
-    to[0] = (v[0] + friction * across) / (1 + friction * friction);
-    for (int k = 1; k < 3 && across > 0; k++) to[k] = friction * to[0] * v[k] / across;
-}
-
 double imp_cone_residual(const imp_cone_problem *problem, const double *r, double *u)
 {
     const double most = largest(problem, r), size = largest(problem, problem->q);
@@ -257,7 +242,7 @@ double imp_cone_residual(const imp_cone_problem *problem, const double *r, doubl
         const double s = size > 0 ? most / size : 1, slip = friction > 0 ? sqrt(v[1] * v[1] + v[2] * v[2]) : 0;
         const double wanted[3] = {own[0] - s * (v[0] + friction * slip), own[1] - s * v[1], own[2] - s * v[2]};
         double on[3], off = 0;
-        project(friction, wanted, on);
+        imp_cone_project(friction, wanted, on, NULL);
         for (int k = 0; k < 3; k++) off += (own[k] - on[k]) * (own[k] - on[k]);
         const double part = sqrt(off) / most;
         if (!(part <= worst)) worst = part; /* no number is the worst */

@@ -76,6 +76,10 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
 /* The residual of any r, as in the outcome; u: of r, 3 count, written. */
 double imp_cone_residual(const imp_cone_problem *problem, const double *r, double *u);
 
+/* P_K v, the nearest point of |r_t| <= mu r_n (mu = 0: of the half line along the normal), and, unless slope is NULL,
+ * its derivative. */
+void imp_cone_project(double friction, const double v[3], double to[3], double slope[3][3]);
+
 const char *imp_cone_status_name(imp_cone_status status);
 
 #endif

@@ -63,32 +63,7 @@ static rest_system furnish_rest(imp_rest_workspace *workspace, const imp_world *
     return s;
 }
 
-/* ---- cones ---- */
-
-/* P_K and, if wanted, its derivative (mu 0: the half line). */
-static void project_force(double friction, const double *v, double *to, double slope[3][3])
-{
-    const double across = friction > 0 ? sqrt(v[1] * v[1] + v[2] * v[2]) : 0;
-    if (slope) memset(slope, 0, 9 * sizeof slope[0][0]);
-    to[0] = to[1] = to[2] = 0;
-    if (v[0] >= 0 && across <= friction * v[0]) {
-        for (int k = 0; k < (friction > 0 ? 3 : 1); k++) {
-            to[k] = v[k];
-            if (slope) slope[k][k] = 1;
-        }
-        return;
-    }
-    if (v[0] <= -friction * across) return;
-    const double part = 1 / (1 + friction * friction), dir[3] = {1, friction * v[1] / across, friction * v[2] / across};
-    const double size = part * (v[0] + friction * across);
-    for (int k = 0; k < 3; k++) {
-        to[k] = size * dir[k];
-        for (int l = 0; slope && l < 3; l++) slope[k][l] = part * dir[k] * dir[l];
-    }
-    const double turn = friction * size / across;
-    for (int k = 1; slope && k < 3; k++)
-        for (int l = 1; l < 3; l++) slope[k][l] += turn * ((k == l) - v[k] * v[l] / (across * across));
-}
+/* ---- motion and forces ---- */
 
 /* The moving bodies of a contact's two sides, -1 where there is none. */
 static void sides_of(const rest_system *s, int c, int body[2])
@@ -115,7 +90,7 @@ static double project_motion(const rest_system *s, const double *x, double *f)
     for (int c = 0; c < s->contacts; c++) {
         double v[3];
         motion_at(s, c, x, v);
-        project_force(s->friction[c], v, &f[3 * c], NULL);
+        imp_cone_project(s->friction[c], v, &f[3 * c], NULL);
         for (int k = 0; k < 3; k++) square += f[3 * c + k] * f[3 * c + k];
     }
     return square;
@@ -186,7 +161,7 @@ static bool find_step(const rest_system *s, bool first)
     for (int c = 0; c < s->contacts; c++) {
         double v[3], f[3], slope[3][3];
         motion_at(s, c, s->x, v);
-        project_force(s->friction[c], v, f, slope);
+        imp_cone_project(s->friction[c], v, f, slope);
         if (first) memcpy(slope, all, sizeof slope);
         add_hessian(s, c, slope);
     }
@@ -243,12 +218,12 @@ static double refine(const rest_system *s)
         double v[3], change[3], f[3], slope[3][3];
         motion_at(s, c, s->x, v);
         motion_at(s, c, s->step, change);
-        project_force(s->friction[c], v, f, slope);
+        imp_cone_project(s->friction[c], v, f, slope);
         for (int k = 0; k < 3; k++) {
             f[k] = s->forces[3 * c + k];
             for (int l = 0; l < 3; l++) f[k] += slope[k][l] * change[l];
         }
-        project_force(s->friction[c], f, &s->forces[3 * c], NULL);
+        imp_cone_project(s->friction[c], f, &s->forces[3 * c], NULL);
     }
     return find_gradient(s);
 }

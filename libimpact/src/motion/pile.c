@@ -12,7 +12,7 @@
 
 void imp_pile_open(imp_pile *pile, imp_arena *arena)
 {
-    *pile = (imp_pile){.arena = arena, .cone.arena = arena, .rest.arena = arena, .touching.arena = arena};
+    *pile = (imp_pile){.arena = arena, .cone.arena = arena, .rest.arena = arena, .touching.arena = arena, .by_bodies.arena = arena};
 }
 
 static void *replaced(imp_pile *pile, void *old, size_t count, size_t size, bool *there)
@@ -31,6 +31,7 @@ static bool reserve_bodies(imp_pile *pile, const imp_world *world)
     imp_state **states[] = {&pile->middle, &pile->whole, &pile->half, &pile->end};
     for (int k = 0; k < 4; k++) *states[k] = replaced(pile, *states[k], bodies, sizeof **states[k], &there);
     pile->loads = replaced(pile, pile->loads, bodies, sizeof *pile->loads, &there);
+    pile->number = replaced(pile, pile->number, bodies, sizeof *pile->number, &there);
     pile->velocities = replaced(pile, pile->velocities, bodies, sizeof *pile->velocities, &there);
     pile->bodies = there ? world->body_count : 0;
     return there;
@@ -159,27 +160,61 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
     return work;
 }
 
-/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
-static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h, imp_state *next,
-                   imp_pile_step_result *result)
+/* The island's bodies by numbers of their own, from 0; how many move. */
+static int number_bodies(imp_pile *pile, const imp_world *world, int count)
 {
-    imp_cone_contact_velocities(world, next, pile->contacts, count, pile->q);
-    imp_cone_contact_velocities(world, states, pile->contacts, count, pile->u);
+    int bodies = 0;
+    for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
+    for (int c = 0; c < count; c++) {
+        const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
+        for (int k = 0; k < 2; k++)
+            if (!world->bodies[body[k]].is_static && pile->number[body[k]] < 0) pile->number[body[k]] = bodies++;
+    }
+    return bodies;
+}
+
+/* In the space of the bodies; what that does not settle, where it is small enough, in that of the contacts. */
+static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count)
+{
+    imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
+    const int bodies = number_bodies(pile, world, count);
+    const imp_cone_outcome quick =
+        imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, count, pile->number, bodies, pile->q,
+                              pile->friction, pile->last_r, pile->r, pile->u);
+    if (quick.status == IMP_CONE_SOLVED || quick.status == IMP_CONE_BAD || count > IMP_PILE_DENSE) return quick;
     imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
-    recall_step(pile, world, count, h);
     const imp_cone_problem problem = {.count = count,
                                       .w = pile->w,
                                       .q = pile->q,
                                       .friction = pile->friction,
                                       .last_r = pile->last_r,
                                       .last_u = pile->last_u};
-    const imp_cone_outcome outcome = imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
-    if (outcome.status != IMP_CONE_SOLVED && outcome.status != IMP_CONE_INEXACT) {
+    return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
+}
+
+/* The greatest velocity that contacts have without impulses, m/s. */
+static double fastest_of(const imp_pile *pile, int count)
+{
+    double most = 0;
+    for (int i = 0; i < 3 * count; i++) most = fmax(most, fabs(pile->q[i]));
+    return most;
+}
+
+/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
+static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h, imp_state *next,
+                   imp_pile_step_result *result)
+{
+    imp_cone_contact_velocities(world, next, pile->contacts, count, pile->q);
+    imp_cone_contact_velocities(world, states, pile->contacts, count, pile->u);
+    recall_step(pile, world, count, h);
+    const imp_cone_outcome outcome = find_impulses(pile, world, count);
+    if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
                  imp_cone_status_name(outcome.status));
         return IMPACT_EUNSETTLED;
     }
     imp_cone_push(world, pile->contacts, count, pile->r, next);
+    result->error += h * outcome.residual * fastest_of(pile, count);
     if (!remember_step(pile, &pile->memory[2], count, h)) return IMPACT_ENOMEM;
     result->drive_work += drive_work(pile, world, count);
     for (int c = 0; c < count; c++)
@@ -341,7 +376,7 @@ static impact_status try_step(imp_pile *pile, imp_world *world, double t, double
         !imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0]))
         return IMPACT_ENOMEM;
     status = step_once(pile, world, t, h, states, pile->whole, &scratch);
-    result->error = apart(world, pile->whole, pile->end);
+    result->error += apart(world, pile->whole, pile->end);
     return status;
 }
 

@@ -16,6 +16,7 @@
 #ifndef IMP_PILE_H
 #define IMP_PILE_H
 
+#include "contact/cone_bodies.h"
 #include "contact/rest.h"
 #include "motion/pile_contacts.h"
 #include "world/field.h"
@@ -25,6 +26,8 @@ typedef struct imp_pile {
     int bodies;       /* there is room for */
     double step;       /* s: to be tried next; 0: chosen anew */
     imp_cone_workspace cone;
+    imp_cone_bodies by_bodies;
+    int *number; /* per body of the world: its own in an island, -1: it does not move */
     imp_rest_workspace rest;
     imp_state *middle, *whole, *half, *end;
     imp_load *loads;

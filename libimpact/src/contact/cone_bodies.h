@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cone_bodies: Coulomb's law at many contacts, solved for the bodies' velocities instead of the reactions: six unknowns
+ * a body however many contacts it has, coupled as bodies touch. Internal.
+ *
+ * With G the rows of all contacts per root of mass, x = G^T r is what the reactions r do, and u = q + G x. With the
+ * slip's part s = mu |u_t| n held, r is the fixed point of
+ *
+ *     r' = P_K(r - rho (u + s))       x minimises  |x|²/2 + sum |P_K(r - rho (q + s + G x))|²/(2 rho)
+ *
+ * (the method of multipliers: Rockafellar 1976; Hestenes, Powell 1969), x by semismooth Newton; s follows from step to
+ * step (Cadoux 2009). Reactions that are not unique are no trouble, as x is.
+ */
+#ifndef IMP_CONE_BODIES_H
+#define IMP_CONE_BODIES_H
+
+#include "contact/cone.h"
+#include "contact/cone_assemble.h"
+#include "contact/skyline.h"
+
+typedef struct imp_cone_bodies {
+    imp_arena *arena;
+    int contacts, bodies; /* there is room for */
+    double *block;
+    int (*touching)[2];
+    imp_skyline sky;
+} imp_cone_bodies;
+
+/* The problem of these contacts with the velocities q (3 count) without reactions; number: of each body of the world
+ * its own from 0 to bodies - 1, or -1 where it does not move. last_r: reactions to begin with, or NULL. Into r and u.
+ * SOLVED: the proof's residual, as of imp_cone_outcome, is at most IMP_BODIES_ACCEPTED; INEXACT, UNSETTLED: r and u are
+ * the best that was found, s having crept where much friction couples much sliding. BAD: there is no room, or a number is none. */
+imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_cone_contact *contacts,
+                                       const imp_cone_row *rows, int count, const int *number, int bodies,
+                                       const double *q, const double *friction, const double *last_r, double *r,
+                                       double *u);
+
+#endif

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * skyline: a matrix of 6 x 6 blocks, one row of them for each body, zero but where bodies touch: of each row, and each
+ * column, what stands from its first element to the diagonal, in an order of the bodies that keeps both short (Cuthill &
+ * McKee 1969, reversed), and its factors L U in their place, without pivots. Internal.
+ */
+#ifndef IMP_SKYLINE_H
+#define IMP_SKYLINE_H
+
+#include "base/arena.h"
+
+typedef struct imp_skyline {
+    imp_arena *arena;
+    int bodies;
+    int *place;         /* of each body: its block row */
+    int *first;         /* of each block row: its first block */
+    size_t *start;      /* of each block row: where its six rows begin in values */
+    double *lower, *upper; /* rows, with the diagonal; columns */
+    double *scratch;       /* 6 bodies */
+    int *degree, *queue; /* scratch */
+    int body_room;
+    size_t value_room;
+} imp_skyline;
+
+/* Zero, of so many bodies of which these touch: two numbers each, those of static bodies negative. False: there is no
+ * room. */
+bool imp_skyline_shape(imp_skyline *sky, int bodies, const int (*touching)[2], int count);
+void imp_skyline_clear(imp_skyline *sky);
+
+/* Adds to the block of row a, column b: two bodies that touch, or one twice. */
+void imp_skyline_add(imp_skyline *sky, int a, int b, double block[6][6]);
+
+/* False: a pivot is zero, or no number. */
+bool imp_skyline_factor(imp_skyline *sky);
+void imp_skyline_solve(const imp_skyline *sky, double *x);
+
+#endif
