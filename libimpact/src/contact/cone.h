@@ -78,7 +78,7 @@ double imp_cone_residual(const imp_cone_problem *problem, const double *r, doubl
 
 /* P_K v, the nearest point of |r_t| <= mu r_n (mu = 0: of the half line along the normal), and, unless slope is NULL,
  * its derivative. */
-void imp_cone_project(double friction, const double v[3], double to[3], double slope[3][3]);
+void imp_cone_project(double friction, const double *v, double *to, double slope[3][3]);
 
 const char *imp_cone_status_name(imp_cone_status status);
 

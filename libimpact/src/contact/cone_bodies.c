@@ -21,7 +21,7 @@ enum { BODY_VECTORS = 4, CONTACT_VECTORS = 14 };
 
 /* ---- room ---- */
 
-static bool make_room(imp_cone_bodies *workspace, int contacts, int bodies)
+static bool furnish_bodies(imp_cone_bodies *workspace, int contacts, int bodies)
 {
     if (contacts <= workspace->contacts && bodies <= workspace->bodies) return true;
     imp_arena *arena = workspace->arena;
@@ -37,7 +37,7 @@ static bool make_room(imp_cone_bodies *workspace, int contacts, int bodies)
     return there;
 }
 
-static bodies_problem lay_out(imp_cone_bodies *workspace, int count, int bodies)
+static bodies_problem lay_out_bodies(imp_cone_bodies *workspace, int count, int bodies)
 {
     bodies_problem p = {.count = count, .n = 6 * bodies, .touching = workspace->touching, .sky = &workspace->sky};
     double *block = workspace->block;
@@ -51,7 +51,7 @@ static bodies_problem lay_out(imp_cone_bodies *workspace, int count, int bodies)
 /* ---- G ---- */
 
 /* G x at the contact. */
-static void motion_at(const bodies_problem *p, int c, const double *x, double v[3])
+static void seen_at(const bodies_problem *p, int c, const double *x, double v[3])
 {
     v[0] = v[1] = v[2] = 0;
     for (int side = 0; side < 2; side++) {
@@ -63,7 +63,7 @@ static void motion_at(const bodies_problem *p, int c, const double *x, double v[
 }
 
 /* Adds factor G^T f of the contact. */
-static void add_motion(const bodies_problem *p, int c, const double f[3], double factor, double *x)
+static void add_effect(const bodies_problem *p, int c, const double f[3], double factor, double *x)
 {
     for (int side = 0; side < 2; side++) {
         if (p->touching[c][side] < 0) continue;
@@ -73,7 +73,7 @@ static void add_motion(const bodies_problem *p, int c, const double f[3], double
     }
 }
 
-static void add_hessian(const bodies_problem *p, int c, double slope[3][3])
+static void add_bend(const bodies_problem *p, int c, double slope[3][3])
 {
     const imp_cone_row *row = &p->rows[c];
     for (int i = 0; i < 2; i++) {
@@ -112,11 +112,11 @@ static void set_stiffness(const bodies_problem *p, double stiffness)
 static void pressed_by(const bodies_problem *p, int c, const double *x, double y[3])
 {
     double v[3];
-    motion_at(p, c, x, v);
+    seen_at(p, c, x, v);
     for (int k = 0; k < 3; k++) y[k] = p->r[3 * c + k] - p->stiffness[c] * (p->offset[3 * c + k] + v[k]);
 }
 
-static double product(const double *a, const double *b, int n)
+static double sum_of_products(const double *a, const double *b, int n)
 {
     double sum = 0;
     for (int i = 0; i < n; i++) sum += a[i] * b[i];
@@ -126,22 +126,22 @@ static double product(const double *a, const double *b, int n)
 /* What x is to minimise; its reactions go to pressed, its gradient to gradient. */
 static double look_at(const bodies_problem *p, const double *x, double *scale)
 {
-    double value = 0.5 * product(x, x, p->n);
+    double value = 0.5 * sum_of_products(x, x, p->n);
     memcpy(p->gradient, x, sizeof *x * (size_t)p->n);
-    *scale = product(x, x, p->n);
+    *scale = sum_of_products(x, x, p->n);
     for (int c = 0; c < p->count; c++) {
         double y[3], *f = &p->pressed[3 * c];
         pressed_by(p, c, x, y);
         imp_cone_project(p->friction[c], y, f, NULL);
-        value += 0.5 * product(f, f, 3) / p->stiffness[c];
-        *scale = fmax(*scale, product(f, f, 3) * p->mobility[c]);
-        add_motion(p, c, f, -1, p->gradient);
+        value += 0.5 * sum_of_products(f, f, 3) / p->stiffness[c];
+        *scale = fmax(*scale, sum_of_products(f, f, 3) * p->mobility[c]);
+        add_effect(p, c, f, -1, p->gradient);
     }
     *scale = sqrt(*scale);
     return value;
 }
 
-static bool find_step(const bodies_problem *p)
+static bool newton_step(const bodies_problem *p)
 {
     imp_skyline_clear(p->sky);
     for (int b = 0; b < p->n / 6; b++) {
@@ -153,7 +153,7 @@ static bool find_step(const bodies_problem *p)
         double y[3], f[3], slope[3][3];
         pressed_by(p, c, p->x, y);
         imp_cone_project(p->friction[c], y, f, slope);
-        if (f[0] > 0) add_hessian(p, c, slope);
+        if (f[0] > 0) add_bend(p, c, slope);
     }
     p->outcome->factorings++;
     if (!imp_skyline_factor(p->sky)) return false;
@@ -163,10 +163,10 @@ static bool find_step(const bodies_problem *p)
 }
 
 /* Along the step, halved until the function falls by a part of what its slope promises; false where it does not. */
-static bool walk(const bodies_problem *p, double *value, double *scale)
+static bool go_along(const bodies_problem *p, double *value, double *scale)
 {
     enum { HALVINGS = 30 };
-    const double slope = product(p->gradient, p->step, p->n);
+    const double slope = sum_of_products(p->gradient, p->step, p->n);
     double part = 1;
     for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
         for (int i = 0; i < p->n; i++) p->trial[i] = p->x[i] + part * p->step[i];
@@ -181,20 +181,20 @@ static bool walk(const bodies_problem *p, double *value, double *scale)
 
 /* Newton's steps for x until the gradient is `enough` of its terms, or rounding: there the function tells no more, and a step counts that halves
  * the gradient. */
-static void minimise(const bodies_problem *p, double enough)
+static void settle_motion(const bodies_problem *p, double enough)
 {
     enum { STEPS = 60 };
     double scale, value = look_at(p, p->x, &scale);
     for (int step = 0; step < STEPS; step++) {
-        const double size = sqrt(product(p->gradient, p->gradient, p->n));
-        if (size <= fmax(enough, IMP_BODIES_FINEST) * scale || !find_step(p)) return;
+        const double size = sqrt(sum_of_products(p->gradient, p->gradient, p->n));
+        if (size <= fmax(enough, IMP_BODIES_FINEST) * scale || !newton_step(p)) return;
         p->outcome->steps++;
         if (size > IMP_BODIES_ROUNDING * scale) {
-            if (walk(p, &value, &scale)) continue;
+            if (go_along(p, &value, &scale)) continue;
         } else {
             for (int i = 0; i < p->n; i++) p->trial[i] = p->x[i] + p->step[i];
             const double found = look_at(p, p->trial, &scale);
-            if (product(p->gradient, p->gradient, p->n) < 0.25 * size * size) {
+            if (sum_of_products(p->gradient, p->gradient, p->n) < 0.25 * size * size) {
                 value = found;
                 memcpy(p->x, p->trial, sizeof *p->x * (size_t)p->n);
                 continue;
@@ -208,13 +208,13 @@ static void minimise(const bodies_problem *p, double enough)
 /* ---- multipliers ---- */
 
 /* x and u of the reactions r. */
-static void find_motion(const bodies_problem *p, const double *r)
+static void effect_of(const bodies_problem *p, const double *r)
 {
     memset(p->x, 0, sizeof *p->x * (size_t)p->n);
-    for (int c = 0; c < p->count; c++) add_motion(p, c, &r[3 * c], 1, p->x);
+    for (int c = 0; c < p->count; c++) add_effect(p, c, &r[3 * c], 1, p->x);
     for (int c = 0; c < p->count; c++) {
         double v[3];
-        motion_at(p, c, p->x, v);
+        seen_at(p, c, p->x, v);
         for (int k = 0; k < 3; k++) p->u[3 * c + k] = p->q[3 * c + k] + v[k];
     }
 }
@@ -232,17 +232,17 @@ static void set_offset(const bodies_problem *p)
     }
 }
 
-static double largest(const bodies_problem *p, const double *v)
+static double largest_of(const bodies_problem *p, const double *v)
 {
     double most = 0;
-    for (int c = 0; c < p->count; c++) most = fmax(most, product(&v[3 * c], &v[3 * c], p->friction[c] > 0 ? 3 : 1));
+    for (int c = 0; c < p->count; c++) most = fmax(most, sum_of_products(&v[3 * c], &v[3 * c], p->friction[c] > 0 ? 3 : 1));
     return sqrt(most);
 }
 
 /* As imp_cone_residual. */
-static double residual(const bodies_problem *p, const double *r)
+static double residual_of(const bodies_problem *p, const double *r)
 {
-    const double most = largest(p, r), size = largest(p, p->q), s = size > 0 && most > 0 ? most / size : 1;
+    const double most = largest_of(p, r), size = largest_of(p, p->q), s = size > 0 && most > 0 ? most / size : 1;
     double worst = 0;
     for (int c = 0; c < p->count; c++) {
         const double *own = &r[3 * c], *v = &p->u[3 * c];
@@ -262,8 +262,8 @@ static void iterate(const bodies_problem *p, double *r, double *u)
     const size_t size = 3 * sizeof *r * (size_t)p->count;
     imp_cone_outcome *outcome = p->outcome;
     for (int k = 0, idle = 0; k <= MOST && idle < PATIENCE; k++) {
-        find_motion(p, p->r);
-        const double found = residual(p, p->r);
+        effect_of(p, p->r);
+        const double found = residual_of(p, p->r);
         idle = found < 0.5 * outcome->residual ? 0 : idle + 1;
         if (found < outcome->residual) {
             outcome->residual = found;
@@ -273,7 +273,7 @@ static void iterate(const bodies_problem *p, double *r, double *u)
         if (outcome->residual <= IMP_BODIES_ACCEPTED) return;
         set_offset(p);
         set_stiffness(p, k == 0 ? IMP_BODIES_SOFT : IMP_BODIES_STIFF); /* Newton finds its way from soft to stiff */
-        minimise(p, IMP_BODIES_INNER * found);
+        settle_motion(p, IMP_BODIES_INNER * found);
         memcpy(p->r, p->pressed, size);
     }
 }
@@ -285,8 +285,8 @@ imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_con
 {
     imp_cone_outcome outcome = {.status = IMP_CONE_BAD, .residual = INFINITY};
     if (count == 0) return (imp_cone_outcome){.status = IMP_CONE_SOLVED};
-    if (!make_room(workspace, count, bodies)) return outcome;
-    bodies_problem p = lay_out(workspace, count, bodies);
+    if (!furnish_bodies(workspace, count, bodies)) return outcome;
+    bodies_problem p = lay_out_bodies(workspace, count, bodies);
     p.rows = rows, p.q = q, p.friction = friction, p.outcome = &outcome;
     for (int c = 0; c < count; c++) {
         p.touching[c][0] = number[contacts[c].body1];

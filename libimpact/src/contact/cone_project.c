@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-void imp_cone_project(double friction, const double v[3], double to[3], double slope[3][3])
+void imp_cone_project(double friction, const double *v, double *to, double slope[3][3])
 {
     const double across = friction > 0 ? sqrt(v[1] * v[1] + v[2] * v[2]) : 0;
     if (slope) memset(slope, 0, 9 * sizeof slope[0][0]);

@@ -8,7 +8,7 @@ enum { SIDE = 6 };
 
 /* ---- shape ---- */
 
-static bool make_room(imp_skyline *sky, int bodies)
+static bool furnish_skyline(imp_skyline *sky, int bodies)
 {
     if (bodies <= sky->body_room) return true;
     imp_arena *arena = sky->arena;
@@ -29,14 +29,14 @@ static bool make_room(imp_skyline *sky, int bodies)
     return sky->body_room == bodies;
 }
 
-static bool couples(const int couple[2]) { return couple[0] >= 0 && couple[1] >= 0 && couple[0] != couple[1]; }
+static bool is_couple(const int couple[2]) { return couple[0] >= 0 && couple[1] >= 0 && couple[0] != couple[1]; }
 
 /* Appends to the queue all neighbours of the body that have no place yet, those of fewest neighbours first. */
 static int append_neighbours(imp_skyline *sky, int body, const int (*touching)[2], int count, int length)
 {
     const int from = length;
     for (int k = 0; k < count; k++) {
-        if (!couples(touching[k]) || (touching[k][0] != body && touching[k][1] != body)) continue;
+        if (!is_couple(touching[k]) || (touching[k][0] != body && touching[k][1] != body)) continue;
         const int other = touching[k][touching[k][0] == body];
         if (sky->place[other] >= 0) continue;
         sky->place[other] = 0;
@@ -48,12 +48,12 @@ static int append_neighbours(imp_skyline *sky, int body, const int (*touching)[2
     return length;
 }
 
-static void choose_order(imp_skyline *sky, const int (*touching)[2], int count)
+static void order_bodies(imp_skyline *sky, const int (*touching)[2], int count)
 {
     const int n = sky->bodies;
     memset(sky->degree, 0, sizeof *sky->degree * (size_t)n);
     for (int k = 0; k < count; k++)
-        for (int side = 0; side < 2 && couples(touching[k]); side++) sky->degree[touching[k][side]]++;
+        for (int side = 0; side < 2 && is_couple(touching[k]); side++) sky->degree[touching[k][side]]++;
     for (int i = 0; i < n; i++) sky->place[i] = -1;
     int length = 0;
     for (int next = 0; next < n; next++) {
@@ -71,12 +71,12 @@ static void choose_order(imp_skyline *sky, const int (*touching)[2], int count)
 
 bool imp_skyline_shape(imp_skyline *sky, int bodies, const int (*touching)[2], int count)
 {
-    if (!make_room(sky, bodies)) return false;
+    if (!furnish_skyline(sky, bodies)) return false;
     sky->bodies = bodies;
-    choose_order(sky, touching, count);
+    order_bodies(sky, touching, count);
     for (int i = 0; i < bodies; i++) sky->first[i] = i;
     for (int k = 0; k < count; k++) {
-        if (!couples(touching[k])) continue;
+        if (!is_couple(touching[k])) continue;
         const int a = sky->place[touching[k][0]], b = sky->place[touching[k][1]], low = a < b ? a : b, high = a + b - low;
         if (low < sky->first[high]) sky->first[high] = low;
     }
@@ -103,7 +103,7 @@ void imp_skyline_clear(imp_skyline *sky)
 
 /* ---- elements: row i, and column i, begin at 6 first, and are as long as their block row ---- */
 
-static double *line_of(const imp_skyline *sky, double *values, int i, int *first)
+static double *skyline_line(const imp_skyline *sky, double *values, int i, int *first)
 {
     const int block = i / SIDE;
     *first = SIDE * sky->first[block];
@@ -111,21 +111,21 @@ static double *line_of(const imp_skyline *sky, double *values, int i, int *first
 }
 
 /* Element (i, j). */
-static double *element(const imp_skyline *sky, int i, int j)
+static double *skyline_element(const imp_skyline *sky, int i, int j)
 {
     int first;
-    double *line = i >= j ? line_of(sky, sky->lower, i, &first) : line_of(sky, sky->upper, j, &first);
+    double *line = i >= j ? skyline_line(sky, sky->lower, i, &first) : skyline_line(sky, sky->upper, j, &first);
     return &line[(i >= j ? j : i) - first];
 }
 
 void imp_skyline_add(imp_skyline *sky, int a, int b, double block[6][6])
 {
     for (int k = 0; k < SIDE; k++)
-        for (int l = 0; l < SIDE; l++) *element(sky, SIDE * sky->place[a] + k, SIDE * sky->place[b] + l) += block[k][l];
+        for (int l = 0; l < SIDE; l++) *skyline_element(sky, SIDE * sky->place[a] + k, SIDE * sky->place[b] + l) += block[k][l];
 }
 
 /* sum l_k u_k where both lines have begun, up to `end`. */
-static double common(const double *one, int one_first, const double *two, int two_first, int end)
+static double common_product(const double *one, int one_first, const double *two, int two_first, int end)
 {
     const int begin = one_first > two_first ? one_first : two_first;
     double sum = 0;
@@ -137,13 +137,13 @@ bool imp_skyline_factor(imp_skyline *sky)
 {
     for (int i = 0; i < SIDE * sky->bodies; i++) {
         int first, other;
-        double *row = line_of(sky, sky->lower, i, &first), *column = line_of(sky, sky->upper, i, &first);
+        double *row = skyline_line(sky, sky->lower, i, &first), *column = skyline_line(sky, sky->upper, i, &first);
         for (int j = first; j < i; j++) {
-            const double *above = line_of(sky, sky->upper, j, &other), *left = line_of(sky, sky->lower, j, &other);
-            row[j - first] = (row[j - first] - common(row, first, above, other, j)) / left[j - other];
-            column[j - first] -= common(column, first, left, other, j);
+            const double *above = skyline_line(sky, sky->upper, j, &other), *left = skyline_line(sky, sky->lower, j, &other);
+            row[j - first] = (row[j - first] - common_product(row, first, above, other, j)) / left[j - other];
+            column[j - first] -= common_product(column, first, left, other, j);
         }
-        row[i - first] -= common(row, first, column, first, i);
+        row[i - first] -= common_product(row, first, column, first, i);
         if (!(fabs(row[i - first]) > 0)) return false;
     }
     return true;
@@ -156,12 +156,12 @@ void imp_skyline_solve(const imp_skyline *sky, double *x)
     int first;
     for (int b = 0; b < sky->bodies; b++) memcpy(&y[SIDE * sky->place[b]], &x[SIDE * b], SIDE * sizeof *x);
     for (int i = 0; i < n; i++) {
-        const double *row = line_of(sky, sky->lower, i, &first);
-        y[i] -= common(row, first, y, 0, i);
+        const double *row = skyline_line(sky, sky->lower, i, &first);
+        y[i] -= common_product(row, first, y, 0, i);
     }
     for (int i = n - 1; i >= 0; i--) {
-        y[i] /= line_of(sky, sky->lower, i, &first)[i - first];
-        const double *column = line_of(sky, sky->upper, i, &first);
+        y[i] /= skyline_line(sky, sky->lower, i, &first)[i - first];
+        const double *column = skyline_line(sky, sky->upper, i, &first);
         for (int k = first; k < i; k++) y[k] -= column[k - first] * y[i];
     }
     for (int b = 0; b < sky->bodies; b++) memcpy(&x[SIDE * b], &y[SIDE * sky->place[b]], SIDE * sizeof *x);

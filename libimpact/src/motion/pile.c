@@ -173,15 +173,8 @@ static int number_bodies(imp_pile *pile, const imp_world *world, int count)
     return bodies;
 }
 
-/* In the space of the bodies; what that does not settle, where it is small enough, in that of the contacts. */
-static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count)
+static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int count)
 {
-    imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
-    const int bodies = number_bodies(pile, world, count);
-    const imp_cone_outcome quick =
-        imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, count, pile->number, bodies, pile->q,
-                              pile->friction, pile->last_r, pile->r, pile->u);
-    if (quick.status == IMP_CONE_SOLVED || quick.status == IMP_CONE_BAD || count > IMP_PILE_DENSE) return quick;
     imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
     const imp_cone_problem problem = {.count = count,
                                       .w = pile->w,
@@ -190,6 +183,20 @@ static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, in
                                       .last_r = pile->last_r,
                                       .last_u = pile->last_u};
     return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
+}
+
+/* Few contacts in their own space, to rounding; many in that of the bodies, and what that does not settle in the other
+ * again, where it is small enough for that. */
+static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count)
+{
+    if (count <= IMP_PILE_FEW) return by_contacts(pile, world, count);
+    imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
+    const int bodies = number_bodies(pile, world, count);
+    const imp_cone_outcome quick =
+        imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, count, pile->number, bodies, pile->q,
+                              pile->friction, pile->last_r, pile->r, pile->u);
+    const bool settled = quick.status == IMP_CONE_SOLVED || quick.status == IMP_CONE_BAD;
+    return settled || count > IMP_PILE_DENSE ? quick : by_contacts(pile, world, count);
 }
 
 /* The greatest velocity that contacts have without impulses, m/s. */

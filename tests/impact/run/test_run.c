@@ -482,28 +482,11 @@ static void test_shapes_with_faces_come_back(void **state)
     impact_hull_destroy(hull);
 }
 
-/* Two such bodies are more than a scene can do yet. */
-static void test_shapes_with_faces_fly_alone(void **state)
-{
-    (void)state;
-    impact_body_def bodies[2] = {brick(), brick()};
-    impact_scene *scene;
-    char message[200];
-    bodies[0].name = "die";
-    impact_shape_box(0.3, 0.2, 0.1, 0, &bodies[0].shape);
-    bodies[1].position.x = 9;
-    impact_scene_def def = impact_default_scene_def();
-    def.bodies = bodies, def.body_count = 2, def.duration = 1;
-    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
-    assert_string_equal(message, "body 'die': shapes with faces do not touch others in scenes yet: alone they fly");
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_parabola_has_two_keys),
         cmocka_unit_test(test_shapes_with_faces_come_back),
-        cmocka_unit_test(test_shapes_with_faces_fly_alone),
         cmocka_unit_test(test_a_steady_spin_has_15_to_30_keys_a_turn),
         cmocka_unit_test(test_a_tumble_is_met_between_keys),
         cmocka_unit_test(test_states_are_the_scenes_own),
