@@ -89,6 +89,58 @@ static void contact_rates(const imp_world *world, imp_touch *touch, const imp_st
     *rate1 = qvec3_add(qvec3_cross(w1, touch->r1), curve(b1, s1, out1, qvec3_sub(turn1, touch->normal_rate)));
 }
 
+/* The body a moment later, as it moves now. */
+static imp_state drifted(const imp_body *body, const imp_state *state, double time)
+{
+    imp_state later = *state;
+    if (body->is_static) return later;
+    const qvec3 turn = qvec3_scale(imp_omega(body, state), time);
+    later.x = qvec3_axpy(time, state->v, state->x);
+    (void)quat_normalize(quat_mul(quat_from_rotation_vector(turn), state->q), &later.q);
+    return later;
+}
+
+/* The rates of the one point of two bodies, whatever it is made of: from where it is a little earlier and later. */
+static void lone_rates(imp_world *world, const imp_pair *pair, imp_touch *touch, const imp_state *states, qvec3 *rate1,
+                       qvec3 *rate2)
+{
+    const double turn = 1e-5; /* rad: errors are its square, and rounding over it */
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const double omega = qvec3_norm(imp_omega(b1, s1)) + (b2->is_static ? 0 : qvec3_norm(imp_omega(b2, s2))),
+                 speed = qvec3_norm(qvec3_sub(s1->v, s2->v)), time = turn / (omega + speed / b1->radius + 1e-300);
+    impact_contact at[2];
+    for (int k = 0; k < 2; k++) {
+        const imp_state one = drifted(b1, s1, k ? time : -time), two = drifted(b2, s2, k ? time : -time);
+        imp_gap_of(b1, &one, b2, &two, world->gaps, &world->usage, &at[k]);
+    }
+    const double unit = 0.5 / time;
+    touch->normal_rate = qvec3_scale(qvec3_sub(at[1].normal, at[0].normal), unit);
+    *rate1 = qvec3_scale(qvec3_sub(at[1].offset1, at[0].offset1), unit);
+    *rate2 = qvec3_scale(qvec3_sub(at[1].offset2, at[0].offset2), unit);
+}
+
+/* Of one point of several the normal goes with the face, and the point with the other body's corner. */
+static void placed_rates(imp_world *world, const imp_pair *pair, imp_touch *touch, const imp_state *states,
+                         qvec3 *rate1, qvec3 *rate2)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const qvec3 none = {0, 0, 0}, w1 = imp_omega(b1, s1), w2 = b2->is_static ? none : imp_omega(b2, s2),
+                apart = qvec3_sub(s1->v, b2->is_static ? none : s2->v);
+    if (pair->bearer == 0) {
+        lone_rates(world, pair, touch, states, rate1, rate2);
+    } else if (pair->bearer == 2) {
+        touch->normal_rate = qvec3_cross(w2, touch->normal);
+        *rate1 = qvec3_cross(w1, touch->r1);
+        *rate2 = qvec3_add(*rate1, apart);
+    } else {
+        touch->normal_rate = qvec3_cross(w1, touch->normal);
+        *rate2 = qvec3_cross(w2, touch->r2);
+        *rate1 = qvec3_sub(*rate2, apart);
+    }
+}
+
 /* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the
  * centre. */
 static qvec3 free_acceleration(const imp_body *body, const imp_state *state, const imp_load *load, qvec3 r,
@@ -182,10 +234,9 @@ imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, co
     touch.onset = pair->mode == IMP_SLIDE && pair->onset;
     touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
     qvec3 rate1, rate2 = {0, 0, 0};
-    if (pair->placed) { /* a corner, or a place on a face: it goes with its body */
-        rate1 = qvec3_cross(imp_omega(b1, s1), touch.r1);
-        if (!b2->is_static) rate2 = qvec3_cross(imp_omega(b2, s2), touch.r2);
-    } else if (carried)
+    if (pair->placed)
+        placed_rates(world, pair, &touch, states, &rate1, &rate2);
+    else if (carried)
         carried_rates(world, &touch, states, &spot, &rate1);
     else
         contact_rates(world, &touch, states, &rate1, &rate2);

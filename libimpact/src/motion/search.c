@@ -90,30 +90,34 @@ static bool turns(const imp_search *s, int k)
     return s->segment[k]->kind == IMP_SEGMENT_DENSE || L.x != 0 || L.y != 0 || L.z != 0;
 }
 
-static void add_turning(imp_psi *p, const imp_search *s, int k, const imp_state *state, qvec3 towards,
-                        const imp_bounds *bounds)
+/* veer: the rate of `towards`, held; most: |veer| T is no more. */
+static void add_turning(imp_psi *p, const imp_search *s, int k, const imp_state *state, qvec3 towards, qvec3 veer,
+                        double most, const imp_bounds *bounds)
 {
-    if (!turns(s, k)) return;
+    const bool veers = !same(veer, (qvec3){0, 0, 0}), spins = turns(s, k);
+    if (!spins && !veers) return;
     const imp_body *body = s->body[k];
     imp_turning *b = &p->body[p->count++];
     b->body = body;
     b->m = quat_rotate_inverse(state->q, towards);
-    const qvec3 momentum = quat_rotate_inverse(state->q, state->momentum), i = body->inverse_moments;
+    const qvec3 momentum = spins ? quat_rotate_inverse(state->q, state->momentum) : (qvec3){0, 0, 0},
+                i = body->inverse_moments, along = veers ? quat_rotate_inverse(state->q, veer) : veer;
     const qvec3 omega = {momentum.x * i.x, momentum.y * i.y, momentum.z * i.z};
-    b->rate = qvec3_cross(b->m, omega);
+    b->rate = qvec3_add(qvec3_cross(b->m, omega), along);
     qvec3 point;
     b->h = imp_world_support(body, b->m, &point);
     p->slope -= qvec3_dot(b->rate, point);
+    if (!spins) return;
     if (s->segment[k]->kind != IMP_SEGMENT_FREE) {
         p->bend += body->radius * bounds->spin_up;
         p->spread += body->radius * bounds->spin_up;
         return;
     }
     const qvec3 torque = qvec3_cross(momentum, omega), spin_up = {torque.x * i.x, torque.y * i.y, torque.z * i.z};
-    const qvec3 second = qvec3_add(qvec3_cross(b->rate, omega), qvec3_cross(b->m, spin_up));
+    const qvec3 second = qvec3_add(qvec3_cross(qvec3_add(b->rate, along), omega), qvec3_cross(b->m, spin_up));
     p->spread += body->radius * qvec3_norm(second);
     if (qvec3_norm(second) > 0) p->bend += imp_world_support(body, second, &point);
-    p->jerk += body->radius * s->segment[k]->jerk;
+    p->jerk += body->radius * ((1 + most) * s->segment[k]->jerk + 3 * qvec3_norm(veer) * bounds->spin_up);
 }
 
 /* The largest T <= limit, or next to it, with psi(T) >= 0. */
@@ -128,6 +132,7 @@ static double safe_step(const imp_psi *p, double limit)
 
 /* What is known at one time of the search. */
 typedef struct sight {
+    double t;
     imp_state state[2];
     imp_bounds bounds[2];
     impact_contact contact;
@@ -140,6 +145,7 @@ typedef struct sight {
 
 static void look_at(const imp_search *s, double t, sight *l)
 {
+    l->t = t;
     l->window = fmin(s->segment[0]->t1, s->segment[1]->t1) - t;
     l->parabola = true;
     l->jerk = 0;
@@ -177,6 +183,47 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
     return bend + fmax(0, drift - others);
 }
 
+/* Whether the step is far less than what the gap's own rate promises, of bodies that turn on parabolas and have both a
+ * support function that knows where the normal goes. */
+static bool creeps(const imp_search *s, const sight *l, double gap, double step)
+{
+    if (!l->parabola || is_plane(s->body[1]) || !(step < l->window)) return false;
+    return l->rate >= 0 || step < 0.25 * gap / -l->rate;
+}
+
+/* The same with a direction that goes along as the contact's normal does, n + n' T: two edges stay across it, and a
+ * corner does not fall behind on one. Any n' proves what it does; it is taken from the normals a little earlier and
+ * later. */
+static double step_veering(const imp_search *s, const sight *l, double gap)
+{
+    const double veering = 1e-4; /* rad: errors of n' are its square, and rounding over it */
+    const double apart = veering / (l->bounds[0].omega + l->bounds[1].omega), t = l->t;
+    const qvec3 n = l->contact.normal;
+    qvec3 around[2];
+    for (int k = 0; k < 2; k++) {
+        const double then = t + (k ? apart : -apart);
+        const imp_state a = imp_segment_at(s->segment[0], s->body[0], then),
+                        b = imp_segment_at(s->segment[1], s->body[1], then);
+        impact_contact contact;
+        imp_gap_of(s->body[0], &a, s->body[1], &b, s->gaps, s->usage, &contact);
+        around[k] = contact.normal;
+    }
+    const qvec3 turned = qvec3_scale(qvec3_sub(around[1], around[0]), 0.5 / apart),
+                veer = qvec3_axpy(-qvec3_dot(turned, n), n, turned);
+    const double rate = qvec3_norm(veer), limit = fmin(l->window, 0.5 / rate);
+    const qvec3 v = qvec3_sub(l->state[0].v, l->state[1].v), c = qvec3_sub(l->state[0].x, l->state[1].x);
+    if (!(rate > 0) || !isfinite(rate)) return 0;
+    const double speed = qvec3_dot(n, v) + qvec3_dot(veer, c);
+    imp_psi p = {.gap = gap,
+                 .speed = speed,
+                 .slope = speed,
+                 .bend = fmax(0, -qvec3_dot(n, l->pull) - 2 * qvec3_dot(veer, v)),
+                 .jerk = 3 * fmax(0, -qvec3_dot(veer, l->pull))};
+    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), qvec3_neg(veer), 0.5, &l->bounds[0]);
+    add_turning(&p, s, 1, &l->state[1], n, veer, 0.5, &l->bounds[1]);
+    return safe_step(&p, limit);
+}
+
 /* A step over which the gap cannot fall to zero; of bodies that do not turn, on parabolas, the one in which it does. */
 static double step_before(const imp_search *s, const sight *l, double gap)
 {
@@ -184,9 +231,11 @@ static double step_before(const imp_search *s, const sight *l, double gap)
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     if (l->parabola && !turns(s, 0) && !turns(s, 1)) return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
     imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
-    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), &l->bounds[0]);
-    add_turning(&p, s, 1, &l->state[1], n, &l->bounds[1]);
-    return safe_step(&p, l->window);
+    const qvec3 none = {0, 0, 0};
+    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), none, 0, &l->bounds[0]);
+    add_turning(&p, s, 1, &l->state[1], n, none, 0, &l->bounds[1]);
+    const double step = safe_step(&p, l->window);
+    return creeps(s, l, gap, step) ? fmax(step, step_veering(s, l, gap)) : step;
 }
 
 /* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its
@@ -197,7 +246,7 @@ static double step_behind(const imp_search *s, const sight *l)
     const double deep = fmax(0, -l->contact.gap);
     const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0, pull = qvec3_dot(n, l->pull);
     imp_psi p = {.slope = qvec3_dot(n, l->state[0].v)};
-    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), &l->bounds[0]);
+    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), (qvec3){0, 0, 0}, 0, &l->bounds[0]);
     const double bend = p.count > 0 || !l->parabola ? fmax(0, pull) + drift + p.spread : pull;
     double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
     if (p.jerk == 0) return high;

@@ -17,6 +17,7 @@ static impact_status place(imp_island *island, const imp_pair *pair)
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
         own.placed = true;
         own.place = points[k].contact;
+        own.bearer = count == 1 ? 0 : points[k].feature[1].kind == IMPACT_FACE ? 2 : 1;
         world->pairs[world->pair_count++] = own;
     }
     return status;
