@@ -322,7 +322,8 @@
 #define IMP_BODIES_STIFF 100
 /* Of what an iteration began with: where Newton may end. */
 #define IMP_BODIES_INNER 0.1
-/* The proof's residual up to which an answer is taken: a thousandth of what a step of a pile may be off, of its speeds. */
+/* The proof's residual up to which an answer is taken: a thousandth of what a step of a pile may be off, of its speeds.
+ */
 #define IMP_BODIES_ACCEPTED 1e-8
 /* Of the gradient's terms: what Newton's steps may leave of it; and up to what the function that they lessen may be
  * rounding, the root of eps. */
@@ -405,7 +406,8 @@
 #define IMP_PILE_SLACK 1e-6
 /* Of the smallest body's radius: what one step and its two halves may differ by. */
 #define IMP_PILE_ERROR 1e-5
-/* The residual of impulses up to which a step is taken: as a part of the speeds, over the step, it counts as its error. */
+/* The residual of impulses up to which a step is taken: as a part of the speeds, over the step, it counts as its error.
+ */
 #define IMP_PILE_USABLE 1e-3
 /* Contacts of an island up to which its impulses are looked for in their own space: at once, as with so few it costs no
  * more than that of the bodies and is right to rounding; and where that of the bodies does not settle: some 3e7

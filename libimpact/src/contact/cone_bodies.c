@@ -179,8 +179,8 @@ static bool go_along(const bodies_problem *p, double *value, double *scale)
     return false;
 }
 
-/* Newton's steps for x until the gradient is `enough` of its terms, or rounding: there the function tells no more, and a step counts that halves
- * the gradient. */
+/* Newton's steps for x until the gradient is `enough` of its terms, or rounding: there the function tells no more, and
+ * a step counts that halves the gradient. */
 static void settle_motion(const bodies_problem *p, double enough)
 {
     enum { STEPS = 60 };
@@ -235,7 +235,8 @@ static void set_offset(const bodies_problem *p)
 static double largest_of(const bodies_problem *p, const double *v)
 {
     double most = 0;
-    for (int c = 0; c < p->count; c++) most = fmax(most, sum_of_products(&v[3 * c], &v[3 * c], p->friction[c] > 0 ? 3 : 1));
+    for (int c = 0; c < p->count; c++)
+        most = fmax(most, sum_of_products(&v[3 * c], &v[3 * c], p->friction[c] > 0 ? 3 : 1));
     return sqrt(most);
 }
 
@@ -258,7 +259,7 @@ static double residual_of(const bodies_problem *p, const double *r)
 
 static void iterate(const bodies_problem *p, double *r, double *u)
 {
-    enum { MOST = 40, PATIENCE = 3 };
+    enum { MOST = 40, PATIENCE = 10 };
     const size_t size = 3 * sizeof *r * (size_t)p->count;
     imp_cone_outcome *outcome = p->outcome;
     for (int k = 0, idle = 0; k <= MOST && idle < PATIENCE; k++) {

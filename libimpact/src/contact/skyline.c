@@ -77,7 +77,8 @@ bool imp_skyline_shape(imp_skyline *sky, int bodies, const int (*touching)[2], i
     for (int i = 0; i < bodies; i++) sky->first[i] = i;
     for (int k = 0; k < count; k++) {
         if (!is_couple(touching[k])) continue;
-        const int a = sky->place[touching[k][0]], b = sky->place[touching[k][1]], low = a < b ? a : b, high = a + b - low;
+        const int a = sky->place[touching[k][0]], b = sky->place[touching[k][1]], low = a < b ? a : b,
+                  high = a + b - low;
         if (low < sky->first[high]) sky->first[high] = low;
     }
     size_t total = 0;
@@ -121,7 +122,8 @@ static double *skyline_element(const imp_skyline *sky, int i, int j)
 void imp_skyline_add(imp_skyline *sky, int a, int b, double block[6][6])
 {
     for (int k = 0; k < SIDE; k++)
-        for (int l = 0; l < SIDE; l++) *skyline_element(sky, SIDE * sky->place[a] + k, SIDE * sky->place[b] + l) += block[k][l];
+        for (int l = 0; l < SIDE; l++)
+            *skyline_element(sky, SIDE * sky->place[a] + k, SIDE * sky->place[b] + l) += block[k][l];
 }
 
 /* sum l_k u_k where both lines have begun, up to `end`. */
@@ -139,7 +141,8 @@ bool imp_skyline_factor(imp_skyline *sky)
         int first, other;
         double *row = skyline_line(sky, sky->lower, i, &first), *column = skyline_line(sky, sky->upper, i, &first);
         for (int j = first; j < i; j++) {
-            const double *above = skyline_line(sky, sky->upper, j, &other), *left = skyline_line(sky, sky->lower, j, &other);
+            const double *above = skyline_line(sky, sky->upper, j, &other),
+                         *left = skyline_line(sky, sky->lower, j, &other);
             row[j - first] = (row[j - first] - common_product(row, first, above, other, j)) / left[j - other];
             column[j - first] -= common_product(column, first, left, other, j);
         }

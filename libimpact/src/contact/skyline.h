@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * skyline: a matrix of 6 x 6 blocks, one row of them for each body, zero but where bodies touch: of each row, and each
- * column, what stands from its first element to the diagonal, in an order of the bodies that keeps both short (Cuthill &
- * McKee 1969, reversed), and its factors L U in their place, without pivots. Internal.
+ * column, what stands from its first element to the diagonal, in an order of the bodies that keeps both short (Cuthill
+ * & McKee 1969, reversed), and its factors L U in their place, without pivots. Internal.
  */
 #ifndef IMP_SKYLINE_H
 #define IMP_SKYLINE_H
@@ -12,12 +12,12 @@
 typedef struct imp_skyline {
     imp_arena *arena;
     int bodies;
-    int *place;         /* of each body: its block row */
-    int *first;         /* of each block row: its first block */
-    size_t *start;      /* of each block row: where its six rows begin in values */
+    int *place;            /* of each body: its block row */
+    int *first;            /* of each block row: its first block */
+    size_t *start;         /* of each block row: where its six rows begin in values */
     double *lower, *upper; /* rows, with the diagonal; columns */
     double *scratch;       /* 6 bodies */
-    int *degree, *queue; /* scratch */
+    int *degree, *queue;   /* scratch */
     int body_room;
     size_t value_room;
 } imp_skyline;

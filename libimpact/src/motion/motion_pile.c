@@ -125,5 +125,6 @@ impact_status imp_motion_next_by_steps(imp_motion *motion, imp_pile *pile, const
     motion->works.force += result->force_work;
     motion->works.damping += result->damping;
     motion->works.drive += result->drive_work;
+    motion->works.sliding += result->sliding;
     return keep_pile_step(motion, t0, &works, before, states);
 }

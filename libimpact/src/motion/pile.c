@@ -12,7 +12,8 @@
 
 void imp_pile_open(imp_pile *pile, imp_arena *arena)
 {
-    *pile = (imp_pile){.arena = arena, .cone.arena = arena, .rest.arena = arena, .touching.arena = arena, .by_bodies.arena = arena};
+    *pile = (imp_pile){
+        .arena = arena, .cone.arena = arena, .rest.arena = arena, .touching.arena = arena, .by_bodies.arena = arena};
 }
 
 static void *replaced(imp_pile *pile, void *old, size_t count, size_t size, bool *there)
@@ -49,8 +50,8 @@ static bool reserve_contacts(imp_pile *pile, int contacts)
     pile->pivots = replaced(pile, pile->pivots, 2 * count, sizeof *pile->pivots, &there);
     pile->w = replaced(pile, pile->w, n * n, sizeof *pile->w, &there);
     pile->gap = replaced(pile, pile->gap, count, sizeof *pile->gap, &there);
-    double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->last_r, &pile->last_u};
-    for (int k = 0; k < 5; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
+    double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->before, &pile->last_r, &pile->last_u};
+    for (int k = 0; k < 6; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
     pile->contacts_most = there ? contacts : 0;
     return there && imp_cone_reserve(&pile->cone, contacts);
 }
@@ -118,13 +119,13 @@ static double part_of(const imp_cone_contact *contact, const double *v, int k)
 }
 
 /* What is remembered of the contacts, along their axes; one that was open begins open, and bounces off what it
- * approaches at the velocities pile->u. What is held does not bounce. */
+ * approaches at the velocities pile->before. What is held does not bounce. */
 static void recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pile_memory *m = imp_pile_recall(&pile->memory[1], point);
-        if (!m) pile->q[3 * c] += world->pairs[point->pair].restitution * fmin(0, pile->u[3 * c]);
+        if (!m) pile->q[3 * c] += world->pairs[point->pair].restitution * fmin(0, pile->before[3 * c]);
         const double r[3] = {m ? m->reaction.x : 0, m ? m->reaction.y : 0, m ? m->reaction.z : 0},
                      u[3] = {m ? m->velocity.x : 0, m ? m->velocity.y : 0, m ? m->velocity.z : 0};
         for (int k = 0; k < 3; k++) {
@@ -137,8 +138,7 @@ static void recall_step(imp_pile *pile, const imp_world *world, int count, doubl
 static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count, double h)
 {
     for (int c = 0; c < count; c++) {
-        imp_pile_memory *m =
-            imp_pile_remember(pile->arena, memories, &pile->touching.points[pile->members[c]]);
+        imp_pile_memory *m = imp_pile_remember(pile->arena, memories, &pile->touching.points[pile->members[c]]);
         if (!m) return false;
         for (int k = 0; k < 3; k++) {
             m->reaction = qvec3_axpy(pile->r[3 * c + k] / h, pile->contacts[c].axes[k], m->reaction);
@@ -207,12 +207,21 @@ static double fastest_of(const imp_pile *pile, int count)
     return most;
 }
 
+/* What friction takes over the step, where its impulse meets the slip of before and after it half each. */
+static double rubbed(const imp_pile *pile, int count)
+{
+    double work = 0;
+    for (int c = 0; c < count; c++)
+        for (int k = 1; k < 3; k++) work -= 0.5 * pile->r[3 * c + k] * (pile->before[3 * c + k] + pile->u[3 * c + k]);
+    return fmax(work, 0);
+}
+
 /* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
-static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h, imp_state *next,
-                   imp_pile_step_result *result)
+static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
+                            imp_state *next, imp_pile_step_result *result)
 {
     imp_cone_contact_velocities(world, next, pile->contacts, count, pile->q);
-    imp_cone_contact_velocities(world, states, pile->contacts, count, pile->u);
+    imp_cone_contact_velocities(world, states, pile->contacts, count, pile->before);
     recall_step(pile, world, count, h);
     const imp_cone_outcome outcome = find_impulses(pile, world, count);
     if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
@@ -224,6 +233,7 @@ static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *s
     result->error += h * outcome.residual * fastest_of(pile, count);
     if (!remember_step(pile, &pile->memory[2], count, h)) return IMPACT_ENOMEM;
     result->drive_work += drive_work(pile, world, count);
+    result->sliding += rubbed(pile, count);
     for (int c = 0; c < count; c++)
         result->coupled +=
             !world->bodies[pile->contacts[c].body1].is_static && !world->bodies[pile->contacts[c].body2].is_static;

@@ -24,7 +24,7 @@
 typedef struct imp_pile {
     imp_arena *arena; /* the pile's own */
     int bodies;       /* there is room for */
-    double step;       /* s: to be tried next; 0: chosen anew */
+    double step;      /* s: to be tried next; 0: chosen anew */
     imp_cone_workspace cone;
     imp_cone_bodies by_bodies;
     int *number; /* per body of the world: its own in an island, -1: it does not move */
@@ -38,7 +38,7 @@ typedef struct imp_pile {
     imp_cone_contact *contacts;
     int *members, *pivots; /* members: the points' numbers in `touching` */
     imp_cone_row *rows;
-    double *gap, *friction, *w, *q, *r, *u, *last_r, *last_u;
+    double *gap, *friction, *w, *q, *r, *u, *before, *last_r, *last_u;
     imp_rest_velocity *velocities;
     char message[160];
 } imp_pile;
@@ -48,6 +48,7 @@ typedef struct imp_pile_step_result {
     double taken; /* s */
     double error; /* m: how far the whole step's end lies from the two halves', any body's point; the measure */
     double force_work, damping, drive_work; /* J: of the loads and of driven surfaces */
+    double sliding;                         /* J: what friction took of slip that stays or ends */
     int contacts;                           /* at its end */
     int coupled;                            /* of them between two bodies that move */
 } imp_pile_step_result;

@@ -81,8 +81,7 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
         for (int k = 0; k < found; k++) {
             const impact_contact *c = &points[k].contact;
             const bool closes =
-                c->gap <= slack ||
-                (held && next && c->gap + 0.5 * h * imp_world_gap_rate(world, pair, next, c) <= 0);
+                c->gap <= slack || (held && next && c->gap + 0.5 * h * imp_world_gap_rate(world, pair, next, c) <= 0);
             if (!closes && !held_only) continue;
             if (!add_point(contacts, world, p, &points[k])) return false;
         }
@@ -125,7 +124,8 @@ imp_pile_memory *imp_pile_recall(imp_pile_memories *memories, const imp_pile_poi
         const qvec3 d = qvec3_sub(m->arm1, point->contact.arm1);
         const double apart = qvec3_dot(d, d);
         if (m->taken || m->pair != point->pair || !(apart < least)) continue;
-        if (!same_feature(m->feature[0], point->feature[0]) || !same_feature(m->feature[1], point->feature[1])) continue;
+        if (!same_feature(m->feature[0], point->feature[0]) || !same_feature(m->feature[1], point->feature[1]))
+            continue;
         best = m, least = apart;
     }
     if (best) best->taken = true;

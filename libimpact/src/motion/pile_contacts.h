@@ -13,8 +13,8 @@ typedef struct imp_pile_point {
     int pair;
     impact_feature feature[2];
     imp_cone_contact contact;
-    double gap;  /* m */
-    bool taken;  /* scratch: it is an island's */
+    double gap; /* m */
+    bool taken; /* scratch: it is an island's */
 } imp_pile_point;
 
 /* What a step held there; world axes. */
@@ -36,7 +36,7 @@ typedef struct imp_pile_contacts {
     int bodies, pairs; /* there is room for */
     imp_pile_point *points;
     int count, room;
-    int *root; /* per body: bodies that points tie have the same */
+    int *root;  /* per body: bodies that points tie have the same */
     bool *held; /* per pair: remembered */
 } imp_pile_contacts;
 

@@ -108,7 +108,10 @@ impact_status imp_scene_meet(impact_scene *scene, int n, double t)
     impact_status status = imp_gather(scene, n, t, scene->piles == IMPACT_PILES_STEPS, &island);
     if (status != IMPACT_OK) return status;
     island->outside = imp_gather_energy_outside(scene, island, t);
-    if (island->stepped) return conclude_steps(island);
+    if (island->stepped) {
+        status = scene->piles == IMPACT_PILES_STEPS ? IMPACT_OK : imp_scene_strike_steps(island);
+        return status == IMPACT_OK ? conclude_steps(island) : conclude(island, status);
+    }
     const int i = imp_island_find(island, body[0]), j = imp_island_find(island, body[1]);
     int p = 0;
     while (island->world.pairs[p].body1 != i || island->world.pairs[p].body2 != j) p++;

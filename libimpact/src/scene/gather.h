@@ -16,8 +16,8 @@ void imp_gather_company(impact_scene *scene, int body);
  * stepped: to be moved by steps, as it is too where one that joins it was. */
 impact_status imp_gather(impact_scene *scene, int seed, double t, bool stepped, imp_island **island);
 
-/* What was gathered in the island, as it stands now, as one that goes by steps, with all pairs that its bodies may make;
- * the island is no more. */
+/* What was gathered in the island, as it stands now, as one that goes by steps, with all pairs that its bodies may
+ * make; the island is no more. */
 impact_status imp_gather_steps(imp_island *island, imp_island **stepped);
 
 /* Whether the pair touches at t, but for a rounding. */

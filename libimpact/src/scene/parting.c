@@ -57,8 +57,8 @@ static bool stays_stepped(const imp_island *island, const int *root, int compone
     const bool always = island->scene->piles == IMPACT_PILES_STEPS;
     for (int p = 0; island->stepped && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        const bool counts = pair->met && (always || !world->bodies[pair->body2].is_static ||
-                                          imp_pair_has_faces(world, pair));
+        const bool counts =
+            pair->met && (always || !world->bodies[pair->body2].is_static || imp_pair_has_faces(world, pair));
         if (counts && root[pair->body1] == component) return true;
     }
     return false;

@@ -3,6 +3,7 @@
  * What happens at one instant: impacts, until no touching pair approaches, then the contacts that are held; and what
  * the ends of stretches of motion stand for.
  */
+#include "base/tolerances.h"
 #include "contact/persist_flat.h"
 #include "contact/persist_line.h"
 #include "scene/scene_events.h"
@@ -11,6 +12,8 @@
 #include "scene/scene_points.h"
 #include "scene/scene_strike.h"
 #include "world/world_gap.h"
+
+#include <string.h>
 
 impact_status imp_scene_settle(imp_island *island)
 {
@@ -27,6 +30,35 @@ impact_status imp_scene_settle(imp_island *island)
         status = imp_scene_hold(island, -1, false);
     }
     island->impact_loss = account - imp_scene_undriven_energy(island);
+    return status;
+}
+
+/* How many points of bodies with faces the island's pairs were made. */
+static int placed_points(const imp_world *world)
+{
+    int count = 0;
+    for (int p = 0; p < world->pair_count; p++) count += world->pairs[p].placed;
+    return count;
+}
+
+impact_status imp_scene_strike_steps(imp_island *island)
+{
+    imp_world *world = &island->world;
+    const int count = world->pair_count;
+    imp_pair *pairs = imp_arena_take(world->arena, (size_t)count, sizeof *pairs);
+    if (!pairs) return IMPACT_ENOMEM;
+    memcpy(pairs, world->pairs, sizeof *pairs * (size_t)count);
+    impact_status status = imp_scene_place_points(island);
+    if (status == IMPACT_OK && placed_points(world) <= IMP_PILE_DENSE) {
+        bool parted;
+        imp_scene_remember(island);
+        const double account = imp_scene_undriven_energy(island) + island->impact_loss;
+        status = imp_scene_strike_all(island, &parted);
+        island->impact_loss = account - imp_scene_undriven_energy(island);
+    }
+    memcpy(world->pairs, pairs, sizeof *pairs * (size_t)count);
+    world->pair_count = count;
+    imp_arena_give(world->arena, pairs);
     return status;
 }
 

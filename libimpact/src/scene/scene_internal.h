@@ -114,6 +114,9 @@ static inline int imp_scene_island_slot(const impact_scene *scene, int number)
 /* At the island's time: all impacts there are, in the order of the pairs, then which contacts are held, in which mode.
  */
 impact_status imp_scene_settle(imp_island *island);
+/* The impacts of an island that goes by steps, whose pairs stay as they are; of more points than IMP_PILE_DENSE the
+ * steps find them, by Newton's restitution. */
+impact_status imp_scene_strike_steps(imp_island *island);
 /* At the island's time: what the end of a segment stands for. */
 impact_status imp_scene_handle(imp_island *island, imp_end end);
 

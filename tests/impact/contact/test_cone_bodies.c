@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The cone problem in the space of the bodies, against the same problem in that of the contacts: the same velocities,
+ * and a residual that the contacts' own proof confirms. Its matrix against a dense product.
+ */
+#include "base/tolerances.h"
+#include "contact/cone_bodies.h"
+#include "kit/contact_random.h"
+#include "kit/near.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { BODIES = 8, MOST = 24 };
+
+typedef struct many {
+    imp_world world;
+    imp_body bodies[BODIES];
+    imp_state states[BODIES];
+    imp_cone_contact contacts[MOST];
+    imp_cone_row rows[MOST];
+    double friction[MOST], w[9 * MOST * MOST], q[3 * MOST];
+    int number[BODIES], count;
+} many;
+
+static double between(random_stream *random, double low, double high)
+{
+    return low + (high - low) * random_unit(random);
+}
+
+static qvec3 any_vector(random_stream *random)
+{
+    return (qvec3){between(random, -1, 1), between(random, -1, 1), between(random, -1, 1)};
+}
+
+/* Bodies of which the first is static, each on one before it, some on more; what approaches is drawn. */
+static void draw(many *m, random_stream *random, int count, double most_friction)
+{
+    *m = (many){.count = count};
+    m->world = (imp_world){.body_count = BODIES, .bodies = m->bodies};
+    for (int i = 0; i < BODIES; i++) {
+        const double mass = exp(between(random, -2, 2)), j = 0.4 * mass;
+        m->bodies[i] = (imp_body){.is_static = i == 0, .mass = mass, .spherical = true};
+        if (i > 0) m->bodies[i].inverse_mass = 1 / mass, m->bodies[i].inverse_moments = (qvec3){1 / j, 1 / j, 1 / j};
+        m->bodies[i].moments = (qvec3){j, j, j};
+        m->states[i] = (imp_state){.q = {1, 0, 0, 0}};
+        m->number[i] = i - 1;
+    }
+    for (int c = 0; c < count; c++) {
+        const int upper = 1 + c % (BODIES - 1), lower = (int)(between(random, 0, upper));
+        qvec3 n = any_vector(random);
+        n.z = 1 + fabs(n.z);
+        m->contacts[c] =
+            (imp_cone_contact){.body1 = upper, .body2 = lower, .arm1 = any_vector(random), .arm2 = any_vector(random)};
+        imp_cone_find_axes(qvec3_scale(n, 1 / qvec3_norm(n)), m->contacts[c].axes);
+        m->friction[c] = c % 5 == 0 ? 0 : between(random, 0, most_friction);
+        m->q[3 * c] = -fabs(between(random, 0, 1));
+        m->q[3 * c + 1] = between(random, -1, 1);
+        m->q[3 * c + 2] = between(random, -1, 1);
+    }
+    imp_cone_assemble(&m->world, m->states, m->contacts, count, m->rows, m->w);
+}
+
+static void velocities_are_those_of_the_contacts_own_space(void **state)
+{
+    (void)state;
+    enum { PROBLEMS = 400 };
+    imp_arena *arena;
+    assert_int_equal(imp_arena_create(NULL, &arena), IMPACT_OK);
+    imp_cone_bodies bodies = {.arena = arena};
+    imp_cone_workspace contacts = {.arena = arena};
+    random_stream random = {11};
+    int settled = 0;
+    many *m = malloc(sizeof *m);
+    for (int k = 0; k < PROBLEMS; k++) {
+        double r[3 * MOST], u[3 * MOST], other_r[3 * MOST], other_u[3 * MOST];
+        draw(m, &random, 1 + k % MOST, 0.5);
+        const imp_cone_outcome quick = imp_cone_solve_bodies(&bodies, m->contacts, m->rows, m->count, m->number,
+                                                             BODIES - 1, m->q, m->friction, NULL, r, u);
+        const imp_cone_problem problem = {.count = m->count, .w = m->w, .q = m->q, .friction = m->friction};
+        assert_true(imp_cone_reserve(&contacts, m->count));
+        const imp_cone_outcome exact = imp_cone_solve(&problem, &contacts, other_r, other_u, NULL);
+        if (exact.status != IMP_CONE_SOLVED || quick.status != IMP_CONE_SOLVED) continue;
+        settled++;
+        double seen[3 * MOST];
+        assert_true(imp_cone_residual(&problem, r, seen) <= 2 * IMP_BODIES_ACCEPTED);
+        if (m->count > BODIES) continue; /* friction may leave a choice of motions */
+        for (int i = 0; i < 3 * m->count; i++)
+            if (i % 3 == 0 || m->friction[i / 3] > 0) assert_near(u[i], other_u[i], 1e-4);
+    }
+    assert_true(settled >= PROBLEMS * 9 / 10); /* the others are told: three contacts a body, and friction */
+    free(m);
+    imp_arena_destroy(arena);
+}
+
+/* L U x = A b for b of a matrix that is not symmetric. */
+static void a_skyline_is_solved(void **state)
+{
+    (void)state;
+    enum { N = 5 };
+    imp_arena *arena;
+    assert_int_equal(imp_arena_create(NULL, &arena), IMPACT_OK);
+    imp_skyline sky = {.arena = arena};
+    random_stream random = {3};
+    const int touching[5][2] = {{0, 3}, {3, 1}, {-1, 2}, {4, 0}, {1, 1}};
+    static double dense[6 * N][6 * N];
+    assert_true(imp_skyline_shape(&sky, N, touching, 5));
+    imp_skyline_clear(&sky);
+    for (int k = 0; k < 5 + N; k++) {
+        const int a = k < 5 ? touching[k][0] : k - 5, b = k < 5 ? touching[k][1] : k - 5;
+        if (a < 0 || b < 0) continue;
+        for (int turn = 0; turn < 2; turn++) {
+            double block[6][6];
+            for (int i = 0; i < 6; i++)
+                for (int j = 0; j < 6; j++) {
+                    block[i][j] = between(&random, -1, 1) + (a == b && i == j ? 9 : 0);
+                    dense[6 * (turn ? b : a) + i][6 * (turn ? a : b) + j] += block[i][j];
+                }
+            imp_skyline_add(&sky, turn ? b : a, turn ? a : b, block);
+        }
+    }
+    double x[6 * N], b[6 * N];
+    for (int i = 0; i < 6 * N; i++) b[i] = between(&random, -1, 1);
+    for (int i = 0; i < 6 * N; i++) {
+        x[i] = 0;
+        for (int j = 0; j < 6 * N; j++) x[i] += dense[i][j] * b[j];
+    }
+    assert_true(imp_skyline_factor(&sky));
+    imp_skyline_solve(&sky, x);
+    for (int i = 0; i < 6 * N; i++) assert_near(x[i], b[i], 1e-13);
+    imp_arena_destroy(arena);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(velocities_are_those_of_the_contacts_own_space),
+        cmocka_unit_test(a_skyline_is_solved),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

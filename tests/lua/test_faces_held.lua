@@ -1,0 +1,115 @@
+-- SPDX-License-Identifier: MIT
+--- Bodies with faces in scenes: what rests is at rest at once, what slides and falls does so by the closed form, and what is thrown
+--- comes to rest on the floor, not in it.
+local impact = require "impact"
+local quat = require "quat"
+local check = require "check"
+
+local G = 9.81
+local degree = math.pi / 180
+
+local function floor(friction)
+  return impact.body { name = "floor", shape = impact.plane(), friction = friction or .5, restitution = .3 }
+end
+
+local function run(bodies, duration, more, on_sample)
+  local def = { gravity = { 0, 0, -G }, duration = duration, bodies = bodies }
+  for key, value in pairs(more or {}) do def[key] = value end
+  local scene = impact.scene(def)
+  check.truth(scene:run { on_sample = on_sample }, "it runs")
+  return scene
+end
+
+local function off_account(energy)
+  return math.abs(energy.start + energy.force_work + energy.drive_work - energy.damping_loss - energy.sliding_loss
+    - energy.impact_loss - energy.kinetic - energy.potential)
+end
+
+-- A stack of ten, masses 1 and 1e4 in turn: at rest at once, and each carries what stands on it.
+local stack, weight = { floor() }, {}
+for i = 1, 10 do
+  weight[i] = (i % 2 == 0 and 1e4 or 1) * G
+  stack[i + 1] = impact.body { name = "b" .. i, shape = impact.box { a = .1, b = .1, c = .05 }, mass = weight[i] / G,
+    position = { .03 * (i % 3), .02 * (i % 2), .05 + .1 * (i - 1) }, friction = .5, restitution = .3 }
+end
+local scene = run(stack, 1)
+check.equal(scene:time(), 0)
+local carried = {}
+for _, held in ipairs(scene:held()) do
+  local lower = held.body2 == "floor" and 0 or tonumber(held.body2:sub(2))
+  local upper = tonumber(held.body1:sub(2)) or 0
+  local between = math.max(lower, upper)
+  carried[between] = (carried[between] or 0) + math.abs(held.force.z)
+end
+local above = 0
+for i = 10, 1, -1 do
+  above = above + weight[i]
+  check.close(carried[i], above, 1e-12 * 5e4 * G)
+end
+
+-- Boxes one over another by 1/2, 1/4, 1/6 of their length stand just within, and fall just beyond.
+for _, part in ipairs { 1 - 1e-3, 1 + 1e-3 } do
+  local x, bodies = 0, { floor() }
+  for i = 4, 1, -1 do
+    bodies[#bodies + 1] = impact.body { name = "b" .. i, shape = impact.box { a = .1, b = .05, c = .02 }, mass = 1,
+      position = { x, 0, .02 + .04 * (4 - i) }, friction = .5, restitution = 0 }
+    x = x + part * .1 / (i - 1)
+  end
+  local standing = run(bodies, .05)
+  check.truth((standing:time() == 0) == (part < 1), "the overhang " .. part)
+end
+
+-- A box on a slope: it stays where tan <= mu, and slides by g (sin - mu cos) t^2/2 where not.
+for _, case in ipairs { { .3, 16 }, { .3, 17 }, { .3, 30 }, { 0, 10 }, { 1, 44 } } do
+  local mu, slope = case[1], case[2] * degree
+  local pull = G * (math.sin(slope) - mu * math.cos(slope))
+  local sliding = run({ floor(mu), impact.body { name = "box", shape = impact.box { a = .1, b = .1, c = .05 }, mass = 2,
+    position = { 0, 0, .05 }, friction = 1, restitution = .3 } }, .5, { gravity = { G * math.sin(slope), 0, -G * math.cos(slope) } })
+  local x = sliding:state("box").position
+  check.close(x.x, pull > 0 and pull * .5 ^ 2 / 2 or 0, 1e-8)
+  check.close(x.z, .05, 1e-12)
+  check.truth(off_account(sliding:energy()) < 1e-12, "the account of a box on a slope")
+end
+
+-- A tall box on a slope with grip topples where tan > b/h.
+for _, tilt in ipairs { 26, 27 } do -- atan(1/2) is 26.57 degrees
+  local tall = run({ floor(2), impact.body { name = "box", shape = impact.box { a = .05, b = .05, c = .1 }, mass = 1,
+    position = { 0, 0, .1 }, friction = 1, restitution = 0 } }, .3,
+    { gravity = { G * math.sin(tilt * degree), 0, -G * math.cos(tilt * degree) } })
+  check.truth((tall:time() == 0) == (tilt == 26), "a tall box at " .. tilt)
+end
+
+-- A box that falls flat on a floor gets no spin.
+local flat = run({ floor(), impact.body { name = "box", shape = impact.box { a = .1, b = .2, c = .05 }, mass = 1,
+  position = { .3, .1, .15 }, orientation = quat.from_axis_angle({ 0, 0, 1 }, .7), friction = .5, restitution = .4 } }, 2)
+local landed = flat:state "box"
+check.close(landed.position.x, .3, 1e-12)
+check.close(landed.position.z, .05, 1e-12)
+check.truth(landed.omega.x == 0 and landed.omega.y == 0 and landed.omega.z == 0, "no spin")
+
+-- Each kind, thrown: it comes to rest upon the floor, or rolls there.
+local shapes = {
+  box = impact.box { a = .05, b = .04, c = .03, rounding = .004 },
+  cylinder = impact.cylinder { radius = .05, half_height = .02 },
+  capsule = impact.capsule { radius = .02, half_height = .06 },
+  polyhedron = impact.polyhedron { vertices = { { .05, 0, 0 }, { -.05, .05, 0 }, { -.05, -.05, 0 }, { 0, 0, .07 } } },
+  cone = impact.cone { radius = .05, height = .08 },
+}
+for kind, shape in pairs(shapes) do
+  for throw = 1, 5 do
+    local lowest = math.huge -- not under the floor by more than a step may be off
+    local function look(sample)
+      if sample.body ~= "it" then return end
+      local it = { shape = shape, position = sample.position, orientation = sample.orientation }
+      lowest = math.min(lowest, impact.gap(it, { shape = impact.plane() }).gap)
+    end
+    local thrown = run({ floor(), impact.body { name = "it", shape = shape, density = 1000, position = { 0, 0, .2 },
+      velocity = { .3 * throw - 1, .2, -1 }, omega = { 3 * throw, -4, 2 }, friction = .5, restitution = .4,
+      orientation = quat.from_axis_angle({ 1, throw, .5 }, throw) } }, 3, { output_rate = 200 }, look)
+    check.truth(lowest > -1e-5 * .05, ("%s, throw %d: %g m in the floor"):format(kind, throw, lowest))
+    check.truth((kind ~= "box" and kind ~= "polyhedron") or thrown:time() < 3, kind .. " comes to rest")
+    check.truth(off_account(thrown:energy()) < 1e-11, "the account of a " .. kind)
+  end
+end
+
+check.report "faces_held"
