@@ -49,7 +49,8 @@ impact_status imp_scene_strike_steps(imp_island *island)
     if (!pairs) return IMPACT_ENOMEM;
     memcpy(pairs, world->pairs, sizeof *pairs * (size_t)count);
     impact_status status = imp_scene_place_points(island);
-    if (status == IMPACT_OK && placed_points(world) <= IMP_PILE_DENSE) {
+    const int points = placed_points(world);
+    if (status == IMPACT_OK && points > 0 && points <= IMP_PILE_DENSE) {
         bool parted;
         imp_scene_remember(island);
         const double account = imp_scene_undriven_energy(island) + island->impact_loss;
