@@ -218,6 +218,7 @@ static impact_draw_result draw_form(lua_State *L, int index, impact_runner *runn
     if (make_commands(L, index, runner, form, commands, message, size)) {
         const bool any = fseek(commands, 0, SEEK_END) == 0 && ftell(commands) > 0;
         rewind(commands);
+        lseek(fileno(commands), 0, SEEK_SET); /* a stream may seek in its buffer alone; gnuplot reads the descriptor */
         result = any ? draw_commands(commands, runner, file_name, strcmp(form, page_form) == 0, message, size)
                      : IMPACT_DRAWN;
     }

@@ -57,8 +57,8 @@ check.raises("argument 'direction' must not be zero", box.support, box, { 0, 0, 
 check.raises("first body: orientation is zero", impact.gap, { shape = ball, orientation = { 0, 0, 0, 0 } }, { shape = ball })
 
 local floor = { shape = impact.plane() }
-for _, ask in ipairs { impact.gap, impact.toi } do
-  none, message = ask(floor, floor, 1)
+for ask, t_max in pairs { [impact.gap] = false, [impact.toi] = 1 } do
+  none, message = ask(floor, floor, t_max or nil)
   check.equal(none, nil)
   check.equal(message, "two planes have no gap: one of the bodies must have another shape")
 end

@@ -328,13 +328,25 @@ static impact_status run_entry(work *w, entry *e)
     return IMPACT_OK;
 }
 
+/* Methods from m on that have settings. */
+static int methods_left(const work *w, int m)
+{
+    int left = 0;
+    for (; m < IMPACT_REPORT_METHODS; m++) {
+        bool any = false;
+        for (int k = 0; k < w->count; k++) any = any || of_method(w, k, m);
+        left += any;
+    }
+    return left;
+}
+
 /* Each method has its share of what time is left, and stops where a run does not end in it. */
 static impact_status run_all(work *w)
 {
     const double part = 0.6, began = imp_report_now(); /* of what is left: the rest is for timing */
     const double end = began + part * (w->began + w->seconds - began);
     for (int m = 0; m < IMPACT_REPORT_METHODS; m++) {
-        const double now = imp_report_now(), share = fmax(end - now, 0) / (IMPACT_REPORT_METHODS - m);
+        const double now = imp_report_now(), share = fmax(end - now, 0) / fmax(methods_left(w, m), 1);
         w->report.deadline = now + share;
         for (int k = 0; k < w->count; k++) {
             if (!of_method(w, k, m)) continue;
