@@ -8,7 +8,7 @@
 #include <impact/together.h>
 #include "kit/contact_random.h"
 
-enum { ENCOUNTER_BODIES = 13, ENCOUNTER_CONTACTS = 12 };
+enum { ENCOUNTER_BODIES = 101, ENCOUNTER_CONTACTS = 100 };
 
 /* What is drawn: the ranges of the campaign. */
 typedef struct encounter_ranges {
