@@ -235,7 +235,7 @@
 #define IMP_SPRINGS_TOGETHER 1e-12
 /* Of tiny: how far a contact is from it just as it closes or opens, so that only its return counts. */
 #define IMP_SPRINGS_JUST 1e-3
-/* Velocities that are none: 4 eps, what u = u0 + W p leaves of a stop. */
+/* Velocities that are none: 4 eps of the terms of u = u0 + W p, at least 1, which that leaves of a stop. */
 #define IMP_SPRINGS_STILL 0x1p-50
 /* Of the depth of its turn: a spring is loaded on once it is deeper by more than rounding. */
 #define IMP_SPRINGS_PAST (1 + 0x1p-50)
@@ -245,6 +245,8 @@
 /* Of W: a response across a slip under this turns it by rounding only. W of a planar encounter that is turned in space
  * has a few eps, times the condition of what sticks. */
 #define IMP_SPRINGS_STRAIGHT 0x1p-46
+/* Velocity that a contact's friction could still make before it opens: a sixteenth of eps does nothing. */
+#define IMP_SPRINGS_SPENT 0x1p-56
 /* Rank of what sticks: of the largest pivot. W is rounded to eps, and pivots are its differences. */
 #define IMP_SPRINGS_RANK 1e-11
 /* Accelerations of slip that begins, of the largest: under it friction gives way by and by. The cone solver is good to

@@ -41,6 +41,7 @@ typedef struct imp_spring {
     imp_spring_slip slip;
     double x, base, kappa, deepest; /* delta = x + base */
     double u[3], p[3];
+    double none;     /* a velocity that is rounding of u's terms */
     bool still;      /* u_t is zero: it came to a stop, or was never more than rounding */
     bool weak;       /* BEGINS: from no acceleration, u_t ~ t^2; else u_t ~ t */
     double along[2]; /* of slip; STICKS: the friction's ratio to lambda where reactions are not unique */

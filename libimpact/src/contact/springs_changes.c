@@ -58,7 +58,7 @@ static void close_spring(imp_springs *s, imp_spring *c)
     c->normal = c->deepest > 0 ? IMP_SPRING_UNLOADS : IMP_SPRING_LOADS;
     c->x = c->tiny; /* after a long flight x is rounded by far more */
     c->stored = imp_springs_energy(s, c, c->x);
-    c->still = c->friction > 0 && hypot(c->u[1], c->u[2]) <= IMP_SPRINGS_STILL;
+    c->still = c->friction > 0 && hypot(c->u[1], c->u[2]) <= c->none;
     c->slip = c->friction == 0 ? IMP_SPRING_SMOOTH : c->still ? IMP_SPRING_STICKS : IMP_SPRING_SLIDES;
     c->along[0] = c->along[1] = 0;
 }
@@ -70,7 +70,7 @@ static bool settle_normal(imp_springs *s, int contact, bool pressed)
     imp_spring *c = &s->springs[contact];
     const double again = imp_springs_again(c);
     if (c->normal == IMP_SPRING_OPEN) {
-        if (c->x < c->tiny * (1 - IMP_SPRINGS_TOGETHER) || c->u[0] >= (pressed ? 0 : -IMP_SPRINGS_STILL)) return false;
+        if (c->x < c->tiny * (1 - IMP_SPRINGS_TOGETHER) || c->u[0] >= (pressed ? 0 : -c->none)) return false;
         close_spring(s, c);
     } else if (c->x <= c->tiny * (1 + IMP_SPRINGS_TOGETHER) && c->u[0] >= 0) {
         open_spring(c);
@@ -91,7 +91,7 @@ static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
 {
     if (c->normal == IMP_SPRING_OPEN || c->slip != IMP_SPRING_SLIDES) return false;
     const double speed = hypot(c->u[1], c->u[2]);
-    if (speed <= IMP_SPRINGS_STILL) {
+    if (speed <= c->none) {
         c->still = true;
         return true;
     }
@@ -99,7 +99,7 @@ static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
     const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
     const double e[2] = {c->u[1] / speed, c->u[2] / speed};
     const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
-    if (along < 0 && speed * across <= -IMP_SPRINGS_STILL * along) {
+    if (along < 0 && speed * across <= -c->none * along) {
         c->slip = IMP_SPRING_STRAIGHT;
         c->along[0] = e[0], c->along[1] = e[1];
     }

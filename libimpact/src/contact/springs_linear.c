@@ -21,7 +21,7 @@ typedef struct line {
     imp_spring_normal normal;
     double restitution, stiffness, own; /* own: W_nn */
     double x, base, kappa, deepest, tiny;
-    double u0, u, p, stored;
+    double u0, u, p, stored, none; /* none: a velocity that is rounding of u's terms */
     imp_finding *finding;
 } line;
 
@@ -66,7 +66,7 @@ static double line_again(const line *l) { return IMP_SPRINGS_PAST * l->restituti
 static bool settle_line(line *l, bool pressed)
 {
     if (l->normal == IMP_SPRING_OPEN) {
-        if (l->x < l->tiny * (1 - IMP_SPRINGS_TOGETHER) || l->u >= (pressed ? 0 : -IMP_SPRINGS_STILL)) return false;
+        if (l->x < l->tiny * (1 - IMP_SPRINGS_TOGETHER) || l->u >= (pressed ? 0 : -l->none)) return false;
         l->normal = l->deepest > 0 ? IMP_SPRING_UNLOADS : IMP_SPRING_LOADS;
         l->x = l->tiny; /* after a long flight x is rounded by far more */
     } else if (l->x <= l->tiny * (1 + IMP_SPRINGS_TOGETHER) && l->u >= 0) {
@@ -206,9 +206,14 @@ static change first_change(lines *s, int i, double *when)
 static void find_line_velocities(lines *s)
 {
     for (int i = 0; i < s->count; i++) {
-        double sum = 0;
-        for (int e = s->start[i]; e < s->start[i + 1]; e++) sum += s->value[e] * s->line[s->column[e]].p;
+        double sum = 0, terms = 0;
+        for (int e = s->start[i]; e < s->start[i + 1]; e++) {
+            const double term = s->value[e] * s->line[s->column[e]].p;
+            sum += term;
+            terms += fabs(term);
+        }
         s->line[i].u = s->line[i].u0 + sum;
+        s->line[i].none = IMP_SPRINGS_STILL * (terms > 1 ? terms : 1);
     }
 }
 
@@ -316,7 +321,7 @@ static bool drift_lines(lines *s)
     line *next = NULL;
     for (int i = 0; i < s->count; i++) {
         line *l = &s->line[i];
-        const double time = l->u < -IMP_SPRINGS_STILL ? fmax(0, l->tiny - l->x) / -l->u : INFINITY;
+        const double time = l->u < -l->none ? fmax(0, l->tiny - l->x) / -l->u : INFINITY;
         if (time < soonest) soonest = time, next = l;
     }
     if (!next) return false;
@@ -392,6 +397,7 @@ static void set_up_lines(lines *s, const imp_group *group, line_units unit)
         l->restitution = fmax(group->contacts[i].restitution, IMP_SPRINGS_LEAST);
         l->stiffness = group->contacts[i].stiffness / unit.stiffness;
         l->finding = &group->findings[i];
+        l->none = IMP_SPRINGS_STILL;
         take_branch(l, IMP_SPRING_OPEN, 0, l->stiffness);
     }
 }

@@ -90,7 +90,7 @@ static void see_slip(const imp_springs *s, int i, first_event *first)
     } else if (c->slip == IMP_SPRING_STRAIGHT) {
         for (int k = 0; k <= IMP_SPRINGS_ORDER; k++)
             f[k] = c->along[0] * c->velocity[1][k] + c->along[1] * c->velocity[2][k];
-        if (f[0] < IMP_SPRINGS_STILL) f[0] = IMP_SPRINGS_STILL; /* it begins */
+        if (f[0] < c->none) f[0] = c->none; /* it begins */
         see(first, EVENT_STOP, i, f);
     }
 }
@@ -158,12 +158,26 @@ static void push_on(imp_spring *c, double t)
     }
 }
 
+/* The largest sum of terms of the contact's velocities. */
+static double terms_of_velocity(const imp_springs *s, int contact)
+{
+    double most = 0;
+    for (int i = 3 * contact; i < 3 * contact + (s->springs[contact].friction > 0 ? 3 : 1); i++) {
+        double sum = 0;
+        for (int k = s->row_start[i]; k < s->row_start[i + 1]; k++) sum += fabs(s->value[k] * s->now[s->column[k]]);
+        most = fmax(most, sum);
+    }
+    return most;
+}
+
 void imp_springs_find_velocities(imp_springs *s)
 {
     for (int i = 0; i < s->count; i++)
         for (int j = 0; j < 3; j++) s->now[3 * i + j] = s->springs[i].p[j];
-    for (int i = 0; i < s->count; i++)
+    for (int i = 0; i < s->count; i++) {
         for (int j = 0; j < 3; j++) s->springs[i].u[j] = s->u0[3 * i + j] + imp_springs_row(s, 3 * i + j);
+        s->springs[i].none = IMP_SPRINGS_STILL * fmax(1, terms_of_velocity(s, i));
+    }
 }
 
 static void move_on(imp_springs *s, double t)
@@ -182,7 +196,7 @@ static void move_on(imp_springs *s, double t)
         imp_spring *c = &s->springs[i];
         if (c->normal == IMP_SPRING_OPEN) continue;
         book_spring(s, c, t, c->u[0]);
-        if (c->slip < IMP_SPRING_SLIDES || hypot(c->u[1], c->u[2]) <= IMP_SPRINGS_STILL) continue;
+        if (c->slip < IMP_SPRING_SLIDES || hypot(c->u[1], c->u[2]) <= c->none) continue;
         c->still = false;
         if (c->slip == IMP_SPRING_BEGINS) c->slip = IMP_SPRING_SLIDES;
     }
@@ -249,7 +263,7 @@ bool imp_springs_drift(imp_springs *s)
     int next = -1;
     for (int i = 0; i < s->count; i++) {
         const imp_spring *c = &s->springs[i];
-        const double time = c->u[0] < -IMP_SPRINGS_STILL ? fmax(0, c->tiny - c->x) / -c->u[0] : INFINITY;
+        const double time = c->u[0] < -c->none ? fmax(0, c->tiny - c->x) / -c->u[0] : INFINITY;
         if (time < soonest) soonest = time, next = i;
     }
     if (next < 0) return false;

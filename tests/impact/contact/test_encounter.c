@@ -422,6 +422,26 @@ static void receipts_hold_over_random_encounters(void **state)
     impact_together_workspace_destroy(workspace);
 }
 
+/* Encounters of the campaign (./run report together) that once found no end: slip that begins by and by where the
+ * contact is about to open; slip as slow as the rounding of impulses a hundred times the largest momentum. */
+static void what_found_no_end_is_answered(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t number;
+        double exponent;
+        int least, most;
+    } cases[] = {{1192, 1.5, 2, 3}, {433, 1, 4, 6}, {555, 1, 7, 12}, {4055, 1.5, 4, 6}};
+    for (int k = 0; k < 4; k++) {
+        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
+        random_stream random = {1 + 0x9e3779b97f4a7c15u * cases[k].number};
+        const random_encounter e = encounter_draw(&random, &ranges);
+        const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_true(a.outcome.residual < 1e-12);
+    }
+}
+
 static void elastic_encounters_without_friction_keep_energy(void **state)
 {
     (void)state;
@@ -623,6 +643,7 @@ int main(void)
         cmocka_unit_test(numbering_and_order_change_no_bit),
         cmocka_unit_test(turning_the_scene_and_changing_units_changes_nothing),
         cmocka_unit_test(receipts_hold_over_random_encounters),
+        cmocka_unit_test(what_found_no_end_is_answered),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
         cmocka_unit_test(long_flights_come_back_to_where_contacts_close),
         cmocka_unit_test(groups_are_apart_and_one_contact_is_impact_collide),
