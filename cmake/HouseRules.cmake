@@ -77,7 +77,9 @@ function(add_house_library name)
     add_library(${LIB_PACKAGE}::${target} ALIAS ${target})
     set_target_properties(${target} PROPERTIES
       OUTPUT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${HOUSE_SOVERSION}
-      LINKER_LANGUAGE C INSTALL_RPATH ${house_origin})
+      LINKER_LANGUAGE C INSTALL_RPATH ${house_origin}
+      # installing writes the one over the other, which is as long as the folder's name unless it is relative
+      BUILD_RPATH_USE_ORIGIN ON)
     if(EMSCRIPTEN) # has no shared libraries: both are static ones, which need two names
       set_target_properties(${target} PROPERTIES OUTPUT_NAME ${target})
     endif()

@@ -171,7 +171,7 @@ do
     end
     return table.concat(kept, "\n")
   end
-  for _, shape in ipairs { "impact.sphere(0.1)", "impact.ellipsoid { a = 0.1, b = 0.12, c = 0.15 }" } do
+  for _, shape in ipairs { "impact.sphere(0.1)", has_cvode and "impact.ellipsoid { a = 0.1, b = 0.12, c = 0.15 }" } do
     local text = bounce:gsub("SHAPE", shape):gsub("DURATION", "4")
     check.equal((runner.script(text, "--quiet --save 1.3 half")), 0)
     check.equal(runner.files(), "half long.csv long_events.csv")
