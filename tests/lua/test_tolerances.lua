@@ -12,7 +12,7 @@ impact.scene = function(definition)
 end
 
 local names = { "sphere_wall", "sphere_wall_rolling", "sphere_wall_spin", "two_spheres", "bouncing_ball", "t_handle", "superball",
-  "newtons_cradle", "balls_in_a_box", "bowling_ball", "rattleback", "tippe_top", "eulers_disk", "turntable" }
+  "newtons_cradle", "balls_in_a_box", "bowling_ball", "rattleback", "tippe_top", "eulers_disk", "turntable", "dice" }
 for _, name in ipairs(names) do
   local first
   for digits = 13, 4, -3 do

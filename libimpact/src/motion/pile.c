@@ -272,12 +272,14 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
 
 /* ---- constraints put back ---- */
 
-/* The points that were held at the end of the step. */
+/* The points that were held at the end of the step, as far apart as the step met them. */
 static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states, double h, double slack)
 {
     imp_pile_contacts *touching = &pile->touching;
+    double apart = slack;
+    for (int k = 0; k < pile->memory[0].count; k++) apart = fmax(apart, 2 * pile->memory[0].list[k].gap);
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
-    if (!imp_pile_find_points(touching, world, states, states, h, slack, true)) return false;
+    if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
     for (int k = 0; k < touching->count; k++)
         touching->points[k].taken = imp_pile_recall(&pile->memory[0], &touching->points[k]) == NULL;
     for (int k = 0; k < pile->memory[0].count; k++) pile->memory[0].list[k].taken = false;

@@ -140,6 +140,7 @@ imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories
     imp_pile_memory *own = &list[memories->count++];
     *own = (imp_pile_memory){.pair = point->pair,
                              .feature = {point->feature[0], point->feature[1]},
+                             .gap = point->gap,
                              .arm1 = point->contact.arm1,
                              .arm2 = point->contact.arm2,
                              .normal = point->contact.axes[0]};
