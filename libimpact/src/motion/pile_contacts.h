@@ -48,8 +48,8 @@ void imp_pile_contacts_mark(imp_pile_contacts *contacts, const imp_world *world,
 
 /* All points whose gap is at most the slack, or, of the pairs marked as held, that close within half of the step h at
  * the velocities `next` (NULL: none). Pressed by the loads, what rolls over a round body leaves it by h² in every step:
- * it is held, not dropped and caught. held_only: of the marked pairs alone, all points that come as near as that. False:
- * there is no room. */
+ * it is held, not dropped and caught. held_only: of the marked pairs alone, all points that come as near as that.
+ * False: there is no room. */
 bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const imp_state *states, const imp_state *next,
                           double h, double slack, bool held_only);
 
