@@ -195,7 +195,7 @@ if all or chosen.scenes then run_examples() end
 local function fact(command) return (shell(command .. " 2>/dev/null"):gsub("%s+$", "")) end
 local machine = {
   fact "grep -m1 'model name' /proc/cpuinfo | cut -d: -f2", fact "uname -srm", fact(quote(runner) .. " --version"), fact "date -u +%Y-%m-%d",
-  fact("grep -h CMAKE_C_COMPILER: " .. quote(bench .. "/../CMakeCache.txt") .. " | cut -d= -f2 | xargs -I CC CC --version | head -1"),
+  fact("$(grep -h CMAKE_C_COMPILER: " .. quote(bench .. "/../CMakeCache.txt") .. " | cut -d= -f2) --version | head -1"),
 }
 local style = [[body{font:15px/1.5 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em;color:#1a202c}
 table{border-collapse:collapse;font-size:12px}td,th{border:1px solid #e2e8f0;padding:1px 6px;text-align:right}td:first-child,th:first-child{text-align:left}
@@ -203,6 +203,6 @@ pre{overflow-x:auto;background:#f7fafc;padding:.6em;font-size:12px}img{max-width
 local head = ('<!doctype html><html lang=en><meta charset=utf-8><title>Error against run time</title><style>%s</style>\n<h1>Error against run time</h1>\n<p>%s</p>\n')
   :format(style, escape(table.concat(machine, "; ")))
 local missing = #failed == 0 and "" or "<p class=absent>Missing: " .. escape(table.concat(failed, "; ")) .. "</p>\n"
-local left = quick and all and "<p>Quick: fewer samples; the slow parts (cones, together, crowd, extreme) are left out.</p>\n" or ""
+local left = quick and all and "<p>Quick: fewer samples; the slow parts (engines, cones, together, crowd, extreme) are left out.</p>\n" or ""
 write(out .. "/index.html", head .. "<nav>" .. table.concat(contents, " ") .. "</nav>\n" .. missing .. left .. table.concat(body) .. "</html>\n")
 print(("-> %s/index.html, %d s%s"):format(out, os.time() - started, #failed > 0 and "; missing: " .. table.concat(failed, "; ") or ""))
