@@ -51,7 +51,7 @@ end
 function page.commands(figure)
   if gnuplot.is_flat(figure) then return nil end
   local title = gsub(figure.title or "A figure", "[<>&]", " ")
-  return put(put(template, "@TITLE@", title), "@FIGURE@", page.json(figure))
+  return put(put(template, "@FIGURE@", page.json(figure)), "@TITLE@", title) -- the title's place is the first of its name
 end
 
 return page

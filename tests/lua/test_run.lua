@@ -110,4 +110,25 @@ else
 end
 if page then page:close() end
 
+-- --pictures: a flat figure as SVG and PDF too, one in space as a page, in which no word is more than text.
+local drawn = [[local plot = require "quat.plot"
+local flat = plot.panel { plot.line { { 0, 1 }, { 1, 0 / 0 }, label = "</script><b id=harm>" } }
+local space = plot.panel { plot.line { { 0, 1 }, { 0, 1 }, { 0, 1 }, tube = 0.1 }, plot.text { "</script><b id=harm>@TITLE@", at = { 0, 0, 0 } } }
+print(plot.save(plot.figure { flat }, "flat"), plot.save(plot.figure { title = "</title><b id=harm>@FIGURE@", flat, space }, "space"))]]
+code, said = runner.script(drawn, "--pictures")
+check.equal(code, 0)
+if said:find "true" then
+  check.equal(runner.read("o/flat.pdf"):sub(1, 5), "%PDF-")
+  check.truth(runner.read("o/flat.svg"):find("<svg", 1, true), "SVG is SVG")
+  check.truth(runner.exists("o/flat.png") and runner.exists("o/space.png"), "PNG stays")
+  check.truth(not runner.exists("o/flat.figure.html") and not runner.exists("o/space.svg") and not runner.exists("o/space.pdf"), "each in its form")
+  local shown = runner.read("o/space.figure.html")
+  check.truth(not shown:find("<b id", 1, true) and not shown:find "https?://", "words are text, and nothing is asked for")
+  check.truth(shown:find('"tube":0.1', 1, true) and shown:find(",null]", 1, true), "the figure stands in it, and what is not finite as null")
+  check.equal(runner.script(drawn), 0)
+  check.truth(not runner.exists("o/flat.svg") and not runner.exists("o/space.figure.html"), "only where they are asked for")
+else
+  print("run: gnuplot is not installed: pictures in other forms are not tried")
+end
+
 check.report("run")
