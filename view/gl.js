@@ -14,7 +14,8 @@ float shade() {
   return sum / 9.;
 }
 float line(float x) { float d = abs(fract(x - .5) - .5) / fwidth(x); return 1. - min(d, 1.); }
-float side(float x) { return clamp(x / fwidth(x) + .5, 0., 1.) * 2. - 1.; }
+// Of a flat face one coordinate stands still, and has no width.
+float side(float x) { return clamp(x / max(fwidth(x), 1e-20) + .5, 0., 1.) * 2. - 1.; }
 void main() {
   vec3 n = normalize(up), v = normalize(eye - at); if (dot(n, v) < 0.) n = -n;
   vec4 c = one;
