@@ -414,7 +414,7 @@
 /* Contacts of an island up to which its impulses are looked for in their own space: at once, as with so few it costs no
  * more than that of the bodies and is right to rounding; and where that of the bodies does not settle: some 3e7
  * multiplications then for each of 20 to 60 systems. */
-#define IMP_PILE_FEW 16
+#define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100
 /* Steps in units of the time in which the smallest body falls its radius: the first; the longest, in which contacts
  * turn by less than .05; and the shortest, in which a fall is 1e-10 of the radius. */

@@ -185,9 +185,17 @@ static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int 
     return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
 }
 
-/* Few contacts in their own space, to rounding; many in that of the bodies, and what that does not settle in the other
- * again, where it is small enough for that. */
-static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count)
+/* The greatest velocity that contacts have without impulses, m/s. */
+static double fastest_of(const imp_pile *pile, int count)
+{
+    double most = 0;
+    for (int i = 0; i < 3 * count; i++) most = fmax(most, fabs(pile->q[i]));
+    return most;
+}
+
+/* Few contacts in their own space, to rounding; many in that of the bodies, and where that leaves what counts in the
+ * step's error in the other again, if they are not too many for that. */
+static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count, double h)
 {
     if (count <= IMP_PILE_FEW) return by_contacts(pile, world, count);
     imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
@@ -195,16 +203,9 @@ static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, in
     const imp_cone_outcome quick =
         imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, count, pile->number, bodies, pile->q,
                               pile->friction, pile->last_r, pile->r, pile->u);
-    const bool settled = quick.status == IMP_CONE_SOLVED || quick.status == IMP_CONE_BAD;
-    return settled || count > IMP_PILE_DENSE ? quick : by_contacts(pile, world, count);
-}
-
-/* The greatest velocity that contacts have without impulses, m/s. */
-static double fastest_of(const imp_pile *pile, int count)
-{
-    double most = 0;
-    for (int i = 0; i < 3 * count; i++) most = fmax(most, fabs(pile->q[i]));
-    return most;
+    const bool counts = !(quick.residual <= IMP_PILE_USABLE &&
+                          h * quick.residual * fastest_of(pile, count) <= 0.1 * IMP_PILE_ERROR * smallest(world));
+    return counts && quick.status != IMP_CONE_BAD && count <= IMP_PILE_DENSE ? by_contacts(pile, world, count) : quick;
 }
 
 /* What friction takes over the step, where its impulse meets the slip of before and after it half each. */
@@ -223,7 +224,7 @@ static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *s
     imp_cone_contact_velocities(world, next, pile->contacts, count, pile->q);
     imp_cone_contact_velocities(world, states, pile->contacts, count, pile->before);
     recall_step(pile, world, count, h);
-    const imp_cone_outcome outcome = find_impulses(pile, world, count);
+    const imp_cone_outcome outcome = find_impulses(pile, world, count, h);
     if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
                  imp_cone_status_name(outcome.status));
@@ -337,10 +338,10 @@ static void part_overlaps(imp_pile *pile, const imp_world *world, const imp_stat
  * apart. Gaps within the slack may stay. */
 static impact_status project_places(imp_pile *pile, imp_world *world, double h, imp_state *states)
 {
-    const double slack = IMP_PILE_SLACK * smallest(world);
+    const double slack = IMP_PILE_SLACK * smallest(world), rounding = IMP_TOUCHING * smallest(world);
     for (int pass = 0; pass < 2; pass++) {
         const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
-                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, 0, false);
+                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -rounding, false);
         if (!found || !reserve_contacts(pile, pile->touching.count)) return IMPACT_ENOMEM;
         memcpy(pile->middle, states, sizeof *states * (size_t)world->body_count);
         for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
