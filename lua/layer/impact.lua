@@ -499,6 +499,7 @@ end
 ---@param options? {seconds?: number, times?: integer, rounds?: integer, tolerances?: number[], steps?: number[], methods?: string[], reference?: string, reference_error?: number}
 ---@return impact.report?, string?
 function methods:report(options)
+  methods.name(self) -- of anything but a scene this raises
   return require "impact.report".of(self, options)
 end
 

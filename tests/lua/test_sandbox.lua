@@ -5,7 +5,7 @@ local runner = require "runner"
 runner.clean()
 
 local function succeeds(text, options)
-  local code, _, said = runner.script(text, options)
+  local code, _, said = runner.script(text .. "\nprint 'done'", options)
   if code ~= 0 then error(string.format("wanted exit code 0, got %d: %s\nof the script\n%s", code, said, text), 2) end
   check.truth(true)
 end
@@ -43,7 +43,7 @@ end
 local here = runner.folder
 local function with_link(make, text)
   runner.shell(string.format("cd %s && rm -rf o && mkdir o && %s", runner.quote(here), make))
-  runner.write("script.lua", prepare .. text)
+  runner.write("script.lua", prepare .. text .. "\nprint 'done'")
   local code, _, said = runner.command("script.lua --out o")
   if code ~= 0 then error(string.format("%s: exit code %d: %s", make, code, said), 2) end
   check.equal(runner.read("secret"), "secret")

@@ -299,7 +299,7 @@ static const field body_fields[] = {
     FIELD(impact_body_def, velocity, VECTOR, true),       FIELD(impact_body_def, omega, VECTOR, true),
     FIELD(impact_body_def, friction, NUMBER, true),       FIELD(impact_body_def, restitution, NUMBER, true),
     FIELD(impact_body_def, linear_damping, NUMBER, true), FIELD(impact_body_def, angular_damping, NUMBER, true),
-    FIELD(impact_body_def, user, OTHER, false),
+    FIELD(impact_body_def, trail, VECTOR, false),         FIELD(impact_body_def, user, OTHER, false),
 };
 
 static const field force_fields[] = {
@@ -405,7 +405,7 @@ static void every_field_that_decides_is_in_the_print(void **state)
     assert_all_listed(ALL(pair_fields), sizeof(impact_pair_def));
     assert_int_equal(check_prints(ALL(scene_fields), offsetof(whole_definition, scene)), 18);
     assert_int_equal(check_prints(ALL(methods_fields), offsetof(whole_definition, scene.methods)), 7);
-    assert_int_equal(check_prints(ALL(body_fields), offsetof(whole_definition, bodies)), 16);
+    assert_int_equal(check_prints(ALL(body_fields), offsetof(whole_definition, bodies)), 17);
     assert_int_equal(check_prints(ALL(force_fields), offsetof(whole_definition, forces)), 16);
     assert_int_equal(check_prints(ALL(pair_fields), offsetof(whole_definition, pairs)), 5);
 }
