@@ -5,9 +5,13 @@
  * some 20; steps of the integrator, events, and steps of the pile; their measured error, m; what the energy account is
  * off by, of the energy lost.
  * Scenes: five balls in a shaft (friction .3, restitution .25); 27 balls on a floor in three layers (.3, .3); 32 balls
- * dropped into a box (.3, .7).
+ * dropped into a box (.3, .7). Of boxes: a cube that falls on a corner (.5, .3), ten set on each other with masses 1
+ * and 1e4 in turn, five dropped with offsets, two dice thrown (.4, .5), five dominoes (.3, .3); median and slowest of
+ * sets of three bodies with faces, dropped (.2 ... .8, 0 ... .6): docs/faces.md.
  */
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
 #include <impact/scene.h>
 #include "../tests/kit/contact_random.h"
@@ -108,13 +112,113 @@ static pile_scene box(void)
     return s;
 }
 
+/* ---- boxes ---- */
+
+static impact_body_def *add_box(pile_scene *s, qvec3 half, double rounding, double mass, qvec3 position,
+                                double friction, double restitution)
+{
+    impact_body_def *body = add_body(s, position);
+    impact_shape_box(half.x, half.y, half.z, rounding, &body->shape);
+    body->mass = mass;
+    body->friction = friction;
+    body->restitution = restitution;
+    return body;
+}
+
+static quat turned(qvec3 axis, double angle)
+{
+    quat q = quat_identity();
+    (void)quat_from_axis_angle(axis, angle, &q);
+    return q;
+}
+
+static pile_scene cube(void)
+{
+    pile_scene s = {.name = "a cube falls", .duration = 2};
+    add_plane(&s, (qvec3){0, 0, 0}, quat_identity());
+    add_box(&s, (qvec3){0.1, 0.1, 0.1}, 0, 1, (qvec3){0, 0, 0.3}, 0.5, 0.3)->orientation =
+        turned((qvec3){1, 0.3, 0.2}, 0.4);
+    return s;
+}
+
+static pile_scene stack(int count, double apart, double heavy, const char *name)
+{
+    pile_scene s = {.name = name, .duration = 2};
+    add_plane(&s, (qvec3){0, 0, 0}, quat_identity());
+    for (int i = 1; i <= count; i++)
+        add_box(&s, (qvec3){0.1, 0.1, 0.05}, 0, i % 2 ? 1 : heavy,
+                (qvec3){0.03 * (i % 3), 0.02 * (i % 2), 0.05 + apart + (0.1 + apart) * (i - 1)}, 0.5, 0.3);
+    return s;
+}
+
+static pile_scene dice(void)
+{
+    const qvec3 spins[] = {{10, 20, 5}, {-10, 15, 5}};
+    pile_scene s = {.name = "two dice", .duration = 3};
+    add_plane(&s, (qvec3){0, 0, 0}, quat_identity());
+    for (int i = 0; i < 2; i++) {
+        impact_body_def *die =
+            add_box(&s, (qvec3){0.008, 0.008, 0.008}, 1e-3, 5e-3, (qvec3){0, 0.03 * i, 0.1}, 0.4, 0.5);
+        die->velocity = (qvec3){0.5, -0.06 * i, 0};
+        die->omega = spins[i];
+        die->orientation = turned((qvec3){1, 0.3, 0.2}, 0.4 + i);
+    }
+    return s;
+}
+
+static pile_scene dominoes(void)
+{
+    pile_scene s = {.name = "5 dominoes", .duration = 2};
+    add_plane(&s, (qvec3){0, 0, 0}, quat_identity());
+    for (int i = 0; i < 5; i++)
+        add_box(&s, (qvec3){0.004, 0.012, 0.024}, 0, 0.008, (qvec3){0.02 * i, 0, 0.024}, 0.3, 0.3);
+    s.bodies[1].velocity = (qvec3){0.1, 0, 0};
+    s.bodies[1].omega = (qvec3){0, 4, 0};
+    return s;
+}
+
+/* Three bodies of kinds and sizes that the seed draws, one over another. */
+static pile_scene drawn(uint64_t seed)
+{
+    pile_scene s = {.name = "3 drawn", .duration = 2};
+    random_stream random = {seed};
+    add_plane(&s, (qvec3){0, 0, 0}, quat_identity());
+    for (int i = 0; i < 3; i++) {
+        const double a = 0.03 + 0.07 * random_unit(&random), b = 0.03 + 0.07 * random_unit(&random),
+                     c = 0.03 + 0.07 * random_unit(&random);
+        impact_body_def *body = add_body(&s, (qvec3){0.05 * random_unit(&random), 0, 0.25 + 0.25 * i});
+        switch (random_bits(&random) % 4) {
+        case 0: impact_shape_box(a, b, c, 0, &body->shape); break;
+        case 1: impact_shape_cylinder(a, c, 0, &body->shape); break;
+        case 2: impact_shape_cone(a, 2 * c, 0, &body->shape); break;
+        default: impact_shape_capsule(0.4 * a, 0.4 * a + c, &body->shape);
+        }
+        body->density = 1000;
+        body->orientation = random_rotation(&random);
+        body->velocity = (qvec3){random_unit(&random) - 0.5, random_unit(&random) - 0.5, -random_unit(&random)};
+        body->omega = random_vector(&random, 0.1, 10);
+        body->friction = 0.2 + 0.6 * random_unit(&random);
+        body->restitution = 0.6 * random_unit(&random);
+    }
+    return s;
+}
+
+/* ---- one scene ---- */
+
 static bool in_time(void *context, double t, double end)
 {
     (void)t, (void)end;
     return cpu_clock() < *(const double *)context + most_cpu;
 }
 
-static void measure(const pile_scene *s, impact_piles piles)
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* s of CPU; told: with its row. */
+static double measure(const pile_scene *s, impact_piles piles, bool told)
 {
     impact_scene_def def = impact_default_scene_def();
     def.name = s->name;
@@ -130,7 +234,7 @@ static void measure(const pile_scene *s, impact_piles piles)
     double begun = cpu_clock();
     if (impact_scene_create(&def, &scene, message, sizeof message) != IMPACT_OK) {
         fprintf(stderr, "bench_piles: %s: %s\n", s->name, message);
-        return;
+        return NAN;
     }
     const impact_recorder recorder = {.context = &begun, .progress = in_time};
     const impact_status status = impact_scene_run(scene, &recorder);
@@ -140,22 +244,49 @@ static void measure(const pile_scene *s, impact_piles piles)
     const double losses = e.impact_loss + e.sliding_loss;
     long events = 0;
     for (int kind = 0; kind <= IMPACT_EVENT_REST; kind++) events += usage.events[kind];
-    printf("%s,%s,%.3f,%g,%s,%.2f,%ld,%ld,%ld,%.2g,%.1g\n", s->name, piles == IMPACT_PILES_STEPS ? "steps" : "auto",
-           impact_scene_time(scene), s->duration, impact_status_string(status), seconds, usage.integrator_steps, events,
-           usage.pile_steps, impact_scene_pile_error(scene), fabs(e.kinetic + e.potential + losses - e.start) / losses);
+    if (told)
+        printf("%s,%s,%.3f,%g,%s,%.3f,%ld,%ld,%ld,%.2g,%.1g\n", s->name, piles == IMPACT_PILES_STEPS ? "steps" : "auto",
+               impact_scene_time(scene), s->duration, impact_status_string(status), seconds, usage.integrator_steps,
+               events, usage.pile_steps, impact_scene_pile_error(scene),
+               losses > 0 ? fabs(e.kinetic + e.potential + losses - e.start) / losses : 0);
     fflush(stdout);
     impact_scene_destroy(scene);
+    return status < 0 || status == IMPACT_STOPPED ? NAN : seconds;
+}
+
+/* A copy's bodies have names of their own. */
+static double measure_copy(pile_scene s, impact_piles piles, bool told)
+{
+    for (int b = 0; b < s.count; b++) s.bodies[b].name = s.names[b];
+    return measure(&s, piles, told);
+}
+
+static void measure_drawn(void)
+{
+    enum { DRAWN = 60 };
+    double seconds[DRAWN];
+    int ended = 0;
+    for (uint64_t seed = 1; seed <= DRAWN; seed++) {
+        const double taken = measure_copy(drawn(seed), IMPACT_PILES_AUTO, false);
+        if (!isnan(taken))
+            seconds[ended++] = taken;
+        else
+            printf("# seed %llu did not end\n", (unsigned long long)seed);
+    }
+    qsort(seconds, (size_t)ended, sizeof *seconds, ascending);
+    printf("# of %d sets of three drawn bodies %d ended: median %.3f s of CPU, slowest %.3f s\n", DRAWN, ended,
+           seconds[ended / 2], seconds[ended - 1]);
 }
 
 int main(void)
 {
-    const pile_scene scenes[] = {shaft(), heap(), box()};
+    const pile_scene balls[] = {shaft(), heap(), box()},
+                     boxes[] = {cube(), stack(10, 0, 1e4, "10 boxes set"), stack(5, 0.02, 1, "5 boxes dropped"), dice(),
+                                dominoes()};
     printf("scene,piles,reached_s,asked_s,ended,cpu_s,integrator_steps,events,pile_steps,error_m,account\n");
     for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 2; k++) {
-            pile_scene s = scenes[i];
-            for (int b = 0; b < s.count; b++) s.bodies[b].name = s.names[b]; /* the copy's own */
-            measure(&s, k ? IMPACT_PILES_STEPS : IMPACT_PILES_AUTO);
-        }
+        for (int k = 0; k < 2; k++) measure_copy(balls[i], k ? IMPACT_PILES_STEPS : IMPACT_PILES_AUTO, true);
+    for (int i = 0; i < 5; i++) measure_copy(boxes[i], IMPACT_PILES_AUTO, true);
+    measure_drawn();
     return 0;
 }

@@ -109,8 +109,9 @@ static void add_turning(imp_psi *p, const imp_search *s, int k, const imp_state 
     p->slope -= qvec3_dot(b->rate, point);
     if (!spins) return;
     if (s->segment[k]->kind != IMP_SEGMENT_FREE) {
-        p->bend += body->radius * bounds->spin_up;
-        p->spread += body->radius * bounds->spin_up;
+        const double bend = (1 + most) * bounds->spin_up + 2 * qvec3_norm(veer) * bounds->omega;
+        p->bend += body->radius * bend;
+        p->spread += body->radius * bend;
         return;
     }
     const qvec3 torque = qvec3_cross(momentum, omega), spin_up = {torque.x * i.x, torque.y * i.y, torque.z * i.z};
@@ -183,11 +184,11 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
     return bend + fmax(0, drift - others);
 }
 
-/* Whether the step is far less than what the gap's own rate promises, of bodies that turn on parabolas and have both a
- * support function that knows where the normal goes. */
+/* Whether the step is far less than what the gap's own rate promises, of bodies that have both a support function that
+ * knows where the normal goes. */
 static bool creeps(const imp_search *s, const sight *l, double gap, double step)
 {
-    if (!l->parabola || is_plane(s->body[1]) || !(step < l->window)) return false;
+    if (is_plane(s->body[1]) || !(step < l->window)) return false;
     return l->rate >= 0 || step < 0.25 * gap / -l->rate;
 }
 
@@ -213,12 +214,16 @@ static double step_veering(const imp_search *s, const sight *l, double gap)
     const double rate = qvec3_norm(veer), limit = fmin(l->window, 0.5 / rate);
     const qvec3 v = qvec3_sub(l->state[0].v, l->state[1].v), c = qvec3_sub(l->state[0].x, l->state[1].x);
     if (!(rate > 0) || !isfinite(rate)) return 0;
-    const double speed = qvec3_dot(n, v) + qvec3_dot(veer, c);
-    imp_psi p = {.gap = gap,
-                 .speed = speed,
-                 .slope = speed,
-                 .bend = fmax(0, -qvec3_dot(n, l->pull) - 2 * qvec3_dot(veer, v)),
-                 .jerk = 3 * fmax(0, -qvec3_dot(veer, l->pull))};
+    const double speed = qvec3_dot(n, v) + qvec3_dot(veer, c), along = -2 * qvec3_dot(veer, v);
+    imp_psi p = {.gap = gap, .speed = speed, .slope = speed};
+    if (l->parabola) {
+        p.bend = fmax(0, along - qvec3_dot(n, l->pull));
+        p.jerk = 3 * fmax(0, -qvec3_dot(veer, l->pull));
+    } else {
+        const double most = qvec3_norm(l->bounds[0].acceleration) + qvec3_norm(l->bounds[1].acceleration);
+        p.bend = fmax(0, along + bend_of(s, l, n));
+        p.jerk = 3 * rate * (most + (l->jerk > 0 ? l->jerk * l->window : 0));
+    }
     add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), qvec3_neg(veer), 0.5, &l->bounds[0]);
     add_turning(&p, s, 1, &l->state[1], n, veer, 0.5, &l->bounds[1]);
     return safe_step(&p, limit);
