@@ -87,6 +87,28 @@ check.close(landed.position.x, .3, 1e-12)
 check.close(landed.position.z, .05, 1e-12)
 check.truth(landed.omega.x == 0 and landed.omega.y == 0 and landed.omega.z == 0, "no spin")
 
+-- A force that begins moves a box that rests; a belt drags what is set on it; damping beside friction; planes with edges are refused.
+local function box_on(under, more, extra)
+  local body = { name = "box", shape = impact.box { a = .1, b = .1, c = .1 }, mass = 1, position = { 0, 0, .1 }, friction = 1 }
+  for key, value in pairs(more or {}) do body[key] = value end
+  local moved = run({ under, impact.body(body) }, 2, extra)
+  check.truth(off_account(moved:energy()) < 1e-11 * moved:energy().start + 1e-11, "the account of a box that is moved")
+  return moved:state("box"), moved:energy()
+end
+local pushed = box_on(floor(1), nil, { forces = { impact.force { law = function(t) return { t >= 1 and 12 or 0, 0, 0 } end, switches = { 1 } } } })
+check.close(pushed.position.x, (12 - G) / 2, 1e-9)
+local belt = impact.body { name = "belt", shape = impact.plane(), velocity = { 2, 0, 0 }, friction = 1 }
+local dragged, account = box_on(belt)
+check.close(dragged.position.x, 4 - 2 / G, 1e-5)
+check.close(account.drive_work, 4, 1e-6)
+local k, v = math.log(2), 2
+local damped = box_on(floor(.2), { velocity = { v, 0, 0 }, linear_damping = .5 }) -- v' = -k v - mu g, until it stops
+local stop = math.log(1 + k * v / (.2 * G)) / k
+check.close(damped.position.x, v / k - .2 * G / k * stop, 5e-6)
+check.raises("body 'table': a plane with edges carries no bodies with faces: take a static box, or a plane without edges", function()
+  box_on(impact.body { name = "table", shape = impact.plane { width = 1, depth = 1 } })
+end)
+
 -- Each kind, thrown: it comes to rest upon the floor, or rolls there.
 local shapes = {
   box = impact.box { a = .05, b = .04, c = .03, rounding = .004 },

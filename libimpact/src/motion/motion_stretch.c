@@ -282,6 +282,7 @@ void imp_motion_depart(imp_motion *motion, double t, double t_end, bool renewed)
     imp_stride *s = &motion->stride;
     if (!renewed) *s = (imp_stride){.began = t};
     s->t = t;
+    imp_field_enter(motion->world, t);
     s->t_end = fmin(t_end, imp_field_next_switch(motion->world));
     s->restart = true;
 }

@@ -29,8 +29,8 @@ static bool reserve_bodies(imp_pile *pile, const imp_world *world)
     const size_t bodies = (size_t)world->body_count;
     bool there = imp_pile_contacts_reserve(&pile->touching, world);
     if (world->body_count <= pile->bodies) return there;
-    imp_state **states[] = {&pile->middle, &pile->whole, &pile->half, &pile->end};
-    for (int k = 0; k < 4; k++) *states[k] = replaced(pile, *states[k], bodies, sizeof **states[k], &there);
+    imp_state **states[] = {&pile->middle, &pile->mean, &pile->whole, &pile->half, &pile->end};
+    for (int k = 0; k < 5; k++) *states[k] = replaced(pile, *states[k], bodies, sizeof **states[k], &there);
     pile->loads = replaced(pile, pile->loads, bodies, sizeof *pile->loads, &there);
     pile->number = replaced(pile, pile->number, bodies, sizeof *pile->number, &there);
     pile->velocities = replaced(pile, pile->velocities, bodies, sizeof *pile->velocities, &there);
@@ -242,23 +242,38 @@ static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *s
     return IMPACT_OK;
 }
 
-/* From `from` over h to `to`. */
-static impact_status step_once(imp_pile *pile, imp_world *world, double t, double h, const imp_state *from,
-                               imp_state *to, imp_pile_step_result *result)
+/* Whether loads follow velocities, or tell work that does. */
+static bool loads_follow(const imp_world *world)
 {
-    const size_t bytes = sizeof *from * (size_t)world->body_count;
-    result->contacts = result->coupled = 0;
-    memcpy(pile->middle, from, bytes);
-    drift(world, from, 0.5 * h, pile->middle);
-    if (!imp_field_loads(world, t + 0.5 * h, pile->middle, pile->loads)) return IMPACT_EDOMAIN;
-    memcpy(to, pile->middle, bytes);
+    for (int i = 0; i < world->body_count; i++)
+        if (world->bodies[i].linear_rate > 0 || world->bodies[i].angular_rate > 0) return true;
+    return world->field_count > 0;
+}
+
+/* The middle of the step with the velocities that are the mean of its ends'. */
+static void find_mean(imp_pile *pile, const imp_world *world, const imp_state *from, const imp_state *to)
+{
+    memcpy(pile->mean, pile->middle, sizeof *pile->mean * (size_t)world->body_count);
+    for (int i = 0; i < world->body_count; i++) {
+        pile->mean[i].v = qvec3_scale(qvec3_add(from[i].v, to[i].v), 0.5);
+        pile->mean[i].momentum = qvec3_scale(qvec3_add(from[i].momentum, to[i].momentum), 0.5);
+    }
+}
+
+/* The velocities at the end of the step, the places being those of its middle; loads are those of the states given. */
+static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, double h, const imp_state *loaded,
+                                 imp_state *to, imp_pile_step_result *result)
+{
+    if (!imp_field_loads(world, t + 0.5 * h, loaded, pile->loads)) return IMPACT_EDOMAIN;
+    memcpy(to, pile->middle, sizeof *to * (size_t)world->body_count);
     add_loads(world, pile->loads, h, to);
     for (int i = 0; i < world->body_count; i++) {
         result->force_work += h * pile->loads[i].work_rate;
         result->damping += h * pile->loads[i].damping_rate;
     }
-    imp_pile_contacts_mark(&pile->touching, world, &pile->memory[1]);
+    for (int k = 0; k < pile->memory[1].count; k++) pile->memory[1].list[k].taken = false;
     pile->memory[2].count = 0;
+    imp_pile_contacts_mark(&pile->touching, world, &pile->memory[1]);
     if (!imp_pile_find_points(&pile->touching, world, pile->middle, to, h, IMP_PILE_SLACK * smallest(world), false) ||
         !reserve_contacts(pile, pile->touching.count))
         return IMPACT_ENOMEM;
@@ -266,6 +281,25 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
         const impact_status status = answer(pile, world, pile->middle, count, h, to, result);
         if (status != IMPACT_OK) return status;
     }
+    return IMPACT_OK;
+}
+
+/* From `from` over h to `to`. Loads that follow velocities are asked at those of the beginning, and then at the mean of
+ * those that this leads to: of the second order, and their work with the way. */
+static impact_status step_once(imp_pile *pile, imp_world *world, double t, double h, const imp_state *from,
+                               imp_state *to, imp_pile_step_result *result)
+{
+    result->contacts = result->coupled = 0;
+    memcpy(pile->middle, from, sizeof *from * (size_t)world->body_count);
+    drift(world, from, 0.5 * h, pile->middle);
+    const imp_pile_step_result before = *result;
+    impact_status status = push_bodies(pile, world, t, h, pile->middle, to, result);
+    if (status == IMPACT_OK && loads_follow(world)) {
+        *result = before;
+        find_mean(pile, world, from, to);
+        status = push_bodies(pile, world, t, h, pile->mean, to, result);
+    }
+    if (status != IMPACT_OK) return status;
     if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[2])) return IMPACT_ENOMEM;
     drift(world, to, 0.5 * h, to); /* x' = x_m + h v'/2 */
     return IMPACT_OK;
@@ -423,6 +457,19 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
 
 /* ---- rest ---- */
 
+/* Whether a static body's surface moves along under what touches it with friction. */
+static bool is_dragged(const imp_pile_contacts *touching, const imp_world *world, double rest_speed)
+{
+    for (int k = 0; world->driven && k < touching->count; k++) {
+        const imp_pile_point *point = &touching->points[k];
+        const imp_body *under = &world->bodies[point->contact.body2];
+        if (under->driven && world->pairs[point->pair].friction > 0 &&
+            qvec3_norm(imp_surface_velocity(under, point->contact.arm2)) > rest_speed)
+            return true;
+    }
+    return false;
+}
+
 static bool is_touched(const imp_pile_contacts *touching, int body)
 {
     for (int k = 0; k < touching->count; k++) {
@@ -466,6 +513,7 @@ bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state 
     if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * smallest(world), false)) return false;
     for (int i = 0; i < world->body_count; i++)
         if (!world->bodies[i].is_static && !is_touched(touching, i)) return false;
+    if (is_dragged(touching, world, rest_speed)) return false;
     const int closed = touching->count;
     if (!reserve_contacts(pile, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count)) return false;
     if (!remember_points(pile)) return false;

@@ -29,7 +29,7 @@ typedef struct imp_pile {
     imp_cone_bodies by_bodies;
     int *number; /* per body of the world: its own in an island, -1: it does not move */
     imp_rest_workspace rest;
-    imp_state *middle, *whole, *half, *end;
+    imp_state *middle, *mean, *whole, *half, *end;
     imp_load *loads;
     imp_pile_contacts touching;
     /* as the accepted step left them, those before the step at hand, what it leaves, and what the two halves left */

@@ -143,6 +143,21 @@ static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena
     }
 }
 
+/* The edges of a plane carry nothing: a face would reach over them as if the plane went on. */
+static void check_faces(check *c, const impact_scene_def *def)
+{
+    bool faces = false;
+    for (int i = 0; i < def->body_count; i++)
+        faces = faces || (!def->bodies[i].is_static && def->bodies[i].shape.kind >= IMPACT_BOX);
+    for (int i = 0; c->status == IMPACT_OK && faces && i < def->body_count; i++) {
+        const impact_shape *shape = &def->bodies[i].shape;
+        c->kind = "body";
+        c->name = def->bodies[i].name;
+        require_words(c, shape->kind != IMPACT_PLANE || (isinf(shape->a) && isinf(shape->b)),
+                      "a plane with edges carries no bodies with faces: take a static box, or a plane without edges");
+    }
+}
+
 static void check_custom(check *c, const impact_force_def *force)
 {
     require_words(c, force->function != NULL, "a custom force needs a function");
@@ -262,6 +277,7 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
     require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule",
             def->restitution_rule, "is no rule");
     check_bodies(&c, def, arena);
+    if (c.status == IMPACT_OK) check_faces(&c, def);
     for (int k = 0; c.status == IMPACT_OK && k < def->force_count; k++) {
         c.kind = "force";
         c.name = def->forces[k].name ? def->forces[k].name : "";
