@@ -232,8 +232,13 @@ static void behind_the_horizon_nothing_is_said(void **state)
     s.bodies[1].omega = (qvec3){1, 2, 3};
     s.def.duration = 25;
     const double tolerances[] = {1e-6, 1e-10}, step = 1e-3;
-    const impact_report_def how = {
-        .times = 100, .rounds = 1, .tolerances = tolerances, .tolerance_count = 2, .steps = &step, .step_count = 1};
+    const impact_report_def how = {.times = 100,
+                                   .rounds = 1,
+                                   .seconds = 1e4,
+                                   .tolerances = tolerances,
+                                   .tolerance_count = 2,
+                                   .steps = &step,
+                                   .step_count = 1};
     get(&s.def, &how, &t);
     assert_true(t.summary.horizon > 1 && t.summary.horizon < 25);
     assert_true(t.summary.condition > 1e3);
