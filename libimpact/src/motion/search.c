@@ -184,11 +184,11 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
     return bend + fmax(0, drift - others);
 }
 
-/* Whether the step is far less than what the gap's own rate promises, of bodies that have both a support function that
- * knows where the normal goes. */
+/* Whether the step is far less than what the gap's own rate promises, of bodies of which one turns and both have a
+ * support function that knows where the normal goes. */
 static bool creeps(const imp_search *s, const sight *l, double gap, double step)
 {
-    if (is_plane(s->body[1]) || !(step < l->window)) return false;
+    if (is_plane(s->body[1]) || !(turns(s, 0) || turns(s, 1)) || !(step < l->window)) return false;
     return l->rate >= 0 || step < 0.25 * gap / -l->rate;
 }
 
