@@ -378,6 +378,7 @@ const char *imp_cone_status_name(imp_cone_status status)
     case IMP_CONE_INEXACT: return "inexact";
     case IMP_CONE_UNSETTLED: return "unsettled";
     case IMP_CONE_NO_SOLUTION: return "no solution";
+    case IMP_CONE_NO_ROOM: return "without room";
     case IMP_CONE_BAD: break;
     }
     return "bad input";

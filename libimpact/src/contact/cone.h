@@ -30,7 +30,8 @@ typedef enum imp_cone_status {
     IMP_CONE_INEXACT,     /* an answer is there, with a residual over the bound: told, not to be trusted silently */
     IMP_CONE_UNSETTLED,   /* no answer was found; none is excluded */
     IMP_CONE_NO_SOLUTION, /* none exists: `r` holds a direction that shows it, see imp_cone_outcome */
-    IMP_CONE_BAD          /* W, q or a friction is no number, or a friction is negative, or there is no room */
+    IMP_CONE_BAD,         /* W, q or a friction is no number, or a friction is negative, or the room is too small */
+    IMP_CONE_NO_ROOM      /* memory was wanted and refused (cone_bodies.h) */
 } imp_cone_status;
 
 typedef enum imp_cone_mode { IMP_CONE_OPEN, IMP_CONE_STICKS, IMP_CONE_SLIDES } imp_cone_mode;

@@ -286,6 +286,7 @@ imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_con
 {
     imp_cone_outcome outcome = {.status = IMP_CONE_BAD, .residual = INFINITY};
     if (count == 0) return (imp_cone_outcome){.status = IMP_CONE_SOLVED};
+    outcome.status = IMP_CONE_NO_ROOM;
     if (!furnish_bodies(workspace, count, bodies)) return outcome;
     bodies_problem p = lay_out_bodies(workspace, count, bodies);
     p.rows = rows, p.q = q, p.friction = friction, p.outcome = &outcome;
@@ -294,6 +295,7 @@ imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_con
         p.touching[c][1] = number[contacts[c].body2];
     }
     if (!imp_skyline_shape(p.sky, bodies, (const int(*)[2])p.touching, count)) return outcome;
+    outcome.status = IMP_CONE_BAD;
     memset(p.r, 0, 3 * sizeof *p.r * (size_t)count);
     if (last_r) memcpy(p.r, last_r, 3 * sizeof *p.r * (size_t)count);
     for (int c = 0; c < count; c++)

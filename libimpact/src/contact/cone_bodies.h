@@ -29,8 +29,8 @@ typedef struct imp_cone_bodies {
 /* The problem of these contacts with the velocities q (3 count) without reactions; number: of each body of the world
  * its own from 0 to bodies - 1, or -1 where it does not move. last_r: reactions to begin with, or NULL. Into r and u.
  * SOLVED: the proof's residual, as of imp_cone_outcome, is at most IMP_BODIES_ACCEPTED; INEXACT, UNSETTLED: r and u are
- * the best that was found, s having crept where much friction couples much sliding. BAD: there is no room, or a number
- * is none. */
+ * the best that was found, s having crept where much friction couples much sliding. BAD: a number is none.
+ * NO_ROOM: memory is refused. */
 imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_cone_contact *contacts,
                                        const imp_cone_row *rows, int count, const int *number, int bodies,
                                        const double *q, const double *friction, const double *last_r, double *r,

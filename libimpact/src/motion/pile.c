@@ -52,8 +52,9 @@ static bool reserve_contacts(imp_pile *pile, int contacts)
     pile->gap = replaced(pile, pile->gap, count, sizeof *pile->gap, &there);
     double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->before, &pile->last_r, &pile->last_u};
     for (int k = 0; k < 6; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
+    there = imp_cone_reserve(&pile->cone, contacts) && there;
     pile->contacts_most = there ? contacts : 0;
-    return there && imp_cone_reserve(&pile->cone, contacts);
+    return there;
 }
 
 void imp_pile_begin(imp_pile *pile)
@@ -205,7 +206,8 @@ static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, in
                               pile->friction, pile->last_r, pile->r, pile->u);
     const bool counts = !(quick.residual <= IMP_PILE_USABLE &&
                           h * quick.residual * fastest_of(pile, count) <= 0.1 * IMP_PILE_ERROR * smallest(world));
-    return counts && quick.status != IMP_CONE_BAD && count <= IMP_PILE_DENSE ? by_contacts(pile, world, count) : quick;
+    const bool answered = quick.status != IMP_CONE_BAD && quick.status != IMP_CONE_NO_ROOM;
+    return counts && answered && count <= IMP_PILE_DENSE ? by_contacts(pile, world, count) : quick;
 }
 
 /* What friction takes over the step, where its impulse meets the slip of before and after it half each. */
@@ -225,6 +227,7 @@ static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *s
     imp_cone_contact_velocities(world, states, pile->contacts, count, pile->before);
     recall_step(pile, world, count, h);
     const imp_cone_outcome outcome = find_impulses(pile, world, count, h);
+    if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
                  imp_cone_status_name(outcome.status));
@@ -499,29 +502,35 @@ static void remember_rest(imp_pile *pile, int count)
     }
 }
 
-bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed)
+impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed,
+                             bool *rests)
 {
     imp_pile_contacts *touching = &pile->touching;
-    if (!reserve_bodies(pile, world)) return false;
+    *rests = false;
+    if (!reserve_bodies(pile, world)) return IMPACT_ENOMEM;
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         if (body->is_static) continue;
-        if (qvec3_norm(states[i].v) + body->radius * qvec3_norm(imp_omega(body, &states[i])) > rest_speed) return false;
+        if (qvec3_norm(states[i].v) + body->radius * qvec3_norm(imp_omega(body, &states[i])) > rest_speed)
+            return IMPACT_OK;
     }
-    if (!imp_field_loads(world, t, states, pile->loads)) return false;
+    if (!imp_field_loads(world, t, states, pile->loads)) return IMPACT_OK;
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
-    if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * smallest(world), false)) return false;
+    if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * smallest(world), false))
+        return IMPACT_ENOMEM;
     for (int i = 0; i < world->body_count; i++)
-        if (!world->bodies[i].is_static && !is_touched(touching, i)) return false;
-    if (is_dragged(touching, world, rest_speed)) return false;
+        if (!world->bodies[i].is_static && !is_touched(touching, i)) return IMPACT_OK;
+    if (is_dragged(touching, world, rest_speed)) return IMPACT_OK;
     const int closed = touching->count;
-    if (!reserve_contacts(pile, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count)) return false;
-    if (!remember_points(pile)) return false;
+    if (!reserve_contacts(pile, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count))
+        return IMPACT_ENOMEM;
+    if (!remember_points(pile)) return IMPACT_ENOMEM;
     for (int count; (count = gather_island(pile, world)) > 0;) {
         const imp_rest_outcome outcome = imp_rest_solve(world, states, pile->contacts, pile->friction, count,
                                                         pile->loads, &pile->rest, pile->r, pile->velocities);
-        if (outcome.status != IMP_REST_RESTS) return false;
+        if (outcome.status != IMP_REST_RESTS) return IMPACT_OK;
         remember_rest(pile, count);
     }
-    return true;
+    *rests = true;
+    return IMPACT_OK;
 }

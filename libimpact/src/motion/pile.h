@@ -72,7 +72,8 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
 static inline const imp_pile_memories *imp_pile_held(const imp_pile *pile) { return &pile->memory[0]; }
 
 /* Whether all bodies of the world that move, being slower than rest_speed (m/s), can stand still where they are: proved
- * by reactions. */
-bool imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed);
+ * by reactions. IMPACT_ENOMEM, and false. */
+impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed,
+                             bool *rests);
 
 #endif

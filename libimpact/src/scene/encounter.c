@@ -93,7 +93,10 @@ static impact_status bring_all_to_rest(imp_island *island)
 /* A pile finds by itself what meets in it, and ties all that is there from its first step; what can stand does. */
 static impact_status conclude_steps(imp_island *island)
 {
-    if (imp_island_can_stand(island)) return conclude(island, bring_all_to_rest(island));
+    bool stands;
+    const impact_status status = imp_island_can_stand(island, &stands);
+    if (status != IMPACT_OK) return conclude(island, status);
+    if (stands) return conclude(island, bring_all_to_rest(island));
     for (int p = 0; p < island->world.pair_count; p++) island->world.pairs[p].met = true;
     return conclude(island, IMPACT_OK);
 }
@@ -160,7 +163,9 @@ static void wake(imp_island *island)
 
 static impact_status continue_steps(imp_island *island)
 {
-    const imp_stepped found = imp_island_after_step(island);
+    imp_stepped found;
+    const impact_status status = imp_island_after_step(island, &found);
+    if (status != IMPACT_OK) return imp_island_fail(island, status);
     const bool stood = imp_island_all_rest(island);
     if (found == IMP_STEPPED_REST && stood) return go_on(island);
     if (stood) wake(island);

@@ -66,9 +66,9 @@ impact_status imp_island_resume_steps(imp_island *island)
 {
     if (!imp_island_all_rest(island)) return imp_island_begin_steps(island);
     const impact_status status = open_pile(island);
-    if (status == IMPACT_OK)
-        imp_pile_rests(island->pile, &island->world, island->t, island->states, island->scene->rest_speed);
-    return status;
+    bool rests;
+    if (status != IMPACT_OK) return status;
+    return imp_pile_rests(island->pile, &island->world, island->t, island->states, island->scene->rest_speed, &rests);
 }
 
 /* ---- steps ---- */
@@ -109,20 +109,23 @@ impact_status imp_island_step(imp_island *island)
     return IMPACT_OK;
 }
 
-bool imp_island_can_stand(imp_island *island)
+impact_status imp_island_can_stand(imp_island *island, bool *can)
 {
     const double speed = island->scene->rest_speed;
-    if (!imp_pile_rests(island->pile, &island->world, island->t, island->states, speed)) return false;
+    const impact_status status = imp_pile_rests(island->pile, &island->world, island->t, island->states, speed, can);
+    if (!*can) return status;
     imp_island_forget_met(island);
     mark_met(island);
-    return true;
+    return IMPACT_OK;
 }
 
-imp_stepped imp_island_after_step(imp_island *island)
+impact_status imp_island_after_step(imp_island *island, imp_stepped *found)
 {
     enum { LOOK = 64 };
-    if (imp_island_can_stand(island)) return IMP_STEPPED_REST;
-    return ++island->steps % LOOK == 0 ? IMP_STEPPED_LOOK : IMP_STEPPED_ON;
+    bool stands;
+    const impact_status status = imp_island_can_stand(island, &stands);
+    *found = stands ? IMP_STEPPED_REST : ++island->steps % LOOK == 0 ? IMP_STEPPED_LOOK : IMP_STEPPED_ON;
+    return status;
 }
 
 void imp_island_forget_met(imp_island *island)

@@ -20,7 +20,7 @@ impact_status imp_island_begin_steps(imp_island *island);
 impact_status imp_island_resume_steps(imp_island *island);
 
 /* Whether all its bodies stand still, and can go on so. */
-bool imp_island_can_stand(imp_island *island);
+impact_status imp_island_can_stand(imp_island *island, bool *can);
 
 typedef enum imp_stepped {
     IMP_STEPPED_ON,   /* it goes on */
@@ -31,7 +31,7 @@ typedef enum imp_stepped {
 /* The next step, its polynomial in motion.dense. */
 impact_status imp_island_step(imp_island *island);
 /* What is to be done at the end of the step. */
-imp_stepped imp_island_after_step(imp_island *island);
+impact_status imp_island_after_step(imp_island *island, imp_stepped *found);
 void imp_island_forget_met(imp_island *island);
 
 /* What friction and impacts of the steps have taken by the island's time, whose states are given, J: energy leaves no

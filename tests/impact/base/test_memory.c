@@ -109,6 +109,18 @@ static void crowd_that_slides(family *f)
     for (int i = 1; i < f->def.body_count; i++) f->bodies[i].position.z = 0.2, f->bodies[i].restitution = 0;
 }
 
+/* They land on each other at many points, slide by steps and come to rest. */
+static void boxes(family *f)
+{
+    begin(f, 0.3);
+    for (int i = 0; i < 2; i++) {
+        impact_body_def *body = add(f, i ? "upper" : "lower", 0.05 * i, 0.11 + 0.21 * i);
+        impact_shape_box(0.2 - 0.05 * i, 0.2, 0.1, 0, &body->shape);
+        body->velocity = (qvec3){0.3 * i, 0, 0};
+        body->restitution = 0.1;
+    }
+}
+
 /* ---- a run, and a number that stands for all its rows ---- */
 
 static uint64_t hash;
@@ -191,8 +203,8 @@ static void run_refused(family *f, const ledger *refusal, size_t limit, uint64_t
 
 static void every_refusal_is_answered(void **state)
 {
-    static void (*const scenes[])(family *) = {spheres, superquadrics_with_forces, held_contacts, springs,
-                                               crowd,   crowd_that_slides};
+    static void (*const scenes[])(family *) = {spheres, superquadrics_with_forces, held_contacts, springs, crowd,
+                                               crowd_that_slides, boxes};
     enum { LIMITS = 60 };
     (void)state;
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
