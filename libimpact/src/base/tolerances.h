@@ -289,6 +289,16 @@
 /* Sweeps down the list: bodies of masses 1e4 apart take some thousands. */
 #define IMP_SEQUENCE_SWEEPS 100000
 
+/* ---- normals that go with edges and corners ---- */
+
+/* rad: a little earlier and later, for the rate of a normal: errors are its square over that of the turning, and eps
+ * over it. The search's need not be right, only near; the press' second rate of a gap is told to 1e-10. */
+#define IMP_VEERING 1e-4
+#define IMP_LONE_TURN 1e-5
+/* A step of the search that is less than this part of gap over rate creeps: quadratic convergence takes nearly all of
+ * it. */
+#define IMP_CREEPING 0.25
+
 /* ---- contact: the cone problem, docs/cone.md ---- */
 
 /* The residual of what is solved: some 450 eps of the largest reaction and velocity. W itself is rounded, in sums of as

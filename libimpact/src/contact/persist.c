@@ -104,11 +104,11 @@ static imp_state drifted(const imp_body *body, const imp_state *state, double ti
 static void lone_rates(imp_world *world, const imp_pair *pair, imp_touch *touch, const imp_state *states, qvec3 *rate1,
                        qvec3 *rate2)
 {
-    const double turn = 1e-5; /* rad: errors are its square, and rounding over it */
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const double omega = qvec3_norm(imp_omega(b1, s1)) + (b2->is_static ? 0 : qvec3_norm(imp_omega(b2, s2))),
-                 speed = qvec3_norm(qvec3_sub(s1->v, s2->v)), time = turn / (omega + speed / b1->radius + 1e-300);
+                 speed = qvec3_norm(qvec3_sub(s1->v, s2->v)),
+                 time = IMP_LONE_TURN / (omega + speed / b1->radius + 1e-300);
     impact_contact at[2];
     for (int k = 0; k < 2; k++) {
         const imp_state one = drifted(b1, s1, k ? time : -time), two = drifted(b2, s2, k ? time : -time);

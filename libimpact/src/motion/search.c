@@ -189,7 +189,7 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
 static bool creeps(const imp_search *s, const sight *l, double gap, double step)
 {
     if (is_plane(s->body[1]) || !(turns(s, 0) || turns(s, 1)) || !(step < l->window)) return false;
-    return l->rate >= 0 || step < 0.25 * gap / -l->rate;
+    return l->rate >= 0 || step < IMP_CREEPING * gap / -l->rate;
 }
 
 /* The same with a direction that goes along as the contact's normal does, n + n' T: two edges stay across it, and a
@@ -197,8 +197,7 @@ static bool creeps(const imp_search *s, const sight *l, double gap, double step)
  * later. */
 static double step_veering(const imp_search *s, const sight *l, double gap)
 {
-    const double veering = 1e-4; /* rad: errors of n' are its square, and rounding over it */
-    const double apart = veering / (l->bounds[0].omega + l->bounds[1].omega), t = l->t;
+    const double apart = IMP_VEERING / (l->bounds[0].omega + l->bounds[1].omega), t = l->t;
     const qvec3 n = l->contact.normal;
     qvec3 around[2];
     for (int k = 0; k < 2; k++) {

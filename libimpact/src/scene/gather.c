@@ -175,6 +175,19 @@ static imp_island *old_island(const impact_scene *scene, int m)
     return world->bodies[first].index == body ? scene->islands[number] : NULL;
 }
 
+/* The pairs of the members, which scene->root numbers by now, and the forces on them. */
+static impact_status fill_pairs(imp_island *island)
+{
+    const impact_scene *scene = island->scene;
+    for (int p = 0; p < scene->touching_count; p++) {
+        imp_pair *pair = &island->world.pairs[island->world.pair_count++];
+        *pair = scene->touching[p];
+        pair->body1 = scene->root[pair->body1];
+        pair->body2 = scene->root[pair->body2];
+    }
+    return imp_island_take_forces(island);
+}
+
 static impact_status fill(imp_island *island, double t)
 {
     impact_scene *scene = island->scene;
@@ -187,13 +200,7 @@ static impact_status fill(imp_island *island, double t)
         scene->root[scene->members[m]] = i;
         if (!imp_scene_segment_done(scene, scene->members[m], t, &island->states[i])) status = IMPACT_ESINK;
     }
-    for (int p = 0; status == IMPACT_OK && p < scene->touching_count; p++) {
-        imp_pair *pair = &island->world.pairs[island->world.pair_count++];
-        *pair = scene->touching[p];
-        pair->body1 = scene->root[pair->body1];
-        pair->body2 = scene->root[pair->body2];
-    }
-    return status == IMPACT_OK ? imp_island_take_forces(island) : status;
+    return status == IMPACT_OK ? fill_pairs(island) : status;
 }
 
 static void clear_members(impact_scene *scene)
@@ -293,13 +300,7 @@ static impact_status fill_from(imp_island *to, const imp_island *from)
         const imp_state *state = i >= 0 ? &from->states[i] : &scene->tracks.tracks[body].segment.start;
         scene->root[body] = imp_island_add_body(to, body, state);
     }
-    for (int p = 0; status == IMPACT_OK && p < scene->touching_count; p++) {
-        imp_pair *pair = &to->world.pairs[to->world.pair_count++];
-        *pair = scene->touching[p];
-        pair->body1 = scene->root[pair->body1];
-        pair->body2 = scene->root[pair->body2];
-    }
-    return status == IMPACT_OK ? imp_island_take_forces(to) : status;
+    return status == IMPACT_OK ? fill_pairs(to) : status;
 }
 
 impact_status imp_gather_steps(imp_island *island, imp_island **out)
