@@ -6,7 +6,6 @@
 #include "deflate.h"
 
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -134,7 +133,7 @@ static uint32_t adler(const unsigned char *bytes, size_t size)
 
 void imp_deflate(imp_text *out, const unsigned char *bytes, size_t size)
 {
-    places *p = malloc(sizeof *p);
+    places *p = imp_arena_take(out->arena, 1, sizeof *p);
     out->failed = out->failed || !p;
     if (!p) return;
     for (int i = 0; i < HASHES; i++) p->last[i] = -1;
@@ -155,5 +154,5 @@ void imp_deflate(imp_text *out, const unsigned char *bytes, size_t size)
     const uint32_t check = adler(bytes, size);
     const unsigned char tail[4] = {check >> 24, check >> 16 & 255, check >> 8 & 255, check & 255};
     imp_text_put(out, tail, 4);
-    free(p);
+    imp_arena_give(out->arena, p);
 }

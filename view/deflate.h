@@ -8,7 +8,7 @@
 #include "run/text.h"
 
 /* Appends the bytes as a zlib stream (RFC 1950): one block of deflate with fixed codes (RFC 1951, 3.2.6). out->failed
- * when the memory is out. */
+ * when the memory, of its arena, is out. */
 void imp_deflate(imp_text *out, const unsigned char *bytes, size_t size);
 
 #endif

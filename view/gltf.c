@@ -11,10 +11,9 @@
 #include <quat/rotation.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "run/run.h"
+#include "run/run_open.h"
 #include "run/text.h"
 
 enum { FLOAT = 5126, WORD = 5125, SHORT = 5123, VERTICES = 34962, INDICES = 34963 };
@@ -23,6 +22,7 @@ enum { FLOAT = 5126, WORD = 5125, SHORT = 5123, VERTICES = 34962, INDICES = 3496
 static const double plane_room = 1.5;
 
 typedef struct gltf {
+    imp_arena *arena;
     const impact_run *run;
     imp_text buffer, views, accessors, meshes, nodes, channels, samplers, materials;
     int view_count, accessor_count, mesh_count, sampler_count;
@@ -102,7 +102,7 @@ static void say_primitive(gltf *g, int points, int normals, int index, int mater
 static bool solid_mesh(gltf *g, const impact_body_def *def, int material)
 {
     imp_mesh mesh;
-    const bool whole = imp_mesh_of(def, &mesh);
+    const bool whole = imp_mesh_of(g->arena, def, &mesh);
     if (whole) {
         const long count = (long)(mesh.points.size / (3 * sizeof(float)));
         const int at = put_floats(g, (const float *)(const void *)mesh.points.bytes, count, 3, VERTICES, true);
@@ -198,13 +198,14 @@ static void put_quat(float *place, quat q)
 
 static bool animate(gltf *g, int body, double tolerance)
 {
-    long count;
-    imp_gltf_key *keys = imp_gltf_keys(g->run, body, tolerance, &count);
-    float *times = malloc(sizeof *times * (size_t)count), *places = malloc(3 * sizeof *places * (size_t)count);
-    float *turns = malloc(4 * sizeof *turns * (size_t)count);
+    int count;
+    imp_gltf_key *keys = imp_gltf_keys(g->arena, g->run, body, tolerance, &count);
+    float *times = imp_arena_take(g->arena, (size_t)count, sizeof *times);
+    float *places = imp_arena_take(g->arena, (size_t)count, 3 * sizeof *places);
+    float *turns = imp_arena_take(g->arena, (size_t)count, 4 * sizeof *turns);
     const bool whole = keys && times && places && turns;
     long kept = 0;
-    for (long i = 0; whole && i < count; i++) {
+    for (int i = 0; whole && i < count; i++) {
         const float t = (float)(keys[i].t - impact_run_begin(g->run));
         if (kept > 0 && !(t > times[kept - 1])) continue; /* times increase as floats too */
         times[kept] = t;
@@ -216,10 +217,10 @@ static bool animate(gltf *g, int body, double tolerance)
         say_channel(g, body, input, put_floats(g, places, kept, 3, 0, false), "translation");
         say_channel(g, body, input, put_floats(g, turns, kept, 4, 0, false), "rotation");
     }
-    free(keys);
-    free(times);
-    free(places);
-    free(turns);
+    imp_arena_give(g->arena, keys);
+    imp_arena_give(g->arena, times);
+    imp_arena_give(g->arena, places);
+    imp_arena_give(g->arena, turns);
     return whole;
 }
 
@@ -272,7 +273,7 @@ static void measure(gltf *g)
 static bool fill(gltf *g, double tolerance)
 {
     const int count = impact_run_body_count(g->run);
-    int *meshes = calloc((size_t)count, sizeof *meshes);
+    int *meshes = imp_arena_take(g->arena, (size_t)count, sizeof *meshes);
     bool whole = meshes != NULL;
     measure(g);
     say_materials(g);
@@ -285,7 +286,6 @@ static bool fill(gltf *g, double tolerance)
         if (whole && !def.is_static && impact_run_end(g->run) > impact_run_begin(g->run))
             whole = animate(g, i, tolerance);
     }
-    free(meshes);
     return whole;
 }
 
@@ -357,26 +357,37 @@ static void put_file(imp_text *file, const imp_text *json, const imp_text *buffe
     imp_text_put(file, buffer->bytes, buffer->size);
 }
 
+static impact_status write_file(gltf *g, double tolerance, const char *path, impact_quota *quota, char *message,
+                                unsigned long message_size)
+{
+    imp_text json = {.arena = g->arena}, file = {.arena = g->arena};
+    imp_text *const parts[] = {&g->buffer,   &g->views,    &g->accessors, &g->meshes, &g->nodes,
+                               &g->channels, &g->samplers, &g->materials, &json,      &file};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) parts[i]->arena = g->arena;
+    bool whole = fill(g, tolerance);
+    say_json(&json, g);
+    put_file(&file, &json, &g->buffer);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) whole = whole && !parts[i]->failed;
+    if (whole) return imp_file_save(g->arena, path, file.bytes, file.size, quota, message, message_size);
+    if (message) imp_arena_explain(g->run->arena, message, message_size);
+    return IMPACT_ENOMEM;
+}
+
 impact_status impact_gltf_write(const impact_run *run, double tolerance, const char *path, impact_quota *quota,
                                 char *message, unsigned long message_size)
 {
     gltf g = {.run = run};
-    imp_text json = {0}, file = {0}, *parts[] = {&g.buffer,   &g.views,    &g.accessors, &g.meshes, &g.nodes,
-                                                 &g.channels, &g.samplers, &g.materials, &json,     &file};
     if (!(tolerance >= 1e-7 && tolerance <= 0.1)) {
         if (message)
             snprintf(message, message_size, "tolerance = %g must lie in [1e-7, 0.1]: glTF has floats", tolerance);
         return IMPACT_EARGUMENT;
     }
-    bool whole = fill(&g, tolerance);
-    say_json(&json, &g);
-    put_file(&file, &json, &g.buffer);
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) whole = whole && !parts[i]->failed;
-    impact_status status = IMPACT_ENOMEM;
-    if (whole)
-        status = imp_file_save(path, file.bytes, file.size, quota, message, message_size);
+    const impact_allocator within = imp_arena_allocator(run->arena);
+    impact_status status = imp_arena_create(&within, &g.arena);
+    if (status == IMPACT_OK)
+        status = write_file(&g, tolerance, path, quota, message, message_size);
     else if (message)
-        snprintf(message, message_size, "%s", impact_status_string(status));
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) imp_text_free(parts[i]);
+        imp_arena_explain(run->arena, message, message_size);
+    imp_arena_destroy(g.arena);
     return status;
 }

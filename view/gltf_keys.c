@@ -6,7 +6,6 @@
 #include "gltf_keys.h"
 
 #include <quat/interpolate.h>
-#include <stdlib.h>
 
 /* s: Blender takes keys within a hundredth of a frame of each other as one: at 24 frames a second. */
 static const double least_step = 4.2e-4;
@@ -15,11 +14,12 @@ static const double least_step = 4.2e-4;
 static const double widest_turn = 1;
 
 typedef struct keys {
+    imp_arena *arena;
     const impact_run *run;
     int body;
     double place, angle; /* tolerances */
     imp_gltf_key *items;
-    long count, room;
+    int count, room;
     bool failed;
 } keys;
 
@@ -32,13 +32,10 @@ static imp_gltf_key key_at(const keys *k, double t)
 
 static void add(keys *k, imp_gltf_key key)
 {
-    if (k->count == k->room) {
-        const long room = 2 * k->room + 64;
-        imp_gltf_key *more = realloc(k->items, (size_t)room * sizeof *more);
-        k->failed = k->failed || !more;
-        if (!more) return;
-        k->items = more, k->room = room;
-    }
+    imp_gltf_key *more = k->failed ? NULL : imp_arena_grow(k->arena, k->items, &k->room, k->count + 1, sizeof *more);
+    k->failed = !more;
+    if (!more) return;
+    k->items = more;
     k->items[k->count++] = key;
 }
 
@@ -67,13 +64,13 @@ static void halve(keys *k, imp_gltf_key a, imp_gltf_key b)
     halve(k, middle, b);
 }
 
-imp_gltf_key *imp_gltf_keys(const impact_run *run, int body, double tolerance, long *count)
+imp_gltf_key *imp_gltf_keys(imp_arena *arena, const impact_run *run, int body, double tolerance, int *count)
 {
     impact_body_def def;
     impact_run_body(run, body, &def);
     const double size = impact_shape_bounding_radius(&def.shape) + qvec3_norm(def.shape_position);
     const double end = impact_run_end(run);
-    keys k = {.run = run, .body = body, .place = tolerance * size, .angle = tolerance};
+    keys k = {.arena = arena, .run = run, .body = body, .place = tolerance * size, .angle = tolerance};
     imp_gltf_key last = key_at(&k, impact_run_begin(run));
     add(&k, last);
     for (long i = 1; i < impact_run_key_count(run, body); i++) {
@@ -87,7 +84,5 @@ imp_gltf_key *imp_gltf_keys(const impact_run *run, int body, double tolerance, l
     }
     if (end > last.t) halve(&k, last, key_at(&k, end));
     *count = k.count;
-    if (!k.failed) return k.items;
-    free(k.items);
-    return NULL;
+    return k.failed ? NULL : k.items;
 }

@@ -6,6 +6,7 @@
 #define IMP_GLTF_KEYS_H
 
 #include <impact/run.h>
+#include "base/arena.h"
 
 typedef struct imp_gltf_key {
     double t;
@@ -13,8 +14,8 @@ typedef struct imp_gltf_key {
     quat q; /* next to its neighbours': their dot products are positive */
 } imp_gltf_key;
 
-/* Keys of the body, to be freed with free(): lines and slerp between them meet the record within tolerance times the
+/* Keys of the body, in a block of the arena: lines and slerp between them meet the record within tolerance times the
  * body's size and tolerance rad, but where they stand least_step apart. NULL: out of memory. */
-imp_gltf_key *imp_gltf_keys(const impact_run *run, int body, double tolerance, long *count);
+imp_gltf_key *imp_gltf_keys(imp_arena *arena, const impact_run *run, int body, double tolerance, int *count);
 
 #endif

@@ -262,9 +262,10 @@ static void curved_mesh(imp_mesh *mesh, const impact_body_def *body)
     }
 }
 
-bool imp_mesh_of(const impact_body_def *body, imp_mesh *mesh)
+bool imp_mesh_of(imp_arena *arena, const impact_body_def *body, imp_mesh *mesh)
 {
-    *mesh = (imp_mesh){0};
+    const imp_text none = {.arena = arena};
+    *mesh = (imp_mesh){none, none, {none, none}};
     switch (body->shape.kind) {
     case IMPACT_BOX:
     case IMPACT_POLYHEDRON: flat_mesh(mesh, body); break;

@@ -15,8 +15,8 @@ typedef struct imp_mesh {
     imp_text index[2];        /* uint32_t, three a triangle */
 } imp_mesh;
 
-/* Of any shape but a plane. False: out of memory; either way to be freed. */
-bool imp_mesh_of(const impact_body_def *body, imp_mesh *mesh);
+/* Of any shape but a plane, in memory of the arena. False: out of memory; either way to be freed. */
+bool imp_mesh_of(imp_arena *arena, const impact_body_def *body, imp_mesh *mesh);
 void imp_mesh_free(imp_mesh *mesh);
 
 #endif

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "run/run.h"
+#include "run/run_open.h"
 #include "run/text.h"
 
 /* The bytes of a page at most: what a browser takes without a pause. */
@@ -53,11 +53,11 @@ static impact_status too_large(const impact_run *run, size_t size, char *message
     return IMPACT_EARGUMENT;
 }
 
-impact_status impact_view_write(const impact_run *run, const char *path, impact_quota *quota, char *message,
-                                unsigned long message_size)
+static impact_status write_page(imp_arena *arena, const impact_run *run, const char *path, impact_quota *quota,
+                                char *message, unsigned long message_size)
 {
     size_t size;
-    imp_text page = {0}, packed = {0};
+    imp_text page = {.arena = arena}, packed = {.arena = arena};
     const void *bytes = impact_run_contents(run, &size);
     imp_deflate(&packed, bytes, size);
     imp_text_put(&page, imp_view_part_0, imp_view_size_0);
@@ -65,14 +65,23 @@ impact_status impact_view_write(const impact_run *run, const char *path, impact_
     imp_text_put(&page, imp_view_part_1, imp_view_size_1);
     if (!packed.failed) put_base64(&page, (const unsigned char *)packed.bytes, packed.size);
     imp_text_put(&page, imp_view_part_2, imp_view_size_2);
-    impact_status status = IMPACT_ENOMEM;
-    if (page.size > largest_page)
-        status = too_large(run, page.size, message, message_size);
-    else if (!page.failed && !packed.failed)
-        status = imp_file_save(path, page.bytes, page.size, quota, message, message_size);
+    if (page.size > largest_page) return too_large(run, page.size, message, message_size);
+    if (!page.failed && !packed.failed)
+        return imp_file_save(arena, path, page.bytes, page.size, quota, message, message_size);
+    if (message) imp_arena_explain(run->arena, message, message_size);
+    return IMPACT_ENOMEM;
+}
+
+impact_status impact_view_write(const impact_run *run, const char *path, impact_quota *quota, char *message,
+                                unsigned long message_size)
+{
+    imp_arena *arena;
+    const impact_allocator within = imp_arena_allocator(run->arena);
+    impact_status status = imp_arena_create(&within, &arena);
+    if (status == IMPACT_OK)
+        status = write_page(arena, run, path, quota, message, message_size);
     else if (message)
-        snprintf(message, message_size, "%s", impact_status_string(status));
-    imp_text_free(&packed);
-    imp_text_free(&page);
+        imp_arena_explain(run->arena, message, message_size);
+    imp_arena_destroy(arena);
     return status;
 }

@@ -128,7 +128,8 @@ static int shape_polyhedron(lua_State *L)
     const size_t count = read_points(&reader, points);
     const double rounding = rounding_of(&reader);
     impact_hull **place = impact_lua_push_hull(L, NULL);
-    if (impact_hull_create(points, count, rounding, NULL, place, message, sizeof message) < 0)
+    const impact_lua_host *host = impact_lua_get_host(L);
+    if (impact_hull_create(points, count, rounding, host ? host->allocator : NULL, place, message, sizeof message) < 0)
         return quat_lua_reader_error(&reader, "%s", message);
     impact_shape shape;
     impact_shape_polyhedron(*place, &shape);

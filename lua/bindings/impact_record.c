@@ -32,7 +32,8 @@ static int run_open(lua_State *L)
         return quat_lua_error(L, "open: the path must be a plain name without '/', got the string '%s'", path);
     if (host && impact_lua_is_plain(path)) path = lua_pushfstring(L, "%s/%s", host->directory, path);
     impact_lua_push_run(L, NULL);
-    if (impact_run_open(path, lua_touserdata(L, -1), message, sizeof message) < 0) return quat_lua_failure(L, message);
+    if (impact_run_open(path, host ? host->allocator : NULL, lua_touserdata(L, -1), message, sizeof message) < 0)
+        return quat_lua_failure(L, message);
     return 1;
 }
 

@@ -5,7 +5,6 @@
 #include "impact_record.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- making ---- */
@@ -236,15 +235,15 @@ static int scene_record(lua_State *L)
 {
     const impact_lua_scene *self = recorded_scene(L);
     char message[200] = "";
-    void *bytes;
+    const void *bytes;
     size_t size;
     impact_run **run;
     impact_lua_push_run(L, NULL);
     run = lua_touserdata(L, -1);
     impact_status status = impact_run_bytes(self->writer, self->reason ? self->reason : "so far", &bytes, &size);
     if (status < 0) return quat_lua_error(L, "%s", impact_status_string(status));
-    status = impact_run_read(bytes, size, self->name, run, message, sizeof message);
-    free(bytes);
+    const impact_allocator *allocator = self->host ? self->host->allocator : NULL;
+    status = impact_run_read(bytes, size, self->name, allocator, run, message, sizeof message);
     if (status < 0) return quat_lua_error(L, "%s", message);
     return 1;
 }

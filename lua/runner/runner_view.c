@@ -35,7 +35,8 @@ void impact_runner_push_record(lua_State *L, const impact_runner *runner)
     impact_run **run = lua_newuserdatauv(L, sizeof *run, 0);
     *run = NULL;
     luaL_setmetatable(L, "impact.run");
-    if (impact_run_open(runner->script, run, message, sizeof message) < 0) luaL_error(L, "%s", message);
+    if (impact_run_open(runner->script, &runner->allocator, run, message, sizeof message) < 0)
+        luaL_error(L, "%s", message);
 }
 
 int impact_runner_view_record(lua_State *L, impact_runner *runner)

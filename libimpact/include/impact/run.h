@@ -26,8 +26,10 @@ IMPACT_API impact_status impact_run_create(const impact_scene *scene, impact_run
 /* A recorder over it (no progress function); valid until the writer is destroyed. A sink refuses when the memory is
  * out. */
 IMPACT_API impact_recorder impact_run_recorder(impact_run_writer *writer);
-/* The record so far, as a file has it: *bytes, to be freed with free(). reason: why the run ended, in a word or two. */
-IMPACT_API impact_status impact_run_bytes(impact_run_writer *writer, const char *reason, void **bytes, size_t *size);
+/* The record so far, as a file has it; valid until the next such call or the writer's end. reason: why the run ended,
+ * in a word or two. IMPACT_ENOMEM. */
+IMPACT_API impact_status impact_run_bytes(impact_run_writer *writer, const char *reason, const void **bytes,
+                                          size_t *size);
 /* The same into a file, which is whole or not there. quota: what may be written still; NULL: no limit. IMPACT_ESINK,
  * with a message. */
 IMPACT_API impact_status impact_run_save(impact_run_writer *writer, const char *reason, const char *path,
@@ -40,11 +42,14 @@ typedef struct impact_run impact_run;
 
 /* Opens a record; nothing in it is trusted: IMPACT_EARGUMENT, with a message, when it is no record, is newer than this
  * program or is damaged (offsets, counts, order of time, numbers that are not finite, orientations that are not unit).
- * IMPACT_ESINK: the file cannot be read. *run is NULL on failure. */
-IMPACT_API impact_status impact_run_open(const char *path, impact_run **run, char *message, unsigned long message_size);
-/* The same of bytes, which are copied. name stands for the path in messages. */
-IMPACT_API impact_status impact_run_read(const void *bytes, size_t size, const char *name, impact_run **run,
+ * IMPACT_ESINK: the file cannot be read. allocator: of all its memory (copied; NULL: malloc); IMPACT_ENOMEM. *run is
+ * NULL on failure. */
+IMPACT_API impact_status impact_run_open(const char *path, const impact_allocator *allocator, impact_run **run,
                                          char *message, unsigned long message_size);
+/* The same of bytes, which are copied. name stands for the path in messages. */
+IMPACT_API impact_status impact_run_read(const void *bytes, size_t size, const char *name,
+                                         const impact_allocator *allocator, impact_run **run, char *message,
+                                         unsigned long message_size);
 IMPACT_API void impact_run_close(impact_run *run); /* NULL is fine */
 
 /* What it was read from, byte for byte; valid until it is closed, as all strings below are. */

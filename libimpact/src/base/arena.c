@@ -234,6 +234,19 @@ char *imp_arena_copy(imp_arena *arena, const char *text)
     return copy ? memcpy(copy, text, size) : NULL;
 }
 
+static void *take_within(size_t size, void *arena) { return imp_arena_take(arena, 1, size); }
+
+static void give_within(void *block, size_t size, void *arena)
+{
+    (void)size;
+    imp_arena_give(arena, block);
+}
+
+impact_allocator imp_arena_allocator(imp_arena *arena)
+{
+    return (impact_allocator){.allocate = take_within, .release = give_within, .context = arena};
+}
+
 impact_memory imp_arena_memory(const imp_arena *arena) { return arena->memory; }
 
 void imp_arena_explain(const imp_arena *arena, char *message, size_t size)

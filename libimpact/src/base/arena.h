@@ -29,6 +29,9 @@ void imp_arena_give(imp_arena *arena, void *block);
 void *imp_arena_grow(imp_arena *arena, void *array, int *room, int wanted, size_t size);
 char *imp_arena_copy(imp_arena *arena, const char *text); /* of a string; NULL: no more */
 
+/* What takes an allocator takes from the arena. */
+impact_allocator imp_arena_allocator(imp_arena *arena);
+
 impact_memory imp_arena_memory(const imp_arena *arena);
 /* "out of memory: 4096 bytes more than the 65536 held (limit 65536)" */
 void imp_arena_explain(const imp_arena *arena, char *message, size_t size);

@@ -197,25 +197,18 @@ static imp_json *read_value(scanner *r, int depth)
     return read_number(r, &node->number) ? node : NULL;
 }
 
-bool imp_json_read(const char *text, size_t size, imp_json_document *document)
+impact_status imp_json_read(imp_arena *arena, const char *text, size_t size, const imp_json **root)
 {
-    *document = (imp_json_document){0};
-    if (size > SIZE_MAX / sizeof(imp_json) - 2) return false;
-    document->nodes = malloc((size + 1) * sizeof *document->nodes);
-    document->strings = malloc(size + 1);
-    scanner r = {text, text + size, document->nodes, 0, document->strings};
-    if (document->nodes && document->strings) document->root = read_value(&r, 0);
+    *root = NULL;
+    imp_json *nodes = imp_arena_take(arena, size + 1, sizeof *nodes); /* each takes a byte of the text at least */
+    char *strings = imp_arena_take(arena, size + 1, 1);
+    if (!nodes || !strings) return IMPACT_ENOMEM;
+    scanner r = {text, text + size, nodes, 0, strings};
+    const imp_json *value = read_value(&r, 0);
     skip_blanks(&r);
-    if (document->root && r.at == r.end) return true;
-    imp_json_free(document);
-    return false;
-}
-
-void imp_json_free(imp_json_document *document)
-{
-    free(document->nodes);
-    free(document->strings);
-    *document = (imp_json_document){0};
+    if (!value || r.at != r.end) return IMPACT_EARGUMENT;
+    *root = value;
+    return IMPACT_OK;
 }
 
 const imp_json *imp_json_get(const imp_json *object, const char *key, imp_json_kind kind)

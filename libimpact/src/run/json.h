@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include "base/arena.h"
 
 typedef enum imp_json_kind {
     IMP_JSON_NULL,
@@ -30,16 +31,9 @@ struct imp_json {
     int count;
 };
 
-/* Everything read from one text. */
-typedef struct imp_json_document {
-    const imp_json *root;
-    imp_json *nodes;
-    char *strings;
-} imp_json_document;
-
-/* False: no JSON, deeper than 32, or out of memory; nothing is then left to be freed. */
-bool imp_json_read(const char *text, size_t size, imp_json_document *document);
-void imp_json_free(imp_json_document *document);
+/* Everything read from one text stands in the arena, and goes with it. IMPACT_EARGUMENT: no JSON, or deeper than 32;
+ * IMPACT_ENOMEM. */
+impact_status imp_json_read(imp_arena *arena, const char *text, size_t size, const imp_json **root);
 
 /* The member; NULL when there is none of this kind, or the value is no object. */
 const imp_json *imp_json_get(const imp_json *object, const char *key, imp_json_kind kind);

@@ -6,6 +6,7 @@
 #define IMP_RUN_H
 
 #include <impact/run.h>
+#include "base/arena.h"
 
 #define IMP_RUN_FORMAT "impact-run"
 
@@ -31,8 +32,9 @@ extern const imp_run_table imp_run_tables[IMP_RUN_TABLES];
 
 extern const char *const imp_run_shapes[IMPACT_SHAPE_KINDS]; /* their names, by kind */
 
-/* Writes a file that is whole or not there: IMPACT_ESINK with a message, IMPACT_ENOMEM. */
-impact_status imp_file_save(const char *path, const void *bytes, size_t size, impact_quota *quota, char *message,
-                            unsigned long message_size);
+/* Writes a file that is whole or not there: IMPACT_ESINK or IMPACT_ENOMEM, with a message. What an
+ * open file takes comes from the arena, and goes back. */
+impact_status imp_file_save(imp_arena *arena, const char *path, const void *bytes, size_t size, impact_quota *quota,
+                            char *message, unsigned long message_size);
 
 #endif

@@ -28,9 +28,11 @@ typedef struct imp_words {
 } imp_words;
 
 struct impact_run {
+    imp_arena *arena; /* where all of it stands, itself too, but hulls, which others may share */
+    impact_allocator allocator;
     char *bytes;
     size_t size;
-    imp_json_document head;
+    const imp_json *head;
     const char *name, *reason;
     double begin, end, tolerance;
     qvec3 gravity;

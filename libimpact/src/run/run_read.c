@@ -5,11 +5,11 @@
  */
 #include "run/run_open.h"
 #include "base/tolerances.h"
+#include "run/text.h"
 
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct reader {
@@ -32,7 +32,9 @@ __attribute__((format(printf, 2, 3))) static impact_status refuse(const reader *
 
 static impact_status out_of_memory(const reader *r)
 {
-    refuse(r, "%s", impact_status_string(IMPACT_ENOMEM));
+    char words[160];
+    imp_arena_explain(r->run->arena, words, sizeof words);
+    refuse(r, "%s", words);
     return IMPACT_ENOMEM;
 }
 
@@ -47,9 +49,11 @@ static impact_status read_head(const reader *r, size_t *data)
     const char *end = begins ? memchr(run->bytes, '\n', run->size) : NULL;
     if (!end) return refuse(r, "not a recorded run");
     *data = (size_t)(end - run->bytes) + 1;
-    if (!imp_json_read(run->bytes, *data, &run->head)) return refuse(r, "its first line is not JSON");
     bool good = true;
-    const double version = imp_json_number(run->head.root, "version", 0, &good);
+    const impact_status status = imp_json_read(run->arena, run->bytes, *data, &run->head);
+    if (status == IMPACT_ENOMEM) return out_of_memory(r);
+    if (status < 0) return refuse(r, "its first line is not JSON");
+    const double version = imp_json_number(run->head, "version", 0, &good);
     if (!good || !(version >= 1)) return refuse(r, "not a recorded run: it has no version");
     if (version > IMP_RUN_VERSION)
         return refuse(r, "version %.0f is newer than this program (%d)", version, IMP_RUN_VERSION);
@@ -90,9 +94,9 @@ static bool vector_of(const imp_json *object, const char *key, qvec3 *v)
 
 static impact_status words_of(const reader *r, const char *key, imp_words *words)
 {
-    const imp_json *list = imp_json_get(r->run->head.root, key, IMP_JSON_ARRAY);
+    const imp_json *list = imp_json_get(r->run->head, key, IMP_JSON_ARRAY);
     if (!list) return refuse(r, "it has no list '%s'", key);
-    words->word = calloc((size_t)list->count + 1, sizeof *words->word);
+    words->word = imp_arena_take(r->run->arena, (size_t)list->count + 1, sizeof *words->word);
     if (!words->word) return out_of_memory(r);
     for (const imp_json *item = list->first; item; item = item->next) {
         if (item->kind != IMP_JSON_STRING) return refuse(r, "list '%s' holds what is no string", key);
@@ -116,7 +120,7 @@ static impact_status read_table(const reader *r, int number, size_t data)
     const imp_run_table *table = &imp_run_tables[number];
     const impact_run *run = r->run;
     imp_run_place *place = &r->run->tables[number];
-    const imp_json *tables = imp_json_get(run->head.root, "tables", IMP_JSON_OBJECT);
+    const imp_json *tables = imp_json_get(run->head, "tables", IMP_JSON_OBJECT);
     const imp_json *entry = imp_json_get(tables, table->name, IMP_JSON_OBJECT);
     const imp_json *columns = imp_json_get(entry, "columns", IMP_JSON_ARRAY);
     const double most = 9007199254740992; /* 2^53: whole numbers end there */
@@ -162,36 +166,38 @@ static impact_status check_rows(const reader *r, int table, long first, long cou
 /* ---- bodies ---- */
 
 /* The hull of a polyhedron's corners, in whose frame they stand. */
-static bool read_hull(const imp_json *body, double rounding, impact_hull **hull, impact_shape *shape, char *why,
-                      size_t size)
+static impact_status read_hull(const reader *r, const imp_json *body, imp_run_body *out, char *why, size_t size)
 {
     const imp_json *list = imp_json_get(body, "vertices", IMP_JSON_ARRAY);
+    impact_shape *shape = &out->def.shape;
     qvec3 points[IMPACT_HULL_POINTS];
     size_t count = 0;
-    if (!list || list->count > IMPACT_HULL_POINTS) return false;
+    if (!list || list->count > IMPACT_HULL_POINTS) return IMPACT_EARGUMENT;
     for (const imp_json *item = list->first; item; item = item->next) {
         const imp_json *number = item->kind == IMP_JSON_ARRAY && item->count == 3 ? item->first : NULL;
         double x[3];
         for (int k = 0; k < 3; k++, number = number->next) {
-            if (!number || number->kind != IMP_JSON_NUMBER) return false;
+            if (!number || number->kind != IMP_JSON_NUMBER) return IMPACT_EARGUMENT;
             x[k] = number->number;
         }
         points[count++] = (qvec3){x[0], x[1], x[2]};
     }
-    if (impact_hull_create(points, count, rounding, NULL, hull, why, size) < 0) return false;
-    return impact_shape_polyhedron(*hull, shape) >= 0;
+    const impact_status status =
+        impact_hull_create(points, count, shape->rounding, &r->run->allocator, &out->hull, why, size);
+    return status < 0 ? status : impact_shape_polyhedron(out->hull, shape);
 }
 
-static bool read_shape(const imp_json *body, impact_shape *shape, impact_hull **hull, char *why, size_t size)
+static impact_status read_shape(const reader *r, const imp_json *body, imp_run_body *out, char *why, size_t size)
 {
+    impact_shape *shape = &out->def.shape;
     const char *kind = string_of(body, "kind");
     double axes[3] = {0, 0, 0}, exponents[3] = {2, 2, 2};
     int k = 0;
     snprintf(why, size, "its shape is damaged");
     while (kind && k < IMPACT_SHAPE_KINDS && strcmp(kind, imp_run_shapes[k]) != 0) k++;
-    if (!kind || k == IMPACT_SHAPE_KINDS) return false;
+    if (!kind || k == IMPACT_SHAPE_KINDS) return IMPACT_EARGUMENT;
     if (!numbers_of(body, "axes", axes, 3, INFINITY) || !numbers_of(body, "exponents", exponents, 3, INFINITY))
-        return false;
+        return IMPACT_EARGUMENT;
     *shape = (impact_shape){.kind = (impact_shape_kind)k,
                             .a = axes[0],
                             .b = axes[1],
@@ -202,8 +208,8 @@ static bool read_shape(const imp_json *body, impact_shape *shape, impact_hull **
     bool good = true;
     shape->rounding = imp_json_number(body, "rounding", 0, &good);
     shape->base = imp_json_number(body, "base", 0, &good);
-    if (good && k == IMPACT_POLYHEDRON) return read_hull(body, shape->rounding, hull, shape, why, size);
-    return good && impact_shape_check(shape, why, size) >= 0;
+    if (!good) return IMPACT_EARGUMENT;
+    return k == IMPACT_POLYHEDRON ? read_hull(r, body, out, why, size) : impact_shape_check(shape, why, size);
 }
 
 static bool read_numbers(const imp_json *body, impact_body_def *def)
@@ -234,8 +240,9 @@ static impact_status read_body(const reader *r, const imp_json *body, imp_run_bo
     *def = impact_default_body_def();
     def->name = string_of(body, "name");
     if (!def->name) return refuse(r, "a body has no name");
-    if (!read_shape(body, &def->shape, &out->hull, why, sizeof why))
-        return refuse(r, "body '%.80s': %s", def->name, why);
+    const impact_status shaped = read_shape(r, body, out, why, sizeof why);
+    if (shaped == IMPACT_ENOMEM) return out_of_memory(r);
+    if (shaped < 0) return refuse(r, "body '%.80s': %s", def->name, why);
     if (!read_numbers(body, def)) return refuse(r, "body '%.80s': its numbers are damaged", def->name);
     const double rows = (double)r->run->tables[IMP_RUN_KEYS].rows;
     if (!numbers_of(body, "keys", keys, 2, NAN) || !(keys[0] >= 0) || !(keys[1] >= 1) || keys[0] + keys[1] > rows ||
@@ -268,19 +275,16 @@ static impact_status check_keys(const reader *r, int body)
 static impact_status read_bodies(const reader *r)
 {
     impact_run *run = r->run;
-    const imp_json *list = imp_json_get(run->head.root, "bodies", IMP_JSON_ARRAY);
+    const imp_json *list = imp_json_get(run->head, "bodies", IMP_JSON_ARRAY);
     if (!list || list->count == 0) return refuse(r, "it has no bodies");
-    run->bodies = calloc((size_t)list->count, sizeof *run->bodies);
+    run->bodies = imp_arena_take(run->arena, (size_t)list->count, sizeof *run->bodies);
     if (!run->bodies) return out_of_memory(r);
     run->begin = INFINITY, run->end = -INFINITY;
     for (const imp_json *body = list->first; body; body = body->next) {
         impact_status status = read_body(r, body, &run->bodies[run->body_count]);
         if (status == IMPACT_OK) status = check_keys(r, run->body_count);
-        if (status != IMPACT_OK) {
-            impact_hull_destroy(run->bodies[run->body_count].hull);
-            return status;
-        }
-        run->body_count++;
+        run->body_count++; /* one that is refused has a hull to give back */
+        if (status != IMPACT_OK) return status;
     }
     return IMPACT_OK;
 }
@@ -339,90 +343,88 @@ static impact_status read_run(const reader *r)
     if (status == IMPACT_OK) status = check_contacts(r);
     if (status == IMPACT_OK) status = check_rows(r, IMP_RUN_ACCOUNT, 0, run->tables[IMP_RUN_ACCOUNT].rows);
     if (status != IMPACT_OK) return status;
-    run->name = string_of(run->head.root, "name");
-    run->reason = string_of(run->head.root, "reason");
-    run->tolerance = imp_json_number(run->head.root, "tolerance", 0, &good);
-    if (!run->name || !run->reason || !good || !vector_of(run->head.root, "gravity", &run->gravity))
+    run->name = string_of(run->head, "name");
+    run->reason = string_of(run->head, "reason");
+    run->tolerance = imp_json_number(run->head, "tolerance", 0, &good);
+    if (!run->name || !run->reason || !good || !vector_of(run->head, "gravity", &run->gravity))
         return refuse(r, "its name, reason, tolerance or gravity is damaged");
     return IMPACT_OK;
 }
 
-/* Takes the bytes over. */
-static impact_status open_bytes(char *bytes, size_t size, const char *name, impact_run **out, char *message,
-                                unsigned long message_size)
+/* A run with nothing in it but its arena. */
+static impact_status begin(const impact_allocator *allocator, const char *name, impact_run **run, char *message,
+                           unsigned long message_size)
 {
-    impact_run *run = calloc(1, sizeof *run);
-    const reader r = {run, name, message, message_size};
-    if (!run) {
-        free(bytes);
-        return out_of_memory(&r);
+    imp_arena *arena;
+    if (message && message_size > 0) message[0] = '\0';
+    impact_status status = imp_arena_create(allocator, &arena);
+    *run = status < 0 ? NULL : imp_arena_take(arena, 1, sizeof **run);
+    if (*run) {
+        (*run)->arena = arena;
+        if (allocator) (*run)->allocator = *allocator;
+        return IMPACT_OK;
     }
-    run->bytes = bytes;
-    run->size = size;
-    const impact_status status = read_run(&r);
-    if (status == IMPACT_OK)
-        *out = run;
-    else
-        impact_run_close(run);
+    if (status == IMPACT_OK) status = IMPACT_ENOMEM, imp_arena_destroy(arena);
+    if (message && message_size > 0) snprintf(message, message_size, "'%s': %s", name, impact_status_string(status));
     return status;
 }
 
-impact_status impact_run_read(const void *bytes, size_t size, const char *name, impact_run **run, char *message,
-                              unsigned long message_size)
+/* A run that cannot be read is closed. */
+static impact_status ended(impact_status status, impact_run **run)
 {
+    if (status == IMPACT_OK) return status;
+    impact_run_close(*run);
     *run = NULL;
-    if (message && message_size > 0) message[0] = '\0';
-    char *copy = malloc(size + 1);
-    const reader r = {NULL, name, message, message_size};
-    if (!copy) return out_of_memory(&r);
-    if (size > 0) memcpy(copy, bytes, size);
-    return open_bytes(copy, size, name, run, message, message_size);
+    return status;
 }
 
-/* All of a file; NULL with errno. */
-static char *read_file(const char *path, size_t *size)
+impact_status impact_run_read(const void *bytes, size_t size, const char *name, const impact_allocator *allocator,
+                              impact_run **run, char *message, unsigned long message_size)
+{
+    const impact_status begun = begin(allocator, name, run, message, message_size);
+    if (begun < 0) return begun;
+    const reader r = {*run, name, message, message_size};
+    (*run)->bytes = imp_arena_take((*run)->arena, size, 1);
+    (*run)->size = size;
+    if (!(*run)->bytes) return ended(out_of_memory(&r), run);
+    if (size > 0) memcpy((*run)->bytes, bytes, size);
+    return ended(read_run(&r), run);
+}
+
+/* All of a file, into the run. IMPACT_ESINK with errno. */
+static impact_status read_file(const char *path, impact_run *run)
 {
     FILE *file = fopen(path, "rb");
-    char *bytes = NULL;
-    size_t room = 0;
-    *size = 0;
-    while (file && !feof(file)) {
-        if (*size == room) {
-            char *more = realloc(bytes, room = 2 * room + 65536);
-            if (!more) break;
-            bytes = more;
-        }
-        *size += fread(bytes + *size, 1, room - *size, file);
-        if (ferror(file)) break;
+    imp_text text = {.arena = run->arena};
+    char some[4096];
+    bool good = file != NULL;
+    while (good && !text.failed && !feof(file)) {
+        const size_t got = fread(some, 1, sizeof some, file);
+        imp_text_put(&text, some, got);
+        good = !ferror(file);
     }
-    const bool whole_file = file && feof(file) && !ferror(file);
     if (file) fclose(file);
-    if (whole_file) return bytes;
-    free(bytes);
-    return NULL;
+    run->bytes = text.bytes;
+    run->size = text.size;
+    return !good ? IMPACT_ESINK : text.failed ? IMPACT_ENOMEM : IMPACT_OK;
 }
 
-impact_status impact_run_open(const char *path, impact_run **run, char *message, unsigned long message_size)
+impact_status impact_run_open(const char *path, const impact_allocator *allocator, impact_run **run, char *message,
+                              unsigned long message_size)
 {
-    size_t size;
-    *run = NULL;
+    const impact_status begun = begin(allocator, path, run, message, message_size);
+    if (begun < 0) return begun;
+    const reader r = {*run, path, message, message_size};
     errno = 0;
-    char *bytes = read_file(path, &size);
-    if (bytes) return open_bytes(bytes, size, path, run, message, message_size);
-    if (message && message_size > 0) snprintf(message, message_size, "'%s': %s", path, strerror(errno));
-    return IMPACT_ESINK;
+    const impact_status got = read_file(path, *run);
+    if (got == IMPACT_ESINK) refuse(&r, "%s", strerror(errno));
+    if (got == IMPACT_ENOMEM) out_of_memory(&r);
+    return ended(got < 0 ? got : read_run(&r), run);
 }
 
 void impact_run_close(impact_run *run)
 {
     if (!run) return;
-    imp_json_free(&run->head);
-    free(run->kinds.word);
-    free(run->modes.word);
-    free(run->forces.word);
-    free(run->phases.word);
-    for (int i = 0; run->bodies && i < run->body_count; i++) impact_hull_destroy(run->bodies[i].hull);
-    free(run->bodies);
-    free(run->bytes);
-    free(run);
+    for (int i = 0; i < run->body_count; i++) impact_hull_destroy(run->bodies[i].hull);
+    imp_arena_destroy(run->arena);
 }

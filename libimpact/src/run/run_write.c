@@ -4,11 +4,9 @@
  * motion makes them and are put body by body when the record is made up.
  */
 #include "run/run.h"
-#include "base/out_file.h"
 #include "run/text.h"
 #include "scene/scene_internal.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +23,7 @@ struct impact_run_writer {
     rows key_body; /* whose each key is: an int */
     imp_text phases;
     int phase_count;
+    imp_text record; /* made up last */
 };
 
 static bool add_row(impact_run_writer *w, int table, const double *values)
@@ -132,7 +131,7 @@ impact_status impact_run_create(const impact_scene *scene, impact_run_writer **w
         return IMPACT_ENOMEM;
     }
     w->scene = scene;
-    w->key_body.bytes.arena = w->phases.arena = arena;
+    w->key_body.bytes.arena = w->phases.arena = w->record.arena = arena;
     for (int i = 0; i < IMP_RUN_TABLES; i++) w->tables[i].bytes.arena = arena;
     return IMPACT_OK;
 }
@@ -149,6 +148,7 @@ void impact_run_discard(impact_run_writer *writer)
     for (int i = 0; i < IMP_RUN_TABLES; i++) imp_text_free(&writer->tables[i].bytes);
     imp_text_free(&writer->key_body.bytes);
     imp_text_free(&writer->phases);
+    imp_text_free(&writer->record);
     imp_arena_give(writer->scene->world.arena, writer);
 }
 
@@ -396,11 +396,11 @@ static int in_order(const void *a, const void *b)
     return (x->row > y->row) - (x->row < y->row);
 }
 
-static impact_status sort_contacts(const rows *contacts, char *out)
+static bool sort_contacts(imp_arena *arena, const rows *contacts, char *out)
 {
     const size_t size = sizeof(double) * IMP_CONTACT_COLUMNS, count = (size_t)contacts->count;
-    place *places = malloc(sizeof *places * (count + 1));
-    if (!places) return IMPACT_ENOMEM;
+    place *places = imp_arena_take(arena, count, sizeof *places);
+    if (!places) return false;
     for (size_t k = 0; k < count; k++) {
         places[k].row = (long)k;
         memcpy(&places[k].t, contacts->bytes.bytes + k * size, sizeof(double));
@@ -408,73 +408,46 @@ static impact_status sort_contacts(const rows *contacts, char *out)
     qsort(places, count, sizeof *places, in_order);
     for (size_t k = 0; k < count; k++)
         memcpy(out + k * size, contacts->bytes.bytes + (size_t)places[k].row * size, size);
-    free(places);
-    return IMPACT_OK;
+    imp_arena_give(arena, places);
+    return true;
 }
 
-impact_status impact_run_bytes(impact_run_writer *w, const char *reason, void **bytes, size_t *size)
+/* All tables behind the head, keys and contacts in the record's order. */
+static bool put_tables(impact_run_writer *w, imp_text *all, long *first)
 {
+    const size_t keys = all->size;
+    for (int i = 0; i < IMP_RUN_TABLES; i++) imp_text_put(all, w->tables[i].bytes.bytes, w->tables[i].bytes.size);
+    if (all->failed) return false;
+    sort_keys(w, first + 1, all->bytes + keys);
+    const size_t contacts = keys + w->tables[IMP_RUN_KEYS].bytes.size + w->tables[IMP_RUN_EVENTS].bytes.size;
+    return sort_contacts(all->arena, &w->tables[IMP_RUN_CONTACTS], all->bytes + contacts);
+}
+
+impact_status impact_run_bytes(impact_run_writer *w, const char *reason, const void **bytes, size_t *size)
+{
+    imp_arena *arena = w->scene->world.arena;
+    imp_text_free(&w->record);
     *bytes = NULL;
-    imp_text all = {0};
-    long *first = malloc(sizeof *first * ((size_t)impact_scene_body_count(w->scene) + 2));
+    long *first = imp_arena_take(arena, (size_t)impact_scene_body_count(w->scene) + 2, sizeof *first);
     if (!first) return IMPACT_ENOMEM;
     count_keys(w, first);
-    say_head(&all, w, impact_scene_name(w->scene), reason, first + 1);
-    const size_t keys = all.size;
-    for (int i = 0; i < IMP_RUN_TABLES; i++) imp_text_put(&all, w->tables[i].bytes.bytes, w->tables[i].bytes.size);
-    impact_status status = all.failed ? IMPACT_ENOMEM : IMPACT_OK;
-    if (status == IMPACT_OK) sort_keys(w, first + 1, all.bytes + keys);
-    const size_t contacts = keys + w->tables[IMP_RUN_KEYS].bytes.size + w->tables[IMP_RUN_EVENTS].bytes.size;
-    if (status == IMPACT_OK) status = sort_contacts(&w->tables[IMP_RUN_CONTACTS], all.bytes + contacts);
-    free(first);
-    if (status != IMPACT_OK) {
-        imp_text_free(&all);
-        return status;
-    }
-    *bytes = all.bytes;
-    *size = all.size;
+    say_head(&w->record, w, impact_scene_name(w->scene), reason, first + 1);
+    const bool whole = put_tables(w, &w->record, first);
+    imp_arena_give(arena, first);
+    if (!whole) return imp_text_free(&w->record), IMPACT_ENOMEM;
+    *bytes = w->record.bytes;
+    *size = w->record.size;
     return IMPACT_OK;
-}
-
-/* ---- the file ---- */
-
-static impact_status sink_error(const char *path, const char *what, char *message, unsigned long size)
-{
-    if (message && size > 0) snprintf(message, size, "%s: %s: %s", path, what, strerror(errno));
-    return IMPACT_ESINK;
-}
-
-impact_status imp_file_save(const char *path, const void *bytes, size_t size, impact_quota *quota, char *message,
-                            unsigned long message_size)
-{
-    imp_arena *arena;
-    imp_out_file file;
-    impact_status status = imp_arena_create(NULL, &arena);
-    if (status != IMPACT_OK) return status;
-    const char *failed = NULL;
-    if (!imp_out_open(&file, arena, path, quota))
-        failed = "cannot be opened";
-    else if (!imp_out_put(&file, bytes, size) || !imp_out_finish(&file, false))
-        failed = "cannot be written";
-    else if (!imp_out_give_name(&file, path))
-        failed = "cannot be given its name";
-    if (failed) status = sink_error(path, failed, message, message_size);
-    imp_out_close(&file);
-    imp_arena_destroy(arena);
-    return status;
 }
 
 impact_status impact_run_save(impact_run_writer *w, const char *reason, const char *path, impact_quota *quota,
                               char *message, unsigned long message_size)
 {
-    void *bytes;
+    const void *bytes;
     size_t size;
-    impact_status status = impact_run_bytes(w, reason, &bytes, &size);
-    if (status == IMPACT_OK) {
-        status = imp_file_save(path, bytes, size, quota, message, message_size);
-        free(bytes);
-    } else if (message) {
-        snprintf(message, message_size, "%s", impact_status_string(status));
-    }
+    imp_arena *arena = w->scene->world.arena;
+    const impact_status status = impact_run_bytes(w, reason, &bytes, &size);
+    if (status == IMPACT_OK) return imp_file_save(arena, path, bytes, size, quota, message, message_size);
+    if (message) imp_arena_explain(arena, message, message_size);
     return status;
 }

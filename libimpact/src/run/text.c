@@ -9,10 +9,7 @@
 
 void imp_text_free(imp_text *text)
 {
-    if (text->arena)
-        imp_arena_give(text->arena, text->bytes);
-    else
-        free(text->bytes);
+    imp_arena_give(text->arena, text->bytes);
     *text = (imp_text){.arena = text->arena};
 }
 
@@ -20,15 +17,9 @@ void imp_text_free(imp_text *text)
 static bool make_room(imp_text *text, size_t wanted)
 {
     if (wanted > INT_MAX / 2) return false;
-    if (text->arena) {
-        char *more = imp_arena_grow(text->arena, text->bytes, &text->room, (int)wanted, 1);
-        if (more) text->bytes = more;
-        return more != NULL;
-    }
-    char *more = realloc(text->bytes, 2 * wanted + 256);
-    if (!more) return false;
-    text->bytes = more, text->room = (int)(2 * wanted + 256);
-    return true;
+    char *more = imp_arena_grow(text->arena, text->bytes, &text->room, (int)wanted, 1);
+    if (more) text->bytes = more;
+    return more != NULL;
 }
 
 void imp_text_put(imp_text *text, const void *bytes, size_t size)

@@ -10,7 +10,7 @@
 #include "base/arena.h"
 
 typedef struct imp_text {
-    imp_arena *arena; /* where the bytes stand; NULL: malloc's */
+    imp_arena *arena; /* where the bytes stand */
     char *bytes;
     size_t size;
     int room;

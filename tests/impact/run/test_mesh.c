@@ -22,7 +22,9 @@ static qvec3 three_at(const imp_text *list, uint32_t i)
 static void look(const impact_body_def *body, double *off, double *volume, int *astray)
 {
     imp_mesh mesh;
-    assert_true(imp_mesh_of(body, &mesh));
+    imp_arena *arena;
+    assert_int_equal(imp_arena_create(NULL, &arena), IMPACT_OK);
+    assert_true(imp_mesh_of(arena, body, &mesh));
     *off = *volume = 0, *astray = 0;
     for (uint32_t i = 0; i < mesh.points.size / 12; i++) {
         const qvec3 n = three_at(&mesh.normals, i);
@@ -46,6 +48,8 @@ static void look(const impact_body_def *body, double *off, double *volume, int *
         }
     }
     imp_mesh_free(&mesh);
+    assert_int_equal(imp_arena_memory(arena).used, 0);
+    imp_arena_destroy(arena);
 }
 
 /* coarse: what chords of the rounding cut off, of the volume and m. */

@@ -21,17 +21,16 @@ static impact_run *record(impact_scene *scene)
     char message[200];
     impact_run_writer *writer;
     impact_run *run;
-    void *bytes;
+    const void *bytes;
     size_t size;
     assert_int_equal(impact_run_create(scene, &writer, message, sizeof message), IMPACT_OK);
     const impact_recorder recorder = impact_run_recorder(writer);
     if (impact_scene_run(scene, &recorder) < 0) fail_msg("%s", impact_scene_message(scene));
     assert_int_equal(impact_run_bytes(writer, "end of time", &bytes, &size), IMPACT_OK);
-    if (impact_run_read(bytes, size, "test", &run, message, sizeof message) < 0) fail_msg("%s", message);
+    if (impact_run_read(bytes, size, "test", NULL, &run, message, sizeof message) < 0) fail_msg("%s", message);
     size_t kept;
     assert_memory_equal(impact_run_contents(run, &kept), bytes, size);
     assert_int_equal(kept, size);
-    free(bytes);
     impact_run_discard(writer);
     return run;
 }
@@ -315,7 +314,7 @@ static void refused(const char *bytes, size_t size, const char *wanted)
 {
     char message[300] = "";
     impact_run *run;
-    assert_int_equal(impact_run_read(bytes, size, "x.run", &run, message, sizeof message), IMPACT_EARGUMENT);
+    assert_int_equal(impact_run_read(bytes, size, "x.run", NULL, &run, message, sizeof message), IMPACT_EARGUMENT);
     assert_null(run);
     assert_string_equal(message, wanted);
 }
@@ -365,7 +364,7 @@ static void try_bytes(const char *bytes, size_t size)
 {
     char message[300] = "";
     impact_run *run;
-    const impact_status status = impact_run_read(bytes, size, "x.run", &run, message, sizeof message);
+    const impact_status status = impact_run_read(bytes, size, "x.run", NULL, &run, message, sizeof message);
     assert_true(status == IMPACT_OK || (status == IMPACT_EARGUMENT && message[0]));
     for (int i = 0; run && i < impact_run_body_count(run); i++) {
         const double begin = impact_run_begin(run), end = impact_run_end(run);
@@ -425,7 +424,7 @@ static void test_files(void **state)
     const impact_recorder recorder = impact_run_recorder(writer);
     assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_OK);
     assert_int_equal(impact_run_save(writer, "end of time", path, NULL, message, sizeof message), IMPACT_OK);
-    assert_int_equal(impact_run_open(path, &run, message, sizeof message), IMPACT_OK);
+    assert_int_equal(impact_run_open(path, NULL, &run, message, sizeof message), IMPACT_OK);
     assert_string_equal(impact_run_reason(run), "end of time");
     assert_string_equal(impact_run_name(run), "scene");
     assert_int_equal(impact_run_find(run, "brick"), 0);
@@ -438,7 +437,7 @@ static void test_files(void **state)
     assert_memory_equal(&back.moments, &body.moments, sizeof back.moments);
     impact_run_close(run);
     remove(path);
-    assert_int_equal(impact_run_open(path, &run, message, sizeof message), IMPACT_ESINK);
+    assert_int_equal(impact_run_open(path, NULL, &run, message, sizeof message), IMPACT_ESINK);
     assert_non_null(strstr(message, path));
     assert_int_equal(impact_run_save(writer, "", "no/such/folder.run", NULL, message, sizeof message), IMPACT_ESINK);
     impact_quota quota = {.left = 100};
