@@ -10,6 +10,7 @@
 #include "contact/persist_line.h"
 #include "contact/persist_spot.h"
 #include "contact/persist_system.h"
+#include "world/corner.h"
 #include "world/world_gap.h"
 
 #include <stdlib.h>
@@ -234,7 +235,9 @@ imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, co
     touch.onset = pair->mode == IMP_SLIDE && pair->onset;
     touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
     qvec3 rate1, rate2 = {0, 0, 0};
-    if (pair->placed)
+    if (pair->corner > 0)
+        rate1 = imp_corner_rate(world, pair, states);
+    else if (pair->placed)
         placed_rates(world, pair, &touch, states, &rate1, &rate2);
     else if (carried)
         carried_rates(world, &touch, states, &spot, &rate1);

@@ -14,6 +14,7 @@
 #include "contact/persist_flat.h"
 #include "contact/persist_line.h"
 #include "contact/persist_spot.h"
+#include "world/corner.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -218,7 +219,10 @@ static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_
                : touch->friction == 0    ? 1 /* slip neither begins nor ends */
                : touch->onset            ? touch->drive - (1 - 1e-9)
                                          : touch->speed - world->slip_speed;
-    value[2] = imp_world_inside_bounds(world, &world->pairs[touch->pair], states, &contact);
+    const imp_pair *pair = &world->pairs[touch->pair];
+    value[2] = pair->corner > 0
+                   ? imp_corner_clearance(world, pair, states) + 0.5 * imp_world_touching_distance(world, pair, states)
+                   : imp_world_inside_bounds(world, pair, states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
     if (touch->flat) value[2] = fmin(value[2], touch->spare);
     if (touch->lined) value[2] = fmin(value[2], imp_line_spare(world, touch, states, loads));

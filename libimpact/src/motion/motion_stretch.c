@@ -4,6 +4,7 @@
  */
 #include "motion/motion_stretch.h"
 #include "motion/motion_guard.h"
+#include "world/corner.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -43,8 +44,8 @@ static bool modes_break(imp_motion *motion, double t, const double *y)
 
 /* The function of the interpolated state whose zero is looked for in the last step. */
 typedef struct last_step_function {
-    enum { CLOCK, FIELD_EDGE } kind;
-    int index; /* edge */
+    enum { CLOCK, FIELD_EDGE, CLEARANCE } kind;
+    int index; /* edge; pair */
     double t;  /* the clock's zero */
 } last_step_function;
 
@@ -52,6 +53,8 @@ static double last_step_value(imp_motion *motion, last_step_function f, const do
 {
     if (f.kind == CLOCK) return y[Y_TIME] - f.t;
     imp_motion_unpack(motion, y, motion->scratch);
+    if (f.kind == CLEARANCE)
+        return imp_corner_clearance(motion->world, &motion->world->pairs[f.index], motion->scratch);
     return imp_field_edge(motion->world, y[Y_TIME], motion->scratch, f.index);
 }
 
@@ -120,6 +123,17 @@ static bool is_lowest_point(const imp_motion *motion, int root, last_step_functi
     return edge_root >= 0 && edge_root % ROOTS_PER_EDGE == 1 && value->index < imp_field_edge_count(motion->world);
 }
 
+/* A corner lands where its height is 0: its root, which no rounding is to find, lies a little below. */
+static impact_status find_landing(imp_motion *motion, int p, double tau_before, double *tau, double *y)
+{
+    const last_step_function height = {.kind = CLEARANCE, .index = p};
+    double at = *tau;
+    impact_status status = impact_ode_interpolate(motion->ode, tau_before, 0, y);
+    const bool crosses = status == IMPACT_OK && last_step_value(motion, height, y) > 0;
+    if (crosses) return find_in_last_step(motion, height, tau_before, at, tau, y);
+    return status == IMPACT_OK ? impact_ode_interpolate(motion->ode, at, 0, y) : status;
+}
+
 /* Looks through the roots found at *tau for the event that ends the segment; a zero that the step hid moves *tau and y
  * back to it. */
 static impact_status pick_event(imp_motion *motion, double tau_before, double *tau, double *y, imp_end *end)
@@ -131,7 +145,9 @@ static impact_status pick_event(imp_motion *motion, double tau_before, double *t
             if (end->kind != IMP_END_TIME) continue;
             *end = end_of_root(motion, root);
             motion->found[root] = 0;
-            continue;
+            if (end->kind != IMP_END_BOUNDS || motion->world->pairs[end->index].corner == 0) continue;
+            memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
+            return find_landing(motion, end->index, tau_before, tau, y);
         }
         if (last_step_value(motion, value, y) >= 0) continue;
         *end = (imp_end){IMP_END_EDGE, value.index};

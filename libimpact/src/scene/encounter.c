@@ -7,6 +7,7 @@
 #include "scene/scene_events.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_methods.h"
+#include "scene/scene_points.h"
 #include "scene/scene_receipt.h"
 #include "scene/stepped.h"
 
@@ -43,10 +44,20 @@ static void give_up(imp_island *loose)
 
 static impact_status conclude_steps(imp_island *island);
 
+/* What corners hold, and the exact way does not settle, goes on by steps. */
+static void lie_down_where_unsettled(imp_island *island, impact_status *status)
+{
+    if (*status != IMPACT_EUNSETTLED || !imp_scene_holds_corners(island)) return;
+    *status = IMPACT_OK;
+    island->lies = true;
+    island->scene->message[0] = '\0';
+}
+
 /* What is settled goes on, whatever became of the rows. */
 static impact_status conclude(imp_island *island, impact_status status)
 {
     impact_scene *scene = island->scene;
+    lie_down_where_unsettled(island, &status);
     if (island->lies && status == IMPACT_OK) {
         imp_island *stepped;
         imp_scene_receipt_look(island);

@@ -127,14 +127,15 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* In the order of the definition: by the earlier body of each pair, then the later. */
+/* In the order of the definition: by the earlier body of each pair, then the later, then the corner. */
 static int by_bodies(const void *a, const void *b)
 {
     const imp_pair *x = a, *y = b;
     const int low_x = x->body1 < x->body2 ? x->body1 : x->body2, low_y = y->body1 < y->body2 ? y->body1 : y->body2;
     if (low_x != low_y) return (low_x > low_y) - (low_x < low_y);
     const int high_x = x->body1 + x->body2 - low_x, high_y = y->body1 + y->body2 - low_y;
-    return (high_x > high_y) - (high_x < high_y);
+    if (high_x != high_y) return (high_x > high_y) - (high_x < high_y);
+    return (x->corner > y->corner) - (x->corner < y->corner);
 }
 
 /* The static bodies that the pairs name join the members; all in the order of the definition. */

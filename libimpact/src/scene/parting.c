@@ -4,6 +4,7 @@
 #include "scene/following.h"
 #include "scene/islands.h"
 #include "scene/scene_methods.h"
+#include "scene/scene_points.h"
 #include "scene/stepped.h"
 
 static int root_of(const int *root, int i)
@@ -155,6 +156,7 @@ static impact_status start_part(imp_island *part, const imp_island *whole, imp_i
 
 impact_status imp_island_part_ways(imp_island *island, imp_island **loose)
 {
+    imp_scene_drop_points(island);
     const impact_status told = imp_island_tell_pairs(island);
     *loose = NULL;
     imp_island_give_forces(island);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/saved.h"
+#include "world/corner.h"
 
 #include <string.h>
 
@@ -147,6 +148,7 @@ static void walk_pair(imp_archive *a, imp_pair *p)
     imp_archive_int(a, &p->body2, 0, INT32_MAX);
     imp_archive_int(a, &mode, IMP_OPEN, IMP_ROLL);
     imp_archive_int(a, &p->line, 0, 2);
+    imp_archive_int(a, &p->corner, 0, IMPACT_HULL_POINTS);
     for (size_t k = 0; k < sizeof flags / sizeof *flags; k++) imp_archive_bool(a, flags[k]);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
     walk_vector(a, &p->direction);
@@ -204,6 +206,8 @@ static const char *pair_fault(const imp_saved *s, const impact_scene *scene, con
     if (!known || !here[pair->body1] || !here[pair->body2] || bodies[pair->body1].is_static)
         return "a contact's bodies";
     if (!bodies[pair->body2].is_static && pair->body2 < pair->body1) return "the order of a contact's bodies";
+    const bool on_plane = bodies[pair->body2].shape.kind == IMPACT_PLANE;
+    if (pair->corner > (on_plane ? imp_corner_count(&bodies[pair->body1]) : 0)) return "a contact's corner";
     return isfinite(sum) ? NULL : "a contact's numbers";
 }
 

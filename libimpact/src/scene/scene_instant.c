@@ -23,12 +23,13 @@ impact_status imp_scene_settle(imp_island *island)
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
     bool parted;
     status = imp_scene_strike_all(island, &parted);
-    island->lies = status == IMPACT_OK && !parted && imp_scene_points_stay(island);
-    imp_scene_drop_points(island);
+    const imp_stay stay = status == IMPACT_OK && !parted ? imp_scene_points_stay(island) : IMP_STAY_NONE;
+    island->lies = stay == IMP_STAY_FACES;
     if (status == IMPACT_OK && !parted && !island->lies) {
         imp_scene_choose_modes(island);
         status = imp_scene_hold(island, -1, false);
     }
+    imp_scene_drop_points(island);
     island->impact_loss = account - imp_scene_undriven_energy(island);
     return status;
 }
@@ -168,6 +169,7 @@ impact_status imp_scene_handle(imp_island *island, imp_end end)
     case IMP_END_TIME: return IMPACT_OK;
     case IMP_END_GAP: return arrive(island, end.index);
     case IMP_END_BOUNDS:
+        if (island->world.pairs[end.index].corner > 0) return imp_scene_settle(island); /* another corner has landed */
         if (tips(island, end.index)) return imp_scene_hold(island, -1, true);
         island->world.pairs[end.index].beyond = true;
         return change_mode(island, end.index, IMP_OPEN);

@@ -2,21 +2,50 @@
 #include "scene/scene_points.h"
 #include "contact/points.h"
 #include "scene/scene_meeting.h"
+#include "world/corner.h"
 #include "world/world_gap.h"
 
 #include <string.h>
+
+/* The pair of both bodies that the point is of: nothing is held. */
+static imp_pair whole_pair(const imp_pair *pair)
+{
+    imp_pair whole = *pair;
+    whole.mode = IMP_OPEN;
+    whole.placed = whole.onset = whole.young = whole.turned = whole.still = false;
+    whole.corner = 0;
+    return whole;
+}
+
+/* Whether one of the pairs is of the same bodies. */
+static bool is_among(const imp_pair *pairs, int count, const imp_pair *pair)
+{
+    for (int k = 0; k < count; k++)
+        if (imp_same_bodies(&pairs[k], pair)) return true;
+    return false;
+}
+
+/* What of body 1 the point is (corner.h), where it stands on a plane; 0: nothing that can be held alone. */
+static int corner_of(const imp_world *world, const imp_pair *pair, const imp_point *point, int count)
+{
+    if (world->bodies[pair->body2].shape.kind != IMPACT_PLANE) return 0;
+    const bool of_disc = point->feature[0].kind == IMPACT_RIM && count > 2;
+    return of_disc ? 0 : imp_corner_number(&world->bodies[pair->body1], point->feature[0]);
+}
 
 static impact_status place(imp_island *island, const imp_pair *pair)
 {
     imp_world *world = &island->world;
     imp_point points[IMP_POINTS];
-    imp_pair own = *pair;
+    imp_pair own = whole_pair(pair);
     const double touching = imp_world_touching_distance(world, pair, island->states);
     const int count = imp_points_find(world, &own, island->states, touching, points);
-    const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count);
+    const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
+    if (status == IMPACT_OK && count == 0 && pair->corner > 0) world->pairs[world->pair_count++] = own;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
         own.placed = true;
         own.place = points[k].contact;
+        own.corner = corner_of(world, &own, &points[k], count);
         own.bearer = count == 1 ? 0 : points[k].feature[1].kind == IMPACT_FACE ? 2 : 1;
         world->pairs[world->pair_count++] = own;
     }
@@ -37,24 +66,45 @@ impact_status imp_scene_place_points(imp_island *island)
     world->pair_count = 0;
     impact_status status = IMPACT_OK;
     for (int p = 0; status == IMPACT_OK && p < count; p++) {
-        if (imp_pair_has_faces(world, &before[p]))
-            status = place(island, &before[p]);
-        else
+        if (!imp_pair_has_faces(world, &before[p]))
             world->pairs[world->pair_count++] = before[p];
+        else if (!is_among(before, p, &before[p]))
+            status = place(island, &before[p]);
     }
     imp_arena_give(world->arena, before);
     return status;
 }
 
-bool imp_scene_points_stay(imp_island *island)
+static bool stays(imp_island *island, int p)
 {
     imp_meeting m;
-    for (int p = 0; p < island->world.pair_count; p++) {
-        if (!island->world.pairs[p].placed || !imp_scene_meets(island, p, &m)) continue;
-        imp_scene_press(island, &m);
-        if (m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= island->world.slip_speed)
-            return true;
+    if (!island->world.pairs[p].placed || !imp_scene_meets(island, p, &m)) return false;
+    imp_scene_press(island, &m);
+    return m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= island->world.slip_speed;
+}
+
+imp_stay imp_scene_points_stay(imp_island *island)
+{
+    const imp_world *world = &island->world;
+    imp_stay found = IMP_STAY_NONE;
+    for (int p = 0, run = 0; p < world->pair_count; p++) {
+        /* the points of two bodies follow each other */
+        if (p > 0 && !imp_same_bodies(&world->pairs[p], &world->pairs[p - 1])) run = 0;
+        if (!stays(island, p)) continue;
+        if (world->pairs[p].corner == 0 || ++run > 2) return IMP_STAY_FACES;
+        found = IMP_STAY_CORNERS;
     }
+    return found;
+}
+
+static bool is_point(const imp_pair *pair) { return pair->placed || pair->corner > 0; }
+
+static bool is_held_corner(const imp_pair *pair) { return pair->corner > 0 && imp_is_held(pair); }
+
+static bool has_held_corner(const imp_world *world, const imp_pair *pair)
+{
+    for (int p = 0; p < world->pair_count; p++)
+        if (is_held_corner(&world->pairs[p]) && imp_same_bodies(&world->pairs[p], pair)) return true;
     return false;
 }
 
@@ -63,9 +113,22 @@ void imp_scene_drop_points(imp_island *island)
     imp_world *world = &island->world;
     int kept = 0;
     for (int p = 0; p < world->pair_count; p++) {
-        if (world->pairs[p].placed) continue;
+        imp_pair pair = world->pairs[p];
+        if (is_held_corner(&pair)) {
+            pair.placed = false;
+        } else if (is_point(&pair)) {
+            if (has_held_corner(world, &pair) || is_among(world->pairs, kept, &pair)) continue;
+            pair = whole_pair(&pair);
+        }
         island->modes[kept] = island->modes[p];
-        world->pairs[kept++] = world->pairs[p];
+        world->pairs[kept++] = pair;
     }
     world->pair_count = kept;
+}
+
+bool imp_scene_holds_corners(const imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++)
+        if (is_held_corner(&island->world.pairs[p])) return true;
+    return false;
 }

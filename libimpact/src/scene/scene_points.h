@@ -11,9 +11,17 @@
 /* Makes each such pair that touches now one pair for each of its points, whose contact is known (imp_pair.placed), and
  * drops those that do not. */
 impact_status imp_scene_place_points(imp_island *island);
-/* Whether any of the points does not part: its bodies go on held by each other. */
-bool imp_scene_points_stay(imp_island *island);
-/* Drops them: all parted. */
+/* What of the points does not part. */
+typedef enum imp_stay {
+    IMP_STAY_NONE,
+    IMP_STAY_CORNERS, /* on planes, of no two bodies more than two: they are held exactly, each a pair of its own */
+    IMP_STAY_FACES    /* more, or others: the bodies lie on each other, and go by steps */
+} imp_stay;
+imp_stay imp_scene_points_stay(imp_island *island);
+
+/* Of the points leaves the corners that are held; of bodies that none holds, the pair as a whole. */
 void imp_scene_drop_points(imp_island *island);
+/* Whether a corner is held. */
+bool imp_scene_holds_corners(const imp_island *island);
 
 #endif

@@ -3,6 +3,7 @@
 #include "base/tolerances.h"
 #include "motion/motion_pile.h"
 #include "scene/following.h"
+#include "scene/scene_points.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -27,7 +28,8 @@ static bool is_pile(const imp_world *world)
 bool imp_island_loses_patience(imp_island *island)
 {
     imp_patience *patience = &island->patience;
-    if (island->scene->piles == IMPACT_PILES_EXACT || !is_pile(&island->world)) return false;
+    if (island->scene->piles == IMPACT_PILES_EXACT) return false;
+    if (!is_pile(&island->world) && !imp_scene_holds_corners(island)) return false;
     if (!(fabs(island->t - patience->since) <= imp_pile_natural_time(&island->world, island->states)))
         *patience = (imp_patience){.since = island->t};
     return ++patience->steps >= IMP_PILE_PATIENCE;

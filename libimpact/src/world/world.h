@@ -75,6 +75,7 @@ typedef struct imp_pair {
     bool placed;    /* it is one of the points of two bodies with faces, at an instant: where it is, and stays */
     impact_contact place;
     int bearer; /* placed: 1 or 2, the body whose face turns the normal; 0: the point is alone, both do */
+    int corner; /* > 0: it is this corner of body 1, counted from 1, on a plane, and may be held there (corner.h) */
     bool met;   /* by the steps of a pile: it was closed since the pile was looked at last */
     impact_gap_cache cache;
 } imp_pair;

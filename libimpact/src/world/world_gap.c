@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "world/world_gap.h"
 #include "base/tolerances.h"
+#include "world/corner.h"
 
 static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_body *b2, const imp_state *s2,
                             impact_gap_cache *cache, imp_gaps *gaps, impact_usage *usage, impact_contact *contact)
@@ -38,8 +39,8 @@ double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body
 
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
 {
-    if (pair->placed) {
-        *contact = pair->place;
+    if (pair->placed || pair->corner > 0) {
+        *contact = pair->corner > 0 ? imp_corner_contact(world, pair, states) : pair->place;
         return IMPACT_OK;
     }
     return gap_of(&world->bodies[pair->body1], &states[pair->body1], &world->bodies[pair->body2], &states[pair->body2],

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT */
+#include "world/corner.h"
+#include "shape/solid.h"
+
+/* What of a core can stand on a plane alone: a corner, or the lowest place of a rim. */
+typedef struct corner_place {
+    qvec3 at;     /* of the core, body axes of the shape, m */
+    double rim;   /* m: the radius of the rim, 0 of a corner */
+    qvec3 along;  /* of a rim: from its centre, unit */
+    double slope; /* of a rim: its tilt, |along| before it was made a unit */
+} corner_place;
+
+int imp_corner_count(const imp_body *body)
+{
+    switch (body->shape.kind) {
+    case IMPACT_BOX:
+    case IMPACT_CAPSULE:
+    case IMPACT_POLYHEDRON: return imp_core_hull(&body->shape)->vertex_count;
+    case IMPACT_CYLINDER:
+    case IMPACT_CONE: return 2;
+    default: return 0;
+    }
+}
+
+int imp_corner_number(const imp_body *body, impact_feature feature)
+{
+    const int count = imp_corner_count(body);
+    if (body->shape.kind == IMPACT_CONE) return feature.kind == IMPACT_RIM ? 1 : feature.kind == IMPACT_VERTEX ? 2 : 0;
+    const impact_feature_kind kind = body->shape.kind == IMPACT_CYLINDER ? IMPACT_RIM : IMPACT_VERTEX;
+    return feature.kind == kind && feature.index >= 0 && feature.index < count ? feature.index + 1 : 0;
+}
+
+/* A form and its lowest places, where the plane's normal is `up` in the shape's axes. */
+static corner_place rim_place(double radius, double z, qvec3 up)
+{
+    const double slope = hypot(up.x, up.y);
+    const qvec3 along = slope > 0 ? (qvec3){-up.x / slope, -up.y / slope, 0} : (qvec3){1, 0, 0};
+    return (corner_place){{radius * along.x, radius * along.y, z}, radius, along, slope};
+}
+
+static corner_place place_of(const imp_form *form, qvec3 up, int i)
+{
+    const double R = form->axis[0], H = form->axis[2];
+    if (form->kind == IMP_FORM_CYLINDER) return rim_place(R, i == 0 ? -H : H, up);
+    if (form->kind == IMP_FORM_CONE && i == 0) return rim_place(R, form->base, up);
+    if (form->kind == IMP_FORM_CONE) return (corner_place){.at = {0, 0, form->base + H}};
+    double c[3];
+    imp_core_vertex(&form->core, i, c);
+    return (corner_place){.at = {c[0], c[1], c[2]}};
+}
+
+/* The body as its plane sees it. */
+typedef struct corner_view {
+    imp_form form;
+    quat axes;        /* of the shape */
+    qvec3 centre;     /* of the shape, from the centre of mass, world */
+    qvec3 normal, up; /* of the plane: world; the shape's axes */
+    qvec3 apart;      /* from the plane's place to the centre of mass */
+} corner_view;
+
+static corner_view view_of(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const imp_body *body = &world->bodies[pair->body1];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    corner_view v = {.axes = imp_shape_axes(body, s1),
+                     .centre = imp_shape_offset(body, s1),
+                     .normal = quat_rotate(s2->q, (qvec3){0, 0, 1}),
+                     .apart = qvec3_sub(s1->x, s2->x)};
+    v.up = quat_rotate_inverse(v.axes, v.normal);
+    imp_form_make(&body->shape, 1, quat_identity(), &v.form);
+    return v;
+}
+
+static qvec3 from_centre(const corner_view *v, qvec3 at) { return qvec3_add(v->centre, quat_rotate(v->axes, at)); }
+
+impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const corner_view v = view_of(world, pair, states);
+    const qvec3 corner = from_centre(&v, place_of(&v.form, v.up, pair->corner - 1).at);
+    impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
+    contact.offset2 = qvec3_add(v.apart, contact.offset1);
+    contact.gap = qvec3_dot(contact.normal, contact.offset2);
+    contact.offset2 = qvec3_axpy(-contact.gap, contact.normal, contact.offset2);
+    return contact;
+}
+
+qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const corner_view v = view_of(world, pair, states);
+    const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]);
+    const corner_place place = place_of(&v.form, v.up, pair->corner - 1);
+    const qvec3 carried = qvec3_cross(omega, from_centre(&v, place.at));
+    if (!(place.rim > 0 && place.slope > 0)) return carried;
+    const qvec3 up_rate = qvec3_cross(v.up, quat_rotate_inverse(v.axes, omega)), e = place.along,
+                turn = {-up_rate.x / place.slope, -up_rate.y / place.slope, 0};
+    const qvec3 along_rim = qvec3_scale(qvec3_axpy(-qvec3_dot(e, turn), e, turn), place.rim);
+    return qvec3_add(carried, quat_rotate(v.axes, along_rim));
+}
+
+static bool is_held(const imp_world *world, const imp_pair *pair, int corner)
+{
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *other = &world->pairs[p];
+        if (other->corner == corner && imp_is_held(other) && imp_same_bodies(other, pair)) return true;
+    }
+    return false;
+}
+
+double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const int count = imp_corner_count(&world->bodies[pair->body1]);
+    const corner_view v = view_of(world, pair, states);
+    double least = INFINITY;
+    for (int i = 0; i < count; i++) {
+        const corner_place place = place_of(&v.form, v.up, i);
+        const bool held = is_held(world, pair, i + 1);
+        if (held && !(place.rim > 0)) continue;
+        const qvec3 at = held ? qvec3_axpy(-2 * place.rim, place.along, place.at) : place.at;
+        least = fmin(least, qvec3_dot(v.normal, qvec3_add(v.apart, from_centre(&v, at))) - v.form.rounding);
+    }
+    return least;
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * corner: what of a body's core stands on a plane alone, a contact whose place follows from the orientation: a corner,
+ * or the lowest place of a rim. With c it in the body's axes, rho the rounding, n the plane's normal and y a point of
+ * the plane
+ *
+ *     gap = n . (x + R c - y) - rho,     contact point from the centre  r = R c - rho n,     r' = w x R c + R c'
+ *
+ * c stays of a corner. Of a rim of radius a about z, with u = R^T n the normal as the body sees it, u' = u x w:
+ * c = -a (u_x, u_y)/|(u_x, u_y)| + z.  Internal.
+ */
+#ifndef IMP_CORNER_H
+#define IMP_CORNER_H
+
+#include <impact/face.h>
+#include "world/world.h"
+
+/* How many corners and rims the body has; 0 of what is smooth, and of planes. A capsule has two corners, a cylinder two
+ * rims, a cone its rim and then its top. */
+int imp_corner_count(const imp_body *body);
+
+/* The feature's number among them, from 1; 0: it is none. */
+int imp_corner_number(const imp_body *body, impact_feature feature);
+
+/* Of a pair with a corner (imp_pair.corner) on its plane. */
+impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
+/* How the contact point moves from body 1's centre, m/s. */
+qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
+/* m: how high over the plane the lowest is of what may land yet: body 1's corners and rims but those that are held,
+ * and of those rims their far side. */
+double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
+/* Whether both are pairs of the same two bodies. */
+static inline bool imp_same_bodies(const imp_pair *a, const imp_pair *b)
+{
+    return a->body1 == b->body1 && a->body2 == b->body2;
+}
+
+#endif
