@@ -8,6 +8,13 @@ target_compile_options(house_rules INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes> $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
   -ffp-contract=off -fno-math-errno)
 
+# Each function of an archive stands in a section of its own, so that a program takes those that it calls (--gc-sections).
+add_library(house_sections INTERFACE)
+if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang" AND NOT APPLE)
+  target_compile_options(house_sections INTERFACE -ffunction-sections -fdata-sections)
+endif()
+check_linker_flag(C -Wl,--gc-sections HOUSE_HAS_GC_SECTIONS)
+
 # No file of a release holds the folder it was built in: two builds of one commit are equal, byte for byte.
 include(CheckCCompilerFlag)
 check_c_compiler_flag(-ffile-prefix-map=a=b HOUSE_HAS_PREFIX_MAP)
@@ -58,7 +65,7 @@ function(add_house_library name)
   set_target_properties(${name}_objects PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_definitions(${name}_objects PRIVATE ${upper}_BUILDING ${LIB_DEFINITIONS})
   target_include_directories(${name}_objects PUBLIC include PRIVATE src)
-  target_link_libraries(${name}_objects PRIVATE house_rules ${LIB_LIBRARIES} ${LIB_HOUSE})
+  target_link_libraries(${name}_objects PRIVATE house_rules house_sections ${LIB_LIBRARIES} ${LIB_HOUSE})
 
   set(kinds SHARED STATIC)
   if(DEFINED BUILD_SHARED_LIBS AND NOT BUILD_SHARED_LIBS)
@@ -89,6 +96,9 @@ function(add_house_library name)
       target_link_libraries(${target} PUBLIC ${house}${suffix})
     endforeach()
     target_link_libraries(${target} PRIVATE ${LIB_LIBRARIES})
+    if(kind STREQUAL STATIC AND HOUSE_HAS_GC_SECTIONS)
+      target_link_options(${target} INTERFACE LINKER:--gc-sections)
+    endif()
     # Inline functions in the headers call libm too.
     target_link_libraries(${target} PUBLIC m)
     if(kind STREQUAL STATIC AND BUILD_SHARED_LIBS)
@@ -107,6 +117,20 @@ function(add_house_library name)
   elseif(HOUSE_HAS_AS_NEEDED)
     target_link_options(${name} PRIVATE -Wl,--as-needed)
   endif()
+endfunction()
+
+# add_house_part(NAME PART LIBRARIES ...): libNAME_PART, which the shared NAME loads when it first needs it: the objects NAME_PART_objects,
+# what they call of NAME's archive, and LIBRARIES. It shows the entry that the objects define, and nothing of the archive.
+function(add_house_part name part)
+  set(target ${name}_${part})
+  add_library(${target} SHARED $<TARGET_OBJECTS:${target}_objects>)
+  set_target_properties(${target} PROPERTIES
+    VERSION ${PROJECT_VERSION} SOVERSION ${HOUSE_SOVERSION} LINKER_LANGUAGE C SKIP_BUILD_RPATH ON IMPACT_LEAN ON)
+  target_link_libraries(${target} PRIVATE house_rules ${name}_static ${ARGN})
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL -Wl,--as-needed)
+  set_target_properties(${name} PROPERTIES BUILD_RPATH "${house_origin}") # where it looks for its parts
+  add_dependencies(${name} ${target})
+  install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_SKIP)
 endfunction()
 
 # install_house_package(NAME): cmake/NAME-config.cmake.in, so that find_package(NAME) finds what was built.

@@ -197,4 +197,10 @@ impact_draw_result impact_runner_draw(lua_State *L, int index, impact_runner *ru
 /* luaopen of quat.host: save(figure, name) and write(name, text); the runner is upvalue 1. */
 int impact_runner_open_host(lua_State *L);
 
+/* ---- runner_extra.c ---- */
+
+/* What the module NAME beside this program's own holds under that name (sweep_extra.h, base/parts.h); NULL with a
+ * message. */
+const void *impact_runner_extra(const char *module, const char *symbol, char *message, size_t size);
+
 #endif

@@ -207,7 +207,7 @@ static const impact_sweep_hdf5 *load_hdf5(impact_runner *runner, int *code)
     char message[400];
     if (!runner->hdf5) return NULL;
     const impact_sweep_hdf5 *hdf5 =
-        impact_sweep_extra("sweep_hdf5", "impact_sweep_hdf5_writer", message, sizeof message);
+        impact_runner_extra("sweep_hdf5", "impact_sweep_hdf5_writer", message, sizeof message);
     if (!hdf5) *code = impact_runner_complain(runner, IMPACT_EXIT_USAGE, message);
     return hdf5;
 }
@@ -329,7 +329,7 @@ static int begin_ranks(impact_sweep *sweep)
     sweep->rank_count = 1;
     if (!runner->mpi) return IMPACT_EXIT_OK;
     if (runner->fence) return impact_runner_complain(runner, IMPACT_EXIT_USAGE, "--fence and --mpi exclude each other");
-    const impact_sweep_ranks *ranks = impact_sweep_extra("sweep_mpi", "impact_sweep_mpi", message, sizeof message);
+    const impact_sweep_ranks *ranks = impact_runner_extra("sweep_mpi", "impact_sweep_mpi", message, sizeof message);
     const char *wrong = ranks ? ranks->begin(&sweep->rank, &sweep->rank_count) : message;
     if (wrong) return impact_runner_complain(runner, IMPACT_EXIT_USAGE, wrong);
     sweep->ranks = ranks;

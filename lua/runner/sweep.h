@@ -99,11 +99,6 @@ int impact_sweep_work(impact_sweep *sweep, int threads);
  * others are threads'. */
 void impact_sweep_load(lua_State *L, impact_runner *runner, const char *script, size_t size, bool first);
 
-/* ---- sweep_ranks.c ---- */
-
-/* What the module NAME beside this program's own holds (see sweep_extra.h); NULL with a message. */
-const void *impact_sweep_extra(const char *module, const char *symbol, char *message, size_t size);
-
 /* ---- sweep.c ---- */
 
 /* impact sweep SCRIPT, impact gather DIR: exit codes. */

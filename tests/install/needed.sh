@@ -6,8 +6,11 @@ system='libm|libc|ld-linux[^ ]*|libgcc_s'
 case $1 in
 quat) allowed="$system" ;;
 quat_gsl) allowed="$system|libquat|libgsl|libgslcblas" ;;
+# its parts, libimpact_cvode and libimpact_ccd, are loaded when a scene needs them
+impact) allowed="$system|libpthread|libdl|libquat" ;;
 # libmpi: a SUNDIALS 7 that was built with MPI asks for it
-impact) allowed="$system|libpthread|libquat|libsundials_[a-z]*|libccd|libmpi" ;;
+impact_cvode) allowed="$system|libsundials_[a-z]*|libmpi" ;;
+impact_ccd) allowed="$system|libccd" ;;
 esac
 needed=$(readelf --dynamic --wide "$2" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
 echo "$2 needs: ${needed//$'\n'/ }"

@@ -43,6 +43,11 @@ if ldd shared_quat | grep -E '^\s*lib(gsl|sundials|ccd)'; then
     exit 1
 fi
 
+if ldd shared_impact | grep -E '^\s*lib(sundials|ccd)'; then
+    echo "a program loads SUNDIALS or libccd before any scene needs it"
+    exit 1
+fi
+
 # With the shared libraries gone the same names find the archives.
 cp -R moved static_only
 find static_only -name 'lib*.so*' -delete

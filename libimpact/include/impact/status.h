@@ -38,7 +38,8 @@ IMPACT_API const char *impact_status_string(impact_status status);
 
 typedef enum impact_part { IMPACT_PART_CVODE, IMPACT_PART_CCD, IMPACT_PART_VIEW } impact_part;
 
-/* Whether this build holds the part. */
+/* Whether the part is to be had: the build holds it, and a static program was linked with it. The shared library loads
+ * CVODE or libccd, once, to tell. */
 IMPACT_API bool impact_has(impact_part part);
 
 /* The version of these headers, for the preprocessor. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/ode_driver.h"
+#include "base/parts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +23,7 @@ static bool valid(const impact_ode_def *def)
 
 static const imp_ode_driver *driver_of(impact_ode_method method)
 {
-    return method == IMPACT_ODE_RK4 ? &imp_ode_rk4 : &imp_ode_cvode;
+    return method == IMPACT_ODE_RK4 ? &imp_ode_rk4 : imp_cvode();
 }
 
 impact_status imp_ode_create_in(imp_arena *arena, const impact_ode_def *def, impact_ode **out)
@@ -30,7 +31,7 @@ impact_status imp_ode_create_in(imp_arena *arena, const impact_ode_def *def, imp
     *out = NULL;
     if (!valid(def)) return IMPACT_EARGUMENT;
     const imp_ode_driver *driver = driver_of(def->method);
-    if (driver->bytes == 0) return IMPACT_EABSENT;
+    if (!driver) return IMPACT_EABSENT;
     impact_ode *ode = imp_arena_take(arena, 1, driver->bytes);
     if (!ode) return IMPACT_ENOMEM;
     ode->driver = driver;

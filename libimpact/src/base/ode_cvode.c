@@ -9,6 +9,7 @@
  */
 #include "base/ode_driver.h"
 #include "base/ode_pool.h"
+#include "base/parts.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -247,13 +248,15 @@ static impact_status cvode_interpolate(const impact_ode *ode, double t, int deri
     return result == CV_SUCCESS ? IMPACT_OK : IMPACT_EARGUMENT;
 }
 
-const imp_ode_driver imp_ode_cvode = {.bytes = sizeof(cvode_ode),
-                                      .open = cvode_open,
-                                      .close = cvode_close,
-                                      .resize = cvode_resize,
-                                      .start = cvode_start,
-                                      .limit_step = cvode_limit_step,
-                                      .set_tolerances = cvode_set_tolerances,
-                                      .step = cvode_step,
-                                      .interpolate = cvode_interpolate,
-                                      .count = cvode_count};
+static const imp_ode_driver cvode_driver = {.bytes = sizeof(cvode_ode),
+                                            .open = cvode_open,
+                                            .close = cvode_close,
+                                            .resize = cvode_resize,
+                                            .start = cvode_start,
+                                            .limit_step = cvode_limit_step,
+                                            .set_tolerances = cvode_set_tolerances,
+                                            .step = cvode_step,
+                                            .interpolate = cvode_interpolate,
+                                            .count = cvode_count};
+
+const imp_ode_driver *imp_part_cvode(void) { return &cvode_driver; }

@@ -37,7 +37,6 @@ struct impact_ode {
     char message[256];
 };
 
-extern const imp_ode_driver imp_ode_cvode; /* bytes 0 in a build without SUNDIALS */
 extern const imp_ode_driver imp_ode_rk4;
 
 /* "integration stopped at t = ..., step ...: why". IMPACT_EINTEGRATOR. */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/status.h>
+#include "base/parts.h"
+#include <stddef.h>
 
 const char *impact_status_string(impact_status status)
 {
@@ -27,24 +29,14 @@ const char *impact_status_string(impact_status status)
 bool impact_has(impact_part part)
 {
     switch (part) {
-    case IMPACT_PART_CVODE:
-#ifdef IMPACT_WITH_CVODE
-        return true;
-#else
-        return false;
-#endif
+    case IMPACT_PART_CVODE: return imp_cvode() != NULL;
     case IMPACT_PART_VIEW:
 #ifdef IMPACT_WITH_VIEW
         return true;
 #else
         return false;
 #endif
-    case IMPACT_PART_CCD:
-#ifdef IMPACT_WITH_CCD
-        return true;
-#else
-        return false;
-#endif
+    case IMPACT_PART_CCD: return imp_ccd() != NULL;
     }
     return false;
 }

@@ -4,8 +4,22 @@
  * at the depth rho - g, whether D holds it (g < 0) or not. rho comes from the centres' distance, which is no less than
  * g, then from the first answer: the thinner the ball, the fewer facets EPA needs of it.
  */
+#include "base/parts.h"
 #include "base/tolerances.h"
 #include "gap/gap_solver.h"
+
+bool imp_gap_harvest(const imp_gap_solids *pair, double n[3])
+{
+    const imp_gap_ccd *ccd = imp_ccd();
+    return ccd && ccd->harvest(pair, n);
+}
+
+bool imp_gap_epa(const imp_gap_solids *pair, double rho, const double first[3], double tolerance, double *depth,
+                 double n[3])
+{
+    const imp_gap_ccd *ccd = imp_ccd();
+    return ccd && ccd->epa(pair, rho, first, tolerance, depth, n);
+}
 
 typedef struct ccd_answer {
     double gap, n[3], x[2][3]; /* x: as imp_gap_bracket */

@@ -74,8 +74,15 @@ typedef enum imp_simplex_end { IMP_SIMPLEX_APART, IMP_SIMPLEX_OVERLAP } imp_simp
 imp_simplex_end imp_gap_simplex(const imp_gap_solids *pair, double shrink, double tolerance, int steps, double n[3],
                                 double x[2][3], double *lower, double *upper);
 
+/* What gjk.c gives: the two functions below where there is libccd. */
+typedef struct imp_gap_ccd {
+    bool (*harvest)(const imp_gap_solids *pair, double n[3]);
+    bool (*epa)(const imp_gap_solids *pair, double rho, const double first[3], double tolerance, double *depth,
+                double n[3]);
+} imp_gap_ccd;
+
 /* libccd's way: the normal with the largest g among all the directions that its intersection test asks for.
- * False when this build has no libccd or nothing was met. */
+ * False when there is no libccd (base/parts.h) or nothing was met. */
 bool imp_gap_harvest(const imp_gap_solids *pair, double n[3]);
 
 /* libccd's own answer: the depth of the origin in the difference c + B - A, inflated by a ball of radius rho, and the

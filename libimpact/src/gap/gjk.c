@@ -9,6 +9,7 @@
  */
 #include <stdint.h>
 #include <ccd/ccd.h>
+#include "base/parts.h"
 #include "gap/gap_solver.h"
 
 #ifndef CCD_DOUBLE
@@ -53,7 +54,7 @@ static void first_direction(const void *object, const void *origin, ccd_vec3_t *
     ccdVec3Set(direction, -h->n[0], -h->n[1], -h->n[2]);
 }
 
-bool imp_gap_harvest(const imp_gap_solids *pair, double n[3])
+static bool harvest_directions(const imp_gap_solids *pair, double n[3])
 {
     harvest h = {.pair = pair, .g = -INFINITY, .n = {n[0], n[1], n[2]}};
     ccd_t ccd;
@@ -97,8 +98,8 @@ static void given_direction(const void *object, const void *origin, ccd_vec3_t *
     ccdVec3Set(direction, body->first[0], body->first[1], body->first[2]);
 }
 
-bool imp_gap_epa(const imp_gap_solids *pair, double rho, const double first[3], double tolerance, double *depth,
-                 double n[3])
+static bool penetrate(const imp_gap_solids *pair, double rho, const double first[3], double tolerance, double *depth,
+                      double n[3])
 {
     inflated body = {.pair = pair, .rho = rho, .first = first};
     ccd_t ccd;
@@ -117,4 +118,10 @@ bool imp_gap_epa(const imp_gap_solids *pair, double rho, const double first[3], 
     *depth = deep;
     for (int i = 0; i < 3; i++) n[i] = -out.v[i] / length;
     return true;
+}
+
+const imp_gap_ccd *imp_part_ccd(void)
+{
+    static const imp_gap_ccd table = {.harvest = harvest_directions, .epa = penetrate};
+    return &table;
 }

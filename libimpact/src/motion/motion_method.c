@@ -3,6 +3,7 @@
  * Which variable, which method and which tolerances a stretch of integration needs.
  */
 #include "motion/motion_stretch.h"
+#include "base/parts.h"
 #include "contact/persist_spot.h"
 #include "world/world_gap.h"
 
@@ -54,8 +55,7 @@ static impact_status choose_integrator(imp_motion *motion, impact_ode_method met
                                     .falling_roots_only = true};
         status = imp_ode_create_in(motion->world->arena, &def, ode);
         if (status == IMPACT_EABSENT)
-            snprintf(motion->message, sizeof motion->message,
-                     "this motion needs the integrator, and this build has none (IMPACT_WITH_CVODE is off)");
+            snprintf(motion->message, sizeof motion->message, "this motion needs the integrator, and " IMP_NO_CVODE);
         motion->world->usage.integrators += status == IMPACT_OK;
     }
     motion->ode = *ode;

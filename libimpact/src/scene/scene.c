@@ -8,6 +8,7 @@
 #include "scene/scene_together.h"
 #include "world/world_gap.h"
 #include "base/floats.h"
+#include "base/parts.h"
 #include "collide/collide_workspace.h"
 
 #include <stdio.h>
@@ -67,7 +68,7 @@ static impact_status open_workspace(impact_scene *scene, char *message, unsigned
     const impact_status status =
         imp_collide_workspace_in(scene->world.arena, method, scene->methods.impact_tolerance, &scene->workspace);
     if (status == IMPACT_EABSENT && message)
-        snprintf(message, size, "%s CVODE, and this build has none (IMPACT_WITH_CVODE is off)",
+        snprintf(message, size, "%s CVODE, and " IMP_NO_CVODE,
                  springs ? "compliance needs" : "impacts = \"cvode\" in methods, or solver, needs");
     return status;
 }

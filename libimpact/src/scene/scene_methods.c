@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_methods.h"
+#include "base/parts.h"
 #include "base/tolerances.h"
 
 #include <math.h>
@@ -110,14 +111,14 @@ static void check_numbers(method_check *c, const impact_scene_def *def)
          "motion = \"rk4\" in methods needs a step > 0, in s, not %.17g", m->step);
 }
 
+/* Asks for what is named alone: asking loads it. */
 static void check_parts(method_check *c, const impact_scene_def *def)
 {
     const impact_methods m = imp_scene_methods_of(def);
-    const bool cvode = impact_has(IMPACT_PART_CVODE), ccd = impact_has(IMPACT_PART_CCD);
-    want(c, cvode || m.motion != IMPACT_MOTION_CVODE, IMPACT_EABSENT,
-         "motion = \"cvode\" in methods needs CVODE, and this build has none (IMPACT_WITH_CVODE is off)");
-    want(c, ccd || m.gaps != IMPACT_GAP_CCD, IMPACT_EABSENT,
-         "gaps = \"ccd\" in methods needs libccd, and this build has none (IMPACT_WITH_CCD is off)");
+    want(c, m.motion != IMPACT_MOTION_CVODE || impact_has(IMPACT_PART_CVODE), IMPACT_EABSENT,
+         "motion = \"cvode\" in methods needs CVODE, and " IMP_NO_CVODE);
+    want(c, m.gaps != IMPACT_GAP_CCD || impact_has(IMPACT_PART_CCD), IMPACT_EABSENT,
+         "gaps = \"ccd\" in methods needs libccd, and " IMP_NO_CCD);
 }
 
 impact_status imp_scene_methods_check(const impact_scene_def *def, char *why, size_t size)
