@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * What curve.c and curve_frames.c share. Internal.
+ * What the files of the curve share. Internal.
  */
 #ifndef QUAT_CURVE_INTERNAL_H
 #define QUAT_CURVE_INTERNAL_H

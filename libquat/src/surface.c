@@ -8,12 +8,6 @@
 
 static const qvec3 zero = {0, 0, 0};
 
-bool quat_surface_is_good(const quat_surface *s)
-{
-    return s && s->at && isfinite(s->u1 - s->u0) && isfinite(s->v1 - s->v0) && s->u0 < s->u1 && s->v0 < s->v1 &&
-           s->known >= 0 && s->known <= 2;
-}
-
 /* t in low ... high: as it is, or by whole periods. */
 static double home(double t, double low, double high, bool closed)
 {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * curve: space curves: arc length, curvature and torsion, and their moving frames as curves of quaternions. In the
- * library quat_gsl. Conventions in quat.h; lengths in the caller's unit. Ready-made curves are in family.h.
+ * curve: space curves: arc length, curvature and torsion, and their moving frames as curves of quaternions.
+ * Conventions in quat.h; lengths in
+ * the caller's unit. Ready-made curves are in family.h.
  *
  * A frame's body x axis is the unit tangent T, in the direction of growing t; for a Frenet frame y is the principal
  * normal N and z the binormal B = T x N. Frames come out continuous on S^3: neighbours are on the same side.

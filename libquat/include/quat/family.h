@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * family: curves and surfaces given by formulas, with all the derivatives that curve.h and surface.h ask for. In the
- * library quat_gsl. Lengths in the caller's unit, angles in radians.
+ * family: curves and surfaces given by formulas, with all the derivatives that curve.h and surface.h ask for.
+ * Lengths in the caller's unit, angles in radians.
  *
  * Each function fills *family, which holds the numbers and must outlive the curve or surface made with it. Statuses:
  * QUAT_EDOMAIN for a length that is not positive and finite or another number that is not finite, QUAT_EARGUMENT for

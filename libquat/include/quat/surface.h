@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * surface: parametric surfaces: quaternion frames and the curvature that follows from their derivatives, integrals,
- * quaternion Gauss maps on patches. In the library quat_gsl. Conventions in quat.h; ready-made surfaces in family.h.
+ * quaternion Gauss maps on patches. In libquat, but for quat_surface_total, in the library quat_gsl. Conventions in
+ * quat.h; ready-made surfaces in family.h.
  *
  * A frame's columns (body x, y, z axes in the world) are T1, T2, N: orthonormal, N = x_u x x_v/|x_u x x_v|. Its rates
  * are the body-frame vectors a and b of q_u = q (0, a)/2 and q_v = q (0, b)/2. With
@@ -87,11 +88,12 @@ typedef struct quat_surface_totals {
     double bending; /* integral of H^2: 4 pi or more for a closed surface (Willmore) */
 } quat_surface_totals;
 
-/* Product rules of 16, 32, 64 points each way until two in a row agree to `tolerance` (relative; at least 1e-14):
- * Gauss-Legendre across an open range, equal steps around a closed one. Where they do not, the worst of up to 500
- * rectangles (50 when x alone is known) is halved until all agree with their halves. Degenerate edges (poles) do no
- * harm; they are not asked. QUAT_NOT_CONVERGED with the last values otherwise, also when the points' own errors leave
- * more than `tolerance`. QUAT_ERANGE when one overflows. Other statuses as quat_surface_at's, and QUAT_ENOMEM. */
+/* Of the library quat_gsl. Product rules of 16, 32, 64 points each way until two in a row agree to `tolerance`
+ * (relative; at least 1e-14): Gauss-Legendre across an open range, equal steps around a closed one. Where they do not,
+ * the worst of up to 500 rectangles (50 when x alone is known) is halved until all agree with their halves. Degenerate
+ * edges (poles) do no harm; they are not asked. QUAT_NOT_CONVERGED with the last values otherwise, also when the
+ * points' own errors leave more than `tolerance`. QUAT_ERANGE when one overflows. Other statuses as quat_surface_at's,
+ * and QUAT_ENOMEM. */
 QUAT_API quat_status quat_surface_total(const quat_surface *surface, double tolerance, quat_surface_totals *totals);
 
 /* ---- quaternion Gauss maps ---- */
