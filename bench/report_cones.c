@@ -61,12 +61,7 @@ static const char *read_case(FILE *file, cone_case *c)
     if (!next_number(file, &count)) return "it does not begin with the number of contacts";
     if (!(count >= 1 && count <= 2000 && count == floor(count))) return "the number of contacts is not 1 to 2000";
     const size_t contacts = (size_t)count, n = 3 * contacts;
-    *c = (cone_case){(int)contacts,
-                     malloc(n * n * sizeof *c->w),
-                     malloc(n * sizeof *c->q),
-                     malloc(contacts * sizeof *c->friction),
-                     malloc(n * sizeof *c->r),
-                     malloc(n * sizeof *c->u)};
+    *c = cone_case_room((int)contacts, false);
     if (!c->w || !c->q || !c->friction || !c->r || !c->u) return "there is no memory for it";
     if (!numbers(file, c->friction, contacts)) return "its frictions end before each contact has one";
     if (!numbers(file, c->w, n * n)) return "its W has fewer than 3n x 3n numbers";

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Cone problems made from a known answer: bodies of random mass touch each other and the ground at random places;
- * r and u are chosen complementary, each contact open, sticking or sliding, and q = u - W r. For the cone's test,
- * report and benchmark.
+ * r and u are chosen complementary, each contact open, sticking or sliding, and q = u - W r; with lengths, with moments
+ * and turning too. For the cone's tests, report and benchmark.
  */
 #ifndef CONE_CASES_H
 #define CONE_CASES_H
@@ -13,7 +13,8 @@
 #include "kit/contact_random.h"
 
 typedef struct cone_case {
-    int count;
+    int count, width; /* contacts; 3 or, with lengths, 6 */
+    imp_cone_lengths *lengths;
     double *w, *q, *friction, *r, *u; /* r and u: the answer that it was made from */
 } cone_case;
 
@@ -24,6 +25,7 @@ static inline double cone_between(random_stream *random, double low, double high
 
 static inline void cone_case_free(cone_case *c)
 {
+    free(c->lengths);
     free(c->w);
     free(c->q);
     free(c->friction);
@@ -31,9 +33,9 @@ static inline void cone_case_free(cone_case *c)
     free(c->u);
 }
 
-/* One body's part of a contact's rows of G M^(-1/2): a force at a random arm. */
+/* One body's part of a contact's rows of G M^(-1/2): a force at a random arm, and moments. */
 static inline void cone_case_side(random_stream *random, const qvec3 axes[3], double linear, double angular, double *g,
-                                  int width)
+                                  int width, bool turning)
 {
     const qvec3 arm = random_vector(random, 0.3, 1);
     for (int k = 0; k < 3; k++) {
@@ -41,13 +43,15 @@ static inline void cone_case_side(random_stream *random, const qvec3 axes[3], do
         double *row = &g[k * width];
         row[0] = linear * axes[k].x, row[1] = linear * axes[k].y, row[2] = linear * axes[k].z;
         row[3] = angular * torque.x, row[4] = angular * torque.y, row[5] = angular * torque.z;
+        double *about = &g[(3 + k) * width];
+        if (turning) about[3] = angular * axes[k].x, about[4] = angular * axes[k].y, about[5] = angular * axes[k].z;
     }
 }
 
 /* W of rank 6 bodies at most. */
 static inline void cone_case_matrix(random_stream *random, cone_case *c, int bodies)
 {
-    const int n = 3 * c->count, width = 6 * bodies;
+    const int n = c->width * c->count, width = 6 * bodies;
     double *g = calloc((size_t)n * (size_t)width, sizeof *g), *roots = calloc((size_t)width, sizeof *roots);
     for (int b = 0; b < bodies; b++) {
         roots[2 * b] = sqrt(random_log(random, 0.1, 10));
@@ -60,9 +64,11 @@ static inline void cone_case_matrix(random_stream *random, cone_case *c, int bod
         const qvec3 axes[3] = {normal, tangent, qvec3_cross(normal, tangent)};
         const int one = (int)cone_between(random, 0, bodies - 1e-9), two = (int)cone_between(random, 0, bodies - 1e-9);
         const bool ground = one == two || random_unit(random) < 0.3;
-        cone_case_side(random, axes, roots[2 * one], roots[2 * one + 1], &g[3 * k * width + 6 * one], width);
+        cone_case_side(random, axes, roots[2 * one], roots[2 * one + 1], &g[c->width * k * width + 6 * one], width,
+                       c->lengths);
         if (!ground)
-            cone_case_side(random, axes, -roots[2 * two], -roots[2 * two + 1], &g[3 * k * width + 6 * two], width);
+            cone_case_side(random, axes, -roots[2 * two], -roots[2 * two + 1], &g[c->width * k * width + 6 * two],
+                           width, c->lengths);
     }
     for (int i = 0; i < n; i++)
         for (int j = 0; j <= i; j++) {
@@ -94,32 +100,89 @@ static inline void cone_case_answer(random_stream *random, double friction, doub
     r[1] = -limit * cos(angle), r[2] = -limit * sin(angle);
 }
 
+/* An answer with moments: the points' slip and their spin on one ellipsoid, the rolling on a disc of its own. */
+static inline void cone_case_turning_answer(random_stream *random, double friction, imp_cone_lengths lengths, double *r,
+                                            double *u)
+{
+    const double scale[6] = {1, friction, friction, lengths.torsional, lengths.rolling, lengths.rolling};
+    const bool open = random_unit(random) < 0.25;
+    r[0] = open ? 0 : random_unit(random);
+    u[0] = open ? random_unit(random) : 0;
+    for (int part = 0, from = 1; part < 2; part++, from = 4) {
+        const int to = part ? 6 : 4;
+        const bool held = random_unit(random) < 0.5;
+        const double share = sqrt(random_unit(random)), speed = random_unit(random);
+        double dir[3], length = 0;
+        for (int k = from; k < to; k++) {
+            dir[k - from] = scale[k] > 0 ? cone_between(random, -1, 1) : 0;
+            length += dir[k - from] * dir[k - from];
+        }
+        length = length > 0 ? sqrt(length) : 1;
+        for (int k = from; k < to; k++) {
+            const double along = dir[k - from] / length;
+            r[k] = -scale[k] * r[0] * along * (held ? share : 1);
+            if ((!held || open) && scale[k] > 0) u[k] = speed * along / scale[k];
+            if (scale[k] == 0) u[k] = cone_between(random, -1, 1);
+        }
+    }
+}
+
+static inline cone_case cone_case_room(int count, bool turning)
+{
+    const int width = turning ? 6 : 3;
+    const size_t n = (size_t)(width * count);
+    return (cone_case){count,
+                       width,
+                       turning ? calloc((size_t)count, sizeof(imp_cone_lengths)) : NULL,
+                       calloc(n * n, sizeof(double)),
+                       calloc(n, sizeof(double)),
+                       calloc((size_t)count, sizeof(double)),
+                       calloc(n, sizeof(double)),
+                       calloc(n, sizeof(double))};
+}
+
+/* q = u - W r. */
+static inline void cone_case_close(cone_case *c)
+{
+    const size_t n = (size_t)(c->width * c->count);
+    for (size_t i = 0; i < n; i++) {
+        double sum = 0;
+        for (size_t j = 0; j < n; j++) sum += c->w[i * n + j] * c->r[j];
+        c->q[i] = c->u[i] - sum;
+    }
+}
+
 /* So many contacts among so many bodies, friction 0 or to most; a tenth of them without. */
 static inline cone_case cone_case_make(random_stream *random, int count, int bodies, double most)
 {
-    const size_t n = 3 * (size_t)count;
-    cone_case c = {count,
-                   calloc(n * n, sizeof *c.w),
-                   calloc(n, sizeof *c.q),
-                   calloc((size_t)count, sizeof *c.friction),
-                   calloc(n, sizeof *c.r),
-                   calloc(n, sizeof *c.u)};
+    cone_case c = cone_case_room(count, false);
     cone_case_matrix(random, &c, bodies);
     for (int k = 0; k < count; k++) {
         c.friction[k] = random_unit(random) < 0.1 ? 0 : random_log(random, 0.05 * most, most);
         cone_case_answer(random, c.friction[k], &c.r[3 * k], &c.u[3 * k]);
     }
-    for (size_t i = 0; i < n; i++) {
-        double sum = 0;
-        for (size_t j = 0; j < n; j++) sum += c.w[i * n + j] * c.r[j];
-        c.q[i] = c.u[i] - sum;
+    cone_case_close(&c);
+    return c;
+}
+
+/* The same with moments, lengths from 1e-3 to 1 of the arms', a fifth of each without. */
+static inline cone_case cone_case_make_turning(random_stream *random, int count, int bodies, double most)
+{
+    cone_case c = cone_case_room(count, true);
+    cone_case_matrix(random, &c, bodies);
+    for (int k = 0; k < count; k++) {
+        c.friction[k] = random_unit(random) < 0.1 ? 0 : random_log(random, 0.05 * most, most);
+        c.lengths[k].torsional = random_unit(random) < 0.2 ? 0 : random_log(random, 1e-3, 1);
+        c.lengths[k].rolling = random_unit(random) < 0.2 ? 0 : random_log(random, 1e-3, 1);
+        cone_case_turning_answer(random, c.friction[k], c.lengths[k], &c.r[6 * k], &c.u[6 * k]);
     }
+    cone_case_close(&c);
     return c;
 }
 
 static inline imp_cone_problem cone_case_problem(const cone_case *c)
 {
-    return (imp_cone_problem){.count = c->count, .w = c->w, .q = c->q, .friction = c->friction};
+    return (imp_cone_problem){.count = c->count, .w = c->w, .q = c->q, .friction = c->friction, .lengths = c->lengths};
 }
 
 #endif

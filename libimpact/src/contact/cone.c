@@ -14,27 +14,39 @@
 
 /* ---- room ---- */
 
-enum { SQUARES = 3, VECTORS = 14, INDICES = 3 };
+enum { SQUARES = 3, VECTORS = 15, INDICES = 6, UNKNOWNS_MOST = 7 };
 
 struct imp_cone_key {
     uint64_t key, coupled;
     int contact;
 };
 
-bool imp_cone_reserve(imp_cone_workspace *workspace, int contacts)
+/* Every contact is two lobes at most. */
+static bool reserve_unknowns(imp_cone_workspace *workspace, int contacts, int unknowns)
 {
-    if (contacts <= workspace->capacity) return true;
+    if (contacts <= workspace->capacity && unknowns <= workspace->unknowns) return true;
     imp_cone_release(workspace);
-    const size_t n = 3 * (size_t)contacts;
+    const size_t n = (size_t)unknowns;
     workspace->block = imp_arena_take(workspace->arena, SQUARES * n * n + VECTORS * n, sizeof *workspace->block);
     workspace->keys = imp_arena_take(workspace->arena, (size_t)contacts, sizeof *workspace->keys);
     workspace->indices = imp_arena_take(workspace->arena, INDICES * n + 1, sizeof *workspace->indices);
     if (workspace->block && workspace->keys && workspace->indices) {
         workspace->capacity = contacts;
+        workspace->unknowns = unknowns;
         return true;
     }
     imp_cone_release(workspace);
     return false;
+}
+
+bool imp_cone_reserve(imp_cone_workspace *workspace, int contacts)
+{
+    return reserve_unknowns(workspace, contacts, 3 * contacts);
+}
+
+bool imp_cone_reserve_turning(imp_cone_workspace *workspace, int contacts)
+{
+    return reserve_unknowns(workspace, contacts, UNKNOWNS_MOST * contacts);
 }
 
 void imp_cone_release(imp_cone_workspace *workspace)
@@ -53,18 +65,17 @@ static double *next_part(double **block, size_t length)
     return part;
 }
 
-static imp_cone_system lay_out(const imp_cone_problem *problem, imp_cone_workspace *workspace, int **order, int **start)
+static imp_cone_system lay_out(const imp_cone_problem *problem, imp_cone_workspace *workspace)
 {
-    const size_t n = 3 * (size_t)problem->count;
+    const size_t n = (size_t)(problem->lengths ? UNKNOWNS_MOST : 3) * (size_t)problem->count;
     double *block = workspace->block;
-    imp_cone_system s = {.problem = problem, .count = problem->count};
+    imp_cone_system s = {.problem = problem};
     s.a = next_part(&block, n * n), s.matrix = next_part(&block, n * n), s.spare = next_part(&block, n * n);
-    double **vectors[VECTORS] = {&s.b,     &s.r, &s.own, &s.scratch, &s.z,    &s.trial,   &s.step,
-                                 &s.value, &s.x, &s.u,   &s.rate,    &s.kept, &s.tangent, &s.best};
+    double **vectors[VECTORS] = {&s.scale, &s.b, &s.r, &s.own,  &s.scratch, &s.z,       &s.trial, &s.step,
+                                 &s.value, &s.x, &s.u, &s.rate, &s.kept,    &s.tangent, &s.best};
     for (int k = 0; k < VECTORS; k++) *vectors[k] = next_part(&block, n);
-    s.rows = workspace->indices, s.columns = s.rows + n;
-    *order = s.columns + n, *start = *order + problem->count;
-    s.order = *order, s.start = *start;
+    int **indices[] = {&s.rows, &s.columns, &s.row, &s.order, &s.tied, &s.start};
+    for (int k = 0; k < INDICES; k++) *indices[k] = workspace->indices + (size_t)k * n;
     return s;
 }
 
@@ -77,20 +88,26 @@ static double power_of_two(double value)
     return value > 0 && isfinite(value) ? ldexp(1, exponent - 1) : 1;
 }
 
-/* The parts of a contact that are its unknowns. */
+/* The parts along its normal and tangents that are a contact's unknowns. */
 static int dimension_of(const imp_cone_problem *problem, int c) { return problem->friction[c] > 0 ? 3 : 1; }
 
-static double contact_size(const imp_cone_problem *problem, const double *v, int c)
+/* Of reactions; of velocities (turning) the units divide. */
+static double contact_size(const imp_cone_problem *problem, const double *v, int c, bool turning)
 {
-    double square = v[3 * c] * v[3 * c];
-    for (int k = 1; k < dimension_of(problem, c); k++) square += v[3 * c + k] * v[3 * c + k];
+    v += imp_cone_width(problem) * c;
+    double square = v[0] * v[0], units[6];
+    for (int k = 1; k < dimension_of(problem, c); k++) square += v[k] * v[k];
+    if (!problem->lengths) return sqrt(square);
+    imp_cone_units(problem->friction[c], problem->lengths[c], units);
+    for (int k = 3; k < 6; k++)
+        if (units[k] > 0) square += pow(turning ? v[k] / units[k] : v[k] * units[k], 2);
     return sqrt(square);
 }
 
-static double largest(const imp_cone_problem *problem, const double *v)
+static double largest(const imp_cone_problem *problem, const double *v, bool turning)
 {
     double most = 0;
-    for (int c = 0; c < problem->count; c++) most = fmax(most, contact_size(problem, v, c));
+    for (int c = 0; c < problem->count; c++) most = fmax(most, contact_size(problem, v, c, turning));
     return most;
 }
 
@@ -122,19 +139,29 @@ typedef struct cone_units {
 
 static cone_units units_of(const imp_cone_problem *problem)
 {
-    const size_t n = 3 * (size_t)problem->count;
+    const size_t width = (size_t)imp_cone_width(problem), n = width * (size_t)problem->count;
     double most = 0;
-    for (size_t i = 0; i < n; i++) most = fmax(most, problem->w[i * (n + 1)]);
-    return (cone_units){1 / power_of_two(most), 1 / power_of_two(largest(problem, problem->q))};
+    for (size_t i = 0; i < n; i++)
+        if (i % width < 3) most = fmax(most, problem->w[i * (n + 1)]);
+    return (cone_units){1 / power_of_two(most), 1 / power_of_two(largest(problem, problem->q, true))};
 }
 
 static uint64_t own_key(const imp_cone_problem *problem, cone_units units, int c)
 {
-    const size_t n = 3 * (size_t)problem->count;
+    const int width = imp_cone_width(problem);
+    const size_t n = (size_t)(width * problem->count);
+    double length[6] = {1, 1, 1, 0, 0, 0};
     uint64_t h = mix(1, problem->friction[c]);
-    for (int k = 0; k < 3; k++) {
-        h = mix(h, units.q * problem->q[3 * c + k]);
-        for (int l = 0; l < 3; l++) h = mix(h, units.w * problem->w[(size_t)(3 * c + k) * n + (size_t)(3 * c + l)]);
+    if (problem->lengths) {
+        const imp_cone_lengths *own = &problem->lengths[c];
+        length[3] = own->torsional,
+        length[4] = length[5] = own->rolling; /* moments as forces: without units of length */
+    }
+    for (int k = 0; k < width; k++) {
+        h = mix(h, units.q * length[k] * problem->q[width * c + k]);
+        for (int l = 0; l < width; l++)
+            h = mix(h, units.w * length[k] * length[l] *
+                           problem->w[(size_t)(width * c + k) * n + (size_t)(width * c + l)]);
     }
     return h;
 }
@@ -143,12 +170,12 @@ static uint64_t own_key(const imp_cone_problem *problem, cone_units units, int c
  * have like numbers and like neighbours, so that which comes first changes nothing. */
 static void choose_order(const imp_cone_problem *problem, cone_units units, struct imp_cone_key *keys, int *order)
 {
-    const int count = problem->count, n = 3 * count;
+    const int count = problem->count, width = imp_cone_width(problem), n = width * count;
     for (int c = 0; c < count; c++) keys[c] = (struct imp_cone_key){.key = own_key(problem, units, c), .contact = c};
     for (int c = 0; c < count; c++) {
         uint64_t sum = 0;
         for (int j = 0; j < count; j++) {
-            const double *w = &problem->w[(size_t)(3 * c) * (size_t)n + (size_t)(3 * j)];
+            const double *w = &problem->w[(size_t)(width * c) * (size_t)n + (size_t)(width * j)];
             uint64_t h = keys[j].key;
             if (j == c || (w[0] == 0 && w[1] == 0 && w[2] == 0)) continue;
             for (int k = 0; k < 3; k++) h = mix(h, units.w * w[k]);
@@ -166,85 +193,143 @@ static void choose_order(const imp_cone_problem *problem, cone_units units, stru
 static void find_scales(imp_cone_system *system)
 {
     const imp_cone_problem *problem = system->problem;
-    const size_t n = 3 * (size_t)problem->count;
+    const int width = imp_cone_width(problem);
+    const size_t n = (size_t)(width * problem->count);
     double trace = 0;
+    int parts = 0;
     for (int c = 0; c < problem->count; c++) /* in the chosen order: the same sum whatever the numbering */
-        for (int k = 0; k < dimension_of(problem, system->order[c]); k++) {
-            const size_t i = (size_t)(3 * system->order[c] + k);
+        for (int k = 0; k < dimension_of(problem, system->order[c]); k++, parts++) {
+            const size_t i = (size_t)(width * system->order[c] + k);
             trace += problem->w[i * n + i];
         }
-    system->d = power_of_two(trace / fmax(system->n, 1));
-    system->size = power_of_two(largest(problem, problem->q));
+    system->d = power_of_two(trace / fmax(parts, 1));
+    system->size = power_of_two(largest(problem, problem->q, true));
 }
 
-static void find_order(imp_cone_system *system, imp_cone_workspace *workspace, int *order, int *start)
+static void add_unknown(imp_cone_system *system, int row, double scale)
 {
-    choose_order(system->problem, units_of(system->problem), workspace->keys, order);
-    int next = 0;
-    for (int c = 0; c < system->count; c++) {
-        start[c] = next;
-        next += dimension_of(system->problem, order[c]);
-    }
-    start[system->count] = system->n = next;
+    system->row[system->n] = row;
+    system->scale[system->n++] = scale;
 }
 
-/* A and b, of contacts i and j the rows and columns. */
+static void begin_lobe(imp_cone_system *system, int row, bool tied)
+{
+    system->tied[system->count] = tied;
+    system->start[system->count++] = system->n;
+    add_unknown(system, row, 1);
+}
+
+static void find_order(imp_cone_system *system, imp_cone_workspace *workspace)
+{
+    const imp_cone_problem *problem = system->problem;
+    choose_order(problem, units_of(problem), workspace->keys, system->order);
+    for (int c = 0; c < problem->count; c++) {
+        const int from = system->order[c], first = imp_cone_width(problem) * from;
+        const imp_cone_lengths lengths = problem->lengths ? problem->lengths[from] : (imp_cone_lengths){0, 0};
+        const double friction = problem->friction[from];
+        begin_lobe(system, first, false);
+        for (int k = 1; friction > 0 && k < 3; k++) add_unknown(system, first + k, friction);
+        if (lengths.torsional > 0) add_unknown(system, first + 3, lengths.torsional);
+        if (!(lengths.rolling > 0)) continue;
+        if (friction > 0 || lengths.torsional > 0) begin_lobe(system, first, true);
+        for (int k = 4; k < 6; k++) add_unknown(system, first + k, lengths.rolling);
+    }
+    system->start[system->count] = system->n;
+}
+
+/* Of tied lobes both normals are half the contact's, and the second's row is their tie, x2_n - x1_n. */
+static void tie_lobes(imp_cone_system *system)
+{
+    const size_t n = (size_t)system->n;
+    for (int c = 0; c < system->count; c++) {
+        const size_t first = (size_t)system->start[c > 0 ? c - 1 : 0], second = (size_t)system->start[c];
+        if (!system->tied[c]) continue;
+        for (size_t i = 0; i < n; i++) {
+            system->a[i * n + first] *= 0.5;
+            system->a[i * n + second] *= 0.5;
+        }
+    }
+    for (int c = 0; c < system->count; c++) {
+        const size_t second = (size_t)system->start[c];
+        if (!system->tied[c]) continue;
+        for (size_t i = 0; i < n; i++) system->a[second * n + i] = 0;
+        system->a[second * n + (size_t)system->start[c - 1]] = -1;
+        system->a[second * n + second] = 1;
+        system->b[second] = 0;
+    }
+}
+
+/* A and b. */
 static void find_matrix(imp_cone_system *system)
 {
     const imp_cone_problem *problem = system->problem;
-    const size_t width = 3 * (size_t)problem->count, n = (size_t)system->n;
+    const size_t width = (size_t)(imp_cone_width(problem) * problem->count), n = (size_t)system->n;
     const double unit = 1 / system->d; /* a power of two: exact */
-    for (int i = 0; i < system->count; i++) {
-        const int from = system->order[i], rows = system->start[i + 1] - system->start[i];
-        for (int k = 0; k < rows; k++) {
-            const size_t row = (size_t)(system->start[i] + k);
-            const double *w = &problem->w[(size_t)(3 * from + k) * width], across = k ? problem->friction[from] : 1;
-            system->b[row] = across * problem->q[3 * from + k] / system->size;
-            for (int j = 0; j < system->count; j++)
-                for (int l = 0; l < system->start[j + 1] - system->start[j]; l++) {
-                    const double other = l ? problem->friction[system->order[j]] : 1;
-                    system->a[row * n + (size_t)(system->start[j] + l)] =
-                        across * other * w[3 * system->order[j] + l] * unit;
-                }
-        }
+    for (size_t i = 0; i < n; i++) {
+        const double *w = &problem->w[(size_t)system->row[i] * width], across = system->scale[i];
+        system->b[i] = across * problem->q[system->row[i]] / system->size;
+        for (size_t j = 0; j < n; j++) system->a[i * n + j] = across * system->scale[j] * w[system->row[j]] * unit;
     }
+    tie_lobes(system);
 }
 
-/* z = x - y of an answer that the problem was given. */
+/* z = x - y of an answer that the problem was given; what û_n there is beyond both cones' is shared by tied lobes. */
 static void recall_answer(imp_cone_system *system)
 {
     const imp_cone_problem *problem = system->problem;
     const double unit = system->d / system->size;
     for (int c = 0; c < system->count; c++) {
-        const int i = system->start[c], from = 3 * system->order[c];
-        const double friction = system->start[c + 1] - i == 3 ? problem->friction[system->order[c]] : 0;
-        const double *r = &problem->last_r[from], *u = &problem->last_u[from];
-        const double slip = friction > 0 ? sqrt(u[1] * u[1] + u[2] * u[2]) : 0;
-        system->z[i] = r[0] * unit - (u[0] + friction * slip) / system->size;
-        for (int k = 1; i + k < system->start[c + 1]; k++)
-            system->z[i + k] = r[k] * unit / friction - friction * u[k] / system->size;
+        const int i = system->start[c];
+        const bool shares = system->tied[c] || (c + 1 < system->count && system->tied[c + 1]);
+        double square = 0, scale = 0;
+        for (int k = i + 1; k < system->start[c + 1]; k++) {
+            const double r = problem->last_r[system->row[k]], u = problem->last_u[system->row[k]];
+            if (k == i + 1) scale = system->scale[k];
+            square += system->scale[k] / scale * u * (system->scale[k] / scale * u);
+            system->z[k] = r * unit / system->scale[k] - system->scale[k] * u / system->size;
+        }
+        const double r = problem->last_r[system->row[i]], u = problem->last_u[system->row[i]];
+        system->z[i] = r * unit - ((shares ? 0.5 : 1) * u + scale * sqrt(square)) / system->size;
     }
 }
 
 /* ---- the proof ---- */
 
+/* |r - P_K(r - s û)| of one contact. */
+static double contact_residual(const imp_cone_problem *problem, int c, const double *r, const double *u, double s)
+{
+    const double friction = problem->friction[c];
+    const imp_cone_lengths *lengths = problem->lengths ? &problem->lengths[c] : NULL;
+    const double slip = imp_cone_slip(friction, lengths, u);
+    double wanted[6] = {r[0] - s * (u[0] + slip), r[1] - s * u[1], r[2] - s * u[2]}, own[6], on[6], off = 0;
+    memcpy(own, r, 3 * sizeof *r);
+    if (lengths) {
+        double units[6];
+        imp_cone_units(friction, *lengths, units);
+        for (int k = 3; k < 6; k++) {
+            own[k] = r[k] * units[k];
+            wanted[k] = units[k] > 0 ? own[k] - s * u[k] / units[k] : 0;
+        }
+        imp_cone_project_turning(friction, *lengths, wanted, on, NULL);
+    } else
+        imp_cone_project(friction, wanted, on, NULL);
+    for (int k = 0; k < imp_cone_width(problem); k++) off += (own[k] - on[k]) * (own[k] - on[k]);
+    return sqrt(off);
+}
+
 double imp_cone_residual(const imp_cone_problem *problem, const double *r, double *u)
 {
-    const double most = largest(problem, r), size = largest(problem, problem->q);
+    const double most = largest(problem, r, false), size = largest(problem, problem->q, true);
+    const int width = imp_cone_width(problem);
     double worst = 0;
     imp_cone_velocities(problem, r, u);
     for (int c = 0; c < problem->count; c++) {
-        const double friction = problem->friction[c], *own = &r[3 * c], *v = &u[3 * c];
         if (!(most > 0)) {
-            worst = fmax(worst, size > 0 ? -v[0] / size : 0);
+            worst = fmax(worst, size > 0 ? -u[width * c] / size : 0);
             continue;
         }
-        const double s = size > 0 ? most / size : 1, slip = friction > 0 ? sqrt(v[1] * v[1] + v[2] * v[2]) : 0;
-        const double wanted[3] = {own[0] - s * (v[0] + friction * slip), own[1] - s * v[1], own[2] - s * v[2]};
-        double on[3], off = 0;
-        imp_cone_project(friction, wanted, on, NULL);
-        for (int k = 0; k < 3; k++) off += (own[k] - on[k]) * (own[k] - on[k]);
-        const double part = sqrt(off) / most;
+        const double s = size > 0 ? most / size : 1;
+        const double part = contact_residual(problem, c, &r[width * c], &u[width * c], s) / most;
         if (!(part <= worst)) worst = part; /* no number is the worst */
     }
     return worst;
@@ -254,20 +339,22 @@ double imp_cone_residual(const imp_cone_problem *problem, const double *r, doubl
 
 /* Where normal reactions that press nothing apart are pressed by q: those of the problem without friction and with a
  * little added to W grow without bound along such a direction. */
-static bool excludes(imp_cone_system *system, int *start, double *direction, imp_cone_outcome *outcome)
+static bool excludes(imp_cone_system *system, double *direction, imp_cone_outcome *outcome)
 {
     const imp_cone_problem *problem = system->problem;
-    const int count = problem->count;
-    const size_t width = 3 * (size_t)count;
+    const int count = problem->count, across = imp_cone_width(problem);
+    const size_t width = (size_t)(across * count);
     for (int i = 0; i < count; i++) {
-        start[i] = i;
-        system->b[i] = problem->q[3 * system->order[i]] / system->size;
+        system->start[i] = i;
+        system->tied[i] = false;
+        system->b[i] = problem->q[across * system->order[i]] / system->size;
         for (int j = 0; j < count; j++)
             system->a[(size_t)i * (size_t)count + (size_t)j] =
-                problem->w[(size_t)(3 * system->order[i]) * width + (size_t)(3 * system->order[j])] / system->d +
+                problem->w[(size_t)(across * system->order[i]) * width + (size_t)(across * system->order[j])] /
+                    system->d +
                 (i == j ? IMP_CONE_SHIFT : 0);
     }
-    start[count] = system->n = count;
+    system->start[count] = system->n = system->count = count;
     system->exact = false;
     (void)imp_cone_follow(system);
     imp_cone_values(system, system->z, 0, system->x, system->u);
@@ -275,7 +362,7 @@ static bool excludes(imp_cone_system *system, int *start, double *direction, imp
     for (int i = 0; i < count; i++) sum += system->x[i];
     if (!(sum > 0)) return false;
     memset(direction, 0, width * sizeof *direction);
-    for (int i = 0; i < count; i++) direction[3 * system->order[i]] = system->x[i] / sum;
+    for (int i = 0; i < count; i++) direction[across * system->order[i]] = system->x[i] / sum;
     imp_cone_velocities(problem, direction, system->own);
     for (size_t i = 0; i < width; i++) {
         pressed += problem->q[i] * direction[i];
@@ -289,12 +376,16 @@ static bool excludes(imp_cone_system *system, int *start, double *direction, imp
 
 static bool is_sound(const imp_cone_problem *problem)
 {
-    const size_t n = 3 * (size_t)problem->count;
+    const size_t n = (size_t)(imp_cone_width(problem) * problem->count);
     double sum = 0; /* what is no number, or infinite, makes it none */
     for (size_t i = 0; i < n; i++) sum += 0 * problem->q[i];
     for (size_t i = 0; i < n * n; i++) sum += 0 * problem->w[i];
     for (int c = 0; c < problem->count; c++)
         if (!(problem->friction[c] >= 0 && isfinite(problem->friction[c]))) return false;
+    for (int c = 0; problem->lengths && c < problem->count; c++) {
+        const imp_cone_lengths *own = &problem->lengths[c];
+        if (!(own->torsional >= 0 && own->rolling >= 0 && isfinite(own->torsional + own->rolling))) return false;
+    }
     return sum == 0;
 }
 
@@ -312,11 +403,12 @@ static void polish(imp_cone_system *system, bool exact, int most, double *r, dou
     if (!(residual < outcome->residual)) return;
     outcome->residual = residual;
     outcome->chosen = system->rank < system->n;
-    memcpy(r, system->best, 3 * (size_t)system->count * sizeof *r);
-    memcpy(u, system->own, 3 * (size_t)system->count * sizeof *u);
+    const size_t length = (size_t)(imp_cone_width(system->problem) * system->problem->count);
+    memcpy(r, system->best, length * sizeof *r);
+    memcpy(u, system->own, length * sizeof *u);
 }
 
-static void solve(imp_cone_system *system, int *start, double *r, double *u, imp_cone_outcome *outcome)
+static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
     enum { RECALLED = 4, LAST_STEPS = 6, EASINGS = 4 };
     static const double easings[EASINGS] = {0.1, 1e-2, 1e-3, 1}; /* by how many of the hard ones they solve */
@@ -336,36 +428,38 @@ static void solve(imp_cone_system *system, int *start, double *r, double *u, imp
     outcome->status = outcome->residual <= IMP_CONE_ACCEPTED ? IMP_CONE_SOLVED
                       : outcome->residual <= IMP_CONE_USABLE ? IMP_CONE_INEXACT
                                                              : IMP_CONE_UNSETTLED;
-    if (outcome->status == IMP_CONE_UNSETTLED && excludes(system, start, system->best, outcome)) {
+    if (outcome->status == IMP_CONE_UNSETTLED && excludes(system, system->best, outcome)) {
         outcome->status = IMP_CONE_NO_SOLUTION;
-        memcpy(r, system->best, 3 * (size_t)system->count * sizeof *r);
+        memcpy(r, system->best, (size_t)(imp_cone_width(system->problem) * system->problem->count) * sizeof *r);
         imp_cone_velocities(system->problem, r, u);
     }
 }
 
-static imp_cone_mode mode_of(double friction, const double *r)
+static imp_cone_mode mode_of(double friction, double torsional, const double *r)
 {
     if (!(r[0] > 0)) return IMP_CONE_OPEN;
     const double rubs = friction > 0 ? sqrt(r[1] * r[1] + r[2] * r[2]) : 0;
-    return friction > 0 && rubs < (1 - IMP_CONE_ACCEPTED) * friction * r[0] ? IMP_CONE_STICKS : IMP_CONE_SLIDES;
+    const double all = torsional > 0 ? hypot(rubs, friction * r[3] / torsional) : rubs;
+    return friction > 0 && all < (1 - IMP_CONE_ACCEPTED) * friction * r[0] ? IMP_CONE_STICKS : IMP_CONE_SLIDES;
 }
 
 imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_workspace *workspace, double *r, double *u,
                                 imp_cone_mode *modes)
 {
     imp_cone_outcome outcome = {.status = IMP_CONE_BAD, .residual = INFINITY};
-    if (problem->count > workspace->capacity || !is_sound(problem)) return outcome;
+    const int width = imp_cone_width(problem), unknowns = (problem->lengths ? UNKNOWNS_MOST : 3) * problem->count;
+    if (problem->count > workspace->capacity || unknowns > workspace->unknowns || !is_sound(problem)) return outcome;
     if (problem->count == 0) return (imp_cone_outcome){.status = IMP_CONE_SOLVED};
-    int *order, *start;
-    imp_cone_system system = lay_out(problem, workspace, &order, &start);
-    find_order(&system, workspace, order, start);
+    imp_cone_system system = lay_out(problem, workspace);
+    find_order(&system, workspace);
     find_scales(&system);
     find_matrix(&system);
-    memset(r, 0, 3 * (size_t)problem->count * sizeof *r);
+    memset(r, 0, (size_t)(width * problem->count) * sizeof *r);
     outcome.residual = imp_cone_residual(problem, r, u);
     outcome.status = IMP_CONE_SOLVED;
-    if (outcome.residual > 0) solve(&system, start, r, u, &outcome);
-    for (int c = 0; modes && c < problem->count; c++) modes[c] = mode_of(problem->friction[c], &r[3 * c]);
+    if (outcome.residual > 0) solve(&system, r, u, &outcome);
+    for (int c = 0; modes && c < problem->count; c++)
+        modes[c] = mode_of(problem->friction[c], problem->lengths ? problem->lengths[c].torsional : 0, &r[width * c]);
     outcome.factorings = system.factorings;
     outcome.steps = system.steps;
     return outcome;

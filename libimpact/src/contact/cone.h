@@ -9,21 +9,41 @@
  *
  * that is u_n >= 0, friction within its cone, and against the slip with all its force where there is any. A contact
  * without friction keeps its normal part alone; its friction is zero, its slip whatever W and q make of it.
+ *
+ * Contacts that also resist turning, by lengths tau (torsional) and rho (rolling), m: r = (r_n, r_t, m_n, m_t) with
+ * moments about the normal and the tangents, u = (u_n, u_t, w_n, w_t) with how the bodies turn on each other:
+ *
+ *     K  = {r : |(r_t/mu, m_n/tau)| <= r_n,  |m_t| <= rho r_n}        (Goyal, Ruina & Papadopoulos 1991)
+ *     K* = {v : |(mu v_t, tau w_n)| + rho |w_t| <= v_n}
+ *     û  = u + (|(mu u_t, tau w_n)| + rho |w_t|) n                    (Acary & Bourrier 2021)
+ *
+ * A part whose mu, tau or rho is zero is left out: its force or moment is zero.
  */
 #ifndef IMP_CONE_H
 #define IMP_CONE_H
 
 #include "base/arena.h"
 
-/* Three numbers a contact: along its normal, then along two tangents; units are the caller's, kept by W. */
+/* Of one contact, m, >= 0. */
+typedef struct imp_cone_lengths {
+    double torsional, rolling; /* tau, rho */
+} imp_cone_lengths;
+
+/* Three numbers a contact: along its normal, then along two tangents; with lengths six, the moments about the same
+ * axes after them. Units are the caller's, kept by W. What is said to have "width count" numbers has so many. */
 typedef struct imp_cone_problem {
-    int count;              /* contacts, >= 0 */
-    const double *w;        /* (3 count)^2 by rows: symmetric, no eigenvalue under zero, of any rank */
-    const double *q;        /* 3 count: u without reactions */
-    const double *friction; /* count, >= 0 */
-    const double *last_r;   /* 3 count each: an answer of like modes to begin with; NULL: none */
+    int count;                       /* contacts, >= 0 */
+    const double *w;                 /* (width count)^2 by rows: symmetric, no eigenvalue under zero, of any rank */
+    const double *q;                 /* width count: u without reactions */
+    const double *friction;          /* count, >= 0 */
+    const imp_cone_lengths *lengths; /* count; NULL: no contact resists turning */
+    const double *last_r;            /* width count each: an answer of like modes to begin with; NULL: none */
     const double *last_u;
 } imp_cone_problem;
+
+enum { IMP_CONE_WIDEST = 6 };
+
+static inline int imp_cone_width(const imp_cone_problem *problem) { return problem->lengths ? IMP_CONE_WIDEST : 3; }
 
 typedef enum imp_cone_status {
     IMP_CONE_SOLVED,
@@ -34,6 +54,8 @@ typedef enum imp_cone_status {
     IMP_CONE_NO_ROOM      /* memory was wanted and refused (cone_bodies.h) */
 } imp_cone_status;
 
+/* Of the points that touch: with friction about the normal they stick while that and the points' is within its bound.
+ */
 typedef enum imp_cone_mode { IMP_CONE_OPEN, IMP_CONE_STICKS, IMP_CONE_SLIDES } imp_cone_mode;
 
 typedef enum imp_cone_stage {
@@ -45,6 +67,7 @@ typedef enum imp_cone_stage {
 
 /* The proof: with R = max |r_c|, Q = max |q_c| over the contacts and s = R/Q, the largest over the contacts of
  * |r - P_K(r - s û)|/R, which is zero of solutions alone, from W, q and r as given, sums taken in twice the precision.
+ * Moments count as forces: over tau/mu (tau where mu = 0) and rho, turning times the same (imp_cone_units).
  * NO_SOLUTION: r is a direction d >= 0 along normals, W d = 0 to rounding and d . q < 0, so that d . u = d . q < 0
  * whatever the reactions, while u_n >= 0 wants d . u >= 0: reactions under `least_reactions` cannot solve it. */
 typedef struct imp_cone_outcome {
@@ -59,7 +82,7 @@ typedef struct imp_cone_outcome {
 /* All that the solver needs, from an arena: nothing is allocated while it solves. */
 typedef struct imp_cone_workspace {
     imp_arena *arena;
-    int capacity; /* contacts */
+    int capacity, unknowns; /* contacts and their unknowns that there is room for */
     double *block;
     struct imp_cone_key *keys;
     int *indices;
@@ -67,19 +90,32 @@ typedef struct imp_cone_workspace {
 
 /* Room for so many contacts, of the workspace's arena; false where that has no more. What was there is lost. */
 bool imp_cone_reserve(imp_cone_workspace *workspace, int contacts);
-void imp_cone_release(imp_cone_workspace *workspace); /* gives it back to the arena */
+bool imp_cone_reserve_turning(imp_cone_workspace *workspace, int contacts); /* of contacts with lengths */
+void imp_cone_release(imp_cone_workspace *workspace);                       /* gives it back to the arena */
 
-/* Solves the problem: r (reactions, on the side of u) and u, 3 count each, and the mode of each contact (count; NULL if
- * not wanted). The answer's bits depend neither on the contacts' order nor on anything but the problem. */
+/* Solves the problem: r (reactions, on the side of u) and u, width count each, and the mode of each contact (count;
+ * NULL if not wanted). The answer's bits depend neither on the contacts' order nor on anything but the problem. */
 imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_workspace *workspace, double *r, double *u,
                                 imp_cone_mode *modes);
 
-/* The residual of any r, as in the outcome; u: of r, 3 count, written. */
+/* The residual of any r, as in the outcome; u: of r, width count, written. */
 double imp_cone_residual(const imp_cone_problem *problem, const double *r, double *u);
 
 /* P_K v, the nearest point of |r_t| <= mu r_n (mu = 0: of the half line along the normal), and, unless slope is NULL,
  * its derivative. */
 void imp_cone_project(double friction, const double *v, double *to, double slope[3][3]);
+
+/* What makes forces of a contact's moments, m: (1, 1, 1, mu/tau, 1/rho, 1/rho) of a contact with both, so that K is
+ * |(r_t, s)| <= mu r_n and |b| <= r_n: two round cones that share r_n. Turning is divided by it. Without friction of
+ * the points 1/tau, and |s| <= r_n; of a part that is left out 0. */
+void imp_cone_units(double friction, imp_cone_lengths lengths, double units[6]);
+
+/* P_K v of that K, six numbers in those units, and, unless slope is NULL, its derivative. */
+void imp_cone_project_turning(double friction, imp_cone_lengths lengths, const double *v, double *to,
+                              double slope[6][6]);
+
+/* û_n - u_n, u in the caller's units, width 3 (lengths NULL) or 6. */
+double imp_cone_slip(double friction, const imp_cone_lengths *lengths, const double *u);
 
 const char *imp_cone_status_name(imp_cone_status status);
 

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-/* One contact's spectral values. */
+/* One lobe's spectral values. */
 typedef struct cone_spectrum {
-    double dir[2], size;     /* z_t/|z_t|, 0 at the axis; |z_t| */
+    double dir[3], size;     /* z_t/|z_t|, 0 at the axis; |z_t| */
     double f[2], g[2];       /* f(lambda_i), f(-lambda_i) */
     double rise[2], fall[2]; /* f'(lambda_i), f'(-lambda_i) */
     double root[2];          /* sqrt(lambda² + 4 e²) */
@@ -49,14 +49,24 @@ static void find_chord(cone_spectrum *s, double lambda1, double lambda2, double 
 static cone_spectrum spectrum_of(const double *z, int dimension, double e)
 {
     cone_spectrum s = {.size = 0};
-    if (dimension == 3) {
-        s.size = sqrt(z[1] * z[1] + z[2] * z[2]);
-        if (s.size > 0) s.dir[0] = z[1] / s.size, s.dir[1] = z[2] / s.size;
-    }
+    double square = 0;
+    for (int k = 1; k < dimension; k++) square += z[k] * z[k];
+    s.size = sqrt(square);
+    for (int k = 1; k < dimension && s.size > 0; k++) s.dir[k - 1] = z[k] / s.size;
     spectral_value(&s, 0, z[0] - s.size, e);
     spectral_value(&s, 1, z[0] + s.size, e);
     find_chord(&s, z[0] - s.size, z[0] + s.size, e);
     return s;
+}
+
+/* The two s of tied lobes, or their rates, to s1 + s2 and s2 - s1. */
+static void tie(const imp_cone_system *system, int c, double *u)
+{
+    if (!system->tied[c]) return;
+    double *first = &u[system->start[c - 1]], *second = &u[system->start[c]];
+    const double one = *first, two = *second;
+    *first = one + two;
+    *second = two - one;
 }
 
 void imp_cone_values(const imp_cone_system *system, const double *z, double e, double *x, double *u)
@@ -70,6 +80,7 @@ void imp_cone_values(const imp_cone_system *system, const double *z, double e, d
             x[i + k] = s.chord * z[i + k];
             u[i + k] = -s.counter * z[i + k];
         }
+        tie(system, c, u);
     }
 }
 
@@ -87,18 +98,18 @@ static double row_product(const double *row, const double *x, int n)
 void imp_cone_reactions(const imp_cone_system *system, const double *x, double *r)
 {
     const double unit = system->size / system->d;
-    for (int c = 0; c < system->count; c++) {
-        const int i = system->start[c], from = system->order[c];
-        const double friction = system->start[c + 1] - i == 3 ? system->problem->friction[from] : 0;
-        r[3 * from] = x[i] * unit;
-        for (int k = 1; k < 3; k++) r[3 * from + k] = friction > 0 ? friction * x[i + k] * unit : 0;
-    }
+    const int n = imp_cone_width(system->problem) * system->problem->count;
+    for (int i = 0; i < n; i++) r[i] = 0;
+    for (int i = 0; i < system->n; i++) r[system->row[i]] = system->scale[i] * x[i] * unit;
+    for (int c = 0; c < system->count; c++)
+        if (system->tied[c])
+            r[system->row[system->start[c]]] = 0.5 * (x[system->start[c - 1]] + x[system->start[c]]) * unit;
 }
 
 /* Sum and product with their errors (Ogita, Rump & Oishi 2005). */
 void imp_cone_velocities(const imp_cone_problem *problem, const double *r, double *u)
 {
-    const int n = 3 * problem->count;
+    const int n = imp_cone_width(problem) * problem->count;
     for (int i = 0; i < n; i++) {
         const double *row = &problem->w[(size_t)i * (size_t)n];
         double sum = problem->q[i], rest = 0;
@@ -118,11 +129,9 @@ static void ask_problem(imp_cone_system *system, double *value)
 {
     imp_cone_reactions(system, system->x, system->r);
     imp_cone_velocities(system->problem, system->r, system->own);
-    for (int c = 0; c < system->count; c++) {
-        const int i = system->start[c], from = system->order[c];
-        for (int k = 0; i + k < system->start[c + 1]; k++)
-            value[i + k] = (k ? system->problem->friction[from] : 1) * system->own[3 * from + k] / system->size;
-    }
+    for (int i = 0; i < system->n; i++) value[i] = system->scale[i] * system->own[system->row[i]] / system->size;
+    for (int c = 0; c < system->count; c++)
+        if (system->tied[c]) value[system->start[c]] = system->x[system->start[c]] - system->x[system->start[c - 1]];
 }
 
 double imp_cone_defect(imp_cone_system *system, const double *z, double e, double *value)
@@ -142,18 +151,18 @@ double imp_cone_defect(imp_cone_system *system, const double *z, double e, doubl
     return sqrt(square);
 }
 
-/* X' and -U' of one contact, 3 x 3. */
-static void derivatives(const cone_spectrum *s, double rise[3][3], double fall[3][3])
+/* X' and -U' of one lobe. */
+static void derivatives(const cone_spectrum *s, int dimension, double rise[4][4], double fall[4][4])
 {
     const double along = 0.5 * (s->rise[0] + s->rise[1]), skew = 0.5 * (s->rise[1] - s->rise[0]);
     const double back = 0.5 * (s->fall[0] + s->fall[1]), turn = 0.5 * (s->fall[1] - s->fall[0]);
     rise[0][0] = along;
     fall[0][0] = s->fall[1];
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < dimension - 1; k++) {
         rise[0][k + 1] = rise[k + 1][0] = skew * s->dir[k];
         fall[0][k + 1] = s->fall[1] * s->dir[k];
         fall[k + 1][0] = turn * s->dir[k];
-        for (int l = 0; l < 2; l++) {
+        for (int l = 0; l < dimension - 1; l++) {
             const double ray = s->dir[k] * s->dir[l];
             rise[k + 1][l + 1] = (along - s->chord) * ray + (k == l ? s->chord : 0);
             fall[k + 1][l + 1] = (back - s->counter) * ray + (k == l ? s->counter : 0);
@@ -161,34 +170,43 @@ static void derivatives(const cone_spectrum *s, double rise[3][3], double fall[3
     }
 }
 
-/* The columns of one contact with friction. */
-static void fill_columns(imp_cone_system *system, int i, double rise[3][3], double fall[3][3])
+/* The columns A X' - U' of one lobe. */
+static inline void fill_columns(imp_cone_system *system, int i, int dimension, double rise[4][4], double fall[4][4])
 {
     const size_t n = (size_t)system->n;
     for (size_t row = 0; row < n; row++) {
         const double *a = &system->a[row * n + (size_t)i];
         double *m = &system->matrix[row * n + (size_t)i];
-        for (int k = 0; k < 3; k++) m[k] = a[0] * rise[0][k] + a[1] * rise[1][k] + a[2] * rise[2][k];
+        for (int k = 0; k < dimension; k++) {
+            m[k] = a[0] * rise[0][k];
+            for (int l = 1; l < dimension; l++) m[k] += a[l] * rise[l][k];
+        }
     }
-    for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++) system->matrix[((size_t)(i + k)) * n + (size_t)(i + l)] += fall[k][l];
+    for (int k = 0; k < dimension; k++)
+        for (int l = 0; l < dimension; l++) system->matrix[((size_t)(i + k)) * n + (size_t)(i + l)] += fall[k][l];
+}
+
+/* What -U' has of a lobe in the normal row of the one it is tied to. */
+static void fill_tie(imp_cone_system *system, int c, int other, double sign, double fall[4][4])
+{
+    const size_t n = (size_t)system->n, row = (size_t)system->start[other], i = (size_t)system->start[c];
+    for (int k = 0; k < system->start[c + 1] - system->start[c]; k++)
+        system->matrix[row * n + i + (size_t)k] += sign * fall[0][k];
 }
 
 void imp_cone_factor(imp_cone_system *system, const double *z, double e)
 {
-    const size_t n = (size_t)system->n;
     for (int c = 0; c < system->count; c++) {
         const int i = system->start[c], dimension = system->start[c + 1] - i;
         const cone_spectrum s = spectrum_of(&z[i], dimension, e);
-        double rise[3][3], fall[3][3];
-        derivatives(&s, rise, fall);
-        if (dimension == 3) {
-            fill_columns(system, i, rise, fall);
-            continue;
-        }
-        for (size_t row = 0; row < n; row++)
-            system->matrix[row * n + (size_t)i] = system->a[row * n + (size_t)i] * rise[0][0];
-        system->matrix[(size_t)i * n + (size_t)i] += fall[0][0];
+        double rise[4][4], fall[4][4];
+        derivatives(&s, dimension, rise, fall);
+        if (dimension == 3)
+            fill_columns(system, i, 3, rise, fall); /* the same, unrolled */
+        else
+            fill_columns(system, i, dimension, rise, fall);
+        if (system->tied[c]) fill_tie(system, c, c - 1, 1, fall);
+        if (c + 1 < system->count && system->tied[c + 1]) fill_tie(system, c, c + 1, -1, fall);
     }
     imp_linear linear = {.n = system->n,
                          .matrix = system->matrix,
@@ -228,6 +246,7 @@ void imp_cone_drift(imp_cone_system *system, const double *z, double e, double *
         x[i] = 0.5 * (low + high);
         u[i] = high;
         for (int k = 1; k < dimension; k++) x[i + k] = u[i + k] = 0.5 * (high - low) * s.dir[k - 1];
+        tie(system, c, u);
     }
     for (int i = 0; i < n; i++) rate[i] = u[i] - row_product(&system->a[(size_t)i * (size_t)n], x, n);
 }

@@ -8,7 +8,13 @@
  *     x = f(z) in the cone's Jordan algebra, y = f(-z): x o y = e² 1 for every z        (Fukushima, Luo & Tseng 2002)
  *     F(z) = U(z) - A X(z) - b,   U = y - |y_t| n, as y_n - |y_t| = f(-lambda_2)
  *
- * A contact without friction is the number z_n alone.
+ * A contact without friction is the number z_n alone. T has tau and rho for moments: of a contact with both friction of
+ * its points (and spin) and of rolling, K is two such cones that share r_n, "lobes" 1 and 2, each with its z. With
+ * s = f(-lambda_2) of each, they are tied by
+ *
+ *     x_n = (x1_n + x2_n)/2       u_n = s1 + s2       x1_n - x2_n = s1 - s2
+ *
+ * At e = 0 the last says both are equal, as s_i > 0 only where x_i = 0; and it never loses its rank.
  */
 #ifndef IMP_CONE_MAP_H
 #define IMP_CONE_MAP_H
@@ -18,14 +24,17 @@
 
 typedef struct imp_cone_system {
     const imp_cone_problem *problem;
-    const int *order; /* the problem's contact of each of the system's */
-    double d, size;   /* the scales, powers of two: what changes units by such changes no bit; Q */
-    double eased;     /* alpha, what A's diagonal has too much */
-    bool exact;       /* F is asked of the problem itself, in twice the precision */
-    int count, n;     /* contacts, unknowns */
-    const int *start; /* count + 1: each contact's first unknown; a contact has three or one */
-    double *a, *b;    /* n^2 by rows, n */
-    double *r, *own;  /* of the problem, 3 count: scratch */
+    int *order;      /* the problem's contacts in an order of their own */
+    double d, size;  /* the scales, powers of two: what changes units by such changes no bit; Q */
+    double eased;    /* alpha, what A's diagonal has too much */
+    bool exact;      /* F is asked of the problem itself, in twice the precision */
+    int count, n;    /* lobes, unknowns */
+    int *start;      /* count + 1: each lobe's first unknown, its z_n; it has one to four */
+    int *tied;       /* count: whether it shares its normal with the lobe before */
+    int *row;        /* n: the problem's row of each unknown */
+    double *scale;   /* n: its T */
+    double *a, *b;   /* n^2 by rows, n */
+    double *r, *own; /* of the problem: scratch */
     double *matrix, *spare, *scratch;
     int *rows, *columns;
     double *z, *trial, *step, *value, *x, *u, *rate, *kept, *tangent, *best; /* n each */
@@ -45,7 +54,7 @@ void imp_cone_factor(imp_cone_system *system, const double *z, double e);
 /* The solution of it for a right-hand side, in place; of least norm where there are many. */
 void imp_cone_back(imp_cone_system *system, double *right);
 
-/* The problem's r of x, 3 count. */
+/* The problem's r of x. */
 void imp_cone_reactions(const imp_cone_system *system, const double *x, double *r);
 
 /* The problem's u = W r + q, each sum rounded once. */

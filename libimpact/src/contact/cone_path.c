@@ -150,10 +150,20 @@ static void turn_round(imp_cone_system *system, double e)
 
 /* ---- by A + alpha 1 ---- */
 
+/* The normal of tied lobes is their mean; their tie stays. */
 static void ease(imp_cone_system *system, double alpha)
 {
     const size_t n = (size_t)system->n;
-    for (size_t i = 0; i < n; i++) system->a[i * n + i] += alpha - system->eased;
+    const double more = alpha - system->eased;
+    for (int c = 0; c < system->count; c++) {
+        const bool ties = c + 1 < system->count && system->tied[c + 1];
+        for (size_t i = (size_t)system->start[c]; i < (size_t)system->start[c + 1]; i++) {
+            const bool normal = i == (size_t)system->start[c];
+            if (normal && system->tied[c]) continue;
+            system->a[i * n + i] += normal && ties ? 0.5 * more : more;
+            if (normal && ties) system->a[i * n + (size_t)system->start[c + 1]] += 0.5 * more;
+        }
+    }
     system->eased = alpha;
 }
 
