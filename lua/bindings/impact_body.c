@@ -108,6 +108,8 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
                                        "omega",
                                        "friction",
                                        "restitution",
+                                       "torsional_friction",
+                                       "rolling_friction",
                                        "linear_damping",
                                        "angular_damping",
                                        "shape_position",
@@ -136,6 +138,10 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
     def->omega = quat_lua_get_vec3(&reader, "omega", def->omega);
     def->friction = quat_lua_get_number(&reader, "friction", QUAT_LUA_NOT_NEGATIVE, def->friction);
     def->restitution = quat_lua_get_number(&reader, "restitution", QUAT_LUA_FRACTION, def->restitution);
+    def->torsional_friction =
+        quat_lua_get_number(&reader, "torsional_friction", QUAT_LUA_NOT_NEGATIVE, def->torsional_friction);
+    def->rolling_friction =
+        quat_lua_get_number(&reader, "rolling_friction", QUAT_LUA_NOT_NEGATIVE, def->rolling_friction);
     def->linear_damping = quat_lua_get_number(&reader, "linear_damping", QUAT_LUA_BELOW_ONE, def->linear_damping);
     def->angular_damping = quat_lua_get_number(&reader, "angular_damping", QUAT_LUA_BELOW_ONE, def->angular_damping);
 }

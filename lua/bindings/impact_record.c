@@ -137,6 +137,8 @@ static int run_bodies(lua_State *L)
         quat_lua_set_vec3(L, "trail", def.trail);
         quat_lua_set_number(L, "friction", def.friction);
         quat_lua_set_number(L, "restitution", def.restitution);
+        quat_lua_set_number(L, "torsional_friction", def.torsional_friction);
+        quat_lua_set_number(L, "rolling_friction", def.rolling_friction);
         impact_lua_push_shape(L, &def.shape);
         lua_setfield(L, -2, "shape");
         lua_rawseti(L, -2, i + 1);

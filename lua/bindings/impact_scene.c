@@ -286,6 +286,8 @@ static void add_defaults(lua_State *L)
         {"density", body.density},
         {"friction", body.friction},
         {"restitution", body.restitution},
+        {"torsional_friction", body.torsional_friction},
+        {"rolling_friction", body.rolling_friction},
         {"linear_damping", body.linear_damping},
         {"angular_damping", body.angular_damping},
     };

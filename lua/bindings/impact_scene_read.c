@@ -100,7 +100,8 @@ static const impact_force_def *read_forces(const quat_lua_reader *reader, impact
 
 static const impact_pair_def *read_pairs(const quat_lua_reader *reader, impact_scene_def *def)
 {
-    static const char *const keys[] = {"bodies", "friction", "restitution", "stiffness", NULL};
+    static const char *const keys[] = {"bodies",           "friction",  "restitution", "torsional_friction",
+                                       "rolling_friction", "stiffness", NULL};
     lua_State *L = reader->L;
     def->pair_count = push_list(reader, "pairs");
     const int list = lua_gettop(L);
@@ -117,6 +118,8 @@ static const impact_pair_def *read_pairs(const quat_lua_reader *reader, impact_s
         pairs[i].body2 = lua_tostring(L, -1);
         pairs[i].friction = quat_lua_get_number(&pair, "friction", QUAT_LUA_NOT_NEGATIVE, NAN);
         pairs[i].restitution = quat_lua_get_number(&pair, "restitution", QUAT_LUA_FRACTION, NAN);
+        pairs[i].torsional_friction = quat_lua_get_number(&pair, "torsional_friction", QUAT_LUA_NOT_NEGATIVE, NAN);
+        pairs[i].rolling_friction = quat_lua_get_number(&pair, "rolling_friction", QUAT_LUA_NOT_NEGATIVE, NAN);
         pairs[i].stiffness = quat_lua_get_number(&pair, "stiffness", QUAT_LUA_POSITIVE, NAN);
         lua_pop(L, 4);
     }

@@ -72,6 +72,8 @@ core.layer()
 ---@field omega? vec  rad/s, world; of a static body, its surface's: about a plane's normal through its position, or an axis on which it is round
 ---@field friction? number
 ---@field restitution? number
+---@field torsional_friction? number  length tau, m: a contact pressed by N resists turning about its normal by up to tau N (0)
+---@field rolling_friction? number  length rho, m: and rolling by up to rho N (0)
 ---@field linear_damping? number  part of the velocity lost per second
 ---@field angular_damping? number
 
@@ -129,7 +131,7 @@ core.layer()
 ---@field gravity? vec  m/s^2
 ---@field output_rate? number  samples per second
 ---@field rules? {friction?: impact.rule, restitution?: impact.rule}
----@field pairs? {bodies: string[], friction?: number, restitution?: number, stiffness?: number}[]
+---@field pairs? {bodies: string[], friction?: number, restitution?: number, torsional_friction?: number, rolling_friction?: number, stiffness?: number}[]
 ---@field law? "poisson"|"newton"|"stronge"
 ---@field solver? "auto"|"closed_form"|"series"|"cvode"
 ---@field compliance? number  eta^2 of every contact, with law = "stronge"; 0: rigid
@@ -177,7 +179,7 @@ core.layer()
 ---@field name fun(self): string
 ---@field reason fun(self): string  why it ended
 ---@field times fun(self): number, number  s: its begin and end
----@field bodies fun(self): table[]  name, shape, static, mass, moments, shape_position, shape_orientation, friction, restitution
+---@field bodies fun(self): table[]  name, shape, static, mass, moments, shape_position, shape_orientation, friction, restitution, torsional_friction, rolling_friction
 ---@field state fun(self, body: string, t: number): impact.state  exact at any time; at an event, after it
 ---@field state_before fun(self, body: string, t: number): impact.state
 ---@field columns fun(self, body: string, times: number[]): table  t, x, y, z, qw ... wz at those times

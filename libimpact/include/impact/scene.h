@@ -38,6 +38,10 @@ typedef struct impact_body_def {
      * drum. */
     double friction;    /* >= 0; joined with the other body's by the scene's rule */
     double restitution; /* in [0, 1] */
+    /* tau and rho, m, >= 0, of a pair the sum of both bodies': held by the normal force N, a contact resists turning
+     * about its normal with up to tau N (together with friction: |(F/mu, M/tau)| <= N) and rolling with up to rho N;
+     * in impacts the same of impulses. docs/cone.md */
+    double torsional_friction, rolling_friction;
     double linear_damping,
         angular_damping; /* part of the (angular) velocity lost per second, in [0, 1): factor (1 - d)^t */
     qvec3 trail;         /* body frame, m: whose way viewers draw; no motion depends on it */
@@ -58,6 +62,7 @@ typedef struct impact_pair_def {
     double friction, restitution;
     double stiffness; /* of springs that answer together, any unit: only ratios count; 0 or NaN: Hertz's, of bodies of
                        * one modulus */
+    double torsional_friction, rolling_friction; /* m, >= 0; NaN: the sum of the bodies' */
 } impact_pair_def;
 
 /* What answers contacts that are struck at one instant: docs/together.md. */
@@ -247,6 +252,7 @@ typedef struct impact_usage {
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback, gap_ccd; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode;          /* impacts, by solver */
     long impacts_second, impacts_soft; /* of these, answered in 128 bits; answered though no receipt passed */
+    long impacts_turning;              /* impacts of pairs with torsional or rolling friction, of none of the solvers */
     /* of these, answers to another impact in the same instant, one after another in the order of the definition */
     long impacts_simultaneous;
     long lifts_chosen;     /* sliding contacts that lifted off where their friction could have pressed them too */

@@ -27,16 +27,32 @@ void imp_cone_find_axes(qvec3 normal, qvec3 axes[3]);
 void imp_cone_find_rows(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
                         imp_cone_row *rows);
 
+/* The rows of moments about the axes; they have no linear part. */
+void imp_cone_find_turns(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
+                         imp_cone_row *turns);
+
 /* rows (count) and w ((3 count)^2, symmetric to the bit), 1/kg. */
 void imp_cone_assemble(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
                        imp_cone_row *rows, double *w);
+
+/* The same with moments: w is (6 count)^2. */
+void imp_cone_assemble_turning(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
+                               int count, imp_cone_row *rows, imp_cone_row *turns, double *w);
 
 /* What the bodies' velocities are at the contacts, along their axes: 3 count, m/s. */
 void imp_cone_contact_velocities(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
                                  int count, double *u);
 
+/* The same with how the bodies turn on each other, 1/s: 6 count. */
+void imp_cone_contact_turning(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
+                              int count, double *u);
+
 /* Gives the bodies the contacts' impulses, N s. */
 void imp_cone_push(const imp_world *world, const imp_cone_contact *contacts, int count, const double *r,
                    imp_state *states);
+
+/* The same with moments, N m s: r is 6 count. */
+void imp_cone_push_turning(const imp_world *world, const imp_cone_contact *contacts, int count, const double *r,
+                           imp_state *states);
 
 #endif

@@ -14,9 +14,11 @@
 /* The problem laid out: bodies that move are numbered in the order in which contacts name them. */
 typedef struct rest_system {
     int contacts, bodies, n; /* n = 6 bodies */
+    int width;               /* numbers a contact: 3, or 6 with moments, in the units of imp_cone_units */
     const imp_cone_contact *contact;
     const double *friction;
-    const imp_cone_row *rows;
+    const imp_cone_lengths *lengths;
+    const imp_cone_row *rows, *turns;
     const int *number; /* per body of the world; -1: does not move */
     double *matrix, *spare, *scratch, *load, *x, *trial, *step, *gradient, *forces, *sizes;
     int *pivots, *columns;
@@ -30,11 +32,13 @@ bool imp_rest_reserve(imp_rest_workspace *workspace, int contacts, int bodies)
 {
     if (contacts <= workspace->contacts && bodies <= workspace->bodies) return true;
     imp_rest_release(workspace);
-    const size_t n = 6 * (size_t)bodies, block = REST_SQUARES * n * n + REST_VECTORS * n + 3 * (size_t)contacts;
+    const size_t n = 6 * (size_t)bodies,
+                 block = REST_SQUARES * n * n + REST_VECTORS * n + IMP_CONE_WIDEST * (size_t)contacts;
     workspace->block = imp_arena_take(workspace->arena, block, sizeof *workspace->block);
     workspace->rows = imp_arena_take(workspace->arena, (size_t)contacts, sizeof *workspace->rows);
+    workspace->turns = imp_arena_take(workspace->arena, (size_t)contacts, sizeof *workspace->turns);
     workspace->indices = imp_arena_take(workspace->arena, 2 * n + (size_t)bodies, sizeof *workspace->indices);
-    if (workspace->block && workspace->rows && workspace->indices) {
+    if (workspace->block && workspace->rows && workspace->turns && workspace->indices) {
         workspace->contacts = contacts, workspace->bodies = bodies;
         return true;
     }
@@ -46,13 +50,14 @@ void imp_rest_release(imp_rest_workspace *workspace)
 {
     imp_arena_give(workspace->arena, workspace->block);
     imp_arena_give(workspace->arena, workspace->rows);
+    imp_arena_give(workspace->arena, workspace->turns);
     imp_arena_give(workspace->arena, workspace->indices);
     *workspace = (imp_rest_workspace){.arena = workspace->arena};
 }
 
 static rest_system furnish_rest(imp_rest_workspace *workspace, const imp_world *world, int count)
 {
-    rest_system s = {.contacts = count, .rows = workspace->rows};
+    rest_system s = {.contacts = count, .rows = workspace->rows, .turns = workspace->turns};
     const size_t n = 6 * (size_t)world->body_count;
     double *block = workspace->block,
            **vectors[] = {&s.scratch, &s.load, &s.x, &s.trial, &s.step, &s.gradient, &s.sizes};
@@ -72,15 +77,35 @@ static void sides_of(const rest_system *s, int c, int body[2])
     body[1] = s->number[s->contact[c].body2];
 }
 
+/* The row k of G of one side. */
+static const double *row_of(const rest_system *s, int c, int side, int k)
+{
+    return k < 3 ? s->rows[c].side[side][k] : s->turns[c].side[side][k - 3];
+}
+
+/* P_K of contact c and its derivative. */
+static void project_at(const rest_system *s, int c, const double *v, double *f, double slope[6][6])
+{
+    double small[3][3];
+    if (s->width > 3) {
+        imp_cone_project_turning(s->friction[c], s->lengths[c], v, f, slope);
+        return;
+    }
+    imp_cone_project(s->friction[c], v, f, slope ? small : NULL);
+    for (int k = 0; slope && k < 3; k++) memcpy(slope[k], small[k], sizeof small[k]);
+}
+
 /* G x at contact c. */
 static void motion_at(const rest_system *s, int c, const double *x, double *v)
 {
     int body[2];
     sides_of(s, c, body);
-    v[0] = v[1] = v[2] = 0;
+    for (int k = 0; k < s->width; k++) v[k] = 0;
     for (int side = 0; side < 2; side++)
-        for (int k = 0; body[side] >= 0 && k < 3; k++)
-            for (int l = 0; l < 6; l++) v[k] += s->rows[c].side[side][k][l] * x[6 * body[side] + l];
+        for (int k = 0; body[side] >= 0 && k < s->width; k++) {
+            const double *row = row_of(s, c, side, k);
+            for (int l = 0; l < 6; l++) v[k] += row[l] * x[6 * body[side] + l];
+        }
 }
 
 /* P_K(G x) into f; returns its square. */
@@ -88,10 +113,10 @@ static double project_motion(const rest_system *s, const double *x, double *f)
 {
     double square = 0;
     for (int c = 0; c < s->contacts; c++) {
-        double v[3];
+        double v[6], *own = &f[s->width * c];
         motion_at(s, c, x, v);
-        imp_cone_project(s->friction[c], v, &f[3 * c], NULL);
-        for (int k = 0; k < 3; k++) square += f[3 * c + k] * f[3 * c + k];
+        project_at(s, c, v, own, NULL);
+        for (int k = 0; k < s->width; k++) square += own[k] * own[k];
     }
     return square;
 }
@@ -120,8 +145,8 @@ static double find_gradient(const rest_system *s)
         sides_of(s, c, body);
         for (int side = 0; side < 2; side++) {
             double own[6] = {0};
-            for (int k = 0; body[side] >= 0 && k < 3; k++)
-                for (int l = 0; l < 6; l++) own[l] += s->rows[c].side[side][k][l] * s->forces[3 * c + k];
+            for (int k = 0; body[side] >= 0 && k < s->width; k++)
+                for (int l = 0; l < 6; l++) own[l] += row_of(s, c, side, k)[l] * s->forces[s->width * c + k];
             for (int l = 0; body[side] >= 0 && l < 6; l++) s->gradient[6 * body[side] + l] += own[l];
             if (body[side] >= 0) s->sizes[body[side]] += sqrt(product(own, own, 6));
         }
@@ -135,7 +160,7 @@ static double find_gradient(const rest_system *s)
 
 /* ---- Newton ---- */
 
-static void add_hessian(const rest_system *s, int c, double slope[3][3])
+static void add_hessian(const rest_system *s, int c, double slope[6][6])
 {
     int body[2];
     sides_of(s, c, body);
@@ -144,25 +169,30 @@ static void add_hessian(const rest_system *s, int c, double slope[3][3])
             for (int k = 0; body[j] >= 0 && k < 6; k++)
                 for (int l = 0; l < 6; l++) {
                     double sum = 0;
-                    for (int m = 0; m < 3; m++)
-                        for (int o = 0; o < 3; o++)
-                            sum += s->rows[c].side[i][m][k] * slope[m][o] * s->rows[c].side[j][o][l];
+                    for (int m = 0; m < s->width; m++)
+                        for (int o = 0; o < s->width; o++)
+                            sum += row_of(s, c, i, m)[k] * slope[m][o] * row_of(s, c, j, o)[l];
                     s->matrix[(size_t)(6 * body[i] + k) * (size_t)s->n + (size_t)(6 * body[j] + l)] += sum;
                 }
+}
+
+/* Whether the contact has such a force at all; moments that it has not would balance what nothing does. */
+static bool holds(const rest_system *s, int c, int k)
+{
+    return k < 3 || (s->lengths && (k == 3 ? s->lengths[c].torsional : s->lengths[c].rolling) > 0);
 }
 
 /* -D''^-1 D' into step; at first, as if every contact held whatever way it is drawn. */
 static bool find_step(const rest_system *s, bool first)
 {
-    static const double all[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const size_t n = (size_t)s->n;
     double most = 0;
     memset(s->matrix, 0, n * n * sizeof *s->matrix);
     for (int c = 0; c < s->contacts; c++) {
-        double v[3], f[3], slope[3][3];
+        double v[6], f[6], slope[6][6];
         motion_at(s, c, s->x, v);
-        imp_cone_project(s->friction[c], v, f, slope);
-        if (first) memcpy(slope, all, sizeof slope);
+        project_at(s, c, v, f, slope);
+        for (int k = 0; first && k < 36; k++) slope[k / 6][k % 6] = k / 6 == k % 6 && holds(s, c, k % 6);
         add_hessian(s, c, slope);
     }
     for (size_t i = 0; i < n; i++) most = fmax(most, s->matrix[i * n + i]);
@@ -215,15 +245,15 @@ static double refine(const rest_system *s)
 {
     if (!find_step(s, false)) return INFINITY;
     for (int c = 0; c < s->contacts; c++) {
-        double v[3], change[3], f[3], slope[3][3];
+        double v[6], change[6], f[6], slope[6][6];
         motion_at(s, c, s->x, v);
         motion_at(s, c, s->step, change);
-        imp_cone_project(s->friction[c], v, f, slope);
-        for (int k = 0; k < 3; k++) {
-            f[k] = s->forces[3 * c + k];
-            for (int l = 0; l < 3; l++) f[k] += slope[k][l] * change[l];
+        project_at(s, c, v, f, slope);
+        for (int k = 0; k < s->width; k++) {
+            f[k] = s->forces[s->width * c + k];
+            for (int l = 0; l < s->width; l++) f[k] += slope[k][l] * change[l];
         }
-        imp_cone_project(s->friction[c], f, &s->forces[3 * c], NULL);
+        project_at(s, c, f, &s->forces[s->width * c], NULL);
     }
     return find_gradient(s);
 }
@@ -318,23 +348,49 @@ static imp_rest_outcome minimise(const rest_system *s, const double **direction)
     return outcome;
 }
 
+/* The rows of moments, divided by the units that make forces of these. */
+static void find_turns(const rest_system *s, const imp_world *world, const imp_state *states, imp_cone_row *turns)
+{
+    imp_cone_find_turns(world, states, s->contact, s->contacts, turns);
+    for (int c = 0; c < s->contacts; c++) {
+        double units[6];
+        imp_cone_units(s->friction[c], s->lengths[c], units);
+        for (int i = 0; i < 36; i++) {
+            double *row = turns[c].side[i / 18][i / 6 % 3];
+            const double unit = units[3 + i / 6 % 3];
+            row[i % 6] = unit > 0 ? row[i % 6] / unit : 0;
+        }
+    }
+}
+
+/* The forces in those units to the caller's. */
+static void take_reactions(const rest_system *s, bool rests, double *reactions)
+{
+    for (int i = 0; i < s->width * s->contacts; i++) {
+        const int c = i / s->width, k = i % s->width;
+        double units[6] = {1, 1, 1};
+        if (s->width > 3) imp_cone_units(s->friction[c], s->lengths[c], units);
+        reactions[i] = rests && units[k] > 0 ? s->forces[i] / units[k] : 0;
+    }
+}
+
 imp_rest_outcome imp_rest_solve(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
-                                const double *friction, int count, const imp_load *loads, imp_rest_workspace *workspace,
-                                double *reactions, imp_rest_velocity *velocities)
+                                const double *friction, const imp_cone_lengths *lengths, int count,
+                                const imp_load *loads, imp_rest_workspace *workspace, double *reactions,
+                                imp_rest_velocity *velocities)
 {
     const double *direction = NULL;
     if (count > workspace->contacts || world->body_count > workspace->bodies)
         return (imp_rest_outcome){.status = IMP_REST_UNDECIDED, .residual = INFINITY};
     rest_system s = furnish_rest(workspace, world, count);
     s.contact = contacts, s.friction = friction;
+    s.lengths = lengths, s.width = lengths ? IMP_CONE_WIDEST : 3;
     number_bodies(&s, world, s.columns + 6 * world->body_count);
     imp_cone_find_rows(world, states, contacts, count, workspace->rows);
+    if (lengths) find_turns(&s, world, states, workspace->turns);
     find_loads(&s, world, states, loads);
     const imp_rest_outcome outcome = minimise(&s, &direction);
-    if (outcome.status == IMP_REST_RESTS)
-        memcpy(reactions, s.forces, 3 * (size_t)count * sizeof *reactions);
-    else
-        memset(reactions, 0, 3 * (size_t)count * sizeof *reactions);
+    take_reactions(&s, outcome.status == IMP_REST_RESTS, reactions);
     memset(s.trial, 0, sizeof *s.trial * (size_t)s.n);
     show_motion(&s, world, states, direction ? direction : s.trial, velocities);
     return outcome;

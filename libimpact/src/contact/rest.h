@@ -35,7 +35,7 @@ typedef struct imp_rest_workspace {
     imp_arena *arena;
     int contacts, bodies; /* there is room for */
     double *block;
-    imp_cone_row *rows;
+    imp_cone_row *rows, *turns;
     int *indices;
 } imp_rest_workspace;
 
@@ -43,14 +43,16 @@ typedef struct imp_rest_workspace {
 bool imp_rest_reserve(imp_rest_workspace *workspace, int contacts, int bodies);
 void imp_rest_release(imp_rest_workspace *workspace);
 
-/* loads: one per body of the world. reactions: 3 count along the contacts' axes, N. velocities: one per body of the
+/* lengths: of contacts that resist turning, or NULL. loads: one per body of the world. reactions: 3 count along the
+ * contacts' axes, N, with lengths 6 count, the moments about them, N m, after them. velocities: one per body of the
  * world, zero where a body stays or is static; MOVES: the motion that shows it, of a kinetic energy of 1/2 in all,
  * J. Bodies that no contact names are left out. */
 typedef struct imp_rest_velocity {
     qvec3 linear, angular; /* m/s; 1/s, world */
 } imp_rest_velocity;
 imp_rest_outcome imp_rest_solve(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
-                                const double *friction, int count, const imp_load *loads, imp_rest_workspace *workspace,
-                                double *reactions, imp_rest_velocity *velocities);
+                                const double *friction, const imp_cone_lengths *lengths, int count,
+                                const imp_load *loads, imp_rest_workspace *workspace, double *reactions,
+                                imp_rest_velocity *velocities);
 
 #endif

@@ -38,11 +38,22 @@ static bool reserve_bodies(imp_pile *pile, const imp_world *world)
     return there;
 }
 
-static bool reserve_contacts(imp_pile *pile, int contacts)
+/* The numbers that a contact of the world may have. */
+static int widest_of(const imp_world *world)
 {
-    const size_t count = (size_t)contacts, n = 3 * count;
+    for (int p = 0; p < world->pair_count; p++)
+        if (imp_is_rough(&world->pairs[p])) return IMP_CONE_WIDEST;
+    return 3;
+}
+
+static bool reserve_contacts(imp_pile *pile, const imp_world *world, int contacts)
+{
+    const int widest = widest_of(world);
+    const size_t count = (size_t)contacts, n = (size_t)widest * count;
     bool there = true;
-    if (contacts <= pile->contacts_most) return true;
+    if (contacts <= pile->contacts_most && widest <= pile->widest) return true;
+    pile->lengths = replaced(pile, pile->lengths, count, sizeof *pile->lengths, &there);
+    pile->turns = replaced(pile, pile->turns, count, sizeof *pile->turns, &there);
     pile->contacts = replaced(pile, pile->contacts, count, sizeof *pile->contacts, &there);
     pile->members = replaced(pile, pile->members, count, sizeof *pile->members, &there);
     pile->rows = replaced(pile, pile->rows, count, sizeof *pile->rows, &there);
@@ -52,8 +63,9 @@ static bool reserve_contacts(imp_pile *pile, int contacts)
     pile->gap = replaced(pile, pile->gap, count, sizeof *pile->gap, &there);
     double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->before, &pile->last_r, &pile->last_u};
     for (int k = 0; k < 6; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
-    there = imp_cone_reserve(&pile->cone, contacts) && there;
+    there = (widest > 3 ? imp_cone_reserve_turning : imp_cone_reserve)(&pile->cone, contacts) && there;
     pile->contacts_most = there ? contacts : 0;
+    pile->widest = widest;
     return there;
 }
 
@@ -103,20 +115,32 @@ static double smallest(const imp_world *world)
 static int gather_island(imp_pile *pile, const imp_world *world)
 {
     const int count = imp_pile_take_island(&pile->touching, world, pile->members);
+    pile->width = 3;
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        const imp_pair *pair = &world->pairs[point->pair];
         pile->contacts[c] = point->contact;
-        pile->friction[c] = world->pairs[point->pair].friction;
+        pile->friction[c] = pair->friction;
+        pile->lengths[c] = (imp_cone_lengths){pair->torsional, pair->rolling};
         pile->gap[c] = point->gap;
+        if (imp_is_rough(pair)) pile->width = IMP_CONE_WIDEST;
     }
     return count;
 }
 
 /* ---- one step, whole ---- */
 
-static double part_of(const imp_cone_contact *contact, const double *v, int k)
+/* Along the contact's axes, and, of a width of six, about them. */
+static void parts_of(const imp_cone_contact *contact, qvec3 along, qvec3 about, int width, double factor, double *to)
 {
-    return qvec3_dot(contact->axes[k], (qvec3){v[0], v[1], v[2]});
+    for (int k = 0; k < width; k++) to[k] = factor * qvec3_dot(contact->axes[k % 3], k < 3 ? along : about);
+}
+
+static qvec3 from_parts(const imp_cone_contact *contact, const double *parts, double divisor)
+{
+    qvec3 v = {0, 0, 0};
+    for (int k = 0; k < 3; k++) v = qvec3_axpy(parts[k] / divisor, contact->axes[k], v);
+    return v;
 }
 
 /* What is remembered of the contacts, along their axes; one that was open begins open, and bounces off what it
@@ -126,13 +150,12 @@ static void recall_step(imp_pile *pile, const imp_world *world, int count, doubl
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pile_memory *m = imp_pile_recall(&pile->memory[1], point);
-        if (!m) pile->q[3 * c] += world->pairs[point->pair].restitution * fmin(0, pile->before[3 * c]);
-        const double r[3] = {m ? m->reaction.x : 0, m ? m->reaction.y : 0, m ? m->reaction.z : 0},
-                     u[3] = {m ? m->velocity.x : 0, m ? m->velocity.y : 0, m ? m->velocity.z : 0};
-        for (int k = 0; k < 3; k++) {
-            pile->last_r[3 * c + k] = h * part_of(&pile->contacts[c], r, k);
-            pile->last_u[3 * c + k] = m ? part_of(&pile->contacts[c], u, k) : pile->q[3 * c + k];
-        }
+        const int i = pile->width * c;
+        if (!m) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
+        for (int k = 0; !m && k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
+        if (!m) continue;
+        parts_of(&pile->contacts[c], m->reaction, m->moment, pile->width, h, &pile->last_r[i]);
+        parts_of(&pile->contacts[c], m->velocity, m->turning, pile->width, 1, &pile->last_u[i]);
     }
 }
 
@@ -141,10 +164,12 @@ static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count
     for (int c = 0; c < count; c++) {
         imp_pile_memory *m = imp_pile_remember(pile->arena, memories, &pile->touching.points[pile->members[c]]);
         if (!m) return false;
-        for (int k = 0; k < 3; k++) {
-            m->reaction = qvec3_axpy(pile->r[3 * c + k] / h, pile->contacts[c].axes[k], m->reaction);
-            m->velocity = qvec3_axpy(pile->u[3 * c + k], pile->contacts[c].axes[k], m->velocity);
-        }
+        const int i = pile->width * c;
+        m->reaction = from_parts(&pile->contacts[c], &pile->r[i], h);
+        m->velocity = from_parts(&pile->contacts[c], &pile->u[i], 1);
+        if (pile->width == 3) continue;
+        m->moment = from_parts(&pile->contacts[c], &pile->r[i + 3], h);
+        m->turning = from_parts(&pile->contacts[c], &pile->u[i + 3], 1);
     }
     return true;
 }
@@ -155,8 +180,10 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
     double work = 0;
     for (int c = 0; c < count && world->driven; c++) {
         const imp_cone_contact *own = &pile->contacts[c];
-        const qvec3 v = imp_surface_velocity(&world->bodies[own->body2], own->arm2);
-        for (int k = 0; k < 3; k++) work += pile->r[3 * c + k] * qvec3_dot(own->axes[k], v);
+        const imp_body *under = &world->bodies[own->body2];
+        const qvec3 v = imp_surface_velocity(under, own->arm2);
+        for (int k = 0; k < pile->width; k++)
+            work += pile->r[pile->width * c + k] * qvec3_dot(own->axes[k % 3], k < 3 ? v : under->spin);
     }
     return work;
 }
@@ -176,11 +203,16 @@ static int number_bodies(imp_pile *pile, const imp_world *world, int count)
 
 static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int count)
 {
-    imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
+    const bool turning = pile->width > 3;
+    if (turning)
+        imp_cone_assemble_turning(world, pile->middle, pile->contacts, count, pile->rows, pile->turns, pile->w);
+    else
+        imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
     const imp_cone_problem problem = {.count = count,
                                       .w = pile->w,
                                       .q = pile->q,
                                       .friction = pile->friction,
+                                      .lengths = turning ? pile->lengths : NULL,
                                       .last_r = pile->last_r,
                                       .last_u = pile->last_u};
     return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
@@ -190,7 +222,11 @@ static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int 
 static double fastest_of(const imp_pile *pile, int count)
 {
     double most = 0;
-    for (int i = 0; i < 3 * count; i++) most = fmax(most, fabs(pile->q[i]));
+    for (int i = 0; i < pile->width * count; i++) {
+        const imp_cone_lengths *own = &pile->lengths[i / pile->width];
+        const int k = i % pile->width;
+        most = fmax(most, fabs(pile->q[i]) * (k < 3 ? 1 : k == 3 ? own->torsional : own->rolling));
+    }
     return most;
 }
 
@@ -198,7 +234,7 @@ static double fastest_of(const imp_pile *pile, int count)
  * step's error in the other again, if they are not too many for that. */
 static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count, double h)
 {
-    if (count <= IMP_PILE_FEW) return by_contacts(pile, world, count);
+    if (count <= IMP_PILE_FEW || pile->width > 3) return by_contacts(pile, world, count);
     imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
     const int bodies = number_bodies(pile, world, count);
     const imp_cone_outcome quick =
@@ -214,8 +250,8 @@ static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, in
 static double rubbed(const imp_pile *pile, int count)
 {
     double work = 0;
-    for (int c = 0; c < count; c++)
-        for (int k = 1; k < 3; k++) work -= 0.5 * pile->r[3 * c + k] * (pile->before[3 * c + k] + pile->u[3 * c + k]);
+    for (int i = 0; i < pile->width * count; i++)
+        if (i % pile->width > 0) work -= 0.5 * pile->r[i] * (pile->before[i] + pile->u[i]);
     return fmax(work, 0);
 }
 
@@ -223,8 +259,10 @@ static double rubbed(const imp_pile *pile, int count)
 static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
                             imp_state *next, imp_pile_step_result *result)
 {
-    imp_cone_contact_velocities(world, next, pile->contacts, count, pile->q);
-    imp_cone_contact_velocities(world, states, pile->contacts, count, pile->before);
+    const bool turning = pile->width > 3;
+    (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, next, pile->contacts, count, pile->q);
+    (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, states, pile->contacts, count,
+                                                                       pile->before);
     recall_step(pile, world, count, h);
     const imp_cone_outcome outcome = find_impulses(pile, world, count, h);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
@@ -233,7 +271,7 @@ static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *s
                  imp_cone_status_name(outcome.status));
         return IMPACT_EUNSETTLED;
     }
-    imp_cone_push(world, pile->contacts, count, pile->r, next);
+    (turning ? imp_cone_push_turning : imp_cone_push)(world, pile->contacts, count, pile->r, next);
     result->error += h * outcome.residual * fastest_of(pile, count);
     if (!remember_step(pile, &pile->memory[2], count, h)) return IMPACT_ENOMEM;
     result->drive_work += drive_work(pile, world, count);
@@ -278,7 +316,7 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
     pile->memory[2].count = 0;
     imp_pile_contacts_mark(&pile->touching, world, &pile->memory[1]);
     if (!imp_pile_find_points(&pile->touching, world, pile->middle, to, h, IMP_PILE_SLACK * smallest(world), false) ||
-        !reserve_contacts(pile, pile->touching.count))
+        !reserve_contacts(pile, world, pile->touching.count))
         return IMPACT_ENOMEM;
     for (int count; (count = gather_island(pile, world)) > 0;) {
         const impact_status status = answer(pile, world, pile->middle, count, h, to, result);
@@ -379,7 +417,7 @@ static impact_status project_places(imp_pile *pile, imp_world *world, double h, 
     for (int pass = 0; pass < 2; pass++) {
         const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
                                      : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -rounding, false);
-        if (!found || !reserve_contacts(pile, pile->touching.count)) return IMPACT_ENOMEM;
+        if (!found || !reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
         memcpy(pile->middle, states, sizeof *states * (size_t)world->body_count);
         for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
         for (int count; (count = gather_island(pile, world)) > 0;) {
@@ -466,9 +504,11 @@ static bool is_dragged(const imp_pile_contacts *touching, const imp_world *world
     for (int k = 0; world->driven && k < touching->count; k++) {
         const imp_pile_point *point = &touching->points[k];
         const imp_body *under = &world->bodies[point->contact.body2];
-        if (under->driven && world->pairs[point->pair].friction > 0 &&
+        const imp_pair *pair = &world->pairs[point->pair];
+        if (under->driven && pair->friction > 0 &&
             qvec3_norm(imp_surface_velocity(under, point->contact.arm2)) > rest_speed)
             return true;
+        if (under->driven && imp_is_rough(pair) && qvec3_norm(under->spin) > 0) return true;
     }
     return false;
 }
@@ -497,8 +537,8 @@ static void remember_rest(imp_pile *pile, int count)
 {
     for (int c = 0; c < count; c++) {
         imp_pile_memory *m = &pile->memory[0].list[pile->members[c]];
-        for (int k = 0; k < 3; k++)
-            m->reaction = qvec3_axpy(pile->r[3 * c + k], pile->contacts[c].axes[k], m->reaction);
+        m->reaction = from_parts(&pile->contacts[c], &pile->r[pile->width * c], 1);
+        if (pile->width > 3) m->moment = from_parts(&pile->contacts[c], &pile->r[pile->width * c + 3], 1);
     }
 }
 
@@ -522,11 +562,12 @@ impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const i
         if (!world->bodies[i].is_static && !is_touched(touching, i)) return IMPACT_OK;
     if (is_dragged(touching, world, rest_speed)) return IMPACT_OK;
     const int closed = touching->count;
-    if (!reserve_contacts(pile, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count))
+    if (!reserve_contacts(pile, world, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count))
         return IMPACT_ENOMEM;
     if (!remember_points(pile)) return IMPACT_ENOMEM;
     for (int count; (count = gather_island(pile, world)) > 0;) {
-        const imp_rest_outcome outcome = imp_rest_solve(world, states, pile->contacts, pile->friction, count,
+        const imp_cone_lengths *lengths = pile->width > 3 ? pile->lengths : NULL;
+        const imp_rest_outcome outcome = imp_rest_solve(world, states, pile->contacts, pile->friction, lengths, count,
                                                         pile->loads, &pile->rest, pile->r, pile->velocities);
         if (outcome.status != IMP_REST_RESTS) return IMPACT_OK;
         remember_rest(pile, count);

@@ -8,6 +8,8 @@
  *     u = W p + q,  q = G (v + h M^-1 F)  and, along normals that approach at u_n < 0, less e u_n:   one cone problem
  *     v' = v + h M^-1 F + M^-1 G^T p      x' = x + h (v + v')/2
  *
+ * Pairs with torsional or rolling friction have moments in the same problem (cone.h).
+ *
  * Free flight in uniform gravity is exact. A step is taken once whole and once in two halves; what their ends differ by
  * is its measured error, and chooses the next. Overlaps that arrivals leave, and gaps by which held contacts
  * open on round bodies, h² in each step, are put back along normals, least in the metric of mass. The limit h -> 0 is
@@ -38,6 +40,9 @@ typedef struct imp_pile {
     imp_cone_contact *contacts;
     int *members, *pivots; /* members: the points' numbers in `touching` */
     imp_cone_row *rows;
+    imp_cone_row *turns;
+    imp_cone_lengths *lengths;
+    int widest, width; /* numbers a contact: that there is room for; of the island at hand, 3, or 6 with moments */
     double *gap, *friction, *w, *q, *r, *u, *before, *last_r, *last_u;
     imp_rest_velocity *velocities;
     char message[160];

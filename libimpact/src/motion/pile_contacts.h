@@ -24,6 +24,7 @@ typedef struct imp_pile_memory {
     double gap; /* m */
     qvec3 arm1, arm2, normal;
     qvec3 reaction, velocity; /* N (impulse over h), m/s */
+    qvec3 moment, turning;    /* N m, 1/s: of pairs that resist turning */
     bool taken;               /* scratch: it is a point's */
 } imp_pile_memory;
 

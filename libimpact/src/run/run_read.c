@@ -221,6 +221,8 @@ static bool read_numbers(const imp_json *body, impact_body_def *def)
     def->mass = def->is_static ? INFINITY : imp_json_number(body, "mass", NAN, &good);
     def->friction = imp_json_number(body, "friction", 0, &good);
     def->restitution = imp_json_number(body, "restitution", 0, &good);
+    def->torsional_friction = imp_json_number(body, "torsional_friction", 0, &good);
+    def->rolling_friction = imp_json_number(body, "rolling_friction", 0, &good);
     def->linear_damping = imp_json_number(body, "linear_damping", 0, &good);
     def->angular_damping = imp_json_number(body, "angular_damping", 0, &good);
     def->moments = def->shape_position = def->trail = def->velocity = def->omega = (qvec3){0, 0, 0};

@@ -240,6 +240,8 @@ static void say_body(imp_text *head, const impact_body_def *def, long first_key,
     }
     say_number(head, "friction", def->friction);
     say_number(head, "restitution", def->restitution);
+    if (def->torsional_friction > 0) say_number(head, "torsional_friction", def->torsional_friction);
+    if (def->rolling_friction > 0) say_number(head, "rolling_friction", def->rolling_friction);
     say_numbers(head, "keys", (const double[]){(double)first_key, (double)key_count}, 2);
     imp_text_say(head, "}");
 }

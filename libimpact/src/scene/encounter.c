@@ -4,6 +4,7 @@
 #include "scene/gather.h"
 #include "scene/islands.h"
 #include "scene/parting.h"
+#include "scene/rolling.h"
 #include "scene/scene_events.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_methods.h"
@@ -58,7 +59,7 @@ static impact_status conclude(imp_island *island, impact_status status)
 {
     impact_scene *scene = island->scene;
     lie_down_where_unsettled(island, &status);
-    if (island->lies && status == IMPACT_OK) {
+    if (status == IMPACT_OK && (island->lies || imp_island_needs_steps(island))) {
         imp_island *stepped;
         imp_scene_receipt_look(island);
         status = imp_gather_steps(island, &stepped);

@@ -113,7 +113,8 @@ static impact_status roll(imp_island *island, const imp_segment *segment)
     while (island->world.bodies[i].is_static) i++;
     const imp_touch *touch = &island->motion.persist.touches[0];
     island->rolls = island->moves = true;
-    island->loses = touch->mode == IMP_SLIDE && touch->friction > 0;
+    island->loses =
+        (touch->mode == IMP_SLIDE && touch->friction > 0) || imp_is_rough(&island->world.pairs[touch->pair]);
     island->begun_with = imp_island_energy(island);
     island->motion.stride.t = segment->t1;
     imp_motion_forget(&island->motion);

@@ -58,8 +58,8 @@ static bool stays_stepped(const imp_island *island, const int *root, int compone
     const bool always = island->scene->piles == IMPACT_PILES_STEPS;
     for (int p = 0; island->stepped && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        const bool counts =
-            pair->met && (always || !world->bodies[pair->body2].is_static || imp_pair_has_faces(world, pair));
+        const bool counts = pair->met && (always || !world->bodies[pair->body2].is_static ||
+                                          imp_pair_has_faces(world, pair) || imp_is_rough(pair));
         if (counts && root[pair->body1] == component) return true;
     }
     return false;
@@ -139,11 +139,19 @@ static impact_status make_parts(imp_island *island, imp_island **parts, bool *st
     return status;
 }
 
-/* What leaves a pile has no modes yet: it joins the loose ones. */
+/* Whether bodies that resist turning on each other are held in it. */
+static bool is_rough(const imp_island *part)
+{
+    for (int p = 0; p < part->world.pair_count; p++)
+        if (imp_is_held(&part->world.pairs[p]) && imp_is_rough(&part->world.pairs[p])) return true;
+    return false;
+}
+
+/* What leaves a pile has no modes yet: it joins the loose ones; so does what may need steps, seen when it is alone. */
 static impact_status start_part(imp_island *part, const imp_island *whole, imp_island **loose)
 {
     part->balance = imp_island_balance(part);
-    if (whole->stepped && !part->stepped && !imp_island_all_rest(part)) {
+    if ((whole->stepped || is_rough(part)) && !part->stepped && !imp_island_all_rest(part)) {
         part->outside = whole->outside + imp_island_energy(whole) - imp_island_energy(part);
         part->next = *loose;
         *loose = part;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/rolling.h"
 #include "base/tolerances.h"
+#include "scene/scene_internal.h"
 
 #include <impact/flight.h>
 
@@ -10,7 +11,16 @@ typedef struct ball_roll {
     const imp_touch *touch;
     qvec3 normal, down; /* down: g_t, m/s^2 */
     double press;       /* -g.n, m/s^2 */
+    double friction, torsional, rolling;
+    double slowest; /* what moves at less stands still, m/s */
 } ball_roll;
+
+/* Constant accelerations until a time, s from now. */
+typedef struct ball_motion {
+    qvec3 a, alpha;
+    double until;
+    bool fades; /* the slip does then */
+} ball_motion;
 
 static bool find_roll(const imp_island *island, ball_roll *r)
 {
@@ -26,6 +36,9 @@ static bool find_roll(const imp_island *island, ball_roll *r)
     r->press = -qvec3_dot(world->gravity, r->normal);
     r->down = qvec3_axpy(r->press, r->normal, world->gravity);
     if (qvec3_norm(r->down) <= IMP_LEVEL * r->press) r->down = (qvec3){0, 0, 0};
+    const imp_pair *pair = &world->pairs[r->touch->pair];
+    r->friction = pair->friction, r->torsional = pair->torsional, r->rolling = pair->rolling;
+    r->slowest = island->scene->rest_speed;
     return r->press > 0;
 }
 
@@ -70,30 +83,152 @@ static double longest(qvec3 omega, qvec3 alpha)
     return 2 * most / (w + sqrt(w * w + 2 * up * most));
 }
 
+/* ---- without moments ---- */
+
+static ball_motion roll_freely(const ball_roll *r)
+{
+    const double m = r->ball->mass, J = r->ball->moments.x, radius = r->ball->radius;
+    const qvec3 a = qvec3_scale(r->down, 1 / (1 + J / (m * radius * radius)));
+    return (ball_motion){a, qvec3_scale(qvec3_cross(r->normal, a), 1 / radius), INFINITY, false};
+}
+
+/* False where it turns, or would stick. */
+static bool slide_freely(const ball_roll *r, ball_motion *motion)
+{
+    const double m = r->ball->mass, J = r->ball->moments.x, radius = r->ball->radius;
+    qvec3 line;
+    if (!find_line(r, &line)) return false;
+    const qvec3 f = qvec3_scale(line, -r->friction * m * r->press);
+    motion->a = qvec3_axpy(1 / m, f, r->down);
+    motion->alpha = qvec3_scale(qvec3_cross(r->normal, f), -radius / J);
+    const double rate = qvec3_dot(line, qvec3_axpy(1 / m + radius * radius / J, f, r->down));
+    const double slip = qvec3_dot(line, r->touch->slip);
+    motion->fades = rate < 0;
+    motion->until = rate < 0 ? slip / -rate : INFINITY;
+    return !(rate < 0 && !(slip > 0)); /* it would stick: not for here to say */
+}
+
+/* ---- with moments ---- */
+
+/* Of v what is along the line; false where there is more across it than roundings of the speed. */
+static bool part_along(qvec3 v, qvec3 line, double speed, double *part)
+{
+    *part = qvec3_dot(v, line);
+    return qvec3_norm(qvec3_axpy(-*part, line, v)) <= IMP_LEVEL * speed;
+}
+
+/* It stands but for its spin about the normal. */
+static bool spin_down(const ball_roll *r, double spin, ball_motion *motion)
+{
+    const double rate = r->torsional * r->ball->mass * r->press / r->ball->moments.x;
+    if (qvec3_norm(r->down) > 0) return false;
+    *motion = (ball_motion){{0, 0, 0}, qvec3_scale(r->normal, spin > 0 ? -rate : rate), fabs(spin) / rate, false};
+    return true;
+}
+
+static bool roll_against(const ball_roll *r, double spin, ball_motion *motion)
+{
+    const double m = r->ball->mass, J = r->ball->moments.x, radius = r->ball->radius, pull = qvec3_norm(r->down);
+    const qvec3 v = qvec3_axpy(-qvec3_dot(r->state->v, r->normal), r->normal, r->state->v);
+    const double speed = qvec3_norm(v), hold = r->rolling * r->press / radius;
+    const bool moves = speed > r->slowest;
+    if (spin != 0 && r->torsional > 0) return !moves && spin_down(r, spin, motion);
+    *motion = (ball_motion){.until = INFINITY};
+    if (!moves && pull <= hold) return pull == 0; /* on a slope it rests: to be proved */
+    const qvec3 line = moves ? qvec3_scale(v, 1 / speed) : qvec3_scale(r->down, 1 / pull);
+    double along_line;
+    if (!part_along(r->down, line, pull, &along_line)) return false;
+    const double a = (along_line - hold) / (1 + J / (m * radius * radius));
+    motion->a = qvec3_scale(line, a);
+    motion->alpha = qvec3_scale(qvec3_cross(r->normal, motion->a), 1 / radius);
+    if (a < 0) motion->until = speed / -a;
+    return qvec3_norm(qvec3_sub(motion->a, r->down)) <= r->friction * r->press;
+}
+
+static bool slide_against(const ball_roll *r, double spin, ball_motion *motion)
+{
+    const double m = r->ball->mass, J = r->ball->moments.x, radius = r->ball->radius;
+    const qvec3 omega = imp_omega(r->ball, r->state), rolls = qvec3_axpy(-spin, r->normal, omega);
+    qvec3 line;
+    double turn;
+    if ((spin != 0 && r->torsional > 0) || !find_line(r, &line)) return false;
+    const qvec3 axis = qvec3_cross(r->normal, line);
+    const double slip = qvec3_dot(line, r->touch->slip), speeds = qvec3_norm(r->state->v) + radius * qvec3_norm(omega);
+    if (!part_along(qvec3_scale(rolls, radius), axis, speeds, &turn)) return false;
+    const bool turns = fabs(turn) > fmax(r->slowest, IMP_LEVEL * speeds);
+    const double drive = radius * r->friction,
+                 hold = turns && turn < 0 ? -r->rolling : fmin(r->rolling, turns ? INFINITY : drive);
+    const double alpha = (drive - hold) * m * r->press / J;
+    motion->a = qvec3_axpy(-r->friction * r->press, line, r->down);
+    motion->alpha = qvec3_scale(axis, alpha);
+    const double rate = qvec3_dot(line, motion->a) - radius * alpha;
+    const double fades = rate < 0 ? slip / -rate : INFINITY;
+    const double stops = turns && turn * alpha < 0 ? fabs(turn) / (radius * fabs(alpha)) : INFINITY;
+    motion->until = fmin(fades, stops);
+    motion->fades = fades <= stops && rate < 0;
+    return !(rate < 0 && !(slip > 0));
+}
+
+static bool find_motion(const ball_roll *r, ball_motion *motion)
+{
+    const bool rolls = r->touch->mode == IMP_ROLL;
+    if (r->torsional == 0 && r->rolling == 0) {
+        if (rolls) return *motion = roll_freely(r), true;
+        *motion = (ball_motion){.a = r->down, .until = INFINITY};
+        return r->touch->friction > 0 ? slide_freely(r, motion) : true;
+    }
+    const qvec3 omega = imp_omega(r->ball, r->state);
+    const double about = qvec3_dot(omega, r->normal), radius = r->ball->radius;
+    const double speeds = qvec3_norm(r->state->v) + radius * qvec3_norm(omega);
+    const double spin = radius * fabs(about) > fmax(r->slowest, IMP_LEVEL * speeds) ? about : 0;
+    return (rolls ? roll_against : slide_against)(r, spin, motion);
+}
+
 bool imp_island_rolls(const imp_island *island, imp_segment *segment, imp_end *end)
 {
     ball_roll r;
-    if (!find_roll(island, &r)) return false;
-    const double m = r.ball->mass, J = r.ball->moments.x, radius = r.ball->radius;
-    qvec3 a = r.down, alpha = {0, 0, 0}, line;
-    double fades = INFINITY;
-    if (r.touch->mode == IMP_ROLL) {
-        a = qvec3_scale(r.down, 1 / (1 + J / (m * radius * radius)));
-        alpha = qvec3_scale(qvec3_cross(r.normal, a), 1 / radius);
-    } else if (r.touch->friction > 0) {
-        if (!find_line(&r, &line)) return false;
-        const qvec3 f = qvec3_scale(line, -r.touch->friction * m * r.press);
-        a = qvec3_axpy(1 / m, f, r.down);
-        alpha = qvec3_scale(qvec3_cross(r.normal, f), -radius / J);
-        const double rate = qvec3_dot(line, qvec3_axpy(1 / m + radius * radius / J, f, r.down));
-        const double slip = qvec3_dot(line, r.touch->slip);
-        if (rate < 0) fades = slip / -rate;
-        if (rate < 0 && !(slip > 0)) return false; /* it would stick: not for here to say */
-    }
-    const double leaves = find_bounds(&r, a), pause = longest(imp_omega(r.ball, r.state), alpha);
-    const double time = fmin(pause, fmin(fades, leaves));
-    const imp_end_kind kind = time == fades ? IMP_END_STICK : time == leaves ? IMP_END_BOUNDS : IMP_END_RENEWAL;
+    ball_motion motion;
+    if (!find_roll(island, &r) || !find_motion(&r, &motion)) return false;
+    const double leaves = find_bounds(&r, motion.a), pause = longest(imp_omega(r.ball, r.state), motion.alpha);
+    const double time = fmin(pause, fmin(motion.until, leaves));
+    const imp_end_kind kind = motion.fades && time == motion.until ? IMP_END_STICK
+                              : time == leaves                     ? IMP_END_BOUNDS
+                                                                   : IMP_END_RENEWAL;
     *end = (imp_end){isfinite(time) ? kind : IMP_END_TIME, r.touch->pair};
-    *segment = imp_segment_roll(island->t, island->t + time, r.state, a, alpha);
+    *segment = imp_segment_roll(island->t, island->t + time, r.state, motion.a, motion.alpha);
     return time > 0 && island->t + time > island->t;
+}
+
+/* ---- what has no closed form ---- */
+
+/* Whether the pair is a ball on a plane, and no other holds it. */
+static bool is_lone_ball(const imp_island *island, const imp_pair *pair)
+{
+    const imp_world *world = &island->world;
+    int held = 0;
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *other = &world->pairs[p];
+        held += imp_is_held(other) && (other->body1 == pair->body1 || other->body2 == pair->body1);
+    }
+    return held == 1 && world->bodies[pair->body2].shape.kind == IMPACT_PLANE &&
+           imp_is_ball(&world->bodies[pair->body1]);
+}
+
+bool imp_island_needs_steps(const imp_island *island)
+{
+    const imp_world *world = &island->world;
+    int rough = 0, balls = 0;
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *pair = &world->pairs[p];
+        const bool rests = island->motion.resting[pair->body1] &&
+                           (world->bodies[pair->body2].is_static || island->motion.resting[pair->body2]);
+        if (!imp_is_held(pair) || !imp_is_rough(pair) || rests) continue;
+        rough++;
+        balls += is_lone_ball(island, pair);
+    }
+    imp_segment segment;
+    imp_end end;
+    if (rough == 0 || island->stepped) return false;
+    if (balls < rough) return true;
+    return island->motion.persist.count == 1 && world->body_count == 2 && !imp_island_rolls(island, &segment, &end);
 }

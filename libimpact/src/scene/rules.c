@@ -19,9 +19,14 @@ impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_sc
     if (!rules->own) return IMPACT_ENOMEM;
     for (int k = 0; k < def->pair_count; k++) {
         const int i = imp_names_find(names, def->pairs[k].body1), j = imp_names_find(names, def->pairs[k].body2);
-        rules->own[rules->own_count++] =
-            (imp_own_rule){i < j ? i : j,          i < j ? j : i, k, def->pairs[k].friction, def->pairs[k].restitution,
-                           def->pairs[k].stiffness};
+        rules->own[rules->own_count++] = (imp_own_rule){.low = i < j ? i : j,
+                                                        .high = i < j ? j : i,
+                                                        .order = k,
+                                                        .friction = def->pairs[k].friction,
+                                                        .restitution = def->pairs[k].restitution,
+                                                        .torsional = def->pairs[k].torsional_friction,
+                                                        .rolling = def->pairs[k].rolling_friction,
+                                                        .stiffness = def->pairs[k].stiffness};
     }
     qsort(rules->own, (size_t)rules->own_count, sizeof *rules->own, by_rule_bodies);
     return IMPACT_OK;
@@ -60,10 +65,14 @@ imp_pair imp_rules_pair(const imp_rules *rules, const imp_world *world, int i, i
     imp_pair pair = {.body1 = a->is_static ? high : low,
                      .body2 = a->is_static ? low : high,
                      .friction = joined(rules->friction, a->friction, b->friction),
-                     .restitution = joined(rules->restitution, a->restitution, b->restitution)};
+                     .restitution = joined(rules->restitution, a->restitution, b->restitution),
+                     .torsional = a->torsional + b->torsional,
+                     .rolling = a->rolling + b->rolling};
     const imp_own_rule *own = rules->own_count > 0 ? own_of(rules, low, high) : NULL;
     if (own && !isnan(own->friction)) pair.friction = own->friction;
     if (own && !isnan(own->restitution)) pair.restitution = own->restitution;
+    if (own && !isnan(own->torsional)) pair.torsional = own->torsional;
+    if (own && !isnan(own->rolling)) pair.rolling = own->rolling;
     if (own && own->stiffness > 0) pair.stiffness = own->stiffness;
     return pair;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * rules: friction and restitution of any two bodies of a scene, from their materials or their own rule. Internal.
+ * rules: frictions and restitution of any two bodies of a scene, from their materials or their own rule. Internal.
  */
 #ifndef IMP_RULES_H
 #define IMP_RULES_H
@@ -12,7 +12,7 @@
 typedef struct imp_own_rule {
     int low, high; /* the bodies' indices */
     int order;     /* in the definition: the first of a pair counts */
-    double friction, restitution, stiffness;
+    double friction, restitution, torsional, rolling, stiffness;
 } imp_own_rule;
 
 typedef struct imp_rules {

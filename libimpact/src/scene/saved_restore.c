@@ -225,6 +225,8 @@ static void restore_pair(imp_island *island, const imp_pair *from)
     pair->friction = rules.friction;
     pair->stiffness = rules.stiffness;
     pair->restitution = rules.restitution;
+    pair->torsional = rules.torsional;
+    pair->rolling = rules.rolling;
     pair->cache = rules.cache;
     pair->tried = pair->struck = pair->settled = false;
 }

@@ -241,6 +241,8 @@ impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_
                              .omega = now.omega,
                              .friction = b->friction,
                              .restitution = b->restitution,
+                             .torsional_friction = b->torsional,
+                             .rolling_friction = b->rolling,
                              .linear_damping = -expm1(-b->linear_rate),
                              .angular_damping = -expm1(-b->angular_rate)};
     return IMPACT_OK;

@@ -20,6 +20,8 @@ static void build_body(const impact_body_def *def, char *name, imp_body *body, i
                        .trail = def->trail,
                        .friction = def->friction,
                        .restitution = def->restitution,
+                       .torsional = def->torsional_friction,
+                       .rolling = def->rolling_friction,
                        .linear_rate = -log1p(-def->linear_damping),
                        .angular_rate = -log1p(-def->angular_damping)};
     *state = (imp_state){.x = def->position};

@@ -109,6 +109,10 @@ static void check_body(check *c, const impact_body_def *body)
     require(c, isfinite(body->friction) && body->friction >= 0, "friction", body->friction, "must be >= 0 and finite");
     require(c, body->restitution >= 0 && body->restitution <= 1, "restitution", body->restitution,
             "must lie in [0, 1]");
+    require(c, isfinite(body->torsional_friction) && body->torsional_friction >= 0, "torsional_friction",
+            body->torsional_friction, "must be a length, >= 0 and finite");
+    require(c, isfinite(body->rolling_friction) && body->rolling_friction >= 0, "rolling_friction",
+            body->rolling_friction, "must be a length, >= 0 and finite");
     require(c, body->linear_damping >= 0 && body->linear_damping < 1, "linear_damping", body->linear_damping,
             "must lie in [0, 1)");
     require(c, body->angular_damping >= 0 && body->angular_damping < 1, "angular_damping", body->angular_damping,
@@ -144,6 +148,22 @@ static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena
 }
 
 /* The edges of a plane carry nothing: a face would reach over them as if the plane went on. */
+/* Torsional and rolling friction are in the cone problems of steps and of Moreau's impacts. */
+static void check_turning(check *c, const impact_scene_def *def)
+{
+    bool turning = false;
+    for (int i = 0; i < def->body_count; i++)
+        turning = turning || def->bodies[i].torsional_friction > 0 || def->bodies[i].rolling_friction > 0;
+    for (int k = 0; k < def->pair_count; k++)
+        turning = turning || def->pairs[k].torsional_friction > 0 || def->pairs[k].rolling_friction > 0;
+    c->kind = "scene", c->name = def->name ? def->name : "";
+    require_words(c, !turning || def->law == IMPACT_POISSON,
+                  "torsional_friction and rolling_friction are answered with Poisson's law: law = \"poisson\"");
+    require_words(c, !turning || imp_scene_piles_of(def) != IMPACT_PILES_EXACT,
+                  "bodies with torsional_friction or rolling_friction are moved by steps while they touch, but for a "
+                  "ball on a plane: piles = \"exact\", or all by integrators, is not for them");
+}
+
 static void check_faces(check *c, const impact_scene_def *def)
 {
     bool faces = false;
@@ -219,6 +239,10 @@ static void check_pair(check *c, const impact_pair_def *pair)
             "must be >= 0 and finite");
     require(c, isnan(pair->restitution) || (pair->restitution >= 0 && pair->restitution <= 1), "restitution",
             pair->restitution, "must lie in [0, 1]");
+    require(c, isnan(pair->torsional_friction) || (isfinite(pair->torsional_friction) && pair->torsional_friction >= 0),
+            "torsional_friction", pair->torsional_friction, "must be a length, >= 0 and finite");
+    require(c, isnan(pair->rolling_friction) || (isfinite(pair->rolling_friction) && pair->rolling_friction >= 0),
+            "rolling_friction", pair->rolling_friction, "must be a length, >= 0 and finite");
     require(c, isnan(pair->stiffness) || (pair->stiffness >= 0 && isfinite(pair->stiffness)), "stiffness",
             pair->stiffness, "must be finite and not negative");
 }
@@ -278,6 +302,7 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
             def->restitution_rule, "is no rule");
     check_bodies(&c, def, arena);
     if (c.status == IMPACT_OK) check_faces(&c, def);
+    if (c.status == IMPACT_OK) check_turning(&c, def);
     for (int k = 0; c.status == IMPACT_OK && k < def->force_count; k++) {
         c.kind = "force";
         c.name = def->forces[k].name ? def->forces[k].name : "";

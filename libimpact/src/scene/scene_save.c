@@ -59,7 +59,8 @@ static void print_body(imp_archive *a, const impact_body_def *b)
     PRINT(a, b->shape_position.x, b->shape_position.y, b->shape_position.z);
     PRINT(a, b->shape_orientation.w, b->shape_orientation.x, b->shape_orientation.y, b->shape_orientation.z);
     PRINT(a, b->velocity.x, b->velocity.y, b->velocity.z, b->omega.x, b->omega.y, b->omega.z);
-    PRINT(a, b->friction, b->restitution, b->linear_damping, b->angular_damping);
+    PRINT(a, b->friction, b->restitution, b->torsional_friction, b->rolling_friction);
+    PRINT(a, b->linear_damping, b->angular_damping);
 }
 
 /* Functions and contexts are the loading scene's own. */
@@ -86,6 +87,7 @@ uint64_t imp_scene_print(const impact_scene_def *def)
         print_text(&a, def->pairs[k].body1);
         print_text(&a, def->pairs[k].body2);
         PRINT(&a, def->pairs[k].friction, def->pairs[k].restitution, def->pairs[k].stiffness);
+        PRINT(&a, def->pairs[k].torsional_friction, def->pairs[k].rolling_friction);
     }
     PRINT(&a, def->friction_rule, def->restitution_rule, def->law, def->compliance);
     const impact_methods m = imp_scene_methods_of(def);

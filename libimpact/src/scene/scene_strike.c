@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_strike.h"
 #include "contact/persist_still.h"
+#include "contact/turning.h"
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
 #include "scene/scene_together.h"
@@ -28,10 +29,49 @@ static void count_solver(imp_island *island, const impact_outcome *outcome)
     if (outcome->second) usage->impacts_second++;
 }
 
+/* The impact of a pair that resists turning: forces and moments at once (contact/turning.h). */
+static impact_status strike_turning(imp_island *island, imp_meeting *m)
+{
+    imp_world *world = &island->world;
+    const imp_touch *touch = &m->touch;
+    const imp_pair *pair = &world->pairs[touch->pair];
+    imp_cone_contact contact = {.body1 = touch->body1, .body2 = touch->body2, .arm1 = touch->r1, .arm2 = touch->r2};
+    imp_cone_workspace room = {.arena = world->arena};
+    imp_turning_impact impact;
+    imp_cone_find_axes(touch->normal, contact.axes);
+    const impact_status status = imp_turning_collide(world, island->states, &contact, pair->friction,
+                                                     (imp_cone_lengths){pair->torsional, pair->rolling},
+                                                     imp_scene_collision(island, m).restitution, &room, &impact);
+    imp_cone_release(&room);
+    if (status == IMPACT_EUNSETTLED)
+        snprintf(island->scene->message, sizeof island->scene->message,
+                 "impact of '%s' and '%s' at t = %.17g, with friction against turning: no answer was found",
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, island->t);
+    if (status != IMPACT_OK) return status;
+    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
+    const qvec3 rubs = qvec3_axpy(impact.p[1], contact.axes[1], qvec3_scale(contact.axes[2], impact.p[2]));
+    event.impulse = qvec3_axpy(impact.p[0], touch->normal, rubs);
+    event.impulse_normal = impact.p[0];
+    event.impulse_tangential = qvec3_norm(rubs);
+    event.normal_before = impact.before[0];
+    event.normal_after = impact.after[0];
+    imp_scene_drive_impulse(island, touch, event.impulse);
+    for (int k = 0; k < 3; k++)
+        island->motion.works.drive += impact.p[3 + k] * qvec3_dot(contact.axes[k], world->bodies[touch->body2].spin);
+    imp_persist_stir(world);
+    imp_cone_push_turning(world, &contact, 1, impact.p, island->states);
+    island->motion.resting[touch->body1] = island->motion.resting[touch->body2] = false;
+    world->usage.impacts_turning++;
+    event.phases = "turning";
+    if (imp_scene_tells_events(island)) event.energy_after = imp_scene_total_energy(island);
+    return imp_scene_record(island, &event);
+}
+
 static impact_status strike(imp_island *island, imp_meeting *m)
 {
     imp_world *world = &island->world;
     const imp_touch *touch = &m->touch;
+    if (imp_is_rough(&world->pairs[touch->pair]) && !m->jams) return strike_turning(island, m);
     const impact_collision collision = imp_scene_collision(island, m);
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);

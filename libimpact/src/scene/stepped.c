@@ -57,8 +57,13 @@ impact_status imp_island_begin_steps(imp_island *island)
     for (int i = 0; i < island->world.body_count; i++) island->motion.resting[i] = false;
     for (int p = 0; p < island->world.pair_count; p++) {
         imp_pair *pair = &island->world.pairs[p];
-        *pair = (imp_pair){
-            .body1 = pair->body1, .body2 = pair->body2, .friction = pair->friction, .restitution = pair->restitution};
+        *pair = (imp_pair){.body1 = pair->body1,
+                           .body2 = pair->body2,
+                           .friction = pair->friction,
+                           .restitution = pair->restitution,
+                           .torsional = pair->torsional,
+                           .rolling = pair->rolling,
+                           .stiffness = pair->stiffness};
     }
     return IMPACT_OK;
 }

@@ -37,6 +37,7 @@ typedef struct imp_body {
     qvec3 trail;  /* whose way viewers draw, body axes */
     quat turn;    /* its axes to the body's */
     double friction, restitution;
+    double torsional, rolling;        /* friction against turning, m */
     double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
     qvec3 drift, spin;                /* the surface's point at r from the centre by drift + spin x r */
 } imp_body;
@@ -51,7 +52,8 @@ typedef enum imp_mode {
 typedef struct imp_pair {
     int body1, body2;
     double friction, restitution;
-    double stiffness; /* 0: Hertz's */
+    double torsional, rolling; /* friction against turning, m: the sums of the bodies' */
+    double stiffness;          /* 0: Hertz's */
     imp_mode mode;
     bool beyond;     /* IMP_OPEN: body 1 passed beside the bounds of the plane and is behind it */
     bool onset;      /* IMP_SLIDE: from rest, and slower than the world's onset_speed yet */
@@ -114,6 +116,9 @@ typedef struct imp_world {
     imp_gaps *gaps;     /* the scene's; NULL: by Newton */
     impact_usage usage;
 } imp_world;
+
+/* Whether its contact resists turning. */
+static inline bool imp_is_rough(const imp_pair *pair) { return pair->torsional > 0 || pair->rolling > 0; }
 
 static inline bool imp_is_held(const imp_pair *pair) { return pair->mode != IMP_OPEN; }
 

@@ -70,8 +70,8 @@ static void lie(pile *p, int upper, int lower, double z, double low, double high
 static imp_rest_status solve(pile *p)
 {
     assert_true(imp_rest_reserve(&room, p->count, p->world.body_count));
-    p->outcome = imp_rest_solve(&p->world, p->states, p->contacts, p->friction, p->count, p->loads, &room, p->reactions,
-                                p->velocities);
+    p->outcome = imp_rest_solve(&p->world, p->states, p->contacts, p->friction, NULL, p->count, p->loads, &room,
+                                p->reactions, p->velocities);
     return p->outcome.status;
 }
 

@@ -291,15 +291,26 @@ static const field methods_fields[] = {
 };
 
 static const field body_fields[] = {
-    FIELD(impact_body_def, name, POINTER, true),          FIELD(impact_body_def, shape, SHAPE, true),
-    FIELD(impact_body_def, is_static, FLAG, true),        FIELD(impact_body_def, mass, NUMBER, true),
-    FIELD(impact_body_def, density, NUMBER, true),        FIELD(impact_body_def, moments, VECTOR, true),
-    FIELD(impact_body_def, position, VECTOR, true),       FIELD(impact_body_def, orientation, QUATERNION, true),
-    FIELD(impact_body_def, shape_position, VECTOR, true), FIELD(impact_body_def, shape_orientation, QUATERNION, true),
-    FIELD(impact_body_def, velocity, VECTOR, true),       FIELD(impact_body_def, omega, VECTOR, true),
-    FIELD(impact_body_def, friction, NUMBER, true),       FIELD(impact_body_def, restitution, NUMBER, true),
-    FIELD(impact_body_def, linear_damping, NUMBER, true), FIELD(impact_body_def, angular_damping, NUMBER, true),
-    FIELD(impact_body_def, trail, VECTOR, false),         FIELD(impact_body_def, user, OTHER, false),
+    FIELD(impact_body_def, name, POINTER, true),
+    FIELD(impact_body_def, shape, SHAPE, true),
+    FIELD(impact_body_def, is_static, FLAG, true),
+    FIELD(impact_body_def, mass, NUMBER, true),
+    FIELD(impact_body_def, density, NUMBER, true),
+    FIELD(impact_body_def, moments, VECTOR, true),
+    FIELD(impact_body_def, position, VECTOR, true),
+    FIELD(impact_body_def, orientation, QUATERNION, true),
+    FIELD(impact_body_def, shape_position, VECTOR, true),
+    FIELD(impact_body_def, shape_orientation, QUATERNION, true),
+    FIELD(impact_body_def, velocity, VECTOR, true),
+    FIELD(impact_body_def, omega, VECTOR, true),
+    FIELD(impact_body_def, friction, NUMBER, true),
+    FIELD(impact_body_def, restitution, NUMBER, true),
+    FIELD(impact_body_def, torsional_friction, NUMBER, true),
+    FIELD(impact_body_def, rolling_friction, NUMBER, true),
+    FIELD(impact_body_def, linear_damping, NUMBER, true),
+    FIELD(impact_body_def, angular_damping, NUMBER, true),
+    FIELD(impact_body_def, trail, VECTOR, false),
+    FIELD(impact_body_def, user, OTHER, false),
 };
 
 static const field force_fields[] = {
@@ -317,9 +328,10 @@ static const field force_fields[] = {
 };
 
 static const field pair_fields[] = {
-    FIELD(impact_pair_def, body1, POINTER, true),    FIELD(impact_pair_def, body2, POINTER, true),
-    FIELD(impact_pair_def, friction, NUMBER, true),  FIELD(impact_pair_def, restitution, NUMBER, true),
-    FIELD(impact_pair_def, stiffness, NUMBER, true),
+    FIELD(impact_pair_def, body1, POINTER, true),           FIELD(impact_pair_def, body2, POINTER, true),
+    FIELD(impact_pair_def, friction, NUMBER, true),         FIELD(impact_pair_def, restitution, NUMBER, true),
+    FIELD(impact_pair_def, stiffness, NUMBER, true),        FIELD(impact_pair_def, torsional_friction, NUMBER, true),
+    FIELD(impact_pair_def, rolling_friction, NUMBER, true),
 };
 
 /* Between two fields lies no more than what aligns them: a field that is not listed would stand there. */
@@ -373,7 +385,7 @@ static void make_definition(whole_definition *d)
     for (int i = 0; i < 2; i++) d->bodies[i] = ball_body(i ? "one" : "two", (qvec3){2.0 * i, 0, 1}, 0.3, 0.5);
     d->forces[0] = impact_default_force_def(IMPACT_FORCE_WIND);
     d->forces[1] = impact_default_force_def(IMPACT_FORCE_CUSTOM);
-    d->pairs[0] = (impact_pair_def){"one", "two", 0.1, 0.2, 3};
+    d->pairs[0] = (impact_pair_def){"one", "two", 0.1, 0.2, 3, 0.01, 0.02};
     d->scene.bodies = d->bodies, d->scene.body_count = 2;
     d->scene.forces = d->forces, d->scene.force_count = 2;
     d->scene.pairs = d->pairs, d->scene.pair_count = 1;
@@ -405,9 +417,9 @@ static void every_field_that_decides_is_in_the_print(void **state)
     assert_all_listed(ALL(pair_fields), sizeof(impact_pair_def));
     assert_int_equal(check_prints(ALL(scene_fields), offsetof(whole_definition, scene)), 18);
     assert_int_equal(check_prints(ALL(methods_fields), offsetof(whole_definition, scene.methods)), 7);
-    assert_int_equal(check_prints(ALL(body_fields), offsetof(whole_definition, bodies)), 17);
+    assert_int_equal(check_prints(ALL(body_fields), offsetof(whole_definition, bodies)), 19);
     assert_int_equal(check_prints(ALL(force_fields), offsetof(whole_definition, forces)), 16);
-    assert_int_equal(check_prints(ALL(pair_fields), offsetof(whole_definition, pairs)), 5);
+    assert_int_equal(check_prints(ALL(pair_fields), offsetof(whole_definition, pairs)), 7);
 }
 
 /* Each setting of the scene another one, and the same bits among far bodies, in parts and saved. */

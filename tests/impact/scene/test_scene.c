@@ -46,8 +46,8 @@ static thesis_scene *make_thesis_scene(bool grips)
     s->wind.origin = (qvec3){-3, 0, 1};
     s->wind.strength = wind_force;
     s->wind.reach = wind_reach;
-    s->grip[0] = (impact_pair_def){"sphere", "floor", 0.5, NAN, NAN};
-    s->grip[1] = (impact_pair_def){"sphere", "wall", 0.5, NAN, NAN};
+    s->grip[0] = (impact_pair_def){"sphere", "floor", 0.5, NAN, NAN, NAN, NAN};
+    s->grip[1] = (impact_pair_def){"sphere", "wall", 0.5, NAN, NAN, NAN, NAN};
     s->def = impact_default_scene_def();
     s->def.gravity = (qvec3){0, 0, -gravity};
     s->def.duration = 3.75;
@@ -523,7 +523,7 @@ static void bad_definitions_are_named(void **state)
     def.compliance = NAN;
     expect_refusal(&def, "scene 'scene': compliance = nan: must be >= 0 and finite");
     def.compliance = 0;
-    const impact_pair_def pair = {"coin", "flor", 0.5, NAN, NAN};
+    const impact_pair_def pair = {"coin", "flor", 0.5, NAN, NAN, NAN, NAN};
     def.pairs = &pair;
     def.pair_count = 1;
     expect_refusal(&def, "pair with 'flor': the scene has no such body");
