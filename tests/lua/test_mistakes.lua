@@ -41,7 +41,7 @@ refused("require 'impact'.weather()", "script.lua:1: no function 'weather' in im
 -- A body's keys.
 refused(scene(good .. "fricton = 1,"), "script.lua:2: unknown key 'fricton' in body 'coin' (did you mean 'friction'?)")
 local keys = "name, shape, static, mass, density, moments, position, orientation, normal, velocity, omega, friction, restitution, " ..
-  "linear_damping, angular_damping, shape_position, shape_orientation, trail)"
+  "torsional_friction, rolling_friction, linear_damping, angular_damping, shape_position, shape_orientation, trail)"
 refused(scene(good .. "colour = 1,"), "script.lua:2: unknown key 'colour' in body 'coin' (keys: " .. keys)
 refused(scene(good .. "7,"), "script.lua:2: unknown key [1] in body 'coin' (its values have names: " .. keys)
 refused(scene("shape = impact.sphere(0.1), mass = -1,"), "script.lua:2: body 'coin': mass must be a positive number, got -1")

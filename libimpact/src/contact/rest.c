@@ -78,7 +78,7 @@ static void sides_of(const rest_system *s, int c, int body[2])
 }
 
 /* The row k of G of one side. */
-static const double *row_of(const rest_system *s, int c, int side, int k)
+static const double *g_row(const rest_system *s, int c, int side, int k)
 {
     return k < 3 ? s->rows[c].side[side][k] : s->turns[c].side[side][k - 3];
 }
@@ -103,7 +103,7 @@ static void motion_at(const rest_system *s, int c, const double *x, double *v)
     for (int k = 0; k < s->width; k++) v[k] = 0;
     for (int side = 0; side < 2; side++)
         for (int k = 0; body[side] >= 0 && k < s->width; k++) {
-            const double *row = row_of(s, c, side, k);
+            const double *row = g_row(s, c, side, k);
             for (int l = 0; l < 6; l++) v[k] += row[l] * x[6 * body[side] + l];
         }
 }
@@ -146,7 +146,7 @@ static double find_gradient(const rest_system *s)
         for (int side = 0; side < 2; side++) {
             double own[6] = {0};
             for (int k = 0; body[side] >= 0 && k < s->width; k++)
-                for (int l = 0; l < 6; l++) own[l] += row_of(s, c, side, k)[l] * s->forces[s->width * c + k];
+                for (int l = 0; l < 6; l++) own[l] += g_row(s, c, side, k)[l] * s->forces[s->width * c + k];
             for (int l = 0; body[side] >= 0 && l < 6; l++) s->gradient[6 * body[side] + l] += own[l];
             if (body[side] >= 0) s->sizes[body[side]] += sqrt(product(own, own, 6));
         }
@@ -171,7 +171,7 @@ static void add_hessian(const rest_system *s, int c, double slope[6][6])
                     double sum = 0;
                     for (int m = 0; m < s->width; m++)
                         for (int o = 0; o < s->width; o++)
-                            sum += row_of(s, c, i, m)[k] * slope[m][o] * row_of(s, c, j, o)[l];
+                            sum += g_row(s, c, i, m)[k] * slope[m][o] * g_row(s, c, j, o)[l];
                     s->matrix[(size_t)(6 * body[i] + k) * (size_t)s->n + (size_t)(6 * body[j] + l)] += sum;
                 }
 }

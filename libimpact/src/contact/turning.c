@@ -9,8 +9,8 @@ static bool is_answer(const imp_cone_outcome *outcome)
 }
 
 /* Contact 0 is what is more, 1 the part eps p_n, whose normal feels itself alone: it comes to that and no more. */
-static bool restore(double w[36], const double *u, double friction, imp_cone_lengths lengths, double part,
-                    imp_cone_workspace *workspace, imp_turning_impact *impact)
+static bool restore_turning(const double *w, const double *u, double friction, imp_cone_lengths lengths, double part,
+                            imp_cone_workspace *workspace, imp_turning_impact *impact)
 {
     double whole[144], q[12], r[12], v[12];
     const double frictions[2] = {friction, friction};
@@ -45,7 +45,7 @@ impact_status imp_turning_collide(const imp_world *world, const imp_state *state
     impact->residual = outcome.residual;
     if (!is_answer(&outcome)) return IMPACT_EUNSETTLED;
     const double part = restitution * impact->p[0];
-    if (part > 0 && !restore(w, u, friction, lengths, part, workspace, impact)) return IMPACT_EUNSETTLED;
+    if (part > 0 && !restore_turning(w, u, friction, lengths, part, workspace, impact)) return IMPACT_EUNSETTLED;
     for (int i = 0; i < 6; i++) {
         impact->after[i] = impact->before[i];
         for (int j = 0; j < 6; j++) impact->after[i] += w[6 * i + j] * impact->p[j];
