@@ -532,6 +532,7 @@ local parts = {
   { "impacts_closed_form", "impacts in closed form", "impact", "impacts" },
   { "impacts_series", "impacts by series", "impact", "impacts" },
   { "impacts_cvode", "impacts by CVODE", "impact", "impacts" },
+  { "impacts_turning", "impacts with friction against turning", "impact", "impacts", rare = true },
 }
 
 --- The account, without the terms that are zero but for the integrator's crumbs.
@@ -566,7 +567,7 @@ function methods:summary(reason)
     local count = usage[part[1]]
     if count > 0 then
       used[#used + 1] = string.format("%s (%d %s)", part[2], count, count == 1 and part[3] or part[4])
-    else
+    elseif not part.rare then
       unused[#unused + 1] = part[2]
     end
   end
