@@ -1,7 +1,8 @@
 -- SPDX-License-Identifier: MIT
---- What seeing a run costs: `impact --trust bench/view.lua -- FOLDER WORK` prints CSV: each scene of FOLDER, and 1000 balls that fall
---- and bounce for 10 s; seconds of motion, events, keys; the processor's time of the run without a record, and with keys over
---- that (the median of pairs of runs that take turns); kB of the record and of its page (written to WORK, and taken away).
+--- What seeing a run costs: `impact --trust bench/view.lua -- FOLDER WORK` prints CSV of each scene of FOLDER and of a gas of 1000 balls
+--- for 10 s: seconds of motion, events, keys; the processor's time of the run alone, without rows or record; with keys over that; with
+--- rows and keys over with rows alone, as the runner makes them (CSV at the scene's rate); medians of runs that take turns; kB of
+--- the record and of its page, which are written to WORK and taken away.
 local impact = require "impact"
 local folder, work = arg[1], arg[2]
 arg = {}
@@ -26,15 +27,18 @@ local function median(list)
   return list[(#list + 1) // 2]
 end
 
--- With keys over without, of runs in pairs until they have taken so many seconds.
+-- The seconds of the bare run, and the two quotients, of runs that take turns until they have taken so many seconds.
 local function cost(definition, seconds)
-  local without, ratio, spent = {}, {}, 0
+  local bare, over_bare, over_rows, spent, rate = {}, {}, {}, 0, definition.output_rate
   repeat
-    local bare, kept = run(definition, {}), run(definition, { record = true })
-    without[#without + 1], ratio[#ratio + 1] = bare, kept / bare
-    spent = spent + bare + kept
-  until spent > seconds and #ratio > 2
-  return median(without), median(ratio)
+    definition.output_rate = 0
+    local alone, kept = run(definition, {}), run(definition, { record = work .. "/view.run" })
+    definition.output_rate = rate
+    local rows, both = run(definition, { csv = work .. "/view" }), run(definition, { csv = work .. "/view", record = work .. "/view.run" })
+    bare[#bare + 1], over_bare[#over_bare + 1], over_rows[#over_rows + 1] = alone, kept / alone, both / rows
+    spent = spent + alone + kept + rows + both
+  until spent > seconds and #bare > 2
+  return median(bare), median(over_bare), median(over_rows)
 end
 
 local function size(path)
@@ -46,14 +50,15 @@ local function size(path)
 end
 
 local function show(name, definition, seconds)
-  definition.output_rate = 0
-  local bare, ratio = cost(definition, seconds)
+  local bare, over_bare, over_rows = cost(definition, seconds)
   local _, scene = run(definition, { record = work .. "/view.run" })
   local usage, record = scene:usage(), scene:record()
   local page, message = record:view(work .. "/view.html")
   local _, last = record:times()
-  print(string.format("%s,%.4g,%d,%d,%.3g,%.3f,%.0f,%s", name, last, #scene:events(), usage.keys, 1e3 * bare, ratio, size(work .. "/view.run") / 1000,
-    page and string.format("%.0f", size(work .. "/view.html") / 1000) or message))
+  os.remove(work .. "/view.csv")
+  os.remove(work .. "/view_events.csv")
+  print(string.format("%s,%.4g,%d,%d,%.3g,%.3f,%.3f,%.0f,%s", name, last, #record:events(), usage.keys, 1e3 * bare, over_bare, over_rows,
+    size(work .. "/view.run") / 1000, page and string.format("%.0f", size(work .. "/view.html") / 1000) or message))
 end
 
 -- A gas: equal balls in a box of which they fill a tenth, which meet some 35000 times.
@@ -80,10 +85,10 @@ local function gas(count, duration)
     end
     bodies[#bodies + 1] = impact.body { name = "ball " .. i + 1, shape = impact.sphere(r), position = position, velocity = velocity, friction = 0.2, restitution = 1 }
   end
-  return { name = "gas", duration = duration, gravity = { 0, 0, 0 }, bodies = bodies, max_events = 1000000 }
+  return { name = "gas", duration = duration, gravity = { 0, 0, 0 }, bodies = bodies, max_events = 1000000, output_rate = 24 }
 end
 
-print "scene,duration_s,events,keys,run_ms,with_keys,record_kB,page_kB"
+print "scene,duration_s,events,keys,run_ms,keys_over_bare,keys_over_rows,record_kB,page_kB"
 for path in io.popen("ls '" .. folder .. "'/*.lua"):lines() do
   dofile(path)
   show(path:match "([^/]+)%.lua$", made, 0.3)

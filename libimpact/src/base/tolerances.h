@@ -380,6 +380,10 @@
  * between, a curve 300 pixels wide is off by less than one (1/(8 n^2) of its second rate). */
 #define IMP_DISPLAY_ROWS 48.0
 
+/* Bodies that an event may look at for each of its two rows of the account: what it takes to look at one is 1/100 of
+ * what the cheapest event takes. */
+#define IMP_ACCOUNT_SHARE 6.0
+
 /* ---- an opened run (run/run_read.c) ---- */
 
 /* No number in it is larger, so that a quintic's products h^2 f'' stay finite for h up to 1e4 s. */

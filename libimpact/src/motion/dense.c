@@ -41,10 +41,16 @@ double imp_dense_tau(const imp_dense *dense, double t)
 
 static double place_of(const imp_dense *dense, double t) { return (imp_dense_tau(dense, t) - dense->end) / dense->h; }
 
+double imp_dense_place(const imp_dense *dense, double t) { return dense->h > 0 ? place_of(dense, t) : 0; }
+
+void imp_dense_there(const imp_dense *dense, double s, int first, int count, double *y)
+{
+    for (int i = 0; i < count; i++) y[i] = value_of(dense, s, first + i);
+}
+
 void imp_dense_at(const imp_dense *dense, double t, int first, int count, double *y)
 {
-    const double s = dense->h > 0 ? place_of(dense, t) : 0;
-    for (int i = 0; i < count; i++) y[i] = value_of(dense, s, first + i);
+    imp_dense_there(dense, imp_dense_place(dense, t), first, count, y);
 }
 
 /* The polynomial's terms about s, by repeated division; and the sums of their sizes over a window w of s on. */
@@ -89,9 +95,9 @@ static double slope_of(const imp_dense *dense, double s, int i)
 }
 
 /* By s, and then by t, which is y[0] where tau is another. */
-void imp_dense_slopes(const imp_dense *dense, double t, int first, int count, double *slopes)
+void imp_dense_slopes(const imp_dense *dense, double s, int first, int count, double *slopes)
 {
     const bool moves = dense->h > 0;
-    const double s = moves ? place_of(dense, t) : 0, rate = dense->clocked && moves ? slope_of(dense, s, 0) : dense->h;
+    const double rate = dense->clocked && moves ? slope_of(dense, s, 0) : dense->h;
     for (int i = 0; i < count; i++) slopes[i] = moves ? slope_of(dense, s, first + i) / rate : 0;
 }

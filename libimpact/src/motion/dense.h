@@ -26,6 +26,9 @@ impact_status imp_dense_reserve(imp_dense *dense, imp_arena *arena, int size);
 
 /* y at the time t, of the components first .. first + count - 1. */
 void imp_dense_at(const imp_dense *dense, double t, int first, int count, double *y);
+/* s at the time t; and y there. */
+double imp_dense_place(const imp_dense *dense, double t);
+void imp_dense_there(const imp_dense *dense, double s, int first, int count, double *y);
 /* tau where y[0] = t. */
 double imp_dense_tau(const imp_dense *dense, double t);
 /* One component over [t, t + window], in tau: its value and rate at t, and no less than the sizes of its value, rate
@@ -34,7 +37,7 @@ typedef struct imp_dense_rate {
     double value, rate, most, most_rate, most_second;
 } imp_dense_rate;
 void imp_dense_rates(const imp_dense *dense, double t, double window, int first, int count, imp_dense_rate *rates);
-/* dy/dt at t, no bounds: a third of the work. */
-void imp_dense_slopes(const imp_dense *dense, double t, int first, int count, double *slopes);
+/* dy/dt at s, no bounds: a third of the work. */
+void imp_dense_slopes(const imp_dense *dense, double s, int first, int count, double *slopes);
 
 #endif

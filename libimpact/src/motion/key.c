@@ -51,36 +51,47 @@ static turn turn_of(const impact_key *key)
     return (turn){rate, quat_add(half_product(key->alpha, key->orientation), half_product(key->omega, rate))};
 }
 
-/* The polynomial of two keys, ready to be asked. */
+/* The polynomial of two keys, ready to be asked: what each weight takes, of the place and of the orientation. */
 typedef struct quintic {
     const impact_key *a, *b;
     double h;
-    turn from, to;
+    qvec3 x[5];
+    quat q[5];
 } quintic;
 
 static quintic quintic_of(const impact_key keys[2])
 {
-    return (quintic){&keys[0], &keys[1], keys[1].t - keys[0].t, turn_of(&keys[0]), turn_of(&keys[1])};
+    const impact_key *a = &keys[0], *b = &keys[1];
+    const double h = b->t - a->t, h2 = h * h;
+    const turn from = turn_of(a), to = turn_of(b);
+    return (quintic){a,
+                     b,
+                     h,
+                     {qvec3_scale(a->velocity, h), qvec3_scale(a->acceleration, h2),
+                      qvec3_sub(b->position, a->position), qvec3_scale(b->velocity, h),
+                      qvec3_scale(b->acceleration, h2)},
+                     {quat_scale(from.rate, h), quat_scale(from.second, h2), quat_sub(b->orientation, a->orientation),
+                      quat_scale(to.rate, h), quat_scale(to.second, h2)}};
 }
 
 static qvec3 mix(const quintic *p, weights w)
 {
-    const double h = p->h;
-    qvec3 sum = qvec3_scale(qvec3_sub(p->b->position, p->a->position), w.change);
-    sum = qvec3_axpy(w.rate0 * h, p->a->velocity, sum);
-    sum = qvec3_axpy(w.rate1 * h, p->b->velocity, sum);
-    sum = qvec3_axpy(w.second0 * h * h, p->a->acceleration, sum);
-    return qvec3_axpy(w.second1 * h * h, p->b->acceleration, sum);
+    const qvec3 *x = p->x;
+    qvec3 sum = qvec3_scale(x[0], w.rate0);
+    sum = qvec3_axpy(w.second0, x[1], sum);
+    sum = qvec3_axpy(w.change, x[2], sum);
+    sum = qvec3_axpy(w.rate1, x[3], sum);
+    return qvec3_axpy(w.second1, x[4], sum);
 }
 
 static quat mix_turn(const quintic *p, weights w)
 {
-    const double h = p->h;
-    quat sum = quat_scale(quat_sub(p->b->orientation, p->a->orientation), w.change);
-    sum = quat_add(sum, quat_scale(p->from.rate, w.rate0 * h));
-    sum = quat_add(sum, quat_scale(p->to.rate, w.rate1 * h));
-    sum = quat_add(sum, quat_scale(p->from.second, w.second0 * h * h));
-    return quat_add(sum, quat_scale(p->to.second, w.second1 * h * h));
+    const quat *q = p->q;
+    quat sum = quat_scale(q[0], w.rate0);
+    sum = quat_add(sum, quat_scale(q[1], w.second0));
+    sum = quat_add(sum, quat_scale(q[2], w.change));
+    sum = quat_add(sum, quat_scale(q[3], w.rate1));
+    return quat_add(sum, quat_scale(q[4], w.second1));
 }
 
 impact_key imp_key_between(const impact_key keys[2], double t)
@@ -162,19 +173,40 @@ typedef struct halving {
     long *unmet;
 } halving;
 
+static imp_pose quarter(const halving *h, double s, double length, int i)
+{
+    return h->piece->pose(h->piece->context, h->body, s + 0.25 * (i + 1) * length);
+}
+
+/* The middle first, where a quintic is off most: what fails there is not asked elsewhere. */
+static bool span_meets(const halving *h, double s, double length, imp_span *span)
+{
+    static const int order[3] = {1, 0, 2};
+    const impact_key ends[2] = {span->from, span->to};
+    if (!turns_little(ends)) return false;
+    const quintic curve = quintic_of(ends);
+    for (int k = 0; k < 3; k++) {
+        const int i = order[k];
+        span->way[i] = quarter(h, s, length, i);
+        if (!meets(&curve, &span->way[i], h->tolerance)) return false;
+    }
+    return true;
+}
+
+static bool hand_on_unmet(const halving *h, double s, double length, imp_span *span)
+{
+    for (int i = 0; i < 3; i++) span->way[i] = quarter(h, s, length, i);
+    ++*h->unmet;
+    return h->sink(h->context, span);
+}
+
 /* The part from s to s + length, with the keys at its ends. */
 static bool halve(const halving *h, double s, double length, const impact_key ends[2], int depth)
 {
-    const imp_piece *piece = h->piece;
     imp_span span = {.from = ends[0], .to = ends[1]};
-    for (int i = 0; i < 3; i++) span.way[i] = piece->pose(piece->context, h->body, s + 0.25 * (i + 1) * length);
-    const quintic curve = quintic_of(ends);
-    if (turns_little(ends) && all_meet(&curve, span.way, 3, h->tolerance)) return h->sink(h->context, &span);
-    if (depth == IMP_KEY_HALVINGS || too_short(ends)) {
-        ++*h->unmet;
-        return h->sink(h->context, &span);
-    }
-    const impact_key middle = piece->at(piece->context, h->body, s + 0.5 * length);
+    if (span_meets(h, s, length, &span)) return h->sink(h->context, &span);
+    if (depth == IMP_KEY_HALVINGS || too_short(ends)) return hand_on_unmet(h, s, length, &span);
+    const impact_key middle = h->piece->at(h->piece->context, h->body, s + 0.5 * length);
     const impact_key left[2] = {ends[0], middle}, right[2] = {middle, ends[1]};
     return halve(h, s, 0.5 * length, left, depth + 1) && halve(h, s + 0.5 * length, 0.5 * length, right, depth + 1);
 }

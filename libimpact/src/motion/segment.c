@@ -171,6 +171,26 @@ imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
     return state;
 }
 
+double imp_segment_own(const imp_segment *s, double t)
+{
+    return s->kind == IMP_SEGMENT_DENSE ? imp_dense_place(s->dense, t) : t;
+}
+
+qvec3 imp_segment_pose(const imp_segment *s, const imp_body *body, double own, double *t, quat *q)
+{
+    double b[Y_VELOCITY];
+    *t = own;
+    if (s->kind != IMP_SEGMENT_DENSE) {
+        const imp_state state = imp_segment_at(s, body, own);
+        *q = state.q;
+        return state.x;
+    }
+    imp_dense_there(s->dense, own, Y_TIME, 1, t);
+    imp_dense_there(s->dense, own, first_of(s), Y_VELOCITY, b);
+    *q = quat_unit((quat){b[3], b[4], b[5], b[6]});
+    return (qvec3){b[0], b[1], b[2]};
+}
+
 /* ---- bounds ---- */
 
 static double least_moment(const imp_body *body)
@@ -239,16 +259,16 @@ imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double
     return b;
 }
 
-void imp_segment_rates(const imp_segment *s, const imp_body *body, double t, qvec3 *acceleration, qvec3 *torque)
+void imp_segment_rates(const imp_segment *s, const imp_body *body, double own, qvec3 *acceleration, qvec3 *torque)
 {
     if (s->kind == IMP_SEGMENT_DENSE) {
         double r[6]; /* of v and the momentum, which stand side by side */
-        imp_dense_slopes(s->dense, t, first_of(s) + Y_VELOCITY, 6, r);
+        imp_dense_slopes(s->dense, own, first_of(s) + Y_VELOCITY, 6, r);
         *acceleration = (qvec3){r[0], r[1], r[2]};
         *torque = (qvec3){r[3], r[4], r[5]};
         return;
     }
-    const imp_bounds b = imp_segment_bounds(s, body, t, 0);
+    const imp_bounds b = imp_segment_bounds(s, body, own, 0);
     *acceleration = b.acceleration;
     *torque = b.torque;
 }

@@ -58,6 +58,10 @@ imp_segment imp_segment_dense(const imp_dense *dense, int place, const imp_state
 
 /* The state at t; before t0 and after t1 the form is continued. */
 imp_state imp_segment_at(const imp_segment *segment, const imp_body *body, double t);
+/* The variable that a segment is given in: time, or in a step of the integrator the place in it, with which time rises;
+ * and the time, place (returned) and orientation there, without the search for it that a time takes. */
+double imp_segment_own(const imp_segment *s, double t);
+qvec3 imp_segment_pose(const imp_segment *s, const imp_body *body, double own, double *t, quat *q);
 /* The centre's place and velocity alone. */
 qvec3 imp_segment_place_of(const imp_segment *segment, const imp_body *body, double t, qvec3 *velocity);
 
@@ -78,8 +82,9 @@ typedef struct imp_bounds {
     double spin_up;     /* |omega'| + |omega|^2 >= |m''|, m fixed in the world seen from the body, 1/s^2 */
 } imp_bounds;
 imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, double t, double window);
-/* Its acceleration and torque at t alone. */
-void imp_segment_rates(const imp_segment *segment, const imp_body *body, double t, qvec3 *acceleration, qvec3 *torque);
+/* Its acceleration and torque alone, where its own variable is this. */
+void imp_segment_rates(const imp_segment *segment, const imp_body *body, double own, qvec3 *acceleration,
+                       qvec3 *torque);
 
 /* No speed of the centre over [t, t1] is greater, m/s; infinite for FREE under an acceleration. */
 double imp_segment_top_speed(const imp_segment *segment, const imp_body *body, double t);

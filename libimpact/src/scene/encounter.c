@@ -83,7 +83,7 @@ static impact_status conclude(imp_island *island, impact_status status)
     }
     give_up(loose);
     if (parted != IMPACT_OK || stalled != IMPACT_OK) return parted != IMPACT_OK ? parted : stalled;
-    return imp_scene_account(scene) ? IMPACT_OK : IMPACT_ESINK;
+    return imp_scene_account_after(scene) ? IMPACT_OK : IMPACT_ESINK;
 }
 
 static impact_status bring_all_to_rest(imp_island *island)
@@ -115,7 +115,7 @@ static impact_status conclude_steps(imp_island *island)
 
 impact_status imp_scene_meet(impact_scene *scene, int n, double t)
 {
-    if (!imp_scene_account(scene)) return IMPACT_ESINK;
+    if (!imp_scene_account_before(scene)) return IMPACT_ESINK;
     const imp_near *near = &scene->tracks.near[n];
     const int body[2] = {near->body[0], near->body[1]};
     for (int k = 0; k < 2; k++) imp_gather_member(scene, body[k]);
@@ -199,7 +199,7 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     if (island->stepped) return continue_steps(island);
     if (imp_island_loses_patience(island)) return turn_to_steps(scene, island, t);
     if (island->end.kind == IMP_END_TIME) return go_on(island);
-    if (!imp_scene_account(scene)) return IMPACT_ESINK;
+    if (!imp_scene_account_before(scene)) return IMPACT_ESINK;
     island->outside = imp_gather_energy_outside(scene, island, t);
     impact_status status = imp_scene_handle(island, island->end);
     while (status == IMPACT_OK && imp_motion_also_crossed(&island->motion, &island->end))

@@ -18,44 +18,56 @@ static imp_key_tolerance tolerance_of(const impact_scene *scene, int body)
     return (imp_key_tolerance){tolerance * scene->world.bodies[body].radius, tolerance};
 }
 
-/* One body's segment from where its last piece ended. */
+/* One body's segment from where its last piece ended, by the segment's own variable. */
 typedef struct done_piece {
     const impact_scene *scene;
     const imp_segment *segment;
-    double from, to;
+    double from, to, own[2]; /* s; own: at both, once they are asked for */
+    bool placed;
     const imp_state *end;
 } done_piece;
 
-static double time_at(const done_piece *piece, double s)
+static double own_at(done_piece *piece, double s)
 {
-    return s < 1 ? piece->from + s * (piece->to - piece->from) : piece->to;
+    double *own = piece->own;
+    if (!piece->placed) {
+        own[0] = imp_segment_own(piece->segment, piece->from);
+        own[1] = imp_segment_own(piece->segment, piece->to);
+    }
+    piece->placed = true;
+    return s < 1 ? own[0] + s * (own[1] - own[0]) : own[1];
 }
 
-static imp_state state_at(const done_piece *piece, int body, double s)
+static imp_pose pose_at(void *context, int body, double s)
 {
-    return s < 1 ? imp_segment_at(piece->segment, &piece->scene->world.bodies[body], time_at(piece, s)) : *piece->end;
+    done_piece *piece = context;
+    const imp_body *b = &piece->scene->world.bodies[body];
+    imp_pose pose;
+    pose.x = imp_segment_pose(piece->segment, b, own_at(piece, s), &pose.t, &pose.q);
+    return pose;
 }
 
-static imp_pose pose_at(void *piece, int body, double s)
+static imp_state state_at(const done_piece *piece, int body, double t)
 {
-    const imp_state state = state_at(piece, body, s);
-    return (imp_pose){time_at(piece, s), state.x, state.q};
+    return t < piece->to ? imp_segment_at(piece->segment, &piece->scene->world.bodies[body], t) : *piece->end;
 }
 
 static impact_key key_at(void *context, int body, double s)
 {
-    const done_piece *piece = context;
+    done_piece *piece = context;
     const imp_body *b = &piece->scene->world.bodies[body];
-    const imp_state state = state_at(piece, body, s);
+    const double t = s <= 0 ? piece->from : s >= 1 ? piece->to : pose_at(piece, body, s).t;
+    const imp_state state = state_at(piece, body, t);
     qvec3 acceleration, torque;
-    imp_segment_rates(piece->segment, b, time_at(piece, s), &acceleration, &torque);
-    return imp_key_of(b, body, time_at(piece, s), &state, acceleration, torque);
+    imp_segment_rates(piece->segment, b, s < 1 ? own_at(piece, s) : imp_segment_own(piece->segment, t), &acceleration,
+                      &torque);
+    return imp_key_of(b, body, t, &state, acceleration, torque);
 }
 
 static impact_key begin_of(void *context, int body)
 {
     const done_piece *piece = context;
-    const imp_state state = state_at(piece, body, 0);
+    const imp_state state = state_at(piece, body, piece->from);
     const qvec3 omega = imp_omega(&piece->scene->world.bodies[body], &state);
     return (impact_key){.t = piece->from,
                         .body = body,
@@ -72,7 +84,8 @@ bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_s
     const double from = keys->from[body];
     keys->from[body] = t;
     if (!(t > from)) return true;
-    done_piece way = {scene, &scene->tracks.tracks[body].segment, from, t, end};
+    const imp_segment *segment = &scene->tracks.tracks[body].segment;
+    done_piece way = {.scene = scene, .segment = segment, .from = from, .to = t, .end = end};
     const imp_piece piece = {from, t, &way, key_at, pose_at, begin_of};
     return imp_key_line_add_piece(&keys->lines[body], &piece, body, tolerance_of(scene, body), put_key, scene,
                                   &scene->world.usage.keys_unmet);
@@ -190,19 +203,33 @@ bool imp_scene_held_until(imp_island *island)
 
 /* ---- the account ---- */
 
-bool imp_scene_account(impact_scene *scene)
+static bool put_account(impact_scene *scene)
 {
-    if (!scene->keys || !scene->recorder->account) return true;
+    if (!scene->recorder->account) return true;
     imp_scene_look(scene, scene->t);
     scene->keys->accounted = scene->t;
     const impact_energy energy = impact_scene_energy(scene);
     return scene->recorder->account(scene->recorder->context, scene->t, &energy);
 }
 
+/* A row asks every body, an event moves two or a few: in a crowd one event of many has rows. */
+bool imp_scene_account_before(impact_scene *scene)
+{
+    imp_scene_keys *keys = scene->keys;
+    if (!keys) return true;
+    keys->owed += IMP_ACCOUNT_SHARE;
+    keys->beside = keys->owed >= scene->world.body_count;
+    if (!keys->beside) return true;
+    keys->owed = 0;
+    return put_account(scene);
+}
+
+bool imp_scene_account_after(impact_scene *scene) { return !scene->keys || !scene->keys->beside || put_account(scene); }
+
 bool imp_scene_account_now_and_then(impact_scene *scene)
 {
     if (!scene->keys || scene->t < scene->keys->accounted + scene->duration / IMP_DISPLAY_ROWS) return true;
-    return imp_scene_account(scene);
+    return put_account(scene);
 }
 
 /* ---- a run ---- */
@@ -219,7 +246,7 @@ impact_status imp_scene_keys_begin(impact_scene *scene)
     keys->from = imp_arena_take(arena, n, sizeof *keys->from);
     if (!keys->lines || !keys->from) return IMPACT_ENOMEM;
     for (size_t i = 0; i < n; i++) keys->from[i] = scene->t;
-    if (!imp_scene_account(scene)) return IMPACT_ESINK;
+    if (!put_account(scene)) return IMPACT_ESINK;
     for (int i = 0; recorder->key && i < scene->world.body_count; i++)
         if (scene->world.bodies[i].is_static && !put_state(scene, i)) return IMPACT_ESINK;
     return IMPACT_OK;
@@ -233,7 +260,7 @@ bool imp_scene_keys_end(impact_scene *scene)
     const bool whole = keys->lines && keys->from;
     bool taken = whole && (!recorder->key || end_keys(scene));
     for (int p = 0; taken && recorder->held && p < keys->held_room; p++) taken = put_pending(scene, &keys->held[p]);
-    taken = taken && imp_scene_account(scene);
+    taken = taken && put_account(scene);
     imp_arena_give(scene->world.arena, keys->lines);
     imp_arena_give(scene->world.arena, keys->from);
     imp_arena_give(scene->world.arena, keys->held);

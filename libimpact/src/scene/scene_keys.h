@@ -23,6 +23,8 @@ typedef struct imp_scene_keys {
     imp_held_line *held; /* per pair of the tracks */
     int held_room;
     double accounted; /* s: the last account row */
+    double owed;      /* bodies that events may have looked at for rows beside them, since the last */
+    bool beside;      /* the event under way has its rows */
 } imp_scene_keys;
 
 /* Before and after a run with a recorder that wants any of them. */
@@ -36,8 +38,10 @@ bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_s
 bool imp_scene_held_until(imp_island *island);
 /* The pair is held no more at t. */
 bool imp_scene_held_ends(impact_scene *scene, int near, double t);
-/* The account as it stands, at the scene's time: beside events; and where the last is a while ago. */
-bool imp_scene_account(impact_scene *scene);
+/* The account as it stands, at the scene's time: before and after an event, where it costs less than the event; and
+ * where the last is a while ago. */
+bool imp_scene_account_before(impact_scene *scene);
+bool imp_scene_account_after(impact_scene *scene);
 bool imp_scene_account_now_and_then(impact_scene *scene);
 
 #endif
