@@ -11,7 +11,7 @@ if (worker.includes('</script')) throw Error('the worker would end the page');
 // JSON in a page: nothing in it may end the element that holds it.
 const inPage = value => JSON.stringify(value).replace(/</g, '\\u003c');
 function write(name, title, main, content, names) {
-  const parts = { TITLE: title, STYLE: read('playground', 'page.css'), MAIN: main, WORKER: worker, WASM: wasm, CONTENT: inPage(content),
+  const may = " 'wasm-unsafe-eval' blob:; worker-src blob:; frame-src blob:", parts = { HEAD: read('view', 'head.html').replace('@TITLE@', title).replace('@MAY@', may), STYLE: read('playground', 'page.css'), MAIN: main, WORKER: worker, WASM: wasm, CONTENT: inPage(content),
     SCRIPT: scripts('view', ['algebra', 'mesh', 'gl', 'figure', 'flat', 'space', 'space_draw']) + '\n' + scripts('playground', ['laboratory', ...names]) };
   const text = read('playground', 'page.html').replace(/@([A-Z]+)@/g, (_, key) => parts[key]);
   fs.mkdirSync(out, { recursive: true });

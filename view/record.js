@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
 // A recorded run as a source: { head, bodies, begin, end, events, contacts, account, state(body, t, before) } (docs/run.md).
-async function unpack(text) {
-  const packed = new Blob([Uint8Array.from(atob(text), c => c.charCodeAt(0))]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Uint8Array(await new Response(packed).arrayBuffer());
-}
 function openRecord(bytes) {
   const end = bytes.indexOf(10) + 1;
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));

@@ -2,10 +2,11 @@
 #include <impact/view.h>
 #include <stdio.h>
 
-impact_status impact_view_write(const impact_run *run, const char *path, impact_quota *quota, char *message,
-                                unsigned long message_size)
+impact_status impact_view_write(const impact_run *run, double tolerance, const char *path, impact_quota *quota,
+                                char *message, unsigned long message_size)
 {
     (void)run;
+    (void)tolerance;
     (void)path;
     (void)quota;
     if (message) snprintf(message, message_size, "this build writes neither pages nor glTF (IMPACT_WITH_VIEW is off)");
@@ -15,6 +16,5 @@ impact_status impact_view_write(const impact_run *run, const char *path, impact_
 impact_status impact_gltf_write(const impact_run *run, double tolerance, const char *path, impact_quota *quota,
                                 char *message, unsigned long message_size)
 {
-    (void)tolerance;
-    return impact_view_write(run, path, quota, message, message_size);
+    return impact_view_write(run, tolerance, path, quota, message, message_size);
 }

@@ -48,6 +48,7 @@ typedef struct impact_runner {
     bool fence;           /* not without it */
     const char *unfenced; /* why there is none; NULL: there is */
     /* what else is made of the record, by method name and file ending: view, html; gltf, glb; NULL */
+    double tolerance; /* of view and gltf; 0: their own */
     const char *shown, *ending;
     int threads, shard, shards; /* of a sweep: 0 <= shard < shards */
     bool mpi, hdf5;

@@ -20,8 +20,7 @@ static void usage(FILE *file)
         "Runs the scene that the script returns and writes NAME.csv, NAME_events.csv and, when the scene has a plot "
         "and gnuplot\n"
         "is there, NAME.png. A script that returns nothing has done its work itself.\n"
-        "view: writes NAME.html too, one page that shows the run in any browser, and opens it where there is a "
-        "display.\n"
+        "view: writes NAME.html too, one page that shows the run in any browser.\n"
         "gltf: writes NAME.glb too, for Blender and others.\n"
         "sweep: runs the scenes of impact.sweep{...}, a row each; started again it goes on where it was ended.\n"
         "gather: puts the rows in DIR together as NAME.csv.\n"
@@ -35,6 +34,9 @@ static void usage(FILE *file)
         "  --report          what each method gets right of the scene, how sure that is and what it costs: a table,\n"
         "                    NAME_report.csv and NAME_report.png instead of a run\n"
         "  --seconds S       the report's time (default: 20)\n"
+        "  --tolerance E     view, gltf: what keys may be off by, of a body's size and in rad (default: 3e-4 of gltf; "
+        "1e-5 of a\n"
+        "                    page too large to hold the record as it is)\n"
         "  --pictures        beside NAME.png: flat pictures as NAME.svg and NAME.pdf, others as a page, "
         "NAME.figure.html\n"
         "  --quiet           no progress, no closing summary\n"
@@ -141,6 +143,8 @@ static int take_value(impact_runner *runner, const char *option, char *value)
     if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
     if (strcmp(option, "--seconds") == 0)
         runner->report_seconds = number;
+    else if (strcmp(option, "--tolerance") == 0)
+        runner->tolerance = number;
     else if (strcmp(option, "--max-time") == 0)
         runner->max_time = number;
     else if (strcmp(option, "--checkpoint") == 0)
@@ -155,8 +159,8 @@ static int take_value(impact_runner *runner, const char *option, char *value)
 /* The option with a value that the word is, alone or as OPTION=VALUE; NULL: none. */
 static const char *option_of(char *word, char **value)
 {
-    static const char *const options[] = {"--out", "--max-memory", "--max-time",   "--max-disk", "--shard",
-                                          "-j",    "--resume",     "--checkpoint", "--save",     "--seconds"};
+    static const char *const options[] = {"--out",    "--max-memory", "--max-time", "--max-disk", "--shard",    "-j",
+                                          "--resume", "--checkpoint", "--save",     "--seconds",  "--tolerance"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
         const size_t length = strlen(options[i]);
         if (strncmp(word, options[i], length) != 0 || (word[length] && word[length] != '=')) continue;
@@ -213,6 +217,7 @@ static int check_command(const impact_runner *runner)
         (sweep || gather || runner->record || runner->save_name || runner->resume || runner->checkpoint > 0))
         return wrong_usage("%s makes no run: nothing that a run writes goes with it", "--report");
     if (runner->report_seconds > 0 && !runner->report) return wrong_usage("%s is the report's: --report", "--seconds");
+    if (runner->tolerance > 0 && !runner->shown) return wrong_usage("%s is view's and gltf's", "--tolerance");
     if (sweep && runner->shards > 1 && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--shard");
     return -1;
 }

@@ -14,7 +14,8 @@ int impact_runner_view(lua_State *L, int run, impact_runner *runner, const char 
     lua_getfield(L, run, runner->shown);
     lua_pushvalue(L, run);
     lua_pushvalue(L, -3);
-    lua_call(L, 2, 2);
+    if (runner->tolerance > 0) lua_pushnumber(L, runner->tolerance);
+    lua_call(L, runner->tolerance > 0 ? 3 : 2, 2);
     if (!lua_isnil(L, -2)) return IMPACT_EXIT_OK;
     fprintf(stderr, "impact: no %s.%s: %s\n", name, runner->ending, lua_tostring(L, -1));
     return IMPACT_EXIT_OUTPUT;

@@ -84,7 +84,7 @@ if impact.has "view" then
   check.equal(code, 1)
   check.truth(complained:find("'no.run': not a recorded run", 1, true), "what is no record is named")
   check.truth(not runner.exists("none/no.html"), "and leaves no page")
-  code, _, complained = runner.command("view script.lua --out shown --max-disk 0.04")
+  code, _, complained = runner.command("view script.lua --out shown --max-disk 0.02")
   check.truth(code ~= 0 and complained ~= "", "a page counts as written")
 end
 check.equal(runner.script((text:gsub("return impact.scene (%b{})", "impact.scene%1:run { record = 'x.run' }"))), 0)

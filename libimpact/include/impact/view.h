@@ -12,11 +12,13 @@
 extern "C" {
 #endif
 
-/* Writes the run as one page of HTML that needs nothing else: no network, no other file (docs/view.md). IMPACT_ESINK,
- * with a message (may be NULL); IMPACT_EARGUMENT: the page would be larger than 20 MB. quota: what
- * may be written still; NULL: no limit. */
-IMPACT_API impact_status impact_view_write(const impact_run *run, const char *path, impact_quota *quota, char *message,
-                                           unsigned long message_size);
+/* Writes the run as one page of HTML that needs nothing else: no network, no other file (docs/view.md). Where it would
+ * be larger than 900 kB its record is thinned: fewer keys, that meet the motion to tolerance, in [1e-7, 0.1], of each
+ * body's size and rad; the page says so. IMPACT_EARGUMENT: a tolerance out of range, or a page of more than 20 MB even
+ * so, with the tolerance that would do; IMPACT_ESINK; each with a message (may be NULL). quota: what may be written
+ * still; NULL: no limit. */
+IMPACT_API impact_status impact_view_write(const impact_run *run, double tolerance, const char *path,
+                                           impact_quota *quota, char *message, unsigned long message_size);
 
 /* Writes the run as glTF 2.0 in one binary file (.glb), for Blender and others (docs/view.md). Straight lines and
  * slerp between its keys meet the run within tolerance, in [1e-7, 0.1], of each body's size and rad, but at keys closer

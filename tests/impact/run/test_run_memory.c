@@ -49,7 +49,7 @@ static void export_run(outcome *o, const impact_run *run)
     assert_true(o->size <= sizeof o->bytes);
     memcpy(o->bytes, bytes, o->size);
     if (!impact_has(IMPACT_PART_VIEW)) return;
-    if (!good(o, impact_view_write(run, page_path, NULL, o->message, sizeof o->message))) return;
+    if (!good(o, impact_view_write(run, 1e-5, page_path, NULL, o->message, sizeof o->message))) return;
     good(o, impact_gltf_write(run, 1e-2, gltf_path, NULL, o->message, sizeof o->message));
 }
 
