@@ -26,15 +26,20 @@ void main() {
   float l = max(dot(n, sun), 0.) * shade(), h = pow(max(dot(n, normalize(sun + v)), 0.), 60.) * shade();
   color = vec4(c.rgb * (.5 + .12 * dot(n, sky) + .48 * l) + (kind == 2 ? 0. : .18 * h), c.a);
 }`;
+// A stretch a b of a polyline with its neighbours c, e: stretches meet on the line that halves their angle; at a sharp corner each ends
+// square, half a width further.
 const lineVertex = `#version 300 es
-in vec4 a, b; uniform mat4 view; uniform vec2 size; uniform float width, now; out float late; out float across;
+in vec4 a, b, c, e; uniform mat4 view; uniform vec2 size; uniform float width, now; out float late; out float across;
+vec2 way(vec4 P, vec4 Q) { return (Q.xy / Q.w - P.xy / P.w) * size; }
 void main() {
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); vec4 A = view * vec4(a.xyz, 1.), B = view * vec4(b.xyz, 1.);
-  float cut = 1e-4;
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1); vec4 A = view * vec4(a.xyz, 1.), B = view * vec4(b.xyz, 1.), N = view * vec4((corner.x < .5 ? c : e).xyz, 1.);
+  float cut = 1e-4; bool whole = A.w > cut && B.w > cut && N.w > cut;
   if (A.w < cut) A = mix(A, B, (cut - A.w) / (B.w - A.w)); if (B.w < cut) B = mix(B, A, (cut - B.w) / (A.w - B.w));
-  vec2 d = (B.xy / B.w - A.xy / A.w) * size; d = length(d) > 1e-6 ? normalize(d) : vec2(1., 0.);
+  vec2 d = way(A, B), f = corner.x < .5 ? way(N, A) : way(B, N); d = length(d) > 1e-6 ? normalize(d) : vec2(1., 0.);
   vec4 P = corner.x < .5 ? A : B; across = corner.y * 2. - 1.; late = (corner.x < .5 ? a.w : b.w) - now;
-  P.xy += (vec2(-d.y, d.x) * across + d * (corner.x * 2. - 1.) * .5) * (width + 1.5) / size * P.w; gl_Position = P;
+  vec2 side = vec2(-d.y, d.x), off = side * across + d * (corner.x * 2. - 1.) * .5;
+  if (whole && length(f) > 1e-3) { vec2 m = normalize(f); if (dot(m, d) > -.2) { m = normalize(m + d); m = vec2(-m.y, m.x); off = m * across / dot(m, side); } }
+  P.xy += off * (width + 1.5) / size * P.w; gl_Position = P;
 }`;
 const lineFragment = `#version 300 es
 precision highp float; in float late, across; out vec4 color; uniform vec4 one; uniform float width;
@@ -52,7 +57,7 @@ function makeGraphics(canvas) {
       gl.attachShader(p, s);
     });
     ['p', 'n'].forEach((name, i) => gl.bindAttribLocation(p, i, name));
-    ['a', 'b'].forEach((name, i) => gl.bindAttribLocation(p, i, name));
+    ['a', 'b', 'c', 'e'].forEach((name, i) => gl.bindAttribLocation(p, i, name));
     gl.linkProgram(p);
     const places = {};
     return { p, set(values) {
@@ -88,8 +93,8 @@ function makeGraphics(canvas) {
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(points.flat()), gl.STATIC_DRAW);
-    [0, 1].forEach(i => { gl.enableVertexAttribArray(i); gl.vertexAttribPointer(i, 4, gl.FLOAT, false, 16, 16 * i); gl.vertexAttribDivisor(i, 1); });
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([points[0], ...points, points[points.length - 1]].flat()), gl.STATIC_DRAW);
+    [1, 2, 0, 3].forEach((k, i) => { gl.enableVertexAttribArray(i); gl.vertexAttribPointer(i, 4, gl.FLOAT, false, 16, 16 * k); gl.vertexAttribDivisor(i, 1); });
     return { array, count: points.length - 1 };
   };
   const draw = m => { gl.bindVertexArray(m.array); gl.drawElements(gl.TRIANGLES, m.count, gl.UNSIGNED_INT, 0); };

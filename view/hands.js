@@ -5,17 +5,25 @@ function start(bytes) {
   const scene = makeScene(run, canvas), panels = makePanels(run, scene, page), camera = scene.camera, list = run.events;
   const dark = () => window.matchMedia('(prefers-color-scheme: dark)').matches;
   const option = (select, text, value) => { const o = document.createElement('option'); o.textContent = text; o.value = value; page(select).appendChild(o); };
-  const status = { t: run.begin, before: false, play: 0, follow: -1, dirty: true }; // play: the wall clock of the last frame
+  const status = { t: run.begin, before: false, play: 0, follow: -1, dirty: true, poses: [] }; // play: the wall clock of the last frame
   scene.moving.forEach(i => option('body', run.bodies[i].name, i));
   panels.quantities.forEach(name => option('what', name, name));
-  page('what').value = 'z, m'; page('rate').value = '1';
+  page('what').value = 'z, m';
+  // At first the speed at which the run lasts some six seconds; and digits of time to a ten thousandth of it.
+  const rates = [...page('rate').options].map(o => Number(o.value)), span = run.end - run.begin || 1, wanted = Math.log(span / 6);
+  page('rate').value = String(rates.reduce((a, b) => (Math.abs(Math.log(b) - wanted) < Math.abs(Math.log(a) - wanted) ? b : a)));
+  const places = clamp(4 - Math.floor(Math.log10(span)), 0, 20), time = t => (span < 1e-3 || span > 1e6 ? t.toExponential(5) : t.toFixed(places));
   page('name').textContent = run.head.name;
-  page('facts').textContent = `${run.bodies.length} bodies, ${list.length} events, ${say(run.end)} s, ${run.head.reason}; grid ${say(scene.step)} m; keys to ${run.head.tolerance}`;
+  page('facts').textContent = `${run.bodies.length} bodies, ${list.length} events, ${say(run.end)} s, ${run.head.reason}; grid ${say(scene.step)} m; ${run.head.thinned ? 'thinned for this page to ' + run.head.thinned + ' of a body' : 'exact to ' + run.head.tolerance}`;
   if (!scene.gl) page('none').hidden = false;
   const rows = list.slice(0, 500).map(e => {
-    const row = document.createElement('button'), text = `${e.t.toFixed(4)} s  ${e.kind}  ${e.name1}${e.name2 ? ' – ' + e.name2 : ''}`;
-    row.textContent = norm(e.impulse) > 0 ? `${text}  ${say(norm(e.impulse))} N s` : text;
-    row.title = e.phases;
+    const row = document.createElement('button');
+    [time(e.t), e.kind + ' ' + e.name1 + (e.name2 ? ' – ' + e.name2 : ''), norm(e.impulse) > 0 ? norm(e.impulse).toPrecision(3) + ' N s' : ''].forEach(text => {
+      const cell = document.createElement('span');
+      cell.textContent = text;
+      row.appendChild(cell);
+    });
+    row.title = [e.kind, e.name1, e.name2, e.phases].join(' ');
     row.addEventListener('click', () => { status.play = 0; go(e.t); });
     page('events').appendChild(row);
     return row;
@@ -31,21 +39,23 @@ function start(bytes) {
     camera.yaw = number('yaw', camera.yaw); camera.pitch = clamp(number('pitch', camera.pitch), -1.5, 1.5);
     camera.distance = clamp(number('near', camera.distance / scene.radius), 0.01, 100) * scene.radius;
     go(number('t', status.t), words.has('before'));
-    if (words.has('still')) root.classList.add('still');
+    if (words.has('still')) { root.classList.add('still'); status.poses = (words.get('poses') || '').split(',').filter(p => p !== '').map(Number); }
     return words;
   }
   function show() {
     const r = Math.min(window.devicePixelRatio || 1, 2), w = Math.round(canvas.clientWidth * r), h = Math.round(canvas.clientHeight * r);
     if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
     run.shown = status.t;
-    const tail = 0.35 * Number(page('rate').value);
-    scene.draw(status.t, status.before, Math.max(tail, 1e-9), dark(), status.follow);
+    const tail = 0.25 * Number(page('rate').value);
+    scene.draw(status.t, status.before, Math.max(tail, 1e-9), dark(), status.follow, status.poses);
     if (root.classList.contains('still')) return;
     panels.energy(status.t); panels.ticks(status.t);
     if (scene.moving.length) { panels.sphere(status.t, status.before, body()); panels.graph(status.t, body(), page('what').value); }
     page('time').value = (status.t - run.begin) / (run.end - run.begin || 1);
-    page('clock').textContent = `t = ${status.t.toFixed(4)} s${status.before ? ' (before)' : ''}`;
+    page('clock').textContent = `t = ${time(status.t)} s${status.before ? ' (before)' : ''}`;
     rows.forEach((row, k) => row.classList.toggle('now', list[k].t === status.t));
+    const now = rows.find((_, k) => list[k].t === status.t), box = page('events');
+    if (now) box.scrollTop = clamp(box.scrollTop, now.offsetTop + now.offsetHeight - box.clientHeight, now.offsetTop);
   }
   function tick(clock) {
     if (status.play) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Flat panels: the curve on S3, the energy, any quantity over time, and the scrubber with its ticks.
 function makePanels(run, scene, page) {
-  const theme = () => { const s = getComputedStyle(document.documentElement); return k => s.getPropertyValue('--' + k).trim(); };
+  const theme = () => { const s = getComputedStyle(document.documentElement); return k => s.getPropertyValue('--' + k).trim(); }; // and a colour, by its digits, where dark has another
+  const hue = (ink, c) => ink(c.slice(1)) || c;
   const span = run.end - run.begin || 1;
   const fit = id => {
     const c = page(id), r = window.devicePixelRatio || 1, w = c.clientWidth, h = c.clientHeight;
@@ -22,14 +23,17 @@ function makePanels(run, scene, page) {
     if (!cache.has(i + name)) cache.set(i + name, both.map(([t, before]) => quantities[name](run.state(i, t, before), run.bodies[i])));
     return cache.get(i + name);
   };
+  // Three digits, and none of zeros: 0.00513 is 5.13e-3.
+  const short = x => { const t = String(+x.toPrecision(3)); return t.length > 6 || Math.abs(x) < 0.01 && x !== 0 ? x.toExponential(2).replace('e+', 'e') : t; };
   function plot({ d, w, h, ink }, lines, t, unit) {
-    const values = lines.flatMap(l => l.y), low = Math.min(0, ...values), high = Math.max(...values, low + 1e-300), l = 44, b = h - 16;
+    const values = lines.flatMap(l => l.y), low = values.reduce((x, y) => Math.min(x, y), 0), high = values.reduce((x, y) => Math.max(x, y), low + 1e-300);
+    const marks = [low, (low + high) / 2, high].map(y => [y, short(y)]), l = 8 + Math.max(...marks.map(m => d.measureText(m[1]).width)), b = h - 16;
     const X = x => l + (w - l - 8) * (x - run.begin) / span, Y = y => b - (b - 14) * (y - low) / (high - low);
     d.strokeStyle = ink('faint'); d.fillStyle = ink('soft'); d.lineWidth = 1; d.textAlign = 'right';
-    [low, (low + high) / 2, high].forEach(y => { d.beginPath(); d.moveTo(l, Y(y)); d.lineTo(w - 8, Y(y)); d.stroke(); d.fillText(say(y), l - 4, Y(y) + 4); });
+    marks.forEach(([y, text]) => { d.beginPath(); d.moveTo(l, Y(y)); d.lineTo(w - 8, Y(y)); d.stroke(); d.fillText(text, l - 4, Y(y) + 4); });
     d.textAlign = 'left'; d.fillText(unit, l, 10); d.textAlign = 'right'; d.fillText(say(run.end) + ' s', w - 8, h - 3);
     lines.forEach(s => {
-      d.strokeStyle = s.color; d.lineWidth = 1.8; d.setLineDash(s.dash || []); d.beginPath();
+      d.strokeStyle = hue(ink, s.color); d.lineWidth = 1.8; d.setLineDash(s.dash || []); d.beginPath();
       s.x.forEach((x, k) => (k ? d.lineTo(X(x), Y(s.y[k])) : d.moveTo(X(x), Y(s.y[k])))); d.stroke();
     });
     d.setLineDash([]); d.strokeStyle = ink('ink'); d.lineWidth = 1; d.beginPath(); d.moveTo(X(t), 12); d.lineTo(X(t), b); d.stroke();
@@ -49,12 +53,12 @@ function makePanels(run, scene, page) {
     const { d, w, h, ink } = fit('sphere'), R = Math.min(w, h) / 2 - 12;
     const cy = Math.cos(view.yaw), sy = Math.sin(view.yaw), cp = Math.cos(view.pitch), sp = Math.sin(view.pitch);
     const P = q => { const a = cy * q[0] + sy * q[1], b = -sy * q[0] + cy * q[1]; return [w / 2 + R * a, h / 2 - R * (cp * q[2] + sp * b)]; };
-    const path = (points, color, width, dash = []) => { d.strokeStyle = color; d.lineWidth = width; d.setLineDash(dash); d.beginPath(); points.forEach((q, k) => (k ? d.lineTo(...P(q)) : d.moveTo(...P(q)))); d.stroke(); };
+    const path = (points, color, width, dash = []) => { d.strokeStyle = hue(ink, color); d.lineWidth = width; d.setLineDash(dash); d.beginPath(); points.forEach((q, k) => (k ? d.lineTo(...P(q)) : d.moveTo(...P(q)))); d.stroke(); };
     d.fillStyle = ink('panel'); d.beginPath(); d.arc(w / 2, h / 2, R, 0, 7); d.fill(); d.strokeStyle = ink('soft'); d.lineWidth = 1; d.stroke();
     const ring = f => Array.from({ length: 49 }, (_, k) => f(Math.cos(k * Math.PI / 24), Math.sin(k * Math.PI / 24)));
     [ring((c, s) => [c, s, 0]), ring((c, s) => [c, 0, s]), ring((c, s) => [0, c, s])].forEach(r => path(r, ink('faint'), 1));
     [[okabeIto[0], [1, 0, 0], 'q1'], [okabeIto[2], [0, 1, 0], 'q2'], [okabeIto[1], [0, 0, 1], 'q3']].forEach(([c, e, name]) => {
-      path([[0, 0, 0], e], c, 1.5); d.setLineDash([]); d.fillStyle = c; d.textAlign = 'left'; d.fillText(name, P(e)[0] + 4, P(e)[1] - 3);
+      path([[0, 0, 0], e], c, 1.5); d.setLineDash([]); d.fillStyle = hue(ink, c); d.textAlign = 'left'; d.fillText(name, P(e)[0] + 4, P(e)[1] - 3);
     });
     const list = run.bodies[body].list, turns = [];
     for (let k = 0; k + 1 < list.length; k++) for (let s = 0; s < 6; s++) turns.push(list[k].t + (list[k + 1].t - list[k].t) * s / 6);

@@ -44,7 +44,15 @@ function makeScene(run, canvas) {
   const east = qrot(turned, [1, 0, 0]), north = qrot(turned, [0, 1, 0]);
   const free = planes.filter(p => !p.floor).reduce((sum, p) => add(sum, p.n), [0, 0, 0]);
   const front = Math.hypot(dot(free, east), dot(free, north)) > 1e-9 ? Math.atan2(dot(free, north), dot(free, east)) + 0.95 : -1.1;
-  const home = { yaw: front, pitch: 0.32, distance: 2.2 * radius, target: [0, 0, 0] };
+  // As near as all of the motion's box is seen, and the walls.
+  const seenAll = [0, 1, 2, 3, 4, 5, 6, 7].map(s => here([0, 1, 2].map(c => (s >> c & 1 ? high : low)[c]))).concat(planes.filter(p => !p.floor).flatMap(p => p.ring.map(q => q.slice(0, 3))));
+  const lens = aspect => 2.2 * Math.min(1, aspect / 1.3), back = (yaw, pitch) =>
+    add(scale(add(scale(east, Math.cos(yaw)), scale(north, Math.sin(yaw))), Math.cos(pitch)), scale(up, Math.sin(pitch)));
+  const distance = (yaw, pitch) => {
+    const aspect = canvas.clientWidth / canvas.clientHeight || 1.2, z = back(yaw, pitch), x = unit(cross(up, z)), y = cross(z, x);
+    return 1.04 * Math.max(...seenAll.map(p => dot(p, z) + lens(aspect) * Math.max(Math.abs(dot(p, x)) / aspect, Math.abs(dot(p, y)))));
+  };
+  const home = { yaw: front, pitch: 0.32, distance: distance(front, 0.32), target: [0, 0, 0] };
   const camera = { ...home };
   const G = makeGraphics(canvas);
   if (!G) return { camera, home, center, radius, up, moving, color, step, draw: () => null };
@@ -61,30 +69,33 @@ function makeScene(run, canvas) {
   const circle = G.uploadLine(Array.from({ length: 33 }, (_, k) => [Math.cos(k * Math.PI / 16), Math.sin(k * Math.PI / 16), 0, -1e30]));
   const sun = unit(qrot(turned, [-0.45, -0.5, 1]));
   const lightView = mat(parallel(1.35 * radius, 0.1 * radius, 8 * radius), look(scale(sun, 4 * radius), [0, 0, 0], north));
-  const eyeOf = () => add(camera.target, scale(add(scale(add(scale(east, Math.cos(camera.yaw)), scale(north, Math.sin(camera.yaw))), Math.cos(camera.pitch)),
-    scale(up, Math.sin(camera.pitch))), camera.distance));
+  const eyeOf = () => add(camera.target, scale(back(camera.yaw, camera.pitch), camera.distance));
   const at = t => clamp(t, run.begin, run.end);
   let last = null;
-  // Draws at time t; tail: seconds that impulses stay.
-  function draw(t, before, tail, dark, follow) {
+  const modelsAt = (t, before) => solids.map(s => {
+    if (!s) return null;
+    const b = run.bodies[s.i], k = run.state(s.i, at(t), before);
+    return frame(here(add(k.x, qrot(k.q, b.offset))), qmul(k.q, b.turn), [1, 1, 1]);
+  });
+  // Draws at time t; tail: seconds that impulses stay; poses: other times at which the bodies are seen as well, paler.
+  function draw(t, before, tail, dark, follow, poses = []) {
     const { gl } = G, w = canvas.width, h = canvas.height, paper = dark ? '#14161a' : '#f7f6f3', ink = dark ? '#e8e6e1' : '#23262b';
     if (follow >= 0) camera.target = here(run.state(follow, at(t), before).x);
     const eye = eyeOf(), far = camera.distance + 6 * radius;
-    const view = mat(perspective(2.2 * Math.min(1, w / h / 1.3), w / h, Math.max(camera.distance - 3 * radius, camera.distance * 0.02), far), look(eye, camera.target, up));
-    const models = solids.map(s => {
-      if (!s) return null;
-      const b = run.bodies[s.i], k = run.state(s.i, at(t), before);
-      return frame(here(add(k.x, qrot(k.q, b.offset))), qmul(k.q, b.turn), [1, 1, 1]);
-    });
+    const view = mat(perspective(lens(w / h), w / h, Math.max(camera.distance - 3 * radius, camera.distance * 0.02), far), look(eye, camera.target, up));
+    const models = modelsAt(t, before), others = poses.map(p => modelsAt(p, false));
     gl.enable(gl.DEPTH_TEST); gl.depthFunc(gl.LESS); gl.disable(gl.BLEND); gl.depthMask(true);
     gl.bindFramebuffer(gl.FRAMEBUFFER, G.frameBuffer); gl.viewport(0, 0, G.size, G.size); gl.clear(gl.DEPTH_BUFFER_BIT);
     G.dark.set({ view: lightView, light: lightView });
-    solids.forEach((s, i) => { if (s) { G.dark.set({ model: models[i] }); G.draw(s.mesh); } });
+    [models, ...others].forEach(m => solids.forEach((s, i) => { if (s) { G.dark.set({ model: m[i] }); G.draw(s.mesh); } }));
     gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.viewport(0, 0, w, h); gl.clearColor(...rgb(paper)); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     G.solid.set({ view, light: lightView, eye, sun, sky: up, depth: 0, texel: 1 / G.size, kind: 1, grid: [0, 0, 0, 0] });
     const solid = (m, model, one, two, kind, grid = [0, 0, 1, 1]) => { G.solid.set({ model, one, two, kind, grid }); G.draw(m); };
     const stroke = (m, one, width, now = 1e30) => { G.lines.set({ view, size: [w / 2, h / 2], one, width: width * (canvas.clientWidth ? w / canvas.clientWidth : window.devicePixelRatio || 1), now }); G.drawLine(m); };
     solids.forEach((s, i) => s && solid(s.mesh, models[i], s.one, mixed(s.one, [1, 1, 1, 1], 0.72), 1));
+    others.forEach(m => solids.forEach((s, i) => {
+      if (s && !run.bodies[s.i].static) solid(s.mesh, m[i], mixed(s.one, rgb(paper), 0.55), mixed(s.one, rgb(paper), 0.85), 1);
+    }));
     const ground = p => solid(quad, p.model, rgb(dark ? '#2b2f36' : p.floor ? '#e4e1da' : '#c3ccd6', p.floor ? 1 : 0.35), rgb(ink, 0.2), 2, [0, 0, p.half[0] / step, p.half[1] / step]);
     const seen = p => dot(p.n, sub(eye, p.x)) > 0;
     planes.filter(p => p.floor && seen(p)).forEach(ground);
@@ -93,7 +104,7 @@ function makeScene(run, canvas) {
     planes.forEach(p => stroke(p.line, rgb(ink, 0.45), 1.2));
     paths.forEach((line, i) => stroke(line, rgb(color(i), moving.length > 6 ? 0.45 : 0.9), moving.length > 6 ? 1.4 : 2.5, t));
     planes.filter(p => !p.floor && seen(p)).forEach(ground); gl.depthMask(true);
-    const spot = camera.distance * 0.0065;
+    const spot = camera.distance * 0.005;
     const mark = (m, model, one) => [[gl.LEQUAL, 1], [gl.GREATER, 0.35]].forEach(([f, a]) => {
       gl.depthFunc(f); gl.depthMask(f === gl.LEQUAL); solid(m, model, [...one.slice(0, 3), one[3] * a], one, 0); gl.depthMask(true); gl.depthFunc(gl.LESS);
     });
