@@ -257,9 +257,13 @@
 /* Of mu lambda: friction that is smaller by this part of it holds, whatever a root of its margin says. A root that is
  * real is right to 1e-8, the square root of rounding, at the worst. */
 #define IMP_SPRINGS_HELD 1e-6
-/* Of a step's time, where reactions are not unique: friction that gives way sooner after they were chosen anew gives
- * way. */
-#define IMP_SPRINGS_ONWARD 1e-9
+/* Of mu lambda, where reactions are not unique: friction may be over its bound by so much before slip begins. It is so
+ * for this part of the time that forces take to change, and the slip lags by the square of it, 1e-14; accelerations of
+ * that size are told from the cone solver's 1e-13 to five digits. */
+#define IMP_SPRINGS_OVER 1e-7
+/* Factor of T, and Newton's steps for each, of which a handful are taken. */
+#define IMP_SPRINGS_TIGHTER 10
+#define IMP_SPRINGS_CENTRE_STEPS 40
 /* tau: further than this no step goes; where the last terms vanish they bound nothing. */
 #define IMP_SPRINGS_FARTHEST 4.0
 /* Radii of a power's series that a step goes: 5^22 eps is .5, of a force that is small where the radius is. */
@@ -275,6 +279,8 @@
 #define IMP_WEDGE_STEPS 20000
 /* Steps and events of one group: a hundred times what the longest random encounters with ratios of 1e4 take. */
 #define IMP_SPRINGS_STEPS 200000
+/* Multiplications of one group, some ten seconds: a hundred contacts with friction take a hundredth. */
+#define IMP_SPRINGS_WORK 1e10
 
 /* ---- contact: encounters, docs/together.md ---- */
 

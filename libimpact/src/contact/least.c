@@ -1,22 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
  * W_SS = L L^T by Cholesky with pivoting, L of as many columns as the rank, so that W_SS^+ = H H^T with
- * H = L (L^T L)^-1.
+ * H = L (L^T L)^-1. Of the projection P = 1 - W_SS^+ W_SS onto the null space the same gives P = N N^T with
+ * N^T N = 1: P's pivots are 1/n at the least as long as there is any, since those left sum to a whole number.
  */
 #include "contact/least.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct least_part {
     const double *w;
     int width, n;
-    const int *which;
+    const int *which; /* NULL: all */
 } least_part;
 
 static double least_entry(const least_part *p, int i, int j)
 {
-    return p->w[(size_t)p->which[i] * (size_t)p->width + (size_t)p->which[j]];
+    const int row = p->which ? p->which[i] : i, column = p->which ? p->which[j] : j;
+    return p->w[(size_t)row * (size_t)p->width + (size_t)column];
 }
 
 /* Columns of L, n x rank, in the rows' own order; returns the rank. */
@@ -90,4 +94,39 @@ int imp_least_inverse(const double *w, int width, const int *which, int n, doubl
             inverse[i * n + j] = sum;
         }
     return r;
+}
+
+int imp_least_null(const double *w, int width, const int *which, int n, const double *inverse, double *scratch,
+                   double *basis)
+{
+    const least_part p = {w, width, n, which};
+    double *projection = scratch, *diagonal = scratch + n * n;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double sum = i == j;
+            for (int k = 0; k < n; k++) sum -= inverse[i * n + k] * least_entry(&p, k, j);
+            projection[i * n + j] = sum;
+        }
+    return least_factor(&(least_part){projection, n, n, NULL}, 0.5 / n, basis, diagonal);
+}
+
+void imp_least_solve(double *a, int m, double *b)
+{
+    for (int k = 0; k < m; k++) {
+        const double whole = a[k * m + k];
+        for (int j = 0; j < k; j++) a[k * m + k] -= a[k * m + j] * a[k * m + j];
+        const bool none = !(a[k * m + k] > m * DBL_EPSILON * whole);
+        const double pivot = none ? INFINITY : sqrt(a[k * m + k]);
+        for (int i = k + 1; i < m; i++) {
+            for (int j = 0; j < k; j++) a[i * m + k] -= a[i * m + j] * a[k * m + j];
+            a[i * m + k] /= pivot;
+        }
+        a[k * m + k] = pivot;
+        for (int j = 0; j < k; j++) b[k] -= a[k * m + j] * b[j];
+        b[k] /= pivot;
+    }
+    for (int i = m - 1; i >= 0; i--) {
+        for (int j = i + 1; j < m; j++) b[i] -= a[j * m + i] * b[j];
+        b[i] /= a[i * m + i];
+    }
 }

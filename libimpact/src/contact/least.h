@@ -11,4 +11,13 @@
 int imp_least_inverse(const double *w, int width, const int *which, int n, double rank, double *scratch,
                       double *inverse);
 
+/* From that inverse the null space of W_SS: N, n x (its dimension, returned) with stride n, N^T N = 1.
+ * scratch: n^2 + n. */
+int imp_least_null(const double *w, int width, const int *which, int n, const double *inverse, double *scratch,
+                   double *basis);
+
+/* Solves A x = b in place of b, A of order m symmetric with no eigenvalue under zero, its lower half given and lost; what
+ * has no pivot stays 0. */
+void imp_least_solve(double *a, int m, double *b);
+
 #endif

@@ -118,7 +118,7 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     const units unit = find_units(group);
     set_up(&s, group, &unit, w, u0);
     int asked = 0;
-    while (s.steps < IMP_SPRINGS_STEPS && s.events < IMP_SPRINGS_STEPS) {
+    while (s.steps < IMP_SPRINGS_STEPS && s.events < IMP_SPRINGS_STEPS && s.work < IMP_SPRINGS_WORK) {
         if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
         group->wedged = is_wedged(&s, &asked);
         if (group->wedged) return IMPACT_EUNSETTLED;

@@ -85,8 +85,16 @@ typedef struct imp_springs {
     imp_cone_mode *modes;
     bool stopped; /* a slip has: what sticks must be chosen anew */
     long events, steps;
+    double work; /* multiplications so far, roughly */
     bool chosen;
 } imp_springs;
+
+static inline double imp_springs_entry(const imp_springs *s, int i, int j)
+{
+    return s->w[(size_t)i * 3 * (size_t)s->count + (size_t)j];
+}
+
+static inline bool imp_springs_presses(const imp_spring *c) { return c->normal != IMP_SPRING_OPEN; }
 
 /* ---- springs_modes.c ---- */
 
@@ -96,12 +104,21 @@ void imp_springs_tie(imp_springs *s);
 void imp_springs_hold(imp_springs *s, int k);
 /* Row i of W times the forces of order k. */
 double imp_springs_row(const imp_springs *s, int i);
-/* Chooses what sticks and what slips among the still contacts that press: forces as of now. False: not settled. */
-bool imp_springs_choose(imp_springs *s);
 /* The accelerations of now: forces into `now`; du/dt of contact c, component i by imp_springs_row. */
 void imp_springs_forces(imp_springs *s);
 /* Which slips go straight. */
 void imp_springs_straighten(imp_springs *s);
+
+/* ---- springs_choose.c ---- */
+
+/* Chooses what sticks and what slips among the still contacts that press: forces as of now. False: not settled. */
+bool imp_springs_choose(imp_springs *s);
+
+/* ---- springs_centre.c ---- */
+
+/* Of what sticks, where reactions are not unique: ratios that take the least part of the bounds; the plain forces are
+ * `now`. */
+void imp_springs_centre(imp_springs *s);
 
 /* ---- springs_series.c ---- */
 

@@ -312,15 +312,16 @@ static void step_order(imp_springs *s, const double *factor, int k)
     }
 }
 
-/* The largest of the velocities' terms of order k. */
+/* The largest of the velocities' terms of order k; NaN where one is. */
 static double last_term(const imp_springs *s, int k)
 {
     double size = 0;
     for (int i = 0; i < s->count; i++) {
         const imp_spring *c = &s->springs[i];
-        size = fmax(size, fabs(c->velocity[0][k]));
-        if (c->normal == IMP_SPRING_OPEN || c->slip < IMP_SPRING_SLIDES) continue;
-        size = fmax(size, fmax(fabs(c->velocity[1][k]), fabs(c->velocity[2][k])));
+        const bool slips = c->normal != IMP_SPRING_OPEN && c->slip >= IMP_SPRING_SLIDES;
+        for (int j = 0; j < (slips ? 3 : 1); j++)
+            if (!(fabs(c->velocity[j][k]) <= size)) size = fabs(c->velocity[j][k]);
+        if (isnan(size)) return NAN;
     }
     return size;
 }
@@ -339,12 +340,19 @@ static double reach_of_powers(const imp_springs *s)
     return reach;
 }
 
+/* Of W's entries each order's products; of each contact a dozen sums of products over the orders. */
+static double work_of_step(const imp_springs *s)
+{
+    return IMP_SPRINGS_ORDER * (s->row_start[3 * s->count] + 6.0 * IMP_SPRINGS_ORDER * s->count);
+}
+
 double imp_springs_expand(imp_springs *s)
 {
     choose_lead(s);
     begin(s);
     const double *factor = find_factor(s);
     for (int k = 0; k < IMP_SPRINGS_ORDER; k++) step_order(s, factor, k);
+    s->work += work_of_step(s);
     double h = reach_of_powers(s);
     for (int k = IMP_SPRINGS_ORDER - LAST + 1; k <= IMP_SPRINGS_ORDER; k++) {
         const double size = last_term(s, k);

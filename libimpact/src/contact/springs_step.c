@@ -41,9 +41,9 @@ static void shifted(const double *terms, double sign, double shift, double *f)
 }
 
 /* mu^2 lambda^2 - |f_t|^2, times g^2; rounding at its beginning is none of its falling. */
-static void find_margin(const imp_spring *c, double *f)
+static void find_margin(const imp_springs *s, const imp_spring *c, double *f)
 {
-    const double square = c->friction * c->friction;
+    const double friction = c->friction * (s->deficient ? 1 + IMP_SPRINGS_OVER : 1), square = friction * friction;
     for (int k = 0; k <= IMP_SPRINGS_ORDER; k++) {
         f[k] = 0;
         if (k == IMP_SPRINGS_ORDER) break;
@@ -85,7 +85,7 @@ static void see_slip(const imp_springs *s, int i, first_event *first)
     imp_terms f;
     if (c->normal == IMP_SPRING_OPEN) return;
     if (c->slip == IMP_SPRING_STICKS) {
-        find_margin(c, f);
+        find_margin(s, c, f);
         see(first, EVENT_GIVE, i, f);
     } else if (c->slip == IMP_SPRING_STRAIGHT) {
         for (int k = 0; k <= IMP_SPRINGS_ORDER; k++)
@@ -170,6 +170,14 @@ static double terms_of_velocity(const imp_springs *s, int contact)
     return most;
 }
 
+/* What the slips that are held have drifted to, by rounding of all steps so far. */
+static double drift_of_held(const imp_springs *s)
+{
+    double most = 0;
+    for (int i = 0; i < s->stick_count; i++) most = fmax(most, fabs(s->springs[s->stick[i] / 3].u[s->stick[i] % 3]));
+    return most;
+}
+
 void imp_springs_find_velocities(imp_springs *s)
 {
     for (int i = 0; i < s->count; i++)
@@ -178,6 +186,8 @@ void imp_springs_find_velocities(imp_springs *s)
         for (int j = 0; j < 3; j++) s->springs[i].u[j] = s->u0[3 * i + j] + imp_springs_row(s, 3 * i + j);
         s->springs[i].none = IMP_SPRINGS_STILL * fmax(1, terms_of_velocity(s, i));
     }
+    const double drift = drift_of_held(s);
+    for (int i = 0; i < s->count; i++) s->springs[i].none = fmax(s->springs[i].none, 2 * drift);
 }
 
 static void move_on(imp_springs *s, double t)
@@ -211,7 +221,7 @@ static bool give_way(imp_springs *s, imp_spring *c, double t)
     const double x = poly(c->push[1], IMP_SPRINGS_ORDER - 1, t), y = poly(c->push[2], IMP_SPRINGS_ORDER - 1, t),
                  size = hypot(x, y);
     if (size < (1 - IMP_SPRINGS_HELD) * c->friction * poly(c->push[0], IMP_SPRINGS_ORDER - 1, t)) return true;
-    if (s->deficient && t > IMP_SPRINGS_ONWARD) {
+    if (s->deficient) {
         s->stopped = true;
         return true;
     }

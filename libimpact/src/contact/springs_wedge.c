@@ -21,11 +21,6 @@ typedef struct wedge {
     double most;   /* s . W s */
 } wedge;
 
-static double entry_of(const imp_springs *s, int i, int j)
-{
-    return s->w[(size_t)i * 3 * (size_t)s->count + (size_t)j];
-}
-
 static bool was_pressed(const imp_spring *c) { return c->p[0] > 0 || c->normal != IMP_SPRING_OPEN; }
 
 /* The extreme pressure at contact c against w; m_c. */
@@ -43,7 +38,7 @@ static void go_towards(wedge *g, int c, const double pressure[3], double along)
     const int width = 3 * g->s->count;
     for (int i = 0; i < width; i++) {
         double sum = 0;
-        for (int j = 0; j < 3; j++) sum += entry_of(g->s, i, 3 * c + j) * pressure[j];
+        for (int j = 0; j < 3; j++) sum += imp_springs_entry(g->s, i, 3 * c + j) * pressure[j];
         g->r[i] *= 1 - along;
         g->w[i] += along * (sum - g->w[i]);
     }
@@ -65,7 +60,7 @@ static bool step_on(wedge *g, double *square)
     if (margin > 0) return false;
     (void)find_extreme(g, least, pressure);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) own += pressure[i] * entry_of(g->s, 3 * least + i, 3 * least + j) * pressure[j];
+        for (int j = 0; j < 3; j++) own += pressure[i] * imp_springs_entry(g->s, 3 * least + i, 3 * least + j) * pressure[j];
     g->most = fmax(g->most, own);
     /* |r + a (s - r)|^2 in W is least at */
     const double length = *square - 2 * margin + own;
