@@ -237,6 +237,8 @@
 #define IMP_SPRINGS_JUST 1e-3
 /* Velocities that are none: 4 eps of the terms of u = u0 + W p, at least 1, which that leaves of a stop. */
 #define IMP_SPRINGS_STILL 0x1p-50
+/* Of that: slip that began together with others slides without them. */
+#define IMP_SPRINGS_TOLD 64
 /* Of the depth of its turn: a spring is loaded on once it is deeper by more than rounding. */
 #define IMP_SPRINGS_PAST (1 + 0x1p-50)
 /* Slip slower than this may go straight to its stop: what remains takes so little time that accelerations change over
@@ -277,8 +279,8 @@
 #define IMP_SPRINGS_LONG 4000
 /* Steps that look for a motion out of a wedge: one of a hundredth of the contacts' own mobility is found. */
 #define IMP_WEDGE_STEPS 20000
-/* Steps and events of one group: a hundred times what the longest random encounters with ratios of 1e4 take. */
-#define IMP_SPRINGS_STEPS 200000
+/* Steps and events of one group: forty times what the longest random encounters with ratios of 1e4 take that end. */
+#define IMP_SPRINGS_STEPS 100000
 /* Multiplications of one group, some ten seconds: a hundred contacts with friction take a hundredth. */
 #define IMP_SPRINGS_WORK 1e10
 

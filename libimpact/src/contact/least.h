@@ -16,8 +16,8 @@ int imp_least_inverse(const double *w, int width, const int *which, int n, doubl
 int imp_least_null(const double *w, int width, const int *which, int n, const double *inverse, double *scratch,
                    double *basis);
 
-/* Solves A x = b in place of b, A of order m symmetric with no eigenvalue under zero, its lower half given and lost; what
- * has no pivot stays 0. */
+/* Solves A x = b in place of b, A of order m symmetric with no eigenvalue under zero, its lower half given and lost;
+ * what has no pivot stays 0. */
 void imp_least_solve(double *a, int m, double *b);
 
 #endif

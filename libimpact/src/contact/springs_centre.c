@@ -7,7 +7,8 @@
  *     T t - sum log(t^2 - |g_c|^2)        T from 1/t up, by Newton's steps
  *
  * go to it, at most 2n/T over it (Nesterov & Nemirovskii 1994). What changes from then on is shared so that its |g| is
- * least: a contact that is about to open, or has just closed, would be over its bound at once if it got like the others.
+ * least: a contact that is about to open, or has just closed, would be over its bound at once if it got like the
+ * others.
  */
 #include "contact/springs.h"
 
@@ -105,7 +106,8 @@ static void find_newton(centre *k, double big)
     for (int c = 0; c < k->contacts; c++) {
         const double x = k->g[2 * c], y = k->g[2 * c + 1], d = k->t * k->t - square_of(k->g, c);
         for (int j = 0; j < m; j++) {
-            const double gx = k->basis[k->n * (2 * c) + j], gy = k->basis[k->n * (2 * c + 1) + j], turn = x * gx + y * gy;
+            const double gx = k->basis[k->n * (2 * c) + j], gy = k->basis[k->n * (2 * c + 1) + j],
+                         turn = x * gx + y * gy;
             k->gradient[j] -= 2 * turn / d;
             k->hessian[m * order + j] -= 4 * k->t * turn / (d * d);
             for (int l = 0; l <= j; l++) {

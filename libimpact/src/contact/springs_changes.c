@@ -85,8 +85,23 @@ static bool settle_normal(imp_springs *s, int contact, bool pressed)
     return true;
 }
 
+/* How fast forces change: springs swing, or are let go. */
+static double find_pace(const imp_springs *s)
+{
+    double pace = 0, most = 0, rate = 0;
+    for (int i = 0; i < s->count; i++) {
+        const imp_spring *c = &s->springs[i];
+        if (!imp_springs_presses(c)) continue;
+        const double force = c->kappa * pow(c->x, s->exponent), stiffness = s->exponent * force / c->x;
+        pace = fmax(pace, sqrt(stiffness * imp_springs_entry(s, 3 * i, 3 * i)));
+        rate = fmax(rate, stiffness * fabs(c->u[0]));
+        most = fmax(most, force);
+    }
+    return fmax(pace, rate / most);
+}
+
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
- * What it still turns by is under rounding. */
+ * What it still turns by in the time speed/|along| that is left, and by what forces change in it, is under rounding. */
 static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
 {
     if (c->normal == IMP_SPRING_OPEN || c->slip != IMP_SPRING_SLIDES) return false;
@@ -99,7 +114,7 @@ static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
     const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
     const double e[2] = {c->u[1] / speed, c->u[2] / speed};
     const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
-    if (along < 0 && speed * across <= -c->none * along) {
+    if (along < 0 && speed * (across + find_pace(s) * speed) <= -c->none * along) {
         c->slip = IMP_SPRING_STRAIGHT;
         c->along[0] = e[0], c->along[1] = e[1];
     }

@@ -2,13 +2,13 @@
  *
  * What sticks and what slips of the contacts that press and are still.
  *
- * The least |sum G^T f| in M^-1 over the discs |f_c| <= mu lambda_c, lambda known, is a cone problem: each normal row is
- * set apart, u_n = d (r_n - lambda), so that r_n = lambda; then u_t = 0 within the disc, or f against u_t on its rim. It
- * is convex: u_t' is unique.
+ * The least |sum G^T f| in M^-1 over the discs |f_c| <= mu lambda_c, lambda known, is a cone problem: each normal row
+ * is set apart, u_n = d (r_n - lambda), so that r_n = lambda; then u_t = 0 within the disc, or f against u_t on its
+ * rim. It is convex: u_t' is unique.
  *
  * Where u_t' = 0 leaves f free, friction holds as long as some f does (springs_centre.c), up to 1 + IMP_SPRINGS_OVER of
- * the bounds: slip that sets in by and by, from no acceleration, is begun that little later, when directions can be told
- * by its accelerations. Where f is unique it begins against f at once.
+ * the bounds: slip that sets in by and by, from no acceleration, is begun that little later, when directions can be
+ * told by its accelerations. Where f is unique it begins against f at once.
  */
 #include "contact/springs.h"
 
@@ -98,7 +98,8 @@ static imp_cone_problem make_discs(imp_springs *s, const int *which, int n, doub
             q[row + j] = imp_springs_row(s, 3 * which[a] + (int)j);
             for (int b = 0; b < n; b++)
                 for (size_t k = 1; k < 3; k++)
-                    w[(row + j) * width + 3 * (size_t)b + k] = imp_springs_entry(s, 3 * which[a] + (int)j, 3 * which[b] + (int)k);
+                    w[(row + j) * width + 3 * (size_t)b + k] =
+                        imp_springs_entry(s, 3 * which[a] + (int)j, 3 * which[b] + (int)k);
         }
     }
     return (imp_cone_problem){.count = n, .w = w, .q = q, .friction = friction};

@@ -93,7 +93,8 @@ void imp_springs_forces(imp_springs *s)
 static void find_across(imp_springs *s, int c, const double e[2], double *row)
 {
     const int n = s->stick_count, width = 3 * s->count;
-    for (int j = 0; j < width; j++) row[j] = e[0] * imp_springs_entry(s, 3 * c + 2, j) - e[1] * imp_springs_entry(s, 3 * c + 1, j);
+    for (int j = 0; j < width; j++)
+        row[j] = e[0] * imp_springs_entry(s, 3 * c + 2, j) - e[1] * imp_springs_entry(s, 3 * c + 1, j);
     for (int a = 0; a < n; a++) {
         s->scratch[a] = 0;
         for (int b = 0; b < n; b++) s->scratch[a] += s->inverse[a * n + b] * row[s->stick[b]];
@@ -109,7 +110,8 @@ static bool is_spent(const imp_springs *s, int c)
     const imp_spring *own = &s->springs[c];
     if (!(own->u[0] > 0)) return false;
     const double left = own->friction * own->kappa * pow(own->x, s->exponent) * own->x / own->u[0];
-    return left * fmax(imp_springs_entry(s, 3 * c + 1, 3 * c + 1), imp_springs_entry(s, 3 * c + 2, 3 * c + 2)) <= IMP_SPRINGS_SPENT;
+    return left * fmax(imp_springs_entry(s, 3 * c + 1, 3 * c + 1), imp_springs_entry(s, 3 * c + 2, 3 * c + 2)) <=
+           IMP_SPRINGS_SPENT;
 }
 
 /* Whether nothing that presses turns the slip of contact c. */

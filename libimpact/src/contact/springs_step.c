@@ -190,6 +190,25 @@ void imp_springs_find_velocities(imp_springs *s)
     for (int i = 0; i < s->count; i++) s->springs[i].none = fmax(s->springs[i].none, 2 * drift);
 }
 
+/* What has begun to slip slides once its velocity is more than rounding; where slips have begun together, as those of
+ * one body do, once all are, or it is much more: beside one at rest those would go by in steps of their own speeds. */
+static void go_sliding(imp_springs *s)
+{
+    bool all = true;
+    for (int i = 0; i < s->count; i++) {
+        const imp_spring *c = &s->springs[i];
+        if (imp_springs_presses(c) && c->slip == IMP_SPRING_BEGINS) all = all && hypot(c->u[1], c->u[2]) > c->none;
+    }
+    for (int i = 0; i < s->count; i++) {
+        imp_spring *c = &s->springs[i];
+        const double speed = hypot(c->u[1], c->u[2]);
+        if (!imp_springs_presses(c) || c->slip < IMP_SPRING_SLIDES) continue;
+        if (speed <= c->none || (c->slip == IMP_SPRING_BEGINS && !all && speed <= IMP_SPRINGS_TOLD * c->none)) continue;
+        c->still = false;
+        if (c->slip == IMP_SPRING_BEGINS) c->slip = IMP_SPRING_SLIDES;
+    }
+}
+
 static void move_on(imp_springs *s, double t)
 {
     for (int i = 0; i < s->count; i++) {
@@ -202,14 +221,9 @@ static void move_on(imp_springs *s, double t)
         book_friction(c, t);
     }
     imp_springs_find_velocities(s);
-    for (int i = 0; i < s->count; i++) {
-        imp_spring *c = &s->springs[i];
-        if (c->normal == IMP_SPRING_OPEN) continue;
-        book_spring(s, c, t, c->u[0]);
-        if (c->slip < IMP_SPRING_SLIDES || hypot(c->u[1], c->u[2]) <= c->none) continue;
-        c->still = false;
-        if (c->slip == IMP_SPRING_BEGINS) c->slip = IMP_SPRING_SLIDES;
-    }
+    for (int i = 0; i < s->count; i++)
+        if (s->springs[i].normal != IMP_SPRING_OPEN) book_spring(s, &s->springs[i], t, s->springs[i].u[0]);
+    go_sliding(s);
 }
 
 /* ---- what happens there ---- */

@@ -60,7 +60,8 @@ static bool step_on(wedge *g, double *square)
     if (margin > 0) return false;
     (void)find_extreme(g, least, pressure);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) own += pressure[i] * imp_springs_entry(g->s, 3 * least + i, 3 * least + j) * pressure[j];
+        for (int j = 0; j < 3; j++)
+            own += pressure[i] * imp_springs_entry(g->s, 3 * least + i, 3 * least + j) * pressure[j];
     g->most = fmax(g->most, own);
     /* |r + a (s - r)|^2 in W is least at */
     const double length = *square - 2 * margin + own;

@@ -5,7 +5,7 @@
  * with the change is work of forces in the account.
  */
 #include "base/floats.h"
-#include "scene/encounter.h"
+#include "scene/arrivals.h"
 #include "scene/gather.h"
 #include "scene/stepped.h"
 #include "contact/persist_still.h"

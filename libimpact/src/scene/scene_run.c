@@ -2,7 +2,7 @@
  *
  * Through the queue, from slot to slot.
  */
-#include "scene/encounter.h"
+#include "scene/arrivals.h"
 #include "scene/scene_keys.h"
 #include "world/world_gap.h"
 
@@ -183,7 +183,7 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end)
     scene->refused = false;
     if (!scene->begun) {
         imp_field_locate(&scene->world, scene->t, scene->states, true);
-        status = imp_scene_first_encounters(scene);
+        status = imp_scene_first_arrivals(scene);
     }
     scene->begun = true;
     begin_samples(scene);

@@ -202,6 +202,19 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
     return record_all(island, g, how.name, energy);
 }
 
+/* What the law has no answer for; the first is kept. */
+static void tell_unsettled(imp_island *island, const gathering *g, const imp_meeting *struck, impact_together_law by)
+{
+    impact_scene *scene = island->scene;
+    const imp_body *bodies = island->world.bodies;
+    if (scene->message[0]) return;
+    snprintf(scene->message, sizeof scene->message,
+             "%d contacts at t = %.17g, that of '%s' and '%s' among them: %s finds no answer to all together; they are "
+             "answered one after another",
+             g->count, island->t, bodies[struck->touch.body1].name, bodies[struck->touch.body2].name,
+             impact_together_law_name(by));
+}
+
 impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck, bool *answered)
 {
     const impact_scene_together law = island->scene->together;
@@ -213,6 +226,7 @@ impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck,
         const impact_together_law by = law == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
         status = answer(island, &g, (answering){by, impact_together_law_name(by), false});
         *answered = status >= 0;
+        if (status == IMPACT_EUNSETTLED) tell_unsettled(island, &g, struck, by);
         /* what the law has no answer for is answered one after another, as those that come later are */
         if (status == IMPACT_EUNSETTLED || status > 0) status = IMPACT_OK;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "scene/encounter.h"
+#include "scene/arrivals.h"
 #include "scene/following.h"
 #include "scene/gather.h"
 #include "scene/islands.h"
@@ -219,7 +219,7 @@ static bool begins_alone(impact_scene *scene, int body)
     return true;
 }
 
-impact_status imp_scene_first_encounters(impact_scene *scene)
+impact_status imp_scene_first_arrivals(impact_scene *scene)
 {
     impact_status status = IMPACT_OK;
     for (int i = 0; i < scene->world.body_count; i++) {

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * encounter: what happens where two bodies meet, or where an island's segment ends: all that touch are gathered,
+ * arrivals: what happens where two bodies meet, or where an island's segment ends: all that touch are gathered,
  * settled (scene_instant.c), and go their ways. Internal.
  */
-#ifndef IMP_ENCOUNTER_H
-#define IMP_ENCOUNTER_H
+#ifndef IMP_ARRIVALS_H
+#define IMP_ARRIVALS_H
 
 #include "scene/scene_internal.h"
 
 /* All that touch at the start. */
-impact_status imp_scene_first_encounters(impact_scene *scene);
+impact_status imp_scene_first_arrivals(impact_scene *scene);
 /* The pair touches at t. */
 impact_status imp_scene_meet(impact_scene *scene, int near, double t);
 /* An island that was gathered is settled, or goes by steps, and its parts go their ways. */
