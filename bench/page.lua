@@ -112,7 +112,7 @@ local function draw(part, lines)
   local by, order = {}, {}
   for i = 2, #lines do
     local cells = cells_of(lines[i])
-    local x, y, who = tonumber(cells[time]), tonumber(cells[error]), cells[part.curve]
+    local x, y, who = tonumber(cells[time]), tonumber(cells[error]), part.curve and cells[part.curve] or part.program
     if x and y and x > 0 and y > 0 then
       if not by[who] then
         by[who] = { {}, {} }
@@ -122,7 +122,7 @@ local function draw(part, lines)
       table.insert(by[who][2], y)
     end
   end
-  local panel = { title = part.title, xlabel = "time, " .. part.time, ylabel = "error, " .. part.error, xlog = true, ylog = true, legend = "top right" }
+  local panel = { title = part.title, xlabel = part.axes and part.axes[1] or "time, " .. part.time, ylabel = part.axes and part.axes[2] or "error, " .. part.error, xlog = true, ylog = true, legend = "top right" }
   for i, who in ipairs(order) do
     panel[#panel + 1] = plot.points { by[who][1], by[who][2], color = palette[(i - 1) % #palette + 1], label = who,
       shape = i > #palette and "square" or "dot" }

@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --- The parts of the page that `./run report` makes (bench/page.lua): the program, which columns name its rows, its time and error
---- columns for the picture, what it says in a sentence. `curve`: how many of the naming columns make a line. Programs whose columns
---- are no error against time have a table alone.
+--- columns for the picture, what it says in a sentence. `curve`: which of the naming columns says whose point it is. Where time is not
+--- against an error but against a size, `error` is the column of times and `time` that of the size, named in `axes`.
 return {
   { name = "rotations", program = "bench_quat", names = 3, curve = 3, time = "ns", error = "error_u", title = "Rotations and interpolation",
     says = "Products, rotations, slerp and conversions beside Eigen, GLM and cglm: ns a call against the error in units of roundoff." },
@@ -17,12 +17,12 @@ return {
   { name = "engines", program = "bench_engines", names = 3, curve = 2, time = "us", error = "error", title = "Scenes beside engines",
     says = "Impacts, bounces and tumbling beside ODE and Bullet at their steps: they solve another law of impact, so that smaller steps do not help.",
     slow = true },
-  { name = "cones", program = "bench_cones", names = 2, title = "Contacts held at once",
+  { name = "cones", program = "bench_cones", names = 2, time = "contacts", error = "cold_us", axes = { "contacts", "µs without a start" }, title = "Contacts held at once",
     says = "Coulomb's problem of many contacts: iterations and residuals.", slow = true },
-  { name = "together", program = "bench_together", names = 4, title = "Encounters of many bodies",
+  { name = "together", program = "bench_together", names = 4, curve = 3, time = "us", error = "error", title = "Encounters of many bodies",
     says = "Impacts at one instant by each law beside Bullet.", slow = true },
-  { name = "crowd", program = "bench_crowd", names = 3, title = "Crowds", says = "Time a body against the number of bodies, beside ODE and Bullet.",
+  { name = "crowd", program = "bench_crowd", names = 3, curve = 2, time = "balls", error = "us_per_event", axes = { "balls", "µs an event" }, title = "Crowds", says = "Time a body against the number of bodies, beside ODE and Bullet.",
     slow = true },
-  { name = "extreme", program = "report_extreme", names = 2, title = "Stiff and extreme cases",
+  { name = "extreme", program = "report_extreme", names = 2, curve = 1, time = "ms", error = "error", title = "Stiff and extreme cases",
     says = "How the library holds at the ends of its ranges: error or residual of each row, with its steps." , slow = true },
 }

@@ -427,7 +427,7 @@ local function compare(key, now)
   if was.kind == "bound" and now.value ~= was.value then pages.complain("%s is %g, docs/values.csv has %g", key, now.value, was.value)
   elseif was.kind == "count" and math.abs(now.value - was.value) > math.max(1, 0.01 * was.value) then
     pages.complain("%s is %g, docs/values.csv has %g", key, now.value, was.value)
-  elseif was.kind == "figure" and now.value > 2 * was.value then
+  elseif was.kind == "figure" and math.abs(now.value) > 2 * math.abs(was.value) then
     pages.complain("%s is %g, docs/values.csv has %g", key, now.value, was.value)
   end
 end

@@ -146,7 +146,7 @@ class Ball:
                 left, first, what = goal - self.t, goal - self.t, None
                 for name, f in self.events(*laws):
                     start, end = mpf(0), left
-                    if name == "floor" and self.w > 0:  # it left just now: it is back within three times its rise
+                    if name == "floor" and self.w > 0 and self.z == self.p["r"]:  # it left just now: it is back within three times its rise
                         start, end = min(self.w / self.p["g"], left), min(3 * self.w / self.p["g"], left)
                     if name == "edge" or (name == "wall" and self.u <= 0):
                         start = min(mpf(10) ** -12, left)
@@ -191,6 +191,14 @@ def bowling_ball():
     return "ball", Ball(p).run(times_of(4))
 
 
+def damped_ball():
+    """Thrown along the floor: bounces until they die out, slides and rolls, through air that brakes motion and spin."""
+    p = dict(x=mpf(0), z=mpf(1), r=mpf(0.1), m=mpf(1), g=mpf(9.81), F=mpf(0), origin=mpf(0), reach=mpf(1), linear=mpf(0.3),
+             angular=mpf(0.5), e=mpf(0.6), mu=mpf(0.2), wall=False, u=mpf(4))
+    with mp.workdps(80):  # the last bounces are 1e-53 m high, beside a radius of .1 m
+        return "ball", Ball(p).run(times_of(4))
+
+
 def orbit():
     """Two of half a kilogram about each other, G = 1: e = 0.3, semi-axis 1, period 2 pi; the planet's state."""
     e, rows = mpf(0.3), []
@@ -224,5 +232,5 @@ def write(folder, name, answer):
 
 
 if __name__ == "__main__":
-    for scene in (sphere_wall, bowling_ball, orbit):
+    for scene in (sphere_wall, bowling_ball, damped_ball, orbit):
         write(sys.argv[1], scene.__name__, scene())

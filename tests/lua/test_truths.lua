@@ -17,6 +17,17 @@ local function orbit()
   }
 end
 
+local function damped_ball()
+  return impact.scene {
+    name = "damped_ball", duration = 4, gravity = { 0, 0, -9.81 },
+    bodies = {
+      { name = "floor", shape = impact.plane(), friction = 1, restitution = 1 },
+      { name = "ball", shape = impact.sphere(.1), mass = 1, position = { 0, 0, 1 }, velocity = { 4, 0, 0 }, friction = .2, restitution = .6,
+        linear_damping = .3, angular_damping = .5 },
+    },
+  }
+end
+
 local function example(name)
   return function() return dofile(examples .. "/" .. name .. ".lua") end
 end
@@ -24,6 +35,7 @@ end
 --- The default's error, and what its certainty is at most over that.
 local truths = {
   { "sphere_wall", example "sphere_wall", 1e-12 }, { "bowling_ball", example "bowling_ball", 1e-11 }, { "orbit", orbit, 1e-11 },
+  { "damped_ball", damped_ball, 1e-11 },
 }
 for _, truth in ipairs(truths) do
   local name, make, allowed = table.unpack(truth)
