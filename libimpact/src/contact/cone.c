@@ -195,7 +195,7 @@ static double contact_residual(const imp_cone_problem *problem, int c, const dou
             own[k] = r[k] * units[k];
             wanted[k] = units[k] > 0 ? own[k] - s * u[k] / units[k] : 0;
         }
-        imp_cone_project_turning(friction, *lengths, wanted, on, NULL);
+        imp_cone_project_turning(friction, *lengths, 1, wanted, on, NULL);
     } else
         imp_cone_project(friction, wanted, on, NULL);
     for (int k = 0; k < imp_cone_width(problem); k++) off += (own[k] - on[k]) * (own[k] - on[k]);

@@ -110,8 +110,9 @@ void imp_cone_project(double friction, const double *v, double *to, double slope
  * the points 1/tau, and |s| <= r_n; of a part that is left out 0. */
 void imp_cone_units(double friction, imp_cone_lengths lengths, double units[6]);
 
-/* P_K v of that K, six numbers in those units, and, unless slope is NULL, its derivative. */
-void imp_cone_project_turning(double friction, imp_cone_lengths lengths, const double *v, double *to,
+/* P_K v of that K, six numbers in those units, and, unless slope is NULL, its derivative. rolling: 1; or, where the
+ * units of b are so many times as large, |b| <= rolling r_n. */
+void imp_cone_project_turning(double friction, imp_cone_lengths lengths, double rolling, const double *v, double *to,
                               double slope[6][6]);
 
 /* û_n - u_n, u in the caller's units, width 3 (lengths NULL) or 6. */

@@ -9,7 +9,8 @@
  *     r' = P_K(r - rho (u + s))       x minimises  |x|²/2 + sum |P_K(r - rho (q + s + G x))|²/(2 rho)
  *
  * (the method of multipliers: Rockafellar 1976; Hestenes, Powell 1969), x by semismooth Newton; s follows from step to
- * step (Cadoux 2009). Reactions that are not unique are no trouble, as x is.
+ * step (Cadoux 2009). Reactions that are not unique are no trouble, as x is. Moments are forces in the units of
+ * imp_cone_units, their rows of G divided by them.
  */
 #ifndef IMP_CONE_BODIES_H
 #define IMP_CONE_BODIES_H
@@ -20,20 +21,21 @@
 
 typedef struct imp_cone_bodies {
     imp_arena *arena;
-    int contacts, bodies; /* there is room for */
+    int contacts, bodies, width; /* there is room for; numbers a contact */
     double *block;
+    imp_cone_row *turns;
     int (*touching)[2];
     imp_skyline sky;
 } imp_cone_bodies;
 
-/* The problem of these contacts with the velocities q (3 count) without reactions; number: of each body of the world
- * its own from 0 to bodies - 1, or -1 where it does not move. last_r: reactions to begin with, or NULL. Into r and u.
+/* The problem of these contacts (of its numbers W alone is not asked); turns: of imp_cone_find_turns where it has
+ * lengths, else NULL; number: of each body of the world
+ * its own from 0 to bodies - 1, or -1 where it does not move. Into r and u.
  * SOLVED: the proof's residual, as of imp_cone_outcome, is at most IMP_BODIES_ACCEPTED; INEXACT, UNSETTLED: r and u are
  * the best that was found, s having crept where much friction couples much sliding. BAD: a number is none.
  * NO_ROOM: memory is refused. */
 imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_cone_contact *contacts,
-                                       const imp_cone_row *rows, int count, const int *number, int bodies,
-                                       const double *q, const double *friction, const double *last_r, double *r,
-                                       double *u);
+                                       const imp_cone_row *rows, const imp_cone_row *turns, const int *number,
+                                       int bodies, const imp_cone_problem *problem, double *r, double *u);
 
 #endif

@@ -104,12 +104,12 @@ static void height_rate(const cone_part part[2], const bool held[2], double rate
             rate[k] = part[i].slope * part[i].dir[k - part[i].from] / square;
 }
 
-void imp_cone_project_turning(double friction, imp_cone_lengths lengths, const double *v, double *to,
+void imp_cone_project_turning(double friction, imp_cone_lengths lengths, double rolling, const double *v, double *to,
                               double slope[6][6])
 {
     const bool rubs = friction > 0;
     const cone_part part[2] = {part_of(v, rubs ? 1 : 3, lengths.torsional > 0 ? 4 : 3, rubs ? friction : 1),
-                               part_of(v, 4, lengths.rolling > 0 ? 6 : 4, 1)};
+                               part_of(v, 4, lengths.rolling > 0 ? 6 : 4, rolling)};
     bool held[2];
     double rate[6];
     const double n = height_of(v[0], part, held);

@@ -88,7 +88,7 @@ static void project_at(const rest_system *s, int c, const double *v, double *f, 
 {
     double small[3][3];
     if (s->width > 3) {
-        imp_cone_project_turning(s->friction[c], s->lengths[c], v, f, slope);
+        imp_cone_project_turning(s->friction[c], s->lengths[c], 1, v, f, slope);
         return;
     }
     imp_cone_project(s->friction[c], v, f, slope ? small : NULL);

@@ -201,20 +201,25 @@ static int number_bodies(imp_pile *pile, const imp_world *world, int count)
     return bodies;
 }
 
+/* W is there for by_contacts alone. */
+static imp_cone_problem problem_of(const imp_pile *pile, int count)
+{
+    return (imp_cone_problem){.count = count,
+                              .w = pile->w,
+                              .q = pile->q,
+                              .friction = pile->friction,
+                              .lengths = pile->width > 3 ? pile->lengths : NULL,
+                              .last_r = pile->last_r,
+                              .last_u = pile->last_u};
+}
+
 static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int count)
 {
-    const bool turning = pile->width > 3;
-    if (turning)
+    const imp_cone_problem problem = problem_of(pile, count);
+    if (pile->width > 3)
         imp_cone_assemble_turning(world, pile->middle, pile->contacts, count, pile->rows, pile->turns, pile->w);
     else
         imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
-    const imp_cone_problem problem = {.count = count,
-                                      .w = pile->w,
-                                      .q = pile->q,
-                                      .friction = pile->friction,
-                                      .lengths = turning ? pile->lengths : NULL,
-                                      .last_r = pile->last_r,
-                                      .last_u = pile->last_u};
     return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
 }
 
@@ -234,12 +239,13 @@ static double fastest_of(const imp_pile *pile, int count)
  * step's error in the other again, if they are not too many for that. */
 static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count, double h)
 {
-    if (count <= IMP_PILE_FEW || pile->width > 3) return by_contacts(pile, world, count);
+    if (count <= IMP_PILE_FEW) return by_contacts(pile, world, count);
     imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
+    if (pile->width > 3) imp_cone_find_turns(world, pile->middle, pile->contacts, count, pile->turns);
     const int bodies = number_bodies(pile, world, count);
-    const imp_cone_outcome quick =
-        imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, count, pile->number, bodies, pile->q,
-                              pile->friction, pile->last_r, pile->r, pile->u);
+    const imp_cone_problem problem = problem_of(pile, count);
+    const imp_cone_outcome quick = imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, pile->turns,
+                                                         pile->number, bodies, &problem, pile->r, pile->u);
     const bool counts = !(quick.residual <= IMP_PILE_USABLE &&
                           h * quick.residual * fastest_of(pile, count) <= 0.1 * IMP_PILE_ERROR * smallest(world));
     const bool answered = quick.status != IMP_CONE_BAD && quick.status != IMP_CONE_NO_ROOM;

@@ -63,12 +63,13 @@ static void the_nearest_point_is_found(void **state)
     (void)state;
     random_stream random = {21};
     for (int k = 0; k < 200000; k++) {
-        const double friction = random_log(&random, 1e-4, 1e4), slope[2] = {friction, 1};
+        const double friction = random_log(&random, 1e-4, 1e4), rolling = k % 2 ? random_log(&random, 1e-4, 1e4) : 1;
+        const double slope[2] = {friction, rolling};
         double v[6], to[6];
         long double wanted[6], size = 0;
         random_point(&random, v);
         for (int i = 0; i < 6; i++) size = fmaxl(size, fabsl((long double)v[i]));
-        imp_cone_project_turning(friction, (imp_cone_lengths){1, 1}, v, to, NULL);
+        imp_cone_project_turning(friction, (imp_cone_lengths){1, 1}, rolling, v, to, NULL);
         project_by_bisection(slope, v, wanted);
         for (int i = 0; i < 6; i++) assert_near(to[i], (double)wanted[i], 1e-15 * (double)size);
     }
@@ -86,13 +87,13 @@ static void its_slope_is_its_derivative(void **state)
         const imp_cone_lengths lengths = {k % 5 ? 1 : 0, k % 7 ? 1 : 0};
         double v[6], d[6], to[6], slope[6][6], sides[2][6], at[2][6][6], off[2] = {0, 0};
         for (int i = 0; i < 6; i++) v[i] = cone_between(&random, -1, 1), d[i] = cone_between(&random, -1, 1);
-        imp_cone_project_turning(friction, lengths, v, to, slope);
+        imp_cone_project_turning(friction, lengths, 1, v, to, slope);
         for (int half = 0; half < 2; half++) {
             const double step = half ? 0.5 * h : h;
             for (int s = 0; s < 2; s++) {
                 double moved[6];
                 for (int i = 0; i < 6; i++) moved[i] = v[i] + (s ? -step : step) * d[i];
-                imp_cone_project_turning(friction, lengths, moved, sides[s], at[s]);
+                imp_cone_project_turning(friction, lengths, 1, moved, sides[s], at[s]);
             }
             for (int i = 0; i < 6; i++) {
                 double along = 0;
@@ -121,8 +122,8 @@ static void it_parts_any_point_in_two(void **state)
         const int from = friction > 0 ? 1 : 3, to = lengths.torsional > 0 ? 4 : 3;
         double v[6], on[6], again[6], rest[6], product = 0, size = 0, first = 0;
         random_point(&random, v);
-        imp_cone_project_turning(friction, lengths, v, on, NULL);
-        imp_cone_project_turning(friction, lengths, on, again, NULL);
+        imp_cone_project_turning(friction, lengths, 1, v, on, NULL);
+        imp_cone_project_turning(friction, lengths, 1, on, again, NULL);
         for (int i = 0; i < 6; i++) {
             const bool out = (i > 0 && i < from) || (i >= to && i < 4) || (i > 3 && !(lengths.rolling > 0));
             if (out) v[i] = 0;
