@@ -57,7 +57,7 @@ static void push_held(lua_State *L, const impact_scene *scene, const impact_held
     impact_body_def body1, body2;
     impact_scene_body_def(scene, held->body1, &body1);
     impact_scene_body_def(scene, held->body2, &body2);
-    lua_createtable(L, 0, 7);
+    lua_createtable(L, 0, 8);
     quat_lua_set_number(L, "t", held->t);
     quat_lua_set_string(L, "body1", body1.name);
     quat_lua_set_string(L, "body2", body2.name);
@@ -65,6 +65,7 @@ static void push_held(lua_State *L, const impact_scene *scene, const impact_held
     quat_lua_set_vec3(L, "point", held->point);
     quat_lua_set_vec3(L, "normal", held->normal);
     quat_lua_set_vec3(L, "force", held->force);
+    quat_lua_set_vec3(L, "moment", held->moment);
 }
 
 /* held(): the contacts that are held now. */

@@ -158,7 +158,7 @@ core.layer()
 ---@field run fun(self, options?: impact.options): string?, string?, string?  why it ended; or nil, message, "run"|"output"
 ---@field run_to fun(self, t: number, options?: impact.options): string?, string?, string?
 ---@field step fun(self, t_max?: number, options?: impact.options): table?, string?, string?, string?  the next event, and what run returns
----@field held fun(self): table[]  the contacts held now: t, body1, body2, mode, point, normal, force on body 1
+---@field held fun(self): table[]  the contacts held now: t, body1, body2, mode, point, normal, force and moment (of friction against turning) on body 1
 ---@field set fun(self, body: string, state: table)  position, orientation, velocity, omega; what is absent stays
 ---@field push fun(self, body: string, impulse: vec, point?: vec)  N s, at the centre
 ---@field save fun(self): string  all that decides how it goes on

@@ -131,6 +131,34 @@ do
   end
 end
 
+-- A ball whose rolling is not along its slip is stepped until it rolls, and then rolls out in closed form; steps alone agree.
+do
+  local function throw(piles)
+    return run({ floor(), ball { velocity = { 2, 1, 0 }, omega = { 3, 5, 0 }, friction = 0.4, rolling_friction = 2e-3 } }, 0, { piles = piles })
+  end
+  local exact, stepped = throw "auto", throw "steps"
+  check.truth(exact:usage().rolls > 0 and exact:usage().pile_steps < stepped:usage().pile_steps / 4)
+  for _, axis in ipairs { "x", "y" } do
+    check.close(exact:state("ball").position[axis], stepped:state("ball").position[axis], 1e-3)
+  end
+end
+
+-- What is held: rolling, the moment rho N against it and the force that slows the ball; at rest on a slope, what holds it.
+do
+  local rho, m = 5e-3, 2
+  local s = scene({ floor(), ball { mass = m, velocity = { 1, 0, 0 }, omega = { 0, 1 / R, 0 }, rolling_friction = rho } })
+  s:run_to(0.1)
+  local held = s:held()[1]
+  check.close(held.force.x, -5 / 7 * m * g * rho / R, 1e-14)
+  check.close(held.force.z, m * g, 1e-14)
+  check.close(held.moment.y, -rho * m * g, 1e-15)
+  local slope = math.atan(rho / R / 2)
+  local s = run({ floor(), ball { mass = m, rolling_friction = rho } }, slope)
+  local held = s:held()[1]
+  check.close(held.force.x, -m * g * math.sin(slope), 1e-12)
+  check.close(held.moment.y, -R * m * g * math.sin(slope), 1e-13)
+end
+
 -- Refused in words.
 for _, case in ipairs {
   { { rolling_friction = -1 }, "rolling_friction must be a number >= 0, got -1" },

@@ -78,6 +78,7 @@ typedef struct impact_held {
     qvec3 point;  /* world */
     qvec3 normal; /* from body 2 to body 1 */
     qvec3 force;  /* on body 1, N */
+    qvec3 moment; /* on body 1, N m: of torsional and rolling friction; of impact_scene_held, 0 in recorded rows */
 } impact_held;
 
 struct impact_energy;

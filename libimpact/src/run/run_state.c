@@ -183,13 +183,13 @@ impact_status impact_run_held(const impact_run *run, long number, impact_held *h
     double v[IMP_CONTACT_COLUMNS];
     if (number < 0 || number >= impact_run_held_count(run)) return IMPACT_EARGUMENT;
     imp_run_row(run, IMP_RUN_CONTACTS, number, v);
-    *held = (impact_held){v[0],
-                          (int)v[1],
-                          (int)v[2],
-                          mode_of(word_of(&run->modes, v[3])),
-                          vector_at(v + 4),
-                          vector_at(v + 7),
-                          vector_at(v + 10)};
+    *held = (impact_held){.t = v[0],
+                          .body1 = (int)v[1],
+                          .body2 = (int)v[2],
+                          .mode = mode_of(word_of(&run->modes, v[3])),
+                          .point = vector_at(v + 4),
+                          .normal = vector_at(v + 7),
+                          .force = vector_at(v + 10)};
     return IMPACT_OK;
 }
 

@@ -111,14 +111,16 @@ static impact_status roll(imp_island *island, const imp_segment *segment)
     impact_scene *scene = island->scene;
     int i = 0;
     while (island->world.bodies[i].is_static) i++;
-    const imp_touch *touch = &island->motion.persist.touches[0];
+    imp_touch *touch = &island->motion.persist.touches[0];
+    const imp_body *body = &island->world.bodies[i];
+    const bool rough = imp_is_rough(&island->world.pairs[touch->pair]);
+    if (rough) touch->force = qvec3_scale(qvec3_sub(segment->acceleration, island->world.gravity), body->mass);
     island->rolls = island->moves = true;
-    island->loses =
-        (touch->mode == IMP_SLIDE && touch->friction > 0) || imp_is_rough(&island->world.pairs[touch->pair]);
+    island->loses = (touch->mode == IMP_SLIDE && touch->friction > 0) || rough;
     island->begun_with = imp_island_energy(island);
     island->motion.stride.t = segment->t1;
     imp_motion_forget(&island->motion);
-    imp_account_set(&scene->account, island->world.bodies[i].index, island->loses ? 0 : island->begun_with);
+    imp_account_set(&scene->account, body->index, island->loses ? 0 : island->begun_with);
     scene->world.usage.rolls++;
     imp_queue_set(&scene->queue, imp_scene_island_slot(scene, island->number), segment->t1);
     return follow(island, i, segment);

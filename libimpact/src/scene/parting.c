@@ -3,6 +3,7 @@
 #include "contact/points.h"
 #include "scene/following.h"
 #include "scene/islands.h"
+#include "scene/rolling.h"
 #include "scene/scene_methods.h"
 #include "scene/scene_points.h"
 #include "scene/stepped.h"
@@ -50,16 +51,17 @@ static bool is_tied(const imp_island *island, const int *root, int component)
     return false;
 }
 
-/* Whether the component goes on by steps: bodies that move, or have faces, touch each other in it; by choice, any
- * touches. */
+/* Whether the component goes on by steps: bodies that move, or have faces, touch each other in it, or resist turning on
+ * a plane, until a ball but rolls there; by choice, any touches. One that has just begun its steps has had to. */
 static bool stays_stepped(const imp_island *island, const int *root, int component)
 {
     const imp_world *world = &island->world;
     const bool always = island->scene->piles == IMPACT_PILES_STEPS;
     for (int p = 0; island->stepped && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        const bool counts = pair->met && (always || !world->bodies[pair->body2].is_static ||
-                                          imp_pair_has_faces(world, pair) || imp_is_rough(pair));
+        const bool rough = imp_is_rough(pair) && (island->steps == 0 || !imp_island_rolls_out(island, pair));
+        const bool counts =
+            pair->met && (always || !world->bodies[pair->body2].is_static || imp_pair_has_faces(world, pair) || rough);
         if (counts && root[pair->body1] == component) return true;
     }
     return false;

@@ -8,7 +8,9 @@
 typedef struct ball_roll {
     const imp_body *ball, *plane;
     const imp_state *state, *ground;
-    const imp_touch *touch;
+    imp_mode mode;
+    bool onset;
+    qvec3 slip;
     qvec3 normal, down; /* down: g_t, m/s^2 */
     double press;       /* -g.n, m/s^2 */
     double friction, torsional, rolling;
@@ -22,39 +24,46 @@ typedef struct ball_motion {
     bool fades; /* the slip does then */
 } ball_motion;
 
-static bool find_roll(const imp_island *island, ball_roll *r)
+/* The pair's ball on its plane, with this normal; false where it is none, or has no constant loads. */
+static bool find_ball(const imp_island *island, const imp_pair *pair, qvec3 normal, ball_roll *r)
 {
     const imp_world *world = &island->world;
-    const imp_persist *persist = &island->motion.persist;
-    if (world->body_count != 2 || persist->count != 1 || world->field_count > 0 || world->driven) return false;
-    r->touch = &persist->touches[0];
-    r->ball = &world->bodies[r->touch->body1], r->plane = &world->bodies[r->touch->body2];
-    r->state = &island->states[r->touch->body1], r->ground = &island->states[r->touch->body2];
+    if (world->body_count != 2 || world->field_count > 0 || world->driven) return false;
+    r->ball = &world->bodies[pair->body1], r->plane = &world->bodies[pair->body2];
+    r->state = &island->states[pair->body1], r->ground = &island->states[pair->body2];
     if (!imp_is_ball(r->ball) || !r->ball->spherical || r->plane->shape.kind != IMPACT_PLANE) return false;
-    if (r->ball->linear_rate != 0 || r->ball->angular_rate != 0 || r->touch->still) return false;
-    r->normal = r->touch->normal;
+    if (r->ball->linear_rate != 0 || r->ball->angular_rate != 0) return false;
+    r->normal = normal;
     r->press = -qvec3_dot(world->gravity, r->normal);
     r->down = qvec3_axpy(r->press, r->normal, world->gravity);
     if (qvec3_norm(r->down) <= IMP_LEVEL * r->press) r->down = (qvec3){0, 0, 0};
-    const imp_pair *pair = &world->pairs[r->touch->pair];
     r->friction = pair->friction, r->torsional = pair->torsional, r->rolling = pair->rolling;
     r->slowest = island->scene->rest_speed;
     return r->press > 0;
 }
 
+static bool find_roll(const imp_island *island, ball_roll *r)
+{
+    const imp_persist *persist = &island->motion.persist;
+    if (persist->count != 1 || persist->touches[0].still) return false;
+    const imp_touch *touch = &persist->touches[0];
+    r->mode = touch->mode, r->onset = touch->onset, r->slip = touch->slip;
+    return find_ball(island, &island->world.pairs[touch->pair], touch->normal, r);
+}
+
 /* The line of the slip, or of what it begins along; false where it turns. */
 static bool find_line(const ball_roll *r, qvec3 *line)
 {
-    const double slip = qvec3_norm(r->touch->slip), pull = qvec3_norm(r->down);
-    const bool begins = r->touch->onset;
+    const double slip = qvec3_norm(r->slip), pull = qvec3_norm(r->down);
+    const bool begins = r->onset;
     if (begins || slip == 0) {
         *line = qvec3_scale(r->down, pull > 0 ? 1 / pull : 0);
         return pull > 0;
     }
-    *line = qvec3_scale(r->touch->slip, 1 / slip);
+    *line = qvec3_scale(r->slip, 1 / slip);
     const double speeds = qvec3_norm(r->state->v) + r->ball->radius * qvec3_norm(imp_omega(r->ball, r->state));
     const double roundings = IMP_LEVEL * (r->press * slip + pull * speeds);
-    return pull == 0 || qvec3_norm(qvec3_cross(r->down, r->touch->slip)) <= roundings;
+    return pull == 0 || qvec3_norm(qvec3_cross(r->down, r->slip)) <= roundings;
 }
 
 /* When the ball's place on a bounded plane leaves the bounds, s. */
@@ -102,7 +111,7 @@ static bool slide_freely(const ball_roll *r, ball_motion *motion)
     motion->a = qvec3_axpy(1 / m, f, r->down);
     motion->alpha = qvec3_scale(qvec3_cross(r->normal, f), -radius / J);
     const double rate = qvec3_dot(line, qvec3_axpy(1 / m + radius * radius / J, f, r->down));
-    const double slip = qvec3_dot(line, r->touch->slip);
+    const double slip = qvec3_dot(line, r->slip);
     motion->fades = rate < 0;
     motion->until = rate < 0 ? slip / -rate : INFINITY;
     return !(rate < 0 && !(slip > 0)); /* it would stick: not for here to say */
@@ -153,7 +162,7 @@ static bool slide_against(const ball_roll *r, double spin, ball_motion *motion)
     double turn;
     if ((spin != 0 && r->torsional > 0) || !find_line(r, &line)) return false;
     const qvec3 axis = qvec3_cross(r->normal, line);
-    const double slip = qvec3_dot(line, r->touch->slip), speeds = qvec3_norm(r->state->v) + radius * qvec3_norm(omega);
+    const double slip = qvec3_dot(line, r->slip), speeds = qvec3_norm(r->state->v) + radius * qvec3_norm(omega);
     if (!part_along(qvec3_scale(rolls, radius), axis, speeds, &turn)) return false;
     const bool turns = fabs(turn) > fmax(r->slowest, IMP_LEVEL * speeds);
     const double drive = radius * r->friction,
@@ -171,11 +180,11 @@ static bool slide_against(const ball_roll *r, double spin, ball_motion *motion)
 
 static bool find_motion(const ball_roll *r, ball_motion *motion)
 {
-    const bool rolls = r->touch->mode == IMP_ROLL;
+    const bool rolls = r->mode == IMP_ROLL;
     if (r->torsional == 0 && r->rolling == 0) {
         if (rolls) return *motion = roll_freely(r), true;
         *motion = (ball_motion){.a = r->down, .until = INFINITY};
-        return r->touch->friction > 0 ? slide_freely(r, motion) : true;
+        return r->friction > 0 ? slide_freely(r, motion) : true;
     }
     const qvec3 omega = imp_omega(r->ball, r->state);
     const double about = qvec3_dot(omega, r->normal), radius = r->ball->radius;
@@ -194,7 +203,7 @@ bool imp_island_rolls(const imp_island *island, imp_segment *segment, imp_end *e
     const imp_end_kind kind = motion.fades && time == motion.until ? IMP_END_STICK
                               : time == leaves                     ? IMP_END_BOUNDS
                                                                    : IMP_END_RENEWAL;
-    *end = (imp_end){isfinite(time) ? kind : IMP_END_TIME, r.touch->pair};
+    *end = (imp_end){isfinite(time) ? kind : IMP_END_TIME, island->motion.persist.touches[0].pair};
     *segment = imp_segment_roll(island->t, island->t + time, r.state, motion.a, motion.alpha);
     return time > 0 && island->t + time > island->t;
 }
@@ -231,4 +240,16 @@ bool imp_island_needs_steps(const imp_island *island)
     if (rough == 0 || island->stepped) return false;
     if (balls < rough) return true;
     return island->motion.persist.count == 1 && world->body_count == 2 && !imp_island_rolls(island, &segment, &end);
+}
+
+bool imp_island_rolls_out(const imp_island *island, const imp_pair *pair)
+{
+    const imp_world *world = &island->world;
+    const quat axes = imp_shape_axes(&world->bodies[pair->body2], &island->states[pair->body2]);
+    ball_roll r = {.mode = IMP_ROLL};
+    ball_motion motion;
+    if (!find_ball(island, pair, quat_rotate(axes, (qvec3){0, 0, 1}), &r)) return false;
+    const qvec3 slip = qvec3_axpy(-r.ball->radius, qvec3_cross(imp_omega(r.ball, r.state), r.normal), r.state->v);
+    const qvec3 across = qvec3_axpy(-qvec3_dot(slip, r.normal), r.normal, slip);
+    return qvec3_norm(across) <= world->slip_speed && find_motion(&r, &motion);
 }

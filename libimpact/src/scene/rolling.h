@@ -29,6 +29,10 @@
  * contacts are as imp_scene_load left them. */
 bool imp_island_needs_steps(const imp_island *island);
 
+/* Whether the pair, a ball that lies on a plane and all of its island, rolls or spins in closed form: what has been
+ * stepped needs no more steps. */
+bool imp_island_rolls_out(const imp_island *island, const imp_pair *pair);
+
 /* Whether the island moves so from its time on, its contact being as imp_scene_load_with_reactions left it; then its
  * body's segment, and what ends it in *end. */
 bool imp_island_rolls(const imp_island *island, imp_segment *segment, imp_end *end);

@@ -32,6 +32,17 @@ static impact_held row_of(const imp_island *island, double t, const imp_touch *t
                          .force = touch->force};
 }
 
+/* A ball that rolls in closed form against friction of its turning: that is in its segment, not among the touches. */
+static void add_rolling(const imp_island *island, impact_held *row)
+{
+    const imp_touch *touch = &island->motion.persist.touches[0];
+    const imp_body *body = &island->world.bodies[touch->body1];
+    if (!island->rolls || !imp_is_rough(&island->world.pairs[touch->pair])) return;
+    const qvec3 turns = island->scene->tracks.tracks[body->index].segment.spin_up;
+    row->force = touch->force;
+    row->moment = qvec3_sub(qvec3_scale(turns, body->moments.x), qvec3_cross(touch->r1, touch->force));
+}
+
 static impact_status exact_rows(imp_island *island, double t, held_rows *rows)
 {
     const size_t count = (size_t)island->motion.persist.count;
@@ -39,7 +50,8 @@ static impact_status exact_rows(imp_island *island, double t, held_rows *rows)
     if (!touches) return IMPACT_ENOMEM;
     const impact_status status = imp_motion_touches(&island->motion, t, island->motion.sampled, touches);
     for (size_t c = 0; status == IMPACT_OK && c < count; c++) {
-        const impact_held row = row_of(island, t, &touches[c]);
+        impact_held row = row_of(island, t, &touches[c]);
+        add_rolling(island, &row);
         add_row(rows, &row);
     }
     imp_arena_give(island->world.arena, touches);
@@ -62,7 +74,8 @@ static void pile_rows(const imp_island *island, double t, held_rows *rows)
                                  .mode = slips ? IMPACT_HOLD_SLIP : IMPACT_HOLD_STICK,
                                  .point = qvec3_add(island->motion.sampled[pair->body1].x, memory->arm1),
                                  .normal = memory->normal,
-                                 .force = memory->reaction};
+                                 .force = memory->reaction,
+                                 .moment = memory->moment};
         add_row(rows, &row);
     }
 }
