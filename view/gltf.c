@@ -21,12 +21,16 @@ enum { FLOAT = 5126, WORD = 5125, SHORT = 5123, VERTICES = 34962, INDICES = 3496
 /* What a plane without edges shows of itself, m from the middle of the motion, in sizes of that. */
 static const double plane_room = 1.5;
 
+/* Of materials: of what moves and what is static, in one octant and the next. */
+enum { KINDS = 4 };
+
 typedef struct gltf {
     imp_arena *arena;
     const impact_run *run;
     imp_text buffer, views, accessors, meshes, nodes, channels, samplers, materials;
-    int view_count, accessor_count, mesh_count, sampler_count;
-    qvec3 middle; /* of the motion, and its half size */
+    int view_count, accessor_count, mesh_count, sampler_count, material_count;
+    int material[KINDS]; /* their numbers, from 1; 0: not used so far */
+    qvec3 middle;        /* of the motion, and its half size */
     double half;
 } gltf;
 
@@ -90,12 +94,36 @@ static int put_floats(gltf *g, const float *values, long count, int width, int t
 
 static void put_vector(float *place, qvec3 v) { place[0] = (float)v.x, place[1] = (float)v.y, place[2] = (float)v.z; }
 
+/* Vermillion and its light partner, of bodies that move; greys. Linear, as glTF has colours. */
+static void say_material(gltf *g, int kind)
+{
+    static const double colors[KINDS][4] = {
+        {0.665, 0.112, 0, 1}, {0.93, 0.83, 0.76, 1}, {0.5, 0.5, 0.48, 1}, {0.7, 0.7, 0.7, 1}};
+    static const char *const names[KINDS] = {"moving", "moving, light", "static", "static, light"};
+    imp_text_say(&g->materials, g->material_count ? ",{\"name\":" : "{\"name\":");
+    imp_text_string(&g->materials, names[kind]);
+    imp_text_say(&g->materials,
+                 ",\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.5,\"baseColorFactor\":");
+    say_list(&g->materials, colors[kind], 4);
+    imp_text_say(&g->materials, "}}");
+}
+
+/* Its number, made when first asked for. */
+static int material_of(gltf *g, int kind)
+{
+    if (g->material[kind] == 0) {
+        say_material(g, kind);
+        g->material[kind] = ++g->material_count;
+    }
+    return g->material[kind] - 1;
+}
+
 static void say_primitive(gltf *g, int points, int normals, int index, int material)
 {
     say(&g->meshes, "{\"attributes\":{\"POSITION\":", points);
     say(&g->meshes, ",\"NORMAL\":", normals);
     say(&g->meshes, "},\"indices\":", index);
-    say(&g->meshes, ",\"material\":", material);
+    say(&g->meshes, ",\"material\":", material_of(g, material));
     imp_text_say(&g->meshes, "}");
 }
 
@@ -156,22 +184,6 @@ static int mesh_of(gltf *g, int body, const int *meshes, int material)
     if (!(def.shape.kind == IMPACT_PLANE ? plane_mesh : solid_mesh)(g, &def, material)) return -1;
     imp_text_say(&g->meshes, "]}");
     return g->mesh_count++;
-}
-
-/* Vermillion and its light partner, of bodies that move; greys. Linear, as glTF has colours. */
-static void say_materials(gltf *g)
-{
-    static const double colors[4][4] = {
-        {0.665, 0.112, 0, 1}, {0.93, 0.83, 0.76, 1}, {0.5, 0.5, 0.48, 1}, {0.7, 0.7, 0.7, 1}};
-    static const char *const names[4] = {"moving", "moving, light", "static", "static, light"};
-    for (int i = 0; i < 4; i++) {
-        imp_text_say(&g->materials, i ? ",{\"name\":" : "{\"name\":");
-        imp_text_string(&g->materials, names[i]);
-        imp_text_say(&g->materials,
-                     ",\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.5,\"baseColorFactor\":");
-        say_list(&g->materials, colors[i], 4);
-        imp_text_say(&g->materials, "}}");
-    }
 }
 
 /* ---- motion ---- */
@@ -276,7 +288,6 @@ static bool fill(gltf *g, double tolerance)
     int *meshes = imp_arena_take(g->arena, (size_t)count, sizeof *meshes);
     bool whole = meshes != NULL;
     measure(g);
-    say_materials(g);
     for (int i = 0; whole && i < count; i++) {
         impact_body_def def;
         impact_run_body(g->run, i, &def);

@@ -62,15 +62,15 @@ local function body_sheet(body, color)
   return sheet(function(u, v)
     local p = body.shape:point(u, v)
     return to_world(body, { p.x, p.y, p.z })
-  end, { color = color, opacity = 0.35, lines = true })
+  end, { color = color, opacity = 0.25, lines = true })
 end
 
---- Normals of a body's surface as arrows of the given length.
+--- Normals of a body's surface as arrows of the given length; few, so that the contact is seen between them.
 local function normals(body, color, length)
   local arrows = { {}, {}, {}, {}, {}, {} }
-  for j = 1, 5 do
-    for i = 0, 9 do
-      local u, v = -math.pi + 2 * math.pi * (i + 0.5) / 10, -math.pi / 2 + math.pi * j / 6
+  for j = 1, 3 do
+    for i = 0, 7 do
+      local u, v = -math.pi + 2 * math.pi * (i + 0.5) / 8, -math.pi / 2 + math.pi * j / 4
       local p, n = body.shape:point(u, v), body.shape:normal(u, v)
       local x, d = to_world(body, { p.x, p.y, p.z }), turn(body.orientation, { n.x, n.y, n.z })
       for k = 1, 3 do
@@ -84,14 +84,21 @@ local function normals(body, color, length)
   return plot.arrows(arrows)
 end
 
+--- A name beside the body, to the left of what is seen of it.
+local function name_of(body, text, color)
+  local p = body.position
+  return plot.text { text, at = { p[1] - 1.1, p[2] - 1.1, p[3] + 0.5 }, size = 22, color = color }
+end
+
 local contact = assert(impact.gap(A, B))
 local n, a, b = contact.normal, contact.point1, contact.point2
 
 local bodies = plot.panel {
   title = string.format("A and B overlap by %.6f", -contact.gap), equal = true, frame = false, legend = "none", view = { 65, 330 }, zoom = 2.2,
   body_sheet(A, "blue"), body_sheet(B, "orange"), normals(A, "blue", 0.18), normals(B, "orange", 0.18),
-  plot.arrows { { a.x }, { a.y }, { a.z }, { 0.6 * n.x }, { 0.6 * n.y }, { 0.6 * n.z }, color = "red", width = 3 },
+  plot.arrows { { a.x }, { a.y }, { a.z }, { 0.6 * n.x }, { 0.6 * n.y }, { 0.6 * n.z }, color = "red", width = 5 },
   plot.points { { a.x, b.x }, { a.y, b.y }, { a.z, b.z }, color = "red", size = 1.2 },
+  name_of(A, "A", "blue"), name_of(B, "B", "orange"),
 }
 
 local difference = plot.panel {
@@ -102,6 +109,7 @@ local difference = plot.panel {
     return { p[1] - q[1], p[2] - q[2], p[3] - q[3] }
   end, { color = "purple", opacity = 0.3, lines = true }),
   plot.points { { 0 }, { 0 }, { 0 }, color = "black", size = 1.5 },
+  plot.text { "0", at = { 0.1, 0, -0.25 }, size = 18, color = "black" },
   plot.arrows { { 0 }, { 0 }, { 0 }, { a.x - b.x }, { a.y - b.y }, { a.z - b.z }, color = "red", width = 3 },
 }
 

@@ -39,10 +39,10 @@ local above = {
   box = { 0.36, 0.0, 1, 0.92 }, xrange = { -2.6, 2.6 }, yrange = { -2.6, 2.6 }, zrange = { -2, 2 },
 }
 local x, y, z = {}, {}, {}
-for i = 0, 16 do
+for i = 0, 32 do
   x[i + 1], y[i + 1], z[i + 1] = {}, {}, {}
-  for j = 0, 32 do
-    local theta, phi = i * pi / 16, j * pi / 16
+  for j = 0, 64 do
+    local theta, phi = i * pi / 32, j * pi / 32
     x[i + 1][j + 1], y[i + 1][j + 1], z[i + 1][j + 1] = math.sin(theta) * math.cos(phi), math.sin(theta) * math.sin(phi), math.cos(theta)
   end
 end

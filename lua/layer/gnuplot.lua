@@ -424,8 +424,22 @@ local terminals = {
   pdf = function(w, h) return format("pdfcairo noenhanced size %.4fin,%.4fin", w / 96, h / 96) end,
 }
 
---- The commands that draw the figure: to the file `output`, or to standard output. form: "png", "svg" or "pdf"; nil of the latter two
---- for a figure with a panel in space, whose surfaces hide nothing there.
+-- The figure's flat panels alone, side by side; nil where there are none.
+local function flat_part(figure)
+  local part = { kind = "figure", title = figure.title }
+  for _, panel in ipairs(figure) do
+    if not is_three(panel) then
+      local copy = {}
+      for key, value in pairs(panel) do if key ~= "at" and key ~= "box" then copy[key] = value end end
+      part[#part + 1] = copy
+    end
+  end
+  part.size = { #part > 1 and 1280 or 640, 480 * floor((#part + 1) / 2) }
+  return #part > 0 and part or nil
+end
+
+--- The commands that draw the figure: to the file `output`, or to standard output. form: "png", "svg" or "pdf": of the latter two the
+--- flat panels alone, nil where there are none: surfaces hide nothing there.
 ---@param figure plot.figure
 ---@param output? string
 ---@param form? string
@@ -433,7 +447,10 @@ local terminals = {
 function gnuplot.commands(figure, output, form)
   if type(figure) ~= "table" or figure.kind ~= "figure" then error("a figure is made with plot.figure", 0) end
   form = form or "png"
-  if form ~= "png" and not gnuplot.is_flat(figure) then return nil end
+  if form ~= "png" and not gnuplot.is_flat(figure) then
+    figure = flat_part(figure)
+    if not figure then return nil end
+  end
   local size = figure.size or { 1280, 860 }
   local out = {
     "set encoding utf8",

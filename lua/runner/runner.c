@@ -161,7 +161,7 @@ static int draw_scene(lua_State *L, int scene, impact_runner *runner, const char
     }
 }
 
-static void summarise(lua_State *L, int scene, const impact_runner *runner, const char *name, bool drawn)
+static void summarise(lua_State *L, int scene, const impact_runner *runner, const char *name, bool drawn, bool viewed)
 {
     lua_getfield(L, scene, "summary");
     lua_pushvalue(L, scene);
@@ -169,7 +169,7 @@ static void summarise(lua_State *L, int scene, const impact_runner *runner, cons
     lua_call(L, 2, 1);
     const char *directory = runner->directory, *text = lua_tostring(L, -1);
     printf("%s  wrote      ", text ? text : "");
-    if (runner->shown) printf("%s/%s.%s, ", directory, name, runner->ending);
+    if (viewed) printf("%s/%s.%s, ", directory, name, runner->ending);
     printf("%s/%s.csv, %s/%s_events.csv", directory, name, directory, name);
     if (runner->record) printf(", %s/%s.run", directory, name);
     if (drawn) printf(", %s/%s.png", directory, name);
@@ -256,9 +256,10 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     impact_runner_drop_checkpoint(runner);
     const int reason = lua_gettop(L);
     int drew = plot ? draw_scene(L, scene, runner, name, &drawn) : IMPACT_EXIT_OK;
-    if (drew == IMPACT_EXIT_OK && runner->shown) drew = view_scene(L, scene, runner, name);
+    const bool views = drew == IMPACT_EXIT_OK && runner->shown;
+    if (views) drew = view_scene(L, scene, runner, name);
     lua_settop(L, reason);
-    if (!runner->quiet) summarise(L, scene, runner, name, drawn);
+    if (!runner->quiet) summarise(L, scene, runner, name, drawn, views && drew == IMPACT_EXIT_OK);
     return drew != IMPACT_EXIT_OK ? drew : ran;
 }
 

@@ -37,7 +37,7 @@ static void usage(FILE *file)
         "  --tolerance E     view, gltf: what keys may be off by, of a body's size and in rad (default: 3e-4 of gltf; "
         "1e-5 of a\n"
         "                    page too large to hold the record as it is)\n"
-        "  --pictures        beside NAME.png: flat pictures as NAME.svg and NAME.pdf, others as a page, "
+        "  --pictures        beside NAME.png: flat panels as NAME.svg and NAME.pdf, those in space as a page, "
         "NAME.figure.html\n"
         "  --quiet           no progress, no closing summary\n"
         "  --max-memory MB   bounds all memory: of the script, the scenes and the files' buffers\n"

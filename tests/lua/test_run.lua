@@ -86,6 +86,11 @@ if impact.has "view" then
   check.truth(not runner.exists("none/no.html"), "and leaves no page")
   code, _, complained = runner.command("view script.lua --out shown --max-disk 0.02")
   check.truth(code ~= 0 and complained ~= "", "a page counts as written")
+  code, said, complained = runner.command("view script.lua --out wide --tolerance 3")
+  check.equal(code, 4)
+  check.truth(complained:find("tolerance must lie in [1e-07, 0.1], got 3", 1, true), "a tolerance out of range is told")
+  check.truth(not runner.exists("wide/drop.html") and not said:find("drop.html", 1, true), "a page that is not there is not named as written")
+  check.equal(runner.command("script.lua --tolerance 0.001"), 2)
 end
 check.equal(runner.script((text:gsub("return impact.scene (%b{})", "impact.scene%1:run { record = 'x.run' }"))), 0)
 check.truth(runner.exists("o/x.run"), "a script's own record lies in the folder")
@@ -110,18 +115,20 @@ else
 end
 if page then page:close() end
 
--- --pictures: a flat figure as SVG and PDF too, one in space as a page, in which no word is more than text.
+-- --pictures: flat panels as SVG and PDF too, those in space as a page, in which no word is more than text.
 local drawn = [[local plot = require "quat.plot"
 local flat = plot.panel { plot.line { { 0, 1 }, { 1, 0 / 0 }, label = "</script><b id=harm>" } }
 local space = plot.panel { plot.line { { 0, 1 }, { 0, 1 }, { 0, 1 }, tube = 0.1 }, plot.text { "</script><b id=harm>@TITLE@", at = { 0, 0, 0 } } }
-print(plot.save(plot.figure { flat }, "flat"), plot.save(plot.figure { title = "</title><b id=harm>@FIGURE@", flat, space }, "space"))]]
+print(plot.save(plot.figure { flat }, "flat"), plot.save(plot.figure { title = "</title><b id=harm>@FIGURE@", flat, space }, "space"))
+plot.save(plot.figure { space }, "solid")]]
 code, said = runner.script(drawn, "--pictures")
 check.equal(code, 0)
 if said:find "true" then
   check.equal(runner.read("o/flat.pdf"):sub(1, 5), "%PDF-")
   check.truth(runner.read("o/flat.svg"):find("<svg", 1, true), "SVG is SVG")
   check.truth(runner.exists("o/flat.png") and runner.exists("o/space.png"), "PNG stays")
-  check.truth(not runner.exists("o/flat.figure.html") and not runner.exists("o/space.svg") and not runner.exists("o/space.pdf"), "each in its form")
+  check.truth(runner.read("o/space.svg"):find("<svg", 1, true) and runner.exists("o/space.pdf"), "a figure's flat panels alone")
+  check.truth(not runner.exists("o/flat.figure.html") and not runner.exists("o/solid.svg") and not runner.exists("o/solid.pdf"), "each in its form")
   local shown = runner.read("o/space.figure.html")
   check.truth(not shown:find("<b id", 1, true) and not shown:find "https?://", "words are text, and nothing is asked for")
   check.truth(shown:find('"tube":0.1', 1, true) and shown:find(",null]", 1, true), "the figure stands in it, and what is not finite as null")
