@@ -1,5 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Hands on the camera: drag, wheel, two fingers; and on the ball of orientations.
+// The camera: its lens, how far off it stands, and hands on it: drag, wheel, two fingers; and on the ball of orientations.
+const lens = aspect => 2.2 * Math.min(1, aspect / 1.3);
+// How far back along z from the origin all of the points are seen.
+function distanceFor(points, aspect, z, up) {
+  const x = unit(cross(up, z)), y = cross(z, x);
+  return 1.04 * Math.max(...points.map(p => dot(p, z) + lens(aspect) * Math.max(Math.abs(dot(p, x)) / aspect, Math.abs(dot(p, y)))));
+}
+// A way without points that are no pixel apart, which have no direction.
+function apart(path, least) {
+  const kept = [path[0]];
+  path.forEach((p, k) => { if (k === path.length - 1 || norm(sub(p.slice(0, 3), kept[kept.length - 1])) > least) kept.push(p); });
+  return kept;
+}
 function cameraHands(scene, canvas, ball, ballView, changed, done) {
   const camera = scene.camera, fingers = new Map(), spread = () => { const [a, b] = [...fingers.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
   const turn = (view, dx, dy) => { view.yaw -= dx * 0.008; view.pitch = clamp(view.pitch + dy * 0.008, -1.5, 1.5); };

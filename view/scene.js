@@ -46,13 +46,8 @@ function makeScene(run, canvas) {
   const front = Math.hypot(dot(free, east), dot(free, north)) > 1e-9 ? Math.atan2(dot(free, north), dot(free, east)) + 0.95 : -1.1;
   // As near as all of the motion's box is seen, and the walls.
   const seenAll = [0, 1, 2, 3, 4, 5, 6, 7].map(s => here([0, 1, 2].map(c => (s >> c & 1 ? high : low)[c]))).concat(planes.filter(p => !p.floor).flatMap(p => p.ring.map(q => q.slice(0, 3))));
-  const lens = aspect => 2.2 * Math.min(1, aspect / 1.3), back = (yaw, pitch) =>
-    add(scale(add(scale(east, Math.cos(yaw)), scale(north, Math.sin(yaw))), Math.cos(pitch)), scale(up, Math.sin(pitch)));
-  const distance = (yaw, pitch) => {
-    const aspect = canvas.clientWidth / canvas.clientHeight || 1.2, z = back(yaw, pitch), x = unit(cross(up, z)), y = cross(z, x);
-    return 1.04 * Math.max(...seenAll.map(p => dot(p, z) + lens(aspect) * Math.max(Math.abs(dot(p, x)) / aspect, Math.abs(dot(p, y)))));
-  };
-  const home = { yaw: front, pitch: 0.32, distance: distance(front, 0.32), target: [0, 0, 0] };
+  const back = (yaw, pitch) => add(scale(add(scale(east, Math.cos(yaw)), scale(north, Math.sin(yaw))), Math.cos(pitch)), scale(up, Math.sin(pitch)));
+  const home = { yaw: front, pitch: 0.32, distance: distanceFor(seenAll, canvas.clientWidth / canvas.clientHeight || 1.2, back(front, 0.32), up), target: [0, 0, 0] };
   const camera = { ...home };
   const G = makeGraphics(canvas);
   if (!G) return { camera, home, center, radius, up, moving, color, step, draw: () => null };
@@ -65,7 +60,7 @@ function makeScene(run, canvas) {
   });
   const arrow = G.upload(arrowMesh()), dot3 = G.upload(mesh({ kind: 'sphere', axes: [1, 1, 1], exponents: [2, 2, 2] }, 8)), quad = G.upload(quadMesh);
   planes.forEach(p => { p.line = G.uploadLine(p.ring); });
-  paths.forEach((path, i) => paths.set(i, G.uploadLine(path.map(([x, y, z, t]) => [...here([x, y, z]), t]))));
+  paths.forEach((path, i) => paths.set(i, G.uploadLine(apart(path, 1e-3 * radius).map(([x, y, z, t]) => [...here([x, y, z]), t]))));
   const circle = G.uploadLine(Array.from({ length: 33 }, (_, k) => [Math.cos(k * Math.PI / 16), Math.sin(k * Math.PI / 16), 0, -1e30]));
   const sun = unit(qrot(turned, [-0.45, -0.5, 1]));
   const lightView = mat(parallel(1.35 * radius, 0.1 * radius, 8 * radius), look(scale(sun, 4 * radius), [0, 0, 0], north));
