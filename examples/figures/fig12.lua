@@ -99,22 +99,19 @@ local function axes(p, axis, color)
   a.color, a.width, a.head = color, 1.6, 0.012
   return plot.arrows(a)
 end
--- Surfaces are drawn over lines: what lies on them is a panel of its own in the same place.
-local function ball(title, ...)
-  local extent = { -1.1, 1.1 }
-  return plot.panel { title = title, equal = true, frame = false, legend = "none", three = true, view = view, zoom = 1.6, at = { 1, 1, 1, 2 },
-    xrange = extent, yrange = extent, zrange = extent, ... }
-end
-local sphere = ball("the frames: T1 dark, T2 white",
+local extent = { -1.1, 1.1 }
+local sphere = plot.panel {
+  title = "the frames: T1 dark, T2 white", equal = true, frame = false, legend = "none", three = true, view = view, zoom = 1.6, at = { 1, 1, 1, 2 },
+  xrange = extent, yrange = extent, zrange = extent,
   sheet(north, function(i) return north.x[i] end, { color = "#7fa8d8", opacity = 1 }),
-  sheet(south, function(i) return south.x[i] end, { color = "#f2b27c", opacity = 1 }))
-local on_sphere = ball(" ",
+  sheet(south, function(i) return south.x[i] end, { color = "#f2b27c", opacity = 1 }),
   path(4 * spokes, function(j)
     local n = { cos(pi * j / 2 / spokes), sin(pi * j / 2 / spokes), 0 }
     return sin(math.rad(view[2])) * n[1] - cos(math.rad(view[2])) * n[2] > 0 and n or { 0 / 0, 0, 0 }
   end, { color = "red", width = 3 }),
   axes(north, { 0, 1, 0 }, "#ffffff"), axes(south, { 0, 1, 0 }, "#ffffff"),
-  axes(north, { 1, 0, 0 }, "dark"), axes(south, { 1, 0, 0 }, "dark"))
+  axes(north, { 1, 0, 0 }, "dark"), axes(south, { 1, 0, 0 }, "dark"),
+}
 
 -- Both Gauss maps in S^3, and the circles of frames over points of the seam.
 local maps = {
@@ -192,6 +189,6 @@ local drawn, why = plot.save(plot.figure {
   title = "A sphere in two patches", size = { 1800, 720 }, grid = { 3, 2 },
   subtitle = string.format("frames of least length and area; area of each image %.4f by %d flat triangles, 2π(1 − cos π/4) = %.4f when smooth",
     north.area, spokes * (2 * rings - 1), 2 * pi * (1 - math.sqrt(0.5))),
-  sphere, on_sphere, plot.panel(maps), transition, plot.panel(circle),
+  sphere, plot.panel(maps), transition, plot.panel(circle),
 }, "fig12")
 if not drawn then print("fig12: " .. why) end
