@@ -79,8 +79,9 @@ typedef struct impact_together_outcome {
     /* The receipt: the largest of what the answer misses momentum, spin, cones, energy, works and separation by, over
      * the sizes of their own terms. Rounding leaves 1e-15 to 1e-13. */
     double residual;
-    double error;     /* of the velocities, of the fastest approach: springs take a restitution under 0.001 as 0.001 */
-    int groups;       /* of contacts tied by moving bodies */
+    double
+        error;  /* of velocities, of the fastest approach: springs take a restitution under .001 as more if they must */
+    int groups; /* of contacts tied by moving bodies */
     long events;      /* springs: changes of a contact's mode; sequence: impacts */
     long steps;       /* springs: Taylor steps; Moreau: linear systems */
     bool energy_rose; /* not by springs: Moreau's law with different restitutions, and Newton's, can */

@@ -11,62 +11,6 @@
 #include "contact/cone_assemble.h"
 #include "contact/springs.h"
 
-/* ---- memory ---- */
-
-impact_status imp_together_workspace_in(imp_arena *arena, impact_together_workspace **workspace)
-{
-    *workspace = imp_arena_take(arena, 1, sizeof **workspace);
-    if (!*workspace) return IMPACT_ENOMEM;
-    (*workspace)->arena = (*workspace)->cone.arena = arena;
-    return IMPACT_OK;
-}
-
-impact_status impact_together_workspace_create(const impact_allocator *allocator, impact_together_workspace **workspace)
-{
-    imp_arena *arena;
-    *workspace = NULL;
-    impact_status status = imp_arena_create(allocator, &arena);
-    if (status != IMPACT_OK) return status;
-    status = imp_together_workspace_in(arena, workspace);
-    if (status != IMPACT_OK) imp_arena_destroy(arena);
-    return status;
-}
-
-void impact_together_workspace_destroy(impact_together_workspace *workspace)
-{
-    if (workspace) imp_arena_destroy(workspace->arena);
-}
-
-impact_memory impact_together_workspace_memory(const impact_together_workspace *workspace)
-{
-    return imp_arena_memory(workspace->arena);
-}
-
-/* Room for so many bytes, of which none is used. What was there is lost. */
-static bool clear_block(imp_arena *arena, imp_block *block, size_t bytes)
-{
-    block->used = 0;
-    if (bytes <= block->size) return true;
-    imp_arena_give(arena, block->bytes);
-    *block = (imp_block){imp_arena_take(arena, bytes, 1), bytes, 0};
-    if (!block->bytes) block->size = 0;
-    return block->bytes;
-}
-
-static void *take_part(imp_block *block, size_t count, size_t size)
-{
-    const size_t bytes = (count * size + 15) / 16 * 16;
-    if (bytes > block->size - block->used) return NULL;
-    unsigned char *part = block->bytes + block->used;
-    block->used += bytes;
-    return memset(part, 0, bytes);
-}
-
-void *imp_encounter_take(impact_together_workspace *workspace, size_t count, size_t size)
-{
-    return take_part(&workspace->work, count, size);
-}
-
 /* ---- one contact ---- */
 
 double imp_encounter_unit(double value)
@@ -203,7 +147,7 @@ static bool make_group(plan *call, int from, int count, bool linear, impact_toge
                        imp_group *group)
 {
     const size_t n = (size_t)count;
-    if (!clear_block(workspace->arena, &workspace->work, group_bytes(n, linear))) return false;
+    if (!imp_block_clear(workspace->arena, &workspace->work, group_bytes(n, linear))) return false;
     imp_contact *contacts = imp_encounter_take(workspace, n, sizeof *contacts);
     double *w = linear ? NULL : imp_encounter_take(workspace, 9 * n * n, sizeof *w),
            *u0 = imp_encounter_take(workspace, 3 * n, sizeof *u0);
@@ -234,20 +178,52 @@ static bool is_linear(const plan *call, int from, int count)
     return linear;
 }
 
+/* Springs of a group whose restitutions under `least` count as that. */
+static impact_status solve_springs(plan *call, int from, int count, double least, long patience,
+                                   impact_together_workspace *workspace, imp_group *group)
+{
+    const double exponent = call->encounter->exponent == 0 ? 1.5 : call->encounter->exponent;
+    const bool linear = is_linear(call, from, count);
+    impact_status status = IMPACT_EUNSETTLED;
+    for (int general = !linear; general < 2 && status == IMPACT_EUNSETTLED; general++) {
+        if (!make_group(call, from, count, !general, workspace, group)) return IMPACT_ENOMEM;
+        if (!approaches(group)) return IMPACT_SEPARATING;
+        group->least = least;
+        group->patience = patience;
+        status = general ? imp_springs_solve(group, exponent, workspace) : imp_springs_solve_linear(group, workspace);
+    }
+    return status;
+}
+
+/* What unloads is 1/eps times as stiff in time as what loads, and where it stays pressed it swings that much faster: of
+ * smaller restitutions the least is taken that does not take long. */
+static impact_status solve_as_hard_as_can_be(plan *call, int from, int count, impact_together_workspace *workspace,
+                                             imp_group *group)
+{
+    static const double least[] = {IMP_SPRINGS_HARDEST, IMP_SPRINGS_HARD};
+    bool small = false;
+    for (int i = from; i < from + count; i++)
+        small = small || call->encounter->meetings[call->order.meeting[i]].restitution < IMP_SPRINGS_LEAST;
+    impact_status status = IMPACT_EUNSETTLED;
+    for (int k = 0; small && k < 2 && status == IMPACT_EUNSETTLED; k++)
+        status = solve_springs(call, from, count, least[k], IMP_SPRINGS_TRIED, workspace, group);
+    if (status != IMPACT_EUNSETTLED) return status;
+    return solve_springs(call, from, count, IMP_SPRINGS_LEAST, IMP_SPRINGS_STEPS, workspace, group);
+}
+
+static impact_status solve_with_moreau(plan *call, int from, int count, impact_together_workspace *workspace,
+                                       imp_group *group)
+{
+    if (!make_group(call, from, count, false, workspace, group)) return IMPACT_ENOMEM;
+    return approaches(group) ? imp_moreau_solve(group, workspace) : IMPACT_SEPARATING;
+}
+
 static impact_status solve_group(plan *call, int from, int count, impact_together_workspace *workspace)
 {
     const bool springs = call->encounter->law == IMPACT_TOGETHER_SPRINGS;
-    const double exponent = call->encounter->exponent == 0 ? 1.5 : call->encounter->exponent;
-    const bool linear = is_linear(call, from, count);
-    imp_group group;
-    if (!make_group(call, from, count, linear, workspace, &group)) return IMPACT_ENOMEM;
-    if (!approaches(&group)) return IMPACT_SEPARATING;
-    impact_status status = IMPACT_EUNSETTLED;
-    if (linear) status = imp_springs_solve_linear(&group, workspace);
-    if (status == IMPACT_EUNSETTLED) {
-        if (linear && !make_group(call, from, count, false, workspace, &group)) return IMPACT_ENOMEM;
-        status = springs ? imp_springs_solve(&group, exponent, workspace) : imp_moreau_solve(&group, workspace);
-    }
+    imp_group group = {.count = 0};
+    const impact_status status = springs ? solve_as_hard_as_can_be(call, from, count, workspace, &group)
+                                         : solve_with_moreau(call, from, count, workspace, &group);
     if (group.wedged) call->outcome->wedged = group.contacts[0].source;
     if (status != IMPACT_OK) return status;
     set_solver(call, springs ? IMPACT_TOGETHER_SERIES : IMPACT_TOGETHER_CONE);
@@ -342,15 +318,15 @@ static bool make_plan(plan *call, imp_order *order, uint64_t **keys, int **paren
     const size_t bodies = (size_t)call->encounter->body_count, meetings = (size_t)call->encounter->meeting_count;
     const size_t bytes = bodies * (2 * sizeof(qvec3) + 24) + meetings * (sizeof(impact_meeting_outcome) + 64) + 1024;
     imp_block *block = &workspace->plan;
-    if (!clear_block(workspace->arena, block, bytes)) return false;
-    call->velocity = take_part(block, bodies, sizeof *call->velocity);
-    call->omega = take_part(block, bodies, sizeof *call->omega);
-    call->meetings = take_part(block, meetings, sizeof *call->meetings);
-    order->meeting = take_part(block, meetings, sizeof(int));
-    order->group = take_part(block, meetings, sizeof(int));
-    order->merged = take_part(block, meetings, sizeof(int));
-    *keys = take_part(block, meetings + 2 * bodies, sizeof **keys);
-    *parents = take_part(block, bodies + meetings, sizeof **parents);
+    if (!imp_block_clear(workspace->arena, block, bytes)) return false;
+    call->velocity = imp_block_take(block, bodies, sizeof *call->velocity);
+    call->omega = imp_block_take(block, bodies, sizeof *call->omega);
+    call->meetings = imp_block_take(block, meetings, sizeof *call->meetings);
+    order->meeting = imp_block_take(block, meetings, sizeof(int));
+    order->group = imp_block_take(block, meetings, sizeof(int));
+    order->merged = imp_block_take(block, meetings, sizeof(int));
+    *keys = imp_block_take(block, meetings + 2 * bodies, sizeof **keys);
+    *parents = imp_block_take(block, bodies + meetings, sizeof **parents);
     return *parents;
 }
 

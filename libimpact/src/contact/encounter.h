@@ -45,7 +45,9 @@ typedef struct imp_group {
     qvec3 *velocity, *omega;
     long events, steps;
     bool chosen, wedged;
-    double error; /* of restitution */
+    double least;  /* springs: smaller restitutions count as this */
+    long patience; /* springs: steps and events allowed */
+    double error;  /* of restitution */
 } imp_group;
 
 /* Memory that is cut up anew each time. */
@@ -53,6 +55,11 @@ typedef struct imp_block {
     unsigned char *bytes;
     size_t size, used;
 } imp_block;
+
+/* Room for so many bytes, of which none is used; what was there is lost. False: there is no more. */
+bool imp_block_clear(imp_arena *arena, imp_block *block, size_t bytes);
+/* count * size bytes of it, zeroed; NULL: there are no more. */
+void *imp_block_take(imp_block *block, size_t count, size_t size);
 
 struct impact_together_workspace {
     imp_arena *arena;

@@ -74,7 +74,7 @@ static void set_up(imp_springs *s, const imp_group *group, const units *unit, do
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
         c->friction = group->contacts[i].friction;
-        c->restitution = fmax(group->contacts[i].restitution, IMP_SPRINGS_LEAST);
+        c->restitution = fmax(group->contacts[i].restitution, group->least);
         c->stiffness = group->contacts[i].stiffness / unit->stiffness;
         c->finding = &group->findings[i];
         c->none = IMP_SPRINGS_STILL;
@@ -118,7 +118,7 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     const units unit = find_units(group);
     set_up(&s, group, &unit, w, u0);
     int asked = 0;
-    while (s.steps < IMP_SPRINGS_STEPS && s.events < IMP_SPRINGS_STEPS && s.work < IMP_SPRINGS_WORK) {
+    while (s.steps + s.events < group->patience && s.work < IMP_SPRINGS_WORK) {
         if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
         group->wedged = is_wedged(&s, &asked);
         if (group->wedged) return IMPACT_EUNSETTLED;

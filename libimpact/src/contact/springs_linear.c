@@ -394,7 +394,7 @@ static void set_up_lines(lines *s, const imp_group *group, line_units unit)
         line *l = &s->line[i];
         l->own /= unit.mobility;
         l->u = l->u0 = group->u0[3 * i] / unit.velocity;
-        l->restitution = fmax(group->contacts[i].restitution, IMP_SPRINGS_LEAST);
+        l->restitution = fmax(group->contacts[i].restitution, group->least);
         l->stiffness = group->contacts[i].stiffness / unit.stiffness;
         l->finding = &group->findings[i];
         l->none = IMP_SPRINGS_STILL;
@@ -420,7 +420,7 @@ impact_status imp_springs_solve_linear(imp_group *group, impact_together_workspa
     if (!lay_out_lines(&s, group->contacts, workspace)) return IMPACT_ENOMEM;
     const line_units unit = find_line_units(&s, group);
     set_up_lines(&s, group, unit);
-    while (s.steps + s.events < IMP_SPRINGS_LONG) {
+    while (s.steps + s.events < fmin(IMP_SPRINGS_LONG, group->patience)) {
         settle_lines(&s);
         if (any_pressed(&s)) {
             if (!step_lines(&s)) return IMPACT_EUNSETTLED;
