@@ -7,6 +7,7 @@
 
 #include <string.h>
 #include "contact/cone_assemble.h"
+#include "base/tolerances.h"
 #include "contact/springs.h"
 #include "kit/encounter_random.h"
 #include "kit/springs_oracle.h"
@@ -75,7 +76,14 @@ static impact_status by_springs(const impact_collision *c, double exponent, impa
     const qvec3 v[2] = {c->body[0].velocity, c->body[1].velocity}, omega[2] = {c->body[0].omega, c->body[1].omega};
     double w[9] = {0}, u0[3];
     imp_finding finding = {.compressions = 0};
-    imp_group group = {.count = 1, .contacts = &contact, .w = w, .u0 = u0, .p = p, .findings = &finding};
+    imp_group group = {.count = 1,
+                       .contacts = &contact,
+                       .w = w,
+                       .u0 = u0,
+                       .p = p,
+                       .findings = &finding,
+                       .least = IMP_SPRINGS_LEAST,
+                       .patience = IMP_SPRINGS_STEPS};
     imp_encounter_velocity(&contact, v, omega, u0);
     for (int s = 0; s < 2; s++)
         for (int i = 0; i < 9; i++)
