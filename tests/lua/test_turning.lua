@@ -143,6 +143,22 @@ do
   end
 end
 
+-- A break: balls that part roll out in closed form again, each on its own; the table's length is all of theirs.
+do
+  local r, bodies = 0.028, { floor { friction = 0.5, rolling_friction = 3e-4, torsional_friction = 3e-4 } }
+  for row = 0, 2 do
+    for j = 0, row do
+      bodies[#bodies + 1] = impact.body { name = "ball " .. #bodies, shape = impact.sphere(r), mass = 0.17, restitution = 0.95, friction = 0.3,
+        position = { 1 + row * r * 1.7330, (j - row / 2) * 2.0005 * r, r } }
+    end
+  end
+  bodies[#bodies + 1] = impact.body { name = "cue", shape = impact.sphere(r), mass = 0.17, position = { 0, 0.003, r }, velocity = { 3, 0, 0 }, restitution = 0.95,
+    friction = 0.3 }
+  local s, ended = run(bodies)
+  check.equal(ended, "at rest")
+  check.truth(s:usage().rolls >= 7)
+end
+
 -- What is held: rolling, the moment rho N against it and the force that slows the ball; at rest on a slope, what holds it.
 do
   local rho, m = 5e-3, 2

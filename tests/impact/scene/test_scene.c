@@ -483,6 +483,11 @@ static void bad_definitions_are_named(void **state)
     bodies[1] = ball_body("coin", (qvec3){0, 0, 1}, 1, 1.5);
     expect_refusal(&def, "body 'coin': restitution = 1.5: must lie in [0, 1]");
     bodies[1] = ball_body("coin", (qvec3){0, 0, 1}, 1, 0);
+    bodies[1].rolling_friction = -0.5;
+    expect_refusal(&def, "body 'coin': rolling_friction = -0.5: must be a length, >= 0 and finite");
+    bodies[1].rolling_friction = 0, bodies[1].torsional_friction = NAN;
+    expect_refusal(&def, "body 'coin': torsional_friction = nan: must be a length, >= 0 and finite");
+    bodies[1] = ball_body("coin", (qvec3){0, 0, 1}, 1, 0);
     bodies[1].moments = (qvec3){1, 1, 3};
     expect_refusal(&def,
                    "body 'coin': moments = 3: is larger than the other two together: no rigid body has such moments");
@@ -527,6 +532,9 @@ static void bad_definitions_are_named(void **state)
     def.pairs = &pair;
     def.pair_count = 1;
     expect_refusal(&def, "pair with 'flor': the scene has no such body");
+    const impact_pair_def rough = {"coin", "floor", 0.5, NAN, NAN, NAN, -1};
+    def.pairs = &rough;
+    expect_refusal(&def, "pair with 'floor': rolling_friction = -1: must be a length, >= 0 and finite");
 }
 
 static void a_build_without_cvode_says_so(void **state)
