@@ -87,7 +87,7 @@ function makeScene(run, canvas) {
     G.solid.set({ view, light: lightView, eye, sun, sky: up, depth: 0, texel: 1 / G.size, kind: 1, grid: [0, 0, 0, 0] });
     const solid = (m, model, one, two, kind, grid = [0, 0, 1, 1]) => { G.solid.set({ model, one, two, kind, grid }); G.draw(m); };
     const stroke = (m, one, width, now = 1e30) => { G.lines.set({ view, size: [w / 2, h / 2], one, width: width * (canvas.clientWidth ? w / canvas.clientWidth : window.devicePixelRatio || 1), now }); G.drawLine(m); };
-    solids.forEach((s, i) => s && solid(s.mesh, models[i], s.one, mixed(s.one, [1, 1, 1, 1], 0.72), 1));
+    solids.forEach((s, i) => s && solid(s.mesh, models[i], s.one, mixed(s.one, [1, 1, 1, 1], 0.58), 1));
     others.forEach(m => solids.forEach((s, i) => {
       if (s && !run.bodies[s.i].static) solid(s.mesh, m[i], mixed(s.one, rgb(paper), 0.55), mixed(s.one, rgb(paper), 0.85), 1);
     }));

@@ -63,6 +63,25 @@ for _, name in ipairs { "sphere_wall", "sphere_wall_spin", "t_handle", "dice" } 
     check.truth(math.min(off, math.abs(r - 20) + math.abs(g - 22) + math.abs(b - 26)) > 40, "a body is drawn where its centre is")
   end
 end
+
+-- A page too large for its record has it thinned: to what it says, and it says so.
+check.equal(runner.command("view " .. runner.quote(examples .. "/scenes/dominoes.lua") .. " --out . --tolerance 1e-4"), 0)
+local run = assert(impact.open(runner.folder .. "/dominoes.run"))
+local report, said = visit("dominoes.html", "t=0.3&check&probe=0.05,0.1234,0.3,0.45,0.5")
+sound(report, said)
+check.truth(runner.read("dom.txt"):find("thinned for this page to 0.0001 of a body", 1, true), "it says so")
+local numbers, k = states(report), 0
+for _, t in ipairs { 0.05, 0.1234, 0.3, 0.45, 0.5 } do
+  for _, body in ipairs(run:bodies()) do
+    local s = run:state(body.name, t)
+    for c, wanted in ipairs { s.position.x, s.position.y, s.position.z } do check.close(numbers[k + c], wanted, 1e-4 * 0.0272) end
+    for c, wanted in ipairs { s.orientation.w, s.orientation.x, s.orientation.y, s.orientation.z } do check.close(numbers[k + 3 + c], wanted, 1e-4) end
+    k = k + 13
+  end
+end
+check.equal(#numbers, k)
+check.truth(#runner.read("dominoes.html") < 0.1 * #runner.read("dominoes.run"), "and is a tenth as large at most")
+
 local size = #runner.read("sphere_wall.html")
 print(string.format("sphere_wall.html: %d bytes", size))
 check.truth(size <= 65536, "the thesis' scene is a page of at most 64 KB")
@@ -74,7 +93,7 @@ local function press(keys)
   sound(report, said)
   return report
 end
-local report = press "ArrowRight"
+report = press "ArrowRight"
 check.close(tonumber(field(report, "t")), events[1].t, 1e-15)
 check.equal(field(report, "before"), "true")
 report = press "ArrowRight,ArrowRight"
