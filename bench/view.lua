@@ -27,7 +27,7 @@ local function median(list)
   return list[(#list + 1) // 2]
 end
 
--- The seconds of the bare run, and the two quotients, of runs that take turns until they have taken so many seconds.
+-- The seconds of the bare run, and the two quotients, of runs that take turns until they have taken so many seconds, three of each or ten seconds.
 local function cost(definition, seconds)
   local bare, over_bare, over_rows, spent, rate = {}, {}, {}, 0, definition.output_rate
   repeat
@@ -37,7 +37,7 @@ local function cost(definition, seconds)
     local rows, both = run(definition, { csv = work .. "/view" }), run(definition, { csv = work .. "/view", record = work .. "/view.run" })
     bare[#bare + 1], over_bare[#over_bare + 1], over_rows[#over_rows + 1] = alone, kept / alone, both / rows
     spent = spent + alone + kept + rows + both
-  until spent > seconds and #bare > 2
+  until spent > seconds and #bare > 2 or spent > 10
   return median(bare), median(over_bare), median(over_rows)
 end
 
