@@ -90,17 +90,6 @@ static void contact_rates(const imp_world *world, imp_touch *touch, const imp_st
     *rate1 = qvec3_add(qvec3_cross(w1, touch->r1), curve(b1, s1, out1, qvec3_sub(turn1, touch->normal_rate)));
 }
 
-/* The body a moment later, as it moves now. */
-static imp_state drifted(const imp_body *body, const imp_state *state, double time)
-{
-    imp_state later = *state;
-    if (body->is_static) return later;
-    const qvec3 turn = qvec3_scale(imp_omega(body, state), time);
-    later.x = qvec3_axpy(time, state->v, state->x);
-    (void)quat_normalize(quat_mul(quat_from_rotation_vector(turn), state->q), &later.q);
-    return later;
-}
-
 /* The rates of the one point of two bodies, whatever it is made of: from where it is a little earlier and later. */
 static void lone_rates(imp_world *world, const imp_pair *pair, imp_touch *touch, const imp_state *states, qvec3 *rate1,
                        qvec3 *rate2)
@@ -112,7 +101,7 @@ static void lone_rates(imp_world *world, const imp_pair *pair, imp_touch *touch,
                  time = IMP_LONE_TURN / (omega + speed / b1->radius + 1e-300);
     impact_contact at[2];
     for (int k = 0; k < 2; k++) {
-        const imp_state one = drifted(b1, s1, k ? time : -time), two = drifted(b2, s2, k ? time : -time);
+        const imp_state one = imp_drifted(b1, s1, k ? time : -time), two = imp_drifted(b2, s2, k ? time : -time);
         imp_gap_of(b1, &one, b2, &two, world->gaps, &world->usage, &at[k]);
     }
     const double unit = 0.5 / time;

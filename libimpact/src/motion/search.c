@@ -144,7 +144,7 @@ typedef struct sight {
     bool parabola;
 } sight;
 
-static void look_at(const imp_search *s, double t, sight *l)
+static void see_motion(const imp_search *s, double t, sight *l)
 {
     l->t = t;
     l->window = fmin(s->segment[0]->t1, s->segment[1]->t1) - t;
@@ -161,6 +161,11 @@ static void look_at(const imp_search *s, double t, sight *l)
         l->jerk += segment->kind == IMP_SEGMENT_DAMPED ? 0 : l->bounds[k].jerk;
     }
     l->pull = qvec3_sub(l->bounds[0].acceleration, l->bounds[1].acceleration);
+}
+
+static void look_at(const imp_search *s, double t, sight *l)
+{
+    see_motion(s, t, l);
     imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->gaps, s->usage, &l->contact);
     const qvec3 still = {0, 0, 0};
     const qvec3 omega1 = imp_omega(s->body[0], &l->state[0]);
@@ -197,13 +202,13 @@ static bool creeps(const imp_search *s, const sight *l, double gap, double step)
  * later. */
 static double step_veering(const imp_search *s, const sight *l, double gap)
 {
-    const double apart = IMP_VEERING / (l->bounds[0].omega + l->bounds[1].omega), t = l->t;
+    const double apart = IMP_VEERING / (l->bounds[0].omega + l->bounds[1].omega);
     const qvec3 n = l->contact.normal;
     qvec3 around[2];
     for (int k = 0; k < 2; k++) {
-        const double then = t + (k ? apart : -apart);
-        const imp_state a = imp_segment_at(s->segment[0], s->body[0], then),
-                        b = imp_segment_at(s->segment[1], s->body[1], then);
+        const double then = k ? apart : -apart; /* as they move now: their segments may be shorter */
+        const imp_state a = imp_drifted(s->body[0], &l->state[0], then),
+                        b = imp_drifted(s->body[1], &l->state[1], then);
         impact_contact contact;
         imp_gap_of(s->body[0], &a, s->body[1], &b, s->gaps, s->usage, &contact);
         around[k] = contact.normal;
@@ -228,17 +233,50 @@ static double step_veering(const imp_search *s, const sight *l, double gap)
     return safe_step(&p, limit);
 }
 
+static double scale_of(const imp_search *s, const sight *l)
+{
+    return imp_place_scale(s->body[0], l->state[0].x, s->body[1], l->state[1].x, l->contact.normal);
+}
+
+/* The step that psi allows along the contact's normal, where that leaves a gap. */
+static double step_along(const imp_search *s, const sight *l, double gap)
+{
+    const qvec3 n = l->contact.normal, none = {0, 0, 0};
+    const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
+    imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
+    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), none, 0, &l->bounds[0]);
+    add_turning(&p, s, 1, &l->state[1], n, none, 0, &l->bounds[1]);
+    return safe_step(&p, l->window);
+}
+
+/* What the body reaches along n from its centre of mass. */
+static double reach_of(const imp_body *body, const imp_state *state, qvec3 n)
+{
+    qvec3 point;
+    return imp_world_support(body, quat_rotate_inverse(state->q, n), &point);
+}
+
+/* Whether the direction of an earlier search proves, without a gap, that there is no contact before one of the segments
+ * ends: of an integrator's short ones most end so. */
+static bool is_parted(const imp_search *s, double t)
+{
+    if (!s->axis || s->beyond || is_plane(s->body[1]) || same(*s->axis, (qvec3){0, 0, 0})) return false;
+    sight l;
+    see_motion(s, t, &l);
+    const qvec3 n = l.contact.normal = *s->axis;
+    const double gap = qvec3_dot(n, qvec3_sub(l.state[0].x, l.state[1].x)) -
+                       reach_of(s->body[0], &l.state[0], qvec3_neg(n)) - reach_of(s->body[1], &l.state[1], n);
+    const double touching = IMP_TOUCHING * scale_of(s, &l);
+    return gap > touching && l.window > 0 && step_along(s, &l, gap - touching) >= l.window;
+}
+
 /* A step over which the gap cannot fall to zero; of bodies that do not turn, on parabolas, the one in which it does. */
 static double step_before(const imp_search *s, const sight *l, double gap)
 {
     const qvec3 n = l->contact.normal;
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     if (l->parabola && !turns(s, 0) && !turns(s, 1)) return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
-    imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
-    const qvec3 none = {0, 0, 0};
-    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), none, 0, &l->bounds[0]);
-    add_turning(&p, s, 1, &l->state[1], n, none, 0, &l->bounds[1]);
-    const double step = safe_step(&p, l->window);
+    const double step = step_along(s, l, gap);
     return creeps(s, l, gap, step) ? fmax(step, step_veering(s, l, gap)) : step;
 }
 
@@ -269,11 +307,6 @@ static double still_rate(const imp_search *s, const sight *l)
     for (int k = 0; k < 2; k++)
         if (turns(s, k)) speed += qvec3_norm(l->state[k].v) + s->body[k]->radius * l->bounds[k].omega;
     return s->still + 1e-9 * speed;
-}
-
-static double scale_of(const imp_search *s, const sight *l)
-{
-    return imp_place_scale(s->body[0], l->state[0].x, s->body[1], l->state[1].x, l->contact.normal);
 }
 
 /* Between a time before the contact and one behind it, where the gap is below the slack: the Illinois form of regula
@@ -318,14 +351,26 @@ static bool is_fixed(const imp_search *s, int k)
     return s->segment[k]->kind == IMP_SEGMENT_DENSE && s->segment[k]->dense->fixed;
 }
 
-/* Where bodies crawl along each other: over a dip that is no deeper than the segment's step allows; of a fixed step,
- * which is long behind a bounce too, no deeper than what counts as touching: A T^2/8. */
+/* How fast the gap's rate can fall: by the centres, and by what turns. */
+static double most_bend(const imp_search *s, const sight *l)
+{
+    double bend = bend_of(s, l, l->contact.normal);
+    for (int k = 0; k < 2; k++)
+        if (turns(s, k)) bend += s->body[k]->radius * (l->bounds[k].omega * l->bounds[k].omega + l->bounds[k].spin_up);
+    return bend;
+}
+
+/* Where bodies crawl along each other: over a dip that is no deeper than the segment's step allows, or, while they part,
+ * than what counts as touching, A T^2/2; of a fixed step, which is long behind a bounce too, over no other. */
 static double crawl(const imp_search *s, const sight *l, double least, double touching)
 {
-    double step = fmin(least, l->window);
-    const double bend = bend_of(s, l, l->contact.normal);
-    if ((is_fixed(s, 0) || is_fixed(s, 1)) && bend > 0) step = fmin(step, sqrt(8 * touching / bend));
-    return step;
+    const double bend = most_bend(s, l), flat = bend > 0 ? sqrt(2 * touching / bend) : INFINITY;
+    double step = least;
+    if (is_fixed(s, 0) || is_fixed(s, 1))
+        step = fmin(least, 2 * flat);
+    else if (l->rate >= 0)
+        step = fmax(least, flat);
+    return fmin(step, l->window);
 }
 
 static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->segment[1]->t0); }
@@ -336,12 +381,14 @@ static imp_found advance(const imp_search *s, double from, double until)
     const imp_found never = {INFINITY, false};
     const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), least = shortest_step(s), start = start_of(s),
                  error = imp_gap_error(s->gaps, s->body[0], s->body[1]);
+    if (least > 0 && from == start && is_parted(s, from)) return never;
     double t = from + (from == start ? balls_meet(s, from) : 0), slack = 0, before = t, gap_before = INFINITY;
     bool leaving = false;
     for (int i = 0; i < STEPS && t <= end; i++) {
         if (t > until && !leaving && least == 0) return (imp_found){t, false};
         sight l;
         look_at(s, t, &l);
+        if (s->axis) *s->axis = l.contact.normal;
         double step, gap = l.contact.lower;
         if (s->beyond) {
             step = step_behind(s, &l);
@@ -355,15 +402,16 @@ static imp_found advance(const imp_search *s, double from, double until)
             leaving = leaving && gap <= touching;
             const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l) + error;
             if (leaving) gap += slack;
-            if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
+            if (gap < -rounding && gap_before > 0 && isfinite(gap_before) && !leaving)
                 return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};
             if (gap <= rounding && l.rate < 0) return (imp_found){t, true};
-            step = step_before(s, &l, fmax(gap, 0)); /* they part from where they are */
+            const bool near = gap <= all_but_closed * scale_of(s, &l) && gap + l.rate * least > 0;
+            step = least > 0 && near ? crawl(s, &l, least, touching) : 0;
+            if (step < l.window)
+                step = fmax(step, step_before(s, &l, fmax(gap, 0))); /* they part from where they are */
         }
         before = t, gap_before = gap;
         if (l.window <= 0) return never;
-        const bool crawls = step < least && gap <= all_but_closed * scale_of(s, &l) && gap + l.rate * least > 0;
-        if (crawls) step = fmax(step, crawl(s, &l, least, IMP_TOUCHING * scale_of(s, &l) + error));
         if (!(t + step <= end) || step == INFINITY) return never;
         if (t + step == t) return (imp_found){t, true};
         t += step;

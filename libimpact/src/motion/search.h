@@ -16,6 +16,8 @@ typedef struct imp_search {
     double still;        /* m/s: rates of the gap that only rounding makes: imp_world's slip_speed */
     imp_gaps *gaps;      /* how gaps are asked for; NULL: by Newton */
     impact_usage *usage; /* gap queries are counted there */
+    qvec3 *axis;         /* where the pair's last search left its normal, world; 0: nowhere; NULL: not kept. It saves
+                            queries, and changes no answer */
 } imp_search;
 
 typedef struct imp_found {

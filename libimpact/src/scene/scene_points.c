@@ -33,19 +33,30 @@ static int corner_of(const imp_world *world, const imp_pair *pair, const imp_poi
     return of_disc ? 0 : imp_corner_number(&world->bodies[pair->body1], point->feature[0]);
 }
 
-static impact_status place(imp_island *island, const imp_pair *pair)
+/* What was held there goes on being held until it is settled anew. */
+static imp_pair point_pair(const imp_pair *whole, int corner, const imp_pair *before, int count)
+{
+    for (int k = 0; corner > 0 && k < count; k++)
+        if (before[k].corner == corner && imp_same_bodies(&before[k], whole)) return before[k];
+    imp_pair own = *whole;
+    own.corner = corner;
+    return own;
+}
+
+/* The points of the bodies of before[p], of so many pairs. */
+static impact_status place(imp_island *island, const imp_pair *before, int p, int pairs)
 {
     imp_world *world = &island->world;
     imp_point points[IMP_POINTS];
-    imp_pair own = whole_pair(pair);
-    const double touching = imp_world_touching_distance(world, pair, island->states);
-    const int count = imp_points_find(world, &own, island->states, touching, points);
+    imp_pair whole = whole_pair(&before[p]);
+    const double touching = imp_world_touching_distance(world, &whole, island->states);
+    const int count = imp_points_find(world, &whole, island->states, touching, points);
     const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
-    if (status == IMPACT_OK && count == 0 && pair->corner > 0) world->pairs[world->pair_count++] = own;
+    if (status == IMPACT_OK && count == 0 && before[p].corner > 0) world->pairs[world->pair_count++] = whole;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
+        imp_pair own = point_pair(&whole, corner_of(world, &whole, &points[k], count), before, pairs);
         own.placed = true;
         own.place = points[k].contact;
-        own.corner = corner_of(world, &own, &points[k], count);
         own.bearer = count == 1 ? 0 : points[k].feature[1].kind == IMPACT_FACE ? 2 : 1;
         world->pairs[world->pair_count++] = own;
     }
@@ -69,7 +80,7 @@ impact_status imp_scene_place_points(imp_island *island)
         if (!imp_pair_has_faces(world, &before[p]))
             world->pairs[world->pair_count++] = before[p];
         else if (!is_among(before, p, &before[p]))
-            status = place(island, &before[p]);
+            status = place(island, before, p, count);
     }
     imp_arena_give(world->arena, before);
     return status;

@@ -153,7 +153,8 @@ static void search(imp_tracks *tracks, imp_near *near, double from)
                           .beyond = near->beyond,
                           .still = tracks->world->slip_speed,
                           .gaps = tracks->world->gaps,
-                          .usage = &tracks->world->usage};
+                          .usage = &tracks->world->usage,
+                          .axis = &near->axis};
     const imp_found found = imp_search_contact(&s, from, smaller(a->leave, b->leave));
     near->t = found.t, near->touches = found.touches;
 }

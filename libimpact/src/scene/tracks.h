@@ -19,6 +19,7 @@ typedef struct imp_near {
     bool touches; /* which of the two */
     bool beyond;  /* the first is behind a plane, beside its bounds */
     bool held;    /* an island's: nothing is searched for */
+    qvec3 axis;   /* search.h */
 } imp_near;
 
 /* What the pairs' other bodies ask stands side by side at the front. */
