@@ -402,7 +402,7 @@ static imp_found advance(const imp_search *s, double from, double until)
             leaving = leaving && gap <= touching;
             const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l) + error;
             if (leaving) gap += slack;
-            if (gap < -rounding && gap_before > 0 && isfinite(gap_before) && !leaving)
+            if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
                 return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};
             if (gap <= rounding && l.rate < 0) return (imp_found){t, true};
             const bool near = gap <= all_but_closed * scale_of(s, &l) && gap + l.rate * least > 0;
