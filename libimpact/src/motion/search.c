@@ -360,8 +360,8 @@ static double most_bend(const imp_search *s, const sight *l)
     return bend;
 }
 
-/* Where bodies crawl along each other: over a dip that is no deeper than the segment's step allows, or, while they part,
- * than what counts as touching, A T^2/2; of a fixed step, which is long behind a bounce too, over no other. */
+/* Where bodies crawl along each other: over a dip that is no deeper than the segment's step allows, or, while they
+ * part, than what counts as touching, A T^2/2; of a fixed step, which is long behind a bounce too, over no other. */
 static double crawl(const imp_search *s, const sight *l, double least, double touching)
 {
     const double bend = most_bend(s, l), flat = bend > 0 ? sqrt(2 * touching / bend) : INFINITY;
