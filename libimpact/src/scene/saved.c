@@ -149,6 +149,7 @@ static void walk_pair(imp_archive *a, imp_pair *p)
     imp_archive_int(a, &mode, IMP_OPEN, IMP_ROLL);
     imp_archive_int(a, &p->line, 0, 2);
     imp_archive_int(a, &p->corner, 0, IMPACT_HULL_POINTS);
+    imp_archive_int(a, &p->face, 0, 2 * IMPACT_HULL_POINTS);
     for (size_t k = 0; k < sizeof flags / sizeof *flags; k++) imp_archive_bool(a, flags[k]);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
     walk_vector(a, &p->direction);
@@ -206,8 +207,9 @@ static const char *pair_fault(const imp_saved *s, const impact_scene *scene, con
     if (!known || !here[pair->body1] || !here[pair->body2] || bodies[pair->body1].is_static)
         return "a contact's bodies";
     if (!bodies[pair->body2].is_static && pair->body2 < pair->body1) return "the order of a contact's bodies";
-    const bool on_plane = bodies[pair->body2].shape.kind == IMPACT_PLANE;
+    const bool on_plane = bodies[pair->body2].shape.kind == IMPACT_PLANE || pair->face > 0;
     if (pair->corner > (on_plane ? imp_corner_count(&bodies[pair->body1]) : 0)) return "a contact's corner";
+    if (pair->face > imp_corner_faces(&bodies[pair->body2])) return "a contact's face";
     return isfinite(sum) ? NULL : "a contact's numbers";
 }
 

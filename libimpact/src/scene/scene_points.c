@@ -13,7 +13,7 @@ static imp_pair whole_pair(const imp_pair *pair)
     imp_pair whole = *pair;
     whole.mode = IMP_OPEN;
     whole.placed = whole.onset = whole.young = whole.turned = whole.still = false;
-    whole.corner = 0;
+    whole.corner = whole.face = 0;
     return whole;
 }
 
@@ -25,21 +25,26 @@ static bool is_among(const imp_pair *pairs, int count, const imp_pair *pair)
     return false;
 }
 
-/* What of body 1 the point is (corner.h), where it stands on a plane; 0: nothing that can be held alone. */
-static int corner_of(const imp_world *world, const imp_pair *pair, const imp_point *point, int count)
+/* What of body 1 the point is and on which face of body 2 (corner.h), where it stands on what is static; 0: nothing
+ * that can be held alone. */
+static int corner_of(const imp_world *world, const imp_pair *pair, const imp_point *point, int count, int *face)
 {
-    if (world->bodies[pair->body2].shape.kind != IMPACT_PLANE) return 0;
+    const imp_body *under = &world->bodies[pair->body2];
+    const impact_feature on = point->feature[1];
+    *face = on.kind == IMPACT_FACE && on.index >= 0 && on.index < imp_corner_faces(under) ? on.index + 1 : 0;
+    if (under->shape.kind != IMPACT_PLANE && *face == 0) return 0;
     const bool of_disc = point->feature[0].kind == IMPACT_RIM && count > 2;
     return of_disc ? 0 : imp_corner_number(&world->bodies[pair->body1], point->feature[0]);
 }
 
 /* What was held there goes on being held until it is settled anew. */
-static imp_pair point_pair(const imp_pair *whole, int corner, const imp_pair *before, int count)
+static imp_pair point_pair(const imp_pair *whole, int corner, int face, const imp_pair *before, int count)
 {
     for (int k = 0; corner > 0 && k < count; k++)
-        if (before[k].corner == corner && imp_same_bodies(&before[k], whole)) return before[k];
+        if (before[k].corner == corner && before[k].face == face && imp_same_bodies(&before[k], whole))
+            return before[k];
     imp_pair own = *whole;
-    own.corner = corner;
+    own.corner = corner, own.face = face;
     return own;
 }
 
@@ -54,7 +59,9 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
     const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
     if (status == IMPACT_OK && count == 0 && before[p].corner > 0) world->pairs[world->pair_count++] = whole;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
-        imp_pair own = point_pair(&whole, corner_of(world, &whole, &points[k], count), before, pairs);
+        int face;
+        const int corner = corner_of(world, &whole, &points[k], count, &face);
+        imp_pair own = point_pair(&whole, corner, face, before, pairs);
         own.placed = true;
         own.place = points[k].contact;
         own.bearer = count == 1 ? 0 : points[k].feature[1].kind == IMPACT_FACE ? 2 : 1;
@@ -94,6 +101,14 @@ static bool stays(imp_island *island, int p)
     return m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= island->world.slip_speed;
 }
 
+/* Whether body 1 reaches below the face its corner is on, beside its border: edges may meet there. */
+static bool overhangs(const imp_island *island, int p)
+{
+    const imp_pair *pair = &island->world.pairs[p];
+    const double touching = imp_world_touching_distance(&island->world, pair, island->states);
+    return pair->face > 0 && imp_corner_lowest(&island->world, pair, island->states) < -touching;
+}
+
 imp_stay imp_scene_points_stay(imp_island *island)
 {
     const imp_world *world = &island->world;
@@ -102,7 +117,7 @@ imp_stay imp_scene_points_stay(imp_island *island)
         /* the points of two bodies follow each other */
         if (p > 0 && !imp_same_bodies(&world->pairs[p], &world->pairs[p - 1])) run = 0;
         if (!stays(island, p)) continue;
-        if (world->pairs[p].corner == 0 || ++run > 2) return IMP_STAY_FACES;
+        if (world->pairs[p].corner == 0 || ++run > 2 || overhangs(island, p)) return IMP_STAY_FACES;
         found = IMP_STAY_CORNERS;
     }
     return found;

@@ -14,7 +14,8 @@ impact_status imp_scene_place_points(imp_island *island);
 /* What of the points does not part. */
 typedef enum imp_stay {
     IMP_STAY_NONE,
-    IMP_STAY_CORNERS, /* on planes, of no two bodies more than two: they are held exactly, each a pair of its own */
+    IMP_STAY_CORNERS, /* on planes and static faces, of no two bodies more than two: they are held exactly, each a pair
+                         of its own */
     IMP_STAY_FACES    /* more, or others: the bodies lie on each other, and go by steps */
 } imp_stay;
 imp_stay imp_scene_points_stay(imp_island *island);

@@ -49,23 +49,51 @@ static corner_place place_of(const imp_form *form, qvec3 up, int i)
     return (corner_place){.at = {c[0], c[1], c[2]}};
 }
 
-/* The body as its plane sees it. */
+/* The face of a body with a core that a corner is on, from its shape's centre and in its axes. */
+static qvec3 face_normal(const imp_form *form, int face)
+{
+    double n[3];
+    imp_core_normal(&form->core, face, n);
+    return (qvec3){n[0], n[1], n[2]};
+}
+
+static double face_height(const imp_form *form, int face, qvec3 n)
+{
+    return imp_core_height(&form->core, face, (double[]){n.x, n.y, n.z}) + form->rounding;
+}
+
+int imp_corner_faces(const imp_body *body)
+{
+    const impact_shape_kind kind = body->shape.kind;
+    const bool flat = kind == IMPACT_BOX || kind == IMPACT_POLYHEDRON;
+    return body->is_static && flat ? imp_core_hull(&body->shape)->face_count : 0;
+}
+
+/* The body as what it stands on sees it. */
 typedef struct corner_view {
     imp_form form;
     quat axes;        /* of the shape */
     qvec3 centre;     /* of the shape, from the centre of mass, world */
-    qvec3 normal, up; /* of the plane: world; the shape's axes */
-    qvec3 apart;      /* from the plane's place to the centre of mass */
+    qvec3 normal, up; /* of what it stands on: world; the shape's axes */
+    qvec3 apart;      /* from the other's centre of mass to this one's */
+    double level;     /* m: how high along the normal that face is over its centre of mass */
 } corner_view;
 
 static corner_view view_of(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    const imp_body *body = &world->bodies[pair->body1];
+    const imp_body *body = &world->bodies[pair->body1], *under = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     corner_view v = {.axes = imp_shape_axes(body, s1),
                      .centre = imp_shape_offset(body, s1),
                      .normal = quat_rotate(s2->q, (qvec3){0, 0, 1}),
                      .apart = qvec3_sub(s1->x, s2->x)};
+    if (pair->face > 0) {
+        imp_form below;
+        imp_form_make(&under->shape, 1, quat_identity(), &below);
+        const qvec3 n = face_normal(&below, pair->face - 1);
+        v.normal = quat_rotate(imp_shape_axes(under, s2), n);
+        v.level = face_height(&below, pair->face - 1, n) + qvec3_dot(v.normal, imp_shape_offset(under, s2));
+    }
     v.up = quat_rotate_inverse(v.axes, v.normal);
     imp_form_make(&body->shape, 1, quat_identity(), &v.form);
     return v;
@@ -73,13 +101,18 @@ static corner_view view_of(const imp_world *world, const imp_pair *pair, const i
 
 static qvec3 from_centre(const corner_view *v, qvec3 at) { return qvec3_add(v->centre, quat_rotate(v->axes, at)); }
 
+static double height_of(const corner_view *v, qvec3 at)
+{
+    return qvec3_dot(v->normal, qvec3_add(v->apart, from_centre(v, at))) - v->form.rounding - v->level;
+}
+
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const corner_view v = view_of(world, pair, states);
     const qvec3 corner = from_centre(&v, place_of(&v.form, v.up, pair->corner - 1).at);
     impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
     contact.offset2 = qvec3_add(v.apart, contact.offset1);
-    contact.gap = qvec3_dot(contact.normal, contact.offset2);
+    contact.gap = qvec3_dot(contact.normal, contact.offset2) - v.level;
     contact.offset2 = qvec3_axpy(-contact.gap, contact.normal, contact.offset2);
     return contact;
 }
@@ -106,17 +139,50 @@ static bool is_held(const imp_world *world, const imp_pair *pair, int corner)
     return false;
 }
 
+/* m: how far within the border of its face a corner stands; everywhere on a plane. */
+static double within_border(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    if (pair->face == 0) return INFINITY;
+    const imp_body *under = &world->bodies[pair->body2];
+    const imp_state *s2 = &states[pair->body2];
+    imp_form form;
+    imp_form_make(&under->shape, 1, quat_identity(), &form);
+    const impact_hull *hull = form.core.hull;
+    const qvec3 n = face_normal(&form, pair->face - 1),
+                place = qvec3_sub(imp_corner_contact(world, pair, states).offset2, imp_shape_offset(under, s2)),
+                p = quat_rotate_inverse(imp_shape_axes(under, s2), place);
+    const int first = hull->start[pair->face - 1], end = hull->start[pair->face];
+    double least = INFINITY;
+    for (int i = first; i < end; i++) {
+        double x[3], y[3];
+        imp_core_vertex(&form.core, hull->loop[i], x);
+        imp_core_vertex(&form.core, hull->loop[i + 1 < end ? i + 1 : first], y);
+        const qvec3 from = {x[0], x[1], x[2]}, along = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
+        const double across = qvec3_dot(qvec3_cross(n, along), qvec3_sub(p, from));
+        least = fmin(least, across / qvec3_norm(along));
+    }
+    return least;
+}
+
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
     const corner_view v = view_of(world, pair, states);
-    double least = INFINITY;
+    double least = within_border(world, pair, states);
     for (int i = 0; i < count; i++) {
         const corner_place place = place_of(&v.form, v.up, i);
         const bool held = is_held(world, pair, i + 1);
         if (held && !(place.rim > 0)) continue;
-        const qvec3 at = held ? qvec3_axpy(-2 * place.rim, place.along, place.at) : place.at;
-        least = fmin(least, qvec3_dot(v.normal, qvec3_add(v.apart, from_centre(&v, at))) - v.form.rounding);
+        least = fmin(least, height_of(&v, held ? qvec3_axpy(-2 * place.rim, place.along, place.at) : place.at));
     }
+    return least;
+}
+
+double imp_corner_lowest(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const int count = imp_corner_count(&world->bodies[pair->body1]);
+    const corner_view v = view_of(world, pair, states);
+    double least = INFINITY;
+    for (int i = 0; i < count; i++) least = fmin(least, height_of(&v, place_of(&v.form, v.up, i).at));
     return least;
 }

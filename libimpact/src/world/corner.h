@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * corner: what of a body's core stands on a plane alone, a contact whose place follows from the orientation: a corner,
- * or the lowest place of a rim. With c it in the body's axes, rho the rounding, n the plane's normal and y a point of
- * the plane
+ * corner: what of a body's core stands on a plane, or on a face of a static body, alone: a contact whose place follows
+ * from the orientation: a corner, or the lowest place of a rim. With c it in the body's axes, rho the rounding, n the
+ * plane's normal and y a point of the plane
  *
  *     gap = n . (x + R c - y) - rho,     contact point from the centre  r = R c - rho n,     r' = w x R c + R c'
  *
@@ -22,15 +22,21 @@ int imp_corner_count(const imp_body *body);
 /* The feature's number among them, from 1; 0: it is none. */
 int imp_corner_number(const imp_body *body, impact_feature feature);
 
-/* Of a pair with a corner (imp_pair.corner) on its plane. */
+/* How many faces the body has on which a corner may be held; 0 where it is not static, or none of a box or polyhedron;
+ * a plane is not one of them. */
+int imp_corner_faces(const imp_body *body);
+
+/* Of a pair with a corner (imp_pair.corner) on its plane, or on body 2's face (imp_pair.face). */
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
 /* How the contact point moves from body 1's centre, m/s. */
 qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
 /* m: how high over the plane the lowest is of what may land yet: body 1's corners and rims but those that are held,
- * and of those rims their far side. */
+ * and of those rims their far side; or, where that is less, how far the pair's corner is within its face's border. */
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states);
+/* m: how high the lowest of them all is: < 0 beside the border of a face. */
+double imp_corner_lowest(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
 /* Whether both are pairs of the same two bodies. */
 static inline bool imp_same_bodies(const imp_pair *a, const imp_pair *b)
