@@ -24,37 +24,21 @@
 #include <math.h>
 #include <stdio.h>
 #include <time.h>
-#include <impact/impact.h>
 #include <quat/rotation.h>
+#include "report_extreme.h"
 #include "truth_lean.h"
-#if defined(HAVE_QUADMATH)
-#include "truth_fall.h"
-#endif
-
-static const double gravity = 9.81;
 
 /* ---- a scene, its run and its row ---- */
 
-enum { MOST_BODIES = 3 };
-
-typedef struct trial {
-    impact_scene_def def;
-    impact_body_def bodies[MOST_BODIES];
-    impact_force_def force;
-    impact_scene *scene;
-    impact_status status;
-    double cpu; /* s */
-} trial;
-
-static void start(trial *t, double duration)
+static void start(extreme_trial *t, double duration)
 {
-    *t = (trial){.def = impact_default_scene_def()};
-    t->def.gravity = (qvec3){0, 0, -gravity};
+    *t = (extreme_trial){.def = impact_default_scene_def()};
+    t->def.gravity = (qvec3){0, 0, -extreme_gravity};
     t->def.duration = duration;
     t->def.output_rate = 0;
 }
 
-static impact_body_def *add(trial *t, const char *name, double restitution, double friction)
+static impact_body_def *add(extreme_trial *t, const char *name, double restitution, double friction)
 {
     impact_body_def *body = &t->bodies[t->def.body_count++];
     *body = impact_default_body_def();
@@ -65,26 +49,26 @@ static impact_body_def *add(trial *t, const char *name, double restitution, doub
     return body;
 }
 
-static void add_floor(trial *t)
+static void add_floor(extreme_trial *t)
 {
     impact_body_def *body = add(t, "floor", 1, 1);
     impact_shape_plane(INFINITY, INFINITY, &body->shape);
     body->is_static = true;
 }
 
-static impact_body_def *add_ball(trial *t, double radius, double restitution, double friction)
+static impact_body_def *add_ball(extreme_trial *t, double radius, double restitution, double friction)
 {
     impact_body_def *body = add(t, "ball", restitution, friction);
     impact_shape_sphere(radius, &body->shape);
     return body;
 }
 
-static void complain(const trial *t, const char *message)
+static void complain(const extreme_trial *t, const char *message)
 {
     if (t->status < 0) fprintf(stderr, "report_extreme: %s\n", message);
 }
 
-static void open_trial(trial *t)
+void extreme_open(extreme_trial *t)
 {
     t->def.bodies = t->bodies;
     t->def.forces = &t->force;
@@ -95,7 +79,7 @@ static void open_trial(trial *t)
     complain(t, message);
 }
 
-static void go_on(trial *t, double until)
+void extreme_go_on(extreme_trial *t, double until)
 {
     if (t->status < 0) return;
     const clock_t from = clock();
@@ -104,13 +88,13 @@ static void go_on(trial *t, double until)
     complain(t, impact_scene_message(t->scene));
 }
 
-static void run(trial *t)
+static void run(extreme_trial *t)
 {
-    open_trial(t);
-    go_on(t, t->def.duration);
+    extreme_open(t);
+    extreme_go_on(t, t->def.duration);
 }
 
-static impact_sample end_of(const trial *t, int body)
+impact_sample extreme_end_of(const extreme_trial *t, int body)
 {
     impact_sample sample = {0};
     if (t->scene) impact_scene_body(t->scene, body, &sample);
@@ -125,14 +109,7 @@ static double account(const impact_energy *e)
     return size > 0 ? fabs(now - e->start) / size : 0;
 }
 
-/* What an error is by, until when, and the condition there. */
-typedef struct source {
-    double error;
-    const char *by;
-    double until, condition;
-} source;
-
-static void row_by(const char *name, double parameter, trial *t, source s)
+void extreme_row(const char *name, double parameter, extreme_trial *t, extreme_source s)
 {
     if (!t->scene) {
         printf("%s,%g,%s,,,,,,,,\n", name, parameter, impact_status_string(t->status));
@@ -146,9 +123,9 @@ static void row_by(const char *name, double parameter, trial *t, source s)
     impact_scene_destroy(t->scene);
 }
 
-static void row(const char *name, double parameter, trial *t, double error)
+static void row(const char *name, double parameter, extreme_trial *t, double error)
 {
-    row_by(name, parameter, t, (source){error, "formula", t->def.duration, 1});
+    extreme_row(name, parameter, t, (extreme_source){error, "formula", t->def.duration, 1});
 }
 
 static double off(double value, double wanted) { return fabs(value - wanted) / fabs(wanted); }
@@ -165,7 +142,7 @@ static bool drag(double t, int body, double mass, qvec3 x, quat q, qvec3 v, qvec
 
 static void stiff_drag(double rate)
 {
-    trial t;
+    extreme_trial t;
     start(&t, 1);
     add_ball(&t, 0.1, 0, 0);
     t.force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
@@ -173,24 +150,24 @@ static void stiff_drag(double rate)
     t.force.context = &rate;
     t.def.force_count = 1;
     run(&t);
-    row("stiff drag", rate, &t, off(end_of(&t, 0).velocity.z, gravity / rate * expm1(-rate)));
+    row("stiff drag", rate, &t, off(extreme_end_of(&t, 0).velocity.z, extreme_gravity / rate * expm1(-rate)));
 }
 
 /* Height of the lowest point of a ball let fall from 1 m, at t, and its speed. */
 static double bouncing(double restitution, double t)
 {
-    double v = sqrt(2 * gravity), left = t - v / gravity;
+    double v = sqrt(2 * extreme_gravity), left = t - v / extreme_gravity;
     for (;;) {
         v *= restitution;
-        if (left < 2 * v / gravity) return left * (v - 0.5 * gravity * left);
-        left -= 2 * v / gravity;
+        if (left < 2 * v / extreme_gravity) return left * (v - 0.5 * extreme_gravity * left);
+        left -= 2 * v / extreme_gravity;
     }
 }
 
 /* Five bounces. */
 static void drop(const char *name, double parameter, double unit, double away)
 {
-    trial t;
+    extreme_trial t;
     start(&t, 2.8);
     t.def.gravity.z *= unit;
     t.def.rest_height *= unit;
@@ -199,12 +176,12 @@ static void drop(const char *name, double parameter, double unit, double away)
     add_ball(&t, 0.3 * unit, 0.8, 0.2)->position = (qvec3){away, -away, 1.3 * unit};
     run(&t);
     const double wanted = (0.3 + bouncing(0.8, 2.8)) * unit;
-    row(name, parameter, &t, off(end_of(&t, 1).position.z, wanted));
+    row(name, parameter, &t, off(extreme_end_of(&t, 1).position.z, wanted));
 }
 
 static void mass_ratio(double ratio)
 {
-    trial t;
+    extreme_trial t;
     start(&t, 1);
     t.def.gravity.z = 0;
     add_ball(&t, 0.1, 1, 0.3)->velocity.x = 1;
@@ -214,7 +191,8 @@ static void mass_ratio(double ratio)
     other->position.x = 0.7;
     run(&t);
     const double one = (1 - ratio) / (1 + ratio), two = 2 / (1 + ratio);
-    row("mass ratio", ratio, &t, fmax(fabs(end_of(&t, 0).velocity.x - one), off(end_of(&t, 1).velocity.x, two)));
+    row("mass ratio", ratio, &t,
+        fmax(fabs(extreme_end_of(&t, 0).velocity.x - one), off(extreme_end_of(&t, 1).velocity.x, two)));
 }
 
 /* The heavy one falls on the light one's side and presses it away: truth_lean. */
@@ -224,9 +202,9 @@ static void heavy_on_light(double ratio)
     const qvec3 from = {0.15, 0.02, 0.1};
     const double away = hypot(from.x, from.y);
     const truth_lean lean = {
-        .gravity = gravity, .radius = 0.1, .light = 1, .heavy = ratio, .away = away, .above = 0.15};
+        .gravity = extreme_gravity, .radius = 0.1, .light = 1, .heavy = ratio, .away = away, .above = 0.15};
     const truth_lean_times times = truth_lean_events(&lean);
-    trial t;
+    extreme_trial t;
     start(&t, times.floor * (1 - 1e-6));
     add_floor(&t);
     impact_body_def *light = add_ball(&t, 0.1, 0, 0), *heavy = add(&t, "heavy", 0, 0);
@@ -234,7 +212,7 @@ static void heavy_on_light(double ratio)
     impact_shape_sphere(0.1, &heavy->shape);
     heavy->mass = ratio;
     heavy->position = (qvec3){0, 0, 0.25};
-    open_trial(&t);
+    extreme_open(&t);
     double worst = 0;
     for (int k = 1; k <= 2 * PLACES && t.status >= 0; k++) {
         double at, x1, x2, above;
@@ -243,19 +221,19 @@ static void heavy_on_light(double ratio)
         else
             at = times.parting + (t.def.duration - times.parting) * (k - PLACES) / PLACES,
             truth_lean_apart(&lean, at, &x1, &x2, &above);
-        go_on(&t, at);
+        extreme_go_on(&t, at);
         const double c = from.x / away, s = from.y / away;
         const qvec3 one = {from.x - c * x1, from.y - s * x1, 0.1},
                     two = {from.x - c * x2, from.y - s * x2, 0.1 + above};
-        worst = fmax(worst, qvec3_norm(qvec3_sub(end_of(&t, 1).position, one)));
-        worst = fmax(worst, qvec3_norm(qvec3_sub(end_of(&t, 2).position, two)));
+        worst = fmax(worst, qvec3_norm(qvec3_sub(extreme_end_of(&t, 1).position, one)));
+        worst = fmax(worst, qvec3_norm(qvec3_sub(extreme_end_of(&t, 2).position, two)));
     }
     row("heavy on light", ratio, &t, worst / 0.2);
 }
 
 static void speed(double v)
 {
-    trial t;
+    extreme_trial t;
     start(&t, 2 / v);
     t.def.gravity.z = 0;
     impact_body_def *wall = add(&t, "wall", 1, 0), *disc = add(&t, "disc", 1, 0);
@@ -266,149 +244,39 @@ static void speed(double v)
     disc->velocity.x = v;
     run(&t);
     /* At the face's flat middle: 1 - 1e-4 there, the rest back. */
-    row("speed", v, &t, off(end_of(&t, 1).position.x, -1 - 2e-4));
+    row("speed", v, &t, off(extreme_end_of(&t, 1).position.x, -1 - 2e-4));
 }
-
-#if defined(HAVE_QUADMATH)
-/* What the trial's body, the second, is to truth_fall. */
-static truth_fall fall_of(const trial *t, double exponent)
-{
-    impact_body_def body;
-    impact_scene_body_def(t->scene, 1, &body);
-    const impact_shape *shape = &t->bodies[1].shape;
-    truth_fall f = {.mass = body.mass,
-                    .axis = {shape->a, shape->b, shape->c},
-                    .exponent = exponent,
-                    .moments = body.moments,
-                    .gravity = gravity,
-                    .restitution = body.restitution,
-                    .friction = body.friction,
-                    .law = t->def.law};
-    f.from = (truth_state){0, body.position, body.velocity, quat_unit(body.orientation), {0, 0, 0}};
-    f.from.omega = quat_rotate_inverse(f.from.orientation, body.omega);
-    return f;
-}
-
-/* The flights up to the third impact and half the way to the next, each followed for a thousand radians at most
- * after an impact; until when they tell. */
-enum { FLIGHTS = 4 };
-static int flights_of(truth_fall f, double duration, truth_fall flights[FLIGHTS], double *until)
-{
-    int count = 0;
-    double begin = 0, most = duration;
-    bool struck = true;
-    while (struck && count < FLIGHTS) {
-        flights[count++] = f;
-        begin = f.from.t;
-        if (count > 1) most = fmin(duration, begin + 1e3 / qvec3_norm(f.from.omega));
-        struck = truth_fall_next(&f, most);
-    }
-    *until = struck ? (begin + f.from.t) / 2 : most;
-    return count;
-}
-
-/* Of places over the height of the fall, of velocities over the greatest (points of the body's own), and rad. */
-static double apart(const truth_state *a, const truth_state *b, double way, double size)
-{
-    const qvec3 turning = qvec3_sub(quat_rotate(a->orientation, a->omega), quat_rotate(b->orientation, b->omega));
-    const double speed = sqrt(2 * gravity * way) + size * qvec3_norm(a->omega),
-                 v = qvec3_norm(qvec3_sub(a->velocity, b->velocity)) + size * qvec3_norm(turning);
-    return fmax(fmax(qvec3_norm(qvec3_sub(a->position, b->position)) / way, v / speed),
-                quat_rotation_distance(a->orientation, b->orientation));
-}
-
-static truth_state found(const trial *t, double at)
-{
-    const impact_sample s = end_of(t, 1);
-    return (truth_state){at, s.position, s.velocity, s.orientation, quat_rotate_inverse(s.orientation, s.omega)};
-}
-
-/* The greatest difference at 12 times, of the scene or, where it is NULL, of flights that begin a little aside; what
- * is nearer to an impact than a thousandth is not asked. */
-static double greatest(trial *t, const truth_fall one[], int count, const truth_fall aside[], double until)
-{
-    enum { TIMES = 12 };
-    double worst = 0;
-    const double way = one[0].from.position.z, size = one[0].axis[0];
-    for (int k = 1; k <= TIMES; k++) {
-        const double at = until * k / TIMES;
-        int flight = 0;
-        bool near = false;
-        for (int i = 1; i < count; i++) {
-            near = near || fabs(at - one[i].from.t) < until / 1000;
-            if (one[i].from.t <= at) flight = i;
-        }
-        if (near) continue;
-        if (t) go_on(t, at);
-        const truth_state wanted = truth_fall_at(&one[flight], at),
-                          got = t ? found(t, at) : truth_fall_at(&aside[flight], at);
-        worst = fmax(worst, apart(&wanted, &got, way, size));
-    }
-    return worst;
-}
-
-/* The condition: of a start that is higher by 1e-12, or of the flights. */
-static double condition_of(const truth_fall flights[], int count, double until, double duration)
-{
-    const double nudge = 1e-12;
-    double worst = 0, other;
-    truth_fall aside[FLIGHTS], f = flights[0];
-    for (int i = 0; i < count; i++)
-        worst = fmax(worst, truth_fall_condition(&flights[i], i + 1 < count ? flights[i + 1].from.t : until));
-    f.from.position.z *= 1 + nudge;
-    if (flights_of(f, duration, aside, &other) != count) return NAN;
-    return fmax(worst, greatest(NULL, flights, count, aside, until) / nudge);
-}
-
-/* The row of a trial that was opened, of a superquadric of that exponent. */
-static void falling(const char *name, double parameter, trial *t, double exponent)
-{
-    truth_fall flights[FLIGHTS];
-    double until;
-    const int count = flights_of(fall_of(t, exponent), t->def.duration, flights, &until);
-    const double error = greatest(t, flights, count, NULL, until);
-    go_on(t, t->def.duration);
-    row_by(name, parameter, t, (source){error, "oracle", until, condition_of(flights, count, until, t->def.duration)});
-}
-#else
-static void falling(const char *name, double parameter, trial *t, double exponent)
-{
-    (void)exponent;
-    fprintf(stderr, "report_extreme: %s %g is left out: the compiler has no 128 bits\n", name, parameter);
-    impact_scene_destroy(t->scene);
-}
-#endif
 
 static void spin(double rate)
 {
-    trial t;
+    extreme_trial t;
     start(&t, 1);
     add_floor(&t);
     impact_body_def *body = add(&t, "egg", 1, 0);
     impact_shape_ellipsoid(0.3, 0.2, 0.1, &body->shape);
     body->position.z = 2;
     body->omega = (qvec3){0.01 * rate, rate, 0.02 * rate};
-    open_trial(&t);
-    falling("spin", rate, &t, 2);
+    extreme_open(&t);
+    extreme_falling("spin", rate, &t, 2);
 }
 
 static void bounces(double count)
 {
-    trial t;
-    const double each = 2 * sqrt(2 / gravity);
+    extreme_trial t;
+    const double each = 2 * sqrt(2 / extreme_gravity);
     start(&t, count * each);
     add_floor(&t);
     add_ball(&t, 0.3, 1, 0)->position.z = 1.3;
     run(&t);
-    const impact_sample s = end_of(&t, 1);
-    const double height = s.position.z - 0.3 + 0.5 * s.velocity.z * s.velocity.z / gravity;
+    const impact_sample s = extreme_end_of(&t, 1);
+    const double height = s.position.z - 0.3 + 0.5 * s.velocity.z * s.velocity.z / extreme_gravity;
     row("bounces", count, &t, fabs(height - 1));
 }
 
 static void restitution(double e)
 {
-    trial t;
-    const double fall = sqrt(2 / gravity), rest = fall * (1 + e) / (1 - e);
+    extreme_trial t;
+    const double fall = sqrt(2 / extreme_gravity), rest = fall * (1 + e) / (1 - e);
     start(&t, 2 * rest);
     add_floor(&t);
     add_ball(&t, 0.3, e, 0)->position.z = 1.3;
@@ -419,9 +287,9 @@ static void restitution(double e)
 /* Lengths and gravity in this unit. */
 static void slide(const char *name, double parameter, double mu, double unit)
 {
-    trial t;
+    extreme_trial t;
     const double v = 1;
-    start(&t, 2 * 2 * v / (7 * mu * gravity));
+    start(&t, 2 * 2 * v / (7 * mu * extreme_gravity));
     t.def.gravity.z *= unit;
     t.def.rest_height *= unit;
     t.def.rest_speed *= unit;
@@ -430,7 +298,7 @@ static void slide(const char *name, double parameter, double mu, double unit)
     ball->position.z = 0.3 * unit;
     ball->velocity.x = v * unit;
     run(&t);
-    row(name, parameter, &t, off(end_of(&t, 1).velocity.x, 5 * v * unit / 7));
+    row(name, parameter, &t, off(extreme_end_of(&t, 1).velocity.x, 5 * v * unit / 7));
 }
 
 static void friction(double mu) { slide("friction", mu, mu, 1); }
@@ -438,15 +306,15 @@ static void sliding_units(double unit) { slide("sliding units", unit, 0.3, unit)
 
 static void falls(const char *name, double parameter, const impact_shape *shape, double height, double duration)
 {
-    trial t;
+    extreme_trial t;
     start(&t, duration);
     add_floor(&t);
     impact_body_def *body = add(&t, "body", 0.5, 0.3);
     body->shape = *shape;
     body->position.z = height;
     body->orientation = quat_from_rotation_vector((qvec3){0.3, 0.2, 0.1});
-    open_trial(&t);
-    falling(name, parameter, &t, shape->r);
+    extreme_open(&t);
+    extreme_falling(name, parameter, &t, shape->r);
 }
 
 static void exponent(double n)
