@@ -233,6 +233,34 @@ static void bad_places_on_a_curve(void **state)
     assert_true(quat_equal(next, one));
 }
 
+/* Frames of a closed curve at times of one's own: as at equal steps where they are those; only whole ways close. */
+static void times_on_a_closed_curve(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    quat_family f;
+    quat_curve c;
+    quat_framing_report whole, own;
+    quat q[N], r[N];
+    double t[N];
+    assert_int_equal(quat_torus_knot(2, 0.5, 2, 3, &f, &c), QUAT_OK);
+    for (int i = 0; i < N; i++) t[i] = i == N - 1 ? c.end : c.start + (c.end - c.start) * (i / (N - 1.0));
+    for (int framing = QUAT_FRENET; framing <= QUAT_CLOSED; framing++) {
+        const quat_status status = quat_curve_frames(&c, (quat_framing)framing, NULL, N, NULL, q, &whole);
+        assert_int_equal(quat_curve_frames(&c, (quat_framing)framing, NULL, N, t, r, &own), status);
+        for (int i = 0; i < N; i++) assert_true(quat_equal(q[i], r[i]));
+        assert_true(own.holonomy == whole.holonomy && own.monodromy == whole.monodromy && own.monodromy != 0);
+    }
+    assert_near(quat_rotation_distance(q[0], q[N - 1]), 0, 1e-14); /* the closed frame comes back */
+    for (int cut = 0; cut < 2; cut++) {                            /* part of the way, from either end */
+        assert_int_equal(quat_curve_frames(&c, QUAT_MINIMAL, NULL, N - 1, t + cut, r, &own), QUAT_OK);
+        assert_true(own.holonomy == 0 && own.monodromy == 0);
+        assert_int_equal(quat_curve_frames(&c, QUAT_CLOSED, NULL, N - 1, t + cut, r, &own), QUAT_EARGUMENT);
+    }
+    t[4] = t[3];
+    assert_int_equal(quat_curve_frames(&c, QUAT_MINIMAL, NULL, N, t, r, &own), QUAT_EARGUMENT);
+}
+
 static bool long_way(double t, qvec3 d[4], void *context)
 {
     (void)context;
@@ -554,7 +582,7 @@ int main(void)
         cmocka_unit_test(samples_that_are_none),    cmocka_unit_test(surfaces_that_are_none),
         cmocka_unit_test(curvature_of_no_frame),    cmocka_unit_test(seams),
         cmocka_unit_test(frames_of_no_mesh),        cmocka_unit_test(seams_that_are_none),
-        cmocka_unit_test(each_allocation_refused),
+        cmocka_unit_test(each_allocation_refused),  cmocka_unit_test(times_on_a_closed_curve),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
