@@ -162,7 +162,7 @@ static void read_methods(const quat_lua_reader *reader, impact_scene_def *def)
 {
     static const char *const keys[] = {"motion",           "impacts",       "gaps", "tolerance",
                                        "impact_tolerance", "gap_tolerance", "step", NULL};
-    static const char *const motion_words[] = {"auto", "cvode", "rk4", "steps", NULL};
+    static const char *const motion_words[] = {"auto", "cvode", "rk4", "steps", "other", NULL};
     static const char *const gap_words[] = {"newton", "ccd", NULL};
     if (quat_lua_push(reader, "methods") != LUA_TNIL) {
         const quat_lua_reader methods = quat_lua_read(reader->L, -1, "methods", reader->where, keys);

@@ -115,7 +115,7 @@ core.layer()
 ---@field omega vec3
 
 ---@class impact.methods
----@field motion? "auto"|"cvode"|"rk4"|"steps"  how bodies move between events; "steps": piles by steps
+---@field motion? "auto"|"cvode"|"rk4"|"steps"|"other"  how bodies move between events; "steps": piles by steps; "other": by what CVODE would not take
 ---@field impacts? "auto"|"closed_form"|"series"|"cvode"  the same as solver
 ---@field gaps? "newton"|"ccd"
 ---@field tolerance? number  the same as the scene's
@@ -503,6 +503,14 @@ end
 function methods:report(options)
   methods.name(self) -- of anything but a scene this raises
   return require "impact.report".of(self, options)
+end
+
+--- A run that was recorded done a second time, stretch by stretch, by another integrator at a tenth of the tolerance, and its gaps (docs/scene.md).
+--- nil and a message where that cannot be done.
+---@return impact.verification?, string?
+function methods:verify()
+  methods.name(self)
+  return require "impact.verify".of(self)
 end
 
 -- ---- plot and summary ----

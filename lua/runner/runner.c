@@ -123,7 +123,7 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
     if (runner->record)
         lua_pushfstring(L, "%s.run", name);
     else
-        lua_pushboolean(L, plot);
+        lua_pushboolean(L, plot || runner->verify);
     lua_setfield(L, -2, "record");
     lua_call(L, 2, 3);
     clear_progress(runner);
@@ -229,6 +229,24 @@ static int report_scene(lua_State *L, int scene, impact_runner *runner, const ch
     return code;
 }
 
+/* The run done again by another method: what that found; an exit code. */
+static int verify_scene(lua_State *L, int scene, impact_runner *runner)
+{
+    lua_getfield(L, scene, "verify");
+    lua_pushvalue(L, scene);
+    lua_call(L, 1, 2);
+    clear_progress(runner);
+    if (lua_isnil(L, -2)) return impact_runner_complain_limits(runner, IMPACT_EXIT_INACCURATE, lua_tostring(L, -1));
+    lua_pop(L, 1);
+    lua_getfield(L, -1, "good");
+    lua_getfield(L, -2, "text");
+    lua_pushvalue(L, -3);
+    lua_call(L, 1, 1);
+    if (!lua_toboolean(L, -2)) return impact_runner_complain(runner, IMPACT_EXIT_INACCURATE, lua_tostring(L, -1));
+    if (!runner->quiet) printf("verified: %s\n", lua_tostring(L, -1));
+    return IMPACT_EXIT_OK;
+}
+
 static int view_scene(lua_State *L, int scene, impact_runner *runner, const char *name)
 {
     lua_getfield(L, scene, "record");
@@ -259,8 +277,10 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     const bool views = drew == IMPACT_EXIT_OK && runner->shown;
     if (views) drew = view_scene(L, scene, runner, name);
     lua_settop(L, reason);
+    const int verified = runner->verify ? verify_scene(L, scene, runner) : IMPACT_EXIT_OK;
+    lua_settop(L, reason);
     if (!runner->quiet) summarise(L, scene, runner, name, drawn, views && drew == IMPACT_EXIT_OK);
-    return drew != IMPACT_EXIT_OK ? drew : ran;
+    return drew != IMPACT_EXIT_OK ? drew : ran != IMPACT_EXIT_OK ? ran : verified;
 }
 
 /* The table arg, as lua has it. */

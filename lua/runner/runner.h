@@ -59,6 +59,7 @@ typedef struct impact_runner {
     char run_name[256];
     const char *resume; /* the file, and what is in it; NULL: none */
     char *resumed;
+    bool verify;
     size_t resumed_size;
     double max_time;      /* s; 0: no limit */
     double max_megabytes; /* as given, and: */

@@ -37,6 +37,8 @@ static void usage(FILE *file)
         "  --tolerance E     view, gltf: what keys may be off by, of a body's size and in rad (default: 3e-4 of gltf; "
         "1e-5 of a\n"
         "                    page too large to hold the record as it is)\n"
+        "  --verify          does the run again, each stretch between two events by another integrator: how far they "
+        "differ\n"
         "  --pictures        beside NAME.png: flat panels as NAME.svg and NAME.pdf, those in space as a page, "
         "NAME.figure.html\n"
         "  --quiet           no progress, no closing summary\n"
@@ -62,7 +64,7 @@ static void usage(FILE *file)
         "     sweep; gather: rows are missing\n"
         "  4  an output could not be written\n"
         "  5  a limit was reached: --max-memory, --max-time, --max-disk, or the scene's max_events\n"
-        "  6  done, but the energy account does not close: do not trust the digits\n"
+        "  6  done, but the energy account does not close, or --verify found another run: do not trust the digits\n"
         "  128 + N  ended by signal N: 130 by Ctrl-C, 129 by a hangup, 131 by SIGQUIT, 143 by SIGTERM\n"
         "\n"
         "Each but 0 comes with one line that says why, --quiet or not. A run that ends early keeps the rows it has as\n"
@@ -176,9 +178,9 @@ static bool take_flag(impact_runner *runner, const char *word)
     const struct {
         const char *name;
         bool *flag;
-    } flags[] = {{"--record", &runner->record}, {"--quiet", &runner->quiet},      {"--trust", &runner->trust},
-                 {"--fence", &runner->fence},   {"--mpi", &runner->mpi},          {"--hdf5", &runner->hdf5},
-                 {"--report", &runner->report}, {"--pictures", &runner->pictures}};
+    } flags[] = {{"--record", &runner->record}, {"--quiet", &runner->quiet},       {"--trust", &runner->trust},
+                 {"--fence", &runner->fence},   {"--mpi", &runner->mpi},           {"--hdf5", &runner->hdf5},
+                 {"--report", &runner->report}, {"--pictures", &runner->pictures}, {"--verify", &runner->verify}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         if (strcmp(word, flags[i].name) == 0) return *flags[i].flag = true;
     return false;
@@ -216,6 +218,8 @@ static int check_command(const impact_runner *runner)
     if (runner->report &&
         (sweep || gather || runner->record || runner->save_name || runner->resume || runner->checkpoint > 0))
         return wrong_usage("%s makes no run: nothing that a run writes goes with it", "--report");
+    if (runner->verify && (sweep || gather || runner->report || runner->resume))
+        return wrong_usage("%s is of one scene's run from its start", "--verify");
     if (runner->report_seconds > 0 && !runner->report) return wrong_usage("%s is the report's: --report", "--seconds");
     if (runner->tolerance > 0 && !runner->shown) return wrong_usage("%s is view's and gltf's", "--tolerance");
     if (sweep && runner->shards > 1 && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--shard");

@@ -88,24 +88,37 @@ bool impact_sweep_write_block(impact_runner *runner, int part, impact_sweep_bloc
 
 /* ---- reading ---- */
 
-static bool read_file(int folder, const char *name, char **text, size_t *size)
+/* All bytes of an open file; false with errno. */
+static bool read_bytes(int file, char **text, size_t *size)
 {
     struct stat status;
-    const int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-    *text = NULL;
-    if (file < 0) return false;
     size_t got = 0;
-    if (fstat(file, &status) == 0) *text = malloc((size_t)status.st_size + 1);
+    if (fstat(file, &status) != 0) return false;
+    *text = malloc((size_t)status.st_size + 1);
     while (*text && got < (size_t)status.st_size) {
         const ssize_t more = read(file, *text + got, (size_t)status.st_size - got);
         if (more < 0 && errno == EINTR) continue;
-        if (more <= 0) break;
+        if (more < 0) return free(*text), *text = NULL, false;
+        if (more == 0) break; /* another took from it meanwhile */
         got += (size_t)more;
     }
-    close(file);
     if (*text) (*text)[got] = 0;
     *size = got;
     return *text != NULL;
+}
+
+/* False with errno: it cannot be read; ELOOP: it is a link. */
+static bool read_file(int folder, const char *name, char **text, size_t *size)
+{
+    int file;
+    *text = NULL;
+    do file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    while (file < 0 && errno == EINTR);
+    if (file < 0) return false;
+    const bool good = read_bytes(file, text, size);
+    const int why = errno;
+    close(file);
+    return errno = why, good;
 }
 
 /* The first line; how long it is, 0 where it is none of ours (a process that died before it had written one). */
@@ -163,25 +176,32 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const impact_sweep_part *)a)->id.name, ((const impact_sweep_part *)b)->id.name);
 }
 
-int impact_sweep_read_parts(impact_runner *runner, const char *name, impact_sweep_part **parts, char *message,
-                            size_t size)
+/* One more of the parts; false: out of memory. */
+static bool grow_parts(impact_sweep_part **parts, int count, int *room)
+{
+    if (count < *room) return true;
+    impact_sweep_part *more = realloc(*parts, (size_t)(2 * *room + 8) * sizeof **parts);
+    if (!more) return false;
+    *parts = more, *room = 2 * *room + 8;
+    return true;
+}
+
+/* All parts in the folder, of one name or (NULL) of all; -1 with errno, and *file the name of what cannot be read. */
+static int list_parts(int folder, DIR *listing, const char *name, impact_sweep_part **parts, char file[256])
 {
     int count = 0, room = 0;
     char stem[200];
-    const int folder = dup(runner->folder);
-    DIR *listing = folder >= 0 ? fdopendir(folder) : NULL;
-    *parts = NULL;
-    if (!listing) return snprintf(message, size, "cannot read '%s': %s", runner->directory, strerror(errno)), -1;
-    rewinddir(listing);
     for (const struct dirent *entry; (entry = readdir(listing));) {
         if (!part_name(entry->d_name, stem) || (name && strcmp(stem, name) != 0)) continue;
-        if (count == room) {
-            impact_sweep_part *more = realloc(*parts, (size_t)(room = 2 * room + 8) * sizeof **parts);
-            if (more) *parts = more;
-            if (!more) break;
-        }
+        snprintf(file, 256, "/%s", entry->d_name);
+        if (!grow_parts(parts, count, &room)) return impact_sweep_free_parts(*parts, count), -1;
         impact_sweep_part *part = &(*parts)[count];
-        if (!read_file(runner->folder, entry->d_name, &part->text, &part->size)) continue;
+        if (!read_file(folder, entry->d_name, &part->text, &part->size)) {
+            if (errno == ELOOP) continue; /* nothing here follows a link */
+            const int why = errno;
+            impact_sweep_free_parts(*parts, count);
+            return errno = why, -1;
+        }
         const size_t head = read_head(part->text, part->size, &part->id);
         snprintf(part->id.name, sizeof part->id.name, "%s", stem);
         part->size = head ? join_blocks(part->text, part->size, head) : 0;
@@ -190,7 +210,23 @@ int impact_sweep_read_parts(impact_runner *runner, const char *name, impact_swee
         else
             free(part->text);
     }
-    closedir(listing);
+    return count;
+}
+
+int impact_sweep_read_parts(impact_runner *runner, const char *name, impact_sweep_part **parts, char *message,
+                            size_t size)
+{
+    char file[256] = "";
+    const int folder = dup(runner->folder);
+    DIR *listing = folder >= 0 ? fdopendir(folder) : NULL;
+    *parts = NULL;
+    int count = -1;
+    if (listing) rewinddir(listing), count = list_parts(runner->folder, listing, name, parts, file);
+    if (count < 0) {
+        snprintf(message, size, "cannot read '%s%s': %s", runner->directory, file, strerror(errno));
+        *parts = NULL;
+    }
+    if (listing) closedir(listing);
     if (count > 1) qsort(*parts, (size_t)count, sizeof **parts, by_name);
     return count;
 }

@@ -9,6 +9,7 @@
  * doubles that hang, exit codes but 0, 1, 4 and 5, and such as end so without one line on stderr.
  */
 #define _GNU_SOURCE
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,7 +103,9 @@ static int fails(void)
         busy = 0;
         return here;
     }
-    return fail_at > 0 && (once ? count == fail_at : count >= fail_at);
+    const int refused_now = fail_at > 0 && (once ? count == fail_at : count >= fail_at);
+    if (refused_now) errno = ENOMEM; /* pthread_create asserts it */
+    return refused_now;
 }
 
 void *malloc(size_t size) { return fails() ? NULL : __libc_malloc(size); }

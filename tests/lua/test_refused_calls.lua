@@ -3,6 +3,7 @@
 --- a name is whole; and where something is amiss it says so and does not end with 0.
 local check = require "check"
 local runner = require "runner"
+local impact = require "impact"
 local library = arg[3]
 runner.clean()
 
@@ -65,6 +66,71 @@ for at = 1, count do
   end
 end
 check.truth(refused > 30, string.format("%d are refused, %d go on", refused, ends))
+
+-- The same of the runner's other commands: each of their calls refused, they end, and say so where they do not end with 0; a file of `names` that
+-- is there is whole, and after a 0 all of them are.
+local tiny = [[
+  local impact = require "impact"
+  return impact.sweep { name = "six", parameters = { speed = impact.grid(1, 3, 3) }, runs = 2, keep = function(run) return run.number == 4 end,
+    plot = function(c) local plot = require "quat.plot" return plot.figure { plot.panel { plot.line { c.run, c.speed } } } end,
+    scene = function(p) return { duration = 0.2, bodies = {
+      impact.body { name = "ball", shape = impact.sphere(0.1), position = { 0, 0, 0.2 }, velocity = { p.speed, 0, 0 }, restitution = 0.9 },
+      impact.body { name = "floor", shape = impact.plane(), restitution = 1 } } } end }
+]]
+runner.write("sweep.lua", tiny)
+runner.write("drop.lua", "local impact = require 'impact' " .. text:match "return impact.scene.*")
+
+local function within(variables, line)
+  local code = runner.shell(string.format("( cd %s && timeout 60 env %s LD_PRELOAD=%s %s %s >stdout.txt 2>stderr.txt </dev/null ) 2>/dev/null",
+    runner.quote(runner.folder), variables, runner.quote(library), runner.quote(runner.program), line))
+  return code, runner.read "stderr.txt"
+end
+
+local function make(before)
+  runner.shell(string.format("cd %s && rm -rf o && %s", runner.quote(runner.folder), before:gsub("IMPACT", runner.quote(runner.program))))
+end
+
+local commands = 0
+local function each_call(line, before, names)
+  make(before)
+  local code, told = within("FAIL_COUNT=1", line)
+  if code ~= 0 then error(string.format("%s: exit code %d: %s", line, code, told)) end
+  local calls, whole = 0, {}
+  for number in told:gmatch "(%d+)\n" do calls = math.max(calls, tonumber(number)) end
+  for _, name in ipairs(names) do whole[name] = assert(runner.read("o/" .. name), name) end
+  local said_no = 0
+  commands = commands + 1
+  for at = 1 + commands % 4, calls, 4 do -- how it starts is common to all of them
+    for _, with in ipairs(at % 16 < 4 and { EIO, EINTR } or { EIO }) do
+      make(before)
+      local ended, said = within(string.format("FAIL_AT=%d FAIL_WITH=%d", at, with), line)
+      local where = string.format("%s: call %d of %d with errno %d: exit code %s: %s", line, at, calls, with, ended, said)
+      if ended == 124 or ended >= 126 then error(where) end
+      for _, name in ipairs(names) do
+        local got = runner.read("o/" .. name)
+        local told_of = name == "six.csv" and got and got:gsub(",error,not kept: [^\n]*", ",end of time,") -- the row says it
+        if got and got ~= whole[name] and told_of ~= whole[name] then error(name .. " is not whole: " .. where) end
+        if ended == 0 and not got then error("no " .. name .. ": " .. where) end
+      end
+      if ended ~= 0 then
+        said_no = said_no + 1
+        if not said:find "impact: " then error("says nothing: " .. where) end
+      end
+    end
+  end
+  check.truth(calls > 20 and said_no > 2, string.format("%s: %d calls, %d refusals", line, calls, said_no))
+end
+
+local sweeping = "IMPACT sweep sweep.lua --quiet --out o --shard %d/2 >/dev/null 2>&1"
+each_call("sweep sweep.lua --quiet --out o -j 2", "true", { "six.csv" })
+each_call("gather o", sweeping:format(0) .. " && " .. sweeping:format(1), { "six.csv" })
+each_call("drop.lua --quiet --out o --save 0.2 half --checkpoint 0.000001", "true", { "drop.csv", "half" })
+each_call("drop.lua --quiet --out o --resume half", "IMPACT drop.lua --quiet --out p --save 0.2 half >/dev/null 2>&1 && mv p/half .", { "drop.csv" })
+if impact.has "view" then
+  local recorded = "IMPACT drop.lua --quiet --record --out p >/dev/null 2>&1"
+  each_call("view p/drop.run --quiet --out o", recorded, { "drop.html" })
+  each_call("gltf p/drop.run --quiet --out o", recorded, { "drop.glb" })
+end
 
 -- A terminal is shown how far it came.
 runner.write("script.lua", [[

@@ -9,6 +9,7 @@
 #include <quat/euler.h>
 #include <quat/exponential.h>
 #include <quat/interpolate.h>
+#include <quat/jacobian.h>
 #include <quat/project.h>
 #include <quat/rotation.h>
 #include <quat/sequence.h>
@@ -132,6 +133,39 @@ static void half_turns_about_every_axis(void **state)
     }
 }
 
+/* The x axis is met to roundings however nearly parallel the two are; the z axis as well as y tells it. */
+static void axes_that_are_nearly_parallel(void **state)
+{
+    (void)state;
+    const qvec3 across = {2 / sqrt(5), -1 / sqrt(5), 0};
+    qvec3 x;
+    qvec3_normalize((qvec3){1, 2, 3}, &x);
+    for (double angle = 1e-1; angle > 1e-14; angle *= 0.3) {
+        quat q;
+        assert_int_equal(quat_from_axes(x, qvec3_axpy(angle, across, x), &q), QUAT_OK);
+        const qvec3 ex = quat_rotate(q, (qvec3){1, 0, 0}), ez = quat_rotate(q, (qvec3){0, 0, 1});
+        assert_near3(ex, x, 4 * DBL_EPSILON);
+        assert_near3(ez, qvec3_cross(x, across), 4 * DBL_EPSILON / angle);
+    }
+}
+
+static void logarithms_rates_at_one(void **state)
+{
+    (void)state;
+    const double sizes[] = {0, 5e-324, 1e-160, 1e-9, 1e-5, 1e-3, 0.02};
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        const double n = sizes[k], a[3] = {0.6 * n, 0.64 * n, 0.48 * n};
+        const qmat34 r = quat_log_jacobian((quat){sqrt(1 - n * n), a[0], a[1], a[2]});
+        for (int i = 0; i < 3; i++) {
+            assert_true(r.m[i][0] == -a[i]);
+            for (int j = 0; j < 3; j++) { /* f = 1 + n^2/6 ..., slope = -2/3 - n^2/5 ... */
+                const double slope = -2.0 / 3 - n * n / 5, wanted = (i == j ? 1 + n * n / 6 : 0) + slope * a[i] * a[j];
+                assert_near(r.m[i][1 + j], wanted, n * n * n * n + (i == j ? 2e-16 : 1e-15 * n * n));
+            }
+        }
+    }
+}
+
 static void sequences_that_are_none(void **state)
 {
     (void)state;
@@ -220,7 +254,8 @@ int main(void)
         cmocka_unit_test(powers_out_of_range),      cmocka_unit_test(powers_at_the_cut),
         cmocka_unit_test(slerp_of_one_orientation), cmocka_unit_test(half_turns_about_every_axis),
         cmocka_unit_test(sequences_that_are_none),  cmocka_unit_test(projections_of_nothing),
-        cmocka_unit_test(outputs_may_be_absent),    cmocka_unit_test(splines),
+        cmocka_unit_test(outputs_may_be_absent),    cmocka_unit_test(axes_that_are_nearly_parallel),
+        cmocka_unit_test(logarithms_rates_at_one),  cmocka_unit_test(splines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

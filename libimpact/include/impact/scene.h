@@ -94,8 +94,10 @@ typedef enum impact_motion_method {
     IMPACT_MOTION_AUTO,  /* in closed form where there is one: flight, with damping too, and balls that roll or slide;
                           * else by CVODE; piles as `piles` says */
     IMPACT_MOTION_CVODE, /* all that moves by CVODE, flight too; no pile by steps */
-    IMPACT_MOTION_RK4,  /* all that moves by the classical Runge-Kutta method with the fixed `step`; no pile by steps */
-    IMPACT_MOTION_STEPS /* AUTO, and piles by steps from the start: piles = IMPACT_PILES_STEPS */
+    IMPACT_MOTION_RK4, /* all that moves by the classical Runge-Kutta method with the fixed `step`; no pile by steps */
+    IMPACT_MOTION_STEPS, /* AUTO, and piles by steps from the start: piles = IMPACT_PILES_STEPS */
+    IMPACT_MOTION_OTHER  /* as CVODE, each stretch by that of Adams and BDF which CVODE would not take: what vouches for
+                          * a  run; no pile by steps */
 } impact_motion_method;
 
 /* How gaps without a closed form are found. */

@@ -165,7 +165,8 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     motion->sliding = motion->sliding || young_fades(motion);
     motion->creep_scale = creep_scale(motion, states);
     motion->creeping = motion->creep_scale > 0;
-    const bool stiff = motion->stiff || is_braked(motion, t, t_end, states), other = motion->distrusted;
+    const bool stiff = motion->stiff || is_braked(motion, t, t_end, states),
+               other = motion->distrusted != (motion->method == IMPACT_MOTION_OTHER);
     motion->distrusted = false;
     if (motion->method == IMPACT_MOTION_RK4) return choose_integrator(motion, IMPACT_ODE_RK4);
     return choose_integrator(motion, stiff != other ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);

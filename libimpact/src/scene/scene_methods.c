@@ -61,7 +61,7 @@ static bool one_of(int value, int last) { return value >= 0 && value <= last; }
 static void check_choices(method_check *c, const impact_scene_def *def)
 {
     const impact_methods *m = &def->methods;
-    want(c, one_of((int)m->motion, IMPACT_MOTION_STEPS), IMPACT_EARGUMENT, "motion = %d in methods is no method",
+    want(c, one_of((int)m->motion, IMPACT_MOTION_OTHER), IMPACT_EARGUMENT, "motion = %d in methods is no method",
          (int)m->motion);
     want(c, one_of((int)m->impacts, IMPACT_SOLVER_CVODE), IMPACT_EARGUMENT, "impacts = %d in methods is no solver",
          (int)m->impacts);
@@ -115,8 +115,10 @@ static void check_numbers(method_check *c, const impact_scene_def *def)
 static void check_parts(method_check *c, const impact_scene_def *def)
 {
     const impact_methods m = imp_scene_methods_of(def);
-    want(c, m.motion != IMPACT_MOTION_CVODE || impact_has(IMPACT_PART_CVODE), IMPACT_EABSENT,
-         "motion = \"cvode\" in methods needs CVODE, and " IMP_NO_CVODE);
+    const bool integrates = m.motion == IMPACT_MOTION_CVODE || m.motion == IMPACT_MOTION_OTHER;
+    want(c, !integrates || impact_has(IMPACT_PART_CVODE), IMPACT_EABSENT,
+         "motion = \"%s\" in methods needs CVODE, and " IMP_NO_CVODE,
+         m.motion == IMPACT_MOTION_CVODE ? "cvode" : "other");
     want(c, m.gaps != IMPACT_GAP_CCD || impact_has(IMPACT_PART_CCD), IMPACT_EABSENT,
          "gaps = \"ccd\" in methods needs libccd, and " IMP_NO_CCD);
 }

@@ -17,7 +17,8 @@ impact_status imp_scene_methods_check(const impact_scene_def *def, char *why, si
 /* Nothing moves in closed form. */
 static inline bool imp_scene_integrates_all(const impact_methods *methods)
 {
-    return methods->motion == IMPACT_MOTION_CVODE || methods->motion == IMPACT_MOTION_RK4;
+    return methods->motion == IMPACT_MOTION_CVODE || methods->motion == IMPACT_MOTION_RK4 ||
+           methods->motion == IMPACT_MOTION_OTHER;
 }
 
 #endif

@@ -203,8 +203,8 @@ static void run_refused(family *f, const ledger *refusal, size_t limit, uint64_t
 
 static void every_refusal_is_answered(void **state)
 {
-    static void (*const scenes[])(family *) = {spheres, superquadrics_with_forces, held_contacts, springs, crowd,
-                                               crowd_that_slides, boxes};
+    static void (*const scenes[])(family *) = {spheres, superquadrics_with_forces, held_contacts, springs,
+                                               crowd,   crowd_that_slides,         boxes};
     enum { LIMITS = 60 };
     (void)state;
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
@@ -267,12 +267,40 @@ static void workspaces_too(void **state)
     }
 }
 
+/* However little it may hold, a sink opens whole or not at all, says so, and leaves no file. */
+static void sinks_too(void **state)
+{
+    (void)state;
+    char longer[3000], message[300];
+    memset(longer, 'x', sizeof longer);
+    memcpy(longer, "./", 2);
+    for (int i = 2; i < 2900; i += 2) memcpy(longer + i, "./", 2); /* a name that takes more than a first piece */
+    memcpy(longer + 2900, "test_memory.csv", sizeof "test_memory.csv");
+    int opened = 0, refused = 0;
+    for (size_t limit = 1024; limit < 1u << 19; limit += limit < 1u << 14 ? 512 : 1u << 14) {
+        ledger l = {0};
+        const impact_allocator allocator = ledger_allocator(&l, limit);
+        const impact_csv_def def = {.samples_path = longer, .allocator = &allocator};
+        impact_csv *csv = NULL;
+        const impact_status status = impact_csv_open_with(&def, &csv, message, sizeof message);
+        opened += status == IMPACT_OK, refused += status < 0;
+        assert_true(status == IMPACT_OK || ((status == IMPACT_ENOMEM || status == IMPACT_ESINK) && !csv));
+        if (status == IMPACT_ESINK) assert_non_null(strstr(message, "memory"));
+        impact_csv_close(csv, IMPACT_CSV_DROP, NULL, 0);
+        assert_true(l.live == 0 && l.most <= limit);
+        FILE *left = fopen(longer, "r");
+        assert_null(left);
+    }
+    assert_true(opened > 3 && refused > 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_refusal_is_answered),
         cmocka_unit_test(malloc_serves_as_well),
         cmocka_unit_test(workspaces_too),
+        cmocka_unit_test(sinks_too),
     };
     return impact_has(IMPACT_PART_CVODE) ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
 }

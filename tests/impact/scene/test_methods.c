@@ -74,6 +74,7 @@ static void all_methods_lead_to_one_place(void **state)
     } all[] = {
         {{.motion = IMPACT_MOTION_CVODE}, 1e-10},
         {{.motion = IMPACT_MOTION_CVODE, .tolerance = 1e-6}, 1e-4},
+        {{.motion = IMPACT_MOTION_OTHER}, 1e-8},
         {{.motion = IMPACT_MOTION_RK4, .step = 1e-3}, 1e-6},
         {{.motion = IMPACT_MOTION_RK4, .step = 1e-4}, 1e-10},
         {{.impacts = IMPACT_SOLVER_CVODE}, 1e-10},
@@ -85,7 +86,7 @@ static void all_methods_lead_to_one_place(void **state)
         const impact_methods m = all[k].methods;
         const impact_usage usage = run_by(&s.def, m, &end);
         assert_at_most(distance(&end, &best), all[k].within);
-        const bool integrates = m.motion == IMPACT_MOTION_CVODE || m.motion == IMPACT_MOTION_RK4;
+        const bool integrates = m.motion != IMPACT_MOTION_AUTO;
         assert_int_equal(usage.ballistic_flights > 0, !integrates);
         assert_int_equal(usage.integrator_steps > 0, integrates);
         assert_int_equal(usage.gap_newton > 0, m.gaps == IMPACT_GAP_NEWTON);
@@ -121,8 +122,9 @@ static void rolling_is_integrated_too(void **state)
     impact_sample end;
     assert_true(run_by(&def, (impact_methods){0}, &end).rolls > 0);
     assert_near(end.velocity.x, 5.0 / 7, 1e-12);
-    const impact_methods all[] = {{.motion = IMPACT_MOTION_CVODE}, {.motion = IMPACT_MOTION_RK4, .step = 1e-3}};
-    for (int k = 0; k < 2; k++) {
+    const impact_methods all[] = {
+        {.motion = IMPACT_MOTION_CVODE}, {.motion = IMPACT_MOTION_RK4, .step = 1e-3}, {.motion = IMPACT_MOTION_OTHER}};
+    for (int k = 0; k < 3; k++) {
         const impact_usage usage = run_by(&def, all[k], &end);
         assert_int_equal(usage.rolls, 0);
         assert_true(usage.integrator_steps > 0);
@@ -190,8 +192,9 @@ static void parts_and_saves_change_no_bit(void **state)
     const impact_methods all[] = {{.motion = IMPACT_MOTION_CVODE},
                                   {.motion = IMPACT_MOTION_RK4, .step = 1e-3},
                                   {.impacts = IMPACT_SOLVER_CVODE},
-                                  {.gaps = IMPACT_GAP_CCD}};
-    for (int k = 0; k < 4; k++) {
+                                  {.gaps = IMPACT_GAP_CCD},
+                                  {.motion = IMPACT_MOTION_OTHER}};
+    for (int k = 0; k < 5; k++) {
         method_scene s;
         make_method_scene(&s);
         s.def.methods = all[k];
@@ -234,7 +237,7 @@ static void a_key_of_no_use_is_refused_by_its_name(void **state)
     make_method_scene(&s);
     impact_scene_def *d = &s.def;
     impact_methods *m = &d->methods;
-    m->motion = (impact_motion_method)4, refuse(d, IMPACT_EARGUMENT, "motion = 4");
+    m->motion = (impact_motion_method)5, refuse(d, IMPACT_EARGUMENT, "motion = 5");
     m->impacts = (impact_solver)9, refuse(d, IMPACT_EARGUMENT, "impacts = 9");
     d->solver = (impact_solver)9, refuse(d, IMPACT_EARGUMENT, "solver = 9");
     m->gaps = (impact_gap_method)-1, refuse(d, IMPACT_EARGUMENT, "gaps = -1");

@@ -1,0 +1,177 @@
+-- SPDX-License-Identifier: MIT
+--- The runner's command lines, each wrong one with its words; what a script may be called, may be, may return and may raise; a sweep's folder with
+--- what is not its own.
+local check = require "check"
+local runner = require "runner"
+runner.clean()
+
+local function run(line, wanted, said)
+  local code, out, err = runner.command(line)
+  if code ~= wanted then error(string.format("%s: wanted exit code %d, got %d: %s%s", line, wanted, code, out, err), 2) end
+  local text = wanted == 0 and out or err
+  if said and not text:find(said) then error(string.format("%s: wanted '%s', got %s", line, said, text), 2) end
+  check.truth(true)
+  return out, err
+end
+
+local begin = "local impact = require 'impact' "
+local ball = "impact.body { name = 'ball', shape = impact.sphere(0.1), position = { 0, 0, 1 } }"
+local drop = begin .. "return impact.scene { duration = 0.1, bodies = { " .. ball .. " } }"
+runner.write("drop.lua", drop)
+
+-- ---- wrong ones ----
+
+local wrong = {
+  [""] = "^usage: impact SCRIPT.lua",
+  ["drop.lua other.lua"] = "one script at a time: 'other.lua' is too many",
+  ["--bogus drop.lua"] = "unknown option '%-%-bogus'",
+  ["drop.lua --out"] = "%-%-out needs a value", ["drop.lua --out="] = "%-%-out needs a value",
+  ["drop.lua --max-time"] = "%-%-max%-time needs a value",
+  ["drop.lua --save"] = "%-%-save needs a value",
+  ["drop.lua --save 1"] = "plain name of a file, got ''", ["drop.lua --save 1 .hidden"] = "got '.hidden'",
+  ["drop.lua -j 2"] = "are options of sweep", ["drop.lua --shard 0/2"] = "are options of sweep",
+  ["drop.lua --mpi"] = "are options of sweep", ["drop.lua --hdf5"] = "are options of sweep", ["gather o --mpi"] = "are options of sweep",
+  ["drop.lua --fence --trust"] = "%-%-fence and %-%-trust exclude", ["sweep drop.lua --fence --mpi"] = "%-%-fence and %-%-mpi exclude",
+  ["sweep drop.lua --shard 0/2 --mpi"] = "%-%-shard and %-%-mpi exclude",
+  ["sweep drop.lua --record"] = "is no option of sweep",
+  ["drop.lua --seconds 3"] = "is the report's",
+}
+for _, number in ipairs { "nan", "inf", "-1", "0", "1x", "x", "1e9", "''", "1e400" } do
+  for _, option in ipairs { "--max-time", "--max-memory", "--max-disk", "--checkpoint", "--report --seconds" } do
+    wrong["drop.lua " .. option .. " " .. number] = number == "''" and "needs a value" or "is not a positive number"
+  end
+end
+for _, shard in ipairs { "1", "x/2", "1/", "1/0", "1/2x", "-1/2", "2/2", "1/1000001", "1000001/1000002", "/2" } do
+  wrong["sweep drop.lua --shard " .. shard] = "%-%-shard needs I/N with 0 <= I < N"
+end
+for _, threads in ipairs { "0", "-1", "x", "1.5", "1000001" } do wrong["sweep drop.lua -j " .. threads] = "%-j needs a number of threads" end
+for _, time in ipairs { "x", "1x", "-1", "nan", "inf", "1e300" } do wrong["drop.lua --save " .. time .. " a"] = "is no time" end
+for _, more in ipairs { "--save 1 a", "--resume a", "--checkpoint 1" } do
+  for _, command in ipairs { "sweep drop.lua ", "gather o " } do wrong[command .. more] = "are of one scene's run" end
+  wrong["drop.lua --report " .. more] = "makes no run"
+end
+for _, line in ipairs { "drop.lua --report --record", "sweep drop.lua --report", "gather o --report", "view drop.lua --report" } do
+  wrong[line] = "makes no run"
+end
+for line, said in pairs(wrong) do run(line, 2, said) end
+check.truth(not runner.exists "out", "a wrong line makes no folder")
+
+-- ---- right ones ----
+
+local help = run("--help", 0, "^usage: impact SCRIPT.lua")
+check.equal(run("drop.lua -h", 0), help)
+check.truth(run("--version", 0):find "^impact %d+%.%d+%.%d+ %(Lua 5%.4%.%d+; CVODE: %a+, libccd: %a+%)\n$")
+run("drop.lua --quiet --max-time=9 --max-memory=50 --max-disk=5 --out=o///", 0)
+check.equal(runner.files(), "drop.csv drop_events.csv")
+runner.shell("cd " .. runner.quote(runner.folder) .. " && mkdir -p sub && cp drop.lua sub/toss && cp drop.lua sub/a.b.lua && rm -rf o")
+run("sub/toss --out o --quiet", 0)
+run("sub/a.b.lua --out o --quiet", 0)
+check.equal(runner.files(), "a.b.csv a.b_events.csv toss.csv toss_events.csv")
+runner.write(".lua", drop)
+run(".lua --out o", 1, "the scene's name '.lua' names the files: it must be plain")
+run("absent.lua --out o", 1, "cannot open absent.lua")
+run("drop.lua --out o --max-memory 0.001", 5, "the memory limit is too small to start")
+local full = runner.shell(string.format("cd %s && test -c /dev/full && %s drop.lua --out o >/dev/full 2>stderr.txt", runner.quote(runner.folder),
+  runner.quote(runner.program)))
+check.truth(full == 1 or (full == 4 and runner.read "stderr.txt" == "impact: cannot write to the standard output: No space left on device\n"))
+
+-- ---- what a script is, returns and raises ----
+
+local function script(text, wanted, said, options)
+  runner.write("s.lua", text)
+  return run("s.lua --out o " .. (options or ""), wanted, said)
+end
+script("error {}", 1, "the script raised an error that is not a text")
+script("error(nil)", 1, "the script raised an error that is not a text")
+script("error 'it has not enough memory'", 5, "^impact: not enough memory\n$")
+script("return 3", 1, "a script returns a scene, impact.scene{...}, or nothing; this one returned a number")
+script("return", 1, "ran nothing and wrote nothing")
+script("return impact.", 1, "s.lua:1:")
+script("\27Lua", 1, "attempt to load a binary chunk")
+script("-- done\nlocal f = io.open('done', 'w') f:write 'x' f:close() print 'done'", 0)
+for _, made in ipairs { "view", "gltf" } do
+  runner.write("s.lua", "local x = 1")
+  run(made .. " s.lua --out o", 1, "needs a script that returns a scene")
+end
+local function plotted(plot) return begin .. "return impact.scene { duration = 0.1, plot = " .. plot .. ", bodies = { " .. ball .. " } }" end
+script(plotted "function() error 'no picture' end", 1, "no picture")
+script(plotted "function() return 3 end", 1, "a figure is made with plot.figure; this is a number")
+script(plotted "function() local t = { kind = 'figure' } for _ = 1, 90 do t = { t } end return t end", 1, "nested too deep")
+script(plotted "function() return { kind = 'figure', title = print } end", 1, "a figure holds numbers, strings and tables only")
+script(plotted "function() return { kind = 'figure', [true] = 1, ['a'] = { false } } end", 1, "names or places as keys")
+for mode, good in pairs { r = true, rb = true, w = true, wb = true, a = true, ["a+"] = true, ["r+"] = true, ["w+"] = true, ["w+b"] = true, ["rb+"] = true,
+  x = false, [""] = false, rr = false, ["r++b"] = false, ["+"] = false } do
+  script("local f = assert(io.open('f', 'w')) f:write 'abc' f:close() local ok, why = pcall(io.open, 'f', '" .. mode .. "') " ..
+    "assert(ok == " .. tostring(good) .. ", why) if ok then assert(why) why:close() " ..
+    "f = io.open('f', 'r') assert((f:read 'a' == 'abc') == ('" .. mode .. "' ~= 'w' and '" .. mode .. "' ~= 'wb' and not ('" .. mode .. "'):find '^w%+')) end print 'done'", 0)
+end
+script("assert(not io.open('no', 'r+') and not io.open(('x'):rep(5000), 'w') and not io.open('a/../b', 'w'))\nprint 'done'", 0)
+
+-- ---- a sweep, and what else lies in its folder ----
+
+local rows = begin .. [[
+  return impact.sweep { name = "words", parameters = { word = impact.values { "a,b", 'say "no"', "tab\tnew\nback\\end", "", "plain" } }, scene = function()
+    return { duration = 0.01, bodies = { impact.body { name = "b", shape = impact.sphere(1) } } } end,
+    reduce = function(r) return { twice = r.parameters.word .. r.parameters.word, number = 0.1, is = r.number > 2, whole = 7 } end }]]
+runner.write("words.lua", "#!/usr/bin/env impact\n" .. rows)
+runner.shell("rm -rf " .. runner.quote(runner.folder .. "/o"))
+run("sweep words.lua --out o --quiet", 0)
+local table_of = runner.read "o/words.csv"
+
+--- The rows of a CSV text (RFC 4180).
+local function parse(text)
+  local result, row, at = {}, {}, 1
+  while at <= #text do
+    local cell
+    if text:sub(at, at) == '"' then
+      local from = at + 1
+      repeat at = text:find('"', at + 1, true) + 1 until text:sub(at, at) ~= '"'
+      cell = text:sub(from, at - 2):gsub('""', '"')
+    else
+      local stop = text:find("[,\n]", at)
+      cell, at = text:sub(at, stop - 1), stop
+    end
+    row[#row + 1] = cell
+    if text:sub(at, at) == "\n" then result[#result + 1], row = row, {} end
+    at = at + 1
+  end
+  return result
+end
+local got = parse(table_of)
+check.equal(table.concat(got[1], " "), "run word is number twice whole status message")
+for i, word in ipairs { "a,b", 'say "no"', "tab\tnew\nback\\end", "", "plain" } do
+  check.equal(got[i + 1][2], word)
+  check.equal(got[i + 1][3], tostring(i > 3))
+  check.equal(got[i + 1][4], "0.10000000000000001")
+  check.equal(got[i + 1][5], word .. word)
+  check.equal(got[i + 1][6], "7")
+end
+-- Files with other names, heads that are none, blocks that are damaged or cut short: what is not ours is not read, what is damaged is run again.
+local part = runner.read "o/words.0-1.rows"
+local head = part:match "^[^\n]*\n"
+for _, name in ipairs { "words.rows", "words.0.rows", "words.0-.rows", "words.-1.rows", ".0-1.rows", "0-1.rows", "words.0-1.row", "wordsx0-1.rows" } do
+  runner.write("o/" .. name, "impact sweep 1 0 nothing")
+end
+for number, damaged in ipairs { "", "impact", "impact sweep 2 0 5 \n", head:gsub(" 5 ", " 0 "), head:sub(1, -2), head .. "@ 5", head .. "@ 999 0\nx\n",
+  head .. "@ 2 0000000000000000\nx\n", part:sub(1, -3), part:gsub("@ ", "& ") } do
+  runner.write("o/words.0-1.rows", damaged)
+  runner.shell("cd " .. runner.quote(runner.folder) .. "/o && rm -f words.csv words.0-2.rows")
+  local out = run("sweep words.lua --out o", 0)
+  check.truth(out ~= "" and runner.read "o/words.csv" == table_of, "damage " .. number)
+end
+runner.write("o/words.0-1.rows", head)
+runner.shell("cd " .. runner.quote(runner.folder) .. "/o && rm -f words.csv words.0-2.rows")
+run("gather o", 3, "'words' has 0 of 5 runs; the rest is to do")
+runner.write("o/empty", "")
+run("gather o/empty", 4, "Not a directory")
+runner.shell("mkdir -p " .. runner.quote(runner.folder .. "/nothing"))
+run("gather nothing", 4, "no rows of a sweep in 'nothing'")
+runner.write("long.lua", begin .. "local p = {} for i = 1, 300 do p['parameter_number_' .. i] = impact.values { i } end return impact.sweep { parameters = p, " ..
+  "scene = function() end }")
+run("sweep long.lua --out l", 1, "sweep: the parameters' names are too long")
+runner.write("hash.lua", "# nothing else")
+run("sweep hash.lua --out l", 1, "this one returned a n")
+runner.write("hash.lua", "")
+run("sweep hash.lua --out l", 1, "this one returned a n")
+
+check.report "command"
