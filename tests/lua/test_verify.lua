@@ -68,7 +68,7 @@ check.equal(code, 6)
 check.truth(out == "" and err == "impact: two runs of the scene differ: a law of it remembers, or draws lots\n", err)
 code, out, err = runner.script([[
   local impact = require "impact"
-  return impact.scene { name = "coarse", duration = 0.8, methods = { motion = "rk4", step = 0.05 },
+  return impact.scene { name = "coarse", duration = 0.3, methods = { motion = "rk4", step = 0.05 },
     forces = { impact.force { law = function(_, b) return { -400 * b.mass * b.position.x, 0, 0 } end } }, bodies = {
     impact.body { name = "floor", shape = impact.plane(), friction = 0.3, restitution = 1 },
     impact.body { name = "ball", shape = impact.sphere(0.1), position = { 2, 0, 0.1 }, velocity = { 1, 0, 0 }, friction = 1 } } }]], "--verify --quiet")
