@@ -271,7 +271,7 @@ static void workspaces_too(void **state)
 static void sinks_too(void **state)
 {
     (void)state;
-    char longer[3000], message[300];
+    char longer[3000], message[4000];
     memset(longer, 'x', sizeof longer);
     memcpy(longer, "./", 2);
     for (int i = 2; i < 2900; i += 2) memcpy(longer + i, "./", 2); /* a name that takes more than a first piece */
