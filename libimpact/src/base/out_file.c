@@ -60,6 +60,7 @@ static FILE *open_stream(imp_out_file *f)
     if (file) return file;
     const int error = errno;
     if (f->descriptor >= 0) close(f->descriptor);
+    f->descriptor = -1;
     close(stream);
     if (!f->nameless) unlink(f->part);
     return errno = error, NULL;
@@ -159,6 +160,6 @@ void imp_out_close(imp_out_file *f)
 {
     if (f->file) fclose(f->file);
     if (f->descriptor >= 0) close_descriptor(f->descriptor);
-    if (f->path && !f->nameless && f->part[0]) remove(f->part);
+    if (f->part && !f->nameless && f->part[0]) remove(f->part);
     *f = (imp_out_file){.descriptor = -1};
 }
