@@ -84,7 +84,7 @@ bool imp_skyline_shape(imp_skyline *sky, int bodies, const int (*touching)[2], i
     size_t total = 0;
     for (int i = 0; i < bodies; i++) {
         sky->start[i] = total;
-        total += SIDE * SIDE * (size_t)(i - sky->first[i] + 1);
+        total += (size_t)(i - sky->first[i] + 1);
     }
     sky->start[bodies] = total;
     if (total <= sky->value_room) return true;
@@ -102,70 +102,106 @@ void imp_skyline_clear(imp_skyline *sky)
     memset(sky->upper, 0, sizeof *sky->upper * sky->start[sky->bodies]);
 }
 
-/* ---- elements: row i, and column i, begin at 6 first, and are as long as their block row ---- */
+/* ---- blocks: those of row i, and of column i, begin at first[i] and end at the diagonal ---- */
 
-static double *skyline_line(const imp_skyline *sky, double *values, int i, int *first)
+/* C -= A B. */
+static void take_product(double c[SIDE][SIDE], double a[SIDE][SIDE], double b[SIDE][SIDE])
 {
-    const int block = i / SIDE;
-    *first = SIDE * sky->first[block];
-    return values + sky->start[block] + (size_t)(i % SIDE) * SIDE * (size_t)(block - sky->first[block] + 1);
+    for (int k = 0; k < SIDE; k++)
+        for (int m = 0; m < SIDE; m++)
+            for (int l = 0; l < SIDE; l++) c[k][l] -= a[k][m] * b[m][l];
 }
 
-/* Element (i, j). */
-static double *skyline_element(const imp_skyline *sky, int i, int j)
+/* B D^-1 in B's place, of D = L U in its own. */
+static void divide_right(double b[SIDE][SIDE], double d[SIDE][SIDE])
 {
-    int first;
-    double *line = i >= j ? skyline_line(sky, sky->lower, i, &first) : skyline_line(sky, sky->upper, j, &first);
-    return &line[(i >= j ? j : i) - first];
+    for (int k = 0; k < SIDE; k++) {
+        for (int l = 0; l < SIDE; l++) {
+            for (int m = 0; m < l; m++) b[k][l] -= b[k][m] * d[m][l];
+            b[k][l] /= d[l][l];
+        }
+        for (int l = SIDE - 1; l >= 0; l--)
+            for (int m = l + 1; m < SIDE; m++) b[k][l] -= b[k][m] * d[m][l];
+    }
+}
+
+static bool factor_block(double d[SIDE][SIDE])
+{
+    for (int k = 0; k < SIDE; k++) {
+        if (!(fabs(d[k][k]) > 0)) return false;
+        for (int l = k + 1; l < SIDE; l++) {
+            d[l][k] /= d[k][k];
+            for (int m = k + 1; m < SIDE; m++) d[l][m] -= d[l][k] * d[k][m];
+        }
+    }
+    return true;
+}
+
+/* D^-1 x in x's place. */
+static void divide_left(double d[SIDE][SIDE], double *x)
+{
+    for (int k = 0; k < SIDE; k++)
+        for (int m = 0; m < k; m++) x[k] -= d[k][m] * x[m];
+    for (int k = SIDE - 1; k >= 0; k--) {
+        for (int m = k + 1; m < SIDE; m++) x[k] -= d[k][m] * x[m];
+        x[k] /= d[k][k];
+    }
+}
+
+/* y -= B x. */
+static void take_from(double *y, double b[SIDE][SIDE], const double *x)
+{
+    for (int k = 0; k < SIDE; k++) {
+        double sum = 0;
+        for (int l = 0; l < SIDE; l++) sum += b[k][l] * x[l];
+        y[k] -= sum;
+    }
+}
+
+/* The block of row i, column j <= i, or of row j, column i; on the diagonal they are one. */
+static imp_skyline_block *block_at(const imp_skyline *sky, imp_skyline_block *values, int i, int j)
+{
+    return &values[sky->start[i] + (size_t)(j - sky->first[i])];
 }
 
 void imp_skyline_add(imp_skyline *sky, int a, int b, double block[6][6])
 {
+    const int i = sky->place[a], j = sky->place[b];
+    imp_skyline_block *own = i >= j ? block_at(sky, sky->lower, i, j) : block_at(sky, sky->upper, j, i);
     for (int k = 0; k < SIDE; k++)
-        for (int l = 0; l < SIDE; l++)
-            *skyline_element(sky, SIDE * sky->place[a] + k, SIDE * sky->place[b] + l) += block[k][l];
+        for (int l = 0; l < SIDE; l++) own->a[k][l] += block[k][l];
 }
 
-/* sum l_k u_k where both lines have begun, up to `end`. */
-static double common_product(const double *one, int one_first, const double *two, int two_first, int end)
-{
-    const int begin = one_first > two_first ? one_first : two_first;
-    double sum = 0;
-    for (int k = begin; k < end; k++) sum += one[k - one_first] * two[k - two_first];
-    return sum;
-}
-
+/* A = (1 + L)(D + U): S_ij = A_ij - sum L_ik U_kj on both sides of the diagonal, U_ji = S_ji, L_ij = S_ij D_j^-1. */
 bool imp_skyline_factor(imp_skyline *sky)
 {
-    for (int i = 0; i < SIDE * sky->bodies; i++) {
-        int first, other;
-        double *row = skyline_line(sky, sky->lower, i, &first), *column = skyline_line(sky, sky->upper, i, &first);
-        for (int j = first; j < i; j++) {
-            const double *above = skyline_line(sky, sky->upper, j, &other),
-                         *left = skyline_line(sky, sky->lower, j, &other);
-            row[j - first] = (row[j - first] - common_product(row, first, above, other, j)) / left[j - other];
-            column[j - first] -= common_product(column, first, left, other, j);
+    for (int i = 0; i < sky->bodies; i++) {
+        const int begin = sky->first[i];
+        imp_skyline_block *row = block_at(sky, sky->lower, i, begin), *column = block_at(sky, sky->upper, i, begin);
+        for (int j = begin; j < i; j++) {
+            for (int k = sky->first[j] > begin ? sky->first[j] : begin; k < j; k++) {
+                take_product(row[j - begin].a, row[k - begin].a, block_at(sky, sky->upper, j, k)->a);
+                take_product(column[j - begin].a, block_at(sky, sky->lower, j, k)->a, column[k - begin].a);
+            }
+            divide_right(row[j - begin].a, block_at(sky, sky->lower, j, j)->a);
         }
-        row[i - first] -= common_product(row, first, column, first, i);
-        if (!(fabs(row[i - first]) > 0)) return false;
+        for (int k = begin; k < i; k++) take_product(row[i - begin].a, row[k - begin].a, column[k - begin].a);
+        if (!factor_block(row[i - begin].a)) return false;
     }
     return true;
 }
 
 void imp_skyline_solve(const imp_skyline *sky, double *x)
 {
-    const int n = SIDE * sky->bodies;
     double *y = sky->scratch;
-    int first;
     for (int b = 0; b < sky->bodies; b++) memcpy(&y[SIDE * sky->place[b]], &x[SIDE * b], SIDE * sizeof *x);
-    for (int i = 0; i < n; i++) {
-        const double *row = skyline_line(sky, sky->lower, i, &first);
-        y[i] -= common_product(row, first, y, 0, i);
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        y[i] /= skyline_line(sky, sky->lower, i, &first)[i - first];
-        const double *column = skyline_line(sky, sky->upper, i, &first);
-        for (int k = first; k < i; k++) y[k] -= column[k - first] * y[i];
+    for (int i = 0; i < sky->bodies; i++)
+        for (int k = sky->first[i]; k < i; k++)
+            take_from(&y[SIDE * i], block_at(sky, sky->lower, i, k)->a, &y[SIDE * k]);
+    for (int i = sky->bodies - 1; i >= 0; i--) {
+        divide_left(block_at(sky, sky->lower, i, i)->a, &y[SIDE * i]);
+        for (int k = sky->first[i]; k < i; k++)
+            take_from(&y[SIDE * k], block_at(sky, sky->upper, i, k)->a, &y[SIDE * i]);
     }
     for (int b = 0; b < sky->bodies; b++) memcpy(&x[SIDE * b], &y[SIDE * sky->place[b]], SIDE * sizeof *x);
 }

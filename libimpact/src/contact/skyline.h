@@ -1,23 +1,27 @@
 /* SPDX-License-Identifier: MIT
  *
  * skyline: a matrix of 6 x 6 blocks, one row of them for each body, zero but where bodies touch: of each row, and each
- * column, what stands from its first element to the diagonal, in an order of the bodies that keeps both short (Cuthill
- * & McKee 1969, reversed), and its factors L U in their place, without pivots. Internal.
+ * column, what stands from its first block to the diagonal, in an order of the bodies that keeps both short (Cuthill
+ * & McKee 1969, reversed), and its factors (1 + L)(D + U) in their place, without pivots. Internal.
  */
 #ifndef IMP_SKYLINE_H
 #define IMP_SKYLINE_H
 
 #include "base/arena.h"
 
+typedef struct imp_skyline_block {
+    double a[6][6];
+} imp_skyline_block;
+
 typedef struct imp_skyline {
     imp_arena *arena;
     int bodies;
-    int *place;            /* of each body: its block row */
-    int *first;            /* of each block row: its first block */
-    size_t *start;         /* of each block row: where its six rows begin in values */
-    double *lower, *upper; /* rows, with the diagonal; columns */
-    double *scratch;       /* 6 bodies */
-    int *degree, *queue;   /* scratch */
+    int *place;                       /* of each body: its row */
+    int *first;                       /* of each row: its first block */
+    size_t *start;                    /* of each row: where its blocks begin in the values */
+    imp_skyline_block *lower, *upper; /* rows, with the diagonal; columns, whose diagonal is not used */
+    double *scratch;                  /* 6 bodies */
+    int *degree, *queue;              /* scratch */
     int body_room;
     size_t value_room;
 } imp_skyline;
