@@ -220,7 +220,8 @@ static void run_over_p(group *g)
     static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
     for (int i = 0; i < 5; i++) {
         naive nv = {0};
-        const impact_ode_def def = {.size = 5,
+        const impact_ode_def def = {.struct_size = sizeof def,
+                                    .size = 5,
                                     .roots = 1,
                                     .rhs = naive_rates,
                                     .root_functions = naive_roots,

@@ -77,7 +77,7 @@ static bool our_bounce(const bounce_case *c, double step, double height[BOUNCES]
     def.output_rate = 0;
     def.bodies = bodies, def.body_count = 2;
     bounce_log log = {c, height, 0};
-    const impact_recorder recorder = {.context = &log, .event = log_bounce};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &log, .event = log_bounce};
     return run_scene(&def, &recorder, seconds) && log.count == BOUNCES;
 }
 
@@ -99,7 +99,7 @@ static bool our_tumble(const tumble_case *c, double step, quat q[TURNS], double 
     def.duration = TURNS;
     def.output_rate = 1;
     def.bodies = &body, def.body_count = 1;
-    const impact_recorder recorder = {.context = q, .sample = log_turn};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = q, .sample = log_turn};
     return run_scene(&def, &recorder, seconds);
 }
 

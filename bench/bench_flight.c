@@ -94,7 +94,8 @@ static void *prepare(const method *m, const body *b, impact_tumble *tumble)
         return tumble;
     }
     if (m->turn != integrated) return NULL;
-    const impact_ode_def def = {.size = 4,
+    const impact_ode_def def = {.struct_size = sizeof def,
+                                .size = 4,
                                 .rhs = rates,
                                 .context = (void *)b,
                                 .method = IMPACT_ODE_ADAMS,

@@ -236,7 +236,7 @@ static double measure(const pile_scene *s, impact_piles piles, bool told)
         fprintf(stderr, "bench_piles: %s: %s\n", s->name, message);
         return NAN;
     }
-    const impact_recorder recorder = {.context = &begun, .progress = in_time};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &begun, .progress = in_time};
     const impact_status status = impact_scene_run(scene, &recorder);
     const double seconds = cpu_clock() - begun;
     const impact_usage usage = impact_scene_usage(scene);

@@ -98,7 +98,7 @@ static void make_two_spheres(setting *s)
     ball_of(&s->bodies[2], "right", 4, 0.3, (qvec3){5, 0.2, 5});
     s->forces[0] = wind_of("left", (qvec3){-5, 0, 5}, (qvec3){1, 0, 0}, 25, 5);
     s->forces[1] = wind_of("right", (qvec3){5, 0.2, 5}, (qvec3){-1, 0, 0}, 25, 5);
-    s->pair = (impact_pair_def){"left", "right", 0.25, 0.3, NAN, NAN, NAN};
+    s->pair = (impact_pair_def){sizeof(impact_pair_def), "left", "right", 0.25, 0.3, NAN, NAN, NAN};
     s->def.pairs = &s->pair;
     s->def.pair_count = 1;
 }

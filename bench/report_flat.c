@@ -63,7 +63,7 @@ static void run(const impact_body_def *body, long most, tally *row)
         return;
     }
     watch w = {.most = most};
-    const impact_recorder recorder = {.context = &w, .progress = count_step};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &w, .progress = count_step};
     const impact_status status = impact_scene_run(scene, &recorder);
     row->rest += status == IMPACT_AT_REST;
     row->ended += status == IMPACT_OK;

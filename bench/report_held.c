@@ -120,7 +120,8 @@ static void run(random_stream *random, double exponent, bool rolls, tally *row)
         return;
     }
     watch w = {0};
-    const impact_recorder recorder = {.context = &w, .event = note_event, .progress = count_step};
+    const impact_recorder recorder = {
+        .struct_size = sizeof recorder, .context = &w, .event = note_event, .progress = count_step};
     const double before = vertical_momentum(scene, &bodies[1]);
     const impact_status status = impact_scene_run(scene, &recorder);
     touch(&w, impact_scene_time(scene), false);

@@ -50,7 +50,7 @@ local function name_of(text)
   return text:match "([%w_]+)%s*%("
 end
 
-local marks = { "IMPACT_API ", "QUAT_API ", "QUAT_INLINE " }
+local marks = { "IMPACT_API ", "QUAT_API ", "QUAT_INLINE ", "IMPACT_INLINE " }
 local function plain(text)
   for _, mark in ipairs(marks) do text = text:gsub("^" .. mark, "") end
   return text
@@ -72,7 +72,7 @@ local function items(text)
       at = at + #comment
       local after = text:match("^[ \t]+", at)
       at = at + (after and #after or 0)
-    elseif line:find "^typedef" or line:find "^[%w_]+_API " or line:find "^QUAT_INLINE " then
+    elseif line:find "^typedef" or line:find "^[%w_]+_API " or line:find "^[%w_]+_INLINE " then
       local code, next_at = declaration(text, at)
       found[#found + 1] = { kind = "code", text = plain(code), name = name_of(code) }
       at = next_at

@@ -45,7 +45,7 @@ int main(void)
     char message[256];
     impact_scene *scene;
     if (impact_scene_create(&def, &scene, message, sizeof message) != IMPACT_OK) return puts(message), 1;
-    const impact_recorder recorder = {.event = print_impact};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .event = print_impact};
     const impact_status status = impact_scene_run(scene, &recorder);
     impact_sample ball;
     if (impact_scene_body(scene, 1, &ball) != IMPACT_OK) return 1;

@@ -54,7 +54,7 @@ static int scene_step(lua_State *L)
 
 static void push_held(lua_State *L, const impact_scene *scene, const impact_held *held)
 {
-    impact_body_def body1, body2;
+    impact_body_def body1 = impact_default_body_def(), body2 = impact_default_body_def();
     impact_scene_body_def(scene, held->body1, &body1);
     impact_scene_body_def(scene, held->body2, &body2);
     lua_createtable(L, 0, 8);

@@ -76,7 +76,7 @@ static impact_report_def read_options(lua_State *L, int index)
     static const char *const keys[] = {"seconds", "times",     "rounds",          "tolerances", "steps",
                                        "methods", "reference", "reference_error", NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "report", NULL, keys);
-    impact_report_def how = {0};
+    impact_report_def how = {.struct_size = sizeof how};
     how.seconds = quat_lua_get_number(&reader, "seconds", QUAT_LUA_POSITIVE, 20);
     how.times = (int)quat_lua_get_integer(&reader, "times", 1, 10000, 48);
     how.rounds = (int)quat_lua_get_integer(&reader, "rounds", 1, 15, 7);

@@ -168,7 +168,8 @@ static impact_csv *open_csv(const quat_lua_reader *options, const impact_lua_hos
     if (!path) return NULL;
     const char *samples = lua_pushfstring(L, "%s.csv", path);
     const char *events = lua_pushfstring(L, "%s_events.csv", path);
-    const impact_csv_def def = {.samples_path = samples,
+    const impact_csv_def def = {.struct_size = sizeof def,
+                                .samples_path = samples,
                                 .events_path = events,
                                 .quota = host ? host->quota : NULL,
                                 .allocator = host ? host->allocator : NULL};
@@ -335,7 +336,8 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     lua_pushnil(L);
     self->error_slot = lua_gettop(L);
     self->L = L; /* from here on nothing raises until finish has closed the files */
-    const impact_recorder recorder = {.context = self,
+    const impact_recorder recorder = {.struct_size = sizeof recorder,
+                                      .context = self,
                                       .sample = on_sample,
                                       .event = on_event,
                                       .progress = on_progress,

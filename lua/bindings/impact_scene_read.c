@@ -114,8 +114,7 @@ static const impact_pair_def *read_pairs(const quat_lua_reader *reader, impact_s
         if (push_list(&pair, "bodies") != 2) quat_lua_reader_error(&pair, "bodies must be the names of two bodies");
         if (lua_rawgeti(L, -1, 1) != LUA_TSTRING || lua_rawgeti(L, -2, 2) != LUA_TSTRING)
             quat_lua_reader_error(&pair, "bodies must be the names of two bodies");
-        pairs[i].body1 = lua_tostring(L, -2);
-        pairs[i].body2 = lua_tostring(L, -1);
+        pairs[i] = impact_default_pair_def(lua_tostring(L, -2), lua_tostring(L, -1));
         pairs[i].friction = quat_lua_get_number(&pair, "friction", QUAT_LUA_NOT_NEGATIVE, NAN);
         pairs[i].restitution = quat_lua_get_number(&pair, "restitution", QUAT_LUA_FRACTION, NAN);
         pairs[i].torsional_friction = quat_lua_get_number(&pair, "torsional_friction", QUAT_LUA_NOT_NEGATIVE, NAN);

@@ -202,7 +202,7 @@ static void hold_energy(const impact_energy *e)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_bytes b = {data, size};
-    const impact_recorder recorder = {.sample = on_sample, .event = on_event};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .sample = on_sample, .event = on_event};
     impact_scene *scene;
     char message[300] = "";
     take_scene(&b);

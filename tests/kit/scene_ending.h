@@ -58,7 +58,8 @@ typedef struct ending {
 static inline ending run_logged(const impact_scene_def *def, scene_log *log)
 {
     impact_scene *scene = make_scene(def);
-    const impact_recorder recorder = log ? log_recorder(log) : (impact_recorder){0};
+    const impact_recorder recorder =
+        log ? log_recorder(log) : (impact_recorder){.struct_size = sizeof(impact_recorder)};
     ending e = {.status = impact_scene_run(scene, log ? &recorder : NULL)};
     snprintf(e.message, sizeof e.message, "%s", impact_scene_message(scene));
     impact_scene_body(scene, def->body_count - 1, &e.body);

@@ -40,7 +40,8 @@ static inline bool log_event(void *context, const impact_event *event)
 
 static inline impact_recorder log_recorder(scene_log *log)
 {
-    return (impact_recorder){.context = log, .sample = log_sample, .event = log_event};
+    return (impact_recorder){
+        .struct_size = sizeof(impact_recorder), .context = log, .sample = log_sample, .event = log_event};
 }
 
 static inline void free_log(scene_log *log)

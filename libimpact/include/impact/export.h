@@ -9,4 +9,10 @@
 #define IMPACT_API
 #endif
 
+/* IMPACT_INLINE: compiled into the caller, by the structs of the caller's headers, and a symbol of the library as well
+ * (libimpact/src/scene/inline.c), for callers without a C compiler. */
+#if !defined(IMPACT_INLINE)
+#define IMPACT_INLINE static inline
+#endif
+
 #endif

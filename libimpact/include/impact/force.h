@@ -31,6 +31,7 @@ typedef bool impact_force_function(double t, int body, double mass, qvec3 positi
 typedef double impact_edge_function(double t, const impact_sample *body, void *context);
 
 typedef struct impact_force_def {
+    size_t struct_size; /* see impact_body_def */
     impact_force_kind kind;
     const char *name;
     const char *body; /* acts on this body only; NULL: on every body that moves */
@@ -59,14 +60,22 @@ typedef struct impact_force_def {
      * at times inside alone, by at least eight roundings. */
     const double *switches;
     int switch_count;
+    bool steady; /* custom: does not depend on t, so that what rests under it rests for ever; else it is asked on */
     double switch_period;       /* s; > 0: they come again and again, before and after, in periods; 0: once */
     impact_edge_function *edge; /* custom: NULL: none. A zero is an event of the kind IMPACT_EVENT_FORCE. */
-    bool steady; /* custom: does not depend on t, so that what rests under it rests for ever; else it is asked on */
 } impact_force_def;
+
+/* The same defaults into a struct of struct_size bytes, as impact_fill_scene_def. */
+IMPACT_API void impact_fill_force_def(impact_force_def *def, size_t struct_size, impact_force_kind kind);
 
 /* Defaults: wind along +x of strength 0 with no edge and no falloff; attraction with Newton's G = 6.67430e-11 and power
  * 2 (CODATA 2018). */
-IMPACT_API impact_force_def impact_default_force_def(impact_force_kind kind);
+IMPACT_INLINE impact_force_def impact_default_force_def(impact_force_kind kind)
+{
+    impact_force_def def;
+    impact_fill_force_def(&def, sizeof def, kind);
+    return def;
+}
 
 #ifdef __cplusplus
 }

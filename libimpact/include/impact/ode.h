@@ -31,8 +31,9 @@ typedef int impact_ode_rhs(double t, const double *y, double *rate, void *contex
 typedef int impact_ode_roots(double t, const double *y, double *value, void *context);
 
 typedef struct impact_ode_def {
-    int size;  /* n >= 1 */
-    int roots; /* >= 0 */
+    size_t struct_size; /* sizeof(impact_ode_def): a later version may have more fields */
+    int size;           /* n >= 1 */
+    int roots;          /* >= 0 */
     impact_ode_rhs *rhs;
     impact_ode_roots *root_functions; /* may be NULL when roots = 0 */
     bool falling_roots_only;          /* report a root function only where it falls through zero */

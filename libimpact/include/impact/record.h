@@ -83,8 +83,10 @@ typedef struct impact_held {
 
 struct impact_energy;
 
-/* Where a run's rows go. Any function may be NULL. A sink returns false to stop the run with IMPACT_ESINK. */
+/* Where a run's rows go: struct_size = sizeof(impact_recorder), a later version may have more functions at its end. Any
+ * of them may be NULL. A sink returns false to stop the run with IMPACT_ESINK. */
 typedef struct impact_recorder {
+    size_t struct_size;
     void *context;
     bool (*sample)(void *context, const impact_sample *sample);
     bool (*event)(void *context, const impact_event *event);
@@ -111,6 +113,7 @@ typedef struct impact_quota {
 typedef struct impact_csv impact_csv;
 
 typedef struct impact_csv_def {
+    size_t struct_size;                     /* sizeof(impact_csv_def): a later version may have more fields */
     const char *samples_path, *events_path; /* either may be NULL */
     impact_quota *quota;                    /* outlives the sink; a row beyond it is refused; NULL: none */
     const impact_allocator *allocator;      /* copied; NULL: malloc (the C library's FILE beside it) */
@@ -125,7 +128,13 @@ IMPACT_API impact_status impact_csv_open(const char *samples_path, const char *e
                                          char *message, unsigned long message_size);
 /* A recorder over it (no progress function); valid until the close. Where it refuses a row errno says why: EDQUOT for
  * the quota. */
-IMPACT_API impact_recorder impact_csv_recorder(impact_csv *csv);
+IMPACT_API void impact_csv_fill_recorder(impact_csv *csv, impact_recorder *recorder, size_t struct_size);
+IMPACT_INLINE impact_recorder impact_csv_recorder(impact_csv *csv)
+{
+    impact_recorder recorder;
+    impact_csv_fill_recorder(csv, &recorder, sizeof recorder);
+    return recorder;
+}
 IMPACT_API long impact_csv_rows(const impact_csv *csv); /* given to it, in both files */
 
 /* What becomes of the files. */

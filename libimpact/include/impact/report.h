@@ -36,7 +36,7 @@ typedef struct impact_report_error {
 } impact_report_error;
 
 /* The greatest of x, v and q: what rows are ordered by, and certainty is of. */
-static inline double impact_report_worst(impact_report_error e)
+IMPACT_INLINE double impact_report_worst(impact_report_error e)
 {
     const double xv = e.x > e.v ? e.x : e.v;
     return xv > e.q ? xv : e.q;
@@ -60,6 +60,7 @@ typedef struct impact_report_row {
 } impact_report_row;
 
 typedef struct impact_report_def {
+    size_t struct_size;                   /* sizeof(impact_report_def): a later version may have more fields */
     double seconds;                       /* budget of CPU time; 0: 20 */
     int times;                            /* at which states are compared, equidistant; 0: 48; at most 10000 */
     int rounds;                           /* of timing; 0: 7 */

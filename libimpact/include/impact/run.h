@@ -25,7 +25,13 @@ IMPACT_API impact_status impact_run_create(const impact_scene *scene, impact_run
                                            unsigned long message_size);
 /* A recorder over it (no progress function); valid until the writer is destroyed. A sink refuses when the memory is
  * out. */
-IMPACT_API impact_recorder impact_run_recorder(impact_run_writer *writer);
+IMPACT_API void impact_run_fill_recorder(impact_run_writer *writer, impact_recorder *recorder, size_t struct_size);
+IMPACT_INLINE impact_recorder impact_run_recorder(impact_run_writer *writer)
+{
+    impact_recorder recorder;
+    impact_run_fill_recorder(writer, &recorder, sizeof recorder);
+    return recorder;
+}
 /* The record so far, as a file has it; valid until the next such call or the writer's end. reason: why the run ended,
  * in a word or two. IMPACT_ENOMEM. */
 IMPACT_API impact_status impact_run_bytes(impact_run_writer *writer, const char *reason, const void **bytes,

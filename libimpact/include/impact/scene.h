@@ -16,7 +16,10 @@
 extern "C" {
 #endif
 
+/* Definitions begin with the size of the struct that the caller was compiled with: a later version may have more fields
+ * at its end. impact_default_..._def sets it; docs/embed.md. */
 typedef struct impact_body_def {
+    size_t struct_size;
     const char *name; /* unique in the scene, not empty */
     impact_shape shape;
     bool is_static;   /* never moves, but its surface may: see velocity; planes must be static */
@@ -58,6 +61,7 @@ typedef enum impact_pair_rule {
 
 /* One pair's own coefficients, over the rule; NaN: by the rule. */
 typedef struct impact_pair_def {
+    size_t struct_size;
     const char *body1, *body2;
     double friction, restitution;
     double stiffness; /* of springs that answer together, any unit: only ratios count; 0 or NaN: Hertz's, of bodies of
@@ -121,6 +125,7 @@ typedef struct impact_methods {
 } impact_methods;
 
 typedef struct impact_scene_def {
+    size_t struct_size;
     const char *name;
     qvec3 gravity;      /* m/s^2 */
     double duration;    /* s, > 0 */
@@ -157,11 +162,34 @@ typedef struct impact_scene_def {
     impact_methods methods;
 } impact_scene_def;
 
+/* The same defaults into a struct of struct_size bytes: what it is short of is left out, what it has beyond is zero. */
+IMPACT_API void impact_fill_scene_def(impact_scene_def *def, size_t struct_size);
+IMPACT_API void impact_fill_body_def(impact_body_def *def, size_t struct_size);
+IMPACT_API void impact_fill_pair_def(impact_pair_def *def, size_t struct_size);
+
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
  * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events,
  * 1e8 steps, key_tolerance 1e-10, every body's samples. */
-IMPACT_API impact_scene_def impact_default_scene_def(void);
-IMPACT_API impact_body_def impact_default_body_def(void);
+IMPACT_INLINE impact_scene_def impact_default_scene_def(void)
+{
+    impact_scene_def def;
+    impact_fill_scene_def(&def, sizeof def);
+    return def;
+}
+IMPACT_INLINE impact_body_def impact_default_body_def(void)
+{
+    impact_body_def def;
+    impact_fill_body_def(&def, sizeof def);
+    return def;
+}
+IMPACT_INLINE impact_pair_def impact_default_pair_def(const char *body1, const char *body2)
+{
+    impact_pair_def def;
+    impact_fill_pair_def(&def, sizeof def);
+    def.body1 = body1;
+    def.body2 = body2;
+    return def;
+}
 
 typedef struct impact_scene impact_scene;
 
@@ -236,8 +264,8 @@ IMPACT_API int impact_scene_find(const impact_scene *scene, const char *body);
 IMPACT_API impact_status impact_scene_body(const impact_scene *scene, int body, impact_sample *sample);
 
 /* What was defined, as the scene holds it: mass and moments are numbers (of a static body infinite and zero), density
- * is NaN, position and orientation are those of now, and name lives as long as the scene. IMPACT_EARGUMENT when there
- * is no such body. */
+ * is NaN, position and orientation are those of now, and name lives as long as the scene. def->struct_size is to be
+ * set: begin with impact_default_body_def(). IMPACT_EARGUMENT when it is not, or when there is no such body. */
 IMPACT_API int impact_scene_body_count(const impact_scene *scene);
 IMPACT_API impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_body_def *def);
 IMPACT_API qvec3 impact_scene_gravity(const impact_scene *scene);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "base/definition.h"
 #include "base/ode_driver.h"
 #include "base/parts.h"
 
@@ -52,10 +53,14 @@ impact_status imp_ode_create_in(imp_arena *arena, const impact_ode_def *def, imp
     return IMPACT_OK;
 }
 
-impact_status impact_ode_create(const impact_ode_def *def, impact_ode **out)
+impact_status impact_ode_create(const impact_ode_def *given, impact_ode **out)
 {
     imp_arena *arena;
+    impact_ode_def own = {.struct_size = sizeof own};
+    const impact_ode_def *def = &own;
     *out = NULL;
+    if (imp_definition_refusal(given, sizeof own)) return IMPACT_EARGUMENT;
+    imp_definition_take(given, &own, sizeof own);
     impact_status status = imp_arena_create(def->allocator, &arena);
     if (status != IMPACT_OK) return status;
     status = imp_ode_create_in(arena, def, out);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "base/definition.h"
 #include "base/out_file.h"
 
 #include <errno.h>
@@ -105,9 +106,10 @@ static bool put_event(void *context, const impact_event *e)
            put_number(file, e->energy_before, ',') && put_number(file, e->energy_after, '\n');
 }
 
-impact_recorder impact_csv_recorder(impact_csv *csv)
+void impact_csv_fill_recorder(impact_csv *csv, impact_recorder *recorder, size_t struct_size)
 {
-    return (impact_recorder){.context = csv, .sample = put_sample, .event = put_event};
+    const impact_recorder own = {.struct_size = sizeof own, .context = csv, .sample = put_sample, .event = put_event};
+    imp_definition_give(&own, sizeof own, recorder, struct_size);
 }
 
 /* ---- closing ---- */
@@ -170,11 +172,9 @@ static impact_status open_both(impact_csv *csv, const impact_csv_def *def, char 
     return IMPACT_OK;
 }
 
-impact_status impact_csv_open_with(const impact_csv_def *def, impact_csv **out, char *message,
-                                   unsigned long message_size)
+static impact_status open_csv(const impact_csv_def *def, impact_csv **out, char *message, unsigned long message_size)
 {
     imp_arena *arena;
-    *out = NULL;
     if (def->samples_path && def->events_path && strcmp(def->samples_path, def->events_path) == 0) {
         if (message) snprintf(message, message_size, "%s: samples and events need a file each", def->samples_path);
         return IMPACT_EARGUMENT;
@@ -192,10 +192,24 @@ impact_status impact_csv_open_with(const impact_csv_def *def, impact_csv **out, 
     return status;
 }
 
+impact_status impact_csv_open_with(const impact_csv_def *def, impact_csv **out, char *message,
+                                   unsigned long message_size)
+{
+    impact_csv_def own = {.struct_size = sizeof own};
+    const char *why = imp_definition_refusal(def, sizeof own);
+    *out = NULL;
+    if (why) {
+        if (message) snprintf(message, message_size, "CSV: struct_size = %zu: %s", def->struct_size, why);
+        return IMPACT_EARGUMENT;
+    }
+    imp_definition_take(def, &own, sizeof own);
+    return open_csv(&own, out, message, message_size);
+}
+
 impact_status impact_csv_open(const char *samples_path, const char *events_path, impact_csv **csv, char *message,
                               unsigned long message_size)
 {
-    const impact_csv_def def = {.samples_path = samples_path, .events_path = events_path};
+    const impact_csv_def def = {.struct_size = sizeof def, .samples_path = samples_path, .events_path = events_path};
     return impact_csv_open_with(&def, csv, message, message_size);
 }
 

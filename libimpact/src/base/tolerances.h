@@ -10,6 +10,9 @@
 /* Unit roundoff of double: what one operation errs by, relative. */
 #define IMP_ROUNDOFF 0x1p-53
 
+/* Bytes of a definition at most: ten times the largest there is. A size beyond it was never set, and is not read. */
+#define IMP_MOST_DEFINITION 4096
+
 /* ---- places ---- */
 
 /* A gap along the normal n of bodies at x1, x2 with bounding radii r1, r2 is made of numbers as large as

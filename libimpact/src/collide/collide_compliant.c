@@ -97,7 +97,8 @@ static impact_status make(imp_arena *arena, double tolerance, imp_compliant **ou
     imp_compliant *c = imp_arena_take(arena, 1, sizeof *c);
     *out = NULL;
     if (!c) return IMPACT_ENOMEM;
-    const impact_ode_def def = {.size = SPRING_SIZE,
+    const impact_ode_def def = {.struct_size = sizeof def,
+                                .size = SPRING_SIZE,
                                 .roots = EVENTS,
                                 .rhs = spring_rates,
                                 .root_functions = spring_events,

@@ -86,7 +86,8 @@ impact_status imp_collide_workspace_in(imp_arena *arena, impact_ode_method metho
     ws->arena = arena;
     ws->tolerance = tolerance;
     ws->method = method;
-    const impact_ode_def def = {.size = SLIP_SIZE,
+    const impact_ode_def def = {.struct_size = sizeof def,
+                                .size = SLIP_SIZE,
                                 .roots = ROOTS,
                                 .rhs = slip_rates,
                                 .root_functions = slip_roots,

@@ -43,7 +43,8 @@ static impact_status choose_integrator(imp_motion *motion, impact_ode_method met
                                                     : &motion->bdf;
     impact_status status = imp_motion_make_room(motion);
     if (status == IMPACT_OK && !*ode) {
-        const impact_ode_def def = {.size = motion->size,
+        const impact_ode_def def = {.struct_size = sizeof def,
+                                    .size = motion->size,
                                     .roots = motion->roots,
                                     .rhs = imp_motion_rates,
                                     .root_functions = imp_motion_root_values,

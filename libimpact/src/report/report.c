@@ -5,6 +5,8 @@
  * rounds of timing, all settings in turn, so that what the machine drifts hits all alike.
  */
 #include "report/report_work.h"
+#include "base/definition.h"
+#include "scene/definitions.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -65,7 +67,7 @@ static impact_status open_bodies(imp_report_work *w)
     r->moving = imp_arena_take(r->arena, (size_t)n, sizeof *r->moving);
     r->gyration = imp_arena_take(r->arena, (size_t)n, sizeof *r->gyration);
     for (int i = 0; r->moving && r->gyration && i < n; i++) {
-        impact_body_def body;
+        impact_body_def body = impact_default_body_def();
         impact_scene_body_def(scene, i, &body);
         if (body.is_static) continue;
         r->gyration[r->moving_count] = sqrt(fmax(body.moments.x, fmax(body.moments.y, body.moments.z)) / body.mass);
@@ -308,28 +310,42 @@ static impact_status report(imp_report_work *w, impact_report_sink *sink, void *
     return hand_on(w, sink, context);
 }
 
+/* Both definitions, as this version has them. */
+static impact_status take(imp_report_work *w, const impact_scene_def *def, const impact_report_def *how,
+                          impact_report_def *own)
+{
+    const char *why = how ? imp_definition_refusal(how, sizeof *own) : NULL;
+    if (why && w->message)
+        snprintf(w->message, w->message_size, "report: struct_size = %zu: %s", how->struct_size, why);
+    if (why) return IMPACT_EARGUMENT;
+    if (how) imp_definition_take(how, own, sizeof *own);
+    return imp_scene_take_def(def, &w->report.def, w->message, w->message_size);
+}
+
 impact_status impact_report(const impact_scene_def *def, const impact_report_def *how, impact_report_sink *sink,
                             void *context, impact_report_summary *summary, char *message, unsigned long message_size)
 {
-    const impact_report_def as_ever = {0};
+    impact_report_def own_how = {.struct_size = sizeof own_how};
     impact_report_summary unwanted;
-    imp_arena *arena;
-    const impact_status status = imp_arena_create(def->allocator, &arena);
-    if (message && message_size > 0) message[0] = '\0';
-    if (status != IMPACT_OK) return status;
-    imp_report_work w = {.how = how ? how : &as_ever,
+    imp_report_work w = {.how = &own_how,
                          .summary = summary ? summary : &unwanted,
                          .message = message,
                          .message_size = message_size,
                          .began = imp_report_now()};
     *w.summary = (impact_report_summary){0};
-    w.seconds = w.how->seconds > 0 ? w.how->seconds : 20;
-    w.report = (imp_report){.arena = arena, .def = *def, .deadline = w.began + 0.5 * w.seconds, .how = w.how};
+    if (message && message_size > 0) message[0] = '\0';
+    impact_status status = take(&w, def, how, &own_how);
+    if (status == IMPACT_OK) status = imp_arena_create(w.report.def.allocator, &w.report.arena);
+    if (status != IMPACT_OK) return status;
+    w.seconds = own_how.seconds > 0 ? own_how.seconds : 20;
+    w.report.deadline = w.began + 0.5 * w.seconds;
+    w.report.how = &own_how;
     w.report.def.methods = (impact_methods){0};
     w.report.def.solver = IMPACT_SOLVER_AUTO;
     w.report.def.tolerance = impact_default_scene_def().tolerance;
-    const impact_status done = report(&w, sink, context);
-    if (done == IMPACT_ENOMEM) imp_report_fail(&w, done, impact_status_string(done));
-    imp_arena_destroy(arena);
-    return done;
+    status = imp_scene_take_lists(&w.report.def, w.report.arena, message, message_size);
+    if (status == IMPACT_OK) status = report(&w, sink, context);
+    if (status == IMPACT_ENOMEM) imp_report_fail(&w, status, impact_status_string(status));
+    imp_arena_destroy(w.report.arena);
+    return status;
 }

@@ -141,7 +141,8 @@ impact_status imp_report_run(imp_report *report, const impact_methods *methods, 
 {
     const double began = imp_report_now();
     listener listening = {.report = report, .track = track};
-    const impact_recorder recorder = {.context = &listening, .event = note_event, .progress = has_time};
+    const impact_recorder recorder = {
+        .struct_size = sizeof recorder, .context = &listening, .event = note_event, .progress = has_time};
     impact_scene *scene;
     track->status = make(report, methods, nudge, &scene, track->message, sizeof track->message);
     if (track->status != IMPACT_OK) return track->status == IMPACT_ENOMEM ? IMPACT_ENOMEM : IMPACT_OK;

@@ -4,6 +4,7 @@
  * motion makes them and are put body by body when the record is made up.
  */
 #include "run/run.h"
+#include "base/definition.h"
 #include "run/text.h"
 #include "scene/scene_internal.h"
 
@@ -136,10 +137,15 @@ impact_status impact_run_create(const impact_scene *scene, impact_run_writer **w
     return IMPACT_OK;
 }
 
-impact_recorder impact_run_recorder(impact_run_writer *writer)
+void impact_run_fill_recorder(impact_run_writer *writer, impact_recorder *recorder, size_t struct_size)
 {
-    return (impact_recorder){
-        .context = writer, .event = put_event, .key = put_key, .held = put_held, .account = put_account};
+    const impact_recorder own = {.struct_size = sizeof own,
+                                 .context = writer,
+                                 .event = put_event,
+                                 .key = put_key,
+                                 .held = put_held,
+                                 .account = put_account};
+    imp_definition_give(&own, sizeof own, recorder, struct_size);
 }
 
 void impact_run_discard(impact_run_writer *writer)
@@ -251,7 +257,7 @@ static void say_bodies(imp_text *head, const impact_run_writer *w, const long *f
     const int count = impact_scene_body_count(w->scene);
     say_key(head, "bodies");
     for (int i = 0; i < count; i++) {
-        impact_body_def def;
+        impact_body_def def = impact_default_body_def();
         impact_scene_body_def(w->scene, i, &def);
         imp_text_say(head, i ? "," : "[");
         say_body(head, &def, first[i], first[i + 1] - first[i]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_internal.h"
+#include "scene/definitions.h"
 #include "scene/scene_check.h"
 #include "scene/scene_keys.h"
 #include "scene/scene_receipt.h"
@@ -7,6 +8,7 @@
 #include "scene/scene_methods.h"
 #include "scene/scene_together.h"
 #include "world/world_gap.h"
+#include "base/definition.h"
 #include "base/floats.h"
 #include "base/parts.h"
 #include "collide/collide_workspace.h"
@@ -73,8 +75,11 @@ static impact_status open_workspace(impact_scene *scene, char *message, unsigned
     return status;
 }
 
-static impact_status create(const impact_scene_def *def, impact_scene **out, char *message, unsigned long message_size)
+static impact_status create(const impact_scene_def *given, impact_scene **out, char *message,
+                            unsigned long message_size)
 {
+    impact_scene_def own;
+    const impact_scene_def *def = &own;
     if (!imp_floats_are_gradual()) {
         if (message)
             snprintf(message, message_size,
@@ -82,9 +87,11 @@ static impact_status create(const impact_scene_def *def, impact_scene **out, cha
         return IMPACT_EDOMAIN;
     }
     impact_scene *scene;
-    impact_status status = open_memory(def, &scene, message, message_size);
+    impact_status status = imp_scene_take_def(given, &own, message, message_size);
+    if (status == IMPACT_OK) status = open_memory(def, &scene, message, message_size);
     if (status != IMPACT_OK) return status;
-    status = imp_scene_check(def, scene->world.arena, &scene->names, message, message_size);
+    status = imp_scene_take_lists(&own, scene->world.arena, message, message_size);
+    if (status == IMPACT_OK) status = imp_scene_check(def, scene->world.arena, &scene->names, message, message_size);
     if (status != IMPACT_OK) {
         if (status == IMPACT_ENOMEM && message) imp_arena_explain(scene->world.arena, message, message_size);
         impact_scene_destroy(scene);
@@ -168,8 +175,15 @@ static impact_status run(impact_scene *scene, double t_end)
 
 impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
 {
+    impact_recorder own = {0};
+    const char *why = recorder ? imp_definition_refusal(recorder, sizeof own) : NULL;
+    if (why) {
+        snprintf(scene->message, sizeof scene->message, "recorder: struct_size = %zu: %s", recorder->struct_size, why);
+        return IMPACT_EARGUMENT;
+    }
+    if (recorder) imp_definition_take(recorder, &own, sizeof own);
     const imp_floats floats = imp_floats_hold();
-    scene->recorder = recorder;
+    scene->recorder = recorder ? &own : NULL;
     impact_status status = imp_scene_keys_begin(scene);
     if (status == IMPACT_OK) {
         const impact_status ran = run(scene, t), seen = imp_scene_look(scene, scene->t);
@@ -222,29 +236,29 @@ int impact_scene_body_count(const impact_scene *scene) { return scene->world.bod
 
 impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_body_def *def)
 {
-    if (body < 0 || body >= scene->world.body_count) return IMPACT_EARGUMENT;
+    const bool known = body >= 0 && body < scene->world.body_count;
+    if (!known || imp_definition_refusal(def, IMP_MOST_DEFINITION)) return IMPACT_EARGUMENT;
     const imp_body *b = &scene->world.bodies[body];
     const impact_sample now = imp_scene_sample(b, scene->t, &scene->states[body]);
-    *def = (impact_body_def){.name = b->name,
-                             .shape = b->shape,
-                             .user = b->user,
-                             .trail = b->trail,
-                             .is_static = b->is_static,
-                             .mass = b->mass,
-                             .density = NAN,
-                             .moments = b->moments,
-                             .position = now.position,
-                             .orientation = now.orientation,
-                             .shape_position = b->offset,
-                             .shape_orientation = b->turn,
-                             .velocity = now.velocity,
-                             .omega = now.omega,
-                             .friction = b->friction,
-                             .restitution = b->restitution,
-                             .torsional_friction = b->torsional,
-                             .rolling_friction = b->rolling,
-                             .linear_damping = -expm1(-b->linear_rate),
-                             .angular_damping = -expm1(-b->angular_rate)};
+    const impact_body_def own = {.name = b->name,
+                                 .shape = b->shape,
+                                 .user = b->user,
+                                 .trail = b->trail,
+                                 .is_static = b->is_static,
+                                 .mass = b->mass,
+                                 .density = NAN,
+                                 .moments = b->moments,
+                                 .position = now.position,
+                                 .orientation = now.orientation,
+                                 .shape_position = b->offset,
+                                 .shape_orientation = b->turn,
+                                 .velocity = now.velocity,
+                                 .omega = now.omega,
+                                 .friction = b->friction,
+                                 .restitution = b->restitution,
+                                 .linear_damping = -expm1(-b->linear_rate),
+                                 .angular_damping = -expm1(-b->angular_rate)};
+    imp_definition_give(&own, sizeof own, def, def->struct_size);
     return IMPACT_OK;
 }
 

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/scene.h>
+#include "base/definition.h"
 
 #include <math.h>
 
-impact_scene_def impact_default_scene_def(void)
+void impact_fill_scene_def(impact_scene_def *def, size_t struct_size)
 {
-    return (impact_scene_def){
+    const impact_scene_def own = {
         .name = "scene",
         .gravity = {0, 0, -9.80665}, /* standard gravity, CGPM 1901 */
         .duration = 1,
@@ -24,11 +25,12 @@ impact_scene_def impact_default_scene_def(void)
         .together = IMPACT_SCENE_TOGETHER_AUTO,
         .samples = IMPACT_SAMPLES_ALL,
     };
+    imp_definition_give(&own, sizeof own, def, struct_size);
 }
 
-impact_body_def impact_default_body_def(void)
+void impact_fill_body_def(impact_body_def *def, size_t struct_size)
 {
-    return (impact_body_def){
+    const impact_body_def own = {
         .mass = NAN,
         .density = 1000,
         .moments = {NAN, NAN, NAN},
@@ -37,4 +39,12 @@ impact_body_def impact_default_body_def(void)
         .friction = 0.5,
         .restitution = 0.5,
     };
+    imp_definition_give(&own, sizeof own, def, struct_size);
+}
+
+void impact_fill_pair_def(impact_pair_def *def, size_t struct_size)
+{
+    const impact_pair_def own = {
+        .friction = NAN, .restitution = NAN, .stiffness = NAN, .torsional_friction = NAN, .rolling_friction = NAN};
+    imp_definition_give(&own, sizeof own, def, struct_size);
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/force.h>
+#include "base/definition.h"
 
 #include <math.h>
 
-impact_force_def impact_default_force_def(impact_force_kind kind)
+void impact_fill_force_def(impact_force_def *def, size_t struct_size, impact_force_kind kind)
 {
-    return (impact_force_def){
+    const impact_force_def own = {
         .kind = kind,
         .name = kind == IMPACT_FORCE_WIND         ? "wind"
                 : kind == IMPACT_FORCE_ATTRACTION ? "attraction"
@@ -18,4 +19,5 @@ impact_force_def impact_default_force_def(impact_force_kind kind)
         .power = 2,
         .max_step = NAN,
     };
+    imp_definition_give(&own, sizeof own, def, struct_size);
 }

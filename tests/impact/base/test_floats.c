@@ -62,7 +62,7 @@ static impact_status run(int kind, char *message)
     message[0] = '\0';
     impact_status status = impact_scene_create(&def, &scene, message, 300);
     if (status < 0) return status;
-    status = impact_scene_run(scene, &(impact_recorder){.sample = take});
+    status = impact_scene_run(scene, &(impact_recorder){.struct_size = sizeof(impact_recorder), .sample = take});
     snprintf(message, 300, "%s", impact_scene_message(scene));
     impact_scene_destroy(scene);
     return status;

@@ -162,7 +162,7 @@ static bool take_event(void *context, const impact_event *e)
 
 static impact_status run(const impact_scene_def *def, char *message, impact_memory *memory)
 {
-    const impact_recorder recorder = {.sample = take_sample, .event = take_event};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .sample = take_sample, .event = take_event};
     impact_scene *scene;
     hash = 14695981039346656037u;
     message[0] = '\0';

@@ -40,7 +40,8 @@ static int swing_roots(double t, const double *y, double *value, void *context)
 static impact_ode_def swing_def(oscillator *o, int roots)
 {
     *o = (oscillator){INFINITY, 0, INFINITY, roots};
-    return (impact_ode_def){.size = 2,
+    return (impact_ode_def){.struct_size = sizeof(impact_ode_def),
+                            .size = 2,
                             .roots = roots,
                             .rhs = swing,
                             .root_functions = roots ? swing_roots : NULL,
@@ -260,7 +261,8 @@ static void robertson_over_eleven_decades(void **state)
     (void)state;
     const double wanted[3] = {0.2083340149701255e-7, 0.8333360770334713e-13, 0.9999999791665050};
     const double absolute[3] = {1e-16, 1e-20, 1e-12};
-    const impact_ode_def def = {.size = 3,
+    const impact_ode_def def = {.struct_size = sizeof def,
+                                .size = 3,
                                 .rhs = robertson,
                                 .method = IMPACT_ODE_BDF,
                                 .relative_tolerance = 1e-10,

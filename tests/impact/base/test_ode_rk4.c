@@ -33,7 +33,8 @@ static int swing_roots(double t, const double *y, double *value, void *context)
 
 static impact_ode_def def_of(double step, int roots)
 {
-    return (impact_ode_def){.size = 2,
+    return (impact_ode_def){.struct_size = sizeof(impact_ode_def),
+                            .size = 2,
                             .roots = roots,
                             .rhs = swing,
                             .root_functions = roots ? swing_roots : NULL,

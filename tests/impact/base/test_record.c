@@ -422,7 +422,8 @@ static void a_quota_binds_both_files_together(void **state)
 {
     (void)state;
     impact_quota quota = {.left = 5000};
-    const impact_csv_def def = {.samples_path = samples_path, .events_path = events_path, .quota = &quota};
+    const impact_csv_def def = {
+        .struct_size = sizeof def, .samples_path = samples_path, .events_path = events_path, .quota = &quota};
     impact_csv *csv;
     assert_int_equal(impact_csv_open_with(&def, &csv, NULL, 0), IMPACT_OK);
     assert_false(write_events(csv, 100));
@@ -444,7 +445,10 @@ static void memory_is_the_callers(void **state)
     for (long fail_at = 0; fail_at <= 6; fail_at++) {
         l = (ledger){.fail_at = fail_at};
         const impact_allocator allocator = ledger_allocator(&l, 0);
-        const impact_csv_def def = {.samples_path = samples_path, .events_path = events_path, .allocator = &allocator};
+        const impact_csv_def def = {.struct_size = sizeof def,
+                                    .samples_path = samples_path,
+                                    .events_path = events_path,
+                                    .allocator = &allocator};
         impact_csv *csv;
         const impact_status status = impact_csv_open_with(&def, &csv, NULL, 0);
         assert_true(status == IMPACT_OK || ((status == IMPACT_ENOMEM || status == IMPACT_ESINK) && !csv));

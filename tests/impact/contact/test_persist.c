@@ -377,7 +377,7 @@ static void drop(random_stream *random, int eggs, int k)
     def.output_rate = 200;
     def.law = k & 1 ? IMPACT_STRONGE : IMPACT_POISSON;
     impact_scene *scene = make_scene(&def);
-    const impact_recorder recorder = {.context = &w, .sample = watch_depth};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &w, .sample = watch_depth};
     const impact_status status = impact_scene_run(scene, &recorder);
     if (status < 0) fail_msg("drop %d at t = %.17g: %s", k, impact_scene_time(scene), impact_scene_message(scene));
     const impact_energy energy = impact_scene_energy(scene);

@@ -124,7 +124,7 @@ static void nothing_stalls_in_a_groove(void **state)
         g.def.output_rate = 200;
         impact_scene *scene = make_scene(&g.def);
         watch w = {.g = &g};
-        const impact_recorder recorder = {.context = &w, .sample = watch_depth};
+        const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &w, .sample = watch_depth};
         const impact_status status = impact_scene_run(scene, &recorder);
         if (status < 0) fail_msg("%d: t = %.17g: %s", k, impact_scene_time(scene), impact_scene_message(scene));
         const impact_energy e = impact_scene_energy(scene);

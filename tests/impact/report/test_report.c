@@ -126,9 +126,13 @@ static void its_certainty_is_no_flattery(void **state)
     impact_sample truth[TIMES];
     make_bounce(&s);
     fill_truth(truth);
-    const impact_report_def alone = {.times = TIMES, .rounds = 1};
-    const impact_report_def oracle = {
-        .times = TIMES, .rounds = 1, .oracle = truth, .oracle_count = TIMES, .oracle_error = 1e-15};
+    const impact_report_def alone = {.struct_size = sizeof alone, .times = TIMES, .rounds = 1};
+    const impact_report_def oracle = {.struct_size = sizeof oracle,
+                                      .times = TIMES,
+                                      .rounds = 1,
+                                      .oracle = truth,
+                                      .oracle_count = TIMES,
+                                      .oracle_error = 1e-15};
     get(&s.def, &alone, &blind);
     get(&s.def, &oracle, &seen);
     assert_true(isnan(seen.summary.reference) && seen.summary.sure);
@@ -151,7 +155,7 @@ static void its_rows_are_what_they_say(void **state)
     bounce_scene s;
     table t;
     make_bounce(&s);
-    get(&s.def, &(impact_report_def){.times = TIMES, .rounds = 3}, &t);
+    get(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .times = TIMES, .rounds = 3}, &t);
     assert_true(t.summary.useless[IMPACT_REPORT_GAPS] && t.summary.useless[IMPACT_REPORT_MOTION]);
     assert_false(t.summary.useless[IMPACT_REPORT_RK4] || t.summary.useless[IMPACT_REPORT_IMPACTS]);
     int steps = 0;
@@ -181,7 +185,7 @@ static void a_flight_in_closed_form_has_one_row(void **state)
     make_bounce(&s);
     s.def.force_count = 0;
     s.bodies[1].omega = (qvec3){1, 2, 3};
-    get(&s.def, &(impact_report_def){.times = TIMES, .rounds = 1}, &t);
+    get(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .times = TIMES, .rounds = 1}, &t);
     int count[IMPACT_REPORT_METHODS] = {0};
     for (int k = 0; k < t.count; k++) count[t.rows[k].method]++;
     assert_int_equal(count[IMPACT_REPORT_DEFAULT], 1);
@@ -203,7 +207,8 @@ static void a_run_that_failed_has_no_error_to_show(void **state)
     make_bounce(&s);
     s.def.max_steps = 5000;
     const double steps[] = {1e-2, 1e-4}; /* 15000 of these */
-    const impact_report_def how = {.times = TIMES, .rounds = 1, .steps = steps, .step_count = 2};
+    const impact_report_def how = {
+        .struct_size = sizeof how, .times = TIMES, .rounds = 1, .steps = steps, .step_count = 2};
     get(&s.def, &how, &t);
     const impact_report_row *coarse = NULL, *failed = NULL;
     for (int k = 0; k < t.count; k++) {
@@ -232,13 +237,9 @@ static void behind_the_horizon_nothing_is_said(void **state)
     s.bodies[1].omega = (qvec3){1, 2, 3};
     s.def.duration = 25;
     const double tolerances[] = {1e-6, 1e-10}, step = 1e-3;
-    const impact_report_def how = {.times = 100,
-                                   .rounds = 1,
-                                   .seconds = 1e4,
-                                   .tolerances = tolerances,
-                                   .tolerance_count = 2,
-                                   .steps = &step,
-                                   .step_count = 1};
+    const impact_report_def how = {
+        sizeof how,           .times = 100,   .rounds = 1,    .seconds = 1e4, .tolerances = tolerances,
+        .tolerance_count = 2, .steps = &step, .step_count = 1};
     get(&s.def, &how, &t);
     assert_true(t.summary.horizon > 1 && t.summary.horizon < 25);
     assert_true(t.summary.condition > 1e3);
@@ -256,7 +257,7 @@ static void swapped_bodies_make_the_same_table(void **state)
     bounce_scene s;
     table one, other;
     make_bounce(&s);
-    const impact_report_def how = {.times = TIMES, .rounds = 1};
+    const impact_report_def how = {.struct_size = sizeof how, .times = TIMES, .rounds = 1};
     get(&s.def, &how, &one);
     const impact_body_def first = s.bodies[0];
     s.bodies[0] = s.bodies[1], s.bodies[1] = first;
@@ -285,17 +286,19 @@ static void what_cannot_be_compared_is_said(void **state)
     bounce_scene s;
     make_bounce(&s);
     s.force.function = counting_push;
-    refuse(&s.def, (impact_report_def){0}, IMPACT_EARGUMENT,
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def)}, IMPACT_EARGUMENT,
            "force 'push' is not the same in two runs: a report needs laws without memory");
     make_bounce(&s);
     s.def.body_count = 1;
     s.def.force_count = 0;
-    refuse(&s.def, (impact_report_def){0}, IMPACT_EARGUMENT, "nothing moves");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def)}, IMPACT_EARGUMENT, "nothing moves");
     s.def.body_count = 2;
     s.bodies[1].position.z = radius;
-    refuse(&s.def, (impact_report_def){0}, IMPACT_EARGUMENT, "nothing moves"); /* it rests from the start */
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def)}, IMPACT_EARGUMENT,
+           "nothing moves"); /* it rests from the start */
     s.bodies[1].position.z = 0;
-    refuse(&s.def, (impact_report_def){0}, IMPACT_EARGUMENT, "overlaps"); /* what making the scene says */
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def)}, IMPACT_EARGUMENT,
+           "overlaps"); /* what making the scene says */
 }
 
 static void numbers_out_of_range_are_refused(void **state)
@@ -306,17 +309,29 @@ static void numbers_out_of_range_are_refused(void **state)
     const double rising[] = {1e-6, 1e-3}, bad[] = {1e-3, 0};
     impact_sample truth[TIMES];
     fill_truth(truth);
-    refuse(&s.def, (impact_report_def){.seconds = -1}, IMPACT_EARGUMENT, "seconds");
-    refuse(&s.def, (impact_report_def){.seconds = NAN}, IMPACT_EARGUMENT, "seconds");
-    refuse(&s.def, (impact_report_def){.times = -1}, IMPACT_EARGUMENT, "times");
-    refuse(&s.def, (impact_report_def){.times = 10001}, IMPACT_EARGUMENT, "times");
-    refuse(&s.def, (impact_report_def){.rounds = 16}, IMPACT_EARGUMENT, "rounds");
-    refuse(&s.def, (impact_report_def){.tolerances = rising, .tolerance_count = 2}, IMPACT_EARGUMENT, "tolerances");
-    refuse(&s.def, (impact_report_def){.steps = bad, .step_count = 2}, IMPACT_EARGUMENT, "steps");
-    refuse(&s.def, (impact_report_def){.oracle = truth, .oracle_count = TIMES}, IMPACT_EARGUMENT, "error");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = -1}, IMPACT_EARGUMENT,
+           "seconds");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = NAN}, IMPACT_EARGUMENT,
+           "seconds");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .times = -1}, IMPACT_EARGUMENT,
+           "times");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .times = 10001}, IMPACT_EARGUMENT,
+           "times");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .rounds = 16}, IMPACT_EARGUMENT,
+           "rounds");
+    refuse(&s.def,
+           (impact_report_def){.struct_size = sizeof(impact_report_def), .tolerances = rising, .tolerance_count = 2},
+           IMPACT_EARGUMENT, "tolerances");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .steps = bad, .step_count = 2},
+           IMPACT_EARGUMENT, "steps");
+    refuse(&s.def,
+           (impact_report_def){.struct_size = sizeof(impact_report_def), .oracle = truth, .oracle_count = TIMES},
+           IMPACT_EARGUMENT, "error");
     truth[3].body = 0;
-    refuse(&s.def, (impact_report_def){.oracle = truth, .oracle_count = TIMES, .oracle_error = 1e-15}, IMPACT_EARGUMENT,
-           "order of time and bodies");
+    refuse(&s.def,
+           (impact_report_def){
+               .struct_size = sizeof(impact_report_def), .oracle = truth, .oracle_count = TIMES, .oracle_error = 1e-15},
+           IMPACT_EARGUMENT, "order of time and bodies");
     assert_null(impact_report_method_name((impact_report_method)-1));
     assert_null(impact_report_method_name(IMPACT_REPORT_METHODS));
 }
@@ -339,10 +354,12 @@ static void it_ends_when_it_is_told_to(void **state)
     bounce_scene s;
     table t;
     make_bounce(&s);
-    const impact_report_def quick = {.times = TIMES, .rounds = 1};
+    const impact_report_def quick = {.struct_size = sizeof quick, .times = TIMES, .rounds = 1};
     assert_int_equal(impact_report(&s.def, &quick, refuse_row, NULL, NULL, NULL, 0), IMPACT_ESINK);
-    assert_int_equal(ask(&s.def, &(impact_report_def){.go_on = not_now}, &t), IMPACT_STOPPED);
-    const impact_status status = ask(&s.def, &(impact_report_def){.seconds = 0.02}, &t);
+    assert_int_equal(ask(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .go_on = not_now}, &t),
+                     IMPACT_STOPPED);
+    const impact_status status =
+        ask(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = 0.02}, &t);
     assert_true(status == IMPACT_STOPPED || (status == IMPACT_OK && t.summary.dropped > 0));
 }
 

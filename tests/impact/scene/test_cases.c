@@ -281,7 +281,7 @@ static void calls_of_progress_are_bounded(void **state)
         if (i >= 15) def.max_steps = 1 + (long)random_log(&random, 1, 1e3);
         impact_scene *scene = make_scene(&def);
         pulse_count count = {0, 1000000};
-        const impact_recorder recorder = {.context = &count, .progress = count_pulse};
+        const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &count, .progress = count_pulse};
         const impact_status status = impact_scene_run(scene, &recorder);
         const impact_usage u = impact_scene_usage(scene);
         enum { BOXES = 16 }; /* they grow by half each time that the lone ball leaves one */

@@ -365,7 +365,7 @@ static void stopped_and_run_on(void **state)
     const scene_log whole = run_box(s, IMPACT_OK, NULL);
     impact_scene *scene = make_scene(&s->def);
     stopper half = {.left = whole.event_count / 2};
-    const impact_recorder recorder = {.context = &half, .event = stop_after};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &half, .event = stop_after};
     assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_ESINK);
     assert_int_equal(half.log.event_count, whole.event_count / 2);
     assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_OK);

@@ -265,19 +265,20 @@ typedef struct field {
     }
 
 static const field scene_fields[] = {
-    FIELD(impact_scene_def, name, POINTER, true),         FIELD(impact_scene_def, gravity, VECTOR, true),
-    FIELD(impact_scene_def, duration, NUMBER, true),      FIELD(impact_scene_def, output_rate, NUMBER, true),
-    FIELD(impact_scene_def, bodies, OTHER, true),         FIELD(impact_scene_def, body_count, COUNT, true),
-    FIELD(impact_scene_def, forces, OTHER, true),         FIELD(impact_scene_def, force_count, COUNT, true),
-    FIELD(impact_scene_def, pairs, OTHER, true),          FIELD(impact_scene_def, pair_count, COUNT, true),
-    FIELD(impact_scene_def, friction_rule, CHOICE, true), FIELD(impact_scene_def, restitution_rule, CHOICE, true),
-    FIELD(impact_scene_def, law, CHOICE, true),           FIELD(impact_scene_def, solver, CHOICE, true),
-    FIELD(impact_scene_def, compliance, NUMBER, true),    FIELD(impact_scene_def, tolerance, NUMBER, true),
-    FIELD(impact_scene_def, rest_height, NUMBER, true),   FIELD(impact_scene_def, rest_speed, NUMBER, true),
-    FIELD(impact_scene_def, max_events, COUNT, false),    FIELD(impact_scene_def, max_steps, COUNT, false),
-    FIELD(impact_scene_def, allocator, OTHER, false),     FIELD(impact_scene_def, key_tolerance, NUMBER, false),
-    FIELD(impact_scene_def, piles, CHOICE, true),         FIELD(impact_scene_def, together, CHOICE, true),
-    FIELD(impact_scene_def, samples, CHOICE, true),       FIELD(impact_scene_def, methods, OTHER, true),
+    FIELD(impact_scene_def, struct_size, OTHER, false),      FIELD(impact_scene_def, name, POINTER, true),
+    FIELD(impact_scene_def, gravity, VECTOR, true),          FIELD(impact_scene_def, duration, NUMBER, true),
+    FIELD(impact_scene_def, output_rate, NUMBER, true),      FIELD(impact_scene_def, bodies, OTHER, true),
+    FIELD(impact_scene_def, body_count, COUNT, true),        FIELD(impact_scene_def, forces, OTHER, true),
+    FIELD(impact_scene_def, force_count, COUNT, true),       FIELD(impact_scene_def, pairs, OTHER, true),
+    FIELD(impact_scene_def, pair_count, COUNT, true),        FIELD(impact_scene_def, friction_rule, CHOICE, true),
+    FIELD(impact_scene_def, restitution_rule, CHOICE, true), FIELD(impact_scene_def, law, CHOICE, true),
+    FIELD(impact_scene_def, solver, CHOICE, true),           FIELD(impact_scene_def, compliance, NUMBER, true),
+    FIELD(impact_scene_def, tolerance, NUMBER, true),        FIELD(impact_scene_def, rest_height, NUMBER, true),
+    FIELD(impact_scene_def, rest_speed, NUMBER, true),       FIELD(impact_scene_def, max_events, COUNT, false),
+    FIELD(impact_scene_def, max_steps, COUNT, false),        FIELD(impact_scene_def, allocator, OTHER, false),
+    FIELD(impact_scene_def, key_tolerance, NUMBER, false),   FIELD(impact_scene_def, piles, CHOICE, true),
+    FIELD(impact_scene_def, together, CHOICE, true),         FIELD(impact_scene_def, samples, CHOICE, true),
+    FIELD(impact_scene_def, methods, OTHER, true),
 };
 
 static const field methods_fields[] = {
@@ -291,6 +292,7 @@ static const field methods_fields[] = {
 };
 
 static const field body_fields[] = {
+    FIELD(impact_body_def, struct_size, OTHER, false),
     FIELD(impact_body_def, name, POINTER, true),
     FIELD(impact_body_def, shape, SHAPE, true),
     FIELD(impact_body_def, is_static, FLAG, true),
@@ -314,23 +316,27 @@ static const field body_fields[] = {
 };
 
 static const field force_fields[] = {
-    FIELD(impact_force_def, kind, CHOICE, true),          FIELD(impact_force_def, name, POINTER, true),
-    FIELD(impact_force_def, body, POINTER, true),         FIELD(impact_force_def, origin, VECTOR, true),
-    FIELD(impact_force_def, direction, VECTOR, true),     FIELD(impact_force_def, strength, NUMBER, true),
-    FIELD(impact_force_def, reach, NUMBER, true),         FIELD(impact_force_def, radius, NUMBER, true),
-    FIELD(impact_force_def, falloff_power, NUMBER, true), FIELD(impact_force_def, falloff_length, NUMBER, true),
-    FIELD(impact_force_def, drag, NUMBER, true),          FIELD(impact_force_def, constant, NUMBER, true),
-    FIELD(impact_force_def, power, NUMBER, true),         FIELD(impact_force_def, function, OTHER, false),
-    FIELD(impact_force_def, context, OTHER, false),       FIELD(impact_force_def, max_step, NUMBER, true),
-    FIELD(impact_force_def, switches, OTHER, true),       FIELD(impact_force_def, switch_count, COUNT, true),
-    FIELD(impact_force_def, switch_period, NUMBER, true), FIELD(impact_force_def, edge, OTHER, true),
-    FIELD(impact_force_def, steady, FLAG, true),
+    FIELD(impact_force_def, struct_size, OTHER, false),    FIELD(impact_force_def, kind, CHOICE, true),
+    FIELD(impact_force_def, name, POINTER, true),          FIELD(impact_force_def, body, POINTER, true),
+    FIELD(impact_force_def, origin, VECTOR, true),         FIELD(impact_force_def, direction, VECTOR, true),
+    FIELD(impact_force_def, strength, NUMBER, true),       FIELD(impact_force_def, reach, NUMBER, true),
+    FIELD(impact_force_def, radius, NUMBER, true),         FIELD(impact_force_def, falloff_power, NUMBER, true),
+    FIELD(impact_force_def, falloff_length, NUMBER, true), FIELD(impact_force_def, drag, NUMBER, true),
+    FIELD(impact_force_def, constant, NUMBER, true),       FIELD(impact_force_def, power, NUMBER, true),
+    FIELD(impact_force_def, function, OTHER, false),       FIELD(impact_force_def, context, OTHER, false),
+    FIELD(impact_force_def, max_step, NUMBER, true),       FIELD(impact_force_def, switches, OTHER, true),
+    FIELD(impact_force_def, switch_count, COUNT, true),    FIELD(impact_force_def, steady, FLAG, true),
+    FIELD(impact_force_def, switch_period, NUMBER, true),  FIELD(impact_force_def, edge, OTHER, true),
 };
 
 static const field pair_fields[] = {
-    FIELD(impact_pair_def, body1, POINTER, true),           FIELD(impact_pair_def, body2, POINTER, true),
-    FIELD(impact_pair_def, friction, NUMBER, true),         FIELD(impact_pair_def, restitution, NUMBER, true),
-    FIELD(impact_pair_def, stiffness, NUMBER, true),        FIELD(impact_pair_def, torsional_friction, NUMBER, true),
+    FIELD(impact_pair_def, struct_size, OTHER, false),
+    FIELD(impact_pair_def, body1, POINTER, true),
+    FIELD(impact_pair_def, body2, POINTER, true),
+    FIELD(impact_pair_def, friction, NUMBER, true),
+    FIELD(impact_pair_def, restitution, NUMBER, true),
+    FIELD(impact_pair_def, stiffness, NUMBER, true),
+    FIELD(impact_pair_def, torsional_friction, NUMBER, true),
     FIELD(impact_pair_def, rolling_friction, NUMBER, true),
 };
 
@@ -385,7 +391,7 @@ static void make_definition(whole_definition *d)
     for (int i = 0; i < 2; i++) d->bodies[i] = ball_body(i ? "one" : "two", (qvec3){2.0 * i, 0, 1}, 0.3, 0.5);
     d->forces[0] = impact_default_force_def(IMPACT_FORCE_WIND);
     d->forces[1] = impact_default_force_def(IMPACT_FORCE_CUSTOM);
-    d->pairs[0] = (impact_pair_def){"one", "two", 0.1, 0.2, 3, 0.01, 0.02};
+    d->pairs[0] = (impact_pair_def){sizeof(impact_pair_def), "one", "two", 0.1, 0.2, 3, 0.01, 0.02};
     d->scene.bodies = d->bodies, d->scene.body_count = 2;
     d->scene.forces = d->forces, d->scene.force_count = 2;
     d->scene.pairs = d->pairs, d->scene.pair_count = 1;
@@ -461,7 +467,7 @@ static void the_user_pointer_comes_back(void **state)
 {
     (void)state;
     int mine = 0;
-    impact_body_def body = ball_body("ball", (qvec3){0, 0, 1}, 0, 1), back;
+    impact_body_def body = ball_body("ball", (qvec3){0, 0, 1}, 0, 1), back = impact_default_body_def();
     body.user = &mine;
     impact_scene_def def = impact_default_scene_def();
     def.bodies = &body;

@@ -72,7 +72,7 @@ static impact_scene *reloaded(impact_scene *scene, int seed, impact_samples samp
 /* In one run, or in parts that end anywhere, saved and loaded between them. */
 static void fill(table *t, int seed, impact_samples samples, int parts)
 {
-    const impact_recorder recorder = {.context = t, .sample = keep};
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = t, .sample = keep};
     impact_scene *scene = make_scene(seed, samples);
     t->count = 0;
     for (int k = 1; k <= parts; k++) {

@@ -264,7 +264,7 @@ static void what_cannot_be_saved_says_why(void **state)
     for (int calls = 1; calls < 4000 && !refused; calls++) {
         impact_scene *stopped = make_scene(&def);
         int left = calls;
-        const impact_recorder recorder = {.context = &left, .progress = stop};
+        const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &left, .progress = stop};
         impact_scene_run_to(stopped, event.t, &recorder);
         if (impact_scene_time(stopped) == event.t && impact_scene_save(stopped, NULL, &size) != IMPACT_OK) {
             refused = strstr(impact_scene_message(stopped), "stopped amid an instant") != NULL;

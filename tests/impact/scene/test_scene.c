@@ -46,8 +46,8 @@ static thesis_scene *make_thesis_scene(bool grips)
     s->wind.origin = (qvec3){-3, 0, 1};
     s->wind.strength = wind_force;
     s->wind.reach = wind_reach;
-    s->grip[0] = (impact_pair_def){"sphere", "floor", 0.5, NAN, NAN, NAN, NAN};
-    s->grip[1] = (impact_pair_def){"sphere", "wall", 0.5, NAN, NAN, NAN, NAN};
+    s->grip[0] = (impact_pair_def){sizeof(impact_pair_def), "sphere", "floor", 0.5, NAN, NAN, NAN, NAN};
+    s->grip[1] = (impact_pair_def){sizeof(impact_pair_def), "sphere", "wall", 0.5, NAN, NAN, NAN, NAN};
     s->def = impact_default_scene_def();
     s->def.gravity = (qvec3){0, 0, -gravity};
     s->def.duration = 3.75;
@@ -414,7 +414,8 @@ static void stops_when_asked(void **state)
     thesis_scene *s = make_thesis_scene(false);
     impact_scene *scene = make_scene(&s->def);
     free(s);
-    const impact_recorder stopper = {.progress = stop_late}, refuser = {.sample = refuse};
+    const impact_recorder stopper = {.struct_size = sizeof stopper, .progress = stop_late},
+                          refuser = {.struct_size = sizeof refuser, .sample = refuse};
     assert_int_equal(impact_scene_run(scene, &stopper), IMPACT_STOPPED);
     const double t = impact_scene_time(scene);
     assert_true(t > 0.5 * 3.75 && t < 3.75);
@@ -528,7 +529,7 @@ static void bad_definitions_are_named(void **state)
     def.compliance = NAN;
     expect_refusal(&def, "scene 'scene': compliance = nan: must be >= 0 and finite");
     def.compliance = 0;
-    const impact_pair_def pair = {"coin", "flor", 0.5, NAN, NAN, NAN, NAN};
+    const impact_pair_def pair = {sizeof pair, "coin", "flor", 0.5, NAN, NAN, NAN, NAN};
     def.pairs = &pair;
     def.pair_count = 1;
     expect_refusal(&def, "pair with 'flor': the scene has no such body");

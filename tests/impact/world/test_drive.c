@@ -191,8 +191,16 @@ static void between_belt_and_wall_it_spins_in_its_place(void **state)
         const double V = 0.4 + k, mub = 0.2 + 0.1 * k, muw = 0.15 * k;
         const double N = mass * gravity / (1 - muw * mub), stop = 0.4 * mass * V / (mub * N * (1 - muw));
         const impact_pair_def pairs[2] = {
-            {.body1 = "ball", .body2 = "floor", .friction = mub, .restitution = 0},
-            {.body1 = "ball", .body2 = "wall", .friction = muw, .restitution = 0},
+            {.struct_size = sizeof(impact_pair_def),
+             .body1 = "ball",
+             .body2 = "floor",
+             .friction = mub,
+             .restitution = 0},
+            {.struct_size = sizeof(impact_pair_def),
+             .body1 = "ball",
+             .body2 = "wall",
+             .friction = muw,
+             .restitution = 0},
         };
         impact_body_def bodies[3] = {floor_body(), plane_body("wall", (qvec3){radius, 0, 0}, quat_identity(), 1, 0),
                                      ball_body("ball", (qvec3){0, 0, radius}, 1, 0)};

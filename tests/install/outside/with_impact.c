@@ -14,8 +14,12 @@ static int decay(double t, const double *y, double *rate, void *context)
 /* y' = -y from 1 to t = 1 with CVODE; a build without it must say so. */
 static int integrate(void)
 {
-    const impact_ode_def def = {
-        .size = 1, .rhs = decay, .method = IMPACT_ODE_ADAMS, .relative_tolerance = 1e-10, .absolute_tolerance = 1e-12};
+    const impact_ode_def def = {.struct_size = sizeof def,
+                                .size = 1,
+                                .rhs = decay,
+                                .method = IMPACT_ODE_ADAMS,
+                                .relative_tolerance = 1e-10,
+                                .absolute_tolerance = 1e-12};
     impact_ode *ode = NULL;
     const impact_status status = impact_ode_create(&def, &ode);
     if (!impact_has(IMPACT_PART_CVODE)) return status == IMPACT_EABSENT ? 0 : 1;
