@@ -174,7 +174,7 @@ static bool same_look(const impact_body_def *a, const impact_body_def *b)
 /* The mesh of an earlier body of the same shape and colour, or a new one; -1: out of memory. */
 static int mesh_of(gltf *g, int body, const int *meshes, int material)
 {
-    impact_body_def def, other;
+    impact_body_def def = impact_default_body_def(), other = def;
     impact_run_body(g->run, body, &def);
     for (int i = 0; i < body && def.shape.kind != IMPACT_PLANE; i++) {
         impact_run_body(g->run, i, &other);
@@ -238,7 +238,7 @@ static bool animate(gltf *g, int body, double tolerance)
 
 static void say_node(gltf *g, int body, int mesh)
 {
-    impact_body_def def;
+    impact_body_def def = impact_default_body_def();
     impact_run_body(g->run, body, &def);
     const quat q = def.orientation;
     imp_text_say(&g->nodes, ",{\"name\":");
@@ -266,7 +266,7 @@ static void measure(gltf *g)
 {
     qvec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (int i = 0; i < impact_run_body_count(g->run); i++) {
-        impact_body_def def;
+        impact_body_def def = impact_default_body_def();
         impact_run_body(g->run, i, &def);
         const double r = def.shape.kind == IMPACT_PLANE ? 0 : impact_shape_bounding_radius(&def.shape);
         for (long k = 0; k < impact_run_key_count(g->run, i) && (r > 0 || impact_run_body_count(g->run) == 1); k++) {
@@ -289,7 +289,7 @@ static bool fill(gltf *g, double tolerance)
     bool whole = meshes != NULL;
     measure(g);
     for (int i = 0; whole && i < count; i++) {
-        impact_body_def def;
+        impact_body_def def = impact_default_body_def();
         impact_run_body(g->run, i, &def);
         meshes[i] = mesh_of(g, i, meshes, def.is_static ? 2 : 0);
         whole = meshes[i] >= 0;

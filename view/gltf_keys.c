@@ -66,7 +66,7 @@ static void halve(keys *k, imp_gltf_key a, imp_gltf_key b)
 
 imp_gltf_key *imp_gltf_keys(imp_arena *arena, const impact_run *run, int body, double tolerance, int *count)
 {
-    impact_body_def def;
+    impact_body_def def = impact_default_body_def();
     impact_run_body(run, body, &def);
     const double size = impact_shape_bounding_radius(&def.shape) + qvec3_norm(def.shape_position);
     const double end = impact_run_end(run);

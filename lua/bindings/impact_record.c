@@ -125,7 +125,7 @@ static int run_bodies(lua_State *L)
     const impact_run *run = check_run(L);
     lua_newtable(L);
     for (int i = 0; i < impact_run_body_count(run); i++) {
-        impact_body_def def;
+        impact_body_def def = impact_default_body_def();
         impact_run_body(run, i, &def);
         lua_createtable(L, 0, 8);
         quat_lua_set_string(L, "name", def.name);
@@ -165,7 +165,7 @@ static int run_contacts(lua_State *L)
     lua_newtable(L);
     for (long k = 0; k < impact_run_held_count(run); k++) {
         impact_held held;
-        impact_body_def body1, body2;
+        impact_body_def body1 = impact_default_body_def(), body2 = body1;
         impact_run_held(run, k, &held);
         impact_run_body(run, held.body1, &body1);
         impact_run_body(run, held.body2, &body2);

@@ -71,7 +71,8 @@ IMPACT_API double impact_run_tolerance(const impact_run *run); /* of its keys: s
 IMPACT_API int impact_run_body_count(const impact_run *run);
 IMPACT_API int impact_run_find(const impact_run *run, const char *body); /* index, or -1 */
 /* The body as it was defined; position, orientation and velocities are those of its first key, or its surface's where
- * it is static. IMPACT_EARGUMENT when there is no such body. */
+ * it is static. def->struct_size is to be set: begin with impact_default_body_def(). IMPACT_EARGUMENT when it is not,
+ * or when there is no such body. */
 IMPACT_API impact_status impact_run_body(const impact_run *run, int body, impact_body_def *def);
 
 /* The state at t, exact to the record's tolerance: of two states at the time of an event the one after it, or before

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "run/run_open.h"
+#include "base/definition.h"
+#include "base/tolerances.h"
 #include "motion/key.h"
 
 #include <string.h>
@@ -107,8 +109,9 @@ int impact_run_find(const impact_run *run, const char *body)
 
 impact_status impact_run_body(const impact_run *run, int body, impact_body_def *def)
 {
-    if (body < 0 || body >= run->body_count) return IMPACT_EARGUMENT;
-    *def = run->bodies[body].def;
+    const bool known = body >= 0 && body < run->body_count;
+    if (!known || imp_definition_refusal(def, IMP_MOST_DEFINITION)) return IMPACT_EARGUMENT;
+    imp_definition_give(&run->bodies[body].def, sizeof *def, def, def->struct_size);
     return IMPACT_OK;
 }
 

@@ -13,6 +13,7 @@ typedef struct check {
     char *message;
     size_t size;
     const char *kind, *name; /* "body", "coin" */
+    char number[32];         /* in place of a name that is not there */
     impact_status status;
     imp_names *names; /* of the bodies passed so far */
 } check;
@@ -132,10 +133,9 @@ static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena
     if (c->status == IMPACT_OK) c->status = imp_names_open(c->names, arena, def->body_count);
     for (int i = 0; c->status == IMPACT_OK && i < def->body_count; i++) {
         const impact_body_def *body = &def->bodies[i];
-        char number[32];
-        snprintf(number, sizeof number, "%d", i + 1);
+        snprintf(c->number, sizeof c->number, "%d", i + 1);
         c->kind = "body";
-        c->name = number;
+        c->name = c->number;
         require_words(c, body->name && body->name[0] != '\0', "has no name");
         if (c->status != IMPACT_OK) return;
         c->name = body->name;

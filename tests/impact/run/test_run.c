@@ -428,7 +428,7 @@ static void test_files(void **state)
     assert_string_equal(impact_run_reason(run), "end of time");
     assert_string_equal(impact_run_name(run), "scene");
     assert_int_equal(impact_run_find(run, "brick"), 0);
-    impact_body_def back;
+    impact_body_def back = impact_default_body_def();
     assert_int_equal(impact_run_body(run, 0, &back), IMPACT_OK);
     assert_int_equal(back.shape.kind, body.shape.kind);
     assert_near3((qvec3){back.shape.a, back.shape.b, back.shape.c}, (qvec3){0.3, 0.2, 0.1}, 0);
@@ -466,7 +466,7 @@ static void test_shapes_with_faces_come_back(void **state)
         const impact_scene_def def = one_body(&body, 0.5);
         impact_scene *scene = make_scene(&def);
         impact_run *run = record(scene);
-        impact_body_def back;
+        impact_body_def back = impact_default_body_def();
         impact_run_body(run, 0, &back);
         assert_int_equal(back.shape.kind, body.shape.kind);
         assert_true(back.shape.a == body.shape.a && back.shape.c == body.shape.c && back.shape.t == body.shape.t);

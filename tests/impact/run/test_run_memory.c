@@ -151,7 +151,7 @@ static void test_a_shared_hull_stays(void **state)
     assert_int_equal(impact_hull_create(corner, 4, 0.01, NULL, &hull, NULL, 0), IMPACT_OK);
     write_and_read(&whole, &allocator, hull);
     assert_int_equal(impact_run_read(whole.bytes, whole.size, "bytes", &allocator, &run, message, sizeof message), 0);
-    impact_body_def dice;
+    impact_body_def dice = impact_default_body_def();
     assert_int_equal(impact_run_body(run, 2, &dice), IMPACT_OK);
     kept = impact_hull_share(dice.shape.hull);
     impact_run_close(run);
