@@ -73,7 +73,7 @@ static void any_length_is_read(void **state)
         s.def.tolerance = 1e-9, s.def.max_events = 100, s.def.piles = IMPACT_PILES_STEPS;
         s.bodies[1].trail = (qvec3){0.1, 0, 0};
         const impact_pair_def given[2] = {impact_default_pair_def("floor", "b1"),
-                                          {sizeof *given, "b1", "floor", 0.3, 0.2, 7}};
+                                          {sizeof *given, "b1", "floor", 0.3, 0.2, 7, 0.01, NAN}};
         const size_t body = random_bytes(&random, offsetof(impact_body_def, density), sizeof(impact_body_def) + 64);
         const size_t pair = random_bytes(&random, offsetof(impact_pair_def, friction), sizeof(impact_pair_def) + 64);
         const size_t whole =
