@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --- Which side of a loaded die comes up: impact sweep loaded_dice.lua -j 2
 ---
---- The die is a superquadric |x/a|^4 + |y/a|^4 + |z/a|^4 = 1 of mass M, with a small weight w M inside, close under its lower side, the one: the
+--- The die is a cube with rounded edges, of mass M, with a small weight w M inside, close under its lower side, the one: the
 --- centre of mass is w h / (1 + w) below the middle. Each run throws it with an orientation, a spin and a speed of its own.
 ---
 --- A throw is over when the die can no longer turn onto another side: once its energy is below its lowest pass, the least height, along the
@@ -9,10 +9,9 @@
 local impact = require "impact"
 local plot = require "quat.plot"
 
-local given = impact.arguments { throws = 60, exponent = 4.0, friction = 0.3, restitution = 0.8, height = 0.1 }
+local given = impact.arguments { throws = 200, rounding = 0.001, friction = 0.3, restitution = 0.8, height = 0.1 }
 local a, mass, gravity = 0.008, 0.005, 9.80665
-local exponent = given.exponent
-local shape = impact.superquadric { a = a, b = a, c = a, r = exponent, s = exponent, t = exponent }
+local shape = impact.box { a = a, b = a, c = a, rounding = given.rounding }
 local depth = 0.8 * a -- of the weight, under the middle
 
 --- How far below the middle the centre of mass is.
