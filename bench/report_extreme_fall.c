@@ -14,7 +14,7 @@
 /* What the trial's body, the second, is to truth_fall. */
 static truth_fall fall_of(const extreme_trial *t, double exponent)
 {
-    impact_body_def body;
+    impact_body_def body = impact_default_body_def();
     impact_scene_body_def(t->scene, 1, &body);
     const impact_shape *shape = &t->bodies[1].shape;
     truth_fall f = {.mass = body.mass,
