@@ -533,7 +533,7 @@ static void bad_definitions_are_named(void **state)
     def.pairs = &pair;
     def.pair_count = 1;
     expect_refusal(&def, "pair with 'flor': the scene has no such body");
-    const impact_pair_def rough = {"coin", "floor", 0.5, NAN, NAN, NAN, -1};
+    const impact_pair_def rough = {sizeof rough, "coin", "floor", 0.5, NAN, NAN, NAN, -1};
     def.pairs = &rough;
     expect_refusal(&def, "pair with 'floor': rolling_friction = -1: must be a length, >= 0 and finite");
 }
