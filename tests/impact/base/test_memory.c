@@ -280,7 +280,7 @@ static void sinks_too(void **state)
     for (size_t limit = 1024; limit < 1u << 19; limit += limit < 1u << 14 ? 512 : 1u << 14) {
         ledger l = {0};
         const impact_allocator allocator = ledger_allocator(&l, limit);
-        const impact_csv_def def = {.samples_path = longer, .allocator = &allocator};
+        const impact_csv_def def = {.struct_size = sizeof def, .samples_path = longer, .allocator = &allocator};
         impact_csv *csv = NULL;
         const impact_status status = impact_csv_open_with(&def, &csv, message, sizeof message);
         opened += status == IMPACT_OK, refused += status < 0;
