@@ -95,7 +95,7 @@ local function compare(folder, name)
 end
 
 for _, name in ipairs { "sphere_wall", "sphere_wall_rolling", "sphere_wall_spin", "two_spheres", "bouncing_ball", "t_handle", "superball",
-  "newtons_cradle", "balls_in_a_box", "bowling_ball", "rattleback", "tippe_top", "eulers_disk", "turntable", "dice", "rocking_block", "dominoes", "coin",
+  "newtons_cradle", "balls_in_a_box", "bowling_ball", "rattleback", "tippe_top", "eulers_disk", "turntable", "dice", "rocking_block", "ramp", "stack", "dominoes", "coin",
   "curling" } do
   local code, out, said = runner.command(string.format("%s --out .", runner.quote(scenes .. "/" .. name .. ".lua")))
   check.equal(code, 0)
