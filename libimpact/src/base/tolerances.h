@@ -289,8 +289,8 @@
 #define IMP_WEDGE_STEPS 20000
 /* Steps and events of one group: forty times what the longest random encounters with ratios of 1e4 take that end. */
 #define IMP_SPRINGS_STEPS 100000
-/* Multiplications of one group, some ten seconds: a hundred contacts with friction take a hundredth. */
-#define IMP_SPRINGS_WORK 1e10
+/* Multiplications of one group, about a second: a hundred contacts with friction take a tenth. */
+#define IMP_SPRINGS_WORK 1e9
 
 /* ---- contact: encounters, docs/together.md ---- */
 

@@ -220,9 +220,9 @@ static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_
                : touch->onset            ? touch->drive - (1 - 1e-9)
                                          : touch->speed - world->slip_speed;
     const imp_pair *pair = &world->pairs[touch->pair];
-    value[2] = pair->corner > 0
-                   ? imp_corner_clearance(world, pair, states) + 0.5 * imp_world_touching_distance(world, pair, states)
-                   : imp_world_inside_bounds(world, pair, states, &contact);
+    value[2] = pair->corner > 0 ? imp_corner_clearance(world, pair, states) - pair->sunk +
+                                      0.5 * imp_world_touching_distance(world, pair, states)
+                                : imp_world_inside_bounds(world, pair, states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
     if (touch->flat) value[2] = fmin(value[2], touch->spare);
     if (touch->lined) value[2] = fmin(value[2], imp_line_spare(world, touch, states, loads));

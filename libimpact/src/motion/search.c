@@ -202,7 +202,8 @@ static bool creeps(const imp_search *s, const sight *l, double gap, double step)
  * later. */
 static double step_veering(const imp_search *s, const sight *l, double gap)
 {
-    const double apart = IMP_VEERING / (l->bounds[0].omega + l->bounds[1].omega);
+    const double spin = l->bounds[0].omega + l->bounds[1].omega, apart = IMP_VEERING / spin;
+    if (!(spin > 0)) return 0;
     const qvec3 n = l->contact.normal;
     qvec3 around[2];
     for (int k = 0; k < 2; k++) {

@@ -34,9 +34,10 @@ typedef struct imp_island {
     double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
     double looked_at;   /* s: by the receipt */
     imp_patience patience;
-    bool lies;      /* bodies with faces stay on each other: it is to be moved by steps */
-    bool stepped;   /* it moves by steps (stepped.h): */
-    imp_pile *pile; /* absent until then */
+    bool unanswered; /* scratch: at this instant the law of encounters has found no answer once */
+    bool lies;       /* bodies with faces stay on each other: it is to be moved by steps */
+    bool stepped;    /* it moves by steps (stepped.h): */
+    imp_pile *pile;  /* absent until then */
     long steps;
     double outside;    /* J: of all other bodies, for the rows of events */
     int number;        /* among the scene's; -1: of none */

@@ -142,7 +142,7 @@ static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena
         require_words(c, imp_names_find(c->names, body->name) < 0, "the name is taken by another body");
         check_body(c, body);
         require_words(c, body->shape.kind < IMPACT_BOX || def->body_count == 1 || def->piles != IMPACT_PILES_EXACT,
-                      "bodies with faces are moved by steps while they touch: piles = 'exact' is not for them");
+                      "bodies with faces go by steps where they lie on each other: piles = 'exact' is not for them");
         if (c->status == IMPACT_OK) c->status = imp_names_add(c->names, body->name);
     }
 }

@@ -127,3 +127,13 @@ void imp_scene_remember(imp_island *island)
     memcpy(island->before, island->states, sizeof *island->states * (size_t)island->world.body_count);
     for (int p = 0; p < island->world.pair_count; p++) island->modes[p] = island->world.pairs[p].mode;
 }
+
+const char *imp_scene_phases_in_words(const unsigned char *phases, int count, char *words, size_t size)
+{
+    size_t used = 0;
+    words[0] = '\0';
+    for (int i = 0; i < count && used < size; i++)
+        used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "",
+                                 impact_phase_name((impact_phase)phases[i]));
+    return words;
+}

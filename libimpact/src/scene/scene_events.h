@@ -24,4 +24,7 @@ impact_event imp_scene_event_of_body(const imp_island *island, impact_event_kind
  * before all is done that happens at this instant (scene->refused): the scene then stands where it can go on. */
 impact_status imp_scene_record(imp_island *island, const impact_event *event);
 
+/* The phases of an impact by their names, in words (of that size), which it returns. */
+const char *imp_scene_phases_in_words(const unsigned char *phases, int count, char *words, size_t size);
+
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_meeting.h"
 #include "collide/collide_tangential.h"
+#include "contact/points.h"
 #include "world/world_gap.h"
 
 #include <float.h>
@@ -79,12 +80,14 @@ static double most_lasting_press(const imp_island *island, const imp_meeting *m)
     return pull + speed * speed / (roundest * radius);
 }
 
-/* How high the pair's bounce has to rise to be one, m. */
+/* How high the pair's bounce has to rise to be one, m. A corner's bounce brings down the body's others, and these bring
+ * it down: how many follow its own restitution does not tell. */
 static double least_rise(const imp_island *island, const imp_meeting *m)
 {
     enum { MOST = 10 };
     const imp_pair *pair = &island->world.pairs[m->touch.pair];
-    const double gain = 1 / (1 - pair->restitution * pair->restitution);
+    const double own = 1 / (1 - pair->restitution * pair->restitution),
+                 gain = imp_pair_has_faces(&island->world, pair) ? MOST : own;
     return fmax(island->scene->rest_height, m->touching * fmin(gain, MOST));
 }
 

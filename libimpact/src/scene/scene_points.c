@@ -127,13 +127,6 @@ static bool is_point(const imp_pair *pair) { return pair->placed || pair->corner
 
 static bool is_held_corner(const imp_pair *pair) { return pair->corner > 0 && imp_is_held(pair); }
 
-static bool has_held_corner(const imp_world *world, const imp_pair *pair)
-{
-    for (int p = 0; p < world->pair_count; p++)
-        if (is_held_corner(&world->pairs[p]) && imp_same_bodies(&world->pairs[p], pair)) return true;
-    return false;
-}
-
 void imp_scene_drop_points(imp_island *island)
 {
     imp_world *world = &island->world;
@@ -143,7 +136,7 @@ void imp_scene_drop_points(imp_island *island)
         if (is_held_corner(&pair)) {
             pair.placed = false;
         } else if (is_point(&pair)) {
-            if (has_held_corner(world, &pair) || is_among(world->pairs, kept, &pair)) continue;
+            if (imp_corner_is_held(world, &pair, 0) || is_among(world->pairs, kept, &pair)) continue;
             pair = whole_pair(&pair);
         }
         island->modes[kept] = island->modes[p];

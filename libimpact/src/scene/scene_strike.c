@@ -10,16 +10,6 @@
 
 /* ---- one impact ---- */
 
-static const char *phases_in_words(const impact_outcome *outcome, char *words, size_t size)
-{
-    size_t used = 0;
-    words[0] = '\0';
-    for (int i = 0; i < outcome->phase_count && used < size; i++)
-        used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "",
-                                 impact_phase_name((impact_phase)outcome->phases[i]));
-    return words;
-}
-
 static void count_solver(imp_island *island, const impact_outcome *outcome)
 {
     impact_usage *usage = &island->world.usage;
@@ -98,7 +88,7 @@ static impact_status strike(imp_island *island, imp_meeting *m)
     count_solver(island, &outcome);
     char words[128] = "";
     if (imp_scene_tells_events(island)) {
-        event.phases = phases_in_words(&outcome, words, sizeof words);
+        event.phases = imp_scene_phases_in_words(outcome.phases, outcome.phase_count, words, sizeof words);
         event.energy_after = imp_scene_total_energy(island);
     }
     event.impulse_normal = outcome.impulse_normal;
@@ -152,7 +142,7 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
     imp_world *world = &island->world;
     imp_meeting m;
     bool fresh = true; /* the loads know of the last impact */
-    *parted = false;
+    *parted = island->unanswered = false;
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].struck = false;
     impact_status status = imp_scene_load_with_reactions(island);
     for (int count = 0; status == IMPACT_OK; count++) {

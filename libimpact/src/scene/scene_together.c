@@ -131,17 +131,6 @@ static void describe(imp_island *island, gathering *g, bool spent)
     }
 }
 
-static const char *words_of(const impact_meeting_outcome *o, const char *name, char *words, size_t size)
-{
-    size_t used = 0;
-    if (o->phase_count == 0) return name;
-    words[0] = '\0';
-    for (int i = 0; i < o->phase_count && used < size; i++)
-        used += (size_t)snprintf(words + used, size - used, "%s%s", i ? " " : "",
-                                 impact_phase_name((impact_phase)o->phases[i]));
-    return words;
-}
-
 /* A row for each contact that exchanged an impulse; all share the encounter's number. */
 static impact_status record_all(imp_island *island, const gathering *g, const char *name, double energy)
 {
@@ -155,7 +144,8 @@ static impact_status record_all(imp_island *island, const gathering *g, const ch
         if (qvec3_dot(o->impulse, o->impulse) == 0) continue;
         impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
         event.encounter = number;
-        event.phases = words_of(o, name, words, sizeof words);
+        event.phases =
+            o->phase_count > 0 ? imp_scene_phases_in_words(o->phases, o->phase_count, words, sizeof words) : name;
         event.impulse = o->impulse;
         event.impulse_normal = qvec3_dot(touch->normal, o->impulse);
         event.impulse_tangential = qvec3_norm(qvec3_axpy(-event.impulse_normal, touch->normal, o->impulse));
@@ -219,14 +209,15 @@ impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck,
 {
     const impact_scene_together law = island->scene->together;
     *answered = false;
-    if (law == IMPACT_SCENE_SEQUENCE || island->world.pair_count < 2) return IMPACT_OK;
+    if (law == IMPACT_SCENE_SEQUENCE || island->world.pair_count < 2 || island->unanswered) return IMPACT_OK;
     gathering g;
     impact_status status = make_gathering(island, &g);
     if (status == IMPACT_OK && g.count > 1 && !suffices_alone(island, &g, struck)) {
         const impact_together_law by = law == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
         status = answer(island, &g, (answering){by, impact_together_law_name(by), false});
         *answered = status >= 0;
-        if (status == IMPACT_EUNSETTLED) tell_unsettled(island, &g, struck, by);
+        island->unanswered = status == IMPACT_EUNSETTLED;
+        if (island->unanswered) tell_unsettled(island, &g, struck, by);
         /* what the law has no answer for is answered one after another, as those that come later are */
         if (status == IMPACT_EUNSETTLED || status > 0) status = IMPACT_OK;
     }

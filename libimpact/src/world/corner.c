@@ -130,11 +130,12 @@ qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_st
     return qvec3_add(carried, quat_rotate(v.axes, along_rim));
 }
 
-static bool is_held(const imp_world *world, const imp_pair *pair, int corner)
+bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner)
 {
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *other = &world->pairs[p];
-        if (other->corner == corner && imp_is_held(other) && imp_same_bodies(other, pair)) return true;
+        const bool is_it = corner > 0 ? other->corner == corner : other->corner > 0;
+        if (is_it && imp_is_held(other) && imp_same_bodies(other, pair)) return true;
     }
     return false;
 }
@@ -171,7 +172,7 @@ double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const 
     double least = within_border(world, pair, states);
     for (int i = 0; i < count; i++) {
         const corner_place place = place_of(&v.form, v.up, i);
-        const bool held = is_held(world, pair, i + 1);
+        const bool held = imp_corner_is_held(world, pair, i + 1);
         if (held && !(place.rim > 0)) continue;
         least = fmin(least, height_of(&v, held ? qvec3_axpy(-2 * place.rim, place.along, place.at) : place.at));
     }

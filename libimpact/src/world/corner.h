@@ -26,6 +26,9 @@ int imp_corner_number(const imp_body *body, impact_feature feature);
  * a plane is not one of them. */
 int imp_corner_faces(const imp_body *body);
 
+/* Whether the corner of that number, or for 0 any, of the pair's body 1 is held on its body 2. */
+bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner);
+
 /* Of a pair with a corner (imp_pair.corner) on its plane, or on body 2's face (imp_pair.face). */
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states);
 

@@ -76,10 +76,11 @@ typedef struct imp_pair {
     bool settled;   /* scratch: had its chance to be held again in this instant */
     bool placed;    /* it is one of the points of two bodies with faces, at an instant: where it is, and stays */
     impact_contact place;
-    int bearer; /* placed: 1 or 2, the body whose face turns the normal; 0: the point is alone, both do */
-    int corner; /* > 0: it is this corner of body 1, counted from 1, on a plane, and may be held there (corner.h) */
-    int face;   /* > 0: not a plane but this face of body 2, counted from 1 */
-    bool met;   /* by the steps of a pile: it was closed since the pile was looked at last */
+    int bearer;  /* placed: 1 or 2, the body whose face turns the normal; 0: the point is alone, both do */
+    int corner;  /* > 0: it is this corner of body 1, counted from 1, on a plane, and may be held there (corner.h) */
+    int face;    /* > 0: not a plane but this face of body 2, counted from 1 */
+    double sunk; /* held corner: m: how far below it the other corners were where the stretch began, <= 0 */
+    bool met;    /* by the steps of a pile: it was closed since the pile was looked at last */
     impact_gap_cache cache;
 } imp_pair;
 
