@@ -423,6 +423,11 @@ end
 function impact.along(t, column, times)
   need(type(t) == "table" and type(column) == "table" and type(times) == "table", "along: three lists are needed", 2)
   need(#t == #column and #t > 0, string.format("along: %d times for %d values", #t, #column), 2)
+  for name, list in pairs { t = t, column = column, times = times } do
+    for i, value in ipairs(list) do
+      need(type(value) == "number", string.format("along: %s[%d] is a %s, not a number", name, i, type(value)), 2)
+    end
+  end
   local result, i = {}, 1
   for row, time in ipairs(times) do
     while i < #t and t[i + 1] <= time do i = i + 1 end

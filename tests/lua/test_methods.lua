@@ -51,7 +51,7 @@ end
 local function refused(words, methods, rest) raises(words, impact.scene, definition(methods, rest)) end
 
 refused("unknown key 'movement' in methods", { movement = "rk4" })
-refused("motion must be one of 'auto', 'cvode', 'rk4', 'steps', got the string 'rk45'", { motion = "rk45" })
+refused("motion must be one of 'auto', 'cvode', 'rk4', 'steps', 'other', got the string 'rk45'", { motion = "rk45" })
 refused("gaps must be one of 'newton', 'ccd'", { gaps = "gjk" })
 refused("solver, and impacts in methods, are two names of one key", { impacts = "cvode" }, { solver = "auto" })
 refused("tolerance, and tolerance in methods, are two names of one key", { tolerance = 1e-9 }, { tolerance = 1e-13 })

@@ -131,7 +131,7 @@ static void test_events_and_times_are_the_same(void **state)
         impact_run_state(thin, a.body1, a.t, &after);
         impact_run_state_before(run, a.body1, a.t, &was);
         assert_near(qvec3_norm(qvec3_sub(before.velocity, was.velocity)), 0, 1e-5);
-        impact_body_def def_of;
+        impact_body_def def_of = impact_default_body_def();
         impact_run_body(run, a.body1, &def_of);
         const qvec3 change = qvec3_scale(qvec3_sub(after.velocity, before.velocity), def_of.mass);
         assert_near(qvec3_norm(qvec3_sub(change, a.impulse)), 0, 1e-5 * def_of.mass);
