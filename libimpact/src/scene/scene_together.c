@@ -186,7 +186,9 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
     if (status < 0 || status == IMPACT_SEPARATING) return status;
     if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0)
         snprintf(scene->message, sizeof scene->message,
-                 "%d contacts at t = %.17g: their answer together does not pass its receipt", g->count, island->t);
+                 "%d contacts at t = %.17g, one of '%s' and '%s': their answer together does not pass its receipt",
+                 g->count, island->t, world->bodies[g->met[0].touch.body1].name,
+                 world->bodies[g->met[0].touch.body2].name);
     for (int i = 0; i < world->body_count; i++) imp_scene_set_velocities(island, i, g->velocity[i], g->omega[i]);
     imp_persist_stir(world);
     return record_all(island, g, how.name, energy);
