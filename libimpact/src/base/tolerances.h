@@ -138,6 +138,18 @@
 /* Contact forces pull, or leave their cone, where they do so by more than this part of the greatest of them: they are
  * the solutions of linear systems with conditions up to 1e4. */
 #define IMP_MODE_ROUNDING 1e-12
+/* Slip that was to begin goes on where the friction needed over what there is passes 1 by more than this: it is the
+ * outcome of Newton's iteration in the direction, which is left at this. */
+#define IMP_DRIVE_ROUNDING 1e-9
+/* A pair that is open is pressed where the loads' part of its acceleration towards the body is more than this: what the
+ * reactions of others balance leaves less. */
+#define IMP_PRESSED_OF_LOADS 1e-9
+/* No surface that presses is rounder than this part of its body's size: about edges the normal turns faster, but not
+ * for long. */
+#define IMP_ROUNDEST_PRESS 1e-3
+/* Of its spare, as the root that told of it leaves it: a body on a face whose centre of pressure has come to the
+ * border. */
+#define IMP_SPARE_SPENT 1e-6
 /* A loss that falls in a step by more than so many of the errors allowed in it falls in earnest. */
 #define IMP_LOSS_ERRORS 1e3
 /* So many steps without a fall later what fell is over, and the next fall is looked at anew: about a restart's. */
@@ -304,6 +316,18 @@
 #define IMP_SEQUENCE_STILL 0x1p-48
 /* Sweeps down the list: bodies of masses 1e4 apart take some thousands. */
 #define IMP_SEQUENCE_SWEEPS 100000
+
+/* ---- the search for the next contact (motion/search.c) ---- */
+
+/* Bounding balls are larger by this part, so that the time at which they meet is never late. */
+#define IMP_SEARCH_BALLS 1e-6
+/* Bodies in company of an integrator's polynomials: their gap is all but closed below this part of the size of their
+ * places: at 10 m/s^2 a step from there is 1e-5 s for a body of 1 m; */
+#define IMP_ALL_BUT_CLOSED 1e-9
+/* and a step is then no shorter than the polynomial's by this factor. */
+#define IMP_CRAWL_PARTS 64
+/* Queries of one search; it goes on from there when the queue comes back to it. */
+#define IMP_SEARCH_QUERIES 2000
 
 /* ---- normals that go with edges and corners ---- */
 

@@ -339,7 +339,7 @@ void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *stat
 static bool pulls(const imp_touch *touch, double scale)
 {
     const bool slides = touch->mode == IMP_SLIDE && !touch->redundant;
-    return !touch->still && touch->pressure < (slides ? 1e-12 : -1e-12) * scale;
+    return !touch->still && touch->pressure < (slides ? IMP_MODE_ROUNDING : -IMP_MODE_ROUNDING) * scale;
 }
 
 /* The contact that pulls hardest, or -1. */
@@ -359,7 +359,7 @@ static int worst_grip(const imp_persist *persist, double scale)
     int worst = -1;
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
-        if (!touch->still && touch->mode == IMP_ROLL && touch->margin < -1e-12 * scale &&
+        if (!touch->still && touch->mode == IMP_ROLL && touch->margin < -IMP_MODE_ROUNDING * scale &&
             (worst < 0 || touch->margin < persist->touches[worst].margin))
             worst = c;
     }
@@ -373,7 +373,7 @@ static int worst_onset(const imp_persist *persist, const imp_world *world)
     int worst = -1;
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
-        if (touch->onset && !world->pairs[touch->pair].tried && touch->drive < 1 - 1e-9 &&
+        if (touch->onset && !world->pairs[touch->pair].tried && touch->drive < 1 - IMP_DRIVE_ROUNDING &&
             (worst < 0 || touch->drive < persist->touches[worst].drive))
             worst = c;
     }
@@ -383,7 +383,7 @@ static int worst_onset(const imp_persist *persist, const imp_world *world)
 static bool onsets_slide(const imp_persist *persist)
 {
     for (int c = 0; c < persist->count; c++)
-        if (persist->touches[c].onset && persist->touches[c].drive < 1 - 1e-9) return false;
+        if (persist->touches[c].onset && persist->touches[c].drive < 1 - IMP_DRIVE_ROUNDING) return false;
     return true;
 }
 

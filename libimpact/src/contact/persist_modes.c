@@ -47,8 +47,9 @@ static bool presses_and_holds(const imp_persist *persist)
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
         if (touch->still) continue;
-        if (touch->pressure < -1e-12 * scale || (touch->onset && touch->drive < 1 - 1e-9)) return false;
-        if (touch->mode == IMP_ROLL && touch->margin < -1e-12 * scale) return false;
+        if (touch->pressure < -IMP_MODE_ROUNDING * scale || (touch->onset && touch->drive < 1 - IMP_DRIVE_ROUNDING))
+            return false;
+        if (touch->mode == IMP_ROLL && touch->margin < -IMP_MODE_ROUNDING * scale) return false;
     }
     return true;
 }
@@ -63,7 +64,7 @@ static bool parts(const imp_persist *persist, imp_world *world, const contact_se
         const double push = qvec3_norm(loads[touch.body1].force) * world->bodies[touch.body1].inverse_mass;
         const double acceleration = qvec3_dot(touch.normal, qvec3_add(touch.bias, imp_system_change(persist, &touch))) +
                                     qvec3_dot(touch.normal_rate, touch.slip);
-        if (acceleration < -1e-12 * push) return false;
+        if (acceleration < -IMP_MODE_ROUNDING * push) return false;
     }
     return true;
 }
@@ -98,7 +99,7 @@ void imp_persist_stop_onsets(imp_persist *persist, imp_world *world, const imp_s
     imp_persist_solve(persist, world, states, loads);
     for (int c = 0; c < persist->count; c++) {
         imp_pair *pair = &world->pairs[persist->touches[c].pair];
-        if (!persist->touches[c].onset || persist->touches[c].drive > 1 + 1e-9) continue;
+        if (!persist->touches[c].onset || persist->touches[c].drive > 1 + IMP_DRIVE_ROUNDING) continue;
         pair->mode = IMP_ROLL;
         pair->onset = false;
     }

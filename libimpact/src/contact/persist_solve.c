@@ -180,7 +180,7 @@ static bool drive_onsets(imp_persist *persist, const imp_world *world, const imp
         imp_touch *touch = &persist->touches[c];
         if (!touch->onset) continue;
         onset_direction(world, states, touch);
-        all = all && touch->drive >= 1 - 1e-9;
+        all = all && touch->drive >= 1 - IMP_DRIVE_ROUNDING;
     }
     return all;
 }

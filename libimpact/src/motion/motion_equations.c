@@ -217,7 +217,7 @@ static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_
     value[1] = touch->still              ? 1
                : touch->mode == IMP_ROLL ? touch->margin
                : touch->friction == 0    ? 1 /* slip neither begins nor ends */
-               : touch->onset            ? touch->drive - (1 - 1e-9)
+               : touch->onset            ? touch->drive - (1 - IMP_DRIVE_ROUNDING)
                                          : touch->speed - world->slip_speed;
     const imp_pair *pair = &world->pairs[touch->pair];
     value[2] = pair->corner > 0 ? imp_corner_clearance(world, pair, states) - pair->sunk +

@@ -65,19 +65,19 @@ static qvec3 plane_normal(const imp_search *s) { return quat_rotate(s->segment[1
 /* Nothing can happen before this: of the bounding balls, a little too large so that the time is never late. */
 static double balls_meet(const imp_search *s, double from)
 {
-    const double larger = 1e-6, reach = s->body[0]->radius + (is_plane(s->body[1]) ? 0 : s->body[1]->radius);
+    const double reach = s->body[0]->radius + (is_plane(s->body[1]) ? 0 : s->body[1]->radius);
     qvec3 w;
     if (s->beyond) return 0;
     const qvec3 d = centres_apart(s, from, &w);
     if (is_plane(s->body[1])) {
         if (!falls(s->segment[0])) return 0;
         const qvec3 n = plane_normal(s);
-        const double bound = qvec3_dot(n, d) - reach * (1 + larger);
+        const double bound = qvec3_dot(n, d) - reach * (1 + IMP_SEARCH_BALLS);
         return bound > 0 ? impact_flight_fall_time(bound, qvec3_dot(n, w), qvec3_dot(n, s->segment[0]->acceleration))
                          : 0;
     }
     if (!fall_alike(s)) return 0;
-    const double edge = reach * (1 + larger);
+    const double edge = reach * (1 + IMP_SEARCH_BALLS);
     return qvec3_dot(d, d) > edge * edge ? line_time(d, w, edge) : 0;
 }
 
@@ -307,7 +307,7 @@ static double still_rate(const imp_search *s, const sight *l)
     double speed = 0;
     for (int k = 0; k < 2; k++)
         if (turns(s, k)) speed += qvec3_norm(l->state[k].v) + s->body[k]->radius * l->bounds[k].omega;
-    return s->still + 1e-9 * speed;
+    return s->still + IMP_STILL_OF_SPEED * speed;
 }
 
 /* Between a time before the contact and one behind it, where the gap is below the slack: the Illinois form of regula
@@ -341,11 +341,8 @@ static double shortest_step(const imp_search *s)
     double longest = INFINITY;
     for (int k = 0; k < 2; k++)
         if (s->segment[k]->kind == IMP_SEGMENT_DENSE) longest = fmin(longest, s->segment[k]->t1 - s->segment[k]->t0);
-    return isfinite(longest) ? longest / 64 : 0;
+    return isfinite(longest) ? longest / IMP_CRAWL_PARTS : 0;
 }
-
-/* Of the size of the places: at 10 m/s^2 a step from there is 1e-5 s for a body of 1 m. */
-static const double all_but_closed = 1e-9;
 
 static bool is_fixed(const imp_search *s, int k)
 {
@@ -378,14 +375,13 @@ static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->
 
 static imp_found advance(const imp_search *s, double from, double until)
 {
-    enum { STEPS = 2000 };
     const imp_found never = {INFINITY, false};
     const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), least = shortest_step(s), start = start_of(s),
                  error = imp_gap_error(s->gaps, s->body[0], s->body[1]);
     if (least > 0 && from == start && is_parted(s, from)) return never;
     double t = from + (from == start ? balls_meet(s, from) : 0), slack = 0, before = t, gap_before = INFINITY;
     bool leaving = false;
-    for (int i = 0; i < STEPS && t <= end; i++) {
+    for (int i = 0; i < IMP_SEARCH_QUERIES && t <= end; i++) {
         if (t > until && !leaving && least == 0) return (imp_found){t, false};
         sight l;
         look_at(s, t, &l);
@@ -406,7 +402,7 @@ static imp_found advance(const imp_search *s, double from, double until)
             if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
                 return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};
             if (gap <= rounding && l.rate < 0) return (imp_found){t, true};
-            const bool near = gap <= all_but_closed * scale_of(s, &l) && gap + l.rate * least > 0;
+            const bool near = gap <= IMP_ALL_BUT_CLOSED * scale_of(s, &l) && gap + l.rate * least > 0;
             step = least > 0 && near ? crawl(s, &l, least, touching) : 0;
             if (step < l.window)
                 step = fmax(step, step_before(s, &l, fmax(gap, 0))); /* they part from where they are */

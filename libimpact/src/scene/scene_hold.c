@@ -156,7 +156,7 @@ static int find_pressed(imp_island *island, imp_meeting *m)
         const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
         const double push1 = qvec3_norm(island->motion.loads[pair->body1].force) * b1->inverse_mass,
                      push2 = qvec3_norm(island->motion.loads[pair->body2].force) * b2->inverse_mass;
-        const double pressed = -1e-9 * (push1 + push2);
+        const double pressed = -IMP_PRESSED_OF_LOADS * (push1 + push2);
         imp_scene_press(island, m);
         if (m->acceleration < pressed && imp_scene_dies_out(island, m, m->velocity)) return p;
     }

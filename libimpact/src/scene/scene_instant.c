@@ -111,7 +111,6 @@ static impact_status begin_slide(imp_island *island, int p)
 /* Whether it is the face or the line that a pair's centre of pressure has left, not the plane; the body then tips. */
 static bool tips(imp_island *island, int p)
 {
-    const double spent = 1e-6; /* of its spare, as a root leaves it */
     imp_world *world = &island->world;
     imp_persist *persist = &island->motion.persist;
     imp_pair *pair = &world->pairs[p];
@@ -121,9 +120,9 @@ static bool tips(imp_island *island, int p)
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
         if (touch->pair != p) continue;
-        if (touch->flat && touch->spare <= spent)
+        if (touch->flat && touch->spare <= IMP_SPARE_SPENT)
             imp_flat_tip(world, pair, island->states, touch);
-        else if (touch->lined && imp_line_spare(world, touch, island->states, island->motion.loads) <= spent)
+        else if (touch->lined && imp_line_spare(world, touch, island->states, island->motion.loads) <= IMP_SPARE_SPENT)
             pair->lined = false;
         else
             return false;

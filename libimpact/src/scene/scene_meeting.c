@@ -61,7 +61,6 @@ static double length(qvec3 v) { return sqrt(qvec3_dot(v, v)); }
  * reaction, which its acceleration does not. */
 static double most_lasting_press(const imp_island *island, const imp_meeting *m)
 {
-    const double roundest = 1e-3;
     const int body[2] = {m->touch.body1, m->touch.body2};
     const imp_state *states = island->states;
     double speed = length(qvec3_sub(states[body[0]].v, states[body[1]].v)), pull = fabs(m->own), radius = INFINITY;
@@ -77,7 +76,7 @@ static double most_lasting_press(const imp_island *island, const imp_meeting *m)
     /* of a face that is about to be rolled over the reaction is without bound, for no time */
     const double passing = 1e6 * length(island->world.gravity);
     if (passing > 0) pull = fmin(pull, passing);
-    return pull + speed * speed / (roundest * radius);
+    return pull + speed * speed / (IMP_ROUNDEST_PRESS * radius);
 }
 
 /* How high the pair's bounce has to rise to be one, m. A corner's bounce brings down the body's others, and these bring
