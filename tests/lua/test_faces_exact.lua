@@ -219,3 +219,22 @@ local chatter = impact.scene { duration = 1.5, gravity = { 0, 0, -G }, bodies = 
     friction = 0.31582921681846748, restitution = 0.75454972609276005, density = 363.16709038070758 } } }
 chatter:run()
 check.truth(chatter:usage().events.impact < 1000 and chatter:time() < 1.5, "corners that bounce in turn come to rest")
+
+-- A ball rolls down a face of a static box by 5/7 g sin a; one that is fast enough, v^2 > g r, flies off the border where it comes to it.
+local ramp = quat.from_axis_angle({ 0, 1, 0 }, .2)
+local along, up = quat.rotate(ramp, { 1, 0, 0 }), quat.rotate(ramp, { 0, 0, 1 })
+local function on_ramp(s) return { s * along.x + .07 * up.x, 0, s * along.z + .07 * up.z } end
+local marble = impact.scene { gravity = { 0, 0, -G }, duration = 1, bodies = {
+  impact.body { name = "ramp", static = true, shape = impact.box { a = .5, b = .2, c = .05 }, orientation = ramp, friction = 1 },
+  impact.body { name = "marble", shape = impact.sphere(.02), mass = .1, friction = .5, position = on_ramp(-.4) } } }
+marble:run()
+local wanted, there = on_ramp(-.4 + 5 / 14 * G * math.sin(.2)), marble:state("marble").position
+check.close(there.x, wanted[1], 1e-13)
+check.close(there.z, wanted[3], 1e-13)
+local r, v = .01, 1
+local off = impact.scene { gravity = { 0, 0, -G }, duration = .5, bodies = {
+  impact.body { name = "table", static = true, shape = impact.box { a = .3, b = .3, c = .1 }, position = { 0, 0, -.1 }, friction = 1 },
+  impact.body { name = "ball", shape = impact.sphere(r), mass = 1, friction = 1, position = { 0, 0, r }, velocity = { v, 0, 0 }, omega = { 0, v / r, 0 } } } }
+off:run()
+check.close(off:state("ball").position.z, r - G / 2 * (.5 - .3 / v) ^ 2, 1e-12)
+check.close(off:state("ball").position.x, .5 * v, 1e-12)

@@ -27,10 +27,15 @@ static bool is_among(const imp_pair *pairs, int count, const imp_pair *pair)
 
 /* What of body 1 the point is and on which face of body 2 (corner.h), where it stands on what is static; 0: nothing
  * that can be held alone. */
-static int corner_of(const imp_world *world, const imp_pair *pair, const imp_point *point, int count, int *face)
+static int corner_of(const imp_island *island, const imp_pair *pair, const imp_point *point, int count, int *face)
 {
+    const imp_world *world = &island->world;
     const imp_body *under = &world->bodies[pair->body2];
     const impact_feature on = point->feature[1];
+    if (world->bodies[pair->body1].shape.kind == IMPACT_SPHERE) {
+        *face = imp_corner_face_under(under, &island->states[pair->body2], &point->contact);
+        return *face > 0 ? 1 : 0;
+    }
     *face = on.kind == IMPACT_FACE && on.index >= 0 && on.index < imp_corner_faces(under) ? on.index + 1 : 0;
     if (under->shape.kind != IMPACT_PLANE && *face == 0) return 0;
     const bool of_disc = point->feature[0].kind == IMPACT_RIM && count > 2;
@@ -60,7 +65,7 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
     if (status == IMPACT_OK && count == 0 && before[p].corner > 0) world->pairs[world->pair_count++] = whole;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
         int face;
-        const int corner = corner_of(world, &whole, &points[k], count, &face);
+        const int corner = corner_of(island, &whole, &points[k], count, &face);
         imp_pair own = point_pair(&whole, corner, face, before, pairs);
         own.placed = true;
         own.place = points[k].contact;

@@ -18,6 +18,7 @@ int imp_corner_count(const imp_body *body)
     case IMPACT_POLYHEDRON: return imp_core_hull(&body->shape)->vertex_count;
     case IMPACT_CYLINDER:
     case IMPACT_CONE: return 2;
+    case IMPACT_SPHERE: return 1;
     default: return 0;
     }
 }
@@ -25,6 +26,7 @@ int imp_corner_count(const imp_body *body)
 int imp_corner_number(const imp_body *body, impact_feature feature)
 {
     const int count = imp_corner_count(body);
+    if (body->shape.kind == IMPACT_SPHERE) return 1;
     if (body->shape.kind == IMPACT_CONE) return feature.kind == IMPACT_RIM ? 1 : feature.kind == IMPACT_VERTEX ? 2 : 0;
     const impact_feature_kind kind = body->shape.kind == IMPACT_CYLINDER ? IMPACT_RIM : IMPACT_VERTEX;
     return feature.kind == kind && feature.index >= 0 && feature.index < count ? feature.index + 1 : 0;
@@ -44,6 +46,7 @@ static corner_place place_of(const imp_form *form, qvec3 up, int i)
     if (form->kind == IMP_FORM_CYLINDER) return rim_place(R, i == 0 ? -H : H, up);
     if (form->kind == IMP_FORM_CONE && i == 0) return rim_place(R, form->base, up);
     if (form->kind == IMP_FORM_CONE) return (corner_place){.at = {0, 0, form->base + H}};
+    if (form->kind == IMP_FORM_QUADRIC) return (corner_place){.at = {0, 0, 0}};
     double c[3];
     imp_core_vertex(&form->core, i, c);
     return (corner_place){.at = {c[0], c[1], c[2]}};
@@ -96,6 +99,7 @@ static corner_view view_of(const imp_world *world, const imp_pair *pair, const i
     }
     v.up = quat_rotate_inverse(v.axes, v.normal);
     imp_form_make(&body->shape, 1, quat_identity(), &v.form);
+    if (body->shape.kind == IMPACT_SPHERE) v.form.rounding = body->shape.a; /* its centre, and a ball about it */
     return v;
 }
 
@@ -140,19 +144,15 @@ bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner
     return false;
 }
 
-/* m: how far within the border of its face a corner stands; everywhere on a plane. */
-static double within_border(const imp_world *world, const imp_pair *pair, const imp_state *states)
+/* m: how far a place (from the body's centre of mass, world) is within the border of the face, along it. */
+static double within_border(const imp_body *body, const imp_state *state, int face, qvec3 place)
 {
-    if (pair->face == 0) return INFINITY;
-    const imp_body *under = &world->bodies[pair->body2];
-    const imp_state *s2 = &states[pair->body2];
     imp_form form;
-    imp_form_make(&under->shape, 1, quat_identity(), &form);
+    imp_form_make(&body->shape, 1, quat_identity(), &form);
     const impact_hull *hull = form.core.hull;
-    const qvec3 n = face_normal(&form, pair->face - 1),
-                place = qvec3_sub(imp_corner_contact(world, pair, states).offset2, imp_shape_offset(under, s2)),
-                p = quat_rotate_inverse(imp_shape_axes(under, s2), place);
-    const int first = hull->start[pair->face - 1], end = hull->start[pair->face];
+    const qvec3 n = face_normal(&form, face),
+                p = quat_rotate_inverse(imp_shape_axes(body, state), qvec3_sub(place, imp_shape_offset(body, state)));
+    const int first = hull->start[face], end = hull->start[face + 1];
     double least = INFINITY;
     for (int i = first; i < end; i++) {
         double x[3], y[3];
@@ -165,11 +165,27 @@ static double within_border(const imp_world *world, const imp_pair *pair, const 
     return least;
 }
 
+int imp_corner_face_under(const imp_body *body, const imp_state *state, const impact_contact *contact)
+{
+    const int count = imp_corner_faces(body);
+    imp_form form;
+    if (count > 0) imp_form_make(&body->shape, 1, quat_identity(), &form);
+    for (int f = 0; f < count; f++) {
+        const qvec3 n = quat_rotate(imp_shape_axes(body, state), face_normal(&form, f));
+        /* a foot within the border has its nearest point on the face, whose normal the contact then has */
+        if (qvec3_dot(n, contact->normal) > 0.5 && within_border(body, state, f, contact->offset2) > 0) return f + 1;
+    }
+    return 0;
+}
+
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
     const corner_view v = view_of(world, pair, states);
-    double least = within_border(world, pair, states);
+    double least = INFINITY;
+    if (pair->face > 0)
+        least = within_border(&world->bodies[pair->body2], &states[pair->body2], pair->face - 1,
+                              imp_corner_contact(world, pair, states).offset2);
     for (int i = 0; i < count; i++) {
         const corner_place place = place_of(&v.form, v.up, i);
         const bool held = imp_corner_is_held(world, pair, i + 1);

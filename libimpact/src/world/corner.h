@@ -16,7 +16,7 @@
 #include "world/world.h"
 
 /* How many corners and rims the body has; 0 of what is smooth, and of planes. A capsule has two corners, a cylinder two
- * rims, a cone its rim and then its top. */
+ * rims, a cone its rim and then its top, a sphere its centre, rounded by its radius. */
 int imp_corner_count(const imp_body *body);
 
 /* The feature's number among them, from 1; 0: it is none. */
@@ -25,6 +25,9 @@ int imp_corner_number(const imp_body *body, impact_feature feature);
 /* How many faces the body has on which a corner may be held; 0 where it is not static, or none of a box or polyhedron;
  * a plane is not one of them. */
 int imp_corner_faces(const imp_body *body);
+
+/* The face of the body, from 1, within whose border a sphere touches it at the contact; 0: none on which it is held. */
+int imp_corner_face_under(const imp_body *body, const imp_state *state, const impact_contact *contact);
 
 /* Whether the corner of that number, or for 0 any, of the pair's body 1 is held on its body 2. */
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner);
