@@ -40,7 +40,7 @@ awk '$0 == "```c" { on = 1; next } /^```/ { on = 0 } on' "$source/README.md" >im
 cp "$source/examples/embed/hello.c" ball.c
 cp "$here/wind.c" wind.c
 draw=()
-[ "$cvode" = 0 ] || draw=(-Wl,-u,imp_part_cvode)
+[ "$cvode" = 0 ] || draw=("-Wl,-u,imp_part_cvode")
 for name in impact ball wind; do
     "$cc" "${flags[@]}" $name.c "$impact" "$quat" -Wl,--gc-sections -lm -o lean_$name # undefined names would stop the linker
     "$cc" "${flags[@]}" $name.c "${draw[@]}" "$impact" "$quat" "${outside[@]}" -lm -o whole_$name
@@ -50,7 +50,7 @@ for name in impact ball wind; do
 done
 for name in impact ball; do
     cmp -s whole.$name lean.$name || fail "$name: without the parts it answers otherwise"
-    loads ./shared_$name && fail "shared_$name loads $(grep -oE "$third[a-z_]*" files | sort -u | tr '\n' ' ')"
+    loads ./shared_$name && fail "shared_$name loads $(grep -oE "${third}[a-z_]*" files | sort -u | tr '\n' ' ')"
 done
 grep -q 'absent: .*CVODE\|absent: .*integrator' lean.wind || fail "the lean program with a wind says: $(cat lean.wind)"
 if [ "$cvode" = 1 ]; then
