@@ -43,6 +43,7 @@ const char *quat_lua_guess(const char *given, const char *const keys[])
     int best_distance = INT_MAX;
     for (int i = 0; keys[i]; i++) {
         const int d = distance(given, keys[i]);
+        if (d == INT_MAX) continue; /* too long to be one */
         const bool begins =
             given[0] == keys[i][0] && 2 * d <= (int)strlen(given); /* words are known by their beginnings */
         const bool near = strlen(keys[i]) == 1 ? is_run(given, keys[i]) : begins || 3 * d <= (int)strlen(keys[i]) + 1;
