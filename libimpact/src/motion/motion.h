@@ -13,7 +13,7 @@
 typedef enum imp_end_kind {
     IMP_END_TIME,    /* nothing: the motion goes on */
     IMP_END_GAP,     /* an open pair's gap fell to zero: no integrator says so, but a search (search.h) */
-    IMP_END_BOUNDS,  /* a held contact left its plane's bounds */
+    IMP_END_BOUNDS,  /* a held contact left its plane's bounds, or its face's border; of a corner: or another landed */
     IMP_END_LIFTOFF, /* a held contact's pressure fell to zero */
     IMP_END_SLIP,    /* a rolling contact's friction reached its cone */
     IMP_END_STICK,   /* a sliding contact's slip died out */

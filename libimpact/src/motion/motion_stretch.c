@@ -276,7 +276,7 @@ static impact_status step_on(imp_motion *motion, double *y, imp_end *end)
 }
 
 /* What a landing or a rounding left of other corners below those that are held: they land where they sink further. */
-static void level_corners(imp_world *world, const imp_state *states)
+static void find_sunk_corners(imp_world *world, const imp_state *states)
 {
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
@@ -291,7 +291,7 @@ static impact_status start(imp_motion *motion, const imp_state *states)
     if (!imp_motion_load(motion, s->t, states)) return IMPACT_EDOMAIN;
     memcpy(motion->scratch, states,
            sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
-    level_corners(motion->world, states);
+    find_sunk_corners(motion->world, states);
     impact_status status = imp_motion_choose(motion, states);
     if (status != IMPACT_OK) return status;
     imp_motion_pack(motion, s->t, states, motion->y);

@@ -46,7 +46,7 @@ static void give_up(imp_island *loose)
 static impact_status conclude_steps(imp_island *island);
 
 /* What corners hold, and the exact way does not settle, goes on by steps. */
-static void lie_down_where_unsettled(imp_island *island, impact_status *status)
+static void step_where_unsettled(imp_island *island, impact_status *status)
 {
     if (*status != IMPACT_EUNSETTLED || !imp_scene_holds_corners(island)) return;
     *status = IMPACT_OK;
@@ -58,7 +58,7 @@ static void lie_down_where_unsettled(imp_island *island, impact_status *status)
 static impact_status conclude(imp_island *island, impact_status status)
 {
     impact_scene *scene = island->scene;
-    lie_down_where_unsettled(island, &status);
+    step_where_unsettled(island, &status);
     if (status == IMPACT_OK && (island->lies || imp_island_needs_steps(island))) {
         imp_island *stepped;
         imp_scene_receipt_look(island);
