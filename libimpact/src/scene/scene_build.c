@@ -2,16 +2,32 @@
 #include "scene/scene_internal.h"
 #include "world/drive.h"
 #include "scene/scene_check.h"
+#include "shape/solid.h"
 
 #include <string.h>
 
 /* Three equal moments, but for the rounding of the formulas that gave them. */
 static bool equal_moments(qvec3 m) { return fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x; }
 
+/* An octahedron meets others and is held with its corners, edges and faces: as the polyhedron that it is. (As a smooth
+ * body its one lowest point would jump from corner to corner as it tips over an edge.) */
+static impact_status build_shape(const impact_shape *given, imp_arena *arena, impact_shape *shape)
+{
+    *shape = *given;
+    if (!imp_is_octahedron(given)) return IMPACT_OK;
+    const double a = given->a, b = given->b, c = given->c;
+    const qvec3 corners[] = {{a, 0, 0}, {-a, 0, 0}, {0, b, 0}, {0, -b, 0}, {0, 0, c}, {0, 0, -c}};
+    const impact_allocator allocator = imp_arena_allocator(arena);
+    impact_hull *hull;
+    const impact_status status = impact_hull_create(corners, 6, 0, &allocator, &hull, NULL, 0);
+    if (status == IMPACT_EARGUMENT) return IMPACT_OK; /* so thin that rounding has its corners in a plane */
+    return status == IMPACT_OK ? impact_shape_polyhedron(hull, shape) : status;
+}
+
 static void build_body(const impact_body_def *def, char *name, imp_body *body, imp_state *state)
 {
     *body = (imp_body){.name = name,
-                       .shape = def->shape,
+                       .given = def->shape,
                        .user = def->user,
                        .is_static = def->is_static,
                        .mass = INFINITY,
@@ -88,6 +104,8 @@ static impact_status build_bodies(impact_scene *scene, const impact_scene_def *d
         world->body_count++;
         scene->root[i] = -1;
         build_body(&def->bodies[i], scene->names.names[i], body, &scene->states[i]);
+        const impact_status status = build_shape(&body->given, arena, &body->shape);
+        if (status != IMPACT_OK) return status;
         body->index = i;
         world->driven = world->driven || body->driven;
         scene->movable += !body->is_static;

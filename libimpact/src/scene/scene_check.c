@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_check.h"
 #include "scene/scene_methods.h"
+#include "shape/solid.h"
 #include "world/drive.h"
 
 #include <stdio.h>
@@ -127,6 +128,11 @@ static void check_body(check *c, const impact_body_def *body)
     require_words(c, !refusal, refusal);
 }
 
+static bool has_faces(const impact_body_def *body)
+{
+    return imp_has_core(&body->shape) || imp_is_octahedron(&body->shape);
+}
+
 static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena)
 {
     require(c, def->body_count >= 1 && def->bodies, "bodies", def->body_count, "a scene needs at least one body");
@@ -141,13 +147,12 @@ static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena
         c->name = body->name;
         require_words(c, imp_names_find(c->names, body->name) < 0, "the name is taken by another body");
         check_body(c, body);
-        require_words(c, body->shape.kind < IMPACT_BOX || def->body_count == 1 || def->piles != IMPACT_PILES_EXACT,
+        require_words(c, !has_faces(body) || def->body_count == 1 || def->piles != IMPACT_PILES_EXACT,
                       "bodies with faces go by steps where they lie on each other: piles = 'exact' is not for them");
         if (c->status == IMPACT_OK) c->status = imp_names_add(c->names, body->name);
     }
 }
 
-/* The edges of a plane carry nothing: a face would reach over them as if the plane went on. */
 /* Torsional and rolling friction are in the cone problems of steps and of Moreau's impacts. */
 static void check_turning(check *c, const impact_scene_def *def)
 {
@@ -164,11 +169,12 @@ static void check_turning(check *c, const impact_scene_def *def)
                   "ball on a plane: piles = \"exact\", or all by integrators, is not for them");
 }
 
+/* The edges of a plane carry nothing: a face would reach over them as if the plane went on. */
 static void check_faces(check *c, const impact_scene_def *def)
 {
     bool faces = false;
     for (int i = 0; i < def->body_count; i++)
-        faces = faces || (!def->bodies[i].is_static && def->bodies[i].shape.kind >= IMPACT_BOX);
+        faces = faces || (!def->bodies[i].is_static && has_faces(&def->bodies[i]));
     for (int i = 0; c->status == IMPACT_OK && faces && i < def->body_count; i++) {
         const impact_shape *shape = &def->bodies[i].shape;
         c->kind = "body";

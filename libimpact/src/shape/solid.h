@@ -11,6 +11,13 @@
 
 static inline bool imp_has_core(const impact_shape *shape) { return shape->kind >= IMPACT_BOX; }
 
+/* |x/a| + |y/b| + |z/c| <= 1: a polyhedron, though it is given as a superquadric. */
+static inline bool imp_is_octahedron(const impact_shape *shape)
+{
+    const bool quadric = shape->kind == IMPACT_SUPERQUADRIC || shape->kind == IMPACT_SUPERELLIPSOID;
+    return quadric && shape->r == 1 && shape->s == 1 && shape->t == 1;
+}
+
 /* Half sides of a box's core; of a cylinder's its radius, radius and half height; of a cone's radius, radius and
  * height; of a capsule's 0, 0 and half its length; a hull's half-extents. */
 void imp_core_axes(const impact_shape *shape, double axis[3]);
