@@ -2,6 +2,7 @@
  *
  * Whole scenes against closed forms: bounces, slides, rolls and several bodies with known answers.
  */
+#include "kit/contact_random.h"
 #include "kit/scene_log.h"
 
 static const double mass = 4, radius = 0.3, gravity = 9.81;
@@ -233,11 +234,92 @@ static void invariant_under_rotation_and_order(void **state)
     assert_near3(ends[1].omega, quat_rotate(turn, ends[0].omega), 1e-10);
 }
 
+/* ---- octahedra ---- */
+
+/* |x/a| + |y/b| + |z/c| <= 1 thrown on a floor, given as `shape`: how it lies at the end. */
+static impact_status throw_octahedron(const impact_shape *shape, unsigned long seed, impact_sample *end,
+                                      impact_body_def *def_back)
+{
+    random_stream random = {seed};
+    impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 0.6, 0.3),
+                                 ball_body("stone", (qvec3){0, 0, 0.4}, 0.5, 0.4)};
+    bodies[1].shape = *shape;
+    bodies[1].mass = 2;
+    bodies[1].moments = (qvec3){0.03, 0.04, 0.035};
+    bodies[1].orientation = random_rotation(&random);
+    bodies[1].velocity = random_vector(&random, 0.1, 2);
+    bodies[1].omega = random_vector(&random, 0.1, 10);
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = bodies;
+    def.body_count = 2;
+    def.duration = 4;
+    impact_scene *scene = make_scene(&def);
+    const impact_status status = impact_scene_run(scene, NULL);
+    impact_scene_body(scene, 1, end);
+    *def_back = impact_default_body_def();
+    assert_int_equal(impact_scene_body_def(scene, 1, def_back), IMPACT_OK);
+    impact_scene_destroy(scene);
+    return status;
+}
+
+/* A superquadric of exponents 1 is held with its corners and faces, as the polyhedron of the same corners, to the bit;
+ * its definition is given back as it was. In the end it lies on a face: the faces are at abc/|(bc, ca, ab)|. */
+static void octahedra_are_polyhedra(void **state)
+{
+    (void)state;
+    const double a = 0.2, b = 0.15, c = 0.18, height = a * b * c / qvec3_norm((qvec3){b * c, c * a, a * b});
+    const qvec3 corners[] = {{a, 0, 0}, {-a, 0, 0}, {0, b, 0}, {0, -b, 0}, {0, 0, c}, {0, 0, -c}};
+    impact_hull *hull;
+    impact_shape shapes[3];
+    assert_int_equal(impact_hull_create(corners, 6, 0, NULL, &hull, NULL, 0), IMPACT_OK);
+    impact_shape_superquadric(a, b, c, 1, 1, 1, &shapes[0]);
+    impact_shape_superellipsoid(a, b, c, 2, 2, &shapes[1]);
+    impact_shape_polyhedron(hull, &shapes[2]);
+    for (unsigned long seed = 1; seed <= 6; seed++) {
+        impact_sample end[3];
+        for (int k = 0; k < 3; k++) {
+            impact_body_def back;
+            assert_int_equal(throw_octahedron(&shapes[k], seed, &end[k], &back), IMPACT_AT_REST);
+            assert_int_equal(back.shape.kind, shapes[k].kind);
+            assert_true(back.shape.hull == shapes[k].hull && back.shape.a == shapes[k].a);
+            assert_memory_equal(&end[k].position, &end[0].position, sizeof end[0].position);
+            assert_memory_equal(&end[k].orientation, &end[0].orientation, sizeof end[0].orientation);
+        }
+        assert_near(end[0].position.z, height, 1e-9);
+    }
+    impact_hull_destroy(hull);
+}
+
+/* And is refused where polyhedra are. */
+static void octahedra_are_refused_as_polyhedra(void **state)
+{
+    (void)state;
+    impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 0.6, 0.3),
+                                 ball_body("stone", (qvec3){0, 0, 0.4}, 0.5, 0.4)};
+    impact_shape_superquadric(0.1, 0.1, 0.1, 1, 1, 1, &bodies[1].shape);
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = bodies;
+    def.body_count = 2;
+    def.piles = IMPACT_PILES_EXACT;
+    impact_scene *scene;
+    char message[200];
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+    assert_non_null(strstr(message, "piles = 'exact' is not for them"));
+    def.piles = IMPACT_PILES_AUTO;
+    impact_shape_plane(1, 1, &bodies[0].shape);
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+    assert_non_null(strstr(message, "a plane with edges carries no bodies with faces"));
+    impact_shape_superquadric(0.1, 0.1, 0.1, 1, 1, 1.1, &bodies[1].shape);
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_OK);
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest closed_forms[] = {
         cmocka_unit_test(ten_bounces),
         cmocka_unit_test(cradle),
+        cmocka_unit_test(octahedra_are_refused_as_polyhedra),
     };
     const struct CMUnitTest integrated[] = {
         cmocka_unit_test(bowling_ball),
@@ -245,6 +327,7 @@ int main(void)
         cmocka_unit_test(falls_off_the_edge),
         cmocka_unit_test(fall_by_attraction),
         cmocka_unit_test(invariant_under_rotation_and_order),
+        cmocka_unit_test(octahedra_are_polyhedra),
     };
     const int failed = cmocka_run_group_tests(closed_forms, NULL, NULL);
     if (!impact_has(IMPACT_PART_CVODE)) return failed;
