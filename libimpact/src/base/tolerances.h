@@ -283,6 +283,8 @@
 #define IMP_SPRINGS_CENTRE_STEPS 40
 /* tau: further than this no step goes; where the last terms vanish they bound nothing. */
 #define IMP_SPRINGS_FARTHEST 4.0
+/* Of the time at which three terms have the next event: what later terms shift it by, mostly. */
+#define IMP_LINEAR_AHEAD 1.25
 /* Radii of a power's series that a step goes: 5^22 eps is .5, of a force that is small where the radius is. */
 #define IMP_SPRINGS_REACH 5
 /* The least restitution of springs: what unloads is 1/eps times as stiff in time as what loads, and a pressed contact
@@ -297,6 +299,8 @@
 /* Steps and events after which a group is asked whether it is wedged, ten times that with friction: more than all but
  * a few take in all. */
 #define IMP_SPRINGS_LONG 4000
+/* Multiplications after which it is asked too: what has many contacts comes to the end of its work sooner. */
+#define IMP_SPRINGS_MUCH 8e7
 /* Steps that look for a motion out of a wedge: one of a hundredth of the contacts' own mobility is found. */
 #define IMP_WEDGE_STEPS 20000
 /* Steps and events of one group: forty times what the longest random encounters with ratios of 1e4 take that end. */

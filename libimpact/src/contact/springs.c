@@ -99,12 +99,12 @@ static void report(const imp_springs *s, const units *unit, imp_group *group)
     group->chosen = group->chosen || s->chosen;
 }
 
-/* Asked once after many events of the normals alone, and once after very many with friction: what is wedged bounces in
- * its dents for ever. */
+/* Asked once after many events, or much of the work allowed, of the normals alone, and once after very many with
+ * friction: what is wedged bounces in its dents for ever. */
 static bool is_wedged(imp_springs *s, int *asked)
 {
-    const long work = s->events + s->steps;
-    const bool now = *asked == 0 ? work > IMP_SPRINGS_LONG : *asked == 1 && work > 10 * IMP_SPRINGS_LONG;
+    const double spent = fmax((double)(s->events + s->steps) / IMP_SPRINGS_LONG, s->work / IMP_SPRINGS_MUCH);
+    const bool now = *asked == 0 ? spent > 1 : *asked == 1 && spent > 10;
     return now && imp_springs_wedged(s, (*asked)++ == 1);
 }
 

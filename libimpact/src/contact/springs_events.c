@@ -115,8 +115,8 @@ static double safe_stride(const double *c, int order, double t, double h)
 
 void imp_springs_find_powers(double h, imp_terms power)
 {
-    power[0] = 1;
-    for (int k = 1; k < IMP_SPRINGS_TERMS; k++) power[k] = power[k - 1] * h;
+    power[0] = 1, power[1] = h;
+    for (int k = 2; k < IMP_SPRINGS_TERMS; k++) power[k] = power[k / 2] * power[k - k / 2]; /* short chains */
 }
 
 double imp_springs_first_fall(const double *c, int order, double h, bool *found)

@@ -1,48 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * Linear springs without friction, where speed is wanted: the equations of springs.h with normals alone,
- *
- *     delta' = -u,  u' = W F,  F = kappa (delta - base) or 0,      delta'' = -W F:   x_(k+2) = -(W F_k)/((k+1)(k+2))
- *
- * so that a term of all costs as many products as W has entries under what is closed. Modes (cosines of W K's
- * eigenvalues) would have to be found anew at each of some six events a contact, at n^3 each.
- *
- * Events are those of springs_changes.c. What takes long, as wedges do, is left to the general solver.
+ * Linear springs without friction, from the first closing until nothing presses and nothing approaches; equations in
+ * springs_linear.h. Events are those of springs_changes.c. What takes long, as wedges do, is left to the general
+ * solver.
  */
-#include "contact/springs.h"
+#include "contact/springs_linear.h"
 
 #include <math.h>
 #include "base/tolerances.h"
 
-/* Of depths: one more than velocities have. */
-enum { TERMS = IMP_SPRINGS_TERMS };
-
-typedef struct line {
-    imp_spring_normal normal;
-    double restitution, stiffness, own; /* own: W_nn */
-    double x, base, kappa, deepest, tiny;
-    double u0, u, p, stored, none; /* none: a velocity that is rounding of u's terms */
-    imp_finding *finding;
-} line;
-
-typedef struct lines {
-    int count;
-    line *line;
-    int *start, *column; /* W by rows without zeros */
-    double *value;
-    int *pressed_start, *pressed_column; /* W kappa under what is closed */
-    double *pressed_value;
-    double *depth;   /* TERMS rows of x's terms, of all contacts each */
-    double *x, *sum; /* x at a step's end; its integral from the beginning */
-    imp_terms power; /* h^k of the step */
-    long events, steps;
-} lines;
-
 /* ---- changes: springs_changes.c says why ---- */
 
-static double energy_of(const line *l) { return l->x > 0 ? 0.5 * l->kappa * l->x * l->x : 0; }
+double imp_linear_energy(const imp_linear_spring *l, double x) { return x > 0 ? 0.5 * l->kappa * x * x : 0; }
 
-static void take_branch(line *l, imp_spring_normal normal, double base, double kappa)
+double imp_linear_again(const imp_linear_spring *l)
+{
+    return IMP_SPRINGS_PAST * l->restitution * l->restitution * l->deepest;
+}
+
+static void take_branch(imp_linear_spring *l, imp_spring_normal normal, double base, double kappa)
 {
     l->normal = normal;
     l->x += l->base - base;
@@ -51,7 +27,7 @@ static void take_branch(line *l, imp_spring_normal normal, double base, double k
     l->tiny = sqrt(2 * IMP_SPRINGS_ENERGY_LINEAR / (kappa * l->own));
 }
 
-static void turn_line(line *l)
+static void turn_line(imp_linear_spring *l)
 {
     const double square = l->restitution * l->restitution;
     l->deepest = l->x;
@@ -60,268 +36,63 @@ static void turn_line(line *l)
     l->finding->compressions++;
 }
 
-static double line_again(const line *l) { return IMP_SPRINGS_PAST * l->restitution * l->restitution * l->deepest; }
+/* A velocity that is rounding of u's terms. */
+static double rounding_of(const imp_linear_springs *s, int i)
+{
+    double terms = 0;
+    for (int e = s->start[i]; e < s->start[i + 1]; e++) terms += fabs(s->value[e] * s->line[s->row[e]].p);
+    return IMP_SPRINGS_STILL * (terms > 1 ? terms : 1);
+}
 
 /* What is due; whether anything was. */
-static bool settle_line(line *l, bool pressed)
+static bool settle_line(imp_linear_springs *s, int i, bool pressed)
 {
+    imp_linear_spring *l = &s->line[i];
     if (l->normal == IMP_SPRING_OPEN) {
-        if (l->x < l->tiny * (1 - IMP_SPRINGS_TOGETHER) || l->u >= (pressed ? 0 : -l->none)) return false;
+        if (l->x < l->tiny * (1 - IMP_SPRINGS_TOGETHER) || l->u >= 0) return false;
+        if (!pressed && l->u >= -rounding_of(s, i)) return false;
         l->normal = l->deepest > 0 ? IMP_SPRING_UNLOADS : IMP_SPRING_LOADS;
         l->x = l->tiny; /* after a long flight x is rounded by far more */
     } else if (l->x <= l->tiny * (1 + IMP_SPRINGS_TOGETHER) && l->u >= 0) {
         l->normal = IMP_SPRING_OPEN;
     } else if (l->normal == IMP_SPRING_LOADS && l->restitution < 1 && l->u >= 0) {
         turn_line(l);
-    } else if (l->normal == IMP_SPRING_UNLOADS && l->x >= line_again(l) && l->u < 0) {
+    } else if (l->normal == IMP_SPRING_UNLOADS && l->x >= imp_linear_again(l) && l->u < 0) {
         take_branch(l, IMP_SPRING_LOADS, 0, l->stiffness);
     } else {
         return false;
     }
-    l->stored = energy_of(l);
+    l->stored = imp_linear_energy(l, l->x);
     return true;
 }
 
-static bool any_pressed(const lines *s)
+/* u = u0 + W p: without the rounding of the steps. */
+static void find_line_velocities(imp_linear_springs *s)
 {
-    for (int i = 0; i < s->count; i++)
-        if (s->line[i].normal != IMP_SPRING_OPEN) return true;
-    return false;
-}
-
-static void settle_lines(lines *s)
-{
-    const bool pressed = any_pressed(s);
-    for (int i = 0; i < s->count; i++) s->events += settle_line(&s->line[i], pressed);
-}
-
-/* ---- the series ---- */
-
-/* W's entries under what is closed, times kappa. */
-static void press_lines(lines *s)
-{
-    int filled = 0;
-    for (int i = 0; i < s->count; i++) {
-        s->pressed_start[i] = filled;
-        for (int e = s->start[i]; e < s->start[i + 1]; e++) {
-            const line *l = &s->line[s->column[e]];
-            if (l->normal == IMP_SPRING_OPEN) continue;
-            s->pressed_column[filled] = s->column[e];
-            s->pressed_value[filled++] = s->value[e] * l->kappa;
-        }
-    }
-    s->pressed_start[s->count] = filled;
-}
-
-static void expand_lines(lines *s)
-{
-    const int n = s->count;
-    press_lines(s);
-    for (int i = 0; i < n; i++) s->depth[i] = s->line[i].x, s->depth[n + i] = -s->line[i].u;
-    for (int k = 0; k + 2 < TERMS; k++) {
-        const double *x = &s->depth[k * n], part = -1.0 / ((k + 1) * (k + 2));
-        double *next = &s->depth[(k + 2) * n];
-        for (int i = 0; i < n; i++) {
-            double sum = 0;
-            for (int e = s->pressed_start[i]; e < s->pressed_start[i + 1]; e++)
-                sum += s->pressed_value[e] * x[s->pressed_column[e]];
-            next[i] = part * sum;
-        }
+    for (int i = 0; i < s->count; i++) s->line[i].u = s->line[i].u0;
+    for (int j = 0; j < s->count; j++) {
+        const double p = s->line[j].p;
+        for (int e = s->start[j]; p != 0 && e < s->start[j + 1]; e++) s->line[s->row[e]].u += s->value[e] * p;
     }
 }
 
-static double greatest_term(const double *terms, int n)
+/* Whether anything presses then. */
+static bool settle_lines(imp_linear_springs *s)
 {
-    double most = 0;
-    for (int i = 0; i < n; i++) {
-        const double size = fabs(terms[i]);
-        most = size > most ? size : most;
-    }
-    return most;
-}
-
-/* How far they reach: of a sum of cosines and sines the last even and odd terms tell. */
-static double reach_of_lines(const lines *s)
-{
-    const double most = log2(IMP_SPRINGS_TRUNCATION) / IMP_SPRINGS_ORDER;
-    double h = IMP_SPRINGS_FARTHEST;
-    for (int k = TERMS - 2; k < TERMS; k++) {
-        const double size = k * greatest_term(&s->depth[k * s->count], s->count); /* of velocities */
-        if (isnan(size)) return NAN;
-        if (size > 0) h = fmin(h, exp2(most - log2(size) / (k - 1)));
-    }
-    return h;
-}
-
-/* Contact i's depth, or its velocity u = -x'. */
-static void gather(const lines *s, int i, double sign, imp_terms f)
-{
-    for (int k = 0; k < TERMS; k++) f[k] = sign * s->depth[k * s->count + i];
-}
-
-static void gather_velocity(const lines *s, int i, double sign, imp_terms f)
-{
-    for (int k = 0; k + 1 < TERMS; k++) f[k] = -sign * (k + 1) * s->depth[(k + 1) * s->count + i];
-    f[TERMS - 1] = 0;
-}
-
-/* ---- events ---- */
-
-/* Sooner than *when: f falls to 0; from `just` where it is not above yet. The powers are of *when. */
-static bool line_falls(lines *s, imp_terms f, double just, double *when)
-{
-    bool found;
-    if (!(f[0] > 0)) f[0] = just;
-    if (imp_springs_stay_above(f, TERMS, s->power)) return false;
-    const double t = imp_springs_first_fall(f, TERMS - 1, *when, &found);
-    if (!found) return false;
-    *when = t;
-    imp_springs_find_powers(t, s->power);
-    return true;
-}
-
-typedef enum change { CHANGE_NONE, CHANGE_TURN, CHANGE_TOUCH, CHANGE_AGAIN } change;
-
-static change first_change(lines *s, int i, double *when)
-{
-    const line *l = &s->line[i];
-    const double just = IMP_SPRINGS_JUST * l->tiny;
-    imp_terms f;
-    if (l->normal == IMP_SPRING_LOADS && l->restitution < 1) {
-        gather_velocity(s, i, -1, f);
-        return line_falls(s, f, 0, when) ? CHANGE_TURN : CHANGE_NONE;
-    }
-    const double sign = l->normal == IMP_SPRING_OPEN ? -1 : 1;
-    gather(s, i, sign, f);
-    f[0] -= sign * l->tiny;
-    const change touches = line_falls(s, f, just, when) ? CHANGE_TOUCH : CHANGE_NONE;
-    if (l->normal != IMP_SPRING_UNLOADS || l->x >= line_again(l)) return touches;
-    gather(s, i, -1, f);
-    f[0] += line_again(l);
-    return line_falls(s, f, just, when) ? CHANGE_AGAIN : touches;
-}
-
-/* ---- to there ---- */
-
-static void find_line_velocities(lines *s)
-{
-    for (int i = 0; i < s->count; i++) {
-        double sum = 0, terms = 0;
-        for (int e = s->start[i]; e < s->start[i + 1]; e++) {
-            const double term = s->value[e] * s->line[s->column[e]].p;
-            sum += term;
-            terms += fabs(term);
-        }
-        s->line[i].u = s->line[i].u0 + sum;
-        s->line[i].none = IMP_SPRINGS_STILL * (terms > 1 ? terms : 1);
-    }
-}
-
-static void note_line(line *l, impact_phase phase)
-{
-    imp_finding *f = l->finding;
-    if (f->phase_count > 0 && f->phases[f->phase_count - 1] == phase) return;
-    if (f->phase_count < IMPACT_MAX_PHASES) f->phases[f->phase_count++] = (unsigned char)phase;
-}
-
-static void book_line_energy(line *l, double energy)
-{
-    const double rise = energy - l->stored;
-    l->finding->work[rise > 0 ? 0 : 1] -= rise;
-    l->stored = energy;
-}
-
-static double depth_at(const lines *s, int i, double t)
-{
-    double x = 0;
-    for (int k = TERMS - 1; k >= 0; k--) x = x * t + s->depth[k * s->count + i];
-    return x;
-}
-
-/* The spring's work to t; where u changes its sign on the way the energy has an extreme. What loads and will turn has
- * none before that. */
-static void book_line(const lines *s, int i, double t)
-{
-    line *l = &s->line[i];
-    const double x = l->x;
-    double when[IMP_SPRINGS_EXTREMES];
-    bool compressed = s->depth[s->count + i] > 0 || (s->depth[s->count + i] == 0 && l->u < 0);
-    int changes = 0;
-    if (l->normal != IMP_SPRING_LOADS || l->restitution == 1) {
-        imp_terms f;
-        gather_velocity(s, i, 1, f);
-        changes = imp_springs_sign_changes(f, TERMS - 2, t, when, IMP_SPRINGS_EXTREMES);
-    }
-    note_line(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
-    for (int k = 0; k < changes; k++) {
-        l->x = depth_at(s, i, when[k]);
-        book_line_energy(l, energy_of(l));
-        l->finding->compressions += compressed;
-        compressed = !compressed;
-        note_line(l, compressed ? IMPACT_SLIP_C : IMPACT_SLIP_R);
-    }
-    l->x = x;
-    book_line_energy(l, energy_of(l));
-}
-
-/* Depths at t, and their integrals up to it. */
-static void sum_terms(lines *s, double t)
-{
-    const int n = s->count;
-    for (int i = 0; i < n; i++) s->x[i] = s->sum[i] = 0;
-    for (int k = TERMS - 1; k >= 0; k--) {
-        const double *terms = &s->depth[k * n], power = s->power[k],
-                     part = k + 1 < TERMS ? power * t / (k + 1) : 0; /* p has the velocities' order */
-        for (int i = 0; i < n; i++) {
-            s->x[i] += power * terms[i];
-            s->sum[i] += part * terms[i];
-        }
-    }
-}
-
-static void move_lines_on(lines *s, double t)
-{
-    imp_springs_find_powers(t, s->power);
-    sum_terms(s, t);
-    for (int i = 0; i < s->count; i++) {
-        line *l = &s->line[i];
-        l->x = s->x[i];
-        if (l->normal != IMP_SPRING_OPEN) l->p += l->kappa * s->sum[i];
-    }
-    find_line_velocities(s);
-    for (int i = 0; i < s->count; i++)
-        if (s->line[i].normal != IMP_SPRING_OPEN) book_line(s, i, t);
-}
-
-static bool step_lines(lines *s)
-{
-    expand_lines(s);
-    double when = reach_of_lines(s);
-    s->steps++;
-    if (isnan(when)) return false;
-    imp_springs_find_powers(when, s->power);
-    line *first = NULL;
-    change what = CHANGE_NONE;
-    for (int i = 0; i < s->count; i++) {
-        const change own = first_change(s, i, &when);
-        if (own != CHANGE_NONE) first = &s->line[i], what = own;
-    }
-    move_lines_on(s, when);
-    s->events += first != NULL;
-    if (what == CHANGE_TURN) first->u = fmax(first->u, 0);
-    if (what == CHANGE_TOUCH) first->x = first->tiny;
-    if (what == CHANGE_AGAIN) first->x = fmax(first->x, line_again(first));
-    return true;
+    const bool pressed = s->closed_count > 0;
+    if (!pressed) find_line_velocities(s);
+    for (int i = 0; i < s->count; i++) s->events += settle_line(s, i, pressed);
+    return imp_linear_find_closed(s);
 }
 
 /* Nothing presses: to the next closing. False: there is none. */
-static bool drift_lines(lines *s)
+static bool drift_lines(imp_linear_springs *s)
 {
     double soonest = INFINITY;
-    line *next = NULL;
+    imp_linear_spring *next = NULL;
     for (int i = 0; i < s->count; i++) {
-        line *l = &s->line[i];
-        const double time = l->u < -l->none ? fmax(0, l->tiny - l->x) / -l->u : INFINITY;
+        imp_linear_spring *l = &s->line[i];
+        const double time = l->u < -rounding_of(s, i) ? fmax(0, l->tiny - l->x) / -l->u : INFINITY;
         if (time < soonest) soonest = time, next = l;
     }
     if (!next) return false;
@@ -341,42 +112,51 @@ static double normal_product(const imp_contact *a, const imp_contact *b)
     return sum;
 }
 
-static bool lay_out_lines(lines *s, const imp_contact *contacts, impact_together_workspace *workspace)
+static bool take_line_room(imp_linear_springs *s, impact_together_workspace *workspace)
 {
     const size_t n = (size_t)s->count;
     s->line = imp_encounter_take(workspace, n, sizeof *s->line);
     s->start = imp_encounter_take(workspace, n + 1, sizeof *s->start);
-    s->column = imp_encounter_take(workspace, n * n, sizeof *s->column);
+    s->row = imp_encounter_take(workspace, n * n, sizeof *s->row);
     s->value = imp_encounter_take(workspace, n * n, sizeof *s->value);
-    s->pressed_start = imp_encounter_take(workspace, n + 1, sizeof *s->pressed_start);
-    s->pressed_column = imp_encounter_take(workspace, n * n, sizeof *s->pressed_column);
-    s->pressed_value = imp_encounter_take(workspace, n * n, sizeof *s->pressed_value);
-    s->depth = imp_encounter_take(workspace, TERMS * n, sizeof *s->depth);
-    s->x = imp_encounter_take(workspace, n, sizeof *s->x);
-    s->sum = imp_encounter_take(workspace, n, sizeof *s->sum);
-    if (!s->sum) return false;
+    s->closed = imp_encounter_take(workspace, n, sizeof *s->closed);
+    s->place = imp_encounter_take(workspace, n, sizeof *s->place);
+    s->closed_start = imp_encounter_take(workspace, n + 1, sizeof *s->closed_start);
+    s->closed_row = imp_encounter_take(workspace, n * n, sizeof *s->closed_row);
+    s->closed_value = imp_encounter_take(workspace, n * n, sizeof *s->closed_value);
+    s->depth = imp_encounter_take(workspace, IMP_LINEAR_PAIRS * n, sizeof *s->depth);
+    s->bound = imp_encounter_take(workspace, n, sizeof *s->bound);
+    s->push = imp_encounter_take(workspace, n, sizeof *s->push);
+    s->gain = imp_encounter_take(workspace, n, sizeof *s->gain);
+    return s->line && s->start && s->row && s->value && s->closed && s->place && s->closed_start && s->closed_row &&
+           s->closed_value && s->depth && s->bound && s->push && s->gain;
+}
+
+static void lay_out_lines(imp_linear_springs *s, const imp_contact *contacts)
+{
+    const int n = s->count;
+    double *whole = s->closed_value; /* each product once, so that it is symmetric to the bit */
     int filled = 0;
-    for (int i = 0; i < s->count; i++) {
+    for (int i = 0; i < n; i++)
+        for (int j = i; j < n; j++) whole[i * n + j] = whole[j * n + i] = normal_product(&contacts[i], &contacts[j]);
+    for (int i = 0; i < n; i++) {
         s->start[i] = filled;
-        for (int j = 0; j < s->count; j++) {
-            /* whichever comes first, so that it is symmetric to the bit */
-            const double entry =
-                i < j ? normal_product(&contacts[i], &contacts[j]) : normal_product(&contacts[j], &contacts[i]);
-            if (entry == 0) continue;
-            s->column[filled] = j;
-            s->value[filled++] = entry;
-            if (i == j) s->line[i].own = entry;
+        for (int j = 0; j < n; j++) {
+            if (whole[i * n + j] == 0) continue;
+            s->row[filled] = j;
+            s->value[filled++] = whole[i * n + j];
+            s->line[i].column += fabs(whole[i * n + j]);
         }
+        s->line[i].own = whole[i * n + i];
     }
-    s->start[s->count] = filled;
-    return true;
+    s->start[n] = filled;
 }
 
 typedef struct line_units {
     double velocity, mobility, stiffness;
 } line_units;
 
-static line_units find_line_units(const lines *s, const imp_group *group)
+static line_units find_line_units(const imp_linear_springs *s, const imp_group *group)
 {
     line_units u = {0, 0, 0};
     for (int i = 0; i < s->count; i++) {
@@ -387,22 +167,22 @@ static line_units find_line_units(const lines *s, const imp_group *group)
     return (line_units){imp_encounter_unit(u.velocity), imp_encounter_unit(u.mobility), u.stiffness};
 }
 
-static void set_up_lines(lines *s, const imp_group *group, line_units unit)
+static void set_up_lines(imp_linear_springs *s, const imp_group *group, line_units unit)
 {
     for (int e = 0; e < s->start[s->count]; e++) s->value[e] /= unit.mobility;
     for (int i = 0; i < s->count; i++) {
-        line *l = &s->line[i];
+        imp_linear_spring *l = &s->line[i];
         l->own /= unit.mobility;
+        l->column /= unit.mobility;
         l->u = l->u0 = group->u0[3 * i] / unit.velocity;
         l->restitution = fmax(group->contacts[i].restitution, group->least);
         l->stiffness = group->contacts[i].stiffness / unit.stiffness;
         l->finding = &group->findings[i];
-        l->none = IMP_SPRINGS_STILL;
         take_branch(l, IMP_SPRING_OPEN, 0, l->stiffness);
     }
 }
 
-static void report_lines(const lines *s, line_units unit, imp_group *group)
+static void report_lines(const imp_linear_springs *s, line_units unit, imp_group *group)
 {
     const double impulse = unit.velocity / unit.mobility;
     for (int i = 0; i < s->count; i++) {
@@ -416,14 +196,14 @@ static void report_lines(const lines *s, line_units unit, imp_group *group)
 
 impact_status imp_springs_solve_linear(imp_group *group, impact_together_workspace *workspace)
 {
-    lines s = {.count = group->count};
-    if (!lay_out_lines(&s, group->contacts, workspace)) return IMPACT_ENOMEM;
+    imp_linear_springs s = {.count = group->count};
+    if (!take_line_room(&s, workspace)) return IMPACT_ENOMEM;
+    lay_out_lines(&s, group->contacts);
     const line_units unit = find_line_units(&s, group);
     set_up_lines(&s, group, unit);
     while (s.steps + s.events < fmin(IMP_SPRINGS_LONG, group->patience)) {
-        settle_lines(&s);
-        if (any_pressed(&s)) {
-            if (!step_lines(&s)) return IMPACT_EUNSETTLED;
+        if (settle_lines(&s)) {
+            if (!imp_linear_step(&s)) return IMPACT_EUNSETTLED;
         } else if (!drift_lines(&s)) {
             report_lines(&s, unit, group);
             return IMPACT_OK;

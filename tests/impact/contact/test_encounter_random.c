@@ -170,6 +170,19 @@ static void what_found_no_end_is_answered(void **state)
     }
 }
 
+/* Eleven contacts of two bodies, which no motion takes apart: they come to the end of their work, as each step costs
+ * so much, long before they have made the steps after which others are asked. */
+static void a_wedge_of_many_contacts_is_told(void **state)
+{
+    (void)state;
+    const encounter_ranges ranges = {7, 12, 10, 0.05, 1e4, 1e4};
+    random_stream random = {1 + 0x9e3779b97f4a7c15u * 230u};
+    const random_encounter e = encounter_draw(&random, &ranges);
+    const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, 1.5, NULL);
+    assert_int_equal(a.status, IMPACT_EUNSETTLED);
+    assert_true(a.outcome.wedged >= 0);
+}
+
 /* A cube's corner on a box that rests on the floor: four contacts of two bodies hold more than they need to, and with
  * friction this strong they stick and give way by turns. Friction that is not unique was once chosen anew without end.
  */
@@ -248,6 +261,7 @@ int main(void)
         cmocka_unit_test(turning_the_scene_and_changing_units_changes_nothing),
         cmocka_unit_test(receipts_hold_over_random_encounters),
         cmocka_unit_test(what_found_no_end_is_answered),
+        cmocka_unit_test(a_wedge_of_many_contacts_is_told),
         cmocka_unit_test(a_struck_box_on_the_floor_is_answered),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
         cmocka_unit_test(long_flights_come_back_to_where_contacts_close),
