@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- reference.lua SOURCE OUT: the whole interface as pages, from the headers' comments and the Lua layers' annotations: a page for each
--- header and each layer, and an index of every name. `./run site` puts them beside the pages of docs/.
+-- header and each layer, and an index of every name. `./run site` puts them beside the pages of docs/; docs.exported and lua.reference
+-- hold the index, both ways, to what the libraries show and to what a script finds.
 local source, out = arg[1], arg[2]
 
 local function read(path)
@@ -44,6 +45,7 @@ local function declaration(text, at)
 end
 
 local function name_of(text)
+  text = text:gsub("%s*__attribute__%s*%b()", "")
   if text:find "^typedef" then
     return text:match "}%s*([%w_]+)%s*;$" or text:match "%(%s*%*?([%w_]+)%s*%)%s*%(" or text:match "([%w_]+)%(" or text:match "([%w_]+)%s*;$"
   end
@@ -83,7 +85,10 @@ local function items(text)
   return found
 end
 
-local index = {}
+local index = {} -- { name = as shown, id = its anchor, page =, header = }
+
+-- Classes that stand for a module's table, by the name a script has for them.
+local public = { impactlib = "impact", quatlib = "quat", curvelib = "quat.curve", surfacelib = "quat.surface" }
 
 local function header_page(path, title)
   local text = read(path)
@@ -98,7 +103,8 @@ local function header_page(path, title)
     for _, item in ipairs(code) do
       if item.name then
         lines[#lines + 1] = ("### `%s` { #%s }"):format(item.name, item.name)
-        index[#index + 1] = { name = item.name, page = anchor, header = title }
+        local shown = item.name .. (item.text:find "^typedef" and "" or "()")
+        index[#index + 1] = { name = shown, id = item.name, page = anchor, header = title }
       end
     end
     lines[#lines + 1] = "\n```c"
@@ -127,38 +133,97 @@ local function header_page(path, title)
   return anchor
 end
 
--- A layer's annotations: classes with their fields, and what is said before them.
-local function layer_page(path, module)
-  local lines, said, open = { ("# Lua: `require \"%s\"`"):format(module), "" }, {}, false
+-- ---- a layer's annotations ----
+
+-- A page of one layer: the opening, classes with their fields, and functions that the layer itself defines, each with what is said
+-- before it. What a local function says stays out.
+local function layer_page(path, module, called)
   local anchor = "lua_" .. module:gsub("%.", "_") .. ".md"
-  for line in read(path):gmatch "[^\n]*" do
-    local class, about = line:match "^%-%-%-@class%s+([%w_.%(%):, ]-)%s%s(.*)$"
-    class = class or line:match "^%-%-%-@class%s+(.+)$"
-    local field, rest = line:match "^%-%-%-@field%s+(%S+)%s+(.*)$"
-    local alias = line:match "^%-%-%-@alias%s+(.*)$"
-    if class then
-      lines[#lines + 1] = ("\n## `%s`\n"):format(class)
-      if #said > 0 then lines[#lines + 1] = table.concat(said, "\n") .. "\n" end
-      if about then lines[#lines + 1] = about .. "\n" end
-      lines[#lines + 1] = "| name | |\n|---|---|"
-      said, open = {}, true
-    elseif field and open then
-      local kind, words = rest:match "^(.-)%s%s+(.*)$"
-      lines[#lines + 1] = ("| `%s` | `%s` %s|"):format(field, (kind or rest):gsub("|", "\\|"), words and words:gsub("|", "\\|") .. " " or "")
-      index[#index + 1] = { name = field:gsub("%?$", ""), page = anchor, header = module }
-    elseif alias then
-      lines[#lines + 1] = ("\n`%s`"):format(alias)
-    else
-      local text = line:match "^%-%-%- ?(.*)$"
-      if text and not text:find "^@" then said[#said + 1] = text elseif not line:find "^%-%-%-" then
-        if #said > 0 and not open then lines[#lines + 1] = table.concat(said, "\n") .. "\n" end
-        said, open = {}, false
-      end
+  local lines, said, parameters = { ("# Lua: `require \"%s\"`"):format(module), "" }, {}, {}
+  local class, table_open, kind -- of the class that is open, and of a value: ---@type
+  local owners, opening = {}, true -- whose functions a local table holds
+
+  local function add(...)
+    for _, line in ipairs { ... } do lines[#lines + 1] = line end
+  end
+  local function clear() said, parameters, kind = {}, {}, nil end
+  local function entry(owner, name, is_method, is_function)
+    local id = owner .. "." .. name
+    local shown = owner .. (is_method and ":" or ".") .. name .. (is_function and "()" or "")
+    index[#index + 1] = { name = shown, id = id, page = anchor, header = module }
+    return id, shown
+  end
+  local function cell(text) return (text:gsub("|", "\\|")) end
+
+  local function open_class(name, words)
+    class, table_open = public[name] or name, false
+    add("", ("## `%s`"):format(class), "")
+    if #said > 0 then add(table.concat(said, "\n"), "") end
+    if words ~= "" then add(words, "") end
+    clear()
+  end
+  local function field(name, rest)
+    if not table_open then add("| name | |", "|---|---|") end
+    table_open = true
+    local type_text, words = rest:match "^(.-)%s%s+(.*)$"
+    type_text = type_text or rest
+    local id = entry(class, (name:gsub("%?$", "")), type_text:find "^%(?fun%(self", type_text:find "^%(?fun%(")
+    add(("| `%s`{ #%s } | `%s` %s|"):format(name, id, cell(type_text), words and cell(words) .. " " or ""))
+  end
+  local function defined(owner, separator, name, arguments)
+    local id, shown = entry(owner, name, separator == ":", true)
+    add("", ("### `%s` { #%s }"):format(arguments and shown:sub(1, -3) .. arguments or shown, id), "")
+    if #said > 0 then add(table.concat(said, "\n"), "") end
+    if kind then add(("`%s`"):format(kind), "") end
+    if #parameters > 0 then add("| | |", "|---|---|", table.concat(parameters, "\n"), "") end
+    class = nil
+    clear()
+  end
+  local function note(mark, rest)
+    local name, type_text, words
+    if mark == "param" then
+      name, rest = rest:match "^(%S+)%s+(.*)$"
+    end
+    type_text, words = rest:match "^(.-)%s%s+(.*)$"
+    parameters[#parameters + 1] = ("| %s | `%s` %s |"):format(name and "`" .. name .. "`" or "gives", cell(type_text or rest), cell(words or ""))
+  end
+
+  local text = read(path)
+  local returned = text:match "\nreturn ([%w_]+)%s*$"
+  if returned then owners[returned] = called or module end
+  for line in text:gmatch "([^\n]*)\n" do
+    local mark, rest = line:match "^%-%-%-@(%w+)%s+(.*)$"
+    local words = line:match "^%-%-%- ?(.*)$"
+    local table_name, separator, name, arguments = line:match "^function ([%w_]+)([.:])([%w_]+)(%b())"
+    if not table_name then table_name, name = line:match "^([%w_]+)%.([%w_]+) = " end
+    if mark == "class" then
+      open_class(rest:match "^([%w_.]+)", rest:match "%s%s+(.*)$" or "")
+    elseif mark == "field" and class then
+      field(rest:match "^(%S+)%s+(.*)$")
+    elseif mark == "alias" then
+      add("", ("`%s`"):format(rest))
+    elseif mark == "type" then
+      kind = rest
+    elseif mark == "param" or mark == "return" then
+      note(mark, rest)
+    elseif words and not mark then
+      said[#said + 1] = words:gsub("^  ", "    ") -- code
+    elseif table_name and owners[table_name] and (separator or kind) then
+      defined(owners[table_name], separator, name, arguments)
+    elseif not mark then
+      local held = line:match "^local ([%w_]+) = "
+      if held and class and not owners[held] then owners[held] = class end
+      if opening and #said > 0 then add(table.concat(said, "\n"), "") end
+      opening = opening and #said == 0
+      class = nil
+      clear()
     end
   end
   write(out .. "/" .. anchor, table.concat(lines, "\n") .. "\n")
   return anchor
 end
+
+-- ---- all pages ----
 
 local pages = { "# Reference", "", "Every function, type and key, from the headers and the annotations of the Lua layers.", "" }
 for _, library in ipairs { "quat", "impact" } do
@@ -169,15 +234,15 @@ for _, library in ipairs { "quat", "impact" } do
   end
 end
 pages[#pages + 1] = "\n## Lua\n"
-for _, layer in ipairs { "quat", "impact", "plot=quat.plot", "csv=quat.csv", "portrait=impact.portrait", "sweep=impact.sweep" } do
-  local file, module = layer:match "^(%w+)=(.+)$"
-  module = module or layer
-  pages[#pages + 1] = ("- [%s](%s)"):format(module, layer_page(("%s/lua/layer/%s.lua"):format(source, file or layer), module))
+-- File, module, and what its functions are called where that is another: sweeps are made by those of impact.
+for _, layer in ipairs { { "quat", "quat" }, { "plot", "quat.plot" }, { "csv", "quat.csv" }, { "impact", "impact" }, { "sweep", "impact.sweep", "impact" },
+  { "report", "impact.report" }, { "verify", "impact.verify" }, { "portrait", "impact.portrait" }, { "sobol", "impact.sobol" } } do
+  pages[#pages + 1] = ("- [%s](%s)"):format(layer[2], layer_page(("%s/lua/layer/%s.lua"):format(source, layer[1]), layer[2], layer[3]))
 end
 table.sort(index, function(a, b) if a.name ~= b.name then return a.name < b.name end return a.page < b.page end)
 pages[#pages + 1] = "\n## Index\n"
 for _, entry in ipairs(index) do
-  pages[#pages + 1] = ("- [`%s`](%s#%s) (%s)"):format(entry.name, entry.page, entry.name:lower(), entry.header)
+  pages[#pages + 1] = ("- [`%s`](%s#%s) (%s)"):format(entry.name, entry.page, entry.id, entry.header)
 end
 write(out .. "/index.md", table.concat(pages, "\n") .. "\n")
 print(#index .. " names")

@@ -169,6 +169,7 @@ core.layer()
 ---@field definition fun(self): impact.definition
 ---@field state fun(self, body: string): impact.state
 ---@field energy fun(self): table  start, kinetic, potential, force_work, drive_work, damping_loss, sliding_loss, impact_loss, J
+---@field report_rows fun(self, options: table): table[]?, table|string  what scene:report is made of: rows, a summary; or nil and why not
 ---@field usage fun(self): table  what the run used, by name; and events, by kind
 ---@field receipt fun(self): string, table  "ok" or "inaccurate"; residuals and their limits
 ---@field events fun(self): table[]  of a recorded run
@@ -303,6 +304,7 @@ core.layer()
 ---@class impactlib
 ---@field version string
 ---@field defaults table  what the library takes for absent keys: gravity, output_rate, tolerance, density, friction ...
+---@field arguments fun(defaults: table<string, number|string|boolean>): table  those of the script's command line, key=value, over the defaults
 ---@field has fun(part: "cvode"|"ccd"|"view"): boolean  whether this build holds the part
 ---@field sphere fun(radius: number|{radius: number}): impact.shape
 ---@field plane fun(bounds?: {width?: number, depth?: number}): impact.shape
