@@ -2,7 +2,8 @@
 --- How often a bouncing ellipsoid turns over, for each friction and restitution: impact sweep ellipsoid_turns.lua -j 2
 ---
 --- It is thrown flat along the floor, tilted, without spin; all motion stays in one plane. turns is the integral of omega_y / (2 pi) over two
---- seconds; in flight omega_y is constant, so that the trapezoidal rule over the rows is exact there.
+--- seconds; in flight omega_y is constant, so that the trapezoidal rule over the rows is exact there. Coefficients of a contact are the
+--- products of its bodies': the floor's are 1.
 local impact = require "impact"
 local plot = require "quat.plot"
 
@@ -16,7 +17,7 @@ return impact.sweep {
       name = "ellipsoid", shape = impact.ellipsoid { a = 0.15, b = 0.08, c = 0.1 }, position = { 0, 0, 0.5 }, velocity = { 2, 0, 0 },
       orientation = { math.cos(0.3), 0, math.sin(0.3), 0 }, friction = p.friction, restitution = p.restitution,
     }
-    local floor = impact.body { name = "floor", static = true, shape = impact.plane(), friction = p.friction, restitution = p.restitution }
+    local floor = impact.body { name = "floor", static = true, shape = impact.plane(), friction = 1, restitution = 1 }
     return { duration = 2, output_rate = 20, bodies = { body, floor } }
   end,
   reduce = function(run)

@@ -9,7 +9,7 @@
 local impact = require "impact"
 local plot = require "quat.plot"
 
-local given = impact.arguments { throws = 200, rounding = 0.001, friction = 0.3, restitution = 0.8, height = 0.1 }
+local given = impact.arguments { throws = 200, rounding = 0.001, friction = 0.3, restitution = 0.6, height = 0.1 }
 local a, mass, gravity = 0.008, 0.005, 9.80665
 local shape = impact.box { a = a, b = a, c = a, rounding = given.rounding }
 local depth = 0.8 * a -- of the weight, under the middle
@@ -76,7 +76,7 @@ return impact.sweep {
       velocity = { math.random(), 0, 0 }, omega = { 40 * math.random() - 20, 40 * math.random() - 20, 40 * math.random() - 20 },
       friction = given.friction, restitution = given.restitution,
     }
-    local floor = impact.body { name = "floor", static = true, shape = impact.plane(), friction = given.friction, restitution = given.restitution }
+    local floor = impact.body { name = "floor", static = true, shape = impact.plane(), friction = 1, restitution = 1 }
     return { duration = 10, output_rate = 0, tolerance = 1e-9, gravity = { 0, 0, -gravity }, bodies = { body, floor } }
   end,
   on_event = function(event, p) return event.energy_after > (1 + p.weight) * mass * gravity * lowest_pass(p.weight) end,

@@ -12,13 +12,14 @@
 #include <math.h>
 #include <quat/quat.h>
 
-#if LDBL_MANT_DIG == 113 || defined(__SIZEOF_FLOAT128__)
+/* Its lanes' masks are integers of its size: 32-bit machines have none. */
+#if (LDBL_MANT_DIG == 113 || defined(__SIZEOF_FLOAT128__)) && defined(__SIZEOF_INT128__)
 #define IMP_HAS_SECOND 1
 #else
 #define IMP_HAS_SECOND 0
 #endif
 
-#ifdef IMP_SECOND
+#if defined(IMP_SECOND) && IMP_HAS_SECOND
 
 #if LDBL_MANT_DIG == 113
 typedef long double imp_real;
