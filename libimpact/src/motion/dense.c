@@ -10,10 +10,11 @@ impact_status imp_dense_reserve(imp_dense *dense, imp_arena *arena, int size)
     return c ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
+/* At s = 0, the step's end, which is asked for most, all other terms are 0. */
 static double value_of(const imp_dense *dense, double s, int i)
 {
     double y = 0;
-    for (int j = dense->terms - 1; j >= 0; j--) y = y * s + dense->c[j * dense->size + i];
+    for (int j = s != 0 ? dense->terms - 1 : 0; j >= 0; j--) y = y * s + dense->c[j * dense->size + i];
     return y;
 }
 
@@ -87,6 +88,7 @@ void imp_dense_rates(const imp_dense *dense, double t, double window, int first,
 static double slope_of(const imp_dense *dense, double s, int i)
 {
     double value = 0, rate = 0;
+    if (s == 0) return dense->terms > 1 ? dense->c[dense->size + i] : 0;
     for (int j = dense->terms - 1; j >= 0; j--) {
         rate = rate * s + value;
         value = value * s + dense->c[j * dense->size + i];

@@ -51,48 +51,56 @@ static turn turn_of(const impact_key *key)
     return (turn){rate, quat_add(half_product(key->alpha, key->orientation), half_product(key->omega, rate))};
 }
 
-/* The polynomial of two keys, ready to be asked: what each weight takes, of the place and of the orientation. */
+/* The polynomial of two keys, ready to be asked: where it starts, and what each weight takes, of the place (a fourth
+ * beside it, so that two fill a register) and of the orientation. */
+enum { PLACE = 0, TURN = 4, WIDE = 8 };
+
 typedef struct quintic {
-    const impact_key *a, *b;
-    double h;
-    qvec3 x[5];
-    quat q[5];
+    double t, h;
+    double start[WIDE], part[5][WIDE];
 } quintic;
+
+static void put(double out[WIDE], qvec3 x, quat q)
+{
+    const double all[WIDE] = {x.x, x.y, x.z, 0, q.w, q.x, q.y, q.z};
+    memcpy(out, all, sizeof all);
+}
 
 static quintic quintic_of(const impact_key keys[2])
 {
     const impact_key *a = &keys[0], *b = &keys[1];
     const double h = b->t - a->t, h2 = h * h;
     const turn from = turn_of(a), to = turn_of(b);
-    return (quintic){a,
-                     b,
-                     h,
-                     {qvec3_scale(a->velocity, h), qvec3_scale(a->acceleration, h2),
-                      qvec3_sub(b->position, a->position), qvec3_scale(b->velocity, h),
-                      qvec3_scale(b->acceleration, h2)},
-                     {quat_scale(from.rate, h), quat_scale(from.second, h2), quat_sub(b->orientation, a->orientation),
-                      quat_scale(to.rate, h), quat_scale(to.second, h2)}};
+    quintic p;
+    p.t = a->t, p.h = h;
+    put(p.start, a->position, a->orientation);
+    put(p.part[0], qvec3_scale(a->velocity, h), quat_scale(from.rate, h));
+    put(p.part[1], qvec3_scale(a->acceleration, h2), quat_scale(from.second, h2));
+    put(p.part[2], qvec3_sub(b->position, a->position), quat_sub(b->orientation, a->orientation));
+    put(p.part[3], qvec3_scale(b->velocity, h), quat_scale(to.rate, h));
+    put(p.part[4], qvec3_scale(b->acceleration, h2), quat_scale(to.second, h2));
+    return p;
 }
 
-static qvec3 mix(const quintic *p, weights w)
+static void mix(const quintic *p, weights w, double out[WIDE])
 {
-    const qvec3 *x = p->x;
-    qvec3 sum = qvec3_scale(x[0], w.rate0);
-    sum = qvec3_axpy(w.second0, x[1], sum);
-    sum = qvec3_axpy(w.change, x[2], sum);
-    sum = qvec3_axpy(w.rate1, x[3], sum);
-    return qvec3_axpy(w.second1, x[4], sum);
+    for (int i = 0; i < WIDE; i++) {
+        double sum = w.rate0 * p->part[0][i];
+        sum = w.second0 * p->part[1][i] + sum;
+        sum = w.change * p->part[2][i] + sum;
+        sum = w.rate1 * p->part[3][i] + sum;
+        out[i] = w.second1 * p->part[4][i] + sum;
+    }
 }
 
-static quat mix_turn(const quintic *p, weights w)
+static void value_at(const quintic *p, double s, double out[WIDE])
 {
-    const quat *q = p->q;
-    quat sum = quat_scale(q[0], w.rate0);
-    sum = quat_add(sum, quat_scale(q[1], w.second0));
-    sum = quat_add(sum, quat_scale(q[2], w.change));
-    sum = quat_add(sum, quat_scale(q[3], w.rate1));
-    return quat_add(sum, quat_scale(q[4], w.second1));
+    mix(p, weights_at(s), out);
+    for (int i = 0; i < WIDE; i++) out[i] = p->start[i] + out[i];
 }
+
+static qvec3 place_in(const double y[WIDE]) { return (qvec3){y[PLACE], y[PLACE + 1], y[PLACE + 2]}; }
+static quat turn_in(const double y[WIDE]) { return (quat){y[TURN], y[TURN + 1], y[TURN + 2], y[TURN + 3]}; }
 
 impact_key imp_key_between(const impact_key keys[2], double t)
 {
@@ -106,11 +114,13 @@ impact_key imp_key_between(const impact_key keys[2], double t)
         return key;
     }
     const quintic curve = quintic_of(keys);
-    const weights w = weights_at(s), d = slopes_at(s);
-    const quat p = quat_add(a->orientation, mix_turn(&curve, w)), rate = quat_scale(mix_turn(&curve, d), 1 / h);
-    const quat spin = quat_mul(rate, quat_conj(p));
-    key.position = qvec3_add(a->position, mix(&curve, w));
-    key.velocity = qvec3_scale(mix(&curve, d), 1 / h);
+    double value[WIDE], rate[WIDE];
+    value_at(&curve, s, value);
+    mix(&curve, slopes_at(s), rate);
+    const quat p = turn_in(value);
+    const quat spin = quat_mul(quat_scale(turn_in(rate), 1 / h), quat_conj(p));
+    key.position = place_in(value);
+    key.velocity = qvec3_scale(place_in(rate), 1 / h);
     quat_normalize(p, &key.orientation);
     key.omega = qvec3_scale((qvec3){spin.x, spin.y, spin.z}, 2 / quat_dot(p, p));
     return key;
@@ -136,13 +146,13 @@ static double square(qvec3 v) { return qvec3_dot(v, v); }
 /* A difference d of unit quaternions is a turn of 2 |d|, as long as that is small. */
 static bool meets(const quintic *curve, const imp_pose *pose, imp_key_tolerance tolerance)
 {
-    const weights w = weights_at((pose->t - curve->a->t) / curve->h);
-    const qvec3 off = qvec3_sub(qvec3_add(curve->a->position, mix(curve, w)), pose->x);
+    double y[WIDE];
+    value_at(curve, (pose->t - curve->t) / curve->h, y);
+    const qvec3 off = qvec3_sub(place_in(y), pose->x);
     const double place = tolerance.place + IMP_KEY_ROUNDINGS * DBL_EPSILON * sqrt(square(pose->x));
     if (!(square(off) <= place * place)) return false;
-    const quat p = quat_unit(quat_add(curve->a->orientation, mix_turn(curve, w)));
     const double angle = tolerance.angle + IMP_KEY_ROUNDINGS * DBL_EPSILON;
-    return 4 * quat_norm2(quat_sub(p, pose->q)) <= angle * angle;
+    return 4 * quat_norm2(quat_sub(quat_unit(turn_in(y)), pose->q)) <= angle * angle;
 }
 
 static bool turns_little(const impact_key keys[2])
@@ -151,18 +161,7 @@ static bool turns_little(const impact_key keys[2])
     return sqrt(fastest) * (keys[1].t - keys[0].t) <= IMP_KEY_TURN;
 }
 
-static bool all_meet(const quintic *curve, const imp_pose *way, int count, imp_key_tolerance tolerance)
-{
-    for (int i = 0; i < count; i++)
-        if (!meets(curve, &way[i], tolerance)) return false;
-    return true;
-}
-
-static bool too_short(const impact_key keys[2])
-{
-    const double t = fmax(fabs(keys[0].t), fabs(keys[1].t));
-    return keys[1].t - keys[0].t <= IMP_KEY_ULPS * DBL_EPSILON * t;
-}
+static double shortest(double from, double to) { return IMP_KEY_ULPS * DBL_EPSILON * fmax(fabs(from), fabs(to)); }
 
 typedef struct halving {
     const imp_piece *piece;
@@ -203,9 +202,11 @@ static bool hand_on_unmet(const halving *h, double s, double length, imp_span *s
 /* The part from s to s + length, with the keys at its ends. */
 static bool halve(const halving *h, double s, double length, const impact_key ends[2], int depth)
 {
-    imp_span span = {.from = ends[0], .to = ends[1]};
+    imp_span span;
+    span.from = ends[0], span.to = ends[1];
     if (span_meets(h, s, length, &span)) return h->sink(h->context, &span);
-    if (depth == IMP_KEY_HALVINGS || too_short(ends)) return hand_on_unmet(h, s, length, &span);
+    if (depth == IMP_KEY_HALVINGS || ends[1].t - ends[0].t <= shortest(ends[0].t, ends[1].t))
+        return hand_on_unmet(h, s, length, &span);
     const impact_key middle = h->piece->at(h->piece->context, h->body, s + 0.5 * length);
     const impact_key left[2] = {ends[0], middle}, right[2] = {middle, ends[1]};
     return halve(h, s, 0.5 * length, left, depth + 1) && halve(h, s + 0.5 * length, 0.5 * length, right, depth + 1);
@@ -217,6 +218,18 @@ bool imp_key_halve(const imp_piece *piece, int body, imp_key_tolerance tolerance
     const halving h = {piece, body, tolerance, sink, context, unmet};
     const impact_key ends[2] = {piece->at(piece->context, body, 0), piece->at(piece->context, body, 1)};
     return !(ends[1].t > ends[0].t) || halve(&h, 0, 1, ends, 0);
+}
+
+/* ---- a steady spin ---- */
+
+/* Equal parts of it, of which each polynomial is known to meet the motion: there is nothing to look at. None where they
+ * are too short. */
+static double steady_parts(const imp_piece *piece, imp_key_tolerance tolerance)
+{
+    const double most = pow((tolerance.angle + IMP_KEY_ROUNDINGS * DBL_EPSILON) / IMP_KEY_STEADY, 1.0 / 7);
+    const double length = piece->to - piece->from;
+    const double parts = fmax(1, ceil(piece->spin * length / fmin(most, IMP_KEY_TURN)));
+    return length > parts * shortest(piece->from, piece->to) && !isnan(piece->spin) ? parts : 0;
 }
 
 /* ---- a body's keys ---- */
@@ -241,14 +254,13 @@ static bool hand_on(imp_key_line *line, const impact_key *key, imp_key_sink *sin
 /* When there is no room, the pose goes whose neighbours stand closest: those that stay are spread over the way. */
 static void keep_pose(imp_key_line *line, imp_pose pose)
 {
-    enum { ROOM = sizeof line->way / sizeof *line->way };
-    if (line->count == ROOM) {
-        int crowded = 1;
-        for (int i = 2; i < ROOM - 1; i++)
-            if (line->way[i + 1].t - line->way[i - 1].t < line->way[crowded + 1].t - line->way[crowded - 1].t)
-                crowded = i;
+    if (line->count == IMP_KEY_WAY) {
+        double before = line->last.t, least = INFINITY;
+        int crowded = 0;
+        for (int i = 0; i < IMP_KEY_WAY - 1; before = line->way[i++].t)
+            if (line->way[i + 1].t - before < least) crowded = i, least = line->way[i + 1].t - before;
         line->count--;
-        memmove(&line->way[crowded], &line->way[crowded + 1], sizeof *line->way * (size_t)(ROOM - 1 - crowded));
+        memmove(&line->way[crowded], &line->way[crowded + 1], sizeof pose * (size_t)(line->count - crowded));
     }
     line->way[line->count++] = pose;
 }
@@ -261,29 +273,46 @@ static void grow(imp_key_line *line, const imp_span *span)
     line->open = true;
 }
 
-/* Whether one polynomial from the last key meets what is open and the span: what is most likely to be off first. */
-static bool joins(const imp_key_line *line, const imp_span *span, imp_key_tolerance tolerance)
+/* Whether the polynomial meets what is known of the way, where halving would look: at its half, quarter and three
+ * quarters, or next after them. The half first, where a quintic is off most. */
+static bool quarters_meet(const quintic *curve, const imp_pose *const *way, int count, imp_key_tolerance tolerance)
 {
-    const impact_key keys[2] = {line->last, span->to};
+    static const double places[3] = {0.5, 0.25, 0.75};
+    for (int k = 0; k < 3; k++) {
+        const double t = curve->t + places[k] * curve->h;
+        int next = 0;
+        while (next < count - 1 && way[next]->t < t) next++;
+        if (!meets(curve, way[next], tolerance)) return false;
+    }
+    return true;
+}
+
+/* Whether one polynomial from the last key to `to` meets what is open, where that ends, and the span's way. */
+static bool joins(const imp_key_line *line, const impact_key *to, const imp_span *span, imp_key_tolerance tolerance)
+{
+    const impact_key keys[2] = {line->last, *to};
+    const imp_pose *way[IMP_KEY_WAY + 4], middle = pose_of(&line->next);
+    int count = 0;
     if (!turns_little(keys)) return false;
+    for (int i = 0; i < line->count; i++) way[count++] = &line->way[i];
+    if (line->open) way[count++] = &middle;
+    for (int i = 0; span && i < 3; i++) way[count++] = &span->way[i];
     const quintic curve = quintic_of(keys);
-    const imp_pose middle = pose_of(&line->next);
-    return all_meet(&curve, line->way + line->count / 2, line->count - line->count / 2, tolerance) &&
-           all_meet(&curve, span->way, 3, tolerance) && all_meet(&curve, line->way, line->count / 2, tolerance) &&
-           (!line->open || meets(&curve, &middle, tolerance));
+    return quarters_meet(&curve, way, count, tolerance);
 }
 
 bool imp_key_line_add(imp_key_line *line, const imp_span *span, imp_key_tolerance tolerance, imp_key_sink *sink,
                       void *context)
 {
     const bool goes_on = line->begun && same_state(line->open ? &line->next : &line->last, &span->from);
-    if (goes_on && joins(line, span, tolerance)) {
+    if (goes_on && joins(line, &span->to, span, tolerance)) {
         grow(line, span);
         return true;
     }
     if (line->open && !hand_on(line, &line->next, sink, context)) return false;
     /* The accelerations differ on either side of a kink: then both stand, before and after it. */
-    if (!(goes_on && joins(line, span, tolerance)) && !hand_on(line, &span->from, sink, context)) return false;
+    if (!(goes_on && joins(line, &span->to, span, tolerance)) && !hand_on(line, &span->from, sink, context))
+        return false;
     grow(line, span);
     return true;
 }
@@ -299,13 +328,31 @@ static bool join_whole(imp_key_line *line, const imp_piece *piece, int body, imp
 {
     if (!is_quarter(line, piece)) return false;
     const impact_key from = piece->begin(piece->context, body), to = piece->at(piece->context, body, 1);
-    const impact_key keys[2] = {line->last, to};
-    if (!same_state(&line->next, &from) || !turns_little(keys)) return false;
-    const quintic curve = quintic_of(keys);
-    const imp_pose middle = pose_of(&line->next);
-    if (!meets(&curve, &middle, tolerance) || !all_meet(&curve, line->way, line->count, tolerance)) return false;
-    keep_pose(line, middle);
+    if (!same_state(&line->next, &from) || !joins(line, &to, NULL, tolerance)) return false;
+    keep_pose(line, pose_of(&line->next));
     line->next = to;
+    return true;
+}
+
+static bool same_rates(const impact_key *a, const impact_key *b)
+{
+    return memcmp(&a->acceleration, &b->acceleration, sizeof a->acceleration) == 0 &&
+           memcmp(&a->alpha, &b->alpha, sizeof a->alpha) == 0;
+}
+
+/* What stands open ends where the spin begins, and the spin's last key is open to nothing: what is between is not known
+ * as poses. */
+static bool add_steady(imp_key_line *line, const imp_piece *piece, int body, double parts, imp_key_sink *sink,
+                       void *context)
+{
+    const impact_key from = piece->at(piece->context, body, 0);
+    if (line->open && !hand_on(line, &line->next, sink, context)) return false;
+    const bool stands = line->begun && same_state(&line->last, &from) && same_rates(&line->last, &from);
+    if (!stands && !hand_on(line, &from, sink, context)) return false;
+    for (double k = 1; k <= parts; k++) {
+        const impact_key key = piece->at(piece->context, body, k / parts);
+        if (!hand_on(line, &key, sink, context)) return false;
+    }
     return true;
 }
 
@@ -326,6 +373,8 @@ bool imp_key_line_add_piece(imp_key_line *line, const imp_piece *piece, int body
                             imp_key_sink *sink, void *context, long *unmet)
 {
     line_sink to = {line, tolerance, sink, context};
+    const double parts = steady_parts(piece, tolerance);
+    if (parts > 0) return add_steady(line, piece, body, parts, sink, context);
     return join_whole(line, piece, body, tolerance) || imp_key_halve(piece, body, tolerance, add_span, &to, unmet);
 }
 

@@ -32,6 +32,7 @@ typedef struct imp_piece {
     impact_key (*at)(void *context, int body, double s);
     imp_pose (*pose)(void *context, int body, double s);
     impact_key (*begin)(void *context, int body);
+    double spin; /* 1/s: of a steady spin on a parabola, by s = t; NAN: the motion is another */
 } imp_piece;
 
 /* A part of a piece on which the polynomial of its ends meets the trajectory, and where the trajectory was inside it.
@@ -54,11 +55,13 @@ bool imp_key_halve(const imp_piece *piece, int body, imp_key_tolerance tolerance
                    long *unmet);
 
 /* One body's keys so far: spans join as long as one polynomial meets all of them. */
+enum { IMP_KEY_WAY = 8 };
+
 typedef struct imp_key_line {
     bool begun, open;
     impact_key last, next; /* handed on; open: the end of the span that may still grow */
     int count;
-    imp_pose way[8]; /* on the way from last to next */
+    imp_pose way[IMP_KEY_WAY]; /* on the way from last to next */
 } imp_key_line;
 
 typedef bool imp_key_sink(void *context, const impact_key *key);

@@ -171,21 +171,29 @@ imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
     return state;
 }
 
+/* Most pieces end with their step: nothing is to be searched for. */
 double imp_segment_own(const imp_segment *s, double t)
 {
-    return s->kind == IMP_SEGMENT_DENSE ? imp_dense_place(s->dense, t) : t;
+    if (s->kind != IMP_SEGMENT_DENSE) return t;
+    return t == s->dense->c[Y_TIME] ? 0 : imp_dense_place(s->dense, t);
+}
+
+double imp_segment_time(const imp_segment *s, double own)
+{
+    double t = own;
+    if (s->kind == IMP_SEGMENT_DENSE) imp_dense_there(s->dense, own, Y_TIME, 1, &t);
+    return t;
 }
 
 qvec3 imp_segment_pose(const imp_segment *s, const imp_body *body, double own, double *t, quat *q)
 {
     double b[Y_VELOCITY];
-    *t = own;
+    *t = imp_segment_time(s, own);
     if (s->kind != IMP_SEGMENT_DENSE) {
         const imp_state state = imp_segment_at(s, body, own);
         *q = state.q;
         return state.x;
     }
-    imp_dense_there(s->dense, own, Y_TIME, 1, t);
     imp_dense_there(s->dense, own, first_of(s), Y_VELOCITY, b);
     *q = quat_unit((quat){b[3], b[4], b[5], b[6]});
     return (qvec3){b[0], b[1], b[2]};
@@ -271,6 +279,13 @@ void imp_segment_rates(const imp_segment *s, const imp_body *body, double own, q
     const imp_bounds b = imp_segment_bounds(s, body, own, 0);
     *acceleration = b.acceleration;
     *torque = b.torque;
+}
+
+double imp_segment_steady_spin(const imp_segment *s, const imp_body *body)
+{
+    const bool parabola = s->kind == IMP_SEGMENT_FREE || (s->kind == IMP_SEGMENT_ROLL && is_zero(s->spin_up));
+    const bool steady = parabola && (!s->tumble || s->tumble->steady);
+    return steady ? qvec3_norm(imp_omega(body, &s->start)) : NAN;
 }
 
 double imp_segment_top_speed(const imp_segment *s, const imp_body *body, double t)

@@ -61,6 +61,7 @@ imp_state imp_segment_at(const imp_segment *segment, const imp_body *body, doubl
 /* The variable that a segment is given in: time, or in a step of the integrator the place in it, with which time rises;
  * and the time, place (returned) and orientation there, without the search for it that a time takes. */
 double imp_segment_own(const imp_segment *s, double t);
+double imp_segment_time(const imp_segment *s, double own);
 qvec3 imp_segment_pose(const imp_segment *s, const imp_body *body, double own, double *t, quat *q);
 /* The centre's place and velocity alone. */
 qvec3 imp_segment_place_of(const imp_segment *segment, const imp_body *body, double t, qvec3 *velocity);
@@ -85,6 +86,9 @@ imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, 
 /* Its acceleration and torque alone, where its own variable is this. */
 void imp_segment_rates(const imp_segment *segment, const imp_body *body, double own, qvec3 *acceleration,
                        qvec3 *torque);
+
+/* |omega| where the place is a parabola and the spin steady; else NAN. */
+double imp_segment_steady_spin(const imp_segment *segment, const imp_body *body);
 
 /* No speed of the centre over [t, t1] is greater, m/s; infinite for FREE under an acceleration. */
 double imp_segment_top_speed(const imp_segment *segment, const imp_body *body, double t);

@@ -5,6 +5,7 @@
  */
 #include "run/run.h"
 #include "base/definition.h"
+#include "run/rows.h"
 #include "run/text.h"
 #include "scene/scene_internal.h"
 
@@ -12,56 +13,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows of one table, in the order they came. */
-typedef struct rows {
-    imp_text bytes;
-    long count;
-} rows;
-
+/* Before a key's row stands whose it is. */
 struct impact_run_writer {
     const impact_scene *scene;
-    rows tables[IMP_RUN_TABLES];
-    rows key_body; /* whose each key is: an int */
+    imp_rows tables[IMP_RUN_TABLES];
     imp_text phases;
     int phase_count;
     imp_text record; /* made up last */
 };
 
+static int lead_of(int table) { return table == IMP_RUN_KEYS; }
+
 static bool add_row(impact_run_writer *w, int table, const double *values)
 {
-    rows *r = &w->tables[table];
-    imp_text_put(&r->bytes, values, sizeof *values * (size_t)imp_run_tables[table].columns);
-    r->count++;
-    return !r->bytes.failed;
+    return imp_rows_add(&w->tables[table], w->scene->world.arena, values);
 }
 
 /* ---- the recorder ---- */
 
 static bool put_key(void *context, const impact_key *k)
 {
-    impact_run_writer *w = context;
-    const double values[IMP_KEY_COLUMNS] = {k->t,
-                                            k->position.x,
-                                            k->position.y,
-                                            k->position.z,
-                                            k->orientation.w,
-                                            k->orientation.x,
-                                            k->orientation.y,
-                                            k->orientation.z,
-                                            k->velocity.x,
-                                            k->velocity.y,
-                                            k->velocity.z,
-                                            k->omega.x,
-                                            k->omega.y,
-                                            k->omega.z,
-                                            k->acceleration.x,
-                                            k->acceleration.y,
-                                            k->acceleration.z,
-                                            k->alpha.x,
-                                            k->alpha.y,
-                                            k->alpha.z};
-    imp_text_put(&w->key_body.bytes, &k->body, sizeof k->body);
-    return add_row(w, IMP_RUN_KEYS, values) && !w->key_body.bytes.failed;
+    const double values[1 + IMP_KEY_COLUMNS] = {k->body,           k->t,
+                                                k->position.x,     k->position.y,
+                                                k->position.z,     k->orientation.w,
+                                                k->orientation.x,  k->orientation.y,
+                                                k->orientation.z,  k->velocity.x,
+                                                k->velocity.y,     k->velocity.z,
+                                                k->omega.x,        k->omega.y,
+                                                k->omega.z,        k->acceleration.x,
+                                                k->acceleration.y, k->acceleration.z,
+                                                k->alpha.x,        k->alpha.y,
+                                                k->alpha.z};
+    return add_row(context, IMP_RUN_KEYS, values);
 }
 
 /* The number of these words among all phases, which stand one after another, each with its 0. */
@@ -132,8 +115,8 @@ impact_status impact_run_create(const impact_scene *scene, impact_run_writer **w
         return IMPACT_ENOMEM;
     }
     w->scene = scene;
-    w->key_body.bytes.arena = w->phases.arena = w->record.arena = arena;
-    for (int i = 0; i < IMP_RUN_TABLES; i++) w->tables[i].bytes.arena = arena;
+    w->phases.arena = w->record.arena = arena;
+    for (int i = 0; i < IMP_RUN_TABLES; i++) w->tables[i].width = lead_of(i) + imp_run_tables[i].columns;
     return IMPACT_OK;
 }
 
@@ -151,8 +134,7 @@ void impact_run_fill_recorder(impact_run_writer *writer, impact_recorder *record
 void impact_run_discard(impact_run_writer *writer)
 {
     if (!writer) return;
-    for (int i = 0; i < IMP_RUN_TABLES; i++) imp_text_free(&writer->tables[i].bytes);
-    imp_text_free(&writer->key_body.bytes);
+    for (int i = 0; i < IMP_RUN_TABLES; i++) imp_rows_free(&writer->tables[i], writer->scene->world.arena);
     imp_text_free(&writer->phases);
     imp_text_free(&writer->record);
     imp_arena_give(writer->scene->world.arena, writer);
@@ -322,6 +304,13 @@ static const char *column_word(const void *context, int i)
     return i < table->columns ? table->column[i] : NULL;
 }
 
+static size_t row_size(int table) { return sizeof(double) * (size_t)imp_run_tables[table].columns; }
+
+static size_t table_size(const impact_run_writer *w, int table)
+{
+    return row_size(table) * (size_t)w->tables[table].count;
+}
+
 static void say_tables(imp_text *head, const impact_run_writer *w)
 {
     size_t at = 0;
@@ -335,7 +324,7 @@ static void say_tables(imp_text *head, const impact_run_writer *w)
         say_number(head, "rows", (double)w->tables[i].count);
         say_words(head, "columns", column_word, table);
         imp_text_say(head, "}");
-        at += w->tables[i].bytes.size;
+        at += table_size(w, i);
     }
     imp_text_say(head, "}");
 }
@@ -370,65 +359,77 @@ static void say_head(imp_text *head, const impact_run_writer *w, const char *sce
 /* first[i]: the place of body i's first key when keys stand body by body. */
 static void count_keys(const impact_run_writer *w, long *first)
 {
+    const imp_rows *keys = &w->tables[IMP_RUN_KEYS];
     const int count = impact_scene_body_count(w->scene);
     memset(first, 0, sizeof *first * ((size_t)count + 2));
-    for (long k = 0; k < w->tables[IMP_RUN_KEYS].count; k++) {
-        int body;
-        memcpy(&body, w->key_body.bytes.bytes + (size_t)k * sizeof body, sizeof body);
-        first[body + 2]++;
-    }
+    imp_rows_cursor at = {keys->first, 0};
+    for (const double *row; (row = imp_rows_next(keys, &at));) first[(int)row[0] + 2]++;
     for (int i = 2; i < count + 2; i++) first[i] += first[i - 1];
 }
 
 /* Keys to their places; place[i] begins as first[i], and ends as first[i + 1]. */
-static void sort_keys(const impact_run_writer *w, long *place, char *out)
+static void put_keys(const impact_run_writer *w, long *place, char *out)
 {
-    const size_t size = sizeof(double) * IMP_KEY_COLUMNS;
-    for (long k = 0; k < w->tables[IMP_RUN_KEYS].count; k++) {
-        int body;
-        memcpy(&body, w->key_body.bytes.bytes + (size_t)k * sizeof body, sizeof body);
-        memcpy(out + (size_t)place[body]++ * size, w->tables[IMP_RUN_KEYS].bytes.bytes + (size_t)k * size, size);
-    }
+    const imp_rows *keys = &w->tables[IMP_RUN_KEYS];
+    const size_t size = row_size(IMP_RUN_KEYS);
+    imp_rows_cursor at = {keys->first, 0};
+    for (const double *row; (row = imp_rows_next(keys, &at));)
+        memcpy(out + (size_t)place[(int)row[0]]++ * size, row + 1, size);
 }
 
 /* A held contact's row is told when one that differs follows: rows of several contacts come out of order. */
 typedef struct place {
-    double t;
-    long row;
+    const double *row;
+    long number;
 } place;
 
 static int in_order(const void *a, const void *b)
 {
     const place *x = a, *y = b;
-    if (x->t != y->t) return x->t > y->t ? 1 : -1;
-    return (x->row > y->row) - (x->row < y->row);
+    if (x->row[0] != y->row[0]) return x->row[0] > y->row[0] ? 1 : -1;
+    return (x->number > y->number) - (x->number < y->number);
 }
 
-static bool sort_contacts(imp_arena *arena, const rows *contacts, char *out)
+static bool put_contacts(const impact_run_writer *w, char *out)
 {
-    const size_t size = sizeof(double) * IMP_CONTACT_COLUMNS, count = (size_t)contacts->count;
+    imp_arena *arena = w->scene->world.arena;
+    const imp_rows *contacts = &w->tables[IMP_RUN_CONTACTS];
+    const size_t size = row_size(IMP_RUN_CONTACTS), count = (size_t)contacts->count;
     place *places = imp_arena_take(arena, count, sizeof *places);
     if (!places) return false;
-    for (size_t k = 0; k < count; k++) {
-        places[k].row = (long)k;
-        memcpy(&places[k].t, contacts->bytes.bytes + k * size, sizeof(double));
-    }
+    imp_rows_cursor at = {contacts->first, 0};
+    for (size_t k = 0; k < count; k++) places[k] = (place){imp_rows_next(contacts, &at), (long)k};
     qsort(places, count, sizeof *places, in_order);
-    for (size_t k = 0; k < count; k++)
-        memcpy(out + k * size, contacts->bytes.bytes + (size_t)places[k].row * size, size);
+    for (size_t k = 0; k < count; k++) memcpy(out + k * size, places[k].row, size);
     imp_arena_give(arena, places);
     return true;
 }
 
-/* All tables behind the head, keys and contacts in the record's order. */
-static bool put_tables(impact_run_writer *w, imp_text *all, long *first)
+static void put_rows(const impact_run_writer *w, int table, char *out)
 {
-    const size_t keys = all->size;
-    for (int i = 0; i < IMP_RUN_TABLES; i++) imp_text_put(all, w->tables[i].bytes.bytes, w->tables[i].bytes.size);
-    if (all->failed) return false;
-    sort_keys(w, first + 1, all->bytes + keys);
-    const size_t contacts = keys + w->tables[IMP_RUN_KEYS].bytes.size + w->tables[IMP_RUN_EVENTS].bytes.size;
-    return sort_contacts(all->arena, &w->tables[IMP_RUN_CONTACTS], all->bytes + contacts);
+    const size_t size = row_size(table);
+    for (const imp_rows_piece *p = w->tables[table].first; p; p = p->next) {
+        memcpy(out, p->values, (size_t)p->used * size);
+        out += (size_t)p->used * size;
+    }
+}
+
+/* All tables behind the head, keys and contacts in the record's order. */
+static bool put_tables(const impact_run_writer *w, imp_text *all, long *first)
+{
+    size_t size = 0;
+    for (int i = 0; i < IMP_RUN_TABLES; i++) size += table_size(w, i);
+    char *out = imp_text_room(all, size);
+    bool whole = out != NULL;
+    for (int i = 0; whole && i < IMP_RUN_TABLES; out += table_size(w, i++)) {
+        if (i == IMP_RUN_KEYS)
+            put_keys(w, first + 1, out);
+        else if (i == IMP_RUN_CONTACTS)
+            whole = put_contacts(w, out);
+        else
+            put_rows(w, i, out);
+    }
+    return whole;
 }
 
 impact_status impact_run_bytes(impact_run_writer *w, const char *reason, const void **bytes, size_t *size)

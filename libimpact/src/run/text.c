@@ -22,21 +22,42 @@ static bool make_room(imp_text *text, size_t wanted)
     return more != NULL;
 }
 
+char *imp_text_room(imp_text *text, size_t size)
+{
+    if (text->failed) return NULL;
+    if (text->size + size > (size_t)text->room) text->failed = !make_room(text, text->size + size);
+    if (text->failed) return NULL;
+    text->size += size;
+    return text->bytes + text->size - size;
+}
+
 void imp_text_put(imp_text *text, const void *bytes, size_t size)
 {
-    if (text->failed) return;
-    if (text->size + size > (size_t)text->room) text->failed = !make_room(text, text->size + size);
-    if (text->failed) return;
-    if (size > 0) memcpy(text->bytes + text->size, bytes, size);
-    text->size += size;
+    char *out = imp_text_room(text, size);
+    if (out && size > 0) memcpy(out, bytes, size);
 }
 
 void imp_text_say(imp_text *text, const char *words) { imp_text_put(text, words, strlen(words)); }
+
+/* Whole numbers, which most of a head's are, digit by digit from the last. */
+static void say_whole(imp_text *text, long long value)
+{
+    char word[24], *digit = word + sizeof word;
+    unsigned long long rest = (unsigned long long)(value < 0 ? -value : value);
+    do *--digit = (char)('0' + rest % 10);
+    while ((rest /= 10) > 0);
+    if (value < 0) *--digit = '-';
+    imp_text_put(text, digit, (size_t)(word + sizeof word - digit));
+}
 
 /* The shortest of 15, 16 and 17 digits that gives back the same bits. */
 void imp_text_number(imp_text *text, double value)
 {
     char word[32];
+    if (fabs(value) < 1e15 && value == trunc(value) && !(value == 0 && signbit(value))) {
+        say_whole(text, (long long)value);
+        return;
+    }
     if (!isfinite(value)) {
         imp_text_say(text, "null");
         return;

@@ -18,6 +18,8 @@ typedef struct imp_text {
 } imp_text;
 
 void imp_text_free(imp_text *text);
+/* Room for so many bytes more, to be filled; NULL when there is no memory. */
+char *imp_text_room(imp_text *text, size_t size);
 void imp_text_put(imp_text *text, const void *bytes, size_t size);
 void imp_text_say(imp_text *text, const char *words);
 /* 17 significant digits, '.' whatever the locale; null where it is not finite. */

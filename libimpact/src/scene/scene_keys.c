@@ -56,11 +56,11 @@ static impact_key key_at(void *context, int body, double s)
 {
     done_piece *piece = context;
     const imp_body *b = &piece->scene->world.bodies[body];
-    const double t = s <= 0 ? piece->from : s >= 1 ? piece->to : pose_at(piece, body, s).t;
+    const double own = s < 1 ? own_at(piece, s) : imp_segment_own(piece->segment, piece->to);
+    const double t = s <= 0 ? piece->from : s >= 1 ? piece->to : imp_segment_time(piece->segment, own);
     const imp_state state = state_at(piece, body, t);
     qvec3 acceleration, torque;
-    imp_segment_rates(piece->segment, b, s < 1 ? own_at(piece, s) : imp_segment_own(piece->segment, t), &acceleration,
-                      &torque);
+    imp_segment_rates(piece->segment, b, own, &acceleration, &torque);
     return imp_key_of(b, body, t, &state, acceleration, torque);
 }
 
@@ -86,7 +86,13 @@ bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_s
     if (!(t > from)) return true;
     const imp_segment *segment = &scene->tracks.tracks[body].segment;
     done_piece way = {.scene = scene, .segment = segment, .from = from, .to = t, .end = end};
-    const imp_piece piece = {from, t, &way, key_at, pose_at, begin_of};
+    const imp_piece piece = {.from = from,
+                             .to = t,
+                             .context = &way,
+                             .at = key_at,
+                             .pose = pose_at,
+                             .begin = begin_of,
+                             .spin = imp_segment_steady_spin(segment, &scene->world.bodies[body])};
     return imp_key_line_add_piece(&keys->lines[body], &piece, body, tolerance_of(scene, body), put_key, scene,
                                   &scene->world.usage.keys_unmet);
 }
