@@ -10,13 +10,8 @@ impact_status imp_dense_reserve(imp_dense *dense, imp_arena *arena, int size)
     return c ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
-/* At s = 0, the step's end, which is asked for most, all other terms are 0. */
-static double value_of(const imp_dense *dense, double s, int i)
-{
-    double y = 0;
-    for (int j = s != 0 ? dense->terms - 1 : 0; j >= 0; j--) y = y * s + dense->c[j * dense->size + i];
-    return y;
-}
+/* Terms that count at s: at the step's end, which is asked for most, all but the first are 0. */
+static int terms_at(const imp_dense *dense, double s) { return s != 0 ? dense->terms : 1; }
 
 /* Time rises with tau: Newton's iteration within a bracket, by halves where it leaves that. */
 double imp_dense_tau(const imp_dense *dense, double t)
@@ -44,9 +39,14 @@ static double place_of(const imp_dense *dense, double t) { return (imp_dense_tau
 
 double imp_dense_place(const imp_dense *dense, double t) { return dense->h > 0 ? place_of(dense, t) : 0; }
 
+/* Horner's rule for all components side by side, as they stand. */
 void imp_dense_there(const imp_dense *dense, double s, int first, int count, double *y)
 {
-    for (int i = 0; i < count; i++) y[i] = value_of(dense, s, first + i);
+    for (int i = 0; i < count; i++) y[i] = 0;
+    for (int j = terms_at(dense, s) - 1; j >= 0; j--) {
+        const double *c = &dense->c[j * dense->size + first];
+        for (int i = 0; i < count; i++) y[i] = y[i] * s + c[i];
+    }
 }
 
 void imp_dense_at(const imp_dense *dense, double t, int first, int count, double *y)

@@ -226,10 +226,11 @@ bool imp_key_halve(const imp_piece *piece, int body, imp_key_tolerance tolerance
  * are too short. */
 static double steady_parts(const imp_piece *piece, imp_key_tolerance tolerance)
 {
+    if (isnan(piece->spin)) return 0;
     const double most = pow((tolerance.angle + IMP_KEY_ROUNDINGS * DBL_EPSILON) / IMP_KEY_STEADY, 1.0 / 7);
     const double length = piece->to - piece->from;
     const double parts = fmax(1, ceil(piece->spin * length / fmin(most, IMP_KEY_TURN)));
-    return length > parts * shortest(piece->from, piece->to) && !isnan(piece->spin) ? parts : 0;
+    return length > parts * shortest(piece->from, piece->to) ? parts : 0;
 }
 
 /* ---- a body's keys ---- */
