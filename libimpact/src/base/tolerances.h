@@ -405,9 +405,9 @@
 #define IMP_KEY_TURN 1.0
 
 /* Of a steady spin, turned by w h from key to key, the quintic is off by this times (w h)^7 rad. Its remainder is
- * s^3 (1-s)^3 q^(6)(x)/720 at some x, of 7 nodes 1/2 + (s - 1/2)/7 on the mean; q^(6) = -(w h/2)^6 q lies along q there,
- * and across q(s) only by the angle (w h/2) 6/7 (s - 1/2). Largest at (s - 1/2)^2 = 1/28: (3/14)^3/28^(1/2); of angles the
- * double. */
+ * s^3 (1-s)^3 q^(6)(x)/720 at some x, of 7 nodes 1/2 + (s - 1/2)/7 on the mean; q^(6) = -(w h/2)^6 q lies along q
+ * there, and across q(s) only by the angle (w h/2) 6/7 (s - 1/2). Largest at (s - 1/2)^2 = 1/28: (3/14)^3/28^(1/2); of
+ * angles the double. */
 #define IMP_KEY_STEADY 3.46e-8
 
 /* Roundings of a coordinate that a key's place may be off by: the polynomial is a sum of six products. */
