@@ -368,7 +368,11 @@ local function need(so, message, level)
 end
 
 local function is_track(value)
-  return type(value) == "table" and type(value.t) == "table"
+  for _, column in ipairs(columns) do
+    local list = type(value) == "table" and value[column]
+    if type(list) ~= "table" or #list ~= #value.t then return false end
+  end
+  return true
 end
 
 --- The recorded rows of a body as columns t, x, y, z, qw ... wz. With a rate, rows are put between them, at least so many per

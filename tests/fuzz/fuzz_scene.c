@@ -66,8 +66,9 @@ void fuzz_show(FILE *out)
                 constants[0], constants[1], constants[2]);
     fputs("int main(void)\n{\n    impact_scene_def def = impact_default_scene_def();\n    impact_body_def b[5];\n",
           out);
-    fprintf(out, "    def.duration = %.17g, def.output_rate = %.17g, def.max_events = %ld, def.law = (impact_law)%d",
-            def.duration, def.output_rate, def.max_events, (int)def.law);
+    fprintf(out, "    def.duration = %.17g, def.output_rate = %.17g, def.max_events = %ld, def.max_steps = %ld",
+            def.duration, def.output_rate, def.max_events, def.max_steps);
+    fprintf(out, ", def.law = (impact_law)%d", (int)def.law);
     fprintf(out, ", def.friction_rule = (impact_pair_rule)%d, def.bodies = b, def.body_count = %d",
             (int)def.friction_rule, def.body_count);
     show_vec3(out, ", def.gravity = (qvec3)", def.gravity);
@@ -175,7 +176,7 @@ static void take_scene(fuzz_bytes *b)
     def.gravity = mode & 1 ? (qvec3){0, 0, -9.81} : take_vec3(b, 1);
     def.duration = 0.05 + 0.5 * take_unit(b);
     def.output_rate = 20 * take_unit(b);
-    def.max_events = 300;
+    def.max_events = 300, def.max_steps = 20000; /* the caller's bounds on work that is done, a second or two of it */
     def.body_count = 2 + (int)take_below(b, MOST - 1);
     def.law = (impact_law)take_below(b, 3);
     def.friction_rule = (impact_pair_rule)take_below(b, 4);

@@ -160,6 +160,7 @@ do
   local track = scene:track "ball"
   refuses("track: rate must be a number", function() local fine = scene:track("ball", "x") return fine end)
   refuses("energies: a track of scene:track is needed", function() local energies = scene:energies "ball" return energies end)
+  refuses("split: a track of scene:track is needed", function() return impact.split({ t = quat.vec3(1, 2, 3) }, 1) end)
   refuses("split: t must be a number", function() local before = impact.split(track) return before end)
   refuses("along: 2 times for 1 values", function() local values = impact.along({ 1, 2 }, { 3 }, { 1.5 }) return values end)
   refuses("first: the kind must be one of impact, contact, slip, stick, liftoff, force, rest", function()

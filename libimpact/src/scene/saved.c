@@ -255,14 +255,13 @@ static const char *islands_fault(const imp_saved *s, const impact_scene *scene, 
                                                               : "as many bodies and contacts as its islands have";
 }
 
-const char *imp_saved_fault(const imp_saved *s, const impact_scene *scene)
+impact_status imp_saved_check(const imp_saved *s, const impact_scene *scene, const char **fault)
 {
-    if (!(s->t >= 0 && isfinite(s->t)) || s->next_sample < 0) return "a time";
-    const char *fault = body_fault(s, scene);
-    if (fault) return fault;
+    *fault = s->t >= 0 && isfinite(s->t) && s->next_sample >= 0 ? body_fault(s, scene) : "a time";
+    if (*fault) return IMPACT_EARGUMENT;
     bool *flags = imp_arena_take(scene->world.arena, 2 * (size_t)s->body_count, sizeof *flags);
-    if (!flags) return "room to check it";
-    fault = islands_fault(s, scene, flags);
+    if (!flags) return IMPACT_ENOMEM;
+    *fault = islands_fault(s, scene, flags);
     imp_arena_give(scene->world.arena, flags);
-    return fault;
+    return *fault ? IMPACT_EARGUMENT : IMPACT_OK;
 }

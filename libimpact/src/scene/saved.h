@@ -59,8 +59,8 @@ void imp_saved_release(imp_saved *saved, imp_arena *arena);
  * says before. IMPACT_ENOMEM; IMPACT_EARGUMENT: the bytes are no such thing. */
 impact_status imp_saved_walk(imp_saved *saved, imp_archive *archive, imp_arena *arena);
 
-/* NULL: it can be a state of this scene; else what cannot be. */
-const char *imp_saved_fault(const imp_saved *saved, const impact_scene *scene);
+/* Whether it can be a state of this scene. IMPACT_EARGUMENT: *fault is what cannot be; IMPACT_ENOMEM. */
+impact_status imp_saved_check(const imp_saved *saved, const impact_scene *scene, const char **fault);
 
 /* The scene as it is, in arrays of its arena. */
 impact_status imp_saved_collect(imp_saved *saved, impact_scene *scene);

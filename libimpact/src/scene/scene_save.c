@@ -258,10 +258,10 @@ static impact_status read_all(impact_scene *scene, const void *bytes, size_t siz
     imp_archive a = imp_archive_read(bytes, size - SUM);
     walk_head(&a, &head);
     status = imp_saved_walk(saved, &a, scene->world.arena);
-    if (status == IMPACT_ENOMEM) return status;
-    const char *fault =
-        status != IMPACT_OK || a.at != size - SUM ? "numbers in their places" : imp_saved_fault(saved, scene);
-    if (!fault) return IMPACT_OK;
+    const char *fault = "numbers in their places";
+    if (status == IMPACT_OK && a.at != size - SUM) status = IMPACT_EARGUMENT;
+    if (status == IMPACT_OK) status = imp_saved_check(saved, scene, &fault);
+    if (status != IMPACT_EARGUMENT) return status;
     char why[200];
     snprintf(why, sizeof why, "they are no state of it: wanted %s", fault);
     return refuse_load(scene, why);
