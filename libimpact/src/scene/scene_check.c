@@ -199,7 +199,7 @@ static void check_custom(check *c, const impact_force_def *force)
         require(c, i == 0 || force->switches[i] > force->switches[i - 1], key, force->switches[i],
                 "does not come after the one before it: switches must rise");
     }
-    const bool fits = force->switch_period == 0 || force->switch_count == 0 ||
+    const bool fits = c->status != IMPACT_OK || force->switch_period == 0 || force->switch_count == 0 ||
                       force->switches[force->switch_count - 1] - force->switches[0] < force->switch_period;
     require(c, fits, "switch_period", force->switch_period, "is shorter than the switches in it");
 }
