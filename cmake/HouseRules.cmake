@@ -8,6 +8,18 @@ target_compile_options(house_rules INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes> $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes>
   -ffp-contract=off -fno-math-errno)
 
+# Sums and products that carry their own rounding (Knuth, Dekker) need doubles that are rounded to double: the x87 registers of 32-bit x86
+# round to 64 bits, and again when they are stored.
+include(CheckCSourceCompiles)
+check_c_source_compiles("#include <float.h>
+#if FLT_EVAL_METHOD == 2 || FLT_EVAL_METHOD < 0
+#error wider
+#endif
+int main(void) { return 0; }" HOUSE_DOUBLES_ARE_DOUBLE)
+if(NOT HOUSE_DOUBLES_ARE_DOUBLE)
+  message(FATAL_ERROR "This compiler computes doubles in wider registers; on 32-bit x86 add -msse2 -mfpmath=sse to CMAKE_C_FLAGS")
+endif()
+
 # Each function of an archive stands in a section of its own, so that a program takes those that it calls (--gc-sections).
 add_library(house_sections INTERFACE)
 if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang" AND NOT APPLE)

@@ -6,6 +6,7 @@
 #include <float.h>
 
 #include <impact/collide.h>
+#include "collide/collide_real.h"
 #include "generators/collide_cases.h"
 #include "kit/near.h"
 
@@ -239,7 +240,7 @@ static void the_ladder(void **state)
         second += o.second;
         soft += status == IMPACT_SOFT;
     }
-    assert_true(second > 5 && soft < 40);
+    assert_true(IMP_HAS_SECOND ? second > 5 && soft < 40 : second == 0 && soft > 0);
 }
 
 /* Arrays are checked when asked. */

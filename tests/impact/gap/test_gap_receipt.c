@@ -92,7 +92,8 @@ static void right_answers_pass(void **state)
     show_figure("mean width", width);
     assert_true(checked > 19000);
     /* most by the first way that is tried, and to the last digit: today 771, 304, 2 and 7.2e-17 */
-    assert_true(path[IMPACT_PATH_GJK] <= 800 && path[IMPACT_PATH_FALLBACK] <= 320 && deep <= 4);
+    const int seeds = impact_has(IMPACT_PART_CCD) ? 800 : 0; /* without libccd the fallback has these, too */
+    assert_true(path[IMPACT_PATH_GJK] <= seeds && path[IMPACT_PATH_FALLBACK] <= 1120 - seeds && deep <= 4);
     assert_at_most(width, 8e-17);
 }
 

@@ -44,6 +44,7 @@ static void assert_same_events(const scene_log *a, const scene_log *b)
 static void saved_and_loaded_is_going_on(void **state)
 {
     (void)state;
+    if (!impact_has(IMPACT_PART_CVODE)) skip();
     enum { SCENES = 36 };
     int saved_count = 0, islands = 0;
     for (unsigned long seed = 1; seed <= SCENES; seed++) {
@@ -92,6 +93,7 @@ static void saved_and_loaded_is_going_on(void **state)
 static void held_contacts_go_on_after_a_load(void **state)
 {
     (void)state;
+    if (!impact_has(IMPACT_PART_CVODE)) skip();
     for (int piles = IMPACT_PILES_AUTO; piles <= IMPACT_PILES_STEPS; piles++) {
         impact_body_def bodies[6] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 1, 0.5),
                                      ball_body("rolls", (qvec3){0, 0, 0.3}, 0.2, 0.5),
@@ -157,6 +159,7 @@ static void what_flies_and_bounces_does_not_notice_a_save(void **state)
 static void a_save_is_a_function_of_what_was_saved(void **state)
 {
     (void)state;
+    if (!impact_has(IMPACT_PART_CVODE)) skip();
     for (unsigned long seed = 1; seed <= 30; seed++) {
         random_scene s;
         random_scene_make(seed, &s);
