@@ -278,6 +278,20 @@
  * for this part of the time that forces take to change, and the slip lags by the square of it, 1e-14; accelerations of
  * that size are told from the cone solver's 1e-13 to five digits. */
 #define IMP_SPRINGS_OVER 1e-7
+/* Slip that creeps: a step by powers covers less than this part of the time in which forces change, its own speed
+ * changing by less than that part: a hundred such steps cost more than one of springs_creep.c. */
+#define IMP_CREEP_STIFF 0.01
+#define IMP_CREEP_CHANGE 0.1
+/* Of the time in which forces change: a step. Their rounds then converge by a tenth each. */
+#define IMP_CREEP_STEP 0.25
+/* Steps by powers that it has to replace. */
+#define IMP_CREEP_WORTH 16
+/* Of accelerations: what Newton leaves; of forces: what the last round may have changed. */
+#define IMP_CREEP_BALANCED 0x1p-49
+#define IMP_CREEP_ROUNDING 0x1p-48
+/* Of velocities: what a step's polynomials miss, by their last term, or the one before times what terms fall by. */
+#define IMP_CREEP_ERROR 0x1p-48
+#define IMP_CREEP_RATIO 0.1
 /* Factor of T, and Newton's steps for each, of which a handful are taken. */
 #define IMP_SPRINGS_TIGHTER 10
 #define IMP_SPRINGS_CENTRE_STEPS 40

@@ -20,6 +20,8 @@
 
 /* Of a step of some radians no velocity has more zeros than a handful. */
 enum { IMP_SPRINGS_ORDER = 22, IMP_SPRINGS_TERMS = IMP_SPRINGS_ORDER + 2, IMP_SPRINGS_EXTREMES = 8 };
+/* Of slips that creep: nodes of a step, and how many are taken together. */
+enum { IMP_SPRINGS_NODES = 8, IMP_SPRINGS_CREEPERS = 12 };
 
 typedef enum imp_spring_normal { IMP_SPRING_OPEN, IMP_SPRING_LOADS, IMP_SPRING_UNLOADS } imp_spring_normal;
 
@@ -43,6 +45,8 @@ typedef struct imp_spring {
     double u[3], p[3];
     double none;     /* a velocity that is rounding of u's terms */
     bool still;      /* u_t is zero: it came to a stop, or was never more than rounding */
+    bool summed;     /* u_t has been summed from step to step since it was 0: free of the rounding of u0 and W p */
+    bool creeps;     /* SLIDES, so slowly that its direction is `along` (springs_creep.c) */
     bool weak;       /* BEGINS: from no acceleration, u_t ~ t^2; else u_t ~ t */
     double along[2]; /* of slip; STICKS: the friction's ratio to lambda where reactions are not unique */
     double stored;   /* energy in the spring */
@@ -83,7 +87,10 @@ typedef struct imp_springs {
     double *turning;         /* their system */
     imp_cone_workspace *cone;
     imp_cone_mode *modes;
-    bool stopped; /* a slip has: what sticks must be chosen anew */
+    double *creep_room, creep_step; /* of what creeps: room, and the last step */
+    imp_spring *kept;
+    bool creeping; /* the series are springs_creep.c's */
+    bool stopped;  /* a slip has: what sticks must be chosen anew */
     long events, steps;
     double work; /* multiplications so far, roughly */
     bool chosen;
@@ -100,6 +107,8 @@ static inline bool imp_springs_presses(const imp_spring *c) { return c->normal !
 
 /* The system of what sticks, anew. */
 void imp_springs_tie(imp_springs *s);
+/* Whether it is that of what sticks now. */
+bool imp_springs_is_tied(const imp_springs *s);
 /* push[..][k] of the sticking contacts from those of the others. */
 void imp_springs_hold(imp_springs *s, int k);
 /* Row i of W times the forces of order k. */
@@ -111,6 +120,8 @@ void imp_springs_straighten(imp_springs *s);
 
 /* ---- springs_choose.c ---- */
 
+/* Whether friction of what sticks, which is not unique, is over its bound; forces as of now. */
+bool imp_springs_is_over(const imp_springs *s);
 /* Chooses what sticks and what slips among the still contacts that press: forces as of now. False: not settled. */
 bool imp_springs_choose(imp_springs *s);
 
@@ -124,6 +135,17 @@ void imp_springs_centre(imp_springs *s);
 
 /* The series from here on; their usable length in tau. */
 double imp_springs_expand(imp_springs *s);
+
+/* Gauss with pivoting: a x = b of order n, row by row; a is lost, b becomes x. */
+void imp_springs_gauss(double *a, double *b, int n);
+
+/* ---- springs_creep.c ---- */
+
+/* Doubles of room for n contacts. */
+size_t imp_springs_creep_size(size_t n);
+/* The series from here on by collocation, where that goes much further than `reach`: their length in time, else 0 (the
+ * series are lost, and no contact is changed). */
+double imp_springs_creep(imp_springs *s, double reach);
 
 /* ---- springs_events.c ---- */
 
@@ -146,6 +168,8 @@ void imp_springs_take_branch(imp_springs *s, int contact, imp_spring_normal norm
 double imp_springs_energy(const imp_springs *s, const imp_spring *c, double x);
 /* x from which an unloading spring is loaded on. */
 double imp_springs_again(const imp_spring *c);
+/* How fast forces change: springs swing, or are let go. */
+double imp_springs_pace(const imp_springs *s);
 /* Whether any is closed. */
 bool imp_springs_pressed(const imp_springs *s);
 /* Everything that is due now: turns, closings, openings, stops, and then what sticks. False: not settled. */

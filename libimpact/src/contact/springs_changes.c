@@ -58,6 +58,7 @@ static void close_spring(imp_springs *s, imp_spring *c)
     c->normal = c->deepest > 0 ? IMP_SPRING_UNLOADS : IMP_SPRING_LOADS;
     c->x = c->tiny; /* after a long flight x is rounded by far more */
     c->stored = imp_springs_energy(s, c, c->x);
+    c->summed = false;
     c->still = c->friction > 0 && hypot(c->u[1], c->u[2]) <= c->none;
     c->slip = c->friction == 0 ? IMP_SPRING_SMOOTH : c->still ? IMP_SPRING_STICKS : IMP_SPRING_SLIDES;
     c->along[0] = c->along[1] = 0;
@@ -85,8 +86,7 @@ static bool settle_normal(imp_springs *s, int contact, bool pressed)
     return true;
 }
 
-/* How fast forces change: springs swing, or are let go. */
-static double find_pace(const imp_springs *s)
+double imp_springs_pace(const imp_springs *s)
 {
     double pace = 0, most = 0, rate = 0;
     for (int i = 0; i < s->count; i++) {
@@ -110,11 +110,11 @@ static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
         c->still = true;
         return true;
     }
-    if (speed > IMP_SPRINGS_SLOW) return false;
+    if (speed > IMP_SPRINGS_SLOW || c->creeps) return false;
     const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
     const double e[2] = {c->u[1] / speed, c->u[2] / speed};
     const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
-    if (along < 0 && speed * (across + find_pace(s) * speed) <= -c->none * along) {
+    if (along < 0 && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along) {
         c->slip = IMP_SPRING_STRAIGHT;
         c->along[0] = e[0], c->along[1] = e[1];
     }
@@ -151,7 +151,12 @@ bool imp_springs_settle(imp_springs *s)
         s->stick_count = 0;
         return true;
     }
-    if (changed && !undecided) imp_springs_tie(s);
+    /* shares that were chosen stay as long as the same contacts stick */
+    if (changed && !undecided && !imp_springs_is_tied(s)) {
+        imp_springs_tie(s);
+        imp_springs_forces(s);
+        undecided = imp_springs_is_over(s);
+    }
     if (changed && undecided && !imp_springs_choose(s)) return false;
     if (changed) imp_springs_straighten(s);
     imp_springs_forces(s);

@@ -41,6 +41,12 @@ static double greatest_part(const imp_springs *s, int *where)
     return most;
 }
 
+bool imp_springs_is_over(const imp_springs *s)
+{
+    int where;
+    return s->deficient && greatest_part(s, &where) > 1 + IMP_SPRINGS_OVER;
+}
+
 /* What sticks holds, plainly or as well as it can; false: friction of *where would have to be more than its bound. */
 static bool hold(imp_springs *s, int *where)
 {

@@ -38,6 +38,17 @@ void imp_springs_tie(imp_springs *s)
     s->chosen = s->chosen || s->deficient;
 }
 
+bool imp_springs_is_tied(const imp_springs *s)
+{
+    int n = 0;
+    for (int i = 0; i < s->count; i++) {
+        if (!imp_springs_presses(&s->springs[i]) || s->springs[i].slip != IMP_SPRING_STICKS) continue;
+        if (n == s->stick_count || s->stick[n] != 3 * i + 1) return false;
+        n += 2;
+    }
+    return n == s->stick_count;
+}
+
 /* ---- forces ---- */
 
 /* The sticking components of `now` from the others. */

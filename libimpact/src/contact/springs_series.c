@@ -170,8 +170,7 @@ static void make_turning(imp_springs *s)
     }
 }
 
-/* Gauss with pivoting; overwrites a. */
-static void solve_small(double *a, double *b, int n)
+void imp_springs_gauss(double *a, double *b, int n)
 {
     for (int k = 0; k < n; k++) {
         int best = k;
@@ -235,7 +234,7 @@ static void turn_beginnings(imp_springs *s, int k)
             for (int d = 0; d < n; d++) matrix[c * n + d] = s->turning[c * n + d];
             matrix[c * n + c] += (own->weak ? 0 : (k + 1) * own->speed[1]);
         }
-        solve_small(matrix, angles, n);
+        imp_springs_gauss(matrix, angles, n);
         for (int c = 0; c < n; c++) {
             imp_spring *own = &s->springs[s->begin[c]];
             own->angle[k] = angles[c];
@@ -277,6 +276,10 @@ static void begin(imp_springs *s)
     s->begin_count = 0;
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
+        if (imp_springs_presses(c) && c->slip == IMP_SPRING_BEGINS && !c->summed) {
+            c->summed = true;
+            c->u[1] = c->u[2] = 0;
+        }
         for (int j = 0; j < 3; j++) c->velocity[j][0] = c->u[j];
         c->depth[0] = c->x;
         c->speed[0] = 0;
@@ -346,7 +349,23 @@ static double work_of_step(const imp_springs *s)
     return IMP_SPRINGS_ORDER * (s->row_start[3 * s->count] + 6.0 * IMP_SPRINGS_ORDER * s->count);
 }
 
-double imp_springs_expand(imp_springs *s)
+/* How far tau = h is in time, at the beginning's rate. */
+static double time_of(const imp_springs *s, double h)
+{
+    const double *factor = find_factor(s);
+    return factor ? factor[0] * h : h;
+}
+
+/* Whether slip turns so fast that a step covers hardly any of the time in which forces and its own speed change. */
+static bool is_stiff(const imp_springs *s, double h)
+{
+    const imp_spring *leader = &s->springs[s->leader];
+    if (s->lead != IMP_SPRING_SPEED && s->begin_count == 0) return false;
+    if (s->lead == IMP_SPRING_SPEED && fabs(leader->speed[1]) * h > IMP_CREEP_CHANGE * leader->speed[0]) return false;
+    return time_of(s, h) * imp_springs_pace(s) < IMP_CREEP_STIFF;
+}
+
+static double expand_in_powers(imp_springs *s)
 {
     choose_lead(s);
     begin(s);
@@ -360,4 +379,15 @@ double imp_springs_expand(imp_springs *s)
         if (size > 0) h = fmin(h, exp(log(IMP_SPRINGS_TRUNCATION) / IMP_SPRINGS_ORDER - log(size) / k));
     }
     return h;
+}
+
+double imp_springs_expand(imp_springs *s)
+{
+    for (int i = 0; i < s->count; i++) s->springs[i].creeps = s->springs[i].creeps && s->creeping;
+    s->creeping = false;
+    const double h = expand_in_powers(s);
+    if (!is_stiff(s, h)) return h;
+    const double far = imp_springs_creep(s, isnan(h) ? 0 : time_of(s, h));
+    s->creeping = far > 0;
+    return far > 0 ? far : expand_in_powers(s);
 }

@@ -92,6 +92,10 @@ static void see_slip(const imp_springs *s, int i, first_event *first)
             f[k] = c->along[0] * c->velocity[1][k] + c->along[1] * c->velocity[2][k];
         if (f[0] < c->none) f[0] = c->none; /* it begins */
         see(first, EVENT_STOP, i, f);
+    } else if (s->creeping && c->slip == IMP_SPRING_SLIDES) {
+        shifted(c->speed, 1, 0, f);
+        if (f[0] < c->none) f[0] = c->none;
+        see(first, EVENT_STOP, i, f);
     }
 }
 
@@ -209,6 +213,15 @@ static void go_sliding(imp_springs *s)
     }
 }
 
+/* Slip that has just begun keeps its digits. */
+static void sum_slip(imp_spring *c, double t)
+{
+    double u[2];
+    for (int j = 0; j < 2; j++) u[j] = poly(c->velocity[1 + j], IMP_SPRINGS_ORDER, t);
+    c->summed = imp_springs_presses(c) && c->slip >= IMP_SPRING_SLIDES && hypot(u[0], u[1]) <= IMP_SPRINGS_SLOW;
+    for (int j = 0; j < 2 && c->summed; j++) c->u[1 + j] = u[j];
+}
+
 static void move_on(imp_springs *s, double t)
 {
     for (int i = 0; i < s->count; i++) {
@@ -221,6 +234,8 @@ static void move_on(imp_springs *s, double t)
         book_friction(c, t);
     }
     imp_springs_find_velocities(s);
+    for (int i = 0; i < s->count; i++)
+        if (s->springs[i].summed) sum_slip(&s->springs[i], t);
     for (int i = 0; i < s->count; i++)
         if (s->springs[i].normal != IMP_SPRING_OPEN) book_spring(s, &s->springs[i], t, s->springs[i].u[0]);
     go_sliding(s);
