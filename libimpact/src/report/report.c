@@ -136,7 +136,7 @@ static impact_status look_at_default(imp_report_work *w, impact_sample *last)
         const impact_status status = imp_report_run(&w->report, &w->reference_methods, 0, track, last);
         if (status != IMPACT_OK) return status;
         if (track->complete) return IMPACT_OK;
-        if (track->status == IMPACT_STOPPED && w->report.stopped) return IMPACT_STOPPED;
+        if (track->status == IMPACT_STOPPED && w->report.stopped) return imp_report_fail(w, IMPACT_STOPPED, "stopped");
         if (track->status == IMPACT_STOPPED)
             return imp_report_fail(w, IMPACT_STOPPED, "one run of the scene takes longer than the budget");
     }
