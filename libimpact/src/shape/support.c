@@ -319,14 +319,24 @@ double imp_form_inside(const imp_form *form, const double x[3])
 
 /* ---- Hessian ---- */
 
+/* Of an axis with d = 0: m/d^2 = A u e/d^2 is A^2 u^(2-p)/(p lambda). */
+static double flank_hessian(const imp_form *form, int i, double lambda)
+{
+    const double A = form->axis[i], p = form->p[i];
+    return p == 2 ? A * A / (2 * lambda) : p < 2 ? 0 : INFINITY;
+}
+
 /* The limit q -> inf on one axis that has mass; sharp = 3: two have, and the surface is flat or an edge. */
-static void sharp_hessian(const double d[3], const double qm[3], double lambda, int sharp, double H[3][3])
+static void sharp_hessian(const imp_form *form, const double d[3], const double qm[3], double lambda, int sharp,
+                          double H[3][3])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) H[i][j] = sharp == 3 ? INFINITY : 0;
     if (sharp == 3) return;
     for (int i = 0; i < 3; i++) {
-        if (i == sharp || qm[i] == 0) continue;
+        if (i == sharp) continue;
+        if (d[i] == 0) H[i][i] = flank_hessian(form, i, lambda);
+        if (qm[i] == 0) continue;
         H[i][i] = lambda * qm[i] / (d[i] * d[i]);
         H[i][sharp] = H[sharp][i] = -lambda * qm[i] / (d[i] * d[sharp]);
         H[sharp][sharp] += lambda * qm[i] / (d[sharp] * d[sharp]);
@@ -352,7 +362,7 @@ static void independent_hessian(const imp_form *form, const double d[3], const i
     }
     const double lambda = h / stationary;
     if (sharp >= 0) {
-        sharp_hessian(d, qm, lambda, sharp, H);
+        sharp_hessian(form, d, qm, lambda, sharp, H);
         return;
     }
     for (int i = 0; i < 3; i++)
@@ -362,41 +372,52 @@ static void independent_hessian(const imp_form *form, const double d[3], const i
                 continue;
             }
             const double others = (qm[(i + 1) % 3] + qm[(i + 2) % 3]) / sum;
-            /* m/d^2 = A u e/d^2 ... with d = 0: A^2 u^(2-p)/(p lambda) */
-            if (d[i] != 0)
-                H[i][i] = lambda * qm[i] / (d[i] * d[i]) * others;
-            else if (form->p[i] == 2)
-                H[i][i] = form->axis[i] * form->axis[i] / (2 * lambda);
-            else
-                H[i][i] = form->p[i] < 2 ? 0 : INFINITY;
+            H[i][i] = d[i] != 0 ? lambda * qm[i] / (d[i] * d[i]) * others : flank_hessian(form, i, lambda);
         }
 }
 
-/* h = dual norm t of (k, w_z), k = dual norm r of (w_x, w_y): the Hessian by the chain rule. */
+/* u/e of e = u^(p-1): at 0 its limit. */
+static double slope_of(double u, double e, double p)
+{
+    if (e != 0) return u / e;
+    return p < 2 ? 0 : p == 2 ? 1 : INFINITY;
+}
+
+/* Along z, where the inner norm k is 0: flat, or pointed. With t = 2 the surface is h = A_z + k^2/(2 A_z), and has a
+ * Hessian along x and y alone (in between it is as the section is). */
+static void pole_hessian(const imp_form *form, double h, double H[3][3])
+{
+    const double t = form->p[IMP_SECTION];
+    for (int i = 0; i < 2; i++) H[i][i] = t < 2 ? 0 : t > 2 ? INFINITY : form->axis[i] * form->axis[i] / h;
+}
+
+/* h = dual norm t of (k, w_z), k = dual norm r of (w_x, w_y): the Hessian by the chain rule. An exponent of 1 leaves
+ * one of its two at a corner, which turns nothing. */
 static void nested_hessian(const imp_form *form, const double d[3], const imp_surface *s, double h, double H[3][3])
 {
     const double r = form->p[0], t = form->p[IMP_SECTION];
     const double eK = s->e[IMP_SECTION], ez = fabs(s->e[2]), k = eK * h; /* e = w/h */
-    const double uK = s->u[IMP_SECTION];
-    double g[3]; /* d(k)/d(d), zero along z */
-    for (int i = 0; i < 2; i++) g[i] = form->axis[i] * s->u[i];
-    g[2] = 0;
-    /* second derivatives of the outer norm: F_kk = (q-1)/h u_K/e_K (e_z u_z), and alike */
-    const double q1 = 1 / (t - 1), uz = fabs(s->u[2]);
-    const double Fkk = eK > 0 ? q1 / h * uK / eK * (ez * uz) : 0, Fzz = ez > 0 ? q1 / h * uz / ez * (eK * uK) : 0;
-    const double Fkz = -q1 / h * uK * uz;
-    const double inner = 1 / (r - 1) / k;
-    const double sz = (d[2] < 0 ? -1 : 1) * form->axis[2];
+    const double uK = s->u[IMP_SECTION], uz = fabs(s->u[2]);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) H[i][j] = Fkk * g[i] * g[j];
-    H[2][2] = Fzz * sz * sz;
-    for (int i = 0; i < 2; i++) H[i][2] = H[2][i] = Fkz * g[i] * sz;
-    if (k > 0) {
-        const double m0 = s->u[0] * s->e[0], m1 = s->u[1] * s->e[1];
-        const double scale = uK * inner;
-        H[0][0] += scale * form->axis[0] * form->axis[0] * (s->e[0] != 0 ? s->u[0] / s->e[0] * m1 : 0);
-        H[1][1] += scale * form->axis[1] * form->axis[1] * (s->e[1] != 0 ? s->u[1] / s->e[1] * m0 : 0);
+        for (int j = 0; j < 3; j++) H[i][j] = 0;
+    if (k == 0) {
+        pole_hessian(form, h, H);
+        return;
+    }
+    if (t > 1) { /* second derivatives of the outer norm: F_kk = (q-1)/h u_K/e_K (e_z u_z), and alike */
+        const double g[2] = {form->axis[0] * s->u[0], form->axis[1] * s->u[1]}; /* d(k)/d(d) */
+        const double q1 = 1 / (t - 1), sz = (d[2] < 0 ? -1 : 1) * form->axis[2];
+        const double Fkk = q1 / h * (uK / eK) * (ez * uz), Fkz = -q1 / h * uK * uz;
+        for (int i = 0; i < 2; i++)
+            for (int j = 0; j < 2; j++) H[i][j] = Fkk * g[i] * g[j];
+        for (int i = 0; i < 2; i++) H[i][2] = H[2][i] = Fkz * g[i] * sz;
+        H[2][2] = q1 / h * slope_of(uz, ez, t) * (eK * uK) * sz * sz;
+    }
+    if (r > 1) {
+        const double m0 = s->u[0] * s->e[0], m1 = s->u[1] * s->e[1], scale = uK / (r - 1) / k;
         const double off = -scale * form->axis[0] * form->axis[1] * s->u[0] * s->u[1];
+        H[0][0] += scale * form->axis[0] * form->axis[0] * slope_of(s->u[0], s->e[0], r) * m1;
+        H[1][1] += scale * form->axis[1] * form->axis[1] * slope_of(s->u[1], s->e[1], r) * m0;
         H[0][1] += off, H[1][0] += off;
     }
 }
