@@ -378,6 +378,9 @@
 #define IMP_CONE_CREEP 1e-6
 /* Alpha of A + alpha 1, A's diagonal being 1 in the mean: contacts hardly feel each other. */
 #define IMP_CONE_EASING 20
+/* Multiplications of the longest run of sweeps, about a fifth of a second: what six contacts take whose reactions are
+ * ten thousand times what is exchanged. */
+#define IMP_CONE_SWEEPING 3e8
 /* The same of the problem that shows a direction of no solution: its answer grows to 1/shift along it, and is off it by
  * as little. */
 #define IMP_CONE_SHIFT 1e-10

@@ -158,22 +158,21 @@ static void find_matrix(imp_cone_system *system)
     tie_lobes(system);
 }
 
-/* z = x - y of an answer that the problem was given; what û_n there is beyond both cones' is shared by tied lobes. */
-static void recall_answer(imp_cone_system *system)
+/* z = x - y of an answer; what û_n there is beyond both cones' is shared by tied lobes. */
+static void recall_answer(imp_cone_system *system, const double *last_r, const double *last_u)
 {
-    const imp_cone_problem *problem = system->problem;
     const double unit = system->d / system->size;
     for (int c = 0; c < system->count; c++) {
         const int i = system->start[c];
         const bool shares = system->tied[c] || (c + 1 < system->count && system->tied[c + 1]);
         double square = 0, scale = 0;
         for (int k = i + 1; k < system->start[c + 1]; k++) {
-            const double r = problem->last_r[system->row[k]], u = problem->last_u[system->row[k]];
+            const double r = last_r[system->row[k]], u = last_u[system->row[k]];
             if (k == i + 1) scale = system->scale[k];
             square += system->scale[k] / scale * u * (system->scale[k] / scale * u);
             system->z[k] = r * unit / system->scale[k] - system->scale[k] * u / system->size;
         }
-        const double r = problem->last_r[system->row[i]], u = problem->last_u[system->row[i]];
+        const double r = last_r[system->row[i]], u = last_u[system->row[i]];
         system->z[i] = r * unit - ((shares ? 0.5 : 1) * u + scale * sqrt(square)) / system->size;
     }
 }
@@ -293,12 +292,30 @@ static void polish(imp_cone_system *system, bool exact, int most, double *r, dou
     memcpy(u, system->own, length * sizeof *u);
 }
 
+/* Ever more sweeps, each time Newton from there. */
+static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
+{
+    enum { STEPS = 12, FIRST = 256 };
+    double *own = system->tangent;
+    const double each = 27.0 * system->problem->count * system->problem->count; /* multiplications of three sweeps */
+    if (system->problem->lengths) return;
+    memset(own, 0, 3 * (size_t)system->problem->count * sizeof *own);
+    for (long n = FIRST; n * each <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED); n *= 2) {
+        imp_cone_sweep(system, n, own);
+        imp_cone_velocities(system->problem, own, system->own);
+        recall_answer(system, own, system->own);
+        const double before = outcome->residual;
+        polish(system, true, STEPS, r, u, outcome);
+        if (outcome->residual < before) outcome->stage = IMP_CONE_SWEPT;
+    }
+}
+
 static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
     enum { RECALLED = 4, LAST_STEPS = 6, EASINGS = 4 };
     static const double easings[EASINGS] = {0.1, 1e-2, 1e-3, 1}; /* by how many of the hard ones they solve */
     if (system->problem->last_r) {
-        recall_answer(system);
+        recall_answer(system, system->problem->last_r, system->problem->last_u);
         polish(system, false, RECALLED, r, u, outcome);
     }
     if (!(outcome->residual <= IMP_CONE_ACCEPTED)) {
@@ -310,6 +327,7 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
         outcome->stage = IMP_CONE_EASED;
         polish(system, true, LAST_STEPS, r, u, outcome);
     }
+    if (!(outcome->residual <= IMP_CONE_ACCEPTED)) sweep(system, r, u, outcome);
     outcome->status = outcome->residual <= IMP_CONE_ACCEPTED ? IMP_CONE_SOLVED
                       : outcome->residual <= IMP_CONE_USABLE ? IMP_CONE_INEXACT
                                                              : IMP_CONE_UNSETTLED;

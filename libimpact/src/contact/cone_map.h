@@ -74,4 +74,8 @@ imp_cone_stage imp_cone_follow(imp_cone_system *system);
  * on; false where that fails. */
 bool imp_cone_follow_eased(imp_cone_system *system, double e);
 
+/* Three times so many times over all contacts from r on, one after another; r[3 count] of points that do not resist
+ * turning. */
+void imp_cone_sweep(const imp_cone_system *system, long sweeps, double *r);
+
 #endif

@@ -113,6 +113,18 @@ static inline bool imp_encounter_is_static(const impact_collider *body) { return
 /* J^-1 a, for a vector in the world frame; 0 for a static body. */
 qvec3 imp_encounter_turn(const impact_collider *body, qvec3 a);
 
+/* ---- encounter_wedge.c ---- */
+
+typedef struct imp_wedge_question {
+    int count;
+    const double *w;        /* (3 count)^2 */
+    const double *friction; /* count; NULL: without */
+    const bool *taken;      /* count: which take part; NULL: all */
+} imp_wedge_question;
+
+/* Whether no motion takes them apart, friction against it. room: 6 count. */
+bool imp_encounter_wedged(const imp_wedge_question *question, double *room);
+
 /* ---- encounter_mend.c: velocities of the bodies as impulses change them ---- */
 
 qvec3 imp_encounter_impulse(const imp_contact *contact, const double p[3]); /* world */

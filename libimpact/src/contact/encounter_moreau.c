@@ -177,7 +177,8 @@ impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *work
     m.u = imp_encounter_take(workspace, 3 * n, sizeof *m.u);
     m.modes = imp_encounter_take(workspace, 2 * n, sizeof *m.modes);
     if (!m.modes || !imp_cone_reserve(m.cone, 2 * group->count)) return IMPACT_ENOMEM;
-    if (!compress(&m)) return IMPACT_EUNSETTLED;
-    if (restores(group) && !restore(&m)) return IMPACT_EUNSETTLED;
-    return IMPACT_OK;
+    if (compress(&m) && (!restores(group) || restore(&m))) return IMPACT_OK;
+    const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
+    group->wedged = imp_encounter_wedged(&question, m.r);
+    return IMPACT_EUNSETTLED;
 }

@@ -102,13 +102,26 @@ static void report(const imp_springs *s, const units *unit, imp_group *group)
     group->chosen = group->chosen || s->chosen;
 }
 
+/* Whether no motion takes the contacts that were pressed apart; rough: with friction against it. */
+static bool are_wedged(imp_springs *s, bool rough)
+{
+    double *friction = s->factor, *room = friction + s->count;
+    bool *taken = (bool *)(room + 6 * s->count);
+    for (int i = 0; i < s->count; i++) {
+        friction[i] = s->springs[i].friction;
+        taken[i] = s->springs[i].p[0] > 0 || imp_springs_presses(&s->springs[i]);
+    }
+    const imp_wedge_question question = {s->count, s->w, rough ? friction : NULL, taken};
+    return imp_encounter_wedged(&question, room);
+}
+
 /* Asked once after many events, or much of the work allowed, of the normals alone, and once after very many with
  * friction: what is wedged bounces in its dents for ever. */
 static bool is_wedged(imp_springs *s, int *asked)
 {
     const double spent = fmax((double)(s->events + s->steps) / IMP_SPRINGS_LONG, s->work / IMP_SPRINGS_MUCH);
     const bool now = *asked == 0 ? spent > 1 : *asked == 1 && spent > 10;
-    return now && imp_springs_wedged(s, (*asked)++ == 1);
+    return now && are_wedged(s, (*asked)++ == 1);
 }
 
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)

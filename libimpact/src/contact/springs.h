@@ -184,11 +184,6 @@ bool imp_springs_drift(imp_springs *s);
 /* u = u0 + W p */
 void imp_springs_find_velocities(imp_springs *s);
 
-/* ---- springs_wedge.c ---- */
-
-/* Whether no motion takes the contacts that were pressed apart; rough: with friction against it. */
-bool imp_springs_wedged(imp_springs *s, bool rough);
-
 /* ---- springs_linear.c ---- */
 
 /* Of a group whose springs are linear, without friction at any contact; group->w is not looked at. IMPACT_OK;

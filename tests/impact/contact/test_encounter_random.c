@@ -170,6 +170,25 @@ static void what_found_no_end_is_answered(void **state)
     }
 }
 
+/* Encounters of the campaign to whose answers by Moreau's law no path leads, one with reactions 1e4 times what is
+ * exchanged: they are swept to. */
+static void what_no_path_leads_to_is_answered(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t number;
+        int least, most;
+    } cases[] = {{720, 4, 6}, {2543, 7, 12}, {2686, 7, 12}};
+    for (int k = 0; k < 3; k++) {
+        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
+        random_stream random = {1 + 0x9e3779b97f4a7c15u * cases[k].number};
+        const random_encounter e = encounter_draw(&random, &ranges);
+        const answer a = solve(&e, IMPACT_TOGETHER_MOREAU, 0, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_at_most(a.outcome.residual, 1e-13);
+    }
+}
+
 /* Eleven contacts of two bodies, which no motion takes apart: they come to the end of their work, as each step costs
  * so much, long before they have made the steps after which others are asked. */
 static void a_wedge_of_many_contacts_is_told(void **state)
@@ -276,6 +295,7 @@ int main(void)
         cmocka_unit_test(turning_the_scene_and_changing_units_changes_nothing),
         cmocka_unit_test(receipts_hold_over_random_encounters),
         cmocka_unit_test(what_found_no_end_is_answered),
+        cmocka_unit_test(what_no_path_leads_to_is_answered),
         cmocka_unit_test(a_wedge_of_many_contacts_is_told),
         cmocka_unit_test(a_struck_cube_on_the_floor_is_answered),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
