@@ -4,7 +4,8 @@
  *
  * CSV rows (drawn by draw_collide.lua): class, solver, parameter, impacts, failures (no answer, or off by more than
  * 1e-3), median and worst error of the velocities against the 128-bit oracle (without libquadmath: against the series
- * of order 30), median time of one call in microseconds, that time over the series' own in the same class, and the
+ * of order 30), median time of one call in microseconds (the least of
+ * rounds in which all ways take turns), that time over the first way's (the series') in the same class, and the
  * median and largest condition number of M of the class, by which rounding of the input can grow. Classes: how the
  * impact goes (slip, stick, reversal, jam, recompression; straight: spheres and planar ones; isotropic: a = b), the
  * scenes S1, S2, S5 that other programs are compared on, and S5e, 300 random ellipsoids on a plane. `loop of`, `array
@@ -23,7 +24,10 @@
 #include "../tests/generators/collide_oracle.h"
 #endif
 
-enum { MOST = 300, EACH = 24, REPEATS = 7, THREADS = 4 };
+enum { MOST = 300, EACH = 24, REPEATS = 7, THREADS = 4, MOST_WAYS = 24 };
+
+/* Impacts of a class. */
+static int each(void) { return getenv("BENCH_QUICK") ? EACH / 6 : EACH; }
 
 /* Impacts of one class with their right answers. */
 typedef struct group {
@@ -32,7 +36,7 @@ typedef struct group {
     impact_collision c[MOST];
     qvec3 v[MOST][2], w[MOST][2];
     bool known[MOST];
-    double series_time, conditioning_median, conditioning_largest;
+    double conditioning_median, conditioning_largest;
 } group;
 
 /* ---- right answers ---- */
@@ -107,36 +111,75 @@ static bool by_library(const impact_collision *c, impact_outcome *o, void *conte
     return impact_collide(&k, o) == IMPACT_OK;
 }
 
-static double run(group *g, const char *name, const char *parameter, solver *solve, void *context, bool slow)
+/* One way to solve an impact. */
+typedef struct way {
+    const char *name;
+    char parameter[32];
+    solver *solve;
+    void *context;
+    bool slow;
+    double times[MOST], errors[MOST];
+    int failures, answered;
+} way;
+
+typedef struct ways {
+    way list[MOST_WAYS];
+    int count;
+} ways;
+
+static void join(ways *w, const char *name, const char *parameter, solver *solve, void *context, bool slow)
 {
-    double errors[MOST], times[MOST];
-    int failures = 0, count = 0, timed = 0;
-    for (int i = 0; i < g->count; i++) {
-        if (!g->known[i]) continue;
-        impact_outcome o;
-        double best = INFINITY;
-        bool answered = true;
-        for (int r = 0; r < (slow ? 2 : REPEATS); r++) {
-            const int loops = slow ? 1 : 20;
+    way *one = &w->list[w->count++];
+    memset(one, 0, sizeof *one);
+    one->name = name, one->solve = solve, one->context = context, one->slow = slow;
+    snprintf(one->parameter, sizeof one->parameter, "%s", parameter);
+}
+
+/* The least time of an impact, round after round in which all ways take turns; and its error. */
+static void solve_all(const group *g, ways *w, int i, int timed)
+{
+    double best[MOST_WAYS];
+    bool answered[MOST_WAYS];
+    impact_outcome o[MOST_WAYS];
+    for (int k = 0; k < w->count; k++) best[k] = INFINITY;
+    for (int r = 0; r < REPEATS; r++)
+        for (int k = 0; k < w->count; k++) {
+            const way *one = &w->list[k];
+            const int loops = one->slow ? 1 : 20;
+            if (one->slow && r >= 2) continue;
             const double from = measure_clock();
-            for (int k = 0; k < loops; k++) answered = solve(&g->c[i], &o, context);
-            best = fmin(best, (measure_clock() - from) / loops);
+            for (int l = 0; l < loops; l++) answered[k] = one->solve(&g->c[i], &o[k], one->context);
+            best[k] = fmin(best[k], measure_since(from) / loops);
         }
-        times[timed++] = best;
-        const double error = answered ? case_error(&g->c[i], o.velocity, o.omega, g->v[i], g->w[i]) : INFINITY;
+    for (int k = 0; k < w->count; k++) {
+        way *one = &w->list[k];
+        one->times[timed] = best[k];
+        const double error =
+            answered[k] ? case_error(&g->c[i], o[k].velocity, o[k].omega, g->v[i], g->w[i]) : INFINITY;
         if (!(error < 1e-3))
-            failures++;
+            one->failures++;
         else
-            errors[count++] = error;
+            one->errors[one->answered++] = error;
     }
-    if (timed == 0) return 0;
-    const double time = measure_quantile(times, timed, 0.5);
-    if (g->series_time == 0) g->series_time = time;
-    printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g,%.3g,%.3g\n", g->name, name, parameter, timed, failures,
-           measure_quantile(errors, count, 0.5), measure_quantile(errors, count, 1), 1e6 * time, time / g->series_time,
-           g->conditioning_median, g->conditioning_largest);
+}
+
+/* A row for each way; times over those of the first. */
+static void run(const group *g, ways *w)
+{
+    int timed = 0;
+    double first = 0;
+    for (int i = 0; i < g->count; i++)
+        if (g->known[i]) solve_all(g, w, i, timed++);
+    for (int k = 0; k < w->count && timed > 0; k++) {
+        way *one = &w->list[k];
+        const double time = measure_quantile(one->times, timed, 0.5);
+        if (k == 0) first = time;
+        printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g,%.3g,%.3g\n", g->name, one->name, one->parameter, timed, one->failures,
+               measure_quantile(one->errors, one->answered, 0.5), measure_quantile(one->errors, one->answered, 1),
+               1e6 * time, time / first, g->conditioning_median, g->conditioning_largest);
+    }
     fflush(stdout);
-    return time;
+    w->count = 0;
 }
 
 /* ---- integration over p itself ---- */
@@ -202,79 +245,84 @@ static bool over_p(const impact_collision *c, impact_outcome *o, void *context)
 
 /* ---- the table of one class ---- */
 
-static void run_cvode(group *g, impact_ode_method method, const char *name)
+enum { TOLERANCES = 5, ORDERS = 7 };
+static const double tolerances[TOLERANCES] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+
+/* What the ways of a class need: closed when it is over. */
+typedef struct tools {
+    impact_collision cvode[2][TOLERANCES], series[ORDERS], closed;
+    naive over_p[TOLERANCES];
+} tools;
+
+static void join_cvode(ways *w, tools *t, impact_ode_method method, const char *name)
 {
-    static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
-    for (int i = 0; i < 5; i++) {
-        impact_collision how = {.solver = IMPACT_SOLVER_CVODE};
-        if (impact_collide_workspace_create(method, tolerances[i], &how.workspace) != IMPACT_OK) return;
+    for (int i = 0; i < TOLERANCES; i++) {
+        impact_collision *how = &t->cvode[method == IMPACT_ODE_BDF][i];
+        how->solver = IMPACT_SOLVER_CVODE;
+        if (impact_collide_workspace_create(method, tolerances[i], &how->workspace) != IMPACT_OK) return;
         char parameter[32];
         snprintf(parameter, sizeof parameter, "rtol %g", tolerances[i]);
-        run(g, name, parameter, by_library, &how, true);
-        impact_collide_workspace_destroy(how.workspace);
+        join(w, name, parameter, by_library, how, true);
     }
 }
 
-static void run_over_p(group *g)
+static void join_over_p(ways *w, tools *t)
 {
-    static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
-    for (int i = 0; i < 5; i++) {
-        naive nv = {0};
+    for (int i = 0; i < TOLERANCES; i++) {
+        naive *nv = &t->over_p[i];
         const impact_ode_def def = {.struct_size = sizeof def,
                                     .size = 5,
                                     .roots = 1,
                                     .rhs = naive_rates,
                                     .root_functions = naive_roots,
-                                    .context = &nv,
+                                    .context = nv,
                                     .method = IMPACT_ODE_ADAMS,
                                     .relative_tolerance = tolerances[i],
                                     .absolute_tolerance = 1e-3 * tolerances[i],
                                     .max_steps = 5000};
-        if (impact_ode_create(&def, &nv.ode) != IMPACT_OK) return;
+        if (impact_ode_create(&def, &nv->ode) != IMPACT_OK) return;
         char parameter[32];
         snprintf(parameter, sizeof parameter, "rtol %g", tolerances[i]);
-        run(g, "p_z", parameter, over_p, &nv, true);
-        impact_ode_destroy(nv.ode);
+        join(w, "p_z", parameter, over_p, nv, true);
     }
 }
 
-static void run_series(group *g)
+static void join_series(ways *w, tools *t)
 {
-    static const int orders[] = {0, 12, 16, 20, 24, 28, 32};
-    for (int i = 0; i < 7; i++) {
-        impact_collision how = {.solver = IMPACT_SOLVER_SERIES, .series_order = orders[i]};
+    static const int orders[ORDERS] = {0, 12, 16, 20, 24, 28, 32};
+    for (int i = 0; i < ORDERS; i++) {
+        t->series[i] = (impact_collision){.solver = IMPACT_SOLVER_SERIES, .series_order = orders[i]};
         char parameter[32];
         snprintf(parameter, sizeof parameter, orders[i] ? "order %d" : "default", orders[i]);
-        run(g, "series", parameter, by_library, &how, false);
+        join(w, "series", parameter, by_library, &t->series[i], false);
     }
 }
 
-static void run_class(group *g)
+/* With the closed form beside the others where there is one. */
+static void run_class(group *g, bool closed)
 {
+    static ways w;
+    tools t = {.closed = {.solver = IMPACT_SOLVER_CLOSED_FORM}};
     answer_all(g);
-    run_series(g);
-    run_cvode(g, IMPACT_ODE_ADAMS, "cvode adams");
-    run_cvode(g, IMPACT_ODE_BDF, "cvode bdf");
-    run_over_p(g);
-}
-
-/* Where there is a closed form, beside the others. */
-static void run_straight(group *g)
-{
-    impact_collision how = {.solver = IMPACT_SOLVER_CLOSED_FORM};
-    answer_all(g);
-    run_series(g);
-    run(g, "closed form", "", by_library, &how, false);
-    run_cvode(g, IMPACT_ODE_ADAMS, "cvode adams");
-    run_cvode(g, IMPACT_ODE_BDF, "cvode bdf");
-    run_over_p(g);
+    join_series(&w, &t);
+    if (closed) join(&w, "closed form", "", by_library, &t.closed, false);
+    join_cvode(&w, &t, IMPACT_ODE_ADAMS, "cvode adams");
+    join_cvode(&w, &t, IMPACT_ODE_BDF, "cvode bdf");
+    join_over_p(&w, &t);
+    run(g, &w);
+    for (int i = 0; i < TOLERANCES; i++) {
+        for (int m = 0; m < 2; m++) impact_collide_workspace_destroy(t.cvode[m][i].workspace);
+        impact_ode_destroy(t.over_p[i].ode);
+    }
 }
 
 static void run_scene(group *g)
 {
+    static ways w;
     impact_collision how = {.solver = IMPACT_SOLVER_AUTO};
     answer_all(g);
-    run(g, "auto", "", by_library, &how, false);
+    join(&w, "auto", "", by_library, &how, false);
+    run(g, &w);
 }
 
 /* ---- the classes ---- */
@@ -301,7 +349,7 @@ static void gather(group *g, const char *name, case_class class_, kind *wanted)
 {
     memset(g, 0, sizeof *g);
     g->name = name;
-    for (uint64_t i = 0; g->count < measure_count(EACH) && i < 3000000; i++) {
+    for (uint64_t i = 0; g->count < each() && i < 3000000; i++) {
         impact_collision c = case_make(class_, 97, i);
         c.law = IMPACT_POISSON;
         impact_outcome o;
@@ -314,8 +362,8 @@ static void gather_straight(group *g)
 {
     memset(g, 0, sizeof *g);
     g->name = "straight";
-    for (uint64_t i = 0; g->count < measure_count(EACH); i++) {
-        impact_collision c = case_make(g->count < measure_count(EACH) / 2 ? CASE_SPHERE : CASE_PLANAR, 97, i);
+    for (uint64_t i = 0; g->count < each(); i++) {
+        impact_collision c = case_make(g->count < each() / 2 ? CASE_SPHERE : CASE_PLANAR, 97, i);
         c.law = IMPACT_POISSON;
         impact_outcome o;
         if (c.friction > 0 && impact_collide(&c, &o) == IMPACT_OK && o.solver == IMPACT_SOLVER_CLOSED_FORM)
@@ -328,7 +376,7 @@ static void gather_isotropic(group *g)
 {
     memset(g, 0, sizeof *g);
     g->name = "isotropic";
-    for (uint64_t i = 0; g->count < 4 * measure_count(EACH); i++) {
+    for (uint64_t i = 0; g->count < 4 * each(); i++) {
         impact_collision c = case_make(CASE_ISOTROPIC, 97, i);
         c.law = IMPACT_POISSON;
         impact_outcome o;
@@ -388,10 +436,10 @@ static void closed_forms(void)
             count += impact_collide(&c[count], &o[count]) == IMPACT_OK && o[count].solver == IMPACT_SOLVER_CLOSED_FORM;
         }
         double best = INFINITY;
-        for (int r = 0; r < 15; r++) {
+        for (int r = 0; r < measure_count(15); r++) {
             const double from = measure_clock();
             for (int i = 0; i < COUNT; i++) impact_collide(&c[i], &o[i]);
-            best = fmin(best, (measure_clock() - from) / COUNT);
+            best = fmin(best, measure_since(from) / COUNT);
         }
         if (k == 0) sphere = best;
         print_loop(names[k], "", COUNT, best, sphere);
@@ -407,7 +455,7 @@ static double best_of(impact_collision *c, int count, impact_checking checking, 
     for (int i = 0; i < count; i++) c[i].checking = checking;
     const double from = measure_clock();
     for (int i = 0; i < count; i++) impact_collide(&c[i], &o);
-    return fmin(best, measure_clock() - from);
+    return fmin(best, measure_since(from));
 }
 
 /* Checked and unchecked in turn, in portions so short that nothing interrupts the best of them. */
@@ -422,7 +470,7 @@ static void receipts(void)
         for (int i = 0; i < COUNT; i++) c[i] = case_make(classes[k], 107, (uint64_t)i);
         for (int from = 0; from < COUNT; from += PORTION) {
             double best[2] = {INFINITY, INFINITY};
-            for (int r = 0; r < ROUNDS; r++) {
+            for (int r = 0; r < measure_count(ROUNDS); r++) {
                 best[0] = best_of(c + from, PORTION, IMPACT_CHECK_AUTO, best[0]);
                 best[1] = best_of(c + from, PORTION, IMPACT_CHECK_NEVER, best[1]);
             }
@@ -437,22 +485,23 @@ static void receipts(void)
 /* The derivative of an answer, over the answer. */
 static void sensitivities(void)
 {
-    enum { COUNT = 200 };
+    enum { MANY = 200 };
+    const int count = measure_count(MANY);
     static const case_class classes[] = {CASE_PLAIN,  CASE_ROD,       CASE_WILD,   CASE_SPHERE,
                                          CASE_PLANAR, CASE_ISOTROPIC, CASE_SLENDER};
-    static impact_collision c[COUNT];
+    static impact_collision c[MANY];
     for (int k = 0; k < 7; k++) {
         double best = INFINITY, plain = INFINITY, sum = 0;
-        for (int i = 0; i < COUNT; i++) c[i] = case_make(classes[k], 109, (uint64_t)i);
-        for (int r = 0; r < 5; r++) {
+        for (int i = 0; i < count; i++) c[i] = case_make(classes[k], 109, (uint64_t)i);
+        for (int r = 0; r < measure_count(5); r++) {
             const double from = measure_clock();
-            for (int i = 0; i < COUNT; i++) sum += impact_collide_sensitivity(&c[i]);
-            best = fmin(best, measure_clock() - from);
-            plain = best_of(c, COUNT, IMPACT_CHECK_ALWAYS, plain);
+            for (int i = 0; i < count; i++) sum += impact_collide_sensitivity(&c[i]);
+            best = fmin(best, measure_since(from));
+            plain = best_of(c, count, IMPACT_CHECK_ALWAYS, plain);
         }
         if (isnan(sum)) exit(1);
-        printf("sensitivity of %s,auto,over the answer,%d,0,,,%.3g,%.3g,,\n", case_name(classes[k]), COUNT,
-               1e6 * best / COUNT, best / plain);
+        printf("sensitivity of %s,auto,over the answer,%d,0,,,%.3g,%.3g,,\n", case_name(classes[k]), count,
+               1e6 * best / count, best / plain);
     }
 }
 
@@ -469,10 +518,10 @@ static void array_call(void)
     double single = 0;
     for (int t = 0; t < 3; t++) {
         double best = INFINITY;
-        for (int r = 0; r < 5; r++) {
-            const double from = measure_clock();
+        for (int r = 0; r < measure_count(5); r++) {
+            const double from = measure_wall();
             impact_collide_many(c, COUNT, threads[t], o, NULL);
-            best = fmin(best, (measure_clock() - from) / COUNT);
+            best = fmin(best, (measure_wall() - from) / COUNT);
         }
         if (t == 0) single = best;
         print_loop("array of spheres", names[t], COUNT, best, single);
@@ -498,18 +547,18 @@ int main(void)
     receipts();
     sensitivities();
     gather_straight(&g);
-    run_straight(&g);
+    run_class(&g, true);
     gather_isotropic(&g);
-    run_straight(&g);
+    run_class(&g, true);
     gather(&g, "slip", CASE_PLAIN, slips);
-    run_class(&g);
+    run_class(&g, false);
     gather(&g, "stick", CASE_PLAIN, sticks);
-    run_class(&g);
+    run_class(&g, false);
     gather(&g, "reversal", CASE_ROD, reverses);
-    run_class(&g);
+    run_class(&g, false);
     gather(&g, "jam", CASE_WILD, jams);
-    run_class(&g);
+    run_class(&g, false);
     gather(&g, "recompression", CASE_WILD, again);
-    run_class(&g);
+    run_class(&g, false);
     return 0;
 }

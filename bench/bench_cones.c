@@ -14,13 +14,6 @@
 
 enum { MOST_PROBLEMS = 40 };
 
-static double cpu_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 typedef struct tally {
     double cold[MOST_PROBLEMS], warm[MOST_PROBLEMS], cold_systems[MOST_PROBLEMS], warm_systems[MOST_PROBLEMS], worst;
     int solved;
@@ -31,9 +24,9 @@ static double least_time(const imp_cone_problem *problem, imp_cone_workspace *ro
 {
     double least = INFINITY;
     for (int k = 0; k < repeats; k++) {
-        const double begun = cpu_clock();
+        const double begun = measure_clock();
         *outcome = imp_cone_solve(problem, room, r, u, NULL);
-        least = fmin(least, cpu_clock() - begun);
+        least = fmin(least, measure_since(begun));
     }
     return 1e6 * least;
 }
@@ -72,9 +65,9 @@ int main(void)
         random_stream random = {(uint64_t)rows[i].contacts};
         tally t = {.worst = 0};
         if (!imp_cone_reserve(&room, rows[i].contacts)) return 1;
-        for (int k = 0; k < rows[i].problems; k++)
-            solve_one(&random, rows[i].contacts, rows[i].bodies, rows[i].repeats, &room, k, &t);
-        const int count = rows[i].problems;
+        const int count = measure_count(rows[i].problems);
+        for (int k = 0; k < count; k++)
+            solve_one(&random, rows[i].contacts, rows[i].bodies, measure_count(rows[i].repeats), &room, k, &t);
         printf("%d,%d,%.1f,%.1f,%.0f,%.0f,%d,%d,%.2g\n", rows[i].contacts, rows[i].bodies,
                measure_quantile(t.cold, count, 0.5), measure_quantile(t.warm, count, 0.5),
                measure_quantile(t.cold_systems, count, 0.5), measure_quantile(t.warm_systems, count, 0.5), t.solved,

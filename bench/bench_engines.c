@@ -6,9 +6,10 @@
  * bounces, S4 free tumbling near the unstable axis for 100 s, S5 an ellipsoid meets a plane (a: the slip turns by 97
  * degrees, b: it ends)
  *
- * CSV: scene, engine, step in s (0: none), error, time in us (median), that time over ours. The error is, for one
+ * CSV: scene, engine, step in s (0: none; of Simbody's integrator its accuracy), error, time in us (median over rounds in
+ * which all take turns), that time over ours, median over least, a checksum. The error is, for one
  * impact, that of the velocities, sqrt(sum |dv|^2 + rho^2 |dw|^2) relative to their own; for S3 the worst relative
- * error of a height; for S4 the worst angle in rad at t = 1 ... 100 s. The right answers: S1, S2, S5 by the 128-bit
+ * error of a height; for S4 the worst angle in rad at t = 1 ... 100 s (10 with BENCH_QUICK). The right answers: S1, S2, S5 by the 128-bit
  * oracle, S3 (height eps^(2 k)), and S4 by a Taylor series in long double. Other engines solve an impact by Newton's
  * law with the last direction of slip: on S5 no step helps them.
  */
@@ -22,7 +23,7 @@
 #include "../tests/generators/collide_oracle.h"
 #endif
 
-enum { REPEATS = 101, LONG_REPEATS = 51 };
+enum { ROUNDS = 51, MOST = 16, LISTS = 4 };
 
 /* ---- our answers ---- */
 
@@ -32,7 +33,7 @@ static bool our_impact(const impact_collision *c, double step, qvec3 v[2], qvec3
     impact_outcome o;
     const double from = measure_clock();
     const bool done = impact_collide(c, &o) == IMPACT_OK;
-    *seconds = measure_clock() - from;
+    *seconds = measure_since(from);
     for (int b = 0; b < 2; b++) v[b] = o.velocity[b], w[b] = o.omega[b];
     return done;
 }
@@ -57,7 +58,7 @@ static bool run_scene(const impact_scene_def *def, const impact_recorder *record
     if (impact_scene_create(def, &scene, NULL, 0) != IMPACT_OK) return false;
     const double from = measure_clock();
     const impact_status status = impact_scene_run(scene, recorder);
-    *seconds = measure_clock() - from;
+    *seconds = measure_since(from);
     impact_scene_destroy(scene);
     return status >= 0;
 }
@@ -96,14 +97,12 @@ static bool our_tumble(const tumble_case *c, double step, quat q[TURNS], double 
     if (impact_shape_sphere(0.1, &body.shape) != IMPACT_OK) return false;
     impact_scene_def def = impact_default_scene_def();
     def.gravity = (qvec3){0, 0, 0};
-    def.duration = TURNS;
+    def.duration = tumble_seconds();
     def.output_rate = 1;
     def.bodies = &body, def.body_count = 1;
     const impact_recorder recorder = {.struct_size = sizeof recorder, .context = q, .sample = log_turn};
     return run_scene(&def, &recorder, seconds);
 }
-
-static const engine ours = {"libimpact", 0, our_impact, our_bounce, our_tumble};
 
 /* ---- right answers ---- */
 
@@ -146,56 +145,99 @@ static void right_turns(const tumble_case *c, quat q[TURNS])
 
 /* ---- the table ---- */
 
-static double our_time; /* of the scene at hand, s */
+typedef struct answer {
+    double seconds, error, sum;
+} answer;
 
-static void print_row(const char *scene, const engine *e, double error, double time)
-{
-    if (e == &ours) our_time = time;
-    printf("%s,%s,%g,%.2g,%.3g,%.3g\n", scene, e->name, e->step, error, 1e6 * time, time / our_time);
-    fflush(stdout);
-}
+/* Asks an engine; false: it has no answer. */
+typedef bool question(const engine *e, const void *scene, answer *a);
 
-static void row_impact(const char *scene, const engine *e, const impact_collision *c)
+static double sum_of(qvec3 v) { return v.x + v.y + v.z; }
+
+static bool ask_impact(const engine *e, const void *scene, answer *a)
 {
+    const impact_collision *c = scene;
     qvec3 v[2], w[2];
-    double times[REPEATS], error = NAN;
-    for (int i = 0; i < measure_count(REPEATS); i++)
-        if (!e->impact(c, e->step, v, w, &times[i])) return;
+    if (!e->impact || !e->impact(c, e->step, v, w, &a->seconds)) return false;
+    a->sum = sum_of(v[0]) + sum_of(v[1]) + sum_of(w[0]) + sum_of(w[1]);
+    a->error = NAN;
 #ifdef HAVE_QUADMATH
-    oracle_outcome right;
-    if (oracle_collide(c, &right)) error = case_error(c, v, w, right.velocity, right.omega);
+    static oracle_outcome right;
+    static const impact_collision *known;
+    if (known != c && !oracle_collide(c, &right)) return true;
+    known = c;
+    a->error = case_error(c, v, w, right.velocity, right.omega);
 #endif
-    print_row(scene, e, error, measure_quantile(times, measure_count(REPEATS), 0.5));
+    return true;
 }
 
-/* Whole runs are repeated while they are short. */
-static bool wants_more(const double *times, int count)
+static bool ask_bounce(const engine *e, const void *scene, answer *a)
 {
-    return count < measure_count(LONG_REPEATS) && (count == 0 || count * times[count - 1] < 0.1);
-}
-
-static void row_bounce(const engine *e, const bounce_case *c)
-{
-    double height[BOUNCES], times[LONG_REPEATS], worst = 0;
-    int count = 0;
-    while (wants_more(times, count))
-        if (!e->bounce(c, e->step, height, &times[count++])) return;
+    const bounce_case *c = scene;
+    double height[BOUNCES];
+    if (!e->bounce || !e->bounce(c, e->step, height, &a->seconds)) return false;
+    a->error = a->sum = 0;
     for (int k = 0; k < BOUNCES; k++) {
         const double right = c->height * pow(c->restitution, 2 * (k + 1));
-        worst = fmax(worst, fabs(height[k] / right - 1));
+        a->error = fmax(a->error, fabs(height[k] / right - 1));
+        a->sum += height[k];
     }
-    print_row("S3", e, worst, measure_quantile(times, count, 0.5));
+    return true;
 }
 
-static void row_tumble(const engine *e, const tumble_case *c, const quat right[TURNS])
+typedef struct turning {
+    tumble_case c;
+    quat right[TURNS];
+} turning;
+
+static bool ask_tumble(const engine *e, const void *scene, answer *a)
 {
+    const turning *t = scene;
     quat q[TURNS];
-    double times[LONG_REPEATS], worst = 0;
+    if (!e->tumble || !e->tumble(&t->c, e->step, q, &a->seconds)) return false;
+    a->error = a->sum = 0;
+    for (int k = 0; k < tumble_seconds(); k++) {
+        a->error = fmax(a->error, quat_rotation_distance(q[k], t->right[k]));
+        a->sum += q[k].x;
+    }
+    return true;
+}
+
+typedef struct contestant {
+    const engine *e;
+    answer last;
+    double times[ROUNDS], spent;
+    int count;
+} contestant;
+
+/* Round after round all take turns; what has taken long enough is not asked again. */
+static void compete(const char *scene, const engine *const lists[], bool all_steps, question *ask, const void *what)
+{
+    contestant row[MOST];
     int count = 0;
-    while (wants_more(times, count))
-        if (!e->tumble(c, e->step, q, &times[count++])) return;
-    for (int k = 0; k < TURNS; k++) worst = fmax(worst, quat_rotation_distance(q[k], right[k]));
-    print_row("S4", e, worst, measure_quantile(times, count, 0.5));
+    const double enough = getenv("BENCH_QUICK") ? 0.02 : 0.5;
+    for (int l = 0; l < LISTS; l++)
+        for (const engine *e = lists[l]; e->name && count < MOST; e++) {
+            row[count] = (contestant){.e = e};
+            if (!ask(e, what, &row[count].last)) continue;
+            count++;
+            if (!all_steps) break;
+        }
+    for (int round = 0; round < ROUNDS; round++)
+        for (int k = 0; k < count; k++) {
+            contestant *c = &row[k];
+            if (c->spent > enough || !ask(c->e, what, &c->last)) continue;
+            c->times[c->count++] = 1e6 * c->last.seconds;
+            c->spent += c->last.seconds;
+        }
+    double own = 0;
+    for (int k = 0; k < count; k++) {
+        const measure_time time = measure_of_rounds(row[k].times, row[k].count);
+        if (k == 0) own = time.median;
+        printf("%s,%s,%g,%.2g,%.3g,%.3g,%.2f,%.9g\n", scene, row[k].e->name, row[k].e->step, row[k].last.error, time.median,
+               time.median / own, time.spread, row[k].last.sum);
+    }
+    fflush(stdout);
 }
 
 typedef struct scene {
@@ -209,21 +251,18 @@ int main(void)
                              {"S2a", scene_two_spheres(false)}, {"S2b", scene_two_spheres(true)},
                              {"S5a", scene_ellipsoid(0)},       {"S5b", scene_ellipsoid(1)}};
     const bounce_case bounces = {0.3, 4, 1, 9.80665, 0.8, 3.7};
-    const tumble_case turns = {4, {0.104, 0.08, 0.04}, {0.05, 5, 0.05}};
-    const engine *const lists[] = {engines_ode, engines_bullet};
-    quat right[TURNS];
-    right_turns(&turns, right);
-    printf("scene,engine,step,error,us,time_over_ours\n");
-    for (int i = 0; i < (int)(sizeof impacts / sizeof *impacts); i++) {
-        row_impact(impacts[i].name, &ours, &impacts[i].collision);
-        for (int l = 0; l < 2; l++) /* the step does not matter here: the first of each engine */
-            if (lists[l]->name) row_impact(impacts[i].name, lists[l], &impacts[i].collision);
-    }
-    row_bounce(&ours, &bounces);
-    for (int l = 0; l < 2; l++)
-        for (const engine *e = lists[l]; e->name; e++) row_bounce(e, &bounces);
-    row_tumble(&ours, &turns, right);
-    for (int l = 0; l < 2; l++)
-        for (const engine *e = lists[l]; e->name; e++) row_tumble(e, &turns, right);
+    turning turns = {.c = {4, {0.104, 0.08, 0.04}, {0.05, 5, 0.05}}};
+    static const engine own[] = {{"libimpact", 0, our_impact, our_bounce, our_tumble}, {NULL, 0, NULL, NULL, NULL}};
+    const engine *const lists[LISTS] = {own, engines_ode, engines_bullet, engines_simbody};
+    static const char *const names[LISTS] = {"libimpact", "ODE", "Bullet", "Simbody"};
+    right_turns(&turns.c, turns.right);
+    for (int l = 0; l < LISTS; l++)
+        if (!lists[l][0].name) printf("# %s is not installed: its rows are skipped\n", names[l]);
+    printf("scene,engine,step,error,us,time_over_ours,spread,checksum\n");
+    /* of one impact the step does not matter: the first of each engine */
+    for (int i = 0; i < (int)(sizeof impacts / sizeof *impacts); i++)
+        compete(impacts[i].name, lists, false, ask_impact, &impacts[i].collision);
+    compete("S3", lists, true, ask_bounce, &bounces);
+    compete("S4", lists, true, ask_tumble, &turns);
     return 0;
 }

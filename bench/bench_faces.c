@@ -45,7 +45,7 @@ static void measure(const char *family, const char *kind, const char *name, doub
         qvec3 normal;
         answered = 0;
         for (int i = 0; i < count; i++) answered += method(&cases[i], setting, &gap, &normal);
-        times[repeat] = (measure_clock() - start) / count * 1e6;
+        times[repeat] = measure_since(start) / count * 1e6;
     }
     for (int i = 0; i < count; i++) {
         double gap = NAN;
@@ -86,7 +86,7 @@ static void measure_family(const char *family, const impact_solid (*all)[2])
         measure(family, kind, "impact cold", 0, ours_cold, cases, count);
         measure(family, kind, "impact warm", 0, ours_warm, cases, count);
         for (const gap_peer *peer = gap_peers_ccd; peer->method; peer++)
-            if (overlap || !peer->overlap_only)
+            if (overlap || peer->pairs == GAP_ALL)
                 measure(family, kind, peer->name, peer->setting, peer->method, cases, count);
     }
 }

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * bench_gap: time per query of our ways and of libccd's, on the pairs of the campaign, with each way's error beside it.
- * CSV: family, method, setting, time in us (median of repeats of a batch), error of the gap relative to L + |c| (p50,
+ * bench_gap: time per query of our ways and of libccd's, FCL's, coal's and MuJoCo's, on the pairs of the campaign, with
+ * each way's error beside it. CSV: family, method, setting, time in us (median over rounds in which all take turns), error of the gap relative to L + |c| (p50,
  * p99, worst), error of the normal in rad (p50), share of the pairs not answered or answered as touching where they are
  * apart. `receipt`: what an answer's own check adds to it, over the whole.
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <impact/toi.h>
 #include "gap/gap_solver.h"
 #include "../tests/kit/contact_random.h"
 #include "peers_gap.h"
 #include "measure.h"
 
-enum { PAIRS = 2000, REPEATS = 7 };
+enum { PAIRS = 2000, REPEATS = 7, MOST_CONTESTANTS = 20 };
 
 static int pair_count(void)
 {
@@ -64,6 +63,7 @@ static void make_pairs(gap_case *cases, int family, bool overlap)
             continue;
         }
         c->cache = (impact_gap_cache){true, qvec3_axpy(1e-3, random_direction(&random), c->normal)};
+        c->number = i;
         c->cache.normal = qvec3_scale(c->cache.normal, 1 / qvec3_norm(c->cache.normal));
     }
 }
@@ -88,35 +88,77 @@ static bool ours_warm(const gap_case *c, double setting, double *gap, qvec3 *nor
     return status == IMPACT_OK;
 }
 
-/* One row; ours: the time of ours from nothing, 0 where this is it. Returns the time. */
-static double measure(const char *family, const char *kind, const char *name, gap_method *method, double setting,
-                      const gap_case *cases, double ours)
+/* ---- who answers the pairs of a family ---- */
+
+typedef struct contestant {
+    const gap_peer *peer;
+    double times[REPEATS];
+    int answered;
+} contestant;
+
+typedef struct contest {
+    contestant list[MOST_CONTESTANTS];
+    int count;
+} contest;
+
+static bool answers(const gap_peer *peer, int family, bool overlap)
 {
-    static double times[REPEATS], gaps[PAIRS], normals[PAIRS];
-    int answered = 0;
-    for (int repeat = 0; repeat < REPEATS; repeat++) {
-        answered = 0;
-        double gap;
-        qvec3 normal;
-        const double start = measure_clock();
-        for (int i = 0; i < pair_count(); i++) answered += method(&cases[i], setting, &gap, &normal);
-        times[repeat] = (measure_clock() - start) / pair_count() * 1e6;
+    const bool ellipsoids = family <= RANDOM_ELLIPSOID;
+    switch (peer->pairs) {
+    case GAP_ALL: return true;
+    case GAP_OVERLAPS: return overlap;
+    case GAP_ELLIPSOIDS: return ellipsoids;
+    default: return ellipsoids && !overlap;
     }
+}
+
+static void join(contest *c, const gap_peer *peer, int family, bool overlap, const gap_case *cases)
+{
+    for (; peer->method; peer++)
+        if (answers(peer, family, overlap) && (!peer->load || peer->load(cases, pair_count())))
+            c->list[c->count++] = (contestant){.peer = peer};
+}
+
+/* A round of a contestant: the mean time of a pair, us. */
+static double time_round(contestant *one, const gap_case *cases)
+{
+    double gap;
+    qvec3 normal;
+    const double start = measure_clock();
+    one->answered = 0;
+    for (int i = 0; i < pair_count(); i++) one->answered += one->peer->method(&cases[i], one->peer->setting, &gap, &normal);
+    return measure_since(start) / pair_count() * 1e6;
+}
+
+/* Errors, and the sum of all gaps. */
+static void print_contestant(const char *family, const char *kind, contestant *one, const gap_case *cases, double ours)
+{
+    static double gaps[PAIRS], normals[PAIRS];
     int gap_count = 0, normal_count = 0;
+    double sum = 0;
     for (int i = 0; i < pair_count(); i++) {
         double gap = NAN;
         qvec3 normal = {NAN, NAN, NAN};
-        if (!method(&cases[i], setting, &gap, &normal)) continue;
-        if (!isnan(gap)) gaps[gap_count++] = fabs(gap - cases[i].gap) / cases[i].reach;
+        if (!one->peer->method(&cases[i], one->peer->setting, &gap, &normal)) continue;
+        if (!isnan(gap)) sum += gap, gaps[gap_count++] = fabs(gap - cases[i].gap) / cases[i].reach;
         if (!isnan(normal.x)) normals[normal_count++] = qvec3_norm(qvec3_sub(normal, cases[i].normal));
     }
-    const double time = measure_quantile(times, REPEATS, 0.5), p50 = measure_quantile(gaps, gap_count, 0.5),
-                 p99 = measure_quantile(gaps, gap_count, 0.99);
-    printf("%s,%s,%s,%g,%.3g,%.2g,%.2g,%.2g,%.2g,%.4f,%.2g\n", family, kind, name, setting, time, p50, p99,
-           gap_count ? gaps[gap_count - 1] : NAN, measure_quantile(normals, normal_count, 0.5),
-           1 - (double)answered / pair_count(), ours > 0 ? time / ours : 1);
+    const measure_time time = measure_of_rounds(one->times, REPEATS);
+    const double p50 = measure_quantile(gaps, gap_count, 0.5), p99 = measure_quantile(gaps, gap_count, 0.99);
+    printf("%s,%s,%s,%g,%.3g,%.2g,%.2g,%.2g,%.2g,%.4f,%.2g,%.2f,%.9g\n", family, kind, one->peer->name, one->peer->setting,
+           time.median, p50, p99, gap_count ? gaps[gap_count - 1] : NAN, measure_quantile(normals, normal_count, 0.5),
+           1 - (double)one->answered / pair_count(), time.median / ours, time.spread, sum);
     fflush(stdout);
-    return time;
+}
+
+/* All in turn, round after round; returns the median time of ours from nothing, the first. */
+static double compete(const char *family, const char *kind, contest *c, const gap_case *cases)
+{
+    for (int repeat = 0; repeat < REPEATS; repeat++)
+        for (int k = 0; k < c->count; k++) c->list[k].times[repeat] = time_round(&c->list[k], cases);
+    const double ours = measure_of_rounds(c->list[0].times, REPEATS).median;
+    for (int k = 0; k < c->count; k++) print_contestant(family, kind, &c->list[k], cases, ours);
+    return ours;
 }
 
 /* Whether both witness points lie in their bodies: the part of an answer that is there for its check alone. Of two
@@ -143,97 +185,40 @@ static void measure_receipt(const char *family, const char *kind, const gap_case
         const double start = measure_clock();
         for (int i = 0; i < pair_count(); i++)
             for (int k = 0; k < 2; k++) outside = fmax(outside, imp_gap_outside(&pairs[i].form[k], points[i][k]));
-        times[repeat] = (measure_clock() - start) / pair_count() * 1e6;
+        times[repeat] = measure_since(start) / pair_count() * 1e6;
     }
-    const double time = measure_quantile(times, REPEATS, 0.5);
-    printf("%s,%s,impact receipt,0,%.3g,nan,nan,%.2g,nan,0,%.2g\n", family, kind, time, outside, time / ours);
+    const measure_time time = measure_of_rounds(times, REPEATS);
+    printf("%s,%s,impact receipt,0,%.3g,nan,nan,%.2g,nan,0,%.2g,%.2f,\n", family, kind, time.median, outside,
+           time.median / ours, time.spread);
 }
 
-/* Time of impact of tumbling bodies that fly at each other; the error is the gap left at the time found. */
-static void measure_toi(void)
+static void name_absent(void)
+{
+    const struct {
+        const char *name;
+        const gap_peer *list;
+    } peers[] = {{"libccd", gap_peers_ccd}, {"FCL", gap_peers_fcl}, {"coal", gap_peers_coal}, {"MuJoCo", gap_peers_mujoco}};
+    for (int k = 0; k < 4; k++)
+        if (!peers[k].list[0].method) printf("# %s is not installed: its rows are skipped\n", peers[k].name);
+}
+
+int main(void)
 {
     static gap_case cases[PAIRS];
-    static double times[REPEATS], left[PAIRS];
-    for (int family = 0; family < RANDOM_FAMILIES; family++) {
-        random_stream random = {(uint64_t)family + 200};
-        make_pairs(cases, family, false);
-        static impact_motion motion[PAIRS][2];
-        for (int i = 0; i < pair_count(); i++) {
-            cases[i].body[0].position = qvec3_scale(random_direction(&random), 4);
-            for (int k = 0; k < 2; k++)
-                motion[i][k] = (impact_motion){.omega = qvec3_scale(random_direction(&random), 3)};
-            motion[i][0].velocity = qvec3_scale(cases[i].body[0].position, -0.25);
-        }
-        int met = 0;
-        for (int repeat = 0; repeat < 3; repeat++) {
-            met = 0;
-            const double start = measure_clock();
-            for (int i = 0; i < pair_count(); i++) {
-                double time;
-                impact_contact c;
-                const impact_status status =
-                    impact_toi(&cases[i].body[0], &motion[i][0], &cases[i].body[1], &motion[i][1], 4, &time, &c);
-                if (status == IMPACT_OK)
-                    left[met++] = fabs(c.gap) /
-                                  fmax(contact_size(&cases[i].body[0].shape), contact_size(&cases[i].body[1].shape));
-            }
-            times[repeat] = (measure_clock() - start) / pair_count() * 1e6;
-        }
-        const double time = measure_quantile(times, 3, 0.5), p50 = measure_quantile(left, met, 0.5),
-                     p99 = measure_quantile(left, met, 0.99);
-        printf("%s,toi,impact toi,0,%.3g,%.2g,%.2g,%.2g,nan,%.4f,nan\n", random_family_name(family), time, p50, p99,
-               left[met - 1], 1 - (double)met / pair_count());
-    }
-}
-
-static void measure_peers(const char *family, const char *kind, const gap_peer *peer, int number, bool overlap,
-                          const gap_case *cases, double ours)
-{
-    for (; peer->method; peer++) {
-        if (peer->overlap_only && !overlap) continue;
-        if (peer->separated_ellipsoids_only && (overlap || number > RANDOM_ELLIPSOID)) continue;
-        measure(family, kind, peer->name, peer->method, peer->setting, cases, ours);
-    }
-}
-
-/* The ellipsoid pairs for peers_gap.py: a b c, x y z, w i j k of both bodies, the gap, the normal, L + |c|. */
-static void print_cases(void)
-{
-    static gap_case cases[PAIRS];
-    make_pairs(cases, RANDOM_ELLIPSOID, false);
-    for (int i = 0; i < pair_count(); i++) {
-        for (int k = 0; k < 2; k++) {
-            const impact_solid *b = &cases[i].body[k];
-            printf("%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,", b->shape.a, b->shape.b, b->shape.c,
-                   b->position.x, b->position.y, b->position.z, b->orientation.w, b->orientation.x, b->orientation.y,
-                   b->orientation.z);
-        }
-        const qvec3 n = cases[i].normal;
-        printf("%.17g,%.17g,%.17g,%.17g,%.17g\n", cases[i].gap, n.x, n.y, n.z, cases[i].reach);
-    }
-}
-
-/* bench_gap [--cases]: --cases prints the ellipsoid pairs and measures nothing. */
-int main(int argc, char **argv)
-{
-    static gap_case cases[PAIRS];
-    if (argc > 1 && strcmp(argv[1], "--cases") == 0) {
-        print_cases();
-        return 0;
-    }
-    printf("family,kind,method,setting,time_us,gap_p50,gap_p99,gap_worst,normal_p50,unanswered,time_over_ours\n");
+    const gap_peer own[] = {{"impact cold", ours_cold, 0, GAP_ALL, NULL},
+                            {"impact warm", ours_warm, 0, GAP_ALL, NULL},
+                            {NULL, NULL, 0, GAP_ALL, NULL}};
+    const gap_peer *const all[] = {own, gap_peers_ccd, gap_peers_fcl, gap_peers_coal, gap_peers_mujoco};
+    name_absent();
+    printf("family,kind,method,setting,time_us,gap_p50,gap_p99,gap_worst,normal_p50,unanswered,time_over_ours,spread,checksum\n");
     for (int overlap = 0; overlap < 2; overlap++)
         for (int family = 0; family < RANDOM_FAMILIES; family++) {
+            static contest c;
             const char *name = random_family_name(family), *kind = overlap ? "shallow" : "separated";
             make_pairs(cases, family, overlap);
-            const double ours = measure(name, kind, "impact cold", ours_cold, 0, cases, 0);
-            measure(name, kind, "impact warm", ours_warm, 0, cases, ours);
-            measure_receipt(name, kind, cases, ours);
-            measure_peers(name, kind, gap_peers_ccd, family, overlap, cases, ours);
-            measure_peers(name, kind, gap_peers_fcl, family, overlap, cases, ours);
+            c.count = 0;
+            for (int k = 0; k < 5; k++) join(&c, all[k], family, overlap, cases);
+            measure_receipt(name, kind, cases, compete(name, kind, &c, cases));
         }
-    measure_toi();
-    if (!gap_peers_ccd[0].method) printf("# libccd is not installed: its rows are skipped\n");
-    if (!gap_peers_fcl[0].method) printf("# FCL is not installed: its rows are skipped\n");
     return 0;
 }

@@ -158,7 +158,7 @@ static void measure(const char *name, int n, outcome (*run)(void))
     for (int i = 0; i < measure_count(REPEATS); i++) {
         const double start = measure_clock();
         o = run();
-        times[i] = (measure_clock() - start) / n * 1e9;
+        times[i] = measure_since(start) / n * 1e9;
     }
     printf("%s,%d,%.4g,%.2g,%.12g\n", name, n, measure_quantile(times, measure_count(REPEATS), 0.5), o.error,
            o.checksum);

@@ -2,11 +2,11 @@
  *
  * bench_quat: libquat beside Eigen, GLM and cglm, same inputs, same flags, same run; CSV on stdout.
  *
- *   case,n,library,type,ns,ratio,error_u,checksum
+ *   case,n,library,type,ns,ratio,error_u,checksum,spread
  *
  * ns: median over the rounds, per element. ratio: this row's time over that of the fastest peer in double (memcpy for
  * the rows called rotate_array_to_copy). error_u: largest error of a component over the length of the result, in units
- * of 2^-53, against long double. checksum: the sum of all results. In every round all contestants run one after the
+ * of 2^-53, against long double. checksum: the sum of all results. spread: median over least. In every round all contestants run one after the
  * other, so that what disturbs one disturbs all. `libquat matrix`: the same rotations held as matrices, made
  * beforehand.
  */
@@ -22,7 +22,7 @@
 #include <quat/rotation.h>
 #include "measure.h"
 
-enum { few = 10000, many = 1000000, rounds = 31, most = 9 };
+enum { few = 10000, many = 1000000, rounds = 60, most = 9 };
 
 static const char *const names[BENCH_CASES] = {"product",      "compose", "normalize", "rotate",
                                                "rotate_array", "slerp",   "to_matrix", "from_matrix"};
@@ -315,18 +315,19 @@ static bench_input make_input(size_t n)
 static void compete(bench_case which, const bench_input *in, const bench_contestant *const *all, int count)
 {
     static double times_of[most][rounds];
-    double median[most], fastest = DBL_MAX, copy = DBL_MAX;
+    double median[most], spread[most], fastest = DBL_MAX, copy = DBL_MAX;
     const size_t n = in->n, repeat = n < many ? 20 : 1;
-    for (int k = 0; k < rounds; k++)
+    for (int k = 0; k < measure_count(rounds); k++)
         for (int c = 0; c < count; c++) {
             if (!all[c]->can(which)) continue;
             const double start = measure_clock();
             for (size_t j = 0; j < repeat; j++) all[c]->run(which, n);
-            times_of[c][k] = 1e9 * (measure_clock() - start) / (double)(n * repeat);
+            times_of[c][k] = 1e9 * measure_since(start) / (double)(n * repeat);
         }
     for (int c = 0; c < count; c++) {
         if (!all[c]->can(which)) continue;
-        median[c] = measure_quantile(times_of[c], rounds, 0.5);
+        const measure_time time = measure_of_rounds(times_of[c], measure_count(rounds));
+        median[c] = time.median, spread[c] = time.spread;
         if (all[c]->peer && median[c] < fastest) fastest = median[c];
         if (strcmp(all[c]->name, "memcpy") == 0) copy = median[c];
     }
@@ -342,10 +343,10 @@ static void compete(bench_case which, const bench_input *in, const bench_contest
         const double error = moves_only ? 0 : worst_error(in, which, out);
         printf("%s,%zu,%s,%s,%.3f,", names[which], n, all[c]->name, all[c]->type, median[c]);
         if (fastest < DBL_MAX) printf("%.3f", median[c] / fastest);
-        printf(",%.3g,%.12g\n", error, sum);
+        printf(",%.3g,%.12g,%.2f\n", error, sum, spread[c]);
         if (copy < DBL_MAX && !moves_only)
-            printf("%s_to_copy,%zu,%s,%s,%.3f,%.3f,%.3g,%.12g\n", names[which], n, all[c]->name, all[c]->type,
-                   median[c], median[c] / copy, error, sum);
+            printf("%s_to_copy,%zu,%s,%s,%.3f,%.3f,%.3g,%.12g,%.2f\n", names[which], n, all[c]->name, all[c]->type,
+                   median[c], median[c] / copy, error, sum, spread[c]);
     }
     free(out);
     fflush(stdout);
@@ -363,7 +364,7 @@ int main(void)
         else
             fprintf(stderr, "bench_quat: %s is not installed and is skipped\n", peers[i]->name);
     }
-    printf("case,n,library,type,ns,ratio,error_u,checksum\n");
+    printf("case,n,library,type,ns,ratio,error_u,checksum,spread\n");
     const size_t sizes[] = {few, many};
     for (size_t s = 0; s < 2; s++) {
         const bench_input in = make_input(sizes[s]);

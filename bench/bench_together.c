@@ -18,13 +18,6 @@
 
 enum { MOST = 11, REPEATS = 50, RANDOM = 60 };
 
-static double cpu_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static random_encounter line_of(int n)
 {
     random_encounter e = {.body_count = n, .meeting_count = n - 1};
@@ -95,10 +88,10 @@ static void time_springs(const char *name, const random_encounter *e, double exp
     qvec3 v[ENCOUNTER_BODIES];
     double speed[ENCOUNTER_BODIES], least = INFINITY;
     impact_together_outcome o = {.velocity = v};
-    for (int k = 0; k < REPEATS; k++) {
-        const double begun = cpu_clock();
+    for (int k = 0; k < measure_count(REPEATS); k++) {
+        const double begun = measure_clock();
         if (impact_collide_together(&encounter, &o) != IMPACT_OK) return;
-        least = fmin(least, cpu_clock() - begun);
+        least = fmin(least, measure_since(begun));
     }
     for (int i = 0; i < e->body_count; i++) speed[i] = v[i].x;
     print(name, e->meeting_count, "springs", (double)o.steps, error_of(speed, wanted, e->body_count), least);
@@ -115,9 +108,9 @@ static void time_line(int n, double exponent, impact_together_workspace *workspa
     for (int i = 0; i < n; i++) wanted[i] = (double)o.y[6 * i];
     time_springs(name, &e, exponent, wanted, workspace);
     for (double step = 1e-2; step > 5e-6; step /= 10) {
-        const double begun = cpu_clock();
+        const double begun = measure_clock();
         const long steps = first_order(n, exponent, step, speed);
-        seconds = cpu_clock() - begun;
+        seconds = measure_since(begun);
         print(name, n - 1, "first order in the impulse", (double)steps, error_of(speed, wanted, n), seconds);
     }
     const int sweeps[] = {10, 1000};
@@ -137,7 +130,7 @@ static void time_random(int contacts, double friction, double exponent, impact_t
     random_stream random = {(uint64_t)contacts};
     double time[RANDOM], steps[RANDOM], worst = 0;
     int count = 0;
-    const int runs = contacts > 12 ? RANDOM / 3 : RANDOM;
+    const int runs = measure_count(contacts > 12 ? RANDOM / 3 : RANDOM);
     for (int k = 0; k < runs; k++) {
         const random_encounter e = encounter_draw(&random, &ranges);
         impact_encounter encounter = encounter_of(&e, law);
@@ -146,9 +139,9 @@ static void time_random(int contacts, double friction, double exponent, impact_t
         impact_together_outcome o = {.velocity = NULL};
         double least = INFINITY;
         for (int repeat = 0; repeat < 5; repeat++) {
-            const double begun = cpu_clock();
+            const double begun = measure_clock();
             if (impact_collide_together(&encounter, &o) != IMPACT_OK) break;
-            least = fmin(least, cpu_clock() - begun);
+            least = fmin(least, measure_since(begun));
         }
         if (!isfinite(least)) continue;
         time[count] = least, steps[count++] = (double)o.steps;

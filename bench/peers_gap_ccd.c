@@ -35,11 +35,16 @@ static ccd_t settings(double tolerance)
     return ccd;
 }
 
+bool gap_ccd_meets(const impact_solid *one, const impact_solid *other)
+{
+    const ccd_t ccd = settings(0);
+    return ccdGJKIntersect(one, other, &ccd) != 0;
+}
+
 static bool gjk(const gap_case *c, double setting, double *gap, qvec3 *normal)
 {
-    (void)gap, (void)normal;
-    const ccd_t ccd = settings(setting);
-    return (ccdGJKIntersect(&c->body[0], &c->body[1], &ccd) != 0) == (c->gap < 0);
+    (void)setting, (void)gap, (void)normal;
+    return gap_ccd_meets(&c->body[0], &c->body[1]) == (c->gap < 0);
 }
 
 /* libccd's direction is the way to move body 2 away: from body 1 to body 2. */
@@ -70,11 +75,16 @@ static bool mpr(const gap_case *c, double setting, double *gap, qvec3 *normal)
 }
 
 const gap_peer gap_peers_ccd[] = {
-    {"libccd GJK", gjk, 0, false, false},   {"libccd EPA", epa, 1e-4, true, false},
-    {"libccd EPA", epa, 1e-6, true, false}, {"libccd EPA", epa, 1e-8, true, false},
-    {"libccd MPR", mpr, 1e-4, true, false}, {"libccd MPR", mpr, 1e-6, true, false},
-    {"libccd MPR", mpr, 1e-8, true, false}, {NULL, NULL, 0, false, false},
+    {"libccd GJK", gjk, 0, GAP_ALL, NULL},         {"libccd EPA", epa, 1e-4, GAP_OVERLAPS, NULL},
+    {"libccd EPA", epa, 1e-6, GAP_OVERLAPS, NULL}, {"libccd EPA", epa, 1e-8, GAP_OVERLAPS, NULL},
+    {"libccd MPR", mpr, 1e-4, GAP_OVERLAPS, NULL}, {"libccd MPR", mpr, 1e-6, GAP_OVERLAPS, NULL},
+    {"libccd MPR", mpr, 1e-8, GAP_OVERLAPS, NULL}, {NULL, NULL, 0, GAP_ALL, NULL},
 };
 #else
-const gap_peer gap_peers_ccd[] = {{NULL, NULL, 0, false, false}};
+bool gap_ccd_meets(const impact_solid *one, const impact_solid *other)
+{
+    (void)one, (void)other;
+    return false;
+}
+const gap_peer gap_peers_ccd[] = {{NULL, NULL, 0, GAP_ALL, NULL}};
 #endif

@@ -16,15 +16,26 @@ static fcl::Transform3d place(const impact_solid &body)
     return t;
 }
 
+static fcl::DistanceResultd ask(const impact_solid &one, const impact_solid &other, double tolerance, bool points,
+                                fcl::GJKSolverType solver)
+{
+    const fcl::Ellipsoidd e1(one.shape.a, one.shape.b, one.shape.c), e2(other.shape.a, other.shape.b, other.shape.c);
+    fcl::DistanceRequestd request(points, points);
+    request.gjk_solver_type = solver;
+    request.distance_tolerance = tolerance;
+    fcl::DistanceResultd result;
+    fcl::distance(&e1, place(one), &e2, place(other), request, result);
+    return result;
+}
+
+extern "C" double gap_fcl_distance(const impact_solid *one, const impact_solid *other, double tolerance)
+{
+    return ask(*one, *other, tolerance, false, fcl::GST_INDEP).min_distance;
+}
+
 static bool measure(const gap_case *c, double setting, fcl::GJKSolverType solver, double *gap, qvec3 *normal)
 {
-    const impact_shape &s1 = c->body[0].shape, &s2 = c->body[1].shape;
-    const fcl::Ellipsoidd e1(s1.a, s1.b, s1.c), e2(s2.a, s2.b, s2.c);
-    fcl::DistanceRequestd request(true, true);
-    request.gjk_solver_type = solver;
-    request.distance_tolerance = setting;
-    fcl::DistanceResultd result;
-    fcl::distance(&e1, place(c->body[0]), &e2, place(c->body[1]), request, result);
+    const fcl::DistanceResultd result = ask(c->body[0], c->body[1], setting, true, solver);
     *gap = result.min_distance;
     const fcl::Vector3d d = (result.nearest_points[0] - result.nearest_points[1]) * (result.min_distance < 0 ? -1 : 1);
     if (d.norm() > 0) *normal = qvec3{d.x() / d.norm(), d.y() / d.norm(), d.z() / d.norm()};
@@ -42,12 +53,13 @@ static bool by_libccd(const gap_case *c, double setting, double *gap, qvec3 *nor
 }
 
 extern "C" const gap_peer gap_peers_fcl[] = {
-    {"FCL (its GJK)", independent, 1e-6, false, true},
-    {"FCL (its GJK)", independent, 1e-12, false, true},
-    {"FCL (libccd)", by_libccd, 1e-6, false, true},
-    {"FCL (libccd)", by_libccd, 1e-10, false, true},
-    {nullptr, nullptr, 0, false, false},
+    {"FCL (its GJK)", independent, 1e-6, GAP_ELLIPSOIDS_APART, nullptr},
+    {"FCL (its GJK)", independent, 1e-12, GAP_ELLIPSOIDS_APART, nullptr},
+    {"FCL (libccd)", by_libccd, 1e-6, GAP_ELLIPSOIDS_APART, nullptr},
+    {"FCL (libccd)", by_libccd, 1e-10, GAP_ELLIPSOIDS_APART, nullptr},
+    {nullptr, nullptr, 0, GAP_ALL, nullptr},
 };
 #else
-extern "C" const gap_peer gap_peers_fcl[] = {{nullptr, nullptr, 0, false, false}};
+extern "C" double gap_fcl_distance(const impact_solid *, const impact_solid *, double) { return NAN; }
+extern "C" const gap_peer gap_peers_fcl[] = {{nullptr, nullptr, 0, GAP_ALL, nullptr}};
 #endif

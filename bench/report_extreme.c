@@ -5,6 +5,7 @@
  * off, of the energies in it; impacts, integrator steps, and the CPU time in ms; what the error is by: a formula, or an
  * oracle in 128 bits that shares no code (truth_fall: the flights up to the third impact), until when, s, and the
  * condition there: rounding alone makes that times 1e-16.
+ * With BENCH_QUICK falls are followed to the first impact only.
  *
  *   stiff drag     a body falls through drag of this rate (1/s): terminal speed g/rate
  *   units          five bounces, with lengths and gravity times this
