@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * bench_geometry: what the rooms project, sequence, curve, surface and their Gauss maps cost. CSV: case, n (points,
- * nodes or repeats that one time is divided by), time in ns for each (median of repeats), error against a closed form
- * (nan where there is none), and a checksum.
+ * nodes or repeats that one time is divided by), time in ns for each (median over rounds in which all of a part take
+ * turns), error against a closed form (nan where there is none), a checksum, median over least; then the part, who does
+ * it (libquat, or a textbook's way: peers_geometry.h) and with which step, number or tolerance.
  */
 #include <stdio.h>
 #include <string.h>
@@ -10,19 +11,15 @@
 #include <quat/project.h>
 #include <quat/sequence.h>
 #include "measure.h"
+#include "peers_geometry.h"
 
-enum { POINTS = 4096, REPEATS = 15, SIDE = 33 };
+enum { POINTS = 4096, REPEATS = 15, SIDE = 33, MOST = 16 };
 
 static const double pi = 3.14159265358979323846;
 
 static quat frames[POINTS], work[POINTS], nodes[SIDE * SIDE], chosen[SIDE * SIDE];
 static qvec3 images[POINTS], places[SIDE * SIDE];
 static size_t triangles[2 * (SIDE - 1) * (SIDE - 1)][3];
-
-/* One run of a case: how far off it was, and a number that depends on all of it. */
-typedef struct outcome {
-    double error, checksum;
-} outcome;
 
 static double sum_of(size_t n, const quat q[])
 {
@@ -94,7 +91,7 @@ static outcome length(void)
     double l = 0;
     quat_ellipse(2, 1, &family, &curve);
     quat_curve_length(&curve, 0, 2 * pi, &l);
-    return (outcome){fabs(l / 9.68844822054767619842 - 1), l}; /* 8 E(sqrt(3)/2) */
+    return (outcome){fabs(l / ellipse_length - 1), l};
 }
 
 static outcome even(void)
@@ -106,7 +103,7 @@ static outcome even(void)
     quat_ellipse(2, 1, &family, &curve);
     quat_curve_even(&curve, 257, t);
     quat_curve_length(&curve, t[100], t[101], &l);
-    return (outcome){fabs(l * 256 / 9.68844822054767619842 - 1), t[100]};
+    return (outcome){fabs(l * 256 / ellipse_length - 1), t[100]};
 }
 
 static outcome curvatures(int known)
@@ -151,43 +148,129 @@ static outcome choose(quat_gauge gauge)
 static outcome least_length(void) { return choose(QUAT_MINIMAL_LENGTH); }
 static outcome least_area(void) { return choose(QUAT_MINIMAL_AREA); }
 
-static void measure(const char *name, int n, outcome (*run)(void))
+/* ---- the textbooks' ways ---- */
+
+static outcome plain(double setting)
 {
-    double times[REPEATS];
-    outcome o = run();
-    for (int i = 0; i < measure_count(REPEATS); i++) {
-        const double start = measure_clock();
-        o = run();
-        times[i] = measure_since(start) / n * 1e9;
+    (void)setting;
+    return plain_stereographic(POINTS, frames);
+}
+static outcome helix_steps(double step) { return helix_differences(POINTS, step); }
+static outcome torus_steps(double step) { return torus_differences(SIDE * SIDE, step); }
+
+/* ---- the table ---- */
+
+typedef struct row {
+    const char *part, *name, *who;
+    double setting;
+    int n;
+    outcome (*run)(void);
+    outcome (*with)(double setting);
+} row;
+
+static outcome run_row(const row *r) { return r->run ? r->run() : r->with(r->setting); }
+
+/* All of a part take turns, round after round; the saddle's and the torus' nodes are made before. */
+static void compete(const row *rows, int count)
+{
+    static double times[MOST][REPEATS];
+    outcome last[MOST];
+    double spent[MOST] = {0};
+    int rounds[MOST] = {0};
+    for (int i = 0; i < measure_count(REPEATS); i++)
+        for (int k = 0; k < count; k++) {
+            if (spent[k] > 2) continue;
+            const double start = measure_clock();
+            last[k] = run_row(&rows[k]);
+            const double seconds = measure_since(start);
+            times[k][rounds[k]++] = seconds / rows[k].n * 1e9;
+            spent[k] += seconds;
+        }
+    for (int k = 0; k < count; k++) {
+        const row *r = &rows[k];
+        const measure_time time = measure_of_rounds(times[k], rounds[k]);
+        printf("%s,%d,%.4g,%.2g,%.12g,%.2f,%s,%s,%g\n", r->name, r->n, time.median, last[k].error, last[k].checksum,
+               time.spread, r->part, r->who, r->setting);
     }
-    printf("%s,%d,%.4g,%.2g,%.12g\n", name, n, measure_quantile(times, measure_count(REPEATS), 0.5), o.error,
-           o.checksum);
+    fflush(stdout);
+}
+
+#define COUNT(rows) ((int)(sizeof(rows) / sizeof *(rows)))
+static const char *const us = "libquat", *const differences = "differences", *const gsl = "GSL QAGS";
+
+static void projections_and_curves(void)
+{
+    const row projections[] = {
+        {"projections", "stereographic there and back", us, 0, POINTS, stereographic, NULL},
+        {"projections", "stereographic by plain formulas", "plain formulas", 0, POINTS, NULL, plain},
+        {"projections", "belt frames", us, 0, POINTS, belt, NULL},
+        {"projections", "rolling strokes", us, 0, POINTS, ball, NULL},
+    };
+    const row curves[] = {
+        {"curvature", "curve points: derivatives known", us, 0, POINTS, points_known, NULL},
+        {"curvature", "curve points: x alone", us, 0, POINTS, points_guessed, NULL},
+        {"curvature", "curve points by differences 1e-2", differences, 1e-2, POINTS, NULL, helix_steps},
+        {"curvature", "curve points by differences 1e-3", differences, 1e-3, POINTS, NULL, helix_steps},
+        {"curvature", "curve points by differences 1e-4", differences, 1e-4, POINTS, NULL, helix_steps},
+        {"curvature", "curve points by differences 1e-5", differences, 1e-5, POINTS, NULL, helix_steps},
+        {"frames", "minimal frames", us, 0, POINTS, minimal, NULL},
+        {"length", "length of an ellipse", us, 0, 1, length, NULL},
+        {"length", "length by a polygon of 100", "polygon", 100, 1, NULL, ellipse_polygon},
+        {"length", "length by a polygon of 1000", "polygon", 1000, 1, NULL, ellipse_polygon},
+        {"length", "length by a polygon of 10000", "polygon", 10000, 1, NULL, ellipse_polygon},
+        {"even points", "even points", us, 0, 257, even, NULL},
+        {"length", "length by GSL 1e-6", gsl, 1e-6, 1, NULL, ellipse_gsl},
+        {"length", "length by GSL 1e-13", gsl, 1e-13, 1, NULL, ellipse_gsl},
+    };
+    compete(projections, COUNT(projections));
+    compete(curves, COUNT(curves) - (HAS_GSL ? 0 : 2));
+}
+
+static void surfaces_and_totals(void)
+{
+    const row surfaces[] = {
+        {"gauss curvature", "surface points: derivatives known", us, 0, SIDE * SIDE, curvatures_known, NULL},
+        {"gauss curvature", "surface points: x alone", us, 0, SIDE * SIDE, curvatures_guessed, NULL},
+        {"gauss curvature", "surface points by differences 1e-2", differences, 1e-2, SIDE * SIDE, NULL, torus_steps},
+        {"gauss curvature", "surface points by differences 1e-3", differences, 1e-3, SIDE * SIDE, NULL, torus_steps},
+        {"gauss curvature", "surface points by differences 1e-4", differences, 1e-4, SIDE * SIDE, NULL, torus_steps},
+        {"gauss curvature", "surface points by differences 1e-5", differences, 1e-5, SIDE * SIDE, NULL, torus_steps},
+    };
+    const row totals[] = {
+        {"gauss-bonnet", "totals of an ellipsoid", us, 0, 1, ellipsoid, NULL},
+        {"gauss-bonnet", "midpoints 16", "midpoint rule", 16, 1, NULL, ellipsoid_midpoints},
+        {"gauss-bonnet", "midpoints 128", "midpoint rule", 128, 1, NULL, ellipsoid_midpoints},
+        {"gauss-bonnet", "midpoints 1024", "midpoint rule", 1024, 1, NULL, ellipsoid_midpoints},
+        {"gauss-bonnet of a disc", "totals of a disc of 1 : 1e4", us, 0, 1, disc, NULL},
+        {"gauss-bonnet", "totals by GSL along v 1e-6", gsl, 1e-6, 1, NULL, ellipsoid_gsl},
+        {"gauss-bonnet", "totals by GSL along v 1e-12", gsl, 1e-12, 1, NULL, ellipsoid_gsl},
+    };
+    compete(surfaces, COUNT(surfaces));
+    compete(totals, COUNT(totals) - (HAS_GSL ? 0 : 2));
+}
+
+static void gauss_maps(void)
+{
+    const row saddle[] = {{"gauss map", "saddle: least length", us, 0, SIDE * SIDE, least_length, NULL},
+                          {"gauss map", "saddle: least area", us, 0, SIDE * SIDE, least_area, NULL}};
+    const row torus[] = {{"gauss map", "whole torus: least area", us, 0, SIDE * SIDE, least_area, NULL}};
+    quat_family family;
+    quat_surface surface;
+    quat_saddle(1, 2, &family, &surface);
+    quat_surface_patch(&surface, -2, 2, -2, 2, SIDE, SIDE, places, nodes, triangles[0]);
+    compete(saddle, COUNT(saddle));
+    quat_torus(2, 0.8, &family, &surface);
+    quat_surface_patch(&surface, 0, 2 * pi, 0, 2 * pi, SIDE, SIDE, places, nodes, triangles[0]);
+    compete(torus, COUNT(torus));
 }
 
 int main(void)
 {
-    quat_family family;
-    quat_surface surface;
     for (int i = 0; i < POINTS; i++) frames[i] = quat_belt_untwist(0.2, (i + 0.5) / POINTS);
-    puts("case,n,ns,error,checksum");
-    measure("stereographic there and back", POINTS, stereographic);
-    measure("belt frames", POINTS, belt);
-    measure("rolling strokes", POINTS, ball);
-    measure("curve points: derivatives known", POINTS, points_known);
-    measure("curve points: x alone", POINTS, points_guessed);
-    measure("minimal frames", POINTS, minimal);
-    measure("length of an ellipse", 1, length);
-    measure("even points", 257, even);
-    measure("surface points: derivatives known", SIDE * SIDE, curvatures_known);
-    measure("surface points: x alone", SIDE * SIDE, curvatures_guessed);
-    measure("totals of an ellipsoid", 1, ellipsoid);
-    measure("totals of a disc of 1 : 1e4", 1, disc);
-    quat_saddle(1, 2, &family, &surface);
-    quat_surface_patch(&surface, -2, 2, -2, 2, SIDE, SIDE, places, nodes, triangles[0]);
-    measure("saddle: least length", SIDE * SIDE, least_length);
-    measure("saddle: least area", SIDE * SIDE, least_area);
-    quat_torus(2, 0.8, &family, &surface);
-    quat_surface_patch(&surface, 0, 2 * pi, 0, 2 * pi, SIDE, SIDE, places, nodes, triangles[0]);
-    measure("whole torus: least area", SIDE * SIDE, least_area);
+    if (!HAS_GSL) puts("# GSL is not installed: its rows are skipped");
+    puts("case,n,ns,error,checksum,spread,part,who,setting");
+    projections_and_curves();
+    surfaces_and_totals();
+    gauss_maps();
     return 0;
 }

@@ -1,21 +1,22 @@
 -- SPDX-License-Identifier: MIT
 --- `./run report`: every part measured, each with its picture, and every example scene by every method, as one page.
 ---
----     page.lua ROOT OUT BENCH RUNNER quick|full [PART...]
+---     page.lua ROOT OUT BENCH NATIVE RUNNER quick|full [PART...]
 ---
---- Runs the programs of bench/parts.lua and reports of the examples, keeps their CSV in OUT, and writes OUT/index.html with pictures inline
---- and no script. A program that is missing, fails or does not end in its time is named; the others stand.
+--- Runs the programs of bench/parts.lua, those of BENCH and again those of NATIVE (built with -march=native; "" leaves them out), and
+--- reports of the examples, keeps their CSV in OUT, and writes OUT/index.html with pictures inline and no script. A program that is
+--- missing, fails or does not end in its time is named; the others stand.
 local plot = require "quat.plot"
-local root, out, bench, runner, mode = arg[1], arg[2], arg[3], arg[4], arg[5]
+local root, out, bench, native_bench, runner, mode = arg[1], arg[2], arg[3], arg[4], arg[5], arg[6]
 local parts = dofile(root .. "/bench/parts.lua")
 local quick = mode == "quick"
 local chosen = {}
-for i = 6, #arg do chosen[arg[i]] = true end
+for i = 7, #arg do chosen[arg[i]] = true end
 local all = next(chosen) == nil
 
 -- Seconds of CPU that a part may take; of the examples, together with their reference's. On a machine that is busy with other work four
 -- times as many may pass.
-local part_time, example_time = quick and 30 or 180, quick and 0.8 or 20
+local part_time, example_time = quick and 30 or 180, quick and 0.5 or 14
 local function within(seconds, command)
   return ("( ulimit -t %d; exec timeout %d %s )"):format(math.ceil(seconds), math.ceil(4 * seconds), command)
 end
@@ -66,7 +67,7 @@ local function picture(name)
   return data and ('<img alt="%s" src="data:image/png;base64,%s">\n'):format(escape(name), base64(data)) or ""
 end
 
-local body, contents, failed = {}, {}, {}
+local body, contents, failed = {}, {}, {} -- the page, its sections, what is missing
 local function add(text) body[#body + 1] = text end
 local function section(name, title, says)
   contents[#contents + 1] = ('<a href="#%s">%s</a>'):format(name, escape(title))
@@ -107,61 +108,211 @@ end
 
 local palette = { "blue", "red", "green", "orange", "purple", "teal", "grey", "dark" }
 
---- Error against time, a colour for what the last naming column of a curve says.
-local function draw(part, lines)
-  local header = cells_of(lines[1])
-  local place = {}
-  for i, name in ipairs(header) do place[name] = i end
-  local time, error = place[part.time or ""], place[part.error or ""]
-  if not time or not error then return false end
-  local by, order = {}, {}
+--- The rows of a part, each by its columns' names, in order; and the header.
+local function rows_of(part, lines)
+  local header, rows = cells_of(lines[1]), {}
   for i = 2, #lines do
-    local cells = cells_of(lines[i])
-    local x, y, who = tonumber(cells[time]), tonumber(cells[error]), part.curve and cells[part.curve] or part.program
+    local row, fits = { line = lines[i] }, true
+    for k, cell in ipairs(cells_of(lines[i])) do row[header[k]] = cell end
+    for column, pattern in pairs(part.rows or {}) do fits = fits and (row[column] or ""):find(pattern) ~= nil end
+    for column, pattern in pairs(part.without or {}) do fits = fits and not (row[column] or ""):find(pattern) end
+    if fits then rows[#rows + 1] = row end
+  end
+  return rows, header
+end
+
+--- A panel of points, a colour for what the column `curve` says; nil where there is none.
+local function panel_of(part, rows, title)
+  local by, order = {}, {}
+  for _, row in ipairs(rows) do
+    local x, y, who = tonumber(row[part.time]), tonumber(row[part.error]), part.curve and row[part.curve] or part.program
     if x and y and x > 0 and y > 0 then
       if not by[who] then
         by[who] = { {}, {} }
         order[#order + 1] = who
       end
       table.insert(by[who][1], x)
-      table.insert(by[who][2], y)
+      table.insert(by[who][2], y * (part.unit or 1))
     end
   end
-  local panel = { title = part.title, xlabel = part.axes and part.axes[1] or "time, " .. part.time, ylabel = part.axes and part.axes[2] or "error, " .. part.error, xlog = true, ylog = true, legend = "top right" }
+  local panel = { title = title, xlabel = part.axes and part.axes[1] or "time, " .. part.time, ylabel = part.axes and part.axes[2] or "error, " .. part.error,
+    xlog = true, ylog = true, legend = "top right" }
   for i, who in ipairs(order) do
-    panel[#panel + 1] = plot.points { by[who][1], by[who][2], color = palette[(i - 1) % #palette + 1], label = who,
-      shape = i > #palette and "square" or "dot" }
+    panel[#panel + 1] = plot.points { by[who][1], by[who][2], color = palette[(i - 1) % #palette + 1], label = who, shape = i > #palette and "square" or "dot" }
   end
-  if #panel == 0 then return false end
-  return plot.save(plot.figure { size = { 900, 620 }, plot.panel(panel) }, part.name)
+  return #panel > 0 and plot.panel(panel) or nil
+end
+
+--- Error against time: one panel, or one for each of the values of a column.
+local function draw(part, rows)
+  if not part.time or not part.error then return false end
+  local panels = {}
+  for i = 2, #(part.panels or {}) do
+    local own = {}
+    for _, row in ipairs(rows) do if row[part.panels[1]] == part.panels[i] then own[#own + 1] = row end end
+    panels[#panels + 1] = panel_of(part, own, part.panels[1] .. " " .. part.panels[i])
+  end
+  if not part.panels then panels[1] = panel_of(part, rows, part.title) end
+  if #panels == 0 then return false end
+  local columns = #panels > 1 and 2 or 1
+  local deep = math.ceil(#panels / columns)
+  panels.size, panels.grid = { columns == 1 and 900 or 1300, columns == 1 and 620 or 480 * deep }, { columns, deep }
+  return plot.save(plot.figure(panels), part.name)
+end
+
+--- The least time of the rows, of ours or of the others, that err by no more than the goal; and whose it is.
+local function least(part, rows, ours, goal)
+  local best, who
+  for _, row in ipairs(rows) do
+    local time, error = tonumber(row[part.time]), tonumber(row[part.error])
+    if (part.own[row[part.curve]] or false) == ours and time and error and error * (part.unit or 1) <= goal and (not best or time < best) then
+      best, who = time, row[part.curve]
+    end
+  end
+  return best, who
+end
+
+-- The bars: ours ten times faster than what reaches 1e-9, and no slower than anything at 1e-6; of rotations no slower than the best
+-- peer; of crowds than the textbook's program.
+local bars = {
+  errors = function(part, rows, say)
+    for _, goal in ipairs { { 1e-9, 10 }, { 1e-6, 1 } } do
+      local own, other, who = least(part, rows, true, goal[1]), least(part, rows, false, goal[1])
+      if other and not own then say(("no row of ours reaches %g; %s does"):format(goal[1], who))
+      elseif other and other < goal[2] * own then
+        say(("%s reaches %g in %.2g of our time%s"):format(who, goal[1], other / own, goal[2] > 1 and " (the bar is 10)" or ""))
+      end
+    end
+  end,
+  peers = function(part, rows, say)
+    local own, double = least(part, rows, true, math.huge), {}
+    for _, row in ipairs(rows) do if row.type == "double" and not row.library:find "^libquat" then double[#double + 1] = row end end
+    local other, who = least(part, double, false, math.huge)
+    if own and other and own > other then say(("%s takes %.2g of our time"):format(who, other / own)) end
+  end,
+  crowd = function(part, rows, say)
+    local time = { time = "us_per_event", error = "us_per_event", own = part.own, curve = part.curve }
+    local own, other, who = least(time, rows, true, math.huge), least(time, rows, false, math.huge)
+    if own and other and other < own then say(("%s takes %.2g of our time"):format(who, other / own)) end
+  end,
+}
+
+local missed = {}
+
+--- Rows that miss the part's bar, in words.
+local function judge(part, rows, build)
+  if not part.rule then return end
+  local groups, order, words = {}, {}, {}
+  for _, row in ipairs(rows) do
+    local key = {}
+    for _, column in ipairs(part.group) do key[#key + 1] = row[column] end
+    key = table.concat(key, " ")
+    if not groups[key] then
+      groups[key] = {}
+      order[#order + 1] = key
+    end
+    table.insert(groups[key], row)
+  end
+  for _, key in ipairs(order) do
+    bars[part.rule](part, groups[key], function(what) words[#words + 1] = (key ~= "" and key .. ": " or "") .. what .. build end)
+  end
+  for _, word in ipairs(words) do missed[#missed + 1] = escape(part.title .. ": " .. word) end
+  return words
 end
 
 local started = os.time()
+local kept = {} -- of each program its output, or why there is none
+
+local function run_program(folder, part, file)
+  local key = folder .. "/" .. part.program
+  if kept[key] then return kept[key] end
+  local got = { text = "" }
+  kept[key] = got
+  if not read(key) then
+    got.why = part.program .. " is not built"
+    return got
+  end
+  local code
+  got.text, got.good, code = shell(("%sOUT=%s; export OUT; %s 2>/dev/null </dev/null"):format(quick and "BENCH_QUICK=1; export BENCH_QUICK; " or "", quote(out),
+    within(part_time, quote(key))))
+  write(out .. "/" .. file .. ".csv", got.text)
+  if not got.good then
+    got.why = part.program .. (out_of_time[code] and (" did not end in %d s of CPU: the rows it came to"):format(part_time) or " failed")
+  end
+  return got
+end
+
+--- Names of a row: its first columns.
+local function name_of(line, names) return table.concat(cells_of(line), ",", 1, names) end
+
+--- The column of times again, by the program built for this machine's processor.
+local function add_native(part, lines, header, native)
+  local place
+  for i, name in ipairs(header) do if name == part.time then place = i end end
+  if not place or not native then return end
+  local times = {}
+  for i = 2, #native do times[name_of(native[i], part.names)] = cells_of(native[i])[place] end
+  lines[1] = lines[1] .. "," .. part.time .. " -march=native"
+  for i = 2, #lines do lines[i] = lines[i] .. "," .. (times[name_of(lines[i], part.names)] or "") end
+end
+
+--- A star behind a number over ten times that of the row before, of the same name.
+local function star(lines, header, by, column)
+  local name, place
+  for i, word in ipairs(header) do
+    if word == by then name = i elseif word == column then place = i end
+  end
+  local before
+  for i = 2, #lines do
+    local cells = cells_of(lines[i])
+    local value = tonumber(cells[place])
+    if before and before[name] == cells[name] and value and tonumber(before[place]) and value > 10 * tonumber(before[place]) then
+      before = { table.unpack(cells) }
+      cells[place] = cells[place] .. "*"
+      lines[i] = table.concat(cells, ",")
+    else
+      before = cells
+    end
+  end
+end
+
+local function fail(part, why)
+  if not why then return end
+  failed[#failed + 1] = part.name .. ": " .. why
+  add("<p class=absent>" .. escape(why) .. "</p>\n")
+end
 
 local function run_part(part)
   local began = os.time()
-  local program = bench .. "/" .. part.program
   section(part.name, part.title, part.says)
-  if not read(program) then
-    failed[#failed + 1] = part.name .. ": " .. part.program .. " is not built"
-    return add("<p class=absent>" .. escape(part.program) .. " is not built here.</p>\n")
-  end
-  local text, good, code = shell(("%sOUT=%s; export OUT; %s 2>/dev/null </dev/null"):format(quick and "BENCH_QUICK=1; export BENCH_QUICK; " or "", quote(out),
-    within(part_time, quote(program))))
-  write(out .. "/" .. part.name .. ".csv", text)
-  if not good then
-    local why = out_of_time[code] and ("did not end in %d s: the rows it came to"):format(part_time) or "failed"
-    failed[#failed + 1] = part.name .. ": " .. why
-    add("<p class=absent>" .. escape(part.program .. " " .. why) .. "</p>\n")
-  end
-  local sections, remarks = sections_of(text)
-  for _, remark in ipairs(remarks) do add("<p>" .. escape(remark) .. "</p>\n") end
-  for i, lines in ipairs(sections) do
-    if i == 1 and draw(part, lines) then add(picture(part.name)) end
-    html_table(lines)
+  local got = run_program(bench, part, part.program)
+  fail(part, got.why)
+  local sections, remarks = sections_of(got.text)
+  local lines = sections[part.section or 1]
+  for _, remark in ipairs(remarks) do add("<p class=absent>" .. escape(remark:sub(3)) .. "</p>\n") end
+  if lines then
+    local rows, header = rows_of(part, lines)
+    local words = judge(part, rows, "")
+    local table_lines = { lines[1] }
+    for _, row in ipairs(rows) do table_lines[#table_lines + 1] = row.line end
+    if part.native and native_bench ~= "" then
+      local again = run_program(native_bench, part, part.program .. "_native")
+      local native = sections_of(again.text)[part.section or 1]
+      fail(part, again.why)
+      if native then
+        for _, word in ipairs(judge(part, (rows_of(part, native)), " (both with -march=native)") or {}) do words[#words + 1] = word end
+        add_native(part, table_lines, header, native)
+      end
+    end
+    if part.slower then star(table_lines, header, part.slower[1], part.slower[2]) end
+    if draw(part, rows) then add(picture(part.name)) end
+    if words and #words > 0 then add("<p>Below the bar: " .. escape(table.concat(words, "; ")) .. ".</p>\n")
+    elseif words then add "<p>No row is below its bar.</p>\n" end
+    html_table(table_lines)
+    if not part.section and not part.rows then for i = 2, #sections do html_table(sections[i]) end end
   end
   add(("<p class=foot>%s, %d s</p>\n"):format(escape(part.program), os.time() - began))
-  print(("%-12s %4d s"):format(part.name, os.time() - began))
+  print(("%-16s %4d s"):format(part.name, os.time() - began))
 end
 
 local function examples()
@@ -195,7 +346,7 @@ local function run_examples()
 end
 
 for _, part in ipairs(parts) do
-  if chosen[part.name] or (all and not (quick and part.slow)) then run_part(part) end
+  if chosen[part.name] or all then run_part(part) end
 end
 if all or chosen.scenes then run_examples() end
 
@@ -210,6 +361,8 @@ pre{overflow-x:auto;background:#f7fafc;padding:.6em;font-size:12px}img{max-width
 local head = ('<!doctype html><html lang=en><meta charset=utf-8><title>Error against run time</title><style>%s</style>\n<h1>Error against run time</h1>\n<p>%s</p>\n')
   :format(style, escape(table.concat(machine, "; ")))
 local missing = #failed == 0 and "" or "<p class=absent>Missing: " .. escape(table.concat(failed, "; ")) .. "</p>\n"
-local left = quick and all and "<p>Quick: fewer samples; the slow parts (engines, cones, together, crowd, extreme) are left out.</p>\n" or ""
-write(out .. "/index.html", head .. "<nav>" .. table.concat(contents, " ") .. "</nav>\n" .. missing .. left .. table.concat(body) .. "</html>\n")
+local left = quick and "<p>Quick: fewer samples, shorter motions.</p>\n" or ""
+local bar = #missed == 0 and "" or "<details><summary>" .. #missed .. " rows below their bar</summary><ul>\n<li>" ..
+  table.concat(missed, "</li>\n<li>") .. "</li></ul></details>\n"
+write(out .. "/index.html", head .. "<nav>" .. table.concat(contents, " ") .. "</nav>\n" .. missing .. left .. bar .. table.concat(body) .. "</html>\n")
 print(("-> %s/index.html, %d s%s"):format(out, os.time() - started, #failed > 0 and "; missing: " .. table.concat(failed, "; ") or ""))

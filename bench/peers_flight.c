@@ -4,6 +4,7 @@
  * and Dormand 1981), DOP853 (Hairer, Norsett and Wanner 1993), the classical method of order 4, and the same on the
  * group (Munthe-Kaas 1999): u' = w + u x w/2 + u x (u x w)/12 of the rotation vector u of each step, q <- q exp(u).
  */
+#include "peers_dop853.h"
 #include "peers_flight.h"
 
 #include <math.h>
@@ -104,13 +105,9 @@ const flight_peer flight_peers_gsl[] = {
 const flight_peer flight_peers_gsl[] = {{NULL, 0, 0, NULL, NULL, NULL}};
 #endif
 
-/* ---- DOP853, by the wrapper of a wheel ---- */
+/* ---- DOP853 ---- */
 
 #ifdef HAVE_DOP853
-typedef void dop853_rates(double t, double *y, double *rate, double *context);
-void dop853_wrapper(dop853_rates *rates, int size, double *y0, void *context, int times, double *t, double *y,
-                    double relative, double absolute, int most_steps, int *success);
-
 static void dop853_rate(double t, double *y, double *rate, double *context)
 {
     (void)t;

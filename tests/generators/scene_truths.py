@@ -13,7 +13,9 @@ the one-contact formula of a sphere. Bounces are followed until they are slower 
     impact      P = m (1 + e) |v_n|; friction min(mu P, (2/7) m |slip|) against the slip
 """
 import sys
-from mpmath import mp, mpf, log, exp, sqrt, sin, cos, findroot, pi
+from mpmath import mp, mpf, log, exp, sqrt, sin, cos, findroot
+
+from scene_bodies import add, advance, conjugate, cross, dot, norm, product, scale, turn, unit
 
 mp.dps = 40
 STOP = mpf(10) ** -26
@@ -221,6 +223,262 @@ def orbit():
     return None, rows
 
 
+class Sphere:
+    """One of equal spheres over the floor z = r, in a wind F x of its own while |x - origin| <= reach.
+
+    On the floor the slip s = v + r z x w (level) of a sphere that slides brakes: f = -mu m g s/|s|; v' = (F + f)/m,
+    w' = -(5/(2 m r)) z x f. When s is nothing it rolls: no wind is there any more.
+    """
+
+    PIECE = mpf(1) / 64
+
+    def __init__(self, p, x, F):
+        self.p, self.F, self.origin = p, F, x[0]
+        self.x, self.v, self.w, self.q = x, [mpf(0)] * 3, [mpf(0)] * 3, [mpf(1), mpf(0), mpf(0), mpf(0)]
+        self.mode, self.windy = "fly", True
+
+    def slip(self, v, w):
+        return [v[0] - self.p["r"] * w[1], v[1] + self.p["r"] * w[0], mpf(0)]
+
+    def accelerations(self, v, w):
+        """Of the centre, and of the turning."""
+        p, a, turning = self.p, [self.F / self.p["m"] if self.windy else mpf(0), mpf(0), mpf(0)], [mpf(0)] * 3
+        if self.mode == "fly":
+            a[2] = -p["g"]
+        if self.mode == "slide":
+            s = self.slip(v, w)
+            f = scale(s, -p["mu"] * p["g"] / norm(s))
+            a, turning = add(a, f), scale([-f[1], f[0], mpf(0)], -mpf(5) / (2 * p["r"]))
+        return a, turning
+
+    def rates(self, t, y):
+        v, w, q = y[3:6], y[6:9], y[9:13]
+        a, turning = self.accelerations(v, w)
+        return v + a + turning + scale(product([mpf(0)] + w, q), mpf(1) / 2)
+
+    def where(self, t):
+        """The centre, its velocity and the turning so long after now: formulas, where the slip does not change its direction."""
+        if self.mode == "slide" and self.windy:
+            y = advance(self.rates, mpf(0), self.x + self.v + self.w + self.q, t, self.PIECE)
+            return y[0:3], y[3:6], y[6:9]
+        a, turning = self.accelerations(self.v, self.w)
+        return add(add(self.x, self.v, t), a, t * t / 2), add(self.v, a, t), add(self.w, turning, t)
+
+    def at(self, t):
+        """All of its state."""
+        x, v, w = self.where(t)
+        if self.mode == "slide" and self.windy:
+            return advance(self.rates, mpf(0), self.x + self.v + self.w + self.q, t, self.PIECE)
+        _, turning = self.accelerations(self.v, self.w)
+        if norm(turning) > 0:
+
+            def turn_on(s, q):
+                return scale(product([mpf(0)] + add(self.w, turning, s), q), mpf(1) / 2)
+            return x + v + w + advance(turn_on, mpf(0), self.q, t, self.PIECE)
+        rate = norm(self.w)
+        half = rate * t / 2
+        return x + v + w + (product([cos(half)] + scale(self.w, sin(half) / rate), self.q) if rate != 0 else self.q)
+
+    def set(self, y):
+        self.x, self.v, self.w, self.q = y[0:3], y[3:6], y[6:9], unit(y[9:13])
+
+    def events(self, left):
+        """Times from now at which something of its own happens, with what."""
+        p = self.p
+        if self.mode == "fly":
+            w, h = self.v[2], self.x[2] - p["r"]
+            yield (w + sqrt(w * w + 2 * p["g"] * h)) / p["g"], "floor"
+        if self.mode == "slide" and not self.windy:
+            yield norm(self.slip(self.v, self.w)) / (mpf(7) / 2 * p["mu"] * p["g"]), "stick"
+        if self.windy:
+            def inside(t):
+                return p["reach"] - abs(self.where(t)[0][0] - self.origin)
+            root = first_root(inside, mpf(0), left, 40) if inside(mpf(0)) > 0 else mpf(0)
+            if root is not None:
+                yield root, "edge"
+
+    def strike_floor(self):
+        p = self.p
+        self.x[2] = p["r"]
+        P = p["m"] * (1 + p["e"]) * -self.v[2]
+        s = self.slip(self.v, self.w)
+        if norm(s) > 0:
+            f = min(p["mu"] * P, mpf(2) / 7 * p["m"] * norm(s))
+            J = scale(s, -f / norm(s))
+            self.v = add(self.v, J, 1 / p["m"])
+            self.w = add(self.w, [-J[1], J[0], mpf(0)], -mpf(5) / (2 * p["m"] * p["r"]))
+        self.v[2] *= -p["e"]
+        if self.v[2] < STOP:
+            self.v[2], self.mode = mpf(0), "slide"
+            assert norm(self.slip(self.v, self.w)) > 0.01, "it would stick"
+
+    def leave_wind(self):
+        self.windy = False
+
+    def hold(self):
+        """No wind any more: it rolls on for ever."""
+        assert not self.windy and norm(self.slip(self.v, self.w)) < mpf(10) ** -30
+        self.w = [-self.v[1] / self.p["r"], self.v[0] / self.p["r"], self.w[2]]
+        self.mode = "roll"
+
+
+def meet(a, b, p):
+    """Two equal spheres: n from b to a; P = (1 + e) m |v_n|/2, friction min(mu P, m |slip|/7) against the slip."""
+    n = unit(add(a.x, b.x, -1))
+    v = add(a.v, b.v, -1)
+    vn = dot(v, n)
+    P = (1 + p["pair_e"]) * p["m"] / 2 * -vn
+    s = add(add(v, n, -vn), cross(add(a.w, b.w), n), -p["r"])  # they touch at a.x - r n, which is b.x + r n
+    f = min(p["pair_mu"] * P, p["m"] * norm(s) / 7)
+    J = add(scale(n, P), s, -f / norm(s))
+    for body, sign in ((a, 1), (b, -1)):
+        body.v = add(body.v, J, sign / p["m"])
+        body.w = add(body.w, cross(n, J), -mpf(5) / (2 * p["m"] * p["r"]))
+
+
+def two_spheres():
+    """The thesis' second scene: they fall, bounce, meet, bounce to rest, slide, leave their winds, roll."""
+    friction, bounce = mpf(0.25), mpf(0.3)
+    p = dict(r=mpf(0.3), m=mpf(4), g=mpf(9.81), reach=mpf(5), e=bounce, mu=friction * friction, pair_e=bounce, pair_mu=friction)
+    bodies = [Sphere(p, [mpf(-5), mpf(0), mpf(5)], mpf(25)), Sphere(p, [mpf(5), mpf(0.2), mpf(5)], mpf(-25))]
+    t, rows = mpf(0), []
+    with mp.workdps(60):
+        for goal in times_of(3.75):
+            while t < goal:
+                first, what, who = goal - t, None, None
+                for body in bodies:
+                    for root, name in body.events(goal - t):
+                        if root < first:
+                            first, what, who = root, name, body
+
+                def apart(s):
+                    return norm(add(bodies[0].where(s)[0], bodies[1].where(s)[0], -1)) - 2 * p["r"]
+                if all(body.mode == "fly" for body in bodies) and dot(add(bodies[0].x, bodies[1].x, -1), add(bodies[0].v, bodies[1].v, -1)) < 0:
+                    root = first_root(apart, mpf(0), first, 40)
+                    if root is not None:
+                        first, what = root, "meet"
+                states = [body.at(first) for body in bodies]
+                for body, y in zip(bodies, states):
+                    body.set(y)
+                t = t + first if what else goal
+                if what and "-v" in sys.argv:
+                    print(float(t), what, who and bodies.index(who))
+                if what == "floor":
+                    who.strike_floor()
+                elif what == "edge":
+                    who.leave_wind()
+                elif what == "stick":
+                    who.hold()
+                elif what == "meet":
+                    meet(bodies[0], bodies[1], p)
+            for name, body in zip(("left", "right"), bodies):
+                rows.append([goal, name, *body.x, *body.q, *body.v, *body.w])
+    return None, rows
+
+
+class Ellipsoid:
+    """An ellipsoid over the floor z = 0 in a uniform wind, through air that brakes its motion: the centre by formulas, the
+    turning by Euler's equations; y = q, w (body axes)."""
+
+    def __init__(self, p):
+        self.p, self.k = p, log(1 - p["linear"])
+        self.x, self.v = p["x"], p["v"]
+        self.q, self.w = unit(p["q"]), p["w"]  # w in body axes
+        self.piece = p["piece"]
+
+    def rates(self, t, y):
+        q, w, I = y[0:4], y[4:7], self.p["I"]
+        return scale(product(q, [mpf(0)] + w), mpf(1) / 2) + [
+            (I[1] - I[2]) * w[1] * w[2] / I[0], (I[2] - I[0]) * w[2] * w[0] / I[1], (I[0] - I[1]) * w[0] * w[1] / I[2]]
+
+    def centre(self, t):
+        pull = [self.p["F"] / self.p["m"], mpf(0), -self.p["g"]]
+        laws = [Linear(v, a, self.k, x) for v, a, x in zip(self.v, pull, self.x)]
+        return [law.x(t) for law in laws], [law.y(t) for law in laws]
+
+    def turning(self, t):
+        y = advance(self.rates, mpf(0), self.q + self.w, t, self.piece)
+        return unit(y[0:4]), y[4:7]
+
+    def lowest(self, q):
+        """From the centre, in the world's axes: h(d) = |A d|, x = A A d/h, d down."""
+        d = turn(conjugate(q), [mpf(0), mpf(0), mpf(-1)])
+        a = self.p["axes"]
+        h = norm([a[i] * d[i] for i in range(3)])
+        return turn(q, [a[i] * a[i] * d[i] / h for i in range(3)])
+
+    def height(self, t):
+        q, _ = self.turning(t)
+        return self.centre(t)[0][2] + self.lowest(q)[2]
+
+    def strike(self):
+        """u' = M (n - mu s/|s|) over the normal impulse P: to u_n = 0 at P_c, then to (1 + e) P_c (Poisson)."""
+        p, r = self.p, self.lowest(self.q)
+        n = [mpf(0), mpf(0), mpf(1)]
+
+        def response(J):
+            L = turn(conjugate(self.q), cross(r, J))
+            return add(scale(J, 1 / p["m"]), cross(turn(self.q, [L[i] / p["I"][i] for i in range(3)]), r))
+
+        def force(u):
+            s = [u[0], u[1], mpf(0)]
+            size = norm(s)
+            assert size > 1e-3, "it would stick"
+            return add(n, s, -p["mu"] / size)
+
+        def over(P, y):
+            f = force(y[0:3])
+            return response(f) + f
+
+        u = add(self.v, cross(turn(self.q, self.w), r))
+        assert u[2] < 0
+        start = u + [mpf(0)] * 3
+        scale_P = -u[2] / response(n)[2]
+        piece = scale_P / 8
+
+        def speed(P):
+            return -advance(over, mpf(0), start, P, piece)[2]
+        P = first_root(speed, mpf(0), 4 * scale_P, 8)
+        J = advance(over, mpf(0), start, P * (1 + p["e"]), piece)[3:6]
+        self.v = add(self.v, J, 1 / p["m"])
+        L = turn(conjugate(self.q), cross(r, J))
+        self.w = add(self.w, [L[i] / p["I"][i] for i in range(3)])
+
+    def go(self, t):
+        (self.x, self.v), (self.q, self.w) = self.centre(t), self.turning(t)
+
+    def run(self, times):
+        t, rows, bounced = mpf(0), [], False
+        for goal in times:
+            while t < goal:
+                left = goal - t
+                start = mpf(10) ** -3 if bounced else mpf(0)  # it left just now
+                root = first_root(self.height, start, left, 24) if left > start else None
+                if root is None:
+                    self.go(left)
+                    t, bounced = goal, bounced and left <= start
+                    continue
+                self.go(root)
+                t, bounced = t + root, True
+                self.strike()
+                if "-v" in sys.argv:
+                    print(float(t), "floor", [float(v) for v in self.v])
+            rows.append([goal, "NAME", *self.x, *self.q, *self.v, *turn(self.q, self.w)])
+        return rows
+
+
+def ellipsoid_in_wind():
+    a = [mpf(0.1), mpf(0.2), mpf(0.3)]
+    m = mpf(4)
+    p = dict(axes=a, m=m, I=[m * (a[1] ** 2 + a[2] ** 2) / 5, m * (a[2] ** 2 + a[0] ** 2) / 5, m * (a[0] ** 2 + a[1] ** 2) / 5],
+             g=mpf(9.81), F=mpf(5), linear=mpf(0.04), mu=mpf(0.1) * mpf(0.5), e=mpf(0.6), x=[mpf(0), mpf(0), mpf(1)],
+             v=[mpf(1), mpf(0), mpf(0)], q=[mpf(0.9), mpf(0.3), mpf(0.2), mpf(0.1)], w=[mpf(0)] * 3, piece=mpf(1) / 16)
+    q = unit(p["q"])
+    p["w"] = turn(conjugate(q), [mpf(1), mpf(2), mpf(-1)])
+    with mp.workdps(50):
+        return "ellipsoid", Ellipsoid(p).run(times_of(1.2))
+
+
 def write(folder, name, answer):
     body, rows = answer
     with open(f"{folder}/{name}.csv", "w") as file:
@@ -232,5 +490,5 @@ def write(folder, name, answer):
 
 
 if __name__ == "__main__":
-    for scene in (sphere_wall, bowling_ball, damped_ball, orbit):
+    for scene in (sphere_wall, two_spheres, bowling_ball, damped_ball, orbit, ellipsoid_in_wind):
         write(sys.argv[1], scene.__name__, scene())

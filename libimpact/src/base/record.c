@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/definition.h"
+#include "base/digits.h"
 #include "base/out_file.h"
 
 #include <errno.h>
@@ -44,28 +45,20 @@ static void explain(char *message, size_t size, const char *path, const char *wh
 
 /* ---- rows ---- */
 
-/* A number with the digits that give back the same bits, '.' whatever the locale; adding 0 turns -0 into 0. */
-static bool put_number(imp_out_file *file, double value, char end)
-{
-    char text[32];
-    snprintf(text, sizeof text - 1, "%.17g", value + 0.0);
-    char *point = text + strspn(text, "+-0123456789einfa");
-    const size_t size = strcspn(point, "0123456789e"); /* of the locale's decimal point, which may be several bytes */
-    if (size > 0) {
-        memmove(point + 1, point + size, strlen(point + size) + 1);
-        *point = '.';
-    }
-    const size_t length = strlen(text);
-    text[length] = end;
-    return imp_out_put(file, text, length + 1);
-}
+enum { MOST_NUMBERS = 13 }; /* beside each other in a row */
 
+/* Numbers with the digits that give back the same bits; adding 0 turns -0 into 0. */
 static bool put_numbers(imp_out_file *file, const double *values, int count, char end)
 {
-    for (int i = 0; i < count; i++)
-        if (!put_number(file, values[i], i + 1 < count ? ',' : end)) return false;
-    return true;
+    char text[MOST_NUMBERS * IMP_DIGITS_ROOM], *at = text;
+    for (int i = 0; i < count; i++) {
+        at += imp_digits(values[i] + 0.0, at);
+        *at++ = i + 1 < count ? ',' : end;
+    }
+    return imp_out_put(file, text, (size_t)(at - text));
 }
+
+static bool put_number(imp_out_file *file, double value, char end) { return put_numbers(file, &value, 1, end); }
 
 /* A word, quoted when it holds what CSV would trip over (RFC 4180). What a spreadsheet would take for a formula gets an
  * apostrophe before it, and so does what begins with one: that can be undone. */
