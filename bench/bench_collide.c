@@ -146,7 +146,7 @@ static void solve_all(const group *g, ways *w, int i, int timed)
         for (int k = 0; k < w->count; k++) {
             const way *one = &w->list[k];
             const int loops = one->slow ? 1 : 20;
-            if (one->slow && r >= 2) continue;
+            if (one->slow && r >= 1) continue; /* milliseconds */
             const double from = measure_clock();
             for (int l = 0; l < loops; l++) answered[k] = one->solve(&g->c[i], &o[k], one->context);
             best[k] = fmin(best[k], measure_since(from) / loops);
@@ -154,8 +154,7 @@ static void solve_all(const group *g, ways *w, int i, int timed)
     for (int k = 0; k < w->count; k++) {
         way *one = &w->list[k];
         one->times[timed] = best[k];
-        const double error =
-            answered[k] ? case_error(&g->c[i], o[k].velocity, o[k].omega, g->v[i], g->w[i]) : INFINITY;
+        const double error = answered[k] ? case_error(&g->c[i], o[k].velocity, o[k].omega, g->v[i], g->w[i]) : INFINITY;
         if (!(error < 1e-3))
             one->failures++;
         else
@@ -174,9 +173,10 @@ static void run(const group *g, ways *w)
         way *one = &w->list[k];
         const double time = measure_quantile(one->times, timed, 0.5);
         if (k == 0) first = time;
-        printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g,%.3g,%.3g\n", g->name, one->name, one->parameter, timed, one->failures,
-               measure_quantile(one->errors, one->answered, 0.5), measure_quantile(one->errors, one->answered, 1),
-               1e6 * time, time / first, g->conditioning_median, g->conditioning_largest);
+        printf("%s,%s,%s,%d,%d,%.2g,%.2g,%.3g,%.3g,%.3g,%.3g\n", g->name, one->name, one->parameter, timed,
+               one->failures, measure_quantile(one->errors, one->answered, 0.5),
+               measure_quantile(one->errors, one->answered, 1), 1e6 * time, time / first, g->conditioning_median,
+               g->conditioning_largest);
     }
     fflush(stdout);
     w->count = 0;

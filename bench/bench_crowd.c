@@ -4,9 +4,9 @@
  *
  * A gas: n equal balls without friction, restitution 1, in a box of which they fill a tenth; impacts; us for one;
  * that over the textbook program's of the same run (peers_crowd_textbook.c); kinetic energy at the end over that of the
- * start, less 1; bytes a ball; median over least. Each is the median of runs that take turns; of the engines, which take steps of 1 ms,
- * one run. They count no impacts: theirs are taken to be as many in a second of motion as libimpact's. Single cases,
- * each with its quantity. Balls that fall into a box which grows with them.
+ * start, less 1; bytes a ball; median over least. Each is the median of runs that take turns; of the engines, which
+ * take steps of 1 ms, one run. They count no impacts: theirs are taken to be as many in a second of motion as
+ * libimpact's. Single cases, each with its quantity. Balls that fall into a box which grows with them.
  */
 #include <math.h>
 #include <stdio.h>
@@ -241,7 +241,8 @@ static void compare(int balls, double duration, int repeats)
         for (int p = 0; p < PROGRAMS; p++) {
             if (programs[p].engine && r > 0) continue;
             const double part = programs[p].engine ? engines_part : 1;
-            there[p] = balls <= (programs[p].engine && few ? 1000 : programs[p].most) && programs[p].move(&g, part * duration, &run[p]);
+            there[p] = balls <= (programs[p].engine && few ? 1000 : programs[p].most) &&
+                       programs[p].move(&g, part * duration, &run[p]);
             if (!there[p]) continue;
             if (programs[p].engine) run[p].events = lround(part * (double)run[0].events);
             times[p][r] = 1e6 * run[p].seconds / (double)run[p].events;

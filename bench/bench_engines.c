@@ -6,10 +6,10 @@
  * bounces, S4 free tumbling near the unstable axis for 100 s, S5 an ellipsoid meets a plane (a: the slip turns by 97
  * degrees, b: it ends)
  *
- * CSV: scene, engine, step in s (0: none; of Simbody's integrator its accuracy), error, time in us (median over rounds in
- * which all take turns), that time over ours, median over least, a checksum. The error is, for one
- * impact, that of the velocities, sqrt(sum |dv|^2 + rho^2 |dw|^2) relative to their own; for S3 the worst relative
- * error of a height; for S4 the worst angle in rad at t = 1 ... 100 s (10 with BENCH_QUICK). The right answers: S1, S2, S5 by the 128-bit
+ * CSV: scene, engine, step in s (0: none; of Simbody's integrator its accuracy), error, time in us (median over rounds
+ * in which all take turns), that time over ours, median over least, a checksum. The error is, for one impact, that of
+ * the velocities, sqrt(sum |dv|^2 + rho^2 |dw|^2) relative to their own; for S3 the worst relative error of a height;
+ * for S4 the worst angle in rad at t = 1 ... 100 s (10 with BENCH_QUICK). The right answers: S1, S2, S5 by the 128-bit
  * oracle, S3 (height eps^(2 k)), and S4 by a Taylor series in long double. Other engines solve an impact by Newton's
  * law with the last direction of slip: on S5 no step helps them.
  */
@@ -215,7 +215,7 @@ static void compete(const char *scene, const engine *const lists[], bool all_ste
 {
     contestant row[MOST];
     int count = 0;
-    const double enough = getenv("BENCH_QUICK") ? 0.02 : 0.5;
+    const double enough = getenv("BENCH_QUICK") ? 0.02 : 0.2;
     for (int l = 0; l < LISTS; l++)
         for (const engine *e = lists[l]; e->name && count < MOST; e++) {
             row[count] = (contestant){.e = e};
@@ -234,8 +234,8 @@ static void compete(const char *scene, const engine *const lists[], bool all_ste
     for (int k = 0; k < count; k++) {
         const measure_time time = measure_of_rounds(row[k].times, row[k].count);
         if (k == 0) own = time.median;
-        printf("%s,%s,%g,%.2g,%.3g,%.3g,%.2f,%.9g\n", scene, row[k].e->name, row[k].e->step, row[k].last.error, time.median,
-               time.median / own, time.spread, row[k].last.sum);
+        printf("%s,%s,%g,%.2g,%.3g,%.3g,%.2f,%.9g\n", scene, row[k].e->name, row[k].e->step, row[k].last.error,
+               time.median, time.median / own, time.spread, row[k].last.sum);
     }
     fflush(stdout);
 }

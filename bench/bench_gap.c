@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * bench_gap: time per query of our ways and of libccd's, FCL's, coal's and MuJoCo's, on the pairs of the campaign, with
- * each way's error beside it. CSV: family, method, setting, time in us (median over rounds in which all take turns), error of the gap relative to L + |c| (p50,
- * p99, worst), error of the normal in rad (p50), share of the pairs not answered or answered as touching where they are
- * apart. `receipt`: what an answer's own check adds to it, over the whole.
+ * each way's error beside it. CSV: family, method, setting, time in us (median over rounds in which all take turns),
+ * error of the gap relative to L + |c| (p50, p99, worst), error of the normal in rad (p50), share of the pairs not
+ * answered or answered as touching where they are apart. `receipt`: what an answer's own check adds to it, over the
+ * whole.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@
 #include "peers_gap.h"
 #include "measure.h"
 
-enum { PAIRS = 2000, REPEATS = 7, MOST_CONTESTANTS = 20 };
+enum { PAIRS = 2000, REPEATS = 5, MOST_CONTESTANTS = 20 };
 
 static int pair_count(void)
 {
@@ -126,7 +127,8 @@ static double time_round(contestant *one, const gap_case *cases)
     qvec3 normal;
     const double start = measure_clock();
     one->answered = 0;
-    for (int i = 0; i < pair_count(); i++) one->answered += one->peer->method(&cases[i], one->peer->setting, &gap, &normal);
+    for (int i = 0; i < pair_count(); i++)
+        one->answered += one->peer->method(&cases[i], one->peer->setting, &gap, &normal);
     return measure_since(start) / pair_count() * 1e6;
 }
 
@@ -145,9 +147,10 @@ static void print_contestant(const char *family, const char *kind, contestant *o
     }
     const measure_time time = measure_of_rounds(one->times, REPEATS);
     const double p50 = measure_quantile(gaps, gap_count, 0.5), p99 = measure_quantile(gaps, gap_count, 0.99);
-    printf("%s,%s,%s,%g,%.3g,%.2g,%.2g,%.2g,%.2g,%.4f,%.2g,%.2f,%.9g\n", family, kind, one->peer->name, one->peer->setting,
-           time.median, p50, p99, gap_count ? gaps[gap_count - 1] : NAN, measure_quantile(normals, normal_count, 0.5),
-           1 - (double)one->answered / pair_count(), time.median / ours, time.spread, sum);
+    printf("%s,%s,%s,%g,%.3g,%.2g,%.2g,%.2g,%.2g,%.4f,%.2g,%.2f,%.9g\n", family, kind, one->peer->name,
+           one->peer->setting, time.median, p50, p99, gap_count ? gaps[gap_count - 1] : NAN,
+           measure_quantile(normals, normal_count, 0.5), 1 - (double)one->answered / pair_count(), time.median / ours,
+           time.spread, sum);
     fflush(stdout);
 }
 
@@ -197,7 +200,8 @@ static void name_absent(void)
     const struct {
         const char *name;
         const gap_peer *list;
-    } peers[] = {{"libccd", gap_peers_ccd}, {"FCL", gap_peers_fcl}, {"coal", gap_peers_coal}, {"MuJoCo", gap_peers_mujoco}};
+    } peers[] = {
+        {"libccd", gap_peers_ccd}, {"FCL", gap_peers_fcl}, {"coal", gap_peers_coal}, {"MuJoCo", gap_peers_mujoco}};
     for (int k = 0; k < 4; k++)
         if (!peers[k].list[0].method) printf("# %s is not installed: its rows are skipped\n", peers[k].name);
 }
@@ -210,7 +214,8 @@ int main(void)
                             {NULL, NULL, 0, GAP_ALL, NULL}};
     const gap_peer *const all[] = {own, gap_peers_ccd, gap_peers_fcl, gap_peers_coal, gap_peers_mujoco};
     name_absent();
-    printf("family,kind,method,setting,time_us,gap_p50,gap_p99,gap_worst,normal_p50,unanswered,time_over_ours,spread,checksum\n");
+    printf("family,kind,method,setting,time_us,gap_p50,gap_p99,gap_worst,normal_p50,unanswered,time_over_ours,spread,"
+           "checksum\n");
     for (int overlap = 0; overlap < 2; overlap++)
         for (int family = 0; family < RANDOM_FAMILIES; family++) {
             static contest c;

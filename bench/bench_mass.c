@@ -74,7 +74,8 @@ static qvec3 mesh(const solid *s, double setting)
             add_tetrahedron(low[i], high[next], high[i], &volume, &squares);
         }
     free(points);
-    return (qvec3){(squares.y + squares.z) / volume, (squares.z + squares.x) / volume, (squares.x + squares.y) / volume};
+    return (qvec3){(squares.y + squares.z) / volume, (squares.z + squares.x) / volume,
+                   (squares.x + squares.y) / volume};
 }
 
 #ifdef HAVE_GSL
@@ -125,14 +126,15 @@ static const struct {
     double setting;
     qvec3 (*inertia)(const solid *s, double setting);
     int batch;
-} methods[] = {{"libimpact", 0, library, 100},
-               {"mesh", 16, mesh, 1},
-               {"mesh", 64, mesh, 1},
-               {"mesh", 256, mesh, 1},
+} methods[] = {
+    {"libimpact", 0, library, 100},
+    {"mesh", 16, mesh, 1},
+    {"mesh", 64, mesh, 1},
+    {"mesh", 256, mesh, 1},
 #ifdef HAVE_GSL
-               {"GSL QAGS", 1e-4, quadrature, 1},
-               {"GSL QAGS", 1e-8, quadrature, 1},
-               {"GSL QAGS", 1e-12, quadrature, 1},
+    {"GSL QAGS", 1e-4, quadrature, 1},
+    {"GSL QAGS", 1e-8, quadrature, 1},
+    {"GSL QAGS", 1e-12, quadrature, 1},
 #endif
 };
 enum { METHODS = sizeof methods / sizeof *methods };

@@ -70,11 +70,16 @@ static int join(const omega_peer *peer, const omega_peer **all, int count)
 
 static void integrate(void)
 {
-    static const omega_peer own[] = {{"Magnus 4", 1000, magnus},          {"Magnus 4", 10, magnus},
-                                     {"Magnus 4", 100, magnus},           {"Magnus 4", 10000, magnus},
-                                     {"two exponentials", 100, two_exponentials}, {"two exponentials", 1000, two_exponentials},
-                                     {"two exponentials", 10000, two_exponentials}, {"RK4", 100, classical},
-                                     {"RK4", 1000, classical},            {"RK4", 10000, classical},
+    static const omega_peer own[] = {{"Magnus 4", 1000, magnus},
+                                     {"Magnus 4", 10, magnus},
+                                     {"Magnus 4", 100, magnus},
+                                     {"Magnus 4", 10000, magnus},
+                                     {"two exponentials", 100, two_exponentials},
+                                     {"two exponentials", 1000, two_exponentials},
+                                     {"two exponentials", 10000, two_exponentials},
+                                     {"RK4", 100, classical},
+                                     {"RK4", 1000, classical},
+                                     {"RK4", 10000, classical},
                                      {NULL, 0, NULL}};
     const omega_peer *all[MOST];
     static double times[MOST][ROUNDS];
@@ -142,8 +147,7 @@ static void by_slerp(int count)
 static void by_squad(int count)
 {
     static quat control[MOST_KEYS + 1];
-    for (int i = 0; i <= count; i++)
-        control[i] = quat_squad_control(keys[i - 1], keys[i], keys[i + 1]);
+    for (int i = 0; i <= count; i++) control[i] = quat_squad_control(keys[i - 1], keys[i], keys[i + 1]);
     for (int k = 0; k < PLACES; k++) {
         double s;
         const int i = find(count, place(k), &s);
@@ -156,7 +160,8 @@ static void by_spline(int count)
 {
     quat_spline *spline;
     const qvec3 first = quat_rotate(keys[0], omega_at(0)), last = quat_rotate(keys[count], omega_at(omega_duration));
-    if (quat_spline_new((size_t)count + 1, key_times, keys, QUAT_SPLINE_CLAMPED, first, last, &spline) != QUAT_OK) return;
+    if (quat_spline_new((size_t)count + 1, key_times, keys, QUAT_SPLINE_CLAMPED, first, last, &spline) != QUAT_OK)
+        return;
     for (int k = 0; k < PLACES; k++) out[k] = quat_spline_at(spline, place(k));
     quat_spline_free(spline);
 }
@@ -188,8 +193,8 @@ static void interpolate(void)
             }
             const measure_time time = measure_of_rounds(times[w], rounds());
             if (w == 0) slerp = time.median;
-            printf("%s,%d,%.4g,%.2g,%.3g,%.2f,%.12g\n", ways[w].name, counts[c], time.median, worst, time.median / slerp,
-                   time.spread, sum);
+            printf("%s,%d,%.4g,%.2g,%.3g,%.2f,%.12g\n", ways[w].name, counts[c], time.median, worst,
+                   time.median / slerp, time.spread, sum);
         }
     }
 }

@@ -6,9 +6,9 @@
  *
  * ns: median over the rounds, per element. ratio: this row's time over that of the fastest peer in double (memcpy for
  * the rows called rotate_array_to_copy). error_u: largest error of a component over the length of the result, in units
- * of 2^-53, against long double. checksum: the sum of all results. spread: median over least. In every round all contestants run one after the
- * other, so that what disturbs one disturbs all. `libquat matrix`: the same rotations held as matrices, made
- * beforehand.
+ * of 2^-53, against long double. checksum: the sum of all results. spread: median over least. In every round all
+ * contestants run one after the other, so that what disturbs one disturbs all. `libquat matrix`: the same rotations
+ * held as matrices, made beforehand.
  */
 #include "bench_quat.h"
 #include <float.h>
@@ -22,7 +22,7 @@
 #include <quat/rotation.h>
 #include "measure.h"
 
-enum { few = 10000, many = 1000000, rounds = 60, most = 9 };
+enum { few = 10000, many = 1000000, rounds = 31, most = 9 };
 
 static const char *const names[BENCH_CASES] = {"product",      "compose", "normalize", "rotate",
                                                "rotate_array", "slerp",   "to_matrix", "from_matrix"};

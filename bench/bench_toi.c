@@ -17,7 +17,7 @@
 #include "measure.h"
 #include "peers_gap.h"
 
-enum { PAIRS = 300, ROUNDS = 5, METHODS = 6 };
+enum { PAIRS = 100, ROUNDS = 3, METHODS = 6 };
 
 typedef struct meeting {
     impact_solid body[2];
@@ -58,7 +58,7 @@ static double exact(const meeting *m, double setting)
     double time;
     (void)setting;
     return impact_toi(&m->body[0], &m->motion[0], &m->body[1], &m->motion[1], interval, &time, NULL) == IMPACT_OK ? time
-                                                                                                                 : NAN;
+                                                                                                                  : NAN;
 }
 
 static bool meets_at(const meeting *m, double t)

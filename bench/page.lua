@@ -16,7 +16,7 @@ local all = next(chosen) == nil
 
 -- Seconds of CPU that a part may take; of the examples, together with their reference's. On a machine that is busy with other work four
 -- times as many may pass.
-local part_time, example_time = quick and 30 or 180, quick and 0.5 or 14
+local part_time, example_time = quick and 30 or 120, quick and 0.5 or 10
 local function within(seconds, command)
   return ("( ulimit -t %d; exec timeout %d %s )"):format(math.ceil(seconds), math.ceil(4 * seconds), command)
 end
@@ -365,4 +365,10 @@ local left = quick and "<p>Quick: fewer samples, shorter motions.</p>\n" or ""
 local bar = #missed == 0 and "" or "<details><summary>" .. #missed .. " rows below their bar</summary><ul>\n<li>" ..
   table.concat(missed, "</li>\n<li>") .. "</li></ul></details>\n"
 write(out .. "/index.html", head .. "<nav>" .. table.concat(contents, " ") .. "</nav>\n" .. missing .. left .. bar .. table.concat(body) .. "</html>\n")
-print(("-> %s/index.html, %d s%s"):format(out, os.time() - started, #failed > 0 and "; missing: " .. table.concat(failed, "; ") or ""))
+local ticks = read "/proc/self/stat" -- of the programs that were run, in hundredths of a second
+local cpu = ticks and (function()
+  local fields = {}
+  for word in ticks:gsub("^.*%) ", ""):gmatch "%S+" do fields[#fields + 1] = word end
+  return (tonumber(fields[14]) + tonumber(fields[15])) / 100
+end)()
+print(("-> %s/index.html, %d s%s%s"):format(out, os.time() - started, cpu and (", of CPU %d s"):format(cpu) or "", #failed > 0 and "; missing: " .. table.concat(failed, "; ") or ""))

@@ -62,9 +62,9 @@ bool tumble(const tumble_case *c, double accuracy, quat q[TURNS], double *second
     using namespace SimTK;
     MultibodySystem system;
     SimbodyMatterSubsystem matter(system);
-    MobilizedBody::Free body(matter.Ground(), Transform(),
-                             Body::Rigid(MassProperties(c->mass, Vec3(0), Inertia(c->moments.x, c->moments.y, c->moments.z))),
-                             Transform());
+    MobilizedBody::Free body(
+        matter.Ground(), Transform(),
+        Body::Rigid(MassProperties(c->mass, Vec3(0), Inertia(c->moments.x, c->moments.y, c->moments.z))), Transform());
     State state = system.realizeTopology();
     system.realizeModel(state);
     body.setUToFitAngularVelocity(state, Vec3(c->omega.x, c->omega.y, c->omega.z));
@@ -84,9 +84,9 @@ bool tumble(const tumble_case *c, double accuracy, quat q[TURNS], double *second
 } // namespace
 
 extern "C" const engine engines_simbody[] = {
-    {"Simbody", 1e-2, nullptr, bounce, nullptr},  {"Simbody", 1e-3, nullptr, bounce, nullptr},
-    {"Simbody", 1e-4, nullptr, bounce, nullptr},  {"Simbody", 1e-4, nullptr, nullptr, tumble},
-    {"Simbody", 1e-7, nullptr, nullptr, tumble},  {"Simbody", 1e-10, nullptr, nullptr, tumble},
+    {"Simbody", 1e-2, nullptr, bounce, nullptr}, {"Simbody", 1e-3, nullptr, bounce, nullptr},
+    {"Simbody", 1e-4, nullptr, bounce, nullptr}, {"Simbody", 1e-4, nullptr, nullptr, tumble},
+    {"Simbody", 1e-7, nullptr, nullptr, tumble}, {"Simbody", 1e-10, nullptr, nullptr, tumble},
     {nullptr, 0, nullptr, nullptr, nullptr},
 };
 #else

@@ -59,11 +59,13 @@ static quat group(const flight_body *b, double setting, void *context)
     return q;
 }
 
-const flight_peer flight_peers_textbook[] = {
-    {"RK4", 0.1, 1000, classical, NULL, NULL},       {"RK4", 0.01, 1000, classical, NULL, NULL},
-    {"RK4", 0.001, 100, classical, NULL, NULL},      {"Lie group RK4", 0.1, 1000, group, NULL, NULL},
-    {"Lie group RK4", 0.01, 1000, group, NULL, NULL}, {"Lie group RK4", 0.001, 100, group, NULL, NULL},
-    {NULL, 0, 0, NULL, NULL, NULL}};
+const flight_peer flight_peers_textbook[] = {{"RK4", 0.1, 1000, classical, NULL, NULL},
+                                             {"RK4", 0.01, 1000, classical, NULL, NULL},
+                                             {"RK4", 0.001, 100, classical, NULL, NULL},
+                                             {"Lie group RK4", 0.1, 1000, group, NULL, NULL},
+                                             {"Lie group RK4", 0.01, 1000, group, NULL, NULL},
+                                             {"Lie group RK4", 0.001, 100, group, NULL, NULL},
+                                             {NULL, 0, 0, NULL, NULL, NULL}};
 
 /* ---- GSL ---- */
 
@@ -84,7 +86,8 @@ static quat by_gsl(const flight_body *b, double setting, void *context)
     double t = 0, y[4];
     flight_body body = *b;
     gsl_odeiv2_system system = {gsl_rates, NULL, 4, &body};
-    gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 0.1 * b->t, setting, setting);
+    gsl_odeiv2_driver *driver =
+        gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 0.1 * b->t, setting, setting);
     put(b->orientation, y);
     const int status = driver ? gsl_odeiv2_driver_apply(driver, &t, b->t, y) : GSL_ENOMEM;
     gsl_odeiv2_driver_free(driver);
@@ -97,10 +100,11 @@ static void *quiet(void)
     return NULL;
 }
 
-const flight_peer flight_peers_gsl[] = {
-    {"GSL rk8pd", 1e-6, 1000, by_gsl, quiet, NULL},  {"GSL rk8pd", 1e-9, 1000, by_gsl, quiet, NULL},
-    {"GSL rk8pd", 1e-12, 1000, by_gsl, quiet, NULL}, {"GSL rk8pd", 1e-15, 1000, by_gsl, quiet, NULL},
-    {NULL, 0, 0, NULL, NULL, NULL}};
+const flight_peer flight_peers_gsl[] = {{"GSL rk8pd", 1e-6, 1000, by_gsl, quiet, NULL},
+                                        {"GSL rk8pd", 1e-9, 1000, by_gsl, quiet, NULL},
+                                        {"GSL rk8pd", 1e-12, 1000, by_gsl, quiet, NULL},
+                                        {"GSL rk8pd", 1e-15, 1000, by_gsl, quiet, NULL},
+                                        {NULL, 0, 0, NULL, NULL, NULL}};
 #else
 const flight_peer flight_peers_gsl[] = {{NULL, 0, 0, NULL, NULL, NULL}};
 #endif
@@ -125,10 +129,11 @@ static quat by_dop853(const flight_body *b, double setting, void *context)
     return success == 1 ? quat_unit(get(y + 4)) : (quat){NAN, NAN, NAN, NAN};
 }
 
-const flight_peer flight_peers_dop853[] = {
-    {"DOP853", 1e-6, 1000, by_dop853, NULL, NULL},  {"DOP853", 1e-9, 1000, by_dop853, NULL, NULL},
-    {"DOP853", 1e-12, 1000, by_dop853, NULL, NULL}, {"DOP853", 1e-14, 1000, by_dop853, NULL, NULL},
-    {NULL, 0, 0, NULL, NULL, NULL}};
+const flight_peer flight_peers_dop853[] = {{"DOP853", 1e-6, 1000, by_dop853, NULL, NULL},
+                                           {"DOP853", 1e-9, 1000, by_dop853, NULL, NULL},
+                                           {"DOP853", 1e-12, 1000, by_dop853, NULL, NULL},
+                                           {"DOP853", 1e-14, 1000, by_dop853, NULL, NULL},
+                                           {NULL, 0, 0, NULL, NULL, NULL}};
 #else
 const flight_peer flight_peers_dop853[] = {{NULL, 0, 0, NULL, NULL, NULL}};
 #endif

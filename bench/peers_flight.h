@@ -34,7 +34,7 @@ typedef struct flight_peer {
     double setting;   /* tolerance, or rad a step */
     double most;      /* rad: beyond it takes too long */
     quat (*turn)(const flight_body *b, double setting, void *context);
-    void *(*open)(void);    /* not timed; NULL: it has no state */
+    void *(*open)(void); /* not timed; NULL: it has no state */
     void (*close)(void *context);
 } flight_peer;
 

@@ -79,7 +79,7 @@ bool warm(const gap_case *c, double setting, double *gap, qvec3 *normal)
 } // namespace
 
 extern "C" const gap_peer gap_peers_coal[] = {
-    {"coal", cold, 1e-6, GAP_ELLIPSOIDS, load}, {"coal", cold, 1e-12, GAP_ELLIPSOIDS, load},
+    {"coal", cold, 1e-6, GAP_ELLIPSOIDS, load},      {"coal", cold, 1e-12, GAP_ELLIPSOIDS, load},
     {"coal warm", warm, 1e-6, GAP_ELLIPSOIDS, load}, {"coal warm", warm, 1e-12, GAP_ELLIPSOIDS, load},
     {nullptr, nullptr, 0, GAP_ALL, nullptr},
 };

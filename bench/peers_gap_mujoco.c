@@ -22,8 +22,9 @@ static pose poses[MOST][2];
 
 static bool open_model(void)
 {
-    static const char *const xml = "<mujoco><worldbody><body><freejoint/><geom type='ellipsoid' size='1 1 1'/></body>"
-                                   "<body><freejoint/><geom type='ellipsoid' size='1 1 1'/></body></worldbody></mujoco>";
+    static const char *const xml =
+        "<mujoco><worldbody><body><freejoint/><geom type='ellipsoid' size='1 1 1'/></body>"
+        "<body><freejoint/><geom type='ellipsoid' size='1 1 1'/></body></worldbody></mujoco>";
     char error[300] = "";
     if (model) return true;
     mjSpec *spec = mj_parseXMLString(xml, NULL, error, sizeof error);

@@ -52,7 +52,8 @@ static double gauss_by_differences(double u, double v, double h)
 {
     const qvec3 x = torus(u, v), left = torus(u - h, v), right = torus(u + h, v), low = torus(u, v - h),
                 high = torus(u, v + h);
-    const qvec3 xu = qvec3_scale(qvec3_sub(right, left), 1 / (2 * h)), xv = qvec3_scale(qvec3_sub(high, low), 1 / (2 * h)),
+    const qvec3 xu = qvec3_scale(qvec3_sub(right, left), 1 / (2 * h)),
+                xv = qvec3_scale(qvec3_sub(high, low), 1 / (2 * h)),
                 xuu = qvec3_scale(qvec3_axpy(-2, x, qvec3_add(left, right)), 1 / (h * h)),
                 xvv = qvec3_scale(qvec3_axpy(-2, x, qvec3_add(low, high)), 1 / (h * h)),
                 xuv = qvec3_scale(qvec3_sub(qvec3_add(torus(u + h, v + h), torus(u - h, v - h)),

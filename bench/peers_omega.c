@@ -36,15 +36,18 @@ static quat by_gsl(double tolerance)
 {
     double t = 0, y[4];
     gsl_odeiv2_system system = {gsl_rates, NULL, 4, NULL};
-    gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 0.1, tolerance, tolerance);
+    gsl_odeiv2_driver *driver =
+        gsl_odeiv2_driver_alloc_y_new(&system, gsl_odeiv2_step_rk8pd, 0.1, tolerance, tolerance);
     begin(y);
     const int status = driver ? gsl_odeiv2_driver_apply(driver, &t, omega_duration, y) : GSL_ENOMEM;
     gsl_odeiv2_driver_free(driver);
     return status == GSL_SUCCESS ? unit_of(y) : (quat){NAN, NAN, NAN, NAN};
 }
 
-const omega_peer omega_peers_gsl[] = {{"GSL rk8pd", 1e-6, by_gsl},  {"GSL rk8pd", 1e-9, by_gsl},
-                                      {"GSL rk8pd", 1e-12, by_gsl}, {"GSL rk8pd", 1e-15, by_gsl},
+const omega_peer omega_peers_gsl[] = {{"GSL rk8pd", 1e-6, by_gsl},
+                                      {"GSL rk8pd", 1e-9, by_gsl},
+                                      {"GSL rk8pd", 1e-12, by_gsl},
+                                      {"GSL rk8pd", 1e-15, by_gsl},
                                       {NULL, 0, NULL}};
 #else
 const omega_peer omega_peers_gsl[] = {{NULL, 0, NULL}};
@@ -66,8 +69,10 @@ static quat by_dop853(double tolerance)
     return success == 1 ? unit_of(y + 4) : (quat){NAN, NAN, NAN, NAN};
 }
 
-const omega_peer omega_peers_dop853[] = {{"DOP853", 1e-6, by_dop853},  {"DOP853", 1e-9, by_dop853},
-                                         {"DOP853", 1e-12, by_dop853}, {"DOP853", 1e-14, by_dop853},
+const omega_peer omega_peers_dop853[] = {{"DOP853", 1e-6, by_dop853},
+                                         {"DOP853", 1e-9, by_dop853},
+                                         {"DOP853", 1e-12, by_dop853},
+                                         {"DOP853", 1e-14, by_dop853},
                                          {NULL, 0, NULL}};
 #else
 const omega_peer omega_peers_dop853[] = {{NULL, 0, NULL}};

@@ -9,7 +9,8 @@ int luaopen_quat_core(lua_State *L)
     static void (*const rooms[])(lua_State *) = {
         quat_lua_open_quat,    quat_lua_open_rotation, quat_lua_open_interpolate, quat_lua_open_spline,
         quat_lua_open_array,   quat_lua_open_average,  quat_lua_open_dual,        quat_lua_open_jacobian,
-        quat_lua_open_project, quat_lua_open_sequence, quat_lua_open_vector};
+        quat_lua_open_project, quat_lua_open_sequence, quat_lua_open_vector,      quat_lua_open_curve,
+        quat_lua_open_surface};
     luaL_checkversion(L); /* header against library */
     lua_newtable(L);
     lua_pushcfunction(L, quat_lua_layer);

@@ -21,6 +21,8 @@ void quat_lua_open_project(lua_State *L);
 void quat_lua_open_sequence(lua_State *L);
 void quat_lua_open_dual(lua_State *L);
 void quat_lua_open_vector(lua_State *L);
+void quat_lua_open_curve(lua_State *L);
+void quat_lua_open_surface(lua_State *L);
 
 /* Adds functions (ended by {NULL, NULL}) to the module's table on top of the stack and to the methods
  * of quaternions. */

@@ -3,7 +3,7 @@
  * Space curves in Lua: from a function, from points, or ready-made.
  */
 #include "quat_call.h"
-#include "quat_gsl.h"
+#include "quat_core.h"
 
 #include <quat/family.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * quat.gsl's rooms: each adds its functions to the table on top of the stack.
+ * quat.gsl, for the layer of `require "quat"` (docs/lua.md).
  */
 #ifndef QUAT_LUA_GSL_H
 #define QUAT_LUA_GSL_H
@@ -8,8 +8,5 @@
 #include "quat_core.h"
 
 QUAT_API int luaopen_quat_gsl(lua_State *L);
-
-void quat_lua_open_curve(lua_State *L);
-void quat_lua_open_surface(lua_State *L);
 
 #endif

@@ -2,19 +2,8 @@
  *
  * Parametric surfaces in Lua, and the choice of frames over a mesh.
  */
-#include "quat_call.h"
-#include "quat_gsl.h"
-
-#include <quat/family.h>
-
-#define SURFACE "quat.surface"
-
-/* User value 1: the script's function. */
-typedef struct lua_surface {
-    quat_surface surface;
-    quat_family family;
-    bool scripted;
-} lua_surface;
+#include "quat_core.h"
+#include "quat_surface.h"
 
 static bool ask(double u, double v, qvec3 d[6], void *context)
 {
@@ -22,22 +11,12 @@ static bool ask(double u, double v, qvec3 d[6], void *context)
     return quat_lua_call_vectors(context, 2, x, d);
 }
 
-static quat_surface begin(lua_State *L, quat_lua_call *call)
+static quat_lua_surface *new_surface(lua_State *L)
 {
-    static const int counts[] = {1, 3, 6};
-    lua_surface *const s = luaL_checkudata(L, 1, SURFACE);
-    quat_surface surface = s->surface;
-    *call = quat_lua_call_begin(L, 1, counts[surface.known]);
-    if (s->scripted) surface.context = call;
-    return surface;
-}
-
-static lua_surface *new_surface(lua_State *L)
-{
-    lua_surface *const s = lua_newuserdatauv(L, sizeof *s, 1);
-    const lua_surface none = {0};
+    quat_lua_surface *const s = lua_newuserdatauv(L, sizeof *s, 1);
+    const quat_lua_surface none = {0};
     *s = none;
-    luaL_setmetatable(L, SURFACE);
+    luaL_setmetatable(L, QUAT_LUA_SURFACE);
     return s;
 }
 
@@ -55,7 +34,7 @@ static int l_new(lua_State *L)
         if (!(range[i] < range[i + 1]))
             return quat_lua_reader_error(&reader, "%s must be greater than %s, got %g and %g", keys[i + 2], keys[i + 1],
                                          range[i + 1], range[i]);
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     s->surface.at = ask;
     s->surface.u0 = range[0], s->surface.u1 = range[1], s->surface.v0 = range[2], s->surface.v1 = range[3];
     s->surface.closed_u = quat_lua_get_boolean(&reader, "closed_u", false);
@@ -76,7 +55,7 @@ static double size(lua_State *L, int index, const char *name)
 static int l_plane(lua_State *L)
 {
     const double a = size(L, 1, "a"), b = size(L, 2, "b");
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_plane(a, b, &s->family, &s->surface);
     return 1;
 }
@@ -84,7 +63,7 @@ static int l_plane(lua_State *L)
 static int l_sphere(lua_State *L)
 {
     const double r = size(L, 1, "r");
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_ellipsoid(r, r, r, &s->family, &s->surface);
     return 1;
 }
@@ -92,7 +71,7 @@ static int l_sphere(lua_State *L)
 static int l_ellipsoid(lua_State *L)
 {
     const double a = size(L, 1, "a"), b = size(L, 2, "b"), c = size(L, 3, "c");
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_ellipsoid(a, b, c, &s->family, &s->surface);
     return 1;
 }
@@ -101,7 +80,7 @@ static int l_torus(lua_State *L)
 {
     const double R = size(L, 1, "R"), r = size(L, 2, "r");
     if (r >= R) return quat_lua_error(L, "argument 'r' must be less than R, got %g", r);
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_torus(R, r, &s->family, &s->surface);
     return 1;
 }
@@ -109,7 +88,7 @@ static int l_torus(lua_State *L)
 static int l_saddle(lua_State *L)
 {
     const double a = size(L, 1, "a"), extent = size(L, 2, "size");
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_saddle(a, extent, &s->family, &s->surface);
     return 1;
 }
@@ -117,7 +96,7 @@ static int l_saddle(lua_State *L)
 static int l_catenoid(lua_State *L)
 {
     const double a = size(L, 1, "a"), height = size(L, 2, "height");
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_catenoid(a, height, &s->family, &s->surface);
     return 1;
 }
@@ -125,7 +104,7 @@ static int l_catenoid(lua_State *L)
 static int l_helicoid(lua_State *L)
 {
     const double a = size(L, 1, "a"), turns = size(L, 2, "turns"), width = size(L, 3, "width");
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_helicoid(a, turns, width, &s->family, &s->surface);
     return 1;
 }
@@ -141,7 +120,7 @@ static int l_superellipsoid(lua_State *L)
 {
     const double a = size(L, 1, "a"), b = size(L, 2, "b"), c = size(L, 3, "c"), e = exponent(L, 4, "e"),
                  f = exponent(L, 5, "f");
-    lua_surface *const s = new_surface(L);
+    quat_lua_surface *const s = new_surface(L);
     quat_superellipsoid(a, b, c, e, f, &s->family, &s->surface);
     return 1;
 }
@@ -151,7 +130,7 @@ static int l_superellipsoid(lua_State *L)
 /* surface:range() -> u0, u1, v0, v1, closed_u, closed_v */
 static int l_range(lua_State *L)
 {
-    const quat_surface *const s = &((const lua_surface *)luaL_checkudata(L, 1, SURFACE))->surface;
+    const quat_surface *const s = &((const quat_lua_surface *)luaL_checkudata(L, 1, QUAT_LUA_SURFACE))->surface;
     const double range[4] = {s->u0, s->u1, s->v0, s->v1};
     for (int i = 0; i < 4; i++) lua_pushnumber(L, range[i]);
     lua_pushboolean(L, s->closed_u);
@@ -188,7 +167,7 @@ static int l_at(lua_State *L)
     quat_surface_point p;
     const double u = quat_lua_arg_number(L, 2, "u", QUAT_LUA_FINITE),
                  v = quat_lua_arg_number(L, 3, "v", QUAT_LUA_FINITE);
-    const quat_surface surface = begin(L, &call);
+    const quat_surface surface = quat_lua_begin_surface(L, &call);
     const quat_status status = quat_surface_at(&surface, u, v, &p);
     quat_lua_call_end(&call);
     push_point(L, &p);
@@ -201,28 +180,10 @@ static int l_integrability(lua_State *L)
     double residual;
     const double u = quat_lua_arg_number(L, 2, "u", QUAT_LUA_FINITE),
                  v = quat_lua_arg_number(L, 3, "v", QUAT_LUA_FINITE);
-    const quat_surface surface = begin(L, &call);
+    const quat_surface surface = quat_lua_begin_surface(L, &call);
     const quat_status status = quat_surface_integrability(&surface, u, v, &residual);
     quat_lua_call_end(&call);
     lua_pushnumber(L, residual);
-    return quat_lua_results(L, status, 1);
-}
-
-/* surface:total([tolerance]) */
-static int l_total(lua_State *L)
-{
-    quat_lua_call call;
-    quat_surface_totals totals;
-    const double tolerance = quat_lua_arg_number_or(L, 2, "tolerance", QUAT_LUA_POSITIVE, 1e-10);
-    if (tolerance < 1e-14) return quat_lua_error(L, "argument 'tolerance' must be at least 1e-14, got %g", tolerance);
-    const quat_surface surface = begin(L, &call);
-    const quat_status status = quat_surface_total(&surface, tolerance, &totals);
-    quat_lua_call_end(&call);
-    lua_createtable(L, 0, 4);
-    quat_lua_set_number(L, "area", totals.area);
-    quat_lua_set_number(L, "gauss", totals.gauss);
-    quat_lua_set_number(L, "mean", totals.mean);
-    quat_lua_set_number(L, "bending", totals.bending);
     return quat_lua_results(L, status, 1);
 }
 
@@ -246,7 +207,7 @@ static int l_patch(lua_State *L)
 {
     static const char *const keys[] = {"rows", "columns", "u0", "u1", "v0", "v1", NULL};
     quat_lua_call call;
-    const quat_surface *const s = &((const lua_surface *)luaL_checkudata(L, 1, SURFACE))->surface;
+    const quat_surface *const s = &((const quat_lua_surface *)luaL_checkudata(L, 1, QUAT_LUA_SURFACE))->surface;
     const quat_lua_reader reader = quat_lua_read(L, 2, "patch", NULL, keys);
     quat_lua_need(&reader, "rows");
     quat_lua_need(&reader, "columns");
@@ -262,7 +223,7 @@ static int l_patch(lua_State *L)
     qvec3 *const x = lua_newuserdatauv(L, rows * columns * sizeof *x, 0);
     quat *const q = lua_newuserdatauv(L, rows * columns * sizeof *q, 0);
     size_t *const corner = lua_newuserdatauv(L, 3 * m * sizeof *corner, 0);
-    const quat_surface surface = begin(L, &call);
+    const quat_surface surface = quat_lua_begin_surface(L, &call);
     const quat_status status = quat_surface_patch(&surface, u0, u1, v0, v1, rows, columns, x, q, corner);
     quat_lua_call_end(&call);
     if (status < 0) return quat_lua_results(L, status, 0);
@@ -347,8 +308,8 @@ static int l_transition(lua_State *L)
 
 void quat_lua_open_surface(lua_State *L)
 {
-    static const luaL_Reg methods[] = {{"range", l_range}, {"at", l_at},       {"integrability", l_integrability},
-                                       {"total", l_total}, {"patch", l_patch}, {NULL, NULL}};
+    static const luaL_Reg methods[] = {
+        {"range", l_range}, {"at", l_at}, {"integrability", l_integrability}, {"patch", l_patch}, {NULL, NULL}};
     static const luaL_Reg functions[] = {{"new", l_new},
                                          {"plane", l_plane},
                                          {"sphere", l_sphere},
@@ -361,9 +322,11 @@ void quat_lua_open_surface(lua_State *L)
                                          {"choose_frames", l_choose_frames},
                                          {"transition", l_transition},
                                          {NULL, NULL}};
-    luaL_newmetatable(L, SURFACE);
+    luaL_newmetatable(L, QUAT_LUA_SURFACE);
     luaL_newlib(L, methods);
-    lua_setfield(L, -2, "__index");
+    lua_pushvalue(L, -1);
+    lua_setfield(L, -3, "__index");
+    lua_setfield(L, -3, "surface_methods"); /* the layer adds `total` */
     lua_pop(L, 1);
     luaL_newlib(L, functions);
     lua_setfield(L, -2, "surface");

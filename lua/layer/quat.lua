@@ -262,24 +262,20 @@ core.layer()
 ---@field screw fun(axis: vector, point: vector, angle: number, slide: number): motion?, string?
 ---@field motion_exp fun(rotation: vector, translation: vector): motion
 ---@field blend fun(motions: motion[], weights?: number[]): motion?, string?
----@field curve? curvelib  nil in a build without GSL
----@field surface? surfacelib
+---@field curve curvelib
+---@field surface surfacelib
 local quat = {}
+local inner = { layer = true, no_function = true, surface_methods = true }
 for name, value in pairs(core) do
-  if name ~= "layer" and name ~= "no_function" then quat[name] = value end
+  if not inner[name] then quat[name] = value end
 end
+setmetatable(quat, { __index = core.no_function "quat" })
 
--- quat.curve and quat.surface are in quat.gsl, where the build holds it; it loads when one of them is first used.
-local no_function = core.no_function "quat"
-setmetatable(quat, {
-  __index = function(self, key)
-    if key ~= "curve" and key ~= "surface" then return no_function(self, key) end
-    local found, gsl = pcall(require, "quat.gsl")
-    if not found or type(gsl) ~= "table" then return nil end
-    local value = gsl[key]
-    rawset(self, key, value)
-    return value
-  end,
-})
+-- Integrals over surfaces are in quat.gsl, where the build holds it; it loads when one is first asked for.
+function core.surface_methods.total(...)
+  local found, gsl = pcall(require, "quat.gsl")
+  if not found then error("surface:total needs GSL: " .. tostring(gsl), 2) end
+  return gsl.total(...)
+end
 
 return quat

@@ -44,8 +44,9 @@ local function by_method(rows)
   return order, of
 end
 
---- Its error, or what is known of it: never less than the certainty.
+--- Its error, or what is known of it: never less than the certainty; infinite where nobody vouches for the reference.
 function report:error_of(row)
+  if not self.summary.sure then return huge end
   return row.below and self.summary.certainty.e or row.e
 end
 
@@ -61,11 +62,19 @@ function report:time_to(method, goal)
   return best
 end
 
---- The best row of a method: the least error, then the least time.
+--- Whether bodies were moved by steps (docs/model.md).
+function report:is_stepped()
+  for _, row in ipairs(self.rows) do
+    if row.usage.pile_steps > 0 then return true end
+  end
+  return false
+end
+
+--- The best row of a method: the least error, then the least time. nil where no error is known.
 function report:best(method)
   local best
   for _, row in ipairs(self.rows) do
-    if row.method == method and good(row) then
+    if row.method == method and good(row) and self:error_of(row) < huge then
       local e, least = self:error_of(row), best and self:error_of(best)
       if not best or e < least or (e == least and row.cpu < best.cpu) then best = row end
     end
@@ -77,11 +86,11 @@ local function witness_of(witness, what)
   return format("%s, %s (%s)", witness.method, setting_of(witness.method, witness.setting), what)
 end
 
-local function reference_line(s)
+local function reference_line(s, stepped)
   local c = s.certainty
   if s.reference ~= s.reference then return format("an oracle's, of error %s", short(c.e)) end
   local name = s.reference == 0 and "default" or format("default at %s", short(s.reference))
-  if not s.sure then return name .. ", certainty unknown: no other method of motion came to the end" end
+  if not s.sure then return name .. ", certainty unknown: " .. (stepped and "what is moved by steps is so by every method" or "no other method of motion came to the end") end
   local by, shared = witness_of(s.motion_witness, "motion"), "supports, gaps, held contacts"
   if s.impact_witness then by = by .. " and " .. witness_of(s.impact_witness, "impacts") else shared = shared .. ", impacts" end
   return format("%s, sure to %s (position), %s (velocity), %s rad, %s s (events) by %s; shared: %s", name, short(c.e_x), short(c.e_v),
@@ -105,7 +114,13 @@ end
 function report:verdict()
   local s, order = self.summary, by_method(self.rows)
   local own = self:best "default"
-  if not s.sure or not own then return "none: no second method vouches for the first" end
+  if not s.sure or not own then
+    local fastest
+    for _, row in ipairs(self.rows) do
+      if row.method == "default" and good(row) and (not fastest or row.cpu < fastest) then fastest = row.cpu end
+    end
+    return format("none: no second method vouches for the first, whose errors nobody knows%s", fastest and "; it takes " .. ms(fastest) .. " ms" or "")
+  end
   local e = self:error_of(own)
   local words = { format("default: %s%s in %s ms", own.below and "<= " or "", short(e), ms(own.cpu)) }
   for _, method in ipairs(order) do
@@ -137,13 +152,50 @@ local function misses(self)
   return list
 end
 
+--- What went wrong with a row: the kind, and the words without what changes from setting to setting; nil: nothing.
+local function trouble_of(row)
+  if row.rounds > 0 and row.e == huge then
+    local words = row.message ~= "" and row.message or row.ended
+    return "failed", words, (words:gsub("%-?%d+%.?%d*[eE]?[+-]?%d*", "#"))
+  elseif row.other_events > 0 then
+    return "other", format("other events of %d pair%s", row.other_events, row.other_events == 1 and "" or "s"), "other events"
+  end
+end
+
+--- One line for each cause: the settings of a method that fail alike, the earliest time, the first one's words.
+function report:troubles()
+  local order, of = by_method(self.rows)
+  local lines = {}
+  for _, method in ipairs(order) do
+    local causes, found = {}, {}
+    for _, row in ipairs(of[method]) do
+      local kind, words, cause = trouble_of(row)
+      if kind then
+        local at = kind == "failed" and row.reached or row.first_other
+        if not found[cause] then
+          found[cause] = { kind = kind, words = words, first = row.setting, at = at, count = 0 }
+          causes[#causes + 1] = found[cause]
+        end
+        local c = found[cause]
+        c.last, c.at, c.count = row.setting, math.min(c.at, at), c.count + 1
+      end
+    end
+    for _, c in ipairs(causes) do
+      local first, last = setting_of(method, c.first), setting_of(method, c.last)
+      local settings = c.count == 1 and first or format("%d settings, %s to %s", c.count, first, last)
+      lines[#lines + 1] = format("  %-11s %s%s: t = %.4g s: %s", c.kind, method, settings ~= "" and ", " .. settings or "", c.at, c.words)
+    end
+  end
+  return lines
+end
+
 --- The table of the terminal.
 ---@return string
 function report:text()
-  local s, order, of = self.summary, by_method(self.rows)
+  local s, order = self.summary, (by_method(self.rows))
   local out = {
     format("%s: error against run time   %d times, %d events, %d rounds", self.name, s.times, s.events, s.rounds),
-    "  reference   " .. reference_line(s),
+    "  reference   " .. reference_line(s, self:is_stepped()),
     "  condition   " .. condition_line(s),
     format("  %-22s%10s%10s%10s%10s%12s", "ms to reach", "1e-3", "1e-6", "1e-9", "1e-12", "at best"),
   }
@@ -152,17 +204,7 @@ function report:text()
     for i, goal in ipairs(goals) do cells[i] = format("%10s", ms(self:time_to(method, goal))) end
     out[#out + 1] = format("  %-22s%s%12s", method, concat(cells), best and (best.below and "<= " or "") .. short(self:error_of(best)) or "-")
   end
-  for _, method in ipairs(order) do
-    for _, row in ipairs(of[method]) do
-      local name = method .. (row.setting > 0 and ", " .. setting_of(method, row.setting) or "")
-      if row.rounds > 0 and row.e == huge then
-        out[#out + 1] = format("  failed      %s: t = %.4g s: %s", name, row.reached, row.message ~= "" and row.message or row.ended)
-      elseif row.other_events > 0 then
-        out[#out + 1] = format("  other       %s: other events of %d pair%s, first at t = %.4g s", name, row.other_events,
-          row.other_events == 1 and "" or "s", row.first_other)
-      end
-    end
-  end
+  for _, line in ipairs(self:troubles()) do out[#out + 1] = line end
   if #s.useless > 0 then out[#out + 1] = "  left out    change nothing here: " .. concat(s.useless, ", ") end
   if s.dropped > 0 then out[#out + 1] = format("  dropped     %d settings that had no time; --seconds gives more", s.dropped) end
   for _, miss in ipairs(misses(self)) do out[#out + 1] = "  missed      " .. miss end

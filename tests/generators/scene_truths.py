@@ -38,12 +38,15 @@ class Linear:
         return self.x0 + (self.y0 + self.a / self.k) * (exp(self.k * t) - 1) / self.k - self.a / self.k * t
 
 
-def first_root(f, start, end, pieces=200):
-    """The first t in (start, end] at which f has fallen through zero, to 1e-30; None: there is none."""
+def first_root(f, start, end, pieces=200, halves=True):
+    """The first t in (start, end] at which f has fallen through zero, to 1e-30; None: there is none. By halves, or, of a smooth f
+    that takes long, by Ridder's method."""
     low, f_low = start, f(start)
     for n in range(1, pieces + 1):
         high = start + (end - start) * n / pieces
         f_high = f(high)
+        if f_low > 0 and f_high <= 0 and not halves:
+            return findroot(f, (low, high), solver="ridder", tol=mpf(10) ** -70)
         if f_low > 0 and f_high <= 0:
             for _ in range(200):
                 middle = (low + high) / 2
@@ -438,7 +441,7 @@ class Ellipsoid:
 
         def speed(P):
             return -advance(over, mpf(0), start, P, piece)[2]
-        P = first_root(speed, mpf(0), 4 * scale_P, 8)
+        P = first_root(speed, mpf(0), 4 * scale_P, 8, False)
         J = advance(over, mpf(0), start, P * (1 + p["e"]), piece)[3:6]
         self.v = add(self.v, J, 1 / p["m"])
         L = turn(conjugate(self.q), cross(r, J))
@@ -453,7 +456,7 @@ class Ellipsoid:
             while t < goal:
                 left = goal - t
                 start = mpf(10) ** -3 if bounced else mpf(0)  # it left just now
-                root = first_root(self.height, start, left, 24) if left > start else None
+                root = first_root(self.height, start, left, 6, False) if left > start else None
                 if root is None:
                     self.go(left)
                     t, bounced = goal, bounced and left <= start

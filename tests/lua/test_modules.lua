@@ -17,7 +17,20 @@ for _, name in ipairs { "libimpact", "impact/core", "sundials", "libccd", "libgs
 end
 
 local impact = require "impact"
-check.truth(not loaded("libgsl"), "require 'impact' leaves out libgsl")
+for _, name in ipairs { "libgsl", "sundials", "libccd" } do
+  check.truth(not loaded(name), "require 'impact' leaves out " .. name)
+end
+local function drop(methods)
+  return impact.scene { duration = .3, methods = methods, bodies = { { name = "ball", shape = impact.sphere(.1), position = { 0, 0, 1 } } } }
+end
+assert(drop():run())
+check.truth(not loaded "sundials", "what falls needs no integrator")
+assert(drop({ motion = "rk4", step = .01 }):run())
+check.truth(not loaded "sundials", "nor do fixed steps")
+if impact.has "cvode" then
+  assert(drop({ motion = "cvode" }):run())
+  check.truth(loaded "sundials" ~= false, "SUNDIALS is loaded when it is asked for")
+end
 check.truth(impact.version:match("^%d+%.%d+%.%d+$"), "impact.version is a version")
 check.equal(type(impact.has("cvode")), "boolean")
 

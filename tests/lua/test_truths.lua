@@ -35,7 +35,7 @@ end
 --- The default's error, and what its certainty is at most over that.
 local truths = {
   { "sphere_wall", example "sphere_wall", 1e-12 }, { "bowling_ball", example "bowling_ball", 1e-11 }, { "orbit", orbit, 1e-11 },
-  { "damped_ball", damped_ball, 1e-11 },
+  { "damped_ball", damped_ball, 1e-11 }, { "two_spheres", example "two_spheres", 1e-11 },
 }
 for _, truth in ipairs(truths) do
   local name, make, allowed = table.unpack(truth)

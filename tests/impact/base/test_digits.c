@@ -42,14 +42,14 @@ static void check(double value)
 static void any_bits(void **test_state)
 {
     (void)test_state;
-    for (int i = 0; i < 200000; i++) check(of_bits(draw()));
+    for (int i = 0; i < 50000; i++) check(of_bits(draw()));
 }
 
 /* Of the sizes that rows have, where printf is not asked. */
 static void usual_sizes(void **test_state)
 {
     (void)test_state;
-    for (int i = 0; i < 400000; i++) {
+    for (int i = 0; i < 100000; i++) {
         const uint64_t exponent = 1023 - 130 + draw() % 190;
         check(of_bits((draw() & 0x800fffffffffffffu) | exponent << 52));
     }
@@ -89,7 +89,7 @@ static void round_numbers(void **test_state)
 static void ties(void **test_state)
 {
     (void)test_state;
-    for (int i = 0; i < 20000; i++)
+    for (int i = 0; i < 2000; i++)
         for (int k = 0; k < 12; k++) check(ldexp((double)(draw() >> 11), -k - 3));
 }
 
