@@ -288,8 +288,9 @@ static bool quarters_meet(const quintic *curve, const imp_pose *const *way, int 
     return true;
 }
 
-/* Whether one polynomial from the last key to `to` meets what is open, where that ends, and the span's way. */
-static bool joins(const imp_key_line *line, const impact_key *to, const imp_span *span, imp_key_tolerance tolerance)
+/* Whether one polynomial from the last key to `to` meets what is open, where that ends, and so many poses beyond. */
+static bool joins(const imp_key_line *line, const impact_key *to, const imp_pose *beyond, int more,
+                  imp_key_tolerance tolerance)
 {
     const impact_key keys[2] = {line->last, *to};
     const imp_pose *way[IMP_KEY_WAY + 4], middle = pose_of(&line->next);
@@ -297,7 +298,7 @@ static bool joins(const imp_key_line *line, const impact_key *to, const imp_span
     if (!turns_little(keys)) return false;
     for (int i = 0; i < line->count; i++) way[count++] = &line->way[i];
     if (line->open) way[count++] = &middle;
-    for (int i = 0; span && i < 3; i++) way[count++] = &span->way[i];
+    for (int i = 0; i < more; i++) way[count++] = &beyond[i];
     const quintic curve = quintic_of(keys);
     return quarters_meet(&curve, way, count, tolerance);
 }
@@ -306,31 +307,36 @@ bool imp_key_line_add(imp_key_line *line, const imp_span *span, imp_key_toleranc
                       void *context)
 {
     const bool goes_on = line->begun && same_state(line->open ? &line->next : &line->last, &span->from);
-    if (goes_on && joins(line, &span->to, span, tolerance)) {
+    if (goes_on && joins(line, &span->to, span->way, 3, tolerance)) {
         grow(line, span);
+        line->lonely = false;
         return true;
     }
     if (line->open && !hand_on(line, &line->next, sink, context)) return false;
+    line->lonely = true;
     /* The accelerations differ on either side of a kink: then both stand, before and after it. */
-    if (!(goes_on && joins(line, &span->to, span, tolerance)) && !hand_on(line, &span->from, sink, context))
+    if (!(goes_on && joins(line, &span->to, span->way, 3, tolerance)) && !hand_on(line, &span->from, sink, context))
         return false;
     grow(line, span);
     return true;
 }
 
-/* Whether the piece is so short on the way from the last key that its end alone is as close a look as quarters are. */
-static bool is_quarter(const imp_key_line *line, const imp_piece *piece)
-{
-    return line->open && 4 * (piece->to - piece->from) <= piece->to - line->last.t;
-}
-
-/* The piece, not looked into, joined to what is open. */
+/* A piece so short on the way from the last key that no halving of it is a closer look: of a quarter of the way its end
+ * is enough, of a half its middle as well. Where the last did not join, as in fixed steps with a kink at each, the
+ * closer look comes first. */
 static bool join_whole(imp_key_line *line, const imp_piece *piece, int body, imp_key_tolerance tolerance)
 {
-    if (!is_quarter(line, piece)) return false;
+    const double length = piece->to - piece->from, way = piece->to - line->last.t;
+    if (!line->open || 2 * length > way || (4 * length > way && line->lonely)) return false;
     const impact_key from = piece->begin(piece->context, body), to = piece->at(piece->context, body, 1);
-    if (!same_state(&line->next, &from) || !joins(line, &to, NULL, tolerance)) return false;
+    const int looks = 4 * length > way;
+    imp_pose middle;
+    if (!same_state(&line->next, &from)) return false;
+    if (looks) middle = piece->pose(piece->context, body, 0.5);
+    if (!joins(line, &to, &middle, looks, tolerance)) return false;
     keep_pose(line, pose_of(&line->next));
+    if (looks) keep_pose(line, middle);
+    line->lonely = false;
     line->next = to;
     return true;
 }

@@ -58,8 +58,8 @@ bool imp_key_halve(const imp_piece *piece, int body, imp_key_tolerance tolerance
 enum { IMP_KEY_WAY = 8 };
 
 typedef struct imp_key_line {
-    bool begun, open;
-    impact_key last, next; /* handed on; open: the end of the span that may still grow */
+    bool begun, open, lonely; /* lonely: what came last did not join */
+    impact_key last, next;    /* handed on; open: the end of the span that may still grow */
     int count;
     imp_pose way[IMP_KEY_WAY]; /* on the way from last to next */
 } imp_key_line;

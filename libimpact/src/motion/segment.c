@@ -2,6 +2,8 @@
 #include "motion/segment.h"
 #include "motion/motion_equations.h"
 
+#include <float.h>
+
 /* ---- the functions of damping ---- */
 
 double imp_phi1(double k, double T) { return k > 0 ? -expm1(-k * T) / k : T; }
@@ -171,18 +173,21 @@ imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
     return state;
 }
 
-/* Most pieces end with their step: nothing is to be searched for. */
-double imp_segment_own(const imp_segment *s, double t)
-{
-    if (s->kind != IMP_SEGMENT_DENSE) return t;
-    return t == s->dense->c[Y_TIME] ? 0 : imp_dense_place(s->dense, t);
-}
-
 double imp_segment_time(const imp_segment *s, double own)
 {
     double t = own;
     if (s->kind == IMP_SEGMENT_DENSE) imp_dense_there(s->dense, own, Y_TIME, 1, &t);
     return t;
+}
+
+/* Most pieces begin or end with their step: of those nothing is to be searched for, but where time's own rounding (of
+ * 13 terms) is all that is off. */
+double imp_segment_own(const imp_segment *s, double t)
+{
+    if (s->kind != IMP_SEGMENT_DENSE) return t;
+    if (t == imp_segment_time(s, 0)) return 0;
+    const bool begins = fabs(imp_segment_time(s, -1) - t) <= IMP_DENSE_TERMS * DBL_EPSILON * fabs(t);
+    return begins ? -1 : imp_dense_place(s->dense, t);
 }
 
 qvec3 imp_segment_pose(const imp_segment *s, const imp_body *body, double own, double *t, quat *q)
