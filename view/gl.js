@@ -2,7 +2,12 @@
 // WebGL 2: a lit solid with octants and shadow, its depth, and lines of any width.
 const solidVertex = `#version 300 es
 in vec3 p; in vec3 n; uniform mat4 model, view, light; out vec3 at, up, own; out vec4 lit;
-void main() { vec4 w = model * vec4(p, 1.); at = w.xyz; own = p; up = transpose(inverse(mat3(model))) * n; lit = light * w; gl_Position = view * w; }`;
+void main() {
+  vec4 w = model * vec4(p, 1.); mat3 m = mat3(model); at = w.xyz; own = p; lit = light * w; gl_Position = view * w;
+  up = m * (n / vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]))); // m turns and stretches: its columns are at right angles
+}`;
+const darkVertex = `#version 300 es
+in vec3 p; uniform mat4 model, view; void main() { gl_Position = view * (model * vec4(p, 1.)); }`;
 const solidFragment = `#version 300 es
 precision highp float; precision highp sampler2DShadow;
 in vec3 at, up, own; in vec4 lit; out vec4 color;
@@ -23,7 +28,7 @@ void main() {
   if (kind == 2) { vec2 g = own.xy * grid.zw; c.rgb = mix(c.rgb, two.rgb, two.a * max(line(g.x), line(g.y))); }
   if (kind == 3) { color = c; return; }
   if (kind == 4) { float s = length(up) - 1.; c.rgb = s < .5 ? mix(one.rgb, vec3(.97, .98, .99), 2. * s) : mix(vec3(.97, .98, .99), two.rgb, 2. * s - 1.); }
-  float l = max(dot(n, sun), 0.) * shade(), h = pow(max(dot(n, normalize(sun + v)), 0.), 60.) * shade();
+  float toward = dot(n, sun), lightness = toward > 0. ? shade() : 0., l = toward * lightness, h = pow(max(dot(n, normalize(sun + v)), 0.), 60.) * lightness;
   color = vec4(c.rgb * (.5 + .12 * dot(n, sky) + .48 * l) + (kind == 2 ? 0. : .18 * h), c.a);
 }`;
 // A stretch a b of a polyline with its neighbours c, e: stretches meet on the line that halves their angle; at a sharp corner each ends
@@ -70,7 +75,7 @@ function makeGraphics(canvas) {
     } };
   };
   const solid = program(solidVertex, solidFragment), lines = program(lineVertex, lineFragment);
-  const dark = program(solidVertex, '#version 300 es\nprecision highp float; void main() {}');
+  const dark = program(darkVertex, '#version 300 es\nprecision highp float; void main() {}');
   const map = gl.createTexture(), frameBuffer = gl.createFramebuffer();
   gl.bindTexture(gl.TEXTURE_2D, map);
   gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, size, size);

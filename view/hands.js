@@ -5,7 +5,7 @@ function start(bytes) {
   const scene = makeScene(run, canvas), panels = makePanels(run, scene, page), camera = scene.camera, list = run.events;
   const dark = () => window.matchMedia('(prefers-color-scheme: dark)').matches;
   const option = (select, text, value) => { const o = document.createElement('option'); o.textContent = text; o.value = value; page(select).appendChild(o); };
-  const status = { t: run.begin, before: false, play: 0, follow: -1, dirty: true, poses: [] }; // play: the wall clock of the last frame
+  const status = { t: run.begin, before: false, play: 0, follow: -1, dirty: true, poses: [], drawn: 0, share: 1 }; // play, drawn: the wall clock of the last frame; drawn: 0 once things stand
   scene.moving.forEach(i => option('body', run.bodies[i].name, i));
   panels.quantities.forEach(name => option('what', name, name));
   page('what').value = 'z, m';
@@ -42,8 +42,8 @@ function start(bytes) {
     if (words.has('still')) { root.classList.add('still'); status.poses = (words.get('poses') || '').split(',').filter(p => p !== '').map(Number); }
     return words;
   }
-  function show() {
-    const r = Math.min(window.devicePixelRatio || 1, 2), w = Math.round(canvas.clientWidth * r), h = Math.round(canvas.clientHeight * r);
+  function show(share = 1) {
+    const r = Math.min(window.devicePixelRatio || 1, 2) * share, w = Math.round(canvas.clientWidth * r), h = Math.round(canvas.clientHeight * r);
     if (canvas.width !== w || canvas.height !== h) { canvas.width = w; canvas.height = h; }
     run.shown = status.t;
     const tail = 0.25 * Number(page('rate').value);
@@ -63,7 +63,15 @@ function start(bytes) {
       status.play = status.t < run.end ? clock : 0;
       page('play').textContent = status.play ? 'Pause' : 'Play';
     }
-    if (status.dirty) { status.dirty = false; show(); }
+    // Where frames take more than 60 ms, as of a GPU in software, they have fewer pixels while things move, and all once they stand.
+    if (status.dirty) {
+      if (status.drawn && clock - status.drawn > 60) status.share = Math.max(0.4, 0.8 * status.share);
+      status.dirty = false; status.drawn = clock;
+      show(status.share);
+    } else if (status.drawn) {
+      status.drawn = 0;
+      if (status.share < 1) show();
+    }
     requestAnimationFrame(tick);
   }
   function toggle() {

@@ -98,9 +98,8 @@ function coreMesh(body) {
 // { points: position and normal by vertex, index }
 function mesh(body, most) {
   if (['box', 'cylinder', 'cone', 'capsule', 'polyhedron'].includes(body.kind)) return coreMesh(body);
-  let n = 4;
-  while (2 * n <= most && !fine(octant(body, n), n, Math.max(...body.axes))) n *= 2;
-  n = Math.min(2 * n, most);
+  let n = Math.min(4, most);
+  while (n < most && !fine(octant(body, n), n, Math.max(...body.axes))) n = Math.min(2 * n, most);
   const grids = octant(body, n), points = [], index = [];
   for (let sign = 0; sign < 8; sign++) {
     const m = [sign & 1 ? -1 : 1, sign & 2 ? -1 : 1, sign & 4 ? -1 : 1], flip = m[0] * m[1] * m[2] < 0;

@@ -8,7 +8,8 @@ function makePanels(run, scene, page) {
     const c = page(id), r = window.devicePixelRatio || 1, w = c.clientWidth, h = c.clientHeight;
     if (c.width !== Math.round(w * r)) c.width = Math.round(w * r);
     if (c.height !== Math.round(h * r)) c.height = Math.round(h * r);
-    const d = c.getContext('2d');
+    const d = c.getContext('2d', { willReadFrequently: true });
+    // drawn by the processor: small pictures of thin lines are slow by a GPU, and slower by one in software
     d.setTransform(r, 0, 0, r, 0, 0); d.clearRect(0, 0, w, h); d.font = '11px system-ui, sans-serif'; d.lineJoin = 'round';
     return { d, w, h, ink: theme() };
   };

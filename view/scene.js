@@ -51,14 +51,14 @@ function makeScene(run, canvas) {
   const camera = { ...home };
   const G = makeGraphics(canvas);
   if (!G) return { camera, home, center, radius, up, moving, color, step, draw: () => null };
-  const shapes = new Map(), most = clamp(Math.floor(Math.sqrt(60000 / (48 * Math.max(1, run.bodies.length - planes.length)))), 3, 40);
+  const shapes = new Map(), most = clamp(Math.floor(Math.sqrt(30000 / (48 * Math.max(1, run.bodies.length - planes.length)))), 3, 40);
   const solids = run.bodies.map((b, i) => {
     if (b.kind === 'plane') return null;
     const id = JSON.stringify([b.kind, b.axes, b.exponents, b.rounding, b.vertices]);
     if (!shapes.has(id)) shapes.set(id, G.upload(mesh(b, most)));
     return { mesh: shapes.get(id), one: b.static ? rgb('#8a8f98') : rgb(color(i)), i };
   });
-  const arrow = G.upload(arrowMesh()), dot3 = G.upload(mesh({ kind: 'sphere', axes: [1, 1, 1], exponents: [2, 2, 2] }, 8)), quad = G.upload(quadMesh);
+  const arrow = G.upload(arrowMesh()), dot3 = G.upload(mesh({ kind: 'sphere', axes: [1, 1, 1], exponents: [2, 2, 2] }, 2)), quad = G.upload(quadMesh);
   planes.forEach(p => { p.line = G.uploadLine(p.ring); });
   paths.forEach((path, i) => paths.set(i, G.uploadLine(apart(path, 1e-3 * radius).map(([x, y, z, t]) => [...here([x, y, z]), t]))));
   const circle = G.uploadLine(Array.from({ length: 33 }, (_, k) => [Math.cos(k * Math.PI / 16), Math.sin(k * Math.PI / 16), 0, -1e30]));
@@ -81,7 +81,7 @@ function makeScene(run, canvas) {
     const models = modelsAt(t, before), others = poses.map(p => modelsAt(p, false));
     gl.enable(gl.DEPTH_TEST); gl.depthFunc(gl.LESS); gl.disable(gl.BLEND); gl.depthMask(true);
     gl.bindFramebuffer(gl.FRAMEBUFFER, G.frameBuffer); gl.viewport(0, 0, G.size, G.size); gl.clear(gl.DEPTH_BUFFER_BIT);
-    G.dark.set({ view: lightView, light: lightView });
+    G.dark.set({ view: lightView });
     [models, ...others].forEach(m => solids.forEach((s, i) => { if (s) { G.dark.set({ model: m[i] }); G.draw(s.mesh); } }));
     gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.viewport(0, 0, w, h); gl.clearColor(...rgb(paper)); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     G.solid.set({ view, light: lightView, eye, sun, sky: up, depth: 0, texel: 1 / G.size, kind: 1, grid: [0, 0, 0, 0] });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A headless Chromium on a pipe, without a library: open(url) gives { ask(expression), until(expression), press, picture, said, close }.
+// A headless Chromium on a pipe, without a library: open(url) gives { ask(expression), until(expression), send(method), picture, said, close, pid }.
 'use strict';
 const { spawn } = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
@@ -49,6 +49,6 @@ async function open(chromium, url, size = [1400, 800]) {
     await ended;
     fs.rmSync(profile, { recursive: true, force: true });
   };
-  return { ask, until, picture, said, close };
+  return { ask, until, picture, said, close, send, pid: child.pid };
 }
 module.exports = { open };
