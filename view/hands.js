@@ -16,9 +16,10 @@ function start(bytes) {
   page('name').textContent = run.head.name;
   page('facts').textContent = `${run.bodies.length} bodies, ${list.length} events, ${say(run.end)} s, ${run.head.reason}; grid ${say(scene.step)} m; ${run.head.thinned ? 'thinned for this page to ' + run.head.thinned + ' of a body' : 'exact to ' + run.head.tolerance}`;
   if (!scene.gl) page('none').hidden = false;
+  const small = x => (x < 1e-3 ? x.toExponential(2) : x.toPrecision(3));
   const rows = list.slice(0, 500).map(e => {
     const row = document.createElement('button');
-    [time(e.t), e.kind + ' ' + e.name1 + (e.name2 ? ' – ' + e.name2 : ''), norm(e.impulse) > 0 ? norm(e.impulse).toPrecision(3) + ' N s' : ''].forEach(text => {
+    [time(e.t), e.kind + ' ' + e.name1 + (e.name2 ? ' – ' + e.name2 : ''), norm(e.impulse) > 0 ? small(norm(e.impulse)) + ' N s' : ''].forEach(text => {
       const cell = document.createElement('span');
       cell.textContent = text;
       row.appendChild(cell);

@@ -27,7 +27,7 @@ function makePanels(run, scene, page) {
   // Three digits, and none of zeros: 0.00513 is 5.13e-3.
   const short = x => { const t = String(+x.toPrecision(3)); return t.length > 6 || Math.abs(x) < 0.01 && x !== 0 ? x.toExponential(2).replace('e+', 'e') : t; };
   function plot({ d, w, h, ink }, lines, t, unit) {
-    const values = lines.flatMap(l => l.y), low = values.reduce((x, y) => Math.min(x, y), 0), high = values.reduce((x, y) => Math.max(x, y), low + 1e-300);
+    const values = lines.flatMap(l => l.y), low = values.reduce((x, y) => Math.min(x, y), 0), most = values.reduce((x, y) => Math.max(x, y), low), high = most > low ? most : low + 1;
     const marks = [low, (low + high) / 2, high].map(y => [y, short(y)]), l = 8 + Math.max(...marks.map(m => d.measureText(m[1]).width)), b = h - 16;
     const X = x => l + (w - l - 8) * (x - run.begin) / span, Y = y => b - (b - 14) * (y - low) / (high - low);
     d.strokeStyle = ink('faint'); d.fillStyle = ink('soft'); d.lineWidth = 1; d.textAlign = 'right';
