@@ -14,13 +14,15 @@ typedef struct bodies_problem {
     imp_skyline *sky;
     double *x, *trial, *gradient, *step; /* 6 bodies each */
     double *r, *u, *offset, *pressed;    /* width contacts; offset: q + s */
+    double *y, *lean;                    /* width contacts: r - rho û, and the slope of û_n - u_n in u, of x */
     double *own_q;                       /* with moments: q in their units */
     double *rolling;                     /* contacts, with moments: the slope of rolling's cone in them */
     double *stiffness, *mobility;        /* contacts */
+    bool follows;                        /* s is that of x */
     imp_cone_outcome *outcome;
 } bodies_problem;
 
-enum { BODY_VECTORS = 4, CONTACT_VECTORS = 5, CONTACT_NUMBERS = 3 };
+enum { BODY_VECTORS = 4, CONTACT_VECTORS = 7, CONTACT_NUMBERS = 3 };
 
 /* ---- room ---- */
 
@@ -50,7 +52,7 @@ static bodies_problem lay_out_bodies(imp_cone_bodies *workspace, int count, int 
         .count = count, .n = 6 * bodies, .width = width, .touching = workspace->touching, .sky = &workspace->sky};
     double *block = workspace->block;
     double **body[] = {&p.x, &p.trial, &p.gradient, &p.step},
-           **contact[] = {&p.r, &p.u, &p.offset, &p.pressed, &p.own_q};
+           **contact[] = {&p.r, &p.u, &p.offset, &p.pressed, &p.own_q, &p.y, &p.lean};
     for (int k = 0; k < BODY_VECTORS; k++, block += p.n) *body[k] = block;
     for (int k = 0; k < CONTACT_VECTORS; k++, block += (size_t)(width * count)) *contact[k] = block;
     p.stiffness = block, p.mobility = block + count, p.rolling = block + 2 * (size_t)count;
@@ -66,8 +68,10 @@ static void seen_by(const bodies_problem *p, const imp_cone_row *row, int c, con
     for (int side = 0; side < 2; side++) {
         if (p->touching[c][side] < 0) continue;
         const double *own = &x[6 * p->touching[c][side]];
-        for (int k = 0; k < 3; k++)
-            for (int l = 0; l < 6; l++) v[k] += row->side[side][k][l] * own[l];
+        for (int k = 0; k < 3; k++) {
+            const double *a = row->side[side][k];
+            v[k] += (a[0] * own[0] + a[1] * own[1]) + (a[2] * own[2] + a[3] * own[3]) + (a[4] * own[4] + a[5] * own[5]);
+        }
     }
 }
 
@@ -120,8 +124,8 @@ static void add_bend_of(const bodies_problem *p, const imp_cone_row *row, const 
             double block[6][6] = {{0}};
             if (p->touching[c][j] < 0) continue;
             for (int k = 0; k < 6; k++)
-                for (int l = 0; l < 6; l++)
-                    for (int m = 0; m < 3; m++) block[k][l] += left[k][m] * other->side[j][m][l];
+                for (int m = 0; m < 3; m++)
+                    for (int l = 0; l < 6; l++) block[k][l] += left[k][m] * other->side[j][m][l];
             imp_skyline_add(p->sky, p->touching[c][i], p->touching[c][j], block);
         }
     }
@@ -149,15 +153,46 @@ static void set_stiffness(const bodies_problem *p, double stiffness)
     }
 }
 
+/* ---- slip ---- */
+
+/* u over its size, times the slope, at most two numbers; 0 of none. */
+static double scaled_slip(double slope, double *u, int count)
+{
+    const double size = count == 1 ? fabs(u[0]) : sqrt(u[0] * u[0] + u[1] * u[1]);
+    for (int k = 0; k < count; k++) u[k] *= size > 0 ? slope / size : 0;
+    return slope * size;
+}
+
+/* s = û_n - u_n of the contact's velocities u, and its slope in them (0 where there is none). */
+static double slip_part(const bodies_problem *p, int c, const double *u, double slope[6])
+{
+    const double friction = p->friction[c];
+    memcpy(slope, u, (size_t)p->width * sizeof *u);
+    slope[0] = 0;
+    const double rubs = scaled_slip(friction > 0 ? friction : 0, slope + 1, 2);
+    if (p->width == 3) return rubs;
+    const double cone = friction > 0 ? friction : 1; /* with which spin is one slip */
+    const double spins = scaled_slip(p->lengths[c].torsional > 0 ? cone : 0, slope + 3, 1),
+                 one = sqrt(rubs * rubs + spins * spins);
+    for (int k = 1; k < 4; k++) slope[k] *= one > 0 ? (k < 3 ? rubs : spins) / one : 0;
+    return one + scaled_slip(p->lengths[c].rolling > 0 ? p->rolling[c] : 0, slope + 4, 2);
+}
+
 /* ---- Newton ---- */
 
-/* r - rho (q + s + G x). */
-static void pressed_by(const bodies_problem *p, int c, const double *x, double y[6])
+/* Of x: r - rho (q + s + G x), and where s follows x its slope in what is seen of x. */
+static void look_at_contact(const bodies_problem *p, int c, const double *x)
 {
-    double v[6];
     const int i = p->width * c;
+    double v[6], *y = &p->y[i];
     seen_at(p, c, x, v);
-    for (int k = 0; k < p->width; k++) y[k] = p->r[i + k] - p->stiffness[c] * (p->offset[i + k] + v[k]);
+    if (p->follows) {
+        for (int k = 0; k < p->width; k++) v[k] += p->q[i + k];
+        v[0] += slip_part(p, c, v, &p->lean[i]);
+    } else {
+        for (int k = 0; k < p->width; k++) v[k] += p->offset[i + k];
+    }
+    for (int k = 0; k < p->width; k++) y[k] = p->r[i + k] - p->stiffness[c] * v[k];
 }
 
 static double sum_of_products(const double *a, const double *b, int n)
@@ -167,24 +202,26 @@ static double sum_of_products(const double *a, const double *b, int n)
     return sum;
 }
 
-/* What x is to minimise; its reactions go to pressed, its gradient to gradient. */
+/* What x is to minimise; its reactions go to pressed, its gradient to gradient. Where s follows x that is the gradient
+ * of nothing, and half its square is to fall. */
 static double look_at(const bodies_problem *p, const double *x, double *scale)
 {
     double value = 0.5 * sum_of_products(x, x, p->n);
     memcpy(p->gradient, x, sizeof *x * (size_t)p->n);
     *scale = sum_of_products(x, x, p->n);
     for (int c = 0; c < p->count; c++) {
-        double y[6], *f = &p->pressed[p->width * c];
-        pressed_by(p, c, x, y);
-        project_pressed(p, c, y, f, NULL);
+        double *f = &p->pressed[p->width * c];
+        look_at_contact(p, c, x);
+        project_pressed(p, c, &p->y[p->width * c], f, NULL);
         value += 0.5 * sum_of_products(f, f, p->width) / p->stiffness[c];
         *scale = fmax(*scale, sum_of_products(f, f, p->width) * p->mobility[c]);
         add_effect(p, c, f, -1, p->gradient);
     }
     *scale = sqrt(*scale);
-    return value;
+    return p->follows ? 0.5 * sum_of_products(p->gradient, p->gradient, p->n) : value;
 }
 
+/* From x, which was looked at last. */
 static bool newton_step(const bodies_problem *p)
 {
     imp_skyline_clear(p->sky);
@@ -194,10 +231,13 @@ static bool newton_step(const bodies_problem *p)
         imp_skyline_add(p->sky, b, b, one);
     }
     for (int c = 0; c < p->count; c++) {
-        double y[6], f[6], slope[36];
-        pressed_by(p, c, p->x, y);
-        project_pressed(p, c, y, f, slope);
-        if (f[0] > 0) add_bend(p, c, slope);
+        const int i = p->width * c;
+        double f[6], slope[36];
+        if (!(p->pressed[i] > 0)) continue;
+        project_pressed(p, c, &p->y[i], f, slope);
+        for (int k = 0; p->follows && k < p->width; k++)
+            for (int l = 1; l < p->width; l++) slope[p->width * k + l] += slope[p->width * k] * p->lean[i + l];
+        add_bend(p, c, slope);
     }
     p->outcome->factorings++;
     if (!imp_skyline_factor(p->sky)) return false;
@@ -210,7 +250,7 @@ static bool newton_step(const bodies_problem *p)
 static bool go_along(const bodies_problem *p, double *value, double *scale)
 {
     enum { HALVINGS = 30 };
-    const double slope = sum_of_products(p->gradient, p->step, p->n);
+    const double slope = p->follows ? -2 * *value : sum_of_products(p->gradient, p->step, p->n);
     double part = 1;
     for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
         for (int i = 0; i < p->n; i++) p->trial[i] = p->x[i] + part * p->step[i];
@@ -224,14 +264,15 @@ static bool go_along(const bodies_problem *p, double *value, double *scale)
 }
 
 /* Newton's steps for x until the gradient is `enough` of its terms, or rounding: there the function tells no more, and
- * a step counts that halves the gradient. */
-static void settle_motion(const bodies_problem *p, double enough)
+ * a step counts that halves the gradient. How many; -1: none led on. */
+static int settle_motion(const bodies_problem *p, double enough)
 {
     enum { STEPS = 60 };
     double scale, value = look_at(p, p->x, &scale);
     for (int step = 0; step < STEPS; step++) {
         const double size = sqrt(sum_of_products(p->gradient, p->gradient, p->n));
-        if (size <= fmax(enough, IMP_BODIES_FINEST) * scale || !newton_step(p)) return;
+        if (size <= fmax(enough, IMP_BODIES_FINEST) * scale) return step;
+        if (!newton_step(p)) return -1;
         p->outcome->steps++;
         if (size > IMP_BODIES_ROUNDING * scale) {
             if (go_along(p, &value, &scale)) continue;
@@ -245,8 +286,9 @@ static void settle_motion(const bodies_problem *p, double enough)
             }
         }
         (void)look_at(p, p->x, &scale);
-        return;
+        return size <= IMP_BODIES_ROUNDING * scale ? step : -1;
     }
+    return -1;
 }
 
 /* ---- multipliers ---- */
@@ -264,23 +306,13 @@ static void effect_of(const bodies_problem *p, const double *r)
     }
 }
 
-/* û_n - u_n. */
-static double slip_part(const bodies_problem *p, int c)
-{
-    const double *u = &p->u[p->width * c], friction = p->friction[c];
-    const double rubs = friction > 0 ? friction * hypot(u[1], u[2]) : 0;
-    if (p->width == 3) return rubs;
-    const double slope = friction > 0 ? friction : 1; /* of its cone, with which spin is one slip */
-    return hypot(rubs, p->lengths[c].torsional > 0 ? slope * u[3] : 0) +
-           (p->lengths[c].rolling > 0 ? p->rolling[c] * hypot(u[4], u[5]) : 0);
-}
-
 static void set_offset(const bodies_problem *p)
 {
     for (int c = 0; c < p->count; c++) {
         const int i = p->width * c;
         memcpy(&p->offset[i], &p->q[i], (size_t)p->width * sizeof *p->q);
-        p->offset[i] += slip_part(p, c);
+        double slope[6];
+        p->offset[i] += slip_part(p, c, &p->u[i], slope);
     }
 }
 
@@ -322,10 +354,11 @@ static double residual_of(const bodies_problem *p, const double *r)
     double worst = 0;
     for (int c = 0; c < p->count; c++) {
         const double *own = &r[p->width * c], *v = &p->u[p->width * c];
-        double wanted[6], on[6], off = 0;
+        double wanted[6], on[6], slope[6], off = 0;
+        const double slip = slip_part(p, c, v, slope);
         for (int k = 0; k < p->width; k++) {
             const double rolling = k > 3 ? p->rolling[c] : 1; /* s holds in units of forces: b is rolling times these */
-            wanted[k] = own[k] - s * rolling * rolling * (v[k] + (k == 0 ? slip_part(p, c) : 0));
+            wanted[k] = own[k] - s * rolling * rolling * (v[k] + (k == 0 ? slip : 0));
         }
         nearest(p, c, wanted, on);
         for (int k = 0; k < p->width; k++) {
@@ -338,11 +371,28 @@ static double residual_of(const bodies_problem *p, const double *r)
     return worst;
 }
 
-static void iterate(const bodies_problem *p, double *r, double *u)
+/* The motion for r, with s that follows it, or where that leads nowhere as r's own motion has it; how stiff the next
+ * may be. */
+static double settle_friction(bodies_problem *p, double rho, double enough)
+{
+    enum { FEW = 2 };
+    set_stiffness(p, rho);
+    p->follows = true;
+    const int steps = settle_motion(p, enough);
+    if (steps >= 0) return steps <= FEW ? fmin(10 * rho, IMP_BODIES_STIFFEST) : rho;
+    p->follows = false;
+    effect_of(p, p->r);
+    set_offset(p);
+    (void)settle_motion(p, enough);
+    return fmax(0.1 * rho, IMP_BODIES_STIFF);
+}
+
+static void iterate(bodies_problem *p, double *r, double *u)
 {
     enum { MOST = 40, PATIENCE = 10 };
     const size_t size = (size_t)p->width * sizeof *r * (size_t)p->count;
     imp_cone_outcome *outcome = p->outcome;
+    double rho = IMP_BODIES_SOFT;
     for (int k = 0, idle = 0; k <= MOST && idle < PATIENCE; k++) {
         effect_of(p, p->r);
         const double found = residual_of(p, p->r);
@@ -353,9 +403,7 @@ static void iterate(const bodies_problem *p, double *r, double *u)
             memcpy(u, p->u, size);
         }
         if (outcome->residual <= IMP_BODIES_ACCEPTED) return;
-        set_offset(p);
-        set_stiffness(p, k == 0 ? IMP_BODIES_SOFT : IMP_BODIES_STIFF); /* Newton finds its way from soft to stiff */
-        settle_motion(p, IMP_BODIES_INNER * found);
+        rho = fmax(settle_friction(p, rho, IMP_BODIES_INNER * fmin(found, 1)), IMP_BODIES_STIFF);
         memcpy(p->r, p->pressed, size);
     }
 }

@@ -4,13 +4,14 @@
  * a body however many contacts it has, coupled as bodies touch. Internal.
  *
  * With G the rows of all contacts per root of mass, x = G^T r is what the reactions r do, and u = q + G x. With the
- * slip's part s = mu |u_t| n held, r is the fixed point of
+ * slip's part s = mu |u_t| n, r is the fixed point of r' = P_K(r - rho (u + s)), whose x has
  *
- *     r' = P_K(r - rho (u + s))       x minimises  |x|²/2 + sum |P_K(r - rho (q + s + G x))|²/(2 rho)
+ *     F(x) = x - sum G^T P_K(r - rho (q + s(x) + G x)) = 0
  *
- * (the method of multipliers: Rockafellar 1976; Hestenes, Powell 1969), x by semismooth Newton; s follows from step to
- * step (Cadoux 2009). Reactions that are not unique are no trouble, as x is. Moments are forces in the units of
- * imp_cone_units, their rows of G divided by them.
+ * by semismooth Newton on the bodies, s with its slope; where that leads nowhere s is held, and x minimises |x|²/2 +
+ * sum |P_K(r - rho (q + s + G x))|²/(2 rho) (the method of multipliers: Rockafellar 1976; Hestenes, Powell 1969; s from
+ * iteration to iteration: Cadoux 2009). rho grows as Newton takes fewer steps. Reactions that are not unique are no
+ * trouble, as x is. Moments are forces in the units of imp_cone_units, their rows of G divided by them.
  */
 #ifndef IMP_CONE_BODIES_H
 #define IMP_CONE_BODIES_H

@@ -160,6 +160,7 @@ impact_status impact_patch_find(const impact_solid *body1, const impact_solid *b
     const qvec3 c = qvec3_sub(body1->position, body2->position);
     if (!lay_face(body1, c, qvec3_neg(n), height, &f, &s[0]) || !lay_face(body2, none, n, height, &f, &s[1]))
         return IMPACT_EARGUMENT;
+    patch->dimension1 = s[0].face.dimension, patch->dimension2 = s[1].face.dimension;
     if (s[0].face.dimension > 0 && s[1].face.dimension > 0) clip_faces(s, &f, height, patch);
     if (patch->count == 0) lone_point(s, contact, height, patch);
     patch->dimension = patch_dimension(patch);

@@ -10,6 +10,7 @@
 #include "contact/persist_line.h"
 #include "contact/persist_spot.h"
 #include "contact/persist_system.h"
+#include "contact/rates.h"
 #include "world/corner.h"
 #include "world/world_gap.h"
 
@@ -44,105 +45,6 @@ impact_status imp_persist_reserve(imp_persist *persist, imp_world *world, const 
 }
 
 /* ---- geometry ---- */
-
-/* Where an exponent is over 2 the surface is flat along its axis at 0: there the radius of curvature stands for its
- * neighbourhood's. */
-static double off_zero(double component) { return copysign(fmax(fabs(component), 1e-9), component); }
-
-/* What a body's surface does at the contact: the Hessian of its support function there, in the world, whose eigenvalues
- * are the radii of curvature, applied to a tangential vector. */
-static qvec3 curve(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v)
-{
-    if (body->shape.kind == IMPACT_SPHERE)
-        return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
-    const quat q = imp_shape_axes(body, state);
-    const qvec3 d = quat_rotate_inverse(q, outward);
-    const qmat3 h = impact_shape_support_hessian(&body->shape, (qvec3){off_zero(d.x), off_zero(d.y), off_zero(d.z)});
-    const qvec3 b = quat_rotate_inverse(q, v);
-    return quat_rotate(q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
-                                  h.m[1][0] * b.x + h.m[1][1] * b.y + h.m[1][2] * b.z,
-                                  h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
-}
-
-/* How the contact moves over both bodies: the rates of the normal n and of the contact point from each centre. On each
- * surface the point of outward normal m moves by r' = w x r + W (m' - w x m), W the support function's Hessian; that
- * both points stay together gives (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n). A plane's normal stays (W2 is
- * infinite). */
-static void contact_rates(const imp_world *world, imp_touch *touch, const imp_state *states, qvec3 *rate1, qvec3 *rate2)
-{
-    const imp_body *b1 = &world->bodies[touch->body1], *b2 = &world->bodies[touch->body2];
-    const imp_state *s1 = &states[touch->body1], *s2 = &states[touch->body2];
-    const qvec3 n = touch->normal, out1 = qvec3_neg(n);
-    const qvec3 w1 = imp_omega(b1, s1), turn1 = qvec3_cross(w1, n);
-    touch->normal_rate = *rate2 = (qvec3){0, 0, 0};
-    if (b2->shape.kind != IMPACT_PLANE) {
-        const qvec3 w2 = b2->is_static ? b2->spin : imp_omega(b2, s2), turn2 = qvec3_cross(w2, n);
-        const qvec3 t1 = imp_tangent(n), t2 = qvec3_cross(n, t1);
-        const qvec3 c1 = qvec3_add(curve(b1, s1, out1, t1), curve(b2, s2, n, t1));
-        const qvec3 c2 = qvec3_add(curve(b1, s1, out1, t2), curve(b2, s2, n, t2));
-        const qvec3 moves = qvec3_add(touch->slip, qvec3_add(curve(b1, s1, out1, turn1), curve(b2, s2, n, turn2)));
-        const double a = qvec3_dot(t1, c1), b = qvec3_dot(t1, c2), d = qvec3_dot(t2, c2), determinant = a * d - b * b;
-        const double x = qvec3_dot(t1, moves), y = qvec3_dot(t2, moves);
-        touch->normal_rate =
-            qvec3_axpy((d * x - b * y) / determinant, t1, qvec3_scale(t2, (a * y - b * x) / determinant));
-        *rate2 = qvec3_add(qvec3_cross(w2, touch->r2), curve(b2, s2, n, qvec3_sub(touch->normal_rate, turn2)));
-    }
-    *rate1 = qvec3_add(qvec3_cross(w1, touch->r1), curve(b1, s1, out1, qvec3_sub(turn1, touch->normal_rate)));
-}
-
-/* The rates of the one point of two bodies, whatever it is made of: from where it is a little earlier and later. */
-static void lone_rates(imp_world *world, const imp_pair *pair, imp_touch *touch, const imp_state *states, qvec3 *rate1,
-                       qvec3 *rate2)
-{
-    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
-    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
-    const double omega = qvec3_norm(imp_omega(b1, s1)) + (b2->is_static ? 0 : qvec3_norm(imp_omega(b2, s2))),
-                 speed = qvec3_norm(qvec3_sub(s1->v, s2->v)),
-                 time = IMP_LONE_TURN / (omega + speed / b1->radius + 1e-300);
-    impact_contact at[2];
-    for (int k = 0; k < 2; k++) {
-        const imp_state one = imp_drifted(b1, s1, k ? time : -time), two = imp_drifted(b2, s2, k ? time : -time);
-        imp_gap_of(b1, &one, b2, &two, world->gaps, &world->usage, &at[k]);
-    }
-    const double unit = 0.5 / time;
-    touch->normal_rate = qvec3_scale(qvec3_sub(at[1].normal, at[0].normal), unit);
-    *rate1 = qvec3_scale(qvec3_sub(at[1].offset1, at[0].offset1), unit);
-    *rate2 = qvec3_scale(qvec3_sub(at[1].offset2, at[0].offset2), unit);
-}
-
-/* Of one point of several the normal goes with the face, and the point with the other body's corner. */
-static void placed_rates(imp_world *world, const imp_pair *pair, imp_touch *touch, const imp_state *states,
-                         qvec3 *rate1, qvec3 *rate2)
-{
-    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
-    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
-    const qvec3 none = {0, 0, 0}, w1 = imp_omega(b1, s1), w2 = b2->is_static ? none : imp_omega(b2, s2),
-                apart = qvec3_sub(s1->v, b2->is_static ? none : s2->v);
-    if (pair->bearer == 0) {
-        lone_rates(world, pair, touch, states, rate1, rate2);
-    } else if (pair->bearer == 2) {
-        touch->normal_rate = qvec3_cross(w2, touch->normal);
-        *rate1 = qvec3_cross(w1, touch->r1);
-        *rate2 = qvec3_add(*rate1, apart);
-    } else {
-        touch->normal_rate = qvec3_cross(w1, touch->normal);
-        *rate2 = qvec3_cross(w2, touch->r2);
-        *rate1 = qvec3_sub(*rate2, apart);
-    }
-}
-
-/* Acceleration of a body's contact point without reactions; r_rate is how the point moves with the contact, from the
- * centre. */
-static qvec3 free_acceleration(const imp_body *body, const imp_state *state, const imp_load *load, qvec3 r,
-                               qvec3 r_rate)
-{
-    if (body->is_static) return body->driven ? qvec3_cross(body->spin, r_rate) : (qvec3){0, 0, 0};
-    const qvec3 omega = imp_omega(body, state);
-    const qvec3 torque = qvec3_sub(load->torque, qvec3_cross(omega, state->momentum));
-    const qvec3 alpha = imp_inverse_inertia(body, state->q, torque);
-    const qvec3 a = qvec3_scale(load->force, body->inverse_mass);
-    return qvec3_add(qvec3_add(a, qvec3_cross(alpha, r)), qvec3_cross(omega, r_rate));
-}
 
 /* Where nothing but the axis of a line is flat the orientation tells the spot as well as the spot itself: it is led
  * back there. */
@@ -223,18 +125,17 @@ imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, co
     touch.speed = qvec3_norm(touch.slip);
     touch.onset = pair->mode == IMP_SLIDE && pair->onset;
     touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
-    qvec3 rate1, rate2 = {0, 0, 0};
+    imp_rates rates = {.normal = {0, 0, 0}};
     if (pair->corner > 0)
-        rate1 = imp_corner_rate(world, pair, states);
-    else if (pair->placed)
-        placed_rates(world, pair, &touch, states, &rate1, &rate2);
+        rates.arm1 = imp_corner_rate(world, pair, states);
     else if (carried)
-        carried_rates(world, &touch, states, &spot, &rate1);
+        carried_rates(world, &touch, states, &spot, &rates.arm1);
     else
-        contact_rates(world, &touch, states, &rate1, &rate2);
-    if (b2->driven) rate2 = qvec3_add(s1->v, rate1); /* its centre stands still */
-    touch.bias = qvec3_sub(free_acceleration(b1, s1, &loads[pair->body1], touch.r1, rate1),
-                           free_acceleration(b2, s2, &loads[pair->body2], touch.r2, rate2));
+        rates = imp_contact_rates(world, pair, pair->placed ? pair->bearer : IMP_BORNE_BY_BOTH, &contact, states);
+    if (b2->driven) rates.arm2 = qvec3_add(s1->v, rates.arm1); /* its centre stands still */
+    touch.normal_rate = rates.normal;
+    touch.bias = qvec3_sub(imp_point_acceleration(b1, s1, &loads[pair->body1], touch.r1, rates.arm1),
+                           imp_point_acceleration(b2, s2, &loads[pair->body2], touch.r2, rates.arm2));
     return touch;
 }
 

@@ -17,6 +17,13 @@ static bool can_lie(const imp_body *body)
     return s->kind == IMPACT_PLANE || imp_has_faces(body) || (curved && fmax(s->r, fmax(s->s, s->t)) >= 3);
 }
 
+/* Of two faces on each other either turns the normal. */
+static imp_bearer bearer_of(const impact_patch *patch)
+{
+    if (patch->count < 2) return IMP_BORNE_BY_BOTH;
+    return patch->dimension2 == 2 ? IMP_BORNE_BY_2 : IMP_BORNE_BY_1;
+}
+
 static imp_point point_of(const impact_patch *patch, int i, qvec3 shift1, qvec3 shift2)
 {
     const impact_patch_point *p = &patch->point[i];
@@ -24,7 +31,8 @@ static imp_point point_of(const impact_patch *patch, int i, qvec3 shift1, qvec3 
                                    .normal = patch->normal,
                                    .offset1 = qvec3_add(p->offset1, shift1),
                                    .offset2 = qvec3_add(p->offset2, shift2)},
-                       .feature = {p->feature1, p->feature2}};
+                       .feature = {p->feature1, p->feature2},
+                       .bearer = bearer_of(patch)};
 }
 
 int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, imp_point *points)

@@ -12,6 +12,7 @@
 typedef struct imp_point {
     impact_contact contact;    /* the gap here; offsets from the bodies' centres of mass */
     impact_feature feature[2]; /* of body 1 and body 2: what tells the point from the pair's others */
+    imp_bearer bearer;
 } imp_point;
 
 enum { IMP_POINTS = IMPACT_PATCH_POINTS };

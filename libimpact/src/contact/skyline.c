@@ -105,7 +105,7 @@ void imp_skyline_clear(imp_skyline *sky)
 /* ---- blocks: those of row i, and of column i, begin at first[i] and end at the diagonal ---- */
 
 /* C -= A B. */
-static void take_product(double c[SIDE][SIDE], double a[SIDE][SIDE], double b[SIDE][SIDE])
+static void take_product(double c[restrict SIDE][SIDE], double a[restrict SIDE][SIDE], double b[restrict SIDE][SIDE])
 {
     for (int k = 0; k < SIDE; k++)
         for (int m = 0; m < SIDE; m++)

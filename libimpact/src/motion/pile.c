@@ -2,6 +2,7 @@
 #include "motion/pile.h"
 #include "base/tolerances.h"
 #include "contact/persist_linear.h"
+#include "contact/rates.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -61,8 +62,8 @@ static bool reserve_contacts(imp_pile *pile, const imp_world *world, int contact
     pile->pivots = replaced(pile, pile->pivots, 2 * count, sizeof *pile->pivots, &there);
     pile->w = replaced(pile, pile->w, n * n, sizeof *pile->w, &there);
     pile->gap = replaced(pile, pile->gap, count, sizeof *pile->gap, &there);
-    double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->before, &pile->last_r, &pile->last_u};
-    for (int k = 0; k < 6; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
+    double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->before, &pile->last_r, &pile->last_u, &pile->lead};
+    for (int k = 0; k < 7; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
     there = (widest > 3 ? imp_cone_reserve_turning : imp_cone_reserve)(&pile->cone, contacts) && there;
     pile->contacts_most = there ? contacts : 0;
     pile->widest = widest;
@@ -72,10 +73,18 @@ static bool reserve_contacts(imp_pile *pile, const imp_world *world, int contact
 void imp_pile_begin(imp_pile *pile)
 {
     pile->step = 0;
+    pile->begun = false;
     pile->memory[0].count = 0;
 }
 
 /* ---- motion ---- */
+
+static quat turned_by(quat q, qvec3 omega, double h)
+{
+    const qvec3 turn = qvec3_scale(omega, h);
+    if (qvec3_norm(turn) > 0) (void)quat_normalize(quat_mul(quat_exp_pure(qvec3_scale(turn, 0.5)), q), &q);
+    return q;
+}
 
 /* What moves goes on with its velocities for h. */
 static void drift(const imp_world *world, const imp_state *velocities, double h, imp_state *states)
@@ -83,11 +92,9 @@ static void drift(const imp_world *world, const imp_state *velocities, double h,
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         if (body->is_static) continue;
-        const qvec3 turn = qvec3_scale(imp_omega(body, &velocities[i]), h);
+        const qvec3 omega = imp_omega(body, &velocities[i]); /* the states may be these */
         states[i].x = qvec3_axpy(h, velocities[i].v, states[i].x);
-        if (qvec3_norm(turn) == 0) continue;
-        const quat next = quat_mul(quat_exp_pure(qvec3_scale(turn, 0.5)), states[i].q);
-        (void)quat_normalize(next, &states[i].q);
+        states[i].q = turned_by(states[i].q, omega, h);
     }
 }
 
@@ -143,20 +150,23 @@ static qvec3 from_parts(const imp_cone_contact *contact, const double *parts, do
     return v;
 }
 
-/* What is remembered of the contacts, along their axes; one that was open begins open, and bounces off what it
- * approaches at the velocities pile->before. What is held does not bounce. */
-static void recall_step(imp_pile *pile, const imp_world *world, int count, double h)
+/* What is remembered of the contacts, along their axes; whether that is all of them. One that was open begins open, and
+ * bounces off what it approaches at the velocities pile->before. What is held does not bounce. */
+static bool recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
+    bool all = true;
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pile_memory *m = imp_pile_recall(&pile->memory[1], point);
         const int i = pile->width * c;
         if (!m) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
         for (int k = 0; !m && k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
+        all = all && m;
         if (!m) continue;
         parts_of(&pile->contacts[c], m->reaction, m->moment, pile->width, h, &pile->last_r[i]);
         parts_of(&pile->contacts[c], m->velocity, m->turning, pile->width, 1, &pile->last_u[i]);
     }
+    return all;
 }
 
 static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count, double h)
@@ -261,6 +271,58 @@ static double rubbed(const imp_pile *pile, int count)
     return fmax(work, 0);
 }
 
+/* The places are those of the step's middle: what its two ends' velocities differ by from what they would be there, as
+ * bodies and contacts turn. */
+static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *states, int count, double h)
+{
+    for (int c = 0; c < count; c++) {
+        const imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        const impact_contact contact = {
+            .normal = point->contact.axes[0], .offset1 = point->contact.arm1, .offset2 = point->contact.arm2};
+        double bend[6];
+        imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, point->contact.axes, states, bend);
+        for (int k = 0; k < pile->width; k++) {
+            pile->before[pile->width * c + k] -= 0.5 * h * bend[k];
+            pile->q[pile->width * c + k] += 0.5 * h * bend[k];
+        }
+    }
+}
+
+/* What turns the contact's slip at the end of the step, without changing its size, into the way it goes at the middle;
+ * what velocity friction gives the contact by being off that way, m/s. 0 of slip that the step turns back. */
+static double lead_of(const imp_pile *pile, int c, double lead[6])
+{
+    const int i = pile->width * c;
+    const double *from = &pile->before[i], *to = &pile->u[i], *r = &pile->r[i];
+    memset(lead, 0, 6 * sizeof *lead);
+    const double slip = hypot(to[1], to[2]), mean = hypot(from[1] + to[1], from[2] + to[2]);
+    if (!(slip > 0) || !(from[1] * to[1] + from[2] * to[2] > 0)) return 0;
+    for (int k = 1; k < 3; k++) lead[k] = slip * (from[k] + to[k]) / mean - to[k];
+    double w = 0;
+    for (int side = 0; side < 2; side++)
+        for (int l = 0; l < 6; l++) w += pile->rows[c].side[side][0][l] * pile->rows[c].side[side][0][l];
+    return w * hypot(r[1], r[2]) * hypot(lead[1], lead[2]) / slip;
+}
+
+/* Friction acts along the slip of the step's middle where that turns: found from the slip at its end. */
+static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, int count, double h, imp_cone_outcome first)
+{
+    const size_t size = (size_t)(pile->width * count);
+    const double natural = imp_pile_natural_time(world, pile->middle);
+    double most = 0, lead[6];
+    for (int c = 0; c < count; c++) most = fmax(most, lead_of(pile, c, lead));
+    if (!(most / h * natural * natural > IMP_PILE_LEAD * IMP_PILE_ERROR * smallest(world))) return first;
+    for (int c = 0; c < count; c++) {
+        lead_of(pile, c, lead);
+        memcpy(&pile->lead[pile->width * c], lead, sizeof *lead * (size_t)pile->width);
+    }
+    memcpy(pile->last_r, pile->r, size * sizeof *pile->r);
+    for (size_t i = 0; i < size; i++) pile->q[i] += pile->lead[i], pile->last_u[i] = pile->u[i] + pile->lead[i];
+    const imp_cone_outcome second = find_impulses(pile, world, count, h);
+    for (size_t i = 0; i < size; i++) pile->u[i] -= pile->lead[i];
+    return second;
+}
+
 /* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
 static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
                             imp_state *next, imp_pile_step_result *result)
@@ -269,8 +331,10 @@ static impact_status answer(imp_pile *pile, imp_world *world, const imp_state *s
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, next, pile->contacts, count, pile->q);
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, states, pile->contacts, count,
                                                                        pile->before);
-    recall_step(pile, world, count, h);
-    const imp_cone_outcome outcome = find_impulses(pile, world, count, h);
+    add_bends(pile, world, states, count, h);
+    const bool all_held = recall_step(pile, world, count, h);
+    imp_cone_outcome outcome = find_impulses(pile, world, count, h);
+    if (all_held && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, count, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
@@ -348,7 +412,13 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
     }
     if (status != IMPACT_OK) return status;
     if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[2])) return IMPACT_ENOMEM;
-    drift(world, to, 0.5 * h, to); /* x' = x_m + h v'/2 */
+    /* x' = x_m + h v'/2; of what tumbles with the turning that it has in its end's orientation, near enough */
+    drift(world, to, 0.5 * h, to);
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (!body->is_static && !body->spherical)
+            to[i].q = turned_by(pile->middle[i].q, imp_omega(body, &to[i]), 0.5 * h);
+    }
     return IMPACT_OK;
 }
 
@@ -481,6 +551,25 @@ static impact_status try_step(imp_pile *pile, imp_world *world, double t, double
     return status;
 }
 
+/* What touches at the first step and does not approach is held from there: it does not come to touch within the step.
+ */
+static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_state *states)
+{
+    imp_pile_contacts *touching = &pile->touching;
+    pile->begun = true;
+    if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * smallest(world), false))
+        return IMPACT_ENOMEM;
+    pile->memory[0].count = 0;
+    for (int k = 0; k < touching->count; k++) {
+        const imp_pile_point *point = &touching->points[k];
+        double u[3];
+        imp_cone_contact_velocities(world, states, &point->contact, 1, u);
+        if (u[0] < -imp_still_rate(world, hypot(u[1], u[2]))) continue;
+        if (!imp_pile_remember(pile->arena, &pile->memory[0], point)) return IMPACT_ENOMEM;
+    }
+    return IMPACT_OK;
+}
+
 impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
                             imp_pile_step_result *result)
 {
@@ -489,7 +578,8 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     const double least = IMP_PILE_SHORTEST * natural;
     if (!(pile->step > 0)) pile->step = IMP_PILE_FIRST * natural;
     double h = fmin(most, fmin(pile->step, IMP_PILE_LONGEST * natural));
-    impact_status status = try_step(pile, world, t, h, states, result);
+    impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
+    if (status == IMPACT_OK) status = try_step(pile, world, t, h, states, result);
     while (h > least && (status == IMPACT_EUNSETTLED || (status == IMPACT_OK && result->error > wanted))) {
         h *= 0.5;
         status = try_step(pile, world, t, h, states, result);

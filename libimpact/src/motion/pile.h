@@ -2,11 +2,16 @@
  *
  * pile: bodies that touch, moved by steps of time where the exact method does not get on. Internal.
  *
- * Moreau & Jean's steps with theta = 1/2 (Jean 1999), from (x, v) over h:
+ * Moreau & Jean's steps with theta = 1/2 (Jean 1999), of the second order while contacts and modes stay. From (x, v)
+ * over h, G and M those of the middle:
  *
  *     x_m = x + h v/2      loads F and the contacts with a gap <= 0 at x_m
- *     u = W p + q,  q = G (v + h M^-1 F)  and, along normals that approach at u_n < 0, less e u_n:   one cone problem
+ *     u = W p + q,  q = G (v + h M^-1 F) + h b/2  and, along normals that approach at u_n < 0, less e u_n
  *     v' = v + h M^-1 F + M^-1 G^T p      x' = x + h (v + v')/2
+ *
+ * b is the rate of G v at v (rates.h): u is what the velocities are at the step's end, where bodies and contacts have
+ * turned; with G v alone what rocks would lose energy in every step. Friction is against the slip of the middle: where
+ * that turns the problem is solved again with u_t + c, c turning the first answer's slip into the mean of both ends'.
  *
  * Pairs with torsional or rolling friction have moments in the same problem (cone.h).
  *
@@ -27,6 +32,7 @@ typedef struct imp_pile {
     imp_arena *arena; /* the pile's own */
     int bodies;       /* there is room for */
     double step;      /* s: to be tried next; 0: chosen anew */
+    bool begun;
     imp_cone_workspace cone;
     imp_cone_bodies by_bodies;
     int *number; /* per body of the world: its own in an island, -1: it does not move */
@@ -43,7 +49,7 @@ typedef struct imp_pile {
     imp_cone_row *turns;
     imp_cone_lengths *lengths;
     int widest, width; /* numbers a contact: that there is room for; of the island at hand, 3, or 6 with moments */
-    double *gap, *friction, *w, *q, *r, *u, *before, *last_r, *last_u;
+    double *gap, *friction, *w, *q, *r, *u, *before, *last_r, *last_u, *lead;
     imp_rest_velocity *velocities;
     char message[160];
 } imp_pile;

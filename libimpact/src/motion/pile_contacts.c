@@ -43,6 +43,7 @@ static bool add_point(imp_pile_contacts *contacts, const imp_world *world, int p
     imp_pile_point *own = &points[contacts->count++];
     *own = (imp_pile_point){.pair = p,
                             .feature = {point->feature[0], point->feature[1]},
+                            .bearer = point->bearer,
                             .contact = {.body1 = pair->body1,
                                         .body2 = pair->body2,
                                         .arm1 = point->contact.offset1,

@@ -12,6 +12,7 @@
 typedef struct imp_pile_point {
     int pair;
     impact_feature feature[2];
+    imp_bearer bearer;
     imp_cone_contact contact;
     double gap; /* m */
     bool taken; /* scratch: it is an island's */

@@ -69,7 +69,7 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
         imp_pair own = point_pair(&whole, corner, face, before, pairs);
         own.placed = true;
         own.place = points[k].contact;
-        own.bearer = count == 1 ? 0 : points[k].feature[1].kind == IMPACT_FACE ? 2 : 1;
+        own.bearer = points[k].bearer;
         world->pairs[world->pair_count++] = own;
     }
     return status;

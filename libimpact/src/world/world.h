@@ -49,6 +49,9 @@ typedef enum imp_mode {
     IMP_ROLL   /* held, the contact point at rest: rolling, pivoting or resting */
 } imp_mode;
 
+/* Whose face turns a contact's normal; of a lone point both surfaces do. */
+typedef enum imp_bearer { IMP_BORNE_BY_BOTH, IMP_BORNE_BY_1, IMP_BORNE_BY_2 } imp_bearer;
+
 /* Two bodies that can touch; body1 moves. */
 typedef struct imp_pair {
     int body1, body2;
@@ -77,7 +80,7 @@ typedef struct imp_pair {
     bool settled;   /* scratch: had its chance to be held again in this instant */
     bool placed;    /* it is one of the points of two bodies with faces, at an instant: where it is, and stays */
     impact_contact place;
-    int bearer;  /* placed: 1 or 2, the body whose face turns the normal; 0: the point is alone, both do */
+    imp_bearer bearer; /* placed */
     int corner;  /* > 0: it is this corner of body 1, counted from 1, on a plane, and may be held there (corner.h) */
     int face;    /* > 0: not a plane but this face of body 2, counted from 1 */
     double sunk; /* held corner: m: how far below it the other corners were where the stretch began, <= 0 */

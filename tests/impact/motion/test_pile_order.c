@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Steps of what is held, in the limit of short steps: half the step leaves a quarter of the error. The way that they
+ * are held to is that of the exact motion: reactions from the accelerations, by an integrator.
+ */
+#include "motion/pile.h"
+#include <math.h>
+#include "kit/islands.h"
+
+static const double gravity = 9.81;
+
+typedef struct held_case {
+    impact_body_def body;
+    double duration;
+} held_case;
+
+/* On its lower edge, on a corner that slides, and rolling and sliding about on all its surface. */
+static held_case case_of(int k)
+{
+    held_case c = {.body = ball_body("body", (qvec3){0, 0, 0}, 0.9, 0)};
+    c.body.mass = 1;
+    if (k == 2) {
+        assert_int_equal(impact_shape_superquadric(0.1, 0.15, 0.2, 2, 2, 2, &c.body.shape), IMPACT_OK);
+        c.body.position.z = 0.2;
+        c.body.friction = 0.3;
+        c.body.omega = (qvec3){2, 3, 3};
+        c.body.velocity = (qvec3){0.3, 0, 0};
+        c.duration = 0.3;
+        return c;
+    }
+    assert_int_equal(impact_shape_box(0.1, k == 0 ? 0.1 : 0.2, 0.3, 0, &c.body.shape), IMPACT_OK);
+    c.body.orientation =
+        k == 0 ? quat_from_rotation_vector((qvec3){0, 0.25, 0}) : quat_from_rotation_vector((qvec3){0.64, 0.26, 0.13});
+    c.body.friction = k == 0 ? 0.9 : 0.2;
+    if (k == 1) c.body.omega = (qvec3){0.1, 0.2, 3};
+    const qvec3 down = quat_rotate_inverse(c.body.orientation, (qvec3){0, 0, -1});
+    qvec3 corner;
+    c.body.position.z = impact_shape_support(&c.body.shape, down, &corner);
+    c.body.velocity.z =
+        -qvec3_cross(c.body.omega, quat_rotate(c.body.orientation, corner)).z; /* it is held from the start */
+    c.duration = k == 0 ? 0.25 : 0.12;
+    return c;
+}
+
+static impact_scene *scene_of(const held_case *c, impact_body_def bodies[2])
+{
+    bodies[0] = plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), c->body.friction, 0);
+    bodies[1] = c->body;
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, -gravity};
+    def.bodies = bodies, def.body_count = 2;
+    def.duration = c->duration;
+    return make_scene(&def);
+}
+
+static imp_state by_integrator(const held_case *c)
+{
+    impact_body_def bodies[2];
+    impact_scene *scene = scene_of(c, bodies);
+    impact_sample sample;
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+    assert_int_equal(impact_scene_usage(scene).pile_steps, 0);
+    assert_int_equal(impact_scene_body(scene, 1, &sample), IMPACT_OK);
+    impact_scene_destroy(scene);
+    return (imp_state){.x = sample.position, .v = sample.velocity, .q = sample.orientation};
+}
+
+static imp_state by_steps(const held_case *c, int steps)
+{
+    impact_body_def bodies[2];
+    impact_scene *scene = scene_of(c, bodies);
+    imp_island *island = whole_island(scene);
+    imp_pile pile;
+    imp_pile_open(&pile, scene->world.arena);
+    imp_pile_begin(&pile);
+    const double h = c->duration / steps;
+    for (int k = 0; k < steps; k++) {
+        imp_pile_step_result result;
+        pile.step = h;
+        assert_int_equal(imp_pile_step(&pile, &island->world, k * h, h, island->states, &result), IMPACT_OK);
+        assert_near(result.taken, h, 1e-12 * h);
+        assert_true(result.contacts > 0);
+    }
+    const imp_state end = island->states[1];
+    impact_scene_destroy(scene);
+    return end;
+}
+
+static double error_of(const imp_state *a, const imp_state *b)
+{
+    const quat turn = quat_mul(a->q, quat_conj(b->q));
+    return qvec3_norm(qvec3_sub(a->x, b->x)) + 0.1 * qvec3_norm((qvec3){turn.x, turn.y, turn.z}) +
+           0.1 * qvec3_norm(qvec3_sub(a->v, b->v));
+}
+
+static void half_a_step_leaves_a_quarter_of_the_error(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        const held_case c = case_of(k);
+        const imp_state exact = by_integrator(&c);
+        const int steps = k == 0 ? 40 : k == 1 ? 24 : 100;
+        const imp_state coarse = by_steps(&c, steps), fine = by_steps(&c, 2 * steps);
+        const double error = error_of(&coarse, &exact), finer = error_of(&fine, &exact);
+        assert_true(error < 2e-5);
+        assert_true(error / finer > 3.5 && error / finer < 4.5);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(half_a_step_leaves_a_quarter_of_the_error)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
