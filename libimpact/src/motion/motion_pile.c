@@ -44,12 +44,12 @@ static body_end end_of(const imp_body *body, const imp_state *state, qvec3 accel
                        jet_of(q.z, first.z, second.z)}};
 }
 
-static void put(imp_dense *dense, int i, const double *c, int terms)
+static void put_terms(imp_dense *dense, int i, const double *c, int terms)
 {
     for (int j = 0; j < dense->terms; j++) dense->c[j * dense->size + i] = j < terms ? c[j] : 0;
 }
 
-static void put_line(imp_dense *dense, int i, double from, double to) { put(dense, i, (double[]){to, to - from}, 2); }
+static void put_line(imp_dense *dense, int i, double from, double to) { put_terms(dense, i, (double[]){to, to - from}, 2); }
 
 static void put_body(imp_dense *dense, int first, const imp_body *body, const imp_state *from, const imp_state *to)
 {
@@ -60,13 +60,13 @@ static void put_body(imp_dense *dense, int first, const imp_body *body, const im
     double c[6];
     for (int k = 0; k < 3; k++) {
         hermite(a.place[k], b.place[k], c);
-        put(dense, first + k, c, 6);
+        put_terms(dense, first + k, c, 6);
         const double rate[5] = {c[1] / h, 2 * c[2] / h, 3 * c[3] / h, 4 * c[4] / h, 5 * c[5] / h};
-        put(dense, first + Y_VELOCITY + k, rate, 5);
+        put_terms(dense, first + Y_VELOCITY + k, rate, 5);
     }
     for (int k = 0; k < 4; k++) {
         hermite(a.turn[k], b.turn[k], c);
-        put(dense, first + 3 + k, c, 6);
+        put_terms(dense, first + 3 + k, c, 6);
     }
     put_line(dense, first + Y_VELOCITY + 3, from->momentum.x, to->momentum.x);
     put_line(dense, first + Y_VELOCITY + 4, from->momentum.y, to->momentum.y);

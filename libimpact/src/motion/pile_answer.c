@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/pile_parts.h"
+#include "base/tolerances.h"
+#include "contact/rates.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Along the contact's axes, and, of a width of six, about them. */
+static void parts_of(const imp_cone_contact *contact, qvec3 along, qvec3 about, int width, double factor, double *to)
+{
+    for (int k = 0; k < width; k++) to[k] = factor * qvec3_dot(contact->axes[k % 3], k < 3 ? along : about);
+}
+
+qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, double divisor)
+{
+    qvec3 v = {0, 0, 0};
+    for (int k = 0; k < 3; k++) v = qvec3_axpy(parts[k] / divisor, contact->axes[k], v);
+    return v;
+}
+
+/* What is remembered of the contacts, along their axes; whether that is all of them. One that was open begins open, and
+ * bounces off what it approaches at the velocities pile->before. What is held does not bounce. */
+static bool recall_step(imp_pile *pile, const imp_world *world, int count, double h)
+{
+    bool all = true;
+    for (int c = 0; c < count; c++) {
+        const imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        const imp_pile_memory *m = imp_pile_recall(&pile->memory[1], point);
+        const int i = pile->width * c;
+        if (!m) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
+        for (int k = 0; !m && k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
+        all = all && m;
+        if (!m) continue;
+        parts_of(&pile->contacts[c], m->reaction, m->moment, pile->width, h, &pile->last_r[i]);
+        parts_of(&pile->contacts[c], m->velocity, m->turning, pile->width, 1, &pile->last_u[i]);
+    }
+    return all;
+}
+
+static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count, double h)
+{
+    for (int c = 0; c < count; c++) {
+        imp_pile_memory *m = imp_pile_remember(pile->arena, memories, &pile->touching.points[pile->members[c]]);
+        if (!m) return false;
+        const int i = pile->width * c;
+        m->reaction = imp_pile_from_parts(&pile->contacts[c], &pile->r[i], h);
+        m->velocity = imp_pile_from_parts(&pile->contacts[c], &pile->u[i], 1);
+        if (pile->width == 3) continue;
+        m->moment = imp_pile_from_parts(&pile->contacts[c], &pile->r[i + 3], h);
+        m->turning = imp_pile_from_parts(&pile->contacts[c], &pile->u[i + 3], 1);
+    }
+    return true;
+}
+
+/* Work of the static bodies' moving surfaces with the impulses. */
+static double drive_work(const imp_pile *pile, const imp_world *world, int count)
+{
+    double work = 0;
+    for (int c = 0; c < count && world->driven; c++) {
+        const imp_cone_contact *own = &pile->contacts[c];
+        const imp_body *under = &world->bodies[own->body2];
+        const qvec3 v = imp_surface_velocity(under, own->arm2);
+        for (int k = 0; k < pile->width; k++)
+            work += pile->r[pile->width * c + k] * qvec3_dot(own->axes[k % 3], k < 3 ? v : under->spin);
+    }
+    return work;
+}
+
+/* The island's bodies by numbers of their own, from 0; how many move. */
+static int number_bodies(imp_pile *pile, const imp_world *world, int count)
+{
+    int bodies = 0;
+    for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
+    for (int c = 0; c < count; c++) {
+        const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
+        for (int k = 0; k < 2; k++)
+            if (!world->bodies[body[k]].is_static && pile->number[body[k]] < 0) pile->number[body[k]] = bodies++;
+    }
+    return bodies;
+}
+
+/* W is there for by_contacts alone. */
+static imp_cone_problem problem_of(const imp_pile *pile, int count)
+{
+    return (imp_cone_problem){.count = count,
+                              .w = pile->w,
+                              .q = pile->q,
+                              .friction = pile->friction,
+                              .lengths = pile->width > 3 ? pile->lengths : NULL,
+                              .last_r = pile->last_r,
+                              .last_u = pile->last_u};
+}
+
+static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int count)
+{
+    const imp_cone_problem problem = problem_of(pile, count);
+    if (pile->width > 3)
+        imp_cone_assemble_turning(world, pile->middle, pile->contacts, count, pile->rows, pile->turns, pile->w);
+    else
+        imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
+    return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
+}
+
+/* The greatest velocity that contacts have without impulses, m/s. */
+static double fastest_of(const imp_pile *pile, int count)
+{
+    double most = 0;
+    for (int i = 0; i < pile->width * count; i++) {
+        const imp_cone_lengths *own = &pile->lengths[i / pile->width];
+        const int k = i % pile->width;
+        most = fmax(most, fabs(pile->q[i]) * (k < 3 ? 1 : k == 3 ? own->torsional : own->rolling));
+    }
+    return most;
+}
+
+/* Few contacts in their own space, to rounding; many in that of the bodies, and where that leaves what counts in the
+ * step's error in the other again, if they are not too many for that. */
+static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count, double h)
+{
+    if (count <= IMP_PILE_FEW) return by_contacts(pile, world, count);
+    imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
+    if (pile->width > 3) imp_cone_find_turns(world, pile->middle, pile->contacts, count, pile->turns);
+    const int bodies = number_bodies(pile, world, count);
+    const imp_cone_problem problem = problem_of(pile, count);
+    const imp_cone_outcome quick = imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, pile->turns,
+                                                         pile->number, bodies, &problem, pile->r, pile->u);
+    const bool counts = !(quick.residual <= IMP_PILE_USABLE && h * quick.residual * fastest_of(pile, count) <=
+                                                                   0.1 * IMP_PILE_ERROR * imp_pile_smallest(world));
+    const bool answered = quick.status != IMP_CONE_BAD && quick.status != IMP_CONE_NO_ROOM;
+    return counts && answered && count <= IMP_PILE_DENSE ? by_contacts(pile, world, count) : quick;
+}
+
+/* What friction takes over the step, where its impulse meets the slip of before and after it half each. */
+static double rubbed(const imp_pile *pile, int count)
+{
+    double work = 0;
+    for (int i = 0; i < pile->width * count; i++)
+        if (i % pile->width > 0) work -= 0.5 * pile->r[i] * (pile->before[i] + pile->u[i]);
+    return fmax(work, 0);
+}
+
+/* The places are those of the step's middle: what its two ends' velocities differ by from what they would be there, as
+ * bodies and contacts turn. */
+static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *states, int count, double h)
+{
+    for (int c = 0; c < count; c++) {
+        const imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        const impact_contact contact = {
+            .normal = point->contact.axes[0], .offset1 = point->contact.arm1, .offset2 = point->contact.arm2};
+        double bend[6];
+        imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, point->contact.axes, states, bend);
+        for (int k = 0; k < pile->width; k++) {
+            pile->before[pile->width * c + k] -= 0.5 * h * bend[k];
+            pile->q[pile->width * c + k] += 0.5 * h * bend[k];
+        }
+    }
+}
+
+/* What turns the contact's slip at the end of the step, without changing its size, into the way it goes at the middle;
+ * what velocity friction gives the contact by being off that way, m/s. 0 of slip that the step turns back. */
+static double lead_of(const imp_pile *pile, int c, double lead[6])
+{
+    const int i = pile->width * c;
+    const double *from = &pile->before[i], *to = &pile->u[i], *r = &pile->r[i];
+    memset(lead, 0, 6 * sizeof *lead);
+    const double slip = hypot(to[1], to[2]), mean = hypot(from[1] + to[1], from[2] + to[2]);
+    if (!(slip > 0) || !(from[1] * to[1] + from[2] * to[2] > 0)) return 0;
+    for (int k = 1; k < 3; k++) lead[k] = slip * (from[k] + to[k]) / mean - to[k];
+    double w = 0;
+    for (int side = 0; side < 2; side++)
+        for (int l = 0; l < 6; l++) w += pile->rows[c].side[side][0][l] * pile->rows[c].side[side][0][l];
+    return w * hypot(r[1], r[2]) * hypot(lead[1], lead[2]) / slip;
+}
+
+/* Friction acts along the slip of the step's middle where that turns: found from the slip at its end. */
+static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, int count, double h, imp_cone_outcome first)
+{
+    const size_t size = (size_t)(pile->width * count);
+    const double natural = imp_pile_natural_time(world, pile->middle);
+    double most = 0, lead[6];
+    for (int c = 0; c < count; c++) most = fmax(most, lead_of(pile, c, lead));
+    if (!(most / h * natural * natural > IMP_PILE_LEAD * IMP_PILE_ERROR * imp_pile_smallest(world))) return first;
+    for (int c = 0; c < count; c++) {
+        lead_of(pile, c, lead);
+        memcpy(&pile->lead[pile->width * c], lead, sizeof *lead * (size_t)pile->width);
+    }
+    memcpy(pile->last_r, pile->r, size * sizeof *pile->r);
+    for (size_t i = 0; i < size; i++) pile->q[i] += pile->lead[i], pile->last_u[i] = pile->u[i] + pile->lead[i];
+    const imp_cone_outcome second = find_impulses(pile, world, count, h);
+    for (size_t i = 0; i < size; i++) pile->u[i] -= pile->lead[i];
+    return second;
+}
+
+/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
+impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
+                              imp_state *next, imp_pile_step_result *result)
+{
+    const bool turning = pile->width > 3;
+    (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, next, pile->contacts, count, pile->q);
+    (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, states, pile->contacts, count,
+                                                                       pile->before);
+    add_bends(pile, world, states, count, h);
+    const bool all_held = recall_step(pile, world, count, h);
+    imp_cone_outcome outcome = find_impulses(pile, world, count, h);
+    if (all_held && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, count, h, outcome);
+    if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
+    if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
+        snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
+                 imp_cone_status_name(outcome.status));
+        return IMPACT_EUNSETTLED;
+    }
+    (turning ? imp_cone_push_turning : imp_cone_push)(world, pile->contacts, count, pile->r, next);
+    result->error += h * outcome.residual * fastest_of(pile, count);
+    if (!remember_step(pile, &pile->memory[2], count, h)) return IMPACT_ENOMEM;
+    result->drive_work += drive_work(pile, world, count);
+    result->sliding += rubbed(pile, count);
+    for (int c = 0; c < count; c++)
+        result->coupled +=
+            !world->bodies[pile->contacts[c].body1].is_static && !world->bodies[pile->contacts[c].body2].is_static;
+    result->contacts += count;
+    return IMPACT_OK;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * pile_parts: what the steps of a pile, the impulses in them, the places after them and the proof of rest share.
+ * Internal.
+ */
+#ifndef IMP_PILE_PARTS_H
+#define IMP_PILE_PARTS_H
+
+#include "motion/pile.h"
+
+/* False: there is no room. */
+bool imp_pile_reserve_bodies(imp_pile *pile, const imp_world *world);
+bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int contacts);
+
+/* A measure of the pile: its smallest body, m. */
+double imp_pile_smallest(const imp_world *world);
+
+/* The orientation, turned by omega over h. */
+quat imp_pile_turned(quat q, qvec3 omega, double h);
+/* What moves goes on with its velocities for h. */
+void imp_pile_drift(const imp_world *world, const imp_state *velocities, double h, imp_state *states);
+
+/* The points of the next island to the front of the arrays, with their gaps; how many. */
+int imp_pile_gather_island(imp_pile *pile, const imp_world *world);
+
+/* The vector whose parts along the contact's axes these are, over the divisor. */
+qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, double divisor);
+
+/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
+impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
+                              imp_state *next, imp_pile_step_result *result);
+
+/* Moves bodies along normals, least in the metric of mass: what is held to gap zero, where that can be; then overlaps
+ * apart. Gaps within the slack may stay. */
+impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states);
+
+#endif

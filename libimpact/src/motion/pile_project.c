@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/pile_parts.h"
+#include "base/tolerances.h"
+#include "contact/persist_linear.h"
+
+#include <string.h>
+
+/* The points that were held at the end of the step, as far apart as the step met them. */
+static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states, double h, double slack)
+{
+    imp_pile_contacts *touching = &pile->touching;
+    double apart = slack;
+    for (int k = 0; k < pile->memory[0].count; k++) apart = fmax(apart, 2 * pile->memory[0].list[k].gap);
+    imp_pile_contacts_mark(touching, world, &pile->memory[0]);
+    if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
+    for (int k = 0; k < touching->count; k++)
+        touching->points[k].taken = imp_pile_recall(&pile->memory[0], &touching->points[k]) == NULL;
+    for (int k = 0; k < pile->memory[0].count; k++) pile->memory[0].list[k].taken = false;
+    return true;
+}
+
+/* Impulses of displacement along the normals, that take every gap to zero: the least that do, of those equations that
+ * are independent. */
+static void close_gaps(imp_pile *pile, const imp_world *world, const imp_state *states, int count)
+{
+    const size_t n = (size_t)count;
+    imp_cone_assemble(world, states, pile->contacts, count, pile->rows, pile->w);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+            pile->w[i * n + j] = pile->w[3 * (3 * i * n + j)]; /* to the front: none is lost */
+    imp_linear linear = {.n = count,
+                         .matrix = pile->w,
+                         .spare = pile->w + n * n,
+                         .scratch = pile->last_r,
+                         .rows = pile->pivots,
+                         .columns = pile->pivots + n};
+    imp_linear_factor(&linear);
+    for (int c = 0; c < count; c++) pile->last_u[c] = -pile->gap[c];
+    imp_linear_solve(&linear, pile->last_u);
+    memset(pile->r, 0, sizeof *pile->r * 3 * n);
+    for (int c = 0; c < count; c++) pile->r[3 * c] = pile->last_u[c];
+}
+
+/* Gives the displacements those impulses, unless the equations that were left out are not met then: of contacts that
+ * are more than motions not every gap can be zero. */
+static void push_together(imp_pile *pile, imp_world *world, int count, double slack)
+{
+    double off = 0;
+    imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
+    imp_cone_contact_velocities(world, pile->middle, pile->contacts, count, pile->u);
+    for (int c = 0; c < count; c++) off = fmax(off, fabs(pile->gap[c] + pile->u[3 * c]));
+    if (off <= 0.1 * slack) return;
+    for (int i = 0; i < 3 * count; i++) pile->r[i] = -pile->r[i];
+    imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
+}
+
+/* Impulses of displacement along the normals, that part what overlaps: a cone problem without friction. */
+static void part_overlaps(imp_pile *pile, const imp_world *world, const imp_state *states, int count)
+{
+    imp_cone_assemble(world, states, pile->contacts, count, pile->rows, pile->w);
+    memset(pile->q, 0, sizeof *pile->q * 3 * (size_t)count);
+    for (int c = 0; c < count; c++) pile->q[3 * c] = pile->gap[c], pile->friction[c] = 0;
+    const imp_cone_problem problem = {.count = count, .w = pile->w, .q = pile->q, .friction = pile->friction};
+    const imp_cone_outcome outcome = imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
+    if (outcome.status != IMP_CONE_SOLVED && outcome.status != IMP_CONE_INEXACT)
+        memset(pile->r, 0, sizeof *pile->r * 3 * (size_t)count);
+}
+
+/* Moves bodies along normals, least in the metric of mass: what is held to gap zero, where that can be; then overlaps
+ * apart. Gaps within the slack may stay. */
+impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states)
+{
+    const double slack = IMP_PILE_SLACK * imp_pile_smallest(world), rounding = IMP_TOUCHING * imp_pile_smallest(world);
+    for (int pass = 0; pass < 2; pass++) {
+        const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
+                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -rounding, false);
+        if (!found || !imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
+        memcpy(pile->middle, states, sizeof *states * (size_t)world->body_count);
+        for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
+        for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
+            (pass == 0 ? close_gaps : part_overlaps)(pile, world, states, count);
+            if (pass == 0)
+                push_together(pile, world, count, slack);
+            else
+                imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
+        }
+        imp_pile_drift(world, pile->middle, 1, states);
+    }
+    return IMPACT_OK;
+}

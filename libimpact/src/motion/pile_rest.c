@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/pile_parts.h"
+#include "base/tolerances.h"
+
+/* Whether a static body's surface moves along under what touches it with friction. */
+static bool is_dragged(const imp_pile_contacts *touching, const imp_world *world, double rest_speed)
+{
+    for (int k = 0; world->driven && k < touching->count; k++) {
+        const imp_pile_point *point = &touching->points[k];
+        const imp_body *under = &world->bodies[point->contact.body2];
+        const imp_pair *pair = &world->pairs[point->pair];
+        if (under->driven && pair->friction > 0 &&
+            qvec3_norm(imp_surface_velocity(under, point->contact.arm2)) > rest_speed)
+            return true;
+        if (under->driven && imp_is_rough(pair) && qvec3_norm(under->spin) > 0) return true;
+    }
+    return false;
+}
+
+static bool is_touched(const imp_pile_contacts *touching, int body)
+{
+    for (int k = 0; k < touching->count; k++) {
+        const imp_cone_contact *contact = &touching->points[k].contact;
+        if (contact->body1 == body || contact->body2 == body) return true;
+    }
+    return false;
+}
+
+/* Points that touch, without reactions yet. */
+static bool remember_points(imp_pile *pile)
+{
+    const imp_pile_contacts *touching = &pile->touching;
+    pile->memory[0].count = 0;
+    for (int k = 0; k < touching->count; k++)
+        if (!imp_pile_remember(pile->arena, &pile->memory[0], &touching->points[k])) return false;
+    return true;
+}
+
+/* The reactions that balance the loads of those that were gathered last. */
+static void remember_rest(imp_pile *pile, int count)
+{
+    for (int c = 0; c < count; c++) {
+        imp_pile_memory *m = &pile->memory[0].list[pile->members[c]];
+        m->reaction = imp_pile_from_parts(&pile->contacts[c], &pile->r[pile->width * c], 1);
+        if (pile->width > 3) m->moment = imp_pile_from_parts(&pile->contacts[c], &pile->r[pile->width * c + 3], 1);
+    }
+}
+
+impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed,
+                             bool *rests)
+{
+    imp_pile_contacts *touching = &pile->touching;
+    *rests = false;
+    if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (body->is_static) continue;
+        if (qvec3_norm(states[i].v) + body->radius * qvec3_norm(imp_omega(body, &states[i])) > rest_speed)
+            return IMPACT_OK;
+    }
+    if (!imp_field_loads(world, t, states, pile->loads)) return IMPACT_OK;
+    imp_pile_contacts_mark(touching, world, &pile->memory[0]);
+    if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * imp_pile_smallest(world), false))
+        return IMPACT_ENOMEM;
+    for (int i = 0; i < world->body_count; i++)
+        if (!world->bodies[i].is_static && !is_touched(touching, i)) return IMPACT_OK;
+    if (is_dragged(touching, world, rest_speed)) return IMPACT_OK;
+    const int closed = touching->count;
+    if (!imp_pile_reserve_contacts(pile, world, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count))
+        return IMPACT_ENOMEM;
+    if (!remember_points(pile)) return IMPACT_ENOMEM;
+    for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
+        const imp_cone_lengths *lengths = pile->width > 3 ? pile->lengths : NULL;
+        const imp_rest_outcome outcome = imp_rest_solve(world, states, pile->contacts, pile->friction, lengths, count,
+                                                        pile->loads, &pile->rest, pile->r, pile->velocities);
+        if (outcome.status != IMP_REST_RESTS) return IMPACT_OK;
+        remember_rest(pile, count);
+    }
+    *rests = true;
+    return IMPACT_OK;
+}
