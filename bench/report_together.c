@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * report_together: random encounters (docs/together.md), each solved twice: as drawn, and with bodies renumbered and
- * contacts shuffled, which must give the same bits.
+ * report_together: random encounters (docs/together.md), each solved thrice: as drawn; with bodies renumbered and
+ * contacts shuffled, which must give the same bits; and turned, in other units, which must give the same answer to
+ * 1e-11 times its sensitivity (how far it follows changes of the data of 2^-36, the most of eight tries, at least 1).
  *
  * report_together [--encounters N] [--seed S]
  * N (default 1000) are shared among the rows. Friction 0 to 10, restitution .05 to 1, masses and stiffnesses within a
  * ratio of 1e4; bodies at rest, static, planar among them. CSV: law; exponent of the springs; contacts; encounters;
  * answered, nothing to answer, answered with a receipt that does not pass, wedged (told with proof), not settled; those
  * whose energy rose (by springs: by more than 1e-14; Moreau's may), and those whose bits changed with the order; the
- * worst residual of the answered; CPU time, us: median, the part .99, most; Taylor steps or linear systems: median,
- * most. Then one line for each that is not answered: its number from the seed, so that it can be made again.
+ * worst residual of the answered; those that were turned and compared, and those of them that were off; CPU time, us:
+ * median, the part .99, most; Taylor steps or linear systems: median, most. Then one line for each that is not
+ * answered: its number from the seed, so that it can be made again.
  */
 #include <stdio.h>
 #include <string.h>
-#include "kit/encounter_random.h"
+#include "kit/encounter_answer.h"
 #include "measure.h"
 #include "options.h"
 
@@ -29,14 +31,8 @@ static const family families[] = {
     {IMPACT_TOGETHER_MOREAU, 0, 2, 3},    {IMPACT_TOGETHER_MOREAU, 0, 4, 6},    {IMPACT_TOGETHER_MOREAU, 0, 7, 12}};
 enum { FAMILIES = sizeof families / sizeof *families };
 
-typedef struct answer {
-    impact_status status;
-    impact_together_outcome outcome;
-    qvec3 velocity[ENCOUNTER_BODIES], omega[ENCOUNTER_BODIES];
-} answer;
-
 typedef struct tally {
-    int answered, separating, soft, wedged, unsettled, risen, changed;
+    int answered, separating, soft, wedged, unsettled, risen, changed, turned, off;
     double worst, *time, *steps;
 } tally;
 
@@ -45,15 +41,6 @@ static double cpu_clock(void)
     struct timespec t;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void solve(const random_encounter *e, const family *f, impact_together_workspace *workspace, answer *a)
-{
-    impact_encounter encounter = encounter_of(e, f->law);
-    encounter.exponent = f->exponent;
-    encounter.workspace = workspace;
-    a->outcome = (impact_together_outcome){.velocity = a->velocity, .omega = a->omega};
-    a->status = impact_collide_together(&encounter, &a->outcome);
 }
 
 /* The same with bodies and contacts in the reverse order; body b becomes count - 1 - b. */
@@ -92,6 +79,23 @@ static void count_status(const answer *a, tally *t, long number)
                 a->outcome.residual);
 }
 
+static void turn_one(const family *f, const random_encounter *e, const answer *a, random_stream *random,
+                     impact_together_workspace *workspace, long number, tally *t)
+{
+    const encounter_frame frame = {random_rotation(random), random_log(random, 0.1, 10), random_log(random, 0.1, 10),
+                                   random_log(random, 0.1, 10)};
+    const random_encounter other = change_frame(e, &frame);
+    answer b = solve(&other, f->law, f->exponent, workspace);
+    if (b.status != IMPACT_OK) return;
+    change_back(&b, e->body_count, &frame);
+    const double off = distance(a, &b, e->body_count);
+    t->turned++;
+    const double follows = off > 1e-11 ? sensitivity(random, e, f->law, f->exponent, a) : INFINITY;
+    if (off <= 1e-11 * follows) return;
+    t->off++;
+    fprintf(stderr, "encounter %ld: turned it is off by %.2g, sensitivity %.2g\n", number, off, follows);
+}
+
 static void solve_one(const family *f, uint64_t seed, long number, impact_together_workspace *workspace, int k,
                       tally *t)
 {
@@ -101,15 +105,15 @@ static void solve_one(const family *f, uint64_t seed, long number, impact_togeth
     ranges.least = f->least, ranges.most = f->most;
     random_stream random = {seed + 0x9e3779b97f4a7c15u * (uint64_t)number};
     const random_encounter e = encounter_draw(&random, &ranges), other = reversed(&e);
-    answer a, b;
     const double begun = cpu_clock();
-    solve(&e, f, workspace, &a);
+    const answer a = solve(&e, f->law, f->exponent, workspace);
     t->time[k] = 1e6 * (cpu_clock() - begun);
     t->steps[k] = (double)a.outcome.steps;
     count_status(&a, t, number);
-    solve(&other, f, workspace, &b);
+    const answer b = solve(&other, f->law, f->exponent, workspace);
     t->changed += !same_bits(&a, &b, e.body_count);
     if (a.status != IMPACT_OK) return;
+    turn_one(f, &e, &a, &random, workspace, number, t);
     t->worst = fmax(t->worst, a.outcome.residual);
     t->risen += f->law == IMPACT_TOGETHER_SPRINGS ? a.outcome.energy_after > a.outcome.energy_before * (1 + 1e-14)
                                                   : a.outcome.energy_rose;
@@ -127,7 +131,7 @@ int main(int argc, char **argv)
     }
     if (impact_together_workspace_create(NULL, &workspace) != IMPACT_OK) return 1;
     printf("law,exponent,contacts,encounters,answered,separating,soft,wedged,unsettled,energy_rose,order_changed,"
-           "residual,time_median,time_99,time_most,steps_median,steps_most\n");
+           "residual,turned,turned_off,time_median,time_99,time_most,steps_median,steps_most\n");
     long number = 0;
     for (int k = 0; k < FAMILIES; k++) {
         const family *f = &families[k];
@@ -135,11 +139,11 @@ int main(int argc, char **argv)
         tally t = {.time = calloc((size_t)runs + 1, sizeof *t.time),
                    .steps = calloc((size_t)runs + 1, sizeof *t.steps)};
         for (int i = 0; i < runs; i++) solve_one(f, (uint64_t)seed, number++, workspace, i, &t);
-        printf("%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%.0f,%.0f,%.0f,%.0f,%.0f\n", impact_together_law_name(f->law),
-               f->exponent, f->least, f->most, runs, t.answered, t.separating, t.soft, t.wedged, t.unsettled, t.risen,
-               t.changed, t.worst, measure_quantile(t.time, runs, 0.5), measure_quantile(t.time, runs, 0.99),
-               measure_quantile(t.time, runs, 1), measure_quantile(t.steps, runs, 0.5),
-               measure_quantile(t.steps, runs, 1));
+        printf("%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
+               impact_together_law_name(f->law), f->exponent, f->least, f->most, runs, t.answered, t.separating, t.soft,
+               t.wedged, t.unsettled, t.risen, t.changed, t.worst, t.turned, t.off, measure_quantile(t.time, runs, 0.5),
+               measure_quantile(t.time, runs, 0.99), measure_quantile(t.time, runs, 1),
+               measure_quantile(t.steps, runs, 0.5), measure_quantile(t.steps, runs, 1));
         fflush(stdout);
         free(t.time);
         free(t.steps);

@@ -26,4 +26,73 @@ static inline answer solve(const random_encounter *e, impact_together_law law, d
     return a;
 }
 
+/* All turned, masses, lengths and times multiplied. */
+typedef struct encounter_frame {
+    quat turn;
+    double mass, length, time;
+} encounter_frame;
+
+static inline random_encounter change_frame(const random_encounter *e, const encounter_frame *frame)
+{
+    random_encounter out = *e;
+    const quat q = frame->turn;
+    const double m = frame->mass, l = frame->length, t = frame->time;
+    for (int b = 0; b < e->body_count; b++) {
+        impact_collider *body = &out.bodies[b];
+        body->mass *= m;
+        body->moments = qvec3_scale(body->moments, m * l * l);
+        body->orientation = quat_mul(q, body->orientation);
+        (void)quat_normalize(body->orientation, &body->orientation);
+        body->velocity = quat_rotate(q, qvec3_scale(body->velocity, l / t));
+        body->omega = quat_rotate(q, qvec3_scale(body->omega, 1 / t));
+    }
+    for (int i = 0; i < e->meeting_count; i++) {
+        impact_meeting *own = &out.meetings[i];
+        own->normal = quat_rotate(q, own->normal);
+        own->offset1 = quat_rotate(q, qvec3_scale(own->offset1, l));
+        own->offset2 = quat_rotate(q, qvec3_scale(own->offset2, l));
+        own->stiffness *= 3.7;
+    }
+    return out;
+}
+
+/* The answer in such a frame as it was before. */
+static inline void change_back(answer *a, int bodies, const encounter_frame *frame)
+{
+    for (int k = 0; k < bodies; k++) {
+        a->velocity[k] = qvec3_scale(quat_rotate_inverse(frame->turn, a->velocity[k]), frame->time / frame->length);
+        a->omega[k] = qvec3_scale(quat_rotate_inverse(frame->turn, a->omega[k]), frame->time);
+    }
+}
+
+static inline double distance(const answer *a, const answer *b, int bodies)
+{
+    double off = 0, size = 0;
+    for (int k = 0; k < bodies; k++) {
+        off = fmax(off, qvec3_norm(qvec3_sub(a->velocity[k], b->velocity[k])) +
+                            qvec3_norm(qvec3_sub(a->omega[k], b->omega[k])));
+        size = fmax(size, qvec3_norm(a->velocity[k]) + qvec3_norm(a->omega[k]));
+    }
+    return off / size;
+}
+
+/* How far the answer follows relative changes of the data, of eight tries of 2^-36. */
+static inline double sensitivity(random_stream *random, const random_encounter *e, impact_together_law law,
+                                 double exponent, const answer *a)
+{
+    double most = 1;
+    for (int k = 0; k < 8; k++) {
+        random_encounter near = *e;
+        for (int b = 0; b < e->body_count; b++)
+            near.bodies[b].velocity = qvec3_axpy(0x1p-36, random_direction(random), near.bodies[b].velocity);
+        for (int i = 0; i < e->meeting_count; i++) {
+            near.meetings[i].normal = qvec3_axpy(0x1p-36, random_direction(random), near.meetings[i].normal);
+            near.meetings[i].stiffness *= 1 + 0x1p-36 * random_unit(random);
+        }
+        const answer b = solve(&near, law, exponent, NULL);
+        most = fmax(most, distance(a, &b, e->body_count) * 0x1p36);
+    }
+    return most;
+}
+
 #endif

@@ -121,12 +121,35 @@ static void laws_that_do_not_fit_are_refused(void **state)
     assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
 }
 
+/* A ball falls into a groove of 60 degrees whose friction, 3, locks it: springs find no end to that, and are asked once
+ * in that instant, which is then answered one contact after the other. The message names a pair. */
+static void what_is_locked_is_answered_one_after_another(void **state)
+{
+    (void)state;
+    const double half = M_PI / 6; /* planes 60 degrees steep, either way */
+    impact_body_def bodies[3] = {ball_body("ball", (qvec3){0, 0, 2 * radius + 0.1}, 3, 0.5),
+                                 plane_body("left", (qvec3){0, 0, 0}, (quat){cos(half), 0, sin(half), 0}, 3, 0.5),
+                                 plane_body("right", (qvec3){0, 0, 0}, (quat){cos(half), 0, -sin(half), 0}, 3, 0.5)};
+    impact_scene_def def = scene_of(bodies, 3, IMPACT_SCENE_SPRINGS);
+    bodies[0].velocity.z = -1;
+    def.duration = 0.15;
+    impact_scene *scene = make_scene(&def);
+    const impact_status status = impact_scene_run(scene, NULL);
+    const impact_usage usage = impact_scene_usage(scene);
+    assert_true(status == IMPACT_OK);
+    assert_int_equal(usage.encounters, 0);
+    assert_true(usage.impacts_simultaneous > 0);
+    assert_non_null(strstr(impact_scene_message(scene), "springs finds no answer to all together"));
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ball_meets_two),
         cmocka_unit_test(a_cradle),
         cmocka_unit_test(laws_that_do_not_fit_are_refused),
+        cmocka_unit_test(what_is_locked_is_answered_one_after_another),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
