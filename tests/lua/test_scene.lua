@@ -288,7 +288,7 @@ do
   ball.position = { 5, 0, 0 }
   check.equal(scene:state("ball").position.x, 0)
   check.equal(impact.scene({ duration = 1, bodies = { ball } }):state("ball").position.x, 5)
-  check.raises("scene 'scene': output_rate = 1.0000000000000001e+300: with this duration makes more than 1e15 samples", impact.scene,
+  check.raises("scene 'scene': output_rate = 1e+300: with this duration makes more than 1e15 samples", impact.scene,
     { duration = 1, output_rate = 1e300, bodies = { ball } })
   ball.mass = -1
   check.raises("body 'ball': mass must be a positive number, got -1", impact.scene, { duration = 1, bodies = { ball } })

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "base/number.h"
 #include "base/definition.h"
 #include "base/ode_driver.h"
 #include "base/parts.h"
@@ -113,7 +114,8 @@ impact_status impact_ode_start(impact_ode *ode, double t, const double *y)
     }
     for (int i = 0; i < ode->size; i++)
         if (!isfinite(y[i])) {
-            snprintf(ode->message, sizeof ode->message, "start at t = %.17g: component %d is %g", t, i, y[i]);
+            snprintf(ode->message, sizeof ode->message, "start at t = %s: component %d is %g", imp_number_of(t).text, i,
+                     y[i]);
             return IMPACT_EDOMAIN;
         }
     ode->counts = impact_ode_count(ode);
@@ -158,8 +160,8 @@ impact_status impact_ode_advance(impact_ode *ode, double t_stop, double *t, doub
         const impact_status status = impact_ode_step(ode, t_stop, t, y, roots_found, found);
         if (status != IMPACT_OK || *found || *t == t_stop) return status;
     }
-    snprintf(ode->message, sizeof ode->message, "%ld steps did not reach t = %.17g; stopped at %.17g",
-             ode->def.max_steps, t_stop, *t);
+    snprintf(ode->message, sizeof ode->message, "%ld steps did not reach t = %s; stopped at %s", ode->def.max_steps,
+             imp_number_of(t_stop).text, imp_number_of(*t).text);
     return IMPACT_EINTEGRATOR;
 }
 
@@ -178,6 +180,7 @@ const char *impact_ode_message(const impact_ode *ode) { return ode->message; }
 
 impact_status imp_ode_explain(impact_ode *ode, double reached, double step, const char *why)
 {
-    snprintf(ode->message, sizeof ode->message, "integration stopped at t = %.17g, step %.3g: %s", reached, step, why);
+    snprintf(ode->message, sizeof ode->message, "integration stopped at t = %s, step %.3g: %s",
+             imp_number_of(reached).text, step, why);
     return IMPACT_EINTEGRATOR;
 }

@@ -3,6 +3,7 @@
  * What impact_collide takes, and in which words it refuses the rest.
  */
 #include "collide/collide_check.h"
+#include "base/number.h"
 
 #include <stdio.h>
 #include "base/numbers.h"
@@ -52,8 +53,8 @@ static impact_status check_body(const impact_collider *body, int number, char *m
                                   "body %d: orientation is (%g, %g, %g, %g), must be a finite unit quaternion", number,
                                   q.w, q.x, q.y, q.z);
     if (!(fabs(n2 - 1) <= 1e-6))
-        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "body %d: orientation has length %.17g, must be 1",
-                                  number, sqrt(n2));
+        return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "body %d: orientation has length %s, must be 1",
+                                  number, imp_number_of(sqrt(n2)).text);
     return IMPACT_OK;
 }
 

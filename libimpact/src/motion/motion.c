@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/motion.h"
+#include "base/number.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -76,14 +77,14 @@ bool imp_motion_load(imp_motion *motion, double t, const imp_state *states)
 {
     imp_world *world = motion->world;
     if (!imp_field_loads(world, t, states, motion->loads)) {
-        snprintf(motion->message, sizeof motion->message, "a custom force refused at t = %.17g", t);
+        snprintf(motion->message, sizeof motion->message, "a custom force refused at t = %s", imp_number_of(t).text);
         return false;
     }
     for (int i = 0; i < world->body_count; i++) {
         const qvec3 f = motion->loads[i].force, m = motion->loads[i].torque;
         if (isfinite(f.x + f.y + f.z + m.x + m.y + m.z)) continue;
-        snprintf(motion->message, sizeof motion->message, "body '%s': the force on it is not finite at t = %.17g",
-                 world->bodies[i].name, t);
+        snprintf(motion->message, sizeof motion->message, "body '%s': the force on it is not finite at t = %s",
+                 world->bodies[i].name, imp_number_of(t).text);
         return false;
     }
     return true;

@@ -10,6 +10,7 @@
  * clock alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
  */
 #include "motion/motion_equations.h"
+#include "base/number.h"
 #include "world/drive.h"
 #include "contact/persist_flat.h"
 #include "contact/persist_line.h"
@@ -233,7 +234,8 @@ static bool edges_are_finite(imp_motion *motion, double t, const double *value, 
 {
     for (int k = 0; k < count; k++) {
         if (isfinite(value[k])) continue;
-        snprintf(motion->message, sizeof motion->message, "the edge of a custom force is not finite at t = %.17g", t);
+        snprintf(motion->message, sizeof motion->message, "the edge of a custom force is not finite at t = %s",
+                 imp_number_of(t).text);
         return false;
     }
     return true;

@@ -5,6 +5,7 @@
  * its error where f is smooth. (Enright, "A new error control for initial value solvers", 1989.)
  */
 #include "motion/motion_guard.h"
+#include "base/number.h"
 #include "motion/motion_equations.h"
 
 #include <stdio.h>
@@ -139,7 +140,7 @@ impact_status imp_motion_stuck(imp_motion *motion, const char *what, double t)
     for (int i = 0; i < world->body_count; i++)
         if (!world->bodies[i].is_static && (quickest < 0 || !(quickness(motion, i) <= quickness(motion, quickest))))
             quickest = i;
-    snprintf(motion->message, sizeof motion->message, "%s at t = %.17g, where body '%s' moves fastest for its size",
-             what, t, quickest < 0 ? "" : world->bodies[quickest].name);
+    snprintf(motion->message, sizeof motion->message, "%s at t = %s, where body '%s' moves fastest for its size", what,
+             imp_number_of(t).text, quickest < 0 ? "" : world->bodies[quickest].name);
     return IMPACT_EUNSETTLED;
 }

@@ -3,6 +3,7 @@
  * Integration: a stretch of it from step to step, and the event at the end of one.
  */
 #include "motion/motion_stretch.h"
+#include "base/number.h"
 #include "motion/motion_guard.h"
 #include "world/corner.h"
 
@@ -181,12 +182,11 @@ static impact_status fail(imp_motion *motion, impact_status status)
 
 static impact_status too_rough(imp_motion *motion, double from, double to, long steps)
 {
-    char what[160];
-    snprintf(
-        what, sizeof what,
-        "%ld steps from t = %.17g got nowhere: the motion is too rough (a face that rocks, or masses too different "
-        "that press on each other?)",
-        steps, from);
+    char what[200];
+    snprintf(what, sizeof what,
+             "%ld steps from t = %s got nowhere: the motion is too rough (a face that rocks, or masses too different "
+             "that press on each other?)",
+             steps, imp_number_of(from).text);
     return imp_motion_stuck(motion, what, to);
 }
 

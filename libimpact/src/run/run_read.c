@@ -3,6 +3,7 @@
  * Opening a record: every offset, count, index and number in it is checked here, so that nothing that asks an open one
  * has to.
  */
+#include "base/number.h"
 #include "run/run_open.h"
 #include "base/tolerances.h"
 #include "run/text.h"
@@ -156,8 +157,8 @@ static impact_status check_rows(const reader *r, int table, long first, long cou
                 return refuse(r, "table '%s', row %ld: %s is not a number that a run can have",
                               imp_run_tables[table].name, row, imp_run_tables[table].column[c]);
         if (values[0] < before)
-            return refuse(r, "table '%s', row %ld: t = %.17g comes after %.17g", imp_run_tables[table].name, row,
-                          values[0], before);
+            return refuse(r, "table '%s', row %ld: t = %s comes after %s", imp_run_tables[table].name, row,
+                          imp_number_of(values[0]).text, imp_number_of(before).text);
         before = values[0];
     }
     return IMPACT_OK;
@@ -263,7 +264,8 @@ static impact_status check_keys(const reader *r, int body)
     for (long k = 0; k < b->count; k++) {
         const impact_key key = imp_run_key(run, body, k);
         if (fabs(quat_norm(key.orientation) - 1) > IMP_RUN_UNIT)
-            return refuse(r, "body '%.80s', t = %.17g: its orientation is not a unit", b->def.name, key.t);
+            return refuse(r, "body '%.80s', t = %s: its orientation is not a unit", b->def.name,
+                          imp_number_of(key.t).text);
     }
     const impact_key first = imp_run_key(run, body, 0), last = imp_run_key(run, body, b->count - 1);
     b->def.position = first.position;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "run/text.h"
+#include "base/number.h"
 
 #include <limits.h>
 #include <math.h>
@@ -53,7 +54,6 @@ static void say_whole(imp_text *text, long long value)
 /* The shortest of 15, 16 and 17 digits that gives back the same bits. */
 void imp_text_number(imp_text *text, double value)
 {
-    char word[32];
     if (fabs(value) < 1e15 && value == trunc(value) && !(value == 0 && signbit(value))) {
         say_whole(text, (long long)value);
         return;
@@ -62,17 +62,7 @@ void imp_text_number(imp_text *text, double value)
         imp_text_say(text, "null");
         return;
     }
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(word, sizeof word, "%.*g", digits, value);
-        if (strtod(word, NULL) == value) break;
-    }
-    char *point = word + strspn(word, "+-0123456789e");
-    const size_t size = strcspn(point, "0123456789e"); /* of the locale's decimal point, which may be several bytes */
-    if (size > 0) {
-        memmove(point + 1, point + size, strlen(point + size) + 1);
-        *point = '.';
-    }
-    imp_text_say(text, word);
+    imp_text_say(text, imp_number_of(value).text);
 }
 
 void imp_text_string(imp_text *text, const char *string)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/arrivals.h"
+#include "base/number.h"
 #include "scene/following.h"
 #include "scene/gather.h"
 #include "scene/islands.h"
@@ -25,8 +26,8 @@ static impact_status check_stall(impact_scene *scene, const imp_island *island)
         track->stalls = track->last_event == island->t ? track->stalls + 1 : 0;
         track->last_event = island->t;
         if (track->stalls < MAX_STALLS) continue;
-        snprintf(scene->message, sizeof scene->message,
-                 "body '%s': %d events at the one instant t = %.17g brought no end", body->name, MAX_STALLS, island->t);
+        snprintf(scene->message, sizeof scene->message, "body '%s': %d events at the one instant t = %s brought no end",
+                 body->name, MAX_STALLS, imp_number_of(island->t).text);
         return IMPACT_EUNSETTLED;
     }
     return IMPACT_OK;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_check.h"
+#include "base/number.h"
 #include "scene/scene_methods.h"
 #include "shape/solid.h"
 #include "world/drive.h"
@@ -26,7 +27,7 @@ static bool require(check *c, bool good, const char *key, double value, const ch
     if (good) return true;
     c->status = isfinite(value) ? IMPACT_EARGUMENT : IMPACT_EDOMAIN;
     if (c->message && c->size > 0)
-        snprintf(c->message, c->size, "%s '%s': %s = %.17g: %s", c->kind, c->name, key, value, rule);
+        snprintf(c->message, c->size, "%s '%s': %s = %s: %s", c->kind, c->name, key, imp_number_of(value).text, rule);
     return false;
 }
 

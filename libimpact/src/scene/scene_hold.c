@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_hold.h"
+#include "base/number.h"
 #include "world/drive.h"
 #include "contact/persist_flat.h"
 #include "contact/persist_line.h"
@@ -141,7 +142,7 @@ static impact_status make_consistent(imp_island *island)
         status = imp_persist_resolve(&motion->persist, &island->world, island->states, motion->loads);
     if (status == IMPACT_EUNSETTLED)
         snprintf(island->scene->message, sizeof island->scene->message,
-                 "no consistent set of contact forces found at t = %.17g", island->t);
+                 "no consistent set of contact forces found at t = %s", imp_number_of(island->t).text);
     return status;
 }
 

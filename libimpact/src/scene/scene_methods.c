@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_methods.h"
+#include "base/number.h"
 #include "base/parts.h"
 #include "base/tolerances.h"
 
@@ -78,7 +79,8 @@ static void check_short_names(method_check *c, const impact_scene_def *def)
     want(c, def->solver == IMPACT_SOLVER_AUTO || m->impacts == IMPACT_SOLVER_AUTO || def->solver == m->impacts,
          IMPACT_EARGUMENT, "solver and impacts in methods are two names of one key, and differ");
     want(c, m->tolerance == 0 || def->tolerance == own || def->tolerance == m->tolerance, IMPACT_EARGUMENT,
-         "tolerance = %.17g, and %.17g in methods: two names of one key", def->tolerance, m->tolerance);
+         "tolerance = %s, and %s in methods: two names of one key", imp_number_of(def->tolerance).text,
+         imp_number_of(m->tolerance).text);
     want(c, m->motion != IMPACT_MOTION_STEPS || def->piles != IMPACT_PILES_EXACT, IMPACT_EARGUMENT,
          "motion = \"steps\" in methods, and piles = \"exact\"");
     want(c, !imp_scene_integrates_all(m) || def->piles != IMPACT_PILES_STEPS, IMPACT_EARGUMENT,
@@ -88,7 +90,7 @@ static void check_short_names(method_check *c, const impact_scene_def *def)
 static void check_range(method_check *c, const char *key, double value, double least, double most)
 {
     want(c, value == 0 || (value >= least && value <= most), isfinite(value) ? IMPACT_EARGUMENT : IMPACT_EDOMAIN,
-         "%s = %.17g in methods must lie in [%g, %g]", key, value, least, most);
+         "%s = %s in methods must lie in [%g, %g]", key, imp_number_of(value).text, least, most);
 }
 
 static void check_numbers(method_check *c, const impact_scene_def *def)
@@ -104,11 +106,11 @@ static void check_numbers(method_check *c, const impact_scene_def *def)
          "gap_tolerance in methods is libccd's: it needs gaps = \"ccd\"");
     want(c, m->gap_tolerance == 0 || (m->gap_tolerance >= IMP_LEAST_CCD && m->gap_tolerance <= IMP_MOST_CCD),
          isfinite(m->gap_tolerance) ? IMPACT_EARGUMENT : IMPACT_EDOMAIN,
-         "gap_tolerance = %.17g in methods: libccd cannot give it; %g to %g", m->gap_tolerance, IMP_LEAST_CCD,
-         IMP_MOST_CCD);
+         "gap_tolerance = %s in methods: libccd cannot give it; %g to %g", imp_number_of(m->gap_tolerance).text,
+         IMP_LEAST_CCD, IMP_MOST_CCD);
     want(c, rk4 || m->step == 0, IMPACT_EARGUMENT, "step in methods is that of motion = \"rk4\"");
     want(c, !rk4 || (m->step > 0 && isfinite(m->step)), isfinite(m->step) ? IMPACT_EARGUMENT : IMPACT_EDOMAIN,
-         "motion = \"rk4\" in methods needs a step > 0, in s, not %.17g", m->step);
+         "motion = \"rk4\" in methods needs a step > 0, in s, not %s", imp_number_of(m->step).text);
 }
 
 /* Asks for what is named alone: asking loads it. */

@@ -2,6 +2,7 @@
  *
  * Through the queue, from slot to slot.
  */
+#include "base/number.h"
 #include "scene/arrivals.h"
 #include "scene/scene_keys.h"
 #include "world/world_gap.h"
@@ -86,8 +87,8 @@ bool imp_scene_good_row(impact_scene *scene, const impact_sample *s)
                        s->orientation.y + s->orientation.z + s->velocity.x + s->velocity.y + s->velocity.z +
                        s->omega.x + s->omega.y + s->omega.z;
     if (isfinite(sum)) return true;
-    snprintf(scene->message, sizeof scene->message, "the motion of '%s' has left double precision at t = %.17g",
-             s->name, s->t);
+    snprintf(scene->message, sizeof scene->message, "the motion of '%s' has left double precision at t = %s", s->name,
+             imp_number_of(s->t).text);
     return false;
 }
 
@@ -147,8 +148,8 @@ static impact_status gaps_failed(impact_scene *scene)
 {
     imp_gaps *gaps = &scene->gaps;
     snprintf(scene->message, sizeof scene->message,
-             "bodies '%s' and '%s' at t = %.17g: libccd's gap is none at gap_tolerance = %g", gaps->failed[0],
-             gaps->failed[1], scene->t, gaps->tolerance);
+             "bodies '%s' and '%s' at t = %s: libccd's gap is none at gap_tolerance = %g", gaps->failed[0],
+             gaps->failed[1], imp_number_of(scene->t).text, gaps->tolerance);
     gaps->failed[0] = NULL;
     return IMPACT_EUNSETTLED;
 }
@@ -158,8 +159,8 @@ bool imp_scene_told(impact_scene *scene)
     const impact_recorder *recorder = scene->recorder;
     if (++scene->steps > scene->max_steps) {
         scene->stop = IMPACT_EUNSETTLED;
-        snprintf(scene->message, sizeof scene->message, "%ld steps by t = %.17g: the limit, max_steps",
-                 scene->max_steps, scene->t);
+        snprintf(scene->message, sizeof scene->message, "%ld steps by t = %s: the limit, max_steps", scene->max_steps,
+                 imp_number_of(scene->t).text);
         return false;
     }
     if (!recorder || !recorder->progress || recorder->progress(recorder->context, scene->t, scene->duration))
@@ -195,8 +196,8 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end)
         if (scene->moving == 0 && scene->movable > 0 && !scene->unsteady) return IMPACT_AT_REST;
         if (t > t_end) break;
         if (scene->event_count >= scene->max_events) {
-            snprintf(scene->message, sizeof scene->message, "%ld events by t = %.17g: the limit", scene->event_count,
-                     scene->t);
+            snprintf(scene->message, sizeof scene->message, "%ld events by t = %s: the limit", scene->event_count,
+                     imp_number_of(scene->t).text);
             return IMPACT_EVENT_LIMIT;
         }
         if (!imp_scene_told(scene)) return scene->stop;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_strike.h"
+#include "base/number.h"
 #include "contact/persist_still.h"
 #include "contact/turning.h"
 #include "scene/scene_events.h"
@@ -35,8 +36,8 @@ static impact_status strike_turning(imp_island *island, imp_meeting *m)
     imp_cone_release(&room);
     if (status == IMPACT_EUNSETTLED)
         snprintf(island->scene->message, sizeof island->scene->message,
-                 "impact of '%s' and '%s' at t = %.17g, with friction against turning: no answer was found",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, island->t);
+                 "impact of '%s' and '%s' at t = %s, with friction against turning: no answer was found",
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, imp_number_of(island->t).text);
     if (status != IMPACT_OK) return status;
     impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
     const qvec3 rubs = qvec3_axpy(impact.p[1], contact.axes[1], qvec3_scale(contact.axes[2], impact.p[2]));
@@ -67,11 +68,11 @@ static impact_status strike(imp_island *island, imp_meeting *m)
     const impact_status status = impact_collide(&collision, &outcome);
     if (status == IMPACT_SOFT && island->world.usage.impacts_soft++ == 0)
         snprintf(island->scene->message, sizeof island->scene->message,
-                 "impact of '%s' and '%s' at t = %.17g: no solver's answer passes its receipt, the best is taken",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, island->t);
+                 "impact of '%s' and '%s' at t = %s: no solver's answer passes its receipt, the best is taken",
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, imp_number_of(island->t).text);
     if (status != IMPACT_OK && status != IMPACT_SOFT) {
-        snprintf(island->scene->message, sizeof island->scene->message, "impact of '%s' and '%s' at t = %.17g: %s",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, island->t,
+        snprintf(island->scene->message, sizeof island->scene->message, "impact of '%s' and '%s' at t = %s: %s",
+                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, imp_number_of(island->t).text,
                  status == IMPACT_EARGUMENT && island->scene->methods.impacts == IMPACT_SOLVER_CLOSED_FORM
                      ? "it has no closed form, and the scene asks for no other solver"
                      : impact_status_string(status));
@@ -165,7 +166,7 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
         if (count > 0) world->usage.impacts_simultaneous++;
         if (count == MAX_IMPACTS) {
             snprintf(island->scene->message, sizeof island->scene->message,
-                     "%d impacts in the one instant t = %.17g brought no end", count, island->t);
+                     "%d impacts in the one instant t = %s brought no end", count, imp_number_of(island->t).text);
             return IMPACT_EUNSETTLED;
         }
         status = strike(island, &m);

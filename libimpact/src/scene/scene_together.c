@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_together.h"
+#include "base/number.h"
 #include "contact/encounter.h"
 #include "contact/persist_still.h"
 #include "scene/scene_events.h"
@@ -186,8 +187,8 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
     if (status < 0 || status == IMPACT_SEPARATING) return status;
     if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0)
         snprintf(scene->message, sizeof scene->message,
-                 "%d contacts at t = %.17g, one of '%s' and '%s': their answer together does not pass its receipt",
-                 g->count, island->t, world->bodies[g->met[0].touch.body1].name,
+                 "%d contacts at t = %s, one of '%s' and '%s': their answer together does not pass its receipt",
+                 g->count, imp_number_of(island->t).text, world->bodies[g->met[0].touch.body1].name,
                  world->bodies[g->met[0].touch.body2].name);
     for (int i = 0; i < world->body_count; i++) imp_scene_set_velocities(island, i, g->velocity[i], g->omega[i]);
     imp_persist_stir(world);
@@ -201,10 +202,10 @@ static void tell_unsettled(imp_island *island, const gathering *g, const imp_mee
     const imp_body *bodies = island->world.bodies;
     if (scene->message[0]) return;
     snprintf(scene->message, sizeof scene->message,
-             "%d contacts at t = %.17g, that of '%s' and '%s' among them: %s finds no answer to all together; they are "
+             "%d contacts at t = %s, that of '%s' and '%s' among them: %s finds no answer to all together; they are "
              "answered one after another",
-             g->count, island->t, bodies[struck->touch.body1].name, bodies[struck->touch.body2].name,
-             impact_together_law_name(by));
+             g->count, imp_number_of(island->t).text, bodies[struck->touch.body1].name,
+             bodies[struck->touch.body2].name, impact_together_law_name(by));
 }
 
 impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck, bool *answered)
@@ -234,7 +235,8 @@ impact_status imp_scene_end_together(imp_island *island)
     if (status == IMPACT_OK) status = answer(island, &g, (answering){IMPACT_TOGETHER_MOREAU, "together", true});
     give_gathering(island->world.arena, &g);
     if (status == IMPACT_EUNSETTLED)
-        snprintf(island->scene->message, sizeof island->scene->message, "no impulses end the impacts at t = %.17g%s",
-                 island->t, island->world.driven ? ": do moving surfaces draw a body in where it jams?" : "");
+        snprintf(island->scene->message, sizeof island->scene->message, "no impulses end the impacts at t = %s%s",
+                 imp_number_of(island->t).text,
+                 island->world.driven ? ": do moving surfaces draw a body in where it jams?" : "");
     return status > 0 ? IMPACT_OK : status;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/stepped.h"
+#include "base/number.h"
 #include "base/tolerances.h"
 #include "motion/motion_pile.h"
 #include "scene/following.h"
@@ -104,7 +105,8 @@ impact_status imp_island_step(imp_island *island)
         imp_motion_next_by_steps(motion, island->pile, island->before, island->states, &result);
     if (status == IMPACT_ENOMEM) return status;
     if (status != IMPACT_OK) {
-        snprintf(scene->message, sizeof scene->message, "by steps from t = %.17g: %s", motion->stride.t,
+        snprintf(scene->message, sizeof scene->message, "by steps from t = %s: %s",
+                 imp_number_of(motion->stride.t).text,
                  island->pile->message[0] ? island->pile->message : impact_status_string(status));
         return status;
     }

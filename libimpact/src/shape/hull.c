@@ -7,25 +7,26 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/number.h"
 #include "base/tolerances.h"
 #include "shape/hull_build.h"
 
 static impact_status complain(impact_status status, char *message, size_t size, const char *words, double value)
 {
-    if (message && size > 0) snprintf(message, size, words, value);
+    if (message && size > 0) snprintf(message, size, words, imp_number_of(value).text);
     return status;
 }
 
 static impact_status check_points(const qvec3 *points, size_t count, double rounding, char *message, size_t size)
 {
-    if (count < 4) return complain(IMPACT_EARGUMENT, message, size, "%.0f points are fewer than 4", (double)count);
+    if (count < 4) return complain(IMPACT_EARGUMENT, message, size, "%s points are fewer than 4", (double)count);
     if (count > IMPACT_HULL_POINTS)
-        return complain(IMPACT_EARGUMENT, message, size, "%.0f points are more than 256", (double)count);
-    if (!isfinite(rounding)) return complain(IMPACT_EDOMAIN, message, size, "rounding = %g is not finite", rounding);
-    if (rounding < 0) return complain(IMPACT_EARGUMENT, message, size, "rounding = %.17g is negative", rounding);
+        return complain(IMPACT_EARGUMENT, message, size, "%s points are more than 256", (double)count);
+    if (!isfinite(rounding)) return complain(IMPACT_EDOMAIN, message, size, "rounding = %s is not finite", rounding);
+    if (rounding < 0) return complain(IMPACT_EARGUMENT, message, size, "rounding = %s is negative", rounding);
     for (size_t i = 0; i < count; i++)
         if (!qvec3_isfinite(points[i]))
-            return complain(IMPACT_EDOMAIN, message, size, "vertex %.0f is not finite", (double)i + 1);
+            return complain(IMPACT_EDOMAIN, message, size, "vertex %s is not finite", (double)i + 1);
     return IMPACT_OK;
 }
 
@@ -256,10 +257,10 @@ static impact_status build(const qvec3 *points, int count, double rounding, imp_
 {
     double middle[3], thickness;
     const double unit = bring(points, count, w, middle);
-    if (!(unit > 0)) return complain(IMPACT_EARGUMENT, message, size, "its %.0f vertices are one point", count);
+    if (!(unit > 0)) return complain(IMPACT_EARGUMENT, message, size, "its %s vertices are one point", count);
     if (!imp_hull_triangles(w, &thickness)) {
         char words[80];
-        snprintf(words, sizeof words, "its %%.0f vertices lie in a plane to %.2g m", thickness * unit);
+        snprintf(words, sizeof words, "its %%s vertices lie in a plane to %.2g m", thickness * unit);
         return complain(IMPACT_EARGUMENT, message, size, words, count);
     }
     imp_hull_faces(w);
@@ -274,7 +275,7 @@ impact_status impact_hull_create(const qvec3 *points, size_t count, double round
     impact_status status = check_points(points, count, rounding, message, size);
     if (status != IMPACT_OK) return status;
     imp_hull_work *w = take(allocator, sizeof *w);
-    if (!w) return complain(IMPACT_ENOMEM, message, size, "out of memory: %.0f bytes", (double)sizeof *w);
+    if (!w) return complain(IMPACT_ENOMEM, message, size, "out of memory: %s bytes", (double)sizeof *w);
     status = build(points, (int)count, rounding, w, allocator, hull, message, size);
     give(allocator, w, sizeof *w);
     return status;

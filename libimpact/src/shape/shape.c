@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <impact/shape.h>
+#include "base/number.h"
 #include "shape/solid.h"
 
 static const double max_exponent = 1e6;
@@ -8,7 +9,7 @@ static const double max_exponent = 1e6;
 static impact_status say(impact_status status, char *message, size_t size, const char *name, double value,
                          const char *complaint)
 {
-    if (message && size > 0) snprintf(message, size, "%s = %.17g %s", name, value, complaint);
+    if (message && size > 0) snprintf(message, size, "%s = %s %s", name, imp_number_of(value).text, complaint);
     return status;
 }
 

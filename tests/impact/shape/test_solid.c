@@ -40,7 +40,7 @@ static void mistakes_are_named(void **state)
     assert_int_equal(shape.kind, IMPACT_SPHERE);
     shape = (impact_shape){.kind = IMPACT_BOX, .a = 1, .b = 0.2, .c = 1, .rounding = 0.3};
     assert_int_equal(impact_shape_check(&shape, message, sizeof message), IMPACT_EARGUMENT);
-    assert_string_equal(message, "rounding = 0.29999999999999999 is not below every half side");
+    assert_string_equal(message, "rounding = 0.3 is not below every half side");
     shape = (impact_shape){.kind = IMPACT_POLYHEDRON, .a = 1, .b = 1, .c = 1};
     assert_int_equal(impact_shape_check(&shape, message, sizeof message), IMPACT_EARGUMENT);
 }
