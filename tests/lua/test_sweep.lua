@@ -263,12 +263,12 @@ end
 
 -- Killed 20 times at random, and begun again: every fourth time late enough for rows to have been written, else amid the start.
 do
-  write_script(60, 20000) -- ten milliseconds a run, so that it is not done before
+  write_script(60, 12000) -- some milliseconds a run, so that it is not done before
   clean "killed"
   local killed = 0
   repeat
     local status = runner.shell(string.format("cd %s && env -u LD_PRELOAD timeout --preserve-status -s KILL %.2f %s sweep sweep.lua --out killed -j 2 --quiet",
-      quote(folder), killed < 20 and (killed % 4 == 3 and 0.28 or 0.03) + 0.2 * math.random() or 100, quote(runner.program)))
+      quote(folder), killed < 20 and (killed % 4 == 3 and 0.28 or 0.03) + 0.2 * math.random() or 500, quote(runner.program)))
     killed = killed + (status == 137 and 1 or 0)
     check.truth(status == 137 or status == 0, "killed or done: " .. status)
   until status == 0

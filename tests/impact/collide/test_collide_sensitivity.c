@@ -311,7 +311,8 @@ static void jumps(void **state)
         found++;
         infinite += of_above == INFINITY && of_below == INFINITY;
     }
-    assert_true(found == 30 && infinite >= 27 && steady > 0);
+    /* without 113 bits it is by differences, which are finite */
+    assert_true(found == 30 && infinite >= (IMP_HAS_SECOND ? 27 : 0) && steady > 0);
 }
 
 /* Where u_z stands still as it comes to 0 there is no derivative: M = [[1, 0, .5], [0, 1, 0], [.5, 0, 1]], mu = 2, and
