@@ -6,7 +6,7 @@ COLUMNS columns over pieces of a length that leaves less than 1e-32; scene_truth
 """
 from mpmath import mpf, sqrt
 
-COLUMNS = 16
+COLUMNS = 12
 
 
 def dot(a, b):

@@ -46,7 +46,7 @@ def first_root(f, start, end, pieces=200, halves=True):
         high = start + (end - start) * n / pieces
         f_high = f(high)
         if f_low > 0 and f_high <= 0 and not halves:
-            return findroot(f, (low, high), solver="ridder", tol=mpf(10) ** -70)
+            return findroot(f, (low, high), solver="ridder", tol=mpf(10) ** (20 - 2 * mp.dps))
         if f_low > 0 and f_high <= 0:
             for _ in range(200):
                 middle = (low + high) / 2
@@ -478,7 +478,7 @@ def ellipsoid_in_wind():
              v=[mpf(1), mpf(0), mpf(0)], q=[mpf(0.9), mpf(0.3), mpf(0.2), mpf(0.1)], w=[mpf(0)] * 3, piece=mpf(1) / 16)
     q = unit(p["q"])
     p["w"] = turn(conjugate(q), [mpf(1), mpf(2), mpf(-1)])
-    with mp.workdps(50):
+    with mp.workdps(45):
         return "ellipsoid", Ellipsoid(p).run(times_of(1.2))
 
 
