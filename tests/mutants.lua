@@ -19,7 +19,7 @@ local rooms = {
   { "^libquat/src/jacobian%.c$", { "quat_jacobian", "quat_limits" } }, { "^libquat/src/project%.c$", { "quat_project" } },
   { "^libquat/src/quat%.c$", { "quat_quat" } }, { "^libquat/src/rotation%.c$", { "quat_rotation", "quat_limits" } },
   { "^libquat/src/sequence%.c$", { "quat_sequence" } }, { "^libquat/src/spline%.c$", { "quat_spline" } },
-  { "^libimpact/src/shape/", { "impact_shape", "impact_gap" } },
+  { "^libimpact/src/shape/", { "impact_support", "impact_shape", "impact_gap" } },
   { "^libimpact/src/flight/elliptic", { "impact_elliptic", "impact_tumble" } }, { "^libimpact/src/flight/", { "impact_flight", "impact_tumble" } },
   { "^libimpact/src/base/record%.c$", { "impact_record", "impact_memory" } }, { "^libimpact/src/gap/gap_strike", { "impact_gap", "impact_toi", "impact_motion" } },
   { "^libimpact/src/gap/", { "impact_gap", "impact_gap_deep", "impact_gap_receipt", "impact_gjk", "impact_toi" } }, { "^libimpact/src/motion/toi", { "impact_toi" } },

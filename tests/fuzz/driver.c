@@ -3,7 +3,10 @@
  * Where there is no libFuzzer: replays inputs, then makes some of its own, of random bytes or of kept inputs with bytes
  * changed: always the same for a seed.
  *
- *   fuzz_ROOM [--inputs N] [--minutes M] [--seed S] [FILE or FOLDER ...]
+ *   fuzz_ROOM [--inputs N] [--minutes M] [--seed S] [--resume FILE] [FILE or FOLDER ...]
+ *
+ * With --resume a campaign goes on where it was ended: FILE holds how many inputs were made and the generator's state,
+ * and is written every SAVED inputs and at the end; --inputs counts those made before, too.
  *
  * An input that breaks a promise, crashes, or takes more than LONGEST seconds of computing is kept as
  * fuzz_failed.bytes; status 1.
@@ -19,7 +22,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { SIZE = 768, KEPT = 512, LONGEST = 10 };
+enum { SIZE = 768, KEPT = 512, LONGEST = 10, SAVED = 20000 };
 
 static uint8_t kept[KEPT][SIZE];
 static size_t sizes[KEPT], kept_count;
@@ -107,10 +110,33 @@ static void invent(uint64_t *state)
     }
 }
 
+/* How many inputs a campaign has made, and the state it is in: as the file has them, if there is one. */
+static void go_on(const char *path, unsigned long *made, uint64_t *state)
+{
+    FILE *file = path ? fopen(path, "r") : NULL;
+    unsigned long long known = 0;
+    if (file && fscanf(file, "%lu %llx", made, &known) == 2) *state = known;
+    if (file) fclose(file);
+}
+
+/* Under another name first: whenever it is ended, one whole file is there. */
+static void save(const char *path, unsigned long made, uint64_t state)
+{
+    char next[4096];
+    if (!path || snprintf(next, sizeof next, "%s.next", path) >= (int)sizeof next) return;
+    FILE *file = fopen(next, "w");
+    const bool good = file && fprintf(file, "%lu %llx\n", made, (unsigned long long)state) > 0;
+    if (!file || fclose(file) != 0 || !good || rename(next, path) != 0) {
+        perror(path);
+        exit(2);
+    }
+}
+
 int main(int count, char **words)
 {
     static const int caught[] = {SIGABRT, SIGVTALRM, SIGSEGV, SIGFPE, SIGILL, SIGBUS};
     unsigned long inputs = 0, made = 0;
+    const char *resume = NULL;
     double minutes = 0;
     uint64_t state = 1;
     for (size_t i = 0; i < sizeof caught / sizeof *caught; i++) signal(caught[i], keep_and_leave);
@@ -122,15 +148,19 @@ int main(int count, char **words)
             minutes = strtod(words[++i], NULL);
         else if (more && strcmp(words[i], "--seed") == 0)
             state = strtoull(words[++i], NULL, 10);
+        else if (more && strcmp(words[i], "--resume") == 0)
+            resume = words[++i];
         else
             replay_all(words[i]);
     }
+    go_on(resume, &made, &state);
     const time_t end = time(NULL) + (time_t)(60 * minutes);
     while (made < inputs || (minutes > 0 && time(NULL) < end)) {
         invent(&state);
         run();
-        made++;
+        if (++made % SAVED == 0) save(resume, made, state);
     }
+    save(resume, made, state);
     printf("%zu kept inputs, %lu made\n", kept_count, made);
     return 0;
 }

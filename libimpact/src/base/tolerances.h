@@ -40,6 +40,14 @@
 /* Jacobi's sweeps of a 3 by 3 matrix: it converges quadratically, in four or five. */
 #define IMP_HULL_SWEEPS 12
 
+/* ---- supports ---- */
+
+/* An exponent that is over 1 by less than this has an edge there: u = exp(x/(p - 1)), and x, which rounds by 2e-16,
+ * leaves u no digit. */
+#define IMP_SHARP_EXPONENT 1e-14
+/* The last step in the logarithm of a support's multiplier, relative: Halley's leaves its cube. */
+#define IMP_MULTIPLIER_STEP 1e-10
+
 /* ---- gap of polytopes, docs/faces.md ---- */
 
 /* Of the reach: what distance and dual bound may differ by, 18 u; the first answers of nearly parallel pairs that miss

@@ -131,7 +131,7 @@ static double log_multiplier(int n, const double *a, const double *q)
         const double newton = -f / f1, halley = newton / (1 + 0.5 * newton * f2 / f1);
         const double step = halley > 0 && halley <= 2 * fabs(newton) ? halley : newton;
         l += step;
-        if (fabs(step) < 1e-9 * (1 + fabs(l)) * 1e-1) break;
+        if (fabs(step) < IMP_MULTIPLIER_STEP * (1 + fabs(l))) break;
     }
     return l;
 }
@@ -143,7 +143,7 @@ static double mixed_dual_norm(const double *p, const double *w, double *u, doubl
     int index[3], n = 0, sharp = -1;
     for (int i = 0; i < 3; i++) {
         u[i] = e[i] = 0;
-        if (p[i] - 1 < 1e-14) { /* an edge or vertex of slope 1 */
+        if (p[i] - 1 < IMP_SHARP_EXPONENT) { /* an edge or vertex of slope 1 */
             if (w[i] > largest_sharp) largest_sharp = w[i], sharp = i;
         } else if (w[i] > 0) {
             index[n] = i;
@@ -179,7 +179,7 @@ static double mixed_dual_norm(const double *p, const double *w, double *u, doubl
         spent += u[i] * e[i];
     }
     for (int i = 0; i < 3; i++)
-        if (p[i] - 1 < 1e-14) e[i] = w[i] / lambda;
+        if (p[i] - 1 < IMP_SHARP_EXPONENT) e[i] = w[i] / lambda;
     if (sharp >= 0) u[sharp] = fmax(0, 1 - spent);
     /* stationary in lambda: h = lambda (1 + sum (p - 1) u^p) */
     double h = 1;
@@ -257,7 +257,6 @@ double imp_form_support(const imp_form *form, const double d[3], imp_surface *s)
         largest = fmax(largest, w[i]);
     }
     double h;
-    s->u[IMP_SECTION] = s->e[IMP_SECTION] = 1;
     if (form->nested) {
         h = nested_support(form, w, s);
     } else if (form->uniform) {
@@ -351,7 +350,7 @@ static void independent_hessian(const imp_form *form, const double d[3], const i
     int sharp = -1;
     for (int i = 0; i < 3; i++) {
         const double mass = s->u[i] * s->e[i];
-        if (form->p[i] - 1 < 1e-14) {
+        if (form->p[i] - 1 < IMP_SHARP_EXPONENT) {
             qm[i] = 0;
             if (mass > 0) sharp = sharp < 0 ? i : 3;
             continue;
