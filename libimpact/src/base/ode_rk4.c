@@ -10,6 +10,7 @@
  * next step goes on from the root. It shares no code with CVODE. (Hairer, Norsett, Wanner 1993, II.1 and II.6.)
  */
 #include "base/ode_driver.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -235,9 +236,9 @@ static impact_status take_step(rk4_ode *rk, double t, double h)
 /* As far as t_stop, which a last step longer by a rounding reaches: no sliver is left over. */
 static double length_of(const rk4_ode *rk, double t, double t_stop)
 {
-    const double sliver = 1e-9, left = t_stop - t;
+    const double left = t_stop - t;
     const double h = rk->limit > 0 ? fmin(rk->ode.def.step, rk->limit) : rk->ode.def.step;
-    return fabs(left) <= h * (1 + sliver) ? left : copysign(h, left);
+    return fabs(left) <= h * (1 + IMP_RK4_SLIVER) ? left : copysign(h, left);
 }
 
 static impact_status rk4_step(impact_ode *ode, double t_stop, double *y, bool *found)

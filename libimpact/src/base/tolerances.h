@@ -521,4 +521,85 @@
  * are stepped too, which the exact motion brings to their end. */
 #define IMP_PILE_PATIENCE 4000
 
+/* ---- one impact: what is given, and rare places ---- */
+
+/* |n|^2 - 1 of a normal and an orientation that are taken for unit: they are then made so. */
+#define IMP_COLLIDE_UNIT 1e-6
+/* Of an inertia tensor's largest entry: a_ij - a_ji of one that was turned in single precision, or printed. */
+#define IMP_COLLIDE_SYMMETRIC 1e-9
+/* Of the work of compression: energy that rose by less is rounding's, and not told (energy_rose). */
+#define IMP_COLLIDE_ROSE 1e-12
+/* The turning of a slip, 1/(kg m/s), below which its line is straight whatever the rates: under its square all
+ * underflows. */
+#define IMP_COLLIDE_LEAST_TURNING 1e-290
+/* Squared lengths in [1/this, this] have a root without loss; others go by hypot. */
+#define IMP_COLLIDE_SQUARES 1e200
+/* A step in tau over the rate's inverse below which powers go on by expm1, whose terms then lose nothing. */
+#define IMP_COLLIDE_SHORT_STEP 1e-3
+/* CVODE: slip under this part of the tolerance has stopped; and what one root in theta is passed by, of the jump that
+ * it found, so that the next is another. */
+#define IMP_COLLIDE_CVODE_STOP 1e-3
+#define IMP_COLLIDE_CLIMB 1e-6
+/* Of the speed at the start: a sampled slip that is slower stands (impact_flow_sample). */
+#define IMP_FLOW_STOPPED 1e-17
+/* Of a turn: a zero between two angles is met. */
+#define IMP_FLOW_BISECTED 2e-16
+
+/* ---- tangential compliance ---- */
+
+/* The direction of a sliding spring's force follows the slip at a rate of 1/this at most: how much faster than the
+ * force changes makes no difference. In units of the impact's; and the least force at all. */
+#define IMP_COMPLIANT_FOLLOWS 1e-6
+#define IMP_COMPLIANT_LEAST 1e-12
+/* Of the greatest force: an unloading spring under this has let go: F falls as (t - t_end)^(3/2). */
+#define IMP_COMPLIANT_OFF 1e-8
+/* Of the time of compression: to here the first instant goes in closed form; what its next term leaves is the square.
+ */
+#define IMP_COMPLIANT_BEGIN 1e-7
+
+/* ---- the hodograph's receipt ---- */
+
+/* Roots z of the turning's polynomial nearer than this to each other, of |z|, are not told apart: there each is known
+ * to eps over the distance; and a turn less than this may go either way round. */
+#define IMP_HODOGRAPH_APART 1e-3
+/* | |z| - 1 | of a root that is on the circle: eps/IMP_HODOGRAPH_APART by the distance, squared for a third root. */
+#define IMP_HODOGRAPH_CIRCLE 1e-5
+/* |q|/|p| of a turning without its second harmonic: two of its roots are at infinity. */
+#define IMP_HODOGRAPH_LEAST 1e-200
+/* A residual that rounding makes larger than this tells nothing, and is not taken. */
+#define IMP_HODOGRAPH_OPEN 1e-3
+
+/* ---- times of impact ---- */
+
+/* Of all lengths: what a gap may be and its bodies touch, an eps. */
+#define IMP_TOI_ROUNDING 2.5e-16
+/* Of the time, times the gap's rate: what a gap is off by its time's rounding, half an eps; and by an answer's, two. */
+#define IMP_TOI_TIME_ROUNDING 1.2e-16
+#define IMP_TOI_TIME_NEAR 4.5e-16
+/* Roundings of the gap that an answer may be early by: an advancement's last step leaves a few, its proof's gap others.
+ */
+#define IMP_TOI_NEAR 40
+/* Of the time: bounding balls that come nearer by less are near: the bodies themselves are asked. */
+#define IMP_TOI_BALL_STEP 1e-3
+/* Newton's steps on a bound psi: of the gap, where a chord finishes; of the time, where they stand. */
+#define IMP_PSI_NEAR 1e-3
+#define IMP_PSI_STEP 1e-12
+
+/* ---- series and means ---- */
+
+/* |a - b|/a of an arithmetic-geometric mean that has met: it squares, so that the next would be 1e-17. */
+#define IMP_AGM_MET 1e-8
+/* Carlson's: the arguments are within this of their mean: the series' first term left out is its sixth power, 6e-17. */
+#define IMP_RF_NEAR 2e-3
+/* Of a cosine or sine: a quarter turn given in doubles. */
+#define IMP_QUARTER_TURN 2.5e-16
+/* A level set's bisection ends where both ends are as near, relative. */
+#define IMP_LEVEL_OF_MASS 1e-15
+/* Of a unit direction: more than what a script's arithmetic leaves of zero. */
+#define IMP_DRIVE_CRUMB 1e-12
+/* Of a body's speed: how far a force's brake is asked beside it: the difference keeps 32 digits of 52. */
+#define IMP_BRAKE_NUDGE 0x1p-20
+/* Of a fixed step: a last one may be longer by this, so that no sliver is left over. */
+#define IMP_RK4_SLIVER 1e-9
+
 #endif

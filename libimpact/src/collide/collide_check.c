@@ -52,7 +52,7 @@ static impact_status check_body(const impact_collider *body, int number, char *m
         return imp_collide_refuse(message, size, IMPACT_EDOMAIN,
                                   "body %d: orientation is (%g, %g, %g, %g), must be a finite unit quaternion", number,
                                   q.w, q.x, q.y, q.z);
-    if (!(fabs(n2 - 1) <= 1e-6))
+    if (!(fabs(n2 - 1) <= IMP_COLLIDE_UNIT))
         return imp_collide_refuse(message, size, IMPACT_EARGUMENT, "body %d: orientation has length %s, must be 1",
                                   number, imp_number_of(sqrt(n2)).text);
     return IMPACT_OK;
@@ -125,7 +125,8 @@ static bool plain_bodies(const impact_collider *one, const impact_collider *two)
     const imp_lanes slowest = imp_lanes_smaller(imp_lanes_smaller(j.x, j.y), j.z), all = j.x + j.y + j.z;
     const imp_mask known = imp_vectors_size(&offset) + (imp_vectors_size(&velocity) + imp_vectors_size(&omega)) <= most;
     const imp_mask moves = (mass <= most) & (slowest >= least) & (all <= most) &
-                           (all <= IMP_COLLIDE_MOMENTS_APART * slowest) & (imp_lanes_size(length2 - 1) <= 1e-6);
+                           (all <= IMP_COLLIDE_MOMENTS_APART * slowest) &
+                           (imp_lanes_size(length2 - 1) <= IMP_COLLIDE_UNIT);
     const bool near = mass[0] == INFINITY || mass[1] == INFINITY ||
                       (mass[0] <= IMP_COLLIDE_MASSES_APART * mass[1] && mass[1] <= IMP_COLLIDE_MASSES_APART * mass[0]);
     return near && imp_mask_all(known & (mass >= least) & ((mass == INFINITY) | moves)) && imp_mask_any(moves);

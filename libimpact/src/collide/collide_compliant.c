@@ -67,7 +67,7 @@ static int spring_rates(double t, const double *y, double *rate, void *context)
     rate[SPRING_FRICTION] = f[0] * u[0] + f[1] * u[1];
     if (c->sliding) {
         /* Where the force is small phi follows u_t at once; beyond a rate of 1e6 how fast makes no difference. */
-        const double least = 1e-6 * c->k * hypot(u[0], u[1]) + 1e-12;
+        const double least = IMP_COMPLIANT_FOLLOWS * c->k * hypot(u[0], u[1]) + IMP_COMPLIANT_LEAST;
         rate[SPRING_A] = c->k * (u[1] * cos(y[SPRING_A]) - u[0] * sin(y[SPRING_A])) / fmax(c->mu * F, least);
         rate[SPRING_B] = 0;
     } else {
@@ -85,7 +85,7 @@ static int spring_events(double t, const double *y, double *value, void *context
     velocity(c, y, u);
     const double F = force(c, y);
     value[EVENT_UZ] = u[2];
-    value[EVENT_OFF] = c->loading ? 1 : F - 1e-8 * c->force_c;
+    value[EVENT_OFF] = c->loading ? 1 : F - IMP_COMPLIANT_OFF * c->force_c;
     value[EVENT_RELOAD] = c->loading ? -1 : y[SPRING_DELTA] - c->delta_c;
     value[EVENT_GRIP] = c->sliding ? slide_speed(c, y, u)
                                    : c->mu * c->mu * F * F - (y[SPRING_A] * y[SPRING_A] + y[SPRING_B] * y[SPRING_B]);
@@ -125,7 +125,7 @@ void imp_compliant_destroy(imp_arena *arena, imp_compliant *c)
 /* The first instant, in closed form: the springs are loaded in proportion to time. */
 static void begin(imp_compliant *c, const imp_course *course, double *y)
 {
-    const double t = 1e-7;
+    const double t = IMP_COMPLIANT_BEGIN;
     c->frame = course->frame;
     c->mu = course->mu;
     c->eps2 = course->eps * course->eps;

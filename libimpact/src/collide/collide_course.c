@@ -196,7 +196,7 @@ bool imp_course_is_straight(const imp_frame *frame, imp_real mu, imp_real x, imp
 {
     const imp_real rate = imp_abs(frame->c) + imp_abs(frame->d) + mu * imp_larger(frame->a, frame->b);
     return imp_abs(imp_course_turning(frame, mu, x, y)) <=
-           imp_larger(IMP_COLLIDE_STRAIGHT * IMP_EPSILON * rate, 1e-290);
+           imp_larger(IMP_COLLIDE_STRAIGHT * IMP_EPSILON * rate, IMP_COLLIDE_LEAST_TURNING);
 }
 
 /* The root lambda > 0 of |v| = 1, v = (mu M_tt + lambda)^-1 M_tz: Newton on 1/|v| - 1, convex and rising, from the left

@@ -239,7 +239,7 @@ static impact_status slide(imp_course *course, impact_collide_workspace *ws)
             course->ended = true;
         else if (found[ROOT_UZ] && course->compressing == (found[ROOT_UZ] > 0))
             imp_course_turn(course);
-        if (found[ROOT_CLIMB]) ws->climb_shift = 1e-6 * found[ROOT_CLIMB];
+        if (found[ROOT_CLIMB]) ws->climb_shift = IMP_COLLIDE_CLIMB * found[ROOT_CLIMB];
     }
     return IMPACT_OK;
 }
@@ -280,7 +280,7 @@ impact_status imp_cvode_solve(imp_course *course, const impact_collision *collis
     ws->law_context = collision->friction_context;
     ws->speed = speed;
     ws->most_steps = impact_ode_count(ws->ode).steps + IMP_COLLIDE_CVODE_STEPS;
-    ws->log_stop = log(1e-3 * ws->tolerance * (course->s > 0 ? fmin(course->s, 1) : 1));
+    ws->log_stop = log(IMP_COLLIDE_CVODE_STOP * ws->tolerance * (course->s > 0 ? fmin(course->s, 1) : 1));
     impact_status status =
         collision->tangential_compliance > 0
             ? imp_compliant_solve(ws->arena, course, collision->tangential_compliance, ws->tolerance, &ws->compliant)

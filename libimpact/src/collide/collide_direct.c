@@ -5,6 +5,7 @@
  * eps) p_c.
  */
 #include "collide/collide_direct.h"
+#include "base/tolerances.h"
 
 #include <float.h>
 
@@ -119,6 +120,6 @@ bool imp_direct_solve(const impact_collision *collision, const imp_ready *ready,
     outcome->solver = IMPACT_SOLVER_CLOSED_FORM;
     outcome->conditioning = smooth ? 1 : diagonal_conditioning(l / w);
     outcome->jammed = false;
-    outcome->energy_rose = back - work + outcome->work_friction > 1e-12 * work;
+    outcome->energy_rose = back - work + outcome->work_friction > IMP_COLLIDE_ROSE * work;
     return true;
 }

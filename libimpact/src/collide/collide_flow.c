@@ -3,6 +3,7 @@
  * The sliding flow as data: u(p) at equal steps of p, and the directions that do not turn.
  */
 #include "collide/collide_series.h"
+#include "base/tolerances.h"
 
 #include <float.h>
 
@@ -34,7 +35,7 @@ typedef double angle_function(const imp_frame *frame, double mu, double theta);
 static double bisect(angle_function *f, const imp_frame *frame, double mu, double low, double high)
 {
     const bool rising = f(frame, mu, low) < 0;
-    for (int i = 0; i < 70 && high - low > 2e-16 * turn; i++) {
+    for (int i = 0; i < 70 && high - low > IMP_FLOW_BISECTED * turn; i++) {
         const double mid = 0.5 * (low + high);
         if ((f(frame, mu, mid) < 0) == rising)
             low = mid;
@@ -210,7 +211,7 @@ static void through_step(sampler *sm, const imp_taylor *ty)
 static impact_status sample(sampler *sm)
 {
     const imp_frame *frame = sm->frame;
-    const double mu = sm->flow->friction, small = 1e-17 * sm->s;
+    const double mu = sm->flow->friction, small = IMP_FLOW_STOPPED * sm->s;
     for (int steps = 0; steps < 1000 && sm->next < sm->count; steps++) {
         if (sm->s <= small) {
             from_rest(sm);

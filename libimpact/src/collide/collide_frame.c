@@ -4,6 +4,7 @@
  * axes, e.M f = (w1 + w2) e.f + sum (r x e).J^-1 (r x f), so that every entry is a sum of products.
  */
 #include "collide/collide_frame.h"
+#include "base/tolerances.h"
 
 /* sum p.q over both bodies */
 static inline imp_real arms_dot(const imp_vectors *p, const imp_vectors *q)
@@ -44,7 +45,7 @@ imp_vec imp_frame_normal(const impact_collision *collision)
     const imp_real length2 = imp_vec_dot(given, given);
     /* Most are of unit length but for rounding: no root, no division. The square of what is left is below eps. */
     if (imp_abs(length2 - 1) < 45 * IMP_EPSILON) return imp_vec_scale(given, 1.5 - 0.5 * length2);
-    const bool squares = length2 > 1e-200 && length2 < 1e200;
+    const bool squares = length2 > 1 / IMP_COLLIDE_SQUARES && length2 < IMP_COLLIDE_SQUARES;
     const imp_real length = squares ? imp_sqrt(length2) : qvec3_norm(collision->normal);
     return (imp_vec){given.x / length, given.y / length, given.z / length};
 }

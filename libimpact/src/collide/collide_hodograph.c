@@ -15,6 +15,7 @@
  * (turn - 2 arg r), r that of the outer one. No step of the solvers uses any of this.
  */
 #include "collide/collide_hodograph.h"
+#include "base/tolerances.h"
 
 #include <complex.h>
 #undef I
@@ -101,13 +102,13 @@ static bool settle_poles(const polynomial *t, point z[4])
 /* Roots on the circle or outside of it; how many, 0: not to be told apart. */
 static int make_poles(const polynomial *t, pole out[4])
 {
-    const double near = 1e-5; /* |z| of a root is known to eps over its distance from the next one, 1e-3 at least */
+    const double near = IMP_HODOGRAPH_CIRCLE;
     point z[4];
     int count = 0, outer = 0, inner = 0;
-    if (!(cabs(t->q) > 1e-200 * cabs(t->p)) || !settle_poles(t, z)) return 0;
+    if (!(cabs(t->q) > IMP_HODOGRAPH_LEAST * cabs(t->p)) || !settle_poles(t, z)) return 0;
     for (int n = 0; n < 4; n++) {
         for (int k = 0; k < n; k++)
-            if (cabs(z[n] - z[k]) < 1e-3 * cabs(z[n])) return 0;
+            if (cabs(z[n] - z[k]) < IMP_HODOGRAPH_APART * cabs(z[n])) return 0;
         const double size = cabs(z[n]);
         outer += size > 1 + near;
         inner += size < 1 - near;
@@ -136,18 +137,18 @@ bool imp_hodograph_residual(const imp_felt_mass *mass, imp_slip from, imp_slip t
     const int count = make_poles(&t, r);
     if (count == 0 || !(fabs(turning) > 1e4 * DBL_EPSILON * (t.rounding + t.size * off0))) return false;
     double turn = carg(z1 / z0), sum = 0, size = off0 + off1;
-    if (turn * turning < 0 && fabs(turn) > 1e-3) turn += copysign(8 * atan(1), turning);
+    if (turn * turning < 0 && fabs(turn) > IMP_HODOGRAPH_APART) turn += copysign(8 * atan(1), turning);
     for (int i = 0; i < count; i++) {
         const double far0 = cabs(z0 - r[i].z), far1 = cabs(z1 - r[i].z), pair = cabs(r[i].z) > 1.000001 ? 2 : 1;
         const double g = cabs(r[i].gamma), grown = log(far1 / far0);
         const double open = (off0 + r[i].off) / far0 + (off1 + r[i].off) / far1;
         /* So near to a direction that does not turn how near is rounding: s goes on, and the direction does not tell.
          */
-        if (!(open * DBL_EPSILON < 1e-3)) return false;
+        if (!(open * DBL_EPSILON < IMP_HODOGRAPH_OPEN)) return false;
         sum += pair * creal(r[i].gamma) * grown;
         if (pair > 1) sum += cimag(r[i].gamma) * (turn - 2 * carg((z1 - r[i].z) / (z0 - r[i].z)));
         size += pair * (g * open + (g + r[i].gamma_off) * (1 + fabs(grown)));
     }
     *residual = fabs(log(s1 / s0) - sum) / (DBL_EPSILON * size);
-    return size * DBL_EPSILON < 1e-3;
+    return size * DBL_EPSILON < IMP_HODOGRAPH_OPEN;
 }

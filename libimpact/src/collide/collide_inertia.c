@@ -6,6 +6,7 @@
 #include <quat/rotation.h>
 
 #include <float.h>
+#include "base/tolerances.h"
 
 /* One rotation in the plane (p, q) that zeroes a[p][q]; v gathers the rotations. */
 static void rotate(double a[3][3], double v[3][3], int p, int q)
@@ -42,7 +43,7 @@ impact_status impact_principal_axes(const qmat3 *tensor, qvec3 *moments, quat *o
         }
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            if (fabs(tensor->m[i][j] - tensor->m[j][i]) > 1e-9 * size) return IMPACT_EARGUMENT;
+            if (fabs(tensor->m[i][j] - tensor->m[j][i]) > IMP_COLLIDE_SYMMETRIC * size) return IMPACT_EARGUMENT;
             a[i][j] = 0.5 * (tensor->m[i][j] + tensor->m[j][i]);
         }
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -10,6 +10,7 @@
  * slip ends, at tau = infinity, iff alpha < 0. uz turns once at most, where mu g > 1.
  */
 #include "collide/collide_isotropic.h"
+#include "base/tolerances.h"
 
 #include <float.h>
 
@@ -54,7 +55,7 @@ static inline double little(double k, double d)
 static inline powers powers_on(const whirl *w, const powers *at, double from, double to)
 {
     const double d = to - from;
-    if (!(fabs(d) * w->beta < 1e-3)) return powers_at(w, to);
+    if (!(fabs(d) * w->beta < IMP_COLLIDE_SHORT_STEP)) return powers_at(w, to);
     const double up = at->A * little(w->alpha, d), down = at->B * little(-w->beta, d);
     return (powers){at->A + w->alpha * up, at->B - w->beta * down, at->I1 + up, at->I2 + down};
 }

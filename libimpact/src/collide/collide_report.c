@@ -246,7 +246,7 @@ void imp_report_course(const impact_collision *collision, const imp_ready *ready
     outcome->compressions = course->compressions;
     outcome->jammed = course->jammed;
     outcome->conditioning = (double)frame->conditioning;
-    outcome->energy_rose = course->work_c + course->work_r + course->work_f > -1e-12 * course->work_c;
+    outcome->energy_rose = course->work_c + course->work_r + course->work_f > -IMP_COLLIDE_ROSE * course->work_c;
     report_phases(course, unit, outcome);
     if (frame->conditioning < IMP_COLLIDE_UNEVEN || outcome->solver == IMPACT_SOLVER_CVODE) {
         imp_report_push(ready, impulse, outcome);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "flight/elliptic.h"
+#include "base/tolerances.h"
 #include "base/numbers.h"
 
 #include <math.h>
@@ -14,7 +15,7 @@ static double agm(double b)
 {
     double a = 1;
     if (b == 0) return 0;
-    for (int i = 0; i < MAX_MEANS && fabs(a - b) > 1e-8 * a; i++) {
+    for (int i = 0; i < MAX_MEANS && fabs(a - b) > IMP_AGM_MET * a; i++) {
         const double mean = 0.5 * (a + b);
         b = sqrt(a * b);
         a = mean;
@@ -121,7 +122,7 @@ double imp_elliptic_rf(double x, double y, double z)
     if ((x == 0) + (y == 0) + (z == 0) > 1) return INFINITY;
     for (int i = 0; i < MAX_DUPLICATIONS; i++) {
         const double a = (x + y + z) / 3, dx = 1 - x / a, dy = 1 - y / a, dz = -dx - dy;
-        if (fmax(fabs(dx), fmax(fabs(dy), fabs(dz))) < 2e-3) {
+        if (fmax(fabs(dx), fmax(fabs(dy), fabs(dz))) < IMP_RF_NEAR) {
             const double e2 = dx * dy - dz * dz, e3 = dx * dy * dz;
             return (1 + e3 * (1.0 / 14 - e2 * (3.0 / 44)) + e2 * (e2 / 24 - 0.1)) / sqrt(a);
         }

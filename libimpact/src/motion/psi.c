@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/psi.h"
+#include "base/tolerances.h"
 #include "world/world_gap.h"
 
 static double psi(const imp_psi *p, double T, double *derivative)
@@ -25,9 +26,9 @@ double imp_psi_safe_step(const imp_psi *p, double T)
     for (int i = 0; i < TRIES && T > 0; i++) {
         value = psi(p, T, &derivative);
         if (value >= 0) return T;
-        if (value > -1e-3 * p->gap) break;
+        if (value > -IMP_PSI_NEAR * p->gap) break;
         const double next = T - value / derivative;
-        if (!(next < T * (1 - 1e-12))) break;
+        if (!(next < T * (1 - IMP_PSI_STEP))) break;
         T = fmax(next, 0);
     }
     double half = 0.5 * T, at_half = psi(p, half, &derivative);

@@ -7,6 +7,7 @@
  */
 #include <quat/rotation.h>
 #include "base/floats.h"
+#include "base/tolerances.h"
 #include "base/numbers.h"
 #include "motion/toi_proof.h"
 
@@ -83,7 +84,10 @@ static void note_contact(const imp_chase *q, imp_instant *at)
 }
 
 /* What a gap may be for its rounding, or for that of the time. */
-static double slack(const imp_instant *at) { return fmax(at->tolerance, 1.2e-16 * at->t * fabs(at->rate)); }
+static double slack(const imp_instant *at)
+{
+    return fmax(at->tolerance, IMP_TOI_TIME_ROUNDING * at->t * fabs(at->rate));
+}
 
 static bool touches(const imp_instant *at) { return at->gap <= slack(at); }
 
@@ -316,7 +320,7 @@ static impact_status move_on(search *s, bool *stuck)
 /* Whether the gap left is rounding's: of the length, or of the time. */
 static bool near_enough(const imp_instant *at)
 {
-    return at->contact.upper <= fmax(40 * at->tolerance, 4.5e-16 * at->t * fabs(at->rate));
+    return at->contact.upper <= fmax(IMP_TOI_NEAR * at->tolerance, IMP_TOI_TIME_NEAR * at->t * fabs(at->rate));
 }
 
 /* The time to which the bodies' bounding balls stay apart, and the line of their centres there. */
@@ -328,7 +332,7 @@ static double balls_apart_until(const search *s, qvec3 *line)
         const double distance = qvec3_norm(at.c);
         *line = distance > 0 ? qvec3_scale(at.c, 1 / distance) : (qvec3){0, 0, 1};
         const double step = imp_toi_ball_step(&s->q, &at, *line);
-        if (!(step > 1e-3 * at.t) || at.t >= s->t_max) break;
+        if (!(step > IMP_TOI_BALL_STEP * at.t) || at.t >= s->t_max) break;
         at.t = fmin(s->t_max, at.t + step);
     }
     return at.t;

@@ -20,6 +20,7 @@
  * flat the surfaces.
  */
 #include "motion/toi_proof.h"
+#include "base/tolerances.h"
 
 static double support(const imp_form *form, qvec3 d)
 {
@@ -50,7 +51,7 @@ void imp_instant_place(const imp_chase *q, double t, bool exact, imp_instant *at
         if (!q->plane[k]) imp_form_make(&at->body[k].shape, 1, at->body[k].orientation, &at->form[k]);
     }
     at->c = qvec3_sub(at->body[0].position, at->body[1].position);
-    at->tolerance = 2.5e-16 * (q->length + qvec3_norm(at->c));
+    at->tolerance = IMP_TOI_ROUNDING * (q->length + qvec3_norm(at->c));
 }
 
 bool imp_instant_sketch(const imp_chase *q, qvec3 n, imp_instant *at)
@@ -182,7 +183,10 @@ double imp_toi_ball_step(const imp_chase *q, const imp_instant *at, qvec3 n)
 }
 
 /* The gap's rounding, or that of the time; an advance of the bodies that rounding of neither hides; of a length. */
-static double room_of(const imp_instant *at) { return fmax(40 * at->tolerance, 4.5e-16 * at->t * fabs(at->rate)); }
+static double room_of(const imp_instant *at)
+{
+    return fmax(IMP_TOI_NEAR * at->tolerance, IMP_TOI_TIME_NEAR * at->t * fabs(at->rate));
+}
 
 static const double glance_back = 1e-6;
 

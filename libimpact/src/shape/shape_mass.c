@@ -4,6 +4,7 @@
  */
 #include <impact/shape.h>
 #include "base/numbers.h"
+#include "base/tolerances.h"
 #include "shape/solid.h"
 
 /* Mean of (x/a)^2 over the superquadric, sigma = 1/r + 1/s + 1/t. */
@@ -78,7 +79,7 @@ static double log_slope_of(const terms *t, double mass)
         low = fmax(low, c - (1 - t->power[i]) * log(mass));
         high = fmax(high, c - (1 - t->power[i]) * log(mass / t->count));
     }
-    for (int k = 0; k < 200 && high - low > 1e-15 * (fabs(low) + fabs(high)); k++) {
+    for (int k = 0; k < 200 && high - low > IMP_LEVEL_OF_MASS * (fabs(low) + fabs(high)); k++) {
         const double middle = 0.5 * (low + high);
         if (mass_at(t, middle) > mass)
             low = middle;

@@ -46,7 +46,7 @@ qmat3 impact_shape_support_hessian(const impact_shape *shape, qvec3 direction)
 static double signed_power(double s, double m) { return copysign(pow(fabs(s), m), s); }
 
 /* cos and sin of u and v, exact zeros at the quarter turns. */
-static double quarter(double value) { return fabs(value) < 2.5e-16 ? 0 : value; }
+static double quarter(double value) { return fabs(value) < IMP_QUARTER_TURN ? 0 : value; }
 
 static qvec3 globe(double u, double v)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "world/field.h"
+#include "base/tolerances.h"
 
 static bool acts_on(const imp_field *field, const imp_world *world, int body)
 {
@@ -123,7 +124,7 @@ static bool brake_of(const imp_field *field, const imp_world *world, double t, c
     const imp_body *body = &world->bodies[i];
     const qvec3 omega = imp_omega(body, state), axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double size = qvec3_norm(state->v) + body->radius * qvec3_norm(omega);
-    const double nudge = 0x1p-20 * (size > 0 ? size : body->radius);
+    const double nudge = IMP_BRAKE_NUDGE * (size > 0 ? size : body->radius);
     qvec3 force = {0, 0, 0}, torque = {0, 0, 0};
     t = imp_field_inner_time(field, t);
     if (!field->def.function(t, body->index, body->mass, state->x, state->q, state->v, omega, &force, &torque,
