@@ -397,10 +397,10 @@
 
 /* ---- contact: the cone problem in the space of bodies, docs/cone.md ---- */
 
-/* A contact's stiffness against the mass it sees, at first, then, and where Newton takes but a step or two: stiffer ones
- * leave less to the next iteration, and take Newton more steps from afar. Of 14 000 problems of falling dominoes, 45
- * contacts each, a third kept more than 1e-8 at 100 throughout, a hundredth so; begun at 10, 30, 100 and 1000 they take
- * 23, 21, 22 and 33 steps. */
+/* A contact's stiffness against the mass it sees, at first, then, and where Newton takes but a step or two: stiffer
+ * ones leave less to the next iteration, and take Newton more steps from afar. Of 14 000 problems of falling dominoes,
+ * 45 contacts each, a third kept more than 1e-8 at 100 throughout, a hundredth so; begun at 10, 30, 100 and 1000 they
+ * take 23, 21, 22 and 33 steps. */
 #define IMP_BODIES_SOFT 30
 #define IMP_BODIES_STIFF 1e2
 #define IMP_BODIES_STIFFEST 1e6

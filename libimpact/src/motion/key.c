@@ -60,7 +60,7 @@ typedef struct quintic {
     double start[WIDE], part[5][WIDE];
 } quintic;
 
-static void put(double out[WIDE], qvec3 x, quat q)
+static void put_state(double out[WIDE], qvec3 x, quat q)
 {
     const double all[WIDE] = {x.x, x.y, x.z, 0, q.w, q.x, q.y, q.z};
     memcpy(out, all, sizeof all);
@@ -73,12 +73,12 @@ static quintic quintic_of(const impact_key keys[2])
     const turn from = turn_of(a), to = turn_of(b);
     quintic p;
     p.t = a->t, p.h = h;
-    put(p.start, a->position, a->orientation);
-    put(p.part[0], qvec3_scale(a->velocity, h), quat_scale(from.rate, h));
-    put(p.part[1], qvec3_scale(a->acceleration, h2), quat_scale(from.second, h2));
-    put(p.part[2], qvec3_sub(b->position, a->position), quat_sub(b->orientation, a->orientation));
-    put(p.part[3], qvec3_scale(b->velocity, h), quat_scale(to.rate, h));
-    put(p.part[4], qvec3_scale(b->acceleration, h2), quat_scale(to.second, h2));
+    put_state(p.start, a->position, a->orientation);
+    put_state(p.part[0], qvec3_scale(a->velocity, h), quat_scale(from.rate, h));
+    put_state(p.part[1], qvec3_scale(a->acceleration, h2), quat_scale(from.second, h2));
+    put_state(p.part[2], qvec3_sub(b->position, a->position), quat_sub(b->orientation, a->orientation));
+    put_state(p.part[3], qvec3_scale(b->velocity, h), quat_scale(to.rate, h));
+    put_state(p.part[4], qvec3_scale(b->acceleration, h2), quat_scale(to.second, h2));
     return p;
 }
 
