@@ -42,7 +42,7 @@ return dofile ${JSON.stringify(script)}`);
 }
 
 // Every scene runs in WebAssembly, too. In closed form they differ by libm's last digits; what is integrated, by no more than its tolerance makes of
-// it, or than the keys of two records may (1e-10 of a body's size, twice). Steps that held faces want choose their lengths by a rounding: their
+// it, or than the keys of two records may (their own tolerance, of a body's size and in rad, of each). Steps that held faces want choose their lengths by a rounding: their
 // places agree to the sum of the errors that the run itself declares, up to the first impact, from where on that grows.
 async function agreement() {
   const closed = ['bouncing_ball', 'superball', 'bowling_ball', 't_handle', 'newtons_cradle', 'stack'];
@@ -56,7 +56,7 @@ async function agreement() {
     const strikes = [here, there].flatMap(run => run.events.filter(e => e.kind === 'impact').map(e => e.t));
     const end = declared && strikes.length ? 0.99 * Math.min(...strikes) : undefined;
     const off = difference(here, there, exact ? ['x', 'q', 'v', 'w'] : declared ? ['x'] : ['x', 'q'], end);
-    const bar = exact ? 1e-13 : declared ? 2 * declared[1] : Math.max(2e-10, difference(here, coarser(script), ['x', 'q']));
+    const bar = exact ? 1e-13 : declared ? 2 * declared[1] : Math.max(2 * here.head.tolerance, difference(here, coarser(script), ['x', 'q']));
     console.log(`${name}: WebAssembly and this machine differ by ${off.toExponential(1)} (bar ${bar.toExponential(1)}), events ${there.events.length} and ${here.events.length}`);
     assert(off <= bar, name);
     assert(!exact || here.events.length === there.events.length, name);
