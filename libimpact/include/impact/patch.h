@@ -23,7 +23,7 @@ typedef struct impact_patch_point {
 } impact_patch_point;
 
 typedef struct impact_patch {
-    int dimension; /* of the closed points: -1 none, 0 a point, 1 a segment, 2 a polygon or disc */
+    int dimension;              /* of the closed points: -1 none, 0 a point, 1 a segment, 2 a polygon or disc */
     int dimension1, dimension2; /* of the face that each body has there, as impact_face.dimension */
     int count;
     qvec3 normal; /* unit, world, from body 2 to body 1 */

@@ -49,7 +49,10 @@ static void put_terms(imp_dense *dense, int i, const double *c, int terms)
     for (int j = 0; j < dense->terms; j++) dense->c[j * dense->size + i] = j < terms ? c[j] : 0;
 }
 
-static void put_line(imp_dense *dense, int i, double from, double to) { put_terms(dense, i, (double[]){to, to - from}, 2); }
+static void put_line(imp_dense *dense, int i, double from, double to)
+{
+    put_terms(dense, i, (double[]){to, to - from}, 2);
+}
 
 static void put_body(imp_dense *dense, int first, const imp_body *body, const imp_state *from, const imp_state *to)
 {
