@@ -298,7 +298,7 @@ static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcom
     enum { STEPS = 12, FIRST = 256 };
     double *own = system->tangent;
     const double each = 27.0 * system->problem->count * system->problem->count; /* multiplications of three sweeps */
-    if (system->problem->lengths) return;
+    if (system->problem->lengths || system->problem->brief) return;
     memset(own, 0, 3 * (size_t)system->problem->count * sizeof *own);
     for (long n = FIRST; n * each <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED); n *= 2) {
         imp_cone_sweep(system, n, own);

@@ -39,6 +39,7 @@ typedef struct imp_cone_problem {
     const imp_cone_lengths *lengths; /* count; NULL: no contact resists turning */
     const double *last_r;            /* width count each: an answer of like modes to begin with; NULL: none */
     const double *last_u;
+    bool brief; /* without the long sweeps of cone_sweep.c: the caller has another way, as a shorter step */
 } imp_cone_problem;
 
 enum { IMP_CONE_WIDEST = 6 };

@@ -89,7 +89,8 @@ static imp_cone_problem problem_of(const imp_pile *pile, int count)
                               .friction = pile->friction,
                               .lengths = pile->width > 3 ? pile->lengths : NULL,
                               .last_r = pile->last_r,
-                              .last_u = pile->last_u};
+                              .last_u = pile->last_u,
+                              .brief = true};
 }
 
 static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int count)
