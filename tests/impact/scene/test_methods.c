@@ -243,7 +243,7 @@ static void a_key_of_no_use_is_refused_by_its_name(void **state)
     m->gaps = (impact_gap_method)-1, refuse(d, IMPACT_EARGUMENT, "gaps = -1");
     d->solver = IMPACT_SOLVER_SERIES, m->impacts = IMPACT_SOLVER_CVODE, refuse(d, IMPACT_EARGUMENT, "two names");
     d->tolerance = 1e-9, m->tolerance = 1e-8, refuse(d, IMPACT_EARGUMENT, "two names");
-    m->tolerance = 1e-16, refuse(d, IMPACT_EARGUMENT, "tolerance = 9.99");
+    m->tolerance = 1e-16, refuse(d, IMPACT_EARGUMENT, "tolerance = 1e-16");
     m->tolerance = NAN, refuse(d, IMPACT_EDOMAIN, "tolerance = nan");
     m->impact_tolerance = 1e-9, refuse(d, IMPACT_EARGUMENT, "impact_tolerance");
     m->impacts = IMPACT_SOLVER_CVODE, m->impact_tolerance = 1e-15, refuse(d, IMPACT_EARGUMENT, "impact_tolerance");
