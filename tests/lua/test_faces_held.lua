@@ -134,4 +134,35 @@ for kind, shape in pairs(shapes) do
   end
 end
 
+-- Just beyond what stands: the box turns about its lower edge, theta'' = 3 g/(4 d) sin theta from the edge upward, by small steps. Corners
+-- that rise are not held.
+for _, beyond in ipairs { 1e-2, 1e-3, 1e-4 } do
+  local slope, g = math.atan(.5 * (1 + beyond)), G
+  local d, over, omega, want = math.sqrt(.05 ^ 2 + .1 ^ 2), slope - math.atan(.5), 0, 0
+  for _ = 1, 10000000 do
+    omega = omega + 1e-5 * 3 * g / (4 * d) * math.sin(over)
+    over, want = over + 1e-5 * omega, want + 1e-5
+    if over - slope + math.atan(.5) >= .5 then break end
+  end
+  local reached
+  run({ floor(1), impact.body { name = "box", shape = impact.box { a = .05, b = .05, c = .1 }, position = { 0, 0, .1 }, friction = 2 } },
+    want + .01, { gravity = { G * math.sin(slope), 0, -G * math.cos(slope) }, output_rate = 1000 }, function(sample)
+      if sample.body == "box" and not reached and 2 * math.atan(sample.orientation.y, sample.orientation.w) > .5 then reached = sample.t end
+    end)
+  check.close(reached, want, 4e-3)
+end
+
+-- What rolls on its side stays on the floor: the points of its line go round it.
+for _, kind in ipairs { "cylinder", "capsule" } do
+  local shape = impact[kind] { radius = .1, half_height = .2 }
+  local on_side = quat.from_axis_angle({ 1, 0, 0 }, 90 * degree)
+  local highest = 0
+  local rolled = run({ floor(), impact.body { name = "log", shape = shape, position = { 0, 0, .1 }, orientation = on_side, friction = .5,
+    velocity = { 10, 0, 0 }, omega = { 0, 100, 0 } } }, 1, { piles = "steps", output_rate = 200 }, function(sample)
+      if sample.body == "log" then highest = math.max(highest, math.abs(sample.velocity.z)) end
+    end)
+  check.truth(highest < 1e-11, ("a %s that rolls leaves the floor at %g m/s"):format(kind, highest))
+  check.close(rolled:state("log").position.x, 10, 1e-10)
+end
+
 check.report "faces_held"

@@ -118,7 +118,7 @@ do
   local s, ended = run { floor(), impact.body { name = "log", shape = impact.cylinder { radius = R, half_height = R }, position = { 0, 0, R },
     orientation = { half, half, 0, 0 }, velocity = { v, 0, 0 }, omega = { 0, v / R, 0 }, friction = 1, rolling_friction = rho } }
   check.equal(ended, "at rest")
-  check.close(s:state("log").position.x * 4 * rho * g / (3 * R * v ^ 2), 1, 1e-3)
+  check.close(s:state("log").position.x * 4 * rho * g / (3 * R * v ^ 2), 1, 1e-6)
   local times = {}
   for i, tau in ipairs { 0, 1e-2 } do
     times[i] = run({ floor(), impact.body { name = "box", shape = impact.box { a = R, b = R, c = R / 2 }, position = { 0, 0, R / 2 },

@@ -4,7 +4,7 @@
  * function. That both points stay together gives, with n = m2 = -m1 and u the relative velocity,
  *
  *     both round        (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n)
- *     a face of body 2  n' = w2 x n (W2 is infinite); of several points each stays where it is on body 1: W1 = 0
+ *     a face of body 2  n' = w2 x n (W2 is infinite); where body 1 lies flat on it W1 = 0: each point stays on it
  *
  * and, whatever n' is, (n . u)' = n . u' + n' . u along the contact.
  */
@@ -85,7 +85,17 @@ static imp_rates lone_rates(imp_world *world, const imp_pair *pair, const imp_st
                        .arm2 = qvec3_scale(qvec3_sub(at[1].offset2, at[0].offset2), unit)};
 }
 
-/* Of one point of several the normal goes with the face, and the point with the other body's corner. */
+/* W of a side line, or of what is rounded, as the bearer's normal turns on it; 0 where the body lies flat: there its
+ * radius of curvature is none. */
+static qvec3 roll(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 turn)
+{
+    const double size = qvec3_norm(turn);
+    const qvec3 along = size > 0 ? curve(body, state, outward, qvec3_scale(turn, 1 / size)) : (qvec3){0, 0, 0};
+    return qvec3_norm(along) <= 2 * body->radius ? qvec3_scale(along, size) : (qvec3){0, 0, 0};
+}
+
+/* Of one point of several the normal goes with the face, and the point with the other body's corner, or along its side
+ * as that rolls. */
 static imp_rates borne_rates(const imp_world *world, const imp_pair *pair, imp_bearer bearer,
                              const impact_contact *contact, const imp_state *states)
 {
@@ -96,11 +106,13 @@ static imp_rates borne_rates(const imp_world *world, const imp_pair *pair, imp_b
     imp_rates rates;
     if (bearer == IMP_BORNE_BY_2) {
         rates.normal = qvec3_cross(w2, contact->normal);
-        rates.arm1 = qvec3_cross(w1, contact->offset1);
+        const qvec3 turn = qvec3_sub(qvec3_cross(w1, contact->normal), rates.normal);
+        rates.arm1 = qvec3_add(qvec3_cross(w1, contact->offset1), roll(b1, s1, qvec3_neg(contact->normal), turn));
         rates.arm2 = qvec3_add(rates.arm1, apart);
     } else {
         rates.normal = qvec3_cross(w1, contact->normal);
-        rates.arm2 = qvec3_cross(w2, contact->offset2);
+        const qvec3 turn = qvec3_sub(rates.normal, qvec3_cross(w2, contact->normal));
+        rates.arm2 = qvec3_add(qvec3_cross(w2, contact->offset2), roll(b2, s2, contact->normal, turn));
         rates.arm1 = qvec3_sub(rates.arm2, apart);
     }
     return rates;

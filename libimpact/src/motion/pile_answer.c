@@ -19,31 +19,43 @@ qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, 
     return v;
 }
 
-/* What is remembered of the contacts, along their axes; whether that is all of them. One that was open begins open, and
- * bounces off what it approaches at the velocities pile->before. What is held does not bounce. */
+/* What is remembered of the contacts, along their axes; whether none of the others is approached. One that was open
+ * begins open, and bounces off what it approaches at the velocities pile->before. What is held does not bounce. */
 static bool recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
-    bool all = true;
+    bool smooth = true;
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pile_memory *m = imp_pile_recall(&pile->memory[1], point);
         const int i = pile->width * c;
         if (!m) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
         for (int k = 0; !m && k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
-        all = all && m;
+        smooth = smooth && (m || pile->before[i] >= 0);
         if (!m) continue;
         parts_of(&pile->contacts[c], m->reaction, m->moment, pile->width, h, &pile->last_r[i]);
         parts_of(&pile->contacts[c], m->velocity, m->turning, pile->width, 1, &pile->last_u[i]);
     }
-    return all;
+    return smooth;
 }
 
+/* How the contact's own impulses move it, 1/kg: along its normal. */
+static double mobility_of(const imp_pile *pile, int c)
+{
+    double w = 0;
+    for (int side = 0; side < 2; side++)
+        for (int l = 0; l < 6; l++) w += pile->rows[c].side[side][0][l] * pile->rows[c].side[side][0][l];
+    return w;
+}
+
+/* What presses is held. What opens is not, or its gap would be taken to zero for ever: of reaction and opening, of
+ * which one is zero but for rounding, that is the greater. */
 static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count, double h)
 {
     for (int c = 0; c < count; c++) {
+        const int i = pile->width * c;
+        if (pile->u[i] > mobility_of(pile, c) * pile->r[i]) continue;
         imp_pile_memory *m = imp_pile_remember(pile->arena, memories, &pile->touching.points[pile->members[c]]);
         if (!m) return false;
-        const int i = pile->width * c;
         m->reaction = imp_pile_from_parts(&pile->contacts[c], &pile->r[i], h);
         m->velocity = imp_pile_from_parts(&pile->contacts[c], &pile->u[i], 1);
         if (pile->width == 3) continue;
@@ -168,10 +180,7 @@ static double lead_of(const imp_pile *pile, int c, double lead[6])
     const double slip = hypot(to[1], to[2]), mean = hypot(from[1] + to[1], from[2] + to[2]);
     if (!(slip > 0) || !(from[1] * to[1] + from[2] * to[2] > 0)) return 0;
     for (int k = 1; k < 3; k++) lead[k] = slip * (from[k] + to[k]) / mean - to[k];
-    double w = 0;
-    for (int side = 0; side < 2; side++)
-        for (int l = 0; l < 6; l++) w += pile->rows[c].side[side][0][l] * pile->rows[c].side[side][0][l];
-    return w * hypot(r[1], r[2]) * hypot(lead[1], lead[2]) / slip;
+    return mobility_of(pile, c) * hypot(r[1], r[2]) * hypot(lead[1], lead[2]) / slip;
 }
 
 /* Friction acts along the slip of the step's middle where that turns: found from the slip at its end. */
@@ -202,9 +211,9 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, states, pile->contacts, count,
                                                                        pile->before);
     add_bends(pile, world, states, count, h);
-    const bool all_held = recall_step(pile, world, count, h);
+    const bool smooth = recall_step(pile, world, count, h);
     imp_cone_outcome outcome = find_impulses(pile, world, count, h);
-    if (all_held && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, count, h, outcome);
+    if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, count, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
