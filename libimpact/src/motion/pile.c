@@ -140,6 +140,7 @@ static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_stat
 {
     imp_pile_contacts *touching = &pile->touching;
     pile->begun = true;
+    imp_pile_contacts_mark(touching, world, &pile->memory[0]);
     if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * imp_pile_smallest(world), false))
         return IMPACT_ENOMEM;
     pile->memory[0].count = 0;
