@@ -182,10 +182,11 @@ static double look_briefly(const meeting *m, impact_outcome *outcome)
 
 static double worst_of(const meeting *m, const impact_outcome *outcome)
 {
+    static const imp_least none = {0, 0, 0, 0};
     impact_receipt receipt;
     /* The hodograph costs as much as all the rest. */
     const bool follows = m->collision->checking == IMPACT_CHECK_ALWAYS;
-    const double worst = imp_receipt_make(m->collision, outcome, follows, &receipt),
+    const double worst = imp_receipt_make(m->collision, outcome, &none, follows, &receipt),
                  most = allowed(m->collision, outcome);
     if (outcome->solver == IMPACT_SOLVER_CVODE) return receipt.energy <= most ? worst : INFINITY;
     /* A NaN is no receipt, and imp_larger would drop it. Energy is held to a hundredth of the rest. */

@@ -123,7 +123,9 @@ static bool plain_bodies(const impact_collider *one, const impact_collider *two)
     const quat p = one->orientation, q = two->orientation;
     const imp_lanes mass = {one->mass, two->mass}, length2 = {quat_dot(p, p), quat_dot(q, q)};
     const imp_lanes slowest = imp_lanes_smaller(imp_lanes_smaller(j.x, j.y), j.z), all = j.x + j.y + j.z;
-    const imp_mask known = imp_vectors_size(&offset) + (imp_vectors_size(&velocity) + imp_vectors_size(&omega)) <= most;
+    const imp_lanes arm = imp_vectors_size(&offset);
+    const imp_mask known =
+        (arm + (imp_vectors_size(&velocity) + imp_vectors_size(&omega)) <= most) & ((arm >= least) | (arm == 0));
     const imp_mask moves = (mass <= most) & (slowest >= least) & (all <= most) &
                            (all <= IMP_COLLIDE_MOMENTS_APART * slowest) &
                            (imp_lanes_size(length2 - 1) <= IMP_COLLIDE_UNIT);

@@ -12,12 +12,14 @@
  *             turns to restitution and back, all phases together P
  *   hodograph a slip that turns: |u_t| against its direction, in closed form (collide_hodograph.h)
  *
- * Each is divided by the sizes of its own terms, in eps: what rounding of the answer alone would leave is about 1.
+ * Each is divided by the sizes of its own terms, in eps: what rounding of the answer alone would leave is about 1. What
+ * the caller's units make smaller than DBL_MIN is rounded as if it were of that size, and counts so.
  */
 #include "collide/collide_receipt.h"
 
 #include <float.h>
 #include <math.h>
+#include "base/tolerances.h"
 #include "collide/collide_check.h"
 #include "collide/collide_hodograph.h"
 #include "collide/collide_units.h"
@@ -34,7 +36,12 @@ static inline void note(double *field, double value)
     if (!(value <= *field || isnan(*field))) *field = value;
 }
 
-static inline double length(qvec3 v) { return sqrt(qvec3_dot(v, v)); }
+/* An impulse may be 1e-200 in an impact's units (approach and moments 1e-100): its square is none. */
+static inline double length(qvec3 v)
+{
+    const double n2 = qvec3_dot(v, v);
+    return n2 > 1 / IMP_COLLIDE_SQUARES && n2 < IMP_COLLIDE_SQUARES ? sqrt(n2) : qvec3_norm(v);
+}
 
 /* One body: its principal axes, and an impulse's sign. */
 typedef struct part {
@@ -48,6 +55,7 @@ typedef struct part {
 typedef struct view {
     const impact_collision *c;
     const impact_outcome *o;
+    imp_least least;
     part part[2];
     qvec3 n, before, after; /* unit normal; u- and u+ */
     double size_before, size_after;
@@ -75,16 +83,19 @@ static void make_part(part *p, const impact_collider *body, double sign)
     p->axis[2] = (qvec3){f * (x * z + w * y), f * (y * z - w * x), 1 - f * (x * x + y * y)};
 }
 
-static inline qvec3 contact_velocity(const part p[2], const qvec3 v[2], const qvec3 w[2], double *size)
+static qvec3 contact_velocity(const view *s, const qvec3 v[2], const qvec3 w[2], double *size)
 {
     qvec3 u[2];
     *size = 0;
     for (int i = 0; i < 2; i++) {
-        u[i] = qvec3_add(v[i], qvec3_cross(w[i], p[i].body->offset));
-        *size += length(v[i]) + length(w[i]) * p[i].arm;
+        const part *p = &s->part[i];
+        u[i] = qvec3_add(v[i], qvec3_cross(w[i], p->body->offset));
+        *size += length(v[i]) + s->least.velocity + (length(w[i]) + s->least.omega) * p->arm;
     }
     return qvec3_sub(u[0], u[1]);
 }
+
+static inline double impulse_size(const view *s, qvec3 P) { return length(P) + s->least.impulse; }
 
 /* A static body's point of contact moves by u_s throughout. */
 static void make_drive(view *s)
@@ -99,16 +110,17 @@ static void make_drive(view *s)
     }
 }
 
-static void make_view(view *s, const impact_collision *c, const impact_outcome *o)
+static void make_view(view *s, const impact_collision *c, const impact_outcome *o, const imp_least *least)
 {
     const qvec3 v[2] = {c->body[0].velocity, c->body[1].velocity}, w[2] = {c->body[0].omega, c->body[1].omega};
     s->c = c;
     s->o = o;
+    s->least = *least;
     make_part(&s->part[0], &c->body[0], 1);
     make_part(&s->part[1], &c->body[1], -1);
     s->n = qvec3_scale(c->normal, 1 / length(c->normal));
-    s->before = contact_velocity(s->part, v, w, &s->size_before);
-    s->after = contact_velocity(s->part, o->velocity, o->omega, &s->size_after);
+    s->before = contact_velocity(s, v, w, &s->size_before);
+    s->after = contact_velocity(s, o->velocity, o->omega, &s->size_after);
     make_drive(s);
 }
 
@@ -129,11 +141,11 @@ static void examine_body(const view *s, int i, impact_receipt *r, energies *ener
     if (!p->moves) return;
     const impact_collider *b = p->body;
     const qvec3 P = s->o->impulse, V = s->o->velocity[i], W = s->o->omega[i];
-    const double m = b->mass, size = length(P), speed = length(V) + length(b->velocity);
+    const double m = b->mass, size = impulse_size(s, P), speed = length(V) + length(b->velocity) + s->least.velocity;
     const qvec3 dv = qvec3_axpy(-p->sign / m, P, qvec3_sub(V, b->velocity));
     note(&r->momentum, off(m * length(dv), size + m * speed));
     const qvec3 torque = qvec3_cross(b->offset, P), dw = qvec3_sub(W, b->omega);
-    const double w0 = length(b->omega), w1 = length(W), turning = w0 + w1;
+    const double w0 = length(b->omega), w1 = length(W), turning = w0 + w1 + s->least.omega;
     double before = m * qvec3_dot(b->velocity, b->velocity), after = m * qvec3_dot(V, V), sum = before + after;
     for (int k = 0; k < 3; k++) {
         const double j = entry(b->moments, k), from = qvec3_dot(p->axis[k], b->omega), to = qvec3_dot(p->axis[k], W);
@@ -153,15 +165,15 @@ static void check_energy(const view *s, const energies *energy, impact_receipt *
     const impact_outcome *o = s->o;
     const double works = o->work_compression + o->work_restitution + o->work_friction,
                  change = energy->after - energy->before - s->drive;
-    const double all = energy->size + s->drive_size,
-                 done = fabs(o->work_compression) + o->work_restitution - o->work_friction;
+    const double all = energy->size + s->drive_size + s->least.energy,
+                 done = s->least.energy + fabs(o->work_compression) + o->work_restitution - o->work_friction;
     if (s->c->law != IMPACT_NEWTON && s->c->restitution <= 1) note(&r->energy, below(-change, all));
     note(&r->energy, below(-o->work_friction, done));
     note(&r->energy, off(o->energy_before - energy->before, all));
     note(&r->energy, off(o->energy_after - energy->after, all));
     const double half = qvec3_dot(o->impulse, qvec3_add(s->before, s->after)) / 2;
     note(&r->power, off(change - works, all + done));
-    note(&r->power, off(half - works, length(o->impulse) * (s->size_before + s->size_after) + done));
+    note(&r->power, off(half - works, impulse_size(s, o->impulse) * (s->size_before + s->size_after) + done));
 }
 
 /* ---- friction and restitution ---- */
@@ -171,7 +183,7 @@ static double outside_cone(const view *s, qvec3 P, double *along)
 {
     const double mu = s->c->friction;
     *along = qvec3_dot(P, s->n);
-    const double across = length(qvec3_axpy(-*along, s->n, P)), size = length(P);
+    const double across = length(qvec3_axpy(-*along, s->n, P)), size = impulse_size(s, P);
     double outside = below(*along, size);
     if (!s->c->friction_law) note(&outside, below(mu * *along - across, size * (1 + mu)));
     return outside;
@@ -184,7 +196,7 @@ static void check_approach(const view *s, double along, impact_receipt *r)
     note(&r->approach, off(u_before - o->normal_before, s->size_before));
     note(&r->approach, off(u_after - o->normal_after, s->size_before + s->size_after));
     note(&r->approach, below(u_after, s->size_before + s->size_after));
-    note(&r->approach, off(along - o->impulse_normal, length(o->impulse)));
+    note(&r->approach, off(along - o->impulse_normal, impulse_size(s, o->impulse)));
 }
 
 static void check_law(const view *s, impact_receipt *r)
@@ -192,13 +204,15 @@ static void check_law(const view *s, impact_receipt *r)
     const impact_outcome *o = s->o;
     const double eps = s->c->restitution, u_before = qvec3_dot(s->before, s->n), u_after = qvec3_dot(s->after, s->n);
     const double due = (1 + eps) * o->compression_impulse, back = eps * eps * fabs(o->work_compression);
+    const double impulses = o->impulse_normal + due + s->least.impulse;
     switch (s->c->law) {
-    case IMPACT_POISSON: note(&r->law, off(o->impulse_normal - due, o->impulse_normal + due)); break;
+    case IMPACT_POISSON: note(&r->law, off(o->impulse_normal - due, impulses)); break;
     case IMPACT_NEWTON:
         note(&r->law, off(u_after + eps * u_before, s->size_after + (eps > 1 ? eps : 1) * s->size_before));
         break;
     case IMPACT_STRONGE:
-        if (o->compressions == 1) note(&r->law, off(o->work_restitution - back, fabs(o->work_compression) + back));
+        if (o->compressions == 1)
+            note(&r->law, off(o->work_restitution - back, fabs(o->work_compression) + back + s->least.energy));
         break;
     }
 }
@@ -215,7 +229,7 @@ static bool compresses(unsigned char phase)
 static qvec3 velocity_change(const view *s, qvec3 P, double *size)
 {
     qvec3 u = {0, 0, 0};
-    const double impulse = length(P);
+    const double impulse = impulse_size(s, P);
     for (int i = 0; i < 2; i++) {
         const part *p = &s->part[i];
         if (!p->moves) continue;
@@ -239,7 +253,7 @@ static void check_phases(const view *s, impact_receipt *r)
         const qvec3 P = qvec3_sub(o->phase_impulse[i], from);
         const bool last = i + 1 == o->phase_count;
         const unsigned char next = last ? phase : o->phases[i + 1];
-        note(&r->path, outside_cone(s, P, &along) * length(P) / length(o->impulse));
+        note(&r->path, outside_cone(s, P, &along) * impulse_size(s, P) / impulse_size(s, o->impulse));
         u = qvec3_add(u, velocity_change(s, P, &size));
         from = o->phase_impulse[i];
         const double un = qvec3_dot(u, s->n);
@@ -250,7 +264,7 @@ static void check_phases(const view *s, impact_receipt *r)
             note(&r->path, off(length(qvec3_axpy(-un, s->n, u)), size));
     }
     if (o->phase_count < IMPACT_MAX_PHASES)
-        note(&r->path, off(length(qvec3_sub(from, o->impulse)), length(o->impulse)));
+        note(&r->path, off(length(qvec3_sub(from, o->impulse)), impulse_size(s, o->impulse)));
 }
 
 /* ---- the way of a slip ---- */
@@ -303,15 +317,15 @@ static void examine_contact(const view *s, impact_receipt *r)
     r->stick = off(length(t), s->size_before + s->size_after);
 }
 
-double imp_receipt_make(const impact_collision *collision, const impact_outcome *outcome, bool follows,
-                        impact_receipt *receipt)
+double imp_receipt_make(const impact_collision *collision, const impact_outcome *outcome, const imp_least *least,
+                        bool follows, impact_receipt *receipt)
 {
     view s;
     energies energy = {0, 0, 0};
     double along;
     impact_receipt *r = receipt;
     *r = (impact_receipt){0};
-    make_view(&s, collision, outcome);
+    make_view(&s, collision, outcome, least);
     for (int i = 0; i < 2; i++) examine_body(&s, i, r, &energy);
     check_energy(&s, &energy, r);
     r->cone = outside_cone(&s, outcome->impulse, &along);
@@ -328,12 +342,15 @@ double imp_receipt_make(const impact_collision *collision, const impact_outcome 
 
 double impact_collide_receipt(const impact_collision *collision, const impact_outcome *outcome, impact_receipt *receipt)
 {
-    if (imp_collide_is_plain(collision)) return imp_receipt_make(collision, outcome, true, receipt);
+    static const imp_least none = {0, 0, 0, 0};
+    const bool fast = fabs(outcome->normal_before) >= IMP_COLLIDE_ORDINARY_APPROACH;
+    if (fast && imp_collide_is_plain(collision)) return imp_receipt_make(collision, outcome, &none, true, receipt);
     const imp_units units = imp_units_of(collision);
     const impact_collision scaled = imp_units_scaled(collision, units);
     impact_outcome its = *outcome;
     imp_units_restore(&its, imp_units_inverse(units));
-    return imp_receipt_make(&scaled, &its, true, receipt);
+    const imp_least least = imp_units_least(units);
+    return imp_receipt_make(&scaled, &its, &least, true, receipt);
 }
 
 double imp_receipt_brief(const imp_ready *ready, qvec3 n, double size, const impact_outcome *outcome, double *works)

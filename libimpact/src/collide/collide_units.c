@@ -79,9 +79,16 @@ void imp_units_restore(impact_outcome *o, imp_units units)
     o->normal_after = ldexp(o->normal_after, units.speed);
 }
 
+imp_least imp_units_least(imp_units units)
+{
+    const int momentum = units.mass + units.speed;
+    return (imp_least){ldexp(DBL_MIN, -units.speed), ldexp(DBL_MIN, units.length - units.speed),
+                       ldexp(DBL_MIN, -momentum), ldexp(DBL_MIN, -momentum - units.speed)};
+}
+
 /* ---- the range ---- */
 
-static impact_status check_moments(const impact_collider *body, int number, char *message, size_t size)
+static impact_status check_scaled(const impact_collider *body, int number, char *message, size_t size)
 {
     if (isinf(body->mass)) return IMPACT_OK;
     const qvec3 j = body->moments;
@@ -94,6 +101,12 @@ static impact_status check_moments(const impact_collider *body, int number, char
                                   "body %d: a moment is %.3g of the reduced mass times the longest arm squared, at "
                                   "least %g",
                                   number, least, 1 / IMP_COLLIDE_RANGE);
+    const double arm = qvec3_norm(body->offset);
+    if (arm > 0 && !(arm >= 1 / IMP_COLLIDE_RANGE))
+        return imp_collide_refuse(
+            message, size, IMPACT_EARGUMENT,
+            "body %d: its arm is %.3g of the longest arm or radius of gyration, at least %g, or 0", number, arm,
+            1 / IMP_COLLIDE_RANGE);
     return IMPACT_OK;
 }
 
@@ -135,7 +148,7 @@ impact_status imp_units_check(const impact_collision *collision, char *message, 
     const imp_units units = imp_units_of(collision);
     const impact_collision scaled = imp_units_scaled(collision, units);
     for (int i = 0; i < 2; i++) {
-        const impact_status status = check_moments(&scaled.body[i], i + 1, message, size);
+        const impact_status status = check_scaled(&scaled.body[i], i + 1, message, size);
         if (status != IMPACT_OK) return status;
     }
     return check_speeds(&scaled, units, message, size);

@@ -26,6 +26,13 @@ imp_units imp_units_inverse(imp_units units);
 /* An outcome in those units, into the caller's. */
 void imp_units_restore(impact_outcome *outcome, imp_units units);
 
+/* DBL_MIN of the caller's, in those units. */
+typedef struct imp_least {
+    double velocity, omega, impulse, energy;
+} imp_least;
+
+imp_least imp_units_least(imp_units units);
+
 /* Whether the numbers lie in the range that the kernel is right in (docs/collide.md); else what does not, in words. */
 impact_status imp_units_check(const impact_collision *collision, char *message, size_t size);
 

@@ -248,12 +248,76 @@ static void beyond(void **state)
     assert_true(o.normal_before == -1e-99 && isfinite(o.impulse_normal));
 }
 
+/* An arm that is 0 stays so; else it is told from 0 down to 1e-100 of the longest. */
+static void short_arms(void **state)
+{
+    (void)state;
+    const impact_collider ball = {1, {1, 1, 1}, {1, 0, 0, 0}, {0, 0.5, -1}, {0, 0, -1}, {0, 0, 0}};
+    impact_collision c = {.body = {ball, ball}, .normal = {0, 0, 1}};
+    impact_outcome o;
+    impact_receipt r;
+    c.body[1].velocity.z = 1;
+    c.body[1].offset = (qvec3){0x1p-500, 0, 0};
+    refuses(&c, "body 2: its arm is 3.05e-151 of the longest arm or radius of gyration, at least 1e-100, or 0");
+    c.body[1].offset = (qvec3){0x1p-330, 0, 0};
+    assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+    assert_true(impact_collide_receipt(&c, &o, &r) < 10);
+    assert_true(o.omega[1].y == 0x1p-330 * o.impulse_normal); /* J w = r x P, to the last digit */
+    c.body[1].offset = (qvec3){0, 0, 0};
+    assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+    assert_true(impact_collide_receipt(&c, &o, &r) < 10 && o.omega[1].y == 0);
+}
+
+/* A body that is nearly a point, met slowly beside its way: the impulse is 1e-166 in the impact's units, and its square
+ * none. */
+static void faint_impulses(void **state)
+{
+    (void)state;
+    const double laws[] = {IMPACT_POISSON, IMPACT_NEWTON, IMPACT_STRONGE}, frictions[] = {0, 0.3, 1e-20};
+    for (int i = 0; i < 9; i++) {
+        impact_collision c = {
+            .body = {{2, {2e-96, 1e-96, 3e-96}, {1, 0, 0, 0}, {-1, 1, -1}, {0, 0, 1}, {0, 4e-16, -1}},
+                     {3e11, {3e11, 3e11, 4e11}, {1, 0, 0, 0}, {1, -1, 0}, {.3, .5, -3e69}, {0, 1, 1}}},
+            .normal = {.33, -.1, 0},
+            .friction = frictions[i / 3],
+            .restitution = .6,
+            .law = (impact_law)laws[i % 3]};
+        impact_outcome o;
+        impact_receipt r;
+        assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+        assert_true(o.impulse_normal > 0 && o.impulse_normal < 1e-90);
+        assert_true(impact_collide_receipt(&c, &o, &r) < 1e4);
+    }
+}
+
+/* Energies below double precision, 2e-308, are rounded to what there is; velocities and impulses keep their digits, and
+ * the receipt holds. */
+static void below_double(void **state)
+{
+    (void)state;
+    impact_collision c = {.body = {{1, {1, 1, 1}, {1, 0, 0, 0}, {0, 0, -1}, {0, 0, -1e-150}, {0, 0, 0}}, still},
+                          .normal = {0, 0, 1},
+                          .restitution = .5};
+    impact_outcome o;
+    impact_receipt r;
+    for (double speed = 1e-150; speed > 1e-300; speed *= 1e-3) {
+        c.body[0].velocity = (qvec3){speed / 3, 0, -speed};
+        c.friction = .1;
+        assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+        assert_true(impact_collide_receipt(&c, &o, &r) < 10);
+        assert_near(o.velocity[0].z, speed / 2, 1e-15 * speed);
+    }
+    o.velocity[0].z *= 1 + 1e-10; /* some 5e5 eps */
+    assert_true(impact_collide_receipt(&c, &o, &r) > 1e4 && r.momentum > 1e4);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slender_bodies), cmocka_unit_test(sensitivity_is_true), cmocka_unit_test(slippery),
         cmocka_unit_test(a_sliding_egg),  cmocka_unit_test(units_scale_out),     cmocka_unit_test(any_numbers),
-        cmocka_unit_test(beyond),
+        cmocka_unit_test(beyond),         cmocka_unit_test(short_arms),          cmocka_unit_test(faint_impulses),
+        cmocka_unit_test(below_double),
     };
     return cmocka_run_group_tests_name("impact collide_limits", tests, NULL, NULL);
 }
