@@ -65,32 +65,36 @@ static inline void change_back(answer *a, int bodies, const encounter_frame *fra
     }
 }
 
-static inline double distance(const answer *a, const answer *b, int bodies)
+/* Of the fastest body, before or after: what was stopped altogether has no speed of its own to be measured by. */
+static inline double distance(const random_encounter *e, const answer *a, const answer *b)
 {
     double off = 0, size = 0;
-    for (int k = 0; k < bodies; k++) {
+    for (int k = 0; k < e->body_count; k++) {
         off = fmax(off, qvec3_norm(qvec3_sub(a->velocity[k], b->velocity[k])) +
                             qvec3_norm(qvec3_sub(a->omega[k], b->omega[k])));
         size = fmax(size, qvec3_norm(a->velocity[k]) + qvec3_norm(a->omega[k]));
+        size = fmax(size, qvec3_norm(e->bodies[k].velocity) + qvec3_norm(e->bodies[k].omega));
     }
     return off / size;
 }
 
-/* How far the answer follows relative changes of the data, of eight tries of 2^-36. */
-static inline double sensitivity(random_stream *random, const random_encounter *e, impact_together_law law,
-                                 double exponent, const answer *a)
+/* How far an answer may be off that is right to 1e-11 times its sensitivity: as far as it goes after relative changes
+ * of the data of 1e-11, the most of 32 tries, or until one is `enough`; at least 1e-11. */
+static inline double allowance(random_stream *random, const random_encounter *e, impact_together_law law,
+                               double exponent, const answer *a, double enough)
 {
-    double most = 1;
-    for (int k = 0; k < 8; k++) {
+    const double change = 1e-11;
+    double most = change;
+    for (int k = 0; k < 32 && most < enough; k++) {
         random_encounter near = *e;
         for (int b = 0; b < e->body_count; b++)
-            near.bodies[b].velocity = qvec3_axpy(0x1p-36, random_direction(random), near.bodies[b].velocity);
+            near.bodies[b].velocity = qvec3_axpy(change, random_direction(random), near.bodies[b].velocity);
         for (int i = 0; i < e->meeting_count; i++) {
-            near.meetings[i].normal = qvec3_axpy(0x1p-36, random_direction(random), near.meetings[i].normal);
-            near.meetings[i].stiffness *= 1 + 0x1p-36 * random_unit(random);
+            near.meetings[i].normal = qvec3_axpy(change, random_direction(random), near.meetings[i].normal);
+            near.meetings[i].stiffness *= 1 + change * random_unit(random);
         }
         const answer b = solve(&near, law, exponent, NULL);
-        most = fmax(most, distance(a, &b, e->body_count) * 0x1p36);
+        most = fmax(most, distance(e, a, &b));
     }
     return most;
 }

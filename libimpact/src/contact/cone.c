@@ -87,8 +87,9 @@ static void find_scales(imp_cone_system *system)
             const size_t i = (size_t)(width * system->order[c] + k);
             trace += problem->w[i * n + i];
         }
-    system->d = imp_cone_power_of_two(trace / fmax(parts, 1));
-    system->size = imp_cone_power_of_two(imp_cone_largest(problem, problem->q, true));
+    const double size = imp_cone_largest(problem, problem->q, true);
+    system->d = trace > 0 ? trace / parts : 1;
+    system->size = size > 0 ? size : 1;
 }
 
 static void add_unknown(imp_cone_system *system, int row, double scale)
@@ -149,7 +150,7 @@ static void find_matrix(imp_cone_system *system)
 {
     const imp_cone_problem *problem = system->problem;
     const size_t width = (size_t)(imp_cone_width(problem) * problem->count), n = (size_t)system->n;
-    const double unit = 1 / system->d; /* a power of two: exact */
+    const double unit = 1 / system->d;
     for (size_t i = 0; i < n; i++) {
         const double *w = &problem->w[(size_t)system->row[i] * width], across = system->scale[i];
         system->b[i] = across * problem->q[system->row[i]] / system->size;

@@ -25,7 +25,7 @@
 typedef struct imp_cone_system {
     const imp_cone_problem *problem;
     int *order;      /* the problem's contacts in an order of their own */
-    double d, size;  /* the scales, powers of two: what changes units by such changes no bit; Q */
+    double d, size;  /* the scales, so that no units remain: the mean of W's diagonal; Q, the largest |q_c| */
     double eased;    /* alpha, what A's diagonal has too much */
     bool exact;      /* F is asked of the problem itself, in twice the precision */
     int count, n;    /* lobes, unknowns */

@@ -9,7 +9,16 @@
 #include <math.h>
 #include "base/tolerances.h"
 
-typedef enum event { EVENT_NONE, EVENT_TURN, EVENT_OPEN, EVENT_CLOSE, EVENT_AGAIN, EVENT_STOP, EVENT_GIVE } event;
+typedef enum event {
+    EVENT_NONE,
+    EVENT_TURN,
+    EVENT_OPEN,
+    EVENT_CLOSE,
+    EVENT_AGAIN,
+    EVENT_STOP,
+    EVENT_GIVE,
+    EVENT_SLOW
+} event;
 
 typedef struct first_event {
     event what;
@@ -79,6 +88,17 @@ static void see_normal(const imp_springs *s, int i, first_event *first)
     }
 }
 
+/* Slip that slows down: from its speed; where it begins, speed/t or, weakly, speed/t^2 from what that begins with. */
+static void see_slowing(const imp_springs *s, int i, first_event *first)
+{
+    const imp_spring *c = &s->springs[i];
+    const int from = c->slip != IMP_SPRING_BEGINS ? 0 : c->weak ? 2 : 1;
+    imp_terms f = {0};
+    for (int k = 0; k + from <= IMP_SPRINGS_ORDER; k++) f[k] = c->speed[k + from];
+    f[0] *= 1 - IMP_SPRINGS_SLOWED;
+    if (f[0] > 0) see(first, EVENT_SLOW, i, f);
+}
+
 static void see_slip(const imp_springs *s, int i, first_event *first)
 {
     const imp_spring *c = &s->springs[i];
@@ -96,6 +116,8 @@ static void see_slip(const imp_springs *s, int i, first_event *first)
         shifted(c->speed, 1, 0, f);
         if (f[0] < c->none) f[0] = c->none;
         see(first, EVENT_STOP, i, f);
+    } else if (c->slip >= IMP_SPRING_SLIDES && !(s->lead == IMP_SPRING_SPEED && s->leader == i)) {
+        see_slowing(s, i, first);
     }
 }
 
@@ -277,6 +299,7 @@ static bool take_event(imp_springs *s, const first_event *first)
         s->stopped = true;
         break;
     case EVENT_GIVE: return give_way(s, c, first->when);
+    case EVENT_SLOW:
     case EVENT_NONE: s->events--; break;
     }
     return true;
