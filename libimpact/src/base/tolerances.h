@@ -268,8 +268,8 @@
  * it by their last bits alone. */
 #define IMP_SPRINGS_SLOW 0x1p-26
 /* Of its speed: slip that has slowed down to this has its turn as what leads time. The series of |u_t| has its branch
- * points where u_t . u_t vanishes; of slip that is all but straight they lie beside its stop, too weak to be felt by its
- * terms, and it would be taken through 0. */
+ * points where u_t . u_t vanishes; of slip that is all but straight they lie beside its stop, too weak to be felt by
+ * its terms, and it would be taken through 0. */
 #define IMP_SPRINGS_SLOWED 0.125
 /* Of W: a response across a slip under this turns it by rounding only. W of a planar encounter that is turned in space
  * has a few eps, times the condition of what sticks. */
