@@ -144,6 +144,7 @@ static int scene_receipt(lua_State *L)
         {"gap", r.gap, r.limit_gap},
         {"contact", r.contact, r.limit_contact},
         {"energy", r.energy, r.limit_energy},
+        {"momentum", r.momentum, r.limit_momentum},
         {"loss_fallen", r.loss_fallen, NAN},
         {"begin", r.begin, NAN},
         {"end", r.end, NAN},

@@ -49,7 +49,7 @@ end
 -- The receipt: residuals with their limits.
 local word, residuals = s:receipt()
 check.equal(word, "ok")
-for _, key in ipairs { "unit", "gap", "contact", "energy" } do
+for _, key in ipairs { "unit", "gap", "contact", "energy", "momentum" } do
   check.truth(residuals[key] <= residuals["limit_" .. key], key)
 end
 check.equal(residuals.failed, nil)

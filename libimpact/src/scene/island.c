@@ -60,6 +60,7 @@ void imp_island_clear(imp_island *island)
     island->rests = island->rolls = island->loses = island->lies = island->stepped = island->moves = false;
     island->patience = (imp_patience){0};
     island->end = (imp_end){IMP_END_TIME, 0};
+    island->pushed = (imp_push){.looked_at = true};
     imp_motion_reset(&island->motion, world, &island->scene->methods, island->scene->rest_speed);
 }
 
@@ -211,6 +212,44 @@ double imp_island_loss(const imp_island *island, double t)
     const imp_works works = imp_island_works(island, t);
     return imp_island_stepped_loss(island, island->motion.sampled, &works);
 }
+
+/* ---- momentum ---- */
+
+static qvec3 momentum_of(const imp_island *island, double *size)
+{
+    const imp_world *world = &island->world;
+    qvec3 sum = {0, 0, 0};
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (body->is_static) continue;
+        sum = qvec3_axpy(body->mass, island->states[i].v, sum);
+        *size += body->mass * (qvec3_norm(island->states[i].v) + world->slip_speed);
+    }
+    return sum;
+}
+
+void imp_island_begin_push(imp_island *island)
+{
+    island->pushed = (imp_push){.size = 0};
+    island->pushed.had = momentum_of(island, &island->pushed.size);
+}
+
+void imp_island_push(imp_island *island, qvec3 impulse)
+{
+    island->pushed.given = qvec3_add(island->pushed.given, impulse);
+    island->pushed.size += qvec3_norm(impulse);
+}
+
+double imp_island_push_off(imp_island *island)
+{
+    imp_push *pushed = &island->pushed;
+    if (pushed->looked_at) return 0;
+    const qvec3 now = momentum_of(island, &pushed->size), due = qvec3_add(pushed->had, pushed->given);
+    pushed->looked_at = true;
+    return pushed->size > 0 ? qvec3_norm(qvec3_sub(now, due)) / pushed->size : 0;
+}
+
+/* ---- energy ---- */
 
 double imp_island_energy(const imp_island *island)
 {

@@ -18,6 +18,13 @@ typedef struct imp_patience {
     long steps;
 } imp_patience;
 
+/* kg m/s: the momentum that bodies had; what static ones gave, as it was booked; and the sizes of all its terms. */
+typedef struct imp_push {
+    qvec3 had, given;
+    double size;
+    bool looked_at; /* by the receipt */
+} imp_push;
+
 typedef struct imp_island {
     struct impact_scene *scene;
     struct imp_island *next; /* scratch: of a list */
@@ -26,6 +33,7 @@ typedef struct imp_island {
     imp_state *states;       /* at t */
     imp_state *before;       /* as the states were when the event at hand came */
     imp_mode *modes;         /* as the pairs' modes were then */
+    imp_push pushed;         /* since then */
     int body_room, pair_room;
     double t;
     imp_end end;        /* what its segments end in */
@@ -70,6 +78,12 @@ void imp_island_go_to(imp_island *island, double t);
  * states then are in motion.sampled. */
 imp_works imp_island_works(const imp_island *island, double t);
 double imp_island_loss(const imp_island *island, double t);
+
+/* From here on momentum is looked at, by what the bodies then have; what is given; and what is off, of the sizes, when
+ * it is looked at the first time. */
+void imp_island_begin_push(imp_island *island);
+void imp_island_push(imp_island *island, qvec3 impulse);
+double imp_island_push_off(imp_island *island);
 
 /* Kinetic + potential of its bodies at its clock, J; and with all losses, less all that was given: it stays. */
 double imp_island_energy(const imp_island *island);

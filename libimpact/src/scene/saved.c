@@ -56,14 +56,14 @@ static void walk_works(imp_archive *a, imp_works *w)
     imp_archive_double(a, &w->drive);
 }
 
-static const char *const residual_names[] = {NULL, "unit", "gap", "contact", "energy", "loss_fallen"};
+static const char *const residual_names[] = {NULL, "unit", "gap", "contact", "energy", "momentum", "loss_fallen"};
 enum { RESIDUALS = sizeof residual_names / sizeof *residual_names };
 
 /* The limits are the definition's. */
 static void walk_receipt(imp_archive *a, impact_scene_residuals *r)
 {
-    double *const numbers[] = {&r->begin,  &r->end,         &r->unit,         &r->gap,       &r->contact,
-                               &r->energy, &r->loss_fallen, &r->failed_begin, &r->failed_end};
+    double *const numbers[] = {&r->begin,  &r->end,      &r->unit,        &r->gap,          &r->contact,
+                               &r->energy, &r->momentum, &r->loss_fallen, &r->failed_begin, &r->failed_end};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
     imp_archive_long(a, &r->stretches);
     int failed = RESIDUALS - 1;

@@ -166,6 +166,7 @@ static void restore_scalars(const imp_saved *s, impact_scene *scene)
     scene->energy_start = s->energy_start;
     scene->receipt = s->receipt;
     scene->receipt.limit_unit = limits.limit_unit, scene->receipt.limit_gap = limits.limit_gap;
+    scene->receipt.limit_momentum = limits.limit_momentum;
     scene->receipt.limit_contact = limits.limit_contact, scene->receipt.limit_energy = limits.limit_energy;
     scene->world.usage = s->usage;
     const bool *inside = s->inside;

@@ -89,23 +89,26 @@ static bool comes_to_rest(const imp_island *island, int body)
     return held && acceleration < 100 * island->scene->rest_speed;
 }
 
+/* What holds it is what it hangs on. */
+static void stop(imp_island *island, int body)
+{
+    imp_state *state = &island->states[body];
+    if (island->world.bodies[body].is_static) return;
+    imp_island_push(island, qvec3_scale(state->v, -island->world.bodies[body].mass));
+    state->v = state->momentum = (qvec3){0, 0, 0};
+}
+
 static impact_status bring_to_rest(imp_island *island)
 {
     for (int i = 0; i < island->world.body_count; i++) {
         if (!comes_to_rest(island, i)) continue;
-        island->states[i].v = island->states[i].momentum = (qvec3){0, 0, 0};
+        stop(island, i);
         island->motion.resting[i] = true;
         const impact_event event = imp_scene_event_of_body(island, IMPACT_EVENT_REST, i);
         const impact_status status = imp_scene_record(island, &event);
         if (status != IMPACT_OK) return status;
     }
     return IMPACT_OK;
-}
-
-static void stop(imp_island *island, int body)
-{
-    if (!island->world.bodies[body].is_static)
-        island->states[body].v = island->states[body].momentum = (qvec3){0, 0, 0};
 }
 
 /* What stands still, or is so jammed that it stops before it has gone the rest height. */
@@ -136,6 +139,7 @@ static impact_status make_consistent(imp_island *island)
     if (status != IMPACT_OK) return status;
     imp_persist_project(&motion->persist, &island->world, island->states, motion->loads);
     motion->works.drive += imp_persist_drive_power(&motion->persist, &island->world);
+    imp_island_push(island, imp_persist_push(&motion->persist, &island->world));
     status = imp_scene_load(island);
     if (status == IMPACT_OK) status = find_still(island);
     if (status == IMPACT_OK)

@@ -177,10 +177,12 @@ void imp_scene_set_velocities(imp_island *island, int i, qvec3 velocity, qvec3 o
     state->momentum = imp_inertia(body, state->q, omega);
 }
 
-/* A static body's drive does work with the impulse on body 1. */
+/* A static body's drive does work with the impulse on body 1, which gets its momentum from outside. */
 double imp_scene_drive_impulse(imp_island *island, const imp_touch *touch, qvec3 impulse)
 {
-    const double work = qvec3_dot(impulse, imp_surface_velocity(&island->world.bodies[touch->body2], touch->r2));
+    const imp_body *other = &island->world.bodies[touch->body2];
+    const double work = qvec3_dot(impulse, imp_surface_velocity(other, touch->r2));
     island->motion.works.drive += work;
+    if (other->is_static) imp_island_push(island, impulse);
     return work;
 }

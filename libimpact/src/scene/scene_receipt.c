@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Identities that the solvers of the motion do not use: orientations are unit, what is held touches, contact forces lie
- * in their cones, energy is where the account says, and losses do not fall. A wrong impact or a wrong reaction cannot
- * hide: what it gives shows as a loss that falls.
+ * in their cones, energy is where the account says, losses do not fall, and an event changes the bodies' momentum by
+ * what static ones gave, all impulses between bodies being equal and opposite. A wrong impact or a wrong reaction
+ * cannot hide: what it gives shows as a loss that falls.
  */
 #include "scene/scene_receipt.h"
 #include "scene/scene_meeting.h"
@@ -17,7 +18,8 @@ void imp_scene_receipt_begin(impact_scene *scene)
     scene->receipt = (impact_scene_residuals){.limit_unit = IMP_RECEIPT_UNIT,
                                               .limit_gap = IMP_RECEIPT_GAP + IMP_RECEIPT_ERRORS * tolerance,
                                               .limit_contact = IMP_RECEIPT_CONTACT,
-                                              .limit_energy = IMP_RECEIPT_ENERGY + IMP_RECEIPT_ERRORS * tolerance};
+                                              .limit_energy = IMP_RECEIPT_ENERGY + IMP_RECEIPT_ERRORS * tolerance,
+                                              .limit_momentum = IMP_RECEIPT_MOMENTUM};
 }
 
 /* A NaN is no good. */
@@ -101,6 +103,7 @@ void imp_scene_receipt_look(imp_island *island)
     look_at(scene, "gap", &r->gap, worst_gap(island, island->states), r->limit_gap);
     look_at(scene, "contact", &r->contact, worst_contact(island), r->limit_contact);
     look_at(scene, "energy", &r->energy, scale > 0 ? fabs(off) / scale : fabs(off), r->limit_energy);
+    look_at(scene, "momentum", &r->momentum, imp_island_push_off(island), r->limit_momentum);
     look_at(scene, "loss_fallen", &r->loss_fallen, fallen(island), r->limit_energy * scale);
 }
 
@@ -151,6 +154,9 @@ impact_status imp_scene_receipt_judge(impact_scene *scene, impact_status status)
         snprintf(what, sizeof what, "held contacts are apart or overlap by %.2g of their size", r->gap);
     if (strcmp(r->failed, "contact") == 0)
         snprintf(what, sizeof what, "contact forces leave their cone by %.2g of the greatest", r->contact);
+    if (strcmp(r->failed, "momentum") == 0)
+        snprintf(what, sizeof what, "an event changed the momentum by %.2g of it more than static bodies gave",
+                 r->momentum);
     if (strcmp(r->failed, "unit") == 0) snprintf(what, sizeof what, "orientations are off unit by %.2g", r->unit);
     snprintf(scene->message, sizeof scene->message, "%s, first between t = %.9g and %.9g: do not trust the digits",
              what, r->failed_begin, r->failed_end);

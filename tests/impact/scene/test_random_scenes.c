@@ -36,6 +36,7 @@ static void every_scene_ends_or_says_why_not(void **state)
         const impact_energy e = impact_scene_energy(scene);
         if (status == IMPACT_OK || status == IMPACT_AT_REST) {
             assert_true(holds);
+            assert_at_most(r.momentum, 1e-14);
             const double scale = fabs(e.start) + fabs(e.force_work) + e.kinetic + fabs(e.potential);
             assert_true(e.kinetic + e.potential <= e.start + e.force_work + 1e-8 * scale);
         } else if (impact_scene_message(scene)[0] == '\0') {
