@@ -498,6 +498,17 @@
  * then by that squared over the curvature, a few tolerances. Without the check 2 of 214 pairs were off by a third. */
 #define IMP_CCD_CHECK 30.0
 
+/* ---- motion: faces that slide and turn, docs/faces.md ---- */
+
+/* Of the face's reach: a centre of turning farther off than this has its friction by Gauss's eight places each way over
+ * the area, which are then right to rounding: the integrand's nearest singularity has the ellipse of sum of axes 4 +
+ * sqrt 15 = 7.9, and 7.9^-16 is 5e-15. The sums over the border cancel as the cube of the distance. */
+#define IMP_FACE_DISTANT 4.0
+/* rad: panels along an arc grow by their distance from what is singular, so that sixteen places leave 1e-15 of each;
+ * the narrowest, over which what is singular is the square of this; and the widest. */
+#define IMP_FACE_PANEL 1e-7
+#define IMP_FACE_WIDEST 0.8
+
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 
 /* Of the smallest body's radius: gaps up to this are closed, a tenth of a step's error. Where contacts are more than
