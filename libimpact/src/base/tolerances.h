@@ -509,6 +509,25 @@
 #define IMP_FACE_PANEL 1e-7
 #define IMP_FACE_WIDEST 0.8
 
+/* Newton's iterations for the pressed part: three to six; and the last change, of the pressure, that rounding may leave
+ * near a border, where the part is small. */
+#define IMP_FACE_PRESSINGS 60
+#define IMP_FACE_PRESSED 1e-12
+/* A step's last Legendre term, of what its numbers change by: the next is as much smaller, and its end closer still. */
+#define IMP_FACE_TOLERANCE 1e-10
+/* Newton's iteration for a step: it has settled; how many rounds it may take, each of which brings a digit or more; and,
+ * of the speed, by how much its slopes are differences. */
+#define IMP_FACE_SETTLED 1e-14
+#define IMP_FACE_ROUNDS 20
+#define IMP_FACE_DIFFERENCE 1e-6
+/* rad: the most that a body turns in a step: its quaternion is a polynomial of degree 12. */
+#define IMP_FACE_TURN 1.0
+/* tau: the longest step, in which the speed falls to a half; and the shortest: what does not go on so far tips. */
+#define IMP_FACE_LONGEST 0.7
+#define IMP_FACE_SHORTEST 1e-10
+/* Of the face's reach: a centre of pressure nearer to a border stands on it. */
+#define IMP_FACE_MARGIN 1e-9
+
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 
 /* Of the smallest body's radius: gaps up to this are closed, a tenth of a step's error. Where contacts are more than

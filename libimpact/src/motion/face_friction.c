@@ -173,17 +173,13 @@ static void cover_arc(const imp_pressed *pressed, const imp_border *b, area_func
     }
 }
 
-static void cover(const imp_pressed *pressed, area_function *function, void *sum)
+static void cover_side(const imp_pressed *pressed, const imp_border *b, area_function *function, void *sum)
 {
-    for (int i = 0; i < pressed->count; i++) {
-        const imp_border *b = &pressed->border[i];
-        const place side = less(at(b->to), at(b->from));
-        if (b->arc) cover_arc(pressed, b, function, sum);
-        for (int k = 0; k < FEW && !b->arc; k++) {
-            double weight;
-            const double t = gauss(FEW, k, &weight);
-            cover_rays(at(pressed->middle), along(at(b->from), t, side), side, weight, function, sum);
-        }
+    const place side = less(at(b->to), at(b->from));
+    for (int k = 0; k < FEW; k++) {
+        double part;
+        const double t = gauss(FEW, k, &part);
+        cover_rays(at(pressed->middle), along(at(b->from), t, side), side, part, function, sum);
     }
 }
 
@@ -195,22 +191,36 @@ static void add_moment(place x, double weight, void *sum)
         for (int j = 0; j < 3; j++) m[i][j] += weight * f[i] * f[j];
 }
 
+/* Of a triangle the middles of its sides give squares exactly. */
+static void add_triangle_moments(place a, place b, place c, double m[3][3])
+{
+    const double part = cross(less(b, a), less(c, a)) / 6;
+    const place corner[4] = {a, b, c, a};
+    for (int k = 0; k < 3; k++) add_moment(along(corner[k], 0.5, less(corner[k + 1], corner[k])), part, m);
+}
+
 void imp_press_moments(const imp_pressed *pressed, double m[3][3])
 {
     memset(m, 0, 9 * sizeof m[0][0]);
-    cover(pressed, add_moment, m);
+    for (int i = 0; i < pressed->count; i++) {
+        const imp_border *b = &pressed->border[i];
+        if (b->arc)
+            cover_arc(pressed, b, add_moment, m);
+        else
+            add_triangle_moments(at(pressed->middle), at(b->from), at(b->to), m);
+    }
 }
 
 /* ---- friction ---- */
 
-typedef struct rubbing {
+typedef struct rub_sum {
     const double *twist;
     double (*rub)[3];
-} rubbing;
+} rub_sum;
 
 static void add_rub(place x, double weight, void *sum)
 {
-    const rubbing *r = sum;
+    const rub_sum *r = sum;
     const double *v = r->twist, u[2] = {v[0] - v[2] * x.y, v[1] + v[2] * x.x}, size = hypot(u[0], u[1]);
     const double force[2] = {-weight * u[0] / size, -weight * u[1] / size}, f[3] = {1, x.x, x.y};
     for (int j = 0; j < 3; j++) {
@@ -329,6 +339,7 @@ void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub
         rub_along_border(pressed, twist, rub);
         return;
     }
-    rubbing sum = {twist, rub};
-    cover(pressed, add_rub, &sum);
+    rub_sum sum = {twist, rub};
+    for (int i = 0; i < pressed->count; i++)
+        (pressed->border[i].arc ? cover_arc : cover_side)(pressed, &pressed->border[i], add_rub, &sum);
 }

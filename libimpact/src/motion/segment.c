@@ -102,14 +102,18 @@ static imp_state dense_state(const imp_segment *s, double t)
     return state;
 }
 
-/* The rotation that omega0 and omega0 + alpha tau make up in the time T. Where they are parallel it is about their
- * line; else by Magnus' series to the fourth order, the commutator |omega x alpha| h^3/12 a step, in steps of a
- * hundredth of a radian: 1e-11 of the angle turned through, which moves nothing of a ball. */
+/* The rotation that omega0 and omega0 + alpha tau make up in the time T, where they are parallel. */
+static quat straight_turn(quat q, qvec3 omega, qvec3 alpha, double T)
+{
+    return quat_mul(quat_from_rotation_vector(qvec3_scale(qvec3_axpy(0.5 * T, alpha, omega), T)), q);
+}
+
+/* And where they are not: by Magnus' series to the fourth order, the commutator |omega x alpha| h^3/12 a step, in steps
+ * of a hundredth of a radian: 1e-11 of the angle turned through, which moves nothing of a ball. */
 static quat roll_turn(quat q, qvec3 omega, qvec3 alpha, double T)
 {
     const qvec3 cross = qvec3_cross(omega, alpha);
-    if (is_zero(cross))
-        return quat_mul(quat_from_rotation_vector(qvec3_scale(qvec3_axpy(0.5 * T, alpha, omega), T)), q);
+    if (is_zero(cross)) return straight_turn(q, omega, alpha, T);
     const double fastest = qvec3_norm(omega) + T * qvec3_norm(alpha), longest = 0.01 / fastest;
     const long steps = (long)fmin(ceil(T / longest), 1e7);
     const double h = T / (double)steps;
@@ -163,8 +167,9 @@ imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
     state.x = imp_segment_place(s, body, t, &state.v);
     if (s->kind == IMP_SEGMENT_ROLL) {
         const qvec3 omega = imp_omega(body, &s->start);
-        state.q = quat_unit(roll_turn(s->start.q, omega, s->spin_up, T));
-        state.momentum = qvec3_axpy(T * body->moments.x, s->spin_up, s->start.momentum);
+        state.q = quat_unit((body->spherical ? roll_turn : straight_turn)(s->start.q, omega, s->spin_up, T));
+        state.momentum = body->spherical ? qvec3_axpy(T * body->moments.x, s->spin_up, s->start.momentum)
+                                         : imp_inertia(body, state.q, qvec3_axpy(T, s->spin_up, omega));
         return state;
     }
     const double kappa = s->kind == IMP_SEGMENT_DAMPED ? body->angular_rate : 0;
@@ -263,8 +268,8 @@ imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double
         break;
     }
     case IMP_SEGMENT_ROLL: {
-        const double alpha = qvec3_norm(s->spin_up), I = body->moments.x;
-        b.torque = qvec3_scale(s->spin_up, I);
+        const double alpha = qvec3_norm(s->spin_up), I = fmax(body->moments.x, fmax(body->moments.y, body->moments.z));
+        b.torque = imp_inertia(body, s->start.q, s->spin_up);
         bound_spin(body, L + I * alpha * (T + window), I * alpha, &b);
         break;
     }

@@ -12,7 +12,8 @@
  *             L' = -kappa L:  L = L0 e^(-kappa T),  q = the tumble of L0 at the clock phi1(kappa, T),
  *             for with L = e^(-kappa T) M, dM/dtau and dq/dtau are torque-free
  *
- *     ROLL    a ball that rolls or slides in a line on a plane: x as FREE, omega = omega0 + alpha T
+ *     ROLL    a ball that rolls or slides in a line on a plane, a face that slides without turning, or turns on the
+ *             spot: x as FREE, omega = omega0 + alpha T
  *
  *     DENSE   the polynomial of a step, an integrator's or a pile's (motion/dense.h)
  *
@@ -37,7 +38,7 @@ typedef struct imp_segment {
     double t0, t1;               /* s; t1 is infinite where the form holds for ever */
     qvec3 acceleration;          /* FREE, ROLL: of the centre; DAMPED: g, m/s^2 */
     imp_state start;             /* at t0 */
-    qvec3 spin_up;               /* ROLL: alpha, 1/s^2 */
+    qvec3 spin_up;               /* ROLL: alpha, 1/s^2; of an unequal body along a steady omega */
     const impact_tumble *tumble; /* FREE, DAMPED of unequal moments that turn; else NULL */
     double jerk;                 /* FREE with a tumble: |m'''| of any unit vector m seen from the body, 1/s^3 */
     const imp_dense *dense;      /* DENSE: its island's step, and */
@@ -51,7 +52,7 @@ imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *st
                             impact_tumble *tumble);
 /* A body that stays where it is. */
 imp_segment imp_segment_rest(double t0, const imp_state *start);
-/* A ball's constant accelerations, until t1. */
+/* Constant accelerations, until t1. */
 imp_segment imp_segment_roll(double t0, double t1, const imp_state *start, qvec3 acceleration, qvec3 spin_up);
 /* The body at this place of an integrator's step, from its state at t0. */
 imp_segment imp_segment_dense(const imp_dense *dense, int place, const imp_state *start);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/following.h"
+#include "base/tolerances.h"
+#include "scene/gliding.h"
 #include "scene/islands.h"
 #include "scene/rolling.h"
 #include "scene/scene_keys.h"
@@ -17,7 +19,7 @@ static bool may_wake(const imp_island *island) { return island->world.driven || 
 /* Whether the pair keeps its bodies in one island, and is not searched for. */
 bool imp_island_ties(const imp_island *island, const imp_pair *pair)
 {
-    return imp_is_held(pair) || (island->stepped && pair->met);
+    return imp_is_held(pair) || pair->lies || (island->stepped && pair->met);
 }
 
 /* The pairs' other side of what the island has found: what is held is not searched for. */
@@ -106,17 +108,14 @@ impact_status imp_island_fail(imp_island *island, impact_status status)
 }
 
 /* The one body that moves in it has this segment. What friction does not take from has its energy in the account. */
-static impact_status roll(imp_island *island, const imp_segment *segment)
+static impact_status move_closed(imp_island *island, const imp_segment *segment, bool loses)
 {
     impact_scene *scene = island->scene;
     int i = 0;
     while (island->world.bodies[i].is_static) i++;
-    imp_touch *touch = &island->motion.persist.touches[0];
     const imp_body *body = &island->world.bodies[i];
-    const bool rough = imp_is_rough(&island->world.pairs[touch->pair]);
-    if (rough) touch->force = qvec3_scale(qvec3_sub(segment->acceleration, island->world.gravity), body->mass);
     island->rolls = island->moves = true;
-    island->loses = (touch->mode == IMP_SLIDE && touch->friction > 0) || rough;
+    island->loses = loses;
     island->begun_with = imp_island_energy(island);
     island->motion.stride.t = segment->t1;
     imp_motion_forget(&island->motion);
@@ -126,10 +125,34 @@ static impact_status roll(imp_island *island, const imp_segment *segment)
     return follow(island, i, segment);
 }
 
+static impact_status roll(imp_island *island, const imp_segment *segment)
+{
+    imp_touch *touch = &island->motion.persist.touches[0];
+    const imp_body *body = &island->world.bodies[touch->body1];
+    const bool rough = imp_is_rough(&island->world.pairs[touch->pair]);
+    if (rough) touch->force = qvec3_scale(qvec3_sub(segment->acceleration, island->world.gravity), body->mass);
+    return move_closed(island, segment, (touch->mode == IMP_SLIDE && touch->friction > 0) || rough);
+}
+
+/* The next segment of what glides on a face. */
+static impact_status glide(imp_island *island)
+{
+    imp_segment segment;
+    bool closed;
+    memcpy(island->before, island->states, (size_t)island->world.body_count * sizeof *island->states);
+    const impact_status status = imp_island_glide_on(island, &segment, &closed);
+    island->rolls = island->loses = false;
+    if (status != IMPACT_OK) return imp_island_fail(island, status);
+    if (closed) return move_closed(island, &segment, imp_island_lying(island)->friction > 0);
+    island->moves = true;
+    return follow_all(island);
+}
+
 /* The next step, of the integrator or of a pile. */
 impact_status imp_island_step_on(imp_island *island)
 {
     const double t = island->motion.stride.t;
+    if (imp_island_lying(island)) return glide(island);
     if (t >= island->motion.stride.t_end) imp_motion_depart(&island->motion, t, horizon(island->scene, t), true);
     memcpy(island->before, island->states, (size_t)island->world.body_count * sizeof *island->states);
     const impact_status status =
@@ -185,6 +208,11 @@ impact_status imp_island_start(imp_island *island)
     island->rests = imp_island_all_rest(island) && !may_wake(island);
     island->rolls = island->loses = false;
     if (island->rests) return stand(island);
+    if (imp_island_lying(island)) {
+        island->glide = IMP_FACE_LONGEST;
+        imp_motion_depart(&island->motion, island->t, horizon(scene, island->t), false);
+        return glide(island);
+    }
     imp_segment segment;
     const bool closed = !island->stepped && !imp_scene_integrates_all(&scene->methods);
     if (closed && imp_island_rolls(island, &segment, &island->end)) return roll(island, &segment);

@@ -94,7 +94,7 @@ static impact_status add_held(impact_scene *scene, const imp_island *island)
     impact_status status = IMPACT_OK;
     for (int p = 0; status == IMPACT_OK && p < island->world.pair_count; p++) {
         imp_pair pair = island->world.pairs[p];
-        if (!imp_is_held(&pair)) continue;
+        if (!imp_is_held(&pair) && !pair.lies) continue;
         pair.body1 = island->world.bodies[pair.body1].index;
         pair.body2 = island->world.bodies[pair.body2].index;
         status = add_touching(scene, &pair);

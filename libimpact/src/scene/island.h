@@ -49,6 +49,7 @@ typedef struct imp_island {
     long steps;
     double outside;    /* J: of all other bodies, for the rows of events */
     int number;        /* among the scene's; -1: of none */
+    double glide;      /* tau: how long the next step of a body that glides is to be (gliding.h) */
     bool rests, rolls; /* no integrator is at work: its bodies' segments say all */
     bool loses;        /* it rolls, and friction takes energy: what there was when its segment began, J */
     double begun_with;

@@ -142,7 +142,7 @@ static void walk_pair(imp_archive *a, imp_pair *p)
 {
     int mode = (int)p->mode;
     bool *const flags[] = {&p->beyond, &p->onset, &p->young, &p->turned, &p->carried,
-                           &p->flat,   &p->lined, &p->still, &p->met};
+                           &p->flat,   &p->lined, &p->still, &p->met,    &p->lies};
     double *const numbers[] = {&p->pull, &p->spot[0], &p->spot[1], &p->spot[2], &p->lying};
     imp_archive_int(a, &p->body1, 0, INT32_MAX);
     imp_archive_int(a, &p->body2, 0, INT32_MAX);

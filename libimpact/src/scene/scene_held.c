@@ -4,6 +4,7 @@
  * scene's time, of piles they are those of the step at hand, or those that proved its rest.
  */
 #include "base/floats.h"
+#include "scene/gliding.h"
 #include "scene/scene_internal.h"
 
 #include <string.h>
@@ -80,6 +81,14 @@ static void pile_rows(const imp_island *island, double t, held_rows *rows)
     }
 }
 
+static void glide_row(imp_island *island, double t, held_rows *rows)
+{
+    impact_held row;
+    if (!imp_island_glide_force(island, island->motion.sampled, &row)) return;
+    row.t = t;
+    add_row(rows, &row);
+}
+
 int impact_scene_held(const impact_scene *scene, impact_held *held, int room)
 {
     const imp_floats floats = imp_floats_hold();
@@ -90,7 +99,9 @@ int impact_scene_held(const impact_scene *scene, impact_held *held, int room)
         if (!island) continue;
         status = imp_island_look(island, scene->t);
         if (status != IMPACT_OK) break;
-        if (island->stepped)
+        if (imp_island_lying(island))
+            glide_row(island, scene->t, &rows);
+        else if (island->stepped)
             pile_rows(island, scene->t, &rows);
         else
             status = exact_rows(island, scene->t, &rows);

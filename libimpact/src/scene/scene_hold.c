@@ -22,7 +22,7 @@ void imp_scene_choose_modes(imp_island *island)
     for (int p = 0; p < world->pair_count; p++) {
         imp_meeting m;
         imp_pair *pair = &world->pairs[p];
-        if (!imp_scene_meets(island, p, &m)) continue;
+        if (pair->lies || !imp_scene_meets(island, p, &m)) continue;
         imp_scene_press(island, &m);
         const bool leaves = m.acceleration > 0 && imp_scene_draws(island, &m);
         const bool stays = m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity)
@@ -157,7 +157,7 @@ static int find_pressed(imp_island *island, imp_meeting *m)
     imp_world *world = &island->world;
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
-        if (imp_is_held(pair) || pair->settled || !imp_scene_meets(island, p, m)) continue;
+        if (imp_is_held(pair) || pair->lies || pair->settled || !imp_scene_meets(island, p, m)) continue;
         const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
         const double push1 = qvec3_norm(island->motion.loads[pair->body1].force) * b1->inverse_mass,
                      push2 = qvec3_norm(island->motion.loads[pair->body2].force) * b2->inverse_mass;

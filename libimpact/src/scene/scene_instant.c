@@ -6,6 +6,7 @@
 #include "base/tolerances.h"
 #include "contact/persist_flat.h"
 #include "contact/persist_line.h"
+#include "scene/gliding.h"
 #include "scene/scene_events.h"
 #include "scene/scene_hold.h"
 #include "scene/scene_meeting.h"
@@ -15,15 +16,29 @@
 
 #include <string.h>
 
+/* What lay on a face is to be found anew; whether anything did. */
+static bool rise_from_faces(imp_island *island)
+{
+    bool lay = false;
+    for (int p = 0; p < island->world.pair_count; p++) {
+        lay = lay || island->world.pairs[p].lies;
+        island->world.pairs[p].lies = false;
+    }
+    return lay;
+}
+
 impact_status imp_scene_settle(imp_island *island)
 {
+    const bool lay = rise_from_faces(island);
     impact_status status = imp_scene_place_points(island);
     if (status != IMPACT_OK) return status;
     imp_scene_remember(island);
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
-    bool parted;
+    bool parted, glides = false;
     status = imp_scene_strike_all(island, &parted);
-    const imp_stay stay = status == IMPACT_OK && !parted ? imp_scene_points_stay(island) : IMP_STAY_NONE;
+    imp_stay stay = status == IMPACT_OK && !parted ? imp_scene_points_stay(island) : IMP_STAY_NONE;
+    if (stay == IMP_STAY_FACES) status = imp_island_lay(island, lay, &glides);
+    if (glides && status == IMPACT_OK) stay = imp_scene_points_stay(island);
     island->lies = stay == IMP_STAY_FACES;
     if (status == IMPACT_OK && !parted && !island->lies) {
         imp_scene_choose_modes(island);
@@ -162,19 +177,35 @@ static impact_status renew(imp_island *island)
     return imp_scene_hold(island, -1, true);
 }
 
+/* What glided on a face has stopped. */
+static impact_status stop_gliding(imp_island *island, int p)
+{
+    const imp_pair *pair = &island->world.pairs[p];
+    imp_scene_remember(island);
+    island->states[pair->body1].v = island->states[pair->body1].momentum = (qvec3){0, 0, 0};
+    const imp_touch touch = imp_persist_touch(&island->world, p, island->states, island->motion.loads);
+    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_STICK, &touch);
+    event.phases = "roll";
+    const impact_status status = imp_scene_record(island, &event);
+    return status == IMPACT_OK ? imp_scene_settle(island) : status;
+}
+
 impact_status imp_scene_handle(imp_island *island, imp_end end)
 {
     switch (end.kind) {
     case IMP_END_TIME: return IMPACT_OK;
     case IMP_END_GAP: return arrive(island, end.index);
     case IMP_END_BOUNDS:
+        if (island->world.pairs[end.index].lies) return imp_scene_settle(island); /* its face has come to an end */
         if (island->world.pairs[end.index].corner > 0) return imp_scene_settle(island); /* another corner has landed */
         if (tips(island, end.index)) return imp_scene_hold(island, -1, true);
         island->world.pairs[end.index].beyond = true;
         return change_mode(island, end.index, IMP_OPEN);
     case IMP_END_LIFTOFF: return change_mode(island, end.index, IMP_OPEN);
     case IMP_END_SLIP: return begin_slide(island, end.index);
-    case IMP_END_STICK: return change_mode(island, end.index, IMP_ROLL);
+    case IMP_END_STICK:
+        if (island->world.pairs[end.index].lies) return stop_gliding(island, end.index);
+        return change_mode(island, end.index, IMP_ROLL);
     case IMP_END_EDGE: return cross_edge(island, end.index);
     case IMP_END_SLOW:
         imp_scene_remember(island);

@@ -98,7 +98,7 @@ impact_status imp_scene_place_points(imp_island *island)
     return status;
 }
 
-static bool stays(imp_island *island, int p)
+bool imp_scene_point_stays(imp_island *island, int p)
 {
     imp_meeting m;
     if (!island->world.pairs[p].placed || !imp_scene_meets(island, p, &m)) return false;
@@ -121,7 +121,7 @@ imp_stay imp_scene_points_stay(imp_island *island)
     for (int p = 0, run = 0; p < world->pair_count; p++) {
         /* the points of two bodies follow each other */
         if (p > 0 && !imp_same_bodies(&world->pairs[p], &world->pairs[p - 1])) run = 0;
-        if (!stays(island, p)) continue;
+        if (world->pairs[p].lies || !imp_scene_point_stays(island, p)) continue;
         if (world->pairs[p].corner == 0 || ++run > 2 || overhangs(island, p)) return IMP_STAY_FACES;
         found = IMP_STAY_CORNERS;
     }

@@ -18,7 +18,8 @@ typedef enum imp_stay {
                          of its own */
     IMP_STAY_FACES    /* more, or others: the bodies lie on each other, and go by steps */
 } imp_stay;
-imp_stay imp_scene_points_stay(imp_island *island);
+imp_stay imp_scene_points_stay(imp_island *island); /* but for what lies (gliding.h) */
+bool imp_scene_point_stays(imp_island *island, int p);
 
 /* Of the points leaves the corners that are held; of bodies that none holds, the pair as a whole. */
 void imp_scene_drop_points(imp_island *island);

@@ -84,7 +84,9 @@ typedef struct imp_pair {
     int corner;  /* > 0: it is this corner of body 1, counted from 1, on a plane, and may be held there (corner.h) */
     int face;    /* > 0: not a plane but this face of body 2, counted from 1 */
     double sunk; /* held corner: m: how far below it the other corners were where the stretch began, <= 0 */
-    bool met;    /* by the steps of a pile: it was closed since the pile was looked at last */
+    bool lies; /* body 1 lies with a face on body 2, static, and glides there (scene/gliding.h): it is not among what is
+                * held at points */
+    bool met;  /* by the steps of a pile: it was closed since the pile was looked at last */
     impact_gap_cache cache;
 } imp_pair;
 

@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/face_motion.h"
+#include "base/tolerances.h"
+
+#include <math.h>
+#include <string.h>
+
+void imp_face_prepare(imp_face_motion *motion)
+{
+    imp_press_all(&motion->face, &motion->whole);
+    imp_press_moments(&motion->whole, motion->moments);
+}
+
+/* ---- the balance ---- */
+
+static bool solve_three(double a[3][4])
+{
+    for (int k = 0; k < 3; k++) {
+        int best = k;
+        for (int i = k + 1; i < 3; i++)
+            if (fabs(a[i][k]) > fabs(a[best][k])) best = i;
+        if (!(fabs(a[best][k]) > 0)) return false;
+        for (int j = 0; j < 4; j++) {
+            const double swap = a[k][j];
+            a[k][j] = a[best][j], a[best][j] = swap;
+        }
+        for (int i = 0; i < 3; i++)
+            for (int j = 3; i != k && j >= k; j--) a[i][j] -= a[i][k] / a[k][k] * a[k][j];
+    }
+    for (int k = 0; k < 3; k++) a[k][3] /= a[k][k];
+    return isfinite(a[0][3] + a[1][3] + a[2][3]);
+}
+
+static double along_row(const double row[3], const double p[3])
+{
+    return row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
+}
+
+/* The pressure that balances where just this part is pressed. */
+static bool press(const imp_face_motion *motion, const imp_pressed *pressed, const double twist[3],
+                  imp_face_balance *balance)
+{
+    double part[3][3], rub[3][3], a[3][4];
+    const bool whole = pressed == &motion->whole;
+    const double(*m)[3] = whole ? motion->moments : (const double(*)[3])part;
+    if (pressed->count == 0) return false;
+    if (!whole) imp_press_moments(pressed, part);
+    imp_press_rub(pressed, twist, rub);
+    const double mu = motion->friction, *j = motion->aside, across[2] = {-j[1], j[0]}, square = twist[2] * twist[2];
+    for (int k = 0; k < 3; k++) {
+        a[0][k] = m[0][k];
+        for (int i = 0; i < 2; i++)
+            a[1 + i][k] = m[1 + i][k] + motion->height * mu * rub[i][k] - across[i] * motion->turning * mu * rub[2][k];
+    }
+    a[0][3] = 1;
+    for (int i = 0; i < 2; i++) a[1 + i][3] = -square * j[i] / motion->press;
+    if (!solve_three(a)) return false;
+    for (int k = 0; k < 3; k++) balance->p[k] = a[k][3];
+    for (int i = 0; i < 2; i++) {
+        balance->force[i] = mu * along_row(rub[i], balance->p);
+        balance->center[i] = along_row(m[1 + i], balance->p);
+    }
+    balance->moment = mu * along_row(rub[2], balance->p);
+    return true;
+}
+
+bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance)
+{
+    imp_pressed part;
+    double change = INFINITY;
+    for (int i = 0; i < IMP_FACE_PRESSINGS; i++) {
+        double before[3], moved = 0, size = 0;
+        memcpy(before, balance->p, sizeof before);
+        const bool whole = imp_least_pressure(&motion->face, before) >= 0;
+        if (!whole) imp_press_part(&motion->face, before, &part);
+        if (!press(motion, whole ? &motion->whole : &part, twist, balance)) return false;
+        if (whole && imp_least_pressure(&motion->face, balance->p) >= 0) return true;
+        for (int k = 0; k < 3; k++) {
+            moved = fmax(moved, fabs(balance->p[k] - before[k]));
+            size = fmax(size, fabs(balance->p[k]));
+        }
+        if (moved <= IMP_LEVEL * size || (moved >= change && moved <= IMP_FACE_PRESSED * size)) return true;
+        change = moved;
+    }
+    return false;
+}
+
+/* ---- rates ---- */
+
+/* From axes that stay to the face's, or back. */
+static void turn_by(const double v[2], double angle, double out[2])
+{
+    const double c = cos(angle), s = sin(angle), x = v[0], y = v[1];
+    out[0] = c * x - s * y, out[1] = s * x + c * y;
+}
+
+double imp_face_speed(const imp_face_motion *motion, const double *y)
+{
+    return hypot(hypot(y[IMP_FACE_V], y[IMP_FACE_V + 1]), motion->gyration * y[IMP_FACE_W]);
+}
+
+bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance)
+{
+    double twist[3] = {0, 0, y[IMP_FACE_W]}, force[2];
+    turn_by(&y[IMP_FACE_V], -y[IMP_FACE_ANGLE], twist);
+    if (!imp_face_balance_of(motion, twist, balance)) return false;
+    turn_by(balance->force, y[IMP_FACE_ANGLE], force);
+    const double P = motion->press;
+    for (int i = 0; i < 2; i++) {
+        rate[IMP_FACE_X + i] = y[IMP_FACE_V + i];
+        rate[IMP_FACE_V + i] = P * force[i] + motion->pull[i];
+    }
+    rate[IMP_FACE_ANGLE] = y[IMP_FACE_W];
+    rate[IMP_FACE_W] = P * motion->turning * balance->moment;
+    rate[IMP_FACE_TIME] = 1;
+    rate[IMP_FACE_WORK] =
+        -P * (balance->force[0] * twist[0] + balance->force[1] * twist[1] + balance->moment * twist[2]);
+    return true;
+}
+
+double imp_face_margin(const imp_face_motion *motion, const double *y, const imp_face_balance *balance)
+{
+    double least = imp_face_spare(&motion->face, balance->center);
+    if (!motion->bounded) return least;
+    const imp_flat_face *face = &motion->face;
+    for (int i = 0; i < (face->count > 0 ? face->count : 1); i++) {
+        double x[2];
+        turn_by(face->count > 0 ? face->corner[i] : face->center, y[IMP_FACE_ANGLE], x);
+        for (int k = 0; k < 2; k++) x[k] += y[IMP_FACE_X + k];
+        least = fmin(least, imp_face_spare(&motion->under, x) - face->radius);
+    }
+    return least;
+}
+
+/* ---- a step ---- */
+
+/* Gauss's nine places and weights in [0, 1]. */
+static const double node[IMP_FACE_NODES] =
+    {0.015919880246186957, 0.081984446336682115, 0.19331428364970482, 0.33787328829809554, 0.5,
+     0.66212671170190451,  0.80668571635029518,  0.91801555366331788, 0.98408011975381304},
+                    weight[IMP_FACE_NODES] = {0.040637194180787081, 0.090324080347428684, 0.1303053482014678,
+                                              0.15617353852000146,  0.16511967750062992,  0.15617353852000146,
+                                              0.1303053482014678,   0.090324080347428684, 0.040637194180787081};
+
+/* Legendre's polynomials P_0 ... P_9 over [0, 1] at x. */
+static void legendre(double x, double p[IMP_FACE_NODES + 1])
+{
+    const double z = 2 * x - 1;
+    p[0] = 1, p[1] = z;
+    for (int k = 1; k < IMP_FACE_NODES; k++) p[k + 1] = ((2 * k + 1) * z * p[k] - k * p[k - 1]) / (k + 1);
+}
+
+typedef struct collocation {
+    double term[IMP_FACE_NODES][IMP_FACE_NODES];     /* P_k at the nodes */
+    double integral[IMP_FACE_NODES][IMP_FACE_NODES]; /* of P_k from 0 to them */
+} collocation;
+
+static void lay_out(collocation *c)
+{
+    for (int i = 0; i < IMP_FACE_NODES; i++) {
+        double p[IMP_FACE_NODES + 1];
+        legendre(node[i], p);
+        c->integral[i][0] = node[i];
+        for (int k = 0; k < IMP_FACE_NODES; k++) {
+            c->term[i][k] = p[k];
+            if (k > 0) c->integral[i][k] = (p[k + 1] - p[k - 1]) / (2 * (2 * k + 1));
+        }
+    }
+}
+
+/* The rates' coefficients in Legendre's polynomials from their values at the nodes. */
+static void expand(const collocation *c, double rate[][IMP_FACE_STATE], double k[][IMP_FACE_STATE])
+{
+    for (int j = 0; j < IMP_FACE_NODES; j++)
+        for (int n = 0; n < IMP_FACE_STATE; n++) {
+            k[j][n] = 0;
+            for (int i = 0; i < IMP_FACE_NODES; i++) k[j][n] += (2 * j + 1) * weight[i] * c->term[i][j] * rate[i][n];
+        }
+}
+
+/* A */
+static double greatest_rate(const imp_face_motion *motion)
+{
+    return motion->friction * motion->press + hypot(motion->pull[0], motion->pull[1]);
+}
+
+/* What each number is measured by: what it still changes by where the motion fades. */
+static void measure(const imp_face_motion *motion, const double *y, double unit[IMP_FACE_STATE])
+{
+    const double speed = imp_face_speed(motion, y), time = speed / greatest_rate(motion);
+    for (int n = 0; n < IMP_FACE_V; n++) unit[n] = speed * time;
+    for (int n = IMP_FACE_V; n < IMP_FACE_TIME; n++) unit[n] = speed;
+    unit[IMP_FACE_TIME] = time;
+    unit[IMP_FACE_WORK] = speed * speed;
+}
+
+static bool rates_in_tau(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance)
+{
+    const double clock = imp_face_speed(motion, y) / greatest_rate(motion);
+    if (!imp_face_rates(motion, y, rate, balance)) return false;
+    for (int n = 0; n < IMP_FACE_STATE; n++) rate[n] *= clock;
+    return imp_face_margin(motion, y, balance) > IMP_FACE_MARGIN;
+}
+
+enum { MOVING = 3, SYSTEM = MOVING * IMP_FACE_NODES };
+
+/* LU with rows exchanged, in place; and its solution in place of b. */
+static bool factor(double a[SYSTEM][SYSTEM], int *row)
+{
+    for (int k = 0; k < SYSTEM; k++) {
+        int best = k;
+        for (int i = k + 1; i < SYSTEM; i++)
+            if (fabs(a[i][k]) > fabs(a[best][k])) best = i;
+        row[k] = best;
+        if (!(fabs(a[best][k]) > 0)) return false;
+        for (int j = 0; j < SYSTEM && best != k; j++) {
+            const double swap = a[k][j];
+            a[k][j] = a[best][j], a[best][j] = swap;
+        }
+        for (int i = k + 1; i < SYSTEM; i++) {
+            const double part = a[i][k] /= a[k][k];
+            for (int j = k + 1; j < SYSTEM && part != 0; j++) a[i][j] -= part * a[k][j];
+        }
+    }
+    return true;
+}
+
+static void back_solve(double a[SYSTEM][SYSTEM], const int *row, double *b)
+{
+    for (int k = 0; k < SYSTEM; k++) {
+        const double swap = b[k];
+        b[k] = b[row[k]], b[row[k]] = swap;
+        for (int i = k + 1; i < SYSTEM; i++) b[i] -= a[i][k] * b[k];
+    }
+    for (int k = SYSTEM - 1; k >= 0; k--) {
+        for (int j = k + 1; j < SYSTEM; j++) b[k] -= a[k][j] * b[j];
+        b[k] /= a[k][k];
+    }
+}
+
+/* 1 - h A J of the velocities: J their rates' slopes at y, by differences, A what the nodes' rates make of the nodes'
+ * states. */
+static bool linearize(const imp_face_motion *motion, const collocation *c, const double *y, const double *rate,
+                      double h, imp_face_balance *last, double a[SYSTEM][SYSTEM], int *row)
+{
+    double slope[MOVING][MOVING];
+    for (int j = 0; j < MOVING; j++) {
+        double there[IMP_FACE_STATE], found[IMP_FACE_STATE];
+        memcpy(there, y, sizeof there);
+        const double step = IMP_FACE_DIFFERENCE * imp_face_speed(motion, y);
+        there[IMP_FACE_V + j] += step;
+        if (!rates_in_tau(motion, there, found, last)) return false;
+        for (int i = 0; i < MOVING; i++) slope[i][j] = (found[IMP_FACE_V + i] - rate[IMP_FACE_V + i]) / step;
+    }
+    for (int n = 0; n < SYSTEM; n++)
+        for (int m = 0; m < SYSTEM; m++) {
+            const int i = n / MOVING, j = m / MOVING;
+            double part = 0;
+            for (int k = 0; k < IMP_FACE_NODES; k++)
+                part += c->integral[i][k] * (2 * k + 1) * weight[j] * c->term[j][k];
+            a[n][m] = (n == m) - h * part * slope[n % MOVING][m % MOVING];
+        }
+    return factor(a, row);
+}
+
+static void states_at_nodes(const collocation *c, const double *y, double h, double k[][IMP_FACE_STATE],
+                            double there[][IMP_FACE_STATE])
+{
+    for (int i = 0; i < IMP_FACE_NODES; i++)
+        for (int n = 0; n < IMP_FACE_STATE; n++) {
+            there[i][n] = y[n];
+            for (int j = 0; j < IMP_FACE_NODES; j++) there[i][n] += h * c->integral[i][j] * k[j][n];
+        }
+}
+
+/* The rates at the nodes, by Newton's iteration for the velocities; all else only follows them. */
+static bool collocate(const imp_face_motion *motion, const collocation *c, const double *y, double h,
+                      const double *unit, double k[][IMP_FACE_STATE])
+{
+    double rate[IMP_FACE_NODES][IMP_FACE_STATE], there[IMP_FACE_NODES][IMP_FACE_STATE], a[SYSTEM][SYSTEM],
+        change = INFINITY;
+    int row[SYSTEM];
+    imp_face_balance last = {.p = {0}}; /* from one place to the next it hardly changes */
+    if (!rates_in_tau(motion, y, rate[0], &last) || !linearize(motion, c, y, rate[0], h, &last, a, row)) return false;
+    for (int i = 1; i < IMP_FACE_NODES; i++) memcpy(rate[i], rate[0], sizeof rate[0]);
+    expand(c, rate, k);
+    states_at_nodes(c, y, h, k, there);
+    for (int round = 0; round < IMP_FACE_ROUNDS; round++) {
+        double made[IMP_FACE_NODES][IMP_FACE_STATE], off[SYSTEM], moved = 0;
+        for (int i = 0; i < IMP_FACE_NODES; i++)
+            if (!rates_in_tau(motion, there[i], rate[i], &last)) return false;
+        expand(c, rate, k);
+        states_at_nodes(c, y, h, k, made);
+        for (int n = 0; n < SYSTEM; n++)
+            off[n] = made[n / MOVING][IMP_FACE_V + n % MOVING] - there[n / MOVING][IMP_FACE_V + n % MOVING];
+        back_solve(a, row, off);
+        for (int i = 0; i < IMP_FACE_NODES; i++)
+            for (int n = 0; n < IMP_FACE_STATE; n++) {
+                const bool moves = n >= IMP_FACE_V && n <= IMP_FACE_W;
+                const double by = moves ? off[MOVING * i + n - IMP_FACE_V] : made[i][n] - there[i][n];
+                if (n <= IMP_FACE_W) moved = fmax(moved, fabs(by) / unit[n]);
+                there[i][n] += by;
+            }
+        if (moved <= IMP_FACE_SETTLED || (moved >= change && moved <= IMP_FACE_TOLERANCE)) return true;
+        if (moved >= change && round > 2) return false;
+        change = moved;
+    }
+    return false;
+}
+
+/* y0 + h sum k_j of the integrals of P_j(1 + 2 s) = sum over i of binomial(j, i) binomial(j + i, i) s^i, about the end.
+ */
+static void keep_path(const double *y, double h, double k[][IMP_FACE_STATE], imp_face_path *path)
+{
+    memset(path, 0, sizeof *path);
+    for (int n = 0; n < IMP_FACE_STATE; n++) path->c[0][n] = y[n] + h * k[0][n];
+    for (int j = 0; j < IMP_FACE_NODES; j++) {
+        double binomials = 1;
+        for (int i = 0; i <= j; i++) {
+            for (int n = 0; n < IMP_FACE_STATE; n++) path->c[i + 1][n] += h * k[j][n] * binomials / (i + 1);
+            binomials *= (double)((j - i) * (j + i + 1)) / ((i + 1) * (i + 1));
+        }
+    }
+}
+
+void imp_face_at(const imp_face_path *path, double s, double *y)
+{
+    for (int n = 0; n < IMP_FACE_STATE; n++) {
+        y[n] = 0;
+        for (int k = IMP_FACE_TERMS - 1; k >= 0; k--) y[n] = y[n] * s + path->c[k][n];
+    }
+}
+
+bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
+{
+    collocation c;
+    double k[IMP_FACE_NODES][IMP_FACE_STATE], unit[IMP_FACE_STATE];
+    const double clock = imp_face_speed(motion, y) / greatest_rate(motion), turns = fabs(y[IMP_FACE_W]) * clock;
+    bool cut = false;
+    lay_out(&c);
+    for (double h = fmin(*length, IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN)); h > IMP_FACE_SHORTEST;) {
+        measure(motion, y, unit);
+        if (!collocate(motion, &c, y, h, unit, k)) {
+            cut = true;
+            h *= 0.5;
+            continue;
+        }
+        double error = 0;
+        for (int n = 0; n < IMP_FACE_STATE; n++)
+            error = fmax(error, h * fabs(k[IMP_FACE_NODES - 1][n]) / (unit[n] * IMP_FACE_TOLERANCE));
+        const double next = h * fmin(fmax(0.9 * pow(error, -1.0 / IMP_FACE_NODES), 0.2), 2);
+        if (error <= 1) {
+            keep_path(y, h, k, path);
+            *length = cut ? h : next;
+            return true;
+        }
+        h = next;
+    }
+    return false;
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * face_motion: a body that lies with a face on a static one, and slides and turns on it under a constant pull.
+ * Internal.
+ *
+ * In the plane of the face, from the foot of the centre of mass, with the velocity v of the centre over the surface and
+ * w about the normal n, N = m P, the height c of the centre, J = n.J n and j = the part of J n in the face:
+ *
+ *     v' = F/m + pull,   w' = M/J
+ *     int p = N,   int x p = -c F + w' n x j - w^2 j      no torque tips the body; j turns with it
+ *
+ * p = a + b.x >= 0 over the face, and F and M of it (face_friction.h) are linear in (a, b): three equations for three
+ * numbers. Where the line of no pressure crosses the face they are solved for what it leaves, until that stays:
+ * Newton's iteration. The state y = (x, angle, v, w) goes by collocation at Gauss's nine places of a step (order 18),
+ * in a time of its own:
+ *
+ *     dt = |(v, k w)|/A dtau,   A = mu P + |pull|,  k the face's radius of gyration
+ *
+ * in which what slides and turns to its end goes there as e^-tau, smoothly, at the end along one twist. Lengths are in
+ * units of the face's reach.
+ */
+#ifndef IMP_FACE_MOTION_H
+#define IMP_FACE_MOTION_H
+
+#include "motion/face_friction.h"
+
+#include <stddef.h>
+
+/* Lengths over `size`, in axes of the face that turn with the body, from the foot of the centre of mass. */
+typedef struct imp_face_motion {
+    imp_flat_face face;
+    double height;       /* c */
+    double friction;     /* mu */
+    double press;        /* P, 1/s^2 */
+    double pull[2];      /* 1/s^2, in axes that stay, which the face's are at the angle 0 */
+    double turning;      /* m size^2/J */
+    double aside[2];     /* j/(m size^2) */
+    double gyration;     /* k */
+    imp_flat_face under; /* what it lies on, in axes that stay; of */
+    bool bounded;        /* else: a plane without end */
+    imp_pressed whole;   /* of the face: by imp_face_prepare */
+    double moments[3][3];
+} imp_face_motion;
+
+/* What follows of the face, once it is set. */
+void imp_face_prepare(imp_face_motion *motion);
+
+enum { IMP_FACE_X, IMP_FACE_ANGLE = 2, IMP_FACE_V, IMP_FACE_W = 5, IMP_FACE_TIME, IMP_FACE_WORK, IMP_FACE_STATE };
+
+/* What presses and rubs: over m P, in the face's axes. */
+typedef struct imp_face_balance {
+    double p[3];
+    double force[2], moment; /* of friction, the moment about the foot */
+    double center[2];        /* of pressure */
+} imp_face_balance;
+
+/* With the twist (v, w) in the face's axes, not 0; p is where to begin, 0 for the whole face pressed. False where no
+ * pressure balances it: the body tips. */
+bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance);
+/* Rates of y by time, y of IMP_FACE_STATE numbers: the last two are time and what friction has taken, over m size^2. */
+bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance);
+
+/* How far within all borders the centre of pressure is, and the face within what it lies on. */
+double imp_face_margin(const imp_face_motion *motion, const double *y, const imp_face_balance *balance);
+
+/* |(v, k w)| */
+double imp_face_speed(const imp_face_motion *motion, const double *y);
+
+enum { IMP_FACE_NODES = 9, IMP_FACE_TERMS = IMP_FACE_NODES + 1 };
+
+/* y over the step = sum of c[k] s^k, s in [-1, 0]. */
+typedef struct imp_face_path {
+    double c[IMP_FACE_TERMS][IMP_FACE_STATE];
+} imp_face_path;
+
+/* One step from y, of a length (in tau) that begins with *length and suits its error; *length for the next. False:
+ * there is none, for the body tips or leaves the border at once. */
+bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path);
+void imp_face_at(const imp_face_path *path, double s, double *y);
+
+#endif

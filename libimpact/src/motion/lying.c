@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: MIT */
+#include "motion/lying.h"
+#include "motion/motion_equations.h"
+#include "contact/persist_system.h"
+#include "world/world_gap.h"
+
+#include <impact/face.h>
+#include <string.h>
+
+/* ---- the two faces ---- */
+
+/* Of a face, in the world, from its body's centre of mass. */
+static qvec3 corner_of(const imp_body *body, const imp_state *state, const impact_face *face, int i)
+{
+    return qvec3_add(imp_shape_offset(body, state), quat_rotate(imp_shape_axes(body, state), face->point[i]));
+}
+
+/* Outward, by Newell's sum over its sides. */
+static qvec3 normal_of(const imp_body *body, const imp_state *state, const impact_face *face)
+{
+    qvec3 sum = {0, 0, 0};
+    for (int i = 0; i < face->count; i++) {
+        const qvec3 a = qvec3_sub(face->point[i], face->point[0]),
+                    b = qvec3_sub(face->point[(i + 1) % face->count], face->point[0]);
+        sum = qvec3_add(sum, qvec3_cross(a, b));
+    }
+    return quat_rotate(imp_shape_axes(body, state), qvec3_scale(sum, 1 / qvec3_norm(sum)));
+}
+
+static bool face_towards(const imp_body *body, const imp_state *state, qvec3 direction, double height,
+                         impact_face *face)
+{
+    const qvec3 d = quat_rotate_inverse(imp_shape_axes(body, state), direction);
+    const bool found = impact_shape_face(&body->shape, d, height, face) == 2;
+    return found && face->count >= 3 && (face->disc > 0 || face->count <= IMP_FLAT_SIDES);
+}
+
+/* In the plane's axes over the size; about the normal the corners go the other way round where it looks against it. */
+static void lay_out_face(const imp_lying *lying, const imp_body *body, const imp_state *state, qvec3 shift,
+                         const impact_face *face, bool reversed, imp_flat_face *out)
+{
+    *out = (imp_flat_face){.count = face->disc > 0 ? 0 : face->count, .radius = face->disc / lying->size};
+    for (int i = 0; i < face->count; i++) {
+        const qvec3 c = qvec3_add(shift, corner_of(body, state, face, i));
+        for (int k = 0; k < 2; k++) {
+            const double x = qvec3_dot(c, lying->axis[k]) / lying->size;
+            out->center[k] += x / face->count;
+            if (out->count > 0) out->corner[reversed ? face->count - 1 - i : i][k] = x;
+        }
+    }
+}
+
+/* A plane's bounds, if it has any; on sides without end far beyond all that matters. */
+static bool plane_bounds(const imp_lying *lying, const imp_body *under, const imp_state *state, qvec3 apart,
+                         imp_flat_face *out)
+{
+    const double far = 1e9 * lying->size, a = fmin(under->shape.a, far), b = fmin(under->shape.b, far);
+    const qvec3 corner[4] = {{-a, -b, 0}, {a, -b, 0}, {a, b, 0}, {-a, b, 0}};
+    *out = (imp_flat_face){.count = 4};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 2; k++) {
+            const qvec3 c = qvec3_sub(quat_rotate(state->q, corner[i]), apart);
+            out->corner[i][k] = qvec3_dot(c, lying->axis[k]) / lying->size;
+        }
+    return isfinite(under->shape.a) || isfinite(under->shape.b);
+}
+
+/* ---- the body ---- */
+
+/* What rocks as it lies down keeps the velocity that it has at the face, below its centre: where it sticks, none. */
+static void keep_sliding(imp_lying *lying, const imp_state *state)
+{
+    const qvec3 n = lying->normal, below = qvec3_scale(n, -lying->motion.height * lying->size),
+                u = imp_point_velocity(lying->body, state, below);
+    lying->level.v = qvec3_axpy(-qvec3_dot(n, u), n, u);
+}
+
+static void level(imp_lying *lying, const imp_state *state, qvec3 outward)
+{
+    const imp_body *body = lying->body;
+    const qvec3 n = lying->normal, turn = qvec3_cross(outward, qvec3_neg(n));
+    const qvec3 turns = imp_omega(body, state);
+    const double omega = qvec3_dot(n, turns);
+    lying->level = *state;
+    quat_normalize(quat_mul(quat_from_rotation_vector(turn), state->q), &lying->level.q);
+    lying->inertia = imp_inertia(body, lying->level.q, n);
+    lying->level.momentum = qvec3_scale(lying->inertia, omega);
+    lying->axis[0] = imp_tangent(n), lying->axis[1] = qvec3_cross(n, lying->axis[0]);
+    memset(lying->start, 0, sizeof lying->start);
+    lying->start[IMP_FACE_W] = omega;
+}
+
+/* What is but rounding of the other is none. */
+static double beside(double part, double whole) { return fabs(part) > IMP_LEVEL * fabs(whole) ? part : 0; }
+
+static bool set_motion(imp_lying *lying, const imp_world *world, const imp_pair *pair)
+{
+    imp_face_motion *m = &lying->motion;
+    const qvec3 n = lying->normal;
+    const double L = lying->size, spin = qvec3_dot(n, lying->inertia), unit = lying->body->mass * L * L;
+    m->friction = pair->friction;
+    m->press = -qvec3_dot(n, world->gravity) / L;
+    m->turning = unit / spin;
+    for (int k = 0; k < 2; k++) {
+        m->pull[k] = beside(qvec3_dot(lying->axis[k], world->gravity) / L, m->press);
+        m->aside[k] = beside(qvec3_dot(lying->axis[k], lying->inertia), spin) / unit;
+        lying->start[IMP_FACE_V + k] = qvec3_dot(lying->axis[k], lying->level.v) / L;
+    }
+    imp_face_prepare(m);
+    m->gyration = sqrt((m->moments[1][1] + m->moments[2][2]) / m->moments[0][0]);
+    return m->press > 0;
+}
+
+static double farthest(const imp_lying *lying, const impact_face *face)
+{
+    double most = 0;
+    for (int i = 0; i < face->count; i++) {
+        const qvec3 c = corner_of(lying->body, &lying->level, face, i);
+        most = fmax(most, hypot(qvec3_dot(c, lying->axis[0]), qvec3_dot(c, lying->axis[1])));
+    }
+    return most;
+}
+
+bool imp_lying_find(imp_world *world, const imp_pair *given, const imp_state *states, imp_lying *lying)
+{
+    imp_pair pair = *given;
+    const imp_body *body = &world->bodies[pair.body1], *under = &world->bodies[pair.body2];
+    const imp_state *state = &states[pair.body1], *below = &states[pair.body2];
+    const bool plain = under->is_static && !under->driven && body->linear_rate == 0 && body->angular_rate == 0;
+    impact_contact contact;
+    impact_face face, ground;
+    if (!plain || world->field_count > 0 || pair.torsional > 0) return false;
+    imp_world_gap(world, &pair, states, &contact);
+    const double height = imp_world_touching_distance(world, &pair, states);
+    const bool on_plane = under->shape.kind == IMPACT_PLANE;
+    if (!face_towards(body, state, qvec3_neg(contact.normal), height, &face)) return false;
+    if (!on_plane && !face_towards(under, below, contact.normal, height, &ground)) return false;
+    lying->body = body;
+    lying->normal = on_plane ? quat_rotate(below->q, (qvec3){0, 0, 1}) : normal_of(under, below, &ground);
+    level(lying, state, normal_of(body, state, &face));
+    const qvec3 n = lying->normal, low = corner_of(body, &lying->level, &face, 0);
+    const double ground_level = on_plane ? 0 : qvec3_dot(n, corner_of(under, below, &ground, 0));
+    const double gap = qvec3_dot(n, qvec3_sub(state->x, below->x)) + qvec3_dot(n, low) - ground_level;
+    lying->level.x = qvec3_axpy(-gap, n, state->x);
+    lying->size = farthest(lying, &face);
+    lying->motion.height = -qvec3_dot(n, low) / lying->size;
+    keep_sliding(lying, state);
+    lay_out_face(lying, body, &lying->level, (qvec3){0, 0, 0}, &face, true, &lying->motion.face);
+    const qvec3 apart = qvec3_sub(lying->level.x, below->x);
+    lying->motion.bounded = !on_plane || plane_bounds(lying, under, below, apart, &lying->motion.under);
+    if (!on_plane) lay_out_face(lying, under, below, qvec3_neg(apart), &ground, false, &lying->motion.under);
+    return set_motion(lying, world, &pair);
+}
+
+/* ---- its state and step ---- */
+
+static qvec3 in_plane(const imp_lying *lying, double x, double y)
+{
+    return qvec3_add(qvec3_scale(lying->axis[0], lying->size * x), qvec3_scale(lying->axis[1], lying->size * y));
+}
+
+imp_state imp_lying_state(const imp_lying *lying, const double *y)
+{
+    const quat turn = quat_from_rotation_vector(qvec3_scale(lying->normal, y[IMP_FACE_ANGLE]));
+    imp_state state = {.x = qvec3_add(lying->level.x, in_plane(lying, y[IMP_FACE_X], y[IMP_FACE_X + 1])),
+                       .v = in_plane(lying, y[IMP_FACE_V], y[IMP_FACE_V + 1]),
+                       .q = quat_unit(quat_mul(turn, lying->level.q))};
+    state.momentum = qvec3_scale(quat_rotate(turn, lying->inertia), y[IMP_FACE_W]);
+    return state;
+}
+
+void imp_lying_force(const imp_lying *lying, const double *y, const imp_face_balance *b, qvec3 *force, qvec3 *arm,
+                     double *moment)
+{
+    const quat turn = quat_from_rotation_vector(qvec3_scale(lying->normal, y[IMP_FACE_ANGLE]));
+    const imp_face_motion *m = &lying->motion;
+    const double weight = lying->body->mass * m->press; /* over the size */
+    const qvec3 along = quat_rotate(turn, in_plane(lying, b->force[0], b->force[1]));
+    *force = qvec3_axpy(weight * lying->size, lying->normal, qvec3_scale(along, weight));
+    const qvec3 below = quat_rotate(turn, in_plane(lying, b->center[0], b->center[1]));
+    *arm = qvec3_axpy(-m->height * lying->size, lying->normal, below);
+    const double about = b->center[0] * b->force[1] - b->center[1] * b->force[0];
+    *moment = weight * lying->size * lying->size * (b->moment - about);
+}
+
+/* The polynomial through the values at so many places in [-1, 0], by divided differences. */
+static void interpolate(const double *s, const double *value, double *c)
+{
+    double d[IMP_DENSE_TERMS];
+    memcpy(d, value, sizeof d);
+    for (int k = 1; k < IMP_DENSE_TERMS; k++)
+        for (int i = IMP_DENSE_TERMS - 1; i >= k; i--) d[i] = (d[i] - d[i - 1]) / (s[i] - s[i - k]);
+    memset(c, 0, IMP_DENSE_TERMS * sizeof *c);
+    for (int k = IMP_DENSE_TERMS - 1; k >= 0; k--) {
+        for (int j = IMP_DENSE_TERMS - 1; j > 0; j--) c[j] = c[j - 1] - s[k] * c[j];
+        c[0] = d[k] - s[k] * c[0];
+    }
+}
+
+static void put(imp_dense *dense, int i, const double *c)
+{
+    for (int k = 0; k < IMP_DENSE_TERMS; k++) dense->c[k * dense->size + i] = c[k];
+}
+
+/* first + scale y_n over the path. */
+static void put_of_path(imp_dense *dense, int i, const imp_face_path *path, int n, double first, double scale)
+{
+    double c[IMP_DENSE_TERMS] = {0};
+    for (int k = 0; k < IMP_FACE_TERMS; k++) c[k] = scale * path->c[k][n];
+    c[0] += first;
+    put(dense, i, c);
+}
+
+static void put_in_plane(imp_dense *dense, int i, const imp_lying *lying, const imp_face_path *path, int n, qvec3 first)
+{
+    const qvec3 a = qvec3_scale(lying->axis[0], lying->size), b = qvec3_scale(lying->axis[1], lying->size);
+    const double from[3] = {first.x, first.y, first.z}, x[3] = {a.x, a.y, a.z}, y[3] = {b.x, b.y, b.z};
+    for (int k = 0; k < 3; k++) {
+        double c[IMP_DENSE_TERMS] = {0};
+        for (int j = 0; j < IMP_FACE_TERMS; j++) c[j] = x[k] * path->c[j][n] + y[k] * path->c[j][n + 1];
+        c[0] += from[k];
+        put(dense, i + k, c);
+    }
+}
+
+/* What turns is no polynomial: one through Chebyshev's places. */
+static void put_turning(imp_dense *dense, int first, const imp_lying *lying, const imp_face_path *path)
+{
+    enum { TURNING = 7 };
+    double s[IMP_DENSE_TERMS], value[TURNING][IMP_DENSE_TERMS], c[IMP_DENSE_TERMS];
+    for (int k = 0; k < IMP_DENSE_TERMS; k++) {
+        double y[IMP_FACE_STATE];
+        s[k] = -0.5 * (1 - cos(acos(-1) * k / (IMP_DENSE_TERMS - 1)));
+        imp_face_at(path, s[k], y);
+        const imp_state at = imp_lying_state(lying, y);
+        const double now[TURNING] = {at.q.w, at.q.x, at.q.y, at.q.z, at.momentum.x, at.momentum.y, at.momentum.z};
+        for (int n = 0; n < TURNING; n++) value[n][k] = now[n];
+    }
+    for (int n = 0; n < TURNING; n++) {
+        interpolate(s, value[n], c);
+        put(dense, first + (n < 4 ? 3 + n : Y_VELOCITY + 3 + n - 4), c);
+    }
+}
+
+impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, const imp_face_path *path,
+                                    imp_state *states)
+{
+    imp_dense *dense = &motion->dense;
+    imp_stride *stride = &motion->stride;
+    imp_works *works = &motion->works;
+    impact_status status = imp_motion_make_room(motion);
+    if (status == IMPACT_OK) status = imp_dense_reserve(dense, motion->world->arena, motion->size);
+    if (status != IMPACT_OK) return status;
+    const double unit = lying->body->mass * lying->size * lying->size, t0 = stride->t, *end = path->c[0];
+    *dense = (imp_dense){.t0 = t0,
+                         .t1 = t0 + end[IMP_FACE_TIME],
+                         .h = 1,
+                         .size = motion->size,
+                         .terms = IMP_DENSE_TERMS,
+                         .clocked = true,
+                         .c = dense->c,
+                         .room = dense->room};
+    memset(dense->c, 0, sizeof *dense->c * IMP_DENSE_TERMS * (size_t)dense->size);
+    put_of_path(dense, Y_TIME, path, IMP_FACE_TIME, t0, 1);
+    put_of_path(dense, Y_SLIDING, path, IMP_FACE_WORK, works->sliding, unit);
+    dense->c[Y_FORCE_WORK] = works->force, dense->c[Y_DAMPING] = works->damping;
+    put_in_plane(dense, Y_BODIES, lying, path, IMP_FACE_X, lying->level.x);
+    put_in_plane(dense, Y_BODIES + Y_VELOCITY, lying, path, IMP_FACE_V, (qvec3){0, 0, 0});
+    put_turning(dense, Y_BODIES, lying, path);
+    works->sliding += unit * end[IMP_FACE_WORK];
+    stride->t = dense->t1;
+    stride->restart = true;
+    for (int i = 0; i < motion->world->body_count; i++)
+        if (!motion->world->bodies[i].is_static) states[i] = imp_lying_state(lying, end);
+    return IMPACT_OK;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * lying: a body of the world that lies with a face on a static one, as its face's motion (face_motion.h); and back.
+ * Internal.
+ */
+#ifndef IMP_LYING_H
+#define IMP_LYING_H
+
+#include "motion/face_motion.h"
+#include "motion/motion.h"
+
+typedef struct imp_lying {
+    imp_face_motion motion;
+    const imp_body *body;
+    imp_state level; /* the body exactly on the face, moving along it alone */
+    qvec3 normal, axis[2];
+    qvec3 inertia;                /* J n, kg m^2 */
+    double size;                  /* m */
+    double start[IMP_FACE_STATE]; /* y of the level state */
+} imp_lying;
+
+/* The pair's body 1 on its static body 2, where both have a face there and it is pressed on by gravity alone; false
+ * where not: also where it is damped, or turning has friction of its own. */
+bool imp_lying_find(imp_world *world, const imp_pair *pair, const imp_state *states, imp_lying *lying);
+
+/* The body with y. */
+imp_state imp_lying_state(const imp_lying *lying, const double *y);
+/* The force on it and the place where it acts, from the centre of mass; the moment there, about the normal. */
+void imp_lying_force(const imp_lying *lying, const double *y, const imp_face_balance *balance, qvec3 *force, qvec3 *arm,
+                     double *moment);
+
+/* A path as the step of a motion, of an island in which this body alone moves: from motion->stride.t on, which is then
+ * at its end. IMPACT_ENOMEM. */
+impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, const imp_face_path *path,
+                                    imp_state *states);
+
+#endif

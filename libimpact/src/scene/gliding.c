@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: MIT */
+#include "scene/gliding.h"
+#include "base/tolerances.h"
+#include "motion/lying.h"
+#include "scene/scene_events.h"
+#include "scene/scene_points.h"
+#include "world/corner.h"
+
+#include <impact/flight.h>
+#include <string.h>
+
+/* A motion of constant rates, in the face's units, until so many s from now. */
+typedef struct steady {
+    double a[2], alpha, until;
+    bool fades;
+} steady;
+
+static double size_of(const double v[2]) { return hypot(v[0], v[1]); }
+
+/* ---- closed forms ---- */
+
+/* When a place that is inside leaves a face, s. */
+static double leaves(const imp_flat_face *face, const double x[2], const double v[2], const double a[2])
+{
+    double time = INFINITY;
+    for (int i = 0; i < face->count; i++) {
+        const double *from = face->corner[i], *to = face->corner[(i + 1) % face->count];
+        const double side[2] = {to[0] - from[0], to[1] - from[1]}, unit = size_of(side),
+                     in[2] = {-side[1] / unit, side[0] / unit};
+        time = fmin(time, impact_flight_fall_time(in[0] * (x[0] - from[0]) + in[1] * (x[1] - from[1]),
+                                                  in[0] * v[0] + in[1] * v[1], in[0] * a[0] + in[1] * a[1]));
+    }
+    return time;
+}
+
+/* Along a line, without turning. */
+static bool slides_straight(const imp_face_motion *m, const double v[2], steady *s)
+{
+    const double speed = size_of(v), pull = size_of(m->pull), *along = speed > 0 ? v : m->pull;
+    const double size = size_of(along);
+    if (!(size > 0) || fabs(v[0] * m->pull[1] - v[1] * m->pull[0]) > IMP_LEVEL * speed * (pull + m->press))
+        return false;
+    const double line[2] = {along[0] / size, along[1] / size}, twist[3] = {line[0], line[1], 0};
+    imp_face_balance balance = {.p = {0}};
+    if (!imp_face_balance_of(m, twist, &balance)) return false;
+    if (!(imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN)) return false;
+    const double rate = m->pull[0] * line[0] + m->pull[1] * line[1] - m->friction * m->press;
+    if (speed == 0 && !(rate > 0)) return false;
+    *s = (steady){
+        .a = {rate * line[0], rate * line[1]}, .until = rate < 0 ? speed / -rate : INFINITY, .fades = rate < 0};
+    if (!m->bounded) return true;
+    if (m->under.count == 0 || !(imp_face_spare(&m->under, balance.center) > 2 * IMP_FACE_MARGIN)) return false;
+    const double tips = leaves(&m->under, balance.center, v, s->a);
+    if (tips < s->until) s->until = tips, s->fades = false;
+    return true;
+}
+
+/* On level ground, where friction makes no force. */
+static bool spins_in_place(const imp_face_motion *m, double w, steady *s)
+{
+    const double twist[3] = {0, 0, w}, none[2] = {0, 0};
+    imp_face_balance balance = {.p = {0}};
+    if (!imp_face_balance_of(m, twist, &balance) || size_of(balance.force) > IMP_LEVEL * m->friction) return false;
+    if (!(imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN)) return false;
+    if (m->bounded && !(imp_face_spare(&m->under, none) > 1 + IMP_FACE_MARGIN)) return false; /* no corner beyond it */
+    s->alpha = m->press * m->turning * balance.moment;
+    s->a[0] = s->a[1] = 0;
+    s->fades = m->friction > 0;
+    s->until = s->fades ? w / -s->alpha : INFINITY;
+    return true;
+}
+
+/* Without friction the centre goes its way, and it turns on. */
+static bool glides_freely(const imp_face_motion *m, const double *y, steady *s)
+{
+    imp_face_balance balance = {.p = {0}};
+    if (m->friction > 0 || m->bounded || !imp_face_balance_of(m, &y[IMP_FACE_V], &balance)) return false;
+    *s = (steady){.a = {m->pull[0], m->pull[1]}, .until = INFINITY};
+    return imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN;
+}
+
+/* The last of a motion that has all but stopped: along its twist. */
+static bool fades_out(const imp_face_motion *m, const double *y, double slow, steady *s)
+{
+    double rate[IMP_FACE_STATE];
+    imp_face_balance balance = {.p = {0}};
+    const double speed = imp_face_speed(m, y), *v = &y[IMP_FACE_V], w = y[IMP_FACE_W], k = m->gyration * m->gyration;
+    if (!(speed > 0 && speed <= slow) || !imp_face_rates(m, y, rate, &balance)) return false;
+    const double falls = -(v[0] * rate[IMP_FACE_V] + v[1] * rate[IMP_FACE_V + 1] + k * w * rate[IMP_FACE_W]);
+    if (!(falls > 0)) return false;
+    const double until = speed * speed / falls;
+    *s = (steady){.a = {-v[0] / until, -v[1] / until}, .alpha = -w / until, .until = until, .fades = true};
+    return true;
+}
+
+static bool find_steady(const imp_lying *lying, double slow, steady *s)
+{
+    const imp_face_motion *m = &lying->motion;
+    const double *y = lying->start, *v = &y[IMP_FACE_V], w = y[IMP_FACE_W];
+    *s = (steady){.until = INFINITY};
+    if (w == 0 && slides_straight(m, v, s)) return true;
+    if (size_of(v) == 0 && w != 0 && size_of(m->pull) == 0 && spins_in_place(m, w, s)) return true;
+    return glides_freely(m, y, s) || fades_out(m, y, slow, s);
+}
+
+/* ---- whether it glides ---- */
+
+/* Of the twist what is but a rounding of the rest is none; nor is what is slower than the rest speed. */
+static void clear_roundings(imp_lying *lying, double slow)
+{
+    double *y = lying->start, *v = &y[IMP_FACE_V], *w = &y[IMP_FACE_W];
+    const double speed = size_of(v);
+    if (!(speed + fabs(*w) > slow)) v[0] = v[1] = *w = 0;
+    if (fabs(*w) <= IMP_LEVEL * speed) *w = 0;
+    if (speed <= IMP_LEVEL * fabs(*w)) v[0] = v[1] = 0;
+}
+
+static bool find_lying(imp_island *island, const imp_pair *pair, const imp_state *states, double slow, imp_lying *lying)
+{
+    if (island->scene->piles == IMPACT_PILES_STEPS) return false;
+    if (!imp_lying_find(&island->world, pair, states, lying)) return false;
+    clear_roundings(lying, slow);
+    return true;
+}
+
+/* Whether it moves, or is pulled away; and its face lies within what it lies on, or slides over its border in closed
+ * form. */
+static bool glides(imp_island *island, const imp_lying *lying)
+{
+    const imp_face_motion *m = &lying->motion;
+    const double *y = lying->start;
+    imp_face_balance balance = {.p = {0}};
+    steady s;
+    if (imp_face_speed(m, y) == 0 && !(size_of(m->pull) > m->friction * m->press)) return false;
+    if (find_steady(lying, 0, &s)) return true;
+    double rate[IMP_FACE_STATE];
+    const bool moves = imp_face_speed(m, y) > 0 && imp_face_rates(m, y, rate, &balance);
+    if (!moves || !(imp_face_margin(m, y, &balance) > 2 * IMP_FACE_MARGIN)) return false;
+    imp_face_path path;
+    island->glide = IMP_FACE_LONGEST;
+    return imp_face_motion_step(m, y, &island->glide, &path);
+}
+
+static impact_status tell_contact(imp_island *island, int p, const imp_lying *lying)
+{
+    const imp_pair *pair = &island->world.pairs[p];
+    const imp_touch touch = {.pair = p,
+                             .body1 = pair->body1,
+                             .body2 = pair->body2,
+                             .normal = lying->normal,
+                             .r1 = qvec3_scale(lying->normal, -lying->motion.height * lying->size)};
+    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_CONTACT, &touch);
+    event.phases = "slide";
+    return imp_scene_record(island, &event);
+}
+
+/* Whether another contact of the pair's body stays. */
+static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
+{
+    for (int p = 0; p < island->world.pair_count; p++) {
+        const imp_pair *other = &island->world.pairs[p];
+        const bool of_it = other->body1 == pair->body1 || other->body2 == pair->body1;
+        if (of_it && !imp_same_bodies(other, pair) && (imp_is_held(other) || imp_scene_point_stays(island, p)))
+            return true;
+    }
+    return false;
+}
+
+/* Lays the body of the pair whose points are first ... end - 1 exactly on its face: it glides there, or may rest. */
+static impact_status lay(imp_island *island, int first, int end, bool lay_before, bool *any)
+{
+    imp_world *world = &island->world;
+    int stay = 0;
+    imp_lying lying;
+    for (int p = first; p < end; p++) stay += world->pairs[p].placed && imp_scene_point_stays(island, p);
+    if (stay < 3 || !world->bodies[world->pairs[first].body2].is_static) return IMPACT_OK;
+    if (is_held_elsewhere_too(island, &world->pairs[first])) return IMPACT_OK;
+    if (!find_lying(island, &world->pairs[first], island->states, island->scene->rest_speed, &lying)) return IMPACT_OK;
+    const int body = world->pairs[first].body1;
+    island->states[body] = imp_lying_state(&lying, lying.start);
+    if (!glides(island, &lying)) return IMPACT_OK;
+    for (int p = first; p < end; p++) world->pairs[p].lies = true;
+    island->motion.resting[body] = false;
+    *any = true;
+    return lay_before ? IMPACT_OK : tell_contact(island, first, &lying);
+}
+
+impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any)
+{
+    const imp_world *world = &island->world;
+    impact_status status = IMPACT_OK;
+    *any = false;
+    for (int first = 0, end; status == IMPACT_OK && first < world->pair_count; first = end) {
+        for (end = first + 1; end < world->pair_count; end++)
+            if (!imp_same_bodies(&world->pairs[end], &world->pairs[first])) break;
+        status = lay(island, first, end, lay_before, any);
+    }
+    return status;
+}
+
+imp_pair *imp_island_lying(const imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++)
+        if (island->world.pairs[p].lies) return &island->world.pairs[p];
+    return NULL;
+}
+
+/* ---- its segments ---- */
+
+static qvec3 along_face(const imp_lying *lying, const double a[2])
+{
+    return qvec3_add(qvec3_scale(lying->axis[0], lying->size * a[0]), qvec3_scale(lying->axis[1], lying->size * a[1]));
+}
+
+static void end_with(imp_island *island, imp_end_kind kind)
+{
+    island->end = (imp_end){kind, (int)(imp_island_lying(island) - island->world.pairs)};
+}
+
+/* Nothing goes on from here: it is to be settled anew. */
+static imp_segment ends_here(imp_island *island, const imp_pair *pair)
+{
+    end_with(island, IMP_END_BOUNDS);
+    imp_segment s = imp_segment_rest(island->t, &island->states[pair->body1]);
+    s.t1 = island->t;
+    return s;
+}
+
+impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool *closed)
+{
+    const imp_pair *pair = imp_island_lying(island);
+    imp_motion *motion = &island->motion;
+    const double t = island->t;
+    imp_lying lying;
+    steady s;
+    imp_face_path path;
+    *closed = true;
+    const bool found = find_lying(island, pair, island->states, 0, &lying);
+    if (!found) {
+        *segment = ends_here(island, pair);
+        return IMPACT_OK;
+    }
+    const imp_state start = imp_lying_state(&lying, lying.start);
+    if (find_steady(&lying, island->scene->rest_speed / lying.size, &s)) {
+        *segment =
+            imp_segment_roll(t, t + s.until, &start, along_face(&lying, s.a), qvec3_scale(lying.normal, s.alpha));
+        end_with(island, s.fades ? IMP_END_STICK : isfinite(s.until) ? IMP_END_BOUNDS : IMP_END_TIME);
+        return IMPACT_OK;
+    }
+    if (!imp_face_motion_step(&lying.motion, lying.start, &island->glide, &path)) {
+        *segment = ends_here(island, pair);
+        return IMPACT_OK;
+    }
+    *closed = false;
+    island->end = (imp_end){IMP_END_TIME, 0};
+    const impact_status status = imp_motion_next_lying(motion, &lying, &path, island->states);
+    if (status == IMPACT_OK) *segment = imp_segment_dense(&motion->dense, 0, &start);
+    return status;
+}
+
+bool imp_island_glide_force(imp_island *island, const imp_state *states, impact_held *held)
+{
+    const imp_pair *pair = imp_island_lying(island);
+    imp_lying lying;
+    imp_face_balance balance = {.p = {0}};
+    double rate[IMP_FACE_STATE], moment;
+    qvec3 force, arm;
+    if (!find_lying(island, pair, states, 0, &lying)) return false;
+    double *y = lying.start;
+    if (!(imp_face_speed(&lying.motion, y) > 0)) memcpy(&y[IMP_FACE_V], lying.motion.pull, sizeof lying.motion.pull);
+    if (!imp_face_rates(&lying.motion, y, rate, &balance)) return false;
+    imp_lying_force(&lying, y, &balance, &force, &arm, &moment);
+    *held = (impact_held){.body1 = island->world.bodies[pair->body1].index,
+                          .body2 = island->world.bodies[pair->body2].index,
+                          .mode = IMPACT_HOLD_SLIP,
+                          .point = qvec3_add(states[pair->body1].x, arm),
+                          .normal = lying.normal,
+                          .force = force,
+                          .moment = qvec3_scale(lying.normal, moment)};
+    return true;
+}

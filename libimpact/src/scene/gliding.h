@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gliding: a body that lies with a face on a static one and nothing else holds, and slides or turns there under gravity
+ * alone. Where its friction keeps its direction it has constant accelerations:
+ *
+ *     slides along e    a = (pull - mu P) e, pull along e or none; until the slip or the face it lies on ends
+ *     turns on the spot alpha = M/J, the friction of its face alone holding no force; on level ground
+ *
+ * else its motion is integrated (motion/face_motion.h). A face that slides without turning is held by mu N however its
+ * pressure lies; so one that stands still under gravity is, iff |pull| <= mu P: what friction takes of any twist about
+ * the centre of pressure c is at least mu N |u(c)| (Jensen). Internal.
+ */
+#ifndef IMP_GLIDING_H
+#define IMP_GLIDING_H
+
+#include "scene/scene_internal.h"
+
+/* The pairs of the island, whose points that touch are settled, in which a body glides: they lie (imp_pair.lies), the
+ * body brought exactly onto its face. any: whether there are such. A row of contact is written unless it lay before. */
+impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any);
+
+/* The pair of the island's one body that moves, if it glides; or NULL. */
+imp_pair *imp_island_lying(const imp_island *island);
+
+/* The gliding body's next segment: a closed form, or a step, in motion.dense. What ends it is in island->end. */
+impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool *closed);
+
+/* Its contact, as one at the centre of pressure, where its state is this. False where it has none. */
+bool imp_island_glide_force(imp_island *island, const imp_state *states, impact_held *held);
+
+#endif
