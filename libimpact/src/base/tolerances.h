@@ -515,8 +515,8 @@
 #define IMP_FACE_PRESSED 1e-12
 /* A step's last Legendre term, of what its numbers change by: the next is as much smaller, and its end closer still. */
 #define IMP_FACE_TOLERANCE 1e-10
-/* Newton's iteration for a step: it has settled; how many rounds it may take, each of which brings a digit or more; and,
- * of the speed, by how much its slopes are differences. */
+/* Newton's iteration for a step: it has settled; how many rounds it may take, each of which brings a digit or more;
+ * and, of the speed, by how much its slopes are differences. */
 #define IMP_FACE_SETTLED 1e-14
 #define IMP_FACE_ROUNDS 20
 #define IMP_FACE_DIFFERENCE 1e-6
