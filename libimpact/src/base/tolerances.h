@@ -73,6 +73,83 @@
 /* Of the reach: a point in a core, but for rounding. */
 #define IMP_WALK_INSIDE (32 * IMP_ROUNDOFF)
 
+/* ---- gap of superquadrics, docs/gap.md ---- */
+
+/* |q|^2 - 1 of a quaternion that is taken as it comes: two eps, what a product of two unit ones leaves. */
+#define IMP_UNIT_AS_IT_COMES 4.5e-16
+/* Of sum u e = 1 on a surface: what the others must leave the coordinate that is solved for, which is the heaviest and
+ * has a third where they are alike; and what it is given where a walk begins outside. */
+#define IMP_CHART_PIVOT 1e-3
+#define IMP_CHART_START 0.01
+/* Of a semi-axis, exponent 1: a point nearer to the plane across it is on the edge there, u = 0: the root of eps. */
+#define IMP_CHART_FACE 1e-7
+/* Pivots of Newton's matrix, of the largest: rounding (50 eps) is none; and without pivoting in columns, in units of
+ * the largest step: six digits may be lost, and the next step mends them. */
+#define IMP_GAP_RANK 1e-14
+#define IMP_GAP_PIVOT 1e-6
+/* |n_A - n_B| of the outward normals, 2 where they are opposite: with less no face lies between the bodies. */
+#define IMP_GAP_FACING 0.2
+/* A step of u and e at most, of 1: charts change there. */
+#define IMP_GAP_STEP 0.5
+/* Over the pair's size: curvature that is lent to a flat place, so that a step stays within a thousand sizes; and of
+ * the terms of det Q: what is one. */
+#define IMP_GAP_LEAST_CURVATURE 1e-3
+#define IMP_GAP_FLAT 1e-6
+/* Newton's steps, of the halves u and e that move, converge quadratically: after one smaller than this the next, about
+ * its square, is below rounding. */
+#define IMP_GAP_LAST_STEP 1e-10
+/* A last step under this converges: a few more are worth it. */
+#define IMP_GAP_CONVERGING 1e-2
+/* Of the reach: a bracket that cannot be narrower, 4 eps; and the one that is promised, 100 eps. */
+#define IMP_GAP_TIGHT 1e-15
+#define IMP_GAP_CLOSED 2e-14
+/* Of the level function f, whose terms are powers: 18 eps times the exponent, of a size; and 45 eps of a point that is
+ * asked by itself. */
+#define IMP_GAP_INSIDE 4e-15
+#define IMP_GAP_LEVEL 1e-14
+/* Of the reach: how far witness points may lie outside their bodies: 20 eps; right answers of all families stay below
+ * 4. */
+#define IMP_GAP_OUTSIDE 4.4e-15
+/* Of the size: curvatures' sum that is 0 but for rounding at an overlap's maximum. */
+#define IMP_GAP_STIFFNESS 1e-12
+/* Deeper than this part of the smallest semi-axis, or of the smallest radius of both surfaces together at the contact,
+ * an overlap may have several local answers. */
+#define IMP_GAP_DEEP 0.05
+/* Of the reach: an overlap that is rounding, and needs no proof. */
+#define IMP_GAP_SHALLOW 1e-13
+/* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
+#define IMP_GAP_SHARP 1.3
+/* Sine of the angle of two edges: under it they are parallel, and no disc lies between them. */
+#define IMP_GAP_ACROSS 1e-2
+/* Of the reach, what a proof that there is no nearer way out leaves: half of the bracket that is promised. Of the depth
+ * and of the size, what it leaves where that cannot be had (a ring of ways out, alike but for rounding). */
+#define IMP_GAP_SLACK 1e-14
+#define IMP_GAP_COARSE_DEPTH 5e-3
+#define IMP_GAP_COARSE_SIZE 1e-3
+/* Of the reach, and of the depth at most: a middle so near the bound is within 1e-3 rad of a peak, where Newton
+ * converges; and of the cosine: as near to a known peak it is not asked again. */
+#define IMP_GAP_NEAR_PEAK 1e-6
+#define IMP_GAP_PEAK_OF_DEPTH 0.01
+#define IMP_GAP_SAME_PEAK 1e-4
+/* Of the largest semi-axis: the least of the ellipsoid that a body is taken for to begin with. */
+#define IMP_GAP_SEED_AXIS 1e-3
+/* Of the distance: how closely simplices find it before Newton is tried from there, each time; and of the sizes: bodies
+ * that overlap are made smaller until they are apart. */
+#define IMP_GAP_SIMPLEX_STAGES 1e-2, 1e-4, 1e-7, 1e-11
+#define IMP_GAP_SHRINKING 1, 0.99, 0.9, 0.7, 0.45, 0.2, 0.05
+/* Of the size: a simplex so near the origin holds it. */
+#define IMP_SIMPLEX_OVERLAPS 1e-12
+/* rad: the shortest step up a slope of g that is flat but for rounding; the directions about a normal that show the
+ * midst of what it touches. */
+#define IMP_GAP_SLOPE_STEP 1e-7
+#define IMP_GAP_LEAST_LEAN 1e-10
+#define IMP_GAP_MOST_LEAN 0.1
+/* Of the size: bodies on their way whose surfaces are so near are near contact. */
+#define IMP_STRIKE_NEAR 1e-2
+/* The largest exponent of a superquadric: its edges are then 1e-6 of its size wide, and u^(p - 1) spans double's range.
+ */
+#define IMP_MOST_EXPONENT 1e6
+
 /* ---- patches, docs/faces.md ---- */
 
 /* |d| - 1 of a direction that is taken for unit: a normal of a gap, turned twice. */
@@ -209,6 +286,29 @@
 /* sigma: 22 terms of e^sigma hold 2^-60 to 1.4; further than this the last coefficients, which may vanish, are not
  * believed. */
 #define IMP_COLLIDE_FARTHEST 4
+
+/* Of the velocities' terms: slip that is their rounding, two eps, stands. */
+#define IMP_COLLIDE_STANDS 0x1p-51
+/* Of 113 bits, double's 53 are what remains of a conditioning of 2^60. */
+#define IMP_COLLIDE_SECOND_SPREAD 0x1p-60
+/* Of the first term: the last that a divided difference needs. */
+#define IMP_COLLIDE_LAST_TERM 0x1p-56
+/* Exponents beyond this are halved to nothing in double: NaN. */
+#define IMP_COLLIDE_MOST_EXPONENT 0x1p1000
+/* Of the impulse: the turning that is left of a slip taken as straight to its stop: in double, a hundredth of what is
+ * asked of a sensitivity (1e-6); in 113 bits, with 18 digits of conditioning to lose, the same. */
+#define IMP_COLLIDE_TAIL 0x1p-27
+#define IMP_COLLIDE_TAIL_SECOND 0x1p-90
+/* rad: and it is to turn by less than this on the way. */
+#define IMP_COLLIDE_TAIL_TURN 0x1p-8
+
+/* Relative tolerances of a workspace: Adams' method reaches the first; the second leaves two digits. */
+#define IMP_COLLIDE_CVODE_LEAST 1e-14
+#define IMP_COLLIDE_CVODE_MOST 1e-2
+/* tau over the rate's inverse: a slip that has not ended by then ends nowhere. */
+#define IMP_COLLIDE_CVODE_LONGEST 1e30
+/* Of the speed at which slip has stopped: where slip from rest under a law of friction begins. */
+#define IMP_COLLIDE_CVODE_ONSET 1e3
 
 /* Relative, of the integrator that is made where none is given: about what Adams' method reaches. */
 #define IMP_COLLIDE_CVODE_FINEST 1e-12
@@ -594,6 +694,9 @@
  */
 #define IMP_COMPLIANT_BEGIN 1e-7
 
+/* In periods of the normal spring: springs that have not parted by then do not. */
+#define IMP_COMPLIANT_LONGEST 1e7
+
 /* ---- the hodograph's receipt ---- */
 
 /* Roots z of the turning's polynomial nearer than this to each other, of |z|, are not told apart: there each is known
@@ -603,6 +706,10 @@
 #define IMP_HODOGRAPH_CIRCLE 1e-5
 /* |q|/|p| of a turning without its second harmonic: two of its roots are at infinity. */
 #define IMP_HODOGRAPH_LEAST 1e-200
+/* eps, of the turning's terms: what turns by less is not told from what does not turn. */
+#define IMP_HODOGRAPH_TURNS 1e4
+/* |z| - 1 of a root that stands for two. */
+#define IMP_HODOGRAPH_OUTER 1e-6
 /* A residual that rounding makes larger than this tells nothing, and is not taken. */
 #define IMP_HODOGRAPH_OPEN 1e-3
 

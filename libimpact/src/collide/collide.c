@@ -110,7 +110,7 @@ static impact_status finish(const impact_collision *collision, impact_status sta
 static double sliding_speed(double size, qvec3 t)
 {
     const double s2 = qvec3_dot(t, t), s = s2 > DBL_MIN && s2 < DBL_MAX ? sqrt(s2) : qvec3_norm(t);
-    return s > DBL_MIN + 0x1p-51 * size ? s : 0;
+    return s > DBL_MIN + IMP_COLLIDE_STANDS * size ? s : 0;
 }
 
 /* ---- one answer, and whether it stands ---- */
@@ -202,7 +202,7 @@ static double look(const meeting *m, impact_outcome *outcome)
     if (!is_sane(m->collision, outcome)) return INFINITY;
     const double worst = worst_of(m, outcome);
     /* Of 113 bits, double's 53 are what remains of a conditioning of 2^60. */
-    const double spread = outcome->conditioning * (outcome->second ? 0x1p-60 : 1);
+    const double spread = outcome->conditioning * (outcome->second ? IMP_COLLIDE_SECOND_SPREAD : 1);
     outcome->error = DBL_EPSILON * imp_larger(worst, 1) * imp_larger(spread, 1);
     return worst / allowed(m->collision, outcome);
 }

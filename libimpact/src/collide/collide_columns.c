@@ -248,7 +248,7 @@ static imp_real slip_of(const imp_ready *ready, imp_real x, imp_real y)
     const imp_lanes each =
         imp_vectors_size(&ready->velocity) + imp_vectors_size(&ready->omega) * imp_vectors_size(&ready->arm);
     const imp_real s = imp_sqrt(x * x + y * y);
-    return s > DBL_MIN + 0x1p-51 * (each[0] + each[1]) ? s : 0;
+    return s > DBL_MIN + IMP_COLLIDE_STANDS * (each[0] + each[1]) ? s : 0;
 }
 
 /* False: not followed. */

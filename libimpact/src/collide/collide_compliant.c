@@ -208,7 +208,7 @@ static impact_status follow_springs(imp_course *course, imp_compliant *c)
         impact_status status = impact_ode_start(c->ode, t, y);
         for (double stop = t + 10; status == IMPACT_OK && !any; stop += 10) {
             status = impact_ode_advance(c->ode, stop, &t, y, found, &any);
-            if (stop > 1e7 || impact_ode_count(c->ode).steps > most_steps) return IMPACT_EUNSETTLED;
+            if (stop > IMP_COMPLIANT_LONGEST || impact_ode_count(c->ode).steps > most_steps) return IMPACT_EUNSETTLED;
         }
         if (status != IMPACT_OK) return status;
         book(course, c, y, before);

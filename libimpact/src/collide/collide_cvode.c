@@ -80,7 +80,7 @@ impact_status imp_collide_workspace_in(imp_arena *arena, impact_ode_method metho
 {
     *workspace = NULL;
     if (!impact_has(IMPACT_PART_CVODE)) return IMPACT_EABSENT;
-    if (!(tolerance >= 1e-14 && tolerance <= 1e-2)) return IMPACT_EARGUMENT;
+    if (!(tolerance >= IMP_COLLIDE_CVODE_LEAST && tolerance <= IMP_COLLIDE_CVODE_MOST)) return IMPACT_EARGUMENT;
     impact_collide_workspace *ws = imp_arena_take(arena, 1, sizeof *ws);
     if (!ws) return IMPACT_ENOMEM;
     ws->arena = arena;
@@ -198,7 +198,7 @@ static impact_status to_root(const imp_course *course, impact_collide_workspace 
     double tau = 0;
     bool any = false;
     for (double stop = 100 / (rate + course->s); status == IMPACT_OK && !any && !*settled; stop *= 4) {
-        if (stop > 1e30 / (rate + course->s) || impact_ode_count(ws->ode).steps > ws->most_steps)
+        if (stop > IMP_COLLIDE_CVODE_LONGEST / (rate + course->s) || impact_ode_count(ws->ode).steps > ws->most_steps)
             return IMPACT_EUNSETTLED;
         status = impact_ode_advance(ws->ode, stop, &tau, y, found, &any);
         *settled = !any && !ws->law &&
@@ -261,7 +261,7 @@ static impact_status follow_slips(imp_course *course, impact_collide_workspace *
             return IMPACT_OK;
         }
         /* mu will change as the slip gathers speed: on by CVODE from a speed that is nothing. */
-        course->s = 1e3 * exp(ws->log_stop);
+        course->s = IMP_COLLIDE_CVODE_ONSET * exp(ws->log_stop);
         course->ux = -line.gx / mu * course->s;
         course->uy = -line.gy / mu * course->s;
     }

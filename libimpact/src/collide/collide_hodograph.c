@@ -135,11 +135,12 @@ bool imp_hodograph_residual(const imp_felt_mass *mass, imp_slip from, imp_slip t
     const double off0 = from.size / s0, off1 = to.size / s1, turning = creal(t.p * z0 - t.q * z0 * z0);
     pole r[4];
     const int count = make_poles(&t, r);
-    if (count == 0 || !(fabs(turning) > 1e4 * DBL_EPSILON * (t.rounding + t.size * off0))) return false;
+    if (count == 0 || !(fabs(turning) > IMP_HODOGRAPH_TURNS * DBL_EPSILON * (t.rounding + t.size * off0))) return false;
     double turn = carg(z1 / z0), sum = 0, size = off0 + off1;
     if (turn * turning < 0 && fabs(turn) > IMP_HODOGRAPH_APART) turn += copysign(8 * atan(1), turning);
     for (int i = 0; i < count; i++) {
-        const double far0 = cabs(z0 - r[i].z), far1 = cabs(z1 - r[i].z), pair = cabs(r[i].z) > 1.000001 ? 2 : 1;
+        const double far0 = cabs(z0 - r[i].z), far1 = cabs(z1 - r[i].z),
+                     pair = cabs(r[i].z) > 1 + IMP_HODOGRAPH_OUTER ? 2 : 1;
         const double g = cabs(r[i].gamma), grown = log(far1 / far0);
         const double open = (off0 + r[i].off) / far0 + (off1 + r[i].off) / far1;
         /* So near to a direction that does not turn how near is rounding: s goes on, and the direction does not tell.

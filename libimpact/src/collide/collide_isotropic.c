@@ -80,7 +80,7 @@ static double swirl(const whirl *w, const powers *at, double tau, double I3)
     const double e1 = x + y + z, e2 = x * y + z * z, e3 = x * y * z;
     /* h: complete homogeneous polynomials of x, y, z. */
     double h = 1, h1 = 0, h2 = 0, factor = 1.0 / 6, sum = factor;
-    for (int k = 4; k < 24 && fabs(h * factor) > 0x1p-56; k++) {
+    for (int k = 4; k < 24 && fabs(h * factor) > IMP_COLLIDE_LAST_TERM; k++) {
         const double next = e1 * h - e2 * h1 + e3 * h2;
         h2 = h1;
         h1 = h;

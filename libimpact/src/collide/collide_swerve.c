@@ -10,6 +10,7 @@
  * (Opitz 1964). By Taylor at z / 2^j, then squared j times (McCurdy, Ng & Parlett 1984): all entries are positive, so
  * that squaring loses nothing; on the diagonal, where it would, exp itself stands.
  */
+#include "base/tolerances.h"
 #include "collide/collide_swerve.h"
 
 #ifdef IMP_SECOND
@@ -42,9 +43,9 @@ static void exponential(const imp_real *z, int n, imp_real f[NODES][NODES])
     imp_real w[NODES], most = 0;
     for (int i = 0; i < n; i++) most = imp_larger(most, imp_abs(z[i]));
     /* Beyond double's range nothing is left to say: NaN. */
-    int halvings = most > 0.5 && most < 0x1p1000 ? ilogb((double)most) + 2 : 0;
+    int halvings = most > 0.5 && most < IMP_COLLIDE_MOST_EXPONENT ? ilogb((double)most) + 2 : 0;
     for (int i = 0; i < n; i++) {
-        w[i] = most < 0x1p1000 ? z[i] * (imp_real)ldexp(1, -halvings) : (imp_real)NAN;
+        w[i] = most < IMP_COLLIDE_MOST_EXPONENT ? z[i] * (imp_real)ldexp(1, -halvings) : (imp_real)NAN;
         for (int k = i; k < n; k++) f[i][k] = i == k;
     }
     for (int k = EXPONENTIAL_TERMS; k >= 1; k--) exponential_horner(w, n, k, f);

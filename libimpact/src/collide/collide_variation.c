@@ -30,13 +30,11 @@
 
 enum { VARIED = IMP_BY_EPS }; /* restitution takes part in the last event only */
 
-/* What is left of a slip's way to u_t = 0 is taken as straight where its turning is such a part of the impulse: in
- * double, a hundredth of what is asked of a sensitivity (1e-6); in 113 bits, with 18 digits of conditioning to lose,
- * the same. */
+/* Of the impulse: what is left of a slip's way to u_t = 0 is taken as straight where its turning is that much. */
 #ifdef IMP_SECOND
-static const imp_real tail_part = 0x1p-90;
+static const imp_real tail_part = IMP_COLLIDE_TAIL_SECOND;
 #else
-static const imp_real tail_part = 0x1p-27;
+static const imp_real tail_part = IMP_COLLIDE_TAIL;
 #endif
 
 /* The impact so far. */
@@ -272,7 +270,7 @@ static bool nearly_stopped(const drift *d, imp_real x, imp_real y, imp_real p, i
     line->y = y;
     if (d->s <= -line->R * most) return true;
     const imp_real turn = imp_abs(T / slope);
-    if (!(line->R < 0 && slope < 0 && turn < 0x1p-8 && turn * d->s <= -line->R * most)) return false;
+    if (!(line->R < 0 && slope < 0 && turn < IMP_COLLIDE_TAIL_TURN && turn * d->s <= -line->R * most)) return false;
     const imp_real to_x = x + T / slope * y, to_y = y - T / slope * x, f = 1 / imp_sqrt(to_x * to_x + to_y * to_y);
     *line = imp_course_straight_line(m, d->mu, to_x * f, to_y * f);
     return true;

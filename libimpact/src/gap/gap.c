@@ -172,7 +172,7 @@ static impact_status smooth_pair(const impact_solid *body1, quat q1, const impac
 static bool unit_of(quat q, quat *unit)
 {
     const double square = quat_dot(q, q);
-    if (fabs(square - 1) <= 4.5e-16) {
+    if (fabs(square - 1) <= IMP_UNIT_AS_IT_COMES) {
         *unit = q;
         return true;
     }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "base/tolerances.h"
 #include "gap/gap_chart.h"
 #include "gap/gap_walk.h"
 #include <string.h>
@@ -147,7 +148,7 @@ static void move_pair(double p, bool primal, double step, double *u, double *e)
 /* Gives the pivot the mass the others leave; false when they leave too little of it. */
 static bool settle_pivot(double p, double rest, double *u, double *e)
 {
-    if (!(rest > 1e-3)) return false;
+    if (!(rest > IMP_CHART_PIVOT)) return false;
     if (p == 2) {
         *u = copysign(sqrt(rest), *u);
         *e = *u;
@@ -192,7 +193,7 @@ static void use_point(const imp_form *form, const double x[3], imp_surface *s)
     for (int i = 0; i < 3; i++) {
         const double p = form->p[i], u = clamp_unit(x[i] / form->axis[i]), size = fabs(u);
         if (p == 1) {
-            const bool face = size > 1e-7;
+            const bool face = size > IMP_CHART_FACE;
             s->u[i] = face ? u : 0;
             if (face) s->e[i] = copysign(1, u);
         } else if (size > 0 && (p - 1) * pow(size, p - 2) <= 1) {
@@ -202,7 +203,7 @@ static void use_point(const imp_form *form, const double x[3], imp_surface *s)
     }
     for (int i = 0; i < 3; i++)
         if (i != pivot) rest -= s->u[i] * s->e[i];
-    settle_pivot(form->p[pivot], fmax(rest, 0.01), &s->u[pivot], &s->e[pivot]);
+    settle_pivot(form->p[pivot], fmax(rest, IMP_CHART_START), &s->u[pivot], &s->e[pivot]);
 }
 
 void imp_chart_start(const imp_form *form, const double d[3], const double *x, imp_surface *s)

@@ -18,7 +18,7 @@ static inline void solve_pivoting(int n, double a[UNKNOWNS][UNKNOWNS], double b[
             for (int j = k; j < n; j++)
                 if (fabs(a[i][j]) > best) best = fabs(a[i][j]), row = i, col = j;
         if (k == 0) first = best;
-        if (!(best > 1e-14 * first)) {
+        if (!(best > IMP_GAP_RANK * first)) {
             rank = k;
             break;
         }
@@ -60,7 +60,7 @@ static bool solve_plainly(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS], doub
     for (int k = 0; k < UNKNOWNS; k++) {
         int row = k;
         for (int i = k + 1; i < UNKNOWNS; i++) row = fabs(a[i][k]) > fabs(a[row][k]) ? i : row;
-        if (!(fabs(a[row][k]) > 1e-6)) return false;
+        if (!(fabs(a[row][k]) > IMP_GAP_PIVOT)) return false;
         for (int j = k; j < UNKNOWNS; j++) {
             const double t = a[k][j];
             a[k][j] = a[row][j], a[row][j] = t;
@@ -97,7 +97,7 @@ bool imp_face_look(const imp_gap_solids *pair, const imp_surface s[2], imp_face 
     const double a = 1 / imp_norm(NA), b = 1 / imp_norm(NB);
     for (int i = 0; i < 3; i++) face->m[i] = NA[i] * a - NB[i] * b;
     const double length = imp_norm(face->m);
-    if (!(length > 0.2)) return false;
+    if (!(length > IMP_GAP_FACING)) return false;
     for (int i = 0; i < 3; i++) {
         face->m[i] /= length;
         face->v[i] = pair->c[i] + face->chart[1].x[i] - face->chart[0].x[i];
@@ -191,8 +191,6 @@ void imp_face_strike(const imp_gap_solids *pair, const imp_face *face, const imp
     for (int c = 0; c < 4; c++) step[c / 2][c % 2] = x[c] * scale[c];
 }
 
-static const double longest_step = 0.5;
-
 bool imp_face_advance(const imp_gap_solids *pair, const imp_face *face, double step[2][2], imp_surface s[2],
                       double *taken)
 {
@@ -202,7 +200,7 @@ bool imp_face_advance(const imp_gap_solids *pair, const imp_face *face, double s
             if (!(fabs(step[k][j]) < INFINITY)) return false;
             if (fabs(step[k][j]) > largest) largest = fabs(step[k][j]);
         }
-    double scale = largest > longest_step ? longest_step / largest : 1;
+    double scale = largest > IMP_GAP_STEP ? IMP_GAP_STEP / largest : 1;
     for (int k = 0; k < 2; k++) {
         double part = scale;
         for (int tries = 0;; tries++) {
@@ -250,8 +248,8 @@ static void add_radii(const imp_gap_solids *pair, const imp_face *face, int k, d
         }
     }
     double det = Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0];
-    const double cap = 1e-3 / pair->size;
-    bool flat = !(fabs(det) > 1e-6 * (fabs(Q[0][0] * Q[1][1]) + fabs(Q[0][1] * Q[1][0])));
+    const double cap = IMP_GAP_LEAST_CURVATURE / pair->size;
+    bool flat = !(fabs(det) > IMP_GAP_FLAT * (fabs(Q[0][0] * Q[1][1]) + fabs(Q[0][1] * Q[1][0])));
     for (int j = 0; j < 2; j++) flat = flat || fabs(Q[0][j]) + fabs(Q[1][j]) < cap * (fabs(P[0][j]) + fabs(P[1][j]));
     if (flat) {
         for (int j = 0; j < 2; j++)
@@ -286,7 +284,7 @@ static bool body_holds(const imp_gap_solids *pair, const imp_face *face, int k, 
     if (form->kind != IMP_FORM_QUADRIC) return imp_core_distance(form, body) <= IMP_WALK_INSIDE * pair->reach;
     const double thin = fmin(form->axis[0], fmin(form->axis[1], form->axis[2]));
     const double steepest = fmax(fmax(form->p[0], form->p[1]), fmax(form->p[2], form->p[3]));
-    return imp_form_inside(form, body) <= 1 + 4e-15 * steepest * pair->size / thin;
+    return imp_form_inside(form, body) <= 1 + IMP_GAP_INSIDE * steepest * pair->size / thin;
 }
 
 /* Whether the bodies are seen to have a point in common: a witness point in the other body, or the one midway in both.
@@ -297,19 +295,17 @@ static bool share_a_point(const imp_gap_solids *pair, const imp_face *face)
            body_holds(pair, face, 0, 1);
 }
 
-/* Of the reach: 20 eps; right answers of all families stay below 4. */
-static const double outside_limit = 4.4e-15;
-
 bool imp_face_judge(const imp_gap_solids *pair, const imp_face *face, imp_gap_bracket *meeting)
 {
     meeting->gap = meeting->lower = imp_pair_gap(pair, face->m, NULL);
     const double slip = hypot(face->vt[0], face->vt[1]);
     meeting->upper = fmax(meeting->gap, meeting->gap > slip ? imp_norm(face->v) : face->vm + slip);
-    if (!(meeting->upper - meeting->lower <= 2e-14 * pair->reach)) return false;
+    if (!(meeting->upper - meeting->lower <= IMP_GAP_CLOSED * pair->reach)) return false;
     for (int k = 0; k < 2; k++) /* the points prove the upper end where they lie in their bodies */
-        if (!(imp_gap_outside(&pair->form[k], face->chart[k].x) <= outside_limit * pair->reach)) return false;
+        if (!(imp_gap_outside(&pair->form[k], face->chart[k].x) <= IMP_GAP_OUTSIDE * pair->reach)) return false;
     meeting->stiffness = stiffness(pair, face, meeting->gap);
-    if (meeting->gap < 0 && !(meeting->stiffness >= -1e-12 * pair->size && share_a_point(pair, face))) return false;
+    if (meeting->gap < 0 && !(meeting->stiffness >= -IMP_GAP_STIFFNESS * pair->size && share_a_point(pair, face)))
+        return false;
     memcpy(meeting->n, face->m, sizeof meeting->n);
     for (int k = 0; k < 2; k++) memcpy(meeting->x[k], face->chart[k].x, sizeof meeting->x[k]);
     return true;

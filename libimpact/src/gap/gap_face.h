@@ -7,12 +7,9 @@
 #ifndef IMP_GAP_FACE_H
 #define IMP_GAP_FACE_H
 
+#include "base/tolerances.h"
 #include "gap/gap_chart.h"
 #include "gap/gap_solver.h"
-
-/* Newton's steps, of the halves u and e that move, converge quadratically: after one smaller than this the next, about
- * its square, is below rounding. */
-#define IMP_GAP_LAST_STEP 1e-10
 
 typedef struct imp_face {
     imp_chart chart[2];

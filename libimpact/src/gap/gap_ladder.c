@@ -10,14 +10,6 @@
 #include "shape/solid.h"
 #include <string.h>
 
-/* Deeper than this part of the smallest semi-axis, or of the smallest radius of both surfaces together at the contact,
- * an overlap may have several local answers. */
-static const double deep_part = 0.05;
-
-/* Of the reach, what a proof that there is no nearer way out leaves: half of the bracket that is promised. Of the depth
- * and of the size, what it leaves where that cannot be had (a ring of ways out, alike but for rounding). */
-static const double exact_slack = 1e-14, coarse_depth = 5e-3, coarse_size = 1e-3;
-
 enum { SEED_STEPS = 4, MAX_PROOFS = 8 };
 
 typedef struct search {
@@ -31,12 +23,9 @@ typedef struct search {
     double most;          /* no overlap's gap is more: proved, or INFINITY */
 } search;
 
-/* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
-static const double sharp_exponent = 1.3;
-
 static bool is_sharp(const imp_form *form)
 {
-    return form->p[0] < sharp_exponent || form->p[1] < sharp_exponent || form->p[2] < sharp_exponent;
+    return form->p[0] < IMP_GAP_SHARP || form->p[1] < IMP_GAP_SHARP || form->p[2] < IMP_GAP_SHARP;
 }
 
 static double distance_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -86,7 +75,7 @@ static bool edge_at(const imp_form *form, const double x[3], const double n[3], 
     for (int i = 0; i < 3; i++) e->along[i] = n[(i + 1) % 3] * a[(i + 2) % 3] - n[(i + 2) % 3] * a[(i + 1) % 3];
     e->facing = distance_of(e->along);
     for (int i = 0; i < 3; i++) e->along[i] /= e->facing;
-    return e->facing > 1e-2;
+    return e->facing > IMP_GAP_ACROSS;
 }
 
 /* Whether the body holds the disc of that radius, touching at x from inside, of the directions along and
@@ -138,8 +127,8 @@ static bool certain(const search *s)
 static bool plain(const search *s)
 {
     const double depth = -s->best.gap, radius = s->best.stiffness + depth;
-    if (depth <= 1e-13 * s->pair->reach) return true;
-    return s->sharp ? depth <= deep_part * s->thin && certain(s) : depth <= deep_part * fmin(s->thin, radius);
+    if (depth <= IMP_GAP_SHALLOW * s->pair->reach) return true;
+    return s->sharp ? depth <= IMP_GAP_DEEP * s->thin && certain(s) : depth <= IMP_GAP_DEEP * fmin(s->thin, radius);
 }
 
 static void note_low(search *s, double g, const double n[3])
@@ -168,7 +157,7 @@ static bool prove_best(search *s)
         memcpy(other, s->best.n, sizeof other);
         const double peak[3] = {gap * other[0], gap * other[1], gap * other[2]};
         imp_gap_peak_add(peak, &peaks);
-        const imp_proof proof = imp_gap_prove(s->pair, &peaks, exact_slack * s->pair->reach, false, &gap, other);
+        const imp_proof proof = imp_gap_prove(s->pair, &peaks, IMP_GAP_SLACK * s->pair->reach, false, &gap, other);
         if (proof != IMP_PROOF_AGAINST) return proof == IMP_PROOF_NEAREST;
         note_low(s, gap, other);
         if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
@@ -182,7 +171,7 @@ static bool try_from(search *s, const double n[3], const double (*x)[3], impact_
 {
     if (!newton_from(s, n, x, path)) return false;
     if (plain(s)) return true;
-    return -s->best.gap <= deep_part * s->thin && prove_best(s);
+    return -s->best.gap <= IMP_GAP_DEEP * s->thin && prove_best(s);
 }
 
 static void centre_line(const imp_gap_solids *pair, double n[3])
@@ -194,7 +183,7 @@ static void centre_line(const imp_gap_solids *pair, double n[3])
 /* A semi-axis of the ellipsoid a body is taken for here: of a segment a little in every direction. */
 static double seed_axis(const imp_form *form, int k)
 {
-    return fmax(form->axis[k], 1e-3 * fmax(form->axis[0], fmax(form->axis[1], form->axis[2])));
+    return fmax(form->axis[k], IMP_GAP_SEED_AXIS * fmax(form->axis[0], fmax(form->axis[1], form->axis[2])));
 }
 
 /* M = R diag(axis^2) R^T. */
@@ -253,7 +242,7 @@ void imp_gap_seed(const imp_gap_solids *pair, double n[3])
 /* Distance of the bodies, then of the bodies shrunk until they are apart, each to a few digits and then polished. */
 static bool try_simplex(search *s, double *upper)
 {
-    static const double shrink[] = {1, 0.99, 0.9, 0.7, 0.45, 0.2, 0.05}, tolerance[] = {1e-2, 1e-4, 1e-7, 1e-11};
+    static const double shrink[] = {IMP_GAP_SHRINKING}, tolerance[] = {IMP_GAP_SIMPLEX_STAGES};
     for (size_t i = 0; i < sizeof shrink / sizeof *shrink; i++) {
         double n[3], x[2][3], low, high;
         centre_line(s->pair, n);
@@ -282,7 +271,7 @@ static bool try_slope(search *s)
         for (int i = 0; i < 3; i++) v[i] -= along * s->low_n[i];
         const double slope = distance_of(v);
         if (!(slope > 0)) return false;
-        for (double step = 1; step > 1e-7; step /= 2) {
+        for (double step = 1; step > IMP_GAP_SLOPE_STEP; step /= 2) {
             double n[3];
             for (int i = 0; i < 3; i++) n[i] = s->low_n[i] + step * v[i] / slope;
             const double length = distance_of(n);
@@ -358,10 +347,11 @@ static bool climb(search *s, double slack)
 static bool settle_low(search *s)
 {
     double x[2][3];
-    for (double lean = 1e-10; lean < 0.1; lean *= 10) { /* edges and vertices are round at any scale */
+    for (double lean = IMP_GAP_LEAST_LEAN; lean < IMP_GAP_MOST_LEAN;
+         lean *= 10) { /* edges and vertices are round at any scale */
         midst(s->pair, s->low_n, lean, x);
         if (newton_from(s, s->low_n, (const double(*)[3])x, IMPACT_PATH_FALLBACK) &&
-            s->best.gap >= s->low - exact_slack * s->pair->reach)
+            s->best.gap >= s->low - IMP_GAP_SLACK * s->pair->reach)
             return true;
     }
     return false;
@@ -390,11 +380,12 @@ static bool surround(search *s)
     look_along_faces(s, 0);
     look_along_faces(s, 1);
     if (s->sharp && (!s->found || s->low > s->best.gap) && settle_low(s) && prove_best(s)) return true;
-    climb(s, fmax(exact_slack * s->pair->reach, fmin(coarse_depth * -s->low, coarse_size * s->pair->size)));
+    climb(s, fmax(IMP_GAP_SLACK * s->pair->reach,
+                  fmin(IMP_GAP_COARSE_DEPTH * -s->low, IMP_GAP_COARSE_SIZE * s->pair->size)));
     if (!s->found || s->low > s->best.gap) newton_from(s, s->low_n, NULL, IMPACT_PATH_FALLBACK);
-    if (s->found && s->best.gap >= s->low - exact_slack * s->pair->reach && prove_best(s)) return true;
-    if (s->found && s->best.gap >= s->low - exact_slack * s->pair->reach) return false;
-    return climb(s, exact_slack * s->pair->reach) && settle_low(s);
+    if (s->found && s->best.gap >= s->low - IMP_GAP_SLACK * s->pair->reach && prove_best(s)) return true;
+    if (s->found && s->best.gap >= s->low - IMP_GAP_SLACK * s->pair->reach) return false;
+    return climb(s, IMP_GAP_SLACK * s->pair->reach) && settle_low(s);
 }
 
 static bool form_holds(const imp_form *form, const double x[3])
@@ -405,7 +396,7 @@ static bool form_holds(const imp_form *form, const double x[3])
     if (form->kind != IMP_FORM_QUADRIC)
         return imp_core_distance(form, body) <=
                IMP_WALK_INSIDE * fmax(form->axis[0], fmax(form->axis[1], form->axis[2]));
-    return imp_form_inside(form, body) <= 1 + 1e-14;
+    return imp_form_inside(form, body) <= 1 + IMP_GAP_LEVEL;
 }
 
 /* Moves one of the points that the normal touches across it to face the other; false when it leaves its body, or the
@@ -426,8 +417,8 @@ static bool face(const imp_gap_solids *pair, const double n[3], double gap, doub
 
 static bool in_bodies(const imp_gap_solids *pair, const double x[2][3])
 {
-    return imp_gap_outside(&pair->form[0], x[0]) <= exact_slack * pair->reach &&
-           imp_gap_outside(&pair->form[1], x[1]) <= exact_slack * pair->reach;
+    return imp_gap_outside(&pair->form[0], x[0]) <= IMP_GAP_SLACK * pair->reach &&
+           imp_gap_outside(&pair->form[1], x[1]) <= IMP_GAP_SLACK * pair->reach;
 }
 
 /* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies.
@@ -443,8 +434,9 @@ static impact_status bracket(const search *s, double upper, imp_gap_bracket *mee
     const bool held = in_bodies(s->pair, (const double(*)[3])meeting->x);
     meeting->upper = fmax(held ? fmin(s->most, fmin(upper, apart)) : distance_of(s->pair->c), meeting->lower);
     meeting->stiffness = 0;
-    if (!(meeting->upper - meeting->lower <= 2e-14 * s->pair->reach)) return IMPACT_BRACKET;
-    return apart - fabs(meeting->gap) <= 2e-14 * s->pair->reach || face(s->pair, meeting->n, meeting->gap, meeting->x)
+    if (!(meeting->upper - meeting->lower <= IMP_GAP_CLOSED * s->pair->reach)) return IMPACT_BRACKET;
+    return apart - fabs(meeting->gap) <= IMP_GAP_CLOSED * s->pair->reach ||
+                   face(s->pair, meeting->n, meeting->gap, meeting->x)
                ? IMPACT_OK
                : IMPACT_BRACKET;
 }
@@ -495,6 +487,6 @@ impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, i
     const double low = s.found ? s.best.gap : s.low;
     if (!over && low <= 0) over = surround(&s);
     *path = s.found ? s.path : IMPACT_PATH_FALLBACK;
-    const bool best = s.found && s.best.gap >= s.low - 2 * exact_slack * pair->reach;
+    const bool best = s.found && s.best.gap >= s.low - 2 * IMP_GAP_SLACK * pair->reach;
     return best ? answer(&s, over, meeting) : bracket(&s, upper, meeting);
 }

@@ -2,6 +2,7 @@
  *
  * Mixed primal/dual Newton for two witness points: gap_face's steps until they are small.
  */
+#include "base/tolerances.h"
 #include "gap/gap_face.h"
 
 enum { NEWTON_STEPS = 16, MORE_NEWTON_STEPS = 8 }; /* more when the steps have become small */
@@ -15,12 +16,12 @@ bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double 
     for (int i = 0, end = NEWTON_STEPS; i < end; i++) {
         imp_face face;
         if (!imp_face_look(pair, s, &face)) return settled > 0;
-        if (i == NEWTON_STEPS - 1 && last < 1e-2) end += MORE_NEWTON_STEPS;
+        if (i == NEWTON_STEPS - 1 && last < IMP_GAP_CONVERGING) end += MORE_NEWTON_STEPS;
         if (last < IMP_GAP_LAST_STEP || i == end - 1) {
             imp_gap_bracket now;
             if (imp_face_judge(pair, &face, &now)) {
                 if (settled++ == 0 || now.upper - now.lower < meeting->upper - meeting->lower) *meeting = now;
-                if (meeting->upper - meeting->lower <= 1e-15 * pair->reach || settled == 4) return true;
+                if (meeting->upper - meeting->lower <= IMP_GAP_TIGHT * pair->reach || settled == 4) return true;
             }
         }
         double step[2][2];

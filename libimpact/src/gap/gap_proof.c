@@ -9,6 +9,7 @@
  * (Where B
  * >= 0, the bodies just touching, a triangle's inside is cleared for at most sqrt(3) times as much.)
  */
+#include "base/tolerances.h"
 #include "gap/gap_chart.h"
 #include "gap/gap_solver.h"
 #include <string.h>
@@ -16,9 +17,6 @@
 /* A triangle is halved 2 log2(1e7) times at most before a peak's point clears it, and the stack keeps one of each two.
  */
 enum { MAX_TRIANGLES = 6000, MAX_WAITING = 96 };
-/* Of the reach, and a hundredth of the depth at most: a middle so near the bound is within 1e-3 rad of a peak, where
- * Newton converges; and of the cosine: as near to a known peak it is not asked again. */
-static const double near_peak = 1e-6, same_peak = 1e-4;
 
 typedef struct triangle {
     double d[3][3]; /* unit corners */
@@ -100,7 +98,7 @@ void imp_gap_peak_add(const double v[3], imp_gap_peaks *peaks)
 
 static double near_the_peak(const imp_gap_solids *pair, double bound)
 {
-    return fmin(near_peak * pair->reach, 0.01 * fabs(bound));
+    return fmin(IMP_GAP_NEAR_PEAK * pair->reach, IMP_GAP_PEAK_OF_DEPTH * fabs(bound));
 }
 
 /* Newton for the peak near the normal m, unless it is known or as many were asked for as may be; its height, -INFINITY
@@ -110,7 +108,7 @@ static double ask_peak(const imp_gap_solids *pair, imp_gap_peaks *peaks, double 
     imp_gap_bracket meeting;
     const double near = near_the_peak(pair, bound);
     for (int i = 0; i < peaks->count; i++)
-        if (imp_dot(m, peaks->v[i]) <= -(1 - same_peak) * imp_norm(peaks->v[i])) return -INFINITY;
+        if (imp_dot(m, peaks->v[i]) <= -(1 - IMP_GAP_SAME_PEAK) * imp_norm(peaks->v[i])) return -INFINITY;
     if (peaks->asked++ >= IMP_MOST_PEAKS || !imp_gap_newton(pair, m, NULL, &meeting)) return -INFINITY;
     const double v[3] = {meeting.gap * meeting.n[0], meeting.gap * meeting.n[1], meeting.gap * meeting.n[2]};
     if (meeting.gap > bound)

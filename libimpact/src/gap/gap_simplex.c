@@ -3,6 +3,7 @@
  * Distance by simplices (Gilbert, Johnson, Keerthi 1988) of the bodies shrunk about their centres by a common factor: a
  * globally convergent seed. Overlapping bodies come apart when shrunk, and their normal then is near the one sought.
  */
+#include "base/tolerances.h"
 #include "gap/gap_solver.h"
 #include <string.h>
 
@@ -118,7 +119,7 @@ imp_simplex_end imp_gap_simplex(const imp_gap_solids *pair, double shrink, doubl
         memcpy(s.x[s.count++], x, sizeof s.x[0]);
         distance = reduce(&s, v);
         *upper = fmin(*upper, distance);
-        if (s.count == 4 || !(distance > 1e-12 * pair->size)) {
+        if (s.count == 4 || !(distance > IMP_SIMPLEX_OVERLAPS * pair->size)) {
             memcpy(n, best, sizeof best);
             nearest(&s, x);
             return IMP_SIMPLEX_OVERLAP;

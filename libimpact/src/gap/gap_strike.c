@@ -3,6 +3,7 @@
  * Newton for witness points and time at once: the surface points face each other and meet. Convex bodies whose normals
  * oppose where they meet are parted by the plane there, so that each such time is one of gap zero.
  */
+#include "base/tolerances.h"
 #include "gap/gap_face.h"
 
 enum { STRIKE_STEPS = 32, MAX_TURNS = 3, MAX_TRIMS = 4 };
@@ -66,8 +67,8 @@ static bool trim(strike *s, imp_surface surface[2], double low, double high, dou
             imp_gap_contact(&s->body[0], &s->body[1], s->scale, &meeting, IMPACT_PATH_NEWTON, contact);
         }
         const double next = fmin(high, fmax(low, s->t - meeting.lower / rate));
-        const bool there = fabs(meeting.lower) <= 2.5e-16 * s->pair.reach || next == s->t;
-        if (there && width <= 1e-15 * s->pair.reach) break;
+        const bool there = fabs(meeting.lower) <= IMP_TOI_ROUNDING * s->pair.reach || next == s->t;
+        if (there && width <= IMP_GAP_TIGHT * s->pair.reach) break;
         if (!there) s->t = next;
         double step[2][2];
         imp_face_step(&s->pair, &s->face, step);
@@ -79,7 +80,8 @@ static bool trim(strike *s, imp_surface surface[2], double low, double high, dou
 /* How far the time may move: on, while the bodies are apart and near no contact; back, where they overlap. */
 static void reins(const strike *s, double low, double high, double *least, double *most)
 {
-    const double longest = s->course->longest, near = 1e-2 * s->pair.size, rate = closing(s), gap = s->face.vm;
+    const double longest = s->course->longest, near = IMP_STRIKE_NEAR * s->pair.size, rate = closing(s),
+                 gap = s->face.vm;
     *least = fmax(low - s->t, -longest);
     *most = fmin(high - s->t, longest);
     if (gap > near)

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <impact/shape.h>
+#include "base/tolerances.h"
 #include "base/number.h"
 #include "shape/solid.h"
-
-static const double max_exponent = 1e6;
 
 static impact_status say(impact_status status, char *message, size_t size, const char *name, double value,
                          const char *complaint)
@@ -31,7 +30,7 @@ static impact_status check_exponent(double value, const char *name, char *messag
 {
     if (!isfinite(value)) return say(IMPACT_EDOMAIN, message, size, name, value, "is not finite");
     if (value < 1) return say(IMPACT_EARGUMENT, message, size, name, value, "< 1 is not convex");
-    if (value > max_exponent) return say(IMPACT_EARGUMENT, message, size, name, value, "is above 1e6");
+    if (value > IMP_MOST_EXPONENT) return say(IMPACT_EARGUMENT, message, size, name, value, "is above 1e6");
     return IMPACT_OK;
 }
 
