@@ -445,6 +445,10 @@
 #define IMP_ENCOUNTER_ROUNDINGS 32
 /* Rounds in which that is taken away, each of what the last one left: the condition of W times eps of it. */
 #define IMP_ENCOUNTER_MENDINGS 3
+/* Of the mean mobility: what contacts give way for an impulse where compression's are not unique; and of that, in a
+ * second step towards none, from which Newton goes on. Rounding over both, 1e-11, is what is left to chance. */
+#define IMP_MOREAU_SHARING 1e-3
+#define IMP_MOREAU_SHARED 0.03
 /* One after another: of the fastest approach, what is none. */
 #define IMP_SEQUENCE_STILL 0x1p-48
 /* Sweeps down the list: bodies of masses 1e4 apart take some thousands. */
@@ -479,6 +483,8 @@
 #define IMP_CONE_ACCEPTED 1e-13
 /* The residual up to which an answer is told as inexact: above it modes, not digits, are wrong. */
 #define IMP_CONE_USABLE 1e-6
+/* eps, of the terms of W r: what of the residual may be the rounding of r, half of one a term. */
+#define IMP_CONE_ROUNDINGS 2
 /* |F| without units at which Newton's steps end: 4 eps, x and y being of order 1. */
 #define IMP_CONE_FINEST 1e-15
 /* e where the path ends: x and y that differ by less than its square, 1e-20, are modes that no rounding tells apart. */

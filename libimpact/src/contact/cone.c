@@ -8,6 +8,7 @@
 #include "contact/cone_map.h"
 #include "contact/cone_order.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -220,6 +221,19 @@ double imp_cone_residual(const imp_cone_problem *problem, const double *r, doubl
     return worst;
 }
 
+double imp_cone_rounding(const imp_cone_problem *problem, const double *r)
+{
+    const int n = imp_cone_width(problem) * problem->count;
+    const double size = imp_cone_largest(problem, problem->q, true);
+    double terms = 0;
+    for (int i = 0; i < n; i++) {
+        double sum = 0;
+        for (int j = 0; j < n; j++) sum += fabs(problem->w[(size_t)i * (size_t)n + (size_t)j] * r[j]);
+        terms = fmax(terms, sum);
+    }
+    return size > 0 ? IMP_CONE_ROUNDINGS * DBL_EPSILON * terms / size : 0;
+}
+
 /* ---- no solution ---- */
 
 /* Where normal reactions that press nothing apart are pressed by q: those of the problem without friction and with a
@@ -311,9 +325,17 @@ static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcom
     }
 }
 
+/* Whether nothing better can be found: solved, or what is left is the rounding of r in W r, whose terms may be far
+ * greater than u. Another way might lead elsewhere, and which it is would be for rounding to say. */
+static bool is_exact(const imp_cone_problem *problem, const double *r, const imp_cone_outcome *outcome)
+{
+    return outcome->residual <= IMP_CONE_ACCEPTED ||
+           outcome->residual <= fmin(IMP_CONE_USABLE, imp_cone_rounding(problem, r));
+}
+
 static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
-    enum { RECALLED = 4, LAST_STEPS = 6, EASINGS = 4 };
+    enum { RECALLED = 8, LAST_STEPS = 6, EASINGS = 4 };
     static const double easings[EASINGS] = {0.1, 1e-2, 1e-3, 1}; /* by how many of the hard ones they solve */
     if (system->problem->last_r) {
         recall_answer(system, system->problem->last_r, system->problem->last_u);
@@ -323,12 +345,12 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
         outcome->stage = imp_cone_follow(system);
         polish(system, true, LAST_STEPS, r, u, outcome);
     }
-    for (int k = 0; k < EASINGS && !(outcome->residual <= IMP_CONE_ACCEPTED); k++) {
+    for (int k = 0; k < EASINGS && !is_exact(system->problem, r, outcome); k++) {
         if (!imp_cone_follow_eased(system, easings[k])) continue;
         outcome->stage = IMP_CONE_EASED;
         polish(system, true, LAST_STEPS, r, u, outcome);
     }
-    if (!(outcome->residual <= IMP_CONE_ACCEPTED)) sweep(system, r, u, outcome);
+    if (!is_exact(system->problem, r, outcome)) sweep(system, r, u, outcome);
     outcome->status = outcome->residual <= IMP_CONE_ACCEPTED ? IMP_CONE_SOLVED
                       : outcome->residual <= IMP_CONE_USABLE ? IMP_CONE_INEXACT
                                                              : IMP_CONE_UNSETTLED;

@@ -103,6 +103,9 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
 /* The residual of any r, as in the outcome; u: of r, width count, written. */
 double imp_cone_residual(const imp_cone_problem *problem, const double *r, double *u);
 
+/* What the rounding of r alone may leave of the residual: a part of Q. */
+double imp_cone_rounding(const imp_cone_problem *problem, const double *r);
+
 /* P_K v, the nearest point of |r_t| <= mu r_n (mu = 0: of the half line along the normal), and, unless slope is NULL,
  * its derivative. */
 void imp_cone_project(double friction, const double *v, double *to, double slope[3][3]);

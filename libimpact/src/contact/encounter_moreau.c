@@ -65,6 +65,28 @@ static void clean(int count, const imp_cone_mode *modes, const imp_cone_mode *st
     }
 }
 
+/* The impulses of compression where they are not unique, on which restitution depends: those that contacts share which
+ * give way a little for each impulse, and are unique so; then those next to them of contacts that do not. Without it
+ * they are what the solver's path has of rounding. */
+static void share(moreau *m, const imp_cone_problem *problem, double *p)
+{
+    static const double gives[] = {IMP_MOREAU_SHARING, IMP_MOREAU_SHARING * IMP_MOREAU_SHARED, 0};
+    const size_t n = 3 * (size_t)problem->count;
+    double mean = 0, *r[] = {m->r, m->r + n}, *u[] = {m->v, m->v + n};
+    for (size_t i = 0; i < n; i++) mean += problem->w[i * (n + 1)] / (double)n;
+    for (int k = 0; k < 3; k++) {
+        imp_cone_problem giving = *problem;
+        giving.w = m->w;
+        if (k > 0) giving.last_r = r[1 - k % 2], giving.last_u = u[1 - k % 2];
+        for (size_t i = 0; i < n * n; i++) m->w[i] = problem->w[i] + (i % (n + 1) == 0 ? gives[k] * mean : 0);
+        const imp_cone_outcome o = imp_cone_solve(&giving, m->cone, r[k % 2], u[k % 2], m->modes);
+        m->group->steps += o.factorings;
+        if (o.status != IMP_CONE_SOLVED || (k > 0 && o.stage != IMP_CONE_LAST)) return;
+    }
+    memcpy(p, r[0], n * sizeof *p);
+    memcpy(m->u, u[0], n * sizeof *m->u);
+}
+
 static bool compress(moreau *m)
 {
     const int n = m->group->count;
@@ -72,6 +94,7 @@ static bool compress(moreau *m)
     const imp_cone_problem problem = {.count = n, .w = m->group->w, .q = m->group->u0, .friction = m->friction};
     const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->group->p, m->u, m->modes);
     if (!solved(&problem, &o, m->group->p, m->group)) return false;
+    if (o.chosen) share(m, &problem, m->group->p);
     clean(n, m->modes, m->modes, m->u);
     imp_encounter_push(m->group, m->group->p);
     imp_encounter_mend(m->group, m->u, m->group->p, m->workspace);

@@ -72,7 +72,8 @@ static void turning_the_scene_and_changing_units_changes_nothing(void **state)
 
 /* Encounters of the campaign (./run report together), answered in eight frames and units: by springs where slip comes
  * all but straight to its stop, so that series of |u_t| went on through it, or begins and stops again in one stride; by
- * Moreau's law where more than one answer is right, and units chose among them. */
+ * Moreau's law where more than one answer is right, and units chose among them; where compression's impulses are not
+ * unique; and where they are so great that their rounding is all of the residual. */
 static void no_frame_or_unit_chooses_the_answer(void **state)
 {
     (void)state;
@@ -84,7 +85,8 @@ static void no_frame_or_unit_chooses_the_answer(void **state)
     } cases[] = {{101, 262, IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3}, {102, 1174, IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12},
                  {102, 1870, IMPACT_TOGETHER_SPRINGS, 1, 2, 3},  {101, 2848, IMPACT_TOGETHER_SPRINGS, 1, 7, 12},
                  {101, 3352, IMPACT_TOGETHER_MOREAU, 0, 2, 3},   {101, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},
-                 {102, 3651, IMPACT_TOGETHER_MOREAU, 0, 4, 6}};
+                 {102, 3651, IMPACT_TOGETHER_MOREAU, 0, 4, 6},   {102, 3430, IMPACT_TOGETHER_MOREAU, 0, 2, 3},
+                 {102, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},   {101, 4282, IMPACT_TOGETHER_MOREAU, 0, 7, 12}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
         random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
@@ -126,6 +128,23 @@ static void receipts_hold_over_random_encounters(void **state)
     assert_true(answered[IMPACT_TOGETHER_MOREAU] > 450);
     assert_true(answered[IMPACT_TOGETHER_SEQUENCE] > 300);
     impact_together_workspace_destroy(workspace);
+}
+
+/* With one restitution for all. */
+static void moreau_s_energy_rises_only_by_different_restitutions(void **state)
+{
+    (void)state;
+    const encounter_ranges ranges = {2, 8, 10, 0.05, 1e4, 1e4};
+    random_stream random = {77};
+    for (int run = 0; run < 600; run++) {
+        random_encounter e = encounter_draw(&random, &ranges);
+        const double restitution = run % 3 ? random_unit(&random) : 1;
+        for (int i = 0; i < e.meeting_count; i++) e.meetings[i].restitution = restitution;
+        const answer a = solve(&e, IMPACT_TOGETHER_MOREAU, 0, NULL);
+        if (a.status != IMPACT_OK) continue;
+        assert_false(a.outcome.energy_rose);
+        assert_at_most(a.outcome.energy_after, a.outcome.energy_before * (1 + 1e-13));
+    }
 }
 
 /* Encounters of the campaign (./run report together) that once found no end: slip that begins by and by where the
@@ -272,6 +291,7 @@ int main(void)
         cmocka_unit_test(numbering_and_order_change_no_bit),
         cmocka_unit_test(turning_the_scene_and_changing_units_changes_nothing),
         cmocka_unit_test(no_frame_or_unit_chooses_the_answer),
+        cmocka_unit_test(moreau_s_energy_rises_only_by_different_restitutions),
         cmocka_unit_test(receipts_hold_over_random_encounters),
         cmocka_unit_test(what_found_no_end_is_answered),
         cmocka_unit_test(what_no_path_leads_to_is_answered),
