@@ -1,9 +1,9 @@
 -- SPDX-License-Identifier: MIT
 --- A curling stone slides, turning, into another; both come to rest.
 ---
----   held       by steps: friction 0.015 at the points of the stone's face, torsional friction 2 mm besides
+---   slides     on its face, a disc: friction 0.015 at each of its places, against the slip there, integrated in three degrees of freedom
 ---   impact     stone on stone, restitution 0.8, with friction 0.2
----   rest       proved by reactions
+---   rest       where slip and turning end, at one instant; proved by reactions
 local impact = require "impact"
 local plot = require "quat.plot"
 
@@ -50,8 +50,8 @@ return impact.scene {
     stone("lying", 8, 0.1, 0, 0),
   },
   pairs = {
-    { bodies = { "thrown", "ice" }, friction = 0.015, torsional_friction = 0.002 },
-    { bodies = { "lying", "ice" }, friction = 0.015, torsional_friction = 0.002 },
+    { bodies = { "thrown", "ice" }, friction = 0.015 },
+    { bodies = { "lying", "ice" }, friction = 0.015 },
   },
   plot = draw,
 }

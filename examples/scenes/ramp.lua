@@ -3,8 +3,8 @@
 --- since tan 22 is more than its half width over its half height. The slope is a plane, and gravity leans.
 ---
 ---   at rest    proved at t = 0 from the reactions at its four corners
----   slides     a face without turning, under a constant load: steps are exact
----   topples    over its lower edge, and lies: by steps, which the closing summary tells
+---   slides     a face without turning, under a constant load: in closed form
+---   topples    over its lower edge, held at two corners by the integrator; lands on its side, and slides there in closed form
 local impact = require "impact"
 local plot = require "quat.plot"
 local quat = require "quat"

@@ -633,6 +633,9 @@
 #define IMP_FACE_SHORTEST 1e-10
 /* Of the face's reach: a centre of pressure nearer to a border stands on it. */
 #define IMP_FACE_MARGIN 1e-9
+/* Of the face's reach: points so near to the side over which a body tips are on it: rounding of places found on another
+ * way; corners stand farther apart. */
+#define IMP_TIP_SIDE 1e-6
 
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 

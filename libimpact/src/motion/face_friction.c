@@ -106,15 +106,18 @@ double imp_least_pressure(const imp_flat_face *face, const double p[3])
     return least;
 }
 
+double imp_side_spare(const imp_flat_face *face, int i, const double x[2])
+{
+    const place a = at(face->corner[i]), side = less(at(face->corner[(i + 1) % face->count]), a);
+    return cross(side, less(at(x), a)) / hypot(side.x, side.y);
+}
+
 double imp_face_spare(const imp_flat_face *face, const double x[2])
 {
     const place d = less(at(x), at(face->center));
     if (face->count == 0) return face->radius - hypot(d.x, d.y);
     double least = INFINITY;
-    for (int i = 0; i < face->count; i++) {
-        const place a = at(face->corner[i]), side = less(at(face->corner[(i + 1) % face->count]), a);
-        least = fmin(least, cross(side, less(at(x), a)) / hypot(side.x, side.y));
-    }
+    for (int i = 0; i < face->count; i++) least = fmin(least, imp_side_spare(face, i, x));
     return least;
 }
 

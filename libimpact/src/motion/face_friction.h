@@ -52,7 +52,9 @@ void imp_press_all(const imp_flat_face *face, imp_pressed *pressed);
 void imp_press_part(const imp_flat_face *face, const double p[3], imp_pressed *pressed);
 /* The least pressure of the whole face. */
 double imp_least_pressure(const imp_flat_face *face, const double p[3]);
-/* How far the place is within the face's border; < 0 outside. */
+/* How far the place is within a polygon's side, from its corner i to the next; and within the face's whole border; < 0
+ * outside. */
+double imp_side_spare(const imp_flat_face *face, int i, const double x[2]);
 double imp_face_spare(const imp_flat_face *face, const double x[2]);
 
 /* m[i][j]: the integral of f_i f_j, f = (1, x, y): the force and the moments x p of each of the three pressures. */

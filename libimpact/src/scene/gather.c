@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/gather.h"
+#include "scene/following.h"
 #include "scene/islands.h"
 #include "scene/scene_events.h"
 #include "scene/scene_keys.h"
@@ -94,7 +95,7 @@ static impact_status add_held(impact_scene *scene, const imp_island *island)
     impact_status status = IMPACT_OK;
     for (int p = 0; status == IMPACT_OK && p < island->world.pair_count; p++) {
         imp_pair pair = island->world.pairs[p];
-        if (!imp_is_held(&pair) && !pair.lies) continue;
+        if (!imp_island_ties(island, &pair)) continue;
         pair.body1 = island->world.bodies[pair.body1].index;
         pair.body2 = island->world.bodies[pair.body2].index;
         status = add_touching(scene, &pair);
@@ -210,10 +211,18 @@ static void clear_members(impact_scene *scene)
     scene->member_count = scene->touching_count = 0;
 }
 
+/* Whether it is one body that rests on what is static: by a proof of the pile's, and no steps. */
+static bool rests_alone(const imp_island *island)
+{
+    int moving = 0;
+    for (int i = 0; i < island->world.body_count; i++) moving += !island->world.bodies[i].is_static;
+    return island->rests && moving == 1;
+}
+
 /* How the islands that go over into this one have got on, and by what. */
 static void take_over(imp_island *island, const imp_island *old, bool *were_stepped)
 {
-    *were_stepped = *were_stepped || old->stepped;
+    *were_stepped = *were_stepped || (old->stepped && !rests_alone(old));
     if (old->patience.steps > island->patience.steps) island->patience = old->patience;
 }
 

@@ -154,6 +154,42 @@ static impact_status tell_contact(imp_island *island, int p, const imp_lying *ly
     return imp_scene_record(island, &event);
 }
 
+/* ---- tipping ---- */
+
+/* Where the pressure would have to be so that friction holds the body, or brakes its slide, without tipping it. */
+static void wanted_center(const imp_face_motion *m, const double *y, double center[2])
+{
+    const double *v = &y[IMP_FACE_V], speed = size_of(v), pull = size_of(m->pull), hold = m->friction * m->press;
+    const double *along = speed > 0 ? v : m->pull, size = speed > 0 ? speed : pull;
+    const double part = size > 0 ? (speed > 0 ? hold : fmin(hold, pull)) / (m->press * size) : 0;
+    for (int k = 0; k < 2; k++) center[k] = m->height * part * along[k];
+}
+
+/* Whether that is on no place of the face: the body, which does not turn on it, tips over this side. */
+static bool tips_over(const imp_lying *lying, int *side)
+{
+    const imp_flat_face *face = &lying->motion.face;
+    double center[2], least = IMP_FACE_MARGIN;
+    wanted_center(&lying->motion, lying->start, center);
+    *side = -1;
+    for (int i = 0; i < face->count && lying->start[IMP_FACE_W] == 0; i++) {
+        const double spare = imp_side_spare(face, i, center);
+        if (spare <= least) least = spare, *side = i;
+    }
+    return *side >= 0;
+}
+
+/* The points that are not on that side are about to rise. */
+static void let_rise(imp_island *island, int first, int end, const imp_lying *lying, int side)
+{
+    for (int p = first; p < end; p++) {
+        imp_pair *pair = &island->world.pairs[p];
+        const qvec3 at = pair->place.offset1;
+        const double x[2] = {qvec3_dot(lying->axis[0], at) / lying->size, qvec3_dot(lying->axis[1], at) / lying->size};
+        pair->rises = imp_side_spare(&lying->motion.face, side, x) > IMP_TIP_SIDE;
+    }
+}
+
 /* Whether another contact of the pair's body stays. */
 static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
 {
@@ -177,8 +213,14 @@ static impact_status lay(imp_island *island, int first, int end, bool lay_before
     if (is_held_elsewhere_too(island, &world->pairs[first])) return IMPACT_OK;
     if (!find_lying(island, &world->pairs[first], island->states, island->scene->rest_speed, &lying)) return IMPACT_OK;
     const int body = world->pairs[first].body1;
-    island->states[body] = imp_lying_state(&lying, lying.start);
-    if (!glides(island, &lying)) return IMPACT_OK;
+    const imp_state now = imp_lying_state(&lying, lying.start);
+    imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), world->bodies[body].mass));
+    island->states[body] = now;
+    int side;
+    if (!glides(island, &lying)) {
+        if (tips_over(&lying, &side)) let_rise(island, first, end, &lying, side), *any = true;
+        return IMPACT_OK;
+    }
     for (int p = first; p < end; p++) world->pairs[p].lies = true;
     island->motion.resting[body] = false;
     *any = true;

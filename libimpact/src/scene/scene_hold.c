@@ -22,7 +22,7 @@ void imp_scene_choose_modes(imp_island *island)
     for (int p = 0; p < world->pair_count; p++) {
         imp_meeting m;
         imp_pair *pair = &world->pairs[p];
-        if (pair->lies || !imp_scene_meets(island, p, &m)) continue;
+        if (pair->lies || pair->rises || !imp_scene_meets(island, p, &m)) continue;
         imp_scene_press(island, &m);
         const bool leaves = m.acceleration > 0 && imp_scene_draws(island, &m);
         const bool stays = m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity)

@@ -42,7 +42,7 @@ impact_status imp_scene_settle(imp_island *island)
     island->lies = stay == IMP_STAY_FACES;
     if (status == IMPACT_OK && !parted && !island->lies) {
         imp_scene_choose_modes(island);
-        status = imp_scene_hold(island, -1, false);
+        status = imp_scene_hold(island, -1, glides);
     }
     imp_scene_drop_points(island);
     island->impact_loss = account - imp_scene_undriven_energy(island);

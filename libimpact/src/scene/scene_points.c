@@ -12,7 +12,7 @@ static imp_pair whole_pair(const imp_pair *pair)
 {
     imp_pair whole = *pair;
     whole.mode = IMP_OPEN;
-    whole.placed = whole.onset = whole.young = whole.turned = whole.still = false;
+    whole.placed = whole.onset = whole.young = whole.turned = whole.still = whole.rises = false;
     whole.corner = whole.face = 0;
     return whole;
 }
@@ -121,7 +121,7 @@ imp_stay imp_scene_points_stay(imp_island *island)
     for (int p = 0, run = 0; p < world->pair_count; p++) {
         /* the points of two bodies follow each other */
         if (p > 0 && !imp_same_bodies(&world->pairs[p], &world->pairs[p - 1])) run = 0;
-        if (world->pairs[p].lies || !imp_scene_point_stays(island, p)) continue;
+        if (world->pairs[p].lies || world->pairs[p].rises || !imp_scene_point_stays(island, p)) continue;
         if (world->pairs[p].corner == 0 || ++run > 2 || overhangs(island, p)) return IMP_STAY_FACES;
         found = IMP_STAY_CORNERS;
     }
@@ -139,7 +139,7 @@ void imp_scene_drop_points(imp_island *island)
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair pair = world->pairs[p];
         if (is_held_corner(&pair)) {
-            pair.placed = false;
+            pair.placed = pair.rises = false;
         } else if (is_point(&pair)) {
             if (imp_corner_is_held(world, &pair, 0) || is_among(world->pairs, kept, &pair)) continue;
             pair = whole_pair(&pair);

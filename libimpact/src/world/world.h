@@ -86,7 +86,8 @@ typedef struct imp_pair {
     double sunk; /* held corner: m: how far below it the other corners were where the stretch began, <= 0 */
     bool lies; /* body 1 lies with a face on body 2, static, and glides there (scene/gliding.h): it is not among what is
                 * held at points */
-    bool met;  /* by the steps of a pile: it was closed since the pile was looked at last */
+    bool rises; /* scratch: body 1 tips over a side of its face that this point is not on */
+    bool met;   /* by the steps of a pile: it was closed since the pile was looked at last */
     impact_gap_cache cache;
 } imp_pair;
 

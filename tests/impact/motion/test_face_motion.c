@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The motion of a face: its balance against its own equations, its steps against Runge and Kutta's of a fixed length
+ * whose limit is extrapolated, and what neither knows: energy, turned and mirrored axes, and other units.
+ */
+#include "motion/face_motion.h"
+#include <string.h>
+#include "kit/near.h"
+
+static double uniform(unsigned long *seed, double low, double high)
+{
+    *seed = *seed * 6364136223846793005UL + 1442695040888963407UL;
+    return low + (high - low) * (double)(*seed >> 11) * 0x1p-53;
+}
+
+static imp_face_motion square_motion(double height, double friction)
+{
+    imp_face_motion m = {.face = {.count = 4, .corner = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}},
+                         .height = height,
+                         .friction = friction,
+                         .press = 1,
+                         .turning = 1.5};
+    imp_face_prepare(&m);
+    m.gyration = sqrt(2.0 / 3);
+    return m;
+}
+
+static imp_face_motion disc_motion(double height, double friction)
+{
+    imp_face_motion m = {.face = {.radius = 1}, .height = height, .friction = friction, .press = 1, .turning = 2};
+    imp_face_prepare(&m);
+    m.gyration = sqrt(.5);
+    return m;
+}
+
+/* The three equations, with the part that is pressed found again. */
+static void the_pressure_balances(void **state)
+{
+    (void)state;
+    unsigned long seed = 5;
+    int cut = 0, tips = 0;
+    for (int k = 0; k < 3000; k++) {
+        imp_face_motion m = k % 2 ? disc_motion(uniform(&seed, 0, 1), uniform(&seed, 0, 1))
+                                  : square_motion(uniform(&seed, 0, 1), uniform(&seed, 0, 1));
+        for (int i = 0; i < 2; i++) m.aside[i] = uniform(&seed, -.02, .02);
+        const double twist[3] = {uniform(&seed, -1, 1), uniform(&seed, -1, 1), uniform(&seed, -1, 1)};
+        imp_face_balance b = {.p = {0}};
+        if (!imp_face_balance_of(&m, twist, &b)) {
+            tips++;
+            continue;
+        }
+        imp_pressed part;
+        double moments[3][3], rub[3][3], force[3] = {0}, pressed[3] = {0};
+        imp_press_part(&m.face, b.p, &part);
+        imp_press_moments(&part, moments);
+        imp_press_rub(&part, twist, rub);
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                pressed[i] += moments[i][j] * b.p[j];
+                force[i] += m.friction * rub[i][j] * b.p[j];
+            }
+        const double turns = m.turning * force[2], w = twist[2], *j = m.aside;
+        assert_near(pressed[0], 1, 1e-11);
+        assert_near(pressed[1], -m.height * force[0] - turns * j[1] - w * w * j[0], 1e-11);
+        assert_near(pressed[2], -m.height * force[1] + turns * j[0] - w * w * j[1], 1e-11);
+        assert_near(hypot(b.force[0] - force[0], b.force[1] - force[1]), 0, 1e-11);
+        assert_true(imp_face_spare(&m.face, b.center) > 0);
+        cut += imp_least_pressure(&m.face, b.p) < 0;
+    }
+    assert_true(cut > 300 && tips < 1000);
+}
+
+/* The time, way, angle and work that are left at the end, along the twist that there is. */
+static void finish(const imp_face_motion *m, double *y)
+{
+    double rate[IMP_FACE_STATE];
+    imp_face_balance balance = {.p = {0}};
+    assert_true(imp_face_rates(m, y, rate, &balance));
+    const double k = m->gyration * m->gyration, s = imp_face_speed(m, y);
+    const double falls = -(y[3] * rate[3] + y[4] * rate[4] + k * y[5] * rate[5]), time = s * s / falls;
+    y[6] += time;
+    for (int i = 0; i < 3; i++) y[i] += 0.5 * time * y[3 + i];
+}
+
+static void follow(const imp_face_motion *m, double *y, double slow)
+{
+    double length = 1;
+    imp_face_path path;
+    for (int n = 0; imp_face_speed(m, y) > slow && n < 1000; n++) {
+        assert_true(imp_face_motion_step(m, y, &length, &path));
+        imp_face_at(&path, 0, y);
+    }
+    finish(m, y);
+}
+
+/* Runge and Kutta's steps of h in the same variable. */
+static void follow_by_fixed_steps(const imp_face_motion *m, double *y, double slow, double h)
+{
+    const double scale = m->friction * m->press + hypot(m->pull[0], m->pull[1]);
+    while (imp_face_speed(m, y) > slow) {
+        double rate[4][IMP_FACE_STATE], at[IMP_FACE_STATE];
+        for (int s = 0; s < 4; s++) {
+            imp_face_balance balance = {.p = {0}};
+            for (int i = 0; i < IMP_FACE_STATE; i++)
+                at[i] = y[i] + (s == 0 ? 0 : h * (s == 3 ? 1 : .5) * rate[s - 1][i]);
+            assert_true(imp_face_rates(m, at, rate[s], &balance));
+            for (int i = 0; i < IMP_FACE_STATE; i++) rate[s][i] *= imp_face_speed(m, at) / scale;
+        }
+        for (int i = 0; i < IMP_FACE_STATE; i++)
+            y[i] += h * (rate[0][i] + 2 * rate[1][i] + 2 * rate[2][i] + rate[3][i]) / 6;
+    }
+    finish(m, y);
+}
+
+/* Their error falls as h^4: two lengths give the limit. The first is the case of docs/faces.md. */
+static void steps_are_the_limit_of_short_ones(void **state)
+{
+    (void)state;
+    imp_face_motion cases[4] = {square_motion(0, 1), square_motion(.3, .8), disc_motion(.2, .5), square_motion(.2, .6)};
+    cases[3].pull[0] = .1, cases[3].pull[1] = -.2;
+    for (int k = 0; k < 4; k++) {
+        const double begin[IMP_FACE_STATE] = {0, 0, 0, 1, k == 0 ? 0 : .3, 1}, slow = 1e-9;
+        double y[IMP_FACE_STATE], coarse[IMP_FACE_STATE], fine[IMP_FACE_STATE];
+        memcpy(y, begin, sizeof y), memcpy(coarse, begin, sizeof y), memcpy(fine, begin, sizeof y);
+        follow(&cases[k], y, slow);
+        follow_by_fixed_steps(&cases[k], coarse, slow, 5e-3);
+        follow_by_fixed_steps(&cases[k], fine, slow, 2.5e-3);
+        for (int i = 0; i < 3; i++) assert_near(y[i], fine[i] + (fine[i] - coarse[i]) / 15, 2e-10);
+        assert_near(y[6], fine[6] + (fine[6] - coarse[6]) / 15, 2e-10);
+        if (k > 0) continue;
+        assert_near(y[6], 1.4190, 5e-5);
+        assert_near(y[2], .7442, 5e-5);
+        assert_near(y[0], .6817, 5e-5);
+    }
+}
+
+/* Kinetic energy, over m size^2, goes to friction and the pull alone. */
+static void energy_is_kept(void **state)
+{
+    (void)state;
+    unsigned long seed = 9;
+    for (int k = 0; k < 20; k++) {
+        imp_face_motion m = k % 2 ? disc_motion(.3, .4) : square_motion(.3, .4);
+        m.pull[0] = uniform(&seed, -.3, .3), m.pull[1] = uniform(&seed, -.2, .2);
+        double y[IMP_FACE_STATE] = {0, 0, 0, uniform(&seed, -2, 2), uniform(&seed, -2, 2), uniform(&seed, -3, 3)};
+        const double begun = .5 * (y[3] * y[3] + y[4] * y[4] + y[5] * y[5] / m.turning);
+        double length = 1;
+        imp_face_path path;
+        for (int n = 0; n < 30 && imp_face_speed(&m, y) > 1e-6; n++) {
+            assert_true(imp_face_motion_step(&m, y, &length, &path));
+            double before[IMP_FACE_STATE];
+            imp_face_at(&path, -1, before);
+            assert_near(before[3], y[3], 1e-13); /* it begins where it did */
+            imp_face_at(&path, 0, y);
+            const double kinetic = .5 * (y[3] * y[3] + y[4] * y[4] + y[5] * y[5] / m.turning);
+            assert_near(kinetic + y[7] - m.pull[0] * y[0] - m.pull[1] * y[1], begun, 1e-12 * (1 + begun));
+        }
+    }
+}
+
+/* Mirrored, a face goes the mirrored way. */
+static void mirrored(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        imp_face_motion m = k ? disc_motion(.3, .5) : square_motion(.3, .5), mirror = m;
+        m.pull[0] = mirror.pull[0] = .1;
+        m.pull[1] = .2, mirror.pull[1] = -.2;
+        double y[IMP_FACE_STATE] = {0, 0, 0, 1, .4, 2}, z[IMP_FACE_STATE] = {0, 0, 0, 1, -.4, -2};
+        follow(&m, y, 1e-9);
+        follow(&mirror, z, 1e-9);
+        static const double sign[7] = {1, -1, -1, 1, -1, -1, 1};
+        for (int i = 0; i < 7; i++) assert_near(z[i], sign[i] * y[i], 1e-12);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_pressure_balances),
+                                       cmocka_unit_test(steps_are_the_limit_of_short_ones),
+                                       cmocka_unit_test(energy_is_kept), cmocka_unit_test(mirrored)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
