@@ -50,13 +50,13 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
         result->force_work += h * pile->loads[i].work_rate;
         result->damping += h * pile->loads[i].damping_rate;
     }
-    for (int k = 0; k < pile->memory[1].count; k++) pile->memory[1].list[k].taken = false;
     pile->memory[2].count = 0;
     imp_pile_contacts_mark(&pile->touching, world, &pile->memory[1]);
     if (!imp_pile_find_points(&pile->touching, world, pile->middle, to, h, IMP_PILE_SLACK * imp_pile_smallest(world),
                               false) ||
         !imp_pile_reserve_contacts(pile, world, pile->touching.count))
         return IMPACT_ENOMEM;
+    imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[1]);
     for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
         const impact_status status = imp_pile_answer(pile, world, pile->middle, count, h, to, result);
         if (status != IMPACT_OK) return status;

@@ -26,7 +26,7 @@ static bool recall_step(imp_pile *pile, const imp_world *world, int count, doubl
     bool smooth = true;
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
-        const imp_pile_memory *m = imp_pile_recall(&pile->memory[1], point);
+        const imp_pile_memory *m = point->memory < 0 ? NULL : &pile->memory[1].list[point->memory];
         const int i = pile->width * c;
         if (!m) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
         for (int k = 0; !m && k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];

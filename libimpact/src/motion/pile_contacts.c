@@ -48,22 +48,22 @@ static bool add_point(imp_pile_contacts *contacts, const imp_world *world, int p
                                         .body2 = pair->body2,
                                         .arm1 = point->contact.offset1,
                                         .arm2 = point->contact.offset2},
-                            .gap = point->contact.gap};
+                            .gap = point->contact.gap,
+                            .memory = -1};
     imp_cone_find_axes(point->contact.normal, own->contact.axes);
     if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)
         contacts->root[root_of(contacts->root, pair->body1)] = root_of(contacts->root, pair->body2);
     return true;
 }
 
-/* How far the pair's points may stand off to close within half of the step: as fast as the pair's nearest point does,
- * or any other of its bodies. */
-static double closing(const imp_world *world, const imp_pair *pair, const imp_state *next, double h)
+/* How fast any two points of the pair's bodies go by each other at most. */
+static double fastest(const imp_world *world, const imp_pair *pair, const imp_state *next)
 {
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &next[pair->body1], *s2 = &next[pair->body2];
     double speed = qvec3_norm(qvec3_sub(s1->v, s2->v)) + b1->radius * qvec3_norm(imp_omega(b1, s1));
     if (!b2->is_static) speed += b2->radius * qvec3_norm(imp_omega(b2, s2));
-    return 0.5 * h * speed;
+    return speed;
 }
 
 bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const imp_state *states, const imp_state *next,
@@ -75,7 +75,7 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
         imp_pair *pair = &world->pairs[p];
         const bool held = contacts->held[p];
         if (held_only && !held) continue;
-        const double height = held && next ? slack + closing(world, pair, next, h) : slack;
+        const double height = held && next ? slack + 0.5 * h * fastest(world, pair, next) : slack;
         if (imp_world_distance_bound(world, pair, states) > height) continue;
         imp_point points[IMP_POINTS];
         const int found = imp_points_find(world, pair, states, height, points);
@@ -115,22 +115,36 @@ int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, in
 
 static bool same_feature(impact_feature a, impact_feature b) { return a.kind == b.kind && a.index == b.index; }
 
-/* Of the pair's memories of the same features the nearest: a border has no number where it is crossed. */
-imp_pile_memory *imp_pile_recall(imp_pile_memories *memories, const imp_pile_point *point)
+static bool same_features(const imp_pile_memory *m, const imp_pile_point *point)
 {
-    imp_pile_memory *best = NULL;
-    double least = INFINITY;
+    return same_feature(m->feature[0], point->feature[0]) && same_feature(m->feature[1], point->feature[1]);
+}
+
+/* The nearest that is no point's yet, and no farther than that; alike: of its features. -1: there is none. */
+static int nearest_memory(const imp_pile_memories *memories, const imp_pile_point *point, double farthest, bool alike)
+{
+    int best = -1;
     for (int k = 0; k < memories->count; k++) {
-        imp_pile_memory *m = &memories->list[k];
-        const qvec3 d = qvec3_sub(m->arm1, point->contact.arm1);
-        const double apart = qvec3_dot(d, d);
-        if (m->taken || m->pair != point->pair || !(apart < least)) continue;
-        if (!same_feature(m->feature[0], point->feature[0]) || !same_feature(m->feature[1], point->feature[1]))
-            continue;
-        best = m, least = apart;
+        const imp_pile_memory *m = &memories->list[k];
+        if (m->taken || m->pair != point->pair || (alike && !same_features(m, point))) continue;
+        const double apart = qvec3_norm(qvec3_sub(m->arm1, point->contact.arm1));
+        if (apart <= farthest) best = k, farthest = apart;
     }
-    if (best) best->taken = true;
     return best;
+}
+
+void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
+                     imp_pile_memories *memories)
+{
+    for (int k = 0; k < memories->count; k++) memories->list[k].taken = false;
+    for (int alike = 1; alike >= 0; alike--)
+        for (int i = 0; i < contacts->count; i++) {
+            imp_pile_point *point = &contacts->points[i];
+            if (point->memory >= 0) continue;
+            const double far = alike ? INFINITY : h * fastest(world, &world->pairs[point->pair], states);
+            point->memory = nearest_memory(memories, point, far, alike);
+            if (point->memory >= 0) memories->list[point->memory].taken = true;
+        }
 }
 
 imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point)
@@ -157,6 +171,5 @@ bool imp_pile_copy_memories(imp_arena *arena, imp_pile_memories *to, const imp_p
     to->list = list;
     to->count = from->count;
     memcpy(list, from->list, sizeof *list * (size_t)from->count);
-    for (int k = 0; k < to->count; k++) to->list[k].taken = false;
     return true;
 }

@@ -15,6 +15,7 @@ typedef struct imp_pile_point {
     imp_bearer bearer;
     imp_cone_contact contact;
     double gap; /* m */
+    int memory; /* what is remembered of it, imp_pile_recall; -1: nothing */
     bool taken; /* scratch: it is an island's */
 } imp_pile_point;
 
@@ -59,8 +60,11 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
  * How many; 0: all are taken. */
 int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, int *members);
 
-/* What is remembered of the point, which is then the point's; NULL: nothing. */
-imp_pile_memory *imp_pile_recall(imp_pile_memories *memories, const imp_pile_point *point);
+/* Finds what is remembered of each point: of its pair what has its features, and is nearest; else what was where it is,
+ * as far as points of the pair move in h at the velocities of the states: on a border a point has the features of one
+ * side or the other, and is held whichever. */
+void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
+                     imp_pile_memories *memories);
 
 /* One more; NULL: there is no room. */
 imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point);

@@ -13,9 +13,8 @@ static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states,
     for (int k = 0; k < pile->memory[0].count; k++) apart = fmax(apart, 2 * pile->memory[0].list[k].gap);
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
-    for (int k = 0; k < touching->count; k++)
-        touching->points[k].taken = imp_pile_recall(&pile->memory[0], &touching->points[k]) == NULL;
-    for (int k = 0; k < pile->memory[0].count; k++) pile->memory[0].list[k].taken = false;
+    imp_pile_recall(touching, world, states, h, &pile->memory[0]);
+    for (int k = 0; k < touching->count; k++) touching->points[k].taken = touching->points[k].memory < 0;
     return true;
 }
 
