@@ -387,12 +387,39 @@ static double settle_friction(bodies_problem *p, double rho, double enough)
     return fmax(0.1 * rho, IMP_BODIES_STIFF);
 }
 
-static void iterate(bodies_problem *p, double *r, double *u)
+/* r of one contact, as x is while the others stay. */
+static void sweep_contact(const bodies_problem *p, int c)
+{
+    double v[6], own[6], slope[6], *r = &p->r[p->width * c];
+    seen_at(p, c, p->x, v);
+    for (int k = 0; k < p->width; k++) v[k] += p->q[p->width * c + k];
+    v[0] += slip_part(p, c, v, slope);
+    for (int k = 0; k < p->width; k++) own[k] = r[k] - p->stiffness[c] * v[k];
+    project_pressed(p, c, own, v, NULL);
+    for (int k = 0; k < p->width; k++) own[k] = v[k] - r[k], r[k] = v[k];
+    add_effect(p, c, own, 1, p->x);
+}
+
+/* What is struck anew is far from where the last step left it: contact by contact, there and back, it comes near. */
+static void sweep_bodies(const bodies_problem *p)
+{
+    enum { SWEEPS = 10 };
+    set_stiffness(p, 1);
+    effect_of(p, p->r);
+    for (int k = 0; k < SWEEPS; k++) {
+        for (int c = 0; c < p->count; c++) sweep_contact(p, c);
+        for (int c = p->count - 1; c >= 0; c--) sweep_contact(p, c);
+    }
+}
+
+static void iterate(bodies_problem *p, double enough, double *r, double *u)
 {
     enum { MOST = 40, PATIENCE = 10 };
     const size_t size = (size_t)p->width * sizeof *r * (size_t)p->count;
     imp_cone_outcome *outcome = p->outcome;
     double rho = IMP_BODIES_SOFT;
+    effect_of(p, p->r);
+    if (residual_of(p, p->r) > IMP_BODIES_FAR) sweep_bodies(p);
     for (int k = 0, idle = 0; k <= MOST && idle < PATIENCE; k++) {
         effect_of(p, p->r);
         const double found = residual_of(p, p->r);
@@ -402,7 +429,7 @@ static void iterate(bodies_problem *p, double *r, double *u)
             memcpy(r, p->r, size);
             memcpy(u, p->u, size);
         }
-        if (outcome->residual <= IMP_BODIES_ACCEPTED) return;
+        if (outcome->residual <= fmax(enough, IMP_BODIES_ACCEPTED)) return;
         rho = fmax(settle_friction(p, rho, IMP_BODIES_INNER * fmin(found, 1)), IMP_BODIES_STIFF);
         memcpy(p->r, p->pressed, size);
     }
@@ -493,7 +520,7 @@ imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_con
         change_units(&p, false, false, p.r, p.r);
         p.q = p.own_q;
     }
-    iterate(&p, r, u);
+    iterate(&p, problem->enough, r, u);
     if (!(outcome.residual < INFINITY)) return outcome;
     if (width > 3) {
         memcpy(p.r, r, size * sizeof *r);

@@ -79,71 +79,6 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
     return work;
 }
 
-/* The island's bodies by numbers of their own, from 0; how many move. */
-static int number_bodies(imp_pile *pile, const imp_world *world, int count)
-{
-    int bodies = 0;
-    for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
-    for (int c = 0; c < count; c++) {
-        const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
-        for (int k = 0; k < 2; k++)
-            if (!world->bodies[body[k]].is_static && pile->number[body[k]] < 0) pile->number[body[k]] = bodies++;
-    }
-    return bodies;
-}
-
-/* W is there for by_contacts alone. */
-static imp_cone_problem problem_of(const imp_pile *pile, int count)
-{
-    return (imp_cone_problem){.count = count,
-                              .w = pile->w,
-                              .q = pile->q,
-                              .friction = pile->friction,
-                              .lengths = pile->width > 3 ? pile->lengths : NULL,
-                              .last_r = pile->last_r,
-                              .last_u = pile->last_u,
-                              .brief = true};
-}
-
-static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, int count)
-{
-    const imp_cone_problem problem = problem_of(pile, count);
-    if (pile->width > 3)
-        imp_cone_assemble_turning(world, pile->middle, pile->contacts, count, pile->rows, pile->turns, pile->w);
-    else
-        imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
-    return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
-}
-
-/* The greatest velocity that contacts have without impulses, m/s. */
-static double fastest_of(const imp_pile *pile, int count)
-{
-    double most = 0;
-    for (int i = 0; i < pile->width * count; i++) {
-        const imp_cone_lengths *own = &pile->lengths[i / pile->width];
-        const int k = i % pile->width;
-        most = fmax(most, fabs(pile->q[i]) * (k < 3 ? 1 : k == 3 ? own->torsional : own->rolling));
-    }
-    return most;
-}
-
-/* Few contacts in their own space, to rounding; many in that of the bodies, and where that leaves what counts in the
- * step's error in the other again, if they are not too many for that. */
-static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, int count, double h)
-{
-    if (count <= IMP_PILE_FEW) return by_contacts(pile, world, count);
-    imp_cone_find_rows(world, pile->middle, pile->contacts, count, pile->rows);
-    if (pile->width > 3) imp_cone_find_turns(world, pile->middle, pile->contacts, count, pile->turns);
-    const int bodies = number_bodies(pile, world, count);
-    const imp_cone_problem problem = problem_of(pile, count);
-    const imp_cone_outcome quick = imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, pile->turns,
-                                                         pile->number, bodies, &problem, pile->r, pile->u);
-    const bool counts = !(quick.residual <= IMP_PILE_USABLE && h * quick.residual * fastest_of(pile, count) <=
-                                                                   0.1 * IMP_PILE_ERROR * imp_pile_smallest(world));
-    const bool answered = quick.status != IMP_CONE_BAD && quick.status != IMP_CONE_NO_ROOM;
-    return counts && answered && count <= IMP_PILE_DENSE ? by_contacts(pile, world, count) : quick;
-}
-
 /* What friction takes over the step, where its impulse meets the slip of before and after it half each. */
 static double rubbed(const imp_pile *pile, int count)
 {
@@ -183,9 +118,40 @@ static double lead_of(const imp_pile *pile, int c, double lead[6])
     return mobility_of(pile, c) * hypot(r[1], r[2]) * hypot(lead[1], lead[2]) / slip;
 }
 
-/* Friction acts along the slip of the step's middle where that turns: found from the slip at its end. */
-static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, int count, double h, imp_cone_outcome first)
+/* How fast the fastest of the island's bodies goes, m/s. */
+static double fastest_body(const imp_pile *pile, const imp_world *world, const imp_state *states, int count)
 {
+    double most = 0;
+    for (int c = 0; c < count; c++) {
+        const int own[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
+        for (int k = 0; k < 2; k++) {
+            const imp_body *body = &world->bodies[own[k]];
+            if (body->is_static) continue;
+            const double turning = body->radius * qvec3_norm(imp_omega(body, &states[own[k]]));
+            most = fmax(most, qvec3_norm(states[own[k]].v) + turning);
+        }
+    }
+    return most;
+}
+
+/* What the residual of the impulses makes of the step's error may be a part of what that may be. */
+static imp_pile_question question_of(const imp_pile *pile, const imp_world *world, const imp_state *states, int count,
+                                     double h)
+{
+    const double fastest = imp_pile_fastest(pile, count) + 1e-300,
+                 error = IMP_PILE_RESIDUAL * IMP_PILE_ERROR * imp_pile_smallest(world) / h,
+                 still = IMP_PILE_STILL * fastest_body(pile, world, states, count);
+    return (imp_pile_question){.count = count,
+                               .recalls = true,
+                               .enough = fmin(fmin(error, still) / fastest, IMP_PILE_USABLE),
+                               .usable = fmin(error / fastest, IMP_PILE_USABLE)};
+}
+
+/* Friction acts along the slip of the step's middle where that turns: found from the slip at its end. */
+static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, const imp_pile_question *question, double h,
+                                    imp_cone_outcome first)
+{
+    const int count = question->count;
     const size_t size = (size_t)(pile->width * count);
     const double natural = imp_pile_natural_time(world, pile->middle);
     double most = 0, lead[6];
@@ -197,7 +163,7 @@ static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, int 
     }
     memcpy(pile->last_r, pile->r, size * sizeof *pile->r);
     for (size_t i = 0; i < size; i++) pile->q[i] += pile->lead[i], pile->last_u[i] = pile->u[i] + pile->lead[i];
-    const imp_cone_outcome second = find_impulses(pile, world, count, h);
+    const imp_cone_outcome second = imp_pile_solve(pile, world, question);
     for (size_t i = 0; i < size; i++) pile->u[i] -= pile->lead[i];
     return second;
 }
@@ -212,8 +178,9 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
                                                                        pile->before);
     add_bends(pile, world, states, count, h);
     const bool smooth = recall_step(pile, world, count, h);
-    imp_cone_outcome outcome = find_impulses(pile, world, count, h);
-    if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, count, h, outcome);
+    const imp_pile_question question = question_of(pile, world, states, count, h);
+    imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
+    if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, &question, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
@@ -221,7 +188,7 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
         return IMPACT_EUNSETTLED;
     }
     (turning ? imp_cone_push_turning : imp_cone_push)(world, pile->contacts, count, pile->r, next);
-    result->error += h * outcome.residual * fastest_of(pile, count);
+    result->error += h * outcome.residual * imp_pile_fastest(pile, count);
     if (!remember_step(pile, &pile->memory[2], count, h)) return IMPACT_ENOMEM;
     result->drive_work += drive_work(pile, world, count);
     result->sliding += rubbed(pile, count);

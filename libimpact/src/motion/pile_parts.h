@@ -23,6 +23,19 @@ void imp_pile_drift(const imp_world *world, const imp_state *velocities, double 
 /* The points of the next island to the front of the arrays, with their gaps; how many. */
 int imp_pile_gather_island(imp_pile *pile, const imp_world *world);
 
+/* A cone problem of the island at hand: pile->q, friction, contacts, places in pile->middle. */
+typedef struct imp_pile_question {
+    int count;
+    bool recalls;          /* pile->last_r and last_u are a start */
+    double enough, usable; /* residuals: that does; up to which no other way is tried */
+} imp_pile_question;
+
+/* Into pile->r and u. */
+imp_cone_outcome imp_pile_solve(imp_pile *pile, const imp_world *world, const imp_pile_question *question);
+
+/* The greatest velocity that contacts have without impulses, pile->q, m/s. */
+double imp_pile_fastest(const imp_pile *pile, int count);
+
 /* The vector whose parts along the contact's axes these are, over the divisor. */
 qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, double divisor);
 

@@ -54,15 +54,15 @@ static void push_together(imp_pile *pile, imp_world *world, int count, double sl
 }
 
 /* Impulses of displacement along the normals, that part what overlaps: a cone problem without friction. */
-static void part_overlaps(imp_pile *pile, const imp_world *world, const imp_state *states, int count)
+static void part_overlaps(imp_pile *pile, const imp_world *world, int count)
 {
-    imp_cone_assemble(world, states, pile->contacts, count, pile->rows, pile->w);
+    const imp_pile_question question = {.count = count, .usable = IMP_BODIES_ACCEPTED};
+    pile->width = 3;
     memset(pile->q, 0, sizeof *pile->q * 3 * (size_t)count);
     for (int c = 0; c < count; c++) pile->q[3 * c] = pile->gap[c], pile->friction[c] = 0;
-    const imp_cone_problem problem = {.count = count, .w = pile->w, .q = pile->q, .friction = pile->friction};
-    const imp_cone_outcome outcome = imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
-    if (outcome.status != IMP_CONE_SOLVED && outcome.status != IMP_CONE_INEXACT)
-        memset(pile->r, 0, sizeof *pile->r * 3 * (size_t)count);
+    const imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
+    if (outcome.status == IMP_CONE_SOLVED || outcome.status == IMP_CONE_INEXACT)
+        imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
 }
 
 /* Moves bodies along normals, least in the metric of mass: what is held to gap zero, where that can be; then overlaps
@@ -77,11 +77,11 @@ impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_s
         memcpy(pile->middle, states, sizeof *states * (size_t)world->body_count);
         for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
         for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
-            (pass == 0 ? close_gaps : part_overlaps)(pile, world, states, count);
-            if (pass == 0)
+            if (pass == 0) {
+                close_gaps(pile, world, states, count);
                 push_together(pile, world, count, slack);
-            else
-                imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
+            } else
+                part_overlaps(pile, world, count);
         }
         imp_pile_drift(world, pile->middle, 1, states);
     }

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The cone problem of an island's impulses. Few contacts in their own space, to rounding; many in that of the bodies,
+ * and where that leaves what counts in the other again, if they are not too many for that.
+ */
+#include "motion/pile_parts.h"
+#include "base/tolerances.h"
+
+/* The island's bodies by numbers of their own, from 0; how many move. */
+static int number_bodies(imp_pile *pile, const imp_world *world, int count)
+{
+    int bodies = 0;
+    for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
+    for (int c = 0; c < count; c++) {
+        const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
+        for (int k = 0; k < 2; k++)
+            if (!world->bodies[body[k]].is_static && pile->number[body[k]] < 0) pile->number[body[k]] = bodies++;
+    }
+    return bodies;
+}
+
+/* W is there for by_contacts alone. */
+static imp_cone_problem problem_of(const imp_pile *pile, const imp_pile_question *question)
+{
+    return (imp_cone_problem){.count = question->count,
+                              .w = pile->w,
+                              .q = pile->q,
+                              .friction = pile->friction,
+                              .lengths = pile->width > 3 ? pile->lengths : NULL,
+                              .last_r = question->recalls ? pile->last_r : NULL,
+                              .last_u = question->recalls ? pile->last_u : NULL,
+                              .enough = question->enough,
+                              .brief = true};
+}
+
+static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
+{
+    const imp_cone_problem problem = problem_of(pile, question);
+    if (pile->width > 3)
+        imp_cone_assemble_turning(world, pile->middle, pile->contacts, problem.count, pile->rows, pile->turns, pile->w);
+    else
+        imp_cone_assemble(world, pile->middle, pile->contacts, problem.count, pile->rows, pile->w);
+    return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
+}
+
+static imp_cone_outcome by_bodies(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
+{
+    const imp_cone_problem problem = problem_of(pile, question);
+    imp_cone_find_rows(world, pile->middle, pile->contacts, problem.count, pile->rows);
+    if (pile->width > 3) imp_cone_find_turns(world, pile->middle, pile->contacts, problem.count, pile->turns);
+    const int bodies = number_bodies(pile, world, problem.count);
+    return imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, pile->turns, pile->number, bodies,
+                                 &problem, pile->r, pile->u);
+}
+
+double imp_pile_fastest(const imp_pile *pile, int count)
+{
+    double most = 0;
+    for (int i = 0; i < pile->width * count; i++) {
+        const imp_cone_lengths *own = &pile->lengths[i / pile->width];
+        const int k = i % pile->width;
+        most = fmax(most, fabs(pile->q[i]) * (k < 3 ? 1 : k == 3 ? own->torsional : own->rolling));
+    }
+    return most;
+}
+
+imp_cone_outcome imp_pile_solve(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
+{
+    if (question->count <= IMP_PILE_FEW) return by_contacts(pile, world, question);
+    const imp_cone_outcome quick = by_bodies(pile, world, question);
+    const bool answered = quick.status != IMP_CONE_BAD && quick.status != IMP_CONE_NO_ROOM;
+    if (!answered || quick.residual <= question->usable || question->count > IMP_PILE_DENSE) return quick;
+    return by_contacts(pile, world, question);
+}
