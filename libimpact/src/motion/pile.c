@@ -56,7 +56,11 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
                               false) ||
         !imp_pile_reserve_contacts(pile, world, pile->touching.count))
         return IMPACT_ENOMEM;
-    imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[1]);
+    imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[1], IMP_PILE_BEFORE);
+    if (pile->halved) {
+        imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[4], IMP_PILE_HALF);
+        imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[3], IMP_PILE_END);
+    }
     for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
         const impact_status status = imp_pile_answer(pile, world, pile->middle, count, h, to, result);
         if (status != IMPACT_OK) return status;
@@ -117,21 +121,37 @@ double imp_pile_natural_time(const imp_world *world, const imp_state *states)
     return size / (sqrt(g * size) + (g > 0 ? 0 : speed) + 1e-300);
 }
 
-static impact_status try_step(imp_pile *pile, imp_world *world, double t, double h, const imp_state *states,
-                              imp_pile_step_result *result)
+/* The step in two halves, and whole; there: the whole was found, as the first half of one tried before. halfway: the
+ * first half is found. */
+static impact_status try_step(imp_pile *pile, imp_world *world, double t, double h, const imp_state *states, bool there,
+                              bool *halfway, imp_pile_step_result *result)
 {
     imp_pile_step_result scratch = {.taken = 0};
+    imp_pile_memories *memory = pile->memory;
     *result = (imp_pile_step_result){.taken = h};
-    if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0])) return IMPACT_ENOMEM;
+    if (!imp_pile_copy_memories(pile->arena, &memory[1], &memory[0])) return IMPACT_ENOMEM;
     impact_status status = step_once(pile, world, t, 0.5 * h, states, pile->half, result);
-    if (status == IMPACT_OK) status = step_once(pile, world, t + 0.5 * h, 0.5 * h, pile->half, pile->end, result);
+    *halfway = status == IMPACT_OK;
     if (status != IMPACT_OK) return status;
-    if (!imp_pile_copy_memories(pile->arena, &pile->memory[3], &pile->memory[1]) ||
-        !imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0]))
+    if (!imp_pile_copy_memories(pile->arena, &memory[4], &memory[1])) return IMPACT_ENOMEM;
+    status = step_once(pile, world, t + 0.5 * h, 0.5 * h, pile->half, pile->end, result);
+    if (status != IMPACT_OK) return status;
+    if (!imp_pile_copy_memories(pile->arena, &memory[3], &memory[1]) ||
+        !imp_pile_copy_memories(pile->arena, &memory[1], &memory[0]))
         return IMPACT_ENOMEM;
-    status = step_once(pile, world, t, h, states, pile->whole, &scratch);
+    pile->halved = true;
+    if (!there) status = step_once(pile, world, t, h, states, pile->whole, &scratch);
+    pile->halved = false;
     result->error += apart(world, pile->whole, pile->end);
     return status;
+}
+
+/* Half as long: whole it is the first half of the step before, where that was found. */
+static bool keep_first_half(imp_pile *pile, bool halfway)
+{
+    imp_state *whole = pile->whole;
+    if (halfway) pile->whole = pile->half, pile->half = whole;
+    return halfway;
 }
 
 /* What touches at the first step and does not approach is held from there: it does not come to touch within the step.
@@ -163,10 +183,11 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     if (!(pile->step > 0)) pile->step = IMP_PILE_FIRST * natural;
     double h = fmin(most, fmin(pile->step, IMP_PILE_LONGEST * natural));
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
-    if (status == IMPACT_OK) status = try_step(pile, world, t, h, states, result);
+    bool halfway = false;
+    if (status == IMPACT_OK) status = try_step(pile, world, t, h, states, false, &halfway, result);
     while (h > least && (status == IMPACT_EUNSETTLED || (status == IMPACT_OK && result->error > wanted))) {
         h *= 0.5;
-        status = try_step(pile, world, t, h, states, result);
+        status = try_step(pile, world, t, h, states, keep_first_half(pile, halfway), &halfway, result);
     }
     if (status != IMPACT_OK) return status;
     memcpy(states, pile->end, sizeof *states * (size_t)world->body_count);

@@ -40,8 +40,10 @@ typedef struct imp_pile {
     imp_state *middle, *mean, *whole, *half, *end;
     imp_load *loads;
     imp_pile_contacts touching;
-    /* as the accepted step left them, those before the step at hand, what it leaves, and what the two halves left */
-    imp_pile_memories memory[4];
+    /* as the accepted step left them, those before the step at hand, what it leaves, what the second half of a step
+     * tried left, and the first */
+    imp_pile_memories memory[5];
+    bool halved; /* the step at hand is whole, its halves done */
     int contacts_most; /* there is room for in: */
     imp_cone_contact *contacts;
     int *members, *pivots; /* members: the points' numbers in `touching` */

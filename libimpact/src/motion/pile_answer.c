@@ -19,21 +19,38 @@ qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, 
     return v;
 }
 
-/* What is remembered of the contacts, along their axes; whether none of the others is approached. One that was open
- * begins open, and bounces off what it approaches at the velocities pile->before. What is held does not bounce. */
+static const imp_pile_memory *remembered(const imp_pile *pile, const imp_pile_point *point, imp_pile_recalled from)
+{
+    static const int of[IMP_PILE_RECALLS] = {[IMP_PILE_BEFORE] = 1, [IMP_PILE_HALF] = 4, [IMP_PILE_END] = 3};
+    return point->memory[from] < 0 ? NULL : &pile->memory[of[from]].list[point->memory[from]];
+}
+
+/* Adds the contact's impulses of h, and has its velocities at the end. */
+static void recall_part(imp_pile *pile, const imp_pile_memory *m, int c, double h)
+{
+    const int i = pile->width * c;
+    double impulses[6];
+    if (!m) return;
+    parts_of(&pile->contacts[c], m->reaction, m->moment, pile->width, h, impulses);
+    parts_of(&pile->contacts[c], m->velocity, m->turning, pile->width, 1, &pile->last_u[i]);
+    for (int k = 0; k < pile->width; k++) pile->last_r[i + k] += impulses[k];
+}
+
+/* Where the impulses may begin: of a whole step as its halves' sum, else as before the step. A contact that was open
+ * before it bounces off what it approaches at the velocities pile->before; what is held does not. Whether none does. */
 static bool recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
     bool smooth = true;
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
-        const imp_pile_memory *m = point->memory < 0 ? NULL : &pile->memory[1].list[point->memory];
+        const imp_pile_memory *before = remembered(pile, point, IMP_PILE_BEFORE);
         const int i = pile->width * c;
-        if (!m) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
-        for (int k = 0; !m && k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
-        smooth = smooth && (m || pile->before[i] >= 0);
-        if (!m) continue;
-        parts_of(&pile->contacts[c], m->reaction, m->moment, pile->width, h, &pile->last_r[i]);
-        parts_of(&pile->contacts[c], m->velocity, m->turning, pile->width, 1, &pile->last_u[i]);
+        if (!before) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
+        smooth = smooth && (before || pile->before[i] >= 0);
+        for (int k = 0; k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
+        if (!pile->halved) recall_part(pile, before, c, h);
+        recall_part(pile, remembered(pile, point, IMP_PILE_HALF), c, 0.5 * h);
+        recall_part(pile, remembered(pile, point, IMP_PILE_END), c, 0.5 * h);
     }
     return smooth;
 }

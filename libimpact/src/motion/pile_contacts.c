@@ -49,7 +49,7 @@ static bool add_point(imp_pile_contacts *contacts, const imp_world *world, int p
                                         .arm1 = point->contact.offset1,
                                         .arm2 = point->contact.offset2},
                             .gap = point->contact.gap,
-                            .memory = -1};
+                            .memory = {-1, -1, -1}};
     imp_cone_find_axes(point->contact.normal, own->contact.axes);
     if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)
         contacts->root[root_of(contacts->root, pair->body1)] = root_of(contacts->root, pair->body2);
@@ -134,16 +134,16 @@ static int nearest_memory(const imp_pile_memories *memories, const imp_pile_poin
 }
 
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
-                     imp_pile_memories *memories)
+                     imp_pile_memories *memories, imp_pile_recalled from)
 {
     for (int k = 0; k < memories->count; k++) memories->list[k].taken = false;
     for (int alike = 1; alike >= 0; alike--)
         for (int i = 0; i < contacts->count; i++) {
             imp_pile_point *point = &contacts->points[i];
-            if (point->memory >= 0) continue;
+            if (point->memory[from] >= 0) continue;
             const double far = alike ? INFINITY : h * fastest(world, &world->pairs[point->pair], states);
-            point->memory = nearest_memory(memories, point, far, alike);
-            if (point->memory >= 0) memories->list[point->memory].taken = true;
+            const int found = point->memory[from] = nearest_memory(memories, point, far, alike);
+            if (found >= 0) memories->list[found].taken = true;
         }
 }
 

@@ -8,6 +8,9 @@
 #include "contact/cone_assemble.h"
 #include "contact/points.h"
 
+/* What a point is remembered from: what was held before the step; of a whole step, its two halves. */
+typedef enum imp_pile_recalled { IMP_PILE_BEFORE, IMP_PILE_HALF, IMP_PILE_END, IMP_PILE_RECALLS } imp_pile_recalled;
+
 /* A point at which two bodies touch. */
 typedef struct imp_pile_point {
     int pair;
@@ -15,8 +18,8 @@ typedef struct imp_pile_point {
     imp_bearer bearer;
     imp_cone_contact contact;
     double gap; /* m */
-    int memory; /* what is remembered of it, imp_pile_recall; -1: nothing */
-    bool taken; /* scratch: it is an island's */
+    int memory[IMP_PILE_RECALLS]; /* what is remembered of it, imp_pile_recall; -1: nothing */
+    bool taken;                   /* scratch: it is an island's */
 } imp_pile_point;
 
 /* What a step held there; world axes. */
@@ -64,7 +67,7 @@ int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, in
  * as far as points of the pair move in h at the velocities of the states: on a border a point has the features of one
  * side or the other, and is held whichever. */
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
-                     imp_pile_memories *memories);
+                     imp_pile_memories *memories, imp_pile_recalled from);
 
 /* One more; NULL: there is no room. */
 imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point);

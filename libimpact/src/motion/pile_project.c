@@ -13,8 +13,8 @@ static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states,
     for (int k = 0; k < pile->memory[0].count; k++) apart = fmax(apart, 2 * pile->memory[0].list[k].gap);
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
-    imp_pile_recall(touching, world, states, h, &pile->memory[0]);
-    for (int k = 0; k < touching->count; k++) touching->points[k].taken = touching->points[k].memory < 0;
+    imp_pile_recall(touching, world, states, h, &pile->memory[0], IMP_PILE_BEFORE);
+    for (int k = 0; k < touching->count; k++) touching->points[k].taken = touching->points[k].memory[IMP_PILE_BEFORE] < 0;
     return true;
 }
 
@@ -56,7 +56,7 @@ static void push_together(imp_pile *pile, imp_world *world, int count, double sl
 /* Impulses of displacement along the normals, that part what overlaps: a cone problem without friction. */
 static void part_overlaps(imp_pile *pile, const imp_world *world, int count)
 {
-    const imp_pile_question question = {.count = count, .usable = IMP_BODIES_ACCEPTED};
+    const imp_pile_question question = {.count = count, .usable = IMP_PILE_USABLE};
     pile->width = 3;
     memset(pile->q, 0, sizeof *pile->q * 3 * (size_t)count);
     for (int c = 0; c < count; c++) pile->q[3 * c] = pile->gap[c], pile->friction[c] = 0;
