@@ -43,7 +43,7 @@ typedef struct imp_pile {
     /* as the accepted step left them, those before the step at hand, what it leaves, what the second half of a step
      * tried left, and the first */
     imp_pile_memories memory[5];
-    bool halved; /* the step at hand is whole, its halves done */
+    bool halved;       /* the step at hand is whole, its halves done */
     int contacts_most; /* there is room for in: */
     imp_cone_contact *contacts;
     int *members, *pivots; /* members: the points' numbers in `touching` */

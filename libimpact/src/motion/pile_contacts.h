@@ -17,7 +17,7 @@ typedef struct imp_pile_point {
     impact_feature feature[2];
     imp_bearer bearer;
     imp_cone_contact contact;
-    double gap; /* m */
+    double gap;                   /* m */
     int memory[IMP_PILE_RECALLS]; /* what is remembered of it, imp_pile_recall; -1: nothing */
     bool taken;                   /* scratch: it is an island's */
 } imp_pile_point;

@@ -14,7 +14,8 @@ static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states,
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
     imp_pile_recall(touching, world, states, h, &pile->memory[0], IMP_PILE_BEFORE);
-    for (int k = 0; k < touching->count; k++) touching->points[k].taken = touching->points[k].memory[IMP_PILE_BEFORE] < 0;
+    for (int k = 0; k < touching->count; k++)
+        touching->points[k].taken = touching->points[k].memory[IMP_PILE_BEFORE] < 0;
     return true;
 }
 
