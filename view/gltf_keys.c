@@ -10,7 +10,7 @@
 /* s: Blender takes keys within a hundredth of a frame of each other as one: at 24 frames a second. */
 static const double least_step = 4.2e-4;
 
-/* rad: two keys further apart could be joined the wrong way round. */
+/* rad: two keys further apart could be joined the wrong way round, and whole turns between them be missed. */
 static const double widest_turn = 1;
 
 typedef struct keys {
@@ -27,7 +27,7 @@ static imp_gltf_key key_at(const keys *k, double t)
 {
     impact_sample s = {0};
     impact_run_state(k->run, k->body, t, &s);
-    return (imp_gltf_key){t, s.position, s.orientation};
+    return (imp_gltf_key){t, s.position, s.orientation, qvec3_norm(s.omega)};
 }
 
 static void add(keys *k, imp_gltf_key key)
@@ -41,7 +41,7 @@ static void add(keys *k, imp_gltf_key key)
 
 static bool meets(const keys *k, const imp_gltf_key *a, const imp_gltf_key *b)
 {
-    if (quat_distance(a->q, b->q) > widest_turn) return false;
+    if (quat_distance(a->q, b->q) > widest_turn || fmax(a->turn, b->turn) * (b->t - a->t) > widest_turn) return false;
     for (int i = 1; i < 4; i++) {
         const double s = 0.25 * i;
         const imp_gltf_key there = key_at(k, a->t + s * (b->t - a->t));
@@ -77,7 +77,8 @@ imp_gltf_key *imp_gltf_keys(imp_arena *arena, const impact_run *run, int body, d
         impact_key before, key;
         impact_run_key(run, body, i - 1, &before);
         impact_run_key(run, body, i, &key);
-        if (key.t != before.t || key.t < last.t + least_step || key.t > end - least_step) continue;
+        const bool turns = key.t == before.t || before.form != IMPACT_KEY_QUINTIC;
+        if (!turns || key.t < last.t + least_step || key.t > end - least_step) continue;
         const imp_gltf_key next = key_at(&k, key.t);
         halve(&k, last, next);
         last = next;

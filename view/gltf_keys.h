@@ -11,7 +11,8 @@
 typedef struct imp_gltf_key {
     double t;
     qvec3 x;
-    quat q; /* next to its neighbours': their dot products are positive */
+    quat q;      /* next to its neighbours': their dot products are positive */
+    double turn; /* rad/s */
 } imp_gltf_key;
 
 /* Keys of the body, in a block of the arena: lines and slerp between them meet the record within tolerance times the

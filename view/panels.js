@@ -61,9 +61,7 @@ function makePanels(run, scene, page) {
     [[okabeIto[0], [1, 0, 0], 'q1'], [okabeIto[2], [0, 1, 0], 'q2'], [okabeIto[1], [0, 0, 1], 'q3']].forEach(([c, e, name]) => {
       path([[0, 0, 0], e], c, 1.5); d.setLineDash([]); d.fillStyle = hue(ink, c); d.textAlign = 'left'; d.fillText(name, P(e)[0] + 4, P(e)[1] - 3);
     });
-    const list = run.bodies[body].list, turns = [];
-    for (let k = 0; k + 1 < list.length; k++) for (let s = 0; s < 6; s++) turns.push(list[k].t + (list[k + 1].t - list[k].t) * s / 6);
-    turns.push(list[list.length - 1].t);
+    const turns = run.times(body);
     const step = Math.max(1, Math.ceil(turns.length / 4000)), color = scene.color(body);
     let part = [], negative = null;
     const end = late => { if (part.length > 1) { d.globalAlpha = late ? 0.3 : 1; path(part, color, 2.2, negative ? [4, 3] : []); d.globalAlpha = 1; } };

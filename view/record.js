@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A recorded run as a source: { head, bodies, begin, end, events, contacts, account, state(body, t, before) } (docs/run.md).
+// A recorded run as a source: { head, bodies, begin, end, events, contacts, account, state(body, t, before), times(body) } (docs/run.md).
 function openRecord(bytes) {
   const end = bytes.indexOf(10) + 1;
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
@@ -14,7 +14,13 @@ function openRecord(bytes) {
   const key = row => {
     const q = keys.list(row, Q), w = keys.list(row, ['wx', 'wy', 'wz']), dw = keys.list(row, ['dwx', 'dwy', 'dwz']), q1 = rate(w, q);
     return { t: keys.get(row, 't'), x: keys.list(row, X), v: keys.list(row, ['vx', 'vy', 'vz']), a: keys.list(row, ['ax', 'ay', 'az']),
-      q, w, q1, q2: add(rate(dw, q), rate(w, q1)) };
+      q, w, q1, q2: add(rate(dw, q), rate(w, q1)), dw, form: head.forms[keys.get(row, 'form')] };
+  };
+  // What one key says alone: a parabola, turned about one axis.
+  const steady = (k, T) => {
+    const turn = scale(add(k.w, scale(k.dw, T / 2)), T), angle = norm(turn), s = angle > 0 ? Math.sin(angle / 2) / angle : 0.5;
+    return { x: add(k.x, scale(add(k.v, scale(k.a, T / 2)), T)), v: add(k.v, scale(k.a, T)), w: add(k.w, scale(k.dw, T)),
+      q: unit(qmul([Math.cos(angle / 2), ...scale(turn, s)], k.q)) };
   };
   const bodies = head.bodies.map(b => {
     const list = Array.from({ length: b.keys[1] }, (_, i) => key(b.keys[0] + i));
@@ -39,11 +45,17 @@ function openRecord(bytes) {
     }
     const next = Math.max(low, 1), a = list[next - 1], b = list[next];
     if (!b || t <= a.t) return { x: a.x, q: a.q, v: a.v, w: a.w };
+    if (a.form === 'steady') return steady(a, t - a.t);
     if (t >= b.t) return { x: b.x, q: b.q, v: b.v, w: b.w };
     const h = b.t - a.t, s = (t - a.t) / h, [x, v] = quintic(a.x, a.v, a.a, b.x, b.v, b.a, h, s);
     const [p, dp] = quintic(a.q, a.q1, a.q2, b.q, b.q1, b.q2, h, s);
     return { x, v, q: unit(p), w: scale(qmul(dp, conj(p)).slice(1), 2 / dot(p, p)) };
   };
+  // Times by which a body's turning is drawn with straight lines: from key to key in parts of a tenth of a radian.
+  const times = i => bodies[i].list.flatMap((k, j, list) => {
+    const T = list[j + 1] ? list[j + 1].t - k.t : 0, turn = T * Math.max(norm(k.w), T > 0 ? norm(list[j + 1].w) : 0), parts = clamp(Math.ceil(10 * turn), 1, 4000);
+    return Array.from({ length: parts }, (_, s) => k.t + T * s / parts);
+  });
   const name = i => i < 0 ? '' : bodies[i].name;
   const events = Array.from({ length: tables.events.rows }, (_, row) => {
     const e = tables.events, n = e.list(row, N), [body1, body2, force] = e.list(row, ['body1', 'body2', 'force']);
@@ -66,6 +78,6 @@ function openRecord(bytes) {
   const A = tables.account, losses = ['damping_loss', 'sliding_loss', 'impact_loss'];
   const account = Array.from({ length: A.rows }, (_, row) => ({ t: A.get(row, 't'), E: A.get(row, 'kinetic') + A.get(row, 'potential'),
     kinetic: A.get(row, 'kinetic'), potential: A.get(row, 'potential'), losses: A.list(row, losses) }));
-  const times = bodies.flatMap(b => [b.list[0].t, b.list[b.list.length - 1].t]);
-  return { head, bodies, events, held, account, state, begin: Math.min(...times), end: Math.max(...times) };
+  const ends = bodies.flatMap(b => [b.list[0].t, b.list[b.list.length - 1].t]);
+  return { head, bodies, events, held, account, state, times, begin: Math.min(...ends), end: Math.max(...ends) };
 }

@@ -11,8 +11,7 @@ function makeScene(run, canvas) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], paths = new Map();
   run.bodies.forEach((b, i) => {
     if (b.kind === 'plane') return;
-    const fine = norm(b.trail) > 0 ? [0, 0.25, 0.5, 0.75] : [0], list = b.list, path = [], most = Math.max(2, Math.ceil(6000 / run.bodies.length));
-    const times = list.flatMap((k, j) => (list[j + 1] ? fine.map(s => k.t + s * (list[j + 1].t - k.t)) : [k.t]));
+    const path = [], most = Math.max(2, Math.ceil(6000 / run.bodies.length)), times = norm(b.trail) > 0 ? run.times(i) : b.list.map(k => k.t);
     for (let k = 0; k <= 400 && !b.static; k++) times.push(Math.min(run.begin + (run.end - run.begin) * k / 400, run.end));
     const some = times.sort((x, y) => x - y), step = Math.max(1, Math.ceil(some.length / most));
     some.forEach((t, k) => {

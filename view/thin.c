@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Of a body's keys the furthest is kept that the quintic from the last kept one reaches: there it meets the record at
- * every key between and in the middle of every interval, to three quarters of the tolerance. What jumps stays two keys
- * of one time. What is left of a number is what the last quarter needs: of a place so many metres u, of a velocity u/h,
- * of an acceleration u/h^2, h the longer of the intervals beside the key; the zeros behind it leave with the deflation.
+ * Keys of closed forms stay. Of others the furthest is kept that the quintic from the last kept one reaches: there it
+ * meets the record at every key between and in the middle of every interval, to three quarters of the tolerance. What
+ * jumps stays two keys of one time. What is left of a number is what the last quarter needs: of a place so many metres
+ * u, of a velocity u/h, of an acceleration u/h^2, h the longer of the intervals beside the key; the zeros behind it
+ * leave with the deflation.
  */
 #include "thin.h"
 #include "base/tolerances.h"
@@ -40,6 +41,7 @@ static bool reaches(const thinner *t, int body, long from, long to)
     const impact_key ends[2] = {imp_run_key(t->run, body, from), imp_run_key(t->run, body, to)};
     impact_key pair[2] = {ends[0]};
     for (long k = from + 1; k <= to; k++) {
+        if (pair[0].form != IMPACT_KEY_QUINTIC) return false;
         pair[1] = imp_run_key(t->run, body, k);
         const impact_key middle = imp_key_between(pair, 0.5 * (pair[0].t + pair[1].t));
         if (!meets_at(t, ends, &middle) || !meets_at(t, ends, &pair[1])) return false;
@@ -48,10 +50,16 @@ static bool reaches(const thinner *t, int body, long from, long to)
     return true;
 }
 
+static bool is_quintic(const thinner *t, int body, long key)
+{
+    return imp_run_key(t->run, body, key).form == IMPACT_KEY_QUINTIC;
+}
+
 /* By doubling, then by halving. */
 static long furthest(const thinner *t, int body, long from)
 {
     const long last = t->run->bodies[body].count - 1;
+    if (t->angle == 0 || !is_quintic(t, body, from)) return from + 1;
     long good = from + 1, bad = last + 1;
     for (long step = 2; from + step <= last && bad > last; step *= 2)
         *(reaches(t, body, from, from + step) ? &good : &bad) = from + step;
@@ -125,7 +133,7 @@ static void put_keys(imp_text *out, const thinner *t, int body)
         imp_run_row(t->run, IMP_RUN_KEYS, t->rows[k], v);
         if (k > t->first[body]) h = v[0] - time_of(t->run, t->rows[k - 1]);
         if (k + 1 < t->first[body + 1]) h = fmax(h, time_of(t->run, t->rows[k + 1]) - v[0]);
-        if (h > 0) shorten_key(v, place, angle, h);
+        if (h > 0 && angle > 0) shorten_key(v, place, angle, h);
         imp_text_put(out, v, sizeof v);
     }
 }
@@ -222,8 +230,8 @@ static void say_head(imp_text *out, const thinner *t, double tolerance)
             say_value(out, member);
         }
     }
-    say_key(out, "thinned", false);
-    imp_text_number(out, tolerance);
+    if (tolerance > 0) say_key(out, "thinned", false);
+    if (tolerance > 0) imp_text_number(out, tolerance);
     imp_text_say(out, "}");
     while (!out->failed && (out->size - from) % IMP_RUN_ALIGNMENT != IMP_RUN_ALIGNMENT - 1) imp_text_say(out, " ");
     imp_text_say(out, "\n");

@@ -13,7 +13,8 @@
 #define IMP_THIN_MOST 0.1
 
 /* Appends the record of the run with those keys alone that meet the motion to tolerance, a part of each body's size and
- * rad; events, contacts and the account are as they were. Its head has the tolerance as "thinned". */
+ * rad; events, contacts and the account are as they were. Its head has the tolerance as "thinned". With 0 all keys stay
+ * as they are. */
 impact_status imp_thin(imp_text *out, const impact_run *run, double tolerance);
 
 #endif

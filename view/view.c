@@ -5,6 +5,7 @@
  */
 #include "view.h"
 #include "deflate.h"
+#include "plain.h"
 #include "thin.h"
 
 #include <impact/view.h>
@@ -105,9 +106,15 @@ static impact_status write_page(imp_arena *arena, const impact_run *run, double 
                                 impact_quota *quota, char *message, unsigned long message_size)
 {
     size_t size;
-    imp_text page = {.arena = arena};
+    bool changed;
+    impact_run plain;
+    imp_text page = {.arena = arena}, whole = {.arena = arena};
     const void *bytes = impact_run_contents(run, &size);
-    impact_status status = make_page(&page, run, bytes, size);
+    impact_status status = imp_plain(arena, run, &plain, &changed);
+    if (status == IMPACT_OK && changed) status = imp_thin(&whole, &plain, 0), bytes = whole.bytes, size = whole.size;
+    if (status == IMPACT_OK) status = make_page(&page, run, bytes, size);
+    imp_text_free(&whole);
+    run = &plain;
     if (status == IMPACT_OK && page.size > pleasant_page) status = make_thin_page(&page, run, tolerance);
     if (status != IMPACT_OK) return out_of_memory(run, message, message_size);
     if (page.size > largest_page) return too_large(&page, run, tolerance, message, message_size);

@@ -5,6 +5,7 @@
 #include "impact_scene.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* ---- one row ---- */
 
@@ -64,6 +65,8 @@ void impact_lua_free_rows(lua_State *L, impact_lua_rows *rows)
     lua_Alloc allocate = lua_getallocf(L, &context);
     if (rows->samples) allocate(context, rows->samples, rows->sample_capacity * sizeof *rows->samples, 0);
     if (rows->events) allocate(context, rows->events, rows->event_capacity * sizeof *rows->events, 0);
+    if (rows->which) allocate(context, rows->which, rows->which_capacity * sizeof *rows->which, 0);
+    if (rows->phases) allocate(context, rows->phases, rows->phases_capacity * sizeof *rows->phases, 0);
     *rows = (impact_lua_rows){0};
 }
 
@@ -76,14 +79,31 @@ bool impact_lua_keep_sample(lua_State *L, impact_lua_rows *rows, const impact_sa
     return true;
 }
 
+/* The place of these words among the rows' phases; false when the memory is out. */
+static bool find_phases(lua_State *L, impact_lua_rows *rows, const char *words, unsigned *place)
+{
+    size_t k = 0;
+    while (k < rows->phases_count && strncmp(rows->phases[k].words, words, sizeof rows->phases[k].words - 1) != 0) k++;
+    *place = (unsigned)k;
+    if (k < rows->phases_count) return true;
+    void *array = rows->phases;
+    if (!grow(L, &array, rows->phases_count, &rows->phases_capacity, sizeof *rows->phases)) return false;
+    rows->phases = array;
+    snprintf(rows->phases[rows->phases_count++].words, sizeof rows->phases->words, "%s", words);
+    return true;
+}
+
 bool impact_lua_keep_event(lua_State *L, impact_lua_rows *rows, const impact_event *event)
 {
-    void *array = rows->events;
+    unsigned place;
+    if (!find_phases(L, rows, event->phases ? event->phases : "", &place)) return false;
+    void *array = rows->events, *which = rows->which;
     if (!grow(L, &array, rows->event_count, &rows->event_capacity, sizeof *rows->events)) return false;
     rows->events = array;
-    impact_lua_event *place = &rows->events[rows->event_count++];
-    place->event = *event;
-    snprintf(place->phases, sizeof place->phases, "%s", event->phases ? event->phases : "");
+    if (!grow(L, &which, rows->event_count, &rows->which_capacity, sizeof *rows->which)) return false;
+    rows->which = which;
+    rows->which[rows->event_count] = place;
+    rows->events[rows->event_count++] = *event;
     return true;
 }
 
@@ -145,7 +165,7 @@ void impact_lua_push_events(lua_State *L, const impact_lua_rows *rows)
     luaL_checkstack(L, 4, NULL);
     lua_createtable(L, (int)rows->event_count, 0);
     for (size_t i = 0; i < rows->event_count; i++) {
-        impact_lua_push_event(L, &rows->events[i].event, rows->events[i].phases);
+        impact_lua_push_event(L, &rows->events[i], rows->phases[rows->which[i]].words);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }

@@ -69,7 +69,8 @@ static bool on_sample(void *context, const impact_sample *sample)
     /* Long flights in closed form are all samples and no progress. */
     if (++self->samples_told % 1024 == 0 && !tell_host(self, sample->t, self->t_end)) return false;
     if (self->has_csv && !self->csv.sample(self->csv.context, sample)) return csv_fails(self);
-    if (self->record && !impact_lua_keep_sample(self->L, &self->rows, sample)) return self->record_failed = true, false;
+    if (self->keeps_rows && !impact_lua_keep_sample(self->L, &self->rows, sample))
+        return self->record_failed = true, false;
     return !self->sample_slot || call_script(self, call_with_sample, self->sample_slot, sample);
 }
 
@@ -79,9 +80,9 @@ static bool on_event(void *context, const impact_event *event)
     if (self->failed || self->stopped) return false;
     self->t_told = event->t;
     if (self->has_csv && !self->csv.event(self->csv.context, event)) return csv_fails(self);
-    if (self->record &&
-        !(impact_lua_keep_event(self->L, &self->rows, event) && self->keys.event(self->keys.context, event)))
+    if (self->keeps_rows && !impact_lua_keep_event(self->L, &self->rows, event))
         return self->record_failed = true, false;
+    if (self->record && !self->keys.event(self->keys.context, event)) return self->record_failed = true, false;
     return !self->event_slot || call_script(self, call_with_event, self->event_slot, event);
 }
 
@@ -188,7 +189,8 @@ static bool open_record(const quat_lua_reader *options, impact_lua_scene *self, 
     if (type != LUA_TNIL && type != LUA_TBOOLEAN && type != LUA_TSTRING)
         quat_lua_reader_error(options, "record must be true or the name of a file, got a %s", luaL_typename(L, -1));
     self->record = lua_toboolean(L, -1);
-    self->rows.asked = self->rows.asked || self->record;
+    self->keeps_rows = self->record && quat_lua_get_boolean(options, "rows", true);
+    self->rows.asked = self->rows.asked || self->keeps_rows;
     if (self->record && !self->writer && impact_run_create(self->scene, &self->writer, message, size) < 0) return false;
     if (self->record) self->keys = impact_run_recorder(self->writer);
     if (type == LUA_TSTRING)
@@ -302,7 +304,7 @@ static impact_status run_and_save(impact_lua_scene *self, const impact_recorder 
 
 int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index, impact_event *event)
 {
-    static const char *const keys[] = {"csv", "record", "on_sample", "on_event", "on_progress", NULL};
+    static const char *const keys[] = {"csv", "record", "rows", "on_sample", "on_event", "on_progress", NULL};
     impact_csv *csv = NULL;
     if (lua_isnoneornil(L, options_index)) {
         lua_settop(L, options_index - 1);

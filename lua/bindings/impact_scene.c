@@ -234,7 +234,8 @@ static int scene_events(lua_State *L)
 /* record(): the recorded run, for any time. */
 static int scene_record(lua_State *L)
 {
-    const impact_lua_scene *self = recorded_scene(L);
+    const impact_lua_scene *self = impact_lua_check_scene(L);
+    if (!self->writer) quat_lua_error(L, "scene '%s' has no record: run it with record = true", self->name);
     char message[200] = "";
     const void *bytes;
     size_t size;

@@ -14,19 +14,22 @@
 /* The user values of a scene userdata. */
 enum { IMPACT_LUA_DEFINITION = 1, IMPACT_LUA_LAWS = 2, IMPACT_LUA_HULLS = 3 };
 
-/* An event with its words copied. */
-typedef struct impact_lua_event {
-    impact_event event; /* its phases point nowhere: see below */
-    char phases[160];
-} impact_lua_event;
+/* The phases of events, each word for word once. */
+typedef struct impact_lua_phases {
+    char words[160];
+} impact_lua_phases;
 
 /* What scene:run{record=true} keeps. */
 typedef struct impact_lua_rows {
     bool asked; /* some run was to keep rows */
     impact_sample *samples;
     size_t sample_count, sample_capacity;
-    impact_lua_event *events;
+    impact_event *events; /* their phases point nowhere: those of event i are phases[which[i]] */
     size_t event_count, event_capacity;
+    unsigned *which;
+    size_t which_capacity;
+    impact_lua_phases *phases;
+    size_t phases_count, phases_capacity;
 } impact_lua_rows;
 
 /* The places of an entry of the table of laws. The script sees the state; what is written into it at each call stands
@@ -69,7 +72,7 @@ typedef struct impact_lua_scene {
     double t_end, t_told; /* of the run; of the last row */
     int files_slot;       /* the names of the files of a run that ends early; nil without CSV */
     unsigned long samples_told;
-    bool record;
+    bool record, keeps_rows;
     bool has_csv;
     impact_recorder csv;
     impact_run_writer *writer; /* of all runs with record */

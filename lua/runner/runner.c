@@ -112,12 +112,12 @@ static void choose_name(lua_State *L, int scene, const impact_runner *runner, ch
         luaL_error(L, "%s: the scene's name '%s' names the files: it must be plain, without '/'", runner->script, name);
 }
 
-/* scene:run{csv = name, record = NAME.run, or whether it has a plot}; an exit code. Pushes the reason it ended. */
+/* scene:run{csv = name, record = NAME.run, or whether it has a plot, rows = whether it has}; an exit code. Pushes the reason it ended. */
 static int run_scene(lua_State *L, int scene, impact_runner *runner, const char *name, bool plot)
 {
     lua_getfield(L, scene, "run");
     lua_pushvalue(L, scene);
-    lua_createtable(L, 0, 2);
+    lua_createtable(L, 0, 3);
     lua_pushstring(L, name);
     lua_setfield(L, -2, "csv");
     if (runner->record)
@@ -125,6 +125,8 @@ static int run_scene(lua_State *L, int scene, impact_runner *runner, const char 
     else
         lua_pushboolean(L, plot || runner->verify);
     lua_setfield(L, -2, "record");
+    lua_pushboolean(L, plot || runner->verify);
+    lua_setfield(L, -2, "rows");
     lua_call(L, 2, 3);
     clear_progress(runner);
     if (!lua_isnil(L, -3) && strcmp(lua_tostring(L, -3), "event limit") == 0)

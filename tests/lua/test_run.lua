@@ -108,7 +108,7 @@ local page = arg[3] and io.open(arg[3] .. "/run.md")
 if page and runner.shell("python3 -c 'import numpy' 2>/dev/null") == 0 then
   local lines = page:read("a"):match("```python\n(.-)```")
   runner.write("read.py", lines:gsub("sphere_wall%.run", "drop.run") ..
-    "\nimport sys\nball = head['bodies'][1]['keys']\nrow = keys[ball[0]]\nassert len(row) == 20 and row[3] == 1.3 and row[16] == -10, row\n")
+    "\nimport sys\nball = head['bodies'][1]['keys']\nrow = keys[ball[0]]\nassert len(row) == 21 and row[20] == head['forms'].index('steady') and row[3] == 1.3 and row[16] == -10, row\n")
   check.equal(runner.shell("cd " .. runner.quote(runner.folder) .. " && python3 read.py"), 0)
 else
   print("run: no Python with numpy: its lines are not tried")

@@ -52,9 +52,19 @@ typedef struct impact_event {
     long encounter; /* impacts that were answered together share a number, 1, 2, ...; 0: it was answered alone */
 } impact_event;
 
-/* One body where its trajectory is pinned: between two keys no event touches it, and its place and orientation are the
- * quintic Hermite polynomials of both keys (run.h), to the scene's key_tolerance. Of each body they come in order of
- * time; two of one t stand before and after an event. SI, world frame. */
+/* What a body does from one of its keys to the next, T after the key. */
+typedef enum impact_key_form {
+    IMPACT_KEY_QUINTIC, /* the quintic Hermite polynomials of both keys, to the scene's key_tolerance (docs/run.md) */
+    IMPACT_KEY_STEADY,  /* x + v T + a T^2/2, turned by omega T + alpha T^2/2, alpha along omega: by this key alone */
+    IMPACT_KEY_FREE     /* flight with the body's own moments and damping, of which this key is the start */
+} impact_key_form;
+
+/* The lower-case word for it; never NULL. */
+IMPACT_API const char *impact_key_form_name(impact_key_form form);
+
+/* One body where its trajectory is pinned: until the next key no event touches it, and it moves by this one's form. Of
+ * each body they come in order of time; two of one t stand before and after an event, where the motion before has no
+ * closed form. SI, world frame. */
 typedef struct impact_key {
     double t;
     int body;
@@ -62,6 +72,7 @@ typedef struct impact_key {
     quat orientation; /* unit; its sign is continuous along the run */
     qvec3 velocity, omega;
     qvec3 acceleration, alpha; /* their rates */
+    impact_key_form form;
 } impact_key;
 
 typedef enum impact_hold { IMPACT_HOLD_OPEN, IMPACT_HOLD_SLIP, IMPACT_HOLD_STICK } impact_hold;

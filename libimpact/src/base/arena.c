@@ -179,7 +179,7 @@ static header *new_block(imp_arena *arena, size_t class)
     return h;
 }
 
-/* A block of the class, its first `size` bytes zero. */
+/* A block of the class, of which `size` bytes are wanted. */
 static void *hand_out(imp_arena *arena, size_t class, size_t size)
 {
     header *h = arena->lists[class];
@@ -191,16 +191,22 @@ static void *hand_out(imp_arena *arena, size_t class, size_t size)
     *h = (header){NULL, class};
     arena->memory.used += class_size(class);
     if (arena->memory.used > arena->memory.most) arena->memory.most = arena->memory.used;
-    return memset(h + 1, 0, size);
+    return h + 1;
 }
 
-void *imp_arena_take(imp_arena *arena, size_t count, size_t size)
+void *imp_arena_take_unset(imp_arena *arena, size_t count, size_t size)
 {
     const size_t largest = SIZE_MAX / 8;
     const bool fits = size == 0 || count <= largest / size;
     void *block = fits ? hand_out(arena, class_of(count * size + STRIP), count * size) : NULL;
     if (!block) arena->memory.wanted = fits ? count * size : SIZE_MAX;
     return block;
+}
+
+void *imp_arena_take(imp_arena *arena, size_t count, size_t size)
+{
+    void *block = imp_arena_take_unset(arena, count, size);
+    return block ? memset(block, 0, count * size) : NULL;
 }
 
 void imp_arena_give(imp_arena *arena, void *block)

@@ -22,6 +22,8 @@ void imp_arena_destroy(imp_arena *arena); /* releases every piece; NULL is fine 
 /* count * size bytes of zeros, aligned as malloc's; NULL: the allocator has no more, or the limit is reached, or the
  * product overflows: see imp_arena_memory. A count of 0 is answered by a block of no use that is not NULL. */
 void *imp_arena_take(imp_arena *arena, size_t count, size_t size);
+/* The same, not set to zeros: for bytes that are written once, and before they are read. */
+void *imp_arena_take_unset(imp_arena *arena, size_t count, size_t size);
 /* Gives a block back; NULL is fine. */
 void imp_arena_give(imp_arena *arena, void *block);
 /* An array of *room elements with room for `wanted` at least, doubled where it grows, its new part zero; *room follows.

@@ -21,6 +21,16 @@ const char *impact_event_name(impact_event_kind kind)
     return "unknown";
 }
 
+const char *impact_key_form_name(impact_key_form form)
+{
+    switch (form) {
+    case IMPACT_KEY_QUINTIC: return "quintic";
+    case IMPACT_KEY_STEADY: return "steady";
+    case IMPACT_KEY_FREE: return "free";
+    }
+    return "unknown";
+}
+
 const char *impact_hold_name(impact_hold mode)
 {
     switch (mode) {

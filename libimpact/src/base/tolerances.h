@@ -548,12 +548,6 @@
  * w h = 1 is 3e-7), so that no finer tolerance pays for it. */
 #define IMP_KEY_TURN 1.0
 
-/* Of a steady spin, turned by w h from key to key, the quintic is off by this times (w h)^7 rad. Its remainder is
- * s^3 (1-s)^3 q^(6)(x)/720 at some x, of 7 nodes 1/2 + (s - 1/2)/7 on the mean; q^(6) = -(w h/2)^6 q lies along q
- * there, and across q(s) only by the angle (w h/2) 6/7 (s - 1/2). Largest at (s - 1/2)^2 = 1/28: (3/14)^3/28^(1/2); of
- * angles the double. */
-#define IMP_KEY_STEADY 3.46e-8
-
 /* Roundings of a coordinate that a key's place may be off by: the polynomial is a sum of six products. */
 #define IMP_KEY_ROUNDINGS 8.0
 
@@ -574,9 +568,9 @@
  * between, a curve 300 pixels wide is off by less than one (1/(8 n^2) of its second rate). */
 #define IMP_DISPLAY_ROWS 48.0
 
-/* Bodies that an event may look at for each of its two rows of the account: what it takes to look at one is 1/100 of
- * what the cheapest event takes. */
-#define IMP_ACCOUNT_SHARE 6.0
+/* Looks at one body that rows of the account take for each step or event of the run at most: one takes some 150
+ * instructions, the cheapest step or event (of balls in flight) some 10000, so that rows are 2 % of a run at most. */
+#define IMP_ACCOUNT_LOOKS 1.0
 
 /* ---- an opened run (run/run_read.c) ---- */
 

@@ -134,7 +134,7 @@ impact_key imp_key_of(const imp_body *body, int index, double t, const imp_state
 {
     const qvec3 omega = imp_omega(body, state);
     const qvec3 alpha = imp_inverse_inertia(body, state->q, qvec3_sub(torque, qvec3_cross(omega, state->momentum)));
-    return (impact_key){t, index, state->x, state->q, state->v, omega, acceleration, alpha};
+    return (impact_key){t, index, state->x, state->q, state->v, omega, acceleration, alpha, IMPACT_KEY_QUINTIC};
 }
 
 static imp_pose pose_of(const impact_key *key) { return (imp_pose){key->t, key->position, key->orientation}; }
@@ -218,19 +218,6 @@ bool imp_key_halve(const imp_piece *piece, int body, imp_key_tolerance tolerance
     const halving h = {piece, body, tolerance, sink, context, unmet};
     const impact_key ends[2] = {piece->at(piece->context, body, 0), piece->at(piece->context, body, 1)};
     return !(ends[1].t > ends[0].t) || halve(&h, 0, 1, ends, 0);
-}
-
-/* ---- a steady spin ---- */
-
-/* Equal parts of it, of which each polynomial is known to meet the motion: there is nothing to look at. None where they
- * are too short. */
-static double steady_parts(const imp_piece *piece, imp_key_tolerance tolerance)
-{
-    if (isnan(piece->spin)) return 0;
-    const double most = pow((tolerance.angle + IMP_KEY_ROUNDINGS * DBL_EPSILON) / IMP_KEY_STEADY, 1.0 / 7);
-    const double length = piece->to - piece->from;
-    const double parts = fmax(1, ceil(piece->spin * length / fmin(most, IMP_KEY_TURN)));
-    return length > parts * shortest(piece->from, piece->to) ? parts : 0;
 }
 
 /* ---- a body's keys ---- */
@@ -341,28 +328,6 @@ static bool join_whole(imp_key_line *line, const imp_piece *piece, int body, imp
     return true;
 }
 
-static bool same_rates(const impact_key *a, const impact_key *b)
-{
-    return memcmp(&a->acceleration, &b->acceleration, sizeof a->acceleration) == 0 &&
-           memcmp(&a->alpha, &b->alpha, sizeof a->alpha) == 0;
-}
-
-/* What stands open ends where the spin begins, and the spin's last key is open to nothing: what is between is not known
- * as poses. */
-static bool add_steady(imp_key_line *line, const imp_piece *piece, int body, double parts, imp_key_sink *sink,
-                       void *context)
-{
-    const impact_key from = piece->at(piece->context, body, 0);
-    if (line->open && !hand_on(line, &line->next, sink, context)) return false;
-    const bool stands = line->begun && same_state(&line->last, &from) && same_rates(&line->last, &from);
-    if (!stands && !hand_on(line, &from, sink, context)) return false;
-    for (double k = 1; k <= parts; k++) {
-        const impact_key key = piece->at(piece->context, body, k / parts);
-        if (!hand_on(line, &key, sink, context)) return false;
-    }
-    return true;
-}
-
 typedef struct line_sink {
     imp_key_line *line;
     imp_key_tolerance tolerance;
@@ -380,9 +345,13 @@ bool imp_key_line_add_piece(imp_key_line *line, const imp_piece *piece, int body
                             imp_key_sink *sink, void *context, long *unmet)
 {
     line_sink to = {line, tolerance, sink, context};
-    const double parts = steady_parts(piece, tolerance);
-    if (parts > 0) return add_steady(line, piece, body, parts, sink, context);
     return join_whole(line, piece, body, tolerance) || imp_key_halve(piece, body, tolerance, add_span, &to, unmet);
+}
+
+bool imp_key_line_add_form(imp_key_line *line, const impact_key *key, imp_key_sink *sink, void *context)
+{
+    if (line->open && !hand_on(line, &line->next, sink, context)) return false;
+    return hand_on(line, key, sink, context);
 }
 
 bool imp_key_line_end(imp_key_line *line, imp_key_sink *sink, void *context)

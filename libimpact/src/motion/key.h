@@ -6,11 +6,18 @@
 #define IMP_KEY_H
 
 #include <impact/record.h>
-#include "world/world.h"
+#include "motion/segment.h"
 
 /* The state at t, keys[0].t <= t <= keys[1].t, of the polynomial that has the place, its rate and second rate of both
  * keys; the orientation's is normalised, and omega is the rate of what is normalised. acceleration and alpha: zero. */
 impact_key imp_key_between(const impact_key keys[2], double t);
+
+/* The state at t >= key->t by the key's own form, which is not the quintic; of a free flight acceleration and alpha as
+ * well. */
+impact_key imp_key_alone(const imp_body *body, const impact_key *key, double t);
+
+/* The form of a body's segment: not the quintic where one key says all. */
+impact_key_form imp_key_form(const imp_body *body, const imp_segment *segment);
 
 /* The key of a body in such a state: momentum' is the torque on it; the rates of both, world. */
 impact_key imp_key_of(const imp_body *body, int index, double t, const imp_state *state, qvec3 acceleration,
@@ -32,7 +39,6 @@ typedef struct imp_piece {
     impact_key (*at)(void *context, int body, double s);
     imp_pose (*pose)(void *context, int body, double s);
     impact_key (*begin)(void *context, int body);
-    double spin; /* 1/s: of a steady spin on a parabola, by s = t; NAN: the motion is another */
 } imp_piece;
 
 /* A part of a piece on which the polynomial of its ends meets the trajectory, and where the trajectory was inside it.
@@ -72,6 +78,8 @@ bool imp_key_line_add(imp_key_line *line, const imp_span *span, imp_key_toleranc
 /* The same of a body's next piece, halved where it must be. */
 bool imp_key_line_add_piece(imp_key_line *line, const imp_piece *piece, int body, imp_key_tolerance tolerance,
                             imp_key_sink *sink, void *context, long *unmet);
+/* A motion in closed form, from this key on. */
+bool imp_key_line_add_form(imp_key_line *line, const impact_key *key, imp_key_sink *sink, void *context);
 /* Hands on the key that is still open. */
 bool imp_key_line_end(imp_key_line *line, imp_key_sink *sink, void *context);
 

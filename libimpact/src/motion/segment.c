@@ -178,6 +178,20 @@ imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
     return state;
 }
 
+imp_state imp_segment_unturned(const imp_segment *s, const imp_body *body, double t)
+{
+    const double T = t - s->t0;
+    imp_state state = s->start;
+    if (s->kind == IMP_SEGMENT_REST) return state;
+    if (s->kind == IMP_SEGMENT_DENSE) return dense_state(s, t);
+    state.x = imp_segment_place(s, body, t, &state.v);
+    if (s->kind == IMP_SEGMENT_ROLL)
+        state.momentum = qvec3_axpy(T * body->moments.x, s->spin_up, state.momentum);
+    else if (s->kind == IMP_SEGMENT_DAMPED && body->angular_rate > 0)
+        state.momentum = qvec3_scale(state.momentum, exp(-body->angular_rate * T));
+    return state;
+}
+
 double imp_segment_time(const imp_segment *s, double own)
 {
     double t = own;
@@ -286,16 +300,12 @@ void imp_segment_rates(const imp_segment *s, const imp_body *body, double own, q
         *torque = (qvec3){r[3], r[4], r[5]};
         return;
     }
+    *acceleration = s->acceleration;
+    *torque = (qvec3){0, 0, 0};
+    if (s->kind == IMP_SEGMENT_FREE || s->kind == IMP_SEGMENT_REST) return; /* a rest's acceleration is zero */
     const imp_bounds b = imp_segment_bounds(s, body, own, 0);
     *acceleration = b.acceleration;
     *torque = b.torque;
-}
-
-double imp_segment_steady_spin(const imp_segment *s, const imp_body *body)
-{
-    const bool parabola = s->kind == IMP_SEGMENT_FREE || (s->kind == IMP_SEGMENT_ROLL && is_zero(s->spin_up));
-    const bool steady = parabola && (!s->tumble || s->tumble->steady);
-    return steady ? qvec3_norm(imp_omega(body, &s->start)) : NAN;
 }
 
 double imp_segment_top_speed(const imp_segment *s, const imp_body *body, double t)

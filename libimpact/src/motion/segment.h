@@ -59,6 +59,10 @@ imp_segment imp_segment_dense(const imp_dense *dense, int place, const imp_state
 
 /* The state at t; before t0 and after t1 the form is continued. */
 imp_state imp_segment_at(const imp_segment *segment, const imp_body *body, double t);
+/* The same without the search for the orientation, where the form is closed: it is that of the start. A place, and the
+ * energies of motion and of spin are right: of a torque-free spin L.omega is kept, and damping falls with L alone. */
+imp_state imp_segment_unturned(const imp_segment *segment, const imp_body *body, double t);
+typedef imp_state imp_segment_look(const imp_segment *segment, const imp_body *body, double t);
 /* The variable that a segment is given in: time, or in a step of the integrator the place in it, with which time rises;
  * and the time, place (returned) and orientation there, without the search for it that a time takes. */
 double imp_segment_own(const imp_segment *s, double t);
@@ -87,9 +91,6 @@ imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, 
 /* Its acceleration and torque alone, where its own variable is this. */
 void imp_segment_rates(const imp_segment *segment, const imp_body *body, double own, qvec3 *acceleration,
                        qvec3 *torque);
-
-/* |omega| where the place is a parabola and the spin steady; else NAN. */
-double imp_segment_steady_spin(const imp_segment *segment, const imp_body *body);
 
 /* No speed of the centre over [t, t1] is greater, m/s; infinite for FREE under an acceleration. */
 double imp_segment_top_speed(const imp_segment *segment, const imp_body *body, double t);

@@ -10,9 +10,9 @@ static bool add_piece(imp_rows *rows, imp_arena *arena)
     const long before = rows->last ? rows->last->room : FIRST_ROOM / 2;
     const long room = before < MOST_ROOM ? 2 * before : MOST_ROOM;
     const size_t size = sizeof(double) * (size_t)(room * rows->width);
-    imp_rows_piece *piece = imp_arena_take(arena, 1, sizeof *piece + size);
+    imp_rows_piece *piece = imp_arena_take_unset(arena, 1, sizeof *piece + size);
     if (!piece) return false;
-    piece->room = room;
+    *piece = (imp_rows_piece){.room = room};
     *(rows->last ? &rows->last->next : &rows->first) = piece;
     rows->last = piece;
     return true;

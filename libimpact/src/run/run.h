@@ -15,7 +15,7 @@ enum { IMP_RUN_VERSION = 1, IMP_RUN_ALIGNMENT = 8 };
 enum { IMP_RUN_KEYS, IMP_RUN_EVENTS, IMP_RUN_CONTACTS, IMP_RUN_ACCOUNT, IMP_RUN_TABLES };
 
 enum {
-    IMP_KEY_COLUMNS = 20,
+    IMP_KEY_COLUMNS = 21,
     IMP_EVENT_COLUMNS = 19,
     IMP_CONTACT_COLUMNS = 13,
     IMP_ACCOUNT_COLUMNS = 8,
@@ -31,6 +31,9 @@ typedef struct imp_run_table {
 extern const imp_run_table imp_run_tables[IMP_RUN_TABLES];
 
 extern const char *const imp_run_shapes[IMPACT_SHAPE_KINDS]; /* their names, by kind */
+
+/* The key as a row of its table. */
+void imp_run_key_row(const impact_key *key, double row[IMP_KEY_COLUMNS]);
 
 /* Writes a file that is whole or not there: IMPACT_ESINK or IMPACT_ENOMEM, with a message. What an
  * open file takes comes from the arena, and goes back. */

@@ -7,6 +7,7 @@
 
 #include "run/json.h"
 #include "run/run.h"
+#include "world/world.h"
 
 /* A table in the file, its columns found by name. */
 typedef struct imp_run_place {
@@ -19,6 +20,7 @@ typedef struct imp_run_place {
 typedef struct imp_run_body {
     impact_body_def def;
     impact_hull *hull; /* the shape's, or NULL */
+    imp_body flight;   /* what a free flight asks of it; nothing else */
     long first, count; /* of its keys */
 } imp_run_body;
 
@@ -46,5 +48,11 @@ struct impact_run {
 void imp_run_row(const impact_run *run, int table, long row, double *values);
 
 impact_key imp_run_key(const impact_run *run, int body, long number);
+
+/* Whether the key's form is known, and leads to numbers up to the next. */
+bool imp_run_key_is_sound(const impact_run *run, int body, long number);
+
+/* The motion from the body's key of that number on, up to the next key: the state at t. */
+impact_key imp_run_after(const impact_run *run, int body, long number, double t);
 
 #endif

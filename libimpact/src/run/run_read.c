@@ -229,6 +229,8 @@ static bool read_numbers(const imp_json *body, impact_body_def *def)
     def->moments = def->shape_position = def->trail = def->velocity = def->omega = (qvec3){0, 0, 0};
     good = good && (def->is_static || (def->mass > 0 && vector_of(body, "moments", &def->moments)));
     good = good && vector_of(body, "shape_position", &def->shape_position) && vector_of(body, "trail", &def->trail);
+    good = good && def->linear_damping >= 0 && def->linear_damping < 1;
+    good = good && def->angular_damping >= 0 && def->angular_damping < 1;
     good = good && numbers_of(body, "shape_orientation", turn, 4, NAN);
     good = good && vector_of(body, "surface_velocity", &def->velocity) && vector_of(body, "surface_omega", &def->omega);
     def->shape_orientation = (quat){turn[0], turn[1], turn[2], turn[3]};
@@ -247,6 +249,10 @@ static impact_status read_body(const reader *r, const imp_json *body, imp_run_bo
     if (shaped == IMPACT_ENOMEM) return out_of_memory(r);
     if (shaped < 0) return refuse(r, "body '%.80s': %s", def->name, why);
     if (!read_numbers(body, def)) return refuse(r, "body '%.80s': its numbers are damaged", def->name);
+    out->flight = (imp_body){.is_static = def->is_static,
+                             .linear_rate = -log1p(-def->linear_damping),
+                             .angular_rate = -log1p(-def->angular_damping)};
+    if (!def->is_static) imp_body_give_moments(&out->flight, def->moments);
     const double rows = (double)r->run->tables[IMP_RUN_KEYS].rows;
     if (!numbers_of(body, "keys", keys, 2, NAN) || !(keys[0] >= 0) || !(keys[1] >= 1) || keys[0] + keys[1] > rows ||
         keys[0] != floor(keys[0]) || keys[1] != floor(keys[1]))
@@ -262,6 +268,8 @@ static impact_status check_keys(const reader *r, int body)
     const impact_status status = check_rows(r, IMP_RUN_KEYS, b->first, b->count);
     if (status != IMPACT_OK) return status;
     for (long k = 0; k < b->count; k++) {
+        if (!imp_run_key_is_sound(run, body, k))
+            return refuse(r, "table 'keys', row %ld: its form is damaged", b->first + k);
         const impact_key key = imp_run_key(run, body, k);
         if (fabs(quat_norm(key.orientation) - 1) > IMP_RUN_UNIT)
             return refuse(r, "body '%.80s', t = %s: its orientation is not a unit", b->def.name,
@@ -388,7 +396,7 @@ impact_status impact_run_read(const void *bytes, size_t size, const char *name, 
     const impact_status begun = begin(allocator, name, run, message, message_size);
     if (begun < 0) return begun;
     const reader r = {*run, name, message, message_size};
-    (*run)->bytes = imp_arena_take((*run)->arena, size, 1);
+    (*run)->bytes = imp_arena_take_unset((*run)->arena, size, 1);
     (*run)->size = size;
     if (!(*run)->bytes) return ended(out_of_memory(&r), run);
     if (size > 0) memcpy((*run)->bytes, bytes, size);

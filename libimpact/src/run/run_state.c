@@ -29,7 +29,8 @@ impact_key imp_run_key(const impact_run *run, int body, long number)
                         vector_at(v + 8),
                         vector_at(v + 11),
                         vector_at(v + 14),
-                        vector_at(v + 17)};
+                        vector_at(v + 17),
+                        (impact_key_form)v[20]};
 }
 
 static double key_time(const impact_run *run, int body, long number)
@@ -39,6 +40,36 @@ static double key_time(const impact_run *run, int body, long number)
     const size_t row = (size_t)(run->bodies[body].first + number) * (size_t)place->width;
     memcpy(&t, place->at + sizeof t * (row + (size_t)place->column[0]), sizeof t);
     return t;
+}
+
+static bool can_fly(const imp_run_body *b, const impact_key *key)
+{
+    impact_tumble tumble;
+    const qvec3 momentum = imp_inertia(&b->flight, key->orientation, key->omega);
+    return !b->def.is_static && impact_tumble_make(b->def.moments, key->orientation, momentum, &tumble) == IMPACT_OK;
+}
+
+bool imp_run_key_is_sound(const impact_run *run, int body, long number)
+{
+    const imp_run_body *b = &run->bodies[body];
+    double v[IMP_KEY_COLUMNS];
+    imp_run_row(run, IMP_RUN_KEYS, b->first + number, v);
+    if (!(v[20] == IMPACT_KEY_QUINTIC || v[20] == IMPACT_KEY_STEADY || v[20] == IMPACT_KEY_FREE)) return false;
+    const impact_key key = imp_run_key(run, body, number);
+    if (key.form == IMPACT_KEY_QUINTIC || number + 1 == b->count) return true;
+    if (key.form == IMPACT_KEY_FREE && !can_fly(b, &key)) return false;
+    const impact_key end = imp_run_after(run, body, number, key_time(run, body, number + 1));
+    return qvec3_isfinite(end.position) && qvec3_isfinite(end.velocity) && qvec3_isfinite(end.omega) &&
+           isfinite(quat_norm(end.orientation));
+}
+
+impact_key imp_run_after(const impact_run *run, int body, long number, double t)
+{
+    const impact_key key = imp_run_key(run, body, number);
+    if (!(t > key.t) || number + 1 == run->bodies[body].count) return key;
+    if (key.form != IMPACT_KEY_QUINTIC) return imp_key_alone(&run->bodies[body].flight, &key, t);
+    const impact_key keys[2] = {key, imp_run_key(run, body, number + 1)};
+    return imp_key_between(keys, t);
 }
 
 /* How many of the body's keys stand before t, or (with) at it as well. */
@@ -59,15 +90,8 @@ static long keys_until(const impact_run *run, int body, double t, bool with)
 static impact_status state_at(const impact_run *run, int body, double t, bool after, impact_sample *state)
 {
     if (body < 0 || body >= run->body_count || !(t >= run->begin && t <= run->end)) return IMPACT_EARGUMENT;
-    const long count = run->bodies[body].count;
-    long next = keys_until(run, body, t, after);
-    if (next == 0) next = 1; /* before the first key: as it begins */
-    const long last = next - 1;
-    impact_key key = imp_run_key(run, body, last);
-    if (next < count && t > key.t) {
-        const impact_key keys[2] = {key, imp_run_key(run, body, next)};
-        key = imp_key_between(keys, t);
-    }
+    const long next = keys_until(run, body, t, after);
+    const impact_key key = imp_run_after(run, body, next > 0 ? next - 1 : 0, t); /* before the first as it begins */
     *state =
         (impact_sample){t, body, run->bodies[body].def.name, key.position, key.orientation, key.velocity, key.omega};
     return IMPACT_OK;

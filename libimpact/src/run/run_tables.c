@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "run/run.h"
 
+#include <string.h>
+
 const imp_run_table imp_run_tables[IMP_RUN_TABLES] = {
-    {"keys", IMP_KEY_COLUMNS, {"t",  "x",  "y",  "z",  "qw", "qx", "qy", "qz",  "vx",  "vy",
-                               "vz", "wx", "wy", "wz", "ax", "ay", "az", "dwx", "dwy", "dwz"}},
+    {"keys", IMP_KEY_COLUMNS, {"t",  "x",  "y",  "z",  "qw", "qx", "qy",  "qz",  "vx",  "vy",  "vz",
+                               "wx", "wy", "wz", "ax", "ay", "az", "dwx", "dwy", "dwz", "form"}},
     {"events",
      IMP_EVENT_COLUMNS,
      {"t", "kind", "body1", "body2", "force", "px", "py", "pz", "nx", "ny", "nz", "jx", "jy", "jz", "un_before",
@@ -15,6 +17,32 @@ const imp_run_table imp_run_tables[IMP_RUN_TABLES] = {
      IMP_ACCOUNT_COLUMNS,
      {"t", "kinetic", "potential", "force_work", "surface_work", "damping_loss", "sliding_loss", "impact_loss"}},
 };
+
+void imp_run_key_row(const impact_key *k, double row[IMP_KEY_COLUMNS])
+{
+    const double values[IMP_KEY_COLUMNS] = {k->t,
+                                            k->position.x,
+                                            k->position.y,
+                                            k->position.z,
+                                            k->orientation.w,
+                                            k->orientation.x,
+                                            k->orientation.y,
+                                            k->orientation.z,
+                                            k->velocity.x,
+                                            k->velocity.y,
+                                            k->velocity.z,
+                                            k->omega.x,
+                                            k->omega.y,
+                                            k->omega.z,
+                                            k->acceleration.x,
+                                            k->acceleration.y,
+                                            k->acceleration.z,
+                                            k->alpha.x,
+                                            k->alpha.y,
+                                            k->alpha.z,
+                                            k->form};
+    memcpy(row, values, sizeof values);
+}
 
 const char *const imp_run_shapes[IMPACT_SHAPE_KINDS] = {
     [IMPACT_SPHERE] = "sphere",

@@ -33,17 +33,8 @@ static bool add_row(impact_run_writer *w, int table, const double *values)
 
 static bool put_key(void *context, const impact_key *k)
 {
-    const double values[1 + IMP_KEY_COLUMNS] = {k->body,           k->t,
-                                                k->position.x,     k->position.y,
-                                                k->position.z,     k->orientation.w,
-                                                k->orientation.x,  k->orientation.y,
-                                                k->orientation.z,  k->velocity.x,
-                                                k->velocity.y,     k->velocity.z,
-                                                k->omega.x,        k->omega.y,
-                                                k->omega.z,        k->acceleration.x,
-                                                k->acceleration.y, k->acceleration.z,
-                                                k->alpha.x,        k->alpha.y,
-                                                k->alpha.z};
+    double values[1 + IMP_KEY_COLUMNS] = {k->body};
+    imp_run_key_row(k, values + 1);
     return add_row(context, IMP_RUN_KEYS, values);
 }
 
@@ -265,6 +256,12 @@ static const char *event_word(const void *context, int i)
     return i <= IMPACT_EVENT_REST ? impact_event_name((impact_event_kind)i) : NULL;
 }
 
+static const char *form_word(const void *context, int i)
+{
+    (void)context;
+    return i <= IMPACT_KEY_FREE ? impact_key_form_name((impact_key_form)i) : NULL;
+}
+
 static const char *hold_word(const void *context, int i)
 {
     (void)context;
@@ -343,6 +340,7 @@ static void say_head(imp_text *head, const impact_run_writer *w, const char *sce
     say_key(head, "reason");
     imp_text_string(head, reason);
     say_bodies(head, w, first);
+    say_words(head, "forms", form_word, NULL);
     say_words(head, "kinds", event_word, NULL);
     say_words(head, "modes", hold_word, NULL);
     say_words(head, "forces", force_word, scene);

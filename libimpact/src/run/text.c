@@ -14,13 +14,18 @@ void imp_text_free(imp_text *text)
     *text = (imp_text){.arena = text->arena};
 }
 
-/* Room for so many bytes; false when there is none. */
+/* Room for so many bytes, doubled where it grows; false when there is none. */
 static bool make_room(imp_text *text, size_t wanted)
 {
+    const size_t doubled = 2 * (size_t)text->room, room = wanted > doubled ? wanted : doubled;
     if (wanted > INT_MAX / 2) return false;
-    char *more = imp_arena_grow(text->arena, text->bytes, &text->room, (int)wanted, 1);
-    if (more) text->bytes = more;
-    return more != NULL;
+    char *more = imp_arena_take_unset(text->arena, room, 1);
+    if (!more) return false;
+    if (text->size > 0) memcpy(more, text->bytes, text->size);
+    imp_arena_give(text->arena, text->bytes);
+    text->bytes = more;
+    text->room = (int)room;
+    return true;
 }
 
 char *imp_text_room(imp_text *text, size_t size)

@@ -275,15 +275,17 @@ impact_usage impact_scene_usage(const impact_scene *scene) { return scene->world
 
 double impact_scene_pile_error(const impact_scene *scene) { return scene->pile_error; }
 
-impact_energy impact_scene_energy(const impact_scene *scene)
+impact_energy impact_scene_energy(const impact_scene *scene) { return imp_scene_energy_of(scene, scene->states); }
+
+impact_energy imp_scene_energy_of(const impact_scene *scene, const imp_state *states)
 {
     const imp_works works = imp_scene_works(scene);
     double impact_loss = scene->impact_loss;
     for (int k = 0; k < scene->island_count; k++)
         if (scene->islands[k]) impact_loss += imp_island_loss(scene->islands[k], scene->t);
     return (impact_energy){.start = scene->energy_start,
-                           .kinetic = imp_world_kinetic_energy(&scene->world, scene->states),
-                           .potential = imp_field_potential(&scene->world, scene->states),
+                           .kinetic = imp_world_kinetic_energy(&scene->world, states),
+                           .potential = imp_field_potential(&scene->world, states),
                            .force_work = works.force,
                            .drive_work = works.drive,
                            .damping_loss = works.damping,

@@ -6,9 +6,6 @@
 
 #include <string.h>
 
-/* Three equal moments, but for the rounding of the formulas that gave them. */
-static bool equal_moments(qvec3 m) { return fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x; }
-
 /* An octahedron meets others and is held with its corners, edges and faces: as the polyhedron that it is. (As a smooth
  * body its one lowest point would jump from corner to corner as it tips over an edge.) */
 static impact_status build_shape(const impact_shape *given, imp_arena *arena, impact_shape *shape)
@@ -48,10 +45,10 @@ static void build_body(const impact_body_def *def, char *name, imp_body *body, i
         imp_drive_make(def, body);
         return;
     }
-    body->mass = imp_scene_body_mass(def, &body->moments);
+    qvec3 moments;
+    body->mass = imp_scene_body_mass(def, &moments);
     body->inverse_mass = 1 / body->mass;
-    body->inverse_moments = (qvec3){1 / body->moments.x, 1 / body->moments.y, 1 / body->moments.z};
-    body->spherical = equal_moments(body->moments);
+    imp_body_give_moments(body, moments);
     state->v = def->velocity;
     state->momentum = imp_inertia(body, state->q, def->omega);
 }

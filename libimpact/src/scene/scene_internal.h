@@ -92,6 +92,10 @@ impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def);
 impact_status imp_scene_go_on(impact_scene *scene, double t_end);
 /* Every body's state at t, in scene->states. */
 impact_status imp_scene_look(impact_scene *scene, double t);
+/* The same by another look at what is on its own, into other room for all bodies' states. */
+impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look *at, imp_state *states);
+/* The account with the bodies in these states. */
+impact_energy imp_scene_energy_of(const impact_scene *scene, const imp_state *states);
 /* Kinetic + potential of all bodies but the island's at t, J. */
 double imp_scene_energy_beside(impact_scene *scene, const imp_island *island, double t);
 

@@ -77,6 +77,23 @@ static impact_key begin_of(void *context, int body)
                         .omega = omega};
 }
 
+/* One key from where the piece begins, for as long as the segment lasts. */
+static bool put_form(impact_scene *scene, const done_piece *piece, int body, impact_key_form form)
+{
+    const imp_segment *segment = piece->segment;
+    const imp_body *b = &scene->world.bodies[body];
+    imp_key_line *line = &scene->keys->lines[body];
+    const impact_key *last = &line->last;
+    const bool alone = line->begun && !line->open && last->form != IMPACT_KEY_QUINTIC;
+    if (alone && last->t == segment->t0 && piece->from > segment->t0) return true; /* it goes on */
+    const imp_state state = imp_segment_at(segment, b, piece->from);
+    qvec3 acceleration, torque;
+    imp_segment_rates(segment, b, piece->from, &acceleration, &torque);
+    impact_key key = imp_key_of(b, body, piece->from, &state, acceleration, torque);
+    key.form = form;
+    return imp_key_line_add_form(line, &key, put_key, scene);
+}
+
 bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_state *end)
 {
     imp_scene_keys *keys = scene->keys;
@@ -86,13 +103,9 @@ bool imp_scene_segment_done(impact_scene *scene, int body, double t, const imp_s
     if (!(t > from)) return true;
     const imp_segment *segment = &scene->tracks.tracks[body].segment;
     done_piece way = {.scene = scene, .segment = segment, .from = from, .to = t, .end = end};
-    const imp_piece piece = {.from = from,
-                             .to = t,
-                             .context = &way,
-                             .at = key_at,
-                             .pose = pose_at,
-                             .begin = begin_of,
-                             .spin = imp_segment_steady_spin(segment, &scene->world.bodies[body])};
+    const impact_key_form form = imp_key_form(&scene->world.bodies[body], segment);
+    if (form != IMPACT_KEY_QUINTIC) return put_form(scene, &way, body, form);
+    const imp_piece piece = {.from = from, .to = t, .context = &way, .at = key_at, .pose = pose_at, .begin = begin_of};
     return imp_key_line_add_piece(&keys->lines[body], &piece, body, tolerance_of(scene, body), put_key, scene,
                                   &scene->world.usage.keys_unmet);
 }
@@ -212,30 +225,39 @@ bool imp_scene_held_until(imp_island *island)
 static bool put_account(impact_scene *scene)
 {
     if (!scene->recorder->account) return true;
-    imp_scene_look(scene, scene->t);
+    imp_state *states = scene->keys->states;
+    imp_scene_look_by(scene, scene->t, imp_segment_unturned, states);
     scene->keys->accounted = scene->t;
-    const impact_energy energy = impact_scene_energy(scene);
+    const impact_energy energy = imp_scene_energy_of(scene, states);
     return scene->recorder->account(scene->recorder->context, scene->t, &energy);
 }
 
-/* A row asks every body, an event moves two or a few: in a crowd one event of many has rows. */
+/* A row asks every body, an event moves two or a few: rows are taken where all that has gone on pays for them, in a
+ * crowd beside one event of many. */
+static bool pays(imp_scene_keys *keys, double rows, int body_count)
+{
+    if (keys->looks < rows * body_count) return false;
+    keys->looks -= rows * body_count;
+    return true;
+}
+
 bool imp_scene_account_before(impact_scene *scene)
 {
     imp_scene_keys *keys = scene->keys;
     if (!keys) return true;
-    keys->owed += IMP_ACCOUNT_SHARE;
-    keys->beside = keys->owed >= scene->world.body_count;
-    if (!keys->beside) return true;
-    keys->owed = 0;
-    return put_account(scene);
+    keys->beside = pays(keys, 2, scene->world.body_count);
+    return !keys->beside || put_account(scene);
 }
 
 bool imp_scene_account_after(impact_scene *scene) { return !scene->keys || !scene->keys->beside || put_account(scene); }
 
 bool imp_scene_account_now_and_then(impact_scene *scene)
 {
-    if (!scene->keys || scene->t < scene->keys->accounted + scene->duration / IMP_DISPLAY_ROWS) return true;
-    return put_account(scene);
+    imp_scene_keys *keys = scene->keys;
+    if (!keys) return true;
+    keys->looks += IMP_ACCOUNT_LOOKS;
+    const bool due = scene->t >= keys->accounted + scene->duration / IMP_DISPLAY_ROWS;
+    return !due || !pays(keys, 1, scene->world.body_count) || put_account(scene);
 }
 
 /* ---- a run ---- */
@@ -250,7 +272,8 @@ impact_status imp_scene_keys_begin(impact_scene *scene)
     if (!keys) return IMPACT_ENOMEM;
     keys->lines = imp_arena_take(arena, n, sizeof *keys->lines);
     keys->from = imp_arena_take(arena, n, sizeof *keys->from);
-    if (!keys->lines || !keys->from) return IMPACT_ENOMEM;
+    keys->states = imp_arena_take(arena, n, sizeof *keys->states);
+    if (!keys->lines || !keys->from || !keys->states) return IMPACT_ENOMEM;
     for (size_t i = 0; i < n; i++) keys->from[i] = scene->t;
     if (!put_account(scene)) return IMPACT_ESINK;
     for (int i = 0; recorder->key && i < scene->world.body_count; i++)
@@ -263,12 +286,13 @@ bool imp_scene_keys_end(impact_scene *scene)
     imp_scene_keys *keys = scene->keys;
     if (!keys) return true;
     const impact_recorder *recorder = scene->recorder;
-    const bool whole = keys->lines && keys->from;
+    const bool whole = keys->lines && keys->from && keys->states;
     bool taken = whole && (!recorder->key || end_keys(scene));
     for (int p = 0; taken && recorder->held && p < keys->held_room; p++) taken = put_pending(scene, &keys->held[p]);
     taken = taken && put_account(scene);
     imp_arena_give(scene->world.arena, keys->lines);
     imp_arena_give(scene->world.arena, keys->from);
+    imp_arena_give(scene->world.arena, keys->states);
     imp_arena_give(scene->world.arena, keys->held);
     imp_arena_give(scene->world.arena, keys);
     scene->keys = NULL;

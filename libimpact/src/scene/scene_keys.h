@@ -22,9 +22,10 @@ typedef struct imp_scene_keys {
     double *from;        /* per body, s: up to where its motion has been handed on */
     imp_held_line *held; /* per pair of the tracks */
     int held_room;
-    double accounted; /* s: the last account row */
-    double owed;      /* bodies that events may have looked at for rows beside them, since the last */
-    bool beside;      /* the event under way has its rows */
+    imp_state *states; /* room for all bodies', of one row of the account */
+    double accounted;  /* s: the last account row */
+    double looks;      /* at bodies, that rows of the account may take now */
+    bool beside;       /* the event under way has its rows */
 } imp_scene_keys;
 
 /* Before and after a run with a recorder that wants any of them. */

@@ -12,11 +12,11 @@
 
 /* ---- all bodies at one time ---- */
 
-impact_status imp_scene_look(impact_scene *scene, double t)
+impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look *at, imp_state *states)
 {
     for (int i = 0; i < scene->world.body_count; i++) {
         const imp_track *track = &scene->tracks.tracks[i];
-        if (track->island < 0) scene->states[i] = imp_segment_at(&track->segment, &scene->world.bodies[i], t);
+        if (track->island < 0) states[i] = at(&track->segment, &scene->world.bodies[i], t);
     }
     for (int k = 0; k < scene->island_count; k++) {
         imp_island *island = scene->islands[k];
@@ -24,9 +24,14 @@ impact_status imp_scene_look(impact_scene *scene, double t)
         const impact_status status = imp_island_look(island, t);
         if (status != IMPACT_OK) return status;
         for (int i = 0; i < island->world.body_count; i++)
-            scene->states[island->world.bodies[i].index] = island->motion.sampled[i];
+            states[island->world.bodies[i].index] = island->motion.sampled[i];
     }
     return IMPACT_OK;
+}
+
+impact_status imp_scene_look(impact_scene *scene, double t)
+{
+    return imp_scene_look_by(scene, t, imp_segment_at, scene->states);
 }
 
 double imp_scene_energy_beside(impact_scene *scene, const imp_island *except, double t)

@@ -131,6 +131,14 @@ static inline bool imp_is_rough(const imp_pair *pair) { return pair->torsional >
 
 static inline bool imp_is_held(const imp_pair *pair) { return pair->mode != IMP_OPEN; }
 
+/* Three equal moments, but for the rounding of the formulas that gave them, are a sphere's. */
+static inline void imp_body_give_moments(imp_body *body, qvec3 m)
+{
+    body->moments = m;
+    body->inverse_moments = (qvec3){1 / m.x, 1 / m.y, 1 / m.z};
+    body->spherical = fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x;
+}
+
 /* J^-1 a, for a vector in the world frame. */
 static inline qvec3 imp_inverse_inertia(const imp_body *body, quat q, qvec3 a)
 {

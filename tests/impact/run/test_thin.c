@@ -3,6 +3,7 @@
  * Thinned records are records: they open, and their states at any time are those of the record they were made of, to
  * the tolerance; times and events are the same to the bit; jumps stay jumps.
  */
+#include "../../../view/plain.h"
 #include "../../../view/thin.h"
 #include "kit/scene_log.h"
 #include <impact/impact.h>
@@ -104,6 +105,44 @@ static void test_states_stay_within_the_tolerance(void **state)
     impact_run_close(run);
 }
 
+/* For readers without elliptic functions: no key is a free flight, and states are the same to the record's tolerance.
+ */
+static void test_a_plain_record_has_no_free_flights(void **state)
+{
+    (void)state;
+    impact_body_def bodies[3];
+    const impact_scene_def def = busy(bodies);
+    impact_run *run = record(&def), *read, plain;
+    imp_arena *arena;
+    char message[200];
+    bool changed;
+    assert_int_equal(imp_arena_create(NULL, &arena), IMPACT_OK);
+    assert_int_equal(imp_plain(arena, run, &plain, &changed), IMPACT_OK);
+    assert_true(changed);
+    imp_text text = {.arena = arena};
+    assert_int_equal(imp_thin(&text, &plain, 0), IMPACT_OK);
+    assert_int_equal(impact_run_read(text.bytes, text.size, "plain", NULL, &read, message, sizeof message), IMPACT_OK);
+    unsigned long long seed = 7;
+    for (int b = 0; b < 3; b++) {
+        for (long k = 0; k < impact_run_key_count(read, b); k++) {
+            impact_key key;
+            assert_int_equal(impact_run_key(read, b, k, &key), IMPACT_OK);
+            assert_true(key.form != IMPACT_KEY_FREE);
+        }
+        for (int i = 0; i < 10000; i++) {
+            impact_sample s, w;
+            const double t = impact_run_end(run) * uniform(&seed);
+            assert_int_equal(impact_run_state(run, b, t, &w), IMPACT_OK);
+            assert_int_equal(impact_run_state(read, b, t, &s), IMPACT_OK);
+            assert_true(qvec3_norm(qvec3_sub(s.position, w.position)) <= 2e-10);
+            assert_true(2 * quat_norm(quat_sub(s.orientation, w.orientation)) <= 2e-10);
+        }
+    }
+    imp_arena_destroy(arena);
+    impact_run_close(read);
+    impact_run_close(run);
+}
+
 static void test_events_and_times_are_the_same(void **state)
 {
     (void)state;
@@ -145,6 +184,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_states_stay_within_the_tolerance),
+        cmocka_unit_test(test_a_plain_record_has_no_free_flights),
         cmocka_unit_test(test_events_and_times_are_the_same),
     };
     return impact_has(IMPACT_PART_CVODE) ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
