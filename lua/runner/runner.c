@@ -112,7 +112,8 @@ static void choose_name(lua_State *L, int scene, const impact_runner *runner, ch
         luaL_error(L, "%s: the scene's name '%s' names the files: it must be plain, without '/'", runner->script, name);
 }
 
-/* scene:run{csv = name, record = NAME.run, or whether it has a plot, rows = whether it has}; an exit code. Pushes the reason it ended. */
+/* scene:run{csv = name, record = NAME.run, or whether it has a plot, rows = whether it has}; an exit code. Pushes the
+ * reason it ended. */
 static int run_scene(lua_State *L, int scene, impact_runner *runner, const char *name, bool plot)
 {
     lua_getfield(L, scene, "run");
