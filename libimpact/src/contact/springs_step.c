@@ -235,10 +235,13 @@ static void go_sliding(imp_springs *s)
     }
 }
 
-/* Slip that has just begun keeps its digits. */
+/* Slip that is slow keeps its digits: once it is, or has just begun, it is summed. */
 static void sum_slip(imp_spring *c, double t)
 {
     double u[2];
+    if (!c->summed && !(imp_springs_presses(c) && c->slip == IMP_SPRING_SLIDES &&
+                        hypot(c->velocity[1][0], c->velocity[2][0]) <= IMP_SPRINGS_SLOW))
+        return;
     for (int j = 0; j < 2; j++) u[j] = poly(c->velocity[1 + j], IMP_SPRINGS_ORDER, t);
     c->summed = imp_springs_presses(c) && c->slip >= IMP_SPRING_SLIDES && hypot(u[0], u[1]) <= IMP_SPRINGS_SLOW;
     for (int j = 0; j < 2 && c->summed; j++) c->u[1 + j] = u[j];
@@ -256,8 +259,7 @@ static void move_on(imp_springs *s, double t)
         book_friction(c, t);
     }
     imp_springs_find_velocities(s);
-    for (int i = 0; i < s->count; i++)
-        if (s->springs[i].summed) sum_slip(&s->springs[i], t);
+    for (int i = 0; i < s->count; i++) sum_slip(&s->springs[i], t);
     for (int i = 0; i < s->count; i++)
         if (s->springs[i].normal != IMP_SPRING_OPEN) book_spring(s, &s->springs[i], t, s->springs[i].u[0]);
     go_sliding(s);
