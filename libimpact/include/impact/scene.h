@@ -328,8 +328,7 @@ typedef struct impact_scene_residuals {
     double contact;    /* how far held contacts' forces leave their cone (pull, or rub more than the friction), over the
                         * greatest of them */
     double energy;     /* what the energy account is off by, over the greatest term in it */
-    double
-        momentum; /* of an event: what the bodies' momentum changed by beyond what static ones gave, over its terms */
+    double momentum; /* of impacts: what the bodies' momentum changed by beyond what static ones gave, over its terms */
     double loss_fallen; /* J: by how much sliding_loss, damping_loss and impact_loss have fallen, each fall added up */
     double limit_unit, limit_gap, limit_contact, limit_energy, limit_momentum; /* what is good; loss_fallen's is
                                                                                 * limit_energy too, over the greatest

@@ -368,13 +368,3 @@ double imp_persist_drive_power(const imp_persist *persist, const imp_world *worl
     }
     return power;
 }
-
-qvec3 imp_persist_push(const imp_persist *persist, const imp_world *world)
-{
-    qvec3 push = {0, 0, 0};
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (world->bodies[touch->body2].is_static) push = qvec3_add(push, touch->force);
-    }
-    return push;
-}

@@ -119,7 +119,4 @@ double imp_persist_approach(const imp_world *world, const imp_touch *touch, cons
  * impulses' work, J. */
 double imp_persist_drive_power(const imp_persist *persist, const imp_world *world);
 
-/* What static bodies push the others with through them, as they are solved for: N, or N s. */
-qvec3 imp_persist_push(const imp_persist *persist, const imp_world *world);
-
 #endif

@@ -60,7 +60,7 @@ void imp_island_clear(imp_island *island)
     island->rests = island->rolls = island->loses = island->lies = island->stepped = island->moves = false;
     island->patience = (imp_patience){0};
     island->end = (imp_end){IMP_END_TIME, 0};
-    island->pushed = (imp_push){.looked_at = true};
+    island->pushed = (imp_push){.off = 0};
     imp_motion_reset(&island->motion, world, &island->scene->methods, island->scene->rest_speed);
 }
 
@@ -230,7 +230,7 @@ static qvec3 momentum_of(const imp_island *island, double *size)
 
 void imp_island_begin_push(imp_island *island)
 {
-    island->pushed = (imp_push){.size = 0};
+    island->pushed = (imp_push){.off = island->pushed.off};
     island->pushed.had = momentum_of(island, &island->pushed.size);
 }
 
@@ -240,13 +240,13 @@ void imp_island_push(imp_island *island, qvec3 impulse)
     island->pushed.size += qvec3_norm(impulse);
 }
 
-double imp_island_push_off(imp_island *island)
+void imp_island_end_push(imp_island *island)
 {
     imp_push *pushed = &island->pushed;
-    if (pushed->looked_at) return 0;
     const qvec3 now = momentum_of(island, &pushed->size), due = qvec3_add(pushed->had, pushed->given);
-    pushed->looked_at = true;
-    return pushed->size > 0 ? qvec3_norm(qvec3_sub(now, due)) / pushed->size : 0;
+    if (!(pushed->size > 0)) return;
+    const double off = qvec3_norm(qvec3_sub(now, due)) / pushed->size;
+    if (!(off <= pushed->off)) pushed->off = off; /* a NaN stays */
 }
 
 /* ---- energy ---- */

@@ -18,11 +18,11 @@ typedef struct imp_patience {
     long steps;
 } imp_patience;
 
-/* kg m/s: the momentum that bodies had; what static ones gave, as it was booked; and the sizes of all its terms. */
+/* kg m/s: the momentum that bodies had before impacts; what static ones gave, as it was booked; the sizes of all its
+ * terms; and what of them the receipt has not looked at yet was off by at most. */
 typedef struct imp_push {
     qvec3 had, given;
-    double size;
-    bool looked_at; /* by the receipt */
+    double size, off;
 } imp_push;
 
 typedef struct imp_island {
@@ -33,7 +33,7 @@ typedef struct imp_island {
     imp_state *states;       /* at t */
     imp_state *before;       /* as the states were when the event at hand came */
     imp_mode *modes;         /* as the pairs' modes were then */
-    imp_push pushed;         /* since then */
+    imp_push pushed;
     int body_room, pair_room;
     double t;
     imp_end end;        /* what its segments end in */
@@ -80,11 +80,12 @@ void imp_island_go_to(imp_island *island, double t);
 imp_works imp_island_works(const imp_island *island, double t);
 double imp_island_loss(const imp_island *island, double t);
 
-/* From here on momentum is looked at, by what the bodies then have; what is given; and what is off, of the sizes, when
- * it is looked at the first time. */
+/* Impacts begin; a static body gives an impulse; they have ended: bodies have the momentum that they had and were
+ * given.
+ */
 void imp_island_begin_push(imp_island *island);
 void imp_island_push(imp_island *island, qvec3 impulse);
-double imp_island_push_off(imp_island *island);
+void imp_island_end_push(imp_island *island);
 
 /* Kinetic + potential of its bodies at its clock, J; and with all losses, less all that was given: it stays. */
 double imp_island_energy(const imp_island *island);

@@ -126,7 +126,6 @@ void imp_scene_remember(imp_island *island)
 {
     memcpy(island->before, island->states, sizeof *island->states * (size_t)island->world.body_count);
     for (int p = 0; p < island->world.pair_count; p++) island->modes[p] = island->world.pairs[p].mode;
-    imp_island_begin_push(island);
 }
 
 const char *imp_scene_phases_in_words(const unsigned char *phases, int count, char *words, size_t size)

@@ -89,12 +89,10 @@ static bool comes_to_rest(const imp_island *island, int body)
     return held && acceleration < 100 * island->scene->rest_speed;
 }
 
-/* What holds it is what it hangs on. */
 static void stop(imp_island *island, int body)
 {
     imp_state *state = &island->states[body];
     if (island->world.bodies[body].is_static) return;
-    imp_island_push(island, qvec3_scale(state->v, -island->world.bodies[body].mass));
     state->v = state->momentum = (qvec3){0, 0, 0};
 }
 
@@ -139,7 +137,6 @@ static impact_status make_consistent(imp_island *island)
     if (status != IMPACT_OK) return status;
     imp_persist_project(&motion->persist, &island->world, island->states, motion->loads);
     motion->works.drive += imp_persist_drive_power(&motion->persist, &island->world);
-    imp_island_push(island, imp_persist_push(&motion->persist, &island->world));
     status = imp_scene_load(island);
     if (status == IMPACT_OK) status = find_still(island);
     if (status == IMPACT_OK)

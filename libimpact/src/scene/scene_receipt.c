@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Identities that the solvers of the motion do not use: orientations are unit, what is held touches, contact forces lie
- * in their cones, energy is where the account says, losses do not fall, and an event changes the bodies' momentum by
+ * in their cones, energy is where the account says, losses do not fall, and impacts change the bodies' momentum by
  * what static ones gave, all impulses between bodies being equal and opposite. A wrong impact or a wrong reaction
  * cannot hide: what it gives shows as a loss that falls.
  */
@@ -103,7 +103,8 @@ void imp_scene_receipt_look(imp_island *island)
     look_at(scene, "gap", &r->gap, worst_gap(island, island->states), r->limit_gap);
     look_at(scene, "contact", &r->contact, worst_contact(island), r->limit_contact);
     look_at(scene, "energy", &r->energy, scale > 0 ? fabs(off) / scale : fabs(off), r->limit_energy);
-    look_at(scene, "momentum", &r->momentum, imp_island_push_off(island), r->limit_momentum);
+    look_at(scene, "momentum", &r->momentum, island->pushed.off, r->limit_momentum);
+    island->pushed.off = 0;
     look_at(scene, "loss_fallen", &r->loss_fallen, fallen(island), r->limit_energy * scale);
 }
 
@@ -155,7 +156,7 @@ impact_status imp_scene_receipt_judge(impact_scene *scene, impact_status status)
     if (strcmp(r->failed, "contact") == 0)
         snprintf(what, sizeof what, "contact forces leave their cone by %.2g of the greatest", r->contact);
     if (strcmp(r->failed, "momentum") == 0)
-        snprintf(what, sizeof what, "an event changed the momentum by %.2g of it more than static bodies gave",
+        snprintf(what, sizeof what, "impacts changed the momentum by %.2g of it more than static bodies gave",
                  r->momentum);
     if (strcmp(r->failed, "unit") == 0) snprintf(what, sizeof what, "orientations are off unit by %.2g", r->unit);
     snprintf(scene->message, sizeof scene->message, "%s, first between t = %.9g and %.9g: do not trust the digits",

@@ -137,7 +137,7 @@ static bool goes_round(const imp_island *island, int impacts)
     return !elastic && impacts > 10 * struck;
 }
 
-impact_status imp_scene_strike_all(imp_island *island, bool *parted)
+static impact_status strike_on(imp_island *island, bool *parted)
 {
     enum { MAX_IMPACTS = 100000 };
     imp_world *world = &island->world;
@@ -177,5 +177,13 @@ impact_status imp_scene_strike_all(imp_island *island, bool *parted)
         *parted = !was_held && imp_scene_leaves_for_good(island, &m, speed);
         if (speed > 0) return status;
     }
+    return status;
+}
+
+impact_status imp_scene_strike_all(imp_island *island, bool *parted)
+{
+    imp_island_begin_push(island);
+    const impact_status status = strike_on(island, parted);
+    imp_island_end_push(island);
     return status;
 }
