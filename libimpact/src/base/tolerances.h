@@ -446,6 +446,9 @@
 #define IMP_ENCOUNTER_RECEIPT 1e-11
 /* eps, of the terms of a velocity u0 + W p in a group: their sums' rounding, and that of the bodies' velocities. */
 #define IMP_ENCOUNTER_ROUNDINGS 32
+/* Contacts of an encounter from which Moreau's problems begin in the space of the bodies: a brick wall's 77 take 4 s
+ * along the central path. */
+#define IMP_ENCOUNTER_MANY 16
 /* Rounds in which that is taken away, each of what the last one left: the condition of W times eps of it. */
 #define IMP_ENCOUNTER_MENDINGS 3
 /* Of the mean mobility: what contacts give way for an impulse where compression's are not unique; and of that, in a

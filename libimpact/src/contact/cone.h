@@ -40,7 +40,7 @@ typedef struct imp_cone_problem {
     const double *last_r;            /* width count each: an answer of like modes to begin with; NULL: none */
     const double *last_u;
     bool brief;    /* without the long sweeps of cone_sweep.c: the caller has another way, as a shorter step */
-    double enough; /* cone_bodies.h: the residual that does, where that is more than IMP_BODIES_ACCEPTED */
+    double enough; /* cone_bodies.h: the residual that does; 0: IMP_BODIES_ACCEPTED */
 } imp_cone_problem;
 
 enum { IMP_CONE_WIDEST = 6 };

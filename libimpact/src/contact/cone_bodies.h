@@ -25,18 +25,24 @@ typedef struct imp_cone_bodies {
     int contacts, bodies, width; /* there is room for; numbers a contact */
     double *block;
     imp_cone_row *turns;
-    int (*touching)[2];
     imp_skyline sky;
 } imp_cone_bodies;
 
-/* The problem of these contacts (of its numbers W alone is not asked); turns: of imp_cone_find_turns where it has
- * lengths, else NULL; number: of each body of the world
- * its own from 0 to bodies - 1, or -1 where it does not move. Into r and u.
+/* What the problem's contacts couple. */
+typedef struct imp_cone_couples {
+    int bodies;                /* that move */
+    const int (*of)[2];        /* each contact's, from 0 to bodies - 1, or -1 where it does not move */
+    const imp_cone_row *rows;  /* each contact's */
+    const imp_cone_row *turns; /* of imp_cone_find_turns, where the problem has lengths; else NULL */
+    const double *least;       /* N s: what is to be at least along each normal, K's part beyond instead of K; NULL: 0;
+                                  without       lengths */
+} imp_cone_couples;
+
+/* The problem (of its numbers W alone is not asked), into r and u.
  * SOLVED: the proof's residual, as of imp_cone_outcome, is at most IMP_BODIES_ACCEPTED; INEXACT, UNSETTLED: r and u are
  * the best that was found, s having crept where much friction couples much sliding. BAD: a number is none.
  * NO_ROOM: memory is refused. */
-imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_cone_contact *contacts,
-                                       const imp_cone_row *rows, const imp_cone_row *turns, const int *number,
-                                       int bodies, const imp_cone_problem *problem, double *r, double *u);
+imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_cone_problem *problem,
+                                       const imp_cone_couples *couples, double *r, double *u);
 
 #endif

@@ -14,7 +14,7 @@
 #include <stdint.h>
 #include <impact/together.h>
 #include "base/arena.h"
-#include "contact/cone.h"
+#include "contact/cone_bodies.h"
 
 /* One contact of a group. */
 typedef struct imp_contact {
@@ -65,6 +65,7 @@ struct impact_together_workspace {
     imp_arena *arena;
     imp_block plan, work; /* of a call; of one group */
     imp_cone_workspace cone;
+    imp_cone_bodies bodies;
 };
 
 /* A workspace in the arena, with which it goes: not to be destroyed. */

@@ -23,6 +23,10 @@ typedef struct moreau {
     double *w, *q, *friction, *r, *v; /* of the second problem: 6 count */
     double *u;                        /* 3 count: after compression */
     imp_cone_mode *modes;             /* 2 count */
+    double *last_r, *last_u;          /* 6 count: where a problem may begin */
+    double *least;                    /* count: eps c_n */
+    int bodies, (*couples)[2];        /* those that move; count */
+    imp_cone_row *rows;               /* count */
 } moreau;
 
 /* Whether what r leaves is rounding of W r, though that be more than q: encounter_mend.c takes it away. */
@@ -46,6 +50,61 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
     return o->status == IMP_CONE_SOLVED || o->status == IMP_CONE_INEXACT ||
            (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
 }
+
+/* ---- a start for many contacts: in the space of the bodies ---- */
+
+static int find_number(const moreau *m, int contacts, int body)
+{
+    for (int c = 0; c <= contacts; c++)
+        for (int side = 0; side < 2; side++)
+            if (m->group->contacts[c].body[side] == body && m->couples[c][side] >= 0) return m->couples[c][side];
+    return -1;
+}
+
+static void couple_contacts(moreau *m)
+{
+    const imp_group *g = m->group;
+    for (int c = 0; c < g->count; c++) {
+        const imp_contact *contact = &g->contacts[c];
+        memcpy(m->rows[c].side, contact->row, sizeof contact->row);
+        m->couples[c][0] = m->couples[c][1] = -1;
+        for (int side = 0; side < 2; side++) {
+            if (imp_encounter_is_static(&g->bodies[contact->body[side]])) continue;
+            const int known = find_number(m, c, contact->body[side]);
+            m->couples[c][side] = known >= 0 ? known : m->bodies++;
+        }
+    }
+}
+
+/* Impulses of at least that along the normals, and the velocities after them, of the problem that begins with the
+ * velocities q; whether there is a start. */
+static bool find_start(moreau *m, const double *q, const double *least)
+{
+    const int n = m->group->count;
+    if (n < IMP_ENCOUNTER_MANY) return false;
+    if (m->bodies == 0) couple_contacts(m);
+    const imp_cone_problem problem = {.count = n, .q = q, .friction = m->friction, .enough = IMP_CONE_ACCEPTED};
+    const imp_cone_couples couples = {
+        .bodies = m->bodies, .of = (const int(*)[2])m->couples, .rows = m->rows, .least = least};
+    const imp_cone_outcome o = imp_cone_solve_bodies(&m->workspace->bodies, &problem, &couples, m->last_r, m->last_u);
+    return o.status == IMP_CONE_SOLVED || o.status == IMP_CONE_INEXACT;
+}
+
+/* The start of the second problem, from that with R = (eps c_n + more, R_t): friction in the parts' proportion. */
+static void part_start(const moreau *m)
+{
+    const int n = m->group->count;
+    for (int i = 0; i < n; i++) {
+        double *own = &m->last_r[3 * i], *part = &m->last_r[3 * (n + i)];
+        const double share = own[0] > 0 ? fmin(m->least[i] / own[0], 1) : 0;
+        part[0] = m->least[i], part[1] = share * own[1], part[2] = share * own[2];
+        own[0] = fmax(own[0] - m->least[i], 0), own[1] -= part[1], own[2] -= part[2];
+        memcpy(&m->last_u[3 * (n + i)], &m->last_u[3 * i], 3 * sizeof *m->last_u);
+        m->last_u[3 * (n + i)] = 0;
+    }
+}
+
+/* ---- compression ---- */
 
 /* Works by impulses: p . (u + u')/2, normal and tangential. */
 static void book(imp_finding *f, int phase, const double *p, const double *u, const double *after)
@@ -91,7 +150,13 @@ static bool compress(moreau *m)
 {
     const int n = m->group->count;
     for (int i = 0; i < n; i++) m->friction[i] = m->group->contacts[i].friction;
-    const imp_cone_problem problem = {.count = n, .w = m->group->w, .q = m->group->u0, .friction = m->friction};
+    const bool starts = find_start(m, m->group->u0, NULL);
+    const imp_cone_problem problem = {.count = n,
+                                      .w = m->group->w,
+                                      .q = m->group->u0,
+                                      .friction = m->friction,
+                                      .last_r = starts ? m->last_r : NULL,
+                                      .last_u = m->last_u};
     const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->group->p, m->u, m->modes);
     if (!solved(&problem, &o, m->group->p, m->group)) return false;
     if (o.chosen) share(m, &problem, m->group->p);
@@ -103,6 +168,8 @@ static bool compress(moreau *m)
         book(&m->group->findings[i], 0, &m->group->p[3 * i], &m->group->u0[3 * i], &m->u[3 * i]);
     return true;
 }
+
+/* ---- restitution ---- */
 
 static double least_restitution(const imp_group *g)
 {
@@ -140,8 +207,7 @@ static void set_restitution(moreau *m)
             m->w[i * two + j] = apart ? (i == j ? mean : 0) : g->w[i % one * one + j % one];
         }
     add_parts(m);
-    for (size_t i = 0; i < one; i++)
-        m->q[one + i] = i % 3 == 0 ? -mean * (g->contacts[i / 3].restitution * g->p[i]) : m->q[i];
+    for (size_t i = 0; i < one; i++) m->q[one + i] = i % 3 == 0 ? -mean * m->least[i / 3] : m->q[i];
     for (size_t i = 0; i < n; i++) m->friction[n + i] = m->friction[i];
 }
 
@@ -154,8 +220,7 @@ static void take_restitution(moreau *m)
     double *p = m->r, *after = m->q;
     for (int i = 0; i < n; i++) {
         const double *more = &m->r[3 * i], *part = &m->r[3 * (n + i)];
-        const double sum[3] = {more[0] + g->contacts[i].restitution * g->p[3 * i], more[1] + part[1],
-                               more[2] + part[2]};
+        const double sum[3] = {more[0] + m->least[i], more[1] + part[1], more[2] + part[2]};
         memcpy(&p[3 * i], sum, sizeof sum);
     }
     imp_encounter_push(g, p);
@@ -179,8 +244,16 @@ static bool restore(moreau *m)
 {
     imp_group *g = m->group;
     const int n = g->count;
+    for (int i = 0; i < n; i++) m->least[i] = g->contacts[i].restitution * g->p[3 * i];
+    const bool starts = find_start(m, m->u, m->least);
+    if (starts) part_start(m);
     set_restitution(m);
-    const imp_cone_problem problem = {.count = 2 * n, .w = m->w, .q = m->q, .friction = m->friction};
+    const imp_cone_problem problem = {.count = 2 * n,
+                                      .w = m->w,
+                                      .q = m->q,
+                                      .friction = m->friction,
+                                      .last_r = starts ? m->last_r : NULL,
+                                      .last_u = m->last_u};
     const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->r, m->v, m->modes);
     clean(n, m->modes, m->modes + n, m->v);
     if (!solved(&problem, &o, m->r, g)) return false;
@@ -199,7 +272,12 @@ impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *work
     m.v = imp_encounter_take(workspace, 6 * n, sizeof *m.v);
     m.u = imp_encounter_take(workspace, 3 * n, sizeof *m.u);
     m.modes = imp_encounter_take(workspace, 2 * n, sizeof *m.modes);
-    if (!m.modes || !imp_cone_reserve(m.cone, 2 * group->count)) return IMPACT_ENOMEM;
+    m.last_r = imp_encounter_take(workspace, 6 * n, sizeof *m.last_r);
+    m.last_u = imp_encounter_take(workspace, 6 * n, sizeof *m.last_u);
+    m.least = imp_encounter_take(workspace, n, sizeof *m.least);
+    m.couples = imp_encounter_take(workspace, n, sizeof *m.couples);
+    m.rows = imp_encounter_take(workspace, n, sizeof *m.rows);
+    if (!m.rows || !imp_cone_reserve(m.cone, 2 * group->count)) return IMPACT_ENOMEM;
     if (compress(&m) && (!restores(group) || restore(&m))) return IMPACT_OK;
     const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
     group->wedged = imp_encounter_wedged(&question, m.r);

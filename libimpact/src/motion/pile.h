@@ -49,6 +49,7 @@ typedef struct imp_pile {
     int *members, *pivots; /* members: the points' numbers in `touching` */
     imp_cone_row *rows;
     imp_cone_row *turns;
+    int (*couples)[2]; /* by `number` */
     imp_cone_lengths *lengths;
     int widest, width; /* numbers a contact: that there is room for; of the island at hand, 3, or 6 with moments */
     double *gap, *friction, *w, *q, *r, *u, *before, *last_r, *last_u, *lead;

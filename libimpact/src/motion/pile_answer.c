@@ -160,7 +160,7 @@ static imp_pile_question question_of(const imp_pile *pile, const imp_world *worl
                  still = IMP_PILE_STILL * fastest_body(pile, world, states, count);
     return (imp_pile_question){.count = count,
                                .recalls = true,
-                               .enough = fmin(fmin(error, still) / fastest, IMP_PILE_USABLE),
+                               .enough = fmax(fmin(fmin(error, still) / fastest, IMP_PILE_USABLE), IMP_BODIES_ACCEPTED),
                                .usable = fmin(error / fastest, IMP_PILE_USABLE)};
 }
 

@@ -51,6 +51,7 @@ bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int conta
     pile->lengths = replaced(pile, pile->lengths, count, sizeof *pile->lengths, &there);
     pile->turns = replaced(pile, pile->turns, count, sizeof *pile->turns, &there);
     pile->contacts = replaced(pile, pile->contacts, count, sizeof *pile->contacts, &there);
+    pile->couples = replaced(pile, pile->couples, count, sizeof *pile->couples, &there);
     pile->members = replaced(pile, pile->members, count, sizeof *pile->members, &there);
     pile->rows = replaced(pile, pile->rows, count, sizeof *pile->rows, &there);
     pile->friction = replaced(pile, pile->friction, count, sizeof *pile->friction, &there);

@@ -6,8 +6,8 @@
 #include "motion/pile_parts.h"
 #include "base/tolerances.h"
 
-/* The island's bodies by numbers of their own, from 0; how many move. */
-static int number_bodies(imp_pile *pile, const imp_world *world, int count)
+/* Whom each contact couples, by numbers of their own from 0; how many move. */
+static int couple_bodies(imp_pile *pile, const imp_world *world, int count)
 {
     int bodies = 0;
     for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
@@ -15,6 +15,10 @@ static int number_bodies(imp_pile *pile, const imp_world *world, int count)
         const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
         for (int k = 0; k < 2; k++)
             if (!world->bodies[body[k]].is_static && pile->number[body[k]] < 0) pile->number[body[k]] = bodies++;
+    }
+    for (int c = 0; c < count; c++) {
+        pile->couples[c][0] = pile->number[pile->contacts[c].body1];
+        pile->couples[c][1] = pile->number[pile->contacts[c].body2];
     }
     return bodies;
 }
@@ -48,9 +52,11 @@ static imp_cone_outcome by_bodies(imp_pile *pile, const imp_world *world, const 
     const imp_cone_problem problem = problem_of(pile, question);
     imp_cone_find_rows(world, pile->middle, pile->contacts, problem.count, pile->rows);
     if (pile->width > 3) imp_cone_find_turns(world, pile->middle, pile->contacts, problem.count, pile->turns);
-    const int bodies = number_bodies(pile, world, problem.count);
-    return imp_cone_solve_bodies(&pile->by_bodies, pile->contacts, pile->rows, pile->turns, pile->number, bodies,
-                                 &problem, pile->r, pile->u);
+    const imp_cone_couples couples = {.bodies = couple_bodies(pile, world, problem.count),
+                                      .of = (const int(*)[2])pile->couples,
+                                      .rows = pile->rows,
+                                      .turns = pile->turns};
+    return imp_cone_solve_bodies(&pile->by_bodies, &problem, &couples, pile->r, pile->u);
 }
 
 double imp_pile_fastest(const imp_pile *pile, int count)

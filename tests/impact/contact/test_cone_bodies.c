@@ -21,7 +21,7 @@ typedef struct many {
     imp_cone_row rows[MOST], turns[MOST];
     imp_cone_lengths lengths[MOST];
     double friction[MOST], w[36 * MOST * MOST], q[6 * MOST];
-    int number[BODIES], count;
+    int couples[MOST][2], count;
     bool turning;
 } many;
 
@@ -29,6 +29,12 @@ static imp_cone_problem problem_of(const many *m)
 {
     return (imp_cone_problem){
         .count = m->count, .w = m->w, .q = m->q, .friction = m->friction, .lengths = m->turning ? m->lengths : NULL};
+}
+
+static imp_cone_couples couples_of(const many *m)
+{
+    return (imp_cone_couples){
+        .bodies = BODIES - 1, .of = (const int(*)[2])m->couples, .rows = m->rows, .turns = m->turns};
 }
 
 static double between(random_stream *random, double low, double high)
@@ -54,7 +60,6 @@ static void draw(many *m, random_stream *random, int count, double most_friction
         if (i > 0) m->bodies[i].inverse_mass = 1 / mass, m->bodies[i].inverse_moments = (qvec3){1 / j, 1 / j, 1 / j};
         m->bodies[i].moments = (qvec3){j, j, j};
         m->states[i] = (imp_state){.q = {1, 0, 0, 0}};
-        m->number[i] = i - 1;
     }
     for (int c = 0; c < count; c++) {
         const int upper = 1 + c % (BODIES - 1), lower = (int)(between(random, 0, upper));
@@ -63,6 +68,7 @@ static void draw(many *m, random_stream *random, int count, double most_friction
         m->contacts[c] =
             (imp_cone_contact){.body1 = upper, .body2 = lower, .arm1 = any_vector(random), .arm2 = any_vector(random)};
         imp_cone_find_axes(qvec3_scale(n, 1 / qvec3_norm(n)), m->contacts[c].axes);
+        m->couples[c][0] = upper - 1, m->couples[c][1] = lower - 1;
         m->friction[c] = c % 5 == 0 ? 0 : between(random, 0, most_friction);
         m->q[width * c] = -fabs(between(random, 0, 1));
         for (int k = 1; k < width; k++) m->q[width * c + k] = between(random, -1, 1);
@@ -91,8 +97,8 @@ static int compare_spaces(bool turning, int problems)
         double r[6 * MOST], u[6 * MOST], other_r[6 * MOST], other_u[6 * MOST];
         draw(m, &random, 1 + k % MOST, 0.5, turning);
         const imp_cone_problem problem = problem_of(m);
-        const imp_cone_outcome quick =
-            imp_cone_solve_bodies(&bodies, m->contacts, m->rows, m->turns, m->number, BODIES - 1, &problem, r, u);
+        const imp_cone_couples couples = couples_of(m);
+        const imp_cone_outcome quick = imp_cone_solve_bodies(&bodies, &problem, &couples, r, u);
         assert_true((turning ? imp_cone_reserve_turning : imp_cone_reserve)(&contacts, m->count));
         const imp_cone_outcome exact = imp_cone_solve(&problem, &contacts, other_r, other_u, NULL);
         if (exact.status != IMP_CONE_SOLVED || quick.status != IMP_CONE_SOLVED) continue;
@@ -123,6 +129,79 @@ static void with_moments_too(void **state)
     enum { PROBLEMS = 200 };
     assert_true(compare_spaces(true, PROBLEMS) >=
                 PROBLEMS * 7 / 10); /* the others are told, and the contacts' to solve */
+}
+
+/* Coulomb's law with at least so much pressed at each contact: what is beyond it only where nothing opens; friction
+ * within its cone, and against the slip with all its force. In units of the largest reaction and velocity. */
+static double off_law(const many *m, const double *least, const double *r, const double *u)
+{
+    double most = 0, fastest = 0, off = 0;
+    for (int i = 0; i < 3 * m->count; i++) most = fmax(most, fabs(r[i])), fastest = fmax(fastest, fabs(m->q[i]));
+    for (int c = 0; c < m->count; c++) {
+        const double *f = &r[3 * c], *v = &u[3 * c], bound = m->friction[c] * f[0];
+        const double slip = m->friction[c] > 0 ? hypot(v[1], v[2]) : 0;
+        const double beyond = f[0] - least[c], outside = hypot(f[1], f[2]) - bound,
+                     along = f[1] * v[1] + f[2] * v[2] + bound * slip;
+        off = fmax(off, fmax(fabs(fmin(beyond / most, v[0] / fastest)), fmax(outside / most, 0)));
+        off = fmax(off, fabs(along) / (most * fastest));
+    }
+    return off;
+}
+
+static void at_least_so_much_is_pressed(void **state)
+{
+    (void)state;
+    enum { PROBLEMS = 300 };
+    imp_arena *arena;
+    assert_int_equal(imp_arena_create(NULL, &arena), IMPACT_OK);
+    imp_cone_bodies bodies = {.arena = arena};
+    random_stream random = {12};
+    many *m = malloc(sizeof *m);
+    int settled = 0, pressed = 0, opened = 0;
+    for (int k = 0; k < PROBLEMS; k++) {
+        double r[3 * MOST], u[3 * MOST], least[MOST];
+        draw(m, &random, 1 + k % MOST, 0.5, false);
+        for (int c = 0; c < m->count; c++) least[c] = c % 3 == 0 ? 0 : between(&random, 0, 0.5);
+        imp_cone_problem problem = problem_of(m);
+        problem.enough = 1e-11;
+        imp_cone_couples couples = couples_of(m);
+        couples.least = least;
+        const imp_cone_outcome outcome = imp_cone_solve_bodies(&bodies, &problem, &couples, r, u);
+        if (outcome.residual > 1e-9) continue;
+        settled++;
+        assert_true(off_law(m, least, r, u) <= 1e-8);
+        for (int c = 0; c < m->count; c++) pressed += r[3 * c] > least[c], opened += least[c] > 0 && u[3 * c] > 1e-6;
+    }
+    assert_true(settled >= PROBLEMS * 9 / 10 && pressed > settled && opened > settled);
+    free(m);
+    imp_arena_destroy(arena);
+}
+
+/* What is enough is met, by no more steps than more takes. */
+static void no_more_is_found_than_is_asked(void **state)
+{
+    (void)state;
+    imp_arena *arena;
+    assert_int_equal(imp_arena_create(NULL, &arena), IMPACT_OK);
+    imp_cone_bodies bodies = {.arena = arena};
+    random_stream random = {13};
+    many *m = malloc(sizeof *m);
+    long rough = 0, fine = 0;
+    for (int k = 0; k < 100; k++) {
+        double r[3 * MOST], u[3 * MOST];
+        draw(m, &random, 1 + k % MOST, 0.5, false);
+        imp_cone_problem problem = problem_of(m);
+        const imp_cone_couples couples = couples_of(m);
+        const imp_cone_outcome all = imp_cone_solve_bodies(&bodies, &problem, &couples, r, u);
+        problem.enough = 1e-4;
+        const imp_cone_outcome some = imp_cone_solve_bodies(&bodies, &problem, &couples, r, u);
+        assert_true(some.residual <= 1e-4 || some.residual <= all.residual);
+        assert_true(some.steps <= all.steps);
+        rough += some.steps, fine += all.steps;
+    }
+    assert_true(rough < fine);
+    free(m);
+    imp_arena_destroy(arena);
 }
 
 /* L U x = A b for b of a matrix that is not symmetric. */
@@ -168,6 +247,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(velocities_are_those_of_the_contacts_own_space),
         cmocka_unit_test(with_moments_too),
+        cmocka_unit_test(at_least_so_much_is_pressed),
+        cmocka_unit_test(no_more_is_found_than_is_asked),
         cmocka_unit_test(a_skyline_is_solved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,280 @@
+/* SPDX-License-Identifier: MIT */
+#include "contact/cone_bodies_parts.h"
+#include "base/tolerances.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- G ---- */
+
+void imp_bodies_seen_by(const imp_bodies_problem *p, const imp_cone_row *row, int c, const double *x, double v[3])
+{
+    v[0] = v[1] = v[2] = 0;
+    for (int side = 0; side < 2; side++) {
+        if (p->couples[c][side] < 0) continue;
+        const double *own = &x[6 * p->couples[c][side]];
+        for (int k = 0; k < 3; k++) {
+            const double *a = row->side[side][k];
+            v[k] += (a[0] * own[0] + a[1] * own[1]) + (a[2] * own[2] + a[3] * own[3]) + (a[4] * own[4] + a[5] * own[5]);
+        }
+    }
+}
+
+/* G x at the contact. */
+static void seen_at(const imp_bodies_problem *p, int c, const double *x, double v[6])
+{
+    imp_bodies_seen_by(p, &p->rows[c], c, x, v);
+    if (p->width > 3) imp_bodies_seen_by(p, &p->turns[c], c, x, v + 3);
+}
+
+static void add_effect_of(const imp_bodies_problem *p, const imp_cone_row *row, int c, const double f[3], double factor,
+                          double *x)
+{
+    for (int side = 0; side < 2; side++) {
+        if (p->couples[c][side] < 0) continue;
+        double *own = &x[6 * p->couples[c][side]];
+        for (int k = 0; k < 3; k++)
+            for (int l = 0; l < 6; l++) own[l] += factor * f[k] * row->side[side][k][l];
+    }
+}
+
+/* Adds factor G^T f of the contact. */
+static void add_effect(const imp_bodies_problem *p, int c, const double *f, double factor, double *x)
+{
+    add_effect_of(p, &p->rows[c], c, f, factor, x);
+    if (p->width > 3) add_effect_of(p, &p->turns[c], c, f + 3, factor, x);
+}
+
+void imp_bodies_project(double friction, double least, const double *v, double *to, double slope[3][3])
+{
+    imp_cone_project(friction, v, to, slope);
+    if (to[0] >= least) return;
+    const double across = hypot(v[1], v[2]), bound = friction * least, part = across > bound ? bound / across : 1;
+    to[0] = least;
+    for (int k = 1; k < 3; k++) to[k] = friction > 0 ? part * v[k] : 0;
+    if (!slope) return;
+    memset(slope, 0, 9 * sizeof slope[0][0]);
+    for (int k = 1; friction > 0 && k < 3; k++)
+        for (int l = 1; l < 3; l++)
+            slope[k][l] = part * ((k == l) - (across > bound ? v[k] * v[l] / (across * across) : 0));
+}
+
+/* P_C y of the contact, and its derivative, width x width. */
+static void project_pressed(const imp_bodies_problem *p, int c, const double *y, double *f, double slope[36])
+{
+    if (p->width == 3)
+        imp_bodies_project(p->friction[c], p->least ? p->least[c] : 0, y, f, (double(*)[3])slope);
+    else
+        imp_cone_project_turning(p->friction[c], p->lengths[c], p->rolling[c], y, f, (double(*)[6])slope);
+}
+
+/* The part of the matrix from rows of the one kind times rows of the other: of three by three of slope. */
+static void add_bend_of(const imp_bodies_problem *p, const imp_cone_row *row, const imp_cone_row *other, int c,
+                        const double *slope)
+{
+    for (int i = 0; i < 2; i++) {
+        double left[6][3] = {{0}};
+        if (p->couples[c][i] < 0) continue;
+        for (int k = 0; k < 6; k++)
+            for (int m = 0; m < 3; m++)
+                for (int o = 0; o < 3; o++)
+                    left[k][m] += p->stiffness[c] * row->side[i][o][k] * slope[p->width * o + m];
+        for (int j = 0; j < 2; j++) {
+            double block[6][6] = {{0}};
+            if (p->couples[c][j] < 0) continue;
+            for (int k = 0; k < 6; k++)
+                for (int m = 0; m < 3; m++)
+                    for (int l = 0; l < 6; l++) block[k][l] += left[k][m] * other->side[j][m][l];
+            imp_skyline_add(p->sky, p->couples[c][i], p->couples[c][j], block);
+        }
+    }
+}
+
+static void add_bend(const imp_bodies_problem *p, int c, const double slope[36])
+{
+    add_bend_of(p, &p->rows[c], &p->rows[c], c, slope);
+    if (p->width == 3) return;
+    add_bend_of(p, &p->rows[c], &p->turns[c], c, slope + 3);
+    add_bend_of(p, &p->turns[c], &p->rows[c], c, slope + 18);
+    add_bend_of(p, &p->turns[c], &p->turns[c], c, slope + 21);
+}
+
+void imp_bodies_stiffen(const imp_bodies_problem *p, double stiffness)
+{
+    for (int c = 0; c < p->count; c++) {
+        const int dimension = p->friction[c] > 0 ? 3 : 1;
+        double trace = 0;
+        for (int side = 0; side < 2; side++)
+            for (int k = 0; k < dimension; k++)
+                for (int l = 0; l < 6; l++) trace += p->rows[c].side[side][k][l] * p->rows[c].side[side][k][l];
+        p->mobility[c] = trace / dimension;
+        p->stiffness[c] = stiffness / p->mobility[c];
+    }
+}
+
+void imp_bodies_effect(const imp_bodies_problem *p, const double *r)
+{
+    memset(p->x, 0, sizeof *p->x * (size_t)p->n);
+    for (int c = 0; c < p->count; c++) add_effect(p, c, &r[p->width * c], 1, p->x);
+    for (int c = 0; c < p->count; c++) {
+        double v[6];
+        const int i = p->width * c;
+        seen_at(p, c, p->x, v);
+        for (int k = 0; k < p->width; k++) p->u[i + k] = p->q[i + k] + v[k];
+    }
+}
+
+/* ---- slip ---- */
+
+/* u over its size, times the slope, at most two numbers; 0 of none. */
+static double scaled_slip(double slope, double *u, int count)
+{
+    const double size = count == 1 ? fabs(u[0]) : sqrt(u[0] * u[0] + u[1] * u[1]);
+    for (int k = 0; k < count; k++) u[k] *= size > 0 ? slope / size : 0;
+    return slope * size;
+}
+
+double imp_bodies_slip(const imp_bodies_problem *p, int c, const double *u, double slope[6])
+{
+    const double friction = p->friction[c];
+    memcpy(slope, u, (size_t)p->width * sizeof *u);
+    slope[0] = 0;
+    const double rubs = scaled_slip(friction > 0 ? friction : 0, slope + 1, 2);
+    if (p->width == 3) return rubs;
+    const double cone = friction > 0 ? friction : 1; /* with which spin is one slip */
+    const double spins = scaled_slip(p->lengths[c].torsional > 0 ? cone : 0, slope + 3, 1),
+                 one = sqrt(rubs * rubs + spins * spins);
+    for (int k = 1; k < 4; k++) slope[k] *= one > 0 ? (k < 3 ? rubs : spins) / one : 0;
+    return one + scaled_slip(p->lengths[c].rolling > 0 ? p->rolling[c] : 0, slope + 4, 2);
+}
+
+/* ---- Newton ---- */
+
+/* Of x: r - rho (q + s + G x), and where s follows x its slope in what is seen of x. */
+static void look_at_contact(const imp_bodies_problem *p, int c, const double *x)
+{
+    const int i = p->width * c;
+    double v[6], *y = &p->y[i];
+    seen_at(p, c, x, v);
+    if (p->follows) {
+        for (int k = 0; k < p->width; k++) v[k] += p->q[i + k];
+        v[0] += imp_bodies_slip(p, c, v, &p->lean[i]);
+    } else {
+        for (int k = 0; k < p->width; k++) v[k] += p->offset[i + k];
+    }
+    for (int k = 0; k < p->width; k++) y[k] = p->r[i + k] - p->stiffness[c] * v[k];
+}
+
+/* What x is to minimise; its reactions go to pressed, its gradient to gradient. Where s follows x that is the gradient
+ * of nothing, and half its square is to fall. */
+static double look_at(const imp_bodies_problem *p, const double *x, double *scale)
+{
+    double value = 0.5 * imp_bodies_products(x, x, p->n);
+    memcpy(p->gradient, x, sizeof *x * (size_t)p->n);
+    *scale = imp_bodies_products(x, x, p->n);
+    for (int c = 0; c < p->count; c++) {
+        double *f = &p->pressed[p->width * c];
+        look_at_contact(p, c, x);
+        project_pressed(p, c, &p->y[p->width * c], f, NULL);
+        value += 0.5 * imp_bodies_products(f, f, p->width) / p->stiffness[c];
+        *scale = fmax(*scale, imp_bodies_products(f, f, p->width) * p->mobility[c]);
+        add_effect(p, c, f, -1, p->gradient);
+    }
+    *scale = sqrt(*scale);
+    return p->follows ? 0.5 * imp_bodies_products(p->gradient, p->gradient, p->n) : value;
+}
+
+/* From x, which was looked at last. */
+static bool newton_step(const imp_bodies_problem *p)
+{
+    imp_skyline_clear(p->sky);
+    for (int b = 0; b < p->n / 6; b++) {
+        double one[6][6] = {{0}};
+        for (int k = 0; k < 6; k++) one[k][k] = 1;
+        imp_skyline_add(p->sky, b, b, one);
+    }
+    for (int c = 0; c < p->count; c++) {
+        const int i = p->width * c;
+        double f[6], slope[36];
+        if (!(p->pressed[i] > 0)) continue;
+        project_pressed(p, c, &p->y[i], f, slope);
+        for (int k = 0; p->follows && k < p->width; k++)
+            for (int l = 1; l < p->width; l++) slope[p->width * k + l] += slope[p->width * k] * p->lean[i + l];
+        add_bend(p, c, slope);
+    }
+    p->outcome->factorings++;
+    if (!imp_skyline_factor(p->sky)) return false;
+    for (int i = 0; i < p->n; i++) p->step[i] = -p->gradient[i];
+    imp_skyline_solve(p->sky, p->step);
+    return true;
+}
+
+/* Along the step, halved until the function falls by a part of what its slope promises; false where it does not. */
+static bool go_along(const imp_bodies_problem *p, double *value, double *scale)
+{
+    enum { HALVINGS = 30 };
+    const double slope = p->follows ? -2 * *value : imp_bodies_products(p->gradient, p->step, p->n);
+    double part = 1;
+    for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
+        for (int i = 0; i < p->n; i++) p->trial[i] = p->x[i] + part * p->step[i];
+        const double found = look_at(p, p->trial, scale);
+        if (!(found <= *value + 1e-4 * part * slope)) continue;
+        *value = found;
+        memcpy(p->x, p->trial, sizeof *p->x * (size_t)p->n);
+        return true;
+    }
+    return false;
+}
+
+/* Newton's steps for x until the gradient is `enough` of its terms, or rounding: there the function tells no more, and
+ * a step counts that halves the gradient. How many; -1: none led on. */
+int imp_bodies_settle(const imp_bodies_problem *p, double enough)
+{
+    enum { STEPS = 60 };
+    double scale, value = look_at(p, p->x, &scale);
+    for (int step = 0; step < STEPS; step++) {
+        const double size = sqrt(imp_bodies_products(p->gradient, p->gradient, p->n));
+        if (size <= fmax(enough, IMP_BODIES_FINEST) * scale) return step;
+        if (!newton_step(p)) return -1;
+        p->outcome->steps++;
+        if (size > IMP_BODIES_ROUNDING * scale) {
+            if (go_along(p, &value, &scale)) continue;
+        } else {
+            for (int i = 0; i < p->n; i++) p->trial[i] = p->x[i] + p->step[i];
+            const double found = look_at(p, p->trial, &scale);
+            if (imp_bodies_products(p->gradient, p->gradient, p->n) < 0.25 * size * size) {
+                value = found;
+                memcpy(p->x, p->trial, sizeof *p->x * (size_t)p->n);
+                continue;
+            }
+        }
+        (void)look_at(p, p->x, &scale);
+        return size <= IMP_BODIES_ROUNDING * scale ? step : -1;
+    }
+    return -1;
+}
+
+/* r of one contact, as x is while the others stay. */
+static void sweep_contact(const imp_bodies_problem *p, int c)
+{
+    double v[6], own[6], slope[6], *r = &p->r[p->width * c];
+    seen_at(p, c, p->x, v);
+    for (int k = 0; k < p->width; k++) v[k] += p->q[p->width * c + k];
+    v[0] += imp_bodies_slip(p, c, v, slope);
+    for (int k = 0; k < p->width; k++) own[k] = r[k] - p->stiffness[c] * v[k];
+    project_pressed(p, c, own, v, NULL);
+    for (int k = 0; k < p->width; k++) own[k] = v[k] - r[k], r[k] = v[k];
+    add_effect(p, c, own, 1, p->x);
+}
+
+/* What is struck anew is far from where the last step left it: contact by contact, there and back, it comes near. */
+void imp_bodies_sweep(const imp_bodies_problem *p)
+{
+    enum { SWEEPS = 10 }; /* with 40 and 160 he takes 12 and 9 steps, and they cost what that saves */
+    imp_bodies_stiffen(p, 1);
+    imp_bodies_effect(p, p->r);
+    for (int k = 0; k < SWEEPS; k++) {
+        for (int c = 0; c < p->count; c++) sweep_contact(p, c);
+        for (int c = p->count - 1; c >= 0; c--) sweep_contact(p, c);
+    }
+}
