@@ -62,18 +62,23 @@ function openRecord(bytes) {
     return { t: e.get(row, 't'), kind: head.kinds[e.get(row, 'kind')], body1, body2, name1: name(body1), point: e.list(row, P), n,
       name2: force >= 0 ? head.forces[force] : name(body2), impulse: e.list(row, ['jx', 'jy', 'jz']), phases: head.phases[e.get(row, 'phases')] };
   });
-  const contacts = new Map(); // of each pair its rows
+  const contacts = new Map(); // of each pair its patches: rows of one time are points of one
   for (let row = 0; row < tables.contacts.rows; row++) {
     const c = tables.contacts, [t, body1, body2, mode] = c.list(row, ['t', 'body1', 'body2', 'mode']), pair = body1 + ' ' + body2;
     if (!contacts.has(pair)) contacts.set(pair, []);
-    contacts.get(pair).push({ t, body1, mode: head.modes[mode], point: c.list(row, P), n: c.list(row, N), force: c.list(row, ['fx', 'fy', 'fz']) });
+    const list = contacts.get(pair), last = list[list.length - 1], at = { x: c.list(row, P), force: c.list(row, ['fx', 'fy', 'fz']) };
+    if (last && last.t === t && last.mode !== 'open' && head.modes[mode] !== 'open') last.at.push(at);
+    else list.push({ t, body1, mode: head.modes[mode], n: c.list(row, N), at: [at] });
   }
-  // The contacts held at t, between rows by straight lines.
+  // The contacts held at t, between rows of as many points by straight lines: points, all of their force, and where it acts.
   const held = t => [...contacts.values()].flatMap(rows => {
     const next = rows.findIndex(r => r.t > t), i = (next < 0 ? rows.length : next) - 1, a = rows[i], b = rows[i + 1];
     if (!a || a.mode === 'open') return [];
-    const s = b ? (t - a.t) / (b.t - a.t) : 0, mix = k => b && b.mode !== 'open' ? add(a[k], scale(sub(b[k], a[k]), s)) : a[k];
-    return [{ mode: a.mode, body1: a.body1, point: mix('point'), n: a.n, force: mix('force') }];
+    const like = b && b.mode !== 'open' && b.at.length === a.at.length, s = like ? (t - a.t) / (b.t - a.t) : 0;
+    const mix = k => a.at.map((p, j) => (like ? add(p[k], scale(sub(b.at[j][k], p[k]), s)) : p[k])), points = mix('x'), forces = mix('force');
+    const force = forces.reduce(add), total = forces.reduce((sum, f) => sum + norm(f), 0) || 1;
+    const point = points.map((x, j) => scale(x, norm(force) > 0 ? norm(forces[j]) / total : 1 / points.length)).reduce(add);
+    return [{ mode: a.mode, body1: a.body1, n: a.n, points, point, force }];
   });
   const A = tables.account, losses = ['damping_loss', 'sliding_loss', 'impact_loss'];
   const account = Array.from({ length: A.rows }, (_, row) => ({ t: A.get(row, 't'), E: A.get(row, 'kinetic') + A.get(row, 'potential'),

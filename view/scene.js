@@ -58,6 +58,12 @@ function makeScene(run, canvas) {
     return { mesh: shapes.get(id), one: b.static ? rgb('#8a8f98') : rgb(color(i)), i };
   });
   const arrow = G.upload(arrowMesh()), dot3 = G.upload(mesh({ kind: 'sphere', axes: [1, 1, 1], exponents: [2, 2, 2] }, 2)), quad = G.upload(quadMesh);
+  const third = G.upload({ points: [0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1], index: [0, 1, 2] }), edge = G.uploadLine([[0, 0, 0, -1e30], [1, 0, 0, -1e30]]);
+  // A patch's points in order round their middle, drawn as a face with its outline, a little before the bodies' faces.
+  const outline = (points, n) => {
+    const middle = scale(points.reduce(add), 1 / points.length), e = qrot(turnTo(n), [1, 0, 0]), f = cross(n, e);
+    return points.map(x => [Math.atan2(dot(sub(x, middle), f), dot(sub(x, middle), e)), here(x)]).sort((x, y) => x[0] - y[0]).map(x => x[1]);
+  };
   planes.forEach(p => { p.line = G.uploadLine(p.ring); });
   paths.forEach((path, i) => paths.set(i, G.uploadLine(apart(path, 1e-3 * radius).map(([x, y, z, t]) => [...here([x, y, z]), t]))));
   const circle = G.uploadLine(Array.from({ length: 33 }, (_, k) => [Math.cos(k * Math.PI / 16), Math.sin(k * Math.PI / 16), 0, -1e30]));
@@ -109,6 +115,9 @@ function makeScene(run, canvas) {
       mark(arrow, frame(here(e.point), turnTo(unit(e.impulse)), [wide, wide, size]), rgb('#e69f00', 1 - 0.75 * (t - e.t) / tail));
     });
     run.held(t).forEach(c => {
+      const round = c.points.length > 1 ? outline(c.points, c.n) : [], span = (x, y, z) => [...sub(y, x), 0, ...sub(z, x), 0, ...c.n, 0, ...x, 1];
+      for (let k = 2; k < round.length; k++) mark(third, span(round[0], round[k - 1], round[k]), rgb('#009e73', 0.55));
+      round.forEach((x, k) => { G.lines.set({ view: mat(view, span(x, round[(k + 1) % round.length], x)), size: [w / 2, h / 2], one: rgb('#009e73', 0.9), width: 2, now: 1e30 }); G.drawLine(edge); });
       const f = norm(c.force), weight = (run.bodies[c.body1].mass || 1) * Math.max(norm(g), 1e-9), size = 0.16 * camera.distance * Math.min(2, Math.sqrt(f / weight));
       mark(dot3, frame(here(c.point), [1, 0, 0, 0], [spot, spot, spot]), rgb(ink));
       if (c.mode === 'slip') { G.lines.set({ view: mat(view, frame(here(c.point), turnTo(c.n), [3 * spot, 3 * spot, 1])), size: [w / 2, h / 2], one: rgb(ink), width: 2, now: 1e30 }); G.drawLine(circle); }

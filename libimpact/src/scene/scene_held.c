@@ -89,6 +89,13 @@ static void glide_row(imp_island *island, double t, held_rows *rows)
     add_row(rows, &row);
 }
 
+int imp_island_held_by_steps(const imp_island *island, double t, impact_held *held, int room)
+{
+    held_rows rows = {held, room, 0};
+    if (island->stepped && !imp_island_lying(island)) pile_rows(island, t, &rows);
+    return rows.count;
+}
+
 int impact_scene_held(const impact_scene *scene, impact_held *held, int room)
 {
     const imp_floats floats = imp_floats_hold();

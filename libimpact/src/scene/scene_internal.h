@@ -94,6 +94,9 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end);
 impact_status imp_scene_look(impact_scene *scene, double t);
 /* The same by another look at what is on its own, into other room for all bodies' states. */
 impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look *at, imp_state *states);
+/* The points that the steps of a pile hold, where its bodies were looked at at t; none of another island. Rows go to
+ * the first `room` places; how many there are. */
+int imp_island_held_by_steps(const imp_island *island, double t, impact_held *held, int room);
 /* The account with the bodies in these states. */
 impact_energy imp_scene_energy_of(const impact_scene *scene, const imp_state *states);
 /* Kinetic + potential of all bodies but the island's at t, J. */

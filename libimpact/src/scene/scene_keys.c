@@ -191,7 +191,7 @@ bool imp_scene_held_ends(impact_scene *scene, int near, double t)
     impact_held row = line->last;
     row.mode = IMPACT_HOLD_OPEN;
     row.t = t;
-    line->live = false;
+    line->live = line->rests = false;
     return put_held(scene, &row);
 }
 
@@ -216,6 +216,41 @@ bool imp_scene_held_until(imp_island *island)
                                  .normal = touch->normal,
                                  .force = touch->force};
         if (line) taken = add_held_row(scene, line, &row, bodies[touch->body1].radius, least);
+    }
+    return taken;
+}
+
+/* All points of what a pile's steps hold: rows of one time and pair are one patch. Of what rests they stand once. */
+static bool put_points(impact_scene *scene, const imp_island *island, const impact_held *rows, int count)
+{
+    for (int k = 0; k < count; k++) {
+        const int near = imp_tracks_find(&scene->tracks, rows[k].body1, rows[k].body2);
+        imp_held_line *line = near < 0 ? NULL : held_line(scene, near);
+        if (!line || line->rests) continue;
+        line->live = true;
+        line->skipped = false;
+        line->last = rows[k];
+        if (!put_held(scene, &rows[k])) return false;
+    }
+    for (int k = 0; island->rests && k < count; k++) {
+        const int near = imp_tracks_find(&scene->tracks, rows[k].body1, rows[k].body2);
+        if (near >= 0) scene->keys->held[near].rests = true;
+    }
+    return true;
+}
+
+static bool put_piles(impact_scene *scene)
+{
+    bool taken = true;
+    for (int k = 0; taken && scene->recorder->held && k < scene->island_count; k++) {
+        const imp_island *island = scene->islands[k];
+        const int count = island ? imp_island_held_by_steps(island, scene->t, NULL, 0) : 0;
+        if (count == 0) continue;
+        impact_held *rows = imp_arena_take(scene->world.arena, (size_t)count, sizeof *rows);
+        if (!rows) return false;
+        imp_island_held_by_steps(island, scene->t, rows, count);
+        taken = put_points(scene, island, rows, count);
+        imp_arena_give(scene->world.arena, rows);
     }
     return taken;
 }
@@ -257,7 +292,7 @@ bool imp_scene_account_now_and_then(impact_scene *scene)
     if (!keys) return true;
     keys->looks += IMP_ACCOUNT_LOOKS;
     const bool due = scene->t >= keys->accounted + scene->duration / IMP_DISPLAY_ROWS;
-    return !due || !pays(keys, 1, scene->world.body_count) || put_account(scene);
+    return !due || !pays(keys, 1, scene->world.body_count) || (put_account(scene) && put_piles(scene));
 }
 
 /* ---- a run ---- */
@@ -289,7 +324,7 @@ bool imp_scene_keys_end(impact_scene *scene)
     const bool whole = keys->lines && keys->from && keys->states;
     bool taken = whole && (!recorder->key || end_keys(scene));
     for (int p = 0; taken && recorder->held && p < keys->held_room; p++) taken = put_pending(scene, &keys->held[p]);
-    taken = taken && put_account(scene);
+    taken = taken && put_account(scene) && put_piles(scene);
     imp_arena_give(scene->world.arena, keys->lines);
     imp_arena_give(scene->world.arena, keys->from);
     imp_arena_give(scene->world.arena, keys->states);

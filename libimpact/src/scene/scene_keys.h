@@ -11,6 +11,7 @@
 /* The rows of one pair's held contact: of those that differ little only the last is kept, until one differs. */
 typedef struct imp_held_line {
     bool live, skipped;
+    bool rests; /* its points' rows stand, and hold for as long as it does */
     impact_held last, pending;
 } imp_held_line;
 

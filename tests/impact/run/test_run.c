@@ -314,6 +314,37 @@ static void test_held_contacts_carry_the_weight(void **state)
     impact_scene_destroy(scene);
 }
 
+/* Two boxes that rest on each other: each patch has its four corners once, and they carry what is above. */
+static void test_what_rests_has_its_patches(void **state)
+{
+    (void)state;
+    impact_body_def bodies[3] = {plane_body("floor", (qvec3){0, 0, 0}, (quat){1, 0, 0, 0}, 0.5, 0),
+                                 ball_body("low", (qvec3){0, 0, 0.1}, 0.5, 0),
+                                 ball_body("high", (qvec3){0, 0, 0.3}, 0.5, 0)};
+    for (int i = 1; i < 3; i++) impact_shape_box(0.3, 0.2, 0.1, 0, &bodies[i].shape);
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = bodies;
+    def.body_count = 3;
+    def.duration = 2;
+    impact_scene *scene = make_scene(&def);
+    impact_run *run = record(scene);
+    double floor = 0, between = 0;
+    assert_int_equal(impact_run_held_count(run), 8);
+    for (long k = 0; k < 8; k++) {
+        impact_held c;
+        assert_int_equal(impact_run_held(run, k, &c), IMPACT_OK);
+        assert_int_equal(c.mode, IMPACT_HOLD_STICK);
+        const double up = c.body1 == 0 || (c.body1 == 1 && c.body2 == 2) ? -c.force.z : c.force.z;
+        *(c.body1 == 0 || c.body2 == 0 ? &floor : &between) += up;
+        assert_near(fabs(c.point.x), 0.3, 1e-9);
+        assert_near(fabs(c.point.y), 0.2, 1e-9);
+    }
+    assert_near(floor, -8 * def.gravity.z, 1e-9);
+    assert_near(between, -4 * def.gravity.z, 1e-9);
+    impact_run_close(run);
+    impact_scene_destroy(scene);
+}
+
 /* ---- many bodies ---- */
 
 static void test_a_crowd_is_recorded(void **state)
@@ -539,6 +570,7 @@ int main(void)
         cmocka_unit_test(test_recording_changes_no_bit),
         cmocka_unit_test(test_events_stand_between_two_keys),
         cmocka_unit_test(test_held_contacts_carry_the_weight),
+        cmocka_unit_test(test_what_rests_has_its_patches),
         cmocka_unit_test(test_a_crowd_is_recorded),
         cmocka_unit_test(test_damage_is_named),
         cmocka_unit_test(test_damaged_bytes_are_survived),
