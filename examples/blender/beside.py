@@ -52,6 +52,21 @@ def check(scene, path):
     print("worst of keys and half-way between in Blender: %.2g m, %.2g rad" % (place, angle))
 
 
+def against(scene, path):
+    """The same beside the run itself: rows of t, body, size, place and orientation at any times (tests/view/states.lua)."""
+    upright, place, angle, count = Quaternion((1, 0, 0), -math.pi / 2), 0.0, 0.0, 0
+    for line in open(path).read().splitlines()[1:]:
+        words = line.split(",")
+        t, size, x, y, z, *q = (float(word) for word in words[:1] + words[2:])
+        body = bpy.data.objects[words[1]]
+        scene.frame_set(math.floor(t * RATE), subframe=t * RATE % 1)
+        turn = body.matrix_world.to_quaternion().rotation_difference(Quaternion(q) @ upright)
+        place = max(place, (body.matrix_world.translation - Vector((x, y, z))).length / size)
+        angle = max(angle, 2 * math.atan2(Vector(turn[1:]).length, abs(turn.w)))
+        count += 1
+    print("worst of %d states of the run in Blender: %.2g of a body, %.2g rad" % (count, place, angle))
+
+
 def places(scene, names):
     """Of every frame where these bodies are."""
     run = []

@@ -43,11 +43,14 @@ parser.add_argument("--frame", type=int)
 parser.add_argument("--out", default="frame_####.png")
 parser.add_argument("--samples", type=int, default=32)
 parser.add_argument("--check", action="store_true")
+parser.add_argument("--states", help="with --check: a CSV of the run's own states (tests/view/states.lua)")
 parser.add_argument("--compare", action="store_true")
 given = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else sys.argv[1:])
 scene = beside.load(given.glb)
 if given.check:
     beside.check(scene, given.glb)
+    if given.states:
+        beside.against(scene, given.states)
 elif given.compare:
     beside.compare(scene, given.glb)
 else:
