@@ -87,6 +87,23 @@ do
   end
 end
 
+-- Whatever its lean and friction it runs through.
+do
+  local stopped = 0
+  for _, mu in ipairs { 1.4, 2, 3, 10 } do
+    for _, lean in ipairs { 0.3, 0.6, 0.9, 1.1, 1.3 } do
+      local scene = example("painleve_rod",
+        { string.format("mu=%.17g", mu), "eps=0.5", string.format("lean=%.17g", lean), "speed=3.0" })
+      scene:run { record = true }
+      check.equal(scene:time(), 1)
+      for _, event in ipairs(scene:events()) do
+        if event.phases and event.phases:find("tangential", 1, true) then stopped = stopped + 1 end
+      end
+    end
+  end
+  check.equal(stopped > 10, true)
+end
+
 -- ---- the cradle: the textbook's answer, and the laws' where the balls touch ----
 do
   local function after_first(arguments)
