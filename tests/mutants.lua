@@ -22,10 +22,21 @@ local rooms = {
   { "^libimpact/src/shape/", { "impact_support", "impact_shape", "impact_gap" } },
   { "^libimpact/src/flight/elliptic", { "impact_elliptic", "impact_tumble" } }, { "^libimpact/src/flight/", { "impact_flight", "impact_tumble" } },
   { "^libimpact/src/base/record%.c$", { "impact_record", "impact_memory" } }, { "^libimpact/src/gap/gap_strike", { "impact_gap", "impact_toi", "impact_motion" } },
+  { "^lua/runner/runner_limits", { "lua_memory", "lua_ends" } }, { "^lua/runner/", { "lua_command", "lua_ends" } },
+  { "^libimpact/src/scene/queue", { "impact_queue" } }, { "^libimpact/src/scene/rules", { "impact_definitions", "impact_scene", "impact_conventions" } },
+  { "^libimpact/src/scene/scene_receipt", { "impact_scene_answers", "impact_cases", "impact_random_scenes" } },
+  { "^libimpact/src/scene/scene_hold", { "impact_scene", "impact_scene_answers", "impact_cases", "impact_motion" } },
+  { "^libimpact/src/scene/tracks", { "impact_crowd", "impact_scene", "impact_scene_answers" } },
+  { "^libimpact/src/scene/", { "impact_scene_answers", "impact_scene", "impact_cases", "impact_drive", "impact_scene_together", "impact_random_scenes" } },
+  { "^libimpact/src/motion/search", { "impact_search", "impact_crowd" } }, { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases" } },
+  { "^libimpact/src/contact/persist", { "impact_persist_still", "impact_persist_modes", "impact_persist", "impact_cases" } },
+  { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning" } },
+  { "^libimpact/src/contact/encounter", { "impact_encounter", "impact_encounter_limits", "impact_encounter_known" } },
+  { "^libimpact/src/contact/springs", { "impact_springs", "impact_encounter_known", "impact_encounter" } },
   { "^libimpact/src/gap/", { "impact_gap", "impact_gap_deep", "impact_gap_receipt", "impact_gjk", "impact_toi" } }, { "^libimpact/src/motion/toi", { "impact_toi" } },
   { "^libimpact/src/collide/", { "impact_collide", "impact_collide_frame", "impact_collide_ready", "impact_collide_direct",
     "impact_collide_inertia", "impact_collide_isotropic", "impact_collide_flow", "impact_collide_course", "impact_collide_series",
-    "impact_collide_facts", "impact_collide_sensitivity", "impact_collide_compliant", "impact_collide_many", "impact_collide_cvode" } },
+    "impact_collide_facts", "impact_collide_receipt", "impact_collide_limits", "impact_collide_sensitivity", "impact_collide_compliant", "impact_collide_many", "impact_collide_cvode" } },
 }
 
 local function read(path)
@@ -108,7 +119,7 @@ local function is_code(line)
 end
 
 local function make(seed)
-  local pipe = assert(io.popen(string.format("cd '%s' && git ls-files 'lib*/src/*.c'", root)))
+  local pipe = assert(io.popen(string.format("cd '%s' && git ls-files 'lib*/src/*.c' 'lua/runner/*.c'", root)))
   for file in pipe:lines() do
     if tests_of(file) then
       local list, count, found = lines_of(read(root .. "/" .. file)), {}, {}
@@ -131,15 +142,32 @@ end
 
 local function command(text) return os.execute(text .. " >/dev/null 2>&1") == true end
 
+--- The edge of build.ninja that makes a target.
+local function edge(build, target)
+  local lists = read(build .. "/build.ninja")
+  local at = assert(lists:find("\nbuild " .. target .. ":", 1, true), "not in this build: " .. target) + 1
+  return lists:sub(at, lists:find("\n\n", at, true))
+end
+
+--- A runner with the mutant's object in its file's place, and the Lua test that drives it.
+local function runner_passes(build, work, test, object, file)
+  local text = edge(build, "lua/impact")
+  local objects = text:match "^build lua/impact: %S+ ([^|]*)":gsub("[^%s]*/" .. file:match "[^/]+$":gsub("%.", "%%.") .. "%.o", object)
+  local runner, name = work .. "/impact", test:match "^lua_(.*)$"
+  assert(command(string.format("cd '%s' && ln -sfn '%s/lua/modules' '%s/modules' && cc -O2 %s %s -o %s %s", build, build, work,
+    text:match "LINK_FLAGS = ([^\n]*)", objects, runner, text:match "LINK_LIBRARIES = ([^\n]*)")), "no link of the runner")
+  local extra = name == "memory" and build .. "/tests/lua/libfail_malloc.so" or root .. "/docs"
+  return command(string.format("cd '%s' && ulimit -t 60 && LUA_PATH='%s/lua/modules/?.lua;%s/tests/lua/?.lua' LUA_CPATH='%s/lua/modules/?.so' " ..
+    "'%s' '%s/tests/lua/test_%s.lua' '%s' '%s/lua_%s' '%s'", work, build, root, build, arg[-1], root, name, runner, work, name, extra))
+end
+
 --- Runs the test linked with the mutant's object before everything else, to its first failure; at most 60 s of computing.
-local function passes(build, work, test, object)
+local function passes(build, work, test, object, file)
   local library, name = test:match "^(%a+)_(.*)$"
+  if library == "lua" then return runner_passes(build, work, test, object, file) end
   local folder = string.format("%s/tests/%s/CMakeFiles/test_%s.dir", build, library, test)
-  local wrap = ""
-  local lists = read(string.format("%s/build.ninja", build))
-  local at = lists:find("build tests/" .. library .. "/test_" .. test .. ":", 1, true)
-  wrap = lists:sub(at, lists:find("\n\n", at, true)):match "LINK_FLAGS = ([^\n]*)" or ""
-  local libraries = lists:sub(at, lists:find("\n\n", at, true)):match "LINK_LIBRARIES = ([^\n]*)"
+  local text = edge(build, "tests/" .. library .. "/test_" .. test)
+  local wrap, libraries = text:match "LINK_FLAGS = ([^\n]*)" or "", text:match "LINK_LIBRARIES = ([^\n]*)" or ""
   local program = string.format("%s/test_%s_%s", work, library, name)
   local objects = string.format("$(find %s -name '*.o')", folder)
   assert(command(string.format("cd '%s' && cc -O2 %s %s %s -o %s %s", build, wrap, objects, object, program, libraries)),
@@ -152,8 +180,8 @@ local function compile(build, work, file, source)
   local path = string.format("%s/%s", work, file:match "[^/]+$")
   write(path, source)
   local known = read(build .. "/compile_commands.json")
-  local at = assert(known:find('/' .. file .. '"', 1, true), "not in this build: " .. file)
-  local text = known:sub(1, at):match '.*"command": "(.-)",%s*"file":.-$':gsub('\\"', '"'):gsub("\\\\", "\\")
+  local at = assert(known:find('"file": "[^"\n]*/' .. file:gsub("%p", "%%%0") .. '"'), "not in this build: " .. file)
+  local text = known:sub(1, at - 1):match '.*"command": "(.-)",%s*$':gsub('\\"', '"'):gsub("\\\\", "\\")
   local object, folder = path:gsub("%.c$", ".o"), (root .. "/" .. file):match "^(.*)/[^/]+$"
   text = text:gsub("%-o %S+ %-c %S+$", "")
   return command(string.format("cd '%s' && %s -w -O2 -I'%s' -o '%s' -c '%s'", build, text, folder, object, path)) and object
@@ -167,7 +195,7 @@ local function run(build, work, part, parts, pattern)
   --- A test is trusted once it has passed with the file as it is.
   local function trusted(test, file)
     if sound[test] == nil then
-      sound[test] = passes(build, work, test, assert(compile(build, work, file, read(root .. "/" .. file)), file))
+      sound[test] = passes(build, work, test, assert(compile(build, work, file, read(root .. "/" .. file)), file), file)
       if not sound[test] then print("fails unchanged: " .. test) end
     end
     return sound[test]
@@ -188,7 +216,7 @@ local function run(build, work, part, parts, pattern)
           total = total + 1
           local noticed
           for _, test in ipairs(tests_of(file)) do
-            if trusted(test, file) and not passes(build, work, test, object) then
+            if trusted(test, file) and not passes(build, work, test, object, file) then
               noticed = test
               break
             end

@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
+#include <string.h>
 #include <impact/toi.h>
 #include "kit/contact_random.h"
 #include "motion/toi_proof.h"
@@ -324,10 +325,14 @@ static void bad_input(void **state)
     (void)state;
     const impact_solid a = solid(sphere(1), (qvec3){-5, 0, 0}, quat_identity()),
                        b = solid(sphere(1), (qvec3){0, 0, 0}, quat_identity());
-    const impact_motion bad = {{NAN, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     double t;
-    assert_int_equal(impact_toi(&a, &bad, &b, &at_rest, 1, &t, NULL), IMPACT_EDOMAIN);
-    assert_true(isnan(t));
+    for (size_t i = 0; i < sizeof(impact_motion) / sizeof(double); i++) {
+        impact_motion bad = at_rest;
+        memcpy((double *)&bad + i, &(double){i % 2 ? INFINITY : NAN}, sizeof(double));
+        assert_int_equal(impact_toi(&a, &bad, &b, &at_rest, 1, &t, NULL), IMPACT_EDOMAIN);
+        assert_int_equal(impact_toi(&b, &at_rest, &a, &bad, 1, &t, NULL), IMPACT_EDOMAIN);
+        assert_true(isnan(t));
+    }
     assert_int_equal(impact_toi(&a, &at_rest, &b, &at_rest, INFINITY, &t, NULL), IMPACT_EDOMAIN);
     assert_int_equal(impact_toi(&a, &at_rest, &b, &at_rest, -1, &t, NULL), IMPACT_EARGUMENT);
     assert_int_equal(impact_toi(&a, &at_rest, &b, &at_rest, 1, &t, NULL), IMPACT_NO_CONTACT);

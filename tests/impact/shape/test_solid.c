@@ -283,13 +283,82 @@ static void curvatures_of_what_is_met(void **state)
                 fabs(H.m[0][2] + 2 * 0.48) < 1e-15);
 }
 
+/* Every number of every shape that a caller may have filled in by hand. */
+static void shapes_by_hand(void **state)
+{
+    (void)state;
+    impact_shape box, cylinder, cone, capsule, quadric, made;
+    impact_shape_box(1, 2, 3, 0.5, &box);
+    impact_shape_cylinder(2, 1, 0.1, &cylinder);
+    impact_shape_cone(2, 3, 0.1, &cone);
+    impact_shape_capsule(1, 2, &capsule);
+    impact_shape_superellipsoid(1, 2, 3, 1, 0.5, &quadric);
+    const struct {
+        const impact_shape *good;
+        size_t place;
+        double value;
+        impact_status status;
+        const char *words;
+    } bad[] = {
+        {&box, offsetof(impact_shape, b), 0, IMPACT_EARGUMENT, "half side b"},
+        {&box, offsetof(impact_shape, c), NAN, IMPACT_EDOMAIN, "half side c"},
+        {&cylinder, offsetof(impact_shape, b), 1, IMPACT_EARGUMENT,
+         "b = 1 is not a, the radius, as a round body needs"},
+        {&cone, offsetof(impact_shape, base), 0, IMPACT_EARGUMENT, "base = 0 is not below the centroid"},
+        {&cone, offsetof(impact_shape, base), -3, IMPACT_EARGUMENT, "base = -3 is not below the centroid"},
+        {&capsule, offsetof(impact_shape, rounding), 0.5, IMPACT_EARGUMENT,
+         "is not a capsule's radius, or c not above"},
+        {&capsule, offsetof(impact_shape, c), 1, IMPACT_EARGUMENT, "is not a capsule's radius, or c not above"},
+        {&quadric, offsetof(impact_shape, s), 3, IMPACT_EARGUMENT,
+         "exponent s = 3 is not r, as a superellipsoid needs"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char message[200];
+        impact_shape shape = *bad[i].good;
+        assert_int_equal(impact_shape_check(&shape, message, sizeof message), IMPACT_OK);
+        memcpy((char *)&shape + bad[i].place, &bad[i].value, sizeof bad[i].value);
+        assert_int_equal(impact_shape_check(&shape, message, sizeof message), bad[i].status);
+        if (!strstr(message, bad[i].words)) fail_msg("%s: %s", bad[i].words, message);
+    }
+    assert_int_equal(impact_shape_superellipsoid(1, 1, 1, 1, 0, &made), IMPACT_EARGUMENT);
+    assert_int_equal(impact_shape_superellipsoid(1, 1, 1, NAN, 1, &made), IMPACT_EDOMAIN);
+    assert_int_equal(impact_shape_superellipsoid(1, 1, 1, 1, INFINITY, &made), IMPACT_EDOMAIN);
+    assert_int_equal(impact_shape_capsule(1, 0, &made), IMPACT_EARGUMENT);
+    assert_int_equal(impact_shape_capsule(1, NAN, &made), IMPACT_EDOMAIN);
+}
+
+/* A number of a vertex or a face that the hull does not have. */
+static void hulls_beyond_their_ends(void **state)
+{
+    (void)state;
+    const qvec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    impact_hull *hull;
+    int vertices[8];
+    qvec3 normal;
+    assert_int_equal(impact_hull_create(corners, 4, 0, NULL, &hull, NULL, 0), IMPACT_OK);
+    assert_int_equal(impact_hull_describe(hull).vertices, 4);
+    for (int i = -1; i <= 4; i += 5) {
+        assert_true(isnan(impact_hull_vertex(hull, i).x));
+        assert_int_equal(impact_hull_face(hull, i, vertices, &normal), 0);
+    }
+    assert_int_equal(impact_hull_face(hull, 3, vertices, &normal), 3);
+    impact_hull_destroy(hull);
+    impact_hull_destroy(NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mistakes_are_named),        cmocka_unit_test(turned_against_quadrature),
-        cmocka_unit_test(rounded_hulls_of_boxes),    cmocka_unit_test(rounded_hulls_by_rays),
-        cmocka_unit_test(hulls_hold_their_points),   cmocka_unit_test(hulls_refuse_in_words),
-        cmocka_unit_test(supports_are_the_farthest), cmocka_unit_test(curvatures_of_what_is_met),
+        cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(turned_against_quadrature),
+        cmocka_unit_test(rounded_hulls_of_boxes),
+        cmocka_unit_test(rounded_hulls_by_rays),
+        cmocka_unit_test(hulls_hold_their_points),
+        cmocka_unit_test(hulls_refuse_in_words),
+        cmocka_unit_test(supports_are_the_farthest),
+        cmocka_unit_test(curvatures_of_what_is_met),
+        cmocka_unit_test(shapes_by_hand),
+        cmocka_unit_test(hulls_beyond_their_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
