@@ -122,14 +122,13 @@ static double settle_friction(imp_bodies_problem *p, double rho, double enough)
     return fmax(0.1 * rho, IMP_BODIES_STIFF);
 }
 
+/* From p->r, as far as it goes; the best goes to r and u. */
 static void iterate(imp_bodies_problem *p, double enough, double *r, double *u)
 {
     enum { MOST = 40, PATIENCE = 10 };
     const size_t size = (size_t)p->width * sizeof *r * (size_t)p->count;
     imp_cone_outcome *outcome = p->outcome;
     double rho = IMP_BODIES_SOFT;
-    imp_bodies_effect(p, p->r);
-    if (residual_of(p, p->r) > IMP_BODIES_FAR) imp_bodies_sweep(p);
     for (int k = 0, idle = 0; k <= MOST && idle < PATIENCE; k++) {
         imp_bodies_effect(p, p->r);
         const double found = residual_of(p, p->r);
@@ -142,6 +141,20 @@ static void iterate(imp_bodies_problem *p, double enough, double *r, double *u)
         if (outcome->residual <= enough) return;
         rho = fmax(settle_friction(p, rho, IMP_BODIES_INNER * fmin(found, 1)), IMP_BODIES_STIFF);
         memcpy(p->r, p->pressed, size);
+    }
+}
+
+/* What Newton's steps leave far off is swept for longer, and they begin again. */
+static void iterate_and_sweep(imp_bodies_problem *p, double enough, double *r, double *u)
+{
+    imp_bodies_effect(p, p->r);
+    double found = residual_of(p, p->r);
+    for (int sweeps = IMP_BODIES_SWEEPS; sweeps <= IMP_BODIES_SWEEPS_MOST; sweeps *= 10) {
+        if (found > IMP_BODIES_FAR) imp_bodies_sweep(p, sweeps);
+        iterate(p, enough, r, u);
+        found = p->outcome->residual;
+        if (!(found > IMP_BODIES_FAR)) return;
+        memcpy(p->r, r, (size_t)p->width * sizeof *r * (size_t)p->count);
     }
 }
 
@@ -226,7 +239,7 @@ imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_con
         change_units(&p, false, false, p.r, p.r);
         p.q = p.own_q;
     }
-    iterate(&p, problem->enough > 0 ? problem->enough : IMP_BODIES_ACCEPTED, r, u);
+    iterate_and_sweep(&p, problem->enough > 0 ? problem->enough : IMP_BODIES_ACCEPTED, r, u);
     if (!(outcome.residual < INFINITY)) return outcome;
     if (width > 3) {
         memcpy(p.r, r, size * sizeof *r);

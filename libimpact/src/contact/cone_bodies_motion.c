@@ -267,13 +267,11 @@ static void sweep_contact(const imp_bodies_problem *p, int c)
     add_effect(p, c, own, 1, p->x);
 }
 
-/* What is struck anew is far from where the last step left it: contact by contact, there and back, it comes near. */
-void imp_bodies_sweep(const imp_bodies_problem *p)
+void imp_bodies_sweep(const imp_bodies_problem *p, int sweeps)
 {
-    enum { SWEEPS = 10 }; /* with 40 and 160 he takes 12 and 9 steps, and they cost what that saves */
     imp_bodies_stiffen(p, 1);
     imp_bodies_effect(p, p->r);
-    for (int k = 0; k < SWEEPS; k++) {
+    for (int k = 0; k < sweeps; k++) {
         for (int c = 0; c < p->count; c++) sweep_contact(p, c);
         for (int c = p->count - 1; c >= 0; c--) sweep_contact(p, c);
     }

@@ -52,6 +52,6 @@ void imp_bodies_stiffen(const imp_bodies_problem *p, double stiffness);
 int imp_bodies_settle(const imp_bodies_problem *p, double enough);
 
 /* What is struck anew is far from where the last step left it: contact by contact, there and back, r comes near. */
-void imp_bodies_sweep(const imp_bodies_problem *p);
+void imp_bodies_sweep(const imp_bodies_problem *p, int sweeps);
 
 #endif
