@@ -43,7 +43,7 @@ static void add(keys *k, imp_gltf_key key)
 
 static bool meets(const keys *k, const imp_gltf_key *a, const imp_gltf_key *b)
 {
-    if (quat_distance(a->q, b->q) > widest_turn || fmax(a->turn, b->turn) * (b->t - a->t) > widest_turn) return false;
+    if (2 * quat_distance(a->q, b->q) > widest_turn || fmax(a->turn, b->turn) * (b->t - a->t) > widest_turn) return false;
     for (int i = 1; i < 4; i++) {
         const double s = 0.25 * i;
         const imp_gltf_key there = key_at(k, a->t + s * (b->t - a->t));
@@ -51,7 +51,7 @@ static bool meets(const keys *k, const imp_gltf_key *a, const imp_gltf_key *b)
         const quat slerped = quat_slerp(a->q, b->q, s);
         const quat lerped = quat_unit(quat_add(a->q, quat_scale(quat_sub(b->q, a->q), s)));
         if (qvec3_norm(qvec3_sub(x, there.x)) > k->place) return false;
-        if (quat_distance(slerped, there.q) > k->angle || quat_distance(lerped, there.q) > k->angle) return false;
+        if (2 * fmax(quat_distance(slerped, there.q), quat_distance(lerped, there.q)) > k->angle) return false;
     }
     return true;
 }

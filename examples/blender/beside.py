@@ -76,7 +76,16 @@ def places(scene, names):
     return run
 
 
-def own_run(path, facts, names, substeps):
+def blow(body, force, reach):
+    """A wind of so many N along x from where the body is, as far as that; a field's strength is N by the frame's rate."""
+    turn = (0, math.copysign(math.pi / 2, force), 0)
+    bpy.ops.object.effector_add(type="WIND", location=body.matrix_world.translation, rotation=turn)
+    field = bpy.context.object.field
+    field.strength, field.flow, field.noise, field.falloff_power = abs(force) * RATE, 0, 0, 0
+    field.use_max_distance, field.distance_max = True, reach
+
+
+def own_run(path, facts, names, substeps, winds):
     """The same of Blender's own rigid bodies, begun where the file's are."""
     scene = load(path)
     scene.frame_set(0)
@@ -94,6 +103,8 @@ def own_run(path, facts, names, substeps):
         own.collision_shape = {"sphere": "SPHERE", "plane": "MESH"}.get(fact["shape"], "CONVEX_HULL")
         own.mass, own.friction, own.restitution = fact.get("mass", 1), fact["friction"], fact["restitution"]
         own.use_margin, own.collision_margin, own.linear_damping, own.angular_damping, own.use_deactivation = True, 0, 0, 0, False
+    for name, force, reach in winds:
+        blow(bpy.data.objects[name], float(force), float(reach))
     return places(scene, names)
 
 
@@ -102,11 +113,11 @@ def rebound(heights):
     return max(heights[turn:])
 
 
-def compare(scene, path):
+def compare(scene, path, winds):
     facts = {node["name"]: node["extras"] for node in open_glb(path)[0]["nodes"] if "extras" in node}
     names = [name for name in facts if "mass" in facts[name]]
-    ours, few, many = places(scene, names), own_run(path, facts, names, 10), own_run(path, facts, names, 100)
-    print("t, s    body                 z, m     Blender, 10   100 substeps   differences, m")
+    ours, few, many = places(scene, names), own_run(path, facts, names, 10, winds), own_run(path, facts, names, 100, winds)
+    print("t, s    body                 z, m     Blender, 10   100 substeps   apart, m")
     for k in range(0, len(ours), max(1, len(ours) // 16)):
         for name, a, b, c in zip(names, ours[k], few[k], many[k]):
             print("%6.3f  %-16s %9.5f %12.5f %12.5f %11.5f %9.5f" % (k / RATE, name, a.z, b.z, c.z, (b - a).length, (c - a).length))

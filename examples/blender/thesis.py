@@ -6,7 +6,8 @@
     blender --background --python examples/blender/thesis.py -- out/sphere_wall.glb       # or Blender itself
 
 --check compares the imported motion with the keys in the file; --compare runs Blender's own rigid bodies from the same start, with 10 and
-100 substeps a frame, and prints where they go beside where the file's go (examples/blender/drop.lua has a known answer)."""
+100 substeps a frame, and prints where they go beside where the file's go (examples/blender/drop.lua has a known answer; the thesis' two
+spheres: out/two_spheres.glb --compare --wind left 25 5 --wind right -25 5)."""
 import argparse
 import os
 import sys
@@ -45,6 +46,7 @@ parser.add_argument("--samples", type=int, default=32)
 parser.add_argument("--check", action="store_true")
 parser.add_argument("--states", help="with --check: a CSV of the run's own states (tests/view/states.lua)")
 parser.add_argument("--compare", action="store_true")
+parser.add_argument("--wind", nargs=3, action="append", default=[], metavar=("BODY", "N", "M"), help="along x from the body's start, for --compare")
 given = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else sys.argv[1:])
 scene = beside.load(given.glb)
 if given.check:
@@ -52,6 +54,6 @@ if given.check:
     if given.states:
         beside.against(scene, given.states)
 elif given.compare:
-    beside.compare(scene, given.glb)
+    beside.compare(scene, given.glb, given.wind)
 else:
     render(scene, given.frame, given.out, given.samples)

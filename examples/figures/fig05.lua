@@ -45,10 +45,10 @@ local flat = plot.panel {
 -- b) the sphere
 local function half(sign, height)
   local x, y, z = {}, {}, {}
-  for i = 0, 8 do
+  for i = 0, 16 do
     x[i + 1], y[i + 1], z[i + 1] = {}, {}, {}
-    for j = 0, 32 do
-      local theta, phi = j * pi / 16, i * pi / 16
+    for j = 0, 64 do
+      local theta, phi = j * pi / 32, i * pi / 32
       x[i + 1][j + 1], y[i + 1][j + 1] = math.cos(theta) * math.sin(phi), math.sin(theta) * math.sin(phi)
       z[i + 1][j + 1] = height or sign * math.cos(phi)
     end
