@@ -43,7 +43,8 @@ static void add(keys *k, imp_gltf_key key)
 
 static bool meets(const keys *k, const imp_gltf_key *a, const imp_gltf_key *b)
 {
-    if (2 * quat_distance(a->q, b->q) > widest_turn || fmax(a->turn, b->turn) * (b->t - a->t) > widest_turn) return false;
+    if (2 * quat_distance(a->q, b->q) > widest_turn || fmax(a->turn, b->turn) * (b->t - a->t) > widest_turn)
+        return false;
     for (int i = 1; i < 4; i++) {
         const double s = 0.25 * i;
         const imp_gltf_key there = key_at(k, a->t + s * (b->t - a->t));
