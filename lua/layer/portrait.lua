@@ -141,7 +141,7 @@ function portrait.space(scene, body, other, title)
     xlabel = "q₁",
     ylabel = "q₂",
     zlabel = "q₃",
-    legend = "top right",
+    legend = "top left",
     view = { 62, 38 },
     zoom = 1.45,
     equal = true,
