@@ -108,6 +108,27 @@ for _, name in ipairs { "sphere_wall", "sphere_wall_rolling", "sphere_wall_spin"
   compare(scenes, name .. "_events.csv")
 end
 
+-- A wall that is struck is chaotic: its bricks stand until the ball comes, then none leaves the ground downward, and the account closes.
+do
+  local code, out = runner.command(string.format("%s --out .", runner.quote(scenes .. "/brick_wall.lua")))
+  check.equal(code, 0)
+  check.truth(tonumber(out:match "off by (%S+) J%)") <= 1e-9)
+  local table_rows = rows(runner.folder .. "/brick_wall.csv")
+  local column, first, struck, lowest = {}, {}, nil, math.huge
+  for c, name in ipairs(table_rows[1]) do column[name] = c end
+  for i = 2, #table_rows do
+    local row = table_rows[i]
+    local body, t = row[column.body], tonumber(row[column.t])
+    if body:find "^brick" then
+      first[body] = first[body] or row
+      lowest = math.min(lowest, tonumber(row[column.z]))
+      if row[column.y] ~= first[body][column.y] then struck = math.min(struck or t, t) end
+    end
+  end
+  check.truth(struck and struck > 0.05, "the ball strikes after 0.05 s")
+  check.truth(lowest > 0.03 - 1e-6, "no brick's centre is lower than half of it is high")
+end
+
 -- Each figure, and the rows it gives.
 local expected = {
   fig02 = { "fig02" }, fig03 = { "fig03" }, fig04 = { "fig04a", "fig04b" }, fig05 = { "fig05a", "fig05b" }, fig06 = { "fig06" }, fig07 = { "fig07" }, untwist = { "untwist", "untwist_frames" }, hopf = { "hopf" }, gimbal = { "gimbal" }, fig10 = { "fig10" }, fig11 = { "fig11" }, fig13 = { "fig13" },
