@@ -95,6 +95,17 @@ static void mark_met(imp_island *island)
     for (int k = 0; k < held->count; k++) island->world.pairs[held->list[k].pair].met = true;
 }
 
+/* Of the bodies that move. */
+static const imp_body *heaviest_of(const imp_world *world)
+{
+    const imp_body *heaviest = &world->bodies[0];
+    for (int i = 1; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (!body->is_static && (heaviest->is_static || body->mass > heaviest->mass)) heaviest = body;
+    }
+    return heaviest;
+}
+
 impact_status imp_island_step(imp_island *island)
 {
     impact_scene *scene = island->scene;
@@ -105,8 +116,10 @@ impact_status imp_island_step(imp_island *island)
         imp_motion_next_by_steps(motion, island->pile, island->before, island->states, &result);
     if (status == IMPACT_ENOMEM) return status;
     if (status != IMPACT_OK) {
-        snprintf(scene->message, sizeof scene->message, "by steps from t = %s: %s",
-                 imp_number_of(motion->stride.t).text,
+        const imp_body *heaviest = heaviest_of(&island->world);
+        snprintf(scene->message, sizeof scene->message,
+                 "by steps from t = %s, of which body '%s' is the heaviest (%s kg): %s",
+                 imp_number_of(motion->stride.t).text, heaviest->name, imp_number_of(heaviest->mass).text,
                  island->pile->message[0] ? island->pile->message : impact_status_string(status));
         return status;
     }
