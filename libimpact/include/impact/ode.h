@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ode: y' = f(t, y) to the next root of g(t, y), by SUNDIALS' CVODE or by the classical Runge-Kutta method with a fixed
- * step. Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT to the methods of CVODE.
+ * ode: y' = f(t, y) to the next root of g(t, y), by SUNDIALS' CVODE, by collocation, or by the classical Runge-Kutta
+ * method with a fixed step. Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT to the methods of CVODE.
  */
 #ifndef IMPACT_ODE_H
 #define IMPACT_ODE_H
@@ -22,7 +22,11 @@ typedef enum impact_ode_method {
     /* The classical method of order 4 with def.step throughout: no error is looked at, tolerances mean nothing, and a
      * right-hand side that asks for a smaller step ends it. Roots, and samples between the ends, by the step's cubic
      * Hermite polynomial, of order 4 too. */
-    IMPACT_ODE_RK4
+    IMPACT_ODE_RK4,
+    /* Collocation at Lobatto's eight nodes, of order 14, with a step of its own choice and fixed-point iteration: for
+     * smooth problems that are not stiff; no memory of the steps before is needed, so that a start costs little. Roots
+     * are looked for between the nodes; samples by the step's polynomial, of degree 8, to the tolerance. */
+    IMPACT_ODE_LOBATTO
 } impact_ode_method;
 
 /* y' into rate[n]. Return 0; > 0: try a smaller step; < 0: give up. */

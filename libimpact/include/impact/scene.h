@@ -96,7 +96,8 @@ typedef enum impact_samples {
 /* How bodies move between events. */
 typedef enum impact_motion_method {
     IMPACT_MOTION_AUTO,  /* in closed form where there is one: flight, with damping too, and balls that roll or slide;
-                          * else by CVODE; piles as `piles` says */
+                          * else by collocation, IMPACT_ODE_LOBATTO, and what is stiff by CVODE's BDF; piles as `piles`
+                          * says */
     IMPACT_MOTION_CVODE, /* all that moves by CVODE, flight too; no pile by steps */
     IMPACT_MOTION_RK4, /* all that moves by the classical Runge-Kutta method with the fixed `step`; no pile by steps */
     IMPACT_MOTION_STEPS, /* AUTO, and piles by steps from the start: piles = IMPACT_PILES_STEPS */
@@ -277,7 +278,7 @@ IMPACT_API double impact_scene_key_tolerance(const impact_scene *scene);
 typedef struct impact_usage {
     long ballistic_flights; /* stretches of flight in closed form */
     long rolls;             /* stretches in which a ball rolls or slides on a plane, in closed form */
-    long integrators;       /* CVODE integrators created for the motion */
+    long integrators;       /* integrators created for the motion */
     long integrator_starts, integrator_steps, integrator_rhs_calls;
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback, gap_ccd; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode;          /* impacts, by solver */

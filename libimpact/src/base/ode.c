@@ -17,7 +17,8 @@ static bool valid(const impact_ode_def *def)
     if (def->max_steps < 0) return false;
     switch (def->method) {
     case IMPACT_ODE_ADAMS:
-    case IMPACT_ODE_BDF: return def->step == 0 && def->relative_tolerance > 0 && def->absolute_tolerance >= 0;
+    case IMPACT_ODE_BDF:
+    case IMPACT_ODE_LOBATTO: return def->step == 0 && def->relative_tolerance > 0 && def->absolute_tolerance >= 0;
     case IMPACT_ODE_RK4: return def->step > 0 && isfinite(def->step);
     }
     return false;
@@ -25,7 +26,8 @@ static bool valid(const impact_ode_def *def)
 
 static const imp_ode_driver *driver_of(impact_ode_method method)
 {
-    return method == IMPACT_ODE_RK4 ? &imp_ode_rk4 : imp_cvode();
+    if (method == IMPACT_ODE_RK4) return &imp_ode_rk4;
+    return method == IMPACT_ODE_LOBATTO ? &imp_ode_lobatto : imp_cvode();
 }
 
 impact_status imp_ode_create_in(imp_arena *arena, const impact_ode_def *def, impact_ode **out)

@@ -6,10 +6,10 @@
  *     y(t + h) = y + h (k1 + 2 k2 + 2 k3 + k4)/6
  *
  * Between the ends the cubic with their values and rates (Hermite's), whose error is of the order h^4 too. A root
- * function that changes sign over a step has its root there by the Illinois form of regula falsi on that cubic; the
- * next step goes on from the root. It shares no code with CVODE. (Hairer, Norsett, Wanner 1993, II.1 and II.6.)
+ * function that changes sign over a step has its root there on that cubic; the next step goes on from the root. It
+ * shares no code with CVODE. (Hairer, Norsett, Wanner 1993, II.1 and II.6.)
  */
-#include "base/ode_driver.h"
+#include "base/ode_roots.h"
 #include "base/tolerances.h"
 
 #include <math.h>
@@ -24,10 +24,10 @@ typedef struct rk4_ode {
     double *y, *before;   /* now; at the step's begin */
     double *rate[STAGES]; /* rate[0] that at the step's begin, rate[3] at its end */
     double *middle;
-    double *value[3]; /* root functions: at the step's begin, its end, where they are looked for */
-    double limit;     /* of the step; 0: none */
-    bool fresh;       /* no step since the start: rate[3] and value[1] are not those of y yet */
-    bool at_root;     /* the step was cut off: middle is the state now */
+    imp_ode_roots roots;
+    double limit; /* of the step; 0: none */
+    bool fresh;   /* no step since the start: rate[3] and roots.value[1] are not those of y yet */
+    bool at_root; /* the step was cut off: roots.state is the state now */
     impact_ode_counts counts;
 } rk4_ode;
 
@@ -36,15 +36,14 @@ static rk4_ode *rk4_of(const impact_ode *ode) { return (rk4_ode *)(uintptr_t)ode
 static impact_status rk4_open(impact_ode *ode)
 {
     rk4_ode *rk = rk4_of(ode);
-    const size_t n = (size_t)ode->def.size, roots = (size_t)ode->def.roots;
-    rk->memory = imp_arena_take(ode->arena, VECTORS * n + 3 * roots, sizeof *rk->memory);
+    const size_t n = (size_t)ode->def.size;
+    rk->memory = imp_arena_take(ode->arena, VECTORS * n + imp_ode_roots_room(ode), sizeof *rk->memory);
     if (!rk->memory) return IMPACT_ENOMEM;
-    double *next = rk->memory;
+    double *next = imp_ode_roots_lay_out(ode, &rk->roots, rk->memory);
     rk->y = next, next += n;
     rk->before = next, next += n;
     rk->middle = next, next += n;
     for (int k = 0; k < STAGES; k++, next += n) rk->rate[k] = next;
-    for (int k = 0; k < 3; k++, next += roots) rk->value[k] = next;
     return IMPACT_OK;
 }
 
@@ -60,6 +59,7 @@ static impact_status rk4_start(impact_ode *ode, double t, const double *y)
     rk->fresh = true;
     rk->at_root = false;
     rk->counts = (impact_ode_counts){0};
+    rk->roots.calls = 0;
     return IMPACT_OK;
 }
 
@@ -76,8 +76,6 @@ static impact_status rk4_set_tolerances(impact_ode *ode, double relative, const 
     return IMPACT_OK;
 }
 
-/* ---- f and g ---- */
-
 static impact_status rate_at(rk4_ode *rk, double t, const double *y, double *rate)
 {
     impact_ode *ode = &rk->ode;
@@ -87,16 +85,6 @@ static impact_status rate_at(rk4_ode *rk, double t, const double *y, double *rat
     return imp_ode_explain(ode, ode->t, ode->def.step,
                            answer > 0 ? "the right-hand side asks for a shorter step than the fixed one"
                                       : "the right-hand side gave up");
-}
-
-static impact_status values_at(rk4_ode *rk, double t, const double *y, double *value)
-{
-    impact_ode *ode = &rk->ode;
-    if (ode->roots == 0) return IMPACT_OK;
-    rk->counts.root_calls++;
-    return ode->def.root_functions(t, y, value, ode->def.context) == 0
-               ? IMPACT_OK
-               : imp_ode_explain(ode, ode->t, ode->def.step, "a root function gave up");
 }
 
 /* ---- between the ends ---- */
@@ -132,84 +120,21 @@ static impact_status rk4_interpolate(const impact_ode *ode, double t, int deriva
     return IMPACT_OK;
 }
 
-/* ---- roots ---- */
-
-/* The way it crosses from before to after: -1, +1, or 0. What began at zero does not cross. */
-static int crosses(const rk4_ode *rk, double before, double after)
-{
-    if (before > 0 && after <= 0) return -1;
-    return !rk->ode.def.falling_roots_only && before < 0 && after >= 0 ? 1 : 0;
-}
-
-/* Function i at t of the step: y there in middle, all functions in value[2]. */
-static impact_status look_at_roots(rk4_ode *rk, double t)
-{
-    hermite_at(rk, t, 0, rk->middle);
-    return values_at(rk, t, rk->middle, rk->value[2]);
-}
-
-/* The first t behind the root of function i, which crosses between the step's begin and *t; the Illinois form. */
-static impact_status find_root(rk4_ode *rk, int i, double after, double *t)
-{
-    enum { MOST = 100 };
-    double low = rk->ode.step_begin, high = *t, f_low = rk->value[0][i], f_high = after;
-    const int way = crosses(rk, f_low, f_high);
-    for (int k = 0, side = 0; k < MOST && f_high != 0; k++) {
-        double guess = (f_low * high - f_high * low) / (f_low - f_high);
-        const bool inside = (guess - low) * (high - guess) > 0;
-        if (!inside) guess = 0.5 * (low + high);
-        if (guess == low || guess == high) break;
-        const impact_status status = look_at_roots(rk, guess);
-        if (status != IMPACT_OK) return status;
-        const double value = rk->value[2][i];
-        if (crosses(rk, rk->value[0][i], value) == way) {
-            high = guess, f_high = value;
-            if (side == 1) f_low *= 0.5;
-            side = 1;
-        } else {
-            low = guess, f_low = value;
-            if (side == -1) f_high *= 0.5;
-            side = -1;
-        }
-    }
-    *t = high;
-    return IMPACT_OK;
-}
-
-/* The first crossing in the step, where it is cut off: the state there, and which functions cross by then. */
-static impact_status end_at_root(rk4_ode *rk, bool *found)
-{
-    impact_ode *ode = &rk->ode;
-    double t = ode->step_end;
-    for (int i = 0; i < ode->roots; i++) {
-        const double after = *found ? rk->value[2][i] : rk->value[1][i];
-        if (crosses(rk, rk->value[0][i], after) == 0) continue;
-        *found = true;
-        impact_status status = find_root(rk, i, after, &t);
-        if (status == IMPACT_OK) status = look_at_roots(rk, t);
-        if (status != IMPACT_OK) return status;
-    }
-    if (!*found) return IMPACT_OK;
-    for (int i = 0; i < ode->roots; i++) ode->roots_found[i] = crosses(rk, rk->value[0][i], rk->value[2][i]);
-    ode->t = t;
-    return IMPACT_OK;
-}
-
 /* ---- a step ---- */
 
 /* From here on: after a root from there, where the rates are not known yet. */
 static impact_status begin_step(rk4_ode *rk, double t)
 {
-    if (rk->at_root) memcpy(rk->y, rk->middle, sizeof *rk->y * (size_t)rk->ode.size);
+    if (rk->at_root) memcpy(rk->y, rk->roots.state, sizeof *rk->y * (size_t)rk->ode.size);
     if (rk->fresh || rk->at_root) {
         const impact_status status = rate_at(rk, t, rk->y, rk->rate[3]);
         if (status != IMPACT_OK) return status;
-        const impact_status seen = values_at(rk, t, rk->y, rk->value[1]);
+        const impact_status seen = imp_ode_roots_at(&rk->ode, &rk->roots, t, rk->y, rk->roots.value[1]);
         if (seen != IMPACT_OK) return seen;
     }
     memcpy(rk->before, rk->y, sizeof *rk->y * (size_t)rk->ode.size);
     memcpy(rk->rate[0], rk->rate[3], sizeof *rk->y * (size_t)rk->ode.size);
-    memcpy(rk->value[0], rk->value[1], sizeof *rk->y * (size_t)rk->ode.roots);
+    memcpy(rk->roots.value[0], rk->roots.value[1], sizeof *rk->y * (size_t)rk->ode.roots);
     return IMPACT_OK;
 }
 
@@ -246,7 +171,7 @@ static impact_status rk4_step(impact_ode *ode, double t_stop, double *y, bool *f
     rk4_ode *rk = rk4_of(ode);
     const double t = ode->t, h = length_of(rk, t, t_stop), end = h == t_stop - t ? t_stop : t + h;
     if (t == t_stop) {
-        memcpy(y, rk->at_root ? rk->middle : rk->y, sizeof *y * (size_t)ode->size);
+        memcpy(y, rk->at_root ? rk->roots.state : rk->y, sizeof *y * (size_t)ode->size);
         return IMPACT_OK;
     }
     if (end == t) return imp_ode_explain(ode, t, h, "the fixed step is too short to change t");
@@ -256,16 +181,21 @@ static impact_status rk4_step(impact_ode *ode, double t_stop, double *y, bool *f
     rk->fresh = rk->at_root = false;
     ode->step_begin = t, ode->step_end = ode->t = end;
     status = rate_at(rk, end, rk->y, rk->rate[3]);
-    if (status == IMPACT_OK) status = values_at(rk, end, rk->y, rk->value[1]);
-    if (status == IMPACT_OK) status = end_at_root(rk, found);
+    if (status == IMPACT_OK) status = imp_ode_roots_at(ode, &rk->roots, end, rk->y, rk->roots.value[1]);
+    if (status == IMPACT_OK) status = imp_ode_roots_first(ode, &rk->roots, t, end, found);
     if (status != IMPACT_OK) return status;
     rk->counts.steps++;
     rk->at_root = *found;
-    memcpy(y, *found ? rk->middle : rk->y, sizeof *y * (size_t)ode->size);
+    memcpy(y, *found ? rk->roots.state : rk->y, sizeof *y * (size_t)ode->size);
     return IMPACT_OK;
 }
 
-static impact_ode_counts rk4_count(const impact_ode *ode) { return rk4_of(ode)->counts; }
+static impact_ode_counts rk4_count(const impact_ode *ode)
+{
+    impact_ode_counts counts = rk4_of(ode)->counts;
+    counts.root_calls = rk4_of(ode)->roots.calls;
+    return counts;
+}
 
 const imp_ode_driver imp_ode_rk4 = {.bytes = sizeof(rk4_ode),
                                     .open = rk4_open,

@@ -201,6 +201,9 @@
  * velocities of order 1 m/s and must be told from nothing at IMP_SLIP_OF_REST_SPEED of the default rest speed, 1e-11
  * m/s. A tolerance looser than this would decide between slip and stick. */
 #define IMP_SLIDING_TOLERANCE 1e-13
+/* Where the integrator is told of each step: of the slip over the speed that it slows the clock by, a twentieth of the
+ * body's: steps then err by a 1/500 of the slip that they end with, and slip is 0.2 % sooner or later no more. */
+#define IMP_SLIDING_OF_SLIP 1e-4
 /* And so is a stretch that begins with a bounce: a flight of rest height, 1e-12 m, of a body of 1 m must come down
  * where it falls, or bounces die out never or too soon. */
 #define IMP_BOUNCE_TOLERANCE 3e-12
@@ -765,5 +768,19 @@
 #define IMP_BRAKE_NUDGE 0x1p-20
 /* Of a fixed step: a last one may be longer by this, so that no sliver is left over. */
 #define IMP_RK4_SLIVER 1e-9
+/* Collocation's steps: an error allowed of a component is no less than this part of its size and of its way in the
+ * step, what eight rates make of their rounding; and of what is and stays 0. */
+#define IMP_LOBATTO_ROUNDING (8 * IMP_ROUNDOFF)
+#define IMP_LOBATTO_LEAST 1e-300
+/* Of the error allowed: what the sweeps may leave, */
+#define IMP_LOBATTO_LEFT 0.1
+/* the ratio of one sweep's change to that before from which they are taken to go nowhere, */
+#define IMP_LOBATTO_SLOW 0.7
+/* the ratio that steps are chosen for, 1/e; */
+#define IMP_LOBATTO_RATIO 0.37
+/* and a change that no sweep after it mends. */
+#define IMP_LOBATTO_FAR 1e100
+/* The least error that the next step's length is taken from, for a step ten times as long. */
+#define IMP_LOBATTO_GROWTH 4e-10
 
 #endif

@@ -61,7 +61,7 @@ typedef struct imp_motion {
     /* the integrator's side; absent until it is needed */
     impact_ode *ode; /* the one at work: adams for smooth motion; bdf for what is stiff: slow slip after an onset,
                       * forces that brake hard; or rk4, where it was asked for, for all */
-    impact_ode *adams, *bdf, *rk4;
+    impact_ode *adams, *bdf, *rk4, *lobatto;
     int size, roots;
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated; */
     imp_touch *kept_touches;

@@ -38,9 +38,11 @@ impact_status imp_motion_make_room(imp_motion *motion)
 /* Makes the integrator of the method the one at work, creating it when it is first needed. */
 static impact_status choose_integrator(imp_motion *motion, impact_ode_method method)
 {
-    impact_ode **ode = method == IMPACT_ODE_RK4     ? &motion->rk4
-                       : method == IMPACT_ODE_ADAMS ? &motion->adams
-                                                    : &motion->bdf;
+    impact_ode **all[] = {[IMPACT_ODE_ADAMS] = &motion->adams,
+                          [IMPACT_ODE_BDF] = &motion->bdf,
+                          [IMPACT_ODE_RK4] = &motion->rk4,
+                          [IMPACT_ODE_LOBATTO] = &motion->lobatto};
+    impact_ode **ode = all[method];
     impact_status status = imp_motion_make_room(motion);
     if (status == IMPACT_OK && !*ode) {
         const impact_ode_def def = {.struct_size = sizeof def,
@@ -65,9 +67,9 @@ static impact_status choose_integrator(imp_motion *motion, impact_ode_method met
 
 void imp_motion_count_work(imp_motion *motion)
 {
-    const impact_ode *all[] = {motion->adams, motion->bdf, motion->rk4};
+    const impact_ode *all[] = {motion->adams, motion->bdf, motion->rk4, motion->lobatto};
     long starts = 0, steps = 0, calls = 0;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         if (!all[k]) continue;
         const impact_ode_counts counts = impact_ode_count(all[k]);
         starts += counts.starts, steps += counts.steps, calls += counts.rhs_calls;
@@ -170,18 +172,40 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
                other = motion->distrusted != (motion->method == IMPACT_MOTION_OTHER);
     motion->distrusted = false;
     if (motion->method == IMPACT_MOTION_RK4) return choose_integrator(motion, IMPACT_ODE_RK4);
-    return choose_integrator(motion, stiff != other ? IMPACT_ODE_BDF : IMPACT_ODE_ADAMS);
+    if (stiff != other) return choose_integrator(motion, IMPACT_ODE_BDF);
+    return choose_integrator(motion, motion->method == IMPACT_MOTION_AUTO ? IMPACT_ODE_LOBATTO : IMPACT_ODE_ADAMS);
+}
+
+/* What slides is followed so closely that no error is taken for slip. An integrator that is told once a stretch needs
+ * that of its end; collocation is told at each step what the slip is now, of which its steps take an equal part. */
+static double slip_tolerance(const imp_motion *motion)
+{
+    double slip = INFINITY;
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        if (touch->mode == IMP_SLIDE && touch->friction > 0) slip = fmin(slip, touch->onset ? 0 : touch->speed);
+    }
+    if (!isfinite(slip)) return INFINITY;
+    const double part = motion->ode == motion->lobatto ? IMP_SLIDING_OF_SLIP * slip / motion->slip_scale : 0;
+    return fmax(IMP_SLIDING_TOLERANCE, part);
 }
 
 static double stretch_tolerance(const imp_motion *motion)
 {
     const double part = motion->persist.count == 0 ? IMP_FLIGHT_OF_TOLERANCE : IMP_HELD_OF_TOLERANCE;
     double tolerance = fmin(motion->tolerance, fmax(IMP_FLIGHT_TOLERANCE, part * motion->tolerance));
-    if (motion->bounces) tolerance = fmin(tolerance, IMP_BOUNCE_TOLERANCE);
-    for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
-            tolerance = fmin(tolerance, IMP_SLIDING_TOLERANCE);
-    return tolerance;
+    if (motion->bounces && motion->ode != motion->lobatto) tolerance = fmin(tolerance, IMP_BOUNCE_TOLERANCE);
+    return fmin(tolerance, slip_tolerance(motion));
+}
+
+/* For the next step of collocation; of the others only a start hears of tolerances. */
+impact_status imp_motion_follow_slip(imp_motion *motion)
+{
+    if (motion->ode != motion->lobatto || !motion->sliding) return IMPACT_OK;
+    const double relative = stretch_tolerance(motion), part = relative / motion->relative;
+    motion->relative = relative;
+    for (int i = 0; i < motion->size; i++) motion->absolute[i] *= part;
+    return impact_ode_set_tolerances(motion->ode, motion->relative, motion->absolute);
 }
 
 static impact_status choose_tolerance(imp_motion *motion, const imp_state *states)

@@ -124,14 +124,18 @@ static bool is_lowest_point(const imp_motion *motion, int root, last_step_functi
     return edge_root >= 0 && edge_root % ROOTS_PER_EDGE == 1 && value->index < imp_field_edge_count(motion->world);
 }
 
-/* A corner lands where its height is 0: its root, which no rounding is to find, lies a little below. */
+/* A corner lands where its height is 0: its root, which no rounding is to find, lies a little below. One that left the
+ * ground where the step began is highest about the middle. */
 static impact_status find_landing(imp_motion *motion, int p, double tau_before, double *tau, double *y)
 {
     const last_step_function height = {.kind = CLEARANCE, .index = p};
-    double at = *tau;
-    impact_status status = impact_ode_interpolate(motion->ode, tau_before, 0, y);
-    const bool crosses = status == IMPACT_OK && last_step_value(motion, height, y) > 0;
-    if (crosses) return find_in_last_step(motion, height, tau_before, at, tau, y);
+    const double at = *tau, above[] = {tau_before, 0.5 * (tau_before + at)};
+    impact_status status = IMPACT_OK;
+    for (int k = 0; k < 2 && status == IMPACT_OK; k++) {
+        status = impact_ode_interpolate(motion->ode, above[k], 0, y);
+        if (status == IMPACT_OK && last_step_value(motion, height, y) > 0)
+            return find_in_last_step(motion, height, above[k], at, tau, y);
+    }
     return status == IMPACT_OK ? impact_ode_interpolate(motion->ode, at, 0, y) : status;
 }
 
@@ -244,7 +248,8 @@ static impact_status step_on(imp_motion *motion, double *y, imp_end *end)
     const double tau_before = s->tau, stop = clocked ? 1000 * (s->t_end - s->from) + 1000 : s->t_end;
     bool found;
     *end = (imp_end){IMP_END_TIME, 0};
-    impact_status status = imp_motion_step(motion, stop, &s->tau, y, &found);
+    impact_status status = imp_motion_follow_slip(motion);
+    if (status == IMPACT_OK) status = imp_motion_step(motion, stop, &s->tau, y, &found);
     if (motion->message[0] != '\0') return IMPACT_EDOMAIN; /* a load was refused */
     if (status == IMPACT_EINTEGRATOR && s->passed) {       /* another root close by: begin anew from here */
         s->restart = true;

@@ -358,7 +358,7 @@ static void large_bodies_move_as_small_ones(void **state)
         end[k].velocity = qvec3_scale(end[k].velocity, 1 / T);
     }
     assert_near3(end[0].velocity, end[1].velocity, 1e-10);
-    assert_true(impact_scene_usage(scenes[0]).integrator_steps < 2 * impact_scene_usage(scenes[1]).integrator_steps);
+    assert_true(impact_scene_usage(scenes[0]).integrator_steps <= 2 * impact_scene_usage(scenes[1]).integrator_steps);
     for (int k = 0; k < 2; k++) impact_scene_destroy(scenes[k]);
 }
 
@@ -538,15 +538,32 @@ static void bad_definitions_are_named(void **state)
     expect_refusal(&def, "pair with 'floor': rolling_friction = -1: must be a length, >= 0 and finite");
 }
 
+static bool brake(double t, int body, double m, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force, qvec3 *torque,
+                  void *context)
+{
+    (void)t, (void)body, (void)x, (void)q, (void)w, (void)torque, (void)context;
+    *force = qvec3_scale(v, -1e6 * m);
+    return true;
+}
+
+/* What is not stiff needs none. */
 static void a_build_without_cvode_says_so(void **state)
 {
     (void)state;
     thesis_scene *s = make_thesis_scene(false);
     impact_scene *scene = make_scene(&s->def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+    impact_scene_destroy(scene);
+    free(s);
+    const impact_body_def ball = ball_body("ball", (qvec3){0, 0, 1}, 0.1, 1);
+    impact_force_def force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
+    force.function = brake;
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = &ball, def.body_count = 1, def.forces = &force, def.force_count = 1;
+    scene = make_scene(&def);
     assert_int_equal(impact_scene_run(scene, NULL), IMPACT_EABSENT);
     assert_non_null(strstr(impact_scene_message(scene), "CVODE"));
     impact_scene_destroy(scene);
-    free(s);
 }
 
 /* A superellipsoid that is flat along an axis passes that spot faster than the integrator sees: the run says so itself.

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Roots by the Illinois form of regula falsi (Dowell and Jarratt 1971): the end that stays twice counts half.
+ */
+#include "base/ode_roots.h"
+
+size_t imp_ode_roots_room(const impact_ode *ode) { return (size_t)ode->def.size + 3 * (size_t)ode->def.roots; }
+
+double *imp_ode_roots_lay_out(const impact_ode *ode, imp_ode_roots *roots, double *room)
+{
+    roots->state = room;
+    room += ode->def.size;
+    for (int k = 0; k < 3; k++, room += ode->def.roots) roots->value[k] = room;
+    return room;
+}
+
+impact_status imp_ode_roots_at(impact_ode *ode, imp_ode_roots *roots, double t, const double *y, double *value)
+{
+    if (ode->roots == 0) return IMPACT_OK;
+    roots->calls++;
+    return ode->def.root_functions(t, y, value, ode->def.context) == 0
+               ? IMPACT_OK
+               : imp_ode_explain(ode, ode->t, ode->step_end - ode->step_begin, "a root function gave up");
+}
+
+/* The way it crosses from before to after: -1, +1, or 0. What began at zero does not cross. */
+static int crosses(const impact_ode *ode, double before, double after)
+{
+    if (before > 0 && after <= 0) return -1;
+    return !ode->def.falling_roots_only && before < 0 && after >= 0 ? 1 : 0;
+}
+
+/* y at t of the step in state, all functions in value[2]. */
+static impact_status look_at(impact_ode *ode, imp_ode_roots *roots, double t)
+{
+    const impact_status status = ode->driver->interpolate(ode, t, 0, roots->state);
+    return status == IMPACT_OK ? imp_ode_roots_at(ode, roots, t, roots->state, roots->value[2]) : status;
+}
+
+/* The first t behind the root of function i, which crosses between low and *t. */
+static impact_status find_root(impact_ode *ode, imp_ode_roots *roots, int i, double low, double after, double *t)
+{
+    enum { MOST = 100 };
+    double high = *t, f_low = roots->value[0][i], f_high = after;
+    const int way = crosses(ode, f_low, f_high);
+    for (int k = 0, side = 0; k < MOST && f_high != 0; k++) {
+        double guess = (f_low * high - f_high * low) / (f_low - f_high);
+        const bool inside = (guess - low) * (high - guess) > 0;
+        if (!inside) guess = 0.5 * (low + high);
+        if (guess == low || guess == high) break;
+        const impact_status status = look_at(ode, roots, guess);
+        if (status != IMPACT_OK) return status;
+        const double value = roots->value[2][i];
+        if (crosses(ode, roots->value[0][i], value) == way) {
+            high = guess, f_high = value;
+            if (side == 1) f_low *= 0.5;
+            side = 1;
+        } else {
+            low = guess, f_low = value;
+            if (side == -1) f_high *= 0.5;
+            side = -1;
+        }
+    }
+    *t = high;
+    return IMPACT_OK;
+}
+
+impact_status imp_ode_roots_first(impact_ode *ode, imp_ode_roots *roots, double low, double high, bool *found)
+{
+    double t = high;
+    *found = false;
+    for (int i = 0; i < ode->roots; i++) {
+        const double after = *found ? roots->value[2][i] : roots->value[1][i];
+        if (crosses(ode, roots->value[0][i], after) == 0) continue;
+        *found = true;
+        impact_status status = find_root(ode, roots, i, low, after, &t);
+        if (status == IMPACT_OK) status = look_at(ode, roots, t);
+        if (status != IMPACT_OK) return status;
+    }
+    if (!*found) return IMPACT_OK;
+    for (int i = 0; i < ode->roots; i++) ode->roots_found[i] = crosses(ode, roots->value[0][i], roots->value[2][i]);
+    ode->t = t;
+    return IMPACT_OK;
+}
