@@ -115,7 +115,7 @@ core.layer()
 ---@field omega vec3
 
 ---@class impact.methods
----@field motion? "auto"|"cvode"|"rk4"|"steps"|"other"  how bodies move between events; "steps": piles by steps; "other": by what CVODE would not take
+---@field motion? "auto"|"cvode"|"rk4"|"steps"|"other"  how bodies move between events; "steps": piles by steps; "other": by what "cvode" would not take
 ---@field impacts? "auto"|"closed_form"|"series"|"cvode"  the same as solver
 ---@field gaps? "newton"|"ccd"
 ---@field tolerance? number  the same as the scene's
@@ -543,7 +543,7 @@ end
 local parts = {
   { "ballistic_flights", "flight in closed form", "stretch", "stretches" },
   { "rolls", "rolling and sliding in closed form", "stretch", "stretches" },
-  { "integrators", "CVODE for the motion", "integrator", "integrators" },
+  { "integrators", "integration of the motion", "integrator", "integrators" },
   { "gap_closed_form", "gaps in closed form", "query", "queries" },
   { "gap_newton", "gaps by Newton", "query", "queries" },
   { "gap_gjk", "gaps by GJK", "query", "queries" },
@@ -594,7 +594,7 @@ function methods:summary(reason)
       string.format("\n  stepped    bodies that touch each other, not exactly: %d steps, whose measured errors sum to %.2g m", usage.pile_steps,
         usage.pile_error) or ""
   local steps = usage.integrator_steps > 0 and
-      string.format("\n             CVODE took %d steps from %d starts, with %d evaluations of the forces", usage.integrator_steps,
+      string.format("\n             it took %d steps from %d starts, with %d evaluations of the forces", usage.integrator_steps,
         usage.integrator_starts, usage.integrator_rhs_calls) or ""
   return string.format("%s: %s, t = %.6g s\n  events     %s\n  energy     %s\n  used       %s%s\n  not used   %s\n", self:name(),
     reason or "so far", self:time(), #happened > 0 and table.concat(happened, ", ") or "none", energy_line(self:energy()),

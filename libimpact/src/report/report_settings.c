@@ -44,7 +44,7 @@ static void find_useless(imp_report_work *w)
     bool *useless = w->summary->useless;
     const bool cvode = impact_has(IMPACT_PART_CVODE), closed = u->ballistic_flights + u->rolls > 0;
     const long impacts = u->impacts_closed_form + u->impacts_series + u->impacts_cvode;
-    useless[IMPACT_REPORT_MOTION] = !cvode || !closed;
+    useless[IMPACT_REPORT_MOTION] = !cvode || (!closed && u->integrator_steps == 0);
     useless[IMPACT_REPORT_IMPACTS] = !cvode || impacts == 0 || w->report.def.compliance > 0;
     useless[IMPACT_REPORT_GAPS] = !impact_has(IMPACT_PART_CCD) || u->gap_newton + u->gap_gjk + u->gap_fallback == 0;
     useless[IMPACT_REPORT_RK4] = !closed && u->integrator_steps == 0;
