@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * ode: y' = f(t, y) to the next root of g(t, y), by SUNDIALS' CVODE, by collocation, or by the classical Runge-Kutta
- * method with a fixed step. Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT to the methods of CVODE.
+ * method with a fixed step. Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT to the methods of
+ * CVODE.
  */
 #ifndef IMPACT_ODE_H
 #define IMPACT_ODE_H

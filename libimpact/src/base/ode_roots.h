@@ -8,8 +8,9 @@
 #include "base/ode_driver.h"
 
 typedef struct imp_ode_roots {
-    double *value[3]; /* the functions: where the last stretch looked at began, where it ended, where a root is sought */
-    double *state;    /* y there */
+    double
+        *value[3]; /* the functions: where the last stretch looked at began, where it ended, where a root is sought */
+    double *state; /* y there */
     long calls;
 } imp_ode_roots;
 
