@@ -40,7 +40,8 @@ static inline void note(double *field, double value)
 static inline double length(qvec3 v)
 {
     const double n2 = qvec3_dot(v, v);
-    return n2 > 1 / IMP_COLLIDE_SQUARES && n2 < IMP_COLLIDE_SQUARES ? sqrt(n2) : qvec3_norm(v);
+    if (n2 > 1 / IMP_COLLIDE_SQUARES) return sqrt(n2);
+    return v.x == 0 && v.y == 0 && v.z == 0 ? 0 : qvec3_norm(v);
 }
 
 /* One body: its principal axes, and an impulse's sign. */
@@ -83,7 +84,7 @@ static void make_part(part *p, const impact_collider *body, double sign)
     p->axis[2] = (qvec3){f * (x * z + w * y), f * (y * z - w * x), 1 - f * (x * x + y * y)};
 }
 
-static qvec3 contact_velocity(const view *s, const qvec3 v[2], const qvec3 w[2], double *size)
+static inline qvec3 contact_velocity(const view *s, const qvec3 v[2], const qvec3 w[2], double *size)
 {
     qvec3 u[2];
     *size = 0;
