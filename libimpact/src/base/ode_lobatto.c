@@ -332,7 +332,7 @@ static lobatto_outcome first_step(lobatto_ode *lo, double t, double left)
 {
     set_scale(lo, 0);
     const double size = norm_of(lo, lo->before), fast = norm_of(lo, lo->rate[0]);
-    double h = size > 1e-5 && fast > 1e-5 ? 0.01 * size / fast : 1e-6;
+    double h = size > IMP_LOBATTO_NOTHING && fast > IMP_LOBATTO_NOTHING ? 0.01 * size / fast : IMP_LOBATTO_FIRST;
     h = fmin(h, 0.5 * fabs(left));
     for (int i = 0; i < lo->ode.size; i++) lo->y[i] = lo->before[i] + copysign(h, left) * lo->rate[0][i];
     const int answer = rate_at(lo, t + copysign(h, left), lo->y, lo->roots.state);

@@ -782,5 +782,9 @@
 #define IMP_LOBATTO_FAR 1e100
 /* The least error that the next step's length is taken from, for a step ten times as long. */
 #define IMP_LOBATTO_GROWTH 4e-10
+/* In tolerances: a state or a rate that tells no first step; and the step, s, that is then tried (Hairer, Norsett,
+ * Wanner 1993, II.4). */
+#define IMP_LOBATTO_NOTHING 1e-5
+#define IMP_LOBATTO_FIRST 1e-6
 
 #endif
