@@ -49,8 +49,11 @@ int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, d
         impact_contact shape = contact;
         shape.offset1 = qvec3_sub(contact.offset1, shift1), shape.offset2 = qvec3_sub(contact.offset2, shift2);
         impact_patch patch;
-        /* of each body all that lies no higher than the lowest point and this: its part of `height` over the other */
-        const impact_status found = impact_patch_find(&solid1, &solid2, &shape, height - contact.gap, &patch);
+        /* Of each body all that lies no higher than the lowest point and this: its part of `height` over the other.
+         * What lies higher than a ball within it may be of another face than the lowest, as the top of a thin plate:
+         * the patch is of one. */
+        const double most = fmin(height - contact.gap, fmin(b1->inner, b2->inner));
+        const impact_status found = impact_patch_find(&solid1, &solid2, &shape, most, &patch);
         for (int i = 0; found == IMPACT_OK && i < patch.count; i++)
             if (patch.point[i].height <= height) points[count++] = point_of(&patch, i, shift1, shift2);
     }

@@ -29,6 +29,7 @@ static void build_body(const impact_body_def *def, char *name, imp_body *body, i
                        .is_static = def->is_static,
                        .mass = INFINITY,
                        .radius = impact_shape_bounding_radius(&def->shape) + qvec3_norm(def->shape_position),
+                       .inner = imp_shape_inner_radius(&def->shape),
                        .offset = def->shape_position,
                        .trail = def->trail,
                        .friction = def->friction,

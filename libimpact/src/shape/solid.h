@@ -30,6 +30,10 @@ double imp_solid_volume(const impact_shape *shape);
 qvec3 imp_solid_inertia(const impact_shape *shape);
 double imp_solid_radius(const impact_shape *shape); /* of the ball about the centre that holds it */
 
+/* Of a ball about the centre within the shape: of any shape that has faces, flat places or is round; of a superquadric
+ * without flat places its least half axis; of a plane INFINITY. */
+double imp_shape_inner_radius(const impact_shape *shape);
+
 /* z of the base of a cone's core about the centroid of the whole. */
 double imp_cone_base(double radius, double height, double rounding);
 

@@ -176,3 +176,33 @@ double imp_solid_radius(const impact_shape *shape)
     default: return NAN;
     }
 }
+
+static double inner_of_hull(const impact_hull *hull)
+{
+    double least = INFINITY;
+    int vertex[IMPACT_HULL_POINTS];
+    for (int f = 0; f < hull->face_count; f++) {
+        qvec3 normal;
+        if (impact_hull_face(hull, f, vertex, &normal) > 0)
+            least = fmin(least, qvec3_dot(normal, impact_hull_vertex(hull, vertex[0])));
+    }
+    return least;
+}
+
+double imp_shape_inner_radius(const impact_shape *shape)
+{
+    switch (shape->kind) {
+    case IMPACT_PLANE: return INFINITY;
+    case IMPACT_CYLINDER: return fmin(shape->a, shape->c);
+    case IMPACT_CAPSULE: return shape->a;
+    case IMPACT_CONE: {
+        const qvec3 side = {shape->c, 0, shape->a}; /* across a line from the base's rim to the apex: near enough */
+        const double across = impact_shape_support(shape, qvec3_scale(side, 1 / qvec3_norm(side)), NULL);
+        return fmin(across, shape->rounding - shape->base);
+    }
+    case IMPACT_POLYHEDRON: return inner_of_hull(shape->hull) + shape->rounding;
+    default:
+        return imp_is_octahedron(shape) ? 1 / hypot(hypot(1 / shape->a, 1 / shape->b), 1 / shape->c)
+                                        : fmin(shape->a, fmin(shape->b, shape->c));
+    }
+}

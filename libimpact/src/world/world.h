@@ -23,6 +23,7 @@ typedef struct imp_state {
 /* What does not change of a body. What others ask of it, as they pass by, stands side by side at the front. */
 typedef struct imp_body {
     double radius; /* of the bounding ball about the centre of mass */
+    double inner;  /* of a ball within the shape, about its centre */
     int index;     /* in the scene's definition */
     bool is_static;
     bool spherical; /* three equal principal moments: omega is parallel to the angular momentum */
