@@ -48,9 +48,9 @@ check.equal((assert(rocks:run { record = true })), "at rest")
 local rocked = assert(rocks:verify())
 check.truth(rocked.good and rocked.part > 0.99 and rocked.replayed < rocked.stretches, rocked:text())
 
--- A box that topples down a slope goes by steps: the other method finds how far these err, which is more than is allowed.
+-- A box that topples down a slope by steps: the other method finds how far these err, which is more than is allowed.
 local slope = quat.from_axis_angle({ 0, 1, 0 }, 0.5)
-local steep = impact.scene { duration = 0.5, bodies = { impact.body { name = "slope", static = true, orientation = slope, shape = impact.box { a = 3, b = 1, c = 0.1 }, friction = 0.9 },
+local steep = impact.scene { duration = 0.5, piles = "steps", bodies = { impact.body { name = "slope", static = true, orientation = slope, shape = impact.box { a = 3, b = 1, c = 0.1 }, friction = 0.9 },
   box { orientation = slope, position = slope:rotate(quat.vec3(-1, 0, 0.4)) } } }
 assert(steep:run { record = true })
 local toppled = assert(steep:verify())

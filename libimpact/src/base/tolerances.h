@@ -671,8 +671,8 @@
  * multiplications then for each of 20 to 60 systems. */
 #define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100
-/* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of it;
- * points taken for others once gave a thousand times it. */
+/* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
+ * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
 /* Steps in units of the time in which the smallest body falls its radius: the first; the longest, in which contacts
  * turn by less than .05; and the shortest, in which a fall is 1e-10 of the radius. */
