@@ -671,6 +671,8 @@
  * multiplications then for each of 20 to 60 systems. */
 #define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100
+/* Of a step that leads over the edge of a force: how far beyond it ends that is shortened to end there. */
+#define IMP_PILE_EDGE 1e-11
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2

@@ -111,17 +111,80 @@ static impact_status keep_pile_step(imp_motion *motion, double t0, const imp_wor
     return IMPACT_OK;
 }
 
-impact_status imp_motion_next_by_steps(imp_motion *motion, imp_pile *pile, const imp_state *before, imp_state *states,
-                                       imp_pile_step_result *result)
+/* ---- edges of forces: a step ends at the first that it meets, on its far side ---- */
+
+/* Below zero beyond an edge that the motion was within, or without, when the step began. */
+static double least_edge(const imp_world *world, double t, const imp_state *states)
+{
+    double least = INFINITY;
+    for (int k = 0; k < imp_field_edge_count(world); k++) least = fmin(least, imp_field_edge(world, t, states, k));
+    return least;
+}
+
+static impact_status step_again(imp_pile *pile, imp_world *world, double t0, double most, const imp_state *before,
+                                imp_state *states, imp_pile_step_result *result)
+{
+    const impact_status status = imp_pile_take_back(pile);
+    memcpy(states, before, sizeof *states * (size_t)world->body_count);
+    return status == IMPACT_OK ? imp_pile_step(pile, world, t0, most, states, result) : status;
+}
+
+/* The step led beyond an edge: shorter ones by the rule of Illinois, until one ends there. */
+static impact_status end_at_edge(imp_pile *pile, imp_world *world, double t0, const imp_state *before,
+                                 imp_state *states, imp_pile_step_result *result)
+{
+    enum { MOST = 100 };
+    double low = 0, high = result->taken, value_low = least_edge(world, t0, before),
+           value_high = least_edge(world, t0 + high, states);
+    const double near = IMP_PILE_EDGE * high;
+    impact_status status = IMPACT_OK;
+    for (int k = 0; k < MOST && status == IMPACT_OK && high - low > near; k++) {
+        const double part = value_low > 0 ? value_low / (value_low - value_high) : 0.5;
+        const double h = fmin(fmax(low + part * (high - low), low + 0.5 * near), high - 0.5 * near);
+        status = step_again(pile, world, t0, h, before, states, result);
+        const double value = least_edge(world, t0 + result->taken, states);
+        if (status != IMPACT_OK || (value >= 0 && result->taken < h)) return status; /* its error allows no more */
+        if (value >= 0)
+            low = h, value_low = value, value_high *= 0.5;
+        else
+            high = result->taken, value_high = value, value_low *= 0.5;
+    }
+    return status == IMPACT_OK ? step_again(pile, world, t0, high, before, states, result) : status;
+}
+
+/* So short that no edge, and nothing else of custom forces, is passed over unseen. */
+static double step_limit(imp_motion *motion, double t0, const imp_state *states)
 {
     imp_world *world = motion->world;
-    imp_stride *s = &motion->stride;
-    const double t0 = s->t, most = s->t_end - t0;
-    const imp_works works = motion->works;
+    if (world->field_count == 0 || !imp_field_loads(world, t0, states, motion->loads)) return INFINITY;
+    return fmin(imp_field_step_limit(world, states, motion->loads),
+                imp_field_custom_step_limit(world, states, motion->loads));
+}
+
+static impact_status next_step(imp_motion *motion, imp_pile *pile, double most, const imp_state *before,
+                               imp_state *states, imp_pile_step_result *result)
+{
+    imp_world *world = motion->world;
+    const double t0 = motion->stride.t;
     /* a step's forces are those of where and when it begins */
     imp_field_enter(world, t0);
     for (int custom = 0; custom < 2; custom++) imp_field_locate(world, t0, states, custom);
-    const impact_status status = imp_pile_step(pile, world, t0, most, states, result);
+    const bool edges = imp_field_edge_count(world) > 0;
+    impact_status status = world->field_count > 0 ? imp_motion_make_room(motion) : IMPACT_OK;
+    if (status == IMPACT_OK && edges) status = imp_pile_keep(pile);
+    if (status != IMPACT_OK) return status;
+    status = imp_pile_step(pile, world, t0, fmin(most, step_limit(motion, t0, states)), states, result);
+    if (status != IMPACT_OK || !edges || !(least_edge(world, t0 + result->taken, states) < 0)) return status;
+    return end_at_edge(pile, world, t0, before, states, result);
+}
+
+impact_status imp_motion_next_by_steps(imp_motion *motion, imp_pile *pile, const imp_state *before, imp_state *states,
+                                       imp_pile_step_result *result)
+{
+    imp_stride *s = &motion->stride;
+    const double t0 = s->t, most = s->t_end - t0;
+    const imp_works works = motion->works;
+    const impact_status status = next_step(motion, pile, most, before, states, result);
     if (status != IMPACT_OK) return status;
     s->t = result->taken >= most ? s->t_end : t0 + result->taken;
     s->restart = s->t >= s->t_end;

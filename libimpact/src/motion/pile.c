@@ -12,6 +12,20 @@ void imp_pile_begin(imp_pile *pile)
     pile->memory[0].count = 0;
 }
 
+impact_status imp_pile_keep(imp_pile *pile)
+{
+    pile->kept.step = pile->step;
+    pile->kept.begun = pile->begun;
+    return imp_pile_copy_memories(pile->arena, &pile->kept.memory, &pile->memory[0]) ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
+impact_status imp_pile_take_back(imp_pile *pile)
+{
+    pile->step = pile->kept.step;
+    pile->begun = pile->kept.begun;
+    return imp_pile_copy_memories(pile->arena, &pile->memory[0], &pile->kept.memory) ? IMPACT_OK : IMPACT_ENOMEM;
+}
+
 static void add_loads(const imp_world *world, const imp_load *loads, double h, imp_state *states)
 {
     for (int i = 0; i < world->body_count; i++) {

@@ -43,6 +43,11 @@ typedef struct imp_pile {
     /* as the accepted step left them, those before the step at hand, what it leaves, what the second half of a step
      * tried left, and the first */
     imp_pile_memories memory[5];
+    struct {
+        imp_pile_memories memory;
+        double step;
+        bool begun;
+    } kept;            /* imp_pile_keep */
     bool halved;       /* the step at hand is whole, its halves done */
     int contacts_most; /* there is room for in: */
     imp_cone_contact *contacts;
@@ -81,6 +86,10 @@ void imp_pile_begin(imp_pile *pile);
  * problem found no answer, however short the step. */
 impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
                             imp_pile_step_result *result);
+
+/* Keeps what the pile remembers, to take it back: the next step is then taken from there anew. IMPACT_ENOMEM. */
+impact_status imp_pile_keep(imp_pile *pile);
+impact_status imp_pile_take_back(imp_pile *pile);
 
 /* The points that the last step held, or that were found touching when all were found to rest. */
 static inline const imp_pile_memories *imp_pile_held(const imp_pile *pile) { return &pile->memory[0]; }
