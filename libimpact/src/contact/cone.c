@@ -307,21 +307,24 @@ static void polish(imp_cone_system *system, bool exact, int most, double *r, dou
     memcpy(u, system->own, length * sizeof *u);
 }
 
-/* Ever more sweeps, each time Newton from there. */
+/* Ever more sweeps, each time Newton from there; while they lead on, where there is an answer. */
 static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
-    enum { STEPS = 12, FIRST = 256 };
+    enum { STEPS = 12, FIRST = 256, PATIENCE = 4 };
     double *own = system->tangent;
     const double each = 27.0 * system->problem->count * system->problem->count; /* multiplications of three sweeps */
     if (system->problem->lengths || system->problem->brief) return;
     memset(own, 0, 3 * (size_t)system->problem->count * sizeof *own);
-    for (long n = FIRST; n * each <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED); n *= 2) {
+    int idle = 0;
+    for (long n = FIRST; idle < PATIENCE && n * each <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED);
+         n *= 2) {
         imp_cone_sweep(system, n, own);
         imp_cone_velocities(system->problem, own, system->own);
         recall_answer(system, own, system->own);
         const double before = outcome->residual;
         polish(system, true, STEPS, r, u, outcome);
         if (outcome->residual < before) outcome->stage = IMP_CONE_SWEPT;
+        idle = outcome->residual < 0.5 * before || !(outcome->residual <= IMP_CONE_USABLE) ? 0 : idle + 1;
     }
 }
 
