@@ -96,7 +96,7 @@ typedef enum impact_samples {
 /* How bodies move between events. */
 typedef enum impact_motion_method {
     IMPACT_MOTION_AUTO,  /* in closed form where there is one: flight, with damping too, and balls that roll or slide;
-                          * else by collocation, IMPACT_ODE_LOBATTO, and what is stiff by CVODE's BDF; piles as `piles`
+                          * else flight by collocation, IMPACT_ODE_LOBATTO, the rest by CVODE; piles as `piles`
                           * says */
     IMPACT_MOTION_CVODE, /* all that moves by CVODE, flight too; no pile by steps */
     IMPACT_MOTION_RK4, /* all that moves by the classical Runge-Kutta method with the fixed `step`; no pile by steps */

@@ -159,7 +159,7 @@ static impact_status gave_up(lobatto_ode *lo, double h)
 }
 
 /* f into rate; > 0, < 0: as the right-hand side answers. */
-static int rate_at(lobatto_ode *lo, double t, const double *y, double *rate)
+static int node_rate(lobatto_ode *lo, double t, const double *y, double *rate)
 {
     lo->counts.rhs_calls++;
     return lo->ode.def.rhs(t, y, rate, lo->ode.def.context);
@@ -278,7 +278,7 @@ static lobatto_outcome sweep(lobatto_ode *lo, double t, double end, double t_sto
     for (int j = 1; j < NODES; j++) {
         node_state(lo, j, h, lo->y);
         const double time = asked_at(node_time(lo, j, t, end), t, t_stop);
-        const int answer = rate_at(lo, time, lo->y, lo->roots.state);
+        const int answer = node_rate(lo, time, lo->y, lo->roots.state);
         if (answer != 0) return answer > 0 ? TOO_LONG : GAVE_UP;
         for (int i = 0; i < lo->ode.size; i++) {
             const double here = fabs(h * (lo->roots.state[i] - lo->rate[j][i])) / lo->scale[i];
@@ -335,7 +335,7 @@ static lobatto_outcome first_step(lobatto_ode *lo, double t, double left)
     double h = size > IMP_LOBATTO_NOTHING && fast > IMP_LOBATTO_NOTHING ? 0.01 * size / fast : IMP_LOBATTO_FIRST;
     h = fmin(h, 0.5 * fabs(left));
     for (int i = 0; i < lo->ode.size; i++) lo->y[i] = lo->before[i] + copysign(h, left) * lo->rate[0][i];
-    const int answer = rate_at(lo, t + copysign(h, left), lo->y, lo->roots.state);
+    const int answer = node_rate(lo, t + copysign(h, left), lo->y, lo->roots.state);
     if (answer < 0) return GAVE_UP;
     for (int i = 0; i < lo->ode.size; i++)
         lo->guess[i] = answer == 0 ? (lo->roots.state[i] - lo->rate[0][i]) / copysign(h, left) : 0;
@@ -345,12 +345,12 @@ static lobatto_outcome first_step(lobatto_ode *lo, double t, double left)
 }
 
 /* From here on: after a root from there, where the rates are not known yet. */
-static impact_status begin_step(lobatto_ode *lo, double t, double left)
+static impact_status begin_collocation(lobatto_ode *lo, double t, double left)
 {
     const size_t bytes = sizeof *lo->y * (size_t)lo->ode.size;
     if (lo->at_root) memcpy(lo->y, lo->roots.state, bytes);
     if (lo->fresh || lo->at_root) {
-        if (rate_at(lo, t, lo->y, lo->rate[LAST]) != 0) return gave_up(lo, 0);
+        if (node_rate(lo, t, lo->y, lo->rate[LAST]) != 0) return gave_up(lo, 0);
         const impact_status seen = imp_ode_roots_at(&lo->ode, &lo->roots, t, lo->y, lo->roots.value[1]);
         if (seen != IMPACT_OK) return seen;
     }
@@ -377,7 +377,7 @@ static double next_length(const lobatto_ode *lo, double h, lobatto_outcome outco
 }
 
 /* Shorter and shorter until it stands. */
-static impact_status take_step(lobatto_ode *lo, double t, double t_stop, double *end)
+static impact_status take_collocation(lobatto_ode *lo, double t, double t_stop, double *end)
 {
     for (double failed = INFINITY;;) {
         *end = end_of(lo, t, t_stop);
@@ -424,8 +424,8 @@ static impact_status lobatto_step(impact_ode *ode, double t_stop, double *y, boo
         memcpy(y, lo->at_root ? lo->roots.state : lo->y, sizeof *y * (size_t)ode->size);
         return IMPACT_OK;
     }
-    impact_status status = begin_step(lo, t, t_stop - t);
-    if (status == IMPACT_OK) status = take_step(lo, t, t_stop, &end);
+    impact_status status = begin_collocation(lo, t, t_stop - t);
+    if (status == IMPACT_OK) status = take_collocation(lo, t, t_stop, &end);
     if (status != IMPACT_OK) return status;
     node_state(lo, LAST, end - t, lo->y);
     ode->step_begin = t, ode->step_end = ode->t = end;

@@ -201,9 +201,6 @@
  * velocities of order 1 m/s and must be told from nothing at IMP_SLIP_OF_REST_SPEED of the default rest speed, 1e-11
  * m/s. A tolerance looser than this would decide between slip and stick. */
 #define IMP_SLIDING_TOLERANCE 1e-13
-/* Where the integrator is told of each step: of the slip over the speed that it slows the clock by, a twentieth of the
- * body's: steps then err by a 1/500 of the slip that they end with, and slip is 0.2 % sooner or later no more. */
-#define IMP_SLIDING_OF_SLIP 1e-4
 /* And so is a stretch that begins with a bounce: a flight of rest height, 1e-12 m, of a body of 1 m must come down
  * where it falls, or bounces die out never or too soon. */
 #define IMP_BOUNCE_TOLERANCE 3e-12

@@ -173,21 +173,9 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     motion->distrusted = false;
     if (motion->method == IMPACT_MOTION_RK4) return choose_integrator(motion, IMPACT_ODE_RK4);
     if (stiff != other) return choose_integrator(motion, IMPACT_ODE_BDF);
-    return choose_integrator(motion, motion->method == IMPACT_MOTION_AUTO ? IMPACT_ODE_LOBATTO : IMPACT_ODE_ADAMS);
-}
-
-/* What slides is followed so closely that no error is taken for slip. An integrator that is told once a stretch needs
- * that of its end; collocation is told at each step what the slip is now, of which its steps take an equal part. */
-static double slip_tolerance(const imp_motion *motion)
-{
-    double slip = INFINITY;
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (touch->mode == IMP_SLIDE && touch->friction > 0) slip = fmin(slip, touch->onset ? 0 : touch->speed);
-    }
-    if (!isfinite(slip)) return INFINITY;
-    const double part = motion->ode == motion->lobatto ? IMP_SLIDING_OF_SLIP * slip / motion->slip_scale : 0;
-    return fmax(IMP_SLIDING_TOLERANCE, part);
+    /* of what is held collocation loses digits where slip dies out, and piles take it five times as long */
+    const bool collocates = motion->method == IMPACT_MOTION_AUTO && motion->persist.count == 0;
+    return choose_integrator(motion, collocates ? IMPACT_ODE_LOBATTO : IMPACT_ODE_ADAMS);
 }
 
 static double stretch_tolerance(const imp_motion *motion)
@@ -195,17 +183,10 @@ static double stretch_tolerance(const imp_motion *motion)
     const double part = motion->persist.count == 0 ? IMP_FLIGHT_OF_TOLERANCE : IMP_HELD_OF_TOLERANCE;
     double tolerance = fmin(motion->tolerance, fmax(IMP_FLIGHT_TOLERANCE, part * motion->tolerance));
     if (motion->bounces && motion->ode != motion->lobatto) tolerance = fmin(tolerance, IMP_BOUNCE_TOLERANCE);
-    return fmin(tolerance, slip_tolerance(motion));
-}
-
-/* For the next step of collocation; of the others only a start hears of tolerances. */
-impact_status imp_motion_follow_slip(imp_motion *motion)
-{
-    if (motion->ode != motion->lobatto || !motion->sliding) return IMPACT_OK;
-    const double relative = stretch_tolerance(motion), part = relative / motion->relative;
-    motion->relative = relative;
-    for (int i = 0; i < motion->size; i++) motion->absolute[i] *= part;
-    return impact_ode_set_tolerances(motion->ode, motion->relative, motion->absolute);
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
+            tolerance = fmin(tolerance, IMP_SLIDING_TOLERANCE);
+    return tolerance;
 }
 
 static impact_status choose_tolerance(imp_motion *motion, const imp_state *states)

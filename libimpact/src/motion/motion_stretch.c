@@ -248,8 +248,7 @@ static impact_status step_on(imp_motion *motion, double *y, imp_end *end)
     const double tau_before = s->tau, stop = clocked ? 1000 * (s->t_end - s->from) + 1000 : s->t_end;
     bool found;
     *end = (imp_end){IMP_END_TIME, 0};
-    impact_status status = imp_motion_follow_slip(motion);
-    if (status == IMPACT_OK) status = imp_motion_step(motion, stop, &s->tau, y, &found);
+    impact_status status = imp_motion_step(motion, stop, &s->tau, y, &found);
     if (motion->message[0] != '\0') return IMPACT_EDOMAIN; /* a load was refused */
     if (status == IMPACT_EINTEGRATOR && s->passed) {       /* another root close by: begin anew from here */
         s->restart = true;

@@ -12,8 +12,6 @@
 impact_status imp_motion_choose(imp_motion *motion, const imp_state *states);
 /* Whether another would be chosen now: slip that had just begun has a direction of its own, or dies out again. */
 bool imp_motion_outgrows(const imp_motion *motion);
-/* Tolerances for the next step, by the slip as it is: of collocation, which alone is told at every step. */
-impact_status imp_motion_follow_slip(imp_motion *motion);
 /* The integrators' work since it was counted last, into the world's usage. */
 void imp_motion_count_work(imp_motion *motion);
 
