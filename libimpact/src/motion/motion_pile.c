@@ -138,16 +138,21 @@ static impact_status end_at_edge(imp_pile *pile, imp_world *world, double t0, co
            value_high = least_edge(world, t0 + high, states);
     const double near = IMP_PILE_EDGE * high;
     impact_status status = IMPACT_OK;
-    for (int k = 0; k < MOST && status == IMPACT_OK && high - low > near; k++) {
+    for (int k = 0, side = 0; k < MOST && status == IMPACT_OK && high - low > near; k++) {
         const double part = value_low > 0 ? value_low / (value_low - value_high) : 0.5;
         const double h = fmin(fmax(low + part * (high - low), low + 0.5 * near), high - 0.5 * near);
         status = step_again(pile, world, t0, h, before, states, result);
         const double value = least_edge(world, t0 + result->taken, states);
         if (status != IMPACT_OK || (value >= 0 && result->taken < h)) return status; /* its error allows no more */
-        if (value >= 0)
-            low = h, value_low = value, value_high *= 0.5;
-        else
-            high = result->taken, value_high = value, value_low *= 0.5;
+        if (value >= 0) {
+            low = h, value_low = value;
+            if (side == -1) value_high *= 0.5;
+            side = -1;
+        } else {
+            high = result->taken, value_high = value;
+            if (side == 1) value_low *= 0.5;
+            side = 1;
+        }
     }
     return status == IMPACT_OK ? step_again(pile, world, t0, high, before, states, result) : status;
 }
