@@ -9,9 +9,39 @@
 
 /* Unit roundoff of double: what one operation errs by, relative. */
 #define IMP_ROUNDOFF 0x1p-53
+/* Added to what divides and may be 0: no number that is not below 1e-284 is changed by it. */
+#define IMP_NOT_ZERO 1e-300
+/* Of what its slope promises: a step along which a function falls by less is halved (Armijo 1966; Dennis, Schnabel
+ * 1983). */
+#define IMP_ARMIJO 1e-4
 
 /* Bytes of a definition at most: ten times the largest there is. A size beyond it was never set, and is not read. */
 #define IMP_MOST_DEFINITION 4096
+
+/* ---- what a definition may give, and gives by itself ---- */
+
+/* tolerance and key_tolerance: what doubles hold, and two digits. Without one the integrator errs by less than what
+ * tells slip from none (IMP_SLIDING_TOLERANCE). */
+#define IMP_LEAST_TOLERANCE 1e-15
+#define IMP_MOST_TOLERANCE 1e-2
+#define IMP_DEFAULT_TOLERANCE 1e-13
+/* Of a key's place, without one: of a body of 1 m an atom's diameter. A finer one than the least is its rounding. */
+#define IMP_LEAST_KEY_TOLERANCE 1e-14
+#define IMP_DEFAULT_KEY_TOLERANCE 1e-10
+/* m, of a bounce, and m/s: what no eye and no instrument sees of bodies of centimetres to metres, and doubles hold to
+ * three digits in gaps of 1 m. */
+#define IMP_DEFAULT_REST_HEIGHT 1e-12
+#define IMP_DEFAULT_REST_SPEED 1e-9
+/* Samples of a run: each then has its own number in a double. */
+#define IMP_MOST_SAMPLES 1e15
+/* Of the other two moments' sum: a flat body's largest is that sum, to some roundings of the formula it is from. */
+#define IMP_MOMENTS_TOGETHER 1e-12
+/* Of the first moment: three that differ by less are a sphere's, but for the rounding of what they were computed by. */
+#define IMP_ALIKE_MOMENTS 1e-14
+/* J: sums of 1e8 such energies are finite. */
+#define IMP_MOST_ENERGY 1e300
+/* m^3/(kg s^2), the constant of gravitation (CODATA 2018). */
+#define IMP_NEWTONIAN_CONSTANT 6.67430e-11
 
 /* ---- places ---- */
 
@@ -149,6 +179,14 @@
 /* The largest exponent of a superquadric: its edges are then 1e-6 of its size wide, and u^(p - 1) spans double's range.
  */
 #define IMP_MOST_EXPONENT 1e6
+/* Of 1: a component of a direction at which the surface's flat place gives way to its neighbourhood, where radii of
+ * curvature are finite. */
+#define IMP_OFF_FLAT 1e-9
+/* A flat point's slope, which is 0: a contact passes it before any time goes by; a last Newton's step, relative; and a
+ * bend whose inverse is no part of a sum any more. */
+#define IMP_SPOT_LEAST_SLOPE 1e-200
+#define IMP_SPOT_STEP 1e-16
+#define IMP_SPOT_MOST_BENT 1e100
 
 /* ---- patches, docs/faces.md ---- */
 
@@ -170,6 +208,15 @@
 /* Slip slower than this part of the rest speed, m/s, is none: what ends as rest has stuck before, by a margin that the
  * last changes of mode on the way there do not fill. */
 #define IMP_SLIP_OF_REST_SPEED 1e-2
+/* Slip faster than this part of the slip scale turns no faster than the motion goes. */
+#define IMP_SLIP_GROWN 1e-2
+/* Of mu h omega, h the height that turning's friction has: a face's slip so near to a pivot's, where the friction just
+ * suffices and goes on doing so, is the pivot's: sqrt(w^2 - (mu h omega)^2) of roundings of both is 1e-8 of them, and
+ * integration adds two digits to that. */
+#define IMP_FLAT_PIVOT 1e-6
+/* A line's tipping: of the body's radius, the arm that is none; and of its speed, what slips across the line. */
+#define IMP_LINE_TIGHT 1e-9
+#define IMP_LINE_NOISE 1e-12
 /* Slip that begins from rest is led by its acceleration up to so many times the slip speed. There the direction of slip
  * has come to within 1e-5 of that of its acceleration, and the stiffness of the direction, (friction
  * acceleration)/slip, is one that BDF follows. */
@@ -188,6 +235,8 @@
 /* A body's radius over its speed bounds a step no more than this part of max_step does: a million steps in a run are
  * the most that is spent on looking. */
 #define IMP_LEAST_OF_MAX_STEP 1e-3
+/* Of the time left, what two million steps (motion_stretch.c) must gain: with less a run takes 2e12 of them. */
+#define IMP_LEAST_GAIN 1e-6
 
 /* ---- heights ---- */
 
@@ -209,6 +258,9 @@
 #define IMP_LEAST_ACCELERATION 1e-100
 /* Of what an integrator's component passes zero by, over the relative tolerance. */
 #define IMP_ABSOLUTE_OF_RELATIVE 1e-2
+/* Up to this many of SI's units a body's size, speed and angular momentum are measured in those; larger ones by
+ * themselves, or where they pass through 0 rounding counts as error: that of 1e3 is the default tolerance of 1. */
+#define IMP_ORDINARY_SIZE 1e3
 /* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing
  * holds is integrated closer than asked by IMP_FLIGHT_OF_TOLERANCE, and down to what doubles hold. */
 #define IMP_FLIGHT_OF_TOLERANCE 0.03
@@ -229,6 +281,26 @@
 /* A pair that is open is pressed where the loads' part of its acceleration towards the body is more than this: what the
  * reactions of others balance leaves less. */
 #define IMP_PRESSED_OF_LOADS 1e-9
+/* Of gravity: no acceleration by a reaction counts for more in what presses: where a face is about to be rolled over
+ * it is without bound, for no time. */
+#define IMP_PASSING_PRESS 1e6
+/* Of the greatest element: a pivot of the contacts' linear system that is none: 4000 eps, of conditions up to 1e4. */
+#define IMP_LINEAR_VANISHING 1e-12
+/* Newton's step of a secular equation's multiplier, relative: half an eps. */
+#define IMP_SECULAR_STEP 1e-16
+/* rad: directions of slip that begins have come to rest where none turns by 4 eps; what Newton's linear step leaves of
+ * them, its square; and what it leaves where it leads nowhere. */
+#define IMP_ONSET_TURNED 1e-15
+#define IMP_ONSET_LEFT 1e-16
+#define IMP_ONSET_FAR 1e3
+/* What bodies at rest have: of the island's loads, acceleration that is none, the reactions being a sweep's to ten
+ * digits; of them, and of a reaction, a sweep's last change, 450 eps; of what changed fifty sweeps ago, what tells of
+ * sweeps that do not settle (20 000 would leave 3e-4 of the first change); and of a ball's response across the normal,
+ * what its rounding may lack. */
+#define IMP_STILL_BALANCED 1e-10
+#define IMP_STILL_SETTLED 1e-13
+#define IMP_STILL_PROGRESS 0.98
+#define IMP_STILL_ROUND 1e-12
 /* No surface that presses is rounder than this part of its body's size: about edges the normal turns faster, but not
  * for long. */
 #define IMP_ROUNDEST_PRESS 1e-3
@@ -471,6 +543,25 @@
 #define IMP_CRAWL_PARTS 64
 /* Queries of one search; it goes on from there when the queue comes back to it. */
 #define IMP_SEARCH_QUERIES 2000
+/* Of the time: bisection of a bound of fall ends; it is a bound from below. */
+#define IMP_SEARCH_BISECTED 1e-9
+/* rad, steps by Magnus' series of a ball that rolls: the next term, h^5 omega^4/720, is 1e-11 of a step; and as many
+ * steps as that takes, at most. */
+#define IMP_ROLL_STEP 0.01
+#define IMP_ROLL_STEPS 1e7
+/* Of a body's radius, how far it goes in its box: at first; the least, under which boxes would be made anew more often
+ * than anything else happens; the most, at which there is one box; between them it is for the number of pairs to say.
+ * And of that, the margin around the path. */
+#define IMP_BOX_FIRST 1
+#define IMP_BOX_LEAST 0.5
+#define IMP_BOX_FATTEST 0x1p60
+#define IMP_BOX_MARGIN 0.1
+/* Of t: the shortest time in a box, a thousand eps: the next one begins later. */
+#define IMP_BOX_SHORTEST (2000 * IMP_ROUNDOFF)
+/* Cells on either side of the grid's middle: what a 64-bit number counts; and m, the least side of a box, whose cells'
+ * scale is finite. */
+#define IMP_GRID_CELLS 0x1p62
+#define IMP_GRID_LEAST 0x1p-1000
 
 /* ---- normals that go with edges and corners ---- */
 
@@ -501,6 +592,10 @@
 #define IMP_CONE_ARC_LEAST 1e-6
 /* Ratio of e's steps from which the path is said to turn: 44 steps for two decades. */
 #define IMP_CONE_SLOW 0.9
+/* Ratio of the longest steps of e, where Newton needs but two: three of the path's ten decades. */
+#define IMP_CONE_STRIDE 1e-3
+/* Where the eased path ends, e, tried one after another: by how many of the hard ones they solve. */
+#define IMP_CONE_EASINGS 0.1, 1e-2, 1e-3, 1
 /* The least step by arc length, of a contact's size: a path that creeps more is left. */
 #define IMP_CONE_CREEP 1e-6
 /* Alpha of A + alpha 1, A's diagonal being 1 in the mean: contacts hardly feel each other. */
@@ -589,6 +684,8 @@
 
 /* Orientations are written as the motion normalised them, to a few roundings; what is off by more is damage. */
 #define IMP_RUN_UNIT 1e-9
+/* A whole number below this is written as one: 15 digits. */
+#define IMP_MOST_WHOLE 1e15
 
 /* ---- report ---- */
 
@@ -643,6 +740,8 @@
 /* Of the face's reach: points so near to the side over which a body tips are on it: rounding of places found on another
  * way; corners stand farther apart. */
 #define IMP_TIP_SIDE 1e-6
+/* Of the lying body's size: a plane without end has its border there. */
+#define IMP_WITHOUT_END 1e9
 
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 
@@ -750,6 +849,9 @@
 #define IMP_TOI_NEAR 40
 /* Of the time: bounding balls that come nearer by less are near: the bodies themselves are asked. */
 #define IMP_TOI_BALL_STEP 1e-3
+/* Of the bodies' length: so far back along the way an answer's bodies must have been apart: rounding of places is 1e-10
+ * of it. */
+#define IMP_TOI_GLANCE_BACK 1e-6
 /* Newton's steps on a bound psi: of the gap, where a chord finishes; of the time, where they stand. */
 #define IMP_PSI_NEAR 1e-3
 #define IMP_PSI_STEP 1e-12

@@ -339,7 +339,7 @@ static bool is_exact(const imp_cone_problem *problem, const double *r, const imp
 static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
     enum { RECALLED = 8, LAST_STEPS = 6, EASINGS = 4 };
-    static const double easings[EASINGS] = {0.1, 1e-2, 1e-3, 1}; /* by how many of the hard ones they solve */
+    static const double easings[EASINGS] = {IMP_CONE_EASINGS};
     if (system->problem->last_r) {
         recall_answer(system, system->problem->last_r, system->problem->last_u);
         polish(system, false, RECALLED, r, u, outcome);

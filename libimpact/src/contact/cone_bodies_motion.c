@@ -218,7 +218,7 @@ static bool go_along(const imp_bodies_problem *p, double *value, double *scale)
     for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
         for (int i = 0; i < p->n; i++) p->trial[i] = p->x[i] + part * p->step[i];
         const double found = look_at(p, p->trial, scale);
-        if (!(found <= *value + 1e-4 * part * slope)) continue;
+        if (!(found <= *value + IMP_ARMIJO * part * slope)) continue;
         *value = found;
         memcpy(p->x, p->trial, sizeof *p->x * (size_t)p->n);
         return true;

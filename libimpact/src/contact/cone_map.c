@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/cone_map.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 #include <string.h>
@@ -260,7 +261,7 @@ static bool search_line(imp_cone_system *system, double e, double *norm)
     for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
         for (int i = 0; i < n; i++) system->trial[i] = system->z[i] + part * system->step[i];
         const double found = imp_cone_defect(system, system->trial, e, system->rate);
-        if (!(found < (1 - 1e-4 * part) * *norm)) continue;
+        if (!(found < (1 - IMP_ARMIJO * part) * *norm)) continue;
         memcpy(system->z, system->trial, sizeof *system->z * (size_t)n);
         memcpy(system->value, system->rate, sizeof *system->z * (size_t)n);
         *norm = found;

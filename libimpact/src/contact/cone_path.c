@@ -39,7 +39,7 @@ static double descend(imp_cone_system *system, double e, double end)
         const int before = system->steps;
         if (go_down(system, e, next)) {
             e = next;
-            if (system->steps - before <= 2) ratio = fmax(1e-3, ratio * ratio);
+            if (system->steps - before <= 2) ratio = fmax(IMP_CONE_STRIDE, ratio * ratio);
         } else {
             ratio = pow(ratio, 0.4);
             if (ratio > IMP_CONE_SLOW) break;

@@ -20,7 +20,7 @@
 
 /* A slide that ends in a pivot leaves friction that just suffices, and goes on doing so: what integration adds is not
  * to break it. */
-static const double grip = 1 + 1e-6;
+static const double grip = 1 + IMP_FLAT_PIVOT;
 
 static qvec3 plane_normal(const imp_pair *pair, const imp_state *states)
 {
@@ -160,7 +160,7 @@ static void slide(const imp_world *world, const imp_pair *pair, const gliding *g
     if (!(qvec3_norm(d) > 0)) d = imp_tangent(g->n);
     b->direction = qvec3_scale(d, 1 / qvec3_norm(d));
     b->slip = qvec3_scale(size > 0 ? b->direction : (qvec3){0, 0, 0}, speed);
-    b->speed = fmax(0, speed - 1e-6 * fabs(k));
+    b->speed = fmax(0, speed - IMP_FLAT_PIVOT * fabs(k));
     b->friction = qvec3_scale(b->direction, -pair->friction * b->pressure);
     b->foot = qvec3_axpy(height * pair->friction, b->direction, shift);
 }

@@ -70,7 +70,7 @@ static double missing_torque(const imp_world *world, const imp_touch *touch, con
 
 double imp_line_spare(const imp_world *world, const imp_touch *touch, const imp_state *states, const imp_load *loads)
 {
-    const double tight = 1e-9, noise = 1e-12; /* of the body's radius; of its speed, across the slip */
+    const double tight = IMP_LINE_TIGHT, noise = IMP_LINE_NOISE;
     const imp_pair *pair = &world->pairs[touch->pair];
     if (!touch->lined || !(touch->pressure > 0)) return 1;
     const qvec3 h = tipping_axis(pair, states);

@@ -4,11 +4,10 @@
  * solution less its part along those of the homogeneous system, for which an orthonormal basis is kept.
  */
 #include "contact/persist_linear.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 #include <string.h>
-
-static const double vanishing = 1e-12; /* a pivot, against the greatest element */
 
 static double *row_of(const imp_linear *system, int i) { return &system->matrix[i * system->n]; }
 
@@ -180,9 +179,9 @@ void imp_linear_factor(imp_linear *system)
     double most = 0;
     for (int k = 0; k < system->n * system->n; k++) most = fmax(most, fabs(system->matrix[k]));
     memcpy(system->spare, system->matrix, bytes);
-    if (reduce_regular(system, vanishing * most)) return;
+    if (reduce_regular(system, IMP_LINEAR_VANISHING * most)) return;
     memcpy(system->matrix, system->spare, bytes);
-    reduce_singular(system, vanishing * most);
+    reduce_singular(system, IMP_LINEAR_VANISHING * most);
     system->sign = 0;
     find_basis(system);
 }

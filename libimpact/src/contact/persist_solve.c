@@ -44,7 +44,7 @@ static void secular(double a11, double a12, double a22, double b1, double b2, do
         const double e1 = (q * *d1 - a12 * *d2) / determinant, e2 = (p * *d2 - a12 * *d1) / determinant;
         const double step = (size - 1) * size * size / (*d1 * e1 + *d2 * e2);
         *d1 /= size, *d2 /= size;
-        if (!(step > 1e-16 * (p + q))) return;
+        if (!(step > IMP_SECULAR_STEP * (p + q))) return;
         k += step;
     }
 }
@@ -97,7 +97,7 @@ static double turn_in_turns(imp_persist *persist, const imp_world *world, const 
 {
     double turned = INFINITY;
     for (int c = 0; c < persist->count; c++) persist->touches[c].turning = false;
-    for (int k = 0; k < turns && turned >= 1e-15; k++) {
+    for (int k = 0; k < turns && turned >= IMP_ONSET_TURNED; k++) {
         solve_reactions(persist, world, states);
         turned = turn_each(persist, world, states);
     }
@@ -135,8 +135,8 @@ static bool turn_together(imp_persist *persist, const imp_world *world, const im
         solve_reactions(persist, world, states);
         for (int c = 0; c < persist->count; c++)
             if (persist->touches[c].turning) left = fmax(left, take_turn(world, &persist->touches[c]));
-        if (left < 1e-16) return true;
-        if (!(left < 1e3)) return false;
+        if (left < IMP_ONSET_LEFT) return true;
+        if (!(left < IMP_ONSET_FAR)) return false;
     }
     return false;
 }
@@ -191,12 +191,12 @@ static bool solve_anew(imp_persist *persist, imp_world *world, const imp_state *
     enum { TRIES = 4, FEW = 5, MANY = 50 };
     for (int k = 0; k < TRIES; k++) {
         recall_turns(persist, world);
-        if (turn_in_turns(persist, world, states, FEW << k) < 1e-15) return true;
+        if (turn_in_turns(persist, world, states, FEW << k) < IMP_ONSET_TURNED) return true;
         for (int c = 0; c < persist->count; c++) persist->touches[c].pull = pull_of(&persist->touches[c]);
         if (turn_together(persist, world, states)) return true;
     }
     recall_turns(persist, world);
-    return turn_in_turns(persist, world, states, MANY) < 1e-15;
+    return turn_in_turns(persist, world, states, MANY) < IMP_ONSET_TURNED;
 }
 
 /* The directions of slip that begins, and all reactions with them. */

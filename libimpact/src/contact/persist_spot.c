@@ -2,9 +2,6 @@
 #include "contact/persist_spot.h"
 #include "shape/support.h"
 
-/* Stands for the slope 0 of a flat point: the contact passes it before any time goes by. */
-#define LEAST_SLOPE 1e-200
-
 static bool is_nested(const impact_shape *shape)
 {
     return shape->kind == IMPACT_SUPERELLIPSOID && shape->r != shape->t;
@@ -25,7 +22,7 @@ static double split(double s, double n)
     for (int i = 0; i < 60; i++) {
         const double power = pow(x, n - 1), step = (x + x * power - s) / (1 + n * power);
         x -= step;
-        if (!(step > 1e-16 * x)) break;
+        if (!(step > IMP_SPOT_STEP * x)) break;
     }
     return fmax(x, 0);
 }
@@ -51,7 +48,7 @@ static void exponents_of(const impact_shape *shape, double p[3], double axis[3])
 static double ratio_of(double e, double u, double p)
 {
     const double ratio = u != 0 ? e / u : p < 2 ? INFINITY : p == 2;
-    return fmin(fmax(ratio, LEAST_SLOPE), 1 / LEAST_SLOPE);
+    return fmin(fmax(ratio, IMP_SPOT_LEAST_SLOPE), 1 / IMP_SPOT_LEAST_SLOPE);
 }
 
 /* ---- superellipsoids of two exponents: the section x, y ---- */
@@ -63,7 +60,7 @@ static double split_weighted(double s, double b, double n)
     for (int i = 0; i < 200; i++) {
         const double power = b * pow(x, n - 1), step = (x + x * power - s) / (1 + n * power);
         x -= step;
-        if (!(step > 1e-16 * x)) break;
+        if (!(step > IMP_SPOT_STEP * x)) break;
     }
     return fmax(x, 0);
 }
@@ -91,13 +88,13 @@ static double section_of(const double s[2], double r, double t, double v[2], dou
         double sum = 0, slope = 0;
         for (int j = 0; j < 2; j++) {
             section_part(s[j] / k, weight, r, &v[j], &e[j]);
-            const double bent = fmin(weight * ratio_of(e[j], v[j], r), 1e100);
+            const double bent = fmin(weight * ratio_of(e[j], v[j], r), IMP_SPOT_MOST_BENT);
             sum += v[j] * e[j];
             slope += r * v[j] * e[j] * (1 + (t - 1) * bent) / (1 + (r - 1) * bent);
         }
         const double step = log(sum) * sum / slope;
         k *= exp(step);
-        if (!(fabs(step) > 4e-16)) break;
+        if (!(fabs(step) > 4 * IMP_SPOT_STEP)) break;
     }
     return k;
 }
@@ -107,7 +104,7 @@ static void nested_section(const impact_shape *shape, const double s[3], imp_spo
 {
     const double size[2] = {fabs(s[0]), fabs(s[1])}, r = shape->r, t = shape->t;
     double v[2], e[2], k = 0;
-    if (fmax(size[0], size[1]) > LEAST_SLOPE) {
+    if (fmax(size[0], size[1]) > IMP_SPOT_LEAST_SLOPE) {
         k = section_of(size, r, t, v, e);
     } else {
         v[0] = v[1] = pow(0.5, 1 / r);

@@ -72,7 +72,7 @@ static contact_response touch_response(const imp_world *world, const imp_state *
     const bool round = world->bodies[touch->body1].spherical && world->bodies[touch->body2].spherical;
     double own[3];
     for (int i = 0; i < 3; i++) own[i] = qvec3_dot(axes[i], imp_system_response(world, states, touch, touch, axes[i]));
-    return (contact_response){own[0], round ? fmax(own[1], own[2]) * (1 + 1e-12) : own[1] + own[2]};
+    return (contact_response){own[0], round ? fmax(own[1], own[2]) * (1 + IMP_STILL_ROUND) : own[1] + own[2]};
 }
 
 /* The bodies' greatest acceleration, any point's. */
@@ -114,7 +114,7 @@ static qvec3 last_reaction(const imp_world *world, const imp_touch *touch)
 {
     const qvec3 f = world->pairs[touch->pair].reaction;
     const double pressure = qvec3_dot(touch->normal, f), rubs = qvec3_norm(qvec3_axpy(-pressure, touch->normal, f));
-    return pressure >= 0 && rubs <= touch->friction * pressure + 1e-13 * pressure ? f : (qvec3){0, 0, 0};
+    return pressure >= 0 && rubs <= touch->friction * pressure + IMP_STILL_SETTLED * pressure ? f : (qvec3){0, 0, 0};
 }
 
 /* Gives the island's touches reactions to begin with, those they had or none; returns the acceleration that they leave.
@@ -146,7 +146,7 @@ static answer sweep_reactions(imp_persist *persist, const imp_world *world, cons
                               workspace *work, double load)
 {
     enum { SWEEPS = 20000, CHECK = 50 };
-    const double balanced = 1e-10 * load, settled = 1e-13 * load, progress = 0.98;
+    const double balanced = IMP_STILL_BALANCED * load, settled = IMP_STILL_SETTLED * load;
     if (begin_reactions(persist, world, states, island, false, work) <= balanced) return BALANCED;
     begin_reactions(persist, world, states, island, true, work);
     double before = INFINITY;
@@ -158,7 +158,7 @@ static answer sweep_reactions(imp_persist *persist, const imp_world *world, cons
                               improve_reaction(world, states, &persist->touches[c], work->responses[c], work->rates));
         if (change <= settled) return greatest(persist, world, island, work->rates) <= balanced ? BALANCED : MOVES;
         if (k % CHECK != 0) continue;
-        if (change > progress * before) return UNKNOWN;
+        if (change > IMP_STILL_PROGRESS * before) return UNKNOWN;
         before = change;
     }
     return UNKNOWN;
@@ -198,7 +198,7 @@ static void open_parting(imp_persist *persist, imp_world *world, int island, con
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
         if (persist->island[c] == island && touch->pressure == 0 &&
-            qvec3_dot(touch->normal, acceleration(touch, work->rates)) > 1e-9 * load)
+            qvec3_dot(touch->normal, acceleration(touch, work->rates)) > IMP_PRESSED_OF_LOADS * load)
             world->pairs[touch->pair].mode = IMP_OPEN;
     }
 }

@@ -15,7 +15,7 @@
 
 /* Where an exponent is over 2 the surface is flat along its axis at 0: there the radius of curvature stands for its
  * neighbourhood's. */
-static double off_zero(double component) { return copysign(fmax(fabs(component), 1e-9), component); }
+static double off_zero(double component) { return copysign(fmax(fabs(component), IMP_OFF_FLAT), component); }
 
 /* W, in the world, of a tangential vector. */
 static qvec3 curve(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v)
@@ -73,7 +73,7 @@ static imp_rates lone_rates(imp_world *world, const imp_pair *pair, const imp_st
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const double omega = qvec3_norm(imp_omega(b1, s1)) + (b2->is_static ? 0 : qvec3_norm(imp_omega(b2, s2))),
                  speed = qvec3_norm(qvec3_sub(s1->v, s2->v)),
-                 time = IMP_LONE_TURN / (omega + speed / b1->radius + 1e-300);
+                 time = IMP_LONE_TURN / (omega + speed / b1->radius + IMP_NOT_ZERO);
     impact_contact at[2];
     for (int k = 0; k < 2; k++) {
         const imp_state one = imp_drifted(b1, s1, k ? time : -time), two = imp_drifted(b2, s2, k ? time : -time);

@@ -221,8 +221,8 @@ static bool walk(const rest_system *s, double *value, double *size)
         const double found = value_at(s, s->trial);
         (void)find_gradient(s);
         const double left = sqrt(product(s->gradient, s->gradient, s->n));
-        const bool falls = found < *value && found <= *value + 1e-4 * part * slope;
-        const bool hidden = found <= *value + IMP_REST_SHIFT * fabs(*value) && left < (1 - 1e-4 * part) * *size;
+        const bool falls = found < *value && found <= *value + IMP_ARMIJO * part * slope;
+        const bool hidden = found <= *value + IMP_REST_SHIFT * fabs(*value) && left < (1 - IMP_ARMIJO * part) * *size;
         if (!falls && !hidden) continue;
         memcpy(s->x, s->trial, sizeof *s->x * (size_t)s->n);
         *value = found, *size = left;

@@ -54,7 +54,7 @@ static void lay_out_face(const imp_lying *lying, const imp_body *body, const imp
 static bool plane_bounds(const imp_lying *lying, const imp_body *under, const imp_state *state, qvec3 apart,
                          imp_flat_face *out)
 {
-    const double far = 1e9 * lying->size, a = fmin(under->shape.a, far), b = fmin(under->shape.b, far);
+    const double far = IMP_WITHOUT_END * lying->size, a = fmin(under->shape.a, far), b = fmin(under->shape.b, far);
     const qvec3 corner[4] = {{-a, -b, 0}, {a, -b, 0}, {a, b, 0}, {-a, b, 0}};
     *out = (imp_flat_face){.count = 4};
     for (int i = 0; i < 4; i++)

@@ -46,9 +46,7 @@ void imp_motion_pack(const imp_motion *motion, double t, const imp_state *states
     if (motion->world->driven) y[imp_motion_drive(motion)] = motion->works.drive;
 }
 
-/* SI's own unit for what is ordinary; what is large is measured by itself, or rounding where it passes zero would count
- * as error. */
-static double measure_of(double size) { return size > 1e3 ? size : 1; }
+static double measure_of(double size) { return size > IMP_ORDINARY_SIZE ? size : 1; }
 
 /* Works are differences of energies: that which moves, and what the loads do over the bodies' sizes, J. */
 static double energy_scale(const imp_motion *motion, const imp_state *states)

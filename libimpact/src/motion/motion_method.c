@@ -10,9 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Slip faster than this part of the slip scale turns no faster than the motion goes. */
-static const double grown_up = 1e-2;
-
 impact_status imp_motion_make_room(imp_motion *motion)
 {
     const imp_world *world = motion->world;
@@ -113,8 +110,8 @@ static void grow_up(imp_motion *motion)
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
         imp_pair *pair = &motion->world->pairs[touch->pair];
-        pair->young =
-            pair->young && touch->mode == IMP_SLIDE && !touch->onset && touch->speed < grown_up * motion->slip_scale;
+        pair->young = pair->young && touch->mode == IMP_SLIDE && !touch->onset &&
+                      touch->speed < IMP_SLIP_GROWN * motion->slip_scale;
     }
 }
 
@@ -164,7 +161,7 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     grow_up(motion);
     motion->stiff = isfinite(slowest_slip(motion, true));
     const double grown = slowest_slip(motion, false);
-    motion->sliding = isfinite(grown) && (!motion->stiff || grown < grown_up * motion->slip_scale);
+    motion->sliding = isfinite(grown) && (!motion->stiff || grown < IMP_SLIP_GROWN * motion->slip_scale);
     motion->sliding = motion->sliding || young_fades(motion);
     motion->creep_scale = creep_scale(motion, states);
     motion->creeping = motion->creep_scale > 0;
@@ -222,5 +219,6 @@ impact_status imp_motion_choose(imp_motion *motion, const imp_state *states)
 bool imp_motion_outgrows(const imp_motion *motion)
 {
     if (!motion->stiff) return false;
-    return slowest_slip(motion, true) > grown_up * motion->slip_scale || (!motion->sliding && young_fades(motion));
+    return slowest_slip(motion, true) > IMP_SLIP_GROWN * motion->slip_scale ||
+           (!motion->sliding && young_fades(motion));
 }

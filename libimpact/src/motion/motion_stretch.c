@@ -205,12 +205,12 @@ static impact_status renew(imp_end *end)
 static impact_status look_back(imp_motion *motion, imp_end *end)
 {
     enum { LOOK = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
-    const double least = 1e-6; /* of the time left, gained in so many steps */
     const imp_stride *s = &motion->stride;
     const long renewal = motion->creeping ? CARRIED_RENEWAL : RENEWAL;
     if (s->steps % renewal != 0) return IMPACT_OK;
     const bool looks = s->steps >= LOOK; /* long runs are the caller's to stop, unless they get nowhere */
-    if (looks && s->t - s->began < least * (s->t_end - s->began)) return too_rough(motion, s->began, s->t, LOOK);
+    if (looks && s->t - s->began < IMP_LEAST_GAIN * (s->t_end - s->began))
+        return too_rough(motion, s->began, s->t, LOOK);
     if (looks) motion->stride.steps = 0;
     return renew(end);
 }

@@ -132,7 +132,7 @@ double imp_pile_natural_time(const imp_world *world, const imp_state *states)
     double speed = 0;
     for (int i = 0; i < world->body_count; i++)
         if (!world->bodies[i].is_static) speed = fmax(speed, qvec3_norm(states[i].v));
-    return size / (sqrt(g * size) + (g > 0 ? 0 : speed) + 1e-300);
+    return size / (sqrt(g * size) + (g > 0 ? 0 : speed) + IMP_NOT_ZERO);
 }
 
 /* The step in two halves, and whole; there: the whole was found, as the first half of one tried before. halfway: the

@@ -155,7 +155,7 @@ static double fastest_body(const imp_pile *pile, const imp_world *world, const i
 static imp_pile_question question_of(const imp_pile *pile, const imp_world *world, const imp_state *states, int count,
                                      double h)
 {
-    const double fastest = imp_pile_fastest(pile, count) + 1e-300,
+    const double fastest = imp_pile_fastest(pile, count) + IMP_NOT_ZERO,
                  error = IMP_PILE_RESIDUAL * IMP_PILE_ERROR * imp_pile_smallest(world) / h,
                  still = IMP_PILE_STILL * fastest_body(pile, world, states, count);
     return (imp_pile_question){.count = count,

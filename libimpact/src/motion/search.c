@@ -294,7 +294,7 @@ static double step_behind(const imp_search *s, const sight *l)
     double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
     if (p.jerk == 0) return high;
     high = fmin(high, 2 * fmax(cbrt(6 * deep / p.jerk), fmax(sqrt(6 * fmax(0, -p.slope) / p.jerk), 0)));
-    for (int i = 0; i < 100 && high > low * (1 + 1e-9); i++) {
+    for (int i = 0; i < 100 && high > low * (1 + IMP_SEARCH_BISECTED); i++) {
         const double T = 0.5 * (low + high);
         *(T * (p.slope + T * (0.5 * bend + T * p.jerk / 6)) < deep ? &low : &high) = T;
     }

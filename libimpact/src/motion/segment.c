@@ -109,13 +109,13 @@ static quat straight_turn(quat q, qvec3 omega, qvec3 alpha, double T)
 }
 
 /* And where they are not: by Magnus' series to the fourth order, the commutator |omega x alpha| h^3/12 a step, in steps
- * of a hundredth of a radian: 1e-11 of the angle turned through, which moves nothing of a ball. */
+ * of IMP_ROLL_STEP: 1e-11 of the angle turned through, which moves nothing of a ball. */
 static quat roll_turn(quat q, qvec3 omega, qvec3 alpha, double T)
 {
     const qvec3 cross = qvec3_cross(omega, alpha);
     if (is_zero(cross)) return straight_turn(q, omega, alpha, T);
-    const double fastest = qvec3_norm(omega) + T * qvec3_norm(alpha), longest = 0.01 / fastest;
-    const long steps = (long)fmin(ceil(T / longest), 1e7);
+    const double fastest = qvec3_norm(omega) + T * qvec3_norm(alpha), longest = IMP_ROLL_STEP / fastest;
+    const long steps = (long)fmin(ceil(T / longest), IMP_ROLL_STEPS);
     const double h = T / (double)steps;
     for (long i = 0; i < steps; i++) {
         const qvec3 middle = qvec3_axpy(((double)i + 0.5) * h, alpha, omega);

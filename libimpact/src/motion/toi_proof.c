@@ -188,13 +188,11 @@ static double room_of(const imp_instant *at)
     return fmax(IMP_TOI_NEAR * at->tolerance, IMP_TOI_TIME_NEAR * at->t * fabs(at->rate));
 }
 
-static const double glance_back = 1e-6;
-
 bool imp_toi_holds(const imp_chase *q, const imp_instant *at)
 {
     const double room = room_of(at);
     if (!(fabs(at->gap) <= room)) return false;
-    const double back = fmin(at->t, fabs(at->rate) > 0 ? glance_back * q->length / fabs(at->rate) : 0);
+    const double back = fmin(at->t, fabs(at->rate) > 0 ? IMP_TOI_GLANCE_BACK * q->length / fabs(at->rate) : 0);
     imp_instant before;
     impact_contact contact;
     imp_instant_place(q, at->t - back, true, &before);

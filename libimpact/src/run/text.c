@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "run/text.h"
 #include "base/number.h"
+#include "base/tolerances.h"
 
 #include <limits.h>
 #include <math.h>
@@ -59,7 +60,7 @@ static void say_whole(imp_text *text, long long value)
 /* The shortest of 15, 16 and 17 digits that gives back the same bits. */
 void imp_text_number(imp_text *text, double value)
 {
-    if (fabs(value) < 1e15 && value == trunc(value) && !(value == 0 && signbit(value))) {
+    if (fabs(value) < IMP_MOST_WHOLE && value == trunc(value) && !(value == 0 && signbit(value))) {
         say_whole(text, (long long)value);
         return;
     }

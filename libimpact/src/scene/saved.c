@@ -178,7 +178,7 @@ static bool is_state(const imp_state *s)
 {
     const double sum =
         s->x.x + s->x.y + s->x.z + s->v.x + s->v.y + s->v.z + s->momentum.x + s->momentum.y + s->momentum.z;
-    return isfinite(sum) && fabs(quat_norm(s->q) - 1) < 1e-6;
+    return isfinite(sum) && fabs(quat_norm(s->q) - 1) < IMP_COLLIDE_UNIT;
 }
 
 static bool is_time(double t, const imp_saved *s) { return t >= 0 && t <= s->t; }

@@ -44,7 +44,8 @@ static impact_status check_finite(impact_scene *scene, int body, const char *wha
 /* Energies stay within double precision: their sums with others do too. */
 static impact_status check_energy(impact_scene *scene, int body, const imp_state *state)
 {
-    if (fabs(imp_body_energy(&scene->world.bodies[body], state, scene->world.gravity)) < 1e300) return IMPACT_OK;
+    if (fabs(imp_body_energy(&scene->world.bodies[body], state, scene->world.gravity)) < IMP_MOST_ENERGY)
+        return IMPACT_OK;
     return refuse(scene, body, "its energy lies beyond double precision");
 }
 

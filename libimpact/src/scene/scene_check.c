@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MOST_SAMPLES 1e15 /* each then has its own number in a double */
-
 /* Where the message goes, and whose value is being looked at. */
 typedef struct check {
     char *message;
@@ -61,7 +59,7 @@ static void check_mass(check *c, const impact_body_def *body)
     if (isnan(m[0]) && isnan(m[1]) && isnan(m[2])) return;
     for (int i = 0; i < 3; i++) require(c, isfinite(m[i]) && m[i] > 0, "moments", m[i], "must be positive and finite");
     for (int i = 0; i < 3; i++)
-        require(c, m[i] <= (m[(i + 1) % 3] + m[(i + 2) % 3]) * (1 + 1e-12), "moments", m[i],
+        require(c, m[i] <= (m[(i + 1) % 3] + m[(i + 2) % 3]) * (1 + IMP_MOMENTS_TOGETHER), "moments", m[i],
                 "is larger than the other two together: no rigid body has such moments");
 }
 
@@ -276,20 +274,20 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
     require(&c, isfinite(def->duration) && def->duration > 0, "duration", def->duration, "must be positive and finite");
     require(&c, isfinite(def->output_rate) && def->output_rate >= 0, "output_rate", def->output_rate,
             "must be >= 0 and finite");
-    require(&c, def->output_rate * def->duration <= MOST_SAMPLES, "output_rate", def->output_rate,
+    require(&c, def->output_rate * def->duration <= IMP_MOST_SAMPLES, "output_rate", def->output_rate,
             "with this duration makes more than 1e15 samples");
     require(&c, isfinite(def->compliance) && def->compliance >= 0, "compliance", def->compliance,
             "must be >= 0 and finite");
     require(&c, def->compliance == 0 || def->law == IMPACT_STRONGE, "compliance", def->compliance,
             "needs Stronge's law");
-    require(&c, def->tolerance >= 1e-15 && def->tolerance <= 1e-2, "tolerance", def->tolerance,
-            "must lie in [1e-15, 1e-2]");
+    require(&c, def->tolerance >= IMP_LEAST_TOLERANCE && def->tolerance <= IMP_MOST_TOLERANCE, "tolerance",
+            def->tolerance, "must lie in [1e-15, 1e-2]");
     require(&c, isfinite(def->rest_height) && def->rest_height > 0, "rest_height", def->rest_height,
             "must be positive and finite");
     require(&c, isfinite(def->rest_speed) && def->rest_speed > 0, "rest_speed", def->rest_speed,
             "must be positive and finite");
-    require(&c, def->key_tolerance >= 1e-14 && def->key_tolerance <= 1e-2, "key_tolerance", def->key_tolerance,
-            "must lie in [1e-14, 1e-2]");
+    require(&c, def->key_tolerance >= IMP_LEAST_KEY_TOLERANCE && def->key_tolerance <= IMP_MOST_TOLERANCE,
+            "key_tolerance", def->key_tolerance, "must lie in [1e-14, 1e-2]");
     require(&c, def->max_events > 0, "max_events", (double)def->max_events, "must be positive");
     require(&c, def->piles >= IMPACT_PILES_AUTO && def->piles <= IMPACT_PILES_STEPS, "piles", def->piles,
             "is no way to move them");

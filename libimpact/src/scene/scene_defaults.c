@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/scene.h>
 #include "base/definition.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 
@@ -15,12 +16,12 @@ void impact_fill_scene_def(impact_scene_def *def, size_t struct_size)
         .restitution_rule = IMPACT_PRODUCT,
         .law = IMPACT_POISSON,
         .solver = IMPACT_SOLVER_AUTO,
-        .tolerance = 1e-13,
-        .rest_height = 1e-12,
-        .rest_speed = 1e-9,
+        .tolerance = IMP_DEFAULT_TOLERANCE,
+        .rest_height = IMP_DEFAULT_REST_HEIGHT,
+        .rest_speed = IMP_DEFAULT_REST_SPEED,
         .max_events = 1000000,
         .max_steps = 100000000,
-        .key_tolerance = 1e-10,
+        .key_tolerance = IMP_DEFAULT_KEY_TOLERANCE,
         .piles = IMPACT_PILES_AUTO,
         .together = IMPACT_SCENE_TOGETHER_AUTO,
         .samples = IMPACT_SAMPLES_ALL,

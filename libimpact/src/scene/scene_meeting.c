@@ -73,8 +73,7 @@ static double most_lasting_press(const imp_island *island, const imp_meeting *m)
         pull += b->radius * length(imp_inverse_inertia(b, states[body[k]].q, l->torque));
         radius = fmin(radius, b->radius);
     }
-    /* of a face that is about to be rolled over the reaction is without bound, for no time */
-    const double passing = 1e6 * length(island->world.gravity);
+    const double passing = IMP_PASSING_PRESS * length(island->world.gravity);
     if (passing > 0) pull = fmin(pull, passing);
     return pull + speed * speed / (IMP_ROUNDEST_PRESS * radius);
 }

@@ -8,14 +8,12 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* CVODE's least tolerance of an impact: impact_collide_workspace_create. */
-static const double least_of_impacts = 1e-14;
-
 static double impact_tolerance(const impact_scene_def *def, double tolerance)
 {
     const double given = def->methods.impact_tolerance;
     if (given > 0) return given;
-    return def->compliance > 0 ? least_of_impacts : fmax(tolerance, least_of_impacts); /* impacts are few */
+    return def->compliance > 0 ? IMP_COLLIDE_CVODE_LEAST
+                               : fmax(tolerance, IMP_COLLIDE_CVODE_LEAST); /* impacts are few */
 }
 
 impact_methods imp_scene_methods_of(const impact_scene_def *def)
@@ -98,8 +96,8 @@ static void check_numbers(method_check *c, const impact_scene_def *def)
     const impact_methods *m = &def->methods;
     const impact_methods all = imp_scene_methods_of(def);
     const bool rk4 = m->motion == IMPACT_MOTION_RK4, ccd = m->gaps == IMPACT_GAP_CCD;
-    check_range(c, "tolerance", m->tolerance, 1e-15, 1e-2);
-    check_range(c, "impact_tolerance", m->impact_tolerance, least_of_impacts, 1e-2);
+    check_range(c, "tolerance", m->tolerance, IMP_LEAST_TOLERANCE, IMP_MOST_TOLERANCE);
+    check_range(c, "impact_tolerance", m->impact_tolerance, IMP_COLLIDE_CVODE_LEAST, IMP_COLLIDE_CVODE_MOST);
     want(c, m->impact_tolerance == 0 || all.impacts == IMPACT_SOLVER_CVODE || def->compliance > 0, IMPACT_EARGUMENT,
          "impact_tolerance in methods is CVODE's: it needs impacts = \"cvode\", or compliance");
     want(c, m->gap_tolerance == 0 || ccd, IMPACT_EARGUMENT,

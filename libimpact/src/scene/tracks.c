@@ -5,10 +5,6 @@
 #include <float.h>
 #include <impact/flight.h>
 
-/* Of a box, in the radius of its body: how far the body goes in it. Below the least the boxes would be made anew more
- * often than anything else happens; between them it is for the number of pairs to say. */
-static const double first_fatness = 1, least_fatness = 0.5, most_fatness = 0x1p60;
-static const double margin = 0.1;     /* of the fatness, around the path */
 enum { FEW_NEAR = 2, MANY_NEAR = 8 }; /* least instructions in a gas of balls, a tenth filled (./run bench crowd) */
 
 /* fmin and fmax of what is no NaN: those are calls. */
@@ -36,7 +32,7 @@ impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *q
                              .island = -1,
                              .paired_with = -1,
                              .last_event = -INFINITY,
-                             .fatness = first_fatness};
+                             .fatness = IMP_BOX_FIRST};
         if (body->shape.kind == IMPACT_PLANE) tracks->planes[tracks->plane_count++].body = i;
         const bool tumbles = !body->is_static && !body->spherical;
         if (tumbles) track->tumble = imp_arena_take(world->arena, 1, sizeof *track->tumble);
@@ -250,7 +246,7 @@ static double time_in_box(const imp_track *track, const imp_body *body, qvec3 v,
                  pull = qvec3_norm(track->segment.acceleration);
     double time = way / (speed + sqrt(pull * way));
     if (!isfinite(time)) time = 0; /* it stands */
-    return larger(time, 1e3 * DBL_EPSILON * fabs(t));
+    return larger(time, IMP_BOX_SHORTEST * fabs(t));
 }
 
 static imp_box fat_box(const imp_track *track, const imp_body *body, double t)
@@ -258,7 +254,7 @@ static imp_box fat_box(const imp_track *track, const imp_body *body, double t)
     const imp_segment *s = &track->segment;
     qvec3 velocity;
     const qvec3 place = imp_segment_place(s, body, t, &velocity);
-    const double around = body->radius * (1 + margin * track->fatness) + rounding(place);
+    const double around = body->radius * (1 + IMP_BOX_MARGIN * track->fatness) + rounding(place);
     double time = time_in_box(track, body, velocity, t), x[3], v[3], a[3] = {0, 0, 0};
     if (s->kind == IMP_SEGMENT_DENSE) time = larger(time, s->t1 - t);
     store(place, x), store(velocity, v);
@@ -371,8 +367,8 @@ static void put_slot(imp_tracks *tracks, int body, double t)
 static impact_status renew_box(imp_tracks *tracks, int body, double t)
 {
     imp_track *track = &tracks->tracks[body];
-    if (track->near_count < FEW_NEAR) track->fatness = smaller(1.5 * track->fatness, most_fatness);
-    if (track->near_count > MANY_NEAR) track->fatness = larger(0.8 * track->fatness, least_fatness);
+    if (track->near_count < FEW_NEAR) track->fatness = smaller(1.5 * track->fatness, IMP_BOX_FATTEST);
+    if (track->near_count > MANY_NEAR) track->fatness = larger(0.8 * track->fatness, IMP_BOX_LEAST);
     const imp_box box = fat_box(track, &tracks->world->bodies[body], t);
     impact_status status = imp_grid_put(&tracks->grid, body, &box);
     put_slot(tracks, body, t);
@@ -390,7 +386,7 @@ void imp_tracks_clear(imp_tracks *tracks)
         track->near_count = 0;
         track->leave = track->meet = INFINITY;
         track->first_near = track->island = track->paired_with = -1;
-        track->fatness = first_fatness;
+        track->fatness = IMP_BOX_FIRST;
     }
 }
 

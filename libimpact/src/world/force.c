@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <impact/force.h>
 #include "base/definition.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 
@@ -15,7 +16,7 @@ void impact_fill_force_def(impact_force_def *def, size_t struct_size, impact_for
         .reach = INFINITY,
         .radius = INFINITY,
         .falloff_length = 1,
-        .constant = 6.67430e-11,
+        .constant = IMP_NEWTONIAN_CONSTANT,
         .power = 2,
         .max_step = NAN,
     };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "world/grid.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 
@@ -37,7 +38,7 @@ void imp_grid_clear(imp_grid *grid)
 /* Far out the last cell goes on for ever. */
 static int64_t cell_of(double x, const imp_grid_level *level)
 {
-    const double most = 0x1p62, cell = floor(x * level->scale);
+    const double most = IMP_GRID_CELLS, cell = floor(x * level->scale);
     return cell > -most && cell < most ? (int64_t)cell : (int64_t)(cell > 0 ? most : -most);
 }
 
@@ -99,7 +100,7 @@ impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
 {
     imp_grid_entry *e = &grid->entries[entry];
     take_away(grid, e);
-    double side = 0x1p-1000; /* whose cells' scale is finite */
+    double side = IMP_GRID_LEAST;
     for (int k = 0; k < 3; k++)
         if (box->high[k] - box->low[k] > side) side = box->high[k] - box->low[k];
     int exponent;

@@ -137,7 +137,7 @@ static inline void imp_body_give_moments(imp_body *body, qvec3 m)
 {
     body->moments = m;
     body->inverse_moments = (qvec3){1 / m.x, 1 / m.y, 1 / m.z};
-    body->spherical = fabs(m.x - m.y) <= 1e-14 * m.x && fabs(m.x - m.z) <= 1e-14 * m.x;
+    body->spherical = fabs(m.x - m.y) <= IMP_ALIKE_MOMENTS * m.x && fabs(m.x - m.z) <= IMP_ALIKE_MOMENTS * m.x;
 }
 
 /* J^-1 a, for a vector in the world frame. */
