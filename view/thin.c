@@ -257,6 +257,7 @@ impact_status imp_thin(imp_text *out, const impact_run *run, double tolerance)
             imp_run_row(run, i, row, v);
             imp_text_put(out, v, sizeof *v * (size_t)imp_run_tables[i].columns);
         }
+    imp_run_seal(out);
     imp_arena_give(arena, t.rows);
     imp_arena_give(arena, t.first);
     return out->failed ? IMPACT_ENOMEM : IMPACT_OK;

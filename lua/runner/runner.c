@@ -308,10 +308,10 @@ static int work(lua_State *L)
     impact_runner_watch(L);
     impact_runner_set_arguments(L, runner);
     const bool record = impact_runner_is_record(runner);
-    if (record)
-        impact_runner_push_record(L, runner);
-    else if (luaL_loadfilex(L, runner->script, runner->trust ? NULL : "t") != LUA_OK)
-        return lua_error(L);
+    const int loaded = record ? LUA_OK : luaL_loadfilex(L, runner->script, runner->trust ? NULL : "t");
+    if (loaded == LUA_ERRSYNTAX) return impact_runner_refuse_script(L, runner);
+    if (loaded != LUA_OK) return lua_error(L);
+    if (record) impact_runner_push_record(L, runner);
     if (!runner->trust) {
         impact_runner_open_folder_early(runner);
         runner->unfenced = impact_runner_fence(runner);

@@ -157,6 +157,9 @@ int impact_runner_view(lua_State *L, int run, impact_runner *runner, const char 
 bool impact_runner_is_record(const impact_runner *runner);
 void impact_runner_push_record(lua_State *L, const impact_runner *runner);
 int impact_runner_view_record(lua_State *L, impact_runner *runner);
+/* Raises what Lua left at the top of the stack of a script that it could not read: where it is shown with the words
+ * that a file of another kind calls for; of a recorded run with what shows it. */
+int impact_runner_refuse_script(lua_State *L, const impact_runner *runner);
 
 /* ---- runner_save.c ---- */
 

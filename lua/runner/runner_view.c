@@ -21,10 +21,23 @@ int impact_runner_view(lua_State *L, int run, impact_runner *runner, const char 
     return IMPACT_EXIT_OUTPUT;
 }
 
-bool impact_runner_is_record(const impact_runner *runner)
+static bool ends_as_record(const char *script)
 {
-    const size_t length = strlen(runner->script), tail = sizeof ending_of_records - 1;
-    return runner->shown && length > tail && strcmp(runner->script + length - tail, ending_of_records) == 0;
+    const size_t length = strlen(script), tail = sizeof ending_of_records - 1;
+    return length > tail && strcmp(script + length - tail, ending_of_records) == 0;
+}
+
+bool impact_runner_is_record(const impact_runner *runner) { return runner->shown && ends_as_record(runner->script); }
+
+int impact_runner_refuse_script(lua_State *L, const impact_runner *runner)
+{
+    if (!runner->shown && ends_as_record(runner->script))
+        return luaL_error(L, "%s: a recorded run is shown by impact view and impact gltf", runner->script);
+    if (!runner->shown) return lua_error(L);
+    return luaL_error(L,
+                      "%s: %s takes a script that returns a scene, or a recorded run, FILE.run, as --record writes it; "
+                      "this is neither: %s",
+                      runner->script, runner->shown, lua_tostring(L, -1));
 }
 
 void impact_runner_push_record(lua_State *L, const impact_runner *runner)

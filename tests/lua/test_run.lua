@@ -84,6 +84,21 @@ if impact.has "view" then
   check.equal(code, 1)
   check.truth(complained:find("'no.run': not a recorded run", 1, true), "what is no record is named")
   check.truth(not runner.exists("none/no.html"), "and leaves no page")
+  code, _, complained = runner.command("shown/drop.run")
+  check.equal(code, 1)
+  check.truth(complained:find("shown/drop.run: a recorded run is shown by impact view", 1, true), "a record is no script")
+  local bytes = runner.read("shown/drop.run")
+  runner.write("bit.run", bytes:sub(1, -300) .. string.char(bytes:byte(-299) ~ 1) .. bytes:sub(-298))
+  for _, what in ipairs { "view", "gltf" } do
+    code, _, complained = runner.command(what .. " bit.run --out none")
+    check.equal(code, 1)
+    check.truth(complained:find("'bit.run': damaged: its bytes do not give the sum that it ends with", 1, true), "a bit that changed is seen")
+    code, _, complained = runner.command(what .. " shown/drop.csv --out none")
+    check.equal(code, 1)
+    check.truth(complained:find("shown/drop.csv: " .. what .. " takes a script that returns a scene, or a recorded run, FILE.run", 1, true), "rows are neither")
+  end
+  check.truth(not impact.open(runner.folder .. "/bit.run"), "nor from Lua")
+  check.truth(not runner.exists("none"), "and nothing is left")
   code, _, complained = runner.command("view script.lua --out shown --max-disk 0.02")
   check.truth(code ~= 0 and complained ~= "", "a page counts as written")
   code, said, complained = runner.command("view script.lua --out wide --tolerance 3")
@@ -103,11 +118,12 @@ text = text:gsub("duration = 1,", "duration = 1, forces = { impact.force { law =
 check.truth(runner.script(text, "--record") ~= 0, "the force is refused")
 check.truth(not runner.exists("o/drop.run") and not runner.exists("o/drop.run.part"), "no record of a run that failed")
 
--- The lines of Python that docs/run.md shows give the same keys, where Python has numpy.
+-- The lines of Python that docs/run.md shows give the same keys, and find the sum right, where Python has numpy.
 local page = arg[3] and io.open(arg[3] .. "/run.md")
 if page and runner.shell("python3 -c 'import numpy' 2>/dev/null") == 0 then
-  local lines = page:read("a"):match("```python\n(.-)```")
-  runner.write("read.py", lines:gsub("sphere_wall%.run", "drop.run") ..
+  local text = page:read "a"
+  local lines, sum = text:match "```python\n(.-)```", text:match "```python\n(import zlib.-)```"
+  runner.write("read.py", lines:gsub("sphere_wall%.run", "drop.run") .. sum ..
     "\nimport sys\nball = head['bodies'][1]['keys']\nrow = keys[ball[0]]\nassert len(row) == 21 and row[20] == head['forms'].index('steady') and row[3] == 1.3 and row[16] == -10, row\n")
   check.equal(runner.shell("cd " .. runner.quote(runner.folder) .. " && python3 read.py"), 0)
 else

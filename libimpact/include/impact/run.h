@@ -47,7 +47,8 @@ IMPACT_API void impact_run_discard(impact_run_writer *writer); /* NULL is fine *
 typedef struct impact_run impact_run;
 
 /* Opens a record; nothing in it is trusted: IMPACT_EARGUMENT, with a message, when it is no record, is newer than this
- * program or is damaged (offsets, counts, order of time, numbers that are not finite, orientations that are not unit).
+ * program or is damaged (any bit: it ends with a sum; and offsets, counts, order of time, numbers that are not finite,
+ * orientations that are not unit).
  * IMPACT_ESINK: the file cannot be read. allocator: of all its memory (copied; NULL: malloc); IMPACT_ENOMEM. *run is
  * NULL on failure. */
 IMPACT_API impact_status impact_run_open(const char *path, const impact_allocator *allocator, impact_run **run,

@@ -346,6 +346,8 @@ static impact_status read_run(const reader *r)
     bool good = true;
     impact_status status = read_head(r, &data);
     for (int i = 0; status == IMPACT_OK && i < IMP_RUN_TABLES; i++) status = read_table(r, i, data);
+    if (status == IMPACT_OK && !imp_run_is_sealed(run->bytes, run->size))
+        status = refuse(r, "damaged: its bytes do not give the sum that it ends with");
     if (status == IMPACT_OK) status = words_of(r, "kinds", &run->kinds);
     if (status == IMPACT_OK) status = words_of(r, "modes", &run->modes);
     if (status == IMPACT_OK) status = words_of(r, "forces", &run->forces);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "run/run.h"
 
+#include <stdint.h>
 #include <string.h>
 
 const imp_run_table imp_run_tables[IMP_RUN_TABLES] = {
@@ -55,3 +56,38 @@ const char *const imp_run_shapes[IMPACT_SHAPE_KINDS] = {
     [IMPACT_CAPSULE] = "capsule",
     [IMPACT_POLYHEDRON] = "polyhedron",
 };
+
+/* Division by x^32 + x^26 + ... + 1, the lowest power in the highest bit. */
+static uint32_t crc32(const char *bytes, size_t size)
+{
+    uint32_t table[256], crc = UINT32_MAX;
+    for (uint32_t i = 0; i < 256; i++) {
+        table[i] = i;
+        for (int bit = 0; bit < 8; bit++) table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xEDB88320 : 0);
+    }
+    for (size_t i = 0; i < size; i++) crc = crc >> 8 ^ table[(crc ^ (unsigned char)bytes[i]) & 255];
+    return ~crc;
+}
+
+static void seal_of(const char *bytes, size_t size, char seal[IMP_RUN_SEAL])
+{
+    const uint32_t crc = crc32(bytes, size);
+    memset(seal, 0, IMP_RUN_SEAL);
+    for (int i = 0; i < 4; i++) seal[i] = (char)(crc >> 8 * i & 255);
+}
+
+void imp_run_seal(imp_text *record)
+{
+    char seal[IMP_RUN_SEAL];
+    if (record->failed) return;
+    seal_of(record->bytes, record->size, seal);
+    imp_text_put(record, seal, sizeof seal);
+}
+
+bool imp_run_is_sealed(const char *bytes, size_t size)
+{
+    char seal[IMP_RUN_SEAL];
+    if (size < sizeof seal) return false;
+    seal_of(bytes, size - sizeof seal, seal);
+    return memcmp(bytes + size - sizeof seal, seal, sizeof seal) == 0;
+}

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A line of JSON, padded with blanks to a multiple of 8 bytes, then tables of little-endian doubles. Keys come as the
- * motion makes them and are put body by body when the record is made up.
+ * A line of JSON, padded with blanks to a multiple of 8 bytes, then tables of little-endian doubles, then the sum of
+ * all that. Keys come as the motion makes them and are put body by body when the record is made up.
  */
 #include "run/run.h"
 #include "base/definition.h"
@@ -441,7 +441,8 @@ impact_status impact_run_bytes(impact_run_writer *w, const char *reason, const v
     say_head(&w->record, w, impact_scene_name(w->scene), reason, first + 1);
     const bool whole = put_tables(w, &w->record, first);
     imp_arena_give(arena, first);
-    if (!whole) return imp_text_free(&w->record), IMPACT_ENOMEM;
+    imp_run_seal(&w->record);
+    if (!whole || w->record.failed) return imp_text_free(&w->record), IMPACT_ENOMEM;
     *bytes = w->record.bytes;
     *size = w->record.size;
     return IMPACT_OK;

@@ -3,6 +3,7 @@
  * Recorded runs against closed forms, against the scene itself, and against bytes that are no record.
  */
 #include "kit/scene_log.h"
+#include "kit/seal.h"
 #include <impact/impact.h>
 
 #include <float.h>
@@ -397,6 +398,8 @@ static void test_damage_is_named(void **state)
     size_t size;
     const char *bytes = impact_run_contents(run, &size);
     char *copy = malloc(size);
+    static const char sum[] = "'x.run': damaged: its bytes do not give the sum that it ends with";
+    static const char cut[] = "'x.run': cut short: 447 of 448 bytes of table 'account'";
     refused("", 0, "'x.run': not a recorded run");
     refused("t,body,x\n", 9, "'x.run': not a recorded run");
     memcpy(copy, bytes, size);
@@ -407,24 +410,30 @@ static void test_damage_is_named(void **state)
     refused(copy, size, "'x.run': version 2 is newer than this program (1)");
     const size_t data = (size_t)((char *)memchr(bytes, '\n', size) - bytes) + 1;
     refused(bytes, data + 160, "'x.run': cut short: 160 of 336 bytes of table 'keys'");
+    refused(bytes, size - 1, sum), refused(bytes, size - SEAL, sum), refused(bytes, size - SEAL - 1, cut);
     memcpy(copy, bytes, size);
     const double nan = NAN, late = 2;
     memcpy(copy + data + 8, &nan, sizeof nan);
+    seal(copy, size);
     refused(copy, size, "'x.run': table 'keys', row 0: x is not a number that a run can have");
     memcpy(copy, bytes, size);
     memcpy(copy + data, &late, sizeof late);
+    seal(copy, size);
     refused(copy, size, "'x.run': table 'keys', row 1: t = 1 comes after 2");
     memcpy(copy, bytes, size);
     memcpy(copy + data + 32, &late, sizeof late);
+    seal(copy, size);
     refused(copy, size, "'x.run': body 'brick', t = 0: its orientation is not a unit");
     const double form = 3, free_flight = IMPACT_KEY_FREE, fast = 1e149;
     memcpy(copy, bytes, size);
     memcpy(copy + data + 160, &form, sizeof form);
+    seal(copy, size);
     refused(copy, size, "'x.run': table 'keys', row 0: its form is damaged");
     memcpy(copy, bytes, size);
     memcpy(copy + data + 160, &free_flight, sizeof free_flight);
     for (int c = 11; c < 14; c++) memcpy(copy + data + 8 * c, &fast, sizeof fast);
     memcpy(strstr(copy, "[0.02,0.05,0.06]"), "[1e300,1e300,9 ]", 16);
+    seal(copy, size);
     refused(copy, size, "'x.run': table 'keys', row 0: its form is damaged");
     free(copy);
     impact_sample s;
@@ -432,6 +441,32 @@ static void test_damage_is_named(void **state)
     assert_int_equal(impact_run_state(run, 0, 1.1, &s), IMPACT_EARGUMENT);
     assert_int_equal(impact_run_state(run, 0, NAN, &s), IMPACT_EARGUMENT);
     assert_int_equal(impact_run_state(run, 1, 0.5, &s), IMPACT_EARGUMENT);
+    impact_run_close(run);
+    impact_scene_destroy(scene);
+}
+
+/* Whichever bit is changed, the sum tells it where nothing else does. */
+static void test_no_bit_is_changed_unseen(void **state)
+{
+    (void)state;
+    impact_body_def body = brick();
+    const impact_scene_def def = one_body(&body, 1);
+    impact_scene *scene = make_scene(&def);
+    impact_run *run = record(scene), *other;
+    size_t size, by_sum = 0;
+    const char *bytes = impact_run_contents(run, &size);
+    char *copy = malloc(size), message[300];
+    memcpy(copy, bytes, size);
+    seal(copy, size);
+    assert_memory_equal(copy, bytes, size);
+    for (size_t bit = 0; bit < 8 * size; bit++) {
+        copy[bit / 8] ^= (char)(1 << bit % 8);
+        assert_int_equal(impact_run_read(copy, size, "x.run", NULL, &other, message, sizeof message), IMPACT_EARGUMENT);
+        by_sum += strstr(message, "do not give the sum") != NULL;
+        copy[bit / 8] ^= (char)(1 << bit % 8);
+    }
+    assert_true(by_sum > 4 * size);
+    free(copy);
     impact_run_close(run);
     impact_scene_destroy(scene);
 }
@@ -479,6 +514,7 @@ static void test_damaged_bytes_are_survived(void **state)
         const int flips = 1 + (int)(3 * uniform(&seed));
         for (int k = 0; k < flips; k++)
             copy[(size_t)((double)size * uniform(&seed))] ^= (char)(1 << (int)(8 * uniform(&seed)));
+        seal(copy, size);
         try_bytes(copy, i % 10 ? size : (size_t)((double)size * uniform(&seed)));
     }
     free(copy);
@@ -573,6 +609,7 @@ int main(void)
         cmocka_unit_test(test_what_rests_has_its_patches),
         cmocka_unit_test(test_a_crowd_is_recorded),
         cmocka_unit_test(test_damage_is_named),
+        cmocka_unit_test(test_no_bit_is_changed_unseen),
         cmocka_unit_test(test_damaged_bytes_are_survived),
         cmocka_unit_test(test_files),
     };
