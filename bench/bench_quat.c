@@ -7,8 +7,9 @@
  * ns: median over the rounds, per element. ratio: this row's time over that of the fastest peer in double (memcpy for
  * the rows called rotate_array_to_copy). error_u: largest error of a component over the length of the result, in units
  * of 2^-53, against long double. checksum: the sum of all results. spread: median over least. In every round all
- * contestants run one after the other, so that what disturbs one disturbs all. `libquat matrix`: the same rotations
- * held as matrices, made beforehand.
+ * contestants run one after the other, so that what disturbs one disturbs all, to and fro: what one leaves in the
+ * caches meets both its neighbours. `libquat matrix`: the same rotations held as matrices, made beforehand. One
+ * rotation of many vectors has two sizes: within the second cache, and beyond it, where memory is what takes the time.
  */
 #include "bench_quat.h"
 #include <float.h>
@@ -318,7 +319,8 @@ static void compete(bench_case which, const bench_input *in, const bench_contest
     double median[most], spread[most], fastest = DBL_MAX, copy = DBL_MAX;
     const size_t n = in->n, repeat = n < many ? 20 : 1;
     for (int k = 0; k < measure_count(rounds); k++)
-        for (int c = 0; c < count; c++) {
+        for (int turn = 0; turn < count; turn++) {
+            const int c = k % 2 == 0 ? turn : count - 1 - turn;
             if (!all[c]->can(which)) continue;
             const double start = measure_clock();
             for (size_t j = 0; j < repeat; j++) all[c]->run(which, n);
@@ -372,7 +374,7 @@ int main(void)
             if (all[c]->load) all[c]->load(&in);
         for (int which = 0; which < BENCH_CASES; which++) {
             const int large = which == BENCH_COMPOSE || which == BENCH_ROTATE_ARRAY;
-            if (large == (sizes[s] == many)) compete((bench_case)which, &in, all, count);
+            if (which == BENCH_ROTATE_ARRAY || large == (sizes[s] == many)) compete((bench_case)which, &in, all, count);
         }
         free((void *)in.p), free((void *)in.q), free((void *)in.v), free((void *)in.t), free((void *)in.m);
     }

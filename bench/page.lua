@@ -186,7 +186,10 @@ local bars = {
     local own, double = least(part, rows, true, math.huge), {}
     for _, row in ipairs(rows) do if row.type == "double" and not row.library:find "^libquat" then double[#double + 1] = row end end
     local other, who = least(part, double, false, math.huge)
-    if own and other and own > other then say(("%s takes %.2g of our time"):format(who, other / own)) end
+    if not own or not other or own <= other then return end
+    local spread = 1
+    for _, row in ipairs(rows) do spread = math.max(spread, tonumber(row.spread) or 1) end
+    say(("%s takes %.2g of our time%s"):format(who, other / own, own <= spread * other and (", which the rounds' spread of %.2f may be"):format(spread) or ""))
   end,
   crowd = function(part, rows, say)
     local time = { time = "us_per_event", error = "us_per_event", own = part.own, curve = part.curve }

@@ -2,24 +2,41 @@
 //
 // Simbody as a peer: its semi-explicit time stepper with a unilateral contact for bounces, its Runge-Kutta-Merson
 // integrator with error control for a body that turns freely. It has no call for one impact alone. Debian's build tells
-// every iteration of its impulse solver on the standard streams: they are shut meanwhile.
+// every iteration of its impulse solver, by C++'s streams and by C's printf: both take nothing meanwhile.
 #include "peers_engines.h"
 
 #ifdef HAVE_SIMBODY
+#include <cstdio>
+#include <fcntl.h>
 #include <iostream>
 #include <Simbody.h>
+#include <unistd.h>
 
 namespace
 {
 
-// The standard streams take nothing while it lives.
-struct Silence {
-    Silence()
+// The standard streams take nothing while it lives: C++'s are shut, and what C's write goes to /dev/null, not among the
+// rows of this program.
+class Silence
+{
+    int kept;
+
+    static void point(int from)
+    {
+        std::fflush(stdout);
+        dup2(from, STDOUT_FILENO);
+        close(from);
+    }
+
+  public:
+    Silence() : kept(dup(STDOUT_FILENO))
     {
         for (std::ostream *s : {&std::cout, &std::cerr, &std::clog}) s->setstate(std::ios_base::failbit);
+        point(open("/dev/null", O_WRONLY));
     }
     ~Silence()
     {
+        point(kept);
         for (std::ostream *s : {&std::cout, &std::cerr, &std::clog}) s->clear();
     }
 };
@@ -43,9 +60,9 @@ bool bounce(const bounce_case *c, double step, double height[BOUNCES], double *s
     SemiExplicitEulerTimeStepper stepper(system);
     stepper.setDefaultImpactCaptureVelocity(0);
     stepper.setDefaultImpactMinCORVelocity(0);
+    const Silence silence;
     stepper.initialize(state);
     bounce_watch watch = {0, 0};
-    const Silence silence;
     const double from = measure_clock();
     for (int k = 1; k * step <= c->duration; k++) {
         stepper.stepTo(k * step);

@@ -3,6 +3,7 @@
 --- that the process has loaded, the memory it held and took, and the CPU time to the scene's being made.
 local impact = require "impact"
 local path = arg[1]
+arg = {} -- the scene has arguments of its own
 local make = impact.scene
 impact.scene = function(definition)
   definition.plot = nil

@@ -84,10 +84,11 @@ void quat_rotate_each(size_t n, const quat q[], const qvec3 v[], qvec3 out[])
 }
 
 #ifdef QUAT_HAS_CLONES
-/* One quaternion in a register of four, where the loader may find one: the same products and sums as quat_mul's. */
+/* Registers of four, where the loader may find them. */
 typedef double four __attribute__((vector_size(32)));
 typedef long long four_bits __attribute__((vector_size(32)));
 
+/* One quaternion in a register: the same products and sums as quat_mul's. */
 QUAT_AVX2_CLONES
 void quat_mul_array(size_t n, const quat p[], const quat q[], quat out[])
 {
@@ -198,11 +199,83 @@ void quat_to_matrix_array(size_t n, const quat q[], qmat3 out[])
     for (size_t i = 0; i < n; i++) out[i] = quat_to_matrix(q[i]);
 }
 
+#ifdef QUAT_HAS_CLONES
+/* Where the mask is set a, else b. No function: without AVX a call passes no such register. */
+#define CHOOSE(mask, a, b) ((four)(((mask) & (four_bits)(a)) | (~(mask) & (four_bits)(b))))
+
+/* Rows of four doubles, so far apart, into registers of one column each; and registers into neighbouring rows. Each
+ * register is copied by itself: together they would go by way of the stack. */
+static inline void load_columns(const double *rows, size_t apart, four column[4])
+{
+    four r0, r1, r2, r3;
+    memcpy(&r0, rows, sizeof r0), memcpy(&r1, rows + apart, sizeof r1);
+    memcpy(&r2, rows + 2 * apart, sizeof r2), memcpy(&r3, rows + 3 * apart, sizeof r3);
+    const four a = __builtin_shufflevector(r0, r1, 0, 4, 2, 6), b = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
+    const four c = __builtin_shufflevector(r2, r3, 0, 4, 2, 6), d = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+    column[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5), column[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    column[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7), column[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+static inline void store_columns(const four column[4], double *rows)
+{
+    const four a = __builtin_shufflevector(column[0], column[1], 0, 4, 2, 6),
+               b = __builtin_shufflevector(column[0], column[1], 1, 5, 3, 7);
+    const four c = __builtin_shufflevector(column[2], column[3], 0, 4, 2, 6),
+               d = __builtin_shufflevector(column[2], column[3], 1, 5, 3, 7);
+    const four r0 = __builtin_shufflevector(a, c, 0, 1, 4, 5), r1 = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    const four r2 = __builtin_shufflevector(a, c, 2, 3, 6, 7), r3 = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+    memcpy(rows, &r0, sizeof r0), memcpy(rows + 4, &r1, sizeof r1);
+    memcpy(rows + 8, &r2, sizeof r2), memcpy(rows + 12, &r3, sizeof r3);
+}
+
+/* quat_from_matrix of four neighbours, the same sums and products, element k of each in a register. Stops at the first
+ * four of which one has no quaternion, and says how many were done. */
+QUAT_AVX2_CLONES
+static size_t from_fours(size_t n, const qmat3 m[], quat out[])
+{
+    const long long minus = (long long)(1ull << 63);
+    const four_bits sign = {minus, minus, minus, minus};
+    size_t i = 0;
+    for (; i + 4 <= n; i += 4) {
+        four u[4], v[4]; /* 00 01 02 10; 11 12 20 21 */
+        load_columns(&m[i].m[0][0], 9, u), load_columns(&m[i].m[1][1], 9, v);
+        const four a = u[0], b = v[0], c = {m[i].m[2][2], m[i + 1].m[2][2], m[i + 2].m[2][2], m[i + 3].m[2][2]};
+        const four wx = v[3] - v[1], wy = u[2] - v[2], wz = u[3] - u[1];
+        const four xy = u[3] + u[1], xz = u[2] + v[2], yz = v[3] + v[1];
+        const four ww = 1 + ((a + b) + c), xx = 1 + ((a - b) - c), yy = 1 + ((b - a) - c), zz = 1 + ((c - a) - b);
+
+        const four_bits x = xx > ww, z = zz > yy, second = CHOOSE(z, zz, yy) > CHOOSE(x, xx, ww);
+        four q[4] = {
+            CHOOSE(second, CHOOSE(z, wz, wy), CHOOSE(x, wx, ww)), CHOOSE(second, CHOOSE(z, xz, xy), CHOOSE(x, xx, wx)),
+            CHOOSE(second, CHOOSE(z, yz, yy), CHOOSE(x, xy, wy)), CHOOSE(second, CHOOSE(z, zz, yz), CHOOSE(x, xz, wz))};
+        const four n2 = (q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]);
+        const four_bits good = (n2 > 1) & (n2 <= 1e280);
+        if (!(good[0] & good[1] & good[2] & good[3])) break;
+
+        four s;
+        for (int k = 0; k < 4; k++) s[k] = sqrt(n2[k]);
+        s = (four)((four_bits)(1 / s) | ((four_bits)q[0] & sign));
+        for (int k = 0; k < 4; k++) q[k] *= s;
+        store_columns(q, &out[i].w);
+    }
+    return i;
+}
+#else
+static size_t from_fours(size_t n, const qmat3 m[], quat out[])
+{
+    (void)n, (void)m, (void)out;
+    return 0;
+}
+#endif
+
 quat_status quat_from_matrix_array(size_t n, const qmat3 m[], quat out[], size_t *first_bad)
 {
     size_t bad = n;
-    for (size_t i = 0; i < n; i++)
-        if (quat_from_matrix(&m[i], &out[i]) != QUAT_OK && bad == n) bad = i;
+    for (size_t i = 0; i < n;) {
+        const size_t done = from_fours(n - i, m + i, out + i), end = n - i - done < 4 ? n : i + done + 4;
+        for (i += done; i < end; i++)
+            if (quat_from_matrix(&m[i], &out[i]) != QUAT_OK && bad == n) bad = i;
+    }
     if (first_bad) *first_bad = bad;
     return bad == n ? QUAT_OK : QUAT_EDOMAIN;
 }

@@ -27,26 +27,41 @@ int quat_lua_layer(lua_State *L)
 
 enum { MOST_NAMES = 400 };
 
-/* (module, key), upvalue 1 its name: an __index that is asked for what is not there. */
-static int no_function(lua_State *L)
+/* (table, key), upvalues: its kind ("function", "field") and whose: an __index that is asked for what is not there. */
+static int is_absent(lua_State *L)
 {
-    const char *names[MOST_NAMES + 1], *library = lua_tostring(L, lua_upvalueindex(1));
+    const char *names[MOST_NAMES + 1];
+    const char *kind = lua_tostring(L, lua_upvalueindex(1)), *owner = lua_tostring(L, lua_upvalueindex(2));
     int count = 0;
     if (lua_type(L, 2) != LUA_TSTRING) return 0;
     for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1)) /* the names live as long as the table */
         if (lua_type(L, -2) == LUA_TSTRING && count < MOST_NAMES) names[count++] = lua_tostring(L, -2);
     names[count] = NULL;
     const char *given = lua_tostring(L, 2), *meant = quat_lua_guess(given, names);
-    if (meant) return quat_lua_error(L, "no function '%s' in %s (did you mean '%s'?)", given, library, meant);
-    return quat_lua_error(L, "no function '%s' in %s", given, library);
+    if (meant) return quat_lua_error(L, "no %s '%s' in %s (did you mean '%s'?)", kind, given, owner, meant);
+    return quat_lua_error(L, "no %s '%s' in %s", kind, given, owner);
 }
 
 int quat_lua_no_function(lua_State *L)
 {
     luaL_checkstring(L, 1);
     lua_settop(L, 1);
-    lua_pushcclosure(L, no_function, 1);
+    lua_pushliteral(L, "function");
+    lua_insert(L, 1);
+    lua_pushcclosure(L, is_absent, 2);
     return 1;
+}
+
+void quat_lua_seal(lua_State *L, const char *owner)
+{
+    luaL_checkstack(L, 4, NULL);
+    if (luaL_newmetatable(L, owner)) {
+        lua_pushliteral(L, "field");
+        lua_pushstring(L, owner);
+        lua_pushcclosure(L, is_absent, 2);
+        lua_setfield(L, -2, "__index");
+    }
+    lua_setmetatable(L, -2);
 }
 
 void quat_lua_where(lua_State *L)

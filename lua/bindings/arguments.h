@@ -48,6 +48,10 @@ void quat_lua_mark_layer(lua_State *L, const char *source);
 /* no_function(name): an __index for the module of that name, which raises "no function 'boks' in impact (did you mean
  * 'box'?)". */
 int quat_lua_no_function(lua_State *L);
+
+/* Of the table on top, as a script is given it: a key that it has not is an error, "no field 'velocty' in the state of
+ * a body (did you mean 'velocity'?)"; `owner` the last words. Keys that are there cost nothing. */
+void quat_lua_seal(lua_State *L, const char *owner);
 /* Raises "file:line: message". Never returns; `return quat_lua_error(...)`. */
 int quat_lua_error(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Returns nil, message to the script: `return quat_lua_failure(L, quat_status_string(status))`. */

@@ -15,6 +15,7 @@ void impact_lua_push_law(lua_State *L, const impact_force_def *force)
     lua_rawget(L, table);
     lua_rawseti(L, -2, IMPACT_LUA_LAW_FUNCTION);
     lua_newtable(L);
+    quat_lua_seal(L, "the body of a law");
     lua_rawseti(L, -2, IMPACT_LUA_LAW_STATE);
     for (int vector = IMPACT_LUA_LAW_POSITION; vector <= IMPACT_LUA_LAW_OMEGA; vector++) {
         quat_lua_push_vec3(L, (qvec3){0, 0, 0});
@@ -95,10 +96,7 @@ static int push_state(lua_State *L, const law_call *call)
     lua_setfield(L, state, "orientation");
     lua_pushstring(L, call->body);
     lua_setfield(L, state, "name");
-    if (isfinite(call->mass))
-        lua_pushnumber(L, call->mass);
-    else
-        lua_pushnil(L);
+    lua_pushnumber(L, call->mass);
     lua_setfield(L, state, "mass");
     set_vec3(L, 2, state, IMPACT_LUA_LAW_POSITION, "position", call->position);
     set_vec3(L, 2, state, IMPACT_LUA_LAW_VELOCITY, "velocity", call->velocity);
@@ -174,8 +172,10 @@ double impact_lua_call_edge(double t, const impact_sample *body, void *context)
     impact_lua_scene *self = law->owner;
     lua_State *L = self->L;
     double value = NAN;
-    if (!L || self->failed || !lua_checkstack(L, 8)) return NAN;
-    law_call call = {t,    body->name, NAN, &body->position, &body->velocity, &body->omega, &body->orientation,
+    impact_body_def def = impact_default_body_def();
+    if (!L || self->failed || !lua_checkstack(L, 8) || impact_scene_body_def(self->scene, body->body, &def) < 0)
+        return NAN;
+    law_call call = {t,    body->name, def.mass, &body->position, &body->velocity, &body->omega, &body->orientation,
                      NULL, NULL};
     lua_pushcfunction(L, call_edge);
     lua_pushlightuserdata(L, &call);

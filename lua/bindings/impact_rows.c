@@ -19,6 +19,7 @@ void impact_lua_push_sample(lua_State *L, const impact_sample *sample)
     quat_lua_set_quat(L, "orientation", sample->orientation);
     quat_lua_set_vec3(L, "velocity", sample->velocity);
     quat_lua_set_vec3(L, "omega", sample->omega);
+    quat_lua_seal(L, "the state of a body");
 }
 
 void impact_lua_push_event(lua_State *L, const impact_event *event, const char *phases)
@@ -41,6 +42,7 @@ void impact_lua_push_event(lua_State *L, const impact_event *event, const char *
     quat_lua_set_vec3(L, "point", event->point);
     quat_lua_set_vec3(L, "normal", event->normal);
     quat_lua_set_vec3(L, "impulse", event->impulse);
+    quat_lua_seal(L, "an event");
 }
 
 /* ---- keeping rows; the memory is the Lua state's, so that its limit holds ---- */

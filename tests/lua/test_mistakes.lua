@@ -155,12 +155,24 @@ if require "impact".has "cvode" then
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) return { 0, 0, 0/0 } end } },"),
     "script.lua:7: force 'pull': the force must be a vector {x, y, z} of finite numbers, got {0, 0, nan}")
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t, b) return { 0, 0, b.posision.x } end } },"),
-    "script.lua:7: attempt to index a nil value (field 'posision')")
+    "script.lua:7: no field 'posision' in the body of a law (did you mean 'position'?)")
+  -- in arithmetic on what may be nil a wrong name would pass in silence
+  refused(scene(good, "forces = { impact.force { law = function(t, b) return b.velocty and { 1, 0, 0 } or { 0, 0, b.mass } end } },"),
+    "script.lua:7: no field 'velocty' in the body of a law (did you mean 'velocity'?)")
+  refused(scene(good, "forces = { impact.force { law = function() end, edge = function(t, b) return b.mas end } },"),
+    "script.lua:7: no field 'mas' in the body of a law (did you mean 'mass'?)")
   code, _, said = runner.script(scene(good, "forces = { impact.force { law = function(t) return { 1e308 * math.sin(1e6 * t), 1e308, 1e308 } end } },"))
   check.equal(code, 3)
   check.truth(said:match("^impact: [^\n]+\n$"), "one line of the failed run")
   check.truth(not runner.exists("o/toss.csv"), "no CSV of a failed run")
 end
+
+-- What a run tells a script: a state or an event that is asked for what it has not.
+local function asks(rest) return (scene(good):gsub("return impact", "local scene = impact"):gsub("duration = 0.1", "duration = 1") .. rest) end
+refused(asks("scene:run { on_event = function(e) return e.kind end }"), "script.lua:9: no field 'kind' in an event")
+refused(asks("scene:run { on_sample = function(s) return s.velocty end }"),
+  "script.lua:9: no field 'velocty' in the state of a body (did you mean 'velocity'?)")
+refused(asks("print(scene:state('coin').name)"), "script.lua:9: no field 'name' in the state of a body")
 
 -- Folders and files that cannot be written. (Root may write anywhere, so the folder is put below a file.)
 runner.write("file", "")

@@ -53,10 +53,20 @@ static void element_by_element(void **state)
     size_t bad = 0;
     assert_int_equal(quat_from_matrix_array(count, m, out, &bad), QUAT_OK);
     assert_int_equal(bad, count);
-    for (int i = 0; i < count; i++) assert_true(quat_same_rotation(out[i], q[i], 1e-14));
-    m[17].m[1][1] = NAN;
+    for (int i = 0; i < count; i++) {
+        quat one;
+        assert_int_equal(quat_from_matrix(&m[i], &one), QUAT_OK);
+        assert_true(same_bits(&out[i], &one, sizeof one));
+        assert_true(quat_same_rotation(out[i], q[i], 1e-14));
+    }
+    m[17].m[1][1] = m[1001].m[2][2] = NAN; /* among fours, and among the last three */
     assert_int_equal(quat_from_matrix_array(count, m, out, &bad), QUAT_EDOMAIN);
     assert_int_equal(bad, 17);
+    for (int i = 0; i < count; i++) {
+        quat one;
+        assert_int_equal(quat_from_matrix(&m[i], &one), i == 17 || i == 1001 ? QUAT_EDOMAIN : QUAT_OK);
+        assert_true(same_bits(&out[i], &one, sizeof one));
+    }
     quat_slerp_array(count, p, q, t, out);
     for (int i = 0; i < count; i++) assert_true(quat_equal(out[i], quat_slerp(p[i], q[i], t[i])));
     const double outside = 1.5;
