@@ -17,13 +17,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The carried contact's place begins where the orientation puts it. */
+/* What is but rounding of a direction is none. */
+static double beside(double part) { return fabs(part) > IMP_LEVEL ? part : 0; }
+
+/* The carried contact's place begins where the orientation puts it: of a flat place that looks down but for rounding,
+ * which would lead to some corner of it, in its middle. */
 static void place_spot(imp_world *world, imp_pair *pair, const imp_state *states)
 {
     const qvec3 n = quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1});
     const imp_body *body = &world->bodies[pair->body1];
     const qvec3 outward = quat_rotate_inverse(imp_shape_axes(body, &states[pair->body1]), qvec3_neg(n));
-    imp_spot_find(&body->shape, outward, pair->spot);
+    imp_spot_find(&body->shape, (qvec3){beside(outward.x), beside(outward.y), beside(outward.z)}, pair->spot);
     pair->carried = true;
 }
 

@@ -256,6 +256,36 @@ static bool stops(const imp_world *world, imp_pair *pair, imp_state *states, con
     return true;
 }
 
+/* What stands still on its face, where friction would not hold it, slides there, whatever it would do about the point
+ * at which it was held. */
+static void give_way(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_load *load,
+                     double height)
+{
+    const gliding g = glide(world, pair, states);
+    const qvec3 pulled = qvec3_axpy(-world->bodies[pair->body1].mass, g.surface_rate, across(load->force, g.n));
+    const double pull = qvec3_norm(pulled);
+    if (pair->mode != IMP_ROLL || !(pull > 0) || qvec3_norm(g.v) > world->slip_speed || g.omega != 0) return;
+    if (is_held_fast(world, pair, states, load, height)) return;
+    pair->mode = IMP_SLIDE;
+    pair->onset = pair->friction > 0;
+    pair->direction = qvec3_scale(pulled, 1 / pull);
+}
+
+/* What cannot lie, for its centre of pressure would be beyond the flat place, tips about that place's border there. */
+static void lean(const imp_world *world, imp_pair *pair, const imp_state *state, int face, qvec3 foot, qvec3 n)
+{
+    enum { HALVINGS = 60 };
+    const impact_shape *shape = &world->bodies[pair->body1].shape;
+    const qvec3 out = quat_rotate_inverse(state->q, foot), down = quat_rotate_inverse(state->q, qvec3_neg(n));
+    double inside = 0, outside = 1;
+    for (int i = 0; i < HALVINGS; i++) {
+        const double part = 0.5 * (inside + outside);
+        *(rise(shape, face, qvec3_scale(out, part)) <= world->flat_height ? &inside : &outside) = part;
+    }
+    const double axis[3] = {shape->a, shape->b, shape->c};
+    imp_spot_on(shape, qvec3_axpy(axis[face], down, qvec3_scale(out, inside)), pair->spot);
+}
+
 static bool lay_flat(const imp_world *world, imp_pair *pair, imp_state *states, const imp_load *load)
 {
     const imp_body *body = &world->bodies[pair->body1];
@@ -273,12 +303,14 @@ static bool lay_flat(const imp_world *world, imp_pair *pair, imp_state *states, 
     const imp_state state_before = *state;
     pair->lying = enough;
     stops(world, pair, states, load, height);
+    give_way(world, pair, states, load, height);
     const gliding g = glide(world, pair, states);
     const balance b = find_balance(world, pair, &g, height, load);
     if (!(rise(&body->shape, face, quat_rotate_inverse(state->q, b.foot)) <= 0.5 * world->flat_height)) {
         *pair = pair_before;
         *state = state_before;
-        return false;
+        lean(world, pair, state, face, b.foot, n);
+        return true;
     }
     pair->flat = true;
     imp_flat_level(world, pair, states);

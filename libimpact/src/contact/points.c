@@ -14,7 +14,13 @@ static bool can_lie(const imp_body *body)
 {
     const impact_shape *s = &body->shape;
     const bool curved = s->kind == IMPACT_SUPERQUADRIC || s->kind == IMPACT_SUPERELLIPSOID;
-    return s->kind == IMPACT_PLANE || imp_has_faces(body) || (curved && fmax(s->r, fmax(s->s, s->t)) >= 3);
+    return s->kind == IMPACT_PLANE || imp_has_faces(body) ||
+           (curved && fmax(s->r, fmax(s->s, s->t)) >= IMP_FLAT_EXPONENT);
+}
+
+bool imp_pair_can_lie(const imp_world *world, const imp_pair *pair)
+{
+    return can_lie(&world->bodies[pair->body1]) && can_lie(&world->bodies[pair->body2]);
 }
 
 /* Of two faces on each other either turns the normal. */
@@ -43,7 +49,7 @@ int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, d
     (void)imp_world_gap(world, pair, states, &contact);
     if (!(contact.gap <= height)) return 0;
     int count = 0;
-    if (can_lie(b1) && can_lie(b2)) {
+    if (imp_pair_can_lie(world, pair)) {
         const qvec3 shift1 = imp_shape_offset(b1, s1), shift2 = imp_shape_offset(b2, s2);
         const impact_solid solid1 = imp_solid_of(b1, s1), solid2 = imp_solid_of(b2, s2);
         impact_contact shape = contact;

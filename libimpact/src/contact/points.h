@@ -21,6 +21,8 @@ enum { IMP_POINTS = IMPACT_PATCH_POINTS };
 bool imp_has_faces(const imp_body *body);
 /* Either body of the pair has. */
 bool imp_pair_has_faces(const imp_world *world, const imp_pair *pair);
+/* More than a point of either can lie on the other: faces, or flat places of superquadrics. */
+bool imp_pair_can_lie(const imp_world *world, const imp_pair *pair);
 
 /* The pair's points that lie at most `height` (m) apart along the normal, within the bounds of a plane, in points (room
  * for IMP_POINTS); how many. Where neither body is flat and across bounds there is the one, or none. */

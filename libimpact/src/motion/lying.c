@@ -2,6 +2,7 @@
 #include "motion/lying.h"
 #include "motion/motion_equations.h"
 #include "contact/persist_system.h"
+#include "contact/points.h"
 #include "world/world_gap.h"
 
 #include <impact/face.h>
@@ -131,8 +132,9 @@ bool imp_lying_find(imp_world *world, const imp_pair *given, const imp_state *st
     impact_face face, ground;
     if (!plain || world->field_count > 0 || pair.torsional > 0) return false;
     imp_world_gap(world, &pair, states, &contact);
-    /* what rocks by less lies */
-    const double height = imp_world_touching_distance(world, &pair, states) + world->flat_height;
+    /* what rocks by less lies; of a superquadric that height is what its flat place is of */
+    const double touching = imp_has_faces(body) ? imp_world_touching_distance(world, &pair, states) : 0,
+                 height = touching + world->flat_height;
     const bool on_plane = under->shape.kind == IMPACT_PLANE;
     if (!face_towards(body, state, qvec3_neg(contact.normal), height, &face)) return false;
     if (!on_plane && !face_towards(under, below, contact.normal, height, &ground)) return false;

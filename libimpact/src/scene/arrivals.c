@@ -46,10 +46,10 @@ static void give_up(imp_island *loose)
 
 static impact_status conclude_steps(imp_island *island);
 
-/* What corners hold, and the exact way does not settle, goes on by steps. */
+/* What corners or flat places hold, and the exact way does not settle, goes on by steps. */
 static void step_where_unsettled(imp_island *island, impact_status *status)
 {
-    if (*status != IMPACT_EUNSETTLED || !imp_scene_holds_corners(island)) return;
+    if (*status != IMPACT_EUNSETTLED || !imp_scene_holds_features(island)) return;
     *status = IMPACT_OK;
     island->lies = true;
     island->scene->message[0] = '\0';
@@ -167,6 +167,16 @@ static impact_status turn_to_steps(impact_scene *scene, imp_island *island, doub
     return status == IMPACT_OK ? conclude_steps(stepped) : status;
 }
 
+/* Where the integrator cannot go on, what corners or flat places hold goes on by steps. */
+static impact_status go_on_or_by_steps(impact_scene *scene, imp_island *island, double t)
+{
+    const impact_status status = go_on(island);
+    if (status != IMPACT_EUNSETTLED || scene->piles == IMPACT_PILES_EXACT || !imp_scene_holds_features(island))
+        return status;
+    scene->message[0] = '\0';
+    return turn_to_steps(scene, island, t);
+}
+
 /* What stood under forces that change may move again. */
 static void wake(imp_island *island)
 {
@@ -199,7 +209,7 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     if (!finish(island)) return IMPACT_ESINK;
     if (island->stepped) return continue_steps(island);
     if (imp_island_loses_patience(island)) return turn_to_steps(scene, island, t);
-    if (island->end.kind == IMP_END_TIME) return go_on(island);
+    if (island->end.kind == IMP_END_TIME) return go_on_or_by_steps(scene, island, t);
     if (!imp_scene_account_before(scene)) return IMPACT_ESINK;
     island->outside = imp_gather_energy_outside(scene, island, t);
     impact_status status = imp_scene_handle(island, island->end);

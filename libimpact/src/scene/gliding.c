@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/gliding.h"
 #include "base/tolerances.h"
+#include "contact/persist_flat.h"
+#include "contact/persist_spot.h"
+#include "contact/points.h"
 #include "motion/lying.h"
 #include "scene/scene_events.h"
+#include "scene/scene_meeting.h"
 #include "scene/scene_points.h"
 #include "world/corner.h"
 
@@ -238,6 +242,47 @@ impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any)
         status = lay(island, first, end, lay_before, any);
     }
     return status;
+}
+
+/* ---- flat places ---- */
+
+/* It lies on the plane's face as what has faces does, but for how it came there and what holds it afterwards. */
+static void glide_on_flat(imp_island *island, imp_pair *pair)
+{
+    imp_lying lying;
+    const int body = pair->body1;
+    if (!imp_is_held(pair) || !pair->flat || pair->still || island->motion.resting[body]) return;
+    if (!imp_flat_lies(&island->world, pair, island->states)) return;
+    if (!find_lying(island, pair, island->states, island->scene->rest_speed, &lying) || !glides(island, &lying)) return;
+    const imp_state now = imp_lying_state(&lying, lying.start);
+    const double energy = imp_scene_undriven_energy(island);
+    imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), island->world.bodies[body].mass));
+    island->states[body] = now;
+    island->impact_loss += energy - imp_scene_undriven_energy(island);
+    pair->mode = IMP_OPEN;
+    pair->carried = pair->flat = pair->onset = false;
+    pair->lies = true;
+}
+
+void imp_island_glide_on_flats(imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++) glide_on_flat(island, &island->world.pairs[p]);
+}
+
+bool imp_island_hold_flat(imp_island *island, int p)
+{
+    imp_pair *pair = &island->world.pairs[p];
+    const imp_body *body = &island->world.bodies[pair->body1];
+    const imp_state *state = &island->states[pair->body1];
+    impact_held held;
+    if (imp_pair_has_faces(&island->world, pair)) return false;
+    if (imp_island_glide_force(island, island->states, &held)) {
+        const qvec3 at = quat_rotate_inverse(state->q, qvec3_sub(held.point, state->x));
+        imp_spot_on(&body->shape, at, pair->spot);
+        pair->carried = true;
+    }
+    pair->mode = IMP_SLIDE;
+    return true;
 }
 
 imp_pair *imp_island_lying(const imp_island *island)

@@ -51,8 +51,15 @@ static bool is_tied(const imp_island *island, const int *root, int component)
     return false;
 }
 
-/* Whether the component goes on by steps: bodies that move, or have faces, touch each other in it, or resist turning on
- * a plane, until a ball but rolls there; by choice, any touches. One that has just begun its steps has had to. */
+/* Whether bodies that touch there go on by steps once they do. */
+static bool has_flats(const imp_world *world, const imp_pair *pair)
+{
+    return !world->bodies[pair->body2].is_static || imp_pair_has_faces(world, pair) || imp_pair_can_lie(world, pair);
+}
+
+/* Whether the component goes on by steps: bodies that move, or have faces or flat places, touch each other in it, or
+ * resist turning on a plane, until a ball but rolls there; by choice, any touches. One that has just begun its steps
+ * has had to. */
 static bool stays_stepped(const imp_island *island, const int *root, int component)
 {
     const imp_world *world = &island->world;
@@ -60,8 +67,7 @@ static bool stays_stepped(const imp_island *island, const int *root, int compone
     for (int p = 0; island->stepped && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
         const bool rough = imp_is_rough(pair) && (island->steps == 0 || !imp_island_rolls_out(island, pair));
-        const bool counts =
-            pair->met && (always || !world->bodies[pair->body2].is_static || imp_pair_has_faces(world, pair) || rough);
+        const bool counts = pair->met && (always || rough || has_flats(world, pair));
         if (counts && root[pair->body1] == component) return true;
     }
     return false;

@@ -6,6 +6,7 @@
 #include "base/tolerances.h"
 #include "contact/persist_flat.h"
 #include "contact/persist_line.h"
+#include "contact/points.h"
 #include "scene/gliding.h"
 #include "scene/scene_events.h"
 #include "scene/scene_hold.h"
@@ -16,15 +17,23 @@
 
 #include <string.h>
 
-/* What lay on a face is to be found anew; whether anything did. */
+/* What lay on a face is to be found anew, on a flat place it is held there; whether anything did. */
 static bool rise_from_faces(imp_island *island)
 {
     bool lay = false;
     for (int p = 0; p < island->world.pair_count; p++) {
-        lay = lay || island->world.pairs[p].lies;
+        if (!island->world.pairs[p].lies) continue;
+        lay = !imp_island_hold_flat(island, p) || lay;
         island->world.pairs[p].lies = false;
     }
     return lay;
+}
+
+static impact_status hold(imp_island *island, int opened, bool rejoin)
+{
+    const impact_status status = imp_scene_hold(island, opened, rejoin);
+    if (status == IMPACT_OK) imp_island_glide_on_flats(island);
+    return status;
 }
 
 impact_status imp_scene_settle(imp_island *island)
@@ -42,7 +51,7 @@ impact_status imp_scene_settle(imp_island *island)
     island->lies = stay == IMP_STAY_FACES;
     if (status == IMPACT_OK && !parted && !island->lies) {
         imp_scene_choose_modes(island);
-        status = imp_scene_hold(island, -1, glides);
+        status = hold(island, -1, glides);
     }
     imp_scene_drop_points(island);
     island->impact_loss = account - imp_scene_undriven_energy(island);
@@ -105,7 +114,7 @@ static impact_status change_mode(imp_island *island, int p, imp_mode mode)
     pair->mode = mode;
     pair->onset = false;
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
-    const impact_status status = imp_scene_hold(island, mode == IMP_OPEN ? p : -1, true);
+    const impact_status status = hold(island, mode == IMP_OPEN ? p : -1, true);
     island->impact_loss = account - imp_scene_undriven_energy(island);
     return status;
 }
@@ -120,7 +129,7 @@ static impact_status begin_slide(imp_island *island, int p)
     imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
     for (int c = 0; c < persist->count; c++)
         if (persist->touches[c].pair == p) imp_persist_begin_slide(&island->world.pairs[p], &persist->touches[c]);
-    return imp_scene_hold(island, -1, true);
+    return hold(island, -1, true);
 }
 
 /* Whether it is the face or the line that a pair's centre of pressure has left, not the plane; the body then tips. */
@@ -164,7 +173,7 @@ static impact_status cross_edge(imp_island *island, int edge)
     impact_event event = imp_scene_event_of_body(island, IMPACT_EVENT_FORCE, body);
     event.name2 = island->world.fields[field].name;
     const impact_status status = imp_scene_record(island, &event);
-    return status == IMPACT_OK ? imp_scene_hold(island, -1, true) : status;
+    return status == IMPACT_OK ? hold(island, -1, true) : status;
 }
 
 /* Held contacts are put back, and those that others hold are asked again whether they must give way. */
@@ -174,15 +183,17 @@ static impact_status renew(imp_island *island)
     const impact_status status = imp_scene_load(island);
     if (status != IMPACT_OK) return status;
     imp_persist_stop_onsets(&island->motion.persist, &island->world, island->states, island->motion.loads);
-    return imp_scene_hold(island, -1, true);
+    return hold(island, -1, true);
 }
 
 /* What glided on a face has stopped. */
 static impact_status stop_gliding(imp_island *island, int p)
 {
     const imp_pair *pair = &island->world.pairs[p];
+    const bool flat = !imp_pair_has_faces(&island->world, pair); /* it is held, and tells it then */
     imp_scene_remember(island);
     island->states[pair->body1].v = island->states[pair->body1].momentum = (qvec3){0, 0, 0};
+    if (flat) return imp_scene_settle(island);
     const imp_touch touch = imp_persist_touch(&island->world, p, island->states, island->motion.loads);
     impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_STICK, &touch);
     event.phases = "roll";
@@ -198,7 +209,7 @@ impact_status imp_scene_handle(imp_island *island, imp_end end)
     case IMP_END_BOUNDS:
         if (island->world.pairs[end.index].lies) return imp_scene_settle(island); /* its face has come to an end */
         if (island->world.pairs[end.index].corner > 0) return imp_scene_settle(island); /* another corner has landed */
-        if (tips(island, end.index)) return imp_scene_hold(island, -1, true);
+        if (tips(island, end.index)) return hold(island, -1, true);
         island->world.pairs[end.index].beyond = true;
         return change_mode(island, end.index, IMP_OPEN);
     case IMP_END_LIFTOFF: return change_mode(island, end.index, IMP_OPEN);
@@ -210,7 +221,7 @@ impact_status imp_scene_handle(imp_island *island, imp_end end)
     case IMP_END_SLOW:
         imp_scene_remember(island);
         island->motion.resting[end.index] = false; /* it wakes, or comes to rest only now */
-        return imp_scene_hold(island, -1, true);
+        return hold(island, -1, true);
     case IMP_END_RENEWAL: return renew(island);
     }
     return IMPACT_OK;

@@ -150,9 +150,12 @@ void imp_scene_drop_points(imp_island *island)
     world->pair_count = kept;
 }
 
-bool imp_scene_holds_corners(const imp_island *island)
+bool imp_scene_holds_features(const imp_island *island)
 {
-    for (int p = 0; p < island->world.pair_count; p++)
-        if (is_held_corner(&island->world.pairs[p])) return true;
+    const imp_world *world = &island->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *pair = &world->pairs[p];
+        if (is_held_corner(pair) || (imp_is_held(pair) && imp_pair_can_lie(world, pair))) return true;
+    }
     return false;
 }

@@ -23,7 +23,7 @@ bool imp_scene_point_stays(imp_island *island, int p);
 
 /* Of the points leaves the corners that are held; of bodies that none holds, the pair as a whole. */
 void imp_scene_drop_points(imp_island *island);
-/* Whether a corner is held. */
-bool imp_scene_holds_corners(const imp_island *island);
+/* Whether a corner is held, or what has a flat place: what the exact motion may not get on with. */
+bool imp_scene_holds_features(const imp_island *island);
 
 #endif

@@ -30,7 +30,7 @@ bool imp_island_loses_patience(imp_island *island)
 {
     imp_patience *patience = &island->patience;
     if (island->scene->piles == IMPACT_PILES_EXACT) return false;
-    if (!is_pile(&island->world) && !imp_scene_holds_corners(island)) return false;
+    if (!is_pile(&island->world) && !imp_scene_holds_features(island)) return false;
     if (!(fabs(island->t - patience->since) <= imp_pile_natural_time(&island->world, island->states)))
         *patience = (imp_patience){.since = island->t};
     return ++patience->steps >= IMP_PILE_PATIENCE;
