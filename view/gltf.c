@@ -32,6 +32,8 @@ typedef struct gltf {
     int material[KINDS]; /* their numbers, from 1; 0: not used so far */
     qvec3 middle;        /* of the motion, and its half size */
     double half;
+    imp_gltf_way way;
+    double off; /* what keys are off by where Blender would take closer ones as one */
 } gltf;
 
 static void say_list(imp_text *text, const double *values, int count)
@@ -208,10 +210,10 @@ static void put_quat(float *place, quat q)
     for (int c = 0; c < 4; c++) place[c] = (float)values[c];
 }
 
-static bool animate(gltf *g, int body, double tolerance)
+static bool animate(gltf *g, int body)
 {
     int count;
-    imp_gltf_key *keys = imp_gltf_keys(g->arena, g->run, body, tolerance, &count);
+    imp_gltf_key *keys = imp_gltf_keys(g->arena, g->run, body, &g->way, &count, &g->off);
     float *times = imp_arena_take(g->arena, (size_t)count, sizeof *times);
     float *places = imp_arena_take(g->arena, (size_t)count, 3 * sizeof *places);
     float *turns = imp_arena_take(g->arena, (size_t)count, 4 * sizeof *turns);
@@ -282,7 +284,7 @@ static void measure(gltf *g)
     g->half = any ? fmax(0.5 * qvec3_norm(qvec3_sub(high, low)), 1e-30) : 1;
 }
 
-static bool fill(gltf *g, double tolerance)
+static bool fill(gltf *g)
 {
     const int count = impact_run_body_count(g->run);
     int *meshes = imp_arena_take(g->arena, (size_t)count, sizeof *meshes);
@@ -294,8 +296,7 @@ static bool fill(gltf *g, double tolerance)
         meshes[i] = mesh_of(g, i, meshes, def.is_static ? 2 : 0);
         whole = meshes[i] >= 0;
         say_node(g, i, meshes[i]);
-        if (whole && !def.is_static && impact_run_end(g->run) > impact_run_begin(g->run))
-            whole = animate(g, i, tolerance);
+        if (whole && !def.is_static && impact_run_end(g->run) > impact_run_begin(g->run)) whole = animate(g, i);
     }
     return whole;
 }
@@ -329,7 +330,11 @@ static void join(imp_text *json, const char *before, const imp_text *part)
 static void say_json(imp_text *json, const gltf *g)
 {
     imp_text_say(json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"impact\"},\"scene\":0,\"scenes\":[{\"nodes\":["
-                       "0],\"extras\":{\"events\":[");
+                       "0],\"extras\":{\"frame_rate\":");
+    imp_text_number(json, g->way.frame_rate);
+    say(json, ",\"tolerance\":", g->way.tolerance);
+    say(json, ",\"off\":", g->off);
+    imp_text_say(json, ",\"events\":[");
     say_events(json, g->run);
     imp_text_say(json, "]}}],\"nodes\":[{\"name\":\"scene, z "
                        "up\",\"rotation\":[-0.7071067811865476,0,0,0.7071067811865476],\"children\":[");
@@ -368,35 +373,53 @@ static void put_file(imp_text *file, const imp_text *json, const imp_text *buffe
     imp_text_put(file, buffer->bytes, buffer->size);
 }
 
-static impact_status write_file(gltf *g, double tolerance, const char *path, impact_quota *quota, char *message,
+/* Of what the file could not hold. */
+static void say_what_is_off(const gltf *g, char *message, unsigned long message_size)
+{
+    if (!(g->off > g->way.tolerance)) return;
+    snprintf(
+        message, message_size,
+        "at %g frames a second Blender, to which keys within a hundredth of a frame are one, shows bodies up to %.2g "
+        "of their size or rad off; more frames bring it closer",
+        g->way.frame_rate, g->off);
+}
+
+static impact_status write_file(gltf *g, const char *path, impact_quota *quota, char *message,
                                 unsigned long message_size)
 {
     imp_text json = {.arena = g->arena}, file = {.arena = g->arena};
     imp_text *const parts[] = {&g->buffer,   &g->views,    &g->accessors, &g->meshes, &g->nodes,
                                &g->channels, &g->samplers, &g->materials, &json,      &file};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) parts[i]->arena = g->arena;
-    bool whole = fill(g, tolerance);
+    bool whole = fill(g);
     say_json(&json, g);
     put_file(&file, &json, &g->buffer);
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) whole = whole && !parts[i]->failed;
+    if (whole && message) say_what_is_off(g, message, message_size);
     if (whole) return imp_file_save(g->arena, path, file.bytes, file.size, quota, message, message_size);
     if (message) imp_arena_explain(g->run->arena, message, message_size);
     return IMPACT_ENOMEM;
 }
 
-impact_status impact_gltf_write(const impact_run *run, double tolerance, const char *path, impact_quota *quota,
-                                char *message, unsigned long message_size)
+static impact_status refuse(const char *words, double value, char *message, unsigned long message_size)
 {
-    gltf g = {.run = run};
-    if (!(tolerance >= 1e-7 && tolerance <= 0.1)) {
-        if (message)
-            snprintf(message, message_size, "tolerance = %g must lie in [1e-7, 0.1]: glTF has floats", tolerance);
-        return IMPACT_EARGUMENT;
-    }
+    if (message) snprintf(message, message_size, words, value);
+    return IMPACT_EARGUMENT;
+}
+
+impact_status impact_gltf_write(const impact_run *run, double tolerance, double frame_rate, const char *path,
+                                impact_quota *quota, char *message, unsigned long message_size)
+{
+    gltf g = {.run = run, .way = {tolerance, frame_rate}};
+    if (message && message_size > 0) message[0] = '\0';
+    if (!(tolerance >= 1e-7 && tolerance <= 0.1))
+        return refuse("tolerance = %g must lie in [1e-7, 0.1]: glTF has floats", tolerance, message, message_size);
+    if (!(frame_rate >= 1 && frame_rate <= 32767))
+        return refuse("frame_rate = %g must lie in [1, 32767], as Blender's does", frame_rate, message, message_size);
     const impact_allocator within = imp_arena_allocator(run->arena);
     impact_status status = imp_arena_create(&within, &g.arena);
     if (status == IMPACT_OK)
-        status = write_file(&g, tolerance, path, quota, message, message_size);
+        status = write_file(&g, path, quota, message, message_size);
     else if (message)
         imp_arena_explain(run->arena, message, message_size);
     imp_arena_destroy(g.arena);

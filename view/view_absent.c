@@ -13,8 +13,9 @@ impact_status impact_view_write(const impact_run *run, double tolerance, const c
     return IMPACT_EABSENT;
 }
 
-impact_status impact_gltf_write(const impact_run *run, double tolerance, const char *path, impact_quota *quota,
-                                char *message, unsigned long message_size)
+impact_status impact_gltf_write(const impact_run *run, double tolerance, double frame_rate, const char *path,
+                                impact_quota *quota, char *message, unsigned long message_size)
 {
+    (void)frame_rate;
     return impact_view_write(run, tolerance, path, quota, message, message_size);
 }

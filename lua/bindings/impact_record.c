@@ -13,8 +13,8 @@ void impact_lua_push_run(lua_State *L, impact_run *run)
     luaL_setmetatable(L, IMPACT_LUA_RUN);
 }
 
-typedef impact_status impact_exporter(const impact_run *run, double tolerance, const char *path, impact_quota *quota,
-                                      char *message, unsigned long size);
+typedef impact_status impact_exporter(const impact_run *run, double tolerance, double frame_rate, const char *path,
+                                      impact_quota *quota, char *message, unsigned long size);
 
 static impact_run *check_run(lua_State *L)
 {
@@ -197,11 +197,12 @@ static int run_account(lua_State *L)
     return 1;
 }
 
-/* view(path, tolerance), gltf(path, tolerance): writes the file; true, or nil and a message. */
+/* view(path, tolerance), gltf(path, tolerance, frame_rate): writes the file; true, and what is to be said of it; or nil
+ * and a message. */
 static int export_run(lua_State *L, const char *what, impact_exporter *write, double usual)
 {
     char message[400] = "";
-    const double tolerance = luaL_optnumber(L, 3, usual);
+    const double tolerance = luaL_optnumber(L, 3, usual), frame_rate = luaL_optnumber(L, 4, 24);
     const impact_run *run = check_run(L);
     const impact_lua_host *host = impact_lua_get_host(L);
     const char *path = luaL_checkstring(L, 2);
@@ -212,14 +213,22 @@ static int export_run(lua_State *L, const char *what, impact_exporter *write, do
         if (!host->prepare(host->context, path, message, sizeof message)) return quat_lua_failure(L, message);
         path = lua_pushfstring(L, "%s/%s", host->directory, path);
     }
-    if (write(run, tolerance, path, host ? host->quota : NULL, message, sizeof message) < 0)
+    if (write(run, tolerance, frame_rate, path, host ? host->quota : NULL, message, sizeof message) < 0)
         return quat_lua_failure(L, message);
     lua_pushboolean(L, true);
-    return 1;
+    if (message[0]) lua_pushstring(L, message);
+    return message[0] ? 2 : 1;
+}
+
+static impact_status write_page(const impact_run *run, double tolerance, double frame_rate, const char *path,
+                                impact_quota *quota, char *message, unsigned long size)
+{
+    (void)frame_rate;
+    return impact_view_write(run, tolerance, path, quota, message, size);
 }
 
 static int run_gltf(lua_State *L) { return export_run(L, "gltf", impact_gltf_write, 3e-4); }
-static int run_view(lua_State *L) { return export_run(L, "view", impact_view_write, 1e-5); }
+static int run_view(lua_State *L) { return export_run(L, "view", write_page, 1e-5); }
 
 static int run_close(lua_State *L)
 {

@@ -48,7 +48,8 @@ typedef struct impact_runner {
     bool fence;           /* not without it */
     const char *unfenced; /* why there is none; NULL: there is */
     /* what else is made of the record, by method name and file ending: view, html; gltf, glb; NULL */
-    double tolerance; /* of view and gltf; 0: their own */
+    double tolerance;  /* of view and gltf; 0: their own */
+    double frame_rate; /* of gltf; 0: its own */
     const char *shown, *ending;
     int threads, shard, shards; /* of a sweep: 0 <= shard < shards */
     bool mpi, hdf5;

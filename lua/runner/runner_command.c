@@ -37,6 +37,9 @@ static void usage(FILE *file)
         "  --tolerance E     view, gltf: what keys may be off by, of a body's size and in rad (default: 3e-4 of gltf; "
         "1e-5 of a\n"
         "                    page too large to hold the record as it is)\n"
+        "  --frame-rate F    gltf: frames a second of the scene in Blender that it is for (default: 24); Blender takes "
+        "keys within\n"
+        "                    a hundredth of a frame as one\n"
         "  --verify          does the run again, each stretch between two events by another integrator: how far they "
         "differ\n"
         "  --pictures        beside NAME.png: flat panels as NAME.svg and NAME.pdf, those in space as a page, "
@@ -147,6 +150,8 @@ static int take_value(impact_runner *runner, const char *option, char *value)
         runner->report_seconds = number;
     else if (strcmp(option, "--tolerance") == 0)
         runner->tolerance = number;
+    else if (strcmp(option, "--frame-rate") == 0)
+        runner->frame_rate = number;
     else if (strcmp(option, "--max-time") == 0)
         runner->max_time = number;
     else if (strcmp(option, "--checkpoint") == 0)
@@ -161,8 +166,9 @@ static int take_value(impact_runner *runner, const char *option, char *value)
 /* The option with a value that the word is, alone or as OPTION=VALUE; NULL: none. */
 static const char *option_of(char *word, char **value)
 {
-    static const char *const options[] = {"--out",    "--max-memory", "--max-time", "--max-disk", "--shard",    "-j",
-                                          "--resume", "--checkpoint", "--save",     "--seconds",  "--tolerance"};
+    static const char *const options[] = {"--out",   "--max-memory", "--max-time",  "--max-disk",
+                                          "--shard", "-j",           "--resume",    "--checkpoint",
+                                          "--save",  "--seconds",    "--tolerance", "--frame-rate"};
     for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
         const size_t length = strlen(options[i]);
         if (strncmp(word, options[i], length) != 0 || (word[length] && word[length] != '=')) continue;
@@ -222,6 +228,8 @@ static int check_command(const impact_runner *runner)
         return wrong_usage("%s is of one scene's run from its start", "--verify");
     if (runner->report_seconds > 0 && !runner->report) return wrong_usage("%s is the report's: --report", "--seconds");
     if (runner->tolerance > 0 && !runner->shown) return wrong_usage("%s is view's and gltf's", "--tolerance");
+    if (runner->frame_rate > 0 && (!runner->shown || strcmp(runner->shown, "gltf") != 0))
+        return wrong_usage("%s is gltf's", "--frame-rate");
     if (sweep && runner->shards > 1 && runner->mpi) return wrong_usage("%s and --mpi exclude each other", "--shard");
     return -1;
 }

@@ -8,15 +8,28 @@
 
 static const char ending_of_records[] = ".run";
 
+static void push_option(lua_State *L, double value)
+{
+    if (value > 0)
+        lua_pushnumber(L, value);
+    else
+        lua_pushnil(L);
+}
+
 int impact_runner_view(lua_State *L, int run, impact_runner *runner, const char *name)
 {
     lua_pushfstring(L, "%s.%s", name, runner->ending);
     lua_getfield(L, run, runner->shown);
     lua_pushvalue(L, run);
     lua_pushvalue(L, -3);
-    if (runner->tolerance > 0) lua_pushnumber(L, runner->tolerance);
-    lua_call(L, runner->tolerance > 0 ? 3 : 2, 2);
-    if (!lua_isnil(L, -2)) return IMPACT_EXIT_OK;
+    push_option(L, runner->tolerance);
+    push_option(L, runner->frame_rate);
+    lua_call(L, 4, 2);
+    if (!lua_isnil(L, -2)) {
+        if (!lua_isnil(L, -1) && !runner->quiet)
+            printf("note: %s.%s: %s (--frame-rate)\n", name, runner->ending, lua_tostring(L, -1));
+        return IMPACT_EXIT_OK;
+    }
     fprintf(stderr, "impact: no %s.%s: %s\n", name, runner->ending, lua_tostring(L, -1));
     return IMPACT_EXIT_OUTPUT;
 }

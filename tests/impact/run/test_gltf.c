@@ -160,7 +160,7 @@ static void test_lines_meet_the_record(void **state)
     def.duration = 1.5;
     impact_run *run = record(&def);
     char message[200], path[] = "test_gltf.glb";
-    assert_int_equal(impact_gltf_write(run, 3e-4, path, NULL, message, sizeof message), IMPACT_OK);
+    assert_int_equal(impact_gltf_write(run, 3e-4, 24, path, NULL, message, sizeof message), IMPACT_OK);
     glb g = read_glb(path);
     assert_int_equal(list_of(g.json, "nodes")->count, 4);
     assert_int_equal(list_of(g.json, "meshes")->count, 3);
@@ -190,8 +190,65 @@ static void test_lines_meet_the_record(void **state)
     }
     free_glb(&g);
     remove(path);
-    assert_int_equal(impact_gltf_write(run, 0, path, NULL, message, sizeof message), IMPACT_EARGUMENT);
-    assert_int_equal(impact_gltf_write(run, 3e-4, "no/such/x.glb", NULL, message, sizeof message), IMPACT_ESINK);
+    assert_int_equal(impact_gltf_write(run, 0, 24, path, NULL, message, sizeof message), IMPACT_EARGUMENT);
+    assert_int_equal(impact_gltf_write(run, 3e-4, 24, "no/such/x.glb", NULL, message, sizeof message), IMPACT_ESINK);
+    impact_run_close(run);
+}
+
+/* Between keys a hundredth of a frame apart at least, in frames that are floats, as Blender has them, the ball is
+ * within what the file says of the run; its worst, in bodies. */
+static double held_apart(const impact_run *run, double rate, double *off)
+{
+    char message[300], path[] = "test_gltf_rate.glb";
+    assert_int_equal(impact_gltf_write(run, 3e-4, rate, path, NULL, message, sizeof message), IMPACT_OK);
+    glb g = read_glb(path);
+    const imp_json *extras = imp_json_get(item(list_of(g.json, "scenes"), 0), "extras", IMP_JSON_OBJECT);
+    *off = number_of(extras, "off");
+    assert_near(number_of(extras, "frame_rate"), rate, 0);
+    assert_int_equal(message[0] != 0, *off > 3e-4);
+    int count;
+    const float *times = floats_of(&g, accessor_of(&g, 0, "input"), 1, &count);
+    for (int i = 1; i < count; i++) assert_true((float)(times[i] * rate) - (float)(times[i - 1] * rate) > 0.01F);
+    double worst = 0;
+    for (int i = 0; i <= 5000; i++) {
+        const double t = impact_run_end(run) * i / 5000;
+        impact_sample s;
+        qvec3 x;
+        quat q;
+        assert_int_equal(impact_run_state(run, 2, t, &s), IMPACT_OK);
+        pose_at(&g, 0, t, &x, &q);
+        worst = fmax(worst, qvec3_norm(qvec3_sub(x, s.position)) / 0.1);
+    }
+    free_glb(&g);
+    remove(path);
+    assert_true(worst <= fmax(*off, 3e-4));
+    return worst;
+}
+
+/* A ball between two planes .5 mm wider than it meets one every .1 ms. */
+static void test_what_frames_cannot_hold_is_said(void **state)
+{
+    (void)state;
+    if (!impact_has(IMPACT_PART_VIEW)) skip();
+    impact_body_def bodies[3] = {plane_body("floor", (qvec3){0, 0, 0}, (quat){1, 0, 0, 0}, 0, 1),
+                                 plane_body("ceiling", (qvec3){0, 0, 0.2005}, (quat){0, 1, 0, 0}, 0, 1),
+                                 ball_body("ball", (qvec3){0, 0, 0.1002}, 0, 1)};
+    assert_int_equal(impact_shape_sphere(0.1, &bodies[2].shape), IMPACT_OK);
+    bodies[2].velocity = (qvec3){1, 0, 5};
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = bodies;
+    def.body_count = 3;
+    def.duration = 0.05;
+    impact_run *run = record(&def);
+    assert_true(impact_run_event_count(run) > 400);
+    double few, many;
+    const double worst = held_apart(run, 24, &few);
+    assert_true(worst > 2e-3 && few < 2 * worst);
+    held_apart(run, 2400, &many);
+    assert_true(many <= 3e-4);
+    char message[300];
+    assert_int_equal(impact_gltf_write(run, 3e-4, 0, "x.glb", NULL, message, sizeof message), IMPACT_EARGUMENT);
+    assert_string_equal(message, "frame_rate = 0 must lie in [1, 32767], as Blender's does");
     impact_run_close(run);
 }
 
@@ -205,7 +262,7 @@ static void test_equal_shapes_share_a_mesh(void **state)
     def.body_count = 2;
     impact_run *run = record(&def);
     char message[200], path[] = "test_gltf_two.glb";
-    assert_int_equal(impact_gltf_write(run, 3e-4, path, NULL, message, sizeof message), IMPACT_OK);
+    assert_int_equal(impact_gltf_write(run, 3e-4, 24, path, NULL, message, sizeof message), IMPACT_OK);
     glb g = read_glb(path);
     assert_int_equal(list_of(g.json, "meshes")->count, 1);
     free_glb(&g);
@@ -217,6 +274,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lines_meet_the_record),
+        cmocka_unit_test(test_what_frames_cannot_hold_is_said),
         cmocka_unit_test(test_equal_shapes_share_a_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

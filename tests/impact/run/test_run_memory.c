@@ -50,7 +50,7 @@ static void export_run(outcome *o, const impact_run *run)
     memcpy(o->bytes, bytes, o->size);
     if (!impact_has(IMPACT_PART_VIEW)) return;
     if (!good(o, impact_view_write(run, 1e-5, page_path, NULL, o->message, sizeof o->message))) return;
-    good(o, impact_gltf_write(run, 1e-2, gltf_path, NULL, o->message, sizeof o->message));
+    good(o, impact_gltf_write(run, 1e-2, 24, gltf_path, NULL, o->message, sizeof o->message));
 }
 
 static void write_run(outcome *o, impact_scene *scene, impact_run_writer *writer)
