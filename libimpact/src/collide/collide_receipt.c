@@ -36,6 +36,12 @@ static inline void note(double *field, double value)
     if (!(value <= *field || isnan(*field))) *field = value;
 }
 
+/* The same as note of off, without its division where the field is worse already. */
+static inline void note_off(double *field, double x, double size)
+{
+    if (!(fabs(x) <= *field * (DBL_EPSILON * size))) note(field, off(x, size));
+}
+
 /* An impulse may be 1e-200 in an impact's units (approach and moments 1e-100): its square is none. */
 static inline double length(qvec3 v)
 {
@@ -48,7 +54,7 @@ static inline double length(qvec3 v)
 typedef struct part {
     const impact_collider *body;
     qvec3 axis[3];
-    double sign, arm;
+    double sign, arm, v[2], w[2];               /* v, w: the sizes of both velocities, before and after */
     double inverse_mass, inverse_j[3], largest; /* largest: of M's terms */
     bool moves;
 } part;
@@ -58,9 +64,9 @@ typedef struct view {
     const impact_outcome *o;
     imp_least least;
     part part[2];
-    qvec3 n, before, after; /* unit normal; u- and u+ */
-    double size_before, size_after;
-    double drive, drive_size; /* work of static bodies that are moved, on the other */
+    qvec3 n, before, after;                  /* unit normal; u- and u+ */
+    double size_before, size_after, impulse; /* impulse: its size */
+    double drive, drive_size;                /* work of static bodies that are moved, on the other */
 } view;
 
 static void make_part(part *p, const impact_collider *body, double sign)
@@ -84,14 +90,16 @@ static void make_part(part *p, const impact_collider *body, double sign)
     p->axis[2] = (qvec3){f * (x * z + w * y), f * (y * z - w * x), 1 - f * (x * x + y * y)};
 }
 
-static inline qvec3 contact_velocity(const view *s, const qvec3 v[2], const qvec3 w[2], double *size)
+static inline qvec3 contact_velocity(view *s, const qvec3 v[2], const qvec3 w[2], int after, double *size)
 {
     qvec3 u[2];
     *size = 0;
     for (int i = 0; i < 2; i++) {
-        const part *p = &s->part[i];
+        part *p = &s->part[i];
         u[i] = qvec3_add(v[i], qvec3_cross(w[i], p->body->offset));
-        *size += length(v[i]) + s->least.velocity + (length(w[i]) + s->least.omega) * p->arm;
+        p->v[after] = length(v[i]);
+        p->w[after] = length(w[i]);
+        *size += p->v[after] + s->least.velocity + (p->w[after] + s->least.omega) * p->arm;
     }
     return qvec3_sub(u[0], u[1]);
 }
@@ -107,7 +115,7 @@ static void make_drive(view *s)
         const qvec3 u = qvec3_add(b->velocity, qvec3_cross(b->omega, b->offset));
         if (s->part[i].moves) continue;
         s->drive -= s->part[i].sign * qvec3_dot(s->o->impulse, u);
-        s->drive_size += length(s->o->impulse) * (length(b->velocity) + length(b->omega) * s->part[i].arm);
+        s->drive_size += s->impulse * (s->part[i].v[0] + s->part[i].w[0] * s->part[i].arm);
     }
 }
 
@@ -120,8 +128,9 @@ static void make_view(view *s, const impact_collision *c, const impact_outcome *
     make_part(&s->part[0], &c->body[0], 1);
     make_part(&s->part[1], &c->body[1], -1);
     s->n = qvec3_scale(c->normal, 1 / length(c->normal));
-    s->before = contact_velocity(s, v, w, &s->size_before);
-    s->after = contact_velocity(s, o->velocity, o->omega, &s->size_after);
+    s->impulse = impulse_size(s, o->impulse);
+    s->before = contact_velocity(s, v, w, 0, &s->size_before);
+    s->after = contact_velocity(s, o->velocity, o->omega, 1, &s->size_after);
     make_drive(s);
 }
 
@@ -142,16 +151,16 @@ static void examine_body(const view *s, int i, impact_receipt *r, energies *ener
     if (!p->moves) return;
     const impact_collider *b = p->body;
     const qvec3 P = s->o->impulse, V = s->o->velocity[i], W = s->o->omega[i];
-    const double m = b->mass, size = impulse_size(s, P), speed = length(V) + length(b->velocity) + s->least.velocity;
+    const double m = b->mass, size = s->impulse, speed = p->v[1] + p->v[0] + s->least.velocity;
     const qvec3 dv = qvec3_axpy(-p->sign / m, P, qvec3_sub(V, b->velocity));
-    note(&r->momentum, off(m * length(dv), size + m * speed));
+    note_off(&r->momentum, m * length(dv), size + m * speed);
     const qvec3 torque = qvec3_cross(b->offset, P), dw = qvec3_sub(W, b->omega);
-    const double w0 = length(b->omega), w1 = length(W), turning = w0 + w1 + s->least.omega;
+    const double w0 = p->w[0], w1 = p->w[1], turning = w0 + w1 + s->least.omega;
     double before = m * qvec3_dot(b->velocity, b->velocity), after = m * qvec3_dot(V, V), sum = before + after;
     for (int k = 0; k < 3; k++) {
         const double j = entry(b->moments, k), from = qvec3_dot(p->axis[k], b->omega), to = qvec3_dot(p->axis[k], W);
         const double rest = j * qvec3_dot(p->axis[k], dw) - p->sign * qvec3_dot(p->axis[k], torque);
-        note(&r->spin, off(rest, j * turning + p->arm * size));
+        note_off(&r->spin, rest, j * turning + p->arm * size);
         before += j * from * from;
         after += j * to * to;
         sum += j * (fabs(from) * w0 + fabs(to) * w1);
@@ -170,21 +179,21 @@ static void check_energy(const view *s, const energies *energy, impact_receipt *
                  done = s->least.energy + fabs(o->work_compression) + o->work_restitution - o->work_friction;
     if (s->c->law != IMPACT_NEWTON && s->c->restitution <= 1) note(&r->energy, below(-change, all));
     note(&r->energy, below(-o->work_friction, done));
-    note(&r->energy, off(o->energy_before - energy->before, all));
-    note(&r->energy, off(o->energy_after - energy->after, all));
+    note_off(&r->energy, o->energy_before - energy->before, all);
+    note_off(&r->energy, o->energy_after - energy->after, all);
     const double half = qvec3_dot(o->impulse, qvec3_add(s->before, s->after)) / 2;
-    note(&r->power, off(change - works, all + done));
-    note(&r->power, off(half - works, impulse_size(s, o->impulse) * (s->size_before + s->size_after) + done));
+    note_off(&r->power, change - works, all + done);
+    note_off(&r->power, half - works, s->impulse * (s->size_before + s->size_after) + done);
 }
 
 /* ---- friction and restitution ---- */
 
-/* An impulse's normal part, and how far it is outside of the cone. */
-static double outside_cone(const view *s, qvec3 P, double *along)
+/* The normal part of an impulse of that size, and how far it is outside of the cone. */
+static double outside_cone(const view *s, qvec3 P, double size, double *along)
 {
     const double mu = s->c->friction;
     *along = qvec3_dot(P, s->n);
-    const double across = length(qvec3_axpy(-*along, s->n, P)), size = impulse_size(s, P);
+    const double across = length(qvec3_axpy(-*along, s->n, P));
     double outside = below(*along, size);
     if (!s->c->friction_law) note(&outside, below(mu * *along - across, size * (1 + mu)));
     return outside;
@@ -194,10 +203,10 @@ static void check_approach(const view *s, double along, impact_receipt *r)
 {
     const impact_outcome *o = s->o;
     const double u_before = qvec3_dot(s->before, s->n), u_after = qvec3_dot(s->after, s->n);
-    note(&r->approach, off(u_before - o->normal_before, s->size_before));
-    note(&r->approach, off(u_after - o->normal_after, s->size_before + s->size_after));
+    note_off(&r->approach, u_before - o->normal_before, s->size_before);
+    note_off(&r->approach, u_after - o->normal_after, s->size_before + s->size_after);
     note(&r->approach, below(u_after, s->size_before + s->size_after));
-    note(&r->approach, off(along - o->impulse_normal, impulse_size(s, o->impulse)));
+    note_off(&r->approach, along - o->impulse_normal, s->impulse);
 }
 
 static void check_law(const view *s, impact_receipt *r)
@@ -207,13 +216,13 @@ static void check_law(const view *s, impact_receipt *r)
     const double due = (1 + eps) * o->compression_impulse, back = eps * eps * fabs(o->work_compression);
     const double impulses = o->impulse_normal + due + s->least.impulse;
     switch (s->c->law) {
-    case IMPACT_POISSON: note(&r->law, off(o->impulse_normal - due, impulses)); break;
+    case IMPACT_POISSON: note_off(&r->law, o->impulse_normal - due, impulses); break;
     case IMPACT_NEWTON:
-        note(&r->law, off(u_after + eps * u_before, s->size_after + (eps > 1 ? eps : 1) * s->size_before));
+        note_off(&r->law, u_after + eps * u_before, s->size_after + (eps > 1 ? eps : 1) * s->size_before);
         break;
     case IMPACT_STRONGE:
         if (o->compressions == 1)
-            note(&r->law, off(o->work_restitution - back, fabs(o->work_compression) + back + s->least.energy));
+            note_off(&r->law, o->work_restitution - back, fabs(o->work_compression) + back + s->least.energy);
         break;
     }
 }
@@ -226,11 +235,10 @@ static bool compresses(unsigned char phase)
 
 /* ---- phase by phase ---- */
 
-/* du = M dP by the bodies; the size of its terms. */
-static qvec3 velocity_change(const view *s, qvec3 P, double *size)
+/* du = M dP by the bodies, of an impulse of that size; the size of its terms. */
+static qvec3 velocity_change(const view *s, qvec3 P, double impulse, double *size)
 {
     qvec3 u = {0, 0, 0};
-    const double impulse = impulse_size(s, P);
     for (int i = 0; i < 2; i++) {
         const part *p = &s->part[i];
         if (!p->moves) continue;
@@ -254,18 +262,18 @@ static void check_phases(const view *s, impact_receipt *r)
         const qvec3 P = qvec3_sub(o->phase_impulse[i], from);
         const bool last = i + 1 == o->phase_count;
         const unsigned char next = last ? phase : o->phases[i + 1];
-        note(&r->path, outside_cone(s, P, &along) * impulse_size(s, P) / impulse_size(s, o->impulse));
-        u = qvec3_add(u, velocity_change(s, P, &size));
+        const double impulse = impulse_size(s, P), outside = outside_cone(s, P, impulse, &along);
+        if (outside != 0) note(&r->path, outside * impulse / s->impulse);
+        u = qvec3_add(u, velocity_change(s, P, impulse, &size));
         from = o->phase_impulse[i];
         const double un = qvec3_dot(u, s->n);
         const bool turns =
             !last && phase != IMPACT_REVERSAL && next != IMPACT_REVERSAL && compresses(phase) != compresses(next);
-        if (turns) note(&r->path, off(un, size));
+        if (turns) note_off(&r->path, un, size);
         if (sticks(phase) || sticks(next) || next == IMPACT_REVERSAL)
-            note(&r->path, off(length(qvec3_axpy(-un, s->n, u)), size));
+            note_off(&r->path, length(qvec3_axpy(-un, s->n, u)), size);
     }
-    if (o->phase_count < IMPACT_MAX_PHASES)
-        note(&r->path, off(length(qvec3_sub(from, o->impulse)), impulse_size(s, o->impulse)));
+    if (o->phase_count < IMPACT_MAX_PHASES) note_off(&r->path, length(qvec3_sub(from, o->impulse)), s->impulse);
 }
 
 /* ---- the way of a slip ---- */
@@ -276,7 +284,7 @@ static void make_felt_mass(const view *s, qvec3 t1, qvec3 t2, imp_felt_mass *f)
     *f = (imp_felt_mass){.friction = s->c->friction};
     for (int i = 0; i < 3; i++) {
         double size = 0;
-        const qvec3 u = velocity_change(s, e[i], &size);
+        const qvec3 u = velocity_change(s, e[i], 1, &size);
         for (int k = 0; k < 3; k++) f->m[k][i] = qvec3_dot(e[k], u);
         f->rounding = fmax(f->rounding, size);
     }
@@ -299,7 +307,8 @@ static void check_hodograph(const view *s, impact_receipt *r)
         const bool stops = i + 1 < o->phase_count && (sticks(o->phases[i + 1]) || o->phases[i + 1] == IMPACT_REVERSAL);
         double off = 0;
         if (stops) return;
-        u = qvec3_add(u, velocity_change(s, qvec3_sub(o->phase_impulse[i], P), &size));
+        const qvec3 more = qvec3_sub(o->phase_impulse[i], P);
+        u = qvec3_add(u, velocity_change(s, more, impulse_size(s, more), &size));
         P = o->phase_impulse[i];
         if (!imp_hodograph_residual(&f, from, (imp_slip){qvec3_dot(u, t1), qvec3_dot(u, t2), size}, &off)) continue;
         note(&r->hodograph, off);
@@ -329,7 +338,7 @@ double imp_receipt_make(const impact_collision *collision, const impact_outcome 
     make_view(&s, collision, outcome, least);
     for (int i = 0; i < 2; i++) examine_body(&s, i, r, &energy);
     check_energy(&s, &energy, r);
-    r->cone = outside_cone(&s, outcome->impulse, &along);
+    r->cone = outside_cone(&s, outcome->impulse, s.impulse, &along);
     check_approach(&s, along, r);
     if (!(collision->tangential_compliance > 0)) {
         examine_contact(&s, r);

@@ -10,8 +10,13 @@
 #include "gap/gap_solver.h"
 #include "shape/solid.h"
 
-/* |x/a|^p */
-static double mass_of(double ratio, double p) { return p == 2 ? ratio * ratio : p == 1 ? ratio : pow(ratio, p); }
+/* x^p of 0 <= x <= 1, or a little over. By the logarithm it costs less than pow, and rounds by p |ln x| x^p eps, which
+ * is eps/e at most: masses are told from 1. */
+static double mass_of(double x, double p)
+{
+    if (p == 2 || p == 1) return p == 2 ? x * x : x;
+    return x > 0 ? exp(p * log(x)) : 0;
+}
 
 /* The masses m_i, of sum f, and p_i m_i/|x_i|, the sizes of f's derivatives; a superellipsoid's section counts as one
  * mass. */
@@ -30,8 +35,9 @@ static double nested_excess(const imp_form *form, const double x[3])
 {
     const double p = form->p[0], t = form->p[IMP_SECTION], u = fabs(x[0]) / form->axis[0],
                  v = fabs(x[1]) / form->axis[1], w = fabs(x[2]) / form->axis[2], larger = fmax(u, v);
-    const double a = u == larger ? 1 : pow(u / larger, p), b = v == larger ? 1 : pow(v / larger, p), sum = a + b;
-    const double section = pow(larger * pow(sum, 1 / p), t), along = pow(w, t);
+    const double ratio = larger > 0 ? fmin(u, v) / larger : 0, less = mass_of(ratio, p), sum = 1 + less;
+    const double a = u == larger ? 1 : less, b = u == larger ? less : 1;
+    const double section = larger > 0 ? exp(t * (log(larger) + log(sum) / p)) : 0, along = mass_of(w, t);
     const double x_slope = u > 0 ? t * section * (a / sum) / (u * form->axis[0]) : 0,
                  y_slope = v > 0 ? t * section * (b / sum) / (v * form->axis[1]) : 0,
                  z_slope = w > 0 ? t * along / (w * form->axis[2]) : 0;

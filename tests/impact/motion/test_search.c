@@ -120,16 +120,20 @@ static void damped_balls_meet(void **state)
     assert_true(met > 1000);
 }
 
-/* What tumbles, damped or not: at the time found the gap is zero to rounding, and at none of many before it less. */
+/* What tumbles, damped or not, round or with edges: at the time found the gap is zero to rounding, and at none of many
+ * before it less. */
 static void nothing_is_passed_over(void **state)
 {
     (void)state;
     random_stream random = {33};
     int met = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 400; i++) {
         couple c = {0};
-        for (int k = 0; k < 2; k++)
-            c.body[k] = make_body(random_smooth_shape(&random, false), i % 2 ? 0.3 : 0, i % 2 ? 0.2 : 0);
+        for (int k = 0; k < 2; k++) {
+            const impact_shape shape =
+                i < 300 ? random_smooth_shape(&random, false) : random_shape(&random, RANDOM_BOXY);
+            c.body[k] = make_body(shape, i % 2 ? 0.3 : 0, i % 2 ? 0.2 : 0);
+        }
         const double reach = c.body[0].radius + c.body[1].radius;
         const qvec3 d = qvec3_scale(random_direction(&random), 3 * reach);
         const qvec3 w =
@@ -153,6 +157,45 @@ static void nothing_is_passed_over(void **state)
         met += found.touches;
     }
     assert_true(met > 100);
+}
+
+/* Behind a plane's bounds and thrown back up: at the time found the gap comes back to zero from below, and at none of
+ * many before it. What never comes back is never found. */
+static void what_is_behind_a_plane_comes_back(void **state)
+{
+    (void)state;
+    random_stream random = {35};
+    int back = 0, never = 0;
+    for (int i = 0; i < 300; i++) {
+        couple c = {0};
+        impact_shape plane;
+        const bool damped = i % 3 == 1, ball = i % 3 == 2;
+        impact_shape_plane(1, 1, &plane);
+        c.body[0] = ball ? make_ball(random_log(&random, 0.1, 1), 0)
+                         : make_body(random_smooth_shape(&random, false), damped ? 0.3 : 0, damped ? 0.2 : 0);
+        c.body[1] = (imp_body){.shape = plane, .is_static = true, .turn = {1, 0, 0, 0}};
+        const double reach = c.body[0].radius;
+        const qvec3 x = {0, 0, -reach * (1.5 + random_unit(&random))},
+                    v = {random_unit(&random), 0, reach * (2 + 6 * random_unit(&random))};
+        begin(&c, 0, 0, x, v, random_vector(&random, 1, 20), (qvec3){0, 0, -4 * reach});
+        c.segment[1] = imp_segment_rest(0, &(imp_state){.q = {1, 0, 0, 0}});
+        imp_search s = search_of(&c);
+        s.beyond = true;
+        imp_found found = imp_search_contact(&s, 0, 10);
+        for (int again = 0; again < 100 && !found.touches && found.t < 10; again++)
+            found = imp_search_contact(&s, found.t, 10);
+        back += found.touches, never += !found.touches;
+        const double last = fmin(found.t, 3);
+        for (int k = 0; k <= 200; k++) {
+            const double t = last * k / 200;
+            const imp_state a = imp_segment_at(&c.segment[0], &c.body[0], t), b = c.segment[1].start;
+            impact_contact contact;
+            imp_gap_of(&c.body[0], &a, &c.body[1], &b, NULL, &c.usage, &contact);
+            assert_true(contact.gap < 1e-12 * reach);
+            if (k == 200 && found.touches) assert_near(contact.gap, 0, 1e-9 * reach);
+        }
+    }
+    assert_true(back > 50 && never > 50);
 }
 
 /* Stopped on the way and taken up again, the answer has the same bits. */
@@ -179,9 +222,8 @@ static void pauses_change_no_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balls_meet_on_a_line),
-        cmocka_unit_test(damped_balls_meet),
-        cmocka_unit_test(nothing_is_passed_over),
+        cmocka_unit_test(balls_meet_on_a_line),   cmocka_unit_test(damped_balls_meet),
+        cmocka_unit_test(nothing_is_passed_over), cmocka_unit_test(what_is_behind_a_plane_comes_back),
         cmocka_unit_test(pauses_change_no_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

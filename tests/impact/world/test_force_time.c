@@ -91,6 +91,31 @@ static void no_pulse_is_passed_over(void **state)
     }
 }
 
+/* Methods that ask a force at the ends of their steps alone: both thirds of a step are asked as well, so that nothing
+ * lies farther than a sixth of it from where it is looked for, four widths of the bell. */
+static void pulses_between_the_ends_of_steps_are_seen(void **state)
+{
+    (void)state;
+    if (!impact_has(IMPACT_PART_CVODE)) skip();
+    random_stream random = {35};
+    for (int i = 0; i < 60; i++) {
+        const double longest = random_log(&random, 0.01, 0.1), width = longest / 24;
+        bell b = {random_vector(&random, 1, 100), 0.35 + 0.3 * random_unit(&random), width};
+        const impact_body_def body = ball("ball", 0.1, (qvec3){0, 0, 0}, (qvec3){0, 0, 0});
+        impact_force_def force = custom(bell_force, &b);
+        force.max_step = longest;
+        impact_scene_def def = scene_of(&body, 1, 1);
+        def.gravity = (qvec3){0, 0, 0};
+        def.methods.motion = IMPACT_MOTION_CVODE;
+        def.forces = &force;
+        def.force_count = 1;
+        const ending e = run(&def);
+        assert_good(&e);
+        const qvec3 wanted = qvec3_scale(b.peak, width * sqrt(pi));
+        assert_near3(e.body.velocity, wanted, 1e-10 * (1 + qvec3_norm(wanted)));
+    }
+}
+
 /* What lies at rest on the floor is found by a later push: along the floor a ball then rolls, with 5/7 of the impulse;
  * a box on a floor without friction slides with all of it. */
 static void what_rests_wakes(void **state)
@@ -380,11 +405,17 @@ static void regularised_friction_ends(void **state)
 int main(void)
 {
     const struct CMUnitTest integrated[] = {
-        cmocka_unit_test(no_hill_is_passed_over), cmocka_unit_test(no_pulse_is_passed_over),
-        cmocka_unit_test(what_rests_wakes),       cmocka_unit_test(under_a_steady_force_rest_is_the_end),
-        cmocka_unit_test(switches_cut_the_steps), cmocka_unit_test(switches_come_again),
-        cmocka_unit_test(edges_are_met),          cmocka_unit_test(what_cannot_be_is_refused_by_name),
-        cmocka_unit_test(a_pole_is_an_end),       cmocka_unit_test(regularised_friction_ends),
+        cmocka_unit_test(no_hill_is_passed_over),
+        cmocka_unit_test(no_pulse_is_passed_over),
+        cmocka_unit_test(pulses_between_the_ends_of_steps_are_seen),
+        cmocka_unit_test(what_rests_wakes),
+        cmocka_unit_test(under_a_steady_force_rest_is_the_end),
+        cmocka_unit_test(switches_cut_the_steps),
+        cmocka_unit_test(switches_come_again),
+        cmocka_unit_test(edges_are_met),
+        cmocka_unit_test(what_cannot_be_is_refused_by_name),
+        cmocka_unit_test(a_pole_is_an_end),
+        cmocka_unit_test(regularised_friction_ends),
     };
     return impact_has(IMPACT_PART_CVODE) ? cmocka_run_group_tests_name("impact.force_time", integrated, NULL, NULL) : 0;
 }
