@@ -142,3 +142,71 @@ check.truth(account(toppled) < 1e-11, "the account of a fall")
 local edge = run(impact.box { a = .1, b = .1, c = .05 }, .05, { friction = .2, position = { 19.5, 0, .05 }, velocity = { 3, 0, 0 } },
   { under = slab, duration = 1 })
 check.truth(edge:state("body").position.z < -.5, "it falls from the table")
+
+-- ---- other forces: the same law of friction ----
+
+--- The state, and that nothing was stepped while it moved.
+local function pushed(more)
+  local body = { name = "body", shape = more.shape or impact.box { a = .1, b = .07, c = .04 }, mass = 1.3, position = { 0, 0, .04 }, restitution = 0,
+    velocity = more.velocity or { 1, .3, 0 }, omega = { 0, 0, more.spin or 7 }, friction = more.friction or .3,
+    linear_damping = more.linear, angular_damping = more.angular }
+  local scene = impact.scene { gravity = more.gravity or { 0, 0, -G }, duration = more.duration or 2, forces = more.forces,
+    bodies = { impact.body(floor), impact.body(body) } }
+  check.truth(scene:run(), "it runs")
+  check.equal(scene:usage().pile_steps, more.stands and scene:usage().pile_steps or 0)
+  check.equal(scene:usage().integrators, 0)
+  local e = scene:energy()
+  check.close(e.start + e.force_work - e.damping_loss - e.sliding_loss - e.impact_loss, e.kinetic + e.potential, 1e-12)
+  return scene, scene:state "body"
+end
+
+-- A constant force is a gravity aslant: while it slides and turns, and where it stops.
+local aslant = impact.force { law = function(_, body) local m = body.mass return { m, .5 * m, (G - 9) * m } end }
+for _, duration in ipairs { .3, 1 } do
+  local _, one = pushed { gravity = { 1, .5, -9 }, duration = duration }
+  local scene, other = pushed { forces = { aslant }, duration = duration, stands = true }
+  check.close((one.position - other.position):norm(), 0, 1e-10)
+  check.close((one.velocity - other.velocity):norm(), 0, 1e-10)
+  check.close(one.orientation.z, other.orientation.z, 1e-10)
+  check.close(scene:energy().force_work, 1.3 * (one.position.x + .5 * one.position.y), 1e-10)
+end
+
+-- Damped in a line: v' = -mu g - k v. Damped as it turns on the spot: w' = -alpha - k w, with the alpha of an undamped one.
+local k = -math.log(.8)
+local scene, state = pushed { linear = .2, velocity = { 1, 0, 0 }, spin = 0 }
+check.close(scene:time(), math.log(1 + k / (.3 * G)) / k, 1e-9)
+check.close(state.position.x, (1 - .3 * G / k * math.log(1 + k / (.3 * G))) / k, 1e-9)
+local alpha = 7 / pushed { velocity = { 0, 0, 0 } }:time()
+check.close(pushed { velocity = { 0, 0, 0 }, angular = .2 }:time(), math.log(1 + k * 7 / alpha) / k, 1e-9)
+_, state = pushed { friction = 0, linear = .5, angular = .5 }
+check.close(state.velocity.x, .25, 1e-12)
+check.close(state.omega.z, 7 / 4, 1e-12)
+
+-- A wind that ends at its reach, from rest and from a slide; the same on a superquadric's flat place.
+for _, shape in ipairs { impact.box { a = .1, b = .07, c = .04 }, impact.superquadric { a = .1, b = .07, c = .04, r = 200, s = 200, t = 200 } } do
+  local wind = impact.wind { strength = 6, direction = { 1, 0, 0 }, reach = .2, radius = 10 }
+  scene, state = pushed { shape = shape, velocity = { 0, 0, 0 }, spin = 0, forces = { wind } }
+  check.close(state.position.x, 6 * .2 / (.3 * 1.3 * G), 1e-8)
+  check.close(scene:energy().force_work, 1.2, 1e-8)
+  scene = pushed { shape = shape, forces = { wind } }
+  check.close(scene:energy().force_work, 1.2, 1e-9)
+end
+
+-- A torque that tips it moves the pressure: by n x T/N from where friction alone has it.
+local tipped = impact.force { steady = true, law = function() return { 0, 0, 0 }, { 0, .2, 0 } end }
+for _, forces in ipairs { { }, { tipped } } do
+  scene, state = pushed { velocity = { 1, 0, 0 }, spin = 0, forces = forces, duration = .1 }
+  check.close(scene:held()[1].point.x - state.position.x, .3 * .04 + (forces[1] and .2 / (1.3 * G) or 0), 1e-12)
+end
+
+
+
+-- What is damped in its turning alone falls as anything does, and lands.
+for _, shape in ipairs { impact.sphere(.1), impact.box { a = .1, b = .1, c = .1 } } do
+  local first
+  local drop = impact.scene { gravity = { 0, 0, -G }, duration = 1, bodies = { impact.body(floor),
+    impact.body { name = "body", shape = shape, mass = 1, position = { 0, 0, .6 }, angular_damping = .3, restitution = 0 } } }
+  check.truth(drop:run { on_event = function(event) first = first or event.t end }, "it runs")
+  check.close(first, math.sqrt(2 * .5 / G), 1e-12)
+  check.close(drop:state("body").position.z, .1, 1e-12)
+end

@@ -735,6 +735,8 @@
 /* tau: the longest step, in which the speed falls to a half; and the shortest: what does not go on so far tips. */
 #define IMP_FACE_LONGEST 0.7
 #define IMP_FACE_SHORTEST 1e-10
+/* In rest speeds: what is set in motion by a load that changes is accelerated as at rest up to this. */
+#define IMP_FACE_SET_OUT 4.0
 /* Of the face's reach: a centre of pressure nearer to a border stands on it. */
 #define IMP_FACE_MARGIN 1e-9
 /* Of the face's reach: points so near to the side over which a body tips are on it: rounding of places found on another

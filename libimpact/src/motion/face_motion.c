@@ -36,9 +36,16 @@ static double along_row(const double row[3], const double p[3])
     return row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
 }
 
-/* The pressure that balances where just this part is pressed. */
-static bool press(const imp_face_motion *motion, const imp_pressed *pressed, const double twist[3],
-                  imp_face_balance *balance)
+/* From axes that stay to the face's, or back. */
+static void turn_by(const double v[2], double angle, double out[2])
+{
+    const double c = cos(angle), s = sin(angle), x = v[0], y = v[1];
+    out[0] = c * x - s * y, out[1] = s * x + c * y;
+}
+
+/* The pressure that balances where just this part is pressed; the load in the face's axes. */
+static bool press(const imp_face_motion *motion, const imp_face_load *load, const imp_pressed *pressed,
+                  const double twist[3], imp_face_balance *balance)
 {
     double part[3][3], rub[3][3], a[3][4];
     const bool whole = pressed == &motion->whole;
@@ -53,7 +60,7 @@ static bool press(const imp_face_motion *motion, const imp_pressed *pressed, con
             a[1 + i][k] = m[1 + i][k] + motion->height * mu * rub[i][k] - across[i] * motion->turning * mu * rub[2][k];
     }
     a[0][3] = 1;
-    for (int i = 0; i < 2; i++) a[1 + i][3] = -square * j[i] / motion->press;
+    for (int i = 0; i < 2; i++) a[1 + i][3] = (across[i] * load->turn - square * j[i] - load->tip[i]) / load->press;
     if (!solve_three(a)) return false;
     for (int k = 0; k < 3; k++) balance->p[k] = a[k][3];
     for (int i = 0; i < 2; i++) {
@@ -64,7 +71,8 @@ static bool press(const imp_face_motion *motion, const imp_pressed *pressed, con
     return true;
 }
 
-bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance)
+static bool balance_under(const imp_face_motion *motion, const imp_face_load *load, const double twist[3],
+                          imp_face_balance *balance)
 {
     imp_pressed part;
     double change = INFINITY;
@@ -73,7 +81,7 @@ bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], i
         memcpy(before, balance->p, sizeof before);
         const bool whole = imp_least_pressure(&motion->face, before) >= 0;
         if (!whole) imp_press_part(&motion->face, before, &part);
-        if (!press(motion, whole ? &motion->whole : &part, twist, balance)) return false;
+        if (!press(motion, load, whole ? &motion->whole : &part, twist, balance)) return false;
         if (whole && imp_least_pressure(&motion->face, balance->p) >= 0) return true;
         for (int k = 0; k < 3; k++) {
             moved = fmax(moved, fabs(balance->p[k] - before[k]));
@@ -85,14 +93,12 @@ bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], i
     return false;
 }
 
-/* ---- rates ---- */
-
-/* From axes that stay to the face's, or back. */
-static void turn_by(const double v[2], double angle, double out[2])
+bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance)
 {
-    const double c = cos(angle), s = sin(angle), x = v[0], y = v[1];
-    out[0] = c * x - s * y, out[1] = s * x + c * y;
+    return balance_under(motion, &motion->load, twist, balance);
 }
+
+/* ---- rates ---- */
 
 double imp_face_speed(const imp_face_motion *motion, const double *y)
 {
@@ -102,17 +108,22 @@ double imp_face_speed(const imp_face_motion *motion, const double *y)
 bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance)
 {
     double twist[3] = {0, 0, y[IMP_FACE_W]}, force[2];
+    imp_face_load load = motion->load;
+    if (motion->loads && (!motion->loads(motion->context, y, &load) || !(load.press > 0))) return false;
     turn_by(&y[IMP_FACE_V], -y[IMP_FACE_ANGLE], twist);
-    if (!imp_face_balance_of(motion, twist, balance)) return false;
+    turn_by(load.tip, -y[IMP_FACE_ANGLE], load.tip);
+    if (!balance_under(motion, &load, twist, balance)) return false;
     turn_by(balance->force, y[IMP_FACE_ANGLE], force);
-    const double P = motion->press;
+    const double P = load.press;
     for (int i = 0; i < 2; i++) {
         rate[IMP_FACE_X + i] = y[IMP_FACE_V + i];
-        rate[IMP_FACE_V + i] = P * force[i] + motion->pull[i];
+        rate[IMP_FACE_V + i] = P * force[i] + load.pull[i];
     }
     rate[IMP_FACE_ANGLE] = y[IMP_FACE_W];
-    rate[IMP_FACE_W] = P * motion->turning * balance->moment;
+    rate[IMP_FACE_W] = P * motion->turning * balance->moment + load.turn;
     rate[IMP_FACE_TIME] = 1;
+    rate[IMP_FACE_PUSHED] = load.power;
+    rate[IMP_FACE_DAMPED] = load.damping;
     rate[IMP_FACE_WORK] =
         -P * (balance->force[0] * twist[0] + balance->force[1] * twist[1] + balance->moment * twist[2]);
     return true;
@@ -181,7 +192,7 @@ static void expand(const collocation *c, double rate[][IMP_FACE_STATE], double k
 /* A */
 static double greatest_rate(const imp_face_motion *motion)
 {
-    return motion->friction * motion->press + hypot(motion->pull[0], motion->pull[1]);
+    return motion->friction * motion->load.press + hypot(motion->load.pull[0], motion->load.pull[1]);
 }
 
 /* What each number is measured by: what it still changes by where the motion fades. */
@@ -191,12 +202,19 @@ static void measure(const imp_face_motion *motion, const double *y, double unit[
     for (int n = 0; n < IMP_FACE_V; n++) unit[n] = speed * time;
     for (int n = IMP_FACE_V; n < IMP_FACE_TIME; n++) unit[n] = speed;
     unit[IMP_FACE_TIME] = time;
-    unit[IMP_FACE_WORK] = speed * speed;
+    unit[IMP_FACE_WORK] = unit[IMP_FACE_PUSHED] = unit[IMP_FACE_DAMPED] = speed * speed;
+}
+
+/* dt/dtau: under loads that change no longer than the time in which the body falls its reach. */
+static double clock_of(const imp_face_motion *motion, const double *y)
+{
+    const double speed = imp_face_speed(motion, y), least = motion->loads ? speed * sqrt(motion->load.press) : 0;
+    return speed / (greatest_rate(motion) + least);
 }
 
 static bool rates_in_tau(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance)
 {
-    const double clock = imp_face_speed(motion, y) / greatest_rate(motion);
+    const double clock = clock_of(motion, y);
     if (!imp_face_rates(motion, y, rate, balance)) return false;
     for (int n = 0; n < IMP_FACE_STATE; n++) rate[n] *= clock;
     return imp_face_margin(motion, y, balance) > IMP_FACE_MARGIN;
@@ -335,10 +353,12 @@ bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double
 {
     collocation c;
     double k[IMP_FACE_NODES][IMP_FACE_STATE], unit[IMP_FACE_STATE];
-    const double clock = imp_face_speed(motion, y) / greatest_rate(motion), turns = fabs(y[IMP_FACE_W]) * clock;
+    const double clock = clock_of(motion, y), turns = fabs(y[IMP_FACE_W]) * clock;
+    /* |(v, k w)| grows as e^tau at most */
+    const double longest = motion->loads ? log1p(motion->longest / clock) : INFINITY;
     bool cut = false;
     lay_out(&c);
-    for (double h = fmin(*length, IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN)); h > IMP_FACE_SHORTEST;) {
+    for (double h = fmin(fmin(*length, longest), IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN)); h > IMP_FACE_SHORTEST;) {
         measure(motion, y, unit);
         if (!collocate(motion, &c, y, h, unit, k)) {
             cut = true;

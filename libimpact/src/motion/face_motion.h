@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * face_motion: a body that lies with a face on a static one, and slides and turns on it under a constant pull.
- * Internal.
+ * face_motion: a body that lies with a face on a static one, and slides and turns on it under gravity and what else
+ * acts on it. Internal.
  *
  * In the plane of the face, from the foot of the centre of mass, with the velocity v of the centre over the surface and
- * w about the normal n, N = m P, the height c of the centre, J = n.J n and j = the part of J n in the face:
+ * w about the normal n, N = m P, the height c of the centre, J = n.J n and j = the part of J n in the face, under a
+ * force m (pull - P n) and a torque T:
  *
- *     v' = F/m + pull,   w' = M/J
- *     int p = N,   int x p = -c F + w' n x j - w^2 j      no torque tips the body; j turns with it
+ *     v' = F/m + pull,   w' = (M + n.T)/J
+ *     int p = N,   int x p = -c F + w' n x j - w^2 j - n x T      no torque tips the body; j turns with it
  *
  * p = a + b.x >= 0 over the face, and F and M of it (face_friction.h) are linear in (a, b): three equations for three
  * numbers. Where the line of no pressure crosses the face they are solved for what it leaves, until that stays:
  * Newton's iteration. The state y = (x, angle, v, w) goes by collocation at Gauss's nine places of a step (order 18),
  * in a time of its own:
  *
- *     dt = |(v, k w)|/A dtau,   A = mu P + |pull|,  k the face's radius of gyration
+ *     dt = |(v, k w)|/A dtau,   A = mu P + |pull| where the step begins,  k the face's radius of gyration
  *
+ * (under loads that change + |(v, k w)| root P, which bounds dt/dtau),
  * in which what slides and turns to its end goes there as e^-tau, smoothly, at the end along one twist. Lengths are in
  * units of the face's reach.
  */
@@ -26,13 +28,39 @@
 
 #include <stddef.h>
 
+enum {
+    IMP_FACE_X,
+    IMP_FACE_ANGLE = 2,
+    IMP_FACE_V,
+    IMP_FACE_W = 5,
+    IMP_FACE_TIME,
+    IMP_FACE_WORK,   /* that friction has taken, */
+    IMP_FACE_PUSHED, /* forces but gravity have done, */
+    IMP_FACE_DAMPED, /* and damping has taken */
+    IMP_FACE_STATE
+};
+
+/* What acts but friction, in axes that stay, which the face's are at the angle 0. */
+typedef struct imp_face_load {
+    double press;          /* P, 1/s^2 */
+    double pull[2];        /* 1/s^2 */
+    double tip[2];         /* n x T/(m size^2), 1/s^2 */
+    double turn;           /* n.T/J, 1/s^2 */
+    double power, damping; /* rates of the works, over m size^2, 1/s^3 */
+} imp_face_load;
+
+/* It at y, with the time since the step began; false: there is none. */
+typedef bool imp_face_loads(const void *context, const double *y, imp_face_load *load);
+
 /* Lengths over `size`, in axes of the face that turn with the body, from the foot of the centre of mass. */
 typedef struct imp_face_motion {
     imp_flat_face face;
-    double height;       /* c */
-    double friction;     /* mu */
-    double press;        /* P, 1/s^2 */
-    double pull[2];      /* 1/s^2, in axes that stay, which the face's are at the angle 0 */
+    double height;         /* c */
+    double friction;       /* mu */
+    imp_face_load load;    /* where the step begins; all along where there are no */
+    imp_face_loads *loads; /* NULL: it is constant */
+    const void *context;
+    double longest;      /* s: of a step, under loads that change */
     double turning;      /* m size^2/J */
     double aside[2];     /* j/(m size^2) */
     double gyration;     /* k */
@@ -45,8 +73,6 @@ typedef struct imp_face_motion {
 /* What follows of the face, once it is set. */
 void imp_face_prepare(imp_face_motion *motion);
 
-enum { IMP_FACE_X, IMP_FACE_ANGLE = 2, IMP_FACE_V, IMP_FACE_W = 5, IMP_FACE_TIME, IMP_FACE_WORK, IMP_FACE_STATE };
-
 /* What presses and rubs: over m P, in the face's axes. */
 typedef struct imp_face_balance {
     double p[3];
@@ -57,7 +83,7 @@ typedef struct imp_face_balance {
 /* With the twist (v, w) in the face's axes, not 0; p is where to begin, 0 for the whole face pressed. False where no
  * pressure balances it: the body tips. */
 bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance);
-/* Rates of y by time, y of IMP_FACE_STATE numbers: the last two are time and what friction has taken, over m size^2. */
+/* Rates of y by time, y of IMP_FACE_STATE numbers: the last are time and works, over m size^2. */
 bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance);
 
 /* How far within all borders the centre of pressure is, and the face within what it lies on. */

@@ -94,22 +94,55 @@ static void level(imp_lying *lying, const imp_state *state, qvec3 outward)
 /* What is but rounding of the other is none. */
 static double beside(double part, double whole) { return fabs(part) > IMP_LEVEL * fabs(whole) ? part : 0; }
 
-static bool set_motion(imp_lying *lying, const imp_world *world, const imp_pair *pair)
+static imp_face_load load_of(const imp_lying *lying, const imp_load *load)
+{
+    const qvec3 n = lying->normal, tips = qvec3_cross(n, load->torque);
+    const double force = lying->body->mass * lying->size, unit = force * lying->size;
+    imp_face_load out = {.press = -qvec3_dot(n, load->force) / force,
+                         .turn = qvec3_dot(n, load->torque) / qvec3_dot(n, lying->inertia),
+                         .power = load->work_rate / unit,
+                         .damping = load->damping_rate / unit};
+    for (int k = 0; k < 2; k++) {
+        out.pull[k] = beside(qvec3_dot(lying->axis[k], load->force) / force, out.press);
+        out.tip[k] = qvec3_dot(lying->axis[k], tips) / unit;
+    }
+    return out;
+}
+
+/* imp_face_loads: what else moves in the world does not act on it. */
+static bool loads_at(const void *context, const double *y, imp_face_load *load)
+{
+    const imp_lying *lying = context;
+    imp_motion *motion = lying->moves;
+    motion->scratch[lying->index] = imp_lying_state(lying, y);
+    if (!imp_motion_load(motion, lying->t0 + y[IMP_FACE_TIME], motion->scratch)) return false;
+    *load = load_of(lying, &motion->loads[lying->index]);
+    return true;
+}
+
+static bool set_motion(imp_lying *lying, const imp_pair *pair, const imp_state *states)
 {
     imp_face_motion *m = &lying->motion;
+    imp_motion *motion = lying->moves;
+    const imp_world *world = motion->world;
+    const imp_body *body = lying->body;
     const qvec3 n = lying->normal;
     const double L = lying->size, spin = qvec3_dot(n, lying->inertia), unit = lying->body->mass * L * L;
+    memcpy(motion->scratch, states, (size_t)world->body_count * sizeof *states);
     m->friction = pair->friction;
-    m->press = -qvec3_dot(n, world->gravity) / L;
+    m->context = lying;
+    m->loads = world->field_count > 0 || body->linear_rate != 0 || body->angular_rate != 0 ? loads_at : NULL;
     m->turning = unit / spin;
+    if (!loads_at(lying, lying->start, &m->load)) return false;
+    m->longest = fmin(imp_field_step_limit(world, motion->scratch, motion->loads),
+                      imp_field_custom_step_limit(world, motion->scratch, motion->loads));
     for (int k = 0; k < 2; k++) {
-        m->pull[k] = beside(qvec3_dot(lying->axis[k], world->gravity) / L, m->press);
         m->aside[k] = beside(qvec3_dot(lying->axis[k], lying->inertia), spin) / unit;
         lying->start[IMP_FACE_V + k] = qvec3_dot(lying->axis[k], lying->level.v) / L;
     }
     imp_face_prepare(m);
     m->gyration = sqrt((m->moments[1][1] + m->moments[2][2]) / m->moments[0][0]);
-    return m->press > 0;
+    return m->load.press > 0;
 }
 
 static double farthest(const imp_lying *lying, const impact_face *face)
@@ -122,15 +155,23 @@ static double farthest(const imp_lying *lying, const impact_face *face)
     return most;
 }
 
-bool imp_lying_find(imp_world *world, const imp_pair *given, const imp_state *states, imp_lying *lying)
+/* Whether bodies that move attract each other. */
+static bool is_attracted(const imp_world *world)
 {
+    for (int k = 0; k < world->field_count; k++)
+        if (world->fields[k].def.kind == IMPACT_FORCE_ATTRACTION) return true;
+    return false;
+}
+
+bool imp_lying_find(imp_motion *motion, const imp_pair *given, double t, const imp_state *states, imp_lying *lying)
+{
+    imp_world *world = motion->world;
     imp_pair pair = *given;
     const imp_body *body = &world->bodies[pair.body1], *under = &world->bodies[pair.body2];
     const imp_state *state = &states[pair.body1], *below = &states[pair.body2];
-    const bool plain = under->is_static && !under->driven && body->linear_rate == 0 && body->angular_rate == 0;
     impact_contact contact;
     impact_face face, ground;
-    if (!plain || world->field_count > 0 || pair.torsional > 0) return false;
+    if (!under->is_static || under->driven || pair.torsional > 0 || is_attracted(world)) return false;
     imp_world_gap(world, &pair, states, &contact);
     /* what rocks by less lies; of a superquadric that height is what its flat place is of */
     const double touching = imp_has_faces(body) ? imp_world_touching_distance(world, &pair, states) : 0,
@@ -139,6 +180,7 @@ bool imp_lying_find(imp_world *world, const imp_pair *given, const imp_state *st
     if (!face_towards(body, state, qvec3_neg(contact.normal), height, &face)) return false;
     if (!on_plane && !face_towards(under, below, contact.normal, height, &ground)) return false;
     lying->body = body;
+    lying->moves = motion, lying->t0 = t, lying->index = pair.body1;
     lying->normal = on_plane ? quat_rotate(below->q, (qvec3){0, 0, 1}) : normal_of(under, below, &ground);
     level(lying, state, normal_of(body, state, &face));
     const qvec3 n = lying->normal, low = corner_of(body, &lying->level, &face, 0);
@@ -152,7 +194,7 @@ bool imp_lying_find(imp_world *world, const imp_pair *given, const imp_state *st
     const qvec3 apart = qvec3_sub(lying->level.x, below->x);
     lying->motion.bounded = !on_plane || plane_bounds(lying, under, below, apart, &lying->motion.under);
     if (!on_plane) lay_out_face(lying, under, below, qvec3_neg(apart), &ground, false, &lying->motion.under);
-    return set_motion(lying, world, &pair);
+    return set_motion(lying, &pair, states);
 }
 
 /* ---- its state and step ---- */
@@ -177,7 +219,7 @@ void imp_lying_force(const imp_lying *lying, const double *y, const imp_face_bal
 {
     const quat turn = quat_from_rotation_vector(qvec3_scale(lying->normal, y[IMP_FACE_ANGLE]));
     const imp_face_motion *m = &lying->motion;
-    const double weight = lying->body->mass * m->press; /* over the size */
+    const double weight = lying->body->mass * m->load.press; /* over the size */
     const qvec3 along = quat_rotate(turn, in_plane(lying, b->force[0], b->force[1]));
     *force = qvec3_axpy(weight * lying->size, lying->normal, qvec3_scale(along, weight));
     const qvec3 below = quat_rotate(turn, in_plane(lying, b->center[0], b->center[1]));
@@ -245,7 +287,56 @@ static void put_turning(imp_dense *dense, int first, const imp_lying *lying, con
     }
 }
 
-impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, const imp_face_path *path,
+/* ---- where forces change ---- */
+
+/* Below zero beyond an edge that the body was within, or without, when the step began. */
+static double least_edge(const imp_lying *lying, const imp_face_path *path, double s, int *edge)
+{
+    imp_motion *motion = lying->moves;
+    double y[IMP_FACE_STATE], least = INFINITY;
+    imp_face_at(path, s, y);
+    motion->scratch[lying->index] = imp_lying_state(lying, y);
+    for (int k = 0; k < imp_field_edge_count(motion->world); k++) {
+        const double value = imp_field_edge(motion->world, lying->t0 + y[IMP_FACE_TIME], motion->scratch, k);
+        if (value < least) least = value, *edge = k;
+    }
+    return least;
+}
+
+static double time_at(const imp_lying *lying, const imp_face_path *path, double s)
+{
+    double y[IMP_FACE_STATE];
+    imp_face_at(path, s, y);
+    return lying->t0 + y[IMP_FACE_TIME];
+}
+
+double imp_lying_end(const imp_lying *lying, const imp_face_path *path, imp_end *end)
+{
+    enum { HALVINGS = 60 };
+    int edge = 0;
+    double s = 0, t_end = lying->moves->stride.t_end;
+    *end = (imp_end){IMP_END_TIME, 0};
+    if (lying->moves->world->field_count == 0) return s;
+    if (time_at(lying, path, s) > t_end) {
+        double early = -1;
+        for (int i = 0; i < HALVINGS; i++) {
+            const double middle = 0.5 * (early + s);
+            *(time_at(lying, path, middle) < t_end ? &early : &s) = middle;
+        }
+        end->kind = IMP_END_RENEWAL;
+    }
+    if (!(least_edge(lying, path, s, &edge) < 0)) return s;
+    double within = -1;
+    for (int i = 0; i < HALVINGS; i++) {
+        const double middle = 0.5 * (within + s);
+        *(least_edge(lying, path, middle, &edge) < 0 ? &s : &within) = middle;
+    }
+    (void)least_edge(lying, path, s, &edge);
+    *end = (imp_end){IMP_END_EDGE, edge};
+    return s;
+}
+
+impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, const imp_face_path *path, double s,
                                     imp_state *states)
 {
     imp_dense *dense = &motion->dense;
@@ -254,7 +345,10 @@ impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, 
     impact_status status = imp_motion_make_room(motion);
     if (status == IMPACT_OK) status = imp_dense_reserve(dense, motion->world->arena, motion->size);
     if (status != IMPACT_OK) return status;
-    const double unit = lying->body->mass * lying->size * lying->size, t0 = stride->t, *end = path->c[0];
+    const double unit = lying->body->mass * lying->size * lying->size, t0 = stride->t;
+    double end[IMP_FACE_STATE];
+    imp_face_at(path, s, end);
+    memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* no integrator's */
     *dense = (imp_dense){.t0 = t0,
                          .t1 = t0 + end[IMP_FACE_TIME],
                          .h = 1,
@@ -266,11 +360,14 @@ impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, 
     memset(dense->c, 0, sizeof *dense->c * IMP_DENSE_TERMS * (size_t)dense->size);
     put_of_path(dense, Y_TIME, path, IMP_FACE_TIME, t0, 1);
     put_of_path(dense, Y_SLIDING, path, IMP_FACE_WORK, works->sliding, unit);
-    dense->c[Y_FORCE_WORK] = works->force, dense->c[Y_DAMPING] = works->damping;
+    put_of_path(dense, Y_FORCE_WORK, path, IMP_FACE_PUSHED, works->force, unit);
+    put_of_path(dense, Y_DAMPING, path, IMP_FACE_DAMPED, works->damping, unit);
     put_in_plane(dense, Y_BODIES, lying, path, IMP_FACE_X, lying->level.x);
     put_in_plane(dense, Y_BODIES + Y_VELOCITY, lying, path, IMP_FACE_V, (qvec3){0, 0, 0});
     put_turning(dense, Y_BODIES, lying, path);
     works->sliding += unit * end[IMP_FACE_WORK];
+    works->force += unit * end[IMP_FACE_PUSHED];
+    works->damping += unit * end[IMP_FACE_DAMPED];
     stride->t = dense->t1;
     stride->restart = true;
     for (int i = 0; i < motion->world->body_count; i++)

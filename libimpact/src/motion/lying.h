@@ -14,14 +14,17 @@ typedef struct imp_lying {
     const imp_body *body;
     imp_state level; /* the body exactly on the face, moving along it alone */
     qvec3 normal, axis[2];
-    qvec3 inertia;                /* J n, kg m^2 */
-    double size;                  /* m */
+    qvec3 inertia;     /* J n, kg m^2 */
+    double size;       /* m */
+    imp_motion *moves; /* of the loads, from t0 on */
+    double t0;
+    int index;                    /* the body's */
     double start[IMP_FACE_STATE]; /* y of the level state */
 } imp_lying;
 
-/* The pair's body 1 on its static body 2, where both have a face there and it is pressed on by gravity alone; false
- * where not: also where it is damped, or turning has friction of its own. */
-bool imp_lying_find(imp_world *world, const imp_pair *pair, const imp_state *states, imp_lying *lying);
+/* The pair's body 1 on its static body 2 at t, where both have a face there and it is pressed on; false where not: also
+ * where the surface moves, turning has friction of its own, or a force cannot be had. lying stays where it is. */
+bool imp_lying_find(imp_motion *motion, const imp_pair *pair, double t, const imp_state *states, imp_lying *lying);
 
 /* The body with y. */
 imp_state imp_lying_state(const imp_lying *lying, const double *y);
@@ -29,9 +32,11 @@ imp_state imp_lying_state(const imp_lying *lying, const double *y);
 void imp_lying_force(const imp_lying *lying, const double *y, const imp_face_balance *balance, qvec3 *force, qvec3 *arm,
                      double *moment);
 
-/* A path as the step of a motion, of an island in which this body alone moves: from motion->stride.t on, which is then
- * at its end. IMPACT_ENOMEM. */
-impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, const imp_face_path *path,
+/* Where the path is to end, s in (-1, 0]: at its end, where stride.t_end is, or beyond the first edge of a force. */
+double imp_lying_end(const imp_lying *lying, const imp_face_path *path, imp_end *end);
+/* A path to s as the step of a motion, of an island in which this body alone moves: from motion->stride.t on, which is
+ * then at its end. IMPACT_ENOMEM. */
+impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, const imp_face_path *path, double s,
                                     imp_state *states);
 
 #endif

@@ -16,7 +16,7 @@
 /* A motion of constant rates, in the face's units, until so many s from now. */
 typedef struct steady {
     double a[2], alpha, until;
-    bool fades;
+    bool fades, sets_out;
 } steady;
 
 static double size_of(const double v[2]) { return hypot(v[0], v[1]); }
@@ -40,15 +40,16 @@ static double leaves(const imp_flat_face *face, const double x[2], const double 
 /* Along a line, without turning. */
 static bool slides_straight(const imp_face_motion *m, const double v[2], steady *s)
 {
-    const double speed = size_of(v), pull = size_of(m->pull), *along = speed > 0 ? v : m->pull;
+    const double speed = size_of(v), pull = size_of(m->load.pull), *along = speed > 0 ? v : m->load.pull;
     const double size = size_of(along);
-    if (!(size > 0) || fabs(v[0] * m->pull[1] - v[1] * m->pull[0]) > IMP_LEVEL * speed * (pull + m->press))
+    if (!(size > 0) ||
+        fabs(v[0] * m->load.pull[1] - v[1] * m->load.pull[0]) > IMP_LEVEL * speed * (pull + m->load.press))
         return false;
     const double line[2] = {along[0] / size, along[1] / size}, twist[3] = {line[0], line[1], 0};
     imp_face_balance balance = {.p = {0}};
     if (!imp_face_balance_of(m, twist, &balance)) return false;
     if (!(imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN)) return false;
-    const double rate = m->pull[0] * line[0] + m->pull[1] * line[1] - m->friction * m->press;
+    const double rate = m->load.pull[0] * line[0] + m->load.pull[1] * line[1] - m->friction * m->load.press;
     if (speed == 0 && !(rate > 0)) return false;
     *s = (steady){
         .a = {rate * line[0], rate * line[1]}, .until = rate < 0 ? speed / -rate : INFINITY, .fades = rate < 0};
@@ -67,7 +68,7 @@ static bool spins_in_place(const imp_face_motion *m, double w, steady *s)
     if (!imp_face_balance_of(m, twist, &balance) || size_of(balance.force) > IMP_LEVEL * m->friction) return false;
     if (!(imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN)) return false;
     if (m->bounded && !(imp_face_spare(&m->under, none) > 1 + IMP_FACE_MARGIN)) return false; /* no corner beyond it */
-    s->alpha = m->press * m->turning * balance.moment;
+    s->alpha = m->load.press * m->turning * balance.moment;
     s->a[0] = s->a[1] = 0;
     s->fades = m->friction > 0;
     s->until = s->fades ? w / -s->alpha : INFINITY;
@@ -79,7 +80,7 @@ static bool glides_freely(const imp_face_motion *m, const double *y, steady *s)
 {
     imp_face_balance balance = {.p = {0}};
     if (m->friction > 0 || m->bounded || !imp_face_balance_of(m, &y[IMP_FACE_V], &balance)) return false;
-    *s = (steady){.a = {m->pull[0], m->pull[1]}, .until = INFINITY};
+    *s = (steady){.a = {m->load.pull[0], m->load.pull[1]}, .until = INFINITY};
     return imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN;
 }
 
@@ -97,13 +98,23 @@ static bool fades_out(const imp_face_motion *m, const double *y, double slow, st
     return true;
 }
 
+/* Under a load that changes: from rest until it has a direction. */
+static bool sets_out(const imp_face_motion *m, double slow, steady *s)
+{
+    const double still[2] = {0, 0};
+    if (!slides_straight(m, still, s)) return false;
+    s->until = IMP_FACE_SET_OUT * slow / size_of(s->a);
+    return s->sets_out = true;
+}
+
 static bool find_steady(const imp_lying *lying, double slow, steady *s)
 {
     const imp_face_motion *m = &lying->motion;
     const double *y = lying->start, *v = &y[IMP_FACE_V], w = y[IMP_FACE_W];
     *s = (steady){.until = INFINITY};
+    if (m->loads) return imp_face_speed(m, y) > 0 ? fades_out(m, y, slow, s) : sets_out(m, slow, s);
     if (w == 0 && slides_straight(m, v, s)) return true;
-    if (size_of(v) == 0 && w != 0 && size_of(m->pull) == 0 && spins_in_place(m, w, s)) return true;
+    if (size_of(v) == 0 && w != 0 && size_of(m->load.pull) == 0 && spins_in_place(m, w, s)) return true;
     return glides_freely(m, y, s) || fades_out(m, y, slow, s);
 }
 
@@ -119,10 +130,11 @@ static void clear_roundings(imp_lying *lying, double slow)
     if (speed <= IMP_LEVEL * fabs(*w)) v[0] = v[1] = 0;
 }
 
-static bool find_lying(imp_island *island, const imp_pair *pair, const imp_state *states, double slow, imp_lying *lying)
+static bool find_lying(imp_island *island, const imp_pair *pair, double t, const imp_state *states, double slow,
+                       imp_lying *lying)
 {
     if (island->scene->piles == IMPACT_PILES_STEPS) return false;
-    if (!imp_lying_find(&island->world, pair, states, lying)) return false;
+    if (!imp_lying_find(&island->motion, pair, t, states, lying)) return false;
     clear_roundings(lying, slow);
     return true;
 }
@@ -135,7 +147,7 @@ static bool glides(imp_island *island, const imp_lying *lying)
     const double *y = lying->start;
     imp_face_balance balance = {.p = {0}};
     steady s;
-    if (imp_face_speed(m, y) == 0 && !(size_of(m->pull) > m->friction * m->press)) return false;
+    if (imp_face_speed(m, y) == 0 && !(size_of(m->load.pull) > m->friction * m->load.press)) return false;
     if (find_steady(lying, 0, &s)) return true;
     double rate[IMP_FACE_STATE];
     const bool moves = imp_face_speed(m, y) > 0 && imp_face_rates(m, y, rate, &balance);
@@ -163,9 +175,10 @@ static impact_status tell_contact(imp_island *island, int p, const imp_lying *ly
 /* Where the pressure would have to be so that friction holds the body, or brakes its slide, without tipping it. */
 static void wanted_center(const imp_face_motion *m, const double *y, double center[2])
 {
-    const double *v = &y[IMP_FACE_V], speed = size_of(v), pull = size_of(m->pull), hold = m->friction * m->press;
-    const double *along = speed > 0 ? v : m->pull, size = speed > 0 ? speed : pull;
-    const double part = size > 0 ? (speed > 0 ? hold : fmin(hold, pull)) / (m->press * size) : 0;
+    const double *v = &y[IMP_FACE_V], speed = size_of(v), pull = size_of(m->load.pull),
+                 hold = m->friction * m->load.press;
+    const double *along = speed > 0 ? v : m->load.pull, size = speed > 0 ? speed : pull;
+    const double part = size > 0 ? (speed > 0 ? hold : fmin(hold, pull)) / (m->load.press * size) : 0;
     for (int k = 0; k < 2; k++) center[k] = m->height * part * along[k];
 }
 
@@ -215,7 +228,8 @@ static impact_status lay(imp_island *island, int first, int end, bool lay_before
     for (int p = first; p < end; p++) stay += world->pairs[p].placed && imp_scene_point_stays(island, p);
     if (stay < 3 || !world->bodies[world->pairs[first].body2].is_static) return IMPACT_OK;
     if (is_held_elsewhere_too(island, &world->pairs[first])) return IMPACT_OK;
-    if (!find_lying(island, &world->pairs[first], island->states, island->scene->rest_speed, &lying)) return IMPACT_OK;
+    if (!find_lying(island, &world->pairs[first], island->t, island->states, island->scene->rest_speed, &lying))
+        return IMPACT_OK;
     const int body = world->pairs[first].body1;
     const imp_state now = imp_lying_state(&lying, lying.start);
     imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), world->bodies[body].mass));
@@ -253,7 +267,9 @@ static void glide_on_flat(imp_island *island, imp_pair *pair)
     const int body = pair->body1;
     if (!imp_is_held(pair) || !pair->flat || pair->still || island->motion.resting[body]) return;
     if (!imp_flat_lies(&island->world, pair, island->states)) return;
-    if (!find_lying(island, pair, island->states, island->scene->rest_speed, &lying) || !glides(island, &lying)) return;
+    if (!find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying) ||
+        !glides(island, &lying))
+        return;
     const imp_state now = imp_lying_state(&lying, lying.start);
     const double energy = imp_scene_undriven_energy(island);
     imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), island->world.bodies[body].mass));
@@ -276,7 +292,7 @@ bool imp_island_hold_flat(imp_island *island, int p)
     const imp_state *state = &island->states[pair->body1];
     impact_held held;
     if (imp_pair_has_faces(&island->world, pair)) return false;
-    if (imp_island_glide_force(island, island->states, &held)) {
+    if (imp_island_glide_force(island, island->t, island->states, &held)) {
         const qvec3 at = quat_rotate_inverse(state->q, qvec3_sub(held.point, state->x));
         imp_spot_on(&body->shape, at, pair->spot);
         pair->carried = true;
@@ -322,7 +338,7 @@ impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool
     steady s;
     imp_face_path path;
     *closed = true;
-    const bool found = find_lying(island, pair, island->states, 0, &lying);
+    const bool found = find_lying(island, pair, t, island->states, 0, &lying);
     if (!found) {
         *segment = ends_here(island, pair);
         return IMPACT_OK;
@@ -331,7 +347,11 @@ impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool
     if (find_steady(&lying, island->scene->rest_speed / lying.size, &s)) {
         *segment =
             imp_segment_roll(t, t + s.until, &start, along_face(&lying, s.a), qvec3_scale(lying.normal, s.alpha));
-        end_with(island, s.fades ? IMP_END_STICK : isfinite(s.until) ? IMP_END_BOUNDS : IMP_END_TIME);
+        const bool sticks = s.fades && lying.motion.friction > 0;
+        end_with(island, sticks              ? IMP_END_STICK
+                         : s.sets_out        ? IMP_END_RENEWAL
+                         : isfinite(s.until) ? IMP_END_BOUNDS
+                                             : IMP_END_TIME);
         return IMPACT_OK;
     }
     if (!imp_face_motion_step(&lying.motion, lying.start, &island->glide, &path)) {
@@ -339,22 +359,23 @@ impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool
         return IMPACT_OK;
     }
     *closed = false;
-    island->end = (imp_end){IMP_END_TIME, 0};
-    const impact_status status = imp_motion_next_lying(motion, &lying, &path, island->states);
+    const double to = imp_lying_end(&lying, &path, &island->end);
+    const impact_status status = imp_motion_next_lying(motion, &lying, &path, to, island->states);
     if (status == IMPACT_OK) *segment = imp_segment_dense(&motion->dense, 0, &start);
     return status;
 }
 
-bool imp_island_glide_force(imp_island *island, const imp_state *states, impact_held *held)
+bool imp_island_glide_force(imp_island *island, double t, const imp_state *states, impact_held *held)
 {
     const imp_pair *pair = imp_island_lying(island);
     imp_lying lying;
     imp_face_balance balance = {.p = {0}};
     double rate[IMP_FACE_STATE], moment;
     qvec3 force, arm;
-    if (!find_lying(island, pair, states, 0, &lying)) return false;
+    if (!find_lying(island, pair, t, states, 0, &lying)) return false;
     double *y = lying.start;
-    if (!(imp_face_speed(&lying.motion, y) > 0)) memcpy(&y[IMP_FACE_V], lying.motion.pull, sizeof lying.motion.pull);
+    if (!(imp_face_speed(&lying.motion, y) > 0))
+        memcpy(&y[IMP_FACE_V], lying.motion.load.pull, sizeof lying.motion.load.pull);
     if (!imp_face_rates(&lying.motion, y, rate, &balance)) return false;
     imp_lying_force(&lying, y, &balance, &force, &arm, &moment);
     *held = (impact_held){.body1 = island->world.bodies[pair->body1].index,

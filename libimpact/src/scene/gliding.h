@@ -31,7 +31,7 @@ imp_pair *imp_island_lying(const imp_island *island);
 /* The gliding body's next segment: a closed form, or a step, in motion.dense. What ends it is in island->end. */
 impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool *closed);
 
-/* Its contact, as one at the centre of pressure, where its state is this. False where it has none. */
-bool imp_island_glide_force(imp_island *island, const imp_state *states, impact_held *held);
+/* Its contact at t, as one at the centre of pressure, where its state is this. False where it has none. */
+bool imp_island_glide_force(imp_island *island, double t, const imp_state *states, impact_held *held);
 
 #endif

@@ -84,7 +84,7 @@ static void pile_rows(const imp_island *island, double t, held_rows *rows)
 static void glide_row(imp_island *island, double t, held_rows *rows)
 {
     impact_held row;
-    if (!imp_island_glide_force(island, island->motion.sampled, &row)) return;
+    if (!imp_island_glide_force(island, t, island->motion.sampled, &row)) return;
     row.t = t;
     add_row(rows, &row);
 }

@@ -237,7 +237,12 @@ static imp_box static_box(const imp_body *body, const imp_state *state)
     return box;
 }
 
-static bool is_parabola(const imp_segment *s) { return s->kind == IMP_SEGMENT_FREE || s->kind == IMP_SEGMENT_ROLL; }
+/* Of its centre: damping of its turning alone does not bend that. */
+static bool is_parabola(const imp_segment *s, const imp_body *body)
+{
+    return s->kind == IMP_SEGMENT_FREE || s->kind == IMP_SEGMENT_ROLL ||
+           (s->kind == IMP_SEGMENT_DAMPED && !(body->linear_rate > 0));
+}
 
 /* How long the body is to stay in a box: until it has gone the fatness times its radius, at its speed or from rest. */
 static double time_in_box(const imp_track *track, const imp_body *body, qvec3 v, double t)
@@ -258,11 +263,11 @@ static imp_box fat_box(const imp_track *track, const imp_body *body, double t)
     double time = time_in_box(track, body, velocity, t), x[3], v[3], a[3] = {0, 0, 0};
     if (s->kind == IMP_SEGMENT_DENSE) time = larger(time, s->t1 - t);
     store(place, x), store(velocity, v);
-    if (is_parabola(s)) store(s->acceleration, a);
-    const double top = is_parabola(s) || s->kind == IMP_SEGMENT_REST ? 0 : imp_segment_top_speed(s, body, t);
+    if (is_parabola(s, body)) store(s->acceleration, a);
+    const double top = is_parabola(s, body) || s->kind == IMP_SEGMENT_REST ? 0 : imp_segment_top_speed(s, body, t);
     imp_box box;
     for (int k = 0; k < 3; k++) {
-        if (is_parabola(s))
+        if (is_parabola(s, body))
             range(x[k], v[k], a[k], time, &box.low[k], &box.high[k]);
         else
             box.low[k] = x[k] - time * top, box.high[k] = x[k] + time * top;
@@ -280,16 +285,16 @@ static double leave_time(const imp_track *track, const imp_body *body, const imp
     double x[3], v[3], a[3] = {0, 0, 0}, time = INFINITY, room = INFINITY;
     store(imp_segment_place(s, body, t, &velocity), x);
     store(velocity, v);
-    if (is_parabola(s)) store(s->acceleration, a);
+    if (is_parabola(s, body)) store(s->acceleration, a);
     for (int k = 0; k < 3; k++) {
         const double up = box->high[k] - body->radius - x[k], down = x[k] - box->low[k] - body->radius;
         room = smaller(room, smaller(up, down));
         if (!(up > 0 && down > 0)) return t;
-        if (!is_parabola(s)) continue;
+        if (!is_parabola(s, body)) continue;
         if (v[k] > 0 || a[k] > 0) time = smaller(time, impact_flight_fall_time(up, -v[k], -a[k]));
         if (v[k] < 0 || a[k] < 0) time = smaller(time, impact_flight_fall_time(down, v[k], a[k]));
     }
-    if (!is_parabola(s)) time = room / imp_segment_top_speed(s, body, t);
+    if (!is_parabola(s, body)) time = room / imp_segment_top_speed(s, body, t);
     return t + time;
 }
 

@@ -18,7 +18,7 @@ static imp_face_motion square_motion(double height, double friction)
     imp_face_motion m = {.face = {.count = 4, .corner = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}},
                          .height = height,
                          .friction = friction,
-                         .press = 1,
+                         .load.press = 1,
                          .turning = 1.5};
     imp_face_prepare(&m);
     m.gyration = sqrt(2.0 / 3);
@@ -27,7 +27,7 @@ static imp_face_motion square_motion(double height, double friction)
 
 static imp_face_motion disc_motion(double height, double friction)
 {
-    imp_face_motion m = {.face = {.radius = 1}, .height = height, .friction = friction, .press = 1, .turning = 2};
+    imp_face_motion m = {.face = {.radius = 1}, .height = height, .friction = friction, .load.press = 1, .turning = 2};
     imp_face_prepare(&m);
     m.gyration = sqrt(.5);
     return m;
@@ -96,7 +96,7 @@ static void follow(const imp_face_motion *m, double *y, double slow)
 /* Runge and Kutta's steps of h in the same variable. */
 static void follow_by_fixed_steps(const imp_face_motion *m, double *y, double slow, double h)
 {
-    const double scale = m->friction * m->press + hypot(m->pull[0], m->pull[1]);
+    const double scale = m->friction * m->load.press + hypot(m->load.pull[0], m->load.pull[1]);
     while (imp_face_speed(m, y) > slow) {
         double rate[4][IMP_FACE_STATE], at[IMP_FACE_STATE];
         for (int s = 0; s < 4; s++) {
@@ -117,7 +117,7 @@ static void steps_are_the_limit_of_short_ones(void **state)
 {
     (void)state;
     imp_face_motion cases[4] = {square_motion(0, 1), square_motion(.3, .8), disc_motion(.2, .5), square_motion(.2, .6)};
-    cases[3].pull[0] = .1, cases[3].pull[1] = -.2;
+    cases[3].load.pull[0] = .1, cases[3].load.pull[1] = -.2;
     for (int k = 0; k < 4; k++) {
         const double begin[IMP_FACE_STATE] = {0, 0, 0, 1, k == 0 ? 0 : .3, 1}, slow = 1e-9;
         double y[IMP_FACE_STATE], coarse[IMP_FACE_STATE], fine[IMP_FACE_STATE];
@@ -141,7 +141,7 @@ static void energy_is_kept(void **state)
     unsigned long seed = 9;
     for (int k = 0; k < 20; k++) {
         imp_face_motion m = k % 2 ? disc_motion(.3, .4) : square_motion(.3, .4);
-        m.pull[0] = uniform(&seed, -.3, .3), m.pull[1] = uniform(&seed, -.2, .2);
+        m.load.pull[0] = uniform(&seed, -.3, .3), m.load.pull[1] = uniform(&seed, -.2, .2);
         double y[IMP_FACE_STATE] = {0, 0, 0, uniform(&seed, -2, 2), uniform(&seed, -2, 2), uniform(&seed, -3, 3)};
         const double begun = .5 * (y[3] * y[3] + y[4] * y[4] + y[5] * y[5] / m.turning);
         double length = 1;
@@ -153,7 +153,7 @@ static void energy_is_kept(void **state)
             assert_near(before[3], y[3], 1e-13); /* it begins where it did */
             imp_face_at(&path, 0, y);
             const double kinetic = .5 * (y[3] * y[3] + y[4] * y[4] + y[5] * y[5] / m.turning);
-            assert_near(kinetic + y[7] - m.pull[0] * y[0] - m.pull[1] * y[1], begun, 1e-12 * (1 + begun));
+            assert_near(kinetic + y[7] - m.load.pull[0] * y[0] - m.load.pull[1] * y[1], begun, 1e-12 * (1 + begun));
         }
     }
 }
@@ -164,8 +164,8 @@ static void mirrored(void **state)
     (void)state;
     for (int k = 0; k < 2; k++) {
         imp_face_motion m = k ? disc_motion(.3, .5) : square_motion(.3, .5), mirror = m;
-        m.pull[0] = mirror.pull[0] = .1;
-        m.pull[1] = .2, mirror.pull[1] = -.2;
+        m.load.pull[0] = mirror.load.pull[0] = .1;
+        m.load.pull[1] = .2, mirror.load.pull[1] = -.2;
         double y[IMP_FACE_STATE] = {0, 0, 0, 1, .4, 2}, z[IMP_FACE_STATE] = {0, 0, 0, 1, -.4, -2};
         follow(&m, y, 1e-9);
         follow(&mirror, z, 1e-9);
