@@ -44,7 +44,8 @@ typedef struct cvode_ode {
     N_Vector y, outside; /* the state; a vector whose numbers stand in a caller's array */
     N_Vector tolerances; /* NULL when one absolute tolerance serves all */
     SUNNonlinearSolver nonlinear;
-    int still; /* steps in a row that did not change t */
+    int still;    /* steps in a row that did not change t */
+    bool gave_up; /* the right-hand side did, in this start */
 } cvode_ode;
 
 static cvode_ode *cvode_of(const impact_ode *ode) { return (cvode_ode *)(uintptr_t)ode; }
@@ -100,7 +101,9 @@ static impact_status explain_failure(cvode_ode *own, const char *why)
 static int rhs(sunrealtype t, N_Vector y, N_Vector rate, void *context)
 {
     const impact_ode *ode = context;
-    return ode->def.rhs(t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), ode->def.context);
+    const int answer = ode->def.rhs(t, N_VGetArrayPointer(y), N_VGetArrayPointer(rate), ode->def.context);
+    if (answer < 0) cvode_of(ode)->gave_up = true; /* which fixed-point iteration takes for no more than a long step */
+    return answer;
 }
 
 static int roots(sunrealtype t, N_Vector y, sunrealtype *value, void *context)
@@ -197,6 +200,7 @@ static impact_status cvode_start(impact_ode *ode, double t, const double *y)
     cvode_ode *own = cvode_of(ode);
     memcpy(N_VGetArrayPointer(own->y), y, sizeof(double) * (size_t)ode->size);
     own->still = 0;
+    own->gave_up = false;
     return CVodeReInit(own->cvode, t, own->y) == CV_SUCCESS ? IMPACT_OK : IMPACT_EINTEGRATOR;
 }
 
@@ -221,7 +225,8 @@ static impact_status cvode_step(impact_ode *ode, double t_stop, double *y, bool 
     }
     const double before = ode->t;
     if (CVodeSetStopTime(own->cvode, t_stop) != CV_SUCCESS) return IMPACT_EINTEGRATOR;
-    const int result = CVode(own->cvode, t_stop, own->y, &ode->t, CV_ONE_STEP);
+    int result = CVode(own->cvode, t_stop, own->y, &ode->t, CV_ONE_STEP);
+    if (own->gave_up && (result >= 0 || result == CV_CONV_FAILURE)) result = CV_RHSFUNC_FAIL;
     if (own->pool.spent) return IMPACT_ENOMEM;
     if (result < 0) return explain_failure(own, reason(result));
     memcpy(y, N_VGetArrayPointer(own->y), sizeof(double) * (size_t)ode->size);

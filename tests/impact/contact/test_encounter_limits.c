@@ -170,6 +170,64 @@ static void bad_input_is_named_in_words(void **state)
     expect(&e, 0, IMPACT_EARGUMENT, "there are no contacts");
 }
 
+/* What is wrong of an encounter as a whole, by what is said of it. */
+static void what_no_encounter_has_is_named(void **state)
+{
+    (void)state;
+    random_stream random = {24};
+    const random_encounter e = encounter_draw(&random, &(encounter_ranges){3, 3, 1, 0.3, 4, 4});
+    const impact_encounter good = encounter_of(&e, IMPACT_TOGETHER_SPRINGS);
+    impact_encounter bad[9];
+    static const char *const words[9] = {
+        "there are no bodies: body_count is 0",
+        "there are no bodies: body_count is 4",
+        "there are no contacts: meeting_count is -1",
+        "there are no contacts: meeting_count is 3",
+        "law is 3, must be springs, moreau or sequence",
+        "law is -1, must be springs, moreau or sequence",
+        "restitution is 3, must be Poisson's, Newton's or Stronge's",
+        "exponent is NaN",
+        "exponent is 0.5, must be in [1, 3], or 0 for 3/2",
+    };
+    for (int k = 0; k < 9; k++) bad[k] = good;
+    bad[0].body_count = 0;
+    bad[1].bodies = NULL, bad[1].body_count = 4;
+    bad[2].meeting_count = -1;
+    bad[3].meetings = NULL, bad[3].meeting_count = 3;
+    bad[4].law = (impact_together_law)3;
+    bad[5].law = (impact_together_law)-1;
+    bad[6].restitution = (impact_law)3;
+    bad[7].exponent = NAN;
+    bad[8].exponent = 0.5;
+    for (int k = 0; k < 9; k++) {
+        char message[300];
+        const impact_status wanted = k == 7 ? IMPACT_EDOMAIN : IMPACT_EARGUMENT;
+        assert_int_equal(impact_collide_together_check(&bad[k], message, sizeof message), wanted);
+        assert_string_equal(message, words[k]);
+        assert_int_equal(impact_collide_together_check(&bad[k], NULL, 0), wanted);
+    }
+    random_encounter other = e;
+    other.meetings[0].stiffness = INFINITY;
+    expect(&other, 0, IMPACT_EARGUMENT, "contact 0: stiffness is inf, must be > 0 and finite");
+    other = e, other.meetings[2].body1 = -1;
+    expect(&other, 0, IMPACT_EARGUMENT, "contact 2: body1 is -1, and there are ");
+    other = e, other.meetings[1] = other.meetings[0], other.meetings[1].restitution *= 0.5;
+    expect(&other, 0, IMPACT_EARGUMENT,
+           "contact 1 is contact 0 again, with another friction, restitution or stiffness");
+    other = e, other.meetings[1] = other.meetings[0], other.meetings[1].stiffness *= 2;
+    expect(&other, 0, IMPACT_EARGUMENT,
+           "contact 1 is contact 0 again, with another friction, restitution or stiffness");
+}
+
+static void laws_and_solvers_have_names(void **state)
+{
+    (void)state;
+    static const char *const laws[] = {"springs", "moreau", "sequence", "unknown"};
+    static const char *const solvers[] = {"none", "alone", "series", "cone", "sweeps", "unknown"};
+    for (int k = 0; k < 4; k++) assert_string_equal(impact_together_law_name((impact_together_law)k), laws[k]);
+    for (int k = 0; k < 6; k++) assert_string_equal(impact_together_solver_name((impact_together_solver)k), solvers[k]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -178,6 +236,8 @@ int main(void)
         cmocka_unit_test(what_friction_locks_is_told),
         cmocka_unit_test(a_workspace_takes_memory_once_and_keeps_its_limit),
         cmocka_unit_test(bad_input_is_named_in_words),
+        cmocka_unit_test(what_no_encounter_has_is_named),
+        cmocka_unit_test(laws_and_solvers_have_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
