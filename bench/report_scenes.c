@@ -4,7 +4,7 @@
  * not know? CSV, a line for each way to end: scenes that ended so, the longest of them in seconds of the processor's
  * time and its seed, the worst residuals of those that are good, and of these (without forces) how many part from
  * the same motion by the integrator by more than 1e4 tolerances, up to twenty events: chaos does the rest.
- * What is not good, or takes over three seconds, is told on stderr. --scenes N, --seed S (the first), --steps M
+ * What is not good, parts, or takes over three seconds, is told on stderr. --scenes N, --seed S (the first), --steps M
  * (max_steps).
  */
 #include <string.h>
@@ -64,7 +64,7 @@ static bool nothing(double t, int body, double mass, qvec3 x, quat q, qvec3 v, q
 static bool is_good(impact_status status) { return status == IMPACT_OK || status == IMPACT_AT_REST; }
 
 /* The same by the integrator throughout: a force that does nothing. */
-static void compare(random_scene *s, const ending *first, tally *t)
+static void compare(unsigned long seed, random_scene *s, const ending *first, tally *t)
 {
     impact_force_def force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
     force.function = nothing;
@@ -78,7 +78,10 @@ static void compare(random_scene *s, const ending *first, tally *t)
     for (int i = 0; i < s->def.body_count - 1; i++)
         apart = fmax(apart, qvec3_norm(qvec3_sub(first->place[i], second.place[i])));
     t->compared++;
-    t->parted += !(apart <= 1e4 * s->def.tolerance * (1 + qvec3_norm(first->place[0])));
+    if (apart <= 1e4 * s->def.tolerance * (1 + qvec3_norm(first->place[0]))) return;
+    t->parted++;
+    fprintf(stderr, "seed %lu: after %ld events %.2g m from the same motion by the integrator\n", seed, first->events,
+            apart);
 }
 
 static void count(unsigned long seed, long steps, tally *tallies)
@@ -98,7 +101,7 @@ static void count(unsigned long seed, long steps, tally *tallies)
     t->fallen = fmax(t->fallen, e.residuals.loss_fallen);
     if (!is_good(e.status) || e.seconds > SLOW)
         fprintf(stderr, "seed %lu: %s after %.2f s: %s\n", seed, t->words, e.seconds, e.message);
-    if (is_good(e.status) && s.def.force_count == 0 && e.events <= FEW_EVENTS) compare(&s, &e, t);
+    if (is_good(e.status) && s.def.force_count == 0 && e.events <= FEW_EVENTS) compare(seed, &s, &e, t);
 }
 
 int main(int argc, char **argv)

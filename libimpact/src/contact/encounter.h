@@ -54,6 +54,7 @@ typedef struct imp_group {
 typedef struct imp_block {
     unsigned char *bytes;
     size_t size, used;
+    bool spent; /* it was asked for more than it has */
 } imp_block;
 
 /* Room for so many bytes, of which none is used; what was there is lost. False: there is no more. */

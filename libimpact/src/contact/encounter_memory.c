@@ -37,10 +37,10 @@ impact_memory impact_together_workspace_memory(const impact_together_workspace *
 
 bool imp_block_clear(imp_arena *arena, imp_block *block, size_t bytes)
 {
-    block->used = 0;
+    block->used = 0, block->spent = false;
     if (bytes <= block->size) return true;
     imp_arena_give(arena, block->bytes);
-    *block = (imp_block){imp_arena_take(arena, bytes, 1), bytes, 0};
+    *block = (imp_block){imp_arena_take(arena, bytes, 1), bytes, 0, false};
     if (!block->bytes) block->size = 0;
     return block->bytes;
 }
@@ -48,7 +48,7 @@ bool imp_block_clear(imp_arena *arena, imp_block *block, size_t bytes)
 void *imp_block_take(imp_block *block, size_t count, size_t size)
 {
     const size_t bytes = (count * size + 15) / 16 * 16;
-    if (bytes > block->size - block->used) return NULL;
+    if (bytes > block->size - block->used) return block->spent = true, NULL;
     unsigned char *part = block->bytes + block->used;
     block->used += bytes;
     return memset(part, 0, bytes);

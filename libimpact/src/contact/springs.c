@@ -46,9 +46,7 @@ static bool take_room(imp_springs *s, impact_together_workspace *workspace)
     s->kept = imp_encounter_take(workspace, n, sizeof *s->kept);
     s->creep_room = imp_encounter_take(workspace, imp_springs_creep_size(n), sizeof *s->creep_room);
     s->cone = &workspace->cone;
-    return s->springs && s->row_start && s->column && s->value && s->stick && s->inverse && s->now && s->scratch &&
-           s->factor && s->begin && s->turning && s->modes && s->kept && s->creep_room &&
-           imp_cone_reserve(s->cone, s->count);
+    return !workspace->work.spent && imp_cone_reserve(s->cone, s->count);
 }
 
 /* W's rows without zeros and without columns that never push. */

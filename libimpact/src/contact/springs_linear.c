@@ -128,8 +128,7 @@ static bool take_line_room(imp_linear_springs *s, impact_together_workspace *wor
     s->bound = imp_encounter_take(workspace, n, sizeof *s->bound);
     s->push = imp_encounter_take(workspace, n, sizeof *s->push);
     s->gain = imp_encounter_take(workspace, n, sizeof *s->gain);
-    return s->line && s->start && s->row && s->value && s->closed && s->place && s->closed_start && s->closed_row &&
-           s->closed_value && s->depth && s->bound && s->push && s->gain;
+    return !workspace->work.spent;
 }
 
 static void lay_out_lines(imp_linear_springs *s, const imp_contact *contacts)

@@ -58,11 +58,13 @@ static impact_collider any_body(random_stream *random, bool is_static)
     return body;
 }
 
+enum { BLOCK = 1 << 18 };
+
 /* The springs' impulse of one contact, which impact_collide_together would hand to impact_collide. */
 static impact_status by_springs(const impact_collision *c, double exponent, impact_together_workspace *workspace,
-                                double p[3])
+                                double p[3], size_t room)
 {
-    static unsigned char bytes[1 << 18];
+    static unsigned char bytes[BLOCK];
     const impact_meeting m = {.body1 = 0,
                               .body2 = 1,
                               .normal = c->normal,
@@ -89,8 +91,32 @@ static impact_status by_springs(const impact_collision *c, double exponent, impa
         for (int i = 0; i < 9; i++)
             for (int k = 0; k < 6; k++) w[i] += contact.row[s][i / 3][k] * contact.row[s][i % 3][k];
     p[0] = p[1] = p[2] = 0;
-    workspace->work = (imp_block){bytes, sizeof bytes, 0};
+    workspace->work = (imp_block){.bytes = bytes, .size = room};
     return imp_springs_solve(&group, exponent, workspace);
+}
+
+/* Whatever of its room is missing, a group says so, and touches nothing beyond. */
+static void a_block_too_small_is_told(void **state)
+{
+    (void)state;
+    impact_together_workspace *workspace;
+    random_stream random = {8};
+    int refused = 0, solved = 0;
+    const impact_collision c = {.body = {any_body(&random, false), any_body(&random, false)},
+                                .normal = random_direction(&random),
+                                .friction = 0.3,
+                                .restitution = 0.5,
+                                .law = IMPACT_STRONGE};
+    assert_int_equal(impact_together_workspace_create(NULL, &workspace), IMPACT_OK);
+    for (size_t room = 0; room < 16384; room += 256) {
+        double p[3];
+        const impact_status status = by_springs(&c, 1.5, workspace, p, room);
+        assert_true(status == IMPACT_ENOMEM ? solved == 0 : status == IMPACT_OK);
+        refused += status == IMPACT_ENOMEM, solved += status == IMPACT_OK;
+    }
+    assert_true(refused > 2 && solved > 2);
+    workspace->work = (imp_block){0};
+    impact_together_workspace_destroy(workspace);
 }
 
 static void one_contact_is_impact_collide(void **state)
@@ -110,7 +136,7 @@ static void one_contact_is_impact_collide(void **state)
         impact_outcome o;
         if (impact_collide(&c, &o) != IMPACT_OK) continue;
         double p[3];
-        assert_int_equal(by_springs(&c, exponents[run % 3], workspace, p), IMPACT_OK);
+        assert_int_equal(by_springs(&c, exponents[run % 3], workspace, p, BLOCK), IMPACT_OK);
         qvec3 normal, axes[3];
         (void)qvec3_normalize(c.normal, &normal);
         imp_cone_find_axes(normal, axes);
@@ -120,7 +146,7 @@ static void one_contact_is_impact_collide(void **state)
     }
     for (int k = IMPACT_SLIP_C; k <= IMPACT_STICK_R; k++) assert_true(seen[k] > 100);
     assert_true(seen[IMPACT_REVERSAL] > 0);
-    workspace->work = (imp_block){NULL, 0, 0};
+    workspace->work = (imp_block){0};
     impact_together_workspace_destroy(workspace);
 }
 
@@ -210,6 +236,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_zero_of_a_polynomial_is_found),
         cmocka_unit_test(what_touches_zero_from_above_is_not_passed),
+        cmocka_unit_test(a_block_too_small_is_told),
         cmocka_unit_test(one_contact_is_impact_collide),
         cmocka_unit_test(random_encounters_are_the_oracle_s),
         cmocka_unit_test(both_solvers_of_linear_springs_agree),
