@@ -12,6 +12,21 @@ function apart(path, least) {
   path.forEach((p, k) => { if (k === path.length - 1 || norm(sub(p.slice(0, 3), kept[kept.length - 1])) > least) kept.push(p); });
   return kept;
 }
+// A way without points that lie so near to the line between those that stay.
+function bent(path, least) {
+  const stays = new Set([0, path.length - 1]), open = [[0, path.length - 1]];
+  const off = (p, a, b) => {
+    const d = sub(b, a), s = clamp(dot(sub(p, a), d) / (dot(d, d) || 1), 0, 1);
+    return norm(sub(sub(p, a), scale(d, s)));
+  };
+  while (open.length) {
+    const [from, to] = open.pop(), [a, b] = [path[from], path[to]].map(p => p.slice(0, 3));
+    let worst = least, at = 0;
+    for (let k = from + 1; k < to; k++) { const e = off(path[k].slice(0, 3), a, b); if (e > worst) [worst, at] = [e, k]; }
+    if (at) { stays.add(at); open.push([from, at], [at, to]); }
+  }
+  return path.filter((_, k) => stays.has(k));
+}
 function cameraHands(scene, canvas, ball, ballView, changed, done) {
   const camera = scene.camera, fingers = new Map(), spread = () => { const [a, b] = [...fingers.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
   const turn = (view, dx, dy) => { view.yaw -= dx * 0.008; view.pitch = clamp(view.pitch + dy * 0.008, -1.5, 1.5); };

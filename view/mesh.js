@@ -95,10 +95,14 @@ function coreMesh(body) {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(i => body.axes.map((a, k) => (i >> k & 1 ? 1 : -1) * (a - r)));
   return flatMesh(corners, boxFaces, r);
 }
+const cored = ['box', 'cylinder', 'cone', 'capsule', 'polyhedron'];
+const isEllipsoid = body => !cored.includes(body.kind) && body.exponents.every(p => p === 2);
+// Grid lines to an eighth of a turn by which a circle of so many pixels is a quarter of one off: r (pi/4n)^2/8.
+const gridLines = pixels => [2, 3, 4, 6, 8, 12, 16, 24].find(n => n >= Math.PI / 4 * Math.sqrt(pixels / 2)) || 24;
 // { points: position and normal by vertex, index }
 function mesh(body, most) {
-  if (['box', 'cylinder', 'cone', 'capsule', 'polyhedron'].includes(body.kind)) return coreMesh(body);
-  let n = Math.min(4, most);
+  if (cored.includes(body.kind)) return coreMesh(body);
+  let n = isEllipsoid(body) ? most : Math.min(4, most);
   while (n < most && !fine(octant(body, n), n, Math.max(...body.axes))) n = Math.min(2 * n, most);
   const grids = octant(body, n), points = [], index = [];
   for (let sign = 0; sign < 8; sign++) {

@@ -51,11 +51,16 @@ function makeScene(run, canvas) {
   const G = makeGraphics(canvas);
   if (!G) return { camera, home, center, radius, up, moving, color, step, draw: () => null };
   const shapes = new Map(), most = clamp(Math.floor(Math.sqrt(30000 / (48 * Math.max(1, run.bodies.length - planes.length)))), 3, 40);
+  // Equal shapes share a mesh, and of ellipsoids one for each size on the screen.
   const solids = run.bodies.map((b, i) => {
     if (b.kind === 'plane') return null;
-    const id = JSON.stringify([b.kind, b.axes, b.exponents, b.rounding, b.vertices]);
-    if (!shapes.has(id)) shapes.set(id, G.upload(mesh(b, most)));
-    return { mesh: shapes.get(id), one: b.static ? rgb('#8a8f98') : rgb(color(i)), i };
+    const id = JSON.stringify([b.kind, b.axes, b.exponents, b.rounding, b.vertices]), size = Math.max(...b.axes);
+    const meshAt = pixels => {
+      const lines = isEllipsoid(b) ? Math.min(gridLines(pixels), most) : most, key = id + lines;
+      if (!shapes.has(key)) shapes.set(key, G.upload(mesh(b, lines)));
+      return shapes.get(key);
+    };
+    return { meshAt, size, one: b.static ? rgb('#8a8f98') : rgb(color(i)), i };
   });
   const arrow = G.upload(arrowMesh()), dot3 = G.upload(mesh({ kind: 'sphere', axes: [1, 1, 1], exponents: [2, 2, 2] }, 2)), quad = G.upload(quadMesh);
   const third = G.upload({ points: [0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1], index: [0, 1, 2] }), edge = G.uploadLine([[0, 0, 0, -1e30], [1, 0, 0, -1e30]]);
@@ -65,10 +70,11 @@ function makeScene(run, canvas) {
     return points.map(x => [Math.atan2(dot(sub(x, middle), f), dot(sub(x, middle), e)), here(x)]).sort((x, y) => x[0] - y[0]).map(x => x[1]);
   };
   planes.forEach(p => { p.line = G.uploadLine(p.ring); });
-  paths.forEach((path, i) => paths.set(i, G.uploadLine(apart(path, 1e-3 * radius).map(([x, y, z, t]) => [...here([x, y, z]), t]))));
+  paths.forEach((path, i) => paths.set(i, G.uploadLine(bent(apart(path, 1e-3 * radius), 3e-4 * radius).map(([x, y, z, t]) => [...here([x, y, z]), t]))));
   const circle = G.uploadLine(Array.from({ length: 33 }, (_, k) => [Math.cos(k * Math.PI / 16), Math.sin(k * Math.PI / 16), 0, -1e30]));
-  const sun = unit(qrot(turned, [-0.45, -0.5, 1]));
-  const lightView = mat(parallel(1.35 * radius, 0.1 * radius, 8 * radius), look(scale(sun, 4 * radius), [0, 0, 0], north));
+  const sun = unit(qrot(turned, [-0.45, -0.5, 1])), lit = 1.35 * radius;
+  const shadowPixels = G.size / 2 / lit / 4; // to a pixel of the map, of which the shade takes nine
+  const lightView = mat(parallel(lit, 0.1 * radius, 8 * radius), look(scale(sun, 4 * radius), [0, 0, 0], north));
   const eyeOf = () => add(camera.target, scale(back(camera.yaw, camera.pitch), camera.distance));
   const at = t => clamp(t, run.begin, run.end);
   let last = null;
@@ -87,14 +93,15 @@ function makeScene(run, canvas) {
     gl.enable(gl.DEPTH_TEST); gl.depthFunc(gl.LESS); gl.disable(gl.BLEND); gl.depthMask(true);
     gl.bindFramebuffer(gl.FRAMEBUFFER, G.frameBuffer); gl.viewport(0, 0, G.size, G.size); gl.clear(gl.DEPTH_BUFFER_BIT);
     G.dark.set({ view: lightView });
-    [models, ...others].forEach(m => solids.forEach((s, i) => { if (s) { G.dark.set({ model: m[i] }); G.draw(s.mesh); } }));
+    [models, ...others].forEach(m => solids.forEach((s, i) => { if (s) { G.dark.set({ model: m[i] }); G.draw(s.meshAt(s.size * shadowPixels)); } }));
     gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.viewport(0, 0, w, h); gl.clearColor(...rgb(paper)); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     G.solid.set({ view, light: lightView, eye, sun, sky: up, depth: 0, texel: 1 / G.size, kind: 1, grid: [0, 0, 0, 0] });
+    const meshIn = (s, model) => s.meshAt(lens(w / h) * h / 2 * s.size / Math.max(norm(sub(eye, model.slice(12, 15))), 1e-3 * camera.distance));
     const solid = (m, model, one, two, kind, grid = [0, 0, 1, 1]) => { G.solid.set({ model, one, two, kind, grid }); G.draw(m); };
     const stroke = (m, one, width, now = 1e30) => { G.lines.set({ view, size: [w / 2, h / 2], one, width: width * (canvas.clientWidth ? w / canvas.clientWidth : window.devicePixelRatio || 1), now }); G.drawLine(m); };
-    solids.forEach((s, i) => s && solid(s.mesh, models[i], s.one, mixed(s.one, [1, 1, 1, 1], 0.58), 1));
+    solids.forEach((s, i) => s && solid(meshIn(s, models[i]), models[i], s.one, mixed(s.one, [1, 1, 1, 1], 0.58), 1));
     others.forEach(m => solids.forEach((s, i) => {
-      if (s && !run.bodies[s.i].static) solid(s.mesh, m[i], mixed(s.one, rgb(paper), 0.55), mixed(s.one, rgb(paper), 0.85), 1);
+      if (s && !run.bodies[s.i].static) solid(meshIn(s, m[i]), m[i], mixed(s.one, rgb(paper), 0.55), mixed(s.one, rgb(paper), 0.85), 1);
     }));
     const ground = p => solid(quad, p.model, rgb(dark ? '#2b2f36' : p.floor ? '#e4e1da' : '#c3ccd6', p.floor ? 1 : 0.35), rgb(ink, 0.2), 2, [0, 0, p.half[0] / step, p.half[1] / step]);
     const seen = p => dot(p.n, sub(eye, p.x)) > 0;
