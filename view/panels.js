@@ -39,17 +39,26 @@ function makePanels(run, scene, page) {
     });
     d.setLineDash([]); d.strokeStyle = ink('ink'); d.lineWidth = 1; d.beginPath(); d.moveTo(X(t), 12); d.lineTo(X(t), b); d.stroke();
   }
+  let energies = null; // potential, kinetic, of it spin, lost, total
+  function addEnergies() {
+    const sums = name => scene.moving.map(i => column(i, name)).reduce(add, both.map(() => 0)), spin = sums('spin, J'), least = run.account.reduce((x, a) => Math.min(x, a.potential), Infinity);
+    const spun = both.map(([s]) => s), at = run.account.map(a => a.t), of = (color, f, dash) => ({ color, x: at, y: run.account.map(f), dash });
+    return [of(okabeIto[2], a => a.potential - least, [5, 3]), { color: okabeIto[1], x: spun, y: add(sums('motion, J'), spin) }, { color: okabeIto[3], x: spun, y: spin, dash: [2, 2] },
+      of(okabeIto[0], a => a.losses.reduce((x, y) => x + y, 0), [8, 3, 2, 3]), of(null, a => a.E - least)];
+  }
   function energy(t) {
-    const p = fit('energy'), at = run.account.map(a => a.t), put = (name, color, y, dash) => ({ name, color, x: at, y, dash });
-    if (!at.length) return;
-    const spun = both.map(([s]) => s), kinetic = both.map((_, k) => scene.moving.reduce((sum, i) => sum + column(i, 'motion, J')[k] + column(i, 'spin, J')[k], 0));
-    const spin = both.map((_, k) => scene.moving.reduce((sum, i) => sum + column(i, 'spin, J')[k], 0)), least = Math.min(...run.account.map(a => a.potential));
-    const lost = run.account.map(a => a.losses.reduce((x, y) => x + y, 0));
-    plot(p, [put('potential', okabeIto[2], run.account.map(a => a.potential - least), [5, 3]), { color: okabeIto[1], x: spun, y: kinetic }, { color: okabeIto[3], x: spun, y: spin, dash: [2, 2] },
-      put('lost', okabeIto[0], lost, [8, 3, 2, 3]), put('total', p.ink('ink'), run.account.map(a => a.E - least))], t, 'J');
+    const p = fit('energy');
+    if (run.account.length) plot(p, (energies = energies || addEnergies()).map(l => ({ ...l, color: l.color || p.ink('ink') })), t, 'J');
   }
   // ---- the curve on S3, by (q1, q2, q3) in the unit ball; dashed where q0 < 0 ----
-  const view = { yaw: -0.7, pitch: 0.35 };
+  const view = { yaw: -0.7, pitch: 0.35 }, ways = new Map();
+  const turnsOf = body => {
+    if (!ways.has(body)) {
+      const times = run.times(body), step = Math.max(1, Math.ceil(times.length / 4000));
+      ways.set(body, times.filter((_, k) => k % step === 0).map(t => [t, run.state(body, t).q]));
+    }
+    return ways.get(body);
+  };
   function sphere(t, before, body) {
     const { d, w, h, ink } = fit('sphere'), R = Math.min(w, h) / 2 - 12;
     const cy = Math.cos(view.yaw), sy = Math.sin(view.yaw), cp = Math.cos(view.pitch), sp = Math.sin(view.pitch);
@@ -61,13 +70,12 @@ function makePanels(run, scene, page) {
     [[okabeIto[0], [1, 0, 0], 'q1'], [okabeIto[2], [0, 1, 0], 'q2'], [okabeIto[1], [0, 0, 1], 'q3']].forEach(([c, e, name]) => {
       path([[0, 0, 0], e], c, 1.5); d.setLineDash([]); d.fillStyle = hue(ink, c); d.textAlign = 'left'; d.fillText(name, P(e)[0] + 4, P(e)[1] - 3);
     });
-    const turns = run.times(body);
-    const step = Math.max(1, Math.ceil(turns.length / 4000)), color = scene.color(body);
+    const turns = turnsOf(body), color = scene.color(body);
     let part = [], negative = null;
     const end = late => { if (part.length > 1) { d.globalAlpha = late ? 0.3 : 1; path(part, color, 2.2, negative ? [4, 3] : []); d.globalAlpha = 1; } };
     let late = false;
-    for (let k = 0; k < turns.length; k += step) {
-      const q = run.state(body, turns[k]).q, point = q.slice(1), now = turns[k] > t;
+    for (const [time, q] of turns) {
+      const point = q.slice(1), now = time > t;
       if ((negative !== null && q[0] < 0 !== negative) || now !== late) { part.push(point); end(late); part = []; }
       part.push(point); negative = q[0] < 0; late = now;
     }

@@ -13,10 +13,15 @@ function graphicsOf(w, h) {
 // length carries, 1 to 2 (gl.js, kind 4).
 function sheetMesh(at, rows, columns, part) {
   const points = [], index = [], edge = (a, b) => (a && b ? sub(b, a) : [0, 0, 0]);
-  for (let j = 0; j < rows; j++) for (let i = 0; i < columns; i++) {
+  const normal = (i, j) => {
     const p = at(i, j), u = edge(at(Math.max(i - 1, 0), j) || p, at(Math.min(i + 1, columns - 1), j) || p), v = edge(at(i, Math.max(j - 1, 0)) || p, at(i, Math.min(j + 1, rows - 1)) || p);
-    let n = cross(u, v);
-    if (p && norm(n) < 1e-12 * norm(p)) n = p; // a pole of a grid, where a row is one point
+    return [unit(cross(u, v)), norm(cross(u, v)) > 1e-9 * dot(v, v)];
+  };
+  // At a pole, where a row is one point, what the means of the two rows beside it lead to.
+  const mean = j => unit(Array.from({ length: columns }, (_, i) => normal(i, j)[0]).reduce(add));
+  const pole = j => sub(scale(mean(j ? j - 1 : 1), 2), mean(j ? j - 2 : 2));
+  for (let j = 0; j < rows; j++) for (let i = 0; i < columns; i++) {
+    const p = at(i, j), [own, sound] = normal(i, j), n = p && !sound && rows > 2 && (j === 0 || j === rows - 1) ? pole(j) : own;
     points.push(...(p || [0, 0, 0]), ...scale(unit(n), part ? 1 + part(i, j) : 1));
   }
   for (let j = 0; j + 1 < rows; j++) for (let i = 0; i + 1 < columns; i++) {
@@ -57,7 +62,8 @@ function partsOf(panel) {
       if (part) parts.bar = [low, high];
       parts.solids.push({ mesh: sheetMesh(at, rows, columns, part), ink: item.ink, valued: !!part, opacity: part || shown > 0.9 ? 1 : shown });
       const line = (count, f) => { for (let k = 0, run = []; k <= count; k++) { const p = k < count ? f(k) : null; if (p) run.push(p); else { if (run.length > 1) parts.strokes.push({ path: run, ink: item.ink, width: 0.8, opacity: 0.7 }); run = []; } } };
-      if (item.lines) { for (let j = 0; j < rows; j += 2) line(columns, i => at(i, j)); for (let i = 0; i < columns; i += 2) line(rows, j => at(i, j)); }
+      const stride = count => 2 * Math.max(1, Math.round(count / 28)); // of finer grids the lines stay as far apart
+      if (item.lines) { for (let j = 0; j < rows; j += stride(rows)) line(columns, i => at(i, j)); for (let i = 0; i < columns; i += stride(columns)) line(rows, j => at(i, j)); }
     } else if (item.kind === 'line') runsOf(x, y, z, put).forEach(path => {
       parts.all.push(...path);
       if (item.tube) parts.solids.push({ mesh: tubeMesh(path, item.tube * stretch[0]), ink: item.ink, opacity: 1 }); else parts.strokes.push({ path, ink: item.ink, width: item.width || 2, opacity: item.opacity || 1, dash: item.dash });

@@ -47,6 +47,15 @@ function colorBar(d, [low, high], box) {
   d.fillStyle = shade; d.fillRect(x, y, w, 9);
   ticksOf(low, high, niceStep(high - low, 4)).forEach(v => letter(d, String(+v.toPrecision(4)), x + w * (v - low) / (high - low), y + 19, { size: 9, align: 'center' }));
 }
+// What opaque surfaces keep the sun from; the solid program is the one in use again.
+function castShadow(G, parts, sun, radius, model) {
+  const { gl } = G, [, , w, h] = gl.getParameter(gl.VIEWPORT), light = mat(parallel(1.1 * radius, 0.1 * radius, 8 * radius), look(scale(sun, 4 * radius), [0, 0, 0], [0, 0, 1]));
+  gl.bindFramebuffer(gl.FRAMEBUFFER, G.frameBuffer); gl.viewport(0, 0, G.size, G.size); gl.clear(gl.DEPTH_BUFFER_BIT);
+  G.dark.set({ view: light, model });
+  parts.solids.filter(o => o.opacity >= 1).forEach(o => G.draw(o.drawn));
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.viewport(0, 0, w, h);
+  G.solid.set({ light, texel: 1 / G.size });
+}
 // most: pixels for a unit of length at most, so that panels of one range have one scale; 0: as large as it fits. Gives back what it took.
 function drawSpace(d, panel, box, ratio, turn, most) {
   const s = graphicsOf(Math.max(2, Math.round(box.w * ratio)), Math.max(2, Math.round(box.h * ratio))), { G, canvas } = s, w = canvas.width, h = canvas.height;
@@ -70,9 +79,10 @@ function drawSpace(d, panel, box, ratio, turn, most) {
   gl.viewport(0, 0, w, h); gl.clearColor(1, 1, 1, 1); gl.depthMask(true); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   gl.enable(gl.DEPTH_TEST); gl.depthFunc(gl.LEQUAL); gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(1, 1);
   G.solid.set({ view, eye, sun, sky: [0, 0, 1], depth: 0, texel: 0, kind: 0, grid: [0, 0, 0, 0], light: [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10, 10, 10, 1] });
-  const solid = (m, model, ink, a, valued) => { G.solid.set({ model, kind: valued ? 4 : 0, one: rgb(valued ? inks.blue : ink, a), two: rgb(valued ? inks.red : ink, a) }); G.draw(m); };
-  const still = frame(scale(middle, -1), [1, 0, 0, 0], [1, 1, 1]);
   parts.solids.forEach(o => { if (!o.drawn) { const m = outward(o.mesh); o.middle = m.middle; o.drawn = G.upload(m); } });
+  const still = frame(scale(middle, -1), [1, 0, 0, 0], [1, 1, 1]);
+  if (panel.shadow) castShadow(G, parts, sun, radius, still);
+  const solid = (m, model, ink, a, valued) => { G.solid.set({ model, kind: valued ? 4 : 0, one: rgb(valued ? inks.blue : ink, a), two: rgb(valued ? inks.red : ink, a) }); G.draw(m); };
   parts.solids.filter(o => o.opacity >= 1).forEach(o => solid(o.drawn, still, o.ink, 1, o.valued));
   parts.dots.forEach(o => solid(s.ball, frame(here(o.p), [1, 0, 0, 0], [1, 1, 1].map(() => 4.6 * o.size * pixel)), o.ink, 1));
   parts.darts.forEach(o => { const length = norm(o.d), wide = Math.min((3 + 1.2 * o.width) * pixel, 0.2 * length); if (length > 0) solid(s.arrow, frame(here(o.a), turnTo(unit(o.d)), [wide, wide, length]), o.ink, 1); });

@@ -23,8 +23,8 @@ local function half_disc(q, side)
   local x, y, z = {}, {}, {}
   for i = 0, 8 do
     x[i + 1], y[i + 1], z[i + 1] = {}, {}, {}
-    for j = 0, 16 do
-      local radius, angle = 1 + 0.45 * i / 8, math.pi * (j / 16 - 0.5)
+    for j = 0, 48 do
+      local radius, angle = 1 + 0.45 * i / 8, math.pi * (j / 48 - 0.5)
       local p = q:rotate { side * radius * math.cos(angle), radius * math.sin(angle), 0 }
       x[i + 1][j + 1], y[i + 1][j + 1], z[i + 1][j + 1] = p.x, p.y, p.z
     end

@@ -42,7 +42,7 @@ local function support(body, d)
   return to_world(body, { x.x, x.y, x.z })
 end
 
-local rows, columns = 24, 32
+local rows, columns = 48, 64
 
 --- A surface of (u, v) -> point as rows of x, y, z.
 local function sheet(point, options)

@@ -27,9 +27,9 @@ local scene = impact.scene {
 local function drawing(title)
   local panel = {
     title = string.format("%s: t = %.3f s", title, scene:time()),
-    equal = true, frame = false, legend = "none", view = { 70, 335 }, zoom = 1.75,
+    equal = true, frame = false, shadow = true, legend = "none", view = { 70, 335 }, zoom = 1.75,
     xrange = { -3.4, 0.6 }, yrange = { -1.5, 1.5 }, zrange = { 0, 1.5 },
-    portrait.sheet(scene:state("floor"), { -3.4, -1.5 }, { 0.6, 1.5 }, "grey", 0.35),
+    portrait.sheet(scene:state("floor"), { -3.4, -1.5 }, { 0.6, 1.5 }, "grey", 0.6),
     portrait.sheet(scene:state("wall"), { 0, -1.5 }, { 1.5, 1.5 }, "purple", 0.45),
   }
   for _, item in ipairs(portrait.ball(scene:state("sphere"), 0.3, "red", "#fed7d7")) do panel[#panel + 1] = item end
@@ -56,5 +56,5 @@ local finish = drawing("c) the end")
 keep()
 
 assert(csv.save("fig15", columns, states))
-local drawn, why = plot.save(plot.figure { title = "A sphere, a floor and a wall", size = { 1500, 460 }, grid = { 3, 1 }, start, wall, finish }, "fig15")
+local drawn, why = plot.save(plot.figure { title = "A sphere, a floor and a wall", size = { 1500, 400 }, grid = { 3, 1 }, start, wall, finish }, "fig15")
 if not drawn then print("fig15: " .. why) end

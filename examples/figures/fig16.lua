@@ -38,9 +38,9 @@ for i = 1, #columns do states[i] = {} end
 local function drawing(title)
   local panel = {
     title = string.format("%s: t = %.3f s", title, scene:time()),
-    equal = true, frame = false, legend = "none", view = { 72, 20 }, zoom = 1.7,
+    equal = true, frame = false, shadow = true, legend = "none", view = { 72, 20 }, zoom = 1.7,
     xrange = { -2, 2 }, yrange = { -1.5, 1.5 }, zrange = { 0, 1.8 },
-    portrait.sheet(scene:state("floor"), { -2, -1.5 }, { 2, 1.5 }, "grey", 0.35),
+    portrait.sheet(scene:state("floor"), { -2, -1.5 }, { 2, 1.5 }, "grey", 0.6),
   }
   for _, body in ipairs { "left", "right" } do
     local s = scene:state(body)
@@ -61,5 +61,5 @@ scene:run()
 local after = drawing("c) after")
 
 assert(csv.save("fig16", columns, states))
-local drawn, why = plot.save(plot.figure { title = "Two spheres", size = { 1500, 460 }, grid = { 3, 1 }, before, meeting, after }, "fig16")
+local drawn, why = plot.save(plot.figure { title = "Two spheres", size = { 1500, 400 }, grid = { 3, 1 }, before, meeting, after }, "fig16")
 if not drawn then print("fig16: " .. why) end

@@ -58,7 +58,7 @@ end
 local panel_keys = {
   title = "string", xlabel = "string", ylabel = "string", zlabel = "string", equal = "boolean", legend = one_of(gnuplot.legends),
   xrange = span, yrange = span, zrange = span, view = numbers(2, 2), at = numbers(2, 4), frame = "boolean", box = numbers(4, 4),
-  three = "boolean", zoom = "number", xlog = "boolean", ylog = "boolean",
+  three = "boolean", zoom = "number", shadow = "boolean", xlog = "boolean", ylog = "boolean",
 }
 local figure_keys = { title = "string", subtitle = "string", size = numbers(2, 2), grid = numbers(2, 2) }
 local item_keys = {
@@ -155,8 +155,8 @@ plot.mark = maker "mark"
 
 --- A panel of items: title, xlabel, ylabel, zlabel, equal (the same scale on all axes), legend ("top left" ..., "center", "row",
 --- "none"), xrange, yrange, zrange ({least, most}), xlog, ylog (logarithmic axes, flat panels only: a mark at every decade, what is
---- not positive is left out), view ({about x, about z}, degrees), zoom, frame (axes drawn), three (three-dimensional; by itself when
---- an item has a z), at ({column, row[, columns, rows]} in the figure's grid), box ({left, bottom, right, top} of the axes,
+--- not positive is left out), view ({about x, about z}, degrees), zoom, shadow (opaque surfaces cast it, where our own renderer
+--- draws), frame (axes drawn), three (three-dimensional; by itself when an item has a z), at ({column, row[, columns, rows]} in the figure's grid), box ({left, bottom, right, top} of the axes,
 --- as parts of the figure, instead of at).
 ---@return plot.panel
 function plot.panel(description)

@@ -263,7 +263,7 @@ function portrait.ball(state, radius, color1, color2)
   local items = {}
   for patch = 0, 7 do
     local quarter, lower = patch % 4, patch // 4
-    local x, y, z = placed(state, 5, 5, function(u, v)
+    local x, y, z = placed(state, 12, 12, function(u, v)
       local longitude, latitude = (quarter + u) * math.pi / 2, (v - lower) * math.pi / 2
       return radius * math.cos(latitude) * math.cos(longitude), radius * math.cos(latitude) * math.sin(longitude),
         radius * math.sin(latitude)
