@@ -1,24 +1,28 @@
 /* SPDX-License-Identifier: MIT
  *
- * bench_scene: error against run time of whole scenes over `tolerance`, the relative tolerance of the motion's
- * integration.
+ * bench_scene: error against run time of whole scenes, by method of motion, over its tolerance or its step.
  *
- * CSV rows (drawn by draw_scene.lua): scene, what the error is taken against, tolerance, worst error of position and of
- * velocity over 32 times of the run, relative to the largest of the run, median time of making and running the scene in
- * microseconds, that over the time at the default tolerance, and the integrator's steps. Scenes: `orbit`, two spheres
- * about each other, eccentricity 0.6, ten turns, against Kepler's equation in long double; `sphere_wall` and
- * `two_spheres` as in examples/scenes; `ellipsoid`, dropped in a wind on the floor, three bounces. These three have no
- * closed form as a whole, and are taken against themselves at the tolerance 1e-14.
+ * CSV rows (drawn by draw_scene.lua): scene; motion (default, cvode: all by CVODE, rk4: the classical method at fixed
+ * steps); setting, the relative tolerance or the step, s; worst error of position and of velocity over the times of the
+ * truth, relative to the largest of the run, and the larger of both; median time of making and running the scene in
+ * microseconds, that over the time at the default's tolerance, median over least of the rounds, in which all settings
+ * take turns; steps; checksum, of the last places. The truths are tests/data/scenes, in 40 digits by
+ * tests/generators/scene_truths.py, which shares no code with the library. Scenes: `sphere_wall` and `two_spheres` as
+ * in examples/scenes; `ellipsoid_in_wind`, three bounces; `orbit`, an ellipse of Kepler's, eccentricity 0.3.
  */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <impact/scene.h>
 #include "measure.h"
 
-enum { TIMES = 32, MOST_BODIES = 4, REPEATS = 7 };
+enum { MOST_TIMES = 64, MOST_BODIES = 4, ROUNDS = 7, MOST_SETTINGS = 32 };
 
+/* Places and velocities at the truth's times; of bodies that stand nothing. */
 typedef struct states {
-    qvec3 position[TIMES][MOST_BODIES], velocity[TIMES][MOST_BODIES];
+    int times;
+    double t[MOST_TIMES];
+    qvec3 position[MOST_TIMES][MOST_BODIES], velocity[MOST_TIMES][MOST_BODIES];
 } states;
 
 /* A scene with all that its definition points to. */
@@ -54,7 +58,10 @@ static void floor_of(impact_body_def *body, double width)
     body->name = "floor";
     body->is_static = true;
     body->restitution = 1;
-    impact_shape_plane(width / 2, width / 2, &body->shape);
+    if (width > 0)
+        impact_shape_plane(width / 2, width / 2, &body->shape);
+    else
+        impact_shape_plane(INFINITY, INFINITY, &body->shape);
 }
 
 static void ball_of(impact_body_def *body, const char *name, double mass, double radius, qvec3 position)
@@ -105,56 +112,67 @@ static void make_two_spheres(setting *s)
 
 static void make_ellipsoid(setting *s)
 {
-    start(s, "ellipsoid", 2, 1, 1.2);
-    floor_of(&s->bodies[0], 20);
+    start(s, "ellipsoid_in_wind", 2, 1, 1.2);
+    floor_of(&s->bodies[0], 0);
+    s->bodies[0].friction = 0.5;
     impact_body_def *body = &s->bodies[1];
     body->name = "ellipsoid";
     body->mass = 4;
     body->position = (qvec3){0, 0, 1};
     body->orientation = (quat){0.9, 0.3, 0.2, 0.1};
     body->omega = (qvec3){1, 2, -1};
+    body->velocity = (qvec3){1, 0, 0};
+    body->friction = 0.1;
     body->restitution = 0.6;
     body->linear_damping = 0.04;
     impact_shape_ellipsoid(0.1, 0.2, 0.3, &body->shape);
     s->forces[0] = wind_of(NULL, (qvec3){0, 0, 1}, (qvec3){1, 0, 0}, 5, INFINITY);
 }
 
-static const double eccentricity = 0.6;
-
-/* G (m1 + m2) = 2, semi-axis 1, from the nearest point; both bodies half of the relative motion. */
+/* G (m1 + m2) = 1, semi-axis 1, from the nearest point; the first body with the origin at their centre. */
 static void make_orbit(setting *s)
 {
-    start(s, "orbit", 2, 1, 10 * 2 * 3.14159265358979323846 / sqrt(2));
+    const double e = 0.3, speed = sqrt((1 + e) / (1 - e));
+    start(s, "orbit", 2, 1, 6.283185307179586);
     s->def.gravity = (qvec3){0, 0, 0};
-    const double r = (1 - eccentricity) / 2, v = sqrt(2 * (1 + eccentricity) / (1 - eccentricity)) / 2;
-    for (int i = 0; i < 2; i++) {
-        const double sign = i == 0 ? 1 : -1;
-        ball_of(&s->bodies[i], i == 0 ? "one" : "two", 1, 0.01, (qvec3){sign * r, 0, 0});
-        s->bodies[i].velocity = (qvec3){0, sign * v, 0};
-    }
+    ball_of(&s->bodies[0], "sun", 0.5, 0.01, (qvec3){0, 0, 0});
+    ball_of(&s->bodies[1], "planet", 0.5, 0.01, (qvec3){1 - e, 0, 0});
+    s->bodies[0].velocity = (qvec3){0, -speed / 2, 0};
+    s->bodies[1].velocity = (qvec3){0, speed / 2, 0};
     s->forces[0] = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
     s->forces[0].constant = 1;
 }
 
-/* ---- right answers ---- */
+/* ---- the truth ---- */
 
-static double time_of(const setting *s, int k) { return s->def.duration * (k + 1) / TIMES; }
-
-static void solve_orbit(const setting *s, states *out)
+static int body_of(const setting *s, const char *name)
 {
-    const long double e = eccentricity, mean = sqrtl(2), minor = sqrtl(1 - e * e);
-    for (int k = 0; k < TIMES; k++) {
-        const long double M = mean * time_of(s, k);
-        long double E = M;
-        for (int i = 0; i < 60; i++) E -= (E - e * sinl(E) - M) / (1 - e * cosl(E));
-        const long double rate = mean / (1 - e * cosl(E));
-        const qvec3 x = {(double)((cosl(E) - e) / 2), (double)(minor * sinl(E) / 2), 0};
-        const qvec3 v = {(double)(-sinl(E) * rate / 2), (double)(minor * cosl(E) * rate / 2), 0};
-        out->position[k][0] = x;
-        out->velocity[k][0] = v;
-        out->position[k][1] = qvec3_neg(x);
-        out->velocity[k][1] = qvec3_neg(v);
+    for (int i = 0; i < s->def.body_count; i++)
+        if (strcmp(s->bodies[i].name, name) == 0) return i;
+    fprintf(stderr, "bench_scene: the truth of %s has a body '%s'\n", s->name, name);
+    exit(1);
+}
+
+/* Lines t, body, x y z, qw qx qy qz, vx vy vz and more; remarks and the header are no such lines. */
+static void read_truth(const setting *s, states *truth)
+{
+    char path[400], line[600], name[40];
+    snprintf(path, sizeof path, "%s/%s.csv", SCENE_TRUTHS, s->name);
+    FILE *file = fopen(path, "r");
+    if (!file) perror(path), exit(1);
+    *truth = (states){.times = 0};
+    while (fgets(line, sizeof line, file)) {
+        double t, q[4];
+        qvec3 x, v;
+        if (sscanf(line, "%lf,%39[^,],%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &t, name, &x.x, &x.y, &x.z, &q[0],
+                   &q[1], &q[2], &q[3], &v.x, &v.y, &v.z) != 12)
+            continue;
+        if ((truth->times == 0 || truth->t[truth->times - 1] != t) && truth->times < MOST_TIMES)
+            truth->t[truth->times++] = t;
+        const int k = truth->times - 1, i = body_of(s, name);
+        truth->position[k][i] = x, truth->velocity[k][i] = v;
     }
+    fclose(file);
 }
 
 static impact_scene *make(const setting *s)
@@ -166,87 +184,97 @@ static impact_scene *make(const setting *s)
     exit(1);
 }
 
-/* False: the run failed on its way. */
-static bool run_to_times(const setting *s, states *out, long *steps)
+/* ---- a setting of the motion ---- */
+
+typedef struct contestant {
+    const char *motion;
+    impact_methods methods;
+    double setting, x, v, sum, times[ROUNDS];
+    int rounds; /* 0: it does not come to the end */
+    long steps;
+} contestant;
+
+/* The errors of one run against the truth, over the largest place and velocity there. */
+static void compare(setting *s, const states *truth, contestant *c)
 {
+    s->def.methods = c->methods;
     impact_scene *scene = make(s);
-    bool good = true;
-    for (int k = 0; k < TIMES && good; k++) {
-        good = impact_scene_run_to(scene, time_of(s, k), NULL) >= IMPACT_OK;
+    double x = 0, v = 0, far = 0, fast = 0;
+    for (int k = 0; k < truth->times; k++) {
+        if (impact_scene_run_to(scene, truth->t[k], NULL) < IMPACT_OK) x = v = NAN;
         for (int i = 0; i < s->def.body_count; i++) {
             impact_sample sample;
+            if (s->bodies[i].is_static) continue;
             impact_scene_body(scene, i, &sample);
-            out->position[k][i] = sample.position;
-            out->velocity[k][i] = sample.velocity;
+            x = isnan(x) ? x : fmax(x, qvec3_norm(qvec3_sub(sample.position, truth->position[k][i])));
+            v = isnan(v) ? v : fmax(v, qvec3_norm(qvec3_sub(sample.velocity, truth->velocity[k][i])));
+            far = fmax(far, qvec3_norm(truth->position[k][i]));
+            fast = fmax(fast, qvec3_norm(truth->velocity[k][i]));
+            c->sum += k == truth->times - 1 ? sample.position.x + sample.position.z : 0;
         }
     }
-    *steps = impact_scene_usage(scene).integrator_steps;
+    c->x = x / far, c->v = v / fast;
+    c->steps = impact_scene_usage(scene).integrator_steps;
     impact_scene_destroy(scene);
-    return good;
 }
 
-static double worst_difference(qvec3 a[TIMES][MOST_BODIES], qvec3 b[TIMES][MOST_BODIES], int bodies)
+static void time_once(setting *s, contestant *c)
 {
-    double off = 0, size = 0;
-    for (int k = 0; k < TIMES; k++)
-        for (int i = 0; i < bodies; i++) {
-            off = fmax(off, qvec3_norm(qvec3_sub(a[k][i], b[k][i])));
-            size = fmax(size, qvec3_norm(b[k][i]));
+    s->def.methods = c->methods;
+    const double from = measure_clock();
+    impact_scene *scene = make(s);
+    const impact_status status = impact_scene_run(scene, NULL);
+    impact_scene_destroy(scene);
+    if (status >= IMPACT_OK) c->times[c->rounds++] = 1e6 * measure_since(from);
+}
+
+static int line_up(contestant list[MOST_SETTINGS])
+{
+    static const double steps[] = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
+    const bool cvode = impact_has(IMPACT_PART_CVODE);
+    int count = 0;
+    for (int method = 0; method < (cvode ? 2 : 1); method++)
+        for (int digits = 4; digits <= 14; digits++)
+            list[count++] = (contestant){.motion = method == 0 ? "default" : "cvode",
+                                         .setting = pow(10, -digits),
+                                         .methods = {.motion = method == 0 ? IMPACT_MOTION_AUTO : IMPACT_MOTION_CVODE,
+                                                     .tolerance = pow(10, -digits)}};
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        list[count++] = (contestant){
+            .motion = "rk4", .setting = steps[k], .methods = {.motion = IMPACT_MOTION_RK4, .step = steps[k]}};
+    return count;
+}
+
+static void measure(void fill(setting *s))
+{
+    static setting s;
+    static states truth;
+    contestant list[MOST_SETTINGS];
+    const int count = line_up(list), rounds = measure_count(ROUNDS);
+    double usual = NAN;
+    fill(&s);
+    read_truth(&s, &truth);
+    for (int k = 0; k < count; k++) compare(&s, &truth, &list[k]);
+    for (int round = 0; round < rounds; round++)
+        for (int k = 0; k < count; k++) time_once(&s, &list[k]);
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; k < count; k++) {
+            const contestant *c = &list[k];
+            const measure_time time = measure_of_rounds(list[k].times, c->rounds);
+            if (pass == 0 && strcmp(c->motion, "default") == 0 && fabs(c->setting - 1e-13) < 1e-15) usual = time.median;
+            if (pass == 0) continue;
+            printf("%s,%s,%g,%.2g,%.2g,%.2g,%.4g,%.3g,%.2f,%ld,%.9g\n", s.name, c->motion, c->setting, fmax(c->x, c->v),
+                   c->x, c->v, time.median, time.median / usual, time.spread, c->steps, c->sum);
         }
-    return off / size;
-}
-
-/* ---- measuring ---- */
-
-/* Median time of making and running the scene; NaN when it fails. */
-static double run_time(const setting *s)
-{
-    double times[REPEATS];
-    for (int i = 0; i < REPEATS; i++) {
-        const double from = measure_clock();
-        impact_scene *scene = make(s);
-        const impact_status status = impact_scene_run(scene, NULL);
-        impact_scene_destroy(scene);
-        if (status < IMPACT_OK) return NAN;
-        times[i] = measure_clock() - from;
-    }
-    return measure_quantile(times, REPEATS, 0.5);
-}
-
-static void measure(setting *s, void solve(const setting *s, states *out))
-{
-    static states right, got;
-    long steps;
-    const double usual = run_time(s);
-    if (solve) {
-        solve(s, &right);
-    } else {
-        s->def.tolerance = 1e-14;
-        if (!run_to_times(s, &right, &steps)) return;
-    }
-    for (int digits = 6; digits <= (solve ? 14 : 13); digits++) {
-        s->def.tolerance = pow(10, -digits);
-        const bool good = run_to_times(s, &got, &steps);
-        const double x = good ? worst_difference(got.position, right.position, s->def.body_count) : NAN;
-        const double v = good ? worst_difference(got.velocity, right.velocity, s->def.body_count) : NAN;
-        const double time = run_time(s);
-        printf("%s,%s,1e-%d,%.2g,%.2g,%.4g,%.3g,%ld\n", s->name, solve ? "closed form" : "tolerance 1e-14", digits, x,
-               v, 1e6 * time, time / usual, steps);
-        fflush(stdout);
-    }
+    fflush(stdout);
 }
 
 int main(void)
 {
-    static setting s;
-    printf("scene,against,tolerance,error_position,error_velocity,us_median,time_over_default,steps\n");
-    make_orbit(&s);
-    measure(&s, solve_orbit);
-    make_sphere_wall(&s);
-    measure(&s, NULL);
-    make_two_spheres(&s);
-    measure(&s, NULL);
-    make_ellipsoid(&s);
-    measure(&s, NULL);
+    printf("scene,motion,setting,error,error_position,error_velocity,us,time_over_default,spread,steps,checksum\n");
+    measure(make_orbit);
+    measure(make_sphere_wall);
+    measure(make_two_spheres);
+    measure(make_ellipsoid);
     return 0;
 }

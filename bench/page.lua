@@ -11,12 +11,18 @@ local root, out, bench, native_bench, runner, mode = arg[1], arg[2], arg[3], arg
 local parts = dofile(root .. "/bench/parts.lua")
 local quick = mode == "quick"
 local chosen = {}
-for i = 7, #arg do chosen[arg[i]] = true end
+local names = { "examples" }
+for _, part in ipairs(parts) do names[#names + 1] = part.name end
+local known = " " .. table.concat(names, " ") .. " "
+for i = 7, #arg do
+  if not known:find(" " .. arg[i] .. " ", 1, true) then error(("report: no part '%s'; there are:%s"):format(arg[i], known), 0) end
+  chosen[arg[i]] = true
+end
 local all = next(chosen) == nil
 
 -- Seconds that a part may take on a machine of its own; of the examples, together with their reference's. On one that is busy with
 -- other work ten times as many may pass. (A limit of CPU time would make the clock of CPU time as coarse as the kernel's ticks.)
-local part_time, example_time = quick and 30 or 120, quick and 0.5 or 10
+local part_time, example_time = quick and 30 or 120, quick and 0.3 or 20
 local function within(seconds, command) return ("timeout %d %s"):format(math.ceil(10 * seconds), command) end
 local out_of_time = { [124] = true } -- timeout's own
 
@@ -41,6 +47,13 @@ local function write(path, text)
   local file = assert(io.open(path, "wb"))
   file:write(text)
   file:close()
+end
+
+--- CPU time of the programs that have been run, s; nil where the system does not tell.
+local function spent()
+  local ticks, fields = read "/proc/self/stat", {} -- in hundredths of a second
+  for word in (ticks or ""):gsub("^.*%) ", ""):gmatch "%S+" do fields[#fields + 1] = word end
+  return ticks and (tonumber(fields[14]) + tonumber(fields[15])) / 100
 end
 
 local function escape(text) return (tostring(text):gsub("[&<>]", { ["&"] = "&amp;", ["<"] = "&lt;", [">"] = "&gt;" })) end
@@ -249,11 +262,12 @@ local function name_of(line, names) return table.concat(cells_of(line), ",", 1, 
 --- The column of times again, by the program built for this machine's processor.
 local function add_native(part, lines, header, native)
   local place
-  for i, name in ipairs(header) do if name == part.time then place = i end end
+  local column = part.measured or part.time
+  for i, name in ipairs(header) do if name == column then place = i end end
   if not place or not native then return end
   local times = {}
   for i = 2, #native do times[name_of(native[i], part.names)] = cells_of(native[i])[place] end
-  lines[1] = lines[1] .. "," .. part.time .. " -march=native"
+  lines[1] = lines[1] .. "," .. column .. " -march=native"
   for i = 2, #lines do lines[i] = lines[i] .. "," .. (times[name_of(lines[i], part.names)] or "") end
 end
 
@@ -296,7 +310,7 @@ local function run_part(part)
     local words = judge(part, rows, "")
     local table_lines = { lines[1] }
     for _, row in ipairs(rows) do table_lines[#table_lines + 1] = row.line end
-    if part.native and native_bench ~= "" then
+    if part.native and native_bench ~= "" and not (quick and part.native == "full") then
       local again = run_program(native_bench, part, part.program .. "_native")
       local native = sections_of(again.text)[part.section or 1]
       fail(part, again.why)
@@ -322,34 +336,65 @@ local function examples()
   return list
 end
 
-local used_names = "scene,flights,rolls,integrators,integrator_steps,gap_queries,impacts_closed,impacts_series,impacts_cvode,loaded,peak_kB,start_ms,run_ms"
+--- What a report's text says, in cells: how sure the reference is, the least error of the default and its ms, and what falls short.
+local function facts_of(text, good)
+  if not good then return { "-", "-", "-", (text:gsub("^impact: ", ""):gsub("%s+$", "")) } end
+  local sure, worst = text:match "sure to ([^\n]-) by ", nil
+  for number in (sure or ""):gsub(", [^,]- s %(events%)", ""):gmatch "%d[%de.+-]*" do worst = math.max(worst or 0, tonumber(number)) end
+  local best, ms = text:match "verdict     default: (.-) in (%S+) ms"
+  local words = {}
+  for miss in text:gmatch "\n  missed      ([^\n]+)" do words[#words + 1] = miss end
+  if not sure then words[#words + 1] = text:match "certainty unknown: ([^\n]+)" end
+  local horizon = text:match "until t = ([%d.e+-]+) s: then"
+  if horizon then words[#words + 1] = "compared until " .. horizon .. " s" end
+  if text:find "\n  dropped" then words[#words + 1] = text:match "\n  dropped     (%d+ settings)" .. " had no time" end
+  return { worst and ("%.0e"):format(worst) or "unknown", best or "-", ms or "-", #words > 0 and table.concat(words, "; ") or "none" }
+end
+
+local function line_of(cells)
+  local safe = {}
+  for i, cell in ipairs(cells) do safe[i] = tostring(cell):gsub(",", ";") end
+  return table.concat(safe, ",")
+end
+
+--- The report of one example: into the page, its facts as a line of CSV.
+local function report_example(path, name)
+  local before = spent()
+  local text, good = shell(within(2 * example_time + 10, ("%s %s --report --seconds %g --out %s"):format(quote(runner), quote(path), example_time, quote(out))) ..
+    " 2>&1 </dev/null")
+  local taken = before and ("%.1f"):format(spent() - before) or "-"
+  if not good then failed[#failed + 1] = name .. ": " .. text:gsub("%s+$", "") end
+  add(("<h3>%s</h3>\n<pre>%s</pre>\n"):format(escape(name), escape(text)))
+  if good then add(picture(name .. "_report")) end
+  local facts = facts_of(text, good)
+  print(("  %-22s%8s s%10s%12s%10s  %s"):format(name, taken, facts[1], facts[2], facts[3], facts[4]))
+  return line_of { name, taken, table.unpack(facts) }
+end
 
 local function run_examples()
-  local began = os.time()
+  local began, examined = os.time(), examples()
   section("scenes", "Example scenes by every method", ("`impact SCRIPT --report --seconds %g` of each: the reference and who vouches for it, ms to reach an error, what was missed.")
     :format(example_time))
-  local lines = { used_names }
-  for _, path in ipairs(examples()) do
-    local name = path:match "([^/]+)%.lua$"
-    local text, good = shell(within(2 * example_time + 10, ("%s %s --report --seconds %g --out %s"):format(quote(runner), quote(path), example_time, quote(out))) ..
-      " 2>&1 </dev/null")
-    if not good then failed[#failed + 1] = name .. ": " .. text:gsub("%s+$", "") end
-    add(("<h3>%s</h3>\n<pre>%s</pre>\n"):format(escape(name), escape(text)))
-    if good then add(picture(name .. "_report")) end
-    local row = shell(within(60, ("%s --trust --quiet %s -- %s"):format(quote(runner), quote(root .. "/bench/used.lua"), quote(path))) .. " 2>/dev/null")
-      :gsub("%s+$", "")
-    lines[#lines + 1] = row ~= "" and row or name .. ",did not end in 60 s"
+  local reports, used = { "scene,cpu_s,sure_to,default_error,default_ms,short" }, { (shell(("%s --trust --quiet %s -- names"):format(quote(runner), quote(root .. "/bench/used.lua"))):gsub("%s+$", "")) }
+  print(("  %-22s%10s%10s%12s%10s  %s"):format("scene", "CPU", "sure to", "default's", "ms", "what falls short"))
+  for _, path in ipairs(examined) do reports[#reports + 1] = report_example(path, path:match "([^/]+)%.lua$") end
+  for _, path in ipairs(examined) do
+    local row = shell(within(60, ("%s --trust --quiet %s -- %s"):format(quote(runner), quote(root .. "/bench/used.lua"), quote(path))) .. " 2>/dev/null"):gsub("%s+$", "")
+    if row ~= "" then used[#used + 1] = row else failed[#failed + 1] = "used.lua: " .. path:match "([^/]+)%.lua$" end
   end
-  write(out .. "/used.csv", table.concat(lines, "\n") .. "\n")
-  section("used", "What each example uses", "Counters of its run, libraries loaded by the process, memory, CPU time to the scene's being made and of its run.")
-  html_table(lines)
-  print(("%-12s %4d s"):format("scenes", os.time() - began))
+  write(out .. "/scenes.csv", table.concat(reports, "\n") .. "\n")
+  write(out .. "/used.csv", table.concat(used, "\n") .. "\n")
+  add "<h3>All of them</h3>\n<p>CPU time of the report, how sure its reference is, the default's least error and its ms, and what falls short.</p>\n"
+  html_table(reports)
+  section("used", "What each example uses", "Counters of its run; modules and libraries that the process has loaded beside the runner's own; how often its scene asked for memory, and the most it used; the process' memory; CPU time to the scene's being made and of its run.")
+  html_table(used)
+  print(("%-16s %4d s"):format("scenes", os.time() - began))
 end
 
 for _, part in ipairs(parts) do
   if chosen[part.name] or all then run_part(part) end
 end
-if all or chosen.scenes then run_examples() end
+if all or chosen.examples then run_examples() end
 
 local function fact(command) return (shell(command .. " 2>/dev/null"):gsub("%s+$", "")) end
 local machine = {
@@ -366,10 +411,5 @@ local left = quick and "<p>Quick: fewer samples, shorter motions.</p>\n" or ""
 local bar = #missed == 0 and "" or "<details><summary>" .. #missed .. " rows below their bar</summary><ul>\n<li>" ..
   table.concat(missed, "</li>\n<li>") .. "</li></ul></details>\n"
 write(out .. "/index.html", head .. "<nav>" .. table.concat(contents, " ") .. "</nav>\n" .. missing .. left .. bar .. table.concat(body) .. "</html>\n")
-local ticks = read "/proc/self/stat" -- of the programs that were run, in hundredths of a second
-local cpu = ticks and (function()
-  local fields = {}
-  for word in ticks:gsub("^.*%) ", ""):gmatch "%S+" do fields[#fields + 1] = word end
-  return (tonumber(fields[14]) + tonumber(fields[15])) / 100
-end)()
+local cpu = spent()
 print(("-> %s/index.html, %d s%s%s"):format(out, os.time() - started, cpu and (", of CPU %.0f s"):format(cpu) or "", #failed > 0 and "; missing: " .. table.concat(failed, "; ") or ""))

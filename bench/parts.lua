@@ -5,8 +5,8 @@
 ---   panels   a column, and which of its values have a panel of the picture each
 ---   curve    the column that says whose point it is; own: which of its values are ours
 ---   group    columns whose values must agree for rows to be compared; rule: the bar that rows are held to, in words of page.lua
----   time, error  columns of the picture; unit: what an error of 1 is. axes: other words for them
----   native   the program is measured once more, built with -march=native
+---   time, error  columns of the picture; unit: what an error of 1 is. axes: other words for them; measured: the time, where another column is
+---   native   the program is measured once more, built with -march=native; "full": not with --quick
 local libquat = { ["libquat"] = true, ["libquat array"] = true }
 return {
   { name = "rotations", program = "bench_quat", names = 4, curve = "library", time = "ns", error = "error_u", unit = 0x1p-53, native = true,
@@ -43,22 +43,25 @@ return {
     without = { class = " of " }, own = { auto = true, series = true, ["closed form"] = true }, group = { "class" }, rule = "errors",
     panels = { "class", "slip", "stick", "reversal", "jam", "recompression", "isotropic" }, title = "One impact",
     says = "Closed form and series against CVODE through compression and restitution (adams, bdf), and against integration over the normal impulse (p_z), at their tolerances." },
-  { name = "engines", program = "bench_engines", names = 3, rows = { scene = "^S[125]" }, curve = "engine", time = "us", error = "error",
+  { name = "engines", program = "bench_engines", names = 3, rows = { scene = "^S[125]" }, curve = "engine", time = "us", error = "error", native = true,
     own = { libimpact = true }, group = { "scene" }, rule = "errors", panels = { "scene", "S1a", "S2a", "S5a", "S5b" }, title = "One impact beside engines",
     says = "Spheres (S1, S2) and an ellipsoid on a plane (S5) beside ODE and Bullet: on S5 they solve another law, and no step helps." },
-  { name = "encounters", program = "bench_together", names = 3, rows = { case = "^line" }, curve = "who", time = "us", error = "error",
+  { name = "encounters", program = "bench_together", names = 3, rows = { case = "^line" }, curve = "who", time = "us", error = "error", native = "full",
     own = { springs = true }, group = { "case", "contacts" }, rule = "errors", panels = { "case", "line linear", "line Hertz" }, title = "Encounters of many bodies",
     says = "Lines of balls that touch: springs of no length in time beside the scheme of first order in the impulse and Bullet." },
-  { name = "flight", program = "bench_engines", names = 3, rows = { scene = "^S3$" }, curve = "engine", time = "us", error = "error",
+  { name = "flight", program = "bench_engines", names = 3, rows = { scene = "^S3$" }, curve = "engine", time = "us", error = "error", native = true,
     own = { libimpact = true }, group = { "scene" }, rule = "errors", title = "Flight and bounces", says = "Ten bounces of a ball beside ODE, Bullet and Simbody at their steps." },
   { name = "tumbling", program = "bench_flight", names = 3, curve = "method", time = "us", error = "error_p50", native = true,
     own = { ["closed form"] = true }, without = { method = "again$" }, group = { "angle" }, rule = "errors", panels = { "angle", "1", "10", "100", "1000" }, title = "Tumbling",
     says = "Torque-free rotation by elliptic functions beside CVODE, GSL's rk8pd, DOP853, the classical method, the same on the group, and MuJoCo's: the closed form's time does not grow with the angle." },
-  { name = "tumbling_engines", program = "bench_engines", names = 3, rows = { scene = "^S4$" }, curve = "engine", time = "us", error = "error",
+  { name = "tumbling_engines", program = "bench_engines", names = 3, rows = { scene = "^S4$" }, curve = "engine", time = "us", error = "error", native = true,
     own = { libimpact = true }, group = { "scene" }, rule = "errors", title = "Tumbling beside engines", says = "Beside the unstable axis for 100 s (10 s with --quick), beside ODE, Bullet and Simbody's integrator at its accuracies." },
-  { name = "held", program = "bench_cones", names = 2, time = "contacts", error = "cold_us", axes = { "contacts", "µs without a start" }, title = "Held contacts",
+  { name = "held", program = "bench_cones", names = 2, time = "contacts", error = "cold_us", measured = "cold_us", axes = { "contacts", "µs without a start" }, native = true, title = "Held contacts",
     says = "Coulomb's problem of many contacts, to rounding (residual): time against their number. Errors of scenes with held contacts stand under whole scenes (bowling_ball, sphere_wall)." },
-  { name = "crowd", program = "bench_crowd", names = 2, curve = "program", time = "balls", error = "us_per_event", axes = { "balls", "µs an event" }, title = "Crowds",
+  { name = "whole_scenes", program = "bench_scene", names = 3, curve = "motion", time = "us", error = "error", native = true,
+    own = { default = true }, group = { "scene" }, rule = "errors", panels = { "scene", "orbit", "sphere_wall", "two_spheres", "ellipsoid_in_wind" },
+    title = "Whole scenes", says = "Scenes by each method of motion (fixed steps are the textbook's), against truths in 40 digits that share no code with the library." },
+  { name = "crowd", program = "bench_crowd", names = 2, curve = "program", time = "balls", error = "us_per_event", measured = "us_per_event", axes = { "balls", "µs an event" }, native = "full", title = "Crowds",
     own = { libimpact = true }, group = { "balls" }, rule = "crowd", says = "A gas of balls: time an event against their number, beside a textbook program (event-driven, cells and a heap, balls of one size only) and ODE and Bullet at steps of 1 ms." },
   { name = "rows", program = "bench_rows", names = 1, title = "Rows of CSV", says = "How fast a run writes its rows: the bar is a million a second." },
   { name = "extreme", program = "report_extreme", names = 2, curve = "case", time = "ms", error = "error", slower = { "case", "ms" }, title = "Stiff and extreme cases",

@@ -191,6 +191,22 @@ static int scene_usage(lua_State *L)
     return 1;
 }
 
+static int scene_memory(lua_State *L)
+{
+    const impact_memory memory = impact_scene_memory(impact_lua_check_scene(L)->scene);
+    const struct {
+        const char *key;
+        size_t value;
+    } counts[] = {
+        {"held", memory.held}, {"used", memory.used}, {"most", memory.most}, {"pieces", (size_t)memory.pieces}};
+    lua_createtable(L, 0, 4);
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        lua_pushinteger(L, (lua_Integer)counts[i].value);
+        lua_setfield(L, -2, counts[i].key);
+    }
+    return 1;
+}
+
 /* ---- running ---- */
 
 static int scene_run(lua_State *L)
@@ -308,21 +324,14 @@ void impact_lua_open_scene(lua_State *L)
     static const luaL_Reg meta[] = {
         {"__gc", scene_close}, {"__close", scene_close}, {"__tostring", scene_tostring}, {NULL, NULL}};
     static const luaL_Reg methods[] = {
-        {"run", scene_run},
-        {"run_to", scene_run_to},
-        {"track", scene_track},
-        {"events", scene_events},
-        {"time", scene_time},
-        {"duration", scene_duration},
-        {"name", scene_name},
-        {"definition", scene_definition},
-        {"state", scene_state},
-        {"energy", scene_energy},
-        {"usage", scene_usage},
-        {"close", scene_close},
-        {"record", scene_record},
-        {"receipt", scene_receipt},
-        {NULL, NULL},
+        {"run", scene_run},         {"run_to", scene_run_to},
+        {"track", scene_track},     {"events", scene_events},
+        {"time", scene_time},       {"duration", scene_duration},
+        {"name", scene_name},       {"definition", scene_definition},
+        {"state", scene_state},     {"energy", scene_energy},
+        {"usage", scene_usage},     {"memory", scene_memory},
+        {"close", scene_close},     {"record", scene_record},
+        {"receipt", scene_receipt}, {NULL, NULL},
     };
     luaL_newmetatable(L, IMPACT_LUA_SCENE);
     luaL_setfuncs(L, meta, 0);

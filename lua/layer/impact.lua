@@ -171,6 +171,7 @@ core.layer()
 ---@field energy fun(self): table  start, kinetic, potential, force_work, drive_work, damping_loss, sliding_loss, impact_loss, J
 ---@field report_rows fun(self, options: table): table[]?, table|string  what scene:report is made of: rows, a summary; or nil and why not
 ---@field usage fun(self): table  what the run used, by name; and events, by kind
+---@field memory fun(self): table  held, used, most: bytes; pieces: how many the allocator was asked for (impact_memory)
 ---@field receipt fun(self): string, table  "ok" or "inaccurate"; residuals and their limits
 ---@field events fun(self): table[]  of a recorded run
 ---@field record fun(self): impact.run  the recorded run, so far
@@ -543,6 +544,7 @@ end
 local parts = {
   { "ballistic_flights", "flight in closed form", "stretch", "stretches" },
   { "rolls", "rolling and sliding in closed form", "stretch", "stretches" },
+  { "glides", "gliding on a face", "stretch", "stretches", rare = true },
   { "integrators", "integration of the motion", "integrator", "integrators" },
   { "gap_closed_form", "gaps in closed form", "query", "queries" },
   { "gap_newton", "gaps by Newton", "query", "queries" },

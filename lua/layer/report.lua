@@ -70,6 +70,14 @@ function report:is_stepped()
   return false
 end
 
+--- Whether bodies glided on faces, which is by the same solver in every row.
+function report:glides()
+  for _, row in ipairs(self.rows) do
+    if row.usage.glides > 0 then return true end
+  end
+  return false
+end
+
 --- The best row of a method: the least error, then the least time. nil where no error is known.
 function report:best(method)
   local best
@@ -86,13 +94,15 @@ local function witness_of(witness, what)
   return format("%s, %s (%s)", witness.method, setting_of(witness.method, witness.setting), what)
 end
 
-local function reference_line(s, stepped)
+local function reference_line(s, stepped, glides)
   local c = s.certainty
   if s.reference ~= s.reference then return format("an oracle's, of error %s", short(c.e)) end
   local name = s.reference == 0 and "default" or format("default at %s", short(s.reference))
-  if not s.sure then return name .. ", certainty unknown: " .. (stepped and "what is moved by steps is so by every method" or "no other method of motion came to the end") end
+  if not s.sure then return name .. ", certainty unknown: " .. (stepped and "what is moved by steps is so by every method" or
+    glides and "what glides on a face does so by every method" or "no other method of motion came to the end") end
   local by, shared = witness_of(s.motion_witness, "motion"), "supports, gaps, held contacts"
   if s.impact_witness then by = by .. " and " .. witness_of(s.impact_witness, "impacts") else shared = shared .. ", impacts" end
+  if glides then shared = shared .. ", motion on faces" end
   return format("%s, sure to %s (position), %s (velocity), %s rad, %s s (events) by %s; shared: %s", name, short(c.e_x), short(c.e_v),
     short(c.e_q), short(c.e_t), by, shared)
 end
@@ -195,7 +205,7 @@ function report:text()
   local s, order = self.summary, (by_method(self.rows))
   local out = {
     format("%s: error against run time   %d times, %d events, %d rounds", self.name, s.times, s.events, s.rounds),
-    "  reference   " .. reference_line(s, self:is_stepped()),
+    "  reference   " .. reference_line(s, self:is_stepped(), self:glides()),
     "  condition   " .. condition_line(s),
     format("  %-22s%10s%10s%10s%10s%12s", "ms to reach", "1e-3", "1e-6", "1e-9", "1e-12", "at best"),
   }
@@ -213,7 +223,7 @@ function report:text()
 end
 
 local measured = { "e_x", "e_v", "e_q", "e_t", "e", "other_events", "first_other", "dying", "account" }
-local counters = { "ballistic_flights", "rolls", "integrator_steps", "integrator_rhs_calls", "gap_closed_form", "gap_newton", "gap_ccd",
+local counters = { "ballistic_flights", "rolls", "glides", "integrator_steps", "integrator_rhs_calls", "gap_closed_form", "gap_newton", "gap_ccd",
   "impacts_closed_form", "impacts_series", "impacts_cvode", "pile_steps" }
 
 --- Names and columns of the CSV file: one row a setting.

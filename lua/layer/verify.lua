@@ -8,7 +8,7 @@
 local impact = require "impact"
 
 local ipairs, pairs, pcall, setmetatable = ipairs, pairs, pcall, setmetatable
-local format, huge, max, min, sqrt, atan, sort = string.format, math.huge, math.max, math.min, math.sqrt, math.atan, table.sort
+local format, concat, huge, max, min, sqrt, atan, sort = string.format, table.concat, math.huge, math.max, math.min, math.sqrt, math.atan, table.sort
 
 --- Parts of a stretch: where the other is put into the first's state, and where states are compared; not at the ends, where the other's own
 --- events come a little before or after.
@@ -35,6 +35,7 @@ local allowed, least_tolerance = 1e4, 1e-11
 ---@field replayed integer
 ---@field part number  of the run's time that was done again
 ---@field enough boolean  half of the time at least
+---@field by string[]  of each kind of motion in the run what the second time was by, in words
 ---@field good boolean  enough, and all within what is allowed
 local verification = {}
 verification.__index = verification
@@ -226,7 +227,20 @@ function verification:text()
   if self.body then text = text .. format(" (%s, t = %.6g s)", self.body, self.t) end
   if self.gap < 0 then text = text .. format("; %s and %s overlap by %.1g of a radius (t = %.6g s)", self.gap_bodies[1], self.gap_bodies[2], -self.gap, self.gap_t) end
   if not self.enough then return text .. format("; at least %.4g %% is to be", 100 * least_part) end
-  return text .. (self.good and "" or format("; allowed are %.1g", self.limit))
+  text = text .. (self.good and "" or format("; allowed are %.1g", self.limit))
+  return #self.by > 0 and format("%s (%s)", text, concat(self.by, "; ")) or text
+end
+
+--- What a run's kinds of motion are by when the other method moves them.
+local function second_methods(usage)
+  local by = {}
+  local function add(count, words) if count > 0 then by[#by + 1] = words end end
+  add(usage.ballistic_flights, "flight in closed form: by CVODE's BDF")
+  add(usage.rolls - usage.glides, "balls that rolled in closed form: by CVODE's BDF")
+  add(usage.integrator_steps, "what was integrated: by CVODE's BDF, by its Adams where BDF was first")
+  add(usage.glides, "what glided on a face: by the same solver, from another start")
+  add(usage.pile_steps, "piles by steps: each contact's force, integrated")
+  return by
 end
 
 --- Of a run that was recorded; nil and why where the other method cannot do it.
@@ -250,6 +264,7 @@ local function of(scene)
     end
   end
   if not work:repeats(scene, first) then return nil, "two runs of the scene differ: a law of it remembers, or draws lots" end
+  found.by = second_methods(scene:usage())
   work:judge(found, tolerance_of(definition))
   return found
 end

@@ -96,8 +96,8 @@ typedef enum impact_samples {
 /* How bodies move between events. */
 typedef enum impact_motion_method {
     IMPACT_MOTION_AUTO,  /* in closed form where there is one: flight, with damping too, and balls that roll or slide;
-                          * else flight by collocation, IMPACT_ODE_LOBATTO, the rest by CVODE; piles as `piles`
-                          * says */
+                          * else flight and what is held at one contact by collocation, IMPACT_ODE_LOBATTO, the
+                          * rest by CVODE; piles as `piles` says */
     IMPACT_MOTION_CVODE, /* all that moves by CVODE, flight too; no pile by steps */
     IMPACT_MOTION_RK4, /* all that moves by the classical Runge-Kutta method with the fixed `step`; no pile by steps */
     IMPACT_MOTION_STEPS, /* AUTO, and piles by steps from the start: piles = IMPACT_PILES_STEPS */
@@ -278,7 +278,9 @@ IMPACT_API double impact_scene_key_tolerance(const impact_scene *scene);
 typedef struct impact_usage {
     long ballistic_flights; /* stretches of flight in closed form */
     long rolls;             /* stretches in which a ball rolls or slides on a plane, in closed form */
-    long integrators;       /* integrators created for the motion */
+    long glides; /* stretches of a body that lies on a face and moves: in closed form, which `rolls` counts too, or by
+                  * collocation at Gauss's nodes (docs/faces.md), whatever `motion` says */
+    long integrators; /* integrators created for the motion */
     long integrator_starts, integrator_steps, integrator_rhs_calls;
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback, gap_ccd; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode;          /* impacts, by solver */

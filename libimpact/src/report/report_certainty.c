@@ -17,11 +17,13 @@ static int first_parting(const imp_report_work *w, const imp_report_entry *e)
 typedef enum aspect { MOTION, IMPACTS, ASPECTS } aspect;
 
 /* Whether the run does it by another method than the default: an integrator's motion is not vouched for by itself, and
- * what is moved by steps is by the same steps whatever the method. */
+ * what is moved by steps is by the same steps whatever the method; so is what glides on a face, and a run that
+ * integrates nothing else vouches for nothing. */
 static bool vouches(const imp_report_work *w, const imp_report_entry *e, aspect a)
 {
     const bool closed = w->reference.usage.integrators == 0;
-    if (!e->track.complete || w->reference.usage.pile_steps > 0) return false;
+    const bool glides_only = w->reference.usage.glides > 0 && e->track.usage.integrator_steps == 0;
+    if (!e->track.complete || w->reference.usage.pile_steps > 0 || (a == MOTION && glides_only)) return false;
     switch (e->row.method) {
     case IMPACT_REPORT_MOTION: return a == MOTION && closed;
     case IMPACT_REPORT_IMPACTS: return a == IMPACTS;

@@ -140,6 +140,7 @@ static impact_status glide(imp_island *island)
     imp_segment segment;
     bool closed;
     memcpy(island->before, island->states, (size_t)island->world.body_count * sizeof *island->states);
+    island->world.usage.glides++;
     const impact_status status = imp_island_glide_on(island, &segment, &closed);
     island->rolls = island->loses = false;
     if (status != IMPACT_OK) return imp_island_fail(island, status);
