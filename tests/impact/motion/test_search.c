@@ -4,9 +4,12 @@
  * which they move on lines, and of shapes that tumble against a close look at all times before it.
  */
 #include "motion/search.h"
+#include "motion/motion_equations.h"
 #include "world/world_gap.h"
 #include "kit/contact_random.h"
 #include "kit/near.h"
+
+#include <string.h>
 
 static imp_body make_body(impact_shape shape, double linear_rate, double angular_rate)
 {
@@ -198,6 +201,60 @@ static void what_is_behind_a_plane_comes_back(void **state)
     assert_true(back > 50 && never > 50);
 }
 
+/* A step of an integrator, from t0 for 1/2 s, in which a ball's gap over a plane is k s (s - a) (s - b), s = t - t0. */
+typedef struct dip {
+    imp_dense dense;
+    double c[4 * (Y_BODIES + Y_PER_BODY)];
+} dip;
+
+static void make_dip(dip *d, double t0, double radius, double k, double a, double b, bool fixed)
+{
+    enum { SIZE = Y_BODIES + Y_PER_BODY };
+    const double h = 0.5, gap[4] = {0, k * a * b, -k * (a + b), k};
+    static const double binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+    memset(d, 0, sizeof *d);
+    d->dense =
+        (imp_dense){.t0 = t0, .t1 = t0 + h, .end = t0 + h, .h = h, .size = SIZE, .terms = 4, .fixed = fixed, .c = d->c};
+    d->c[Y_TIME] = t0 + h, d->c[SIZE + Y_TIME] = h;
+    d->c[Y_BODIES + 2] = radius;
+    d->c[Y_BODIES + 3] = 1;
+    for (int i = 0; i < 4; i++) /* of s = h (1 + sigma) */
+        for (int j = 0; j <= i; j++) {
+            d->c[j * SIZE + Y_BODIES + 2] += gap[i] * pow(h, i) * binomial[i][j];
+            if (j > 0) d->c[(j - 1) * SIZE + Y_BODIES + Y_VELOCITY + 2] += j * gap[i] * pow(h, i - 1) * binomial[i][j];
+        }
+}
+
+/* It leaves the plane and dips below it again, for a part of the step that its 64th does not hide: of a fixed step,
+ * whose length says nothing of the motion, for any part. */
+static void what_leaves_and_comes_back_within_a_step_is_found(void **state)
+{
+    (void)state;
+    random_stream random = {36};
+    for (int i = 0; i < 200; i++) {
+        const bool fixed = i % 2;
+        const double t0 = random_log(&random, 1e-2, 1e3),
+                     a = fixed ? random_log(&random, 1e-4, 1e-2) : 0.01 + 0.1 * random_unit(&random),
+                     b = a * (1.5 + random_unit(&random)), radius = random_log(&random, 0.1, 1),
+                     k = random_log(&random, 10, 1000);
+        dip d;
+        couple c = {.body = {make_ball(radius, 0)}};
+        make_dip(&d, t0, radius, k, a, b, fixed);
+        impact_shape_plane(INFINITY, INFINITY, &c.body[1].shape);
+        c.body[1].is_static = true, c.body[1].turn = (quat){1, 0, 0, 0};
+        const imp_state ball = {.x = {0, 0, radius}, .q = {1, 0, 0, 0}};
+        c.segment[0] = imp_segment_dense(&d.dense, 0, &ball);
+        c.segment[1] = imp_segment_rest(0, &(imp_state){.q = {1, 0, 0, 0}});
+        const imp_search s = search_of(&c);
+        imp_found found = imp_search_contact(&s, t0, INFINITY);
+        for (int again = 0; again < 100 && !found.touches && isfinite(found.t); again++)
+            found = imp_search_contact(&s, found.t, INFINITY);
+        assert_true(found.touches);
+        /* as closely as gaps of places of this size tell */
+        assert_near(found.t, t0 + a, 1e-12 * radius / (k * a * (b - a)) + 1e-12 * (1 + t0));
+    }
+}
+
 /* Stopped on the way and taken up again, the answer has the same bits. */
 static void pauses_change_no_bits(void **state)
 {
@@ -222,8 +279,11 @@ static void pauses_change_no_bits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balls_meet_on_a_line),   cmocka_unit_test(damped_balls_meet),
-        cmocka_unit_test(nothing_is_passed_over), cmocka_unit_test(what_is_behind_a_plane_comes_back),
+        cmocka_unit_test(balls_meet_on_a_line),
+        cmocka_unit_test(damped_balls_meet),
+        cmocka_unit_test(nothing_is_passed_over),
+        cmocka_unit_test(what_is_behind_a_plane_comes_back),
+        cmocka_unit_test(what_leaves_and_comes_back_within_a_step_is_found),
         cmocka_unit_test(pauses_change_no_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
