@@ -210,3 +210,18 @@ for _, shape in ipairs { impact.sphere(.1), impact.box { a = .1, b = .1, c = .1 
   check.close(first, math.sqrt(2 * .5 / G), 1e-12)
   check.close(drop:state("body").position.z, .1, 1e-12)
 end
+
+-- What lies down as it slides keeps its momentum along the face, and about its normal, where no friction takes it: the account closes.
+math.randomseed(77)
+local function between(low, high) return low + (high - low) * math.random() end
+for i = 1, 40 do
+  local points = { }
+  for k = 1, 7 do points[k] = { between(-.2, .2), between(-.2, .2), between(-.2, .2) } end
+  local shape = i % 2 == 0 and impact.polyhedron { vertices = points } or impact.box { a = between(.05, .2), b = between(.05, .2), c = between(.05, .2) }
+  local drop = impact.scene { gravity = { G * math.sin(.2), 0, -G * math.cos(.2) }, duration = 1.2, bodies = { impact.body(floor),
+    impact.body { name = "body", shape = shape, density = 1000, position = { 0, 0, .5 }, friction = 0, restitution = between(0, .5),
+      orientation = { between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1) }, velocity = { between(-1, 1), between(-1, 1), 0 },
+      omega = { between(-5, 5), between(-5, 5), between(-5, 5) } } } }
+  check.equal(drop:run(), "end of time")
+  check.equal(drop:receipt(), "ok")
+end

@@ -68,23 +68,27 @@ static bool plane_bounds(const imp_lying *lying, const imp_body *under, const im
 
 /* ---- the body ---- */
 
-/* What rocks as it lies down keeps the velocity that it has at the face, below its centre: where it sticks, none. */
-static void keep_sliding(imp_lying *lying, const imp_state *state)
+static qvec3 across(qvec3 v, qvec3 n) { return qvec3_axpy(-qvec3_dot(n, v), n, v); }
+
+/* What rocks as it lies down keeps the velocity that it has at the face, below its centre: where it sticks, none. That
+ * is friction's doing: without it, or where it would drive the body, it is the centre that keeps its own. */
+static void keep_sliding(imp_lying *lying, const imp_state *state, double friction)
 {
     const qvec3 n = lying->normal, below = qvec3_scale(n, -lying->motion.height * lying->size),
-                u = imp_point_velocity(lying->body, state, below);
-    lying->level.v = qvec3_axpy(-qvec3_dot(n, u), n, u);
+                own = across(state->v, n), u = across(imp_point_velocity(lying->body, state, below), n);
+    lying->level.v = friction > 0 && qvec3_dot(u, u) <= qvec3_dot(own, own) ? u : own;
 }
 
 static void level(imp_lying *lying, const imp_state *state, qvec3 outward)
 {
     const imp_body *body = lying->body;
     const qvec3 n = lying->normal, turn = qvec3_cross(outward, qvec3_neg(n));
-    const qvec3 turns = imp_omega(body, state);
-    const double omega = qvec3_dot(n, turns);
     lying->level = *state;
     quat_normalize(quat_mul(quat_from_rotation_vector(turn), state->q), &lying->level.q);
     lying->inertia = imp_inertia(body, lying->level.q, n);
+    const qvec3 turns = imp_omega(body, state), tips = across(turns, n);
+    /* n.L stays, for pressure has no moment about n */
+    const double omega = qvec3_dot(n, turns) + qvec3_dot(lying->inertia, tips) / qvec3_dot(n, lying->inertia);
     lying->level.momentum = qvec3_scale(lying->inertia, omega);
     lying->axis[0] = imp_tangent(n), lying->axis[1] = qvec3_cross(n, lying->axis[0]);
     memset(lying->start, 0, sizeof lying->start);
@@ -189,7 +193,7 @@ bool imp_lying_find(imp_motion *motion, const imp_pair *given, double t, const i
     lying->level.x = qvec3_axpy(-gap, n, state->x);
     lying->size = farthest(lying, &face);
     lying->motion.height = -qvec3_dot(n, low) / lying->size;
-    keep_sliding(lying, state);
+    keep_sliding(lying, state, pair.friction);
     lay_out_face(lying, body, &lying->level, (qvec3){0, 0, 0}, &face, true, &lying->motion.face);
     const qvec3 apart = qvec3_sub(lying->level.x, below->x);
     lying->motion.bounded = !on_plane || plane_bounds(lying, under, below, apart, &lying->motion.under);
