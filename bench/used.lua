@@ -2,8 +2,8 @@
 --- What one example scene uses: `impact --trust bench/used.lua -- FILE` prints a line of CSV: the counters of its run; our own modules
 --- that the process has loaded and the libraries below them; how often its scene asked for memory and the most it used, kB; the process'
 --- memory, kB; the CPU time to the scene's being made and that of its run, ms. `-- names` prints the columns' names.
-local names = { "scene", "flights", "rolls", "integrators", "integrator_steps", "pile_steps", "gap_formula", "gap_queries", "impacts_closed", "impacts_series",
-  "impacts_cvode", "encounters", "linked", "loaded", "pieces", "used_kB", "peak_kB", "start_ms", "run_ms" }
+local names = { "scene", "flights", "rolls", "glides", "integrators", "integrator_steps", "pile_steps", "gap_formula", "gap_queries", "impacts_closed",
+  "impacts_series", "impacts_cvode", "encounters", "linked", "loaded", "pieces", "used_kB", "peak_kB", "start_ms", "run_ms" }
 local path = arg[1]
 if path == "names" then
   print(table.concat(names, ","))
@@ -40,7 +40,7 @@ end
 local peak = 0
 for line in io.lines "/proc/self/status" do peak = tonumber(line:match "^VmHWM:%s+(%d+)") or peak end
 local linked, loaded = objects()
-local values = { path:match "([^/]+)%.lua$", usage.ballistic_flights, usage.rolls, usage.integrators, usage.integrator_steps, usage.pile_steps,
+local values = { path:match "([^/]+)%.lua$", usage.ballistic_flights, usage.rolls, usage.glides, usage.integrators, usage.integrator_steps, usage.pile_steps,
   usage.gap_closed_form, usage.gap_newton + usage.gap_gjk, usage.impacts_closed_form, usage.impacts_series, usage.impacts_cvode, usage.encounters, linked,
   loaded, memory.pieces, string.format("%.0f", memory.most / 1000), peak, string.format("%.2f", 1e3 * started), string.format("%.2f", 1e3 * ran) }
 print(table.concat(values, ","))

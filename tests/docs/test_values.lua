@@ -22,7 +22,8 @@
 local pages = require "pages"
 local root, build, mode = arg[1], arg[2], arg[3]
 
--- Of CSV: how many columns name the row. Of tests nothing need be said. "long": minutes, run when named.
+-- Of CSV: how many columns name the row. Of tests nothing need be said. "long": minutes, run when named. "script": of bench/, by the
+-- runner, once for its columns' names and once for each example.
 local programs = {
   bench_quat = { names = 3 }, bench_geometry = { names = 2 }, bench_flight = { names = 3 }, bench_gap = { names = 4 },
   bench_engines = { names = 3 }, bench_scene = { names = 3 }, bench_collide = { names = 3 },
@@ -30,6 +31,7 @@ local programs = {
   report_held = { names = 2, long = true }, report_flat = { names = 4, long = true },
   report_collide = { names = 2, arguments = "--impacts 10000000 --seed 7 --oracle 1000 --cvode 1000 --range 100000", long = true },
   report_gap = { names = 2, arguments = "--pairs 60000 --threads 2" },
+  used = { names = 1, script = "used.lua", command = "./run report examples" },
 }
 
 --- A name as it stands in a key: 1e-06 and 1e-6 are the same.
@@ -120,6 +122,7 @@ end
 
 local function command_of(program)
   local spec = programs[program]
+  if spec and spec.command then return spec.command end
   if spec then
     local kind, module = program:match "^(%a+)_(.*)$"
     return string.format("./run %s %s%s", kind, module, spec.arguments and " " .. spec.arguments or "")
@@ -135,14 +138,25 @@ local function capture(command)
   return text
 end
 
+--- What a script of bench/ prints: the names of its columns, and a row for each example.
+local function of_examples(runner, script)
+  local rows = { capture(string.format("'%s' --trust --quiet '%s/bench/%s' -- names", runner, root, script)) }
+  for path in capture(string.format("ls '%s'/examples/scenes/*.lua", root)):gmatch "[^\n]+" do
+    rows[#rows + 1] = capture(string.format("'%s' --trust --quiet '%s/bench/%s' -- '%s' 2>/dev/null", runner, root, script, path))
+  end
+  return table.concat(rows)
+end
+
 --- The figures of a program, run now: key to { value, unit, kind, command }; nil where this build has none.
 local function measured(program)
   local spec, found = programs[program], {}
-  local path = spec and string.format("%s/bench/%s", build, program) or string.format("%s/tests/%s/test_%s", build, program:match "^%a+", program)
+  local path = spec and spec.script and build .. "/lua/impact" or spec and string.format("%s/bench/%s", build, program) or
+    string.format("%s/tests/%s/test_%s", build, program:match "^%a+", program)
   local file = io.open(path, "rb")
   if not file then return end
   file:close()
-  local text = capture(string.format("cd '%s' && OUT='%s' TEST_SHOW=1 '%s' %s 2>/dev/null", build, build, path, spec and spec.arguments or ""))
+  local text = spec and spec.script and of_examples(path, spec.script) or
+    capture(string.format("cd '%s' && OUT='%s' TEST_SHOW=1 '%s' %s 2>/dev/null", build, build, path, spec and spec.arguments or ""))
   local harvest = spec and of_csv or of_test
   harvest(text, program, function(key, value, unit, kind)
     if found[key] and found[key].value >= value then return end
