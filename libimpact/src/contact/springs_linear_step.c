@@ -19,13 +19,13 @@ bool imp_linear_find_closed(imp_linear_springs *s)
         if (!open) s->closed[s->closed_count++] = i;
     }
     for (int c = 0; c < s->closed_count; c++) {
-        const int j = s->closed[c];
+        const int j = s->closed[c], to = s->start[j + 1];
         s->closed_start[c] = filled;
-        for (int e = s->start[j]; e < s->start[j + 1]; e++) {
+        for (int e = s->start[j]; e < to; e++) {
             const int place = s->place[s->row[e]];
-            if (place < 0) continue;
             s->closed_row[filled] = place;
-            s->closed_value[filled++] = s->value[e];
+            s->closed_value[filled] = s->value[e] * s->line[s->row[e]].kappa;
+            filled += place >= 0; /* what is open is written over */
         }
     }
     s->closed_start[s->closed_count] = filled;
@@ -44,8 +44,18 @@ static void add_column(const double *restrict value, const int *restrict row, in
 
 /* ---- the series ---- */
 
+/* What next terms are of the sums over W K: -1/((k-1)k) and -1/(k(k+1)). */
+static void find_factors(imp_linear_springs *s)
+{
+    for (int m = 1; m < IMP_LINEAR_PAIRS; m++) {
+        const int k = 2 * m;
+        s->factor[m] = (imp_term_pair){-1.0 / ((k - 1) * k), -1.0 / (k * (k + 1))};
+    }
+}
+
 static void begin_series(imp_linear_springs *s)
 {
+    if (s->factor[1].even == 0) find_factors(s);
     s->pairs = 1;
     for (int c = 0; c < s->closed_count; c++) {
         const imp_linear_spring *l = &s->line[s->closed[c]];
@@ -56,22 +66,22 @@ static void begin_series(imp_linear_springs *s)
 /* The next two terms of what is closed. */
 static void expand(imp_linear_springs *s)
 {
-    const int n = s->closed_count, k = 2 * s->pairs, *restrict column = s->closed_row;
-    const double *restrict value = s->closed_value, even = -1.0 / ((k - 1) * k), odd = -1.0 / (k * (k + 1));
-    const imp_term_pair *last = &s->depth[(s->pairs - 1) * n];
-    imp_term_pair *restrict next = &s->depth[s->pairs++ * n], *restrict force = s->gain;
-    for (int c = 0; c < n; c++) {
-        const double kappa = s->line[s->closed[c]].kappa;
-        force[c] = (imp_term_pair){kappa * last[c].even, kappa * last[c].odd};
-    }
+    const int n = s->closed_count, *restrict column = s->closed_row;
+    const double *restrict value = s->closed_value;
+    const imp_term_pair factor = s->factor[s->pairs], *restrict last = &s->depth[(s->pairs - 1) * n];
+    imp_term_pair *restrict next = &s->depth[s->pairs++ * n], most = {0, 0};
     for (int c = 0; c < n; c++) {
         imp_term_pair sum = {0, 0};
         for (int e = s->closed_start[c]; e < s->closed_start[c + 1]; e++) {
-            sum.even += value[e] * force[column[e]].even;
-            sum.odd += value[e] * force[column[e]].odd;
+            sum.even += value[e] * last[column[e]].even;
+            sum.odd += value[e] * last[column[e]].odd;
         }
-        next[c] = (imp_term_pair){even * sum.even, odd * sum.odd};
+        next[c] = (imp_term_pair){factor.even * sum.even, factor.odd * sum.odd};
+        const double even = fabs(next[c].even), odd = fabs(next[c].odd);
+        most.even = even > most.even ? even : most.even;
+        most.odd = odd > most.odd ? odd : most.odd;
     }
+    s->greatest = most;
 }
 
 /* S */
@@ -88,15 +98,8 @@ static double growth_of(const imp_linear_springs *s)
 /* The largest of the last two terms, as velocities have them. */
 static imp_term_pair greatest_terms(const imp_linear_springs *s)
 {
-    const imp_term_pair *last = &s->depth[(s->pairs - 1) * s->closed_count];
-    imp_term_pair most = {0, 0};
-    for (int c = 0; c < s->closed_count; c++) {
-        const double even = fabs(last[c].even), odd = fabs(last[c].odd);
-        most.even = even > most.even ? even : most.even;
-        most.odd = odd > most.odd ? odd : most.odd;
-    }
     const int order = 2 * s->pairs - 2;
-    return (imp_term_pair){order * most.even, (order + 1) * most.odd};
+    return (imp_term_pair){order * s->greatest.even, (order + 1) * s->greatest.odd};
 }
 
 /* How far the terms that are made reach: of a sum of cosines and sines the last even and odd ones tell. */
@@ -164,7 +167,7 @@ static void gather_open(const imp_linear_springs *s, int i, imp_terms f)
             f[2 * m + 1] += factor * p.odd;
         }
     }
-    for (int k = 2; k < 2 * s->pairs; k++) f[k] /= k * (k - 1);
+    for (int m = 1; m < s->pairs; m++) f[2 * m] *= -s->factor[m].even, f[2 * m + 1] *= -s->factor[m].odd;
 }
 
 /* ---- which event comes first ---- */
@@ -323,29 +326,25 @@ static double depth_at(const imp_linear_springs *s, int closed, double t)
     return x;
 }
 
-/* Of what is closed at t, whose powers are given: x, and F's integral since the beginning and that one's, which have
- * the velocities' order. */
+/* Of what is closed F's integral from the beginning to t, whose powers are given, and that one's. */
 static void sum_up(imp_linear_springs *s, double t)
 {
-    const int n = s->closed_count;
+    const int n = s->closed_count, last = s->pairs - 1;
     imp_term_pair first[IMP_LINEAR_PAIRS], second[IMP_LINEAR_PAIRS];
-    const int last = s->pairs - 1;
     for (int m = 0; m <= last; m++) {
         const int k = 2 * m;
         first[m] = (imp_term_pair){s->power[k + 1] / (k + 1), m < last ? s->power[k + 2] / (k + 2) : 0};
         second[m] = (imp_term_pair){first[m].even * t / (k + 2), first[m].odd * t / (k + 3)};
     }
     for (int c = 0; c < n; c++) {
-        imp_linear_spring *l = &s->line[s->closed[c]];
-        imp_term_pair x = {0, 0}, p = {0, 0}, q = {0, 0};
+        imp_term_pair p = {0, 0}, q = {0, 0};
         for (int m = last; m >= 0; m--) {
             const imp_term_pair term = s->depth[m * n + c];
-            x.even += s->power[2 * m] * term.even, x.odd += s->power[2 * m + 1] * term.odd;
             p.even += first[m].even * term.even, p.odd += first[m].odd * term.odd;
             q.even += second[m].even * term.even, q.odd += second[m].odd * term.odd;
         }
-        l->x = x.even + x.odd;
-        s->push[c] = (imp_term_pair){l->kappa * (p.even + p.odd), l->kappa * (q.even + q.odd)};
+        const double kappa = s->line[s->closed[c]].kappa;
+        s->push[c] = (imp_term_pair){kappa * (p.even + p.odd), kappa * (q.even + q.odd)};
     }
 }
 
@@ -384,7 +383,7 @@ static void move_lines_on(imp_linear_springs *s, double t)
     }
     for (int i = 0; i < s->count; i++) {
         imp_linear_spring *l = &s->line[i];
-        if (l->normal == IMP_SPRING_OPEN) l->x -= l->u * t + s->gain[i].odd;
+        l->x -= l->u * t + s->gain[i].odd;
         l->u += s->gain[i].even;
     }
     for (int c = 0; c < s->closed_count; c++) book_line(s, c, t);
