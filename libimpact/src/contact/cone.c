@@ -307,25 +307,53 @@ static void polish(imp_cone_system *system, bool exact, int most, double *r, dou
     memcpy(u, system->own, length * sizeof *u);
 }
 
-/* Ever more sweeps, each time Newton from there; while they lead on, where there is an answer. */
-static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
+/* Sweeps from own on, then Newton from there. */
+static void sweep_once(imp_cone_system *system, long sweeps, int most, double *own, double *r, double *u,
+                       imp_cone_outcome *outcome)
+{
+    const double before = outcome->residual;
+    imp_cone_sweep(system, sweeps, own);
+    imp_cone_velocities(system->problem, own, system->own);
+    recall_answer(system, own, system->own);
+    polish(system, true, most, r, u, outcome);
+    if (outcome->residual < before) outcome->stage = IMP_CONE_SWEPT;
+}
+
+/* Few sweeps at a time: where they go round they come by what Newton starts from. */
+static void wander(imp_cone_system *system, double *own, double *r, double *u, imp_cone_outcome *outcome)
+{
+    enum { STEPS = 8, ROUND = 7 };
+    const double count = system->problem->count, each = 27 * count * count, newton = STEPS * 18 * count * count * count;
+    double work = 0;
+    for (long k = 0; work <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED); k++) {
+        sweep_once(system, 1 + k % ROUND, STEPS, own, r, u, outcome);
+        work += (double)(1 + k % ROUND) * each + newton;
+    }
+}
+
+/* Ever more sweeps at a time, while they lead on, where there is an answer. */
+static void settle_down(imp_cone_system *system, double *own, double *r, double *u, imp_cone_outcome *outcome)
 {
     enum { STEPS = 12, FIRST = 256, PATIENCE = 4 };
-    double *own = system->tangent;
     const double each = 27.0 * system->problem->count * system->problem->count; /* multiplications of three sweeps */
-    if (system->problem->lengths || system->problem->brief) return;
-    memset(own, 0, 3 * (size_t)system->problem->count * sizeof *own);
     int idle = 0;
     for (long n = FIRST; idle < PATIENCE && n * each <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED);
          n *= 2) {
-        imp_cone_sweep(system, n, own);
-        imp_cone_velocities(system->problem, own, system->own);
-        recall_answer(system, own, system->own);
         const double before = outcome->residual;
-        polish(system, true, STEPS, r, u, outcome);
-        if (outcome->residual < before) outcome->stage = IMP_CONE_SWEPT;
+        sweep_once(system, n, STEPS, own, r, u, outcome);
         idle = outcome->residual < 0.5 * before || !(outcome->residual <= IMP_CONE_USABLE) ? 0 : idle + 1;
     }
+}
+
+static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
+{
+    const size_t bytes = 3 * (size_t)system->problem->count * sizeof *system->tangent;
+    if (system->problem->lengths || system->problem->brief) return;
+    memset(system->tangent, 0, bytes);
+    settle_down(system, system->tangent, r, u, outcome);
+    if (outcome->residual <= IMP_CONE_USABLE) return;
+    memset(system->tangent, 0, bytes);
+    wander(system, system->tangent, r, u, outcome);
 }
 
 /* Whether nothing better can be found: solved, or what is left is the rounding of r in W r, whose terms may be far

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "base/tolerances.h"
 #include "contact/cone_map.h"
 #include "base/tolerances.h"
 
@@ -195,6 +196,8 @@ static void fill_tie(imp_cone_system *system, int c, int other, double sign, dou
         system->matrix[row * n + i + (size_t)k] += sign * fall[0][k];
 }
 
+/* Where A leaves reactions open only -U' of them is left, of size e²: from e = 1e-8 on Gauss' pivots of them are
+ * rounding, and the step goes anywhere; hence by rank there. */
 void imp_cone_factor(imp_cone_system *system, const double *z, double e)
 {
     for (int c = 0; c < system->count; c++) {
@@ -215,7 +218,7 @@ void imp_cone_factor(imp_cone_system *system, const double *z, double e)
                          .scratch = system->scratch,
                          .rows = system->rows,
                          .columns = system->columns};
-    if (e == 0)
+    if (e <= IMP_CONE_ARC_LEAST)
         imp_linear_factor(&linear);
     else if (!imp_linear_factor_regular(&linear))
         linear.sign = 0;

@@ -20,7 +20,7 @@ static bool go_down(imp_cone_system *system, double e, double next)
     const int n = system->n;
     copy(system->kept, system->z, n);
     imp_cone_factor(system, system->z, e);
-    if (system->sign > 0) {
+    if (system->sign > 0 || e <= IMP_CONE_ARC_LEAST) {
         imp_cone_drift(system, system->z, e, system->step);
         imp_cone_back(system, system->step);
         for (int i = 0; i < n; i++) system->z[i] += (next * next - e * e) * system->step[i];
