@@ -2,74 +2,22 @@
  *
  * report_cones: Coulomb's law at many contacts at once (docs/cone.md), solved and proved.
  *
- * report_cones [FILE ...]
- * A file holds one problem as numbers, apart by white space, commas or semicolons, # to the end of a line left out:
- * n; mu_1 ... mu_n; W by rows, 3n x 3n; q. Per contact normal, then two tangents; u = W r + q. (W + W^T)/2 is taken.
- * Printed of each, and written to cones_FILE.csv in the directory $OUT (out/report by ./run): the reactions and
- * velocities of each contact, and above them what was found, with three numbers over the contacts in long double: how
- * far r is out of its cone and u_n under zero, over the largest r and q, and |û . r| over both.
- * Without a file: problems made from a known answer. CSV: contacts; bodies they are among; the largest friction;
- * problems; solved, told as inexact, told as unsettled; the worst residual of the solved; the part of them that came
- * back with the velocities they were made from (friction may leave others); linear systems, median and most.
+ * report_cones [--siconos] [FILE ...]
+ * A file holds one problem, u = W r + q (report_cones_files.h says in which forms). Printed of each, and written to
+ * cones_FILE.csv in the directory $OUT (out/report by ./run): the reactions and velocities of each contact, and above
+ * them what was found, with three numbers over the contacts in long double: how far r is out of its cone and u_n under
+ * zero, over the largest r and q, and |û . r| over both. Without a file: problems made from a known answer. CSV:
+ * contacts; bodies they are among; the largest friction; problems; solved, told as inexact, told as unsettled; the
+ * worst residual of the solved; the part of them that came back with the velocities they were made from (friction may
+ * leave others); linear systems, median and most.
  */
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "contact/cone.h"
 #include "kit/cone_cases.h"
 #include "measure.h"
-
-/* ---- files ---- */
-
-/* The file's next number; false at its end, or where something else stands. */
-static bool next_number(FILE *file, double *value)
-{
-    int c = fgetc(file);
-    while (c != EOF && (isspace(c) || c == ',' || c == ';' || c == '#')) {
-        while (c == '#' && (c = fgetc(file)) != EOF && c != '\n') c = '#';
-        if (c != EOF) c = fgetc(file);
-    }
-    if (c == EOF) return false;
-    ungetc(c, file);
-    return fscanf(file, "%lf", value) == 1;
-}
-
-static bool numbers(FILE *file, double *values, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (!next_number(file, &values[i])) return false;
-    return true;
-}
-
-static bool at_end(FILE *file)
-{
-    double more;
-    return !next_number(file, &more) && feof(file);
-}
-
-static void symmetrise(double *w, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < i; j++) w[i * n + j] = w[j * n + i] = 0.5 * w[i * n + j] + 0.5 * w[j * n + i];
-}
-
-/* NULL, or what is wrong with the file. */
-static const char *read_case(FILE *file, cone_case *c)
-{
-    double count;
-    if (!next_number(file, &count)) return "it does not begin with the number of contacts";
-    if (!(count >= 1 && count <= 2000 && count == floor(count))) return "the number of contacts is not 1 to 2000";
-    const size_t contacts = (size_t)count, n = 3 * contacts;
-    *c = cone_case_room((int)contacts, false);
-    if (!c->w || !c->q || !c->friction || !c->r || !c->u) return "there is no memory for it";
-    if (!numbers(file, c->friction, contacts)) return "its frictions end before each contact has one";
-    if (!numbers(file, c->w, n * n)) return "its W has fewer than 3n x 3n numbers";
-    if (!numbers(file, c->q, n)) return "its q has fewer than 3n numbers";
-    if (!at_end(file)) return "something stands after q";
-    symmetrise(c->w, n);
-    return NULL;
-}
+#include "report_cones_files.h"
 
 /* ---- an answer ---- */
 
@@ -135,12 +83,10 @@ static FILE *open_answer(const char *path, char *written, size_t size)
     return fopen(written, "w");
 }
 
-static int solve_file(const char *path, imp_cone_workspace *room)
+static int solve_file(const char *path, bool siconos, imp_cone_workspace *room)
 {
     cone_case c = {0};
-    FILE *file = fopen(path, "r");
-    const char *wrong = file ? read_case(file, &c) : "it cannot be opened";
-    if (file) fclose(file);
+    const char *wrong = report_cones_read(path, siconos, &c);
     imp_cone_mode *modes = wrong ? NULL : malloc((size_t)c.count * sizeof *modes);
     if (!wrong && (!modes || !imp_cone_reserve(room, c.count))) wrong = "there is no memory for it";
     if (!wrong) {
@@ -211,7 +157,8 @@ int main(int argc, char **argv)
     imp_cone_workspace room = {.capacity = 0};
     if (imp_arena_create(NULL, &room.arena) != IMPACT_OK) return 1;
     int bad = 0;
-    for (int i = 1; i < argc; i++) bad += solve_file(argv[i], &room);
+    const bool siconos = argc > 1 && strcmp(argv[1], "--siconos") == 0;
+    for (int i = 1 + siconos; i < argc; i++) bad += solve_file(argv[i], siconos, &room);
     if (argc == 1) solve_families(&room);
     imp_arena_destroy(room.arena);
     return bad > 0;

@@ -586,6 +586,8 @@
 #define IMP_CONE_FINEST 1e-15
 /* e where the path ends: x and y that differ by less than its square, 1e-20, are modes that no rounding tells apart. */
 #define IMP_CONE_PATH_END 1e-10
+/* The same where matrices are taken apart by rank: stacks whose q differ by 1e-9 of the largest have such modes. */
+#define IMP_CONE_RANK_END 1e-14
 /* |F| up to this part of e is the path: x and y are of order e where modes are not told apart yet. */
 #define IMP_CONE_NEAR 0.1
 /* e below which a step that fails shows rounding, not a fold: the matrix' condition is 1/e^2, 1e12. */

@@ -254,7 +254,7 @@ static bool excludes(imp_cone_system *system, double *direction, imp_cone_outcom
                 (i == j ? IMP_CONE_SHIFT : 0);
     }
     system->start[count] = system->n = system->count = count;
-    system->exact = false;
+    system->exact = system->by_rank = false;
     (void)imp_cone_follow(system);
     imp_cone_values(system, system->z, 0, system->x, system->u);
     double sum = 0, pressed = 0, moved = 0;
@@ -375,6 +375,13 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
     if (!(outcome->residual <= IMP_CONE_ACCEPTED)) {
         outcome->stage = imp_cone_follow(system);
         polish(system, true, LAST_STEPS, r, u, outcome);
+    }
+    if (!is_exact(system->problem, r, outcome)) {
+        system->by_rank = true;
+        const imp_cone_stage stage = imp_cone_follow(system);
+        const double before = outcome->residual;
+        polish(system, true, LAST_STEPS, r, u, outcome);
+        if (outcome->residual < before) outcome->stage = stage;
     }
     for (int k = 0; k < EASINGS && !is_exact(system->problem, r, outcome); k++) {
         if (!imp_cone_follow_eased(system, easings[k])) continue;

@@ -196,8 +196,6 @@ static void fill_tie(imp_cone_system *system, int c, int other, double sign, dou
         system->matrix[row * n + i + (size_t)k] += sign * fall[0][k];
 }
 
-/* Where A leaves reactions open only -U' of them is left, of size e²: from e = 1e-8 on Gauss' pivots of them are
- * rounding, and the step goes anywhere; hence by rank there. */
 void imp_cone_factor(imp_cone_system *system, const double *z, double e)
 {
     for (int c = 0; c < system->count; c++) {
@@ -218,7 +216,7 @@ void imp_cone_factor(imp_cone_system *system, const double *z, double e)
                          .scratch = system->scratch,
                          .rows = system->rows,
                          .columns = system->columns};
-    if (e <= IMP_CONE_ARC_LEAST)
+    if (e == 0 || (system->by_rank && e <= IMP_CONE_ARC_LEAST))
         imp_linear_factor(&linear);
     else if (!imp_linear_factor_regular(&linear))
         linear.sign = 0;
