@@ -44,7 +44,8 @@ typedef struct imp_linear_springs {
     int closed_count, *closed, *place, *closed_start, *closed_row;
     double *closed_value; /* times kappa of the column */
     int pairs;            /* of terms that are made */
-    imp_term_pair factor[IMP_LINEAR_PAIRS], greatest; /* of terms to sums over W K; |.| of the last terms, the largest */
+    imp_term_pair factor[IMP_LINEAR_PAIRS],
+        greatest;         /* of terms to sums over W K; |.| of the last terms, the largest */
     imp_term_pair *depth; /* IMP_LINEAR_PAIRS rows of x's terms, of all that is closed each */
     imp_term_pair *bound; /* of those: how far x and x' go from where they are */
     imp_term_pair *push;  /* of what is closed: F's integral to the step's end, and that one's */
