@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/points.h"
+#include "world/normal.h"
 #include "world/world_gap.h"
 
 bool imp_has_faces(const imp_body *body) { return body->shape.kind >= IMPACT_BOX; }
@@ -41,12 +42,14 @@ static imp_point point_of(const impact_patch *patch, int i, qvec3 shift1, qvec3 
                        .bearer = bearer_of(patch)};
 }
 
-int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, imp_point *points)
+int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, double flush,
+                    imp_point *points)
 {
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     impact_contact contact;
     (void)imp_world_gap(world, pair, states, &contact);
+    imp_settle_normal(b1, s1, b2, s2, flush, &contact);
     if (!(contact.gap <= height)) return 0;
     int count = 0;
     if (imp_pair_can_lie(world, pair)) {

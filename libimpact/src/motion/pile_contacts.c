@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/pile_contacts.h"
+#include "base/tolerances.h"
+#include "world/normal.h"
 #include "world/world_gap.h"
 
 #include <string.h>
@@ -78,7 +80,8 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
         const double height = held && next ? slack + 0.5 * h * fastest(world, pair, next) : slack;
         if (imp_world_distance_bound(world, pair, states) > height) continue;
         imp_point points[IMP_POINTS];
-        const int found = imp_points_find(world, pair, states, height, points);
+        const double flush = imp_stepped_flush(&world->bodies[pair->body1], &world->bodies[pair->body2]);
+        const int found = imp_points_find(world, pair, states, height, flush, points);
         for (int k = 0; k < found; k++) {
             const impact_contact *c = &points[k].contact;
             const bool closes =

@@ -5,17 +5,18 @@
 
 #include <string.h>
 
-/* The points that were held at the end of the step, as far apart as the step met them. */
+/* The points that were held at the end of the step, as far apart as the step met them or as it may err: what is farther
+ * apart has parted, as a face that leaves another over its border, and would be drawn back by what the step slid. */
 static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states, double h, double slack)
 {
     imp_pile_contacts *touching = &pile->touching;
-    double apart = slack;
+    double apart = fmax(slack, IMP_PILE_ERROR * imp_pile_smallest(world));
     for (int k = 0; k < pile->memory[0].count; k++) apart = fmax(apart, 2 * pile->memory[0].list[k].gap);
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
     imp_pile_recall(touching, world, states, h, &pile->memory[0], IMP_PILE_BEFORE);
     for (int k = 0; k < touching->count; k++)
-        touching->points[k].taken = touching->points[k].memory[IMP_PILE_BEFORE] < 0;
+        touching->points[k].taken = touching->points[k].memory[IMP_PILE_BEFORE] < 0 || touching->points[k].gap > apart;
     return true;
 }
 

@@ -17,9 +17,12 @@
  */
 #include "motion/search.h"
 #include "motion/psi.h"
+#include "world/normal.h"
 #include "world/world_gap.h"
 
 #include <impact/flight.h>
+
+#include <float.h>
 
 /* ---- closed forms ---- */
 
@@ -163,10 +166,18 @@ static void see_motion(const imp_search *s, double t, sight *l)
     l->pull = qvec3_sub(l->bounds[0].acceleration, l->bounds[1].acceleration);
 }
 
+static bool is_fixed(const imp_search *s, int k)
+{
+    return s->segment[k]->kind == IMP_SEGMENT_DENSE && s->segment[k]->dense->fixed;
+}
+
 static void look_at(const imp_search *s, double t, sight *l)
 {
     see_motion(s, t, l);
     imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->gaps, s->usage, &l->contact);
+    if (is_fixed(s, 0) || is_fixed(s, 1))
+        imp_settle_normal(s->body[0], &l->state[0], s->body[1], &l->state[1], imp_stepped_flush(s->body[0], s->body[1]),
+                          &l->contact);
     const qvec3 still = {0, 0, 0};
     const qvec3 omega1 = imp_omega(s->body[0], &l->state[0]);
     const qvec3 omega2 = s->body[1]->is_static ? still : imp_omega(s->body[1], &l->state[1]);
@@ -344,11 +355,6 @@ static double shortest_step(const imp_search *s)
     return isfinite(longest) ? longest / IMP_CRAWL_PARTS : 0;
 }
 
-static bool is_fixed(const imp_search *s, int k)
-{
-    return s->segment[k]->kind == IMP_SEGMENT_DENSE && s->segment[k]->dense->fixed;
-}
-
 /* How fast the gap's rate can fall: by the centres, and by what turns. */
 static double most_bend(const imp_search *s, const sight *l)
 {
@@ -401,7 +407,7 @@ static imp_found advance(const imp_search *s, double from, double until)
             if (leaving) gap += slack;
             if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
                 return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};
-            if (gap <= rounding && l.rate < 0) return (imp_found){t, true};
+            if (gap <= rounding && l.rate <= (t > start ? still_rate(s, &l) : -DBL_MIN)) return (imp_found){t, true};
             const bool near = gap <= IMP_ALL_BUT_CLOSED * scale_of(s, &l) && gap + l.rate * least > 0;
             step = least > 0 && near ? crawl(s, &l, least, touching) : 0;
             if (step < l.window)

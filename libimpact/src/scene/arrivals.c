@@ -158,6 +158,22 @@ static impact_status go_on(imp_island *island)
     return status;
 }
 
+/* What a body stands on has come to its border: what it touches beyond, a face laid flush, is of the island too. */
+static bool crosses_border(const imp_island *island)
+{
+    return island->end.kind == IMP_END_BOUNDS && island->world.pairs[island->end.index].face > 0;
+}
+
+static impact_status cross_border(impact_scene *scene, imp_island *island, double t)
+{
+    imp_island *wider;
+    imp_gather_company(scene, island->world.bodies[island->world.pairs[island->end.index].body1].index);
+    const impact_status status = imp_gather(scene, -1, t, false, &wider);
+    if (status != IMPACT_OK) return status;
+    wider->outside = imp_gather_energy_outside(scene, wider, t);
+    return conclude(wider, imp_scene_settle(wider));
+}
+
 /* Patience is at its end: the island goes on by steps, with all pairs that its bodies may make. */
 static impact_status turn_to_steps(impact_scene *scene, imp_island *island, double t)
 {
@@ -211,6 +227,7 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     if (imp_island_loses_patience(island)) return turn_to_steps(scene, island, t);
     if (island->end.kind == IMP_END_TIME) return go_on_or_by_steps(scene, island, t);
     if (!imp_scene_account_before(scene)) return IMPACT_ESINK;
+    if (crosses_border(island)) return cross_border(scene, island, t);
     island->outside = imp_gather_energy_outside(scene, island, t);
     impact_status status = imp_scene_handle(island, island->end);
     while (status == IMPACT_OK && imp_motion_also_crossed(&island->motion, &island->end))

@@ -3,6 +3,7 @@
 #include "contact/points.h"
 #include "scene/scene_meeting.h"
 #include "world/corner.h"
+#include "world/normal.h"
 #include "world/world_gap.h"
 
 #include <string.h>
@@ -33,7 +34,12 @@ static int corner_of(const imp_island *island, const imp_pair *pair, const imp_p
     const imp_body *under = &world->bodies[pair->body2];
     const impact_feature on = point->feature[1];
     if (world->bodies[pair->body1].shape.kind == IMPACT_SPHERE) {
-        *face = imp_corner_face_under(under, &island->states[pair->body2], &point->contact);
+        /* at the seam of two faces it is on the one that it goes to */
+        const qvec3 v = island->states[pair->body1].v;
+        const double speed = qvec3_norm(v), ahead = IMP_TOUCHING * world->bodies[pair->body1].radius;
+        impact_contact foot = point->contact;
+        if (speed > 0) foot.offset2 = qvec3_axpy(ahead / speed, v, foot.offset2);
+        *face = imp_corner_face_under(under, &island->states[pair->body2], &foot);
         return *face > 0 ? 1 : 0;
     }
     *face = on.kind == IMPACT_FACE && on.index >= 0 && on.index < imp_corner_faces(under) ? on.index + 1 : 0;
@@ -60,7 +66,9 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
     imp_point points[IMP_POINTS];
     imp_pair whole = whole_pair(&before[p]);
     const double touching = imp_world_touching_distance(world, &whole, island->states);
-    const int count = imp_points_find(world, &whole, island->states, touching, points);
+    const imp_body *b1 = &world->bodies[whole.body1], *b2 = &world->bodies[whole.body2];
+    const double flush = island->stepped ? imp_stepped_flush(b1, b2) : touching;
+    const int count = imp_points_find(world, &whole, island->states, touching, flush, points);
     const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
     if (status == IMPACT_OK && count == 0 && before[p].corner > 0) world->pairs[world->pair_count++] = whole;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
@@ -114,6 +122,21 @@ static bool overhangs(const imp_island *island, int p)
     return pair->face > 0 && imp_corner_lowest(&island->world, pair, island->states) < -touching;
 }
 
+/* Whether the point's place on body 1 stands on another body's face too, along the same normal to rounding: it is held
+ * there. */
+static bool is_held_beside(const imp_world *world, const imp_pair *pair)
+{
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *other = &world->pairs[p];
+        if (other->corner == 0 || !other->placed || other->body1 != pair->body1 || imp_same_bodies(other, pair))
+            continue;
+        const double size = world->bodies[pair->body1].radius;
+        const qvec3 apart = qvec3_sub(other->place.offset1, pair->place.offset1);
+        if (qvec3_norm(apart) <= sqrt(IMP_TOUCHING) * size) return true;
+    }
+    return false;
+}
+
 imp_stay imp_scene_points_stay(imp_island *island)
 {
     const imp_world *world = &island->world;
@@ -122,6 +145,7 @@ imp_stay imp_scene_points_stay(imp_island *island)
         /* the points of two bodies follow each other */
         if (p > 0 && !imp_same_bodies(&world->pairs[p], &world->pairs[p - 1])) run = 0;
         if (world->pairs[p].lies || world->pairs[p].rises || !imp_scene_point_stays(island, p)) continue;
+        if (world->pairs[p].corner == 0 && is_held_beside(world, &world->pairs[p])) continue;
         if (world->pairs[p].corner == 0 || ++run > 2 || overhangs(island, p)) return IMP_STAY_FACES;
         found = IMP_STAY_CORNERS;
     }

@@ -2,6 +2,7 @@
 #include "world/world_gap.h"
 #include "base/tolerances.h"
 #include "world/corner.h"
+#include "world/normal.h"
 
 static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_body *b2, const imp_state *s2,
                             impact_gap_cache *cache, imp_gaps *gaps, impact_usage *usage, impact_contact *contact)
@@ -21,6 +22,8 @@ static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_b
     case IMPACT_PATH_CCD: usage->gap_ccd++; break;
     case IMPACT_PATH_NONE: break;
     }
+    const double scale = imp_place_scale(b1, s1->x, b2, s2->x, contact->normal);
+    imp_settle_normal(b1, s1, b2, s2, IMP_TOUCHING * scale, contact);
     return status;
 }
 

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * normal: which direction a contact has where several separate two bodies alike: over the seam of boxes laid flush the
+ * top and the hidden side of the second, in a slot of its own width a brick's sides and its bottom. The gap is the
+ * greatest that a direction separates, and so is its rate among those that attain it (Danskin 1967, theorem 1)
+ *
+ *     g = max over n of g_n,     g' = max {n . (v1 - v2 at the contact) : g_n = g}
+ *
+ * The contact's normal is the direction that attains g': the bodies approach iff they do along every one.  Internal.
+ */
+#ifndef IMP_NORMAL_H
+#define IMP_NORMAL_H
+
+#include "world/world.h"
+
+/* Takes for the contact's normal the normal of a face of either body along which they approach less fast, or part,
+ * among those that separate them by `within` (m) less than touching at the most. The witness points are then where
+ * the bodies reach farthest along it, nearest to where they touch. Of a contact that is farther off, or deeper, than
+ * `within`, or that does not approach, nothing is asked. */
+void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
+                       double within, impact_contact *contact);
+
+/* m: how far bodies that are stepped may overlap where they are held. */
+double imp_stepped_flush(const imp_body *body1, const imp_body *body2);
+
+#endif
