@@ -258,8 +258,8 @@ static bool stops(const imp_world *world, imp_pair *pair, imp_state *states, con
 
 /* What stands still on its face, where friction would not hold it, slides there, whatever it would do about the point
  * at which it was held. */
-static void give_way(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_load *load,
-                     double height)
+static void let_slide(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_load *load,
+                      double height)
 {
     const gliding g = glide(world, pair, states);
     const qvec3 pulled = qvec3_axpy(-world->bodies[pair->body1].mass, g.surface_rate, across(load->force, g.n));
@@ -303,7 +303,7 @@ static bool lay_flat(const imp_world *world, imp_pair *pair, imp_state *states, 
     const imp_state state_before = *state;
     pair->lying = enough;
     stops(world, pair, states, load, height);
-    give_way(world, pair, states, load, height);
+    let_slide(world, pair, states, load, height);
     const gliding g = glide(world, pair, states);
     const balance b = find_balance(world, pair, &g, height, load);
     if (!(rise(&body->shape, face, quat_rotate_inverse(state->q, b.foot)) <= 0.5 * world->flat_height)) {

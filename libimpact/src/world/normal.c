@@ -6,7 +6,7 @@
 #include <impact/face.h>
 
 /* How many faces the body has, and the normal of each, in the shape's axes: those of what has edges beside them. */
-static int face_count(const impact_shape *shape)
+static int own_faces(const impact_shape *shape)
 {
     switch (shape->kind) {
     case IMPACT_BOX:
@@ -17,7 +17,7 @@ static int face_count(const impact_shape *shape)
     }
 }
 
-static qvec3 face_normal(const impact_shape *shape, int face)
+static qvec3 outward_normal(const impact_shape *shape, int face)
 {
     if (shape->kind == IMPACT_CYLINDER || shape->kind == IMPACT_CONE) return (qvec3){0, 0, face == 0 ? -1 : 1};
     imp_form form;
@@ -78,13 +78,13 @@ void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp
 {
     const imp_body *const body[2] = {body1, body2};
     const imp_state *const state[2] = {state1, state2};
-    const int faces[2] = {face_count(&body1->shape), face_count(&body2->shape)};
+    const int faces[2] = {own_faces(&body1->shape), own_faces(&body2->shape)};
     if (faces[0] + faces[1] == 0 || !(fabs(contact->gap) <= within)) return;
     const impact_contact found = *contact;
     double slowest = parting_along(body, state, &found, found.normal).rate;
     for (int k = 0; k < 2; k++)
         for (int f = 0; f < faces[k] && slowest < 0; f++) {
-            const qvec3 out = quat_rotate(imp_shape_axes(body[k], state[k]), face_normal(&body[k]->shape, f)),
+            const qvec3 out = quat_rotate(imp_shape_axes(body[k], state[k]), outward_normal(&body[k]->shape, f)),
                         n = k == 0 ? qvec3_neg(out) : out;
             const parting p = parting_along(body, state, &found, n);
             if (!(p.rate > slowest && p.gap >= -within)) continue;
