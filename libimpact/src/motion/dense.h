@@ -16,6 +16,7 @@ typedef struct imp_dense {
     double end, h;   /* tau at the end of the step, and its length */
     int size, terms; /* of y; of the polynomial */
     bool clocked;    /* tau is not time */
+    bool stepped;    /* a pile's: what touches in it may overlap by what its steps err */
     bool fixed;      /* its length is not the motion's: no shorter behind an event */
     double *c;       /* terms x size */
     int room;        /* doubles that c has room for */

@@ -101,6 +101,7 @@ static impact_status keep_pile_step(imp_motion *motion, double t0, const imp_wor
     dense->size = motion->size;
     dense->terms = TERMS;
     dense->clocked = dense->fixed = false;
+    dense->stepped = true;
     memset(dense->c, 0, sizeof *dense->c * TERMS * (size_t)dense->size);
     put_works(motion, before);
     for (int i = 0, first = Y_BODIES; i < motion->world->body_count; i++) {

@@ -171,11 +171,16 @@ static bool is_fixed(const imp_search *s, int k)
     return s->segment[k]->kind == IMP_SEGMENT_DENSE && s->segment[k]->dense->fixed;
 }
 
+static bool is_stepped(const imp_search *s, int k)
+{
+    return s->segment[k]->kind == IMP_SEGMENT_DENSE && s->segment[k]->dense->stepped;
+}
+
 static void look_at(const imp_search *s, double t, sight *l)
 {
     see_motion(s, t, l);
     imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->gaps, s->usage, &l->contact);
-    if (is_fixed(s, 0) || is_fixed(s, 1))
+    if (is_stepped(s, 0) || is_stepped(s, 1))
         imp_settle_normal(s->body[0], &l->state[0], s->body[1], &l->state[1], imp_stepped_flush(s->body[0], s->body[1]),
                           &l->contact);
     const qvec3 still = {0, 0, 0};
