@@ -294,7 +294,7 @@ static void put_turning(imp_dense *dense, int first, const imp_lying *lying, con
 /* ---- where forces change ---- */
 
 /* Below zero beyond an edge that the body was within, or without, when the step began. */
-static double least_edge(const imp_lying *lying, const imp_face_path *path, double s, int *edge)
+static double nearest_edge(const imp_lying *lying, const imp_face_path *path, double s, int *edge)
 {
     imp_motion *motion = lying->moves;
     double y[IMP_FACE_STATE], least = INFINITY;
@@ -329,13 +329,13 @@ double imp_lying_end(const imp_lying *lying, const imp_face_path *path, imp_end 
         }
         end->kind = IMP_END_RENEWAL;
     }
-    if (!(least_edge(lying, path, s, &edge) < 0)) return s;
+    if (!(nearest_edge(lying, path, s, &edge) < 0)) return s;
     double within = -1;
     for (int i = 0; i < HALVINGS; i++) {
         const double middle = 0.5 * (within + s);
-        *(least_edge(lying, path, middle, &edge) < 0 ? &s : &within) = middle;
+        *(nearest_edge(lying, path, middle, &edge) < 0 ? &s : &within) = middle;
     }
-    (void)least_edge(lying, path, s, &edge);
+    (void)nearest_edge(lying, path, s, &edge);
     *end = (imp_end){IMP_END_EDGE, edge};
     return s;
 }
