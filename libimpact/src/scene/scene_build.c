@@ -76,6 +76,7 @@ static impact_status build_fields(imp_world *world, const impact_scene_def *def,
             field->def.direction = qvec3_scale(d, 1 / qvec3_norm(d));
         }
         if (isnan(field->def.max_step)) field->def.max_step = IMP_MAX_STEP_OF_DURATION * def->duration;
+        if (field->def.kind != IMPACT_FORCE_CUSTOM) field->def.switch_count = 0; /* they are a law's own */
         field->switches = copy_times(world->arena, &def->forces[k]);
         field->def.switches = NULL;
         field->name = imp_arena_copy(world->arena, def->forces[k].name ? def->forces[k].name : "force");

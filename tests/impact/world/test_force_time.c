@@ -116,6 +116,26 @@ static void pulses_between_the_ends_of_steps_are_seen(void **state)
     }
 }
 
+/* Switches are a law's own: wind that is given some has none, whatever their number. */
+static void wind_has_no_switches(void **state)
+{
+    (void)state;
+    static const double never[2] = {NAN, NAN};
+    ending e[2];
+    for (int k = 0; k < 2; k++) {
+        const impact_body_def body = ball("ball", 0.1, (qvec3){0, 0, 0}, (qvec3){0, 0, 0});
+        impact_force_def wind = impact_default_force_def(IMPACT_FORCE_WIND);
+        wind.name = "wind", wind.strength = 5;
+        if (k) wind.switches = never, wind.switch_count = 1000000000;
+        impact_scene_def def = scene_of(&body, 1, 1);
+        def.forces = &wind;
+        def.force_count = 1;
+        e[k] = run(&def);
+        assert_good(&e[k]);
+    }
+    assert_memory_equal(&e[0].body.position, &e[1].body.position, sizeof(qvec3));
+}
+
 /* What lies at rest on the floor is found by a later push: along the floor a ball then rolls, with 5/7 of the impulse;
  * a box on a floor without friction slides with all of it. */
 static void what_rests_wakes(void **state)
@@ -408,6 +428,7 @@ int main(void)
         cmocka_unit_test(no_hill_is_passed_over),
         cmocka_unit_test(no_pulse_is_passed_over),
         cmocka_unit_test(pulses_between_the_ends_of_steps_are_seen),
+        cmocka_unit_test(wind_has_no_switches),
         cmocka_unit_test(what_rests_wakes),
         cmocka_unit_test(under_a_steady_force_rest_is_the_end),
         cmocka_unit_test(switches_cut_the_steps),
