@@ -122,8 +122,8 @@ static bool overhangs(const imp_island *island, int p)
     return pair->face > 0 && imp_corner_lowest(&island->world, pair, island->states) < -touching;
 }
 
-/* Whether the point's place on body 1 stands on another body's face too, along the same normal to rounding: it is held
- * there. */
+/* Whether the point's place on body 1 stands on another body's face too: it is held there. What goes d over the edge of
+ * one face is d^2/2r above it: the two places are one as far as gaps can tell, d <= sqrt(2 r touching). */
 static bool is_held_beside(const imp_world *world, const imp_pair *pair)
 {
     for (int p = 0; p < world->pair_count; p++) {
@@ -132,7 +132,7 @@ static bool is_held_beside(const imp_world *world, const imp_pair *pair)
             continue;
         const double size = world->bodies[pair->body1].radius;
         const qvec3 apart = qvec3_sub(other->place.offset1, pair->place.offset1);
-        if (qvec3_norm(apart) <= sqrt(IMP_TOUCHING) * size) return true;
+        if (qvec3_norm(apart) <= sqrt(2 * IMP_TOUCHING) * size) return true;
     }
     return false;
 }
