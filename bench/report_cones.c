@@ -90,7 +90,8 @@ static int solve_file(const char *path, bool siconos, imp_cone_workspace *room)
     imp_cone_mode *modes = wrong ? NULL : malloc((size_t)c.count * sizeof *modes);
     if (!wrong && (!modes || !imp_cone_reserve(room, c.count))) wrong = "there is no memory for it";
     if (!wrong) {
-        const imp_cone_problem problem = cone_case_problem(&c);
+        imp_cone_problem problem = cone_case_problem(&c);
+        problem.wanders = true;
         const double begun = measure_clock();
         const imp_cone_outcome outcome = imp_cone_solve(&problem, room, c.r, c.u, modes);
         const double seconds = measure_clock() - begun;
@@ -122,7 +123,8 @@ static void solve_family(const family *f, imp_cone_workspace *room)
     double worst = 0, *systems = malloc((size_t)f->runs * sizeof *systems);
     for (int k = 0; k < f->runs; k++) {
         cone_case c = cone_case_make(&random, f->contacts, f->bodies, f->friction);
-        const imp_cone_problem problem = cone_case_problem(&c);
+        imp_cone_problem problem = cone_case_problem(&c);
+        problem.wanders = true;
         double *r = calloc(6 * (size_t)c.count, sizeof *r), *u = r + 3 * c.count, off = 0;
         const imp_cone_outcome o = imp_cone_solve(&problem, room, r, u, NULL);
         for (int i = 0; i < 3 * c.count; i++) off = fmax(off, fabs(u[i] - c.u[i]));

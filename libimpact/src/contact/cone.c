@@ -351,9 +351,13 @@ static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcom
     if (system->problem->lengths || system->problem->brief) return;
     memset(system->tangent, 0, bytes);
     settle_down(system, system->tangent, r, u, outcome);
-    if (outcome->residual <= IMP_CONE_USABLE) return;
-    memset(system->tangent, 0, bytes);
-    wander(system, system->tangent, r, u, outcome);
+}
+
+static imp_cone_status status_of(const imp_cone_outcome *outcome)
+{
+    return outcome->residual <= IMP_CONE_ACCEPTED ? IMP_CONE_SOLVED
+           : outcome->residual <= IMP_CONE_USABLE ? IMP_CONE_INEXACT
+                                                  : IMP_CONE_UNSETTLED;
 }
 
 /* Whether nothing better can be found: solved, or what is left is the rounding of r in W r, whose terms may be far
@@ -389,9 +393,7 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
         polish(system, true, LAST_STEPS, r, u, outcome);
     }
     if (!is_exact(system->problem, r, outcome)) sweep(system, r, u, outcome);
-    outcome->status = outcome->residual <= IMP_CONE_ACCEPTED ? IMP_CONE_SOLVED
-                      : outcome->residual <= IMP_CONE_USABLE ? IMP_CONE_INEXACT
-                                                             : IMP_CONE_UNSETTLED;
+    outcome->status = status_of(outcome);
     if (outcome->status == IMP_CONE_UNSETTLED && excludes(system, system->best, outcome)) {
         outcome->status = IMP_CONE_NO_SOLUTION;
         memcpy(r, system->best, (size_t)(imp_cone_width(system->problem) * system->problem->count) * sizeof *r);
@@ -407,6 +409,15 @@ static imp_cone_mode mode_of(double friction, double torsional, const double *r)
     return friction > 0 && all < (1 - IMP_CONE_ACCEPTED) * friction * r[0] ? IMP_CONE_STICKS : IMP_CONE_SLIDES;
 }
 
+static imp_cone_system set_up(const imp_cone_problem *problem, imp_cone_workspace *workspace)
+{
+    imp_cone_system system = lay_out(problem, workspace);
+    find_order(&system, workspace);
+    find_scales(&system);
+    find_matrix(&system);
+    return system;
+}
+
 imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_workspace *workspace, double *r, double *u,
                                 imp_cone_mode *modes)
 {
@@ -414,14 +425,19 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
     const int width = imp_cone_width(problem), unknowns = (problem->lengths ? UNKNOWNS_MOST : 3) * problem->count;
     if (problem->count > workspace->capacity || unknowns > workspace->unknowns || !is_sound(problem)) return outcome;
     if (problem->count == 0) return (imp_cone_outcome){.status = IMP_CONE_SOLVED};
-    imp_cone_system system = lay_out(problem, workspace);
-    find_order(&system, workspace);
-    find_scales(&system);
-    find_matrix(&system);
+    imp_cone_system system = set_up(problem, workspace);
     memset(r, 0, (size_t)(width * problem->count) * sizeof *r);
     outcome.residual = imp_cone_residual(problem, r, u);
     outcome.status = IMP_CONE_SOLVED;
     if (outcome.residual > 0) solve(&system, r, u, &outcome);
+    if (outcome.status == IMP_CONE_UNSETTLED && problem->wanders && !problem->lengths) {
+        const imp_cone_system spent = system; /* by the question of whether there is an answer */
+        system = set_up(problem, workspace);
+        system.factorings = spent.factorings, system.steps = spent.steps;
+        memset(system.tangent, 0, 3 * (size_t)problem->count * sizeof *system.tangent);
+        wander(&system, system.tangent, r, u, &outcome);
+        outcome.status = status_of(&outcome);
+    }
     for (int c = 0; modes && c < problem->count; c++)
         modes[c] = mode_of(problem->friction[c], problem->lengths ? problem->lengths[c].torsional : 0, &r[width * c]);
     outcome.factorings = system.factorings;

@@ -39,7 +39,8 @@ typedef struct imp_cone_problem {
     const imp_cone_lengths *lengths; /* count; NULL: no contact resists turning */
     const double *last_r;            /* width count each: an answer of like modes to begin with; NULL: none */
     const double *last_u;
-    bool brief;    /* without the long sweeps of cone_sweep.c: the caller has another way, as a shorter step */
+    bool wanders; /* with Newton from thousands of starts where no path leads, up to seconds: nothing else is at hand */
+    bool brief;   /* without the long sweeps of cone_sweep.c: the caller has another way, as a shorter step */
     double enough; /* cone_bodies.h: the residual that does; 0: IMP_BODIES_ACCEPTED */
 } imp_cone_problem;
 
