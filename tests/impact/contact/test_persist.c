@@ -385,7 +385,8 @@ static void drop(random_stream *random, int eggs, int k)
     if (fabs(appeared) > 1e-8 * energy.start) fail_msg("drop %d: %.3g J of %.3g appeared", k, appeared, energy.start);
     assert_at_most(-energy.sliding_loss, 1e-13 * energy.start);
     assert_at_most(-energy.impact_loss, 1e-13 * energy.start);
-    /* what the exact motion does not settle within its patience goes by steps, which leave a millionth of the smaller */
+    /* what the exact motion does not settle within its patience goes by steps, which leave a millionth of the smaller
+     */
     double smallest = INFINITY;
     for (int i = 0; i < eggs; i++) smallest = fmin(smallest, fmax(w.shapes[i].a, fmax(w.shapes[i].b, w.shapes[i].c)));
     assert_at_most(w.deepest, impact_scene_usage(scene).pile_steps > 0 ? 1e-6 * smallest : 1e-9);
