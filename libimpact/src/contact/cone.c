@@ -409,7 +409,7 @@ static imp_cone_mode mode_of(double friction, double torsional, const double *r)
     return friction > 0 && all < (1 - IMP_CONE_ACCEPTED) * friction * r[0] ? IMP_CONE_STICKS : IMP_CONE_SLIDES;
 }
 
-static imp_cone_system set_up(const imp_cone_problem *problem, imp_cone_workspace *workspace)
+static imp_cone_system system_of(const imp_cone_problem *problem, imp_cone_workspace *workspace)
 {
     imp_cone_system system = lay_out(problem, workspace);
     find_order(&system, workspace);
@@ -425,14 +425,14 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
     const int width = imp_cone_width(problem), unknowns = (problem->lengths ? UNKNOWNS_MOST : 3) * problem->count;
     if (problem->count > workspace->capacity || unknowns > workspace->unknowns || !is_sound(problem)) return outcome;
     if (problem->count == 0) return (imp_cone_outcome){.status = IMP_CONE_SOLVED};
-    imp_cone_system system = set_up(problem, workspace);
+    imp_cone_system system = system_of(problem, workspace);
     memset(r, 0, (size_t)(width * problem->count) * sizeof *r);
     outcome.residual = imp_cone_residual(problem, r, u);
     outcome.status = IMP_CONE_SOLVED;
     if (outcome.residual > 0) solve(&system, r, u, &outcome);
     if (outcome.status == IMP_CONE_UNSETTLED && problem->wanders && !problem->lengths) {
         const imp_cone_system spent = system; /* by the question of whether there is an answer */
-        system = set_up(problem, workspace);
+        system = system_of(problem, workspace);
         system.factorings = spent.factorings, system.steps = spent.steps;
         memset(system.tangent, 0, 3 * (size_t)problem->count * sizeof *system.tangent);
         wander(&system, system.tangent, r, u, &outcome);
