@@ -1,8 +1,6 @@
-/* SPDX-License-Identifier: MIT
- *
- * Roots by the Illinois form of regula falsi (Dowell and Jarratt 1971): the end that stays twice counts half.
- */
+/* SPDX-License-Identifier: MIT */
 #include "base/ode_roots.h"
+#include "base/bracket.h"
 
 size_t imp_ode_roots_room(const impact_ode *ode) { return (size_t)ode->def.size + 3 * (size_t)ode->def.roots; }
 
@@ -40,28 +38,17 @@ static impact_status look_at(impact_ode *ode, imp_ode_roots *roots, double t)
 /* The first t behind the root of function i, which crosses between low and *t. */
 static impact_status find_root(impact_ode *ode, imp_ode_roots *roots, int i, double low, double after, double *t)
 {
-    enum { MOST = 100 };
-    double high = *t, f_low = roots->value[0][i], f_high = after;
-    const int way = crosses(ode, f_low, f_high);
-    for (int k = 0, side = 0; k < MOST && f_high != 0; k++) {
-        double guess = (f_low * high - f_high * low) / (f_low - f_high);
-        const bool inside = (guess - low) * (high - guess) > 0;
-        if (!inside) guess = 0.5 * (low + high);
-        if (guess == low || guess == high) break;
+    imp_bracket b = {.low = low, .high = *t, .at_low = roots->value[0][i], .at_high = after};
+    const int way = crosses(ode, b.at_low, b.at_high);
+    for (int k = 0; k < IMP_BRACKET_MOST && b.at_high != 0; k++) {
+        const double guess = imp_bracket_guess(&b);
+        if (guess == b.low || guess == b.high) break;
         const impact_status status = look_at(ode, roots, guess);
         if (status != IMPACT_OK) return status;
         const double value = roots->value[2][i];
-        if (crosses(ode, roots->value[0][i], value) == way) {
-            high = guess, f_high = value;
-            if (side == 1) f_low *= 0.5;
-            side = 1;
-        } else {
-            low = guess, f_low = value;
-            if (side == -1) f_high *= 0.5;
-            side = -1;
-        }
+        imp_bracket_take(&b, guess, value, crosses(ode, roots->value[0][i], value) == way);
     }
-    *t = high;
+    *t = b.high;
     return IMPACT_OK;
 }
 

@@ -347,9 +347,8 @@ static void settle_down(imp_cone_system *system, double *own, double *r, double 
 
 static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
-    const size_t bytes = 3 * (size_t)system->problem->count * sizeof *system->tangent;
     if (system->problem->lengths || system->problem->brief) return;
-    memset(system->tangent, 0, bytes);
+    memset(system->tangent, 0, 3 * (size_t)system->problem->count * sizeof *system->tangent);
     settle_down(system, system->tangent, r, u, outcome);
 }
 

@@ -4,6 +4,7 @@
  * that has the values, rates and second rates of both ends, its velocity the place's rate, its angular momentum a
  * straight line: the acceleration of a step is (v1 - v0)/h, its torque (L1 - L0)/h.
  */
+#include "base/bracket.h"
 #include "motion/motion_equations.h"
 #include "motion/motion_pile.h"
 
@@ -134,28 +135,19 @@ static impact_status step_again(imp_pile *pile, imp_world *world, double t0, dou
 static impact_status end_at_edge(imp_pile *pile, imp_world *world, double t0, const imp_state *before,
                                  imp_state *states, imp_pile_step_result *result)
 {
-    enum { MOST = 100 };
-    double low = 0, high = result->taken, value_low = least_edge(world, t0, before),
-           value_high = least_edge(world, t0 + high, states);
-    const double near = IMP_PILE_EDGE * high;
+    imp_bracket b = {.high = result->taken,
+                     .at_low = least_edge(world, t0, before),
+                     .at_high = least_edge(world, t0 + result->taken, states)};
+    const double near = IMP_PILE_EDGE * b.high;
     impact_status status = IMPACT_OK;
-    for (int k = 0, side = 0; k < MOST && status == IMPACT_OK && high - low > near; k++) {
-        const double part = value_low > 0 ? value_low / (value_low - value_high) : 0.5;
-        const double h = fmin(fmax(low + part * (high - low), low + 0.5 * near), high - 0.5 * near);
+    for (int k = 0; k < IMP_BRACKET_MOST && status == IMPACT_OK && b.high - b.low > near; k++) {
+        const double h = fmin(fmax(imp_bracket_guess(&b), b.low + 0.5 * near), b.high - 0.5 * near);
         status = step_again(pile, world, t0, h, before, states, result);
         const double value = least_edge(world, t0 + result->taken, states);
         if (status != IMPACT_OK || (value >= 0 && result->taken < h)) return status; /* its error allows no more */
-        if (value >= 0) {
-            low = h, value_low = value;
-            if (side == -1) value_high *= 0.5;
-            side = -1;
-        } else {
-            high = result->taken, value_high = value;
-            if (side == 1) value_low *= 0.5;
-            side = 1;
-        }
+        imp_bracket_take(&b, value >= 0 ? h : result->taken, value, value < 0);
     }
-    return status == IMPACT_OK ? step_again(pile, world, t0, high, before, states, result) : status;
+    return status == IMPACT_OK ? step_again(pile, world, t0, b.high, before, states, result) : status;
 }
 
 /* So short that no edge, and nothing else of custom forces, is passed over unseen. */

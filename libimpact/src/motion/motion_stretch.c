@@ -3,6 +3,7 @@
  * Integration: a stretch of it from step to step, and the event at the end of one.
  */
 #include "motion/motion_stretch.h"
+#include "base/bracket.h"
 #include "base/number.h"
 #include "motion/motion_guard.h"
 #include "world/corner.h"
@@ -59,32 +60,23 @@ static double last_step_value(imp_motion *motion, last_step_function f, const do
     return imp_field_edge(motion->world, y[Y_TIME], motion->scratch, f.index);
 }
 
-/* Interpolates the last step where f changes sign between tau = low and high, by the Illinois form of regula falsi. */
+/* Interpolates the last step where f changes sign between tau = low and high, by regula falsi (base/bracket.h). */
 static impact_status find_in_last_step(imp_motion *motion, last_step_function f, double low, double high, double *tau,
                                        double *y)
 {
     impact_status status = impact_ode_interpolate(motion->ode, low, 0, y);
-    double f_low = last_step_value(motion, f, y);
+    imp_bracket b = {.low = low, .high = high, .at_low = last_step_value(motion, f, y)};
     if (status == IMPACT_OK) status = impact_ode_interpolate(motion->ode, high, 0, y);
-    double f_high = last_step_value(motion, f, y);
+    b.at_high = last_step_value(motion, f, y);
     *tau = high;
-    for (int i = 0, side = 0; status == IMPACT_OK && i < 100 && f_high != f_low; i++) {
-        double guess = (f_low * high - f_high * low) / (f_low - f_high);
-        if (!(guess > low && guess < high)) guess = 0.5 * (low + high);
-        if (guess == low || guess == high || guess == *tau) break;
+    for (int i = 0; status == IMPACT_OK && i < IMP_BRACKET_MOST && b.at_high != b.at_low; i++) {
+        const double guess = imp_bracket_guess(&b);
+        if (guess == b.low || guess == b.high || guess == *tau) break;
         *tau = guess;
         status = impact_ode_interpolate(motion->ode, guess, 0, y);
         const double value = last_step_value(motion, f, y);
         if (value == 0) break;
-        if ((value > 0) == (f_high > 0)) {
-            high = guess, f_high = value;
-            if (side == 1) f_low *= 0.5;
-            side = 1;
-        } else {
-            low = guess, f_low = value;
-            if (side == -1) f_high *= 0.5;
-            side = -1;
-        }
+        imp_bracket_take(&b, guess, value, (value > 0) == (b.at_high > 0));
     }
     return status;
 }

@@ -16,6 +16,7 @@
  * over.
  */
 #include "motion/search.h"
+#include "base/bracket.h"
 #include "motion/psi.h"
 #include "world/normal.h"
 #include "world/world_gap.h"
@@ -330,26 +331,17 @@ static double still_rate(const imp_search *s, const sight *l)
  * falsi. */
 static double bisect(const imp_search *s, double low, double gap_low, double high, double gap_high, double slack)
 {
-    enum { MOST = 100 };
     sight l;
-    for (int i = 0, side = 0; i < MOST && gap_low != gap_high; i++) {
-        double t = (gap_low * high - gap_high * low) / (gap_low - gap_high);
-        if (!(t > low && t < high)) t = 0.5 * (low + high);
-        if (t == low || t == high) break;
+    imp_bracket b = {.low = low, .high = high, .at_low = gap_low, .at_high = gap_high};
+    for (int i = 0; i < IMP_BRACKET_MOST && b.at_low != b.at_high; i++) {
+        const double t = imp_bracket_guess(&b);
+        if (t == b.low || t == b.high) break;
         look_at(s, t, &l);
         const double gap = l.contact.gap + slack;
         if (gap == 0) return t;
-        if (gap < 0) {
-            high = t, gap_high = gap;
-            if (side == 1) gap_low *= 0.5;
-            side = 1;
-        } else {
-            low = t, gap_low = gap;
-            if (side == -1) gap_high *= 0.5;
-            side = -1;
-        }
+        imp_bracket_take(&b, t, gap, gap < 0);
     }
-    return high;
+    return b.high;
 }
 
 static double shortest_step(const imp_search *s)
