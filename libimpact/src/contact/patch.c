@@ -9,6 +9,8 @@
 #include "gap/flat.h"
 #include "gap/gap_chart.h"
 
+#include <string.h>
+
 typedef struct face_side {
     impact_face face;
     quat turn;
@@ -122,6 +124,19 @@ static double whole_disc(const face_side s[2], const imp_flat *common)
     return 0;
 }
 
+/* A whole disc keeps places a sixteenth of its rim apart: of equal areas roundings would choose. */
+static void thin_disc(imp_flat *common)
+{
+    enum { EVERY = IMPACT_FACE_RIM / IMPACT_PATCH_POINTS };
+    int kept = 0;
+    for (int i = 0; i < common->count; i++) {
+        if (common->from[i] % IMPACT_FACE_POINTS % EVERY != 0) continue;
+        memcpy(common->p[kept], common->p[i], sizeof common->p[i]);
+        common->from[kept++] = common->from[i];
+    }
+    common->count = kept;
+}
+
 static void clip_faces(face_side s[2], const patch_frame *f, double height, impact_patch *patch)
 {
     imp_flat common = s[0].flat;
@@ -129,6 +144,7 @@ static void clip_faces(face_side s[2], const patch_frame *f, double height, impa
     if (common.count > 1) imp_flat_hull(&common, f->slack);
     patch->disc = whole_disc(s, &common);
     patch->thinned = common.count > IMPACT_PATCH_POINTS ? common.count - IMPACT_PATCH_POINTS : 0;
+    if (patch->disc > 0) thin_disc(&common);
     imp_flat_thin(&common, IMPACT_PATCH_POINTS);
     for (int i = 0; i < common.count; i++) put_point(s, f, common.p[i], height, patch);
 }

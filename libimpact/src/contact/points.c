@@ -42,6 +42,14 @@ static imp_point point_of(const impact_patch *patch, int i, qvec3 shift1, qvec3 
                        .bearer = bearer_of(patch)};
 }
 
+static int keep_near(imp_point *points, int count, double height)
+{
+    int kept = 0;
+    for (int i = 0; i < count; i++)
+        if (points[i].contact.gap <= height) points[kept++] = points[i];
+    return kept;
+}
+
 int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, double flush,
                     imp_point *points)
 {
@@ -64,7 +72,9 @@ int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, d
         const double most = fmin(height - contact.gap, fmin(b1->inner, b2->inner));
         const impact_status found = impact_patch_find(&solid1, &solid2, &shape, most, &patch);
         for (int i = 0; found == IMPACT_OK && i < patch.count; i++)
-            if (patch.point[i].height <= height) points[count++] = point_of(&patch, i, shift1, shift2);
+            points[count++] = point_of(&patch, i, shift1, shift2);
+        if (found == IMPACT_OK && patch.disc > 0) imp_points_turn_rim(world, pair, states, points, count);
+        count = keep_near(points, count, height);
     }
     if (count == 0 && imp_world_inside_bounds(world, pair, states, &contact) >= 0)
         points[count++] = (imp_point){.contact = contact, .feature = {{IMPACT_SMOOTH, -1}, {IMPACT_SMOOTH, -1}}};

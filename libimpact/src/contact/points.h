@@ -17,6 +17,12 @@ typedef struct imp_point {
 
 enum { IMP_POINTS = IMPACT_PATCH_POINTS };
 
+/* The points of a whole disc on a face, a sixteenth of its rim apart, go round it until the first is where the rim is
+ * lowest, or is about to be: what sixteen points do hangs on where they are, by up to 2 % of the radius, and where the
+ * scene, or the body about its axis, is turned they are to be the same. */
+void imp_points_turn_rim(const imp_world *world, const imp_pair *pair, const imp_state *states, imp_point *points,
+                         int count);
+
 /* The body has faces, edges and corners. */
 bool imp_has_faces(const imp_body *body);
 /* Either body of the pair has. */

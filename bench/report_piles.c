@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * report_piles: three to five boxes, cylinders and polyhedra set on each other, dropped on each other, and dropped into
+ * a box (tests/kit/pile_scene.h), for two seconds each.
+ *
+ * report_piles [--scenes N] [--seed S] [--seconds T]
+ * CSV: a row for each way to begin, over N scenes in all (500), scene i of its own seed S + i. rest: came to rest;
+ * ended: still moved after two seconds; long: not at its end after T seconds of the processor's time (5); refused: with
+ * an error, or the word that the account is off; of the ended, median and slowest: seconds, and the slowest's seed;
+ * overlap: of any two bodies, looked at every twentieth of a second, m; account: what the energy account is off by at
+ * the end, of its greatest term; error: the greatest sum of the steps' errors, m. What is not good is told on stderr.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include "kit/pile_scene.h"
+#include "options.h"
+
+enum { LOOKS = 40 };
+
+typedef struct tally {
+    long scenes, rest, ended, too_long, refused, slowest;
+    double overlap, account, error, most, *seconds;
+} tally;
+
+typedef struct watch {
+    clock_t begin;
+    double most;
+} watch;
+
+static double spent(const watch *w) { return (double)(clock() - w->begin) / CLOCKS_PER_SEC; }
+
+static bool goes_on(void *context, double t, double end)
+{
+    (void)t, (void)end;
+    const watch *w = context;
+    return spent(w) < w->most;
+}
+
+static bool is_good(impact_status status) { return status == IMPACT_OK || status == IMPACT_AT_REST; }
+
+static double account_of(const impact_scene *scene)
+{
+    const impact_energy e = impact_scene_energy(scene);
+    const double greatest = fmax(fmax(fabs(e.start), e.kinetic), fmax(fabs(e.potential), e.impact_loss));
+    return fabs(e.start - e.kinetic - e.potential - e.sliding_loss - e.impact_loss) / greatest;
+}
+
+static impact_status look_on(const pile_scene *pile, impact_scene *scene, watch *w, tally *row)
+{
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = w, .progress = goes_on};
+    impact_status status = IMPACT_OK;
+    for (int k = 1; status == IMPACT_OK && k <= LOOKS; k++) {
+        status = impact_scene_run_to(scene, pile->def.duration * k / LOOKS, &recorder);
+        const clock_t looking = clock();
+        row->overlap = fmax(row->overlap, pile_overlap(pile, scene));
+        w->begin += clock() - looking;
+    }
+    return status;
+}
+
+static void count(tally *row, impact_status status, double seconds, long seed)
+{
+    row->rest += status == IMPACT_AT_REST;
+    row->ended += status == IMPACT_OK;
+    row->too_long += status == IMPACT_STOPPED;
+    row->refused += !is_good(status) && status != IMPACT_STOPPED;
+    if (!is_good(status)) return;
+    row->seconds[row->rest + row->ended - 1] = seconds;
+    if (seconds >= row->most) row->most = seconds, row->slowest = seed;
+}
+
+static void run(long seed, int start, double most, tally *row)
+{
+    pile_scene pile;
+    random_pile_scene((uint64_t)seed, start, &pile);
+    impact_scene *scene = NULL;
+    char words[256];
+    watch w = {.begin = clock(), .most = most};
+    tally own = {.overlap = 0};
+    impact_status status = impact_scene_create(&pile.def, &scene, words, sizeof words);
+    if (status == IMPACT_OK) {
+        status = look_on(&pile, scene, &w, &own);
+        snprintf(words, sizeof words, "%s", impact_scene_message(scene));
+        own.account = account_of(scene);
+        own.error = impact_scene_pile_error(scene);
+    }
+    const double seconds = spent(&w);
+    row->scenes++;
+    row->overlap = fmax(row->overlap, own.overlap);
+    row->account = fmax(row->account, own.account);
+    row->error = fmax(row->error, own.error);
+    count(row, status, seconds, seed);
+    const bool clean = is_good(status) && own.overlap <= 1e-10 && own.account <= 1e-9 && seconds < 1;
+    if (!clean)
+        fprintf(stderr, "seed %ld: %s: %s %s (t = %.4g, %.2f s, overlap %.1e m, account %.1e)\n", seed,
+                pile_start_name(start), impact_status_string(status), words, scene ? impact_scene_time(scene) : 0,
+                seconds, own.overlap, own.account);
+    impact_scene_destroy(scene);
+    pile_scene_end(&pile);
+}
+
+static int by_size(const void *one, const void *other)
+{
+    const double a = *(const double *)one, b = *(const double *)other;
+    return (a > b) - (a < b);
+}
+
+int main(int argc, char **argv)
+{
+    static const char *const names[] = {"--scenes", "--seed", "--seconds", NULL};
+    const long scenes = options_known(argc, argv, names) ? options_count(argc, argv, "--scenes", 500) : -1,
+               seed = options_count(argc, argv, "--seed", 1);
+    const double most = options_number(argc, argv, "--seconds", 5);
+    if (scenes < PILE_STARTS || seed < 0 || !(most > 0)) {
+        fprintf(stderr, "usage: report_piles [--scenes N] [--seed S] [--seconds T]\n");
+        return 2;
+    }
+    double *seconds = malloc((size_t)scenes * sizeof *seconds);
+    if (!seconds) return 1;
+    printf("start,scenes,rest,ended,long,refused,median,slowest,its_seed,overlap,account,error\n");
+    for (int start = 0; start < PILE_STARTS; start++) {
+        tally row = {.seconds = seconds};
+        for (long i = start; i < scenes; i += PILE_STARTS) run(seed + i, start, most, &row);
+        const long good = row.rest + row.ended;
+        qsort(seconds, (size_t)good, sizeof *seconds, by_size);
+        printf("%s,%ld,%ld,%ld,%ld,%ld,%.2g,%.2g,%ld,%.1e,%.1e,%.1e\n", pile_start_name(start), row.scenes, row.rest,
+               row.ended, row.too_long, row.refused, good > 0 ? seconds[good / 2] : 0, row.most, row.slowest,
+               row.overlap, row.account, row.error);
+        fflush(stdout);
+    }
+    free(seconds);
+    return 0;
+}
