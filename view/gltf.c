@@ -24,6 +24,10 @@ static const double plane_room = 1.5;
 /* Of materials: of what moves and what is static, in one octant and the next. */
 enum { KINDS = 4 };
 
+/* 1/s: Blender's own, and multiples of it, of which every tenth, hundredth, thousandth frame is one of its own; up to
+ * what Blender admits. */
+static const double frame_rates[] = {24, 240, 2400, 24000};
+
 typedef struct gltf {
     imp_arena *arena;
     const impact_run *run;
@@ -384,21 +388,50 @@ static void say_what_is_off(const gltf *g, char *message, unsigned long message_
         g->way.frame_rate, g->off);
 }
 
+static void say_rate(double rate, char *message, unsigned long message_size)
+{
+    snprintf(message, message_size,
+             "for a scene of %g frames a second in Blender, to be set before importing; events follow too fast for %g",
+             rate, frame_rates[0]);
+}
+
+/* The pieces of the file at the rate of g->way. */
+static bool make(gltf *g)
+{
+    imp_text *const parts[] = {&g->buffer, &g->views,    &g->accessors, &g->meshes,
+                               &g->nodes,  &g->channels, &g->samplers,  &g->materials};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) parts[i]->arena = g->arena;
+    bool whole = fill(g);
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) whole = whole && !parts[i]->failed;
+    return whole;
+}
+
 static impact_status write_file(gltf *g, const char *path, impact_quota *quota, char *message,
                                 unsigned long message_size)
 {
     imp_text json = {.arena = g->arena}, file = {.arena = g->arena};
-    imp_text *const parts[] = {&g->buffer,   &g->views,    &g->accessors, &g->meshes, &g->nodes,
-                               &g->channels, &g->samplers, &g->materials, &json,      &file};
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) parts[i]->arena = g->arena;
-    bool whole = fill(g);
     say_json(&json, g);
     put_file(&file, &json, &g->buffer);
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) whole = whole && !parts[i]->failed;
-    if (whole && message) say_what_is_off(g, message, message_size);
-    if (whole) return imp_file_save(g->arena, path, file.bytes, file.size, quota, message, message_size);
+    if (message) say_what_is_off(g, message, message_size);
+    if (!json.failed && !file.failed)
+        return imp_file_save(g->arena, path, file.bytes, file.size, quota, message, message_size);
     if (message) imp_arena_explain(g->run->arena, message, message_size);
     return IMPACT_ENOMEM;
+}
+
+/* *good: whether the file holds the run to its tolerance, and is written; or is written in any case, as the last. */
+static impact_status try_rate(const impact_run *run, imp_gltf_way way, bool last, bool *good, const char *path,
+                              impact_quota *quota, char *message, unsigned long message_size)
+{
+    gltf g = {.run = run, .way = way};
+    const impact_allocator within = imp_arena_allocator(run->arena);
+    impact_status status = imp_arena_create(&within, &g.arena);
+    if (status == IMPACT_OK && !make(&g)) status = IMPACT_ENOMEM;
+    if (status != IMPACT_OK && message) imp_arena_explain(run->arena, message, message_size);
+    *good = status != IMPACT_OK || last || g.off <= way.tolerance;
+    if (status == IMPACT_OK && *good) status = write_file(&g, path, quota, message, message_size);
+    imp_arena_destroy(g.arena);
+    return status;
 }
 
 static impact_status refuse(const char *words, double value, char *message, unsigned long message_size)
@@ -410,18 +443,21 @@ static impact_status refuse(const char *words, double value, char *message, unsi
 impact_status impact_gltf_write(const impact_run *run, double tolerance, double frame_rate, const char *path,
                                 impact_quota *quota, char *message, unsigned long message_size)
 {
-    gltf g = {.run = run, .way = {tolerance, frame_rate}};
+    const int rates = (int)(sizeof frame_rates / sizeof *frame_rates);
+    impact_status status = IMPACT_OK;
+    bool good = false;
     if (message && message_size > 0) message[0] = '\0';
     if (!(tolerance >= 1e-7 && tolerance <= 0.1))
         return refuse("tolerance = %g must lie in [1e-7, 0.1]: glTF has floats", tolerance, message, message_size);
-    if (!(frame_rate >= 1 && frame_rate <= 32767))
-        return refuse("frame_rate = %g must lie in [1, 32767], as Blender's does", frame_rate, message, message_size);
-    const impact_allocator within = imp_arena_allocator(run->arena);
-    impact_status status = imp_arena_create(&within, &g.arena);
-    if (status == IMPACT_OK)
-        status = write_file(&g, path, quota, message, message_size);
-    else if (message)
-        imp_arena_explain(run->arena, message, message_size);
-    imp_arena_destroy(g.arena);
+    if (frame_rate != 0 && !(frame_rate >= 1 && frame_rate <= 32767))
+        return refuse("frame_rate = %g must lie in [1, 32767], as Blender's does, or be 0", frame_rate, message,
+                      message_size);
+    for (int k = frame_rate == 0 ? 0 : rates - 1; k < rates && !good; k++) {
+        const imp_gltf_way way = {tolerance, frame_rate == 0 ? frame_rates[k] : frame_rate};
+        status = try_rate(run, way, k == rates - 1, &good, path, quota, message, message_size);
+        const bool silent = status == IMPACT_OK && good && message && !message[0];
+        if (silent && way.frame_rate != frame_rates[0] && frame_rate == 0)
+            say_rate(way.frame_rate, message, message_size);
+    }
     return status;
 }

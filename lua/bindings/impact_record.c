@@ -202,7 +202,7 @@ static int run_account(lua_State *L)
 static int export_run(lua_State *L, const char *what, impact_exporter *write, double usual)
 {
     char message[400] = "";
-    const double tolerance = luaL_optnumber(L, 3, usual), frame_rate = luaL_optnumber(L, 4, 24);
+    const double tolerance = luaL_optnumber(L, 3, usual), frame_rate = luaL_optnumber(L, 4, 0);
     const impact_run *run = check_run(L);
     const impact_lua_host *host = impact_lua_get_host(L);
     const char *path = luaL_checkstring(L, 2);

@@ -190,7 +190,7 @@ core.layer()
 ---@field contacts fun(self): table[]  held contacts: t, body1, body2, mode, point, normal, force
 ---@field account fun(self): table[]  t, and what scene:energy gives, J
 ---@field view fun(self, path: string, tolerance?: number): true?, string?  writes the page of it, a large record thinned to tolerance (1e-5) of each body; or nil and why not
----@field gltf fun(self, path: string, tolerance?: number, frame_rate?: number): true?, string?  the same of glTF, to tolerance (3e-4) of each body, for so many frames a second (24) in Blender; true, and what those cannot hold
+---@field gltf fun(self, path: string, tolerance?: number, frame_rate?: number): true?, string?  the same of glTF, to tolerance (3e-4) of each body, for so many frames a second in Blender (as many as it takes: 24, 240, 2400 or 24000); true, and a word where those are not 24, or cannot hold it
 ---@field close fun(self)
 
 ---@alias impact.inertia number[][]|{moments: vec, orientation?: quat|number[]}  world tensor, or principal moments and their axes

@@ -246,9 +246,17 @@ static void test_what_frames_cannot_hold_is_said(void **state)
     assert_true(worst > 2e-3 && few < 2 * worst);
     held_apart(run, 2400, &many);
     assert_true(many <= 3e-4);
-    char message[300];
-    assert_int_equal(impact_gltf_write(run, 3e-4, 0, "x.glb", NULL, message, sizeof message), IMPACT_EARGUMENT);
-    assert_string_equal(message, "frame_rate = 0 must lie in [1, 32767], as Blender's does");
+    char message[300], path[] = "test_gltf_chosen.glb";
+    assert_int_equal(impact_gltf_write(run, 3e-4, 0.5, path, NULL, message, sizeof message), IMPACT_EARGUMENT);
+    assert_string_equal(message, "frame_rate = 0.5 must lie in [1, 32767], as Blender's does, or be 0");
+    assert_int_equal(impact_gltf_write(run, 3e-4, 0, path, NULL, message, sizeof message), IMPACT_OK);
+    assert_non_null(strstr(message, "for a scene of 2400 frames a second in Blender"));
+    glb g = read_glb(path);
+    const imp_json *extras = imp_json_get(item(list_of(g.json, "scenes"), 0), "extras", IMP_JSON_OBJECT);
+    assert_near(number_of(extras, "frame_rate"), 2400, 0);
+    assert_near(number_of(extras, "off"), many, 0);
+    free_glb(&g);
+    remove(path);
     impact_run_close(run);
 }
 
