@@ -91,7 +91,7 @@ static int solve_file(const char *path, bool siconos, imp_cone_workspace *room)
     if (!wrong && (!modes || !imp_cone_reserve(room, c.count))) wrong = "there is no memory for it";
     if (!wrong) {
         imp_cone_problem problem = cone_case_problem(&c);
-        problem.wanders = true;
+        problem.effort = IMP_CONE_WANDERS;
         const double begun = measure_clock();
         const imp_cone_outcome outcome = imp_cone_solve(&problem, room, c.r, c.u, modes);
         const double seconds = measure_clock() - begun;
@@ -124,7 +124,7 @@ static void solve_family(const family *f, imp_cone_workspace *room)
     for (int k = 0; k < f->runs; k++) {
         cone_case c = cone_case_make(&random, f->contacts, f->bodies, f->friction);
         imp_cone_problem problem = cone_case_problem(&c);
-        problem.wanders = true;
+        problem.effort = IMP_CONE_WANDERS;
         double *r = calloc(6 * (size_t)c.count, sizeof *r), *u = r + 3 * c.count, off = 0;
         const imp_cone_outcome o = imp_cone_solve(&problem, room, r, u, NULL);
         for (int i = 0; i < 3 * c.count; i++) off = fmax(off, fabs(u[i] - c.u[i]));

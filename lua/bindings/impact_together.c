@@ -7,7 +7,7 @@
 
 static const char *const together_keys[] = {"bodies", "contacts", "law", "exponent", "restitution", NULL};
 static const char *const body_keys[] = {"name", "m", "J", "v", "w", NULL};
-static const char *const contact_keys[] = {"body1", "body2", "n", "r1", "r2", "mu", "eps", "k", NULL};
+static const char *const contact_keys[] = {"body1", "body2", "n", "r1", "r2", "mu", "eps", "k", "pressed", NULL};
 static const char *const together_laws[] = {"springs", "moreau", "sequence", NULL};
 
 /* ---- reading ---- */
@@ -58,7 +58,8 @@ static impact_meeting read_contact(const quat_lua_reader *outer, int list, int i
                               .offset2 = quat_lua_get_vec3(&reader, "r2", zero),
                               .friction = quat_lua_get_number(&reader, "mu", QUAT_LUA_NOT_NEGATIVE, 0),
                               .restitution = quat_lua_get_number(&reader, "eps", QUAT_LUA_FRACTION, 0),
-                              .stiffness = quat_lua_get_number(&reader, "k", QUAT_LUA_POSITIVE, 1)};
+                              .stiffness = quat_lua_get_number(&reader, "k", QUAT_LUA_POSITIVE, 1),
+                              .pressed = quat_lua_get_boolean(&reader, "pressed", false)};
     lua_pop(L, 1);
     return m;
 }

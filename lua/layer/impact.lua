@@ -269,7 +269,7 @@ core.layer()
 
 ---@class impact.encounter  docs/together.md
 ---@field bodies {name?: string, m?: number, J?: table, v?: vec3, w?: vec3}[]  as m1, J1, v1, w1 of an impact; without m: static
----@field contacts {body1: integer, body2: integer, n: vec3, r1?: vec3, r2?: vec3, mu?: number, eps?: number, k?: number}[]  bodies from 1; k: stiffness (1)
+---@field contacts {body1: integer, body2: integer, n: vec3, r1?: vec3, r2?: vec3, mu?: number, eps?: number, k?: number, pressed?: boolean}[]  bodies from 1; k: stiffness (1); pressed: docs/together.md
 ---@field law? "springs"|"moreau"|"sequence"  (springs)
 ---@field exponent? number  of the springs, 1 to 3 (3/2)
 ---@field restitution? "poisson"|"newton"|"stronge"  of the law sequence (poisson)

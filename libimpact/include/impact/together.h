@@ -42,6 +42,10 @@ typedef struct impact_meeting {
     double friction;        /* mu >= 0, of sliding and of sticking alike */
     double restitution;     /* in [0, 1]: Stronge's, Poisson's, or as `restitution` of the encounter says */
     double stiffness;       /* of the springs, any unit, > 0: only ratios count; not looked at by the other laws */
+    /* Other forces press it, u_n is 0 but for rounding (2^-48 of the speeds there), and no pressures of the contacts
+     * that touch can withstand them, as its sliding friction draws it on (Painleve): it is struck without approach,
+     * phase TANGENTIAL; else nothing is changed by it. Not looked at by IMPACT_TOGETHER_SEQUENCE. */
+    bool pressed;
 } impact_meeting;
 
 /* Memory kept from one encounter to the next; not shared between threads. */
@@ -66,7 +70,7 @@ typedef struct impact_meeting_outcome {
     int compressions;                                         /* how often it was compressed; 0: it took no part */
     int group;                               /* contacts that are tied by moving bodies share one, 0, 1, ... */
     int phase_count;                         /* impact_phase values in order; what does not fit is left out */
-    unsigned char phases[IMPACT_MAX_PHASES]; /* by impact_collide and the springs; none by the others */
+    unsigned char phases[IMPACT_MAX_PHASES]; /* by impact_collide and the springs; by Moreau TANGENTIAL alone */
     bool merged;                             /* the same as an earlier one, which has the impulse */
 } impact_meeting_outcome;
 

@@ -527,6 +527,14 @@
  * second step towards none, from which Newton goes on. Rounding over both, 1e-11, is what is left to chance. */
 #define IMP_MOREAU_SHARING 1e-3
 #define IMP_MOREAU_SHARED 0.03
+/* Seeds of contacts that are pressed and may be drawn on: of the group's fastest speed, under which velocities are none
+ * (IMP_SPRINGS_STILL) and whose energy that of an open spring; and of the slip, far over what the cone problem takes
+ * for none (its answer's modes are then solved for without). */
+#define IMP_SPRINGS_SEED 0x1p-46
+#define IMP_MOREAU_SEED 0x1p-20
+/* Of the slip: what the normal's own answer to an impulse is, over 1 or mu, where friction draws: stopping it takes
+ * slip/(mu W_tt). What seeds come to is of their size. */
+#define IMP_ENCOUNTER_DRAWN 0x1p-12
 /* One after another: of the fastest approach, what is none. */
 #define IMP_SEQUENCE_STILL 0x1p-48
 /* Sweeps down the list: bodies of masses 1e4 apart take some thousands. */

@@ -347,7 +347,7 @@ static void settle_down(imp_cone_system *system, double *own, double *r, double 
 
 static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
-    if (system->problem->lengths || system->problem->brief) return;
+    if (system->problem->lengths || system->problem->effort == IMP_CONE_BRIEF) return;
     memset(system->tangent, 0, 3 * (size_t)system->problem->count * sizeof *system->tangent);
     settle_down(system, system->tangent, r, u, outcome);
 }
@@ -374,6 +374,10 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
     if (system->problem->last_r) {
         recall_answer(system, system->problem->last_r, system->problem->last_u);
         polish(system, false, RECALLED, r, u, outcome);
+    }
+    if (system->problem->near_last) {
+        outcome->status = status_of(outcome);
+        return;
     }
     if (!(outcome->residual <= IMP_CONE_ACCEPTED)) {
         outcome->stage = imp_cone_follow(system);
@@ -426,10 +430,10 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
     if (problem->count == 0) return (imp_cone_outcome){.status = IMP_CONE_SOLVED};
     imp_cone_system system = system_of(problem, workspace);
     memset(r, 0, (size_t)(width * problem->count) * sizeof *r);
-    outcome.residual = imp_cone_residual(problem, r, u);
+    outcome.residual = problem->near_last ? INFINITY : imp_cone_residual(problem, r, u);
     outcome.status = IMP_CONE_SOLVED;
     if (outcome.residual > 0) solve(&system, r, u, &outcome);
-    if (outcome.status == IMP_CONE_UNSETTLED && problem->wanders && !problem->lengths) {
+    if (outcome.status == IMP_CONE_UNSETTLED && problem->effort == IMP_CONE_WANDERS && !problem->lengths) {
         const imp_cone_system spent = system; /* by the question of whether there is an answer */
         system = system_of(problem, workspace);
         system.factorings = spent.factorings, system.steps = spent.steps;

@@ -31,6 +31,13 @@ typedef struct imp_cone_lengths {
 
 /* Three numbers a contact: along its normal, then along two tangents; with lengths six, the moments about the same
  * axes after them. Units are the caller's, kept by W. What is said to have "width count" numbers has so many. */
+/* Where no path leads to an answer. */
+typedef enum imp_cone_effort {
+    IMP_CONE_SWEEPS, /* the long sweeps of cone_sweep.c */
+    IMP_CONE_BRIEF,  /* none: the caller has another way, as a shorter step */
+    IMP_CONE_WANDERS /* sweeps, then Newton from thousands of starts, up to seconds: nothing else is at hand */
+} imp_cone_effort;
+
 typedef struct imp_cone_problem {
     int count;                       /* contacts, >= 0 */
     const double *w;                 /* (width count)^2 by rows: symmetric, no eigenvalue under zero, of any rank */
@@ -39,8 +46,8 @@ typedef struct imp_cone_problem {
     const imp_cone_lengths *lengths; /* count; NULL: no contact resists turning */
     const double *last_r;            /* width count each: an answer of like modes to begin with; NULL: none */
     const double *last_u;
-    bool wanders; /* with Newton from thousands of starts where no path leads, up to seconds: nothing else is at hand */
-    bool brief;   /* without the long sweeps of cone_sweep.c: the caller has another way, as a shorter step */
+    bool near_last; /* of several answers the one by last_r: not r = 0, nor where paths lead; else UNSETTLED */
+    imp_cone_effort effort;
     double enough; /* cone_bodies.h: the residual that does; 0: IMP_BODIES_ACCEPTED */
 } imp_cone_problem;
 

@@ -124,6 +124,9 @@ static void take_answer(plan *call, const imp_group *group)
         impact_meeting_outcome *m = &call->meetings[c->source];
         m->impulse = imp_encounter_impulse(c, &group->p[3 * i]);
         take_finding(&group->findings[i], m);
+        if (!imp_encounter_is_drawn(group, i)) continue;
+        m->phases[0] = IMPACT_TANGENTIAL; /* as it was compressed first, sliding */
+        if (m->phase_count == 0) m->phase_count = 1;
     }
     call->outcome->error = fmax(call->outcome->error, group->error);
     call->outcome->events += group->events;
@@ -131,10 +134,11 @@ static void take_answer(plan *call, const imp_group *group)
     call->outcome->chosen = call->outcome->chosen || group->chosen;
 }
 
+/* Whether any does, or is pressed and may be drawn. */
 static bool approaches(const imp_group *group)
 {
     for (int i = 0; i < group->count; i++)
-        if (group->u0[3 * i] < 0) return true;
+        if (group->u0[3 * i] < 0 || group->contacts[i].slip > 0) return true;
     return false;
 }
 
@@ -165,6 +169,7 @@ static bool make_group(plan *call, int from, int count, bool linear, impact_toge
     for (int i = 0; i < count; i++) {
         contacts[i] = imp_encounter_contact(call->encounter, call->order.meeting[from + i]);
         imp_encounter_velocity(&contacts[i], call->velocity, call->omega, &u0[3 * i]);
+        if (call->encounter->meetings[contacts[i].source].pressed) imp_encounter_press(group, &contacts[i], &u0[3 * i]);
     }
     if (!linear) find_mobility(contacts, count, w);
     return true;
@@ -227,6 +232,7 @@ static impact_status solve_group(plan *call, int from, int count, impact_togethe
                                          : solve_with_moreau(call, from, count, workspace, &group);
     if (group.wedged) call->outcome->wedged = group.contacts[0].source;
     if (status != IMPACT_OK) return status;
+    if (springs && !imp_encounter_strikes(&group)) return IMPACT_SEPARATING;
     set_solver(call, springs ? IMPACT_TOGETHER_SERIES : IMPACT_TOGETHER_CONE);
     if (springs) imp_encounter_push(&group, group.p);
     take_answer(call, &group);

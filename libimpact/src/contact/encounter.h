@@ -24,6 +24,7 @@ typedef struct imp_contact {
     qvec3 arm[2];        /* m, world */
     double row[2][3][6]; /* G M^-1/2; zero of a static body */
     double friction, restitution, stiffness;
+    double slip; /* |u_t| where it is pressed and u_n is 0 but for rounding (encounter_pressed.c); else 0 */
 } imp_contact;
 
 /* What a solver finds of a contact, beside its impulse. */
@@ -138,7 +139,18 @@ void imp_encounter_look(const imp_group *group, double *u);
  */
 void imp_encounter_mend(const imp_group *group, const double *after, double *p, impact_together_workspace *workspace);
 
+/* ---- encounter_pressed.c ---- */
+
+/* Sets the slip of a contact that other forces press, which moves at u[3]. */
+void imp_encounter_press(const imp_group *group, imp_contact *contact, const double *u);
+/* By group->p: whether a contact with such slip is drawn on, its impulse more than its seed's; whether any is; whether
+ * any is, or approached. */
+bool imp_encounter_is_drawn(const imp_group *group, int contact);
+bool imp_encounter_draws(const imp_group *group);
+bool imp_encounter_strikes(const imp_group *group);
+
 /* ---- encounter_moreau.c: compression and restitution by the cone solver; the velocities are pushed ---- */
+/* IMPACT_SEPARATING: nothing approaches, nor does friction draw: they are not. */
 impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *workspace);
 
 #endif

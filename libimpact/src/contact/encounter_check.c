@@ -80,7 +80,10 @@ impact_collision imp_encounter_collision(const impact_encounter *e, int meeting,
 {
     const impact_meeting *m = &e->meetings[meeting];
     const int pair[2] = {m->body1, m->body2};
-    impact_collision c = {.normal = m->normal, .friction = m->friction, .restitution = m->restitution};
+    impact_collision c = {.normal = m->normal,
+                          .friction = m->friction,
+                          .restitution = m->restitution,
+                          .pressed = m->pressed && e->law != IMPACT_TOGETHER_SEQUENCE};
     for (int k = 0; k < 2; k++) {
         c.body[k] = e->bodies[pair[k]];
         c.body[k].offset = k == 0 ? m->offset1 : m->offset2;
@@ -112,6 +115,9 @@ static impact_status check_meeting(const impact_encounter *e, int i, const compl
     if (first->friction != m->friction || first->restitution != m->restitution || first->stiffness != m->stiffness)
         return refuse(to, IMPACT_EARGUMENT,
                       "contact %d is contact %d again, with another friction, restitution or stiffness", i, same);
+    if (first->pressed != m->pressed)
+        return refuse(to, IMPACT_EARGUMENT, "contact %d is contact %d again, pressed the one and not the other", i,
+                      same);
     return IMPACT_OK;
 }
 

@@ -26,6 +26,7 @@ typedef struct moreau {
     double *last_r, *last_u;          /* 6 count: where a problem may begin */
     double *least;                    /* count: eps c_n */
     int bodies, (*couples)[2];        /* those that move; count */
+    bool strikes;                     /* not only the seeds of what is pressed do */
     imp_cone_row *rows;               /* count */
 } moreau;
 
@@ -146,20 +147,53 @@ static void share(moreau *m, const imp_cone_problem *problem, double *p)
     memcpy(m->u, u[0], n * sizeof *m->u);
 }
 
+/* The velocities before, of what is pressed and may be drawn those of its seed; whether there is such. */
+static bool plant_seeds(const moreau *m)
+{
+    const imp_group *g = m->group;
+    bool any = false;
+    for (int i = 0; i < g->count; i++) {
+        const double slip = g->contacts[i].slip;
+        memcpy(&m->q[3 * i], &g->u0[3 * i], 3 * sizeof *m->q);
+        if (slip > 0) m->q[3 * i] = -IMP_MOREAU_SEED * slip;
+        any = any || slip > 0;
+    }
+    return any;
+}
+
+/* The answer without the seeds: by its modes where they have drawn, else as if there were none. */
+static bool take_seeds_away(moreau *m, imp_cone_problem problem)
+{
+    const imp_group *g = m->group;
+    const size_t n = 3 * (size_t)problem.count;
+    problem.q = g->u0;
+    problem.near_last = imp_encounter_draws(g);
+    if (problem.near_last) {
+        memcpy(m->last_r, g->p, n * sizeof *m->last_r);
+        memcpy(m->last_u, m->u, n * sizeof *m->last_u);
+        problem.last_r = m->last_r;
+    }
+    const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, g->p, m->u, m->modes);
+    return solved(&problem, &o, g->p, m->group);
+}
+
 static bool compress(moreau *m)
 {
     const int n = m->group->count;
     for (int i = 0; i < n; i++) m->friction[i] = m->group->contacts[i].friction;
-    const bool starts = find_start(m, m->group->u0, NULL);
+    const bool seeded = plant_seeds(m), starts = find_start(m, m->q, NULL);
     const imp_cone_problem problem = {.count = n,
                                       .w = m->group->w,
-                                      .q = m->group->u0,
+                                      .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
                                       .last_u = m->last_u};
     const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->group->p, m->u, m->modes);
     if (!solved(&problem, &o, m->group->p, m->group)) return false;
     if (o.chosen) share(m, &problem, m->group->p);
+    if (seeded && !take_seeds_away(m, problem)) return false;
+    m->strikes = imp_encounter_strikes(m->group);
+    if (!m->strikes) return true;
     clean(n, m->modes, m->modes, m->u);
     imp_encounter_push(m->group, m->group->p);
     imp_encounter_mend(m->group, m->u, m->group->p, m->workspace);
@@ -278,7 +312,9 @@ impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *work
     m.couples = imp_encounter_take(workspace, n, sizeof *m.couples);
     m.rows = imp_encounter_take(workspace, n, sizeof *m.rows);
     if (!m.rows || !imp_cone_reserve(m.cone, 2 * group->count)) return IMPACT_ENOMEM;
-    if (compress(&m) && (!restores(group) || restore(&m))) return IMPACT_OK;
+    const bool compressed = compress(&m);
+    if (compressed && !m.strikes) return IMPACT_SEPARATING;
+    if (compressed && (!restores(group) || restore(&m))) return IMPACT_OK;
     const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
     group->wedged = imp_encounter_wedged(&question, m.r);
     return IMPACT_EUNSETTLED;

@@ -43,7 +43,8 @@ static uint64_t body_key(const impact_collider *body)
 static uint64_t meeting_key(const impact_meeting *m)
 {
     uint64_t key = stir_vector(stir_vector(stir_vector(2, m->normal), m->offset1), m->offset2);
-    return stir_number(stir_number(stir_number(key, m->friction), m->restitution), m->stiffness);
+    key = stir_number(stir_number(stir_number(key, m->friction), m->restitution), m->stiffness);
+    return m->pressed ? stir(key, 4) : key;
 }
 
 /* ---- refinement ---- */

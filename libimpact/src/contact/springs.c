@@ -74,6 +74,7 @@ static void set_up(imp_springs *s, const imp_group *group, const units *unit, do
     s->w = w, s->u0 = u0;
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
+        if (group->contacts[i].slip > 0) u0[3 * i] = -IMP_SPRINGS_SEED;
         c->friction = group->contacts[i].friction;
         c->restitution = fmax(group->contacts[i].restitution, group->least);
         c->stiffness = group->contacts[i].stiffness / unit->stiffness;

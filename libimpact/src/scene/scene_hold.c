@@ -5,6 +5,7 @@
 #include "contact/persist_flat.h"
 #include "contact/persist_line.h"
 #include "contact/persist_still.h"
+#include "scene/scene_drawn.h"
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
 
@@ -24,9 +25,9 @@ void imp_scene_choose_modes(imp_island *island)
         imp_pair *pair = &world->pairs[p];
         if (pair->lies || pair->rises || !imp_scene_meets(island, p, &m)) continue;
         imp_scene_press(island, &m);
-        const bool leaves = m.acceleration > 0 && imp_scene_draws(island, &m);
-        const bool stays = m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity)
-                                              : m.velocity <= world->slip_speed && !leaves;
+        const bool leaves = imp_scene_lifts(island, &m);
+        const bool stays = !leaves && (m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity)
+                                                          : m.velocity <= world->slip_speed);
         world->usage.lifts_chosen += leaves;
         const bool slides = m.touch.speed > world->slip_speed || (imp_is_held(pair) && m.touch.onset);
         pair->mode = stays ? held_mode(&m.touch, slides) : IMP_OPEN;

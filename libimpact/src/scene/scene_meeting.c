@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_meeting.h"
-#include "collide/collide_tangential.h"
 #include "contact/points.h"
 #include "world/world_gap.h"
 
-#include <float.h>
 #include <string.h>
 
 impact_status imp_scene_load(imp_island *island)
@@ -131,40 +129,6 @@ impact_collision imp_scene_collision(imp_island *island, imp_meeting *m)
                               .solver = island->scene->methods.impacts,
                               .tangential_compliance = island->scene->compliance,
                               .workspace = island->scene->workspace};
-}
-
-/* Whether another held contact has one of the pair's bodies that move. */
-static bool is_held_elsewhere(const imp_world *world, const imp_touch *touch)
-{
-    for (int p = 0; p < world->pair_count; p++) {
-        const imp_pair *pair = &world->pairs[p];
-        const int body[2] = {pair->body1, pair->body2};
-        if (p == touch->pair || !imp_is_held(pair)) continue;
-        for (int k = 0; k < 2; k++)
-            if (!world->bodies[body[k]].is_static && (body[k] == touch->body1 || body[k] == touch->body2)) return true;
-    }
-    return false;
-}
-
-/* Whether friction makes no normal velocity of the body's point: it stands in line with the centre. */
-static bool is_in_line(const imp_body *body, qvec3 arm, qvec3 normal)
-{
-    return body->is_static || length(qvec3_cross(arm, normal)) <= 4 * DBL_EPSILON * length(arm);
-}
-
-bool imp_scene_draws(imp_island *island, imp_meeting *m)
-{
-    const imp_world *world = &island->world;
-    const imp_touch *touch = &m->touch;
-    if (!(touch->friction > 0) || fabs(m->velocity) > world->slip_speed || island->scene->compliance > 0) return false;
-    if (is_in_line(&world->bodies[touch->body1], touch->r1, touch->normal) &&
-        is_in_line(&world->bodies[touch->body2], touch->r2, touch->normal))
-        return false;
-    if (is_held_elsewhere(world, touch)) return false;
-    imp_scene_press(island, m);
-    if (!(touch->speed > world->slip_speed) || touch->flat || touch->lined) return false;
-    const impact_collision collision = imp_scene_collision(island, m);
-    return imp_collide_draws(&collision);
 }
 
 void imp_scene_set_velocities(imp_island *island, int i, qvec3 velocity, qvec3 omega)

@@ -13,7 +13,7 @@ typedef struct imp_meeting {
     double touching; /* m: gaps up to this are rounding */
     double own;      /* m/s^2: what the pair's own reaction adds to d2(gap)/dt2 */
     bool pressed;
-    bool jams;           /* no pressure can hold it: its impact has no approach */
+    bool jams;           /* no pressures can hold it: its impact has no approach */
     double acceleration; /* then: d2(gap)/dt2 under the loads and the other contacts' reactions, m/s^2 */
 } imp_meeting;
 
@@ -25,10 +25,6 @@ impact_status imp_scene_load_with_reactions(imp_island *island);
 bool imp_scene_meets(imp_island *island, int p, imp_meeting *m);
 /* Finds what presses the pair together, and its whole touch, if that is not known yet. */
 void imp_scene_press(imp_island *island, imp_meeting *m);
-
-/* The pair slides, is all but still along the normal, and no other contact holds its bodies: its own friction draws it
- * on (Painleve). Then pressed together it jams; lifted it leaves, of three solutions that it has. */
-bool imp_scene_draws(imp_island *island, imp_meeting *m);
 
 /* Whether a bounce at this speed would rise less than the rest height under the acceleration that presses the bodies
  * together. Bounces that are met a rounding d late gain what they fall by it, and never rise less than d e^2/(1 - e^2):

@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "contact/persist_still.h"
 #include "contact/turning.h"
+#include "scene/scene_drawn.h"
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
 #include "scene/scene_together.h"
@@ -112,11 +113,11 @@ static int find_approach(imp_island *island, bool answering, imp_meeting *m)
     return -1;
 }
 
-/* The first touching pair that jams, or -1. */
-static int find_jam(imp_island *island, imp_meeting *m)
+/* The first touching pair that jams, of those from there on, or -1. */
+static int find_jam(imp_island *island, int from, imp_meeting *m)
 {
-    for (int p = 0; p < island->world.pair_count; p++) {
-        m->jams = imp_scene_meets(island, p, m) && imp_scene_draws(island, m) && m->acceleration < 0;
+    for (int p = from; p < island->world.pair_count; p++) {
+        m->jams = imp_scene_meets(island, p, m) && imp_scene_jams(island, m);
         if (m->jams) return p;
     }
     return -1;
@@ -143,6 +144,7 @@ static impact_status strike_on(imp_island *island, bool *parted)
     imp_world *world = &island->world;
     imp_meeting m;
     bool fresh = true; /* the loads know of the last impact */
+    int jam = 0;       /* the first pair that may jam: those before it have been asked since */
     *parted = island->unanswered = false;
     for (int p = 0; p < world->pair_count; p++) world->pairs[p].struck = false;
     impact_status status = imp_scene_load_with_reactions(island);
@@ -153,14 +155,21 @@ static impact_status strike_on(imp_island *island, bool *parted)
             p = status == IMPACT_OK ? find_approach(island, count > 0, &m) : -1;
             fresh = true;
         }
-        if (p < 0 && status == IMPACT_OK) p = find_jam(island, &m);
+        if (p < 0 && status == IMPACT_OK) p = find_jam(island, jam, &m);
         if (p < 0) return status;
         if (goes_round(island, count)) {
             status = imp_scene_end_together(island);
             return status == IMPACT_OK ? imp_scene_load_with_reactions(island) : status;
         }
         bool answered;
+        if (m.jams && imp_scene_held_elsewhere(world, &m.touch)) {
+            status = imp_scene_answer_jam(island, &m, &answered);
+            fresh = !answered;
+            jam = answered ? 0 : p + 1;
+            continue;
+        }
         fresh = false;
+        jam = 0;
         status = imp_scene_answer_together(island, &m, &answered);
         if (status != IMPACT_OK || answered) continue;
         if (count > 0) world->usage.impacts_simultaneous++;

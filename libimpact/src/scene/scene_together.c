@@ -37,7 +37,8 @@ static void give_gathering(imp_arena *arena, gathering *g)
     imp_arena_give(arena, g->omega);
 }
 
-static impact_status make_gathering(imp_island *island, gathering *g)
+/* jammed: a pair that jams, or -1. */
+static impact_status make_gathering(imp_island *island, int jammed, gathering *g)
 {
     imp_world *world = &island->world;
     imp_arena *arena = world->arena;
@@ -50,7 +51,7 @@ static impact_status make_gathering(imp_island *island, gathering *g)
                      .omega = imp_arena_take(arena, bodies, sizeof *g->omega)};
     if (!g->met || !g->meetings || !g->outcomes || !g->bodies || !g->velocity || !g->omega) return IMPACT_ENOMEM;
     for (int p = 0; p < world->pair_count; p++)
-        if (imp_scene_meets(island, p, &g->met[g->count])) g->count++;
+        if (imp_scene_meets(island, p, &g->met[g->count])) g->met[g->count++].jams = p == jammed;
     for (int i = 0; i < world->body_count; i++) g->bodies[i] = imp_scene_collider(island, i, (qvec3){0, 0, 0});
     return IMPACT_OK;
 }
@@ -107,11 +108,11 @@ static double hertz_stiffness(const imp_island *island, const imp_touch *touch)
     return sqrt(bent > 0 && isfinite(bent) ? 1 / bent : smaller);
 }
 
-/* What answers, as rows name it; spent: their restitution. */
+/* What answers, as rows name it; spent: their restitution; jams: because one does. */
 typedef struct answering {
     impact_together_law law;
     const char *name;
-    bool spent;
+    bool spent, jams;
 } answering;
 
 static void describe(imp_island *island, gathering *g, bool spent)
@@ -119,7 +120,7 @@ static void describe(imp_island *island, gathering *g, bool spent)
     for (int c = 0; c < g->count; c++) {
         imp_meeting *m = &g->met[c];
         const imp_pair *pair = &island->world.pairs[m->touch.pair];
-        const bool dies = spent || imp_scene_dies_out(island, m, pair->restitution * m->velocity);
+        const bool dies = spent || (!m->jams && imp_scene_dies_out(island, m, pair->restitution * m->velocity));
         g->meetings[c] =
             (impact_meeting){.body1 = m->touch.body1,
                              .body2 = m->touch.body2,
@@ -128,7 +129,8 @@ static void describe(imp_island *island, gathering *g, bool spent)
                              .offset2 = m->touch.r2,
                              .friction = pair->friction,
                              .restitution = dies ? 0 : pair->restitution,
-                             .stiffness = pair->stiffness > 0 ? pair->stiffness : hertz_stiffness(island, &m->touch)};
+                             .stiffness = pair->stiffness > 0 ? pair->stiffness : hertz_stiffness(island, &m->touch),
+                             .pressed = m->jams};
     }
 }
 
@@ -164,6 +166,15 @@ static impact_status record_all(imp_island *island, const gathering *g, const ch
     return status;
 }
 
+/* Whether what jams was drawn on. */
+static bool was_drawn(const gathering *g)
+{
+    for (int c = 0; c < g->count; c++)
+        if (g->met[c].jams && g->outcomes[c].phase_count > 0 && g->outcomes[c].phases[0] == IMPACT_TANGENTIAL)
+            return true;
+    return false;
+}
+
 /* Below zero nothing was answered. */
 static impact_status answer(imp_island *island, gathering *g, answering how)
 {
@@ -185,6 +196,7 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
     impact_together_outcome outcome = {.velocity = g->velocity, .omega = g->omega, .meetings = g->outcomes};
     const impact_status status = impact_collide_together(&encounter, &outcome);
     if (status < 0 || status == IMPACT_SEPARATING) return status;
+    if (how.jams && !was_drawn(g)) return IMPACT_SEPARATING;
     if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0)
         snprintf(scene->message, sizeof scene->message,
                  "%d contacts at t = %s, one of '%s' and '%s': their answer together does not pass its receipt",
@@ -214,10 +226,10 @@ impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck,
     *answered = false;
     if (law == IMPACT_SCENE_SEQUENCE || island->world.pair_count < 2 || island->unanswered) return IMPACT_OK;
     gathering g;
-    impact_status status = make_gathering(island, &g);
+    impact_status status = make_gathering(island, struck->jams ? struck->touch.pair : -1, &g);
     if (status == IMPACT_OK && g.count > 1 && !suffices_alone(island, &g, struck)) {
         const impact_together_law by = law == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
-        status = answer(island, &g, (answering){by, impact_together_law_name(by), false});
+        status = answer(island, &g, (answering){.law = by, .name = impact_together_law_name(by)});
         *answered = status >= 0;
         island->unanswered = status == IMPACT_EUNSETTLED;
         if (island->unanswered) tell_unsettled(island, &g, struck, by);
@@ -228,11 +240,26 @@ impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck,
     return status;
 }
 
+impact_status imp_scene_answer_jam(imp_island *island, const imp_meeting *jammed, bool *answered)
+{
+    const bool springs = island->scene->together == IMPACT_SCENE_SPRINGS;
+    const impact_together_law by = springs ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
+    gathering g;
+    impact_status status = make_gathering(island, jammed->touch.pair, &g);
+    if (status == IMPACT_OK)
+        status = answer(island, &g, (answering){.law = by, .name = impact_together_law_name(by), .jams = true});
+    *answered = status == IMPACT_OK || status == IMPACT_SOFT;
+    if (status == IMPACT_EUNSETTLED) tell_unsettled(island, &g, jammed, by);
+    give_gathering(island->world.arena, &g);
+    return status == IMPACT_EUNSETTLED || status > 0 ? IMPACT_OK : status;
+}
+
 impact_status imp_scene_end_together(imp_island *island)
 {
     gathering g;
-    impact_status status = make_gathering(island, &g);
-    if (status == IMPACT_OK) status = answer(island, &g, (answering){IMPACT_TOGETHER_MOREAU, "together", true});
+    impact_status status = make_gathering(island, -1, &g);
+    if (status == IMPACT_OK)
+        status = answer(island, &g, (answering){.law = IMPACT_TOGETHER_MOREAU, .name = "together", .spent = true});
     give_gathering(island->world.arena, &g);
     if (status == IMPACT_EUNSETTLED)
         snprintf(island->scene->message, sizeof island->scene->message, "no impulses end the impacts at t = %s%s",

@@ -115,7 +115,7 @@ static void hard_ones_are_solved_or_told(void **state)
     for (int k = 0; k < RUNS; k++) {
         cone_case c = cone_case_make(&random, 10, 3 + k % 8, 10);
         imp_cone_problem problem = cone_case_problem(&c);
-        problem.wanders = true;
+        problem.effort = IMP_CONE_WANDERS;
         const answer got = solve(&problem);
         double u[3 * MOST];
         const double residual = imp_cone_residual(&problem, got.r, u);
