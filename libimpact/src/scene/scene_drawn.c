@@ -15,7 +15,8 @@
 #include <float.h>
 #include <string.h>
 
-bool imp_scene_held_elsewhere(const imp_world *world, const imp_touch *touch)
+/* Whether another held contact has one of the touch's bodies that move. */
+static bool is_held_elsewhere(const imp_world *world, const imp_touch *touch)
 {
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
@@ -39,96 +40,100 @@ static bool both_in_line(const imp_world *world, const imp_touch *touch)
            is_in_line(&world->bodies[touch->body2], touch->r2, touch->normal);
 }
 
-static bool may_slide(const imp_island *island, const imp_meeting *m)
+/* ---- the pair alone ---- */
+
+static bool draws(imp_island *island, imp_meeting *m)
 {
-    return m->touch.friction > 0 && fabs(m->velocity) <= island->world.slip_speed && island->scene->compliance == 0;
+    const imp_world *world = &island->world;
+    const imp_touch *touch = &m->touch;
+    if (!(touch->friction > 0) || fabs(m->velocity) > world->slip_speed || island->scene->compliance > 0) return false;
+    if (both_in_line(world, touch) || is_held_elsewhere(world, touch)) return false;
+    imp_scene_press(island, m);
+    if (!(touch->speed > world->slip_speed) || touch->flat || touch->lined) return false;
+    const impact_collision collision = imp_scene_collision(island, m);
+    return imp_collide_draws(&collision);
 }
 
-static bool slides(const imp_island *island, const imp_touch *touch)
+/* What of its acceleration may be rounding of the loads, m/s^2: of bodies that fall together it is all. */
+static double rounding_of_loads(const imp_island *island, const imp_meeting *m)
 {
-    return touch->speed > island->world.slip_speed && !touch->flat && !touch->lined;
+    const int body[2] = {m->touch.body1, m->touch.body2};
+    double sum = 0;
+    for (int k = 0; k < 2; k++)
+        sum += qvec3_norm(island->motion.loads[body[k]].force) * island->world.bodies[body[k]].inverse_mass;
+    return IMP_PRESSED_OF_LOADS * sum;
+}
+
+bool imp_scene_jams(imp_island *island, imp_meeting *m)
+{
+    return draws(island, m) && m->acceleration < -rounding_of_loads(island, m);
+}
+
+bool imp_scene_lifts(imp_island *island, imp_meeting *m)
+{
+    return draws(island, m) && m->acceleration > rounding_of_loads(island, m);
 }
 
 /* ---- with contacts beside it ---- */
 
-/* The place of the pair among those held, or -1. */
-static int find_held(const imp_persist *persist, int pair)
-{
-    for (int c = 0; c < persist->count; c++)
-        if (persist->touches[c].pair == pair) return c;
-    return -1;
-}
-
-/* What is held answers the touch's pressure as it moves now, not as it did before an impact. */
 static void ask_contacts(const imp_island *island, imp_persist *persist, const imp_touch *touch, qvec3 force)
 {
     for (int c = 0; c < persist->count; c++) {
         imp_touch *beside = &persist->touches[c];
-        const bool stands = beside->friction > 0 && beside->speed <= island->world.slip_speed;
-        if (!beside->onset) beside->mode = stands ? IMP_ROLL : IMP_SLIDE;
         beside->still = beside->turning = false;
         beside->wanted = qvec3_neg(imp_system_response(&island->world, island->states, beside, touch, force));
     }
 }
 
-/* d(u_n)/d(lambda), m/s^2 for 1 N, of the touch, which slides; the reactions that were solved for stay as they are. */
-static double response_of(imp_island *island, const imp_touch *touch, bool *known)
+/* d(u_n)/d(lambda), m/s^2 for 1 N, of the contact `own`, without it among those that answer. */
+static double response_of(imp_island *island, int own)
 {
     imp_persist *persist = &island->motion.persist;
-    const size_t count = (size_t)persist->count;
-    imp_touch *kept = imp_arena_take(island->world.arena, count, sizeof *kept);
-    const qvec3 against = qvec3_scale(touch->slip, -touch->friction / touch->speed),
-                force = qvec3_add(touch->normal, against);
-    const int own = find_held(persist, touch->pair);
-    *known = kept != NULL;
-    if (!kept) return 0;
-    memcpy(kept, persist->touches, count * sizeof *kept);
-    if (own >= 0) persist->touches[own] = persist->touches[--persist->count];
-    ask_contacts(island, persist, touch, force);
+    const imp_touch touch = persist->touches[own];
+    const qvec3 force = qvec3_axpy(-touch.friction, touch.direction, touch.normal);
+    persist->touches[own] = persist->touches[--persist->count];
+    ask_contacts(island, persist, &touch, force);
     imp_system_solve(persist, &island->world, island->states, true);
-    const qvec3 change = qvec3_add(imp_system_response(&island->world, island->states, touch, touch, force),
-                                   imp_system_change(persist, touch));
-    persist->count = (int)count;
-    memcpy(persist->touches, kept, count * sizeof *kept);
-    imp_arena_give(island->world.arena, kept);
-    return qvec3_dot(touch->normal, change);
+    const qvec3 change = qvec3_add(imp_system_response(&island->world, island->states, &touch, &touch, force),
+                                   imp_system_change(persist, &touch));
+    return qvec3_dot(touch.normal, change);
 }
 
-/* ---- both questions ---- */
+/* Let go, a contact whose pressure is lambda would go at -response lambda: drawn on and pressed it has lambda < 0.
+ * Round bodies that go on as they were are not asked. */
+static bool may_be_drawn(const imp_island *island, const imp_touch *touch)
+{
+    const imp_world *world = &island->world;
+    if (touch->mode != IMP_SLIDE || touch->onset || touch->flat || touch->lined || !(touch->friction > 0)) return false;
+    if (touch->pressure > 0 && both_in_line(world, touch)) return false;
+    return touch->speed > world->slip_speed && is_held_elsewhere(world, touch);
+}
 
-/* The pressure that holds the pair now; 0 where it is not held, or was until an impact changed how it moves. */
-static double pressure_of(const imp_island *island, const imp_touch *touch)
+/* The first of what is held that is drawn on, of pairs after that one; -1: none. */
+static int find_drawn(imp_island *island, int after, imp_touch *kept)
+{
+    imp_persist *persist = &island->motion.persist;
+    const int count = persist->count;
+    const size_t bytes = sizeof *kept * (size_t)count;
+    int found = -1;
+    memcpy(kept, persist->touches, bytes);
+    for (int c = 0; c < count && found < 0; c++) {
+        if (kept[c].pair <= after || !may_be_drawn(island, &kept[c])) continue;
+        if (response_of(island, c) < 0) found = c;
+        memcpy(persist->touches, kept, bytes);
+        persist->count = count;
+    }
+    return found;
+}
+
+impact_status imp_scene_find_drawn(imp_island *island, int after, int *pair, bool *jams)
 {
     const imp_persist *persist = &island->motion.persist;
-    const int own = find_held(persist, touch->pair);
-    return own >= 0 && persist->touches[own].mode == IMP_SLIDE ? persist->touches[own].pressure : 0;
+    *pair = -1;
+    imp_touch *kept = imp_arena_take_unset(island->world.arena, (size_t)persist->count, sizeof *kept);
+    if (!kept) return IMPACT_ENOMEM;
+    const int found = find_drawn(island, after, kept);
+    if (found >= 0) *pair = kept[found].pair, *jams = kept[found].pressure < 0;
+    imp_arena_give(island->world.arena, kept);
+    return IMPACT_OK;
 }
-
-/* A held contact whose pressure is lambda would, let go, part at -response lambda: with a response under zero pressed
- * contacts have a pressure under zero. side: 1 pressed, -1 lifted. */
-static bool draws_beside(imp_island *island, const imp_meeting *m, double side)
-{
-    const imp_touch *touch = &m->touch;
-    const double pressure = pressure_of(island, touch);
-    bool known;
-    if (side * (pressure != 0 ? pressure : m->acceleration) >= 0) return false;
-    if (pressure > 0 && both_in_line(&island->world, touch)) return false; /* round bodies that go on as they were */
-    return response_of(island, touch, &known) < 0 && known;
-}
-
-static bool draws(imp_island *island, imp_meeting *m, double side)
-{
-    if (!may_slide(island, m)) return false;
-    const bool beside = imp_scene_held_elsewhere(&island->world, &m->touch);
-    if (!beside && both_in_line(&island->world, &m->touch)) return false;
-    imp_scene_press(island, m);
-    if (!slides(island, &m->touch)) return false;
-    if (beside) return draws_beside(island, m, side);
-    if (side * m->acceleration >= 0) return false;
-    const impact_collision collision = imp_scene_collision(island, m);
-    return imp_collide_draws(&collision);
-}
-
-bool imp_scene_jams(imp_island *island, imp_meeting *m) { return draws(island, m, 1); }
-
-bool imp_scene_lifts(imp_island *island, imp_meeting *m) { return draws(island, m, -1); }

@@ -25,13 +25,19 @@ void imp_scene_choose_modes(imp_island *island)
         imp_pair *pair = &world->pairs[p];
         if (pair->lies || pair->rises || !imp_scene_meets(island, p, &m)) continue;
         imp_scene_press(island, &m);
-        const bool leaves = imp_scene_lifts(island, &m);
-        const bool stays = !leaves && (m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity)
-                                                          : m.velocity <= world->slip_speed);
-        world->usage.lifts_chosen += leaves;
+        const bool stays =
+            m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= world->slip_speed;
         const bool slides = m.touch.speed > world->slip_speed || (imp_is_held(pair) && m.touch.onset);
         pair->mode = stays ? held_mode(&m.touch, slides) : IMP_OPEN;
         pair->onset = slides && m.touch.onset && m.touch.speed < world->onset_speed;
+    }
+    for (int p = 0; p < world->pair_count; p++) { /* now that it is known what holds whose bodies */
+        imp_meeting m;
+        imp_pair *pair = &world->pairs[p];
+        if (pair->mode != IMP_SLIDE || pair->lies || pair->rises || !imp_scene_meets(island, p, &m)) continue;
+        if (!imp_scene_lifts(island, &m)) continue;
+        world->usage.lifts_chosen++;
+        pair->mode = IMP_OPEN;
     }
 }
 

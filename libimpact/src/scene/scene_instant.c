@@ -29,11 +29,20 @@ static bool rise_from_faces(imp_island *island)
     return lay;
 }
 
-static impact_status hold(imp_island *island, int opened, bool rejoin)
+static impact_status hold_on(imp_island *island, int opened, bool rejoin)
 {
     const impact_status status = imp_scene_hold(island, opened, rejoin);
     if (status == IMPACT_OK) imp_island_glide_on_flats(island);
     return status;
+}
+
+/* Modes changed without an impact; if what slides is drawn on now there is one. */
+static impact_status hold(imp_island *island, int opened, bool rejoin)
+{
+    bool struck;
+    const impact_status status = imp_scene_strike_drawn(island, &struck);
+    if (status != IMPACT_OK) return status;
+    return struck ? imp_scene_settle(island) : hold_on(island, opened, rejoin);
 }
 
 impact_status imp_scene_settle(imp_island *island)
@@ -44,14 +53,17 @@ impact_status imp_scene_settle(imp_island *island)
     imp_scene_remember(island);
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
     bool parted, glides = false;
-    status = imp_scene_strike_all(island, &parted);
-    imp_stay stay = status == IMPACT_OK && !parted ? imp_scene_points_stay(island) : IMP_STAY_NONE;
-    if (stay == IMP_STAY_FACES) status = imp_island_lay(island, lay, &glides);
-    if (glides && status == IMPACT_OK) stay = imp_scene_points_stay(island);
-    island->lies = stay == IMP_STAY_FACES;
-    if (status == IMPACT_OK && !parted && !island->lies) {
+    for (bool struck = true; status == IMPACT_OK && struck;) {
+        struck = false;
+        status = imp_scene_strike_all(island, &parted);
+        imp_stay stay = status == IMPACT_OK && !parted ? imp_scene_points_stay(island) : IMP_STAY_NONE;
+        if (stay == IMP_STAY_FACES) status = imp_island_lay(island, lay, &glides);
+        if (glides && status == IMPACT_OK) stay = imp_scene_points_stay(island);
+        island->lies = stay == IMP_STAY_FACES;
+        if (status != IMPACT_OK || parted || island->lies) break;
         imp_scene_choose_modes(island);
-        status = hold(island, -1, glides);
+        status = imp_scene_strike_drawn(island, &struck);
+        if (status == IMPACT_OK && !struck) status = hold_on(island, -1, glides);
     }
     imp_scene_drop_points(island);
     island->impact_loss = account - imp_scene_undriven_energy(island);

@@ -161,17 +161,11 @@ static impact_status strike_on(imp_island *island, bool *parted)
             status = imp_scene_end_together(island);
             return status == IMPACT_OK ? imp_scene_load_with_reactions(island) : status;
         }
-        bool answered;
-        if (m.jams && imp_scene_held_elsewhere(world, &m.touch)) {
-            status = imp_scene_answer_jam(island, &m, &answered);
-            fresh = !answered;
-            jam = answered ? 0 : p + 1;
-            continue;
-        }
-        fresh = false;
-        jam = 0;
-        status = imp_scene_answer_together(island, &m, &answered);
-        if (status != IMPACT_OK || answered) continue;
+        imp_answer by;
+        status = imp_scene_answer_together(island, &m, &by);
+        fresh = by == IMP_ANSWER_NONE;
+        jam = by == IMP_ANSWER_NONE ? p + 1 : 0;
+        if (status != IMPACT_OK || by != IMP_ANSWER_ALONE) continue;
         if (count > 0) world->usage.impacts_simultaneous++;
         if (count == MAX_IMPACTS) {
             snprintf(island->scene->message, sizeof island->scene->message,
@@ -186,6 +180,49 @@ static impact_status strike_on(imp_island *island, bool *parted)
         *parted = !was_held && imp_scene_leaves_for_good(island, &m, speed);
         if (speed > 0) return status;
     }
+    return status;
+}
+
+/* ---- what is drawn on where others hold it ---- */
+
+static bool has_sliding(const imp_world *world)
+{
+    int held = 0, sliding = 0;
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *pair = &world->pairs[p];
+        held += imp_is_held(pair);
+        sliding += pair->mode == IMP_SLIDE && pair->friction > 0 && !pair->onset;
+    }
+    return held > 1 && sliding > 0;
+}
+
+/* The pair after `last` that is drawn on is let go, or answered, or neither: what holds it gives way. */
+static impact_status answer_next(imp_island *island, int *last, imp_answer *by)
+{
+    bool jams = false;
+    imp_meeting m;
+    impact_status status = imp_scene_load_with_reactions(island);
+    if (status == IMPACT_OK) status = imp_scene_find_drawn(island, *last, last, &jams);
+    if (status != IMPACT_OK || *last < 0 || !imp_scene_meets(island, *last, &m)) return status;
+    m.jams = jams;
+    if (jams) return imp_scene_answer_together(island, &m, by);
+    island->world.pairs[*last].mode = IMP_OPEN;
+    island->world.usage.lifts_chosen++;
+    return IMPACT_OK;
+}
+
+impact_status imp_scene_strike_drawn(imp_island *island, bool *struck)
+{
+    imp_answer by = IMP_ANSWER_NONE;
+    impact_status status = IMPACT_OK;
+    int last = -1;
+    *struck = false;
+    if (!has_sliding(&island->world) || island->scene->compliance > 0) return IMPACT_OK;
+    imp_island_begin_push(island);
+    do status = answer_next(island, &last, &by);
+    while (status == IMPACT_OK && last >= 0 && by == IMP_ANSWER_NONE);
+    imp_island_end_push(island);
+    *struck = by != IMP_ANSWER_NONE;
     return status;
 }
 

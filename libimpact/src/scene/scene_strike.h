@@ -12,4 +12,8 @@
  * one pair, and nothing will hold it. */
 impact_status imp_scene_strike_all(imp_island *island, bool *parted);
 
+/* Contacts have been given their modes: of those that slide and are drawn on (scene_drawn.h) where others hold their
+ * bodies, what is lifted is opened, and what jams is struck with all that touch. *struck: the modes are no more. */
+impact_status imp_scene_strike_drawn(imp_island *island, bool *struck);
+
 #endif

@@ -214,25 +214,35 @@ static void tell_unsettled(imp_island *island, const gathering *g, const imp_mee
     const imp_body *bodies = island->world.bodies;
     if (scene->message[0]) return;
     snprintf(scene->message, sizeof scene->message,
-             "%d contacts at t = %s, that of '%s' and '%s' among them: %s finds no answer to all together; they are "
-             "answered one after another",
+             "%d contacts at t = %s, that of '%s' and '%s' among them%s: %s finds no answer to all together%s",
              g->count, imp_number_of(island->t).text, bodies[struck->touch.body1].name,
-             bodies[struck->touch.body2].name, impact_together_law_name(by));
+             bodies[struck->touch.body2].name, struck->jams ? ", which jams" : "", impact_together_law_name(by),
+             struck->jams ? "" : "; they are answered one after another");
 }
 
-impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck, bool *answered)
+/* Whether the pair's own impact is all there is to answer. */
+static bool is_alone(imp_island *island, gathering *g, imp_meeting *struck)
 {
-    const impact_scene_together law = island->scene->together;
-    *answered = false;
-    if (law == IMPACT_SCENE_SEQUENCE || island->world.pair_count < 2 || island->unanswered) return IMPACT_OK;
+    return g->count < 2 || (!struck->jams && suffices_alone(island, g, struck));
+}
+
+impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck, imp_answer *by)
+{
+    const impact_scene_together asked = island->scene->together;
+    const impact_together_law law = asked == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
+    *by = IMP_ANSWER_ALONE;
+    if (island->world.pair_count < 2) return IMPACT_OK;
+    if (!struck->jams && (asked == IMPACT_SCENE_SEQUENCE || island->unanswered)) return IMPACT_OK;
     gathering g;
     impact_status status = make_gathering(island, struck->jams ? struck->touch.pair : -1, &g);
-    if (status == IMPACT_OK && g.count > 1 && !suffices_alone(island, &g, struck)) {
-        const impact_together_law by = law == IMPACT_SCENE_SPRINGS ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
-        status = answer(island, &g, (answering){.law = by, .name = impact_together_law_name(by)});
-        *answered = status >= 0;
-        island->unanswered = status == IMPACT_EUNSETTLED;
-        if (island->unanswered) tell_unsettled(island, &g, struck, by);
+    if (status == IMPACT_OK && !is_alone(island, &g, struck)) {
+        status = answer(island, &g, (answering){law, impact_together_law_name(law), false, struck->jams});
+        const bool nothing = status == IMPACT_EUNSETTLED || (struck->jams && status == IMPACT_SEPARATING);
+        *by = !nothing ? IMP_ANSWER_TOGETHER : struck->jams ? IMP_ANSWER_NONE : IMP_ANSWER_ALONE;
+        if (status == IMPACT_EUNSETTLED) {
+            island->unanswered = !struck->jams;
+            tell_unsettled(island, &g, struck, law);
+        }
         /* what the law has no answer for is answered one after another, as those that come later are */
         if (status == IMPACT_EUNSETTLED || status > 0) status = IMPACT_OK;
     }
@@ -240,26 +250,11 @@ impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck,
     return status;
 }
 
-impact_status imp_scene_answer_jam(imp_island *island, const imp_meeting *jammed, bool *answered)
-{
-    const bool springs = island->scene->together == IMPACT_SCENE_SPRINGS;
-    const impact_together_law by = springs ? IMPACT_TOGETHER_SPRINGS : IMPACT_TOGETHER_MOREAU;
-    gathering g;
-    impact_status status = make_gathering(island, jammed->touch.pair, &g);
-    if (status == IMPACT_OK)
-        status = answer(island, &g, (answering){.law = by, .name = impact_together_law_name(by), .jams = true});
-    *answered = status == IMPACT_OK || status == IMPACT_SOFT;
-    if (status == IMPACT_EUNSETTLED) tell_unsettled(island, &g, jammed, by);
-    give_gathering(island->world.arena, &g);
-    return status == IMPACT_EUNSETTLED || status > 0 ? IMPACT_OK : status;
-}
-
 impact_status imp_scene_end_together(imp_island *island)
 {
     gathering g;
     impact_status status = make_gathering(island, -1, &g);
-    if (status == IMPACT_OK)
-        status = answer(island, &g, (answering){.law = IMPACT_TOGETHER_MOREAU, .name = "together", .spent = true});
+    if (status == IMPACT_OK) status = answer(island, &g, (answering){IMPACT_TOGETHER_MOREAU, "together", true, false});
     give_gathering(island->world.arena, &g);
     if (status == IMPACT_EUNSETTLED)
         snprintf(island->scene->message, sizeof island->scene->message, "no impulses end the impacts at t = %s%s",
