@@ -189,8 +189,8 @@ static void heavy_on_light_is_right_to_rounding(void **state)
             bodies[2].mass = heavy, bodies[2].moments = (qvec3){heavy, heavy, heavy};
             const qvec3 n = {0.6, 0, c};
             bodies[2].velocity = qvec3_neg(n);
-            const impact_meeting m[2] = {{2, 1, n, qvec3_neg(n), n, 0.1, eps, 1},
-                                         {1, 0, n, qvec3_neg(n), {0, 0, 0}, 0.1, eps, 1}};
+            const impact_meeting m[2] = {{2, 1, n, qvec3_neg(n), n, 0.1, eps, 1, false},
+                                         {1, 0, n, qvec3_neg(n), {0, 0, 0}, 0.1, eps, 1, false}};
             qvec3 v[3], omega[3];
             impact_together_outcome o = {.velocity = v, .omega = omega};
             const impact_encounter e = {

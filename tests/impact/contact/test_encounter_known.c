@@ -89,7 +89,7 @@ static void chains_of_hertz_balls_are_the_free_equation_s(void **state)
             c.mass[i] = mass;
             y[c.n + i] = i == 0;
             balls[i] = ball(mass, 1, (qvec3){i == 0, 0, 0}, (qvec3){0, 0, 0});
-            m[i] = (impact_meeting){i, i + 1, {-1, 0, 0}, {1, 0, 0}, {-1, 0, 0}, 0, 1, 1};
+            m[i] = (impact_meeting){i, i + 1, {-1, 0, 0}, {1, 0, 0}, {-1, 0, 0}, 0, 1, 1, false};
         }
         const impact_encounter e = {.bodies = balls, .body_count = c.n, .meetings = m, .meeting_count = c.n - 1};
         impact_together_outcome o = {.velocity = v, .omega = omega};
@@ -184,9 +184,9 @@ static void follow_table(table_ball *b)
 static double table_difference(double stiffness, const table_ball *wanted, const impact_collider *balls)
 {
     const impact_collider bodies[3] = {balls[0], balls[1], still_ground()};
-    const impact_meeting m[3] = {{0, 1, {-1, 0, 0}, {1, 0, 0}, {-1, 0, 0}, (double)billiard, 1, 1},
-                                 {0, 2, {0, 0, 1}, {0, 0, -1}, {0, 0, 0}, (double)cloth, 1, stiffness},
-                                 {1, 2, {0, 0, 1}, {0, 0, -1}, {0, 0, 0}, (double)cloth, 1, stiffness}};
+    const impact_meeting m[3] = {{0, 1, {-1, 0, 0}, {1, 0, 0}, {-1, 0, 0}, (double)billiard, 1, 1, false},
+                                 {0, 2, {0, 0, 1}, {0, 0, -1}, {0, 0, 0}, (double)cloth, 1, stiffness, false},
+                                 {1, 2, {0, 0, 1}, {0, 0, -1}, {0, 0, 0}, (double)cloth, 1, stiffness, false}};
     qvec3 v[3], w[3];
     const impact_encounter e = {.bodies = bodies, .body_count = 3, .meetings = m, .meeting_count = 3, .exponent = 1};
     impact_together_outcome o = {.velocity = v, .omega = w};
@@ -243,7 +243,8 @@ static void a_dimer_s_ends(void **state)
                                             .omega = {0, u / (2 * a), 0}},
                                            still_ground()};
         impact_meeting m[2];
-        for (int i = 0; i < 2; i++) m[i] = (impact_meeting){0, 1, {0, 0, 1}, {i ? a : -a, 0, 0}, {0, 0, 0}, 0, eps, 1};
+        for (int i = 0; i < 2; i++)
+            m[i] = (impact_meeting){0, 1, {0, 0, 1}, {i ? a : -a, 0, 0}, {0, 0, 0}, 0, eps, 1, false};
         qvec3 v[2], w[2];
         impact_meeting_outcome each[2];
         const impact_encounter e = {.bodies = bodies, .body_count = 2, .meetings = m, .meeting_count = 2};
