@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/points.h"
+#include "shape/ridge.h"
+#include "shape/solid.h"
 #include "world/normal.h"
 #include "world/world_gap.h"
 
-bool imp_has_faces(const imp_body *body) { return body->shape.kind >= IMPACT_BOX; }
+bool imp_has_faces(const imp_body *body) { return imp_has_core(&body->shape) || imp_ridge_count(&body->shape) > 0; }
 
+/* On a ball a body's edges are as round as the ball. */
 bool imp_pair_has_faces(const imp_world *world, const imp_pair *pair)
 {
-    return imp_has_faces(&world->bodies[pair->body1]) || imp_has_faces(&world->bodies[pair->body2]);
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const bool ball = imp_is_ball(b1) || imp_is_ball(b2);
+    return imp_has_core(&b1->shape) || imp_has_core(&b2->shape) || (!ball && (imp_has_faces(b1) || imp_has_faces(b2)));
 }
 
 /* Whether more than a point of the body can lie on a plane. */

@@ -2,6 +2,7 @@
 #include "scene/scene_check.h"
 #include "base/number.h"
 #include "scene/scene_methods.h"
+#include "shape/ridge.h"
 #include "shape/solid.h"
 #include "world/drive.h"
 
@@ -129,7 +130,8 @@ static void check_body(check *c, const impact_body_def *body)
 
 static bool has_faces(const impact_body_def *body)
 {
-    return imp_has_core(&body->shape) || imp_is_octahedron(&body->shape);
+    const impact_shape *shape = &body->shape;
+    return imp_has_core(shape) || imp_is_octahedron(shape) || imp_ridge_count(shape) > 0;
 }
 
 static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena)

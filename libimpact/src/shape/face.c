@@ -8,6 +8,7 @@
 #include <impact/face.h>
 #include "base/numbers.h"
 #include "base/tolerances.h"
+#include "shape/ridge.h"
 #include "shape/solid.h"
 
 static void put_point(impact_face *face, qvec3 x, impact_feature_kind kind, int index)
@@ -187,6 +188,26 @@ static void quadric_face(const imp_form *form, qvec3 direction, double height, i
     }
 }
 
+/* A line from edge to edge, or the place of the one that reaches farther. */
+static void ridged_face(const imp_form *form, qvec3 d, double height, impact_face *face)
+{
+    int feature[2];
+    qvec3 x[2];
+    imp_ridge_facing(form, d, feature);
+    for (int k = 0; k < 2; k++) x[k] = imp_ridge_place(form, feature[k], d, IMP_RIDGE_END);
+    const qvec3 apart = qvec3_sub(x[1], x[0]);
+    const double ahead = qvec3_dot(d, apart);
+    impact_feature_kind kind[2];
+    for (int k = 0; k < 2; k++) kind[k] = imp_ridge_is_apex(form, feature[k]) ? IMPACT_VERTEX : IMPACT_EDGE;
+    const bool both = fabs(ahead) <= height && qvec3_norm(apart) > 0;
+    const int first = !both && ahead > 0;
+    put_point(face, x[first], kind[first], feature[first]);
+    if (!both) return;
+    put_point(face, x[1], kind[1], feature[1]);
+    face->dimension = 1;
+    face->feature = (impact_feature){IMPACT_EDGE, -1};
+}
+
 /* ---- all ---- */
 
 static int plane_face(const impact_shape *shape, qvec3 d, impact_face *face)
@@ -211,7 +232,12 @@ int impact_shape_face(const impact_shape *shape, qvec3 direction, double height,
     imp_form form;
     imp_form_make(shape, 1, quat_identity(), &form);
     switch (form.kind) {
-    case IMP_FORM_QUADRIC: quadric_face(&form, direction, height, face); break;
+    case IMP_FORM_QUADRIC:
+        if (imp_ridge_count(shape) > 0)
+            ridged_face(&form, direction, height, face);
+        else
+            quadric_face(&form, direction, height, face);
+        break;
     case IMP_FORM_CYLINDER: cylinder_face(&form, direction, height, face); break;
     case IMP_FORM_CONE: cone_face(&form, direction, height, face); break;
     default: polytope_face(&form, direction, height, face);

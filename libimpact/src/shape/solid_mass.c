@@ -13,6 +13,7 @@
  * z = z_0 + r sin phi, whose integrals are those of cos^m and of cos^m sin^k.
  */
 #include "base/numbers.h"
+#include "shape/ridge.h"
 #include "shape/solid.h"
 
 void imp_core_axes(const impact_shape *shape, double axis[3])
@@ -202,7 +203,8 @@ double imp_shape_inner_radius(const impact_shape *shape)
     }
     case IMPACT_POLYHEDRON: return inner_of_hull(shape->hull) + shape->rounding;
     default:
-        return imp_is_octahedron(shape) ? 1 / hypot(hypot(1 / shape->a, 1 / shape->b), 1 / shape->c)
-                                        : fmin(shape->a, fmin(shape->b, shape->c));
+        return imp_is_octahedron(shape) || imp_ridge_count(shape) > 0
+                   ? 1 / hypot(hypot(1 / shape->a, 1 / shape->b), 1 / shape->c)
+                   : fmin(shape->a, fmin(shape->b, shape->c));
     }
 }

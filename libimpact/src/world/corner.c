@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "world/corner.h"
+#include "shape/ridge.h"
 #include "shape/solid.h"
 
 /* What of a core can stand on a plane alone: a corner, or the lowest place of a rim. */
@@ -19,17 +20,20 @@ int imp_corner_count(const imp_body *body)
     case IMPACT_CYLINDER:
     case IMPACT_CONE: return 2;
     case IMPACT_SPHERE: return 1;
-    default: return 0;
+    default: return imp_ridge_count(&body->shape);
     }
 }
 
 int imp_corner_number(const imp_body *body, impact_feature feature)
 {
     const int count = imp_corner_count(body);
+    const bool counts = feature.index >= 0 && feature.index < count;
     if (body->shape.kind == IMPACT_SPHERE) return 1;
+    if (imp_ridge_count(&body->shape) > 0)
+        return counts && (feature.kind == IMPACT_EDGE || feature.kind == IMPACT_VERTEX) ? feature.index + 1 : 0;
     if (body->shape.kind == IMPACT_CONE) return feature.kind == IMPACT_RIM ? 1 : feature.kind == IMPACT_VERTEX ? 2 : 0;
     const impact_feature_kind kind = body->shape.kind == IMPACT_CYLINDER ? IMPACT_RIM : IMPACT_VERTEX;
-    return feature.kind == kind && feature.index >= 0 && feature.index < count ? feature.index + 1 : 0;
+    return feature.kind == kind && counts ? feature.index + 1 : 0;
 }
 
 /* A form and its lowest places, where the plane's normal is `up` in the shape's axes. */
@@ -40,13 +44,15 @@ static corner_place rim_place(double radius, double z, qvec3 up)
     return (corner_place){{radius * along.x, radius * along.y, z}, radius, along, slope};
 }
 
-static corner_place place_of(const imp_form *form, qvec3 up, int i)
+/* `end` of a superquadric's arcs. */
+static corner_place place_of(const imp_form *form, qvec3 up, int i, double end)
 {
     const double R = form->axis[0], H = form->axis[2];
     if (form->kind == IMP_FORM_CYLINDER) return rim_place(R, i == 0 ? -H : H, up);
     if (form->kind == IMP_FORM_CONE && i == 0) return rim_place(R, form->base, up);
     if (form->kind == IMP_FORM_CONE) return (corner_place){.at = {0, 0, form->base + H}};
-    if (form->kind == IMP_FORM_QUADRIC) return (corner_place){.at = {0, 0, 0}};
+    if (form->kind == IMP_FORM_QUADRIC && form->round) return (corner_place){.at = {0, 0, 0}};
+    if (form->kind == IMP_FORM_QUADRIC) return (corner_place){.at = imp_ridge_place(form, i, qvec3_neg(up), end)};
     double c[3];
     imp_core_vertex(&form->core, i, c);
     return (corner_place){.at = {c[0], c[1], c[2]}};
@@ -113,7 +119,7 @@ static double height_of(const corner_view *v, qvec3 at)
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const corner_view v = view_of(world, pair, states);
-    const qvec3 corner = from_centre(&v, place_of(&v.form, v.up, pair->corner - 1).at);
+    const qvec3 corner = from_centre(&v, place_of(&v.form, v.up, pair->corner - 1, IMP_RIDGE_BEYOND).at);
     impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
     contact.offset2 = qvec3_add(v.apart, contact.offset1);
     contact.gap = qvec3_dot(contact.normal, contact.offset2) - v.level;
@@ -121,17 +127,24 @@ impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, 
     return contact;
 }
 
+/* How the place moves in the shape's axes, where the normal turns in them. */
+static qvec3 place_rate(const imp_form *form, const corner_place *place, int i, qvec3 up, qvec3 up_rate)
+{
+    if (form->kind == IMP_FORM_QUADRIC && !form->round)
+        return imp_ridge_rate(form, i, qvec3_neg(up), qvec3_neg(up_rate), IMP_RIDGE_BEYOND);
+    if (!(place->rim > 0 && place->slope > 0)) return (qvec3){0, 0, 0};
+    const qvec3 e = place->along, turn = {-up_rate.x / place->slope, -up_rate.y / place->slope, 0};
+    return qvec3_scale(qvec3_axpy(-qvec3_dot(e, turn), e, turn), place->rim);
+}
+
 qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const corner_view v = view_of(world, pair, states);
     const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]);
-    const corner_place place = place_of(&v.form, v.up, pair->corner - 1);
-    const qvec3 carried = qvec3_cross(omega, from_centre(&v, place.at));
-    if (!(place.rim > 0 && place.slope > 0)) return carried;
-    const qvec3 up_rate = qvec3_cross(v.up, quat_rotate_inverse(v.axes, omega)), e = place.along,
-                turn = {-up_rate.x / place.slope, -up_rate.y / place.slope, 0};
-    const qvec3 along_rim = qvec3_scale(qvec3_axpy(-qvec3_dot(e, turn), e, turn), place.rim);
-    return qvec3_add(carried, quat_rotate(v.axes, along_rim));
+    const corner_place place = place_of(&v.form, v.up, pair->corner - 1, IMP_RIDGE_BEYOND);
+    const qvec3 up_rate = qvec3_cross(v.up, quat_rotate_inverse(v.axes, omega));
+    return qvec3_add(qvec3_cross(omega, from_centre(&v, place.at)),
+                     quat_rotate(v.axes, place_rate(&v.form, &place, pair->corner - 1, v.up, up_rate)));
 }
 
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner)
@@ -178,18 +191,24 @@ int imp_corner_face_under(const imp_body *body, const imp_state *state, const im
     return 0;
 }
 
+/* Edges that meet in an apex have their places there together. */
+static bool is_same(qvec3 a, qvec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
     const corner_view v = view_of(world, pair, states);
+    const qvec3 own = place_of(&v.form, v.up, pair->corner - 1, IMP_RIDGE_BEYOND).at;
     double least = INFINITY;
     if (pair->face > 0)
         least = within_border(&world->bodies[pair->body2], &states[pair->body2], pair->face - 1,
                               imp_corner_contact(world, pair, states).offset2);
+    if (v.form.kind == IMP_FORM_QUADRIC && !v.form.round)
+        least = fmin(least, imp_ridge_room(&v.form, pair->corner - 1, qvec3_neg(v.up)));
     for (int i = 0; i < count; i++) {
-        const corner_place place = place_of(&v.form, v.up, i);
+        const corner_place place = place_of(&v.form, v.up, i, IMP_RIDGE_END);
         const bool held = imp_corner_is_held(world, pair, i + 1);
-        if (held && !(place.rim > 0)) continue;
+        if (held ? !(place.rim > 0) : is_same(place.at, own)) continue;
         least = fmin(least, height_of(&v, held ? qvec3_axpy(-2 * place.rim, place.along, place.at) : place.at));
     }
     return least;
@@ -200,6 +219,6 @@ double imp_corner_lowest(const imp_world *world, const imp_pair *pair, const imp
     const int count = imp_corner_count(&world->bodies[pair->body1]);
     const corner_view v = view_of(world, pair, states);
     double least = INFINITY;
-    for (int i = 0; i < count; i++) least = fmin(least, height_of(&v, place_of(&v.form, v.up, i).at));
+    for (int i = 0; i < count; i++) least = fmin(least, height_of(&v, place_of(&v.form, v.up, i, IMP_RIDGE_END).at));
     return least;
 }

@@ -16,7 +16,8 @@
 #include "world/world.h"
 
 /* How many corners and rims the body has; 0 of what is smooth, and of planes. A capsule has two corners, a cylinder two
- * rims, a cone its rim and then its top, a sphere its centre, rounded by its radius. */
+ * rims, a cone its rim and then its top, a sphere its centre, rounded by its radius; superquadrics with edges as
+ * shape/ridge.h has them. */
 int imp_corner_count(const imp_body *body);
 
 /* The feature's number among them, from 1; 0: it is none. */

@@ -436,7 +436,7 @@ static void the_same_bits_with_every_setting(void **state)
     if (!impact_has(IMPACT_PART_CVODE)) skip();
     for (size_t k = 0; k < sizeof scene_fields / sizeof *scene_fields; k++) {
         random_scene s;
-        make_short(6, &s);
+        make_short(7, &s);
         s.def.law = IMPACT_STRONGE;
         const int kind = (int)scene_fields[k].kind;
         if (kind == POINTER || kind == OTHER) continue;
