@@ -272,7 +272,7 @@ core.layer()
 ---@field contacts {body1: integer, body2: integer, n: vec3, r1?: vec3, r2?: vec3, mu?: number, eps?: number, k?: number, pressed?: boolean}[]  bodies from 1; k: stiffness (1); pressed: docs/together.md
 ---@field law? "springs"|"moreau"|"sequence"  (springs)
 ---@field exponent? number  of the springs, 1 to 3 (3/2)
----@field restitution? "poisson"|"newton"|"stronge"  of the law sequence (poisson)
+---@field restitution? "poisson"|"newton"|"stronge"  of the laws sequence, and moreau, which has no stronge (poisson)
 
 ---@class impact.encounter_outcome
 ---@field v vec3[]  of the bodies, after

@@ -22,6 +22,7 @@ typedef struct random_encounter {
     impact_collider bodies[ENCOUNTER_BODIES];
     impact_meeting meetings[ENCOUNTER_CONTACTS];
     int body_count, meeting_count;
+    impact_law restitution; /* of the laws that have several; drawn: Poisson's */
 } random_encounter;
 
 static inline double encounter_spread(random_stream *random, double ratio)
@@ -97,7 +98,8 @@ static inline impact_encounter encounter_of(const random_encounter *e, impact_to
                               .body_count = e->body_count,
                               .meetings = e->meetings,
                               .meeting_count = e->meeting_count,
-                              .law = law};
+                              .law = law,
+                              .restitution = e->restitution};
 }
 
 #endif

@@ -71,10 +71,10 @@ typedef struct impact_pair_def {
 
 /* What answers contacts that are struck at one instant: docs/together.md. */
 typedef enum impact_scene_together {
-    IMPACT_SCENE_TOGETHER_AUTO, /* by the law of restitution: Poisson's: MOREAU; Stronge's: SPRINGS; Newton's, and with
+    IMPACT_SCENE_TOGETHER_AUTO, /* by the law of restitution: Poisson's and Newton's: MOREAU; Stronge's: SPRINGS; with
                                  * compliance or a solver by name: SEQUENCE */
     IMPACT_SCENE_SPRINGS,       /* with Stronge's law only */
-    IMPACT_SCENE_MOREAU,        /* with Poisson's law only */
+    IMPACT_SCENE_MOREAU,        /* with Poisson's law or Newton's */
     IMPACT_SCENE_SEQUENCE       /* one after another, in the order of the bodies */
 } impact_scene_together;
 

@@ -17,7 +17,8 @@ extern "C" {
 typedef enum impact_together_law {
     /* The limit of stiff springs whose stiffnesses keep their ratios, Coulomb's friction, Stronge's restitution. */
     IMPACT_TOGETHER_SPRINGS,
-    /* All contacts compressed at once, then Poisson's restitution at once (Moreau; Glocker & Pfeiffer). */
+    /* All contacts compressed at once, then Poisson's restitution at once (Glocker & Pfeiffer); or Newton's, all at
+     * once (Moreau). */
     IMPACT_TOGETHER_MOREAU,
     /* One after another in the order given, each by impact_collide, until none approaches: the order decides. */
     IMPACT_TOGETHER_SEQUENCE
@@ -58,7 +59,8 @@ typedef struct impact_encounter {
     int meeting_count;
     impact_together_law law;
     double exponent;                      /* of the springs, force ~ indentation^exponent: 1 ... 3; 0: Hertz's 3/2 */
-    impact_law restitution;               /* which law IMPACT_TOGETHER_SEQUENCE restores by */
+    impact_law restitution;               /* which law IMPACT_TOGETHER_SEQUENCE restores by, and MOREAU: Newton's, or
+                                           * by any other Poisson's */
     impact_together_workspace *workspace; /* NULL: one is made for the call */
 } impact_encounter;
 
@@ -110,12 +112,13 @@ IMPACT_API impact_memory impact_together_workspace_memory(const impact_together_
 IMPACT_API impact_status impact_collide_together_check(const impact_encounter *encounter, char *message, size_t size);
 
 /* Solves one encounter. Contacts are grouped by the moving bodies they share; a group of one contact is answered by
- * impact_collide (springs: Stronge's law, Moreau: Poisson's). The bits of the answer depend neither on the numbering of
- * bodies nor on the order of contacts (but by the law SEQUENCE). IMPACT_OK: and the receipt passed; IMPACT_SEPARATING:
- * no contact approaches, nothing changed; IMPACT_SOFT: the receipt did not pass, `residual` says by how much. Below
- * zero nothing is answered, and velocities are those given: as impact_collide_together_check; IMPACT_EUNSETTLED (the
- * work allowed was spent, or the cone problem found no answer); IMPACT_EINTEGRATOR, IMPACT_ENOMEM.
- * Sources: Darboux 1880; Keller 1986; Stronge 2000; Liu, Zhao & Brogliato 2008; Glocker & Pfeiffer 1995. */
+ * impact_collide (springs: Stronge's law, Moreau: Poisson's or Newton's). The bits of the answer depend neither on the
+ * numbering of bodies nor on the order of contacts (but by the law SEQUENCE). IMPACT_OK: and the receipt passed;
+ * IMPACT_SEPARATING: no contact approaches, nothing changed; IMPACT_SOFT: the receipt did not pass, `residual` says by
+ * how much. Below zero nothing is answered, and velocities are those given: as impact_collide_together_check;
+ * IMPACT_EUNSETTLED (the work allowed was spent, or the cone problem found no answer); IMPACT_EINTEGRATOR,
+ * IMPACT_ENOMEM. Sources: Darboux 1880; Keller 1986; Stronge 2000; Liu, Zhao & Brogliato 2008; Moreau 1988; Glocker &
+ * Pfeiffer 1995. */
 IMPACT_API impact_status impact_collide_together(const impact_encounter *encounter, impact_together_outcome *outcome);
 
 #ifdef __cplusplus

@@ -221,7 +221,8 @@ static impact_status solve_with_moreau(plan *call, int from, int count, impact_t
                                        imp_group *group)
 {
     if (!make_group(call, from, count, false, workspace, group)) return IMPACT_ENOMEM;
-    return approaches(group) ? imp_moreau_solve(group, workspace) : IMPACT_SEPARATING;
+    const bool newton = call->encounter->restitution == IMPACT_NEWTON;
+    return approaches(group) ? imp_moreau_solve(group, newton, workspace) : IMPACT_SEPARATING;
 }
 
 static impact_status solve_group(plan *call, int from, int count, impact_together_workspace *workspace)

@@ -149,8 +149,9 @@ bool imp_encounter_is_drawn(const imp_group *group, int contact);
 bool imp_encounter_draws(const imp_group *group);
 bool imp_encounter_strikes(const imp_group *group);
 
-/* ---- encounter_moreau.c: compression and restitution by the cone solver; the velocities are pushed ---- */
+/* ---- encounter_moreau.c: compression and restitution by the cone solver, Poisson's or Newton's; the velocities are
+ * pushed ---- */
 /* IMPACT_SEPARATING: nothing approaches, nor does friction draw: they are not. */
-impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *workspace);
+impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_workspace *workspace);
 
 #endif

@@ -90,9 +90,8 @@ impact_collision imp_encounter_collision(const impact_encounter *e, int meeting,
         if (velocity) c.body[k].velocity = velocity[pair[k]];
         if (omega) c.body[k].omega = omega[pair[k]];
     }
-    c.law = e->law == IMPACT_TOGETHER_SPRINGS  ? IMPACT_STRONGE
-            : e->law == IMPACT_TOGETHER_MOREAU ? IMPACT_POISSON
-                                               : e->restitution;
+    const bool poisson = e->law == IMPACT_TOGETHER_MOREAU && e->restitution != IMPACT_NEWTON;
+    c.law = e->law == IMPACT_TOGETHER_SPRINGS ? IMPACT_STRONGE : poisson ? IMPACT_POISSON : e->restitution;
     return c;
 }
 

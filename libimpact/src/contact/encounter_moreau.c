@@ -8,7 +8,10 @@
  *
  * The second is a problem of the same kind in twice the contacts: of each contact once the part eps c_n, whose normal
  * row is set apart, v = d (r - eps c_n), so that it is what it is, and once what is more; each with friction of its own
- * cone against the one u_t.
+ * cone against the one u_t. Newton's restitution is one problem, of what velocities are more than their rebound (Moreau
+ * 1988):
+ *
+ *     b = eps max(-u0_n, 0):  u' = u0 + W p,  K* contains u' - b n + mu |u_t'| n,  p . (the same) = 0,  K contains p
  */
 #include "contact/encounter.h"
 
@@ -25,6 +28,7 @@ typedef struct moreau {
     imp_cone_mode *modes;             /* 2 count */
     double *last_r, *last_u;          /* 6 count: where a problem may begin */
     double *least;                    /* count: eps c_n */
+    double *rebound;                  /* count: b; by Poisson's law 0 */
     int bodies, (*couples)[2];        /* those that move; count */
     bool strikes;                     /* not only the seeds of what is pressed do */
     imp_cone_row *rows;               /* count */
@@ -50,6 +54,18 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
     group->chosen = group->chosen || o->chosen;
     return o->status == IMP_CONE_SOLVED || o->status == IMP_CONE_INEXACT ||
            (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
+}
+
+/* Whether what pressed has the velocities that the modes say: where nothing solves a problem its impulses grow without
+ * end, and their rounding hides what they leave. */
+static bool comes_to(const imp_group *g, const double *u, const double *modes_say)
+{
+    double off = 0, speed = 0;
+    for (int i = 0; i < g->count; i++) {
+        speed = fmax(speed, fmax(fabs(g->u0[3 * i]), fabs(u[3 * i])));
+        if (g->p[3 * i] > 0) off = fmax(off, fabs(u[3 * i] - modes_say[3 * i]));
+    }
+    return off <= IMP_ENCOUNTER_RECEIPT * speed;
 }
 
 /* ---- a start for many contacts: in the space of the bodies ---- */
@@ -147,14 +163,21 @@ static void share(moreau *m, const imp_cone_problem *problem, double *p)
     memcpy(m->u, u[0], n * sizeof *m->u);
 }
 
-/* The velocities before, of what is pressed and may be drawn those of its seed; whether there is such. */
+/* The velocities before, less the rebounds. */
+static void set_compression(const moreau *m)
+{
+    memcpy(m->q, m->group->u0, 3 * (size_t)m->group->count * sizeof *m->q);
+    for (int i = 0; i < m->group->count; i++) m->q[3 * i] -= m->rebound[i];
+}
+
+/* Of what is pressed and may be drawn those of its seed; whether there is such. */
 static bool plant_seeds(const moreau *m)
 {
     const imp_group *g = m->group;
     bool any = false;
+    set_compression(m);
     for (int i = 0; i < g->count; i++) {
         const double slip = g->contacts[i].slip;
-        memcpy(&m->q[3 * i], &g->u0[3 * i], 3 * sizeof *m->q);
         if (slip > 0) m->q[3 * i] = -IMP_MOREAU_SEED * slip;
         any = any || slip > 0;
     }
@@ -166,7 +189,7 @@ static bool take_seeds_away(moreau *m, imp_cone_problem problem)
 {
     const imp_group *g = m->group;
     const size_t n = 3 * (size_t)problem.count;
-    problem.q = g->u0;
+    set_compression(m);
     problem.near_last = imp_encounter_draws(g);
     if (problem.near_last) {
         memcpy(m->last_r, g->p, n * sizeof *m->last_r);
@@ -195,9 +218,12 @@ static bool compress(moreau *m)
     m->strikes = imp_encounter_strikes(m->group);
     if (!m->strikes) return true;
     clean(n, m->modes, m->modes, m->u);
+    for (int i = 0; i < n; i++) m->u[3 * i] += m->rebound[i];
     imp_encounter_push(m->group, m->group->p);
     imp_encounter_mend(m->group, m->u, m->group->p, m->workspace);
+    memcpy(m->q, m->u, 3 * (size_t)n * sizeof *m->q);
     imp_encounter_look(m->group, m->u);
+    if (o.status == IMP_CONE_UNSETTLED && !comes_to(m->group, m->u, m->q)) return false;
     for (int i = 0; i < n; i++)
         book(&m->group->findings[i], 0, &m->group->p[3 * i], &m->group->u0[3 * i], &m->u[3 * i]);
     return true;
@@ -295,7 +321,7 @@ static bool restore(moreau *m)
     return true;
 }
 
-impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *workspace)
+impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_workspace *workspace)
 {
     const size_t n = (size_t)group->count;
     moreau m = {.group = group, .workspace = workspace, .cone = &workspace->cone};
@@ -309,12 +335,14 @@ impact_status imp_moreau_solve(imp_group *group, impact_together_workspace *work
     m.last_r = imp_encounter_take(workspace, 6 * n, sizeof *m.last_r);
     m.last_u = imp_encounter_take(workspace, 6 * n, sizeof *m.last_u);
     m.least = imp_encounter_take(workspace, n, sizeof *m.least);
+    m.rebound = imp_encounter_take(workspace, n, sizeof *m.rebound);
     m.couples = imp_encounter_take(workspace, n, sizeof *m.couples);
     m.rows = imp_encounter_take(workspace, n, sizeof *m.rows);
     if (!m.rows || !imp_cone_reserve(m.cone, 2 * group->count)) return IMPACT_ENOMEM;
+    for (size_t i = 0; i < n && newton; i++) m.rebound[i] = group->contacts[i].restitution * fmax(-group->u0[3 * i], 0);
     const bool compressed = compress(&m);
     if (compressed && !m.strikes) return IMPACT_SEPARATING;
-    if (compressed && (!restores(group) || restore(&m))) return IMPACT_OK;
+    if (compressed && (newton || !restores(group) || restore(&m))) return IMPACT_OK;
     const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
     group->wedged = imp_encounter_wedged(&question, m.r);
     return IMPACT_EUNSETTLED;

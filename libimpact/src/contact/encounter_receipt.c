@@ -7,6 +7,7 @@
  *     E' - E = sum of works - sum +-P . (a static body's u)    power; by springs works of friction and all are <= 0
  *     P . (u + u')/2 summed: the same, by impulses             (E is a quadratic form)
  *     u_n' >= 0                                                nothing approaches
+ *     u_n' >= b = eps max(-u_n, 0),  u_n' = b where P_n > 0    Newton's law, all at once
  *
  * each over the sizes of its own terms and the largest impulse or velocity that is there.
  */
@@ -104,6 +105,10 @@ static void check_meeting_of(const impact_encounter *e, const impact_together_ou
     double size = 0;
     const qvec3 before = slip_of(e, m, NULL, NULL, &size), after = slip_of(e, m, o->velocity, o->omega, &size);
     miss(t, fmax(0, -qvec3_dot(n, after)), size + t->speed);
+    if (e->law == IMPACT_TOGETHER_MOREAU && e->restitution == IMPACT_NEWTON && !own->merged) {
+        const double over = qvec3_dot(n, after) - m->restitution * fmax(-qvec3_dot(n, before), 0);
+        miss(t, normal > 0 ? fabs(over) : fmax(0, -over), size + t->speed);
+    }
     sum->works += own->work_compression + own->work_restitution + own->work_friction;
     sum->terms += fabs(own->work_compression) + own->work_restitution + fabs(own->work_friction) +
                   size * qvec3_norm(own->impulse);

@@ -297,8 +297,8 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
             def->together, "is no law");
     require_words(&c, def->together != IMPACT_SCENE_SPRINGS || (def->law == IMPACT_STRONGE && def->compliance == 0),
                   "together = \"springs\" needs law = \"stronge\", without compliance");
-    require_words(&c, def->together != IMPACT_SCENE_MOREAU || def->law == IMPACT_POISSON,
-                  "together = \"moreau\" needs law = \"poisson\"");
+    require_words(&c, def->together != IMPACT_SCENE_MOREAU || def->law != IMPACT_STRONGE,
+                  "together = \"moreau\" needs law = \"poisson\" or \"newton\"");
     require(&c, def->samples == IMPACT_SAMPLES_ALL || def->samples == IMPACT_SAMPLES_MOVING, "samples", def->samples,
             "are neither all nor those that move");
     check_methods(&c, def);

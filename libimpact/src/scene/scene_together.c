@@ -13,8 +13,7 @@ impact_scene_together imp_scene_together_of(const impact_scene_def *def)
 {
     if (def->together != IMPACT_SCENE_TOGETHER_AUTO) return def->together;
     if (imp_scene_methods_of(def).impacts != IMPACT_SOLVER_AUTO || def->compliance > 0) return IMPACT_SCENE_SEQUENCE;
-    if (def->law == IMPACT_POISSON) return IMPACT_SCENE_MOREAU;
-    return def->law == IMPACT_STRONGE ? IMPACT_SCENE_SPRINGS : IMPACT_SCENE_SEQUENCE;
+    return def->law == IMPACT_STRONGE ? IMPACT_SCENE_SPRINGS : IMPACT_SCENE_MOREAU;
 }
 
 /* All that touch at the island's time, and the room for their answer. */
