@@ -574,9 +574,8 @@
 /* ---- normals that go with edges and corners ---- */
 
 /* rad: a little earlier and later, for the rate of a normal: errors are its square over that of the turning, and eps
- * over it. The search's need not be right, only near; the press' second rate of a gap is told to 1e-10. */
+ * over it. The search's need not be right, only near. */
 #define IMP_VEERING 1e-4
-#define IMP_LONE_TURN 1e-5
 /* A step of the search that is less than this part of gap over rate creeps: quadratic convergence takes nearly all of
  * it. */
 #define IMP_CREEPING 0.25
@@ -784,6 +783,9 @@
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
+/* Of the works of a step's impulses: up to where their sum is looked for, as a part of IMP_PILE_GAIN that is no trouble.
+ */
+#define IMP_PILE_GIVEN 1e-3
 /* Steps in units of the time in which the smallest body falls its radius: the first; the longest, in which contacts
  * turn by less than .05; and the shortest, in which a fall is 1e-10 of the radius. */
 #define IMP_PILE_FIRST 1e-2

@@ -17,8 +17,7 @@
  * neighbourhood's. */
 static double off_zero(double component) { return copysign(fmax(fabs(component), IMP_OFF_FLAT), component); }
 
-/* W, in the world, of a tangential vector. */
-static qvec3 curve(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v)
+qvec3 imp_surface_bend(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v)
 {
     if (body->shape.kind == IMPACT_SPHERE)
         return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
@@ -54,35 +53,19 @@ static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const
                                   imp_point_velocity(b2, s2, contact->offset2)),
                     slip = qvec3_axpy(-qvec3_dot(u, n), n, u), w2 = body_turning(b2, s2), turn2 = qvec3_cross(w2, n);
         const qvec3 t1 = imp_tangent(n), t2 = qvec3_cross(n, t1);
-        const qvec3 c1 = qvec3_add(curve(b1, s1, out1, t1), curve(b2, s2, n, t1));
-        const qvec3 c2 = qvec3_add(curve(b1, s1, out1, t2), curve(b2, s2, n, t2));
-        const qvec3 moves = qvec3_add(slip, qvec3_add(curve(b1, s1, out1, turn1), curve(b2, s2, n, turn2)));
+        const qvec3 c1 = qvec3_add(imp_surface_bend(b1, s1, out1, t1), imp_surface_bend(b2, s2, n, t1));
+        const qvec3 c2 = qvec3_add(imp_surface_bend(b1, s1, out1, t2), imp_surface_bend(b2, s2, n, t2));
+        const qvec3 moves =
+            qvec3_add(slip, qvec3_add(imp_surface_bend(b1, s1, out1, turn1), imp_surface_bend(b2, s2, n, turn2)));
         const double a = qvec3_dot(t1, c1), b = qvec3_dot(t1, c2), d = qvec3_dot(t2, c2), determinant = a * d - b * b;
         const double x = qvec3_dot(t1, moves), y = qvec3_dot(t2, moves);
         rates.normal = qvec3_axpy((d * x - b * y) / determinant, t1, qvec3_scale(t2, (a * y - b * x) / determinant));
-        rates.arm2 = qvec3_add(qvec3_cross(w2, contact->offset2), curve(b2, s2, n, qvec3_sub(rates.normal, turn2)));
+        rates.arm2 =
+            qvec3_add(qvec3_cross(w2, contact->offset2), imp_surface_bend(b2, s2, n, qvec3_sub(rates.normal, turn2)));
     }
-    rates.arm1 = qvec3_add(qvec3_cross(w1, contact->offset1), curve(b1, s1, out1, qvec3_sub(turn1, rates.normal)));
+    rates.arm1 =
+        qvec3_add(qvec3_cross(w1, contact->offset1), imp_surface_bend(b1, s1, out1, qvec3_sub(turn1, rates.normal)));
     return rates;
-}
-
-/* The rates of the one point of two bodies, whatever it is made of: from where it is a little earlier and later. */
-static imp_rates lone_rates(imp_world *world, const imp_pair *pair, const imp_state *states)
-{
-    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
-    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
-    const double omega = qvec3_norm(imp_omega(b1, s1)) + (b2->is_static ? 0 : qvec3_norm(imp_omega(b2, s2))),
-                 speed = qvec3_norm(qvec3_sub(s1->v, s2->v)),
-                 time = IMP_LONE_TURN / (omega + speed / b1->radius + IMP_NOT_ZERO);
-    impact_contact at[2];
-    for (int k = 0; k < 2; k++) {
-        const imp_state one = imp_drifted(b1, s1, k ? time : -time), two = imp_drifted(b2, s2, k ? time : -time);
-        imp_gap_of(b1, &one, b2, &two, world->gaps, &world->usage, &at[k]);
-    }
-    const double unit = 0.5 / time;
-    return (imp_rates){.normal = qvec3_scale(qvec3_sub(at[1].normal, at[0].normal), unit),
-                       .arm1 = qvec3_scale(qvec3_sub(at[1].offset1, at[0].offset1), unit),
-                       .arm2 = qvec3_scale(qvec3_sub(at[1].offset2, at[0].offset2), unit)};
 }
 
 /* W of a side line, or of what is rounded, as the bearer's normal turns on it; 0 where the body lies flat: there its
@@ -90,7 +73,8 @@ static imp_rates lone_rates(imp_world *world, const imp_pair *pair, const imp_st
 static qvec3 roll(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 turn)
 {
     const double size = qvec3_norm(turn);
-    const qvec3 along = size > 0 ? curve(body, state, outward, qvec3_scale(turn, 1 / size)) : (qvec3){0, 0, 0};
+    const qvec3 along =
+        size > 0 ? imp_surface_bend(body, state, outward, qvec3_scale(turn, 1 / size)) : (qvec3){0, 0, 0};
     return qvec3_norm(along) <= 2 * body->radius ? qvec3_scale(along, size) : (qvec3){0, 0, 0};
 }
 
@@ -124,7 +108,7 @@ imp_rates imp_contact_rates(imp_world *world, const imp_pair *pair, imp_bearer b
     if (bearer != IMP_BORNE_BY_BOTH) return borne_rates(world, pair, bearer, contact, states);
     const bool on_plane = world->bodies[pair->body2].shape.kind == IMPACT_PLANE;
     return on_plane || !imp_pair_has_faces(world, pair) ? round_rates(world, pair, contact, states)
-                                                        : lone_rates(world, pair, states);
+                                                        : imp_feature_rates(world, pair, contact, states);
 }
 
 static qvec3 angular_acceleration(const imp_body *body, const imp_state *state, const imp_load *load)

@@ -18,6 +18,13 @@ typedef struct imp_rates {
 imp_rates imp_contact_rates(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
                             const imp_state *states);
 
+/* The same of the one point of two bodies of which one has faces. */
+imp_rates imp_feature_rates(const imp_world *world, const imp_pair *pair, const impact_contact *contact,
+                            const imp_state *states);
+
+/* W v, m^2: of a tangential vector, W the Hessian of the body's support function at the outward normal, world. */
+qvec3 imp_surface_bend(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v);
+
 /* Acceleration of a body's contact point under the load alone, m/s^2: arm from the centre of mass, and its rate. */
 qvec3 imp_point_acceleration(const imp_body *body, const imp_state *state, const imp_load *load, qvec3 arm,
                              qvec3 arm_rate);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/pile_parts.h"
+#include "base/bracket.h"
 #include "base/tolerances.h"
 #include "contact/rates.h"
 
@@ -37,7 +38,8 @@ static void recall_part(imp_pile *pile, const imp_pile_memory *m, int c, double 
 }
 
 /* Where the impulses may begin: of a whole step as its halves' sum, else as before the step. A contact that was open
- * before it bounces off what it approaches at the velocities pile->before; what is held does not. Whether none does. */
+ * before it bounces off what it approaches at the velocities pile->before; what is held does not. Whether none does:
+ * pile->bounce is by how much more each is to part, < 0. */
 static bool recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
     bool smooth = true;
@@ -45,7 +47,8 @@ static bool recall_step(imp_pile *pile, const imp_world *world, int count, doubl
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pile_memory *before = remembered(pile, point, IMP_PILE_BEFORE);
         const int i = pile->width * c;
-        if (!before) pile->q[i] += world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
+        pile->bounce[c] = before ? 0 : world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
+        pile->q[i] += pile->bounce[c];
         smooth = smooth && (before || pile->before[i] >= 0);
         for (int k = 0; k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
         if (!pile->halved) recall_part(pile, before, c, h);
@@ -185,6 +188,48 @@ static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, cons
     return second;
 }
 
+/* J: what the impulses give the bodies, where of the bounces the part is taken; *size: of what it is the sum. */
+static double given(const imp_pile *pile, int count, double part, double *size)
+{
+    double work = 0;
+    *size = 0;
+    for (int i = 0; i < pile->width * count; i++) {
+        const double after = pile->u[i] - (i % pile->width == 0 ? part * pile->bounce[i / pile->width] : 0),
+                     own = 0.5 * pile->r[i] * (pile->before[i] + after);
+        work += own, *size += fabs(own);
+    }
+    return work;
+}
+
+static imp_cone_outcome solve_with_part(imp_pile *pile, const imp_world *world, const imp_pile_question *question,
+                                        double from, double part)
+{
+    const size_t size = (size_t)(pile->width * question->count) * sizeof *pile->r;
+    for (int c = 0; c < question->count; c++) pile->q[pile->width * c] += (part - from) * pile->bounce[c];
+    memcpy(pile->last_r, pile->r, size);
+    memcpy(pile->last_u, pile->u, size);
+    return imp_pile_solve(pile, world, question);
+}
+
+/* Newton's restitution at several contacts gives energy, where they differ or rub (Kane 1984). Without bounces they
+ * give none: what is taken is the greatest part of all that gives none either. */
+static imp_cone_outcome lessen_bounces(imp_pile *pile, const imp_world *world, const imp_pile_question *question,
+                                       imp_cone_outcome outcome)
+{
+    enum { MOST = 8 };
+    double size, part = 1, work = given(pile, question->count, part, &size);
+    imp_bracket b = {.high = 1, .at_low = -size, .at_high = work};
+    for (int k = 0; k < MOST && outcome.status != IMP_CONE_NO_ROOM && fabs(work) > IMP_PILE_GIVEN * size; k++) {
+        if (part == 1 && work <= 0) return outcome;
+        const double guess = k + 1 < MOST ? imp_bracket_guess(&b) : b.low;
+        outcome = solve_with_part(pile, world, question, part, guess);
+        part = guess;
+        work = given(pile, question->count, part, &size);
+        imp_bracket_take(&b, part, work, work > 0);
+    }
+    return outcome;
+}
+
 /* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
 impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
                               imp_state *next, imp_pile_step_result *result)
@@ -197,6 +242,7 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
     const bool smooth = recall_step(pile, world, count, h);
     const imp_pile_question question = question_of(pile, world, states, count, h);
     imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
+    if (!smooth) outcome = lessen_bounces(pile, world, &question, outcome);
     if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, &question, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {

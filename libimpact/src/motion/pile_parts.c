@@ -54,6 +54,7 @@ bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int conta
     pile->couples = replaced(pile, pile->couples, count, sizeof *pile->couples, &there);
     pile->members = replaced(pile, pile->members, count, sizeof *pile->members, &there);
     pile->rows = replaced(pile, pile->rows, count, sizeof *pile->rows, &there);
+    pile->bounce = replaced(pile, pile->bounce, count, sizeof *pile->bounce, &there);
     pile->friction = replaced(pile, pile->friction, count, sizeof *pile->friction, &there);
     pile->pivots = replaced(pile, pile->pivots, 2 * count, sizeof *pile->pivots, &there);
     pile->w = replaced(pile, pile->w, n * n, sizeof *pile->w, &there);

@@ -282,9 +282,10 @@ imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double
         break;
     }
     case IMP_SEGMENT_ROLL: {
-        const double alpha = qvec3_norm(s->spin_up), I = fmax(body->moments.x, fmax(body->moments.y, body->moments.z));
+        const double alpha = qvec3_norm(s->spin_up), I = fmax(body->moments.x, fmax(body->moments.y, body->moments.z)),
+                     gained = alpha > 0 ? I * alpha * (T + window) : 0; /* the window may have no end */
         b.torque = imp_inertia(body, s->start.q, s->spin_up);
-        bound_spin(body, L + I * alpha * (T + window), I * alpha, &b);
+        bound_spin(body, L + gained, I * alpha, &b);
         break;
     }
     }

@@ -219,6 +219,15 @@ static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
     return false;
 }
 
+/* A corner that was held goes on as part of the face. */
+static void lie(imp_pair *pair)
+{
+    pair->lies = true;
+    pair->mode = IMP_OPEN;
+    pair->onset = false;
+    pair->corner = pair->face = 0;
+}
+
 /* Lays the body of the pair whose points are first ... end - 1 exactly on its face: it glides there, or may rest. */
 static impact_status lay(imp_island *island, int first, int end, bool lay_before, bool *any)
 {
@@ -239,7 +248,7 @@ static impact_status lay(imp_island *island, int first, int end, bool lay_before
         if (tips_over(&lying, &side)) let_rise(island, first, end, &lying, side), *any = true;
         return IMPACT_OK;
     }
-    for (int p = first; p < end; p++) world->pairs[p].lies = true;
+    for (int p = first; p < end; p++) lie(&world->pairs[p]);
     island->motion.resting[body] = false;
     *any = true;
     return lay_before ? IMPACT_OK : tell_contact(island, first, &lying);
