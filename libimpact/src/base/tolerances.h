@@ -783,7 +783,8 @@
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
-/* Of the works of a step's impulses: up to where their sum is looked for, as a part of IMP_PILE_GAIN that is no trouble.
+/* Of the works of a step's impulses: up to where their sum is looked for, as a part of IMP_PILE_GAIN that is no
+ * trouble.
  */
 #define IMP_PILE_GIVEN 1e-3
 /* Steps in units of the time in which the smallest body falls its radius: the first; the longest, in which contacts
