@@ -44,6 +44,7 @@ static quat by_library(quat_method method, double steps)
 }
 
 static quat magnus(double steps) { return by_library(QUAT_MAGNUS4, steps); }
+static quat magnus8(double steps) { return by_library(QUAT_MAGNUS8, steps); }
 static quat two_exponentials(double steps) { return by_library(QUAT_CF4, steps); }
 
 static quat classical(double steps)
@@ -77,6 +78,11 @@ static void integrate(void)
                                      {"two exponentials", 100, two_exponentials},
                                      {"two exponentials", 1000, two_exponentials},
                                      {"two exponentials", 10000, two_exponentials},
+                                     {"Magnus 8", 30, magnus8},
+                                     {"Magnus 8", 50, magnus8},
+                                     {"Magnus 8", 80, magnus8},
+                                     {"Magnus 8", 200, magnus8},
+                                     {"Magnus 8", 400, magnus8},
                                      {"RK4", 100, classical},
                                      {"RK4", 1000, classical},
                                      {"RK4", 10000, classical},

@@ -16,7 +16,7 @@ return {
   { name = "interpolation", program = "bench_omega", section = 2, names = 2, curve = "way", time = "ns", error = "error", native = true,
     title = "Interpolation", says = "A known motion from so many of its orientations, joined by slerp, nlerp, squad and the spline." },
   { name = "omega", program = "bench_omega", names = 2, curve = "method", time = "us", error = "error", native = true,
-    own = { ["Magnus 4"] = true, ["two exponentials"] = true }, group = {}, rule = "errors",
+    own = { ["Magnus 4"] = true, ["two exponentials"] = true, ["Magnus 8"] = true }, group = {}, rule = "errors",
     title = "Integration of an angular velocity", says = "Steps on the group beside GSL's rk8pd, DOP853 and the classical method: us for ten seconds of w(t)." },
   { name = "projections", program = "bench_geometry", names = 2, rows = { part = "^projections$" }, curve = "case", time = "ns", error = "error", native = true,
     title = "Projections", says = "Stereographic images there and back beside the formulas of books, belts and rolling strokes: ns an item." },

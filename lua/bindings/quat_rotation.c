@@ -207,7 +207,8 @@ static qvec3 omega_at(lua_State *L, int function, double t)
  * no library. */
 static int l_integrate(lua_State *L)
 {
-    static const char *const methods[] = {"magnus4", "cf4", NULL};
+    static const char *const methods[] = {"magnus4", "cf4", "magnus8", NULL};
+    static const quat_method known[] = {QUAT_MAGNUS4, QUAT_CF4, QUAT_MAGNUS8};
     quat q = quat_lua_arg_unit(L, 1, "q");
     if (!lua_isfunction(L, 2))
         return quat_lua_error(L, "argument 'omega' must be a function of time, got a %s", luaL_typename(L, 2));
@@ -215,12 +216,14 @@ static int l_integrate(lua_State *L)
                  t1 = quat_lua_arg_number(L, 4, "t1", QUAT_LUA_FINITE);
     const lua_Integer n = quat_lua_arg_integer(L, 5, "steps", 1, 1000000000);
     const quat_frame axes = frame(L, 6);
-    const bool magnus = lua_isnoneornil(L, 7) || quat_lua_arg_choice(L, 7, "method", methods) == 0;
-    const double h = (t1 - t0) / (double)n, early = 0.21132486540518711775, late = 0.78867513459481288225;
+    const quat_method method = known[lua_isnoneornil(L, 7) ? 0 : quat_lua_arg_choice(L, 7, "method", methods)];
+    const double h = (t1 - t0) / (double)n;
+    double part[4];
+    const int parts = quat_method_parts(method, part);
     for (lua_Integer i = 0; i < n; i++) {
-        const double t = t0 + (double)i * h;
-        const qvec3 a = omega_at(L, 2, t + early * h), b = omega_at(L, 2, t + late * h);
-        q = quat_renormalize(magnus ? quat_step_magnus4(q, a, b, h, axes) : quat_step_cf4(q, a, b, h, axes));
+        qvec3 omega[4];
+        for (int k = 0; k < parts; k++) omega[k] = omega_at(L, 2, t0 + (double)i * h + part[k] * h);
+        q = quat_renormalize(quat_step_by(method, q, omega, h, axes));
     }
     quat_lua_push_quat(L, q);
     return 1;

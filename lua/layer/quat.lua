@@ -72,7 +72,7 @@
 ---@field step fun(self: quat, omega: vector, dt: number, frame?: frame): quat  after dt seconds at constant omega
 ---@field derivative fun(self: quat, omega: vector, frame?: frame): quat
 ---@field omega fun(self: quat, dq: rotation, frame?: frame): vec3
----@field integrate fun(self: quat, omega: (fun(t: number): vector), t0: number, t1: number, steps: integer, frame?: frame, method?: "magnus4" | "cf4"): quat
+---@field integrate fun(self: quat, omega: (fun(t: number): vector), t0: number, t1: number, steps: integer, frame?: frame, method?: "magnus4" | "cf4" | "magnus8"): quat
 ---@field slerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
 ---@field nlerp fun(self: quat, q: rotation, t: number, way?: "short" | "as_given"): quat
 ---@field slerp_omega fun(self: quat, q: rotation, way?: "short" | "as_given"): vec3  radians per unit of t, world axes

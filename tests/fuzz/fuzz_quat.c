@@ -176,6 +176,7 @@ static void between(fuzz_bytes *b)
     quat_slerp(in.q, in.p, in.t), quat_squad(in.q, in.p, in.u, in.w, in.t), quat_squad_control(in.q, in.p, in.u);
     quat_squad_omega(in.u, in.w, in.u, in.w, f), quat_slerp_omega(in.u, in.w), quat_nlerp_omega(in.u, in.w, f);
     quat_step_magnus4(in.u, in.v, in.x, in.t, QUAT_BODY), quat_step_cf4(in.u, in.v, in.x, in.t, QUAT_WORLD);
+    quat_step_magnus8(in.u, (const qvec3[4]){in.v, in.x, in.v, in.x}, in.t, QUAT_BODY);
 }
 
 static void spline(fuzz_bytes *b)

@@ -115,6 +115,7 @@ same(one:derivative({ 0, 0, 2 }), 0, 0, 0, 1)
 vector(one:omega({ 0, 0, 0, 1 }), 0, 0, 2)
 same(one:integrate(function(t) return { 0, 0, t } end, 0, math.sqrt(pi), 7), h, 0, 0, h)
 same(one:integrate(function(t) return { 0, 0, t } end, 0, math.sqrt(pi), 7, "body", "cf4"), h, 0, 0, h)
+same(one:integrate(function(t) return { 0, 0, t } end, 0, math.sqrt(pi), 7, "world", "magnus8"), h, 0, 0, h)
 
 -- Interpolation.
 same(one:slerp(about_z, 0.5), math.cos(pi / 8), 0, 0, math.sin(pi / 8))
