@@ -219,11 +219,12 @@ static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
     return false;
 }
 
-/* A corner that was held goes on as part of the face. */
-static void lie(imp_pair *pair)
+/* A corner that was held goes on as part of the face, and has not lifted off. */
+static void lie(imp_island *island, int p)
 {
+    imp_pair *pair = &island->world.pairs[p];
     pair->lies = true;
-    pair->mode = IMP_OPEN;
+    pair->mode = island->modes[p] = IMP_OPEN;
     pair->onset = false;
     pair->corner = pair->face = 0;
 }
@@ -248,7 +249,7 @@ static impact_status lay(imp_island *island, int first, int end, bool lay_before
         if (tips_over(&lying, &side)) let_rise(island, first, end, &lying, side), *any = true;
         return IMPACT_OK;
     }
-    for (int p = first; p < end; p++) lie(&world->pairs[p]);
+    for (int p = first; p < end; p++) lie(island, p);
     island->motion.resting[body] = false;
     *any = true;
     return lay_before ? IMPACT_OK : tell_contact(island, first, &lying);
