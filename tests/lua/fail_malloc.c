@@ -9,6 +9,7 @@
  * doubles that hang, exit codes but 0, 1, 4 and 5, and such as end so without one line on stderr.
  */
 #define _GNU_SOURCE
+#include <dlfcn.h>
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -22,11 +23,14 @@
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *block, size_t size);
+int __libc_start_main(int (*main)(int, char **, char **), int count_of_words, char **words, void (*init)(void),
+                      void (*fini)(void), void (*loader_fini)(void), void *stack_end);
+void fail_malloc_end(void); /* kit/exit_measured.c asks for it */
 
 enum { LONGEST = 20 }; /* s */
 
 static long count, fail_at, refused, signals;
-static int once, ready, doubling, busy, refusing;
+static int once, ready, doubling, busy, done;
 static pid_t first;
 
 /* How a double ended; its words are in the file. */
@@ -85,9 +89,6 @@ static int is_double(void)
     return 0;
 }
 
-/* The process is done: what writes down which branches were taken (gcov) has no answer to a refusal. */
-static void grant_the_rest(void) { fail_at = 0; }
-
 static int fails(void)
 {
     if (!ready) {
@@ -98,7 +99,7 @@ static int fails(void)
         once = getenv("FAIL_ONCE") != NULL;
         doubling = getenv("FAIL_EACH") != NULL;
     }
-    if (busy) return 0;
+    if (busy || done) return 0;
     count++;
     if (doubling && getpid() == first) {
         busy = 1;
@@ -107,11 +108,6 @@ static int fails(void)
         return here;
     }
     const int refused_now = fail_at > 0 && (once ? count == fail_at : count >= fail_at);
-    if (refused_now && !refusing) {
-        refusing = busy = 1; /* atexit may allocate, too */
-        atexit(grant_the_rest);
-        busy = 0;
-    }
     if (refused_now) errno = ENOMEM; /* pthread_create asserts it */
     return refused_now;
 }
@@ -119,6 +115,29 @@ static int fails(void)
 void *malloc(size_t size) { return fails() ? NULL : __libc_malloc(size); }
 void *calloc(size_t number, size_t size) { return fails() ? NULL : __libc_calloc(number, size); }
 void *realloc(void *block, size_t size) { return fails() ? NULL : __libc_realloc(block, size); }
+
+/* What writes down which branches were taken (gcov), after all that the program does, is not the program's, and has no
+ * answer to a refusal. */
+void fail_malloc_end(void) { done = 1; }
+
+static int (*program)(int, char **, char **);
+
+static int begin(int count_of_words, char **words, char **environment)
+{
+    busy = 1; /* atexit may allocate */
+    atexit(fail_malloc_end);
+    busy = 0;
+    return program(count_of_words, words, environment);
+}
+
+/* Before the program's main, behind all that its libraries left to be done at its end. */
+int __libc_start_main(int (*main)(int, char **, char **), int count_of_words, char **words, void (*init)(void),
+                      void (*fini)(void), void (*loader_fini)(void), void *stack_end)
+{
+    program = main;
+    return ((__typeof__(&__libc_start_main))dlsym(RTLD_NEXT, "__libc_start_main"))(begin, count_of_words, words, init,
+                                                                                   fini, loader_fini, stack_end);
+}
 
 __attribute__((constructor)) static void keep_to_myself(void) { unsetenv("LD_PRELOAD"); }
 
