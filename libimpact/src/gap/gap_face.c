@@ -302,7 +302,7 @@ bool imp_face_judge(const imp_gap_solids *pair, const imp_face *face, imp_gap_br
     meeting->upper = fmax(meeting->gap, meeting->gap > slip ? imp_norm(face->v) : face->vm + slip);
     if (!(meeting->upper - meeting->lower <= IMP_GAP_CLOSED * pair->reach)) return false;
     for (int k = 0; k < 2; k++) /* the points prove the upper end where they lie in their bodies */
-        if (!(imp_gap_outside(&pair->form[k], face->chart[k].x) <= IMP_GAP_OUTSIDE * pair->reach)) return false;
+        if (!imp_gap_holds(&pair->form[k], face->chart[k].x, IMP_GAP_OUTSIDE * pair->reach)) return false;
     meeting->stiffness = stiffness(pair, face, meeting->gap);
     if (meeting->gap < 0 && !(meeting->stiffness >= -IMP_GAP_STIFFNESS * pair->size && share_a_point(pair, face)))
         return false;

@@ -417,8 +417,8 @@ static bool face(const imp_gap_solids *pair, const double n[3], double gap, doub
 
 static bool in_bodies(const imp_gap_solids *pair, const double x[2][3])
 {
-    return imp_gap_outside(&pair->form[0], x[0]) <= IMP_GAP_SLACK * pair->reach &&
-           imp_gap_outside(&pair->form[1], x[1]) <= IMP_GAP_SLACK * pair->reach;
+    return imp_gap_holds(&pair->form[0], x[0], IMP_GAP_SLACK * pair->reach) &&
+           imp_gap_holds(&pair->form[1], x[1], IMP_GAP_SLACK * pair->reach);
 }
 
 /* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies.

@@ -18,39 +18,74 @@ static double mass_of(double x, double p)
     return x > 0 ? exp(p * log(x)) : 0;
 }
 
-/* The masses m_i, of sum f, and p_i m_i/|x_i|, the sizes of f's derivatives; a superellipsoid's section counts as one
- * mass. */
-static double plain_excess(const imp_form *form, const double x[3])
+/* The left-hand side of a body's inequality, less 1, and the masses that it is the sum of; a superellipsoid's section
+ * counts as one, parts are x's and y's of it. */
+typedef struct excess {
+    double over, mass[3], part[2];
+} excess;
+
+static excess plain_excess(const imp_form *form, const double x[3])
 {
-    double excess = -1, square = 0;
-    for (int i = 0; i < 3; i++) {
-        const double size = fabs(x[i]), mass = mass_of(size / form->axis[i], form->p[i]);
-        const double slope = size > 0 ? form->p[i] * mass / size : 0;
-        excess += mass, square += slope * slope;
-    }
-    return excess / sqrt(square);
+    excess e = {.over = -1};
+    for (int i = 0; i < 3; i++) e.over += e.mass[i] = mass_of(fabs(x[i]) / form->axis[i], form->p[i]);
+    return e;
 }
 
-static double nested_excess(const imp_form *form, const double x[3])
+static excess nested_excess(const imp_form *form, const double x[3])
 {
     const double p = form->p[0], t = form->p[IMP_SECTION], u = fabs(x[0]) / form->axis[0],
-                 v = fabs(x[1]) / form->axis[1], w = fabs(x[2]) / form->axis[2], larger = fmax(u, v);
-    const double ratio = larger > 0 ? fmin(u, v) / larger : 0, less = mass_of(ratio, p), sum = 1 + less;
-    const double a = u == larger ? 1 : less, b = u == larger ? less : 1;
-    const double section = larger > 0 ? exp(t * (log(larger) + log(sum) / p)) : 0, along = mass_of(w, t);
-    const double x_slope = u > 0 ? t * section * (a / sum) / (u * form->axis[0]) : 0,
-                 y_slope = v > 0 ? t * section * (b / sum) / (v * form->axis[1]) : 0,
-                 z_slope = w > 0 ? t * along / (w * form->axis[2]) : 0;
-    return (section + along - 1) / sqrt(x_slope * x_slope + y_slope * y_slope + z_slope * z_slope);
+                 v = fabs(x[1]) / form->axis[1], larger = fmax(u, v);
+    const double less = mass_of(larger > 0 ? fmin(u, v) / larger : 0, p), sum = 1 + less;
+    const double section = larger > 0 ? exp(t * (log(larger) + log(sum) / p)) : 0,
+                 along = mass_of(fabs(x[2]) / form->axis[2], t);
+    return (excess){.over = section + along - 1,
+                    .mass = {section, section, along},
+                    .part = {(u == larger ? 1 : less) / sum, (u == larger ? less : 1) / sum}};
+}
+
+static excess excess_at(const imp_form *form, const double body[3])
+{
+    return form->nested ? nested_excess(form, body) : plain_excess(form, body);
+}
+
+/* |grad f|: p_i m_i/|x_i| are the sizes of its parts. */
+static double slope_at(const imp_form *form, const double x[3], const excess *e)
+{
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        const double p = form->nested ? form->p[IMP_SECTION] : form->p[i],
+                     part = form->nested && i < 2 ? e->part[i] : 1;
+        const double slope = x[i] != 0 ? p * e->mass[i] * part / x[i] : 0;
+        square += slope * slope;
+    }
+    return sqrt(square);
+}
+
+static void turn_in(const imp_form *form, const double x[3], double body[3])
+{
+    for (int i = 0; i < 3; i++)
+        body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
 }
 
 double imp_gap_outside(const imp_form *form, const double x[3])
 {
     double body[3];
-    for (int i = 0; i < 3; i++)
-        body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
+    turn_in(form, x, body);
     if (form->kind != IMP_FORM_QUADRIC) return imp_core_distance(form, body) - form->rounding;
-    return form->nested ? nested_excess(form, body) : plain_excess(form, body);
+    const excess e = excess_at(form, body);
+    return e.over / slope_at(form, body, &e);
+}
+
+/* f(x/f(x)) <= 1, as no exponent is below 1: x is within |x| (f - 1) of the body. Mostly that is enough, and costs no
+ * slope. */
+bool imp_gap_holds(const imp_form *form, const double x[3], double slack)
+{
+    double body[3];
+    turn_in(form, x, body);
+    if (form->kind != IMP_FORM_QUADRIC) return imp_core_distance(form, body) - form->rounding <= slack;
+    const excess e = excess_at(form, body);
+    if (e.over * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) <= slack) return true;
+    return e.over <= slack * slope_at(form, body, &e);
 }
 
 /* ---- of a contact, for anyone ---- */

@@ -116,6 +116,8 @@ imp_proof imp_gap_prove(const imp_gap_solids *pair, imp_gap_peaks *peaks, double
 
 /* How far x (world, relative to the centre) is outside the body, to first order; negative inside. */
 double imp_gap_outside(const imp_form *form, const double x[3]);
+/* Whether it is so by no more than slack > 0; a NaN is not. */
+bool imp_gap_holds(const imp_form *form, const double x[3], double slack);
 
 /* All the ways in order, from a cached normal (NULL: none). */
 impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting,

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <impact/gap.h>
+#include "gap/gap_solver.h"
 #include "kit/contact_random.h"
 #include "kit/figures.h"
 #include "kit/near.h"
@@ -125,12 +126,43 @@ static void spoilt_answers_fail(void **state)
     }
 }
 
+/* Whether a point is in the body but for a slack, asked at less cost, is what its distance says: points on the surface,
+ * moved in and out along the normal by parts of the slack and much more. */
+static void held_is_by_the_distance(void **state)
+{
+    (void)state;
+    random_stream random = {19};
+    int held = 0, out = 0;
+    for (int k = 0; k < 20000; k++) {
+        const impact_shape shape = random_shape(&random, (int)(random_bits(&random) % RANDOM_FAMILIES));
+        const quat q = random_rotation(&random);
+        const qvec3 d = random_direction(&random);
+        imp_form form;
+        qvec3 x;
+        imp_form_make(&shape, 1, q, &form);
+        impact_shape_support(&shape, quat_rotate_inverse(q, d), &x);
+        const double slack = random_log(&random, 1e-13, 1e-2) * contact_size(&shape),
+                     most = random_log(&random, 0.1, 10);
+        const qvec3 at = qvec3_axpy((2 * random_unit(&random) - 1) * most * slack, d, quat_rotate(q, x));
+        const double place[3] = {at.x, at.y, at.z}, outside = imp_gap_outside(&form, place);
+        if (fabs(outside - slack) < 1e-15 * contact_size(&shape)) continue; /* on the border: either */
+        assert_int_equal(imp_gap_holds(&form, place, slack), outside <= slack);
+        *(outside <= slack ? &held : &out) += 1;
+    }
+    assert_true(held > 5000 && out > 1000);
+    imp_form form;
+    const impact_shape egg = random_shape(&random, RANDOM_MIXED);
+    imp_form_make(&egg, 1, quat_identity(), &form);
+    assert_false(imp_gap_holds(&form, (double[]){NAN, 0, 0}, 1));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_point_that_leaves_its_body),
         cmocka_unit_test(right_answers_pass),
         cmocka_unit_test(spoilt_answers_fail),
+        cmocka_unit_test(held_is_by_the_distance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
