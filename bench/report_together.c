@@ -4,14 +4,14 @@
  * contacts shuffled, which must give the same bits; and turned, in other units, which must give the same answer to
  * 1e-11 times its sensitivity (as far as it goes after changes of the data of 1e-11, the most of 32 tries, or 1e-11).
  *
- * report_together [--encounters N] [--seed S]
- * N (default 1000) are shared among the rows. Friction 0 to 10, restitution .05 to 1, masses and stiffnesses within a
- * ratio of 1e4; bodies at rest, static, planar among them. CSV: law; exponent of the springs; contacts; encounters;
- * answered, nothing to answer, answered with a receipt that does not pass, wedged (told with proof), not settled; those
- * whose energy rose (by springs: by more than 1e-14; Moreau's may), and those whose bits changed with the order; the
- * worst residual of the answered; those that were turned and compared, and those of them that were off; CPU time, us:
- * median, the part .99, most; Taylor steps or linear systems: median, most. Then one line for each that is not
- * answered: its number from the seed, so that it can be made again.
+ * report_together [--encounters N] [--seed S] [--only I]
+ * N (default 1000) are shared among the rows; of these only number I, as the lines below name it. Friction 0 to 10,
+ * restitution .05 to 1, masses and stiffnesses within a ratio of 1e4; bodies at rest, static, planar among them. CSV:
+ * law; exponent of the springs; contacts; encounters; answered, nothing to answer, answered with a receipt that does
+ * not pass, wedged (told with proof), not settled; those whose energy rose (by springs: by more than 1e-14; Moreau's
+ * may), and those whose bits changed with the order; the worst residual of the answered; those that were turned and
+ * compared, and those of them that were off; CPU time, us: median, the part .99, most; Taylor steps or linear systems:
+ * median, most. Then one line for each that is not answered: its number from the seed, so that it can be made again.
  */
 #include <stdio.h>
 #include <string.h>
@@ -120,12 +120,12 @@ static void solve_one(const family *f, uint64_t seed, long number, impact_togeth
 
 int main(int argc, char **argv)
 {
-    static const char *const names[] = {"--encounters", "--seed", NULL};
+    static const char *const names[] = {"--encounters", "--seed", "--only", NULL};
     const long encounters = options_count(argc, argv, "--encounters", 1000),
-               seed = options_count(argc, argv, "--seed", 1);
+               seed = options_count(argc, argv, "--seed", 1), only = options_count(argc, argv, "--only", -1);
     impact_together_workspace *workspace;
     if (!options_known(argc, argv, names) || encounters < 0 || seed < 0) {
-        fprintf(stderr, "report_together [--encounters N] [--seed S]\n");
+        fprintf(stderr, "report_together [--encounters N] [--seed S] [--only I]\n");
         return 2;
     }
     if (impact_together_workspace_create(NULL, &workspace) != IMPACT_OK) return 1;
@@ -134,10 +134,14 @@ int main(int argc, char **argv)
     long number = 0;
     for (int k = 0; k < FAMILIES; k++) {
         const family *f = &families[k];
-        const int runs = (int)(encounters / FAMILIES + (k < encounters % FAMILIES));
+        const int share = (int)(encounters / FAMILIES + (k < encounters % FAMILIES));
+        const bool here = only >= number && only < number + share;
+        const int runs = only < 0 ? share : here;
         tally t = {.time = calloc((size_t)runs + 1, sizeof *t.time),
                    .steps = calloc((size_t)runs + 1, sizeof *t.steps)};
-        for (int i = 0; i < runs; i++) solve_one(f, (uint64_t)seed, number++, workspace, i, &t);
+        for (int i = 0; i < runs; i++) solve_one(f, (uint64_t)seed, only < 0 ? number + i : only, workspace, i, &t);
+        number += share;
+        if (runs == 0) continue;
         printf("%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
                impact_together_law_name(f->law), f->exponent, f->least, f->most, runs, t.answered, t.separating, t.soft,
                t.wedged, t.unsettled, t.risen, t.changed, t.worst, t.turned, t.off, measure_quantile(t.time, runs, 0.5),

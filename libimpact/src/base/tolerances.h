@@ -500,13 +500,21 @@
 #define IMP_SPRINGS_HARD 0x1p-20
 #define IMP_SPRINGS_LEAST 1e-3
 #define IMP_SPRINGS_TRIED 2000
-/* Steps and events after which a group is asked whether it is wedged, ten times that with friction: more than all but
- * a few take in all. */
+/* Steps and events, or multiplications, by which what is spent is counted: more than all but a few take in all. After
+ * the first part of that a group is asked whether it is wedged, and whenever it has spent twice as much: each question
+ * costs a hundredth. From the last on what is not proved to be loose is taken for wedged. */
 #define IMP_SPRINGS_LONG 4000
-/* Multiplications after which it is asked too: what has many contacts comes to the end of its work sooner. */
 #define IMP_SPRINGS_MUCH 8e7
+#define IMP_SPRINGS_ASKED 0.125
+#define IMP_SPRINGS_ASKED_LAST 10
 /* Steps that look for a motion out of a wedge: one of a hundredth of the contacts' own mobility is found. */
 #define IMP_WEDGE_STEPS 20000
+/* Of the largest |G^T r|^2, and of its rates: sums' rounding over as many steps, 2^-52 each, that goes and comes. */
+#define IMP_WEDGE_BALANCED 0x1p-44
+/* Of the energy stored in a contact: what moves with less changes its force by 2^-15 of it at most. */
+#define IMP_WEDGE_STILL 0x1p-30
+/* Of the largest: what so many steps bring it under where it is none. */
+#define IMP_WEDGE_TAKEN (4.0 / IMP_WEDGE_STEPS)
 /* Steps and events of one group: forty times what the longest random encounters with ratios of 1e4 take that end. */
 #define IMP_SPRINGS_STEPS 100000
 /* Multiplications of one group, about a second: a hundred contacts with friction take a tenth. */

@@ -344,6 +344,6 @@ impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_wo
     if (compressed && !m.strikes) return IMPACT_SEPARATING;
     if (compressed && (newton || !restores(group) || restore(&m))) return IMPACT_OK;
     const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
-    group->wedged = imp_encounter_wedged(&question, m.r);
+    group->wedged = imp_encounter_wedged(&question, m.r) <= IMP_WEDGE_TAKEN;
     return IMPACT_EUNSETTLED;
 }

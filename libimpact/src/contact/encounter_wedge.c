@@ -7,8 +7,9 @@
  *
  *     at the contact of the least m_c = w_n - mu |w_t|, w = W r, the pressure n - mu w_t/|w_t|
  *
- * All m_c > 0 is a proof: v = M^-1 G^T r does. Without one f = r . W r is within 4 D^2/k of its least after k steps,
- * D^2 the largest of s . W s over extreme pressures s: what is under that is taken for none.
+ * All m_c > 0 is a proof that some does: v = M^-1 G^T r. Pressures that balance are one that none does, both but for
+ * rounding of w. Without either f = r . W r is within 4 D^2/k of its least after k steps, D^2 the largest of s . W s over
+ * extreme pressures s.
  */
 #include "contact/encounter.h"
 
@@ -28,7 +29,7 @@ static double entry_of(const wedge *g, int i, int j)
 /* The extreme pressure at contact c against w; m_c. */
 static double find_extreme(const wedge *g, int c, double pressure[3])
 {
-    const double mu = g->of->friction ? g->of->friction[c] : 0, *w = &g->w[3 * c], across = hypot(w[1], w[2]);
+    const double mu = g->of->friction[c], *w = &g->w[3 * c], across = hypot(w[1], w[2]);
     pressure[0] = 1;
     for (int j = 1; j < 3; j++) pressure[j] = across > 0 ? -mu * w[j] / across : 0;
     return w[0] - mu * across;
@@ -49,7 +50,7 @@ static void go_towards(wedge *g, int c, const double pressure[3], double along)
 
 static bool takes_part(const wedge *g, int c) { return !g->of->taken || g->of->taken[c]; }
 
-/* One step; false: all are taken apart. *square: r . W r before it. */
+/* One step; false: all are taken apart, or the pressures balance. *square: r . W r before it. */
 static bool step_on(wedge *g, double *square)
 {
     int least = -1;
@@ -61,7 +62,8 @@ static bool step_on(wedge *g, double *square)
         const double m = find_extreme(g, c, other);
         if (m < margin) margin = m, least = c;
     }
-    if (margin > 0) return false;
+    if (margin > IMP_WEDGE_BALANCED * g->most) *square = INFINITY;
+    if (margin > IMP_WEDGE_BALANCED * g->most || *square <= IMP_WEDGE_BALANCED * g->most) return false;
     (void)find_extreme(g, least, pressure);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) own += pressure[i] * entry_of(g, 3 * least + i, 3 * least + j) * pressure[j];
@@ -72,18 +74,19 @@ static bool step_on(wedge *g, double *square)
     return true;
 }
 
-bool imp_encounter_wedged(const imp_wedge_question *question, double *room)
+double imp_encounter_wedged(const imp_wedge_question *question, double *room)
 {
     const int width = 3 * question->count;
     wedge g = {.of = question, .r = room, .w = room + width};
     int first = 0;
     while (first < question->count && !takes_part(&g, first)) first++;
-    if (first == question->count) return false;
+    if (first == question->count) return INFINITY;
     for (int i = 0; i < width; i++) g.r[i] = g.w[i] = 0;
     const double normal[3] = {1, 0, 0};
     go_towards(&g, first, normal, 1);
+    g.most = entry_of(&g, 3 * first, 3 * first);
     double square = 0;
-    for (int k = 0; k < IMP_WEDGE_STEPS; k++)
-        if (!step_on(&g, &square)) return false;
-    return square <= 4 * g.most / IMP_WEDGE_STEPS;
+    for (int k = 0; k < IMP_WEDGE_STEPS && step_on(&g, &square); k++) {
+    }
+    return square / g.most;
 }

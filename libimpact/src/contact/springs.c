@@ -101,26 +101,57 @@ static void report(const imp_springs *s, const units *unit, imp_group *group)
     group->chosen = group->chosen || s->chosen;
 }
 
-/* Whether no motion takes the contacts that were pressed apart; rough: with friction against it. */
-static bool are_wedged(imp_springs *s, bool rough)
+/* imp_encounter_wedged of the contacts that were pressed; room[6 count]: then with the pressures that it found. */
+static double find_wedge(imp_springs *s, double *room)
 {
-    double *friction = s->factor, *room = friction + s->count;
-    bool *taken = (bool *)(room + 6 * s->count);
+    double *friction = s->factor + 6 * s->count;
+    bool *taken = (bool *)(friction + s->count);
     for (int i = 0; i < s->count; i++) {
         friction[i] = s->springs[i].friction;
         taken[i] = s->springs[i].p[0] > 0 || imp_springs_presses(&s->springs[i]);
     }
-    const imp_wedge_question question = {s->count, s->w, rough ? friction : NULL, taken};
+    const imp_wedge_question question = {s->count, s->w, friction, taken};
     return imp_encounter_wedged(&question, room);
 }
 
-/* Asked once after many events, or much of the work allowed, of the normals alone, and once after very many with
- * friction: what is wedged bounces in its dents for ever. */
-static bool is_wedged(imp_springs *s, int *asked)
+/* Pressures r that balance have 0 = r . G v = sum r_n u_n as long as those contacts stick, or have no friction: their
+ * dents keep sum r_n delta, and never all of them are let go. Whether they have stuck since half of what is spent. */
+static bool have_stuck(const imp_springs *s, const double *r, double spent)
+{
+    for (int i = 0; i < s->count; i++) {
+        const double weight = r[3 * i] * r[3 * i] * imp_springs_entry(s, 3 * i, 3 * i);
+        if (weight > IMP_WEDGE_BALANCED && s->springs[i].loose > 0.5 * spent) return false;
+    }
+    return true;
+}
+
+/* Whether what moves has so little of the energy that is stored that no force changes by more than its root. */
+static bool are_still(const imp_springs *s)
+{
+    for (int i = 0; i < s->count; i++) {
+        const imp_spring *c = &s->springs[i];
+        const double own = imp_springs_entry(s, 3 * i, 3 * i), *u = c->u;
+        if (imp_springs_presses(c) && u[0] * u[0] + u[1] * u[1] + u[2] * u[2] > IMP_WEDGE_STILL * own * c->stored)
+            return false;
+    }
+    return imp_springs_pressed(s);
+}
+
+/* What is wedged bounces in its dents for ever, or comes to rest in them; where it slips it may yet come loose, and is
+ * waited for. *next: when it is asked again. */
+static bool is_wedged(imp_springs *s, double *next)
 {
     const double spent = fmax((double)(s->events + s->steps) / IMP_SPRINGS_LONG, s->work / IMP_SPRINGS_MUCH);
-    const bool now = *asked == 0 ? spent > 1 : *asked == 1 && spent > 10;
-    return now && are_wedged(s, (*asked)++ == 1);
+    for (int i = 0; i < s->count; i++) {
+        imp_spring *c = &s->springs[i];
+        if (!imp_springs_presses(c) || (c->friction > 0 && c->slip != IMP_SPRING_STICKS)) c->loose = spent;
+    }
+    if (spent < *next) return false;
+    const bool last = spent >= IMP_SPRINGS_ASKED_LAST;
+    *next = last ? 2 * spent : fmin(2 * spent, IMP_SPRINGS_ASKED_LAST);
+    const double left = find_wedge(s, s->factor);
+    if (last) return left <= IMP_WEDGE_TAKEN;
+    return left <= IMP_WEDGE_BALANCED && (are_still(s) || have_stuck(s, s->factor, spent));
 }
 
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)
@@ -132,10 +163,10 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     if (!w || !u0 || !take_room(&s, workspace)) return IMPACT_ENOMEM;
     const units unit = find_units(group);
     set_up(&s, group, &unit, w, u0);
-    int asked = 0;
+    double next = IMP_SPRINGS_ASKED;
     while (s.steps + s.events < group->patience && s.work < IMP_SPRINGS_WORK) {
         if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
-        group->wedged = is_wedged(&s, &asked);
+        group->wedged = is_wedged(&s, &next);
         if (group->wedged) return IMPACT_EUNSETTLED;
         if (imp_springs_pressed(&s)) {
             if (!imp_springs_step(&s)) return IMPACT_EUNSETTLED;

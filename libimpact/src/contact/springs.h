@@ -50,6 +50,7 @@ typedef struct imp_spring {
     bool weak;       /* BEGINS: from no acceleration, u_t ~ t^2; else u_t ~ t */
     double along[2]; /* of slip; STICKS: the friction's ratio to lambda where reactions are not unique */
     double stored;   /* energy in the spring */
+    double loose;    /* what was spent when it last slid or was open (springs.c) */
     imp_finding *finding;
     /* Series in tau. */
     imp_terms velocity[3]; /* u */
