@@ -89,6 +89,7 @@ typedef struct imp_springs {
     imp_cone_workspace *cone;
     imp_cone_mode *modes;
     double *creep_room, creep_step; /* of what creeps: room, and the last step */
+    double creep_due;               /* work at which it is tried again: where it failed, once powers cost as much */
     imp_spring *kept;
     bool creeping; /* the series are springs_creep.c's */
     bool stopped;  /* a slip has: what sticks must be chosen anew */

@@ -386,8 +386,10 @@ double imp_springs_expand(imp_springs *s)
     for (int i = 0; i < s->count; i++) s->springs[i].creeps = s->springs[i].creeps && s->creeping;
     s->creeping = false;
     const double h = expand_in_powers(s);
-    if (!is_stiff(s, h)) return h;
-    const double far = imp_springs_creep(s, isnan(h) ? 0 : time_of(s, h));
+    if (!is_stiff(s, h) || s->work < s->creep_due) return h;
+    const double before = s->work, far = imp_springs_creep(s, isnan(h) ? 0 : time_of(s, h));
     s->creeping = far > 0;
-    return far > 0 ? far : expand_in_powers(s);
+    if (s->creeping) return far;
+    s->creep_due = s->work + (s->work - before);
+    return expand_in_powers(s);
 }
