@@ -125,9 +125,9 @@ typedef struct imp_wedge_question {
     const bool *taken;      /* count: which take part; NULL: all */
 } imp_wedge_question;
 
-/* The least |G^T r|^2 that was found of pressures with sum r_n = 1, over the largest of one: INFINITY where a motion takes
- * the contacts apart, friction against it; up to IMP_WEDGE_BALANCED where none does; between them up to IMP_WEDGE_TAKEN
- * none is taken to do. room: 6 count. */
+/* The least |G^T r|^2 that was found of pressures with sum r_n = 1, over the largest of one: INFINITY where a motion
+ * takes the contacts apart, friction against it; up to IMP_WEDGE_BALANCED where none does; between them up to
+ * IMP_WEDGE_TAKEN none is taken to do. room: 6 count. */
 double imp_encounter_wedged(const imp_wedge_question *question, double *room);
 
 /* ---- encounter_mend.c: velocities of the bodies as impulses change them ---- */

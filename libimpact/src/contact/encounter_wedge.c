@@ -8,8 +8,8 @@
  *     at the contact of the least m_c = w_n - mu |w_t|, w = W r, the pressure n - mu w_t/|w_t|
  *
  * All m_c > 0 is a proof that some does: v = M^-1 G^T r. Pressures that balance are one that none does, both but for
- * rounding of w. Without either f = r . W r is within 4 D^2/k of its least after k steps, D^2 the largest of s . W s over
- * extreme pressures s.
+ * rounding of w. Without either f = r . W r is within 4 D^2/k of its least after k steps, D^2 the largest of s . W s
+ * over extreme pressures s.
  */
 #include "contact/encounter.h"
 
