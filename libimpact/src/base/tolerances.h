@@ -517,8 +517,8 @@
 #define IMP_WEDGE_TAKEN (4.0 / IMP_WEDGE_STEPS)
 /* Steps and events of one group: forty times what the longest random encounters with ratios of 1e4 take that end. */
 #define IMP_SPRINGS_STEPS 100000
-/* Multiplications of one group, some two seconds: a hundred contacts with friction take a thirtieth; of random ones whose
- * stiffnesses and restitutions make ratios of 1e6 the longest that are known end at 1.1e9. */
+/* Multiplications of one group, some two seconds: a hundred contacts with friction take a thirtieth; of random ones
+ * whose stiffnesses and restitutions make ratios of 1e6 the longest that are known end at 1.1e9. */
 #define IMP_SPRINGS_WORK 3e9
 
 /* ---- contact: encounters, docs/together.md ---- */
@@ -618,6 +618,9 @@
 #define IMP_CONE_CREEP 1e-6
 /* Alpha of A + alpha 1, A's diagonal being 1 in the mean: contacts hardly feel each other. */
 #define IMP_CONE_EASING 20
+/* Multiplications of taking matrices apart for one problem, half a minute: the longest of Siconos' problems that is
+ * solved, 570 contacts, takes .7e11. A path that creeps would go on for minutes. */
+#define IMP_CONE_WORK 1e11
 /* Multiplications of the longest run of sweeps, about a fifth of a second: what six contacts take whose reactions are
  * ten thousand times what is exchanged. */
 #define IMP_CONE_SWEEPING 3e8

@@ -325,7 +325,8 @@ static void wander(imp_cone_system *system, double *own, double *r, double *u, i
     enum { STEPS = 8, ROUND = 7 };
     const double count = system->problem->count, each = 27 * count * count, newton = STEPS * 18 * count * count * count;
     double work = 0;
-    for (long k = 0; work <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED); k++) {
+    for (long k = 0;
+         work <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED) && !imp_cone_is_spent(system); k++) {
         sweep_once(system, 1 + k % ROUND, STEPS, own, r, u, outcome);
         work += (double)(1 + k % ROUND) * each + newton;
     }
@@ -347,8 +348,9 @@ static void settle_down(imp_cone_system *system, double *own, double *r, double 
 
 static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
-    if (system->problem->lengths || system->problem->effort == IMP_CONE_BRIEF) return;
-    memset(system->tangent, 0, 3 * (size_t)system->problem->count * sizeof *system->tangent);
+    const imp_cone_problem *problem = system->problem;
+    if (problem->lengths || problem->effort == IMP_CONE_BRIEF || imp_cone_is_spent(system)) return;
+    memset(system->tangent, 0, 3 * (size_t)problem->count * sizeof *system->tangent);
     settle_down(system, system->tangent, r, u, outcome);
 }
 
@@ -436,7 +438,7 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
     if (outcome.status == IMP_CONE_UNSETTLED && problem->effort == IMP_CONE_WANDERS && !problem->lengths) {
         const imp_cone_system spent = system; /* by the question of whether there is an answer */
         system = system_of(problem, workspace);
-        system.factorings = spent.factorings, system.steps = spent.steps;
+        system.factorings = spent.factorings, system.steps = spent.steps, system.work = spent.work;
         memset(system.tangent, 0, 3 * (size_t)problem->count * sizeof *system.tangent);
         wander(&system, system.tangent, r, u, &outcome);
         outcome.status = status_of(&outcome);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/tolerances.h"
 #include "contact/cone_map.h"
-#include "base/tolerances.h"
 
 #include <math.h>
 #include <string.h>
@@ -223,6 +222,12 @@ void imp_cone_factor(imp_cone_system *system, const double *z, double e)
     system->rank = linear.rank;
     system->sign = linear.sign;
     system->factorings++;
+    system->work += 2.0 / 3 * (double)system->n * (double)system->n * (double)system->n;
+}
+
+bool imp_cone_is_spent(const imp_cone_system *system)
+{
+    return system->work > (system->problem->work > 0 ? system->problem->work : IMP_CONE_WORK);
 }
 
 void imp_cone_back(imp_cone_system *system, double *right)
@@ -274,7 +279,7 @@ static bool search_line(imp_cone_system *system, double e, double *norm)
 bool imp_cone_newton(imp_cone_system *system, double e, double wanted, int most, bool positive)
 {
     double norm = imp_cone_defect(system, system->z, e, system->value);
-    for (int k = 0; k < most && norm > wanted; k++) {
+    for (int k = 0; k < most && norm > wanted && !imp_cone_is_spent(system); k++) {
         imp_cone_factor(system, system->z, e);
         if (positive && system->sign <= 0) return false;
         memcpy(system->step, system->value, sizeof *system->step * (size_t)system->n);

@@ -40,6 +40,7 @@ typedef struct imp_cone_system {
     int *rows, *columns;
     double *z, *trial, *step, *value, *x, *u, *rate, *kept, *tangent, *best; /* n each */
     int factorings, steps;
+    double work;    /* multiplications of the factorings */
     int sign, rank; /* of the matrix taken apart last: of its determinant, 0 if singular */
 } imp_cone_system;
 
@@ -51,6 +52,9 @@ double imp_cone_defect(imp_cone_system *system, const double *z, double e, doubl
 
 /* -dF/dz = A X' - U', taken apart: sign and rank. */
 void imp_cone_factor(imp_cone_system *system, const double *z, double e);
+
+/* Whether the work allowed is done: every path ends then. */
+bool imp_cone_is_spent(const imp_cone_system *system);
 
 /* The solution of it for a right-hand side, in place; of least norm where there are many. */
 void imp_cone_back(imp_cone_system *system, double *right);

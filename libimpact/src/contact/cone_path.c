@@ -34,7 +34,7 @@ static bool go_down(imp_cone_system *system, double e, double next)
 static double descend(imp_cone_system *system, double e, double end)
 {
     double ratio = 0.1;
-    while (e > end) {
+    while (e > end && !imp_cone_is_spent(system)) {
         const double next = fmax(end, ratio * e);
         const int before = system->steps;
         if (go_down(system, e, next)) {
@@ -130,7 +130,8 @@ static void turn_round(imp_cone_system *system, double e)
     const double widest = 1; /* of a contact's size */
     cone_arc arc = {.log_e = log(e)};
     double length = 0.1;
-    while (arc.log_e > log(IMP_CONE_PATH_END) && arc.log_e < 1 && system->factorings - before < MOST_FACTORINGS) {
+    while (arc.log_e > log(IMP_CONE_PATH_END) && arc.log_e < 1 && system->factorings - before < MOST_FACTORINGS &&
+           !imp_cone_is_spent(system)) {
         if (!find_tangent(system, &arc)) break;
         int used = 0;
         bool found = false;

@@ -127,6 +127,26 @@ static void hard_ones_are_solved_or_told(void **state)
     assert_true(solved >= 0.995 * RUNS);
 }
 
+/* Paths end where the work allowed is done, and say that they found nothing. */
+static void work_is_bounded(void **state)
+{
+    (void)state;
+    random_stream random = {12};
+    int unsettled = 0;
+    for (int k = 0; k < 20; k++) {
+        cone_case c = cone_case_make(&random, 10, 5, 1);
+        imp_cone_problem problem = cone_case_problem(&c);
+        const answer whole = solve(&problem);
+        assert_int_equal(whole.outcome.status, IMP_CONE_SOLVED);
+        problem.work = 1; /* one system is more */
+        const answer cut = solve(&problem);
+        unsettled += cut.outcome.status == IMP_CONE_UNSETTLED;
+        assert_true(cut.outcome.factorings < 10);
+        cone_case_free(&c);
+    }
+    assert_true(unsettled >= 15); /* Newton from where it begins finds a few */
+}
+
 /* Two boxes, four corners each: the lower one rests, the upper one comes down, both all but flat. What is pressed at
  * eight points has more reactions than motions; the matrix of the path is as badly conditioned as 1/e^2. */
 static void a_struck_stack_is_solved(void **state)
@@ -455,11 +475,17 @@ static int clear(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_contact_has_a_closed_form),        cmocka_unit_test(known_answers_are_found),
-        cmocka_unit_test(hard_ones_are_solved_or_told),         cmocka_unit_test(a_struck_stack_is_solved),
-        cmocka_unit_test(the_last_answer_leads_to_the_next),    cmocka_unit_test(planar_twins_are_among_all_modes),
-        cmocka_unit_test(shuffled_contacts_give_the_same_bits), cmocka_unit_test(units_scale_out),
-        cmocka_unit_test(what_has_no_solution_is_shown),        cmocka_unit_test(bad_numbers_are_refused),
+        cmocka_unit_test(one_contact_has_a_closed_form),
+        cmocka_unit_test(known_answers_are_found),
+        cmocka_unit_test(hard_ones_are_solved_or_told),
+        cmocka_unit_test(work_is_bounded),
+        cmocka_unit_test(a_struck_stack_is_solved),
+        cmocka_unit_test(the_last_answer_leads_to_the_next),
+        cmocka_unit_test(planar_twins_are_among_all_modes),
+        cmocka_unit_test(shuffled_contacts_give_the_same_bits),
+        cmocka_unit_test(units_scale_out),
+        cmocka_unit_test(what_has_no_solution_is_shown),
+        cmocka_unit_test(bad_numbers_are_refused),
         cmocka_unit_test(the_matrix_is_what_impulses_do),
     };
     return cmocka_run_group_tests(tests, furnish, clear);
