@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/points.h"
+#include "gap/gap_core.h"
 #include "shape/ridge.h"
 #include "shape/solid.h"
 #include "world/normal.h"
@@ -47,6 +48,12 @@ static imp_point point_of(const impact_patch *patch, int i, qvec3 shift1, qvec3 
                        .bearer = bearer_of(patch)};
 }
 
+/* Neither two polytopes, which have a closed form, nor on a plane. */
+static bool is_mixed(const imp_body *b1, const imp_body *b2)
+{
+    return b2->shape.kind != IMPACT_PLANE && !imp_core_takes(&b1->shape, &b2->shape);
+}
+
 static int keep_near(imp_point *points, int count, double height)
 {
     int kept = 0;
@@ -61,7 +68,10 @@ int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, d
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     impact_contact contact;
-    (void)imp_world_gap(world, pair, states, &contact);
+    if (is_mixed(b1, b2) && pair->cache.valid && imp_face_gap(b1, s1, b2, s2, pair->cache.normal, &contact))
+        pair->cache.normal = contact.normal;
+    else
+        (void)imp_world_gap(world, pair, states, &contact);
     imp_settle_normal(b1, s1, b2, s2, flush, &contact);
     if (!(contact.gap <= height)) return 0;
     int count = 0;

@@ -95,6 +95,74 @@ void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp
         }
 }
 
+/* ---- a gap by a face ---- */
+
+/* The body's face that looks most along d (shape's axes), or -1; its normal. */
+static int face_along(const imp_body *body, qvec3 d, qvec3 *normal)
+{
+    const int count = own_faces(&body->shape);
+    int best = -1;
+    double most = IMP_FACE_NEAR;
+    for (int f = 0; f < count; f++) {
+        const qvec3 n = outward_normal(&body->shape, f);
+        const double along = qvec3_dot(n, d);
+        if (along > most) most = along, best = f, *normal = n;
+    }
+    return best;
+}
+
+/* m: how far within the border of the face a place is, along it; < 0: beside it. */
+static double within_face(const impact_face *face, qvec3 normal, qvec3 place)
+{
+    if (face->disc > 0) return face->disc - hypot(place.x, place.y);
+    double least = INFINITY;
+    for (int i = 0; i < face->count; i++) {
+        const qvec3 from = face->point[i], along = qvec3_sub(face->point[(i + 1) % face->count], from);
+        least = fmin(least, qvec3_dot(qvec3_cross(normal, along), qvec3_sub(place, from)) / qvec3_norm(along));
+    }
+    return least;
+}
+
+/* Body k's face towards the other, and the other's place that is lowest over it. */
+static bool stands_on(const imp_body *const body[2], const imp_state *const state[2], int k, qvec3 towards,
+                      impact_contact *contact)
+{
+    const imp_body *under = body[k], *above = body[1 - k];
+    const quat axes = imp_shape_axes(under, state[k]), upper = imp_shape_axes(above, state[1 - k]);
+    qvec3 normal, lowest;
+    impact_face face;
+    if (face_along(under, quat_rotate_inverse(axes, towards), &normal) < 0) return false;
+    if (impact_shape_face(&under->shape, normal, IMP_ROUNDOFF * under->radius, &face) != 2) return false;
+    const qvec3 n = quat_rotate(axes, normal);
+    impact_shape_support(&above->shape, quat_rotate_inverse(upper, qvec3_neg(n)), &lowest);
+    const qvec3 own = qvec3_add(imp_shape_offset(above, state[1 - k]), quat_rotate(upper, lowest)),
+                between = qvec3_sub(state[1 - k]->x, state[k]->x),
+                place = qvec3_sub(qvec3_add(between, own), imp_shape_offset(under, state[k])),
+                local = quat_rotate_inverse(axes, place);
+    const double gap = qvec3_dot(normal, qvec3_sub(local, face.point[0]));
+    if (!(within_face(&face, normal, local) >= fmax(0, -gap))) return false;
+    const qvec3 foot = qvec3_axpy(-gap, n, qvec3_add(between, own));
+    *contact = (impact_contact){.gap = gap,
+                                .lower = gap,
+                                .upper = gap,
+                                .stiffness = INFINITY,
+                                .path = IMPACT_PATH_CLOSED_FORM,
+                                .normal = k == 1 ? n : qvec3_neg(n),
+                                .offset1 = k == 1 ? own : foot,
+                                .offset2 = k == 1 ? foot : own};
+    contact->point1 = qvec3_add(state[0]->x, contact->offset1);
+    contact->point2 = qvec3_add(state[1]->x, contact->offset2);
+    return true;
+}
+
+bool imp_face_gap(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
+                  qvec3 normal, impact_contact *contact)
+{
+    const imp_body *const body[2] = {body1, body2};
+    const imp_state *const state[2] = {state1, state2};
+    return stands_on(body, state, 1, normal, contact) || stands_on(body, state, 0, qvec3_neg(normal), contact);
+}
+
 double imp_stepped_flush(const imp_body *body1, const imp_body *body2)
 {
     const double radius1 = body1->is_static ? INFINITY : body1->radius,
