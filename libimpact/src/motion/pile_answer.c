@@ -99,15 +99,6 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
     return work;
 }
 
-/* What friction takes over the step, where its impulse meets the slip of before and after it half each. */
-static double rubbed(const imp_pile *pile, int count)
-{
-    double work = 0;
-    for (int i = 0; i < pile->width * count; i++)
-        if (i % pile->width > 0) work -= 0.5 * pile->r[i] * (pile->before[i] + pile->u[i]);
-    return fmax(work, 0);
-}
-
 /* The places are those of the step's middle: what its two ends' velocities differ by from what they would be there, as
  * bodies and contacts turn. */
 static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *states, int count, double h)
@@ -201,6 +192,16 @@ static double given(const imp_pile *pile, int count, double part, double *size)
     return work;
 }
 
+/* What friction takes over the step, where its impulse meets the slip of before and after it half each; no more than all
+ * of the impulses take: in a bounce that friction turns aside the normals give what it takes beyond that. */
+static double rubbed(const imp_pile *pile, int count)
+{
+    double work = 0, size;
+    for (int i = 0; i < pile->width * count; i++)
+        if (i % pile->width > 0) work -= 0.5 * pile->r[i] * (pile->before[i] + pile->u[i]);
+    return fmax(fmin(work, -given(pile, count, 1, &size)), 0);
+}
+
 static imp_cone_outcome solve_with_part(imp_pile *pile, const imp_world *world, const imp_pile_question *question,
                                         double from, double part)
 {
@@ -227,7 +228,15 @@ static imp_cone_outcome lessen_bounces(imp_pile *pile, const imp_world *world, c
         work = given(pile, question->count, part, &size);
         imp_bracket_take(&b, part, work, work > 0);
     }
+    for (int c = 0; c < question->count; c++) pile->bounce[c] *= part;
     return outcome;
+}
+
+/* Against the speeds that contacts have, or those of a fall: what is all but at rest has none to be measured by. */
+static bool is_usable(const imp_pile *pile, const imp_world *world, int count, double residual)
+{
+    const double fall = imp_pile_smallest(world) / imp_pile_natural_time(world, pile->middle);
+    return residual <= IMP_PILE_USABLE || residual * imp_pile_fastest(pile, count) <= IMP_PILE_USABLE * fall;
 }
 
 /* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
@@ -245,7 +254,7 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
     if (!smooth) outcome = lessen_bounces(pile, world, &question, outcome);
     if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, &question, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
-    if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) {
+    if (outcome.status == IMP_CONE_BAD || !is_usable(pile, world, count, outcome.residual)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
                  imp_cone_status_name(outcome.status));
         return IMPACT_EUNSETTLED;

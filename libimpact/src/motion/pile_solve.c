@@ -65,6 +65,7 @@ double imp_pile_fastest(const imp_pile *pile, int count)
     for (int i = 0; i < pile->width * count; i++) {
         const imp_cone_lengths *own = &pile->lengths[i / pile->width];
         const int k = i % pile->width;
+        if ((k == 1 || k == 2) && !(pile->friction[i / pile->width] > 0)) continue; /* none is asked for there */
         most = fmax(most, fabs(pile->q[i]) * (k < 3 ? 1 : k == 3 ? own->torsional : own->rolling));
     }
     return most;
