@@ -55,11 +55,15 @@ static inline void pile_add_ground(pile_scene *scene, double half)
     }
 }
 
-/* A polyhedron of so many points, its farthest `reach` from the middle of a cube about them. */
+/* A polyhedron of points in a cube of half side `reach`, or on a lattice of it; one too large for the box is drawn
+ * again. */
 static inline impact_hull *pile_hull(random_stream *random, double reach)
 {
     impact_hull *hull = NULL;
-    while (!hull) {
+    impact_shape shape;
+    while (!hull || (impact_shape_polyhedron(hull, &shape), impact_shape_bounding_radius(&shape) > 0.16)) {
+        impact_hull_destroy(hull);
+        hull = NULL;
         qvec3 points[12];
         const int family = (int)(4 * random_unit(random)), count = 4 + (int)(9 * random_unit(random));
         for (int i = 0; i < count; i++) points[i] = qvec3_scale(random_point(random, family), reach);

@@ -58,11 +58,12 @@ static double worst_gap(imp_island *island, const imp_state *states)
     return worst;
 }
 
+/* What goes on by steps from here was settled by nobody: what was held is held no more. */
 static double worst_contact(imp_island *island)
 {
     imp_persist *persist = &island->motion.persist;
     double greatest = 0, worst = 0;
-    if (persist->count == 0 || imp_scene_load(island) != IMPACT_OK) return 0;
+    if (island->lies || persist->count == 0 || imp_scene_load(island) != IMPACT_OK) return 0;
     imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
     for (int c = 0; c < persist->count; c++) greatest = fmax(greatest, qvec3_norm(persist->touches[c].force));
     for (int c = 0; c < persist->count; c++) {

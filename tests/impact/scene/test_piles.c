@@ -2,8 +2,8 @@
  *
  * Boxes, cylinders and polyhedra on each other and in boxes (tests/kit/pile_scene.h; ./run report piles: five hundred):
  * those whose steps once gave energy, by restitution at several contacts or by a normal's rate told across a jump of
- * its place; that met what they did not touch, as they glided without friction; and a few of each kind. All come to
- * their end, keep their account and do not reach into each other.
+ * its place; that met what they did not touch, as they glided without friction; that told of losses or reactions what
+ * was not so; and a few of each kind. All come to their end, keep their account and do not reach into each other.
  */
 #include <stdarg.h>
 #include <stddef.h>
@@ -51,6 +51,20 @@ static void test_bounces_give_no_energy(void **state)
     run(1023, PILE_IN_BOX);
 }
 
+/* In a bounce friction may take more than all impulses do, which is told as theirs together. */
+static void test_losses_do_not_fall(void **state)
+{
+    (void)state;
+    run(1038, PILE_IN_BOX);
+}
+
+/* What a face ends that was held on corners goes on by steps: its last reactions are no one's. */
+static void test_reactions_that_are_past(void **state)
+{
+    (void)state;
+    run(2029, PILE_IN_BOX);
+}
+
 static void test_normals_that_jump(void **state)
 {
     (void)state;
@@ -68,16 +82,15 @@ static void test_a_few(void **state)
 {
     (void)state;
     for (int start = 0; start < PILE_STARTS; start++)
-        for (uint64_t seed = 2; seed < 5; seed++) run(seed, start);
+        for (uint64_t seed = 2; seed < 4; seed++) run(seed, start);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bounces_give_no_energy),
-        cmocka_unit_test(test_normals_that_jump),
-        cmocka_unit_test(test_glides_meet_what_they_touch),
-        cmocka_unit_test(test_a_few),
+        cmocka_unit_test(test_bounces_give_no_energy),      cmocka_unit_test(test_losses_do_not_fall),
+        cmocka_unit_test(test_reactions_that_are_past),     cmocka_unit_test(test_normals_that_jump),
+        cmocka_unit_test(test_glides_meet_what_they_touch), cmocka_unit_test(test_a_few),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
