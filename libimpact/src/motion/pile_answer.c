@@ -192,8 +192,8 @@ static double given(const imp_pile *pile, int count, double part, double *size)
     return work;
 }
 
-/* What friction takes over the step, where its impulse meets the slip of before and after it half each; no more than all
- * of the impulses take: in a bounce that friction turns aside the normals give what it takes beyond that. */
+/* What friction takes over the step, where its impulse meets the slip of before and after it half each; no more than
+ * all of the impulses take: in a bounce that friction turns aside the normals give what it takes beyond that. */
 static double rubbed(const imp_pile *pile, int count)
 {
     double work = 0, size;
