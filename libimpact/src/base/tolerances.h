@@ -539,6 +539,9 @@
  * second step towards none, from which Newton goes on. Rounding over both, 1e-11, is what is left to chance. */
 #define IMP_MOREAU_SHARING 1e-3
 #define IMP_MOREAU_SHARED 0.03
+/* Where Newton does not go on from there steps are shortened, to this ratio, and begin nearer to none, to this part. */
+#define IMP_MOREAU_SHORTEST 0.9
+#define IMP_MOREAU_SHARING_LEAST 1e-12
 /* Seeds of contacts that are pressed and may be drawn on: of the group's fastest speed, under which velocities are none
  * (IMP_SPRINGS_STILL) and whose energy that of an open spring; and of the slip, far over what the cone problem takes
  * for none (its answer's modes are then solved for without). */

@@ -141,26 +141,47 @@ static void clean(int count, const imp_cone_mode *modes, const imp_cone_mode *st
     }
 }
 
+/* The problem of contacts that give way by so much for an impulse, into r and u of the room `to`: of several answers
+ * the one that the other room's leads to (begun: there is one). Whether it is solved. */
+static bool give_way(moreau *m, const imp_cone_problem *problem, double gives, bool begun, int to)
+{
+    const size_t n = 3 * (size_t)problem->count, own = n * (size_t)to, other = n * (size_t)(1 - to);
+    imp_cone_problem giving = *problem;
+    for (size_t i = 0; i < n * n; i++) m->w[i] = problem->w[i] + (i % (n + 1) == 0 ? gives : 0);
+    giving.w = m->w;
+    giving.near_last = begun;
+    if (begun) giving.last_r = m->r + other, giving.last_u = m->v + other;
+    const imp_cone_outcome o = imp_cone_solve(&giving, m->cone, m->r + own, m->v + own, m->modes);
+    m->group->steps += o.factorings;
+    return o.status == IMP_CONE_SOLVED;
+}
+
 /* The impulses of compression where they are not unique, on which restitution depends: those that contacts share which
- * give way a little for each impulse, and are unique so; then those next to them of contacts that do not. Without it
- * they are what the solver's path has of rounding. */
+ * give way a little for each impulse, and are unique so; then, in steps towards none, those next to them of contacts
+ * that do not. Without it they are what the solver's path has of rounding. */
 static void share(moreau *m, const imp_cone_problem *problem, double *p)
 {
-    static const double gives[] = {IMP_MOREAU_SHARING, IMP_MOREAU_SHARING * IMP_MOREAU_SHARED, 0};
     const size_t n = 3 * (size_t)problem->count;
-    double mean = 0, *r[] = {m->r, m->r + n}, *u[] = {m->v, m->v + n};
+    double mean = 0, gives = IMP_MOREAU_SHARING, least = gives * IMP_MOREAU_SHARED, ratio = IMP_MOREAU_SHARED;
+    size_t at = 0;
     for (size_t i = 0; i < n; i++) mean += problem->w[i * (n + 1)] / (double)n;
-    for (int k = 0; k < 3; k++) {
-        imp_cone_problem giving = *problem;
-        giving.w = m->w;
-        if (k > 0) giving.last_r = r[1 - k % 2], giving.last_u = u[1 - k % 2];
-        for (size_t i = 0; i < n * n; i++) m->w[i] = problem->w[i] + (i % (n + 1) == 0 ? gives[k] * mean : 0);
-        const imp_cone_outcome o = imp_cone_solve(&giving, m->cone, r[k % 2], u[k % 2], m->modes);
-        m->group->steps += o.factorings;
-        if (o.status != IMP_CONE_SOLVED || (k > 0 && o.stage != IMP_CONE_LAST)) return;
+    if (!give_way(m, problem, gives * mean, false, 0)) return;
+    while (gives > 0) {
+        const double next = gives <= least ? 0 : fmax(ratio * gives, least);
+        if (give_way(m, problem, next * mean, true, at == 0)) {
+            at = 1 - at;
+            gives = next;
+            ratio = IMP_MOREAU_SHARED;
+        } else if (next > 0) {
+            ratio = sqrt(ratio);
+            if (ratio > IMP_MOREAU_SHORTEST) return;
+        } else {
+            least *= IMP_MOREAU_SHARED;
+            if (least < IMP_MOREAU_SHARING_LEAST) return;
+        }
     }
-    memcpy(p, r[0], n * sizeof *p);
-    memcpy(m->u, u[0], n * sizeof *m->u);
+    memcpy(p, m->r + n * at, n * sizeof *p);
+    memcpy(m->u, m->v + n * at, n * sizeof *m->u);
 }
 
 /* The velocities before, less the rebounds. */
@@ -170,7 +191,7 @@ static void set_compression(const moreau *m)
     for (int i = 0; i < m->group->count; i++) m->q[3 * i] -= m->rebound[i];
 }
 
-/* Of what is pressed and may be drawn those of its seed; whether there is such. */
+/* The same, of what is pressed and may be drawn those of its seed; whether there is such. */
 static bool plant_seeds(const moreau *m)
 {
     const imp_group *g = m->group;

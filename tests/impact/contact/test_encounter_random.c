@@ -86,7 +86,8 @@ static void no_frame_or_unit_chooses_the_answer(void **state)
                  {102, 1870, IMPACT_TOGETHER_SPRINGS, 1, 2, 3},  {101, 2848, IMPACT_TOGETHER_SPRINGS, 1, 7, 12},
                  {101, 3352, IMPACT_TOGETHER_MOREAU, 0, 2, 3},   {101, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},
                  {102, 3651, IMPACT_TOGETHER_MOREAU, 0, 4, 6},   {102, 3430, IMPACT_TOGETHER_MOREAU, 0, 2, 3},
-                 {102, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},   {101, 4282, IMPACT_TOGETHER_MOREAU, 0, 7, 12}};
+                 {102, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},   {101, 4282, IMPACT_TOGETHER_MOREAU, 0, 7, 12},
+                 {404, 1956, IMPACT_TOGETHER_MOREAU, 0, 4, 6}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
         random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
@@ -100,7 +101,8 @@ static void no_frame_or_unit_chooses_the_answer(void **state)
             answer b = solve(&other, cases[k].law, cases[k].exponent, NULL);
             assert_int_equal(b.status, IMPACT_OK);
             change_back(&b, e.body_count, &frame);
-            assert_at_most(distance(&e, &a, &b), 1e-12);
+            /* the last one's impulses are known to 1e-10 of themselves */
+            assert_at_most(distance(&e, &a, &b), cases[k].seed == 404 ? 1e-10 : 1e-12);
         }
     }
 }
