@@ -79,7 +79,7 @@ static void set_up(imp_springs *s, const imp_group *group, const units *unit, do
         c->restitution = fmax(group->contacts[i].restitution, group->least);
         c->stiffness = group->contacts[i].stiffness / unit->stiffness;
         c->finding = &group->findings[i];
-        c->none = IMP_SPRINGS_STILL;
+        c->none = c->rounding = IMP_SPRINGS_STILL;
         imp_springs_take_branch(s, i, IMP_SPRING_OPEN, 0, c->stiffness);
         for (int j = 0; j < 3; j++) c->u[j] = u0[3 * i + j];
     }

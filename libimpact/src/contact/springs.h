@@ -43,7 +43,8 @@ typedef struct imp_spring {
     imp_spring_slip slip;
     double x, base, kappa, deepest; /* delta = x + base */
     double u[3], p[3];
-    double none;     /* a velocity that is rounding of u's terms */
+    double rounding; /* of u, by its terms */
+    double none;     /* a velocity that is none: rounding, or what held slips have drifted to */
     bool still;      /* u_t is zero: it came to a stop, or was never more than rounding */
     bool summed;     /* u_t has been summed from step to step since it was 0: free of the rounding of u0 and W p */
     bool creeps;     /* SLIDES, so slowly that its direction is `along` (springs_creep.c) */

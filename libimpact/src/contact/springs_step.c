@@ -110,11 +110,11 @@ static void see_slip(const imp_springs *s, int i, first_event *first)
     } else if (c->slip == IMP_SPRING_STRAIGHT) {
         for (int k = 0; k <= IMP_SPRINGS_ORDER; k++)
             f[k] = c->along[0] * c->velocity[1][k] + c->along[1] * c->velocity[2][k];
-        if (f[0] < c->none) f[0] = c->none; /* it begins */
+        if (f[0] < c->rounding) f[0] = c->rounding; /* it begins, from where it was held: that must not grow */
         see(first, EVENT_STOP, i, f);
     } else if (s->creeping && c->slip == IMP_SPRING_SLIDES) {
         shifted(c->speed, 1, 0, f);
-        if (f[0] < c->none) f[0] = c->none;
+        if (f[0] < c->rounding) f[0] = c->rounding;
         see(first, EVENT_STOP, i, f);
     } else if (c->slip >= IMP_SPRING_SLIDES && !(s->lead == IMP_SPRING_SPEED && s->leader == i)) {
         see_slowing(s, i, first);
@@ -210,10 +210,10 @@ void imp_springs_find_velocities(imp_springs *s)
         for (int j = 0; j < 3; j++) s->now[3 * i + j] = s->springs[i].p[j];
     for (int i = 0; i < s->count; i++) {
         for (int j = 0; j < 3; j++) s->springs[i].u[j] = s->u0[3 * i + j] + imp_springs_row(s, 3 * i + j);
-        s->springs[i].none = IMP_SPRINGS_STILL * fmax(1, terms_of_velocity(s, i));
+        s->springs[i].rounding = IMP_SPRINGS_STILL * fmax(1, terms_of_velocity(s, i));
     }
     const double drift = drift_of_held(s);
-    for (int i = 0; i < s->count; i++) s->springs[i].none = fmax(s->springs[i].none, 2 * drift);
+    for (int i = 0; i < s->count; i++) s->springs[i].none = fmax(s->springs[i].rounding, 2 * drift);
 }
 
 /* What has begun to slip slides once its velocity is more than rounding; where slips have begun together, as those of
