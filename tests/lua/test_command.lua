@@ -174,4 +174,68 @@ run("sweep hash.lua --out l", 1, "this one returned a n")
 runner.write("hash.lua", "")
 run("sweep hash.lua --out l", 1, "this one returned a n")
 
+-- ---- rows that are whole, but not right ----
+
+--- FNV-1a, 64 bits, as the blocks of a part have it.
+local function checksum(text)
+  local h = 0xcbf29ce484222325
+  for i = 1, #text do h = (h ~ text:byte(i)) * 0x100000001b3 end
+  return string.format("%016x", h)
+end
+local function block(lines) return string.format("@ %d %s\n%s", #lines, checksum(lines), lines) end
+local blocks = part:match "\n(.*)$"
+local first_line = blocks:match "\n([^\n]*\n)"
+check.equal(block(blocks:match "^@ %d+ %x+\n(.*)$"), blocks) -- all rows came in one block
+local function folder_of(text)
+  runner.shell("cd " .. runner.quote(runner.folder) .. " && rm -rf o && mkdir o")
+  runner.write("o/words.0-1.rows", text)
+end
+for name, row in pairs { ["a run beyond the last"] = "0.1\t5\tok\t\n", ["a run below 0"] = "0.1\t-1\tok\t\n", ["no run"] = "0.1\n",
+  ["no sign"] = "0.1\t0\tok\t\tword\tsign\n", ["a name without end"] = "0.1\t0\tok\t\tword\t" .. ("n"):rep(300) .. "=1\n" } do
+  folder_of(head .. block(row))
+  run("gather o", 4, "a row of 'words' is damaged")
+  run("sweep words.lua --out o", 4, "a row of 'words' is damaged")
+  check.truth(not runner.exists "o/words.csv", name)
+end
+folder_of(head .. blocks .. block(first_line)) -- a run that is there twice counts once
+run("gather o", 0)
+check.equal(runner.read "o/words.csv", table_of)
+folder_of(head .. blocks)
+runner.shell("cd " .. runner.quote(runner.folder) .. "/o && ln -s words.0-1.rows words.0-2.rows") -- nothing follows a link
+run("gather o", 0)
+check.equal(runner.read "o/words.csv", table_of)
+runner.write("o/words.0-3.rows", (head:gsub(" %x+ 5 ", " 0000000000000001 5 "))) -- of another script
+run("gather o", 4, "holds rows of another sweep 'words'")
+run("sweep words.lua --out o", 4, "holds rows of another sweep 'words'")
+folder_of(head .. blocks)
+runner.write("o/words.0-2.rows", (head:gsub(" 5 ", " 6 "))) -- of other runs
+run("gather o", 4, "holds rows of another sweep 'words'")
+folder_of(head .. blocks)
+runner.write("o/words.0-2.rows", (head:gsub("word\n", "ward\n"))) -- of another parameter
+run("gather o", 4, "holds rows of another sweep 'words'")
+folder_of(head .. blocks)
+runner.write("o/" .. ("x"):rep(210) .. ".0-1.rows", head .. blocks) -- a name that no sweep has
+runner.write("o/more.0-1.rows", head .. block(first_line))
+runner.write("o/more.0-2.rows", head)
+run("gather o", 3, "'more' has 1 of 5 runs; the rest is to do") -- another sweep beside it, put together as far as it is
+check.equal(runner.read "o/words.csv", table_of)
+check.truth(runner.exists "o/more.partial.csv")
+
+-- ---- scripts of sweeps that are none ----
+
+runner.write("wrong.lua", "return impact.")
+run("sweep wrong.lua --out l", 1, "wrong.lua:1:")
+runner.write("wrong.lua", "return setmetatable({}, { __name = 'impact.swoop' })")
+run("sweep wrong.lua --out l", 1, "a sweep needs a script that returns impact.sweep{...}; this one returned a table")
+runner.write("wrong.lua", "\27Lua")
+run("sweep wrong.lua --out l", 1, "attempt to load a binary chunk")
+run("sweep absent.lua --out l", 1, "cannot open absent.lua")
+run("sweep nothing --out l", 1, "cannot open nothing: Is a directory")
+runner.write("wrong.lua", (rows:gsub('name = "words"', 'name = "a/b"')))
+run("sweep wrong.lua --out l", 1, "the sweep's name 'a/b' names the files: it must be plain")
+do -- the fence of a sweep: there, or told
+  local code, _, said = runner.command("sweep words.lua --out fenced --quiet --fence")
+  check.truth(code == 0 and said == "" or code == 1 and said:find "not fenced: ", "fenced or told: " .. said)
+end
+
 check.report "command"

@@ -142,4 +142,17 @@ local code, said = run("FAIL_TTY=1", "--max-time 2")
 check.equal(code, 5)
 check.truth(said:find "t = .- of 1e%+08 s, %d+ %%", "progress is shown")
 
+runner.write("sweep.lua", [[
+  local impact = require "impact"
+  return impact.sweep { name = "many", parameters = { speed = impact.grid(1, 3, 100000) }, scene = function(p)
+    if p.speed > 1 and p.speed < 1.0001 then error "too slow" end
+    return { duration = 20, output_rate = 0, bodies = {
+      impact.body { name = "ball", shape = impact.sphere(0.1), position = { 0, 0, 0.2 }, velocity = { p.speed, 0, 0 }, restitution = 0.999 },
+      impact.body { name = "floor", shape = impact.plane(), restitution = 1 } } } end }]])
+make "true"
+code, said = within("FAIL_TTY=1", "sweep sweep.lua --out o -j 2 --max-time 2")
+check.equal(code, 5)
+check.truth(said:find "\r\27%[K%d+ of 100000 runs, %S+ per second, about %d+ s left, [1-9]%d* failed", "a sweep's progress is shown: " .. said:sub(1, 200))
+check.truth(said:find "\r\27%[Kimpact: time limit of 2 s reached; %d+ of 100000 runs done here, the same command goes on\n$", "and cleared: " .. said:sub(-200))
+
 check.report "refused calls"
