@@ -23,10 +23,9 @@ const char *quat_status_string(quat_status status)
 
 /* ---- lengths ---- */
 
-double quat_norm(quat q)
+double quat_norm_far(quat q)
 {
-    const double n2 = quat_norm2(q);
-    if (n2 >= 1e-280 && n2 <= 1e280) return sqrt(n2);
+    if (q.w == 0 && q.x == 0 && q.y == 0 && q.z == 0) return 0;
     if (isinf(q.w) || isinf(q.x) || isinf(q.y) || isinf(q.z)) return INFINITY;
     int exponent;
     const quat s = quat_prescale(q, &exponent);

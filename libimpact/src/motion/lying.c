@@ -347,7 +347,8 @@ impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, 
     imp_stride *stride = &motion->stride;
     imp_works *works = &motion->works;
     impact_status status = imp_motion_make_room(motion);
-    if (status == IMPACT_OK) status = imp_dense_reserve(dense, motion->world->arena, motion->size);
+    if (status == IMPACT_OK)
+        status = imp_dense_reserve(dense, motion->world->arena, motion->size, motion->world->body_count);
     if (status != IMPACT_OK) return status;
     const double unit = lying->body->mass * lying->size * lying->size, t0 = stride->t;
     double end[IMP_FACE_STATE];
@@ -360,7 +361,9 @@ impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, 
                          .terms = IMP_DENSE_TERMS,
                          .clocked = true,
                          .c = dense->c,
-                         .room = dense->room};
+                         .room = dense->room,
+                         .seen = dense->seen,
+                         .seen_room = dense->seen_room};
     memset(dense->c, 0, sizeof *dense->c * IMP_DENSE_TERMS * (size_t)dense->size);
     put_of_path(dense, Y_TIME, path, IMP_FACE_TIME, t0, 1);
     put_of_path(dense, Y_SLIDING, path, IMP_FACE_WORK, works->sliding, unit);

@@ -65,6 +65,7 @@ void imp_motion_close(imp_motion *motion)
     imp_motion_forget(motion);
     imp_persist_free(&motion->persist);
     imp_arena_give(arena, motion->dense.c);
+    imp_arena_give(arena, motion->dense.seen);
     imp_arena_give(arena, motion->kept_touches);
     imp_arena_give(arena, motion->kept_pairs);
     imp_arena_give(arena, motion->resting);

@@ -94,7 +94,8 @@ static impact_status keep_pile_step(imp_motion *motion, double t0, const imp_wor
     enum { TERMS = 6 };
     imp_dense *dense = &motion->dense;
     impact_status status = imp_motion_make_room(motion);
-    if (status == IMPACT_OK) status = imp_dense_reserve(dense, motion->world->arena, motion->size);
+    if (status == IMPACT_OK)
+        status = imp_dense_reserve(dense, motion->world->arena, motion->size, motion->world->body_count);
     if (status != IMPACT_OK) return status;
     const double t1 = motion->stride.t;
     dense->t0 = t0, dense->t1 = dense->end = t1;

@@ -17,7 +17,8 @@ static void keep_still(imp_dense *dense, const double *y)
 impact_status imp_motion_keep_step(imp_motion *motion, double t0, double t1)
 {
     imp_dense *dense = &motion->dense;
-    const impact_status status = imp_dense_reserve(dense, motion->world->arena, motion->size);
+    const impact_status status =
+        imp_dense_reserve(dense, motion->world->arena, motion->size, motion->world->body_count);
     if (status != IMPACT_OK) return status;
     double begin;
     impact_ode_last_step(motion->ode, &begin, &dense->end);

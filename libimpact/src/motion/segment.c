@@ -239,16 +239,15 @@ static void bound_spin(const imp_body *body, double momentum, double torque, imp
     b->spin_up = rate + b->omega * b->omega;
 }
 
-static imp_bounds dense_bounds(const imp_segment *s, const imp_body *body, double t, double window)
+static imp_bounds find_dense_bounds(const imp_segment *s, const imp_body *body, double t, double window)
 {
-    imp_dense_rate time, r[6];
-    imp_dense_rates(s->dense, t, window, Y_TIME, 1, &time);
-    imp_dense_rates(s->dense, t, window, first_of(s) + Y_VELOCITY, 6, r);
-    if (!s->dense->clocked) time = (imp_dense_rate){.rate = 1, .most_rate = 1};
+    const imp_dense_window at = imp_dense_window_of(s->dense, t, window);
+    imp_dense_rate time = {.rate = 1, .most_rate = 1}, r[IMP_DENSE_AT_ONCE];
+    if (s->dense->clocked) imp_dense_rates(s->dense, at, Y_TIME, 1, &time);
+    imp_dense_rates(s->dense, at, first_of(s) + Y_VELOCITY, 6, r);
     /* the clock is slowest where it may have come from here at its fastest change, and no slower than a tenth: within a
      * step of the integrator it changes by less */
-    const double span = imp_dense_tau(s->dense, fmin(t + window, s->t1)) - imp_dense_tau(s->dense, t);
-    const double slowest = fmax(0.1 * time.rate, time.rate - span * time.most_second);
+    const double slowest = fmax(0.1 * time.rate, time.rate - at.w * s->dense->h * time.most_second);
     double rate = 0, second = 0, momentum = 0, torque = 0;
     for (int k = 0; k < 3; k++) {
         rate += r[k].most_rate * r[k].most_rate;
@@ -261,6 +260,15 @@ static imp_bounds dense_bounds(const imp_segment *s, const imp_body *body, doubl
     b.jerk = (sqrt(second) + sqrt(rate) * time.most_second / slowest) / (slowest * slowest);
     bound_spin(body, sqrt(momentum), sqrt(torque) / slowest, &b);
     return b;
+}
+
+static imp_bounds dense_bounds(const imp_segment *s, const imp_body *body, double t, double window)
+{
+    imp_dense_seen *seen = s->dense->seen ? &s->dense->seen[s->place] : NULL;
+    if (seen && seen->t == t && seen->window == window) return seen->bounds;
+    const imp_bounds bounds = find_dense_bounds(s, body, t, window);
+    if (seen) *seen = (imp_dense_seen){t, window, bounds};
+    return bounds;
 }
 
 imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double t, double window)
@@ -319,6 +327,6 @@ double imp_segment_top_speed(const imp_segment *s, const imp_body *body, double 
         return fmax(speed, qvec3_norm(s->acceleration) / body->linear_rate); /* towards g/k, on a line */
     if (s->kind != IMP_SEGMENT_DENSE) return is_zero(s->acceleration) ? speed : INFINITY;
     imp_dense_rate r[3];
-    imp_dense_rates(s->dense, t, s->t1 - t, first_of(s) + Y_VELOCITY, 3, r);
+    imp_dense_rates(s->dense, imp_dense_window_of(s->dense, t, s->t1 - t), first_of(s) + Y_VELOCITY, 3, r);
     return sqrt(r[0].most * r[0].most + r[1].most * r[1].most + r[2].most * r[2].most);
 }

@@ -79,14 +79,7 @@ static inline qvec3 imp_segment_place(const imp_segment *segment, const imp_body
     return qvec3_axpy(T, qvec3_axpy(0.5 * T, segment->acceleration, segment->start.v), segment->start.x);
 }
 
-/* What the body can do over [t, t + window], no less. */
-typedef struct imp_bounds {
-    qvec3 acceleration; /* at t, m/s^2 */
-    qvec3 torque;       /* at t, N m */
-    double jerk;        /* |x'''|, m/s^3 */
-    double omega;       /* 1/s */
-    double spin_up;     /* |omega'| + |omega|^2 >= |m''|, m fixed in the world seen from the body, 1/s^2 */
-} imp_bounds;
+/* Over [t, t + window]. */
 imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, double t, double window);
 /* Its acceleration and torque alone, where its own variable is this. */
 void imp_segment_rates(const imp_segment *segment, const imp_body *body, double own, qvec3 *acceleration,

@@ -187,8 +187,14 @@ QUAT_API quat quat_mul_compensated(quat p, quat q);
 
 /* |q|^2; overflows and underflows as the sum does. */
 QUAT_INLINE double quat_norm2(quat q) { return quat_dot(q, q); }
+/* |q| where its square may overflow or underflow; quat_norm asks for it there. */
+QUAT_API double quat_norm_far(quat q);
 /* |q| without overflow or underflow; inf for an infinite component, else NaN for a NaN. */
-QUAT_API double quat_norm(quat q);
+QUAT_INLINE double quat_norm(quat q)
+{
+    const double n2 = quat_norm2(q);
+    return n2 >= 1e-280 && n2 <= 1e280 ? sqrt(n2) : quat_norm_far(q);
+}
 /* True when no component is infinite or NaN. */
 QUAT_INLINE bool quat_isfinite(quat q) { return isfinite(q.w) && isfinite(q.x) && isfinite(q.y) && isfinite(q.z); }
 
