@@ -207,8 +207,9 @@ static pile_scene drawn(uint64_t seed)
 
 static bool in_time(void *context, double t, double end)
 {
+    static int asked; /* the clock takes as long as a small event */
     (void)t, (void)end;
-    return cpu_clock() < *(const double *)context + most_cpu;
+    return ++asked % 64 || cpu_clock() < *(const double *)context + most_cpu;
 }
 
 static int ascending(const void *a, const void *b)
