@@ -34,12 +34,14 @@ static int corner_of(const imp_island *island, const imp_pair *pair, const imp_p
     const imp_body *under = &world->bodies[pair->body2];
     const impact_feature on = point->feature[1];
     if (world->bodies[pair->body1].shape.kind == IMPACT_SPHERE) {
-        /* at the seam of two faces it is on the one that it goes to */
+        /* at the seam of two faces it is on the one that it goes to: within that of the border its normal may be off by
+         * as much, or by what steps err */
         const qvec3 v = island->states[pair->body1].v;
         const double speed = qvec3_norm(v), ahead = IMP_TOUCHING * world->bodies[pair->body1].radius;
         impact_contact foot = point->contact;
         if (speed > 0) foot.offset2 = qvec3_axpy(ahead / speed, v, foot.offset2);
-        *face = imp_corner_face_under(under, &island->states[pair->body2], &foot);
+        *face = imp_corner_face_under(under, &island->states[pair->body2], &foot,
+                                      island->stepped ? IMP_PILE_SLACK : 2 * IMP_TOUCHING);
         return *face > 0 ? 1 : 0;
     }
     *face = on.kind == IMPACT_FACE && on.index >= 0 && on.index < imp_corner_faces(under) ? on.index + 1 : 0;

@@ -178,15 +178,16 @@ static double within_border(const imp_body *body, const imp_state *state, int fa
     return least;
 }
 
-int imp_corner_face_under(const imp_body *body, const imp_state *state, const impact_contact *contact)
+int imp_corner_face_under(const imp_body *body, const imp_state *state, const impact_contact *contact, double within)
 {
     const int count = imp_corner_faces(body);
     imp_form form;
     if (count > 0) imp_form_make(&body->shape, 1, quat_identity(), &form);
     for (int f = 0; f < count; f++) {
         const qvec3 n = quat_rotate(imp_shape_axes(body, state), face_normal(&form, f));
-        /* a foot within the border has its nearest point on the face, whose normal the contact then has */
-        if (qvec3_dot(n, contact->normal) > 0.5 && within_border(body, state, f, contact->offset2) > 0) return f + 1;
+        /* the contact of an edge has a foot there, too, but a normal of its own */
+        if (qvec3_norm(qvec3_sub(n, contact->normal)) > within) continue;
+        if (within_border(body, state, f, contact->offset2) > 0) return f + 1;
     }
     return 0;
 }

@@ -27,8 +27,9 @@ int imp_corner_number(const imp_body *body, impact_feature feature);
  * a plane is not one of them. */
 int imp_corner_faces(const imp_body *body);
 
-/* The face of the body, from 1, within whose border a sphere touches it at the contact; 0: none on which it is held. */
-int imp_corner_face_under(const imp_body *body, const imp_state *state, const impact_contact *contact);
+/* The face of the body, from 1, within whose border a sphere touches it at the contact, whose normal is the face's to
+ * `within` rad; 0: none on which it is held. */
+int imp_corner_face_under(const imp_body *body, const imp_state *state, const impact_contact *contact, double within);
 
 /* Whether the corner of that number, or for 0 any, of the pair's body 1 is held on its body 2. */
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner);

@@ -49,7 +49,7 @@ static double reach(const imp_body *body, const imp_state *state, qvec3 d, qvec3
     const double h = impact_shape_support(&body->shape, own, &farthest) + qvec3_dot(d, shift);
     *place = qvec3_add(shift, quat_rotate(axes, farthest));
     impact_face face;
-    const int dimension = impact_shape_face(&body->shape, own, IMP_ROUNDOFF * body->radius, &face);
+    const int dimension = impact_shape_face(&body->shape, own, IMP_TOUCHING * body->radius, &face);
     if (dimension == 1)
         *place = nearest_on_segment(qvec3_add(shift, quat_rotate(axes, face.point[0])),
                                     qvec3_add(shift, quat_rotate(axes, face.point[1])), touches);
@@ -86,6 +86,7 @@ void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp
         for (int f = 0; f < faces[k] && slowest < 0; f++) {
             const qvec3 out = quat_rotate(imp_shape_axes(body[k], state[k]), outward_normal(&body[k]->shape, f)),
                         n = k == 0 ? qvec3_neg(out) : out;
+            if (qvec3_norm(qvec3_sub(n, found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
             const parting p = parting_along(body, state, &found, n);
             if (!(p.rate > slowest && p.gap >= -within)) continue;
             slowest = p.rate;
