@@ -71,7 +71,11 @@ impact_lua_scene *impact_lua_check_scene(lua_State *L)
 {
     impact_lua_scene *self = luaL_checkudata(L, 1, IMPACT_LUA_SCENE);
     if (!self->scene) quat_lua_error(L, "the scene is closed");
-    if (self->L) quat_lua_error(L, "scene '%s' is running; ask when the run has ended", self->name);
+    if (self->L)
+        quat_lua_error(L,
+                       "scene '%s' is running; ask when the run has ended, or go on by scene:step() or scene:run_to(t) "
+                       "and ask between",
+                       self->name);
     return self;
 }
 

@@ -275,6 +275,7 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     const int ran = run_scene(L, scene, runner, name, plot);
     if (ran != IMPACT_EXIT_OK && ran != IMPACT_EXIT_INACCURATE) return ran;
     impact_runner_drop_checkpoint(runner);
+    const int unsaved = impact_runner_tell_unsaved(runner);
     const int reason = lua_gettop(L);
     int drew = plot ? draw_scene(L, scene, runner, name, &drawn) : IMPACT_EXIT_OK;
     const bool views = drew == IMPACT_EXIT_OK && runner->shown;
@@ -283,7 +284,7 @@ static int drive_scene(lua_State *L, int scene, impact_runner *runner)
     const int verified = runner->verify ? verify_scene(L, scene, runner) : IMPACT_EXIT_OK;
     lua_settop(L, reason);
     if (!runner->quiet) summarise(L, scene, runner, name, drawn, views && drew == IMPACT_EXIT_OK);
-    return drew != IMPACT_EXIT_OK ? drew : ran != IMPACT_EXIT_OK ? ran : verified;
+    return drew != IMPACT_EXIT_OK ? drew : ran != IMPACT_EXIT_OK ? ran : unsaved != IMPACT_EXIT_OK ? unsaved : verified;
 }
 
 /* The table arg, as lua has it. */

@@ -55,6 +55,7 @@ typedef struct impact_runner {
     bool mpi, hdf5;
     double save_at; /* s, of the scene; NaN: never */
     const char *save_name;
+    bool saved_at_time;
     double checkpoint; /* s; 0: none */
     double saved;      /* when, s, monotonic */
     char run_name[256];
@@ -167,6 +168,8 @@ int impact_runner_refuse_script(lua_State *L, const impact_runner *runner);
 /* The host's save function. */
 bool impact_runner_save(void *context, impact_scene *scene, bool at_time, char *message, size_t message_size);
 void impact_runner_drop_checkpoint(const impact_runner *runner);
+/* Of --save at a time that the run did not come to: said, and its exit code. */
+int impact_runner_tell_unsaved(impact_runner *runner);
 /* Reads the file of --resume, before the fence; an exit code. */
 int impact_runner_read_resumed(impact_runner *runner);
 /* The scene at index goes on from there; raises an error where it cannot. */

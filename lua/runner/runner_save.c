@@ -54,7 +54,17 @@ bool impact_runner_save(void *context, impact_scene *scene, bool at_time, char *
                  status < 0 ? impact_scene_message(scene) : strerror(errno));
     free(bytes);
     runner->saved = impact_runner_now();
+    runner->saved_at_time = runner->saved_at_time || (good && at_time);
     return good;
+}
+
+int impact_runner_tell_unsaved(impact_runner *runner)
+{
+    char message[400];
+    if (!runner->save_name || runner->saved_at_time) return IMPACT_EXIT_OK;
+    snprintf(message, sizeof message, "nothing is saved as '%s': the run ended before t = %g s", runner->save_name,
+             runner->save_at);
+    return impact_runner_complain(runner, IMPACT_EXIT_OUTPUT, message);
 }
 
 /* A run that came to its end needs no checkpoint. */

@@ -177,6 +177,9 @@ do
     check.equal(runner.files(), "half long.csv long_events.csv")
     check.equal((runner.command("script.lua --quiet --out p --resume o/half")), 0)
     for _, name in ipairs { "long.csv", "long_events.csv" } do check.equal(rows("p/" .. name, 0), rows("o/" .. name, 1.3)) end
+    local code, _, complained = runner.script(text, "--quiet --save 9 never")
+    check.equal(code, 4)
+    check.equal(complained, "impact: nothing is saved as 'never': the run ended before t = 9 s\n")
   end
   -- A run that is killed leaves its last checkpoint; the run that goes on from there ends as one does that was not.
   local text = bounce:gsub("SHAPE", "impact.sphere(0.1)"):gsub("DURATION", "2e4"):gsub("0.8 }", "1 }"):gsub("output_rate = 50", "output_rate = 1e-4")

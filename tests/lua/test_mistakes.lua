@@ -122,7 +122,7 @@ refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:run { csv
 refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:run { cvs = 'toss' }",
   "script.lua:11: unknown key 'cvs' in run (did you mean 'csv'?)")
 refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:run { on_event = function() scene:time() end, csv = 'toss', on_sample = function() scene:run() end }",
-  "script.lua:11: scene 'toss' is running; ask when the run has ended")
+  "script.lua:11: scene 'toss' is running; ask when the run has ended, or go on by scene:step() or scene:run_to(t) and ask between")
 refused("local scene = (function()\n" .. scene(good) .. "end)()\nscene:state 'cone'", "script.lua:11: scene 'toss' has no body 'cone'")
 
 -- A plot that fails keeps the CSV files, which are whole, and tells.
