@@ -393,10 +393,12 @@ static int unknown_key(const quat_lua_reader *reader, const char *const keys[])
 quat_lua_reader quat_lua_read(lua_State *L, int index, const char *kind, const char *where, const char *const keys[])
 {
     quat_lua_reader reader = {L, lua_absindex(L, index), kind, NULL, where};
-    char text[80];
-    if (!lua_istable(L, index))
-        quat_lua_reader_error(&reader, "a table of its values is needed, got %s",
-                              describe(L, index, text, sizeof text));
+    char text[80], known[400];
+    if (!lua_istable(L, index)) {
+        list_keys(keys, known, sizeof known);
+        quat_lua_reader_error(&reader, "a table of its values is needed, got %s (keys: %s)",
+                              describe(L, index, text, sizeof text), known);
+    }
     luaL_checkstack(L, 4, NULL);
     if (raw_field(L, reader.index, "name") == LUA_TSTRING) reader.name = lua_tostring(L, -1);
     lua_pop(L, 1);

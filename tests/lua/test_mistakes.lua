@@ -65,7 +65,9 @@ refused(scene(good .. "linear_damping = 1,"), "script.lua:2: body 'coin': linear
 refused(scene(good .. "static = 1,"), "script.lua:2: body 'coin': static must be true or false, got 1")
 refused('require "impact".body { shape = 1 }', "script.lua:1: body: name is missing")
 refused('require "impact".body { name = "" }', "script.lua:1: body '': name must not be empty")
-refused('require "impact".body(3)', "script.lua:1: body: a table of its values is needed, got 3")
+refused('require "impact".body(3)', "script.lua:1: body: a table of its values is needed, got 3 (keys: name, shape, static, mass, density, moments, position, " ..
+  "orientation, normal, velocity, omega, friction, restitution, torsional_friction, rolling_friction, linear_damping, angular_damping, shape_position, " ..
+  "shape_orientation, trail)")
 
 -- The scene's keys.
 refused(scene(good, "duraton = 3,"), "script.lua:6: unknown key 'duraton' in scene 'toss' (did you mean 'duration'?)")
