@@ -57,6 +57,20 @@ static double reach(const imp_body *body, const imp_state *state, qvec3 d, qvec3
     return h;
 }
 
+/* How far the direction separates them: most do not, and no place is asked for then. */
+static double separated_by(const imp_body *const body[2], const imp_state *const state[2], qvec3 n)
+{
+    double gap = qvec3_dot(n, qvec3_sub(state[0]->x, state[1]->x));
+    for (int k = 0; k < 2; k++) {
+        const qvec3 d = k == 0 ? qvec3_neg(n) : n;
+        qvec3 place;
+        gap -=
+            impact_shape_support(&body[k]->shape, quat_rotate_inverse(imp_shape_axes(body[k], state[k]), d), &place) +
+            qvec3_dot(d, imp_shape_offset(body[k], state[k]));
+    }
+    return gap;
+}
+
 static parting parting_along(const imp_body *const body[2], const imp_state *const state[2],
                              const impact_contact *contact, qvec3 n)
 {
@@ -87,6 +101,7 @@ void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp
             const qvec3 out = quat_rotate(imp_shape_axes(body[k], state[k]), outward_normal(&body[k]->shape, f)),
                         n = k == 0 ? qvec3_neg(out) : out;
             if (qvec3_norm(qvec3_sub(n, found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
+            if (!(separated_by(body, state, n) >= -within)) continue;
             const parting p = parting_along(body, state, &found, n);
             if (!(p.rate > slowest && p.gap >= -within)) continue;
             slowest = p.rate;
