@@ -72,7 +72,7 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
     const double flush = island->stepped ? imp_stepped_flush(b1, b2) : touching;
     const int count = imp_points_find(world, &whole, island->states, touching, flush, points);
     const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
-    if (status == IMPACT_OK && count == 0 && before[p].corner > 0) world->pairs[world->pair_count++] = whole;
+    if (status == IMPACT_OK && count == 0) world->pairs[world->pair_count++] = whole;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
         int face;
         const int corner = corner_of(island, &whole, &points[k], count, &face);
