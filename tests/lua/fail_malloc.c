@@ -3,7 +3,7 @@
  * For LD_PRELOAD: of the process's allocations number FAIL_AT fails, and all after it unless FAIL_ONCE is set;
  * FAIL_COUNT puts their number on stderr at the end. For this process alone, not for those that it starts.
  *
- * FAIL_EACH: at every allocation the process is doubled. In the double it fails, and all after it (each hundredth
+ * FAIL_EACH=N: at each Nth allocation the process is doubled. In the double it fails, and all after it (each hundredth
  * alone); the process waits for how the double ends, and goes on. At the end a line on stderr: "each N refused R
  * signals S", N doubles, of them R that ended with an exit code other than 0, and S by a signal. Told at once are
  * doubles that hang, exit codes but 0, 1, 4 and 5, and such as end so without one line on stderr.
@@ -30,7 +30,8 @@ void fail_malloc_end(void); /* kit/exit_measured.c asks for it */
 enum { LONGEST = 20 }; /* s */
 
 static long count, fail_at, refused, signals;
-static int once, ready, doubling, busy, done;
+static long doubling; /* N */
+static int once, ready, busy, done;
 static pid_t first;
 
 /* How a double ended; its words are in the file. */
@@ -97,11 +98,12 @@ static int fails(void)
         first = getpid();
         fail_at = at ? atol(at) : 0;
         once = getenv("FAIL_ONCE") != NULL;
-        doubling = getenv("FAIL_EACH") != NULL;
+        const char *each = getenv("FAIL_EACH");
+        doubling = each ? atol(each) : 0;
     }
     if (busy || done) return 0;
     count++;
-    if (doubling && getpid() == first) {
+    if (doubling && count % doubling == 0 && getpid() == first) {
         busy = 1;
         const int here = is_double();
         busy = 0;
@@ -146,5 +148,5 @@ __attribute__((destructor)) static void tell(void)
     const long total = count;
     if (getenv("FAIL_COUNT")) fprintf(stderr, "%ld\n", total);
     if (doubling && getpid() == first)
-        dprintf(STDERR_FILENO, "each %ld refused %ld signals %ld\n", total, refused, signals);
+        dprintf(STDERR_FILENO, "each %ld refused %ld signals %ld\n", total / doubling, refused, signals);
 }
