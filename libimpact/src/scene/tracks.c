@@ -231,8 +231,8 @@ static imp_box static_box(const imp_body *body, const imp_state *state)
     store(solid.position, x);
     for (int i = 0; i < 3; i++) {
         const qvec3 axis = {i == 0, i == 1, i == 2}, d = quat_rotate_inverse(solid.orientation, axis);
-        const double reach = impact_shape_support(&solid.shape, d, NULL) + rounding(solid.position);
-        box.low[i] = x[i] - reach, box.high[i] = x[i] + reach;
+        box.low[i] = x[i] - impact_shape_support(&solid.shape, qvec3_neg(d), NULL) - rounding(solid.position);
+        box.high[i] = x[i] + impact_shape_support(&solid.shape, d, NULL) + rounding(solid.position);
     }
     return box;
 }
