@@ -47,7 +47,7 @@ static side side_of(const imp_body *body, const imp_state *state, qvec3 outward,
 }
 
 /* W v: of a turned core the circle through the place, and the ball about it. */
-static qvec3 curved(const side *s, qvec3 v)
+static qvec3 feature_bend(const side *s, qvec3 v)
 {
     const impact_shape *shape = &s->body->shape;
     if (!imp_has_faces(s->body)) return imp_surface_bend(s->body, s->state, s->outward, v);
@@ -73,7 +73,7 @@ static qvec3 with_parts(qvec3 n, qvec3 p, double along_p, qvec3 q, double along_
 }
 
 /* (W1 + W2) v */
-static qvec3 both_curved(const side s[2], qvec3 v) { return qvec3_add(curved(&s[0], v), curved(&s[1], v)); }
+static qvec3 both_bend(const side s[2], qvec3 v) { return qvec3_add(feature_bend(&s[0], v), feature_bend(&s[1], v)); }
 
 /* What (W1 + W2) n' is, but for places that go along edges. */
 static qvec3 wanted_bend(const side s[2], qvec3 n)
@@ -81,15 +81,15 @@ static qvec3 wanted_bend(const side s[2], qvec3 n)
     const qvec3 one = qvec3_add(s[0].velocity, qvec3_cross(s[0].omega, s[0].arm)),
                 two = qvec3_add(s[1].velocity, qvec3_cross(s[1].omega, s[1].arm)), u = qvec3_sub(one, two),
                 slip = qvec3_axpy(-qvec3_dot(u, n), n, u);
-    return qvec3_add(slip, qvec3_add(curved(&s[0], s[0].turns), curved(&s[1], s[1].turns)));
+    return qvec3_add(slip, qvec3_add(feature_bend(&s[0], s[0].turns), feature_bend(&s[1], s[1].turns)));
 }
 
 /* Where nothing bends (a corner on an edge) the normal is any between those beside it: it turns as the bodies do. */
 static double turn_across(const side s[2], qvec3 n, qvec3 t, qvec3 rest)
 {
-    const double bend = qvec3_dot(t, both_curved(s, t));
+    const double bend = qvec3_dot(t, both_bend(s, t));
     if (!(bend > IMP_TOUCHING * s[0].body->radius)) return 0.5 * qvec3_dot(t, qvec3_add(s[0].turns, s[1].turns));
-    return qvec3_dot(t, qvec3_sub(wanted_bend(s, n), both_curved(s, rest))) / bend;
+    return qvec3_dot(t, qvec3_sub(wanted_bend(s, n), both_bend(s, rest))) / bend;
 }
 
 static qvec3 normal_rate(const side s[2], qvec3 n)
@@ -104,7 +104,7 @@ static qvec3 normal_rate(const side s[2], qvec3 n)
         const qvec3 t = qvec3_cross(n, s[k].e), rest = qvec3_scale(s[k].e, qvec3_dot(s[k].e, s[k].turns));
         return qvec3_axpy(turn_across(s, n, t, rest), t, rest);
     }
-    const qvec3 t1 = imp_tangent(n), t2 = qvec3_cross(n, t1), c1 = both_curved(s, t1), c2 = both_curved(s, t2),
+    const qvec3 t1 = imp_tangent(n), t2 = qvec3_cross(n, t1), c1 = both_bend(s, t1), c2 = both_bend(s, t2),
                 wanted = wanted_bend(s, n);
     if (!(fabs(qvec3_dot(n, qvec3_cross(c1, c2))) > IMP_TOUCHING * qvec3_norm(c1) * qvec3_norm(c2)))
         return qvec3_scale(qvec3_add(s[0].turns, s[1].turns), 0.5);
@@ -119,8 +119,10 @@ imp_rates imp_feature_rates(const imp_world *world, const imp_pair *pair, const 
                        side_of(&world->bodies[pair->body2], &states[pair->body2], n, contact->offset2, n)};
     const qvec3 apart = qvec3_sub(s[0].velocity, s[1].velocity);
     imp_rates rates = {.normal = normal_rate(s, n)};
-    const qvec3 own1 = qvec3_add(qvec3_cross(s[0].omega, s[0].arm), curved(&s[0], qvec3_sub(s[0].turns, rates.normal))),
-                own2 = qvec3_add(qvec3_cross(s[1].omega, s[1].arm), curved(&s[1], qvec3_sub(rates.normal, s[1].turns)));
+    const qvec3 own1 = qvec3_add(qvec3_cross(s[0].omega, s[0].arm),
+                                 feature_bend(&s[0], qvec3_sub(s[0].turns, rates.normal))),
+                own2 = qvec3_add(qvec3_cross(s[1].omega, s[1].arm),
+                                 feature_bend(&s[1], qvec3_sub(rates.normal, s[1].turns)));
     if (s[0].dimension > 0 && s[1].dimension < s[0].dimension) {
         rates.arm2 = own2, rates.arm1 = qvec3_sub(own2, apart);
         return rates;
