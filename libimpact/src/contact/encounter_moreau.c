@@ -143,7 +143,7 @@ static void clean(int count, const imp_cone_mode *modes, const imp_cone_mode *st
 
 /* The problem of contacts that give way by so much for an impulse, into r and u of the room `to`: of several answers
  * the one that the other room's leads to (begun: there is one). Whether it is solved. */
-static bool give_way(moreau *m, const imp_cone_problem *problem, double gives, bool begun, int to)
+static bool solve_giving(moreau *m, const imp_cone_problem *problem, double gives, bool begun, int to)
 {
     const size_t n = 3 * (size_t)problem->count, own = n * (size_t)to, other = n * (size_t)(1 - to);
     imp_cone_problem giving = *problem;
@@ -165,10 +165,10 @@ static void share(moreau *m, const imp_cone_problem *problem, double *p)
     double mean = 0, gives = IMP_MOREAU_SHARING, least = gives * IMP_MOREAU_SHARED, ratio = IMP_MOREAU_SHARED;
     size_t at = 0;
     for (size_t i = 0; i < n; i++) mean += problem->w[i * (n + 1)] / (double)n;
-    if (!give_way(m, problem, gives * mean, false, 0)) return;
+    if (!solve_giving(m, problem, gives * mean, false, 0)) return;
     while (gives > 0) {
         const double next = gives <= least ? 0 : fmax(ratio * gives, least);
-        if (give_way(m, problem, next * mean, true, at == 0)) {
+        if (solve_giving(m, problem, next * mean, true, at == 0)) {
             at = 1 - at;
             gives = next;
             ratio = IMP_MOREAU_SHARED;
