@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <time.h>
 #include "kit/pile_scene.h"
+#include "measure.h"
 #include "options.h"
 
 enum { LOOKS = 40 };
@@ -100,12 +101,6 @@ static void run(long seed, int start, double most, tally *row)
     pile_scene_end(&pile);
 }
 
-static int by_size(const void *one, const void *other)
-{
-    const double a = *(const double *)one, b = *(const double *)other;
-    return (a > b) - (a < b);
-}
-
 int main(int argc, char **argv)
 {
     static const char *const names[] = {"--scenes", "--seed", "--seconds", NULL};
@@ -122,11 +117,11 @@ int main(int argc, char **argv)
     for (int start = 0; start < PILE_STARTS; start++) {
         tally row = {.seconds = seconds};
         for (long i = start; i < scenes; i += PILE_STARTS) run(seed + i, start, most, &row);
-        const long good = row.rest + row.ended;
-        qsort(seconds, (size_t)good, sizeof *seconds, by_size);
+        const int good = (int)(row.rest + row.ended);
+        const double median = measure_quantile(seconds, good, 0.5);
         printf("%s,%ld,%ld,%ld,%ld,%ld,%.2g,%.2g,%ld,%.1e,%.1e,%.1e\n", pile_start_name(start), row.scenes, row.rest,
-               row.ended, row.too_long, row.refused, good > 0 ? seconds[good / 2] : 0, row.most, row.slowest,
-               row.overlap, row.account, row.error);
+               row.ended, row.too_long, row.refused, good > 0 ? median : 0, row.most, row.slowest, row.overlap,
+               row.account, row.error);
         fflush(stdout);
     }
     free(seconds);

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <time.h>
 #include "../tests/kit/ramp_scene.h"
+#include "measure.h"
 #include "options.h"
 
 typedef struct tally {
@@ -82,12 +83,6 @@ static void run(long seed, int start, double most, tally *row)
     impact_scene_destroy(scene);
 }
 
-static int by_size(const void *one, const void *other)
-{
-    const double a = *(const double *)one, b = *(const double *)other;
-    return (a > b) - (a < b);
-}
-
 int main(int argc, char **argv)
 {
     static const char *const names[] = {"--scenes", "--seed", "--seconds", NULL};
@@ -104,11 +99,10 @@ int main(int argc, char **argv)
     for (int start = 0; start < RAMP_STARTS; start++) {
         tally row = {.seconds = seconds};
         for (long i = start; i < scenes; i += RAMP_STARTS) run(seed + i, start, most, &row);
-        const long good = row.rest + row.ended;
-        qsort(seconds, (size_t)good, sizeof *seconds, by_size);
+        const int good = (int)(row.rest + row.ended);
+        const double median = measure_quantile(seconds, good, 0.5);
         printf("%s,%ld,%ld,%ld,%ld,%ld,%.2g,%.2g,%ld,%.2g\n", ramp_start_name(start), row.scenes, row.rest, row.ended,
-               row.too_long, row.refused, good > 0 ? seconds[good / 2] : 0, good > 0 ? seconds[good - 1] : 0,
-               row.closed, row.off);
+               row.too_long, row.refused, good > 0 ? median : 0, good > 0 ? seconds[good - 1] : 0, row.closed, row.off);
         fflush(stdout);
     }
     free(seconds);

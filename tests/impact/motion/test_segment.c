@@ -4,6 +4,7 @@
  * bounds against the motion itself.
  */
 #include "motion/segment.h"
+#include "motion/motion_equations.h"
 #include "kit/contact_random.h"
 #include "kit/near.h"
 
@@ -208,6 +209,28 @@ static void a_steps_polynomial(void **state)
     }
 }
 
+/* Bounds are kept for who asks the same again: a step's, not those of the step before it. */
+static void bounds_are_of_their_step(void **state)
+{
+    (void)state;
+    imp_dense dense = {0};
+    imp_arena *arena;
+    const imp_body body = {.radius = 1, .mass = 1, .moments = {1, 1, 1}, .spherical = true};
+    const imp_state start = {.q = {1, 0, 0, 0}};
+    assert_int_equal(imp_arena_create(NULL, &arena), IMPACT_OK);
+    for (int step = 1; step <= 2; step++) {
+        const int size = Y_BODIES + Y_PER_BODY, v = Y_BODIES + Y_VELOCITY;
+        assert_int_equal(imp_dense_reserve(&dense, arena, size, 1), IMPACT_OK);
+        dense.t0 = 0, dense.t1 = dense.end = dense.h = 1, dense.size = size, dense.terms = 2;
+        for (int i = 0; i < 2 * size; i++) dense.c[i] = 0;
+        dense.c[size + v] = 3 * step; /* v_x rises by that over the step */
+        const imp_segment segment = imp_segment_dense(&dense, 0, &start);
+        for (int again = 0; again < 2; again++)
+            assert_near(imp_segment_bounds(&segment, &body, 0.25, 0.5).acceleration.x, 3 * step, 1e-14);
+    }
+    imp_arena_destroy(arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +240,7 @@ int main(void)
         cmocka_unit_test(a_rolling_balls_turning),
         cmocka_unit_test(bounds_hold),
         cmocka_unit_test(a_steps_polynomial),
+        cmocka_unit_test(bounds_are_of_their_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
