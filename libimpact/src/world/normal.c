@@ -100,6 +100,7 @@ void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp
         for (int f = 0; f < faces[k] && slowest < 0; f++) {
             const qvec3 out = quat_rotate(imp_shape_axes(body[k], state[k]), outward_normal(&body[k]->shape, f)),
                         n = k == 0 ? qvec3_neg(out) : out;
+            if (qvec3_norm(qvec3_sub(n, found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
             if (!(separated_by(body, state, n) >= -within)) continue;
             const parting p = parting_along(body, state, &found, n);
             if (!(p.rate > slowest && p.gap >= -within)) continue;
