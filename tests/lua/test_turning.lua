@@ -144,6 +144,17 @@ do
   end
 end
 
+-- A turntable's middle spins a ball up, J W/(tau g) for the spin, and then it goes along; on one that stands it rests.
+do
+  local tau = 3e-3
+  for _, W in ipairs { 0, 5 } do
+    local s = scene({ floor { omega = { 0, 0, W } }, ball { torsional_friction = tau } }, 0, { duration = 2 })
+    check.equal(s:run(), W == 0 and "at rest" or "end of time")
+    check.close(s:state("ball").omega.z, W, 1e-12)
+    check.close(s:energy().drive_work, 2 * s:energy().kinetic, 0.01 * s:energy().kinetic)
+  end
+end
+
 -- A break: balls that part roll out in closed form again, each on its own; the table's length is all of theirs.
 do
   local r, bodies = 0.028, { floor { friction = 0.5, rolling_friction = 3e-4, torsional_friction = 3e-4 } }

@@ -13,7 +13,8 @@
  * turned; with G v alone what rocks would lose energy in every step. Friction is against the slip of the middle: where
  * that turns the problem is solved again with u_t + c, c turning the first answer's slip into the mean of both ends'.
  *
- * Pairs with torsional or rolling friction have moments in the same problem (cone.h).
+ * Pairs with torsional or rolling friction have moments in the same problem (cone.h): c turns (mu u_t, tau w_n), and
+ * w_t.
  *
  * Free flight in uniform gravity is exact. A step is taken once whole and once in two halves; what their ends differ by
  * is its measured error, and chooses the next. Overlaps that arrivals leave, and gaps by which held contacts

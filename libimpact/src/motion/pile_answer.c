@@ -116,17 +116,50 @@ static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *s
     }
 }
 
-/* What turns the contact's slip at the end of the step, without changing its size, into the way it goes at the middle;
- * what velocity friction gives the contact by being off that way, m/s. 0 of slip that the step turns back. */
-static double lead_of(const imp_pile *pile, int c, double lead[6])
+/* The same of its moments about all three axes, 1/(kg m^2). */
+static double turning_mobility_of(const imp_pile *pile, int c)
+{
+    double w = 0;
+    for (int side = 0; side < 2; side++)
+        for (int k = 0; k < 3; k++)
+            for (int l = 0; l < 6; l++) w += pile->turns[c].side[side][k][l] * pile->turns[c].side[side][k][l];
+    return w;
+}
+
+/* What turns a slip at the end of the step, without changing its size, into the way it goes at the middle; returns by
+ * what angle, about. 0 of slip that the step turns back. */
+static double turn_to_middle(int count, const double *from, const double *to, double *lead)
+{
+    double meet = 0, slip = 0, mean = 0, off = 0;
+    for (int k = 0; k < count; k++) {
+        lead[k] = 0;
+        meet += from[k] * to[k];
+        slip = hypot(slip, to[k]), mean = hypot(mean, from[k] + to[k]);
+    }
+    if (!(slip > 0) || !(meet > 0)) return 0;
+    for (int k = 0; k < count; k++) {
+        lead[k] = slip * (from[k] + to[k]) / mean - to[k];
+        off = hypot(off, lead[k]);
+    }
+    return off / slip;
+}
+
+/* That of the contact's slip, which is one with its spin times tau/mu, and of its rolling; what velocity friction gives
+ * the bodies, of this size, by being off that way, m/s. */
+static double lead_of(const imp_pile *pile, int c, double size, double lead[6])
 {
     const int i = pile->width * c;
     const double *from = &pile->before[i], *to = &pile->u[i], *r = &pile->r[i];
     memset(lead, 0, 6 * sizeof *lead);
-    const double slip = hypot(to[1], to[2]), mean = hypot(from[1] + to[1], from[2] + to[2]);
-    if (!(slip > 0) || !(from[1] * to[1] + from[2] * to[2] > 0)) return 0;
-    for (int k = 1; k < 3; k++) lead[k] = slip * (from[k] + to[k]) / mean - to[k];
-    return mobility_of(pile, c) * hypot(r[1], r[2]) * hypot(lead[1], lead[2]) / slip;
+    if (pile->width == 3)
+        return turn_to_middle(2, &from[1], &to[1], &lead[1]) * mobility_of(pile, c) * hypot(r[1], r[2]);
+    const double arm = pile->friction[c] > 0 ? pile->lengths[c].torsional / pile->friction[c] : 0,
+                 slip[2][3] = {{from[1], from[2], arm * from[3]}, {to[1], to[2], arm * to[3]}},
+                 rubs = hypot(hypot(r[1], r[2]), arm > 0 ? r[3] / arm : 0), turns = size * turning_mobility_of(pile, c);
+    const double off = turn_to_middle(3, slip[0], slip[1], &lead[1]) * rubs * (mobility_of(pile, c) + arm * turns),
+                 rolls = turn_to_middle(2, &from[4], &to[4], &lead[4]) * hypot(r[4], r[5]) * turns;
+    lead[3] = arm > 0 ? lead[3] / arm : 0;
+    return off + rolls;
 }
 
 /* How fast the fastest of the island's bodies goes, m/s. */
@@ -164,12 +197,12 @@ static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, cons
 {
     const int count = question->count;
     const size_t size = (size_t)(pile->width * count);
-    const double natural = imp_pile_natural_time(world, pile->middle);
+    const double natural = imp_pile_natural_time(world, pile->middle), smallest = imp_pile_smallest(world);
     double most = 0, lead[6];
-    for (int c = 0; c < count; c++) most = fmax(most, lead_of(pile, c, lead));
-    if (!(most / h * natural * natural > IMP_PILE_LEAD * IMP_PILE_ERROR * imp_pile_smallest(world))) return first;
+    for (int c = 0; c < count; c++) most = fmax(most, lead_of(pile, c, smallest, lead));
+    if (!(most / h * natural * natural > IMP_PILE_LEAD * IMP_PILE_ERROR * smallest)) return first;
     for (int c = 0; c < count; c++) {
-        lead_of(pile, c, lead);
+        lead_of(pile, c, smallest, lead);
         memcpy(&pile->lead[pile->width * c], lead, sizeof *lead * (size_t)pile->width);
     }
     memcpy(pile->last_r, pile->r, size * sizeof *pile->r);

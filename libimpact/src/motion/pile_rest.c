@@ -12,7 +12,7 @@ static bool is_dragged(const imp_pile_contacts *touching, const imp_world *world
         if (under->driven && pair->friction > 0 &&
             qvec3_norm(imp_surface_velocity(under, point->contact.arm2)) > rest_speed)
             return true;
-        if (under->driven && imp_is_rough(pair) && qvec3_norm(under->spin) > 0) return true;
+        if (imp_is_turned(world, pair)) return true;
     }
     return false;
 }

@@ -83,6 +83,7 @@ static bool comes_to_rest(const imp_island *island, int body)
     for (int c = 0; c < island->motion.persist.count; c++) {
         const imp_touch *touch = &island->motion.persist.touches[c];
         if (touch->body1 != body && touch->body2 != body) continue;
+        if (imp_is_turned(&island->world, &island->world.pairs[touch->pair])) return false;
         if (touch->still) return true;
         const bool fades = touch->mode == IMP_SLIDE && !touch->onset && touch->friction > 0;
         if (fades && touch->speed <= 2 * island->scene->rest_speed) return false; /* it sticks first */

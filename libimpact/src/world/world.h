@@ -130,6 +130,13 @@ typedef struct imp_world {
 /* Whether its contact resists turning. */
 static inline bool imp_is_rough(const imp_pair *pair) { return pair->torsional > 0 || pair->rolling > 0; }
 
+/* Whether body 2 stands and its surface turns on under what resists that, wherever it touches. */
+static inline bool imp_is_turned(const imp_world *world, const imp_pair *pair)
+{
+    const imp_body *under = &world->bodies[pair->body2];
+    return under->driven && imp_is_rough(pair) && qvec3_norm(under->spin) > 0;
+}
+
 static inline bool imp_is_held(const imp_pair *pair) { return pair->mode != IMP_OPEN; }
 
 /* Three equal moments, but for the rounding of the formulas that gave them, are a sphere's. */
