@@ -27,8 +27,8 @@ static void place_spot(imp_world *world, imp_pair *pair, const imp_state *states
     const qvec3 n = quat_rotate(states[pair->body2].q, (qvec3){0, 0, 1});
     const imp_body *body = &world->bodies[pair->body1];
     const qvec3 outward = quat_rotate_inverse(imp_shape_axes(body, &states[pair->body1]), qvec3_neg(n));
-    imp_spot_find(&body->shape, (qvec3){beside(outward.x), beside(outward.y), beside(outward.z)}, pair->spot);
-    pair->carried = true;
+    imp_spot_find(&body->shape, (qvec3){beside(outward.x), beside(outward.y), beside(outward.z)}, pair->footing.spot);
+    pair->footing.on = IMP_FOOT_SPOT;
 }
 
 impact_status imp_persist_reserve(imp_persist *persist, imp_world *world, const imp_state *states)
@@ -37,12 +37,10 @@ impact_status imp_persist_reserve(imp_persist *persist, imp_world *world, const 
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
         held += imp_is_held(pair);
-        pair->flat = imp_flat_lies(world, pair, states);
-        pair->lined = imp_line_lies(world, pair, states);
-        if (!imp_is_held(pair))
-            pair->carried = false;
-        else if (!pair->carried && imp_spot_suits(world, pair))
-            place_spot(world, pair, states);
+        if (imp_is_carried(pair) && !imp_is_held(pair)) pair->footing.on = IMP_FOOT_POINT;
+        if (imp_is_carried(pair) && !imp_flat_lies(world, pair, states) && !imp_line_lies(world, pair, states))
+            pair->footing.on = IMP_FOOT_SPOT;
+        if (imp_is_held(pair) && !imp_is_carried(pair) && imp_spot_suits(world, pair)) place_spot(world, pair, states);
     }
     persist->count = held;
     return imp_persist_make_room(persist, held, world->body_count);
@@ -56,7 +54,7 @@ static bool orientation_tells(const imp_pair *pair, const impact_shape *shape)
 {
     const double p[3] = {shape->r, shape->s, shape->t};
     for (int i = 0; i < 3; i++)
-        if (p[i] > 2 && !(pair->lined && pair->line == i)) return false;
+        if (p[i] > 2 && !(pair->footing.on == IMP_FOOT_LINE && pair->footing.line == i)) return false;
     return true;
 }
 
@@ -72,8 +70,8 @@ static void carried_rates(const imp_world *world, imp_touch *touch, const imp_st
     if (orientation_tells(&world->pairs[touch->pair], &b1->shape))
         turn = qvec3_axpy(qvec3_norm(omega), qvec3_sub(quat_rotate_inverse(q, qvec3_neg(touch->normal)), spot->normal),
                           turn);
-    touch->lined = imp_line_lies(world, &world->pairs[touch->pair], states);
-    if (touch->lined) turn = imp_line_turn(&world->pairs[touch->pair], turn);
+    if (imp_line_lies(world, &world->pairs[touch->pair], states)) touch->foot = IMP_FOOT_LINE;
+    if (touch->foot == IMP_FOOT_LINE) turn = imp_line_turn(&world->pairs[touch->pair], turn);
     const imp_spot_rate rate = imp_spot_move(&b1->shape, spot, turn);
     memcpy(touch->spot_rate, rate.s, sizeof rate.s);
     touch->creep = rate.creep;
@@ -87,7 +85,7 @@ static impact_contact carried_contact(const imp_world *world, const imp_pair *pa
     const imp_body *b1 = &world->bodies[pair->body1];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     impact_contact contact = {.normal = quat_rotate(s2->q, (qvec3){0, 0, 1})};
-    *spot = imp_spot_at(&b1->shape, pair->spot);
+    *spot = imp_spot_at(&b1->shape, pair->footing.spot);
     contact.offset1 = qvec3_add(imp_shape_offset(b1, s1), quat_rotate(imp_shape_axes(b1, s1), spot->point));
     contact.offset2 = qvec3_add(qvec3_sub(s1->x, s2->x), contact.offset1);
     contact.gap = qvec3_dot(contact.normal, contact.offset2);
@@ -102,7 +100,7 @@ imp_touch imp_persist_meet(const imp_world *world, int p, const impact_contact *
                        .body1 = pair->body1,
                        .body2 = pair->body2,
                        .mode = pair->mode,
-                       .friction = pair->friction,
+                       .friction = pair->law.friction,
                        .normal = contact->normal,
                        .r1 = contact->offset1,
                        .r2 = contact->offset2};
@@ -113,7 +111,7 @@ imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, co
     imp_pair *pair = &world->pairs[p];
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
-    const bool carried = imp_is_held(pair) && pair->carried;
+    const bool carried = imp_is_held(pair) && imp_is_carried(pair);
     if (carried && imp_flat_lies(world, pair, states)) return imp_flat_touch(world, p, states, loads);
     impact_contact contact;
     imp_spot spot;
@@ -122,20 +120,21 @@ imp_touch imp_persist_touch(imp_world *world, int p, const imp_state *states, co
     else
         imp_world_gap(world, pair, states, &contact);
     imp_touch touch = imp_persist_meet(world, p, &contact);
-    touch.carried = carried;
-    touch.still = imp_is_held(pair) && pair->still;
+    touch.foot = carried ? IMP_FOOT_SPOT : IMP_FOOT_POINT;
+    touch.still = imp_is_held(pair) && pair->rest.still;
     const qvec3 u = qvec3_sub(imp_point_velocity(b1, s1, touch.r1), imp_point_velocity(b2, s2, touch.r2));
     touch.slip = qvec3_axpy(-qvec3_dot(u, touch.normal), touch.normal, u);
     touch.speed = qvec3_norm(touch.slip);
-    touch.onset = pair->mode == IMP_SLIDE && pair->onset;
-    touch.direction = touch.onset || touch.speed == 0 ? pair->direction : qvec3_scale(touch.slip, 1 / touch.speed);
+    touch.onset = pair->mode == IMP_SLIDE && imp_is_onset(pair);
+    touch.direction = touch.onset || touch.speed == 0 ? pair->slip.direction : qvec3_scale(touch.slip, 1 / touch.speed);
     imp_rates rates = {.normal = {0, 0, 0}};
-    if (pair->corner > 0)
+    if (pair->site.corner > 0)
         rates.arm1 = imp_corner_rate(world, pair, states);
     else if (carried)
         carried_rates(world, &touch, states, &spot, &rates.arm1);
     else
-        rates = imp_contact_rates(world, pair, pair->placed ? pair->bearer : IMP_BORNE_BY_BOTH, &contact, states);
+        rates =
+            imp_contact_rates(world, pair, pair->site.placed ? pair->site.bearer : IMP_BORNE_BY_BOTH, &contact, states);
     if (b2->driven) rates.arm2 = qvec3_add(s1->v, rates.arm1); /* its centre stands still */
     touch.normal_rate = rates.normal;
     touch.bias = qvec3_sub(imp_point_acceleration(b1, s1, &loads[pair->body1], touch.r1, rates.arm1),
@@ -207,14 +206,14 @@ static void close_gaps(imp_world *world, imp_state *states)
         if (!imp_is_held(pair)) continue;
         impact_contact contact;
         imp_spot spot;
-        if (pair->flat) {
+        if (pair->footing.on == IMP_FOOT_FLAT) {
             imp_flat_level(world, pair, states);
             continue;
         }
-        if (pair->carried) {
-            spot = imp_spot_at(&world->bodies[pair->body1].shape, pair->spot);
+        if (imp_is_carried(pair)) {
+            spot = imp_spot_at(&world->bodies[pair->body1].shape, pair->footing.spot);
             align(world, pair, states, &spot);
-            if (pair->lined) imp_line_level(world, pair, states);
+            if (pair->footing.on == IMP_FOOT_LINE) imp_line_level(world, pair, states);
             contact = carried_contact(world, pair, states, &spot);
         } else {
             imp_world_gap(world, pair, states, &contact);
@@ -273,12 +272,12 @@ static int worst_grip(const imp_persist *persist, double scale)
 
 /* The contact whose slip was to begin, but which sticks now that others slide too, furthest within its cone; or -1.
  * Each has one such chance: where no modes are consistent none is to be taken back for ever. */
-static int worst_onset(const imp_persist *persist, const imp_world *world)
+static int worst_onset(const imp_persist *persist, const bool *tried)
 {
     int worst = -1;
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
-        if (touch->onset && !world->pairs[touch->pair].tried && touch->drive < 1 - IMP_DRIVE_ROUNDING &&
+        if (touch->onset && !tried[touch->pair] && touch->drive < 1 - IMP_DRIVE_ROUNDING &&
             (worst < 0 || touch->drive < persist->touches[worst].drive))
             worst = c;
     }
@@ -309,9 +308,8 @@ static double force_scale(const imp_persist *persist)
 void imp_persist_begin_slide(imp_pair *pair, const imp_touch *touch)
 {
     pair->mode = IMP_SLIDE;
-    pair->onset = pair->friction > 0;
-    pair->direction = imp_against_friction(touch);
-    pair->turned = false;
+    pair->slip = (imp_sliding){.age = pair->law.friction > 0 ? IMP_SLIP_BEGUN : IMP_SLIP_OLD,
+                               .direction = imp_against_friction(touch)};
 }
 
 /* Sliding that has died out, here or because another contact's did, is rolling until its friction says otherwise. */
@@ -325,18 +323,18 @@ static void stop_slow_slides(imp_persist *persist, imp_world *world, const imp_s
     }
 }
 
-impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const imp_state *states,
-                                  const imp_load *loads)
+/* tried: of each pair whose slip was to begin, that it has been let stick again. */
+static impact_status resolve(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads,
+                             bool *tried)
 {
     impact_status status = imp_persist_reserve(persist, world, states);
     stop_slow_slides(persist, world, states, loads);
     persist->lenient = false;
-    for (int p = 0; p < world->pair_count; p++) world->pairs[p].tried = false;
     for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 6 * world->pair_count + 8; round++) {
         imp_persist_solve(persist, world, states, loads);
         const double scale = force_scale(persist);
         const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale),
-                  stuck = worst_onset(persist, world);
+                  stuck = worst_onset(persist, tried);
         if (pull >= 0 && !(persist->redundant && grip >= 0)) {
             world->pairs[persist->touches[pull].pair].mode = IMP_OPEN;
             status = imp_persist_reserve(persist, world, states);
@@ -345,8 +343,8 @@ impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const 
         } else if (stuck >= 0) {
             imp_pair *pair = &world->pairs[persist->touches[stuck].pair];
             pair->mode = IMP_ROLL;
-            pair->onset = false;
-            pair->tried = true;
+            imp_end_onset(pair);
+            tried[persist->touches[stuck].pair] = true;
         } else {
             if (!onsets_slide(persist)) status = imp_persist_try_modes(persist, world, states, loads);
             persist->lenient = !onsets_slide(persist);
@@ -354,6 +352,16 @@ impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const 
         }
     }
     return persist->count == 0 ? status : IMPACT_EUNSETTLED;
+}
+
+impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const imp_state *states,
+                                  const imp_load *loads)
+{
+    bool *tried = imp_arena_take(persist->arena, (size_t)world->pair_count, sizeof *tried);
+    if (!tried) return IMPACT_ENOMEM;
+    const impact_status status = resolve(persist, world, states, loads, tried);
+    imp_arena_give(persist->arena, tried);
+    return status;
 }
 
 double imp_persist_approach(const imp_world *world, const imp_touch *touch, const imp_state *states)

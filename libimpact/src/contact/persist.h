@@ -16,12 +16,10 @@ typedef struct imp_touch {
     qvec3 normal;        /* from body 2 to body 1 */
     qvec3 r1, r2;        /* contact point from each centre */
     qvec3 normal_rate;   /* d(normal)/dt as the contact moves, 1/s */
-    bool carried;        /* the contact point's place on body 1 is integrated along (persist_spot) */
-    double spot_rate[3]; /* carried: its rate, 1/s */
-    double creep;        /* carried: how fast the contact moves over the surface, in semi-axes, 1/s */
-    bool flat;           /* the body lies on a face: r1 is the centre of pressure (persist_flat) */
-    double spare;        /* flat: above 0 while that stays on the face */
-    bool lined;          /* the body lies along a line (persist_line) */
+    imp_foot foot;       /* flat: r1 is the centre of pressure */
+    double spot_rate[3]; /* spot, line: its rate, 1/s */
+    double creep;        /* spot, line: how fast the contact moves over the surface, in semi-axes, 1/s */
+    double spare;        /* flat: above 0 while r1 stays on the face */
     qvec3 slip;          /* tangential velocity of body 1's contact point over body 2's, m/s */
     double speed;        /* |slip| */
     bool onset;          /* sliding from rest, too slow for a direction of its own */
@@ -40,6 +38,12 @@ typedef struct imp_touch {
     bool redundant;  /* its reaction is not unique */
     qvec3 slip_rate; /* tangential relative acceleration of the contact points, m/s^2 */
 } imp_touch;
+
+/* Whether its place on body 1 is integrated along. */
+static inline bool imp_touch_creeps(const imp_touch *touch)
+{
+    return touch->foot == IMP_FOOT_SPOT || touch->foot == IMP_FOOT_LINE;
+}
 
 /* What forces do to a body. */
 typedef struct imp_effect {

@@ -67,7 +67,7 @@ static double rise(const impact_shape *shape, int face, qvec3 foot)
 
 bool imp_flat_suits(const imp_world *world, const imp_pair *pair)
 {
-    if (!imp_is_held(pair) || !pair->carried || world->bodies[pair->body1].shifted) return false;
+    if (!imp_is_held(pair) || !imp_is_carried(pair) || world->bodies[pair->body1].shifted) return false;
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *other = &world->pairs[p];
         if (other != pair && imp_is_held(other) && (other->body1 == pair->body1 || other->body2 == pair->body1))
@@ -86,8 +86,9 @@ static double rocking_energy(const imp_body *body, const imp_state *state, qvec3
 
 bool imp_flat_lies(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    return pair->flat && imp_flat_suits(world, pair) &&
-           rocking_energy(&world->bodies[pair->body1], &states[pair->body1], plane_normal(pair, states)) <= pair->lying;
+    return pair->footing.on == IMP_FOOT_FLAT && imp_flat_suits(world, pair) &&
+           rocking_energy(&world->bodies[pair->body1], &states[pair->body1], plane_normal(pair, states)) <=
+               pair->footing.lying;
 }
 
 /* ---- motion along the plane ---- */
@@ -116,8 +117,8 @@ static gliding glide(const imp_world *world, const imp_pair *pair, const imp_sta
  * at a speed of up to k and the rate g/(c omega): what is too slow to be seen turns in its place. */
 static bool pivots(const imp_world *world, const imp_pair *pair, const gliding *g, double height)
 {
-    const double k = pair->friction * height * g->omega;
-    return 0.5 * world->bodies[pair->body1].mass * k * k > pair->lying;
+    const double k = pair->law.friction * height * g->omega;
+    return 0.5 * world->bodies[pair->body1].mass * k * k > pair->footing.lying;
 }
 
 void imp_flat_level(const imp_world *world, const imp_pair *pair, imp_state *states)
@@ -152,17 +153,17 @@ typedef struct balance {
 static void slide(const imp_world *world, const imp_pair *pair, const gliding *g, double height, qvec3 shift,
                   balance *b)
 {
-    const double k = pair->friction * height * g->omega;
+    const double k = pair->law.friction * height * g->omega;
     const qvec3 w = qvec3_axpy(g->omega, qvec3_cross(g->n, shift), g->v);
     const double size = qvec3_norm(w), speed = sqrt(fmax(0, (size - fabs(k)) * (size + fabs(k))));
     qvec3 d = qvec3_axpy(speed, w, qvec3_scale(qvec3_cross(g->n, w), k));
-    if (pair->onset && !pivots(world, pair, g, height)) d = across(pair->direction, g->n);
+    if (imp_is_onset(pair) && !pivots(world, pair, g, height)) d = across(pair->slip.direction, g->n);
     if (!(qvec3_norm(d) > 0)) d = imp_tangent(g->n);
     b->direction = qvec3_scale(d, 1 / qvec3_norm(d));
     b->slip = qvec3_scale(size > 0 ? b->direction : (qvec3){0, 0, 0}, speed);
     b->speed = fmax(0, speed - IMP_FLAT_PIVOT * fabs(k));
-    b->friction = qvec3_scale(b->direction, -pair->friction * b->pressure);
-    b->foot = qvec3_axpy(height * pair->friction, b->direction, shift);
+    b->friction = qvec3_scale(b->direction, -pair->law.friction * b->pressure);
+    b->foot = qvec3_axpy(height * pair->law.friction, b->direction, shift);
 }
 
 static void stick(const imp_world *world, const imp_pair *pair, const gliding *g, double height, qvec3 shift,
@@ -204,14 +205,14 @@ imp_touch imp_flat_touch(const imp_world *world, int p, const imp_state *states,
                        .body1 = pair->body1,
                        .body2 = pair->body2,
                        .mode = pair->mode,
-                       .friction = pair->friction * (pair->mode == IMP_ROLL ? grip : 1),
+                       .friction = pair->law.friction * (pair->mode == IMP_ROLL ? grip : 1),
                        .normal = g.n,
                        .r1 = qvec3_axpy(-height, g.n, b.foot),
-                       .flat = true,
+                       .foot = IMP_FOOT_FLAT,
                        .slip = b.slip,
                        .speed = b.speed,
                        .direction = b.direction,
-                       .onset = pair->mode == IMP_SLIDE && pair->onset && !pivots(world, pair, &g, height)};
+                       .onset = pair->mode == IMP_SLIDE && imp_is_onset(pair) && !pivots(world, pair, &g, height)};
     touch.r2 = qvec3_add(qvec3_sub(state->x, states[pair->body2].x), touch.r1);
     touch.spare = 1 - rise(&body->shape, face, quat_rotate_inverse(state->q, b.foot)) / world->flat_height;
     const qvec3 force = qvec3_axpy(b.pressure, g.n, b.friction);
@@ -236,7 +237,7 @@ static bool is_held_fast(const imp_world *world, const imp_pair *pair, const imp
     g.omega = 0;
     stuck.mode = IMP_ROLL;
     const balance b = find_balance(world, &stuck, &g, height, load);
-    return qvec3_norm(b.friction) < pair->friction * b.pressure;
+    return qvec3_norm(b.friction) < pair->law.friction * b.pressure;
 }
 
 /* A body on its face whose energy does not lift it, and that friction holds, is stopped. */
@@ -247,10 +248,11 @@ static bool stops(const imp_world *world, imp_pair *pair, imp_state *states, con
     const gliding g = glide(world, pair, states);
     const double moment = qvec3_dot(g.n, imp_inertia(body, state->q, g.n));
     const double moving = 0.5 * (body->mass * qvec3_dot(g.v, g.v) + moment * g.omega * g.omega);
-    if ((moving == 0 && pair->mode == IMP_ROLL) || !(moving <= pair->lying) || !(pair->friction > 0)) return false;
+    if ((moving == 0 && pair->mode == IMP_ROLL) || !(moving <= pair->footing.lying) || !(pair->law.friction > 0))
+        return false;
     if (!is_held_fast(world, pair, states, load, height)) return false;
     pair->mode = IMP_ROLL;
-    pair->onset = false;
+    imp_end_onset(pair);
     state->v = qvec3_sub(state->v, g.v);
     state->momentum = imp_inertia(body, state->q, qvec3_scale(g.n, g.spin));
     return true;
@@ -267,8 +269,8 @@ static void let_slide(const imp_world *world, imp_pair *pair, const imp_state *s
     if (pair->mode != IMP_ROLL || !(pull > 0) || qvec3_norm(g.v) > world->slip_speed || g.omega != 0) return;
     if (is_held_fast(world, pair, states, load, height)) return;
     pair->mode = IMP_SLIDE;
-    pair->onset = pair->friction > 0;
-    pair->direction = qvec3_scale(pulled, 1 / pull);
+    pair->slip.age = pair->law.friction > 0 ? IMP_SLIP_BEGUN : IMP_SLIP_OLD;
+    pair->slip.direction = qvec3_scale(pulled, 1 / pull);
 }
 
 /* What cannot lie, for its centre of pressure would be beyond the flat place, tips about that place's border there. */
@@ -283,7 +285,7 @@ static void lean(const imp_world *world, imp_pair *pair, const imp_state *state,
         *(rise(shape, face, qvec3_scale(out, part)) <= world->flat_height ? &inside : &outside) = part;
     }
     const double axis[3] = {shape->a, shape->b, shape->c};
-    imp_spot_on(shape, qvec3_axpy(axis[face], down, qvec3_scale(out, inside)), pair->spot);
+    imp_spot_on(shape, qvec3_axpy(axis[face], down, qvec3_scale(out, inside)), pair->footing.spot);
 }
 
 static bool lay_flat(const imp_world *world, imp_pair *pair, imp_state *states, const imp_load *load)
@@ -294,14 +296,14 @@ static bool lay_flat(const imp_world *world, imp_pair *pair, imp_state *states, 
     double height, sign;
     const int face = face_below(body, state, n, &height, &sign);
     const double pressure = -qvec3_dot(load->force, n), enough = pressure * world->flat_height;
-    if (pair->flat) return stops(world, pair, states, load, height);
-    const imp_spot spot = imp_spot_at(&body->shape, pair->spot);
+    if (pair->footing.on == IMP_FOOT_FLAT) return stops(world, pair, states, load, height);
+    const imp_spot spot = imp_spot_at(&body->shape, pair->footing.spot);
     const double lifted = qvec3_dot(spot.point, spot.normal) - height;
     const double rocking = rocking_energy(body, state, n) + pressure * fmax(lifted, 0);
     if (!(rocking <= enough) || !(rise(&body->shape, face, spot.point) <= world->flat_height)) return false;
     const imp_pair pair_before = *pair;
     const imp_state state_before = *state;
-    pair->lying = enough;
+    pair->footing.lying = enough;
     stops(world, pair, states, load, height);
     let_slide(world, pair, states, load, height);
     const gliding g = glide(world, pair, states);
@@ -312,9 +314,9 @@ static bool lay_flat(const imp_world *world, imp_pair *pair, imp_state *states, 
         lean(world, pair, state, face, b.foot, n);
         return true;
     }
-    pair->flat = true;
+    pair->footing.on = IMP_FOOT_FLAT;
     imp_flat_level(world, pair, states);
-    imp_spot_find(&body->shape, quat_rotate_inverse(state->q, qvec3_neg(n)), pair->spot);
+    imp_spot_find(&body->shape, quat_rotate_inverse(state->q, qvec3_neg(n)), pair->footing.spot);
     return true;
 }
 
@@ -331,6 +333,6 @@ void imp_flat_tip(const imp_world *world, imp_pair *pair, const imp_state *state
 {
     const impact_shape *shape = &world->bodies[pair->body1].shape;
     const qvec3 at = quat_rotate_inverse(states[pair->body1].q, touch->r1);
-    imp_spot_on(shape, at, pair->spot);
-    pair->flat = false;
+    imp_spot_on(shape, at, pair->footing.spot);
+    pair->footing.on = IMP_FOOT_SPOT;
 }

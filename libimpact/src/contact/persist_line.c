@@ -22,7 +22,7 @@ static qvec3 tipping_axis_of(const imp_pair *pair, const imp_state *states, int 
 
 static qvec3 tipping_axis(const imp_pair *pair, const imp_state *states)
 {
-    return tipping_axis_of(pair, states, pair->line);
+    return tipping_axis_of(pair, states, pair->footing.line);
 }
 
 static double tipping_energy(const imp_world *world, const imp_pair *pair, const imp_state *states, int axis)
@@ -36,12 +36,13 @@ static double tipping_energy(const imp_world *world, const imp_pair *pair, const
 
 bool imp_line_lies(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    return pair->lined && imp_flat_suits(world, pair) && tipping_energy(world, pair, states, pair->line) <= pair->lying;
+    return pair->footing.on == IMP_FOOT_LINE && imp_flat_suits(world, pair) &&
+           tipping_energy(world, pair, states, pair->footing.line) <= pair->footing.lying;
 }
 
 qvec3 imp_line_turn(const imp_pair *pair, qvec3 normal_rate)
 {
-    const int k = pair->line;
+    const int k = pair->footing.line;
     return (qvec3){k == 0 ? 0 : normal_rate.x, k == 1 ? 0 : normal_rate.y, k == 2 ? 0 : normal_rate.z};
 }
 
@@ -64,7 +65,7 @@ static double missing_torque(const imp_world *world, const imp_touch *touch, con
     const qvec3 free = qvec3_sub(load->torque, qvec3_cross(omega, state->momentum));
     const qvec3 torque = qvec3_add(free, qvec3_cross(touch->r1, touch->force));
     const double rate = qvec3_dot(h, imp_inverse_inertia(body, state->q, torque)) +
-                        qvec3_dot(omega, touch->normal) * qvec3_dot(omega, axis_of(state, pair->line));
+                        qvec3_dot(omega, touch->normal) * qvec3_dot(omega, axis_of(state, pair->footing.line));
     return -rate / qvec3_dot(h, imp_inverse_inertia(body, state->q, h));
 }
 
@@ -72,7 +73,7 @@ double imp_line_spare(const imp_world *world, const imp_touch *touch, const imp_
 {
     const double tight = IMP_LINE_TIGHT, noise = IMP_LINE_NOISE;
     const imp_pair *pair = &world->pairs[touch->pair];
-    if (!touch->lined || !(touch->pressure > 0)) return 1;
+    if (touch->foot != IMP_FOOT_LINE || !(touch->pressure > 0)) return 1;
     const qvec3 h = tipping_axis(pair, states);
     const double arm = fabs(missing_torque(world, touch, states, &loads[touch->body1], h)) / touch->pressure;
     /* slip that dies out has no direction to speak of, for no time */
@@ -84,7 +85,7 @@ double imp_line_spare(const imp_world *world, const imp_touch *touch, const imp_
 
 void imp_line_brace(const imp_world *world, const imp_touch *touch, const imp_state *states, imp_load *load)
 {
-    if (!touch->lined) return;
+    if (touch->foot != IMP_FOOT_LINE) return;
     const qvec3 h = tipping_axis(&world->pairs[touch->pair], states);
     load->torque = qvec3_axpy(missing_torque(world, touch, states, load, h), h, load->torque);
 }
@@ -93,7 +94,7 @@ void imp_line_brace(const imp_world *world, const imp_touch *touch, const imp_st
 static int line_of(const imp_world *world, const imp_pair *pair, const imp_state *states, double enough)
 {
     const imp_body *body = &world->bodies[pair->body1];
-    const imp_spot spot = imp_spot_at(&body->shape, pair->spot);
+    const imp_spot spot = imp_spot_at(&body->shape, pair->footing.spot);
     const double p[3] = {body->shape.r, body->shape.s, body->shape.t};
     const double pressure = enough / world->flat_height;
     for (int i = 0; i < 3; i++) {
@@ -118,14 +119,14 @@ static bool lay_lined(imp_persist *persist, imp_world *world, imp_pair *pair, im
     if (axis < 0) return false;
     const imp_pair pair_before = *pair;
     const imp_state state_before = states[pair->body1];
-    pair->lined = true;
-    pair->line = axis;
-    pair->lying = enough;
-    pair->spot[axis] = 0;
+    pair->footing.on = IMP_FOOT_LINE;
+    pair->footing.line = axis;
+    pair->footing.lying = enough;
+    pair->footing.spot[axis] = 0;
     imp_line_level(world, pair, states);
     /* the place along the line may have given it a slip that its middle has not */
     const imp_touch there = imp_persist_touch(world, (int)(pair - world->pairs), states, loads);
-    if (pair->friction > 0 && there.speed <= world->slip_speed) pair->mode = IMP_ROLL, pair->onset = false;
+    if (pair->law.friction > 0 && there.speed <= world->slip_speed) pair->mode = IMP_ROLL, imp_end_onset(pair);
     imp_persist_solve(persist, world, states, loads);
     const imp_touch *touch = touch_of(persist, world, pair);
     if (touch && imp_line_spare(world, touch, states, loads) > 0.5) return true;
@@ -139,7 +140,7 @@ bool imp_line_lay(imp_persist *persist, imp_world *world, imp_state *states, con
     bool any = false;
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
-        if (!pair->flat && !pair->lined && imp_flat_suits(world, pair))
+        if (pair->footing.on == IMP_FOOT_SPOT && imp_flat_suits(world, pair))
             any = lay_lined(persist, world, pair, states, loads) || any;
     }
     return any;

@@ -34,9 +34,8 @@ static void choose(const contact_set *set, imp_world *world, int choice)
     for (int k = 0; k < set->count; k++, choice /= CHOICES) {
         imp_pair *pair = &world->pairs[set->pair[k]];
         pair->mode = choice % CHOICES == 0 ? IMP_ROLL : choice % CHOICES == 1 ? IMP_SLIDE : IMP_OPEN;
-        pair->onset = pair->mode == IMP_SLIDE;
-        pair->direction = set->direction[k];
-        pair->turned = false;
+        pair->slip = (imp_sliding){.age = pair->mode == IMP_SLIDE ? IMP_SLIP_BEGUN : IMP_SLIP_OLD,
+                                   .direction = set->direction[k]};
     }
 }
 
@@ -101,6 +100,6 @@ void imp_persist_stop_onsets(imp_persist *persist, imp_world *world, const imp_s
         imp_pair *pair = &world->pairs[persist->touches[c].pair];
         if (!persist->touches[c].onset || persist->touches[c].drive > 1 + IMP_DRIVE_ROUNDING) continue;
         pair->mode = IMP_ROLL;
-        pair->onset = false;
+        imp_end_onset(pair);
     }
 }

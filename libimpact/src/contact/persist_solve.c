@@ -151,10 +151,11 @@ static bool recall_turns(imp_persist *persist, const imp_world *world)
         imp_touch *touch = &persist->touches[c];
         if (!touch->onset) continue;
         const imp_pair *pair = &world->pairs[touch->pair];
-        const qvec3 d = qvec3_axpy(-qvec3_dot(pair->direction, touch->normal), touch->normal, pair->direction);
+        const qvec3 d =
+            qvec3_axpy(-qvec3_dot(pair->slip.direction, touch->normal), touch->normal, pair->slip.direction);
         touch->direction = qvec3_scale(d, 1 / qvec3_norm(d));
-        touch->pull = pair->pull;
-        all = all && pair->turned;
+        touch->pull = pair->slip.pull;
+        all = all && pair->slip.age == IMP_SLIP_TURNED;
     }
     return all;
 }
@@ -165,9 +166,7 @@ static void keep_turns(const imp_persist *persist, imp_world *world)
         imp_touch touch = persist->touches[c];
         if (!touch.onset) continue;
         imp_pair *pair = &world->pairs[touch.pair];
-        pair->direction = touch.direction;
-        pair->pull = touch.pull;
-        pair->turned = true;
+        pair->slip = (imp_sliding){.age = IMP_SLIP_TURNED, .direction = touch.direction, .pull = touch.pull};
     }
 }
 

@@ -112,7 +112,7 @@ static double improve_reaction(const imp_world *world, const imp_state *states, 
 /* The reaction that the touch's pair remembers, if that still is one. */
 static qvec3 last_reaction(const imp_world *world, const imp_touch *touch)
 {
-    const qvec3 f = world->pairs[touch->pair].reaction;
+    const qvec3 f = world->pairs[touch->pair].rest.reaction;
     const double pressure = qvec3_dot(touch->normal, f), rubs = qvec3_norm(qvec3_axpy(-pressure, touch->normal, f));
     return pressure >= 0 && rubs <= touch->friction * pressure + IMP_STILL_SETTLED * pressure ? f : (qvec3){0, 0, 0};
 }
@@ -187,8 +187,8 @@ static void make_still(imp_persist *persist, imp_world *world, int island)
     for (int c = 0; c < persist->count; c++) {
         if (persist->island[c] != island) continue;
         imp_pair *pair = &world->pairs[persist->touches[c].pair];
-        pair->still = true;
-        pair->reaction = persist->touches[c].force;
+        pair->rest.still = true;
+        pair->rest.reaction = persist->touches[c].force;
     }
 }
 
@@ -250,10 +250,10 @@ static void find(imp_persist *persist, imp_world *world, const imp_state *states
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
         work->before[p] = *pair;
-        if (!imp_is_held(pair) || pair->friction == 0) continue;
+        if (!imp_is_held(pair) || pair->law.friction == 0) continue;
         if (!pair_is_slow(world, states, pair, jam_speed)) continue;
         pair->mode = IMP_ROLL;
-        pair->onset = false;
+        imp_end_onset(pair);
     }
     find_locked(persist, world, states, loads, rest_speed, jam_speed, work->locked);
     imp_persist_solve(persist, world, states, loads);
@@ -263,15 +263,15 @@ static void find(imp_persist *persist, imp_world *world, const imp_state *states
             settle(persist, world, states, c, work);
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
-        if (pair->still || !imp_is_held(pair)) continue;
+        if (pair->rest.still || !imp_is_held(pair)) continue;
         pair->mode = work->before[p].mode;
-        pair->onset = work->before[p].onset;
+        pair->slip.age = work->before[p].slip.age;
     }
 }
 
 void imp_persist_stir(imp_world *world)
 {
-    for (int p = 0; p < world->pair_count; p++) world->pairs[p].still = false;
+    for (int p = 0; p < world->pair_count; p++) world->pairs[p].rest.still = false;
 }
 
 impact_status imp_persist_find_still(imp_persist *persist, imp_world *world, const imp_state *states,

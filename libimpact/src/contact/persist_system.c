@@ -319,7 +319,7 @@ static void solve_island(imp_persist *persist, const imp_world *world, const imp
 /* What is still keeps its reaction, and needs no impulse. */
 static void recall(imp_touch *touch, const imp_world *world, bool with_friction)
 {
-    touch->force = with_friction ? world->pairs[touch->pair].reaction : (qvec3){0, 0, 0};
+    touch->force = with_friction ? world->pairs[touch->pair].rest.reaction : (qvec3){0, 0, 0};
     touch->pressure = qvec3_dot(touch->normal, touch->force);
 }
 

@@ -133,7 +133,7 @@ static bool set_motion(imp_lying *lying, const imp_pair *pair, const imp_state *
     const qvec3 n = lying->normal;
     const double L = lying->size, spin = qvec3_dot(n, lying->inertia), unit = lying->body->mass * L * L;
     memcpy(motion->scratch, states, (size_t)world->body_count * sizeof *states);
-    m->friction = pair->friction;
+    m->friction = pair->law.friction;
     m->context = lying;
     m->loads = world->field_count > 0 || body->linear_rate != 0 || body->angular_rate != 0 ? loads_at : NULL;
     m->turning = unit / spin;
@@ -175,7 +175,7 @@ bool imp_lying_find(imp_motion *motion, const imp_pair *given, double t, const i
     const imp_state *state = &states[pair.body1], *below = &states[pair.body2];
     impact_contact contact;
     impact_face face, ground;
-    if (!under->is_static || under->driven || pair.torsional > 0 || is_attracted(world)) return false;
+    if (!under->is_static || under->driven || pair.law.torsional > 0 || is_attracted(world)) return false;
     imp_world_gap(world, &pair, states, &contact);
     /* what rocks by less lies; of a superquadric that height is what its flat place is of */
     const double touching = imp_has_faces(body) ? imp_world_touching_distance(world, &pair, states) : 0,
@@ -193,7 +193,7 @@ bool imp_lying_find(imp_motion *motion, const imp_pair *given, double t, const i
     lying->level.x = qvec3_axpy(-gap, n, state->x);
     lying->size = farthest(lying, &face);
     lying->motion.height = -qvec3_dot(n, low) / lying->size;
-    keep_sliding(lying, state, pair.friction);
+    keep_sliding(lying, state, pair.law.friction);
     lay_out_face(lying, body, &lying->level, (qvec3){0, 0, 0}, &face, true, &lying->motion.face);
     const qvec3 apart = qvec3_sub(lying->level.x, below->x);
     lying->motion.bounded = !on_plane || plane_bounds(lying, under, below, apart, &lying->motion.under);

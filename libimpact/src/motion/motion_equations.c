@@ -41,7 +41,7 @@ void imp_motion_pack(const imp_motion *motion, double t, const imp_state *states
     for (int p = 0; p < motion->world->pair_count; p++) {
         const imp_pair *pair = &motion->world->pairs[p];
         if (!imp_spot_suits(motion->world, pair)) continue;
-        for (int k = 0; k < Y_PER_SPOT; k++) *b++ = pair->carried ? pair->spot[k] : 0;
+        for (int k = 0; k < Y_PER_SPOT; k++) *b++ = imp_is_carried(pair) ? pair->footing.spot[k] : 0;
     }
     if (motion->world->driven) y[imp_motion_drive(motion)] = motion->works.drive;
 }
@@ -96,9 +96,9 @@ void imp_motion_unpack(const imp_motion *motion, const double *y, imp_state *sta
     for (int p = 0; p < motion->world->pair_count; p++) {
         imp_pair *pair = &motion->world->pairs[p];
         if (!imp_spot_suits(motion->world, pair)) continue;
-        if (pair->carried) memcpy(pair->spot, b, sizeof pair->spot);
-        if (pair->flat) imp_flat_level(motion->world, pair, states);
-        if (pair->lined) imp_line_level(motion->world, pair, states);
+        if (imp_is_carried(pair)) memcpy(pair->footing.spot, b, sizeof pair->footing.spot);
+        if (pair->footing.on == IMP_FOOT_FLAT) imp_flat_level(motion->world, pair, states);
+        if (pair->footing.on == IMP_FOOT_LINE) imp_line_level(motion->world, pair, states);
         b += Y_PER_SPOT;
     }
 }
@@ -119,7 +119,7 @@ double imp_motion_clock(const imp_motion *motion)
 {
     double slowness = 1;
     for (int c = 0; c < motion->persist.count && motion->creeping; c++)
-        if (motion->persist.touches[c].carried)
+        if (imp_touch_creeps(&motion->persist.touches[c]))
             slowness = hypot(slowness, motion->persist.touches[c].creep / motion->creep_scale);
     for (int c = 0; c < motion->persist.count && motion->sliding; c++)
         if (motion->persist.touches[c].mode == IMP_SLIDE && !motion->persist.touches[c].onset &&
@@ -151,7 +151,8 @@ static void spot_rates(const imp_motion *motion, double clock, double *rate)
     for (int p = 0, c = 0; p < world->pair_count; p++) {
         const imp_touch *touch = imp_is_held(&world->pairs[p]) ? &motion->persist.touches[c++] : NULL;
         if (!imp_spot_suits(world, &world->pairs[p])) continue;
-        for (int k = 0; k < Y_PER_SPOT; k++) *rate++ = touch && touch->carried ? clock * touch->spot_rate[k] : 0;
+        for (int k = 0; k < Y_PER_SPOT; k++)
+            *rate++ = touch && imp_touch_creeps(touch) ? clock * touch->spot_rate[k] : 0;
     }
 }
 
@@ -219,12 +220,12 @@ static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_
                : touch->onset            ? touch->drive - (1 - IMP_DRIVE_ROUNDING)
                                          : touch->speed - world->slip_speed;
     const imp_pair *pair = &world->pairs[touch->pair];
-    value[2] = pair->corner > 0 ? imp_corner_clearance(world, pair, states) - pair->sunk +
-                                      0.5 * imp_world_touching_distance(world, pair, states)
-                                : imp_world_inside_bounds(world, pair, states, &contact);
+    value[2] = pair->site.corner > 0 ? imp_corner_clearance(world, pair, states) - pair->site.sunk +
+                                           0.5 * imp_world_touching_distance(world, pair, states)
+                                     : imp_world_inside_bounds(world, pair, states, &contact);
     if (!isfinite(value[2])) value[2] = 1;
-    if (touch->flat) value[2] = fmin(value[2], touch->spare);
-    if (touch->lined) value[2] = fmin(value[2], imp_line_spare(world, touch, states, loads));
+    if (touch->foot == IMP_FOOT_FLAT) value[2] = fmin(value[2], touch->spare);
+    if (touch->foot == IMP_FOOT_LINE) value[2] = fmin(value[2], imp_line_spare(world, touch, states, loads));
 }
 
 /* A custom force's edge may answer anything. */

@@ -86,7 +86,7 @@ static double slowest_slip(const imp_motion *motion, bool young)
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
         if (touch->mode == IMP_SLIDE && !touch->onset && touch->friction > 0 &&
-            motion->world->pairs[touch->pair].young == young)
+            (motion->world->pairs[touch->pair].slip.age == IMP_SLIP_YOUNG) == young)
             slowest = fmin(slowest, touch->speed);
     }
     return slowest;
@@ -97,7 +97,7 @@ static bool young_fades(const imp_motion *motion)
 {
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
-        if (touch->mode == IMP_SLIDE && !touch->onset && motion->world->pairs[touch->pair].young &&
+        if (touch->mode == IMP_SLIDE && !touch->onset && motion->world->pairs[touch->pair].slip.age == IMP_SLIP_YOUNG &&
             qvec3_dot(touch->slip_rate, touch->slip) < 0)
             return true;
     }
@@ -110,8 +110,8 @@ static void grow_up(imp_motion *motion)
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
         imp_pair *pair = &motion->world->pairs[touch->pair];
-        pair->young = pair->young && touch->mode == IMP_SLIDE && !touch->onset &&
-                      touch->speed < IMP_SLIP_GROWN * motion->slip_scale;
+        const bool grown = touch->mode != IMP_SLIDE || touch->speed >= IMP_SLIP_GROWN * motion->slip_scale;
+        if (pair->slip.age == IMP_SLIP_YOUNG && grown) pair->slip.age = IMP_SLIP_OLD;
     }
 }
 
@@ -136,7 +136,7 @@ static double creep_scale(const imp_motion *motion, const imp_state *states)
     double scale = 0;
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
-        if (!touch->carried) continue;
+        if (!imp_touch_creeps(touch)) continue;
         const imp_body *body = &motion->world->bodies[touch->body1];
         const double fall = qvec3_norm(motion->loads[touch->body1].force) * body->inverse_mass;
         const double rate = qvec3_norm(imp_omega(body, &states[touch->body1])) + sqrt(fall / body->radius);
@@ -214,7 +214,8 @@ static bool has_bounced(const imp_motion *motion, const imp_state *states)
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
         const double touching = imp_world_touching_distance(world, pair, states);
-        if (imp_is_held(pair) || pair->beyond || imp_world_distance_bound(world, pair, states) > touching) continue;
+        if (imp_is_held(pair) || pair->mode == IMP_BEYOND || imp_world_distance_bound(world, pair, states) > touching)
+            continue;
         impact_contact contact;
         imp_world_gap(world, pair, states, &contact);
         if (contact.gap <= touching) return true;

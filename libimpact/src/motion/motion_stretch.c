@@ -18,8 +18,7 @@ static bool end_onsets(imp_motion *motion)
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
         if (!touch->onset || touch->speed < motion->world->onset_speed) continue;
-        motion->world->pairs[touch->pair].onset = false;
-        motion->world->pairs[touch->pair].young = true;
+        motion->world->pairs[touch->pair].slip.age = IMP_SLIP_YOUNG;
         ended = true;
     }
     return ended;
@@ -142,7 +141,7 @@ static impact_status pick_event(imp_motion *motion, double tau_before, double *t
             if (end->kind != IMP_END_TIME) continue;
             *end = end_of_root(motion, root);
             motion->found[root] = 0;
-            if (end->kind != IMP_END_BOUNDS || motion->world->pairs[end->index].corner == 0) continue;
+            if (end->kind != IMP_END_BOUNDS || motion->world->pairs[end->index].site.corner == 0) continue;
             memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
             return find_landing(motion, end->index, tau_before, tau, y);
         }
@@ -276,7 +275,8 @@ static void find_sunk_corners(imp_world *world, const imp_state *states)
 {
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
-        if (pair->corner > 0 && imp_is_held(pair)) pair->sunk = fmin(0, imp_corner_clearance(world, pair, states));
+        if (pair->site.corner > 0 && imp_is_held(pair))
+            pair->site.sunk = fmin(0, imp_corner_clearance(world, pair, states));
     }
 }
 

@@ -47,7 +47,7 @@ static bool recall_step(imp_pile *pile, const imp_world *world, int count, doubl
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pile_memory *before = remembered(pile, point, IMP_PILE_BEFORE);
         const int i = pile->width * c;
-        pile->bounce[c] = before ? 0 : world->pairs[point->pair].restitution * fmin(0, pile->before[i]);
+        pile->bounce[c] = before ? 0 : world->pairs[point->pair].law.restitution * fmin(0, pile->before[i]);
         pile->q[i] += pile->bounce[c];
         smooth = smooth && (before || pile->before[i] >= 0);
         for (int k = 0; k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];

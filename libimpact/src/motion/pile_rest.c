@@ -9,7 +9,7 @@ static bool is_dragged(const imp_pile_contacts *touching, const imp_world *world
         const imp_pile_point *point = &touching->points[k];
         const imp_body *under = &world->bodies[point->contact.body2];
         const imp_pair *pair = &world->pairs[point->pair];
-        if (under->driven && pair->friction > 0 &&
+        if (under->driven && pair->law.friction > 0 &&
             qvec3_norm(imp_surface_velocity(under, point->contact.arm2)) > rest_speed)
             return true;
         if (imp_is_turned(world, pair)) return true;

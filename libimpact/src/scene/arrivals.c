@@ -132,8 +132,8 @@ impact_status imp_scene_meet(impact_scene *scene, int n, double t)
     int p = 0;
     while (island->world.pairs[p].body1 != i || island->world.pairs[p].body2 != j) p++;
     imp_pair *pair = &island->world.pairs[p];
-    if (!pair->beyond) return conclude(island, imp_scene_handle(island, (imp_end){IMP_END_GAP, p}));
-    pair->beyond = false; /* before the plane again */
+    if (pair->mode != IMP_BEYOND) return conclude(island, imp_scene_handle(island, (imp_end){IMP_END_GAP, p}));
+    pair->mode = IMP_OPEN; /* before the plane again */
     return conclude(island, IMPACT_OK);
 }
 
@@ -161,7 +161,7 @@ static impact_status go_on(imp_island *island)
 /* What a body stands on has come to its border: what it touches beyond, a face laid flush, is of the island too. */
 static bool crosses_border(const imp_island *island)
 {
-    return island->end.kind == IMP_END_BOUNDS && island->world.pairs[island->end.index].face > 0;
+    return island->end.kind == IMP_END_BOUNDS && island->world.pairs[island->end.index].site.face > 0;
 }
 
 static impact_status cross_border(impact_scene *scene, imp_island *island, double t)

@@ -19,7 +19,7 @@ static bool may_wake(const imp_island *island) { return island->world.driven || 
 /* Whether the pair keeps its bodies in one island, and is not searched for. */
 bool imp_island_ties(const imp_island *island, const imp_pair *pair)
 {
-    return imp_is_held(pair) || pair->lies || (island->stepped && pair->met);
+    return imp_is_held(pair) || pair->footing.on == IMP_FOOT_FACE || (island->stepped && pair->met);
 }
 
 /* The pairs' other side of what the island has found: what is held is not searched for. */
@@ -34,7 +34,7 @@ impact_status imp_island_tell_pairs(imp_island *island)
         if (near < 0) continue;
         scene->tracks.near[near].held = imp_island_ties(island, pair);
         if (!imp_island_ties(island, pair) && !imp_scene_held_ends(scene, near, island->t)) taken = false;
-        scene->tracks.near[near].beyond = pair->beyond;
+        scene->tracks.near[near].beyond = pair->mode == IMP_BEYOND;
     }
     return taken ? IMPACT_OK : IMPACT_ESINK;
 }
@@ -144,7 +144,7 @@ static impact_status glide(imp_island *island)
     const impact_status status = imp_island_glide_on(island, &segment, &closed);
     island->rolls = island->loses = false;
     if (status != IMPACT_OK) return imp_island_fail(island, status);
-    if (closed) return move_closed(island, &segment, imp_island_lying(island)->friction > 0);
+    if (closed) return move_closed(island, &segment, imp_island_lying(island)->law.friction > 0);
     island->moves = true;
     return follow_all(island);
 }

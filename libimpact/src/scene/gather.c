@@ -83,7 +83,7 @@ static impact_status follow_contacts(impact_scene *scene, int seed, double t)
             if (track->near[k] != seed && !imp_gather_touches(scene, near, t)) continue;
             imp_gather_member(scene, other);
             imp_pair pair = imp_rules_pair(&scene->rules, &scene->world, near->body[0], near->body[1]);
-            pair.beyond = near->beyond;
+            if (near->beyond) pair.mode = IMP_BEYOND;
             status = add_touching(scene, &pair);
         }
     }
@@ -115,7 +115,7 @@ static impact_status add_all_near(impact_scene *scene)
             const bool within = scene->world.bodies[near->body[1]].is_static || scene->root[near->body[1]] >= 0;
             if (near->body[0] != scene->members[m] || !within) continue;
             imp_pair pair = imp_rules_pair(&scene->rules, &scene->world, near->body[0], near->body[1]);
-            pair.beyond = near->beyond;
+            if (near->beyond) pair.mode = IMP_BEYOND;
             status = add_touching(scene, &pair);
         }
     }
@@ -136,7 +136,7 @@ static int by_bodies(const void *a, const void *b)
     if (low_x != low_y) return (low_x > low_y) - (low_x < low_y);
     const int high_x = x->body1 + x->body2 - low_x, high_y = y->body1 + y->body2 - low_y;
     if (high_x != high_y) return (high_x > high_y) - (high_x < high_y);
-    return (x->corner > y->corner) - (x->corner < y->corner);
+    return (x->site.corner > y->site.corner) - (x->site.corner < y->site.corner);
 }
 
 /* The static bodies that the pairs name join the members; all in the order of the definition. */

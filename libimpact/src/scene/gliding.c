@@ -200,10 +200,9 @@ static bool tips_over(const imp_lying *lying, int *side)
 static void let_rise(imp_island *island, int first, int end, const imp_lying *lying, int side)
 {
     for (int p = first; p < end; p++) {
-        imp_pair *pair = &island->world.pairs[p];
-        const qvec3 at = pair->place.offset1;
+        const qvec3 at = island->world.pairs[p].site.contact.offset1;
         const double x[2] = {qvec3_dot(lying->axis[0], at) / lying->size, qvec3_dot(lying->axis[1], at) / lying->size};
-        pair->rises = imp_side_spare(&lying->motion.face, side, x) > IMP_TIP_SIDE;
+        island->notes[p].rises = imp_side_spare(&lying->motion.face, side, x) > IMP_TIP_SIDE;
     }
 }
 
@@ -223,10 +222,10 @@ static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
 static void lie(imp_island *island, int p)
 {
     imp_pair *pair = &island->world.pairs[p];
-    pair->lies = true;
-    pair->mode = island->modes[p] = IMP_OPEN;
-    pair->onset = false;
-    pair->corner = pair->face = 0;
+    pair->footing.on = IMP_FOOT_FACE;
+    pair->mode = island->notes[p].mode = IMP_OPEN;
+    imp_end_onset(pair);
+    pair->site.corner = pair->site.face = 0;
 }
 
 /* Lays the body of the pair whose points are first ... end - 1 exactly on its face: it glides there, or may rest. */
@@ -235,7 +234,7 @@ static impact_status lay(imp_island *island, int first, int end, bool lay_before
     imp_world *world = &island->world;
     int stay = 0;
     imp_lying lying;
-    for (int p = first; p < end; p++) stay += world->pairs[p].placed && imp_scene_point_stays(island, p);
+    for (int p = first; p < end; p++) stay += world->pairs[p].site.placed && imp_scene_point_stays(island, p);
     if (stay < 3 || !world->bodies[world->pairs[first].body2].is_static) return IMPACT_OK;
     if (is_held_elsewhere_too(island, &world->pairs[first])) return IMPACT_OK;
     if (!find_lying(island, &world->pairs[first], island->t, island->states, island->scene->rest_speed, &lying))
@@ -275,7 +274,8 @@ static void glide_on_flat(imp_island *island, imp_pair *pair)
 {
     imp_lying lying;
     const int body = pair->body1;
-    if (!imp_is_held(pair) || !pair->flat || pair->still || island->motion.resting[body]) return;
+    if (!imp_is_held(pair) || pair->footing.on != IMP_FOOT_FLAT || pair->rest.still || island->motion.resting[body])
+        return;
     if (!imp_flat_lies(&island->world, pair, island->states)) return;
     if (!find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying) ||
         !glides(island, &lying))
@@ -286,8 +286,8 @@ static void glide_on_flat(imp_island *island, imp_pair *pair)
     island->states[body] = now;
     island->impact_loss += energy - imp_scene_undriven_energy(island);
     pair->mode = IMP_OPEN;
-    pair->carried = pair->flat = pair->onset = false;
-    pair->lies = true;
+    imp_end_onset(pair);
+    pair->footing.on = IMP_FOOT_FACE;
 }
 
 void imp_island_glide_on_flats(imp_island *island)
@@ -301,12 +301,14 @@ bool imp_island_hold_flat(imp_island *island, int p)
     const imp_body *body = &island->world.bodies[pair->body1];
     const imp_state *state = &island->states[pair->body1];
     impact_held held;
+    imp_foot foot = IMP_FOOT_POINT;
     if (imp_pair_has_faces(&island->world, pair)) return false;
     if (imp_island_glide_force(island, island->t, island->states, &held)) {
         const qvec3 at = quat_rotate_inverse(state->q, qvec3_sub(held.point, state->x));
-        imp_spot_on(&body->shape, at, pair->spot);
-        pair->carried = true;
+        imp_spot_on(&body->shape, at, pair->footing.spot);
+        foot = IMP_FOOT_SPOT;
     }
+    pair->footing.on = foot;
     pair->mode = IMP_SLIDE;
     return true;
 }
@@ -314,7 +316,7 @@ bool imp_island_hold_flat(imp_island *island, int p)
 imp_pair *imp_island_lying(const imp_island *island)
 {
     for (int p = 0; p < island->world.pair_count; p++)
-        if (island->world.pairs[p].lies) return &island->world.pairs[p];
+        if (island->world.pairs[p].footing.on == IMP_FOOT_FACE) return &island->world.pairs[p];
     return NULL;
 }
 

@@ -15,7 +15,7 @@
 
 #include "scene/scene_internal.h"
 
-/* The pairs of the island, whose points that touch are settled, in which a body glides: they lie (imp_pair.lies), the
+/* The pairs of the island, whose points that touch are settled, in which a body glides: they lie (IMP_FOOT_FACE), the
  * body brought exactly onto its face. any: whether there are such. A row of contact is written unless it lay before. */
 impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any);
 

@@ -30,9 +30,9 @@ static impact_status reserve_pairs(imp_island *island, int pairs)
     int room[2] = {island->pair_room, island->pair_room};
     imp_pair *list = imp_arena_grow(arena, island->world.pairs, &room[0], pairs, sizeof *list);
     if (list) island->world.pairs = list;
-    imp_mode *modes = imp_arena_grow(arena, island->modes, &room[1], pairs, sizeof *modes);
-    if (modes) island->modes = modes;
-    if (!list || !modes) return IMPACT_ENOMEM;
+    imp_note *notes = imp_arena_grow(arena, island->notes, &room[1], pairs, sizeof *notes);
+    if (notes) island->notes = notes;
+    if (!list || !notes) return IMPACT_ENOMEM;
     island->pair_room = room[0];
     return IMPACT_OK;
 }

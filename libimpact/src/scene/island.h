@@ -25,6 +25,14 @@ typedef struct imp_push {
     double size, off;
 } imp_push;
 
+/* What is known of a pair at an instant. */
+typedef struct imp_note {
+    imp_mode mode; /* before it */
+    bool struck;   /* it exchanged an impulse */
+    bool settled;  /* it had its chance to be held again */
+    bool rises;    /* body 1 tips over a side of its face that this point is not on */
+} imp_note;
+
 typedef struct imp_island {
     struct impact_scene *scene;
     struct imp_island *next; /* scratch: of a list */
@@ -32,7 +40,7 @@ typedef struct imp_island {
     imp_motion motion;       /* of this world */
     imp_state *states;       /* at t */
     imp_state *before;       /* as the states were when the event at hand came */
-    imp_mode *modes;         /* as the pairs' modes were then */
+    imp_note *notes;         /* of the pairs */
     imp_push pushed;
     int body_room, pair_room;
     double t;

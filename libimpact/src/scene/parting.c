@@ -78,7 +78,7 @@ static bool goes_over(const imp_island *island, const int *root, int component, 
 {
     const bool here = root[pair->body1] == component &&
                       (island->world.bodies[pair->body2].is_static || root[pair->body2] == component);
-    return here && (island->stepped || imp_is_held(pair) || pair->lies);
+    return here && (island->stepped || imp_is_held(pair) || pair->footing.on == IMP_FOOT_FACE);
 }
 
 /* One component as an island of its own. */

@@ -37,7 +37,7 @@ static bool find_ball(const imp_island *island, const imp_pair *pair, qvec3 norm
     r->press = -qvec3_dot(world->gravity, r->normal);
     r->down = qvec3_axpy(r->press, r->normal, world->gravity);
     if (qvec3_norm(r->down) <= IMP_LEVEL * r->press) r->down = (qvec3){0, 0, 0};
-    r->friction = pair->friction, r->torsional = pair->torsional, r->rolling = pair->rolling;
+    r->friction = pair->law.friction, r->torsional = pair->law.torsional, r->rolling = pair->law.rolling;
     r->slowest = island->scene->rest_speed;
     return r->press > 0;
 }

@@ -64,15 +64,15 @@ imp_pair imp_rules_pair(const imp_rules *rules, const imp_world *world, int i, i
     const imp_body *a = &world->bodies[low], *b = &world->bodies[high];
     imp_pair pair = {.body1 = a->is_static ? high : low,
                      .body2 = a->is_static ? low : high,
-                     .friction = joined(rules->friction, a->friction, b->friction),
-                     .restitution = joined(rules->restitution, a->restitution, b->restitution),
-                     .torsional = a->torsional + b->torsional,
-                     .rolling = a->rolling + b->rolling};
+                     .law.friction = joined(rules->friction, a->friction, b->friction),
+                     .law.restitution = joined(rules->restitution, a->restitution, b->restitution),
+                     .law.torsional = a->torsional + b->torsional,
+                     .law.rolling = a->rolling + b->rolling};
     const imp_own_rule *own = rules->own_count > 0 ? own_of(rules, low, high) : NULL;
-    if (own && !isnan(own->friction)) pair.friction = own->friction;
-    if (own && !isnan(own->restitution)) pair.restitution = own->restitution;
-    if (own && !isnan(own->torsional)) pair.torsional = own->torsional;
-    if (own && !isnan(own->rolling)) pair.rolling = own->rolling;
-    if (own && own->stiffness > 0) pair.stiffness = own->stiffness;
+    if (own && !isnan(own->friction)) pair.law.friction = own->friction;
+    if (own && !isnan(own->restitution)) pair.law.restitution = own->restitution;
+    if (own && !isnan(own->torsional)) pair.law.torsional = own->torsional;
+    if (own && !isnan(own->rolling)) pair.law.rolling = own->rolling;
+    if (own && own->stiffness > 0) pair.law.stiffness = own->stiffness;
     return pair;
 }

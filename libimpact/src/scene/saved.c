@@ -140,21 +140,25 @@ static void walk_member(imp_archive *a, imp_saved_member *m)
 /* Coefficients are the rules'; the cache and what is scratch begin anew. */
 static void walk_pair(imp_archive *a, imp_pair *p)
 {
-    int mode = (int)p->mode;
-    bool *const flags[] = {&p->beyond, &p->onset, &p->young, &p->turned, &p->carried,
-                           &p->flat,   &p->lined, &p->still, &p->met,    &p->lies};
-    double *const numbers[] = {&p->pull, &p->spot[0], &p->spot[1], &p->spot[2], &p->lying};
+    int mode = (int)p->mode, age = (int)p->slip.age, foot = (int)p->footing.on;
+    double *const numbers[] = {&p->slip.pull, &p->footing.spot[0], &p->footing.spot[1], &p->footing.spot[2],
+                               &p->footing.lying};
     imp_archive_int(a, &p->body1, 0, INT32_MAX);
     imp_archive_int(a, &p->body2, 0, INT32_MAX);
     imp_archive_int(a, &mode, IMP_OPEN, IMP_ROLL);
-    imp_archive_int(a, &p->line, 0, 2);
-    imp_archive_int(a, &p->corner, 0, IMPACT_HULL_POINTS);
-    imp_archive_int(a, &p->face, 0, 2 * IMPACT_HULL_POINTS);
-    for (size_t k = 0; k < sizeof flags / sizeof *flags; k++) imp_archive_bool(a, flags[k]);
+    imp_archive_int(a, &age, IMP_SLIP_OLD, IMP_SLIP_YOUNG);
+    imp_archive_int(a, &foot, IMP_FOOT_POINT, IMP_FOOT_FACE);
+    imp_archive_int(a, &p->footing.line, 0, 2);
+    imp_archive_int(a, &p->site.corner, 0, IMPACT_HULL_POINTS);
+    imp_archive_int(a, &p->site.face, 0, 2 * IMPACT_HULL_POINTS);
+    imp_archive_bool(a, &p->rest.still);
+    imp_archive_bool(a, &p->met);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
-    walk_vector(a, &p->direction);
-    walk_vector(a, &p->reaction);
+    walk_vector(a, &p->slip.direction);
+    walk_vector(a, &p->rest.reaction);
     p->mode = (imp_mode)mode;
+    p->slip.age = (imp_slip_age)age;
+    p->footing.on = (imp_foot)foot;
 }
 
 impact_status imp_saved_walk(imp_saved *s, imp_archive *a, imp_arena *arena)
@@ -201,15 +205,16 @@ static const char *body_fault(const imp_saved *s, const impact_scene *scene)
 static const char *pair_fault(const imp_saved *s, const impact_scene *scene, const bool *here, const imp_pair *pair)
 {
     const imp_body *bodies = scene->world.bodies;
-    const double sum = pair->pull + pair->spot[0] + pair->spot[1] + pair->spot[2] + pair->lying + pair->direction.x +
-                       pair->direction.y + pair->direction.z + pair->reaction.x + pair->reaction.y + pair->reaction.z;
+    const double sum = pair->slip.pull + pair->footing.spot[0] + pair->footing.spot[1] + pair->footing.spot[2] +
+                       pair->footing.lying + pair->slip.direction.x + pair->slip.direction.y + pair->slip.direction.z +
+                       pair->rest.reaction.x + pair->rest.reaction.y + pair->rest.reaction.z;
     const bool known = pair->body1 < s->body_count && pair->body2 < s->body_count && pair->body1 != pair->body2;
     if (!known || !here[pair->body1] || !here[pair->body2] || bodies[pair->body1].is_static)
         return "a contact's bodies";
     if (!bodies[pair->body2].is_static && pair->body2 < pair->body1) return "the order of a contact's bodies";
-    const bool on_plane = bodies[pair->body2].shape.kind == IMPACT_PLANE || pair->face > 0;
-    if (pair->corner > (on_plane ? imp_corner_count(&bodies[pair->body1]) : 0)) return "a contact's corner";
-    if (pair->face > imp_corner_faces(&bodies[pair->body2])) return "a contact's face";
+    const bool on_plane = bodies[pair->body2].shape.kind == IMPACT_PLANE || pair->site.face > 0;
+    if (pair->site.corner > (on_plane ? imp_corner_count(&bodies[pair->body1]) : 0)) return "a contact's corner";
+    if (pair->site.face > imp_corner_faces(&bodies[pair->body2])) return "a contact's face";
     return isfinite(sum) ? NULL : "a contact's numbers";
 }
 

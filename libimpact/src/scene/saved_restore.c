@@ -223,13 +223,8 @@ static void restore_pair(imp_island *island, const imp_pair *from)
     *pair = *from;
     pair->body1 = imp_island_find(island, from->body1);
     pair->body2 = imp_island_find(island, from->body2);
-    pair->friction = rules.friction;
-    pair->stiffness = rules.stiffness;
-    pair->restitution = rules.restitution;
-    pair->torsional = rules.torsional;
-    pair->rolling = rules.rolling;
+    pair->law = rules.law;
     pair->cache = rules.cache;
-    pair->tried = pair->struck = pair->settled = false;
 }
 
 /* Its bodies, contacts and books; it moves not yet. */

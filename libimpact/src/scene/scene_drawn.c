@@ -49,7 +49,7 @@ static bool draws(imp_island *island, imp_meeting *m)
     if (!(touch->friction > 0) || fabs(m->velocity) > world->slip_speed || island->scene->compliance > 0) return false;
     if (both_in_line(world, touch) || is_held_elsewhere(world, touch)) return false;
     imp_scene_press(island, m);
-    if (!(touch->speed > world->slip_speed) || touch->flat || touch->lined) return false;
+    if (!(touch->speed > world->slip_speed) || touch->foot >= IMP_FOOT_FLAT) return false;
     const impact_collision collision = imp_scene_collision(island, m);
     return imp_collide_draws(&collision);
 }
@@ -104,7 +104,8 @@ static double response_of(imp_island *island, int own)
 static bool may_be_drawn(const imp_island *island, const imp_touch *touch)
 {
     const imp_world *world = &island->world;
-    if (touch->mode != IMP_SLIDE || touch->onset || touch->flat || touch->lined || !(touch->friction > 0)) return false;
+    if (touch->mode != IMP_SLIDE || touch->onset || touch->foot >= IMP_FOOT_FLAT || !(touch->friction > 0))
+        return false;
     if (touch->pressure > 0 && both_in_line(world, touch)) return false;
     return touch->speed > world->slip_speed && is_held_elsewhere(world, touch);
 }

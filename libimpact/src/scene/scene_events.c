@@ -125,7 +125,8 @@ impact_event imp_scene_event_of_body(const imp_island *island, impact_event_kind
 void imp_scene_remember(imp_island *island)
 {
     memcpy(island->before, island->states, sizeof *island->states * (size_t)island->world.body_count);
-    for (int p = 0; p < island->world.pair_count; p++) island->modes[p] = island->world.pairs[p].mode;
+    for (int p = 0; p < island->world.pair_count; p++)
+        island->notes[p] = (imp_note){.mode = island->world.pairs[p].mode};
 }
 
 const char *imp_scene_phases_in_words(const unsigned char *phases, int count, char *words, size_t size)

@@ -68,7 +68,7 @@ static void pile_rows(const imp_island *island, double t, held_rows *rows)
         const imp_pile_memory *memory = &held->list[k];
         const imp_pair *pair = &world->pairs[memory->pair];
         const qvec3 u = memory->velocity, along = qvec3_axpy(-qvec3_dot(u, memory->normal), memory->normal, u);
-        const bool slips = pair->friction == 0 || qvec3_norm(along) > world->slip_speed;
+        const bool slips = pair->law.friction == 0 || qvec3_norm(along) > world->slip_speed;
         const impact_held row = {.t = t,
                                  .body1 = world->bodies[pair->body1].index,
                                  .body2 = world->bodies[pair->body2].index,

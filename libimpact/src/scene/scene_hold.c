@@ -23,18 +23,20 @@ void imp_scene_choose_modes(imp_island *island)
     for (int p = 0; p < world->pair_count; p++) {
         imp_meeting m;
         imp_pair *pair = &world->pairs[p];
-        if (pair->lies || pair->rises || !imp_scene_meets(island, p, &m)) continue;
+        if (pair->footing.on == IMP_FOOT_FACE || island->notes[p].rises || !imp_scene_meets(island, p, &m)) continue;
         imp_scene_press(island, &m);
         const bool stays =
             m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= world->slip_speed;
         const bool slides = m.touch.speed > world->slip_speed || (imp_is_held(pair) && m.touch.onset);
         pair->mode = stays ? held_mode(&m.touch, slides) : IMP_OPEN;
-        pair->onset = slides && m.touch.onset && m.touch.speed < world->onset_speed;
+        if (!slides || m.touch.speed >= world->onset_speed) imp_end_onset(pair);
     }
     for (int p = 0; p < world->pair_count; p++) { /* now that it is known what holds whose bodies */
         imp_meeting m;
         imp_pair *pair = &world->pairs[p];
-        if (pair->mode != IMP_SLIDE || pair->lies || pair->rises || !imp_scene_meets(island, p, &m)) continue;
+        if (pair->mode != IMP_SLIDE || pair->footing.on == IMP_FOOT_FACE || island->notes[p].rises ||
+            !imp_scene_meets(island, p, &m))
+            continue;
         if (!imp_scene_lifts(island, &m)) continue;
         world->usage.lifts_chosen++;
         pair->mode = IMP_OPEN;
@@ -43,8 +45,8 @@ void imp_scene_choose_modes(imp_island *island)
 
 static impact_event_kind change_of_mode(imp_mode before, imp_mode now)
 {
-    if (now == IMP_OPEN) return IMPACT_EVENT_LIFTOFF;
-    if (before == IMP_OPEN) return IMPACT_EVENT_CONTACT;
+    if (!imp_mode_holds(now)) return IMPACT_EVENT_LIFTOFF;
+    if (!imp_mode_holds(before)) return IMPACT_EVENT_CONTACT;
     return now == IMP_ROLL ? IMPACT_EVENT_STICK : IMPACT_EVENT_SLIP;
 }
 
@@ -53,11 +55,11 @@ static impact_status record_changes(imp_island *island)
     imp_world *world = &island->world;
     for (int p = 0; p < world->pair_count; p++) {
         const imp_mode now = world->pairs[p].mode;
-        if (now == island->modes[p]) continue;
+        if (now == island->notes[p].mode) continue;
         const imp_touch touch = imp_persist_touch(world, p, island->states, island->motion.loads);
-        impact_event event = imp_scene_event_of_touch(island, change_of_mode(island->modes[p], now), &touch);
+        impact_event event = imp_scene_event_of_touch(island, change_of_mode(island->notes[p].mode, now), &touch);
         const bool stands = touch.friction == 0 && touch.speed <= world->slip_speed;
-        event.phases = now == IMP_OPEN ? "" : now == IMP_ROLL || stands ? "roll" : "slide";
+        event.phases = !imp_mode_holds(now) ? "" : now == IMP_ROLL || stands ? "roll" : "slide";
         island->motion.resting[touch.body1] = island->motion.resting[touch.body2] = false;
         const impact_status status = imp_scene_record(island, &event);
         if (status != IMPACT_OK) return status;
@@ -128,7 +130,7 @@ static impact_status find_still(imp_island *island)
                                                         island->scene->rest_speed, jam_speed);
     for (int p = 0; status == IMPACT_OK && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        if (!imp_is_held(pair) || !pair->still) continue;
+        if (!imp_is_held(pair) || !pair->rest.still) continue;
         stop(island, pair->body1);
         stop(island, pair->body2);
     }
@@ -162,7 +164,9 @@ static int find_pressed(imp_island *island, imp_meeting *m)
     imp_world *world = &island->world;
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
-        if (imp_is_held(pair) || pair->lies || pair->settled || !imp_scene_meets(island, p, m)) continue;
+        if (imp_is_held(pair) || pair->footing.on == IMP_FOOT_FACE || island->notes[p].settled ||
+            !imp_scene_meets(island, p, m))
+            continue;
         const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
         const double push1 = qvec3_norm(island->motion.loads[pair->body1].force) * b1->inverse_mass,
                      push2 = qvec3_norm(island->motion.loads[pair->body2].force) * b2->inverse_mass;
@@ -207,7 +211,7 @@ static bool hangs_on_choice(const imp_island *island)
 impact_status imp_scene_hold(imp_island *island, int opened, bool rejoin)
 {
     imp_world *world = &island->world;
-    for (int p = 0; p < world->pair_count; p++) world->pairs[p].settled = p == opened;
+    for (int p = 0; p < world->pair_count; p++) island->notes[p].settled = p == opened;
     impact_status status = make_consistent(island);
     while (rejoin && status == IMPACT_OK) {
         imp_meeting m;
@@ -215,8 +219,8 @@ impact_status imp_scene_hold(imp_island *island, int opened, bool rejoin)
         const int p = status == IMPACT_OK ? find_pressed(island, &m) : -1;
         if (p < 0) break;
         imp_pair *pair = &world->pairs[p];
-        pair->settled = true;
-        pair->onset = false;
+        island->notes[p].settled = true;
+        imp_end_onset(pair);
         pair->mode = held_mode(&m.touch, m.touch.speed > world->slip_speed);
         status = make_consistent(island);
     }

@@ -22,9 +22,10 @@ static bool rise_from_faces(imp_island *island)
 {
     bool lay = false;
     for (int p = 0; p < island->world.pair_count; p++) {
-        if (!island->world.pairs[p].lies) continue;
-        lay = !imp_island_hold_flat(island, p) || lay;
-        island->world.pairs[p].lies = false;
+        if (island->world.pairs[p].footing.on != IMP_FOOT_FACE) continue;
+        if (imp_island_hold_flat(island, p)) continue;
+        island->world.pairs[p].footing.on = IMP_FOOT_POINT;
+        lay = true;
     }
     return lay;
 }
@@ -74,7 +75,7 @@ impact_status imp_scene_settle(imp_island *island)
 static int placed_points(const imp_world *world)
 {
     int count = 0;
-    for (int p = 0; p < world->pair_count; p++) count += world->pairs[p].placed;
+    for (int p = 0; p < world->pair_count; p++) count += world->pairs[p].site.placed;
     return count;
 }
 
@@ -109,7 +110,7 @@ static impact_status arrive(imp_island *island, int p)
     impact_contact contact;
     imp_world_gap(world, pair, island->states, &contact);
     if (imp_world_inside_bounds(world, pair, island->states, &contact) < 0) {
-        pair->beyond = true;
+        pair->mode = IMP_BEYOND;
         return IMPACT_OK;
     }
     /* a rounding, of the gap or of the time; many would sum up */
@@ -124,9 +125,9 @@ static impact_status change_mode(imp_island *island, int p, imp_mode mode)
     imp_scene_remember(island);
     imp_pair *pair = &island->world.pairs[p];
     pair->mode = mode;
-    pair->onset = false;
+    imp_end_onset(pair);
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
-    const impact_status status = hold(island, mode == IMP_OPEN ? p : -1, true);
+    const impact_status status = hold(island, imp_mode_holds(mode) ? -1 : p, true);
     island->impact_loss = account - imp_scene_undriven_energy(island);
     return status;
 }
@@ -151,15 +152,17 @@ static bool tips(imp_island *island, int p)
     imp_persist *persist = &island->motion.persist;
     imp_pair *pair = &world->pairs[p];
     imp_scene_remember(island);
-    if ((!pair->flat && !pair->lined) || imp_scene_load(island) != IMPACT_OK) return false;
+    if ((pair->footing.on != IMP_FOOT_FLAT && pair->footing.on != IMP_FOOT_LINE) || imp_scene_load(island) != IMPACT_OK)
+        return false;
     imp_persist_solve(persist, world, island->states, island->motion.loads);
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
         if (touch->pair != p) continue;
-        if (touch->flat && touch->spare <= IMP_SPARE_SPENT)
+        if (touch->foot == IMP_FOOT_FLAT && touch->spare <= IMP_SPARE_SPENT)
             imp_flat_tip(world, pair, island->states, touch);
-        else if (touch->lined && imp_line_spare(world, touch, island->states, island->motion.loads) <= IMP_SPARE_SPENT)
-            pair->lined = false;
+        else if (touch->foot == IMP_FOOT_LINE &&
+                 imp_line_spare(world, touch, island->states, island->motion.loads) <= IMP_SPARE_SPENT)
+            pair->footing.on = IMP_FOOT_SPOT;
         else
             return false;
         return true;
@@ -219,15 +222,16 @@ impact_status imp_scene_handle(imp_island *island, imp_end end)
     case IMP_END_TIME: return IMPACT_OK;
     case IMP_END_GAP: return arrive(island, end.index);
     case IMP_END_BOUNDS:
-        if (island->world.pairs[end.index].lies) return imp_scene_settle(island); /* its face has come to an end */
-        if (island->world.pairs[end.index].corner > 0) return imp_scene_settle(island); /* another corner has landed */
+        if (island->world.pairs[end.index].footing.on == IMP_FOOT_FACE)
+            return imp_scene_settle(island); /* its face has come to an end */
+        if (island->world.pairs[end.index].site.corner > 0)
+            return imp_scene_settle(island); /* another corner has landed */
         if (tips(island, end.index)) return hold(island, -1, true);
-        island->world.pairs[end.index].beyond = true;
-        return change_mode(island, end.index, IMP_OPEN);
+        return change_mode(island, end.index, IMP_BEYOND);
     case IMP_END_LIFTOFF: return change_mode(island, end.index, IMP_OPEN);
     case IMP_END_SLIP: return begin_slide(island, end.index);
     case IMP_END_STICK:
-        if (island->world.pairs[end.index].lies) return stop_gliding(island, end.index);
+        if (island->world.pairs[end.index].footing.on == IMP_FOOT_FACE) return stop_gliding(island, end.index);
         return change_mode(island, end.index, IMP_ROLL);
     case IMP_END_EDGE: return cross_edge(island, end.index);
     case IMP_END_SLOW:

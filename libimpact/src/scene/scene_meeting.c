@@ -27,7 +27,8 @@ bool imp_scene_meets(imp_island *island, int p, imp_meeting *m)
 {
     imp_world *world = &island->world;
     imp_pair *pair = &world->pairs[p];
-    if (pair->beyond || imp_world_distance_bound(world, pair, island->states) > world->bodies[pair->body1].radius)
+    if (pair->mode == IMP_BEYOND ||
+        imp_world_distance_bound(world, pair, island->states) > world->bodies[pair->body1].radius)
         return false;
     impact_contact contact;
     imp_world_gap(world, pair, island->states, &contact);
@@ -82,7 +83,7 @@ static double least_rise(const imp_island *island, const imp_meeting *m)
 {
     enum { MOST = 10 };
     const imp_pair *pair = &island->world.pairs[m->touch.pair];
-    const double own = 1 / (1 - pair->restitution * pair->restitution),
+    const double own = 1 / (1 - pair->law.restitution * pair->law.restitution),
                  gain = imp_pair_has_faces(&island->world, pair) ? MOST : own;
     return fmax(island->scene->rest_height, m->touching * fmin(gain, MOST));
 }
@@ -116,7 +117,7 @@ impact_collider imp_scene_collider(const imp_island *island, int body, qvec3 off
  * + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
 impact_collision imp_scene_collision(imp_island *island, imp_meeting *m)
 {
-    const double restitution = island->world.pairs[m->touch.pair].restitution;
+    const double restitution = island->world.pairs[m->touch.pair].law.restitution;
     const bool dies = !m->jams && imp_scene_dies_out(island, m, restitution * m->velocity);
     const imp_touch *touch = &m->touch;
     return (impact_collision){.body = {imp_scene_collider(island, touch->body1, touch->r1),

@@ -12,9 +12,10 @@
 static imp_pair whole_pair(const imp_pair *pair)
 {
     imp_pair whole = *pair;
-    whole.mode = IMP_OPEN;
-    whole.placed = whole.onset = whole.young = whole.turned = whole.still = whole.rises = false;
-    whole.corner = whole.face = 0;
+    if (imp_is_held(pair)) whole.mode = IMP_OPEN;
+    whole.slip.age = IMP_SLIP_OLD;
+    whole.site.placed = whole.rest.still = false;
+    whole.site.corner = whole.site.face = 0;
     return whole;
 }
 
@@ -54,10 +55,10 @@ static int corner_of(const imp_island *island, const imp_pair *pair, const imp_p
 static imp_pair point_pair(const imp_pair *whole, int corner, int face, const imp_pair *before, int count)
 {
     for (int k = 0; corner > 0 && k < count; k++)
-        if (before[k].corner == corner && before[k].face == face && imp_same_bodies(&before[k], whole))
+        if (before[k].site.corner == corner && before[k].site.face == face && imp_same_bodies(&before[k], whole))
             return before[k];
     imp_pair own = *whole;
-    own.corner = corner, own.face = face;
+    own.site.corner = corner, own.site.face = face;
     return own;
 }
 
@@ -77,9 +78,9 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
         int face;
         const int corner = corner_of(island, &whole, &points[k], count, &face);
         imp_pair own = point_pair(&whole, corner, face, before, pairs);
-        own.placed = true;
-        own.place = points[k].contact;
-        own.bearer = points[k].bearer;
+        own.site.placed = true;
+        own.site.contact = points[k].contact;
+        own.site.bearer = points[k].bearer;
         world->pairs[world->pair_count++] = own;
     }
     return status;
@@ -111,7 +112,7 @@ impact_status imp_scene_place_points(imp_island *island)
 bool imp_scene_point_stays(imp_island *island, int p)
 {
     imp_meeting m;
-    if (!island->world.pairs[p].placed || !imp_scene_meets(island, p, &m)) return false;
+    if (!island->world.pairs[p].site.placed || !imp_scene_meets(island, p, &m)) return false;
     imp_scene_press(island, &m);
     return m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= island->world.slip_speed;
 }
@@ -121,7 +122,7 @@ static bool overhangs(const imp_island *island, int p)
 {
     const imp_pair *pair = &island->world.pairs[p];
     const double touching = imp_world_touching_distance(&island->world, pair, island->states);
-    return pair->face > 0 && imp_corner_lowest(&island->world, pair, island->states) < -touching;
+    return pair->site.face > 0 && imp_corner_lowest(&island->world, pair, island->states) < -touching;
 }
 
 /* Whether the point's place on body 1 stands on another body's face too: it is held there. What goes d over the edge of
@@ -130,10 +131,11 @@ static bool is_held_beside(const imp_world *world, const imp_pair *pair)
 {
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *other = &world->pairs[p];
-        if (other->corner == 0 || !other->placed || other->body1 != pair->body1 || imp_same_bodies(other, pair))
+        if (other->site.corner == 0 || !other->site.placed || other->body1 != pair->body1 ||
+            imp_same_bodies(other, pair))
             continue;
         const double size = world->bodies[pair->body1].radius;
-        const qvec3 apart = qvec3_sub(other->place.offset1, pair->place.offset1);
+        const qvec3 apart = qvec3_sub(other->site.contact.offset1, pair->site.contact.offset1);
         if (qvec3_norm(apart) <= sqrt(2 * IMP_TOUCHING) * size) return true;
     }
     return false;
@@ -146,17 +148,18 @@ imp_stay imp_scene_points_stay(imp_island *island)
     for (int p = 0, run = 0; p < world->pair_count; p++) {
         /* the points of two bodies follow each other */
         if (p > 0 && !imp_same_bodies(&world->pairs[p], &world->pairs[p - 1])) run = 0;
-        if (world->pairs[p].lies || world->pairs[p].rises || !imp_scene_point_stays(island, p)) continue;
-        if (world->pairs[p].corner == 0 && is_held_beside(world, &world->pairs[p])) continue;
-        if (world->pairs[p].corner == 0 || ++run > 2 || overhangs(island, p)) return IMP_STAY_FACES;
+        if (world->pairs[p].footing.on == IMP_FOOT_FACE || island->notes[p].rises || !imp_scene_point_stays(island, p))
+            continue;
+        if (world->pairs[p].site.corner == 0 && is_held_beside(world, &world->pairs[p])) continue;
+        if (world->pairs[p].site.corner == 0 || ++run > 2 || overhangs(island, p)) return IMP_STAY_FACES;
         found = IMP_STAY_CORNERS;
     }
     return found;
 }
 
-static bool is_point(const imp_pair *pair) { return pair->placed || pair->corner > 0; }
+static bool is_point(const imp_pair *pair) { return pair->site.placed || pair->site.corner > 0; }
 
-static bool is_held_corner(const imp_pair *pair) { return pair->corner > 0 && imp_is_held(pair); }
+static bool is_held_corner(const imp_pair *pair) { return pair->site.corner > 0 && imp_is_held(pair); }
 
 void imp_scene_drop_points(imp_island *island)
 {
@@ -165,12 +168,12 @@ void imp_scene_drop_points(imp_island *island)
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair pair = world->pairs[p];
         if (is_held_corner(&pair)) {
-            pair.placed = pair.rises = false;
+            pair.site.placed = false;
         } else if (is_point(&pair)) {
             if (imp_corner_is_held(world, &pair, 0) || is_among(world->pairs, kept, &pair)) continue;
             pair = whole_pair(&pair);
         }
-        island->modes[kept] = island->modes[p];
+        island->notes[kept] = island->notes[p];
         world->pairs[kept++] = pair;
     }
     world->pair_count = kept;

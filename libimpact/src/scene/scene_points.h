@@ -8,7 +8,7 @@
 
 #include "scene/scene_internal.h"
 
-/* Makes each such pair that touches now one pair for each of its points, whose contact is known (imp_pair.placed), and
+/* Makes each such pair that touches now one pair for each of its points, whose contact is known (imp_site.placed), and
  * drops those that do not. */
 impact_status imp_scene_place_points(imp_island *island);
 /* What of the points does not part. */

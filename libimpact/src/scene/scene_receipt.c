@@ -49,7 +49,7 @@ static double worst_gap(imp_island *island, const imp_state *states)
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair pair = world->pairs[p];
         if (!imp_is_held(&pair)) continue;
-        pair.corner = 0; /* all of the body: no other corner may be below */
+        pair.site.corner = 0; /* all of the body: no other corner may be below */
         impact_contact contact;
         imp_world_gap(world, &pair, states, &contact);
         worst = fmax(worst, fabs(contact.gap) / imp_world_place_scale(world, &pair, states));

@@ -31,8 +31,8 @@ static impact_status strike_turning(imp_island *island, imp_meeting *m)
     imp_cone_workspace room = {.arena = world->arena};
     imp_turning_impact impact;
     imp_cone_find_axes(touch->normal, contact.axes);
-    const impact_status status = imp_turning_collide(world, island->states, &contact, pair->friction,
-                                                     (imp_cone_lengths){pair->torsional, pair->rolling},
+    const impact_status status = imp_turning_collide(world, island->states, &contact, pair->law.friction,
+                                                     (imp_cone_lengths){pair->law.torsional, pair->law.rolling},
                                                      imp_scene_collision(island, m).restitution, &room, &impact);
     imp_cone_release(&room);
     if (status == IMPACT_EUNSETTLED)
@@ -132,8 +132,8 @@ static bool goes_round(const imp_island *island, int impacts)
     int struck = 0;
     bool elastic = true;
     for (int p = 0; p < island->world.pair_count; p++) {
-        struck += island->world.pairs[p].struck;
-        elastic = elastic && (!island->world.pairs[p].struck || island->world.pairs[p].restitution == 1);
+        struck += island->notes[p].struck;
+        elastic = elastic && (!island->notes[p].struck || island->world.pairs[p].law.restitution == 1);
     }
     return !elastic && impacts > 10 * struck;
 }
@@ -146,7 +146,7 @@ static impact_status strike_on(imp_island *island, bool *parted)
     bool fresh = true; /* the loads know of the last impact */
     int jam = 0;       /* the first pair that may jam: those before it have been asked since */
     *parted = island->unanswered = false;
-    for (int p = 0; p < world->pair_count; p++) world->pairs[p].struck = false;
+    for (int p = 0; p < world->pair_count; p++) island->notes[p].struck = false;
     impact_status status = imp_scene_load_with_reactions(island);
     for (int count = 0; status == IMPACT_OK; count++) {
         int p = find_approach(island, count > 0, &m);
@@ -173,10 +173,10 @@ static impact_status strike_on(imp_island *island, bool *parted)
             return IMPACT_EUNSETTLED;
         }
         status = strike(island, &m);
-        world->pairs[p].struck = true;
+        island->notes[p].struck = true;
         if (world->pair_count > 1) continue;
         const double speed = imp_persist_approach(world, &m.touch, island->states);
-        const bool was_held = m.touch.mode != IMP_OPEN; /* by a push: it has to be let go yet */
+        const bool was_held = imp_mode_holds(m.touch.mode); /* by a push: it has to be let go yet */
         *parted = !was_held && imp_scene_leaves_for_good(island, &m, speed);
         if (speed > 0) return status;
     }
@@ -191,7 +191,7 @@ static bool has_sliding(const imp_world *world)
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
         held += imp_is_held(pair);
-        sliding += pair->mode == IMP_SLIDE && pair->friction > 0 && !pair->onset;
+        sliding += pair->mode == IMP_SLIDE && pair->law.friction > 0 && !imp_is_onset(pair);
     }
     return held > 1 && sliding > 0;
 }

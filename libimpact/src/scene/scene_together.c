@@ -119,17 +119,17 @@ static void describe(imp_island *island, gathering *g, bool spent)
     for (int c = 0; c < g->count; c++) {
         imp_meeting *m = &g->met[c];
         const imp_pair *pair = &island->world.pairs[m->touch.pair];
-        const bool dies = spent || (!m->jams && imp_scene_dies_out(island, m, pair->restitution * m->velocity));
-        g->meetings[c] =
-            (impact_meeting){.body1 = m->touch.body1,
-                             .body2 = m->touch.body2,
-                             .normal = m->touch.normal,
-                             .offset1 = m->touch.r1,
-                             .offset2 = m->touch.r2,
-                             .friction = pair->friction,
-                             .restitution = dies ? 0 : pair->restitution,
-                             .stiffness = pair->stiffness > 0 ? pair->stiffness : hertz_stiffness(island, &m->touch),
-                             .pressed = m->jams};
+        const bool dies = spent || (!m->jams && imp_scene_dies_out(island, m, pair->law.restitution * m->velocity));
+        g->meetings[c] = (impact_meeting){.body1 = m->touch.body1,
+                                          .body2 = m->touch.body2,
+                                          .normal = m->touch.normal,
+                                          .offset1 = m->touch.r1,
+                                          .offset2 = m->touch.r2,
+                                          .friction = pair->law.friction,
+                                          .restitution = dies ? 0 : pair->law.restitution,
+                                          .stiffness = pair->law.stiffness > 0 ? pair->law.stiffness
+                                                                               : hertz_stiffness(island, &m->touch),
+                                          .pressed = m->jams};
     }
 }
 
@@ -158,7 +158,7 @@ static impact_status record_all(imp_island *island, const gathering *g, const ch
                   imp_scene_drive_impulse(island, touch, o->impulse);
         event.energy_after = energy;
         island->motion.resting[touch->body1] = island->motion.resting[touch->body2] = false;
-        island->world.pairs[touch->pair].struck = true;
+        island->notes[touch->pair].struck = true;
         island->world.usage.impacts_together++;
         status = imp_scene_record(island, &event);
     }

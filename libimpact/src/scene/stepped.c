@@ -21,7 +21,7 @@ static bool is_pile(const imp_world *world)
         const imp_pair *pair = &world->pairs[p];
         if (!imp_is_held(pair)) continue;
         held++;
-        rough = rough || (!world->bodies[pair->body2].is_static && pair->friction > 0);
+        rough = rough || (!world->bodies[pair->body2].is_static && pair->law.friction > 0);
     }
     return rough && held >= 3;
 }
@@ -60,11 +60,11 @@ impact_status imp_island_begin_steps(imp_island *island)
         imp_pair *pair = &island->world.pairs[p];
         *pair = (imp_pair){.body1 = pair->body1,
                            .body2 = pair->body2,
-                           .friction = pair->friction,
-                           .restitution = pair->restitution,
-                           .torsional = pair->torsional,
-                           .rolling = pair->rolling,
-                           .stiffness = pair->stiffness};
+                           .law.friction = pair->law.friction,
+                           .law.restitution = pair->law.restitution,
+                           .law.torsional = pair->law.torsional,
+                           .law.rolling = pair->law.rolling,
+                           .law.stiffness = pair->law.stiffness};
     }
     return IMPACT_OK;
 }

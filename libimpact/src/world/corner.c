@@ -96,12 +96,12 @@ static corner_view view_of(const imp_world *world, const imp_pair *pair, const i
                      .centre = imp_shape_offset(body, s1),
                      .normal = quat_rotate(s2->q, (qvec3){0, 0, 1}),
                      .apart = qvec3_sub(s1->x, s2->x)};
-    if (pair->face > 0) {
+    if (pair->site.face > 0) {
         imp_form below;
         imp_form_make(&under->shape, 1, quat_identity(), &below);
-        const qvec3 n = face_normal(&below, pair->face - 1);
+        const qvec3 n = face_normal(&below, pair->site.face - 1);
         v.normal = quat_rotate(imp_shape_axes(under, s2), n);
-        v.level = face_height(&below, pair->face - 1, n) + qvec3_dot(v.normal, imp_shape_offset(under, s2));
+        v.level = face_height(&below, pair->site.face - 1, n) + qvec3_dot(v.normal, imp_shape_offset(under, s2));
     }
     v.up = quat_rotate_inverse(v.axes, v.normal);
     imp_form_make(&body->shape, 1, quat_identity(), &v.form);
@@ -119,7 +119,7 @@ static double height_of(const corner_view *v, qvec3 at)
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const corner_view v = view_of(world, pair, states);
-    const qvec3 corner = from_centre(&v, place_of(&v.form, v.up, pair->corner - 1, IMP_RIDGE_BEYOND).at);
+    const qvec3 corner = from_centre(&v, place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND).at);
     impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
     contact.offset2 = qvec3_add(v.apart, contact.offset1);
     contact.gap = qvec3_dot(contact.normal, contact.offset2) - v.level;
@@ -141,17 +141,17 @@ qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_st
 {
     const corner_view v = view_of(world, pair, states);
     const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]);
-    const corner_place place = place_of(&v.form, v.up, pair->corner - 1, IMP_RIDGE_BEYOND);
+    const corner_place place = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
     const qvec3 up_rate = qvec3_cross(v.up, quat_rotate_inverse(v.axes, omega));
     return qvec3_add(qvec3_cross(omega, from_centre(&v, place.at)),
-                     quat_rotate(v.axes, place_rate(&v.form, &place, pair->corner - 1, v.up, up_rate)));
+                     quat_rotate(v.axes, place_rate(&v.form, &place, pair->site.corner - 1, v.up, up_rate)));
 }
 
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner)
 {
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *other = &world->pairs[p];
-        const bool is_it = corner > 0 ? other->corner == corner : other->corner > 0;
+        const bool is_it = corner > 0 ? other->site.corner == corner : other->site.corner > 0;
         if (is_it && imp_is_held(other) && imp_same_bodies(other, pair)) return true;
     }
     return false;
@@ -199,13 +199,13 @@ double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const 
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
     const corner_view v = view_of(world, pair, states);
-    const qvec3 own = place_of(&v.form, v.up, pair->corner - 1, IMP_RIDGE_BEYOND).at;
+    const qvec3 own = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND).at;
     double least = INFINITY;
-    if (pair->face > 0)
-        least = within_border(&world->bodies[pair->body2], &states[pair->body2], pair->face - 1,
+    if (pair->site.face > 0)
+        least = within_border(&world->bodies[pair->body2], &states[pair->body2], pair->site.face - 1,
                               imp_corner_contact(world, pair, states).offset2);
     if (v.form.kind == IMP_FORM_QUADRIC && !v.form.round)
-        least = fmin(least, imp_ridge_room(&v.form, pair->corner - 1, qvec3_neg(v.up)));
+        least = fmin(least, imp_ridge_room(&v.form, pair->site.corner - 1, qvec3_neg(v.up)));
     for (int i = 0; i < count; i++) {
         const corner_place place = place_of(&v.form, v.up, i, IMP_RIDGE_END);
         const bool held = imp_corner_is_held(world, pair, i + 1);

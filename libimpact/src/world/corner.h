@@ -34,7 +34,7 @@ int imp_corner_face_under(const imp_body *body, const imp_state *state, const im
 /* Whether the corner of that number, or for 0 any, of the pair's body 1 is held on its body 2. */
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner);
 
-/* Of a pair with a corner (imp_pair.corner) on its plane, or on body 2's face (imp_pair.face). */
+/* Of a pair with a corner (imp_site.corner) on its plane, or on body 2's face (imp_site.face). */
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
 /* How the contact point moves from body 1's centre, m/s. */

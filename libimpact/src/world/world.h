@@ -44,51 +44,82 @@ typedef struct imp_body {
     impact_shape given;               /* as the definition has it */
 } imp_body;
 
+/* What a contact does. */
 typedef enum imp_mode {
-    IMP_OPEN,  /* apart, or about to be */
-    IMP_SLIDE, /* held, sliding */
-    IMP_ROLL   /* held, the contact point at rest: rolling, pivoting or resting */
+    IMP_OPEN,   /* apart, or about to be */
+    IMP_BEYOND, /* apart: body 1 passed beside the bounds of the plane and is behind it */
+    IMP_SLIDE,  /* held, sliding */
+    IMP_ROLL    /* held, the contact point at rest: rolling, pivoting or resting */
 } imp_mode;
+
+/* What a contact makes of its bodies' surfaces. */
+typedef struct imp_law {
+    double friction, restitution;
+    double torsional, rolling; /* friction against turning, m: the sums of the bodies' */
+    double stiffness;          /* 0: Hertz's */
+} imp_law;
+
+/* How far slip that began from rest has come. */
+typedef enum imp_slip_age {
+    IMP_SLIP_OLD,    /* it goes as it goes */
+    IMP_SLIP_BEGUN,  /* slower than the world's onset_speed yet, along a direction that others' answers may turn */
+    IMP_SLIP_TURNED, /* the same: that is where the slip went when it was last solved for, with this pull */
+    IMP_SLIP_YOUNG   /* just past its onset, and too slow yet for its direction to change smoothly */
+} imp_slip_age;
+
+/* Of a contact that slides. */
+typedef struct imp_sliding {
+    imp_slip_age age;
+    qvec3 direction; /* begun: about where the slip goes */
+    double pull;     /* turned: imp_touch's */
+} imp_sliding;
+
+/* What body 1 stands on body 2 with. */
+typedef enum imp_foot {
+    IMP_FOOT_POINT, /* where gap and orientation put it */
+    IMP_FOOT_SPOT,  /* held: a place of its surface that is integrated along (persist_spot) */
+    IMP_FOOT_FLAT,  /* held: a spot on whose face it lies as long as it rocks with less energy than lying (persist_flat)
+                     */
+    IMP_FOOT_LINE,  /* the same along a line of its surface, its axis line kept level (persist_line) */
+    IMP_FOOT_FACE   /* with a face on what is static, and glides there (scene/gliding.h): not among what is held */
+} imp_foot;
+
+typedef struct imp_footing {
+    imp_foot on;
+    double spot[3]; /* that place */
+    double lying;   /* flat, line: J */
+    int line;
+} imp_footing;
 
 /* Whose face turns a contact's normal; of a lone point both surfaces do. */
 typedef enum imp_bearer { IMP_BORNE_BY_BOTH, IMP_BORNE_BY_1, IMP_BORNE_BY_2 } imp_bearer;
 
-/* Two bodies that can touch; body1 moves. */
-typedef struct imp_pair {
-    int body1, body2;
-    double friction, restitution;
-    double torsional, rolling; /* friction against turning, m: the sums of the bodies' */
-    double stiffness;          /* 0: Hertz's */
-    imp_mode mode;
-    bool beyond;     /* IMP_OPEN: body 1 passed beside the bounds of the plane and is behind it */
-    bool onset;      /* IMP_SLIDE: from rest, and slower than the world's onset_speed yet */
-    qvec3 direction; /* IMP_SLIDE, onset: about where the slip goes */
-    bool young;      /* IMP_SLIDE: just past its onset, and too slow yet for its direction to change smoothly */
-    bool turned;     /* it is where the slip went when it was last solved for, with this pull (imp_touch): */
-    double pull;
-    bool carried;   /* held: the contact's place on body 1 is integrated along (persist_spot) */
-    double spot[3]; /* carried: that place */
-    /* carried: body 1 lies on a face, as long as it rocks with less energy than lying, J (persist_flat) */
-    bool flat;
-    double lying;
-    /* carried: body 1 lies along a line of its surface, its axis line kept level (persist_line) */
-    bool lined;
-    int line;
-    bool still;     /* held: both bodies stand still, and reaction is one that lets them; nothing is solved for */
-    qvec3 reaction; /* still, or was: on body 1, N */
-    bool tried;     /* scratch: sticks again after its slip was to begin */
-    bool struck;    /* scratch: exchanged an impulse in this instant */
-    bool settled;   /* scratch: had its chance to be held again in this instant */
-    bool placed;    /* it is one of the points of two bodies with faces, at an instant: where it is, and stays */
-    impact_contact place;
-    imp_bearer bearer; /* placed */
+/* Which point it is of two bodies with faces. */
+typedef struct imp_site {
+    bool placed; /* it is one of theirs at an instant: where it is, and stays */
+    impact_contact contact;
+    imp_bearer bearer;
     int corner;  /* > 0: it is this corner of body 1, counted from 1, on a plane, and may be held there (corner.h) */
     int face;    /* > 0: not a plane but this face of body 2, counted from 1 */
     double sunk; /* held corner: m: how far below it the other corners were where the stretch began, <= 0 */
-    bool lies; /* body 1 lies with a face on body 2, static, and glides there (scene/gliding.h): it is not among what is
-                * held at points */
-    bool rises; /* scratch: body 1 tips over a side of its face that this point is not on */
-    bool met;   /* by the steps of a pile: it was closed since the pile was looked at last */
+} imp_site;
+
+/* Whether both bodies stand still, held, and nothing is solved for. */
+typedef struct imp_rest {
+    bool still;
+    qvec3 reaction; /* one that lets them, or did: on body 1, N */
+} imp_rest;
+
+/* Two bodies that can touch, or one point of them; body1 moves. */
+typedef struct imp_pair {
+    int body1, body2;
+    imp_law law;
+    imp_mode mode;
+    imp_sliding slip;
+    imp_footing footing;
+    imp_site site;
+    imp_rest rest;
+    bool met; /* by the steps of a pile: it was closed since the pile was looked at last */
     impact_gap_cache cache;
 } imp_pair;
 
@@ -128,7 +159,7 @@ typedef struct imp_world {
 } imp_world;
 
 /* Whether its contact resists turning. */
-static inline bool imp_is_rough(const imp_pair *pair) { return pair->torsional > 0 || pair->rolling > 0; }
+static inline bool imp_is_rough(const imp_pair *pair) { return pair->law.torsional > 0 || pair->law.rolling > 0; }
 
 /* Whether body 2 stands and its surface turns on under what resists that, wherever it touches. */
 static inline bool imp_is_turned(const imp_world *world, const imp_pair *pair)
@@ -137,7 +168,26 @@ static inline bool imp_is_turned(const imp_world *world, const imp_pair *pair)
     return under->driven && imp_is_rough(pair) && qvec3_norm(under->spin) > 0;
 }
 
-static inline bool imp_is_held(const imp_pair *pair) { return pair->mode != IMP_OPEN; }
+static inline bool imp_mode_holds(imp_mode mode) { return mode >= IMP_SLIDE; }
+
+static inline bool imp_is_held(const imp_pair *pair) { return imp_mode_holds(pair->mode); }
+
+/* Whether it slides from rest, if it slides. */
+static inline bool imp_is_onset(const imp_pair *pair)
+{
+    return pair->slip.age == IMP_SLIP_BEGUN || pair->slip.age == IMP_SLIP_TURNED;
+}
+
+static inline void imp_end_onset(imp_pair *pair)
+{
+    if (imp_is_onset(pair)) pair->slip.age = IMP_SLIP_OLD;
+}
+
+/* Whether its place on body 1 is integrated along. */
+static inline bool imp_is_carried(const imp_pair *pair)
+{
+    return pair->footing.on >= IMP_FOOT_SPOT && pair->footing.on <= IMP_FOOT_LINE;
+}
 
 /* Three equal moments, but for the rounding of the formulas that gave them, are a sphere's. */
 static inline void imp_body_give_moments(imp_body *body, qvec3 m)

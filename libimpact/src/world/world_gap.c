@@ -42,8 +42,8 @@ double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body
 
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
 {
-    if (pair->placed || pair->corner > 0) {
-        *contact = pair->corner > 0 ? imp_corner_contact(world, pair, states) : pair->place;
+    if (pair->site.placed || pair->site.corner > 0) {
+        *contact = pair->site.corner > 0 ? imp_corner_contact(world, pair, states) : pair->site.contact;
         return IMPACT_OK;
     }
     return gap_of(&world->bodies[pair->body1], &states[pair->body1], &world->bodies[pair->body2], &states[pair->body2],

@@ -75,7 +75,7 @@ static void a_clamped_ball_rests_however_it_is_turned(void **state)
         assert_true(impact_scene_time(scene) == 0);
         assert_int_equal(impact_scene_usage(scene).integrator_starts, 0);
         assert_int_equal(island_of(scene, WALLS)->motion.persist.count, WALLS);
-        for (int p = 0; p < WALLS; p++) assert_true(island_of(scene, WALLS)->world.pairs[p].still);
+        for (int p = 0; p < WALLS; p++) assert_true(island_of(scene, WALLS)->world.pairs[p].rest.still);
         assert_balanced(scene);
         impact_scene_destroy(scene);
     }
@@ -166,7 +166,7 @@ static void nothing_is_still_under_other_forces(void **state)
     s.def.force_count = 1;
     impact_scene *scene = make_scene(&s.def);
     assert_true(impact_scene_run(scene, NULL) >= 0);
-    for (int p = 0; p < WALLS; p++) assert_false(island_of(scene, WALLS)->world.pairs[p].still);
+    for (int p = 0; p < WALLS; p++) assert_false(island_of(scene, WALLS)->world.pairs[p].rest.still);
     impact_scene_destroy(scene);
 }
 

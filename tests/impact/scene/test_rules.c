@@ -92,12 +92,13 @@ static void check_pair(const stock *s, int i, int j)
     const imp_pair pair = imp_rules_pair(&s->rules, &s->world, i, j);
     const double friction = by_rule(s->def.friction_rule, a->friction, b->friction),
                  restitution = by_rule(s->def.restitution_rule, a->restitution, b->restitution);
-    assert_near(pair.friction, isnan(own->friction) ? friction : own->friction, 1e-15);
-    assert_near(pair.restitution, isnan(own->restitution) ? restitution : own->restitution, 1e-15);
-    assert_near(pair.torsional, isnan(own->torsional_friction) ? a->torsional + b->torsional : own->torsional_friction,
+    assert_near(pair.law.friction, isnan(own->friction) ? friction : own->friction, 1e-15);
+    assert_near(pair.law.restitution, isnan(own->restitution) ? restitution : own->restitution, 1e-15);
+    assert_near(pair.law.torsional,
+                isnan(own->torsional_friction) ? a->torsional + b->torsional : own->torsional_friction, 1e-15);
+    assert_near(pair.law.rolling, isnan(own->rolling_friction) ? a->rolling + b->rolling : own->rolling_friction,
                 1e-15);
-    assert_near(pair.rolling, isnan(own->rolling_friction) ? a->rolling + b->rolling : own->rolling_friction, 1e-15);
-    assert_true(pair.stiffness == own->stiffness);
+    assert_true(pair.law.stiffness == own->stiffness);
     const int low = i < j ? i : j, high = i < j ? j : i, first = s->body[low].is_static ? high : low;
     assert_true(pair.body1 == first && pair.body2 == low + high - first && pair.mode == IMP_OPEN);
 }
@@ -129,7 +130,7 @@ static void the_first_of_two_counts(void **state)
                                      {.body1 = "b", .body2 = "c", .friction = 0.75, .restitution = NAN}};
     s.def.pairs = twice, s.def.pair_count = 2;
     assert_int_equal(imp_rules_open(&s.rules, s.arena, &s.def, &s.names), IMPACT_OK);
-    assert_true(imp_rules_pair(&s.rules, &s.world, 1, 2).friction == 0.25);
+    assert_true(imp_rules_pair(&s.rules, &s.world, 1, 2).law.friction == 0.25);
     imp_arena_destroy(s.arena);
 }
 
