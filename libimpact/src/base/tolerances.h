@@ -179,6 +179,10 @@
 /* The largest exponent of a superquadric: its edges are then 1e-6 of its size wide, and u^(p - 1) spans double's range.
  */
 #define IMP_MOST_EXPONENT 1e6
+/* How far over 1 a body's exponent lies at least, but where it is 1: its dual is then at most 1e6 too. Nearer to 1 what
+ * rolls on its nearly flat sides rocks at 1/sqrt(p - 1) times its own rate, and rounding leaves eps/(p - 1) of where it
+ * touches: below 1e-7 a scene's steps were of 1e-10 s. */
+#define IMP_LEAST_OVER_ONE 1e-6
 /* Of 1: a component of a direction at which the surface's flat place gives way to its neighbourhood, where radii of
  * curvature are finite. */
 #define IMP_OFF_FLAT 1e-9

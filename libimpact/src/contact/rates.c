@@ -4,7 +4,10 @@
  * function. That both points stay together gives, with n = m2 = -m1 and u the relative velocity,
  *
  *     both round        (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n)
- *     a face of body 2  n' = w2 x n (W2 is infinite); where body 1 lies flat on it W1 = 0: each point stays on it
+ *     body 2 flatter    (1 + W1 S2) z = u + W1 (w1 x n - w2 x n), n' = w2 x n + S2 z, z = W2 (n' - w2 x n); S2 = 1/W2
+ * is how the normal turns along the surface. Where that is nearly flat the first equation takes z out of W2 times a
+ * difference: 1e-3 was left wrong of a ball's bias on a face of exponent 50 a face of body 2  n' = w2 x n (W2 is
+ * infinite); where body 1 lies flat on it W1 = 0: each point stays on it
  *
  * and, whatever n' is, (n . u)' = n . u' + n' . u along the contact.
  */
@@ -40,6 +43,91 @@ static qvec3 velocity_of(const imp_body *body, const imp_state *state)
     return body->is_static ? (qvec3){0, 0, 0} : state->v;
 }
 
+/* How much the surface there is flatter than round: the larger radius of curvature, about; 0 of what S does not suit.
+ */
+static double flatness(const imp_body *body, const imp_state *state, qvec3 outward)
+{
+    const impact_shape *shape = &body->shape;
+    const double least = fmin(shape->r, fmin(shape->s, shape->t)), most = fmax(shape->r, fmax(shape->s, shape->t));
+    if (shape->kind != IMPACT_SUPERQUADRIC || least < 2 || most == 2) return 0;
+    const qvec3 t = imp_tangent(outward);
+    return qvec3_norm(imp_surface_bend(body, state, outward, t)) +
+           qvec3_norm(imp_surface_bend(body, state, outward, qvec3_cross(outward, t)));
+}
+
+/* S v, 1/m: how a superquadric's outward normal turns along a tangential vector; exponents of 2 and more. With g the
+ * gradient of sum |x/a|^p and D its Hessian, S = (1 - m m^T) D/|g|. */
+static qvec3 surface_turn(const imp_body *body, const imp_state *state, qvec3 arm, qvec3 outward, qvec3 v)
+{
+    const impact_shape *shape = &body->shape;
+    const quat axes = imp_shape_axes(body, state);
+    const qvec3 place = quat_rotate_inverse(axes, qvec3_sub(arm, imp_shape_offset(body, state))),
+                along = quat_rotate_inverse(axes, v);
+    const double x[3] = {place.x, place.y, place.z}, a[3] = {shape->a, shape->b, shape->c};
+    const double p[3] = {shape->r, shape->s, shape->t}, b[3] = {along.x, along.y, along.z};
+    double length = 0, turn[3];
+    for (int i = 0; i < 3; i++) {
+        const double u = fabs(x[i] / a[i]), slope = p[i] / a[i] * pow(u, p[i] - 1);
+        length = hypot(length, slope);
+        turn[i] = p[i] * (p[i] - 1) / (a[i] * a[i]) * pow(u, p[i] - 2) * b[i];
+    }
+    const qvec3 world = quat_rotate(axes, (qvec3){turn[0], turn[1], turn[2]});
+    return qvec3_scale(qvec3_axpy(-qvec3_dot(world, outward), outward, world), 1 / length);
+}
+
+/* Two bodies at their one point, and the slip of the first over the second. */
+typedef struct round_pair {
+    const imp_body *body[2];
+    const imp_state *state[2];
+    qvec3 arm[2], outward[2], omega[2], slip;
+} round_pair;
+
+static qvec3 pair_bend(const round_pair *r, int k, qvec3 v)
+{
+    return imp_surface_bend(r->body[k], r->state[k], r->outward[k], v);
+}
+
+/* The tangential x whose image is y; images of the two tangents. */
+static qvec3 tangent_of_image(const qvec3 t[2], const qvec3 image[2], qvec3 y)
+{
+    const double a = qvec3_dot(t[0], image[0]), b = qvec3_dot(t[0], image[1]), c = qvec3_dot(t[1], image[0]),
+                 d = qvec3_dot(t[1], image[1]), determinant = a * d - b * c;
+    const double y0 = qvec3_dot(t[0], y), y1 = qvec3_dot(t[1], y);
+    return qvec3_axpy((d * y0 - b * y1) / determinant, t[0], qvec3_scale(t[1], (a * y1 - c * y0) / determinant));
+}
+
+/* n' of two that are both round. */
+static qvec3 round_turn(const round_pair *r, qvec3 n)
+{
+    const qvec3 t[2] = {imp_tangent(n), qvec3_cross(n, imp_tangent(n))};
+    qvec3 image[2], moves = r->slip;
+    for (int k = 0; k < 2; k++) {
+        image[k] = qvec3_add(pair_bend(r, 0, t[k]), pair_bend(r, 1, t[k]));
+        moves = qvec3_add(moves, pair_bend(r, k, qvec3_cross(r->omega[k], n)));
+    }
+    return tangent_of_image(t, image, moves);
+}
+
+static imp_rates flatter_rates(const round_pair *r, int flat, qvec3 n)
+{
+    const int other = 1 - flat;
+    const double side = flat == 1 ? 1 : -1;
+    const qvec3 out = r->outward[flat], over = qvec3_scale(r->slip, side);
+    const qvec3 t[2] = {imp_tangent(n), qvec3_cross(n, imp_tangent(n))};
+    qvec3 image[2];
+    for (int k = 0; k < 2; k++)
+        image[k] =
+            qvec3_add(t[k], pair_bend(r, other, surface_turn(r->body[flat], r->state[flat], r->arm[flat], out, t[k])));
+    const qvec3 rolls = qvec3_cross(qvec3_sub(r->omega[other], r->omega[flat]), out);
+    const qvec3 z = tangent_of_image(t, image, qvec3_add(over, pair_bend(r, other, rolls)));
+    const qvec3 turn =
+        qvec3_add(qvec3_cross(r->omega[flat], out), surface_turn(r->body[flat], r->state[flat], r->arm[flat], out, z));
+    const qvec3 own = qvec3_add(qvec3_cross(r->omega[flat], r->arm[flat]), z),
+                others = qvec3_add(qvec3_cross(r->omega[other], r->arm[other]), qvec3_sub(z, over));
+    return (imp_rates){
+        .normal = qvec3_scale(turn, side), .arm1 = flat == 0 ? own : others, .arm2 = flat == 0 ? others : own};
+}
+
 /* A plane's normal stays. */
 static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const impact_contact *contact,
                              const imp_state *states)
@@ -51,17 +139,18 @@ static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const
     if (b2->shape.kind != IMPACT_PLANE) {
         const qvec3 u = qvec3_sub(imp_point_velocity(b1, s1, contact->offset1),
                                   imp_point_velocity(b2, s2, contact->offset2)),
-                    slip = qvec3_axpy(-qvec3_dot(u, n), n, u), w2 = body_turning(b2, s2), turn2 = qvec3_cross(w2, n);
-        const qvec3 t1 = imp_tangent(n), t2 = qvec3_cross(n, t1);
-        const qvec3 c1 = qvec3_add(imp_surface_bend(b1, s1, out1, t1), imp_surface_bend(b2, s2, n, t1));
-        const qvec3 c2 = qvec3_add(imp_surface_bend(b1, s1, out1, t2), imp_surface_bend(b2, s2, n, t2));
-        const qvec3 moves =
-            qvec3_add(slip, qvec3_add(imp_surface_bend(b1, s1, out1, turn1), imp_surface_bend(b2, s2, n, turn2)));
-        const double a = qvec3_dot(t1, c1), b = qvec3_dot(t1, c2), d = qvec3_dot(t2, c2), determinant = a * d - b * b;
-        const double x = qvec3_dot(t1, moves), y = qvec3_dot(t2, moves);
-        rates.normal = qvec3_axpy((d * x - b * y) / determinant, t1, qvec3_scale(t2, (a * y - b * x) / determinant));
+                    w2 = body_turning(b2, s2);
+        const round_pair r = {.body = {b1, b2},
+                              .state = {s1, s2},
+                              .arm = {contact->offset1, contact->offset2},
+                              .outward = {out1, n},
+                              .omega = {w1, w2},
+                              .slip = qvec3_axpy(-qvec3_dot(u, n), n, u)};
+        const double flat1 = flatness(b1, s1, out1), flat2 = flatness(b2, s2, n);
+        if (flat1 > 0 || flat2 > 0) return flatter_rates(&r, flat2 >= flat1, n);
+        rates.normal = round_turn(&r, n);
         rates.arm2 =
-            qvec3_add(qvec3_cross(w2, contact->offset2), imp_surface_bend(b2, s2, n, qvec3_sub(rates.normal, turn2)));
+            qvec3_add(qvec3_cross(w2, contact->offset2), pair_bend(&r, 1, qvec3_sub(rates.normal, qvec3_cross(w2, n))));
     }
     rates.arm1 =
         qvec3_add(qvec3_cross(w1, contact->offset1), imp_surface_bend(b1, s1, out1, qvec3_sub(turn1, rates.normal)));

@@ -89,6 +89,17 @@ bool imp_scene_shape_stands_aside(const impact_body_def *body)
     return p.x != 0 || p.y != 0 || p.z != 0 || q.x != 0 || q.y != 0 || q.z != 0;
 }
 
+/* Sides that are flat but for rounding: as good as those of 1. */
+static void check_exponents(check *c, const impact_shape *shape)
+{
+    if (shape->kind != IMPACT_SUPERQUADRIC && shape->kind != IMPACT_SUPERELLIPSOID) return;
+    const double exponents[3] = {shape->r, shape->s, shape->t};
+    static const char *const keys[3] = {"exponent r", "exponent s", "exponent t"};
+    for (int i = 0; i < 3; i++)
+        require(c, exponents[i] == 1 || exponents[i] >= 1 + IMP_LEAST_OVER_ONE, keys[i], exponents[i],
+                "over 1 by less than 1e-6: give 1");
+}
+
 static void check_body(check *c, const impact_body_def *body)
 {
     require_vector(c, body->position, "position");
@@ -122,6 +133,7 @@ static void check_body(check *c, const impact_body_def *body)
     require_words(c, body->is_static || body->shape.kind != IMPACT_PLANE, "a plane must be static");
     char why[200];
     require_words(c, impact_shape_check(&body->shape, why, sizeof why) == IMPACT_OK, why);
+    check_exponents(c, &body->shape);
     if (c->status != IMPACT_OK) return;
     if (!body->is_static) check_solid(c, body);
     const char *refusal = imp_drive_refusal(body);

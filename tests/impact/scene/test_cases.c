@@ -85,8 +85,9 @@ static void compliance_holds_in_company(void **state)
 
 /* ---- boxes on boxes ---- */
 
-/* Dropped on a table within its edges, a box rests on it, or the run says that it does not know. */
-static void nothing_falls_through_in_silence(void **state)
+/* Dropped on a table within its edges, a box stays on it, also where the run says that its digits are not to be
+ * trusted. */
+static void nothing_falls_through(void **state)
 {
     (void)state;
     random_stream random = {35};
@@ -102,16 +103,14 @@ static void nothing_falls_through_in_silence(void **state)
             bodies[1].velocity = (qvec3){.631857, .159491, 0};
         }
         impact_scene_def def = scene_of(bodies, 2, i == 0 ? 0.4 : 0.6);
-        def.max_steps = 600;
         const ending e = run(&def);
-        if (refused(&e)) continue;
-        assert_good(&e);
+        if (i == 0 || !refused(&e)) assert_good(&e);
         assert_true(e.body.position.z > 0.24);
     }
 }
 
-/* A box slides on a box that stays: as friction brakes it, or the run says that it cannot tell. */
-static void a_box_slides_on_a_box_or_says_why_not(void **state)
+/* A box slides on a box that stays: as friction brakes it. */
+static void a_box_slides_on_a_box(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
@@ -120,10 +119,7 @@ static void a_box_slides_on_a_box_or_says_why_not(void **state)
                                      box("upper", (qvec3){.1, .1, .1}, 100, (qvec3){0, 0, .3}, friction)};
         bodies[2].velocity = (qvec3){speed, 0, 0};
         impact_scene_def def = scene_of(bodies, 3, 1);
-        def.max_steps = 2000;
         const ending e = run(&def);
-        assert_true(isfinite(e.t + e.body.position.x + e.body.velocity.x));
-        if (refused(&e)) continue;
         assert_good(&e);
         assert_near(e.body.position.x, speed * speed / (2 * friction * gravity), 1e-6);
         assert_near(e.body.position.z, 0.3, 1e-6);
@@ -170,13 +166,15 @@ static void friction_takes(void **state)
         body->friction = friction;
         body->restitution = 0;
     }
-    impact_scene_def def = scene_of(bodies, 12, 0.45);
+    impact_scene_def def = scene_of(bodies, 12, 2);
     def.gravity = (qvec3){0, 0, -19.62};
     def.friction_rule = def.restitution_rule = IMPACT_MAXIMUM;
-    const ending e = run(&def);
-    if (refused(&e)) return;
-    assert_good(&e);
-    assert_near(e.residuals.loss_fallen, 0, 1e-9 * e.energy.start);
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 12; i++) bodies[i].friction = friction * (1 - 0.3 * k);
+        const ending e = run(&def);
+        assert_good(&e);
+        assert_near(e.residuals.loss_fallen, 0, 1e-9 * e.energy.start);
+    }
 }
 
 /* ---- tolerance ---- */
@@ -296,8 +294,10 @@ static void calls_of_progress_are_bounded(void **state)
     }
 }
 
-/* Two inputs at which time once stood still, or all but. */
-static void time_advances_or_the_run_says_that_it_does_not(void **state)
+/* Time once stood still here: a body whose exponent is over 1 by an ulp rolls on the floor. Of 1, and of what lies so
+ * far over it that its sides are not flat but for rounding, the scene ends, and no two of them are farther apart than
+ * their exponents; what lies between is refused. */
+static void exponents_are_one_or_more_by_far(void **state)
 {
     (void)state;
     impact_body_def hang[5] = {floor_body(1.3969838619232178e-09, 1e-8), impact_default_body_def(),
@@ -335,9 +335,32 @@ static void time_advances_or_the_run_says_that_it_does_not(void **state)
     def.friction_rule = IMPACT_GEOMETRIC_MEAN;
     def.law = IMPACT_NEWTON;
     def.max_steps = 20000;
-    const ending first = run(&def);
-    assert_true(first.t >= 0.45 || refused(&first));
+    static const double over[] = {0, 1e-6, 1e-5, 1e-4, 1e-3}, too_little[] = {2.3e-16, 1e-12, 1e-9, 9e-7};
+    double kinetic[sizeof over / sizeof *over];
+    for (size_t k = 0; k < sizeof over / sizeof *over; k++) {
+        hang[1].shape.r = 1 + over[k];
+        scene_log log = {0};
+        const ending e = run_logged(&def, &log);
+        assert_good(&e);
+        assert_true(find_event(&log, IMPACT_EVENT_CONTACT, NULL, 0) >= 0);
+        kinetic[k] = e.energy.kinetic;
+        assert_near(kinetic[k], kinetic[0], (over[k] + 1e-12) * kinetic[0]);
+        free_log(&log);
+    }
+    for (size_t k = 0; k < sizeof too_little / sizeof *too_little; k++) {
+        hang[1].shape.r = 1 + too_little[k];
+        impact_scene *scene;
+        char message[200];
+        assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+        assert_non_null(strstr(message, "over 1 by less than 1e-6: give 1"));
+    }
+}
 
+/* A ball rolls on nearly flat places of a body of exponent 50, and time all but stood still: how the contact moves came
+ * out of the noise of its curvature. */
+static void time_advances_on_nearly_flat_places(void **state)
+{
+    (void)state;
     impact_body_def creeps[4] = {floor_body(1.5, 0.74031800286873994),
                                  ball("b", 0.96662343211157575, (qvec3){3.2, 0.5, 1.5027558214056826},
                                       (qvec3){-3e-16, 0.057721939621843577, -0.6}),
@@ -359,33 +382,33 @@ static void time_advances_or_the_run_says_that_it_does_not(void **state)
     creeps[3].restitution = 0.69435712759788815;
     impact_force_def pull = impact_default_force_def(IMPACT_FORCE_ATTRACTION);
     pull.constant = 0.168903, pull.power = 0.635334;
-    def = scene_of(creeps, 4, 0.55);
+    impact_scene_def def = scene_of(creeps, 4, 0.55);
     def.gravity = (qvec3){-0.447563, 2e-16, 0};
     def.friction_rule = IMPACT_MAXIMUM;
     def.law = IMPACT_STRONGE;
     def.forces = &pull;
     def.force_count = 1;
     def.max_steps = 20000;
-    const ending second = run(&def);
-    assert_true(second.t >= 0.55 || refused(&second));
+    const double exponents[] = {50, 20, 100};
+    for (int k = 0; k < 3; k++) {
+        creeps[3].shape.r = creeps[3].shape.s = creeps[3].shape.t = exponents[k];
+        const ending e = run(&def);
+        assert_good(&e);
+        assert_true(e.t == 0.55);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest closed_forms[] = {
-        cmocka_unit_test(far_away_is_as_here),
-        cmocka_unit_test(far_along_the_line_is_known_to_its_rounding),
-        cmocka_unit_test(nothing_falls_through_in_silence),
-        cmocka_unit_test(a_box_slides_on_a_box_or_says_why_not),
-        cmocka_unit_test(friction_takes),
-        cmocka_unit_test(the_limit_of_events_is_told),
-        cmocka_unit_test(time_advances_or_the_run_says_that_it_does_not),
+        cmocka_unit_test(far_away_is_as_here),   cmocka_unit_test(far_along_the_line_is_known_to_its_rounding),
+        cmocka_unit_test(nothing_falls_through), cmocka_unit_test(a_box_slides_on_a_box),
+        cmocka_unit_test(friction_takes),        cmocka_unit_test(the_limit_of_events_is_told),
     };
     const struct CMUnitTest integrated[] = {
-        cmocka_unit_test(compliance_holds_in_company),
-        cmocka_unit_test(tolerance_is_the_integrators_alone),
-        cmocka_unit_test(a_pile_ends_at_every_tolerance),
-        cmocka_unit_test(calls_of_progress_are_bounded),
+        cmocka_unit_test(exponents_are_one_or_more_by_far), cmocka_unit_test(time_advances_on_nearly_flat_places),
+        cmocka_unit_test(compliance_holds_in_company),      cmocka_unit_test(tolerance_is_the_integrators_alone),
+        cmocka_unit_test(a_pile_ends_at_every_tolerance),   cmocka_unit_test(calls_of_progress_are_bounded),
     };
     const int failed = cmocka_run_group_tests_name("impact.cases", closed_forms, NULL, NULL);
     if (!impact_has(IMPACT_PART_CVODE)) return failed;
