@@ -3,25 +3,25 @@
  * A contact that gives in the tangent too: Stronge's bilinear springs (Stronge 2000, chapter 5; Jia 2013 in three
  * dimensions), by CVODE.
  *
- * Unit of stiffness: the normal spring while loading, so that the unit of time drops out of the answer. With delta' =
- * -uz, normal force   F = delta while loading, F = F_c - (delta_c - delta) / eps^2 while unloading or loading again up
- * to delta_c; sticking       f' = -k u_t, k = 1 / eta^2, as long as |f| <= mu F; sliding        f = -mu F (cos phi, sin
- * phi), mu F phi' = k u_t . (-sin phi, cos phi), at the speed v = u_t . (cos phi, sin phi) - mu F' / k, as long as v >
- * 0.
+ * Unit of stiffness: the normal spring while loading, so that the unit of time drops out of the answer. Normal force
+ * F' = -uz while loading, F' = -uz / eps^2 while unloading, and loading again up to the greatest F there was (F itself
+ * is integrated: told from the indentation it would have that's rounding over eps^2); sticking       f' = -k u_t, k = 1
+ * / eta^2, as long as |f| <= mu F; sliding        f = -mu F (cos phi, sin phi), mu F phi' = k u_t . (-sin phi, cos
+ * phi), at the speed v = u_t . (cos phi, sin phi) - mu F' / k, as long as v > 0.
  */
 #include "base/tolerances.h"
 #include "collide/collide_cvode.h"
 
 /* (A, B): f while sticking, phi in A while sliding. */
-enum { SPRING_DELTA, SPRING_A, SPRING_B, SPRING_P, SPRING_PX, SPRING_PY, SPRING_WORK, SPRING_FRICTION, SPRING_SIZE };
+enum { SPRING_FORCE, SPRING_A, SPRING_B, SPRING_P, SPRING_PX, SPRING_PY, SPRING_WORK, SPRING_FRICTION, SPRING_SIZE };
 enum { EVENT_UZ, EVENT_OFF, EVENT_RELOAD, EVENT_GRIP, EVENTS };
 
 struct imp_compliant {
     impact_ode *ode;
     const imp_frame *frame;
     double mu, eps2, k;
-    double u[3];             /* before the impact */
-    double delta_c, force_c; /* where unloading began */
+    double u[3]; /* before the impact */
+    double most; /* the force where unloading began */
     bool loading, sliding;
 };
 
@@ -31,11 +31,6 @@ static void velocity(const imp_compliant *c, const double *y, double *u)
     u[0] = c->u[0] + (m->a * y[SPRING_PX] + m->c * y[SPRING_P]);
     u[1] = c->u[1] + (m->b * y[SPRING_PY] + m->d * y[SPRING_P]);
     u[2] = c->u[2] + (m->c * y[SPRING_PX] + m->d * y[SPRING_PY] + y[SPRING_P]);
-}
-
-static double force(const imp_compliant *c, const double *y)
-{
-    return c->loading ? y[SPRING_DELTA] : c->force_c - (c->delta_c - y[SPRING_DELTA]) / c->eps2;
 }
 
 static double force_rate(const imp_compliant *c, double uz) { return c->loading ? -uz : -uz / c->eps2; }
@@ -57,16 +52,16 @@ static int spring_rates(double t, const double *y, double *rate, void *context)
     const imp_compliant *c = context;
     double u[3], f[2];
     velocity(c, y, u);
-    const double F = force(c, y);
+    const double F = y[SPRING_FORCE];
     tangential(c, y, F, f);
-    rate[SPRING_DELTA] = -u[2];
+    rate[SPRING_FORCE] = force_rate(c, u[2]);
     rate[SPRING_P] = F;
     rate[SPRING_PX] = f[0];
     rate[SPRING_PY] = f[1];
     rate[SPRING_WORK] = F * u[2];
     rate[SPRING_FRICTION] = f[0] * u[0] + f[1] * u[1];
     if (c->sliding) {
-        /* Where the force is small phi follows u_t at once; beyond a rate of 1e6 how fast makes no difference. */
+        /* Where the force is small phi follows u_t at once; the rate is bounded. */
         const double least = IMP_COMPLIANT_FOLLOWS * c->k * hypot(u[0], u[1]) + IMP_COMPLIANT_LEAST;
         rate[SPRING_A] = c->k * (u[1] * cos(y[SPRING_A]) - u[0] * sin(y[SPRING_A])) / fmax(c->mu * F, least);
         rate[SPRING_B] = 0;
@@ -83,10 +78,10 @@ static int spring_events(double t, const double *y, double *value, void *context
     const imp_compliant *c = context;
     double u[3];
     velocity(c, y, u);
-    const double F = force(c, y);
+    const double F = y[SPRING_FORCE];
     value[EVENT_UZ] = u[2];
-    value[EVENT_OFF] = c->loading ? 1 : F - IMP_COMPLIANT_OFF * c->force_c;
-    value[EVENT_RELOAD] = c->loading ? -1 : y[SPRING_DELTA] - c->delta_c;
+    value[EVENT_OFF] = c->loading ? 1 : F - IMP_COMPLIANT_OFF * c->most;
+    value[EVENT_RELOAD] = c->loading ? -1 : F - c->most;
     value[EVENT_GRIP] = c->sliding ? slide_speed(c, y, u)
                                    : c->mu * c->mu * F * F - (y[SPRING_A] * y[SPRING_A] + y[SPRING_B] * y[SPRING_B]);
     return 0;
@@ -134,11 +129,11 @@ static void begin(imp_compliant *c, const imp_course *course, double *y)
     c->u[2] = course->uz;
     c->loading = true;
     c->sliding = c->k * course->s > c->mu;
-    c->delta_c = c->force_c = 0;
+    c->most = 0;
     const double x = course->s > 0 ? course->ux / course->s : 1, z = course->s > 0 ? course->uy / course->s : 0;
     const double pull = c->sliding ? c->mu : c->k * course->s;
     for (int i = 0; i < SPRING_SIZE; i++) y[i] = 0;
-    y[SPRING_DELTA] = t;
+    y[SPRING_FORCE] = t;
     y[SPRING_A] = c->sliding ? atan2(z, x) : -pull * x * t;
     y[SPRING_B] = c->sliding ? 0 : -pull * z * t;
     y[SPRING_P] = t * t / 2;
@@ -172,7 +167,7 @@ static void let_go(imp_course *course, imp_compliant *c, double *y, double *befo
 {
     double u[3], f[2];
     velocity(c, y, u);
-    const double F = fmax(force(c, y), 0), dp = u[2] > 0 ? F * F * c->eps2 / (2 * u[2]) : 0;
+    const double F = fmax(y[SPRING_FORCE], 0), dp = u[2] > 0 ? F * F * c->eps2 / (2 * u[2]) : 0;
     tangential(c, y, F, f);
     y[SPRING_P] += dp;
     y[SPRING_WORK] += u[2] * dp;
@@ -187,7 +182,7 @@ static void let_go(imp_course *course, imp_compliant *c, double *y, double *befo
 static void change_grip(imp_compliant *c, double *y)
 {
     if (c->sliding) {
-        const double F = force(c, y), x = cos(y[SPRING_A]), z = sin(y[SPRING_A]);
+        const double F = y[SPRING_FORCE], x = cos(y[SPRING_A]), z = sin(y[SPRING_A]);
         y[SPRING_A] = -c->mu * F * x;
         y[SPRING_B] = -c->mu * F * z;
     } else {
@@ -223,12 +218,11 @@ static impact_status follow_springs(imp_course *course, imp_compliant *c)
                 return IMPACT_OK;
             }
             if (c->loading) {
-                c->force_c = y[SPRING_DELTA];
-                c->delta_c = y[SPRING_DELTA];
+                c->most = y[SPRING_FORCE];
                 c->loading = false;
             }
         }
-        /* Past delta_c the virgin line goes on from where it was left. */
+        /* Past the greatest force the virgin line goes on from where it was left. */
         if (found[EVENT_RELOAD] > 0 && course->compressing) c->loading = true;
         if (found[EVENT_GRIP] < 0) change_grip(c, y);
     }

@@ -196,12 +196,31 @@ static void stiff_is_rigid(void **state)
     assert_true(fabs(ratio + 2) < 0.2);
 }
 
+/* What hardly gives back leaves an answer in proportion from that which gives nothing. */
+static void small_restitutions(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < 20; i++) {
+        impact_collision c = case_make(CASE_PLAIN, 73, i);
+        c.law = IMPACT_STRONGE;
+        c.tangential_compliance = 0.1 + (double)(i % 5);
+        c.restitution = 0;
+        impact_outcome dead, o;
+        assert_int_equal(impact_collide(&c, &dead), IMPACT_OK);
+        for (c.restitution = 1e-9; c.restitution < 2e-3; c.restitution *= 10) {
+            assert_int_equal(impact_collide(&c, &o), IMPACT_OK);
+            assert_true(case_error(&c, o.velocity, o.omega, dead.velocity, dead.omega) < 3 * c.restitution + 1e-9);
+            assert_true(o.energy_after <= o.energy_before * (1 + 1e-14));
+        }
+    }
+}
+
 int main(void)
 {
     if (!impact_has(IMPACT_PART_CVODE)) return 0;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kharaz_spheres),   cmocka_unit_test(superball),      cmocka_unit_test(time_stepping),
-        cmocka_unit_test(always_an_answer), cmocka_unit_test(stiff_is_rigid),
+        cmocka_unit_test(always_an_answer), cmocka_unit_test(stiff_is_rigid), cmocka_unit_test(small_restitutions),
     };
     return cmocka_run_group_tests_name("impact collide_compliant", tests, NULL, NULL);
 }
