@@ -18,6 +18,7 @@ enum {
 typedef struct imp_bounds {
     qvec3 acceleration; /* at t, m/s^2 */
     qvec3 torque;       /* at t, N m */
+    double speed;       /* |x'|, m/s */
     double jerk;        /* |x'''|, m/s^3 */
     double omega;       /* 1/s */
     double spin_up;     /* |omega'| + |omega|^2 >= |m''|, m fixed in the world seen from the body, 1/s^2 */

@@ -274,6 +274,22 @@ static double reach_of(const imp_body *body, const imp_state *state, qvec3 n)
     return imp_world_support(body, quat_rotate_inverse(state->q, n), &point);
 }
 
+/* Whether the bounding balls are further apart than both come before one of the segments ends. */
+static bool is_out_of_reach(const imp_search *s, double from, double end)
+{
+    qvec3 w;
+    const qvec3 d = centres_apart(s, from, &w);
+    const bool plane = is_plane(s->body[1]);
+    const double reach = s->body[0]->radius + (plane ? 0 : s->body[1]->radius),
+                 apart = plane ? qvec3_dot(plane_normal(s), d) : qvec3_norm(d),
+                 left = apart - reach * (1 + IMP_SEARCH_BALLS);
+    if (s->beyond || !(left > 0)) return false;
+    double speed = 0;
+    for (int k = 0; k < 2; k++) /* over all of its segment, as it is asked of every pair */
+        speed += imp_segment_bounds(s->segment[k], s->body[k], from, s->segment[k]->t1 - from).speed;
+    return speed * (end - from) < left;
+}
+
 /* Whether the direction of an earlier search proves, without a gap, that there is no contact before one of the segments
  * ends: of an integrator's short ones most end so. */
 static bool is_parted(const imp_search *s, double t)
@@ -381,7 +397,7 @@ static imp_found advance(const imp_search *s, double from, double until)
     const imp_found never = {INFINITY, false};
     const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), least = shortest_step(s), start = start_of(s),
                  error = imp_gap_error(s->gaps, s->body[0], s->body[1]);
-    if (least > 0 && from == start && is_parted(s, from)) return never;
+    if (least > 0 && from == start && (is_out_of_reach(s, from, end) || is_parted(s, from))) return never;
     double t = from + (from == start ? balls_meet(s, from) : 0), slack = 0, before = t, gap_before = INFINITY;
     bool leaving = false;
     for (int i = 0; i < IMP_SEARCH_QUERIES && t <= end; i++) {

@@ -136,7 +136,7 @@ static quat turned(const imp_segment *s, const imp_body *body, double clock)
 qvec3 imp_segment_place_of(const imp_segment *s, const imp_body *body, double t, qvec3 *velocity)
 {
     const double T = t - s->t0;
-    switch (s->kind) {
+    switch (T == 0 ? IMP_SEGMENT_REST : s->kind) {
     case IMP_SEGMENT_REST: break;
     case IMP_SEGMENT_FREE:
     case IMP_SEGMENT_ROLL:
@@ -248,15 +248,17 @@ static imp_bounds find_dense_bounds(const imp_segment *s, const imp_body *body, 
     /* the clock is slowest where it may have come from here at its fastest change, and no slower than a tenth: within a
      * step of the integrator it changes by less */
     const double slowest = fmax(0.1 * time.rate, time.rate - at.w * s->dense->h * time.most_second);
-    double rate = 0, second = 0, momentum = 0, torque = 0;
+    double speed = 0, rate = 0, second = 0, momentum = 0, torque = 0;
     for (int k = 0; k < 3; k++) {
+        speed += r[k].most * r[k].most;
         rate += r[k].most_rate * r[k].most_rate;
         second += r[k].most_second * r[k].most_second;
         momentum += r[3 + k].most * r[3 + k].most;
         torque += r[3 + k].most_rate * r[3 + k].most_rate;
     }
     imp_bounds b = {.acceleration = qvec3_scale((qvec3){r[0].rate, r[1].rate, r[2].rate}, 1 / time.rate),
-                    .torque = qvec3_scale((qvec3){r[3].rate, r[4].rate, r[5].rate}, 1 / time.rate)};
+                    .torque = qvec3_scale((qvec3){r[3].rate, r[4].rate, r[5].rate}, 1 / time.rate),
+                    .speed = sqrt(speed)};
     b.jerk = (sqrt(second) + sqrt(rate) * time.most_second / slowest) / (slowest * slowest);
     bound_spin(body, sqrt(momentum), sqrt(torque) / slowest, &b);
     return b;
@@ -269,6 +271,16 @@ static imp_bounds dense_bounds(const imp_segment *s, const imp_body *body, doubl
     const imp_bounds bounds = find_dense_bounds(s, body, t, window);
     if (seen) *seen = (imp_dense_seen){t, window, bounds};
     return bounds;
+}
+
+/* Of the centre on a parabola, or damped: it goes towards g/k on a line. */
+static double bound_speed(const imp_segment *s, const imp_body *body, double t, double window)
+{
+    const double pull = qvec3_norm(s->acceleration);
+    qvec3 v;
+    imp_segment_place(s, body, t, &v);
+    if (s->kind == IMP_SEGMENT_DAMPED && body->linear_rate > 0) return fmax(qvec3_norm(v), pull / body->linear_rate);
+    return qvec3_norm(v) + (pull > 0 ? pull * window : 0);
 }
 
 imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double t, double window)
@@ -297,6 +309,7 @@ imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double
         break;
     }
     }
+    b.speed = bound_speed(s, body, t, window);
     return b;
 }
 
@@ -315,18 +328,4 @@ void imp_segment_rates(const imp_segment *s, const imp_body *body, double own, q
     const imp_bounds b = imp_segment_bounds(s, body, own, 0);
     *acceleration = b.acceleration;
     *torque = b.torque;
-}
-
-double imp_segment_top_speed(const imp_segment *s, const imp_body *body, double t)
-{
-    qvec3 v;
-    imp_segment_place(s, body, t, &v);
-    const double speed = qvec3_norm(v);
-    if (s->kind == IMP_SEGMENT_REST) return 0;
-    if (s->kind == IMP_SEGMENT_DAMPED && body->linear_rate > 0)
-        return fmax(speed, qvec3_norm(s->acceleration) / body->linear_rate); /* towards g/k, on a line */
-    if (s->kind != IMP_SEGMENT_DENSE) return is_zero(s->acceleration) ? speed : INFINITY;
-    imp_dense_rate r[3];
-    imp_dense_rates(s->dense, imp_dense_window_of(s->dense, t, s->t1 - t), first_of(s) + Y_VELOCITY, 3, r);
-    return sqrt(r[0].most * r[0].most + r[1].most * r[1].most + r[2].most * r[2].most);
 }

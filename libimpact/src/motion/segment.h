@@ -85,9 +85,6 @@ imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, 
 void imp_segment_rates(const imp_segment *segment, const imp_body *body, double own, qvec3 *acceleration,
                        qvec3 *torque);
 
-/* No speed of the centre over [t, t1] is greater, m/s; infinite for FREE under an acceleration. */
-double imp_segment_top_speed(const imp_segment *segment, const imp_body *body, double t);
-
 /* (1 - e^(-kT))/k and (T - phi1)/k, to rounding, k T >= 0. */
 double imp_phi1(double k, double T);
 double imp_phi2(double k, double T);

@@ -84,6 +84,7 @@ static impact_status follow_all(imp_island *island)
 
 void imp_island_look_ahead(imp_island *island)
 {
+    imp_tracks_begin_look(&island->scene->tracks);
     for (int i = 0; i < island->world.body_count; i++)
         if (!island->world.bodies[i].is_static)
             imp_tracks_look_ahead(&island->scene->tracks, island->world.bodies[i].index, island->t);

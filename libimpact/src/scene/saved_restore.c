@@ -274,6 +274,7 @@ static impact_status restore_islands(const imp_saved *s, impact_scene *scene)
         status = restore_island(scene, &s->islands[k], &s->members[member], &s->pairs[pair]);
         member += s->islands[k].member_count, pair += s->islands[k].pair_count;
     }
+    imp_tracks_begin_look(&scene->tracks);
     for (int m = 0; status == IMPACT_OK && m < s->member_count; m++)
         if (!scene->world.bodies[s->members[m].body].is_static)
             imp_tracks_look_ahead(&scene->tracks, s->members[m].body, s->t);

@@ -254,6 +254,12 @@ static double time_in_box(const imp_track *track, const imp_body *body, qvec3 v,
     return larger(time, IMP_BOX_SHORTEST * fabs(t));
 }
 
+/* From t on. */
+static double top_speed(const imp_segment *s, const imp_body *body, double t)
+{
+    return imp_segment_bounds(s, body, t, s->t1 - t).speed;
+}
+
 static imp_box fat_box(const imp_track *track, const imp_body *body, double t)
 {
     const imp_segment *s = &track->segment;
@@ -264,7 +270,7 @@ static imp_box fat_box(const imp_track *track, const imp_body *body, double t)
     if (s->kind == IMP_SEGMENT_DENSE) time = larger(time, s->t1 - t);
     store(place, x), store(velocity, v);
     if (is_parabola(s, body)) store(s->acceleration, a);
-    const double top = is_parabola(s, body) || s->kind == IMP_SEGMENT_REST ? 0 : imp_segment_top_speed(s, body, t);
+    const double top = is_parabola(s, body) || s->kind == IMP_SEGMENT_REST ? 0 : top_speed(s, body, t);
     imp_box box;
     for (int k = 0; k < 3; k++) {
         if (is_parabola(s, body))
@@ -294,7 +300,7 @@ static double leave_time(const imp_track *track, const imp_body *body, const imp
         if (v[k] > 0 || a[k] > 0) time = smaller(time, impact_flight_fall_time(up, -v[k], -a[k]));
         if (v[k] < 0 || a[k] < 0) time = smaller(time, impact_flight_fall_time(down, v[k], a[k]));
     }
-    if (!is_parabola(s, body)) time = room / imp_segment_top_speed(s, body, t);
+    if (!is_parabola(s, body)) time = room / top_speed(s, body, t);
     return t + time;
 }
 
@@ -442,12 +448,16 @@ impact_status imp_tracks_leap(imp_tracks *tracks, int body, double t)
     return renew_box(tracks, body, t);
 }
 
+void imp_tracks_begin_look(imp_tracks *tracks) { tracks->round++; }
+
 void imp_tracks_look_ahead(imp_tracks *tracks, int body, double t)
 {
-    const imp_track *track = &tracks->tracks[body];
+    imp_track *track = &tracks->tracks[body];
     bool changed = false;
+    track->round = tracks->round;
     for (int k = 0; k < track->near_count; k++) {
         const int n = track->near[k], other = imp_near_other(&tracks->near[n], body);
+        if (tracks->tracks[other].round == tracks->round) continue;
         if (!predict(tracks, &tracks->near[n], t)) continue;
         if (hear(tracks, other, n)) set_slot(tracks, other);
         changed |= hear(tracks, body, n);

@@ -35,6 +35,7 @@ typedef struct imp_track {
     int island;            /* or -1: alone */
     bool resting;          /* it has come to rest */
     bool told;             /* it rests, and has had its row since */
+    long round;            /* of looking ahead: its last */
     int stalls;            /* events at the time of the last one, and that: */
     double last_event;
     double fatness; /* of its box: the part of its radius that it goes before the box is made anew */
@@ -56,6 +57,7 @@ typedef struct imp_tracks {
     int plane_count;
     imp_queue *queue; /* slot first_slot + i is body i's */
     int first_slot;
+    long round; /* of looking ahead */
 } imp_tracks;
 
 impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *queue);
@@ -68,9 +70,10 @@ void imp_tracks_clear(imp_tracks *tracks);
 /* Everybody's box by his segment from t on, and all pairs, where there are none. */
 impact_status imp_tracks_renew(imp_tracks *tracks, double t);
 
-/* The body goes on by this segment from the time t: after all that change at t have been told so, each is looked ahead
- * for. */
+/* The body goes on by this segment from the time t: after all that change at t have been told so, a look ahead begins
+ * and is made for each; a pair of two of them is searched for once. */
 impact_status imp_tracks_follow(imp_tracks *tracks, int body, const imp_segment *segment, double t);
+void imp_tracks_begin_look(imp_tracks *tracks);
 void imp_tracks_look_ahead(imp_tracks *tracks, int body, double t);
 
 /* The body stands elsewhere than a moment ago, by its segment at t: its pairs are made anew. */
