@@ -216,11 +216,13 @@ static impact_draw_result draw_form(lua_State *L, int index, impact_runner *runn
     if (!commands)
         return snprintf(message, size, "cannot make a temporary file: %s", strerror(errno)), IMPACT_DRAW_FAILED;
     if (make_commands(L, index, runner, form, commands, message, size)) {
-        const bool any = fseek(commands, 0, SEEK_END) == 0 && ftell(commands) > 0;
+        const long length = fseek(commands, 0, SEEK_END) == 0 ? ftell(commands) : -1;
+        snprintf(message, size, "cannot read gnuplot's commands: %s", strerror(errno));
         rewind(commands);
         lseek(fileno(commands), 0, SEEK_SET); /* a stream may seek in its buffer alone; gnuplot reads the descriptor */
-        result = any ? draw_commands(commands, runner, file_name, strcmp(form, page_form) == 0, message, size)
-                     : IMPACT_DRAWN;
+        result = length > 0    ? draw_commands(commands, runner, file_name, strcmp(form, page_form) == 0, message, size)
+                 : length == 0 ? IMPACT_DRAWN
+                               : IMPACT_DRAW_FAILED;
     }
     fclose(commands);
     return result;

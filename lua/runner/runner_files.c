@@ -39,7 +39,7 @@ bool impact_runner_open_folder(impact_runner *runner, char *message, size_t size
         runner->folder = open(runner->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (runner->folder >= 0 && faccessat(runner->folder, ".", W_OK | X_OK, 0) == 0) return true;
     const int error = errno;
-    snprintf(message, size, "cannot write to the folder '%s': %s", runner->directory, strerror(error));
+    snprintf(message, size, "cannot write to the folder '%.300s': %s", runner->directory, strerror(error));
     if (runner->folder >= 0) close(runner->folder);
     runner->folder = -1;
     errno = error;

@@ -154,6 +154,7 @@ static bool write_runs(hid_t file, const impact_sweep_table *table, impact_sweep
 static const char *write_file(const char *path, const impact_sweep_table *table, impact_sweep_split *split,
                               impact_sweep_plain *plain)
 {
+    H5dont_atexit(); /* it would close again, at exit, a file that it could not close, and end by a signal */
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     if (file < 0) return "HDF5 cannot make it";

@@ -5,6 +5,7 @@
  * forked goes on counting; a program that is started is left alone.
  */
 #define _GNU_SOURCE
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -15,7 +16,9 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -87,8 +90,35 @@ int fclose(FILE *file)
     return refused ? errno = wanted, EOF : closed;
 }
 
+/* The stream remembers, as ferror tells (glibc: _IO_ERR_SEEN). */
+static size_t none_of(FILE *file)
+{
+    file->_flags |= 0x20;
+    return 0;
+}
+
+size_t fwrite(const void *from, size_t size, size_t number, FILE *file)
+{
+    return fails() ? none_of(file) : REAL(fwrite)(from, size, number, file);
+}
+
+size_t fread(void *to, size_t size, size_t number, FILE *file)
+{
+    return fails() ? none_of(file) : REAL(fread)(to, size, number, file);
+}
+
 int isatty(int file) { return getenv("FAIL_TTY") != NULL || REAL(isatty)(file); }
 
+REFUSED(int, -1, memfd_create, (const char *name, unsigned flags), (name, flags))
+REFUSED(ssize_t, -1, readlink, (const char *path, char *to, size_t size), (path, to, size))
+REFUSED(void *, NULL, dlopen, (const char *path, int how), (path, how))
+REFUSED(int, -1, fseek, (FILE * file, long offset, int whence), (file, offset, whence))
+REFUSED(long, -1, ftell, (FILE * file), (file))
+REFUSED(int, -1, fstatat, (int folder, const char *path, struct stat *status, int flags), (folder, path, status, flags))
+REFUSED(int, -1, unlinkat, (int folder, const char *path, int flags), (folder, path, flags))
+REFUSED(DIR *, NULL, fdopendir, (int file), (file))
+REFUSED(int, -1, setitimer, (__itimer_which_t which, const struct itimerval *now, struct itimerval *before),
+        (which, now, before))
 REFUSED(int, -1, dup, (int file), (file))
 REFUSED(int, -1, dup2, (int from, int to), (from, to))
 REFUSED(int, -1, fstat, (int file, struct stat *status), (file, status))

@@ -35,6 +35,8 @@ local wrong = {
   ["sweep drop.lua --shard 0/2 --mpi"] = "%-%-shard and %-%-mpi exclude",
   ["sweep drop.lua --record"] = "is no option of sweep",
   ["drop.lua --seconds 3"] = "is the report's",
+  ["drop.lua --tolerance 1"] = "is view's and gltf's", ["drop.lua --frame-rate 24"] = "is gltf's", ["view drop.lua --frame-rate 24"] = "is gltf's",
+  ["sweep drop.lua --verify"] = "is of one scene's run from its start",
 }
 for _, number in ipairs { "nan", "inf", "-1", "0", "1x", "x", "1e9", "''", "1e400" } do
   for _, option in ipairs { "--max-time", "--max-memory", "--max-disk", "--checkpoint", "--report --seconds" } do
@@ -70,10 +72,73 @@ check.equal(runner.files(), "a.b.csv a.b_events.csv toss.csv toss_events.csv")
 runner.write(".lua", drop)
 run(".lua --out o", 1, "the scene's name '.lua' names the files: it must be plain")
 run("absent.lua --out o", 1, "cannot open absent.lua")
+run("- --out o", 1, "cannot open %-")
+run("drop.lua --out " .. ("d/"):rep(2100), 4, "cannot write to the folder 'd/")
+run("drop.lua --out drop.lua/x/y", 4, "cannot write to the folder 'drop.lua/x/y': Not a directory")
+for _, name in ipairs { "a\\nb", "a\\127b", "a/b", ".a" } do
+  runner.write("named.lua", (drop:gsub("duration", "name = '" .. name .. "', duration")))
+  run("named.lua --out o", 1, "names the files: it must be plain")
+end
 run("drop.lua --out o --max-memory 0.001", 5, "the memory limit is too small to start")
 local full = runner.shell(string.format("cd %s && test -c /dev/full && %s drop.lua --out o >/dev/full 2>stderr.txt", runner.quote(runner.folder),
   runner.quote(runner.program)))
 check.truth(full == 1 or (full == 4 and runner.read "stderr.txt" == "impact: cannot write to the standard output: No space left on device\n"))
+
+-- ---- a runner whose parts are not beside it, or are none ----
+
+do
+  local here, program = runner.quote(runner.folder), runner.quote(runner.program)
+  runner.shell(string.format("cd %s && rm -rf alone && mkdir alone && cp %s alone/impact", here, program))
+  local function alone(text, wanted, said, line)
+    runner.write("part.lua", text)
+    local code = runner.shell(string.format("cd %s && env -u LD_PRELOAD alone/impact %s --out p >stdout.txt 2>stderr.txt </dev/null", here, line or "part.lua"))
+    local err = runner.read "stderr.txt"
+    if code ~= wanted or not err:find(said) then error(string.format("alone: wanted exit code %d and '%s', got %d and %s", wanted, said, code, err), 2) end
+    check.truth(true)
+  end
+  local springy = begin .. "return impact.scene { duration = 0.2, law = 'stronge', compliance = 1.2, bodies = { " ..
+    "impact.body { name = 'floor', shape = impact.plane(), friction = 1, restitution = 1 }, impact.body { name = 'ball', shape = impact.sphere(0.1), " ..
+    "position = { 0, 0, 0.15 }, velocity = { 1, 0, 0 }, omega = { 0, 30, 0 }, friction = 0.3, restitution = 0.8 } } }"
+  local sweep = begin .. "return impact.sweep { runs = 1, scene = function() return { duration = 0.1, bodies = { " .. ball .. " } } end }"
+  local gsl = "require 'quat.gsl'"
+  alone(drop, 0, "^$")
+  alone(springy, 1, "compliance needs CVODE, and this program has none")
+  alone(sweep, 2, "this build holds no sweep_hdf5", "sweep part.lua --hdf5")
+  alone(sweep, 2, "this build holds no sweep_mpi", "sweep part.lua --mpi")
+  alone(gsl, 1, "quat.gsl")
+  runner.shell("cd " .. here .. " && mkdir -p alone/modules/impact alone/modules/quat && for f in impact/cvode impact/ccd impact/sweep_hdf5 impact/sweep_mpi quat/gsl; " ..
+    "do echo 'no library' >alone/modules/$f.so; done")
+  alone(drop, 0, "^$")
+  alone(springy, 1, "compliance needs CVODE, and this program has none")
+  alone(sweep, 2, "alone/modules/impact/sweep_hdf5.so: file too short", "sweep part.lua --hdf5")
+  alone(gsl, 1, "quat.gsl: .*alone/modules/quat/gsl.so: file too short")
+end
+
+-- ---- a gnuplot that fails ----
+
+do
+  local here = runner.quote(runner.folder)
+  runner.shell("cd " .. here .. " && mkdir -p bin")
+  runner.write("drawn.lua", begin .. "return impact.scene { name = 'drawn', duration = 0.1, bodies = { " .. ball .. " }, " ..
+    "plot = function() local plot = require 'quat.plot' return plot.figure { plot.panel { plot.line { { 1, 2 }, { 1, 2 } } } } end }")
+  local function drawn_by(gnuplot, wanted, said, options)
+    runner.write("bin/gnuplot", "#!/bin/sh\n" .. gnuplot .. "\n")
+    local code = runner.shell(string.format("cd %s && chmod +x bin/gnuplot && rm -rf o && env -u LD_PRELOAD PATH=\"$PWD/bin:$PATH\" %s drawn.lua --quiet --out o %s " ..
+      ">stdout.txt 2>stderr.txt </dev/null", here, runner.quote(runner.program), options or ""))
+    local err = runner.read "stderr.txt"
+    if code ~= wanted or not err:find(said) then error(string.format("%s: wanted exit code %d and '%s', got %d and %s", gnuplot, wanted, said, code, err), 2) end
+    check.truth(runner.exists "o/drawn.csv", "the rows are there")
+    check.equal(runner.exists "o/drawn.png", wanted == 0)
+  end
+  drawn_by("cat >/dev/null; echo picture", 0, "^$")
+  drawn_by("cat >/dev/null; exit 0", 4, "^impact: no picture: gnuplot failed\n$")
+  drawn_by("echo half; exit 1", 4, "^impact: no picture: gnuplot failed\n$")
+  drawn_by("echo half; echo 'first complaint' >&2; echo 'line 0: no such thing' >&2; echo '    ^' >&2; echo >&2; exit 1", 4,
+    "^impact: no picture: gnuplot: line 0: no such thing\n$")
+  drawn_by("echo half; kill -KILL $$", 4, "^impact: no picture: gnuplot failed\n$")
+  drawn_by("exec head -c 3000000 /dev/zero", 4, "^impact: no picture: gnuplot failed\n$", "--max-disk 1")
+  drawn_by("exec sleep 30", 5, "^impact: time limit of 1.5 s reached", "--max-time 1.5")
+end
 
 -- ---- what a script is, returns and raises ----
 

@@ -119,8 +119,37 @@ do
   check.truth(files == "" or files == "long.csv.part long_events.csv.part", "nothing, or files that say that they are not whole: " .. files)
 end
 
+do -- what does not stop in order is ended by a second signal, a second after the first; not sooner
+  local busy = "string.find(('a'):rep(400), ('.-'):rep(12) .. 'b')"
+  runner.write("script.lua", busy)
+  local code = runner.shell(string.format("cd %s && { env -u LD_PRELOAD %s script.lua --out o >stdout.txt 2>stderr.txt & p=$!; sleep 0.3; kill -TERM $p; " ..
+    "kill -TERM $p; sleep 2.2; kill -0 $p || exit 99; kill -TERM $p; wait $p; }", runner.quote(runner.folder), runner.quote(runner.program)))
+  check.equal(code, 143)
+  check.equal(runner.read "stderr.txt", "\nimpact: ended by a second signal, before the run could stop in order\n")
+end
+do -- a signal that was ignored before, as nohup has it, stays so
+  runner.write("script.lua", (long():gsub("1e7", "2e4")))
+  local code = runner.shell(string.format("cd %s && { trap '' HUP; env -u LD_PRELOAD %s script.lua --quiet --out o --max-time 1 & p=$!; sleep 0.3; kill -HUP $p; wait $p; } 2>stderr.txt",
+    runner.quote(runner.folder), runner.quote(runner.program)))
+  check.truth(code == 0 or code == 5, "not ended by SIGHUP: " .. tostring(code))
+  check.truth(not runner.read "stderr.txt":find "signal", runner.read "stderr.txt")
+end
+do -- the shortest time there is
+  local code, _, said = runner.script("while true do end", "--max-time 1e-9")
+  check.equal(code, 5)
+  check.equal(said, "impact: time limit of 1e-09 s reached\n")
+end
+for _, kilobytes in ipairs { 4000000, 400000 } do -- memory that the system bounds already
+  runner.write("script.lua", "print 'done'")
+  local code = runner.shell(string.format("cd %s && (ulimit -v %d; exec env -u LD_PRELOAD %s script.lua --out o --max-memory 500 >stdout.txt 2>stderr.txt)",
+    runner.quote(runner.folder), kilobytes, runner.quote(runner.program)))
+  check.equal(code, 0)
+  check.equal(runner.read "stdout.txt", "done\n")
+end
+
 -- A whole run takes the partial files away.
 do
+  runner.write("script.lua", long())
   check.equal(runner.command("script.lua --out o --max-time 0.3"), 5)
   local short = long():gsub("1e7", "1")
   runner.write("script.lua", short)

@@ -91,7 +91,8 @@ local function make(before)
 end
 
 local commands = 0
-local function each_call(line, before, names)
+--- each: how many of the calls are refused, 1 of so many.
+local function each_call(line, before, names, each)
   make(before)
   local code, told = within("FAIL_COUNT=1", line)
   if code ~= 0 then error(string.format("%s: exit code %d: %s", line, code, told)) end
@@ -100,8 +101,8 @@ local function each_call(line, before, names)
   for _, name in ipairs(names) do whole[name] = assert(runner.read("o/" .. name), name) end
   local said_no = 0
   commands = commands + 1
-  for at = 1 + commands % 4, calls, 4 do -- how it starts is common to all of them
-    for _, with in ipairs(at % 16 < 4 and { EIO, EINTR } or { EIO }) do
+  for at = 1 + commands % each, calls, each do -- how it starts is common to all of them
+    for _, with in ipairs(at % (4 * each) < each and { EIO, EINTR } or { EIO }) do
       make(before)
       local ended, said = within(string.format("FAIL_AT=%d FAIL_WITH=%d", at, with), line)
       local where = string.format("%s: call %d of %d with errno %d: exit code %s: %s", line, at, calls, with, ended, said)
@@ -122,14 +123,29 @@ local function each_call(line, before, names)
 end
 
 local sweeping = "IMPACT sweep sweep.lua --quiet --out o --shard %d/2 >/dev/null 2>&1"
-each_call("sweep sweep.lua --quiet --out o -j 2", "true", { "six.csv" })
-each_call("gather o", sweeping:format(0) .. " && " .. sweeping:format(1), { "six.csv" })
-each_call("drop.lua --quiet --out o --save 0.2 half --checkpoint 0.000001", "true", { "drop.csv", "half" })
-each_call("drop.lua --quiet --out o --resume half", "IMPACT drop.lua --quiet --out p --save 0.2 half >/dev/null 2>&1 && mv p/half .", { "drop.csv" })
+each_call("sweep sweep.lua --quiet --out o -j 2 --hdf5", "true", { "six.csv" }, 2)
+each_call("gather o", sweeping:format(0) .. " && " .. sweeping:format(1), { "six.csv" }, 2)
+each_call("drop.lua --quiet --out o --save 0.2 half --checkpoint 0.000001", "true", { "drop.csv", "half" }, 2)
+each_call("drop.lua --quiet --out o --resume half", "IMPACT drop.lua --quiet --out p --save 0.2 half >/dev/null 2>&1 && mv p/half .", { "drop.csv" }, 2)
+-- What is loaded when it is needed: the integrator, the surfaces; a figure in every form.
+runner.write("parts.lua", "local impact = require 'impact' " .. (impact.has "cvode" and "require 'quat.gsl' local law, compliance = 'stronge', 1.2 " or "") .. [[
+  return impact.scene { name = "drop", duration = 0.3, law = law, compliance = compliance,
+    bodies = { impact.body { name = "floor", shape = impact.plane(), restitution = 1, friction = 1 }, impact.body { name = "ball", friction = 0.3,
+      shape = impact.sphere(0.1), position = { 0, 0, 0.3 }, velocity = { 1, 0, 0 }, omega = { 0, 30, 0 }, restitution = 0.9 } } }
+]])
+each_call("parts.lua --quiet --out o", "true", { "drop.csv" }, 1)
+runner.write("figure.lua", [[
+  local plot = require "quat.plot"
+  local saved, why = plot.save(plot.figure { plot.panel { plot.line { { 1, 2, 3 }, { 1, 4, 9 } } } }, "curve")
+  if not saved and not why:find "gnuplot is not installed" then error(why, 0) end
+  local written, reason = require "quat.host".write("words", ("word\\n"):rep(1000))
+  if not written then error(reason, 0) end
+]])
+each_call("figure.lua --quiet --out o --pictures", "true", { "words" }, 2)
 if impact.has "view" then
   local recorded = "IMPACT drop.lua --quiet --record --out p >/dev/null 2>&1"
-  each_call("view p/drop.run --quiet --out o", recorded, { "drop.html" })
-  each_call("gltf p/drop.run --quiet --out o", recorded, { "drop.glb" })
+  each_call("view p/drop.run --quiet --out o", recorded, { "drop.html" }, 4)
+  each_call("gltf p/drop.run --quiet --out o", recorded, { "drop.glb" }, 4)
 end
 
 -- A terminal is shown how far it came.

@@ -146,6 +146,12 @@ end
 succeeds([[
 -- Our own functions, called out of turn.
 for name, opener in pairs(package.preload) do pcall(opener) pcall(opener, name) pcall(opener, "quat.plot") pcall(opener, {}) end
+local ok, why = pcall(package.preload["quat.plot"], "no such layer")
+assert(not ok and why:find "no layer 'no such layer'")
+for _, name in ipairs { "a\0b", "a\nb", "a\127b", "../a", "" } do
+  local done, text = pcall(require "quat.host".write, name, "x")
+  assert(not done and text:find "the name of a file must be plain")
+end
 local core = require "impact.core"
 core.layer()
 for _, f in pairs(core) do if type(f) == "function" then pcall(f) pcall(f, {}) pcall(f, 3) pcall(f, core) pcall(f, nil, {}) end end]])

@@ -162,7 +162,10 @@ static impact_status run(impact_scene *scene, double t_end)
 {
     scene->message[0] = '\0';
     scene->stop = IMPACT_OK;
-    if (!isfinite(t_end)) return IMPACT_EDOMAIN;
+    if (!isfinite(t_end)) {
+        snprintf(scene->message, sizeof scene->message, "t = %g is no time to run to", t_end);
+        return IMPACT_EDOMAIN;
+    }
     if (t_end < scene->t) {
         snprintf(scene->message, sizeof scene->message, "t = %.15g is over: the scene stands at %.15g s", t_end,
                  scene->t);
@@ -256,6 +259,8 @@ impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_
                                  .omega = now.omega,
                                  .friction = b->friction,
                                  .restitution = b->restitution,
+                                 .torsional_friction = b->torsional,
+                                 .rolling_friction = b->rolling,
                                  .linear_damping = -expm1(-b->linear_rate),
                                  .angular_damping = -expm1(-b->angular_rate)};
     imp_definition_give(&own, sizeof own, def, def->struct_size);

@@ -314,6 +314,9 @@ static void numbers_out_of_range_are_refused(void **state)
            "seconds");
     refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = NAN}, IMPACT_EARGUMENT,
            "seconds");
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = INFINITY}, IMPACT_EARGUMENT,
+           "seconds");
+    refuse(&s.def, (impact_report_def){.struct_size = 7}, IMPACT_EARGUMENT, "report: struct_size = 7: ");
     refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .times = -1}, IMPACT_EARGUMENT,
            "times");
     refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .times = 10001}, IMPACT_EARGUMENT,
@@ -328,6 +331,27 @@ static void numbers_out_of_range_are_refused(void **state)
     refuse(&s.def,
            (impact_report_def){.struct_size = sizeof(impact_report_def), .oracle = truth, .oracle_count = TIMES},
            IMPACT_EARGUMENT, "error");
+    const int counts[] = {-1, 1000};
+    const double endless[] = {INFINITY, 1};
+    for (int k = 0; k < 2; k++) {
+        refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .tolerance_count = counts[k]},
+               IMPACT_EARGUMENT, "tolerances");
+        refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .step_count = counts[k]},
+               IMPACT_EARGUMENT, "tolerances");
+    }
+    refuse(&s.def, (impact_report_def){.struct_size = sizeof(impact_report_def), .steps = endless, .step_count = 2},
+           IMPACT_EARGUMENT, "steps");
+    refuse(&s.def,
+           (impact_report_def){
+               .struct_size = sizeof(impact_report_def), .oracle = truth, .oracle_count = 0, .oracle_error = 1e-15},
+           IMPACT_EARGUMENT, "every body that moves at each of its times");
+    const double kept = truth[3].t;
+    truth[3].t = truth[2].t;
+    refuse(&s.def,
+           (impact_report_def){
+               .struct_size = sizeof(impact_report_def), .oracle = truth, .oracle_count = TIMES, .oracle_error = 1e-15},
+           IMPACT_EARGUMENT, "order of time and bodies");
+    truth[3].t = kept;
     truth[3].body = 0;
     refuse(&s.def,
            (impact_report_def){
@@ -362,6 +386,15 @@ static void it_ends_when_it_is_told_to(void **state)
     const impact_status status =
         ask(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = 0.02}, &t);
     assert_true(status == IMPACT_STOPPED || (status == IMPACT_OK && t.summary.dropped > 0));
+    /* rounds of timing give way to the budget: all, one, or none of a setting */
+    assert_int_equal(
+        ask(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = 0.5, .rounds = 15}, &t),
+        IMPACT_OK);
+    for (int k = 0; k < t.count; k++) {
+        const impact_report_row *row = &t.rows[k];
+        assert_true(row->rounds == 0 || row->rounds == 1 || row->rounds == 15);
+        assert_true(row->rounds == 0 || (row->cpu > 0 && row->spread >= 1));
+    }
 }
 
 int main(void)

@@ -527,6 +527,7 @@ static void test_files(void **state)
     (void)state;
     impact_body_def body = brick();
     body.trail = (qvec3){0.3, -0.2, 0.1};
+    body.torsional_friction = 0.004, body.rolling_friction = 0.002;
     const impact_scene_def def = one_body(&body, 1);
     impact_scene *scene = make_scene(&def);
     impact_run_writer *writer;
@@ -547,6 +548,8 @@ static void test_files(void **state)
     assert_near3((qvec3){back.shape.a, back.shape.b, back.shape.c}, (qvec3){0.3, 0.2, 0.1}, 0);
     assert_near3((qvec3){back.shape.r, back.shape.s, back.shape.t}, (qvec3){8, 8, 8}, 0);
     assert_near3(back.trail, body.trail, 0);
+    assert_near(back.torsional_friction, 0.004, 0);
+    assert_near(back.rolling_friction, 0.002, 0);
     assert_memory_equal(&back.moments, &body.moments, sizeof back.moments);
     impact_run_close(run);
     remove(path);

@@ -225,6 +225,90 @@ static void defaults_and_answers_fill_any_length(void **state)
     impact_scene_destroy(scene);
 }
 
+/* A body's definition comes back with all its numbers. */
+static void a_definition_comes_back(void **state)
+{
+    (void)state;
+    impact_scene_def def = small_scene();
+    impact_body_def ball = impact_default_body_def();
+    ball.name = "ball";
+    impact_shape_ellipsoid(0.1, 0.2, 0.3, &ball.shape);
+    ball.mass = 3, ball.moments = (qvec3){0.1, 0.11, 0.12};
+    ball.position = (qvec3){1, 2, 3};
+    ball.orientation = (quat){0.5, 0.5, -0.5, 0.5};
+    ball.shape_position = (qvec3){0.01, 0.02, 0.03};
+    ball.shape_orientation = (quat){0.6, 0, 0.8, 0};
+    ball.velocity = (qvec3){4, 5, 6}, ball.omega = (qvec3){7, 8, 9};
+    ball.friction = 0.3, ball.restitution = 0.6;
+    ball.torsional_friction = 0.004, ball.rolling_friction = 0.002;
+    ball.linear_damping = 0.25, ball.angular_damping = 0.5;
+    ball.trail = (qvec3){0.1, 0, 0};
+    ball.user = &def;
+    def.bodies = &ball, def.body_count = 1;
+    impact_scene *scene = make_scene(&def);
+    impact_body_def back = impact_default_body_def();
+    assert_int_equal(impact_scene_body_def(scene, -1, &back), IMPACT_EARGUMENT);
+    assert_int_equal(impact_scene_body_def(scene, 1, &back), IMPACT_EARGUMENT);
+    assert_int_equal(impact_scene_body_def(scene, 0, &back), IMPACT_OK);
+    assert_string_equal(back.name, "ball");
+    assert_near3(back.moments, ball.moments, 1e-15);
+    assert_near3(back.position, ball.position, 1e-15);
+    assert_near3(back.shape_position, ball.shape_position, 1e-15);
+    assert_near3(back.velocity, ball.velocity, 1e-15);
+    assert_near3(back.omega, ball.omega, 1e-13);
+    assert_near3(back.trail, ball.trail, 0);
+    assert_near(quat_norm(quat_sub(back.orientation, ball.orientation)), 0, 1e-15);
+    assert_near(quat_norm(quat_sub(back.shape_orientation, ball.shape_orientation)), 0, 1e-15);
+    const double got[] = {
+        back.mass,           back.friction,        back.restitution, back.torsional_friction, back.rolling_friction,
+        back.linear_damping, back.angular_damping, back.shape.b};
+    const double wanted[] = {3, 0.3, 0.6, 0.004, 0.002, 0.25, 0.5, 0.2};
+    for (size_t k = 0; k < sizeof got / sizeof *got; k++) assert_near(got[k], wanted[k], 1e-15);
+    assert_ptr_equal(back.user, &def);
+
+    impact_sample sample;
+    for (int body = -1; body <= 1; body += 2) {
+        assert_int_equal(impact_scene_body(scene, body, &sample), IMPACT_EARGUMENT);
+        assert_null(impact_scene_force_name(scene, body));
+    }
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(impact_scene_run_to(scene, (const double[]){NAN, INFINITY, -INFINITY}[k], NULL),
+                         IMPACT_EDOMAIN);
+        assert_non_null(strstr(impact_scene_message(scene), "is no time to run to"));
+    }
+    impact_scene_destroy(scene);
+}
+
+/* What is refused is refused without a place for words, too. */
+static void words_may_be_unwanted(void **state)
+{
+    (void)state;
+    impact_scene *scene;
+    impact_scene_def def = small_scene();
+    impact_body_def bodies[2] = {impact_default_body_def(), impact_default_body_def()};
+    for (int i = 0; i < 2; i++) {
+        bodies[i].name = i ? "b" : "a";
+        impact_shape_sphere(1, &bodies[i].shape);
+        bodies[i].position.x = i;
+    }
+    def.bodies = bodies, def.body_count = 2, def.name = NULL;
+    assert_int_equal(impact_scene_create(&def, &scene, NULL, 0), IMPACT_EARGUMENT); /* they overlap */
+    char message[200];
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+    assert_non_null(strstr(message, "overlaps"));
+    bodies[1].position.x = 3;
+    const impact_allocator half = {.limit = 0, .allocate = NULL, .release = (void (*)(void *, size_t, void *))abort};
+    def.allocator = &half;
+    assert_int_equal(impact_scene_create(&def, &scene, NULL, 0), IMPACT_EARGUMENT);
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_EARGUMENT);
+    assert_string_equal(message, "scene '': its allocator has one function without the other");
+    const impact_allocator small = {.limit = 64};
+    def.allocator = &small;
+    assert_int_equal(impact_scene_create(&def, &scene, NULL, 0), IMPACT_ENOMEM);
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_ENOMEM);
+    assert_true(strlen(message) > 0);
+}
+
 /* Those that take a struct each and have no list. */
 static void recorders_and_others(void **state)
 {
@@ -267,6 +351,8 @@ int main(void)
         cmocka_unit_test(a_later_field_that_is_set_is_refused),
         cmocka_unit_test(what_is_no_size_is_refused),
         cmocka_unit_test(defaults_and_answers_fill_any_length),
+        cmocka_unit_test(a_definition_comes_back),
+        cmocka_unit_test(words_may_be_unwanted),
         cmocka_unit_test(recorders_and_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
