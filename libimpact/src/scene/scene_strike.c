@@ -161,17 +161,17 @@ static impact_status strike_on(imp_island *island, bool *parted)
             status = imp_scene_end_together(island);
             return status == IMPACT_OK ? imp_scene_load_with_reactions(island) : status;
         }
+        if (count == MAX_IMPACTS) {
+            snprintf(island->scene->message, sizeof island->scene->message,
+                     "%d impacts in the one instant t = %s brought no end", count, imp_number_of(island->t).text);
+            return IMPACT_EUNSETTLED;
+        }
         imp_answer by;
         status = imp_scene_answer_together(island, &m, &by);
         fresh = by == IMP_ANSWER_NONE;
         jam = by == IMP_ANSWER_NONE ? p + 1 : 0;
         if (status != IMPACT_OK || by != IMP_ANSWER_ALONE) continue;
         if (count > 0) world->usage.impacts_simultaneous++;
-        if (count == MAX_IMPACTS) {
-            snprintf(island->scene->message, sizeof island->scene->message,
-                     "%d impacts in the one instant t = %s brought no end", count, imp_number_of(island->t).text);
-            return IMPACT_EUNSETTLED;
-        }
         status = strike(island, &m);
         island->notes[p].struck = true;
         if (world->pair_count > 1) continue;
