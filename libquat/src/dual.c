@@ -73,6 +73,13 @@ quat_status quat_dual_to_screw(qdual p, qvec3 *axis, qvec3 *point, double *angle
     return status == QUAT_OK ? QUAT_NOT_UNIQUE : status;
 }
 
+/* x - R x, without the difference: a line far away is turned about by little. */
+static qvec3 turned_away(quat q, qvec3 x)
+{
+    const qvec3 v = quat_vector(q), across = qvec3_cross(v, x);
+    return qvec3_scale(qvec3_axpy(q.w, across, qvec3_cross(v, across)), -2);
+}
+
 quat_status quat_dual_from_screw(qvec3 axis, qvec3 point, double angle, double slide, qdual *p)
 {
     quat q;
@@ -80,7 +87,7 @@ quat_status quat_dual_from_screw(qvec3 axis, qvec3 point, double angle, double s
     *p = quat_dual_identity();
     if (qvec3_normalize(axis, &n) != QUAT_OK || quat_from_axis_angle(n, angle, &q) != QUAT_OK) return QUAT_EDOMAIN;
     if (!qvec3_isfinite(point) || !isfinite(slide)) return QUAT_EDOMAIN;
-    const qdual motion = quat_dual_from(q, qvec3_axpy(slide, n, qvec3_sub(point, quat_rotate(q, point))));
+    const qdual motion = quat_dual_from(q, qvec3_axpy(slide, n, turned_away(q, point)));
     if (!quat_isfinite(motion.dual)) return QUAT_ERANGE;
     *p = motion;
     return QUAT_OK;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <quat/interpolate.h>
+#include <quat/rotation.h>
 #include <quat/exponential.h>
 #include <quat/jacobian.h>
 #include <float.h>
@@ -76,9 +77,13 @@ quat quat_slerp_as_given(quat p, quat q, double t)
 
 /* ---- angular velocities ---- */
 
-/* 2 log(q p*), through the perpendicular difference where q p* would cancel. */
+/* 2 log(q p*), through the perpendicular difference where q p* would cancel. Between opposite points that of the circle
+ * which is taken there, through p i. */
 qvec3 quat_slerp_as_given_omega(quat p, quat q)
 {
+    static const double two_pi = 6.283185307179586;
+    if (quat_dot(p, q) < 0 && quat_norm(perpendicular(quat_add(p, q), quat_sub(q, p))) <= DBL_MIN)
+        return quat_rotate(p, qvec3_make(two_pi, 0, 0));
     return qvec3_scale(quat_log_unit(quat_mul_compensated(q, quat_conj(p))), 2);
 }
 

@@ -47,7 +47,7 @@ static void logarithms_and_screws(void **state)
 {
     (void)state;
     random_state r = {92};
-    double forth = 0, screw = 0, axis_worst = 0, slide_worst = 0, place = 0;
+    double forth = 0, screw = 0, axis_worst = 0, slide_worst = 0, place = 0, again = 0;
     for (int n = 0; n < 100000; n++) {
         const double angle = n % 2 ? random_between(&r, 1e-3, 3.1) : random_scale(&r, -12, 0.4),
                      slide = random_between(&r, -5, 5);
@@ -73,7 +73,13 @@ static void logarithms_and_screws(void **state)
         /* the place of the axis is as sharp as the angle is wide */
         worse(&place, qvec3_norm(qvec3_sub(found_point, point)) * fmin(angle, 1) / size);
         assert_true(fabs(found_angle - angle) < 2e-15);
+        /* a short way may be a turn by little about a line far away */
+        const qdual moved = quat_dual_from(q, x);
+        quat_dual_to_screw(moved, &found, &found_point, &found_angle, &found_slide);
+        assert_int_equal(quat_dual_from_screw(found, found_point, found_angle, found_slide, &p), QUAT_OK);
+        worse(&again, gap(quat_dual_shift(p), x, qvec3_norm(x)));
     }
+    assert_bound("motion by its screw", again, 4e-15);
     assert_bound("screw by its definition", screw, 4e-15);
     assert_bound("exp log p = p", forth, 6e-15);
     assert_bound("axis of the screw", axis_worst, 2e-15);

@@ -172,7 +172,7 @@ static void angular_velocities_keep_their_identities(void **state)
 {
     (void)state;
     random_state r = {57};
-    double slerp = 0, nlerp = 0, plain = 0, turned = 0, reversed = 0;
+    double slerp = 0, opposite = 0, nlerp = 0, plain = 0, turned = 0, reversed = 0;
     for (int n = 0; n < 100000; n++) {
         const quat p = random_unit(&r), g = random_unit(&r);
         const quat q = at_angle(&r, p, n % 4 ? random_between(&r, 0, 0.5 * pi - 1e-3) : random_scale(&r, -12, 0));
@@ -182,6 +182,10 @@ static void angular_velocities_keep_their_identities(void **state)
         const qvec3 steady = quat_slerp_omega(p, q);
         const quat there = quat_mul(quat_exp_pure(qvec3_scale(steady, 0.5 * t)), p);
         worse(&slerp, quat_norm(quat_sub(there, quat_slerp(p, q, t))));
+        /* between opposite points along the circle that is taken there */
+        const quat half_way =
+            quat_mul(quat_exp_pure(qvec3_scale(quat_slerp_as_given_omega(p, quat_neg(p)), 0.5 * t)), p);
+        worse(&opposite, quat_norm(quat_sub(half_way, quat_slerp_as_given(p, quat_neg(p), t))));
         /* 2 (q - p) s* over |s|^2, s = (1 - t) p + t q */
         const wquat d = wide_sub(wide_quat(q), wide_quat(p)), s = wide_add(wide_quat(p), wide_scale(d, t));
         const wquat w = wide_scale(wide_mul(d, wide_conj(s)), 2 / wide_dot(s, s));
@@ -195,6 +199,7 @@ static void angular_velocities_keep_their_identities(void **state)
         worse(&reversed, qvec3_norm(qvec3_add(quat_squad_omega(q, b, a, p, 1 - t), bent)));
     }
     assert_bound("slerp = exp(omega t/2) p", slerp, 3e-15);
+    assert_bound("the same between opposite points", opposite, 3e-15);
     assert_bound("angular velocity of nlerp, 1e5", nlerp, 1e-14);
     assert_bound("that of a squad without bend is slerp's", plain, 1e-14);
     assert_bound("squad's turns with everything", turned, 1e-13);
