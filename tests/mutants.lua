@@ -5,7 +5,9 @@
 ---                                                           the hash of seed, file and line
 ---   lua5.4 tests/mutants.lua run BUILD WORK PART PARTS [PATTERN]   tries tests/mutants.txt (those whose file matches): each is
 ---                                                           compiled alone, linked before the archive of BUILD, and run
----                                                           against the tests of its folder until one fails
+---                                                           against the tests of its folder until one fails; of a header
+---                                                           those sources are compiled that name what its line defines,
+---                                                           or, where it defines nothing, that include it
 ---
 --- A line of tests/mutants.txt: file, old line, new line, and, where it may survive, the reason: tabs between.
 local root = arg[0]:match "^(.*)/tests/[^/]*$" or "."
@@ -33,9 +35,11 @@ local rooms = {
   { "^libimpact/src/motion/search", { "impact_search", "impact_crowd" } }, { "^libimpact/src/motion/motion_guard", { "impact_motion_guard", "impact_force_time", "impact_motion" } },
   { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases" } },
   { "^libimpact/src/contact/persist", { "impact_persist_still", "impact_persist_modes", "impact_persist", "impact_cases" } },
-  { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning" } },
-  { "^libimpact/src/contact/encounter", { "impact_encounter", "impact_encounter_limits", "impact_encounter_known" } },
-  { "^libimpact/src/contact/springs", { "impact_springs", "impact_encounter_known", "impact_encounter" } },
+  { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning", "impact_cone_bodies" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning" } },
+  { "^libimpact/src/contact/encounter", { "impact_encounter", "impact_encounter_limits", "impact_encounter_known", "impact_encounter_wedge",
+    "impact_encounter_newton", "impact_encounter_pressed", "impact_encounter_random" } },
+  { "^libimpact/src/contact/springs", { "impact_springs", "impact_encounter_known", "impact_encounter", "impact_encounter_random" } },
+  { "^libimpact/src/contact/rates", { "impact_rates", "impact_persist", "impact_persist_modes" } },
   { "^libimpact/src/gap/", { "impact_gap", "impact_gap_deep", "impact_gap_receipt", "impact_gjk", "impact_toi" } }, { "^libimpact/src/motion/toi_proof", { "impact_toi_proof", "impact_toi" } },
   { "^libimpact/src/motion/toi", { "impact_toi" } },
   { "^libimpact/src/collide/", { "impact_collide", "impact_collide_frame", "impact_collide_ready", "impact_collide_direct",
@@ -66,6 +70,27 @@ local function tests_of(file)
   for _, room in ipairs(rooms) do
     if file:find(room[1]) then return room[2] end
   end
+end
+
+--- The sources that a change of this line is seen in.
+local function sources_of(file, line)
+  if not file:find "%.h$" then return { file } end
+  local word = line:match "^#define ([%w_]+)" or '"' .. file:match "/src/(.*)$" .. '"'
+  local pipe, list = io.popen(string.format("cd '%s' && git grep -lwF '%s' -- 'lib*/src/*.c'", root, word)), {}
+  for source in pipe:lines() do list[#list + 1] = source end
+  pipe:close()
+  return list
+end
+
+--- The tests of all of them, each once.
+local function tests_of_all(sources)
+  local list, seen = {}, {}
+  for _, source in ipairs(sources) do
+    for _, test in ipairs(tests_of(source) or {}) do
+      if not seen[test] then list[#list + 1], seen[test] = test, true end
+    end
+  end
+  return list
 end
 
 -- ---- making them ----
@@ -188,7 +213,20 @@ local function compile(build, work, file, source)
   local text = known:sub(1, at - 1):match '.*"command": "(.-)",%s*$':gsub('\\"', '"'):gsub("\\\\", "\\")
   local object, folder = path:gsub("%.c$", ".o"), (root .. "/" .. file):match "^(.*)/[^/]+$"
   text = text:gsub("%-o %S+ %-c %S+$", "")
+  -- a header of the mutant's stands before the library's own
+  text = text:gsub("^(%S+) ", "%1 -I'" .. work .. "/include' ", 1)
   return command(string.format("cd '%s' && %s -w -O2 -I'%s' -o '%s' -c '%s'", build, text, folder, object, path)) and object
+end
+
+--- The objects of the mutant, or nil.
+local function mutate(build, work, file, text, sources)
+  if not file:find "%.h$" then return compile(build, work, file, text) end
+  local place, objects = work .. "/include/" .. file:match "/src/(.*)$", {}
+  os.execute("mkdir -p '" .. place:match "^(.*)/" .. "'")
+  write(place, text)
+  for _, source in ipairs(sources) do objects[#objects + 1] = compile(build, work, source, read(root .. "/" .. source)) end
+  os.remove(place)
+  return #objects == #sources and #objects > 0 and table.concat(objects, " ") or nil
 end
 
 local function run(build, work, part, parts, pattern)
@@ -210,17 +248,19 @@ local function run(build, work, part, parts, pattern)
       number = number + 1
       if number % parts == part % parts then
         local text = "\n" .. read(root .. "/" .. file)
-        for _, test in ipairs(tests_of(file)) do trusted(test, file) end
+        local sources = sources_of(file, old)
+        local tests = tests_of_all(sources)
+        for _, test in ipairs(tests) do trusted(test, sources[1]) end
         local from, to = text:find("\n" .. old .. "\n", 1, true)
-        local object = from and compile(build, work, file, text:sub(2, from) .. new .. text:sub(to))
+        local object = from and mutate(build, work, file, text:sub(2, from) .. new .. text:sub(to), sources)
         if not object then
           stale = stale + 1
           print("stale     " .. file .. ": " .. old:match "^%s*(.*)")
         else
           total = total + 1
           local noticed
-          for _, test in ipairs(tests_of(file)) do
-            if trusted(test, file) and not passes(build, work, test, object, file) then
+          for _, test in ipairs(tests) do
+            if trusted(test, sources[1]) and not passes(build, work, test, object, file) then
               noticed = test
               break
             end

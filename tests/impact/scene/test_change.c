@@ -177,6 +177,12 @@ static void what_cannot_be_is_refused_in_words_and_changes_nothing(void **state)
         wrong.velocity.y = 1e160;
         refuses(scene, IMPACT_EARGUMENT, impact_scene_set_state(scene, BALL, &wrong), "energy");
         wrong = sample;
+        wrong.position.z = NAN;
+        refuses(scene, IMPACT_EDOMAIN, impact_scene_set_state(scene, BALL, &wrong), "position");
+        wrong = sample;
+        wrong.omega.x = -INFINITY;
+        refuses(scene, IMPACT_EDOMAIN, impact_scene_set_state(scene, BALL, &wrong), "omega");
+        wrong = sample;
         wrong.orientation = (quat){0, 0, 0, 0};
         refuses(scene, IMPACT_EARGUMENT, impact_scene_set_state(scene, BALL, &wrong), "orientation");
         refuses(scene, IMPACT_EARGUMENT, impact_scene_set_state(scene, FLOOR, &sample), "static");
