@@ -656,6 +656,9 @@
  * most of those that follow where he leaves as much: a leaning brick's 234 contacts kept 1.5e-2 without. */
 #define IMP_BODIES_SWEEPS 10
 #define IMP_BODIES_SWEEPS_MOST 1000
+/* Newton's steps after which the contacts' own space is asked, where that is at hand: of 200 000 problems of random
+ * piles all but 600 are solved in fewer, and those that are not solved take hundreds. */
+#define IMP_BODIES_BRIEF 80
 /* Of what an iteration began with: where Newton may end. */
 #define IMP_BODIES_INNER 0.1
 /* The proof's residual up to which an answer is taken: a thousandth of what a step of a pile may be off, of its speeds;

@@ -361,11 +361,11 @@ static imp_cone_status status_of(const imp_cone_outcome *outcome)
                                                   : IMP_CONE_UNSETTLED;
 }
 
-/* Whether nothing better can be found: solved, or what is left is the rounding of r in W r, whose terms may be far
- * greater than u. Another way might lead elsewhere, and which it is would be for rounding to say. */
+/* Whether nothing better need or can be found: solved, or what is left is the rounding of r in W r, whose terms may be
+ * far greater than u. Another way might lead elsewhere, and which it is would be for rounding to say. */
 static bool is_exact(const imp_cone_problem *problem, const double *r, const imp_cone_outcome *outcome)
 {
-    return outcome->residual <= IMP_CONE_ACCEPTED ||
+    return outcome->residual <= fmax(IMP_CONE_ACCEPTED, problem->enough) ||
            outcome->residual <= fmin(IMP_CONE_USABLE, imp_cone_rounding(problem, r));
 }
 
@@ -381,7 +381,7 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
         outcome->status = status_of(outcome);
         return;
     }
-    if (!(outcome->residual <= IMP_CONE_ACCEPTED)) {
+    if (!(outcome->residual <= fmax(IMP_CONE_ACCEPTED, system->problem->enough))) {
         outcome->stage = imp_cone_follow(system);
         polish(system, true, LAST_STEPS, r, u, outcome);
     }

@@ -49,7 +49,7 @@ typedef struct imp_cone_problem {
     bool near_last; /* of several answers the one by last_r: not r = 0, nor where paths lead; else UNSETTLED */
     imp_cone_effort effort;
     double work;   /* multiplications of its factorings after which paths end; 0: IMP_CONE_WORK */
-    double enough; /* cone_bodies.h: the residual that does; 0: IMP_BODIES_ACCEPTED */
+    double enough; /* the residual that does; 0: as small as can be (cone_bodies.h: IMP_BODIES_ACCEPTED) */
 } imp_cone_problem;
 
 enum { IMP_CONE_WIDEST = 6 };

@@ -122,8 +122,8 @@ static double settle_friction(imp_bodies_problem *p, double rho, double enough)
     return fmax(0.1 * rho, IMP_BODIES_STIFF);
 }
 
-/* From p->r, as far as it goes; the best goes to r and u. */
-static void iterate(imp_bodies_problem *p, double enough, double *r, double *u)
+/* From p->r, as far as it goes, brief: in some steps of Newton's; the best goes to r and u. */
+static void iterate(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
 {
     enum { MOST = 40, PATIENCE = 10 };
     const size_t size = (size_t)p->width * sizeof *r * (size_t)p->count;
@@ -138,22 +138,22 @@ static void iterate(imp_bodies_problem *p, double enough, double *r, double *u)
             memcpy(r, p->r, size);
             memcpy(u, p->u, size);
         }
-        if (outcome->residual <= enough) return;
+        if (outcome->residual <= enough || (brief && outcome->steps > IMP_BODIES_BRIEF)) return;
         rho = fmax(settle_friction(p, rho, IMP_BODIES_INNER * fmin(found, 1)), IMP_BODIES_STIFF);
         memcpy(p->r, p->pressed, size);
     }
 }
 
-/* What Newton's steps leave far off is swept for longer, and they begin again. */
-static void iterate_and_sweep(imp_bodies_problem *p, double enough, double *r, double *u)
+/* What Newton's steps leave far off is swept for longer, and they begin again; brief: not so. */
+static void iterate_and_sweep(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
 {
     imp_bodies_effect(p, p->r);
     double found = residual_of(p, p->r);
     for (int sweeps = IMP_BODIES_SWEEPS; sweeps <= IMP_BODIES_SWEEPS_MOST; sweeps *= 10) {
         if (found > IMP_BODIES_FAR) imp_bodies_sweep(p, sweeps);
-        iterate(p, enough, r, u);
+        iterate(p, enough, brief, r, u);
         found = p->outcome->residual;
-        if (!(found > IMP_BODIES_FAR)) return;
+        if (!(found > IMP_BODIES_FAR) || brief) return;
         memcpy(p->r, r, (size_t)p->width * sizeof *r * (size_t)p->count);
     }
 }
@@ -239,7 +239,8 @@ imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_con
         change_units(&p, false, false, p.r, p.r);
         p.q = p.own_q;
     }
-    iterate_and_sweep(&p, problem->enough > 0 ? problem->enough : IMP_BODIES_ACCEPTED, r, u);
+    iterate_and_sweep(&p, problem->enough > 0 ? problem->enough : IMP_BODIES_ACCEPTED,
+                      problem->effort == IMP_CONE_BRIEF, r, u);
     if (!(outcome.residual < INFINITY)) return outcome;
     if (width > 3) {
         memcpy(p.r, r, size * sizeof *r);

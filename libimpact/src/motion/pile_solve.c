@@ -39,7 +39,8 @@ static imp_cone_problem problem_of(const imp_pile *pile, const imp_pile_question
 
 static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
 {
-    const imp_cone_problem problem = problem_of(pile, question);
+    imp_cone_problem problem = problem_of(pile, question);
+    if (question->count <= IMP_PILE_FEW) problem.enough = 0; /* rounding costs no more */
     if (pile->width > 3)
         imp_cone_assemble_turning(world, pile->middle, pile->contacts, problem.count, pile->rows, pile->turns, pile->w);
     else
@@ -49,7 +50,8 @@ static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, cons
 
 static imp_cone_outcome by_bodies(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
 {
-    const imp_cone_problem problem = problem_of(pile, question);
+    imp_cone_problem problem = problem_of(pile, question);
+    if (question->count > IMP_PILE_DENSE) problem.effort = IMP_CONE_SWEEPS;
     imp_cone_find_rows(world, pile->middle, pile->contacts, problem.count, pile->rows);
     if (pile->width > 3) imp_cone_find_turns(world, pile->middle, pile->contacts, problem.count, pile->turns);
     const imp_cone_couples couples = {.bodies = couple_bodies(pile, world, problem.count),

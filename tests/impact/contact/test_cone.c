@@ -127,6 +127,33 @@ static void hard_ones_are_solved_or_told(void **state)
     assert_true(solved >= 0.995 * RUNS);
 }
 
+/* Of contacts whose masses are 1e10 times apart the residual cannot come under what rounding leaves: ways that would be
+ * tried to the last digit are left where what is asked is reached. */
+static void no_more_is_found_than_is_asked(void **state)
+{
+    (void)state;
+    enum { COUNT = 22 };
+    random_stream random = {17};
+    long less = 0, more = 0;
+    for (int k = 0; k < 20; k++) {
+        cone_case c = cone_case_make(&random, COUNT, 4, 1);
+        for (int i = 0; i < 3 * COUNT; i++) {
+            const double light = i / 3 % 2 ? 1e5 : 1;
+            c.q[i] *= light;
+            for (int j = 0; j < 3 * COUNT; j++) c.w[i * 3 * COUNT + j] *= light * (j / 3 % 2 ? 1e5 : 1);
+        }
+        imp_cone_problem problem = cone_case_problem(&c);
+        problem.effort = IMP_CONE_BRIEF;
+        more += solve(&problem).outcome.factorings;
+        problem.enough = 1e-3;
+        const answer got = solve(&problem);
+        less += got.outcome.factorings;
+        assert_at_most(got.outcome.residual, problem.enough);
+        cone_case_free(&c);
+    }
+    assert_true(3 * less < more);
+}
+
 /* Paths end where the work allowed is done, and say that they found nothing. */
 static void work_is_bounded(void **state)
 {
@@ -478,6 +505,7 @@ int main(void)
         cmocka_unit_test(one_contact_has_a_closed_form),
         cmocka_unit_test(known_answers_are_found),
         cmocka_unit_test(hard_ones_are_solved_or_told),
+        cmocka_unit_test(no_more_is_found_than_is_asked),
         cmocka_unit_test(work_is_bounded),
         cmocka_unit_test(a_struck_stack_is_solved),
         cmocka_unit_test(the_last_answer_leads_to_the_next),
