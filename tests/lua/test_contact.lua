@@ -63,4 +63,20 @@ for ask, t_max in pairs { [impact.gap] = false, [impact.toi] = 1 } do
   check.equal(message, "two planes have no gap: one of the bodies must have another shape")
 end
 
+-- A tip on a side that straight lines make up: the normal is the side's, however little they overlap.
+do
+  local quat = require "quat"
+  local tip = impact.superellipsoid { a = 0.1, b = 0.08, c = 0.07, eps1 = 2, eps2 = 0.31 }
+  local side = impact.superellipsoid { a = 0.09, b = 0.11, c = 0.12, eps1 = 2, eps2 = 1.17 }
+  for k = 0, 9 do
+    local place, normal = side:point(0.6 * k - 2.9, 0.3 + 0.06 * k), side:normal(0.6 * k - 2.9, 0.3 + 0.06 * k)
+    local turn = quat.from_two_vectors({ 0, 0, 1 }, -normal) * quat.from_rotation_vector { 0.03 * k, 0.1, 0 }
+    for _, gap in ipairs { 1e-6, 1e-10, 0, -1e-14, -1e-10 } do
+      local met = impact.gap({ shape = tip, position = place + normal * gap - turn:rotate { 0, 0, 0.07 }, orientation = turn }, { shape = side })
+      check.close(met.gap, gap, 2e-14)
+      check.close((met.normal - normal):norm(), 0, 1e-12)
+    end
+  end
+end
+
 check.report("contact")

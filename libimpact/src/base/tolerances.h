@@ -147,6 +147,8 @@
 #define IMP_GAP_DEEP 0.05
 /* Of the reach: an overlap that is rounding, and needs no proof. */
 #define IMP_GAP_SHALLOW 1e-13
+/* Of the reach: how far apart bodies are drawn for their normal, which is then off by this part of what it was. */
+#define IMP_GAP_PARTED 1e-8
 /* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
 #define IMP_GAP_SHARP 1.3
 /* Sine of the angle of two edges: under it they are parallel, and no disc lies between them. */

@@ -421,6 +421,22 @@ static bool in_bodies(const imp_gap_solids *pair, const double x[2][3])
            imp_gap_holds(&pair->form[1], x[1], IMP_GAP_SLACK * pair->reach);
 }
 
+/* What all but touches, drawn apart along the best normal met, has that normal but for its error times the way, and
+ * nearest points that tell it: where g has a kink across one way and bends across the other, heights tell a normal to
+ * the root of their rounding. */
+static void draw_apart(search *s)
+{
+    const double reach = s->pair->reach, way = fmax(-s->low, 0) + IMP_GAP_PARTED * reach;
+    if (!(s->low <= 0 && -s->low <= IMP_GAP_PARTED * reach)) return;
+    imp_gap_solids parted = *s->pair;
+    for (int i = 0; i < 3; i++) parted.c[i] += way * s->low_n[i];
+    search apart = {.pair = &parted, .low = -INFINITY, .most = INFINITY, .thin = s->thin, .sharp = s->sharp};
+    double upper = INFINITY;
+    if (!try_from(&apart, s->low_n, NULL, IMPACT_PATH_NEWTON) && !try_simplex(&apart, &upper)) return;
+    const double g = imp_pair_gap(s->pair, apart.best.n, NULL);
+    if (g >= s->low - IMP_GAP_SLACK * reach) memcpy(s->low_n, apart.best.n, sizeof s->low_n);
+}
+
 /* No way settled: the best that is known for certain. The support points of any normal are no nearer than the bodies.
  */
 static impact_status bracket(const search *s, double upper, imp_gap_bracket *meeting)
@@ -488,5 +504,7 @@ impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, i
     if (!over && low <= 0) over = surround(&s);
     *path = s.found ? s.path : IMPACT_PATH_FALLBACK;
     const bool best = s.found && s.best.gap >= s.low - 2 * IMP_GAP_SLACK * pair->reach;
-    return best ? answer(&s, over, meeting) : bracket(&s, upper, meeting);
+    if (best) return answer(&s, over, meeting);
+    draw_apart(&s);
+    return bracket(&s, upper, meeting);
 }
