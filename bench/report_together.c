@@ -7,11 +7,12 @@
  * report_together [--encounters N] [--seed S] [--only I]
  * N (default 1000) are shared among the rows; of these only number I, as the lines below name it. Friction 0 to 10,
  * restitution .05 to 1, masses and stiffnesses within a ratio of 1e4; bodies at rest, static, planar among them. CSV:
- * law; exponent of the springs; contacts; encounters; answered, nothing to answer, answered with a receipt that does
- * not pass, wedged (told with proof), not settled; those whose energy rose (by springs: by more than 1e-14; Moreau's
- * may), and those whose bits changed with the order; the worst residual of the answered; those that were turned and
- * compared, and those of them that were off; CPU time, us: median, the part .99, most; Taylor steps or linear systems:
- * median, most. Then one line for each that is not answered: its number from the seed, so that it can be made again.
+ * law; Poisson's restitution or Newton's; exponent of the springs; contacts; encounters; answered, nothing to answer,
+ * answered with a receipt that does not pass, wedged (told with proof), not settled; those whose energy rose (by
+ * springs: by more than 1e-14; Moreau's may), and those whose bits changed with the order; the worst residual of the
+ * answered; those that were turned and compared, and those of them that were off; CPU time, us: median, the part .99,
+ * most; Taylor steps or linear systems: median, most. Then one line for each that is not answered: its number from the
+ * seed, so that it can be made again.
  */
 #include <stdio.h>
 #include <string.h>
@@ -23,12 +24,21 @@ typedef struct family {
     impact_together_law law;
     double exponent;
     int least, most;
+    impact_law restitution; /* Moreau's: the law it restores by */
 } family;
 
-static const family families[] = {
-    {IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3}, {IMPACT_TOGETHER_SPRINGS, 1.5, 4, 6}, {IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12},
-    {IMPACT_TOGETHER_SPRINGS, 1, 2, 3},   {IMPACT_TOGETHER_SPRINGS, 1, 4, 6},   {IMPACT_TOGETHER_SPRINGS, 1, 7, 12},
-    {IMPACT_TOGETHER_MOREAU, 0, 2, 3},    {IMPACT_TOGETHER_MOREAU, 0, 4, 6},    {IMPACT_TOGETHER_MOREAU, 0, 7, 12}};
+static const family families[] = {{IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3},
+                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 4, 6},
+                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12},
+                                  {IMPACT_TOGETHER_SPRINGS, 1, 2, 3},
+                                  {IMPACT_TOGETHER_SPRINGS, 1, 4, 6},
+                                  {IMPACT_TOGETHER_SPRINGS, 1, 7, 12},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 2, 3},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 4, 6},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 7, 12},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 2, 3, IMPACT_NEWTON},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 4, 6, IMPACT_NEWTON},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 7, 12, IMPACT_NEWTON}};
 enum { FAMILIES = sizeof families / sizeof *families };
 
 typedef struct tally {
@@ -103,7 +113,9 @@ static void solve_one(const family *f, uint64_t seed, long number, impact_togeth
     encounter_ranges ranges = whole;
     ranges.least = f->least, ranges.most = f->most;
     random_stream random = {seed + 0x9e3779b97f4a7c15u * (uint64_t)number};
-    const random_encounter e = encounter_draw(&random, &ranges), other = reversed(&e);
+    random_encounter e = encounter_draw(&random, &ranges);
+    e.restitution = f->restitution;
+    const random_encounter other = reversed(&e);
     const double begun = cpu_clock();
     const answer a = solve(&e, f->law, f->exponent, workspace);
     t->time[k] = 1e6 * (cpu_clock() - begun);
@@ -129,7 +141,8 @@ int main(int argc, char **argv)
         return 2;
     }
     if (impact_together_workspace_create(NULL, &workspace) != IMPACT_OK) return 1;
-    printf("law,exponent,contacts,encounters,answered,separating,soft,wedged,unsettled,energy_rose,order_changed,"
+    printf("law,restitution,exponent,contacts,encounters,answered,separating,soft,wedged,unsettled,energy_rose,order_"
+           "changed,"
            "residual,turned,turned_off,time_median,time_99,time_most,steps_median,steps_most\n");
     long number = 0;
     for (int k = 0; k < FAMILIES; k++) {
@@ -142,11 +155,12 @@ int main(int argc, char **argv)
         for (int i = 0; i < runs; i++) solve_one(f, (uint64_t)seed, only < 0 ? number + i : only, workspace, i, &t);
         number += share;
         if (runs == 0) continue;
-        printf("%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
-               impact_together_law_name(f->law), f->exponent, f->least, f->most, runs, t.answered, t.separating, t.soft,
-               t.wedged, t.unsettled, t.risen, t.changed, t.worst, t.turned, t.off, measure_quantile(t.time, runs, 0.5),
-               measure_quantile(t.time, runs, 0.99), measure_quantile(t.time, runs, 1),
-               measure_quantile(t.steps, runs, 0.5), measure_quantile(t.steps, runs, 1));
+        printf("%s,%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
+               impact_together_law_name(f->law), impact_law_name(f->restitution), f->exponent, f->least, f->most, runs,
+               t.answered, t.separating, t.soft, t.wedged, t.unsettled, t.risen, t.changed, t.worst, t.turned, t.off,
+               measure_quantile(t.time, runs, 0.5), measure_quantile(t.time, runs, 0.99),
+               measure_quantile(t.time, runs, 1), measure_quantile(t.steps, runs, 0.5),
+               measure_quantile(t.steps, runs, 1));
         fflush(stdout);
         free(t.time);
         free(t.steps);
