@@ -244,7 +244,7 @@ impact_status impact_scene_body_def(const impact_scene *scene, int body, impact_
     const imp_body *b = &scene->world.bodies[body];
     const impact_sample now = imp_scene_sample(b, scene->t, &scene->states[body]);
     const impact_body_def own = {.name = b->name,
-                                 .shape = b->given,
+                                 .shape = b->given ? *b->given : b->shape,
                                  .user = b->user,
                                  .trail = b->trail,
                                  .is_static = b->is_static,

@@ -8,9 +8,9 @@
 
 /* An octahedron meets others and is held with its corners, edges and faces: as the polyhedron that it is. (As a smooth
  * body its one lowest point would jump from corner to corner as it tips over an edge.) */
-static impact_status build_shape(const impact_shape *given, imp_arena *arena, impact_shape *shape)
+static impact_status build_shape(const impact_shape *given, imp_arena *arena, imp_body *body)
 {
-    *shape = *given;
+    body->shape = *given;
     if (!imp_is_octahedron(given)) return IMPACT_OK;
     const double a = given->a, b = given->b, c = given->c;
     const qvec3 corners[] = {{a, 0, 0}, {-a, 0, 0}, {0, b, 0}, {0, -b, 0}, {0, 0, c}, {0, 0, -c}};
@@ -18,13 +18,16 @@ static impact_status build_shape(const impact_shape *given, imp_arena *arena, im
     impact_hull *hull;
     const impact_status status = impact_hull_create(corners, 6, 0, &allocator, &hull, NULL, 0);
     if (status == IMPACT_EARGUMENT) return IMPACT_OK; /* so thin that rounding has its corners in a plane */
-    return status == IMPACT_OK ? impact_shape_polyhedron(hull, shape) : status;
+    impact_shape *kept = imp_arena_take(arena, 1, sizeof *kept);
+    if (status != IMPACT_OK || !kept) return kept ? status : IMPACT_ENOMEM;
+    *kept = *given;
+    body->given = kept;
+    return impact_shape_polyhedron(hull, &body->shape);
 }
 
 static void build_body(const impact_body_def *def, char *name, imp_body *body, imp_state *state)
 {
     *body = (imp_body){.name = name,
-                       .given = def->shape,
                        .user = def->user,
                        .is_static = def->is_static,
                        .mass = INFINITY,
@@ -103,7 +106,7 @@ static impact_status build_bodies(impact_scene *scene, const impact_scene_def *d
         world->body_count++;
         scene->root[i] = -1;
         build_body(&def->bodies[i], scene->names.names[i], body, &scene->states[i]);
-        const impact_status status = build_shape(&body->given, arena, &body->shape);
+        const impact_status status = build_shape(&def->bodies[i].shape, arena, body);
         if (status != IMPACT_OK) return status;
         body->index = i;
         world->driven = world->driven || body->driven;

@@ -41,7 +41,7 @@ typedef struct imp_body {
     double torsional, rolling;        /* friction against turning, m */
     double linear_rate, angular_rate; /* damping: -ln(1 - d), 1/s */
     qvec3 drift, spin;                /* the surface's point at r from the centre by drift + spin x r */
-    impact_shape given;               /* as the definition has it */
+    const impact_shape *given;        /* as the definition has it; NULL: as it is */
 } imp_body;
 
 /* What a contact does. */
