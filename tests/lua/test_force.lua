@@ -71,4 +71,11 @@ fails("force 'odd': the edge must be a finite number", broken.run, broken)
 local words = scene(impact.force { name = "odd", law = wave, edge = function() return "much" end })
 fails("force 'odd': the edge must be a finite number, got a string", words.run, words)
 
+-- A jump that was not told is met in words that say how to tell it.
+local untold = scene(impact.force { max_step = 1e-3, law = function(t) return { t > 0.5 and t < 0.503 and 100 or 0, 0, 0 } end },
+  { bodies = { { name = "ball", shape = impact.sphere(0.1), mass = 1 } } })
+local reason, message = untold:run()
+check.equal(reason, nil)
+check.truth(message:find("switches in time, edge elsewhere", 1, true), message)
+
 check.report "force"

@@ -22,7 +22,7 @@ double imp_motion_step_limit(imp_motion *motion, const double *y)
                 imp_field_custom_step_limit(motion->world, motion->scratch, motion->loads));
 }
 
-static bool has_custom_force(const imp_world *world)
+bool imp_motion_has_custom_force(const imp_world *world)
 {
     for (int k = 0; k < world->field_count; k++)
         if (world->fields[k].def.kind == IMPACT_FORCE_CUSTOM) return true;
@@ -45,7 +45,7 @@ static double defect(imp_motion *motion, double tau, double h)
 /* Asked at thirds of the step. Leaves the touches as they are at the step's end. A fixed step is not asked. */
 static bool step_is_seen(imp_motion *motion, double tau, const double *y)
 {
-    if (!has_custom_force(motion->world) || motion->method == IMPACT_MOTION_RK4) return true;
+    if (!imp_motion_has_custom_force(motion->world) || motion->method == IMPACT_MOTION_RK4) return true;
     double low, high;
     impact_ode_last_step(motion->ode, &low, &high);
     const double h = high - low;

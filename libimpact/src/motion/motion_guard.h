@@ -30,4 +30,6 @@ bool imp_motion_gains(imp_motion *motion, double t);
 /* IMPACT_EUNSETTLED, with a message of what, the time, and the body that moves fastest for its size. */
 impact_status imp_motion_stuck(imp_motion *motion, const char *what, double t);
 
+bool imp_motion_has_custom_force(const imp_world *world);
+
 #endif

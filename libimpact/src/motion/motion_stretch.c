@@ -170,8 +170,13 @@ bool imp_motion_also_crossed(imp_motion *motion, imp_end *end)
 static impact_status fail(imp_motion *motion, impact_status status)
 {
     if (status == IMPACT_EINTEGRATOR || status == IMPACT_EDOMAIN)
-        return imp_motion_stuck(motion, "the integrator cannot go on: the motion is not smooth, or without bound,",
-                                motion->stride.t);
+        return imp_motion_stuck(
+            motion,
+            imp_motion_has_custom_force(motion->world)
+                ? "the integrator cannot go on: the motion is not smooth (where a force's law jumps "
+                  "tell it: switches in time, edge elsewhere), or without bound,"
+                : "the integrator cannot go on: the motion is not smooth, or without bound,",
+            motion->stride.t);
     return status;
 }
 
