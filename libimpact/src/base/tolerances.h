@@ -204,9 +204,6 @@
 /* Of the bodies' distance and size: places of corners in the plane of a patch, three products and sums each. */
 #define IMP_PATCH_BORDER (16 * IMP_ROUNDOFF)
 
-/* Cosine of the angle within which a face is looked for at a contact: of two faces one at most is as near, and one that
- * is no nearer is no worse. */
-#define IMP_FACE_NEAR 0.9
 /* A plane whose slope is less than this is level, and directions that differ by less are one line: of a ball that has
  * slid through hundreds of turns, each put back on its plane with a few roundings; and as closely as slip is integrated
  * (IMP_SLIDING_TOLERANCE). */

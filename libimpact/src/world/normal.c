@@ -118,7 +118,7 @@ static int face_along(const imp_body *body, qvec3 d, qvec3 *normal)
 {
     const int count = own_faces(&body->shape);
     int best = -1;
-    double most = IMP_FACE_NEAR;
+    double most = -INFINITY;
     for (int f = 0; f < count; f++) {
         const qvec3 n = outward_normal(&body->shape, f);
         const double along = qvec3_dot(n, d);
