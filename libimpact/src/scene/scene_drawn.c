@@ -99,14 +99,12 @@ static double response_of(imp_island *island, int own)
     return qvec3_dot(touch.normal, change);
 }
 
-/* Let go, a contact whose pressure is lambda would go at -response lambda: drawn on and pressed it has lambda < 0.
- * Round bodies that go on as they were are not asked. */
+/* Let go, a contact whose pressure is lambda would go at -response lambda: drawn on and pressed it has lambda < 0. */
 static bool may_be_drawn(const imp_island *island, const imp_touch *touch)
 {
     const imp_world *world = &island->world;
     if (touch->mode != IMP_SLIDE || touch->onset || touch->foot >= IMP_FOOT_FLAT || !(touch->friction > 0))
         return false;
-    if (touch->pressure > 0 && both_in_line(world, touch)) return false;
     return touch->speed > world->slip_speed && is_held_elsewhere(world, touch);
 }
 
