@@ -256,6 +256,9 @@
  * velocities of order 1 m/s and must be told from nothing at IMP_SLIP_OF_REST_SPEED of the default rest speed, 1e-11
  * m/s. A tolerance looser than this would decide between slip and stick. */
 #define IMP_SLIDING_TOLERANCE 1e-13
+/* Of a body's speed: slip slower than this, what steps of that tolerance come to, is none, whatever the rest speed: a
+ * box of 500 m slid on where one of .5 m sticks. */
+#define IMP_SLIP_TOLD (10 * IMP_SLIDING_TOLERANCE)
 /* And so is a stretch that begins with a bounce: a flight of rest height, 1e-12 m, of a body of 1 m must come down
  * where it falls, or bounces die out never or too soon. */
 #define IMP_BOUNCE_TOLERANCE 3e-12

@@ -72,11 +72,20 @@ static void free_fields(imp_world *world)
     world->field_count = 0;
 }
 
+void imp_island_set_slip_speed(imp_island *island, double speed)
+{
+    island->world.slip_speed = speed;
+    island->world.onset_speed = IMP_ONSET_OF_SLIP_SPEED * speed;
+}
+
 int imp_island_add_body(imp_island *island, int body, const imp_state *state)
 {
     imp_world *world = &island->world;
     const int i = world->body_count++;
     world->bodies[i] = island->scene->world.bodies[body];
+    const imp_body *own = &world->bodies[i];
+    const double told = own->is_static ? 0 : IMP_SLIP_TOLD * imp_motion_speed(own, state);
+    if (told > world->slip_speed) imp_island_set_slip_speed(island, told);
     world->driven = world->driven || world->bodies[i].driven;
     island->states[i] = *state;
     island->motion.resting[i] = false;

@@ -70,7 +70,11 @@ impact_status imp_island_reserve(imp_island *island, int bodies, int pairs);
 /* No body, no pair. */
 void imp_island_clear(imp_island *island);
 
-/* Adds the scene's body, by its state; its index in the island. To be added in the order of their indices. */
+/* m/s: slip below it sticks, and one that begins is led up to a multiple of it. */
+void imp_island_set_slip_speed(imp_island *island, double speed);
+
+/* Adds the scene's body, by its state; its index in the island. To be added in the order of their indices. Slip that
+ * the integrator cannot tell from none at the body's speed is none from there on. */
 int imp_island_add_body(imp_island *island, int body, const imp_state *state);
 /* The island's index of the scene's body, or -1. */
 int imp_island_find(const imp_island *island, int body);

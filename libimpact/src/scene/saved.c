@@ -120,7 +120,7 @@ static void walk_body(imp_archive *a, imp_saved_body *b)
 
 static void walk_island(imp_archive *a, imp_saved_island *i)
 {
-    double *const numbers[] = {&i->t, &i->loss, &i->fallen, &i->looked_at, &i->patience.since};
+    double *const numbers[] = {&i->t, &i->loss, &i->fallen, &i->looked_at, &i->slip_speed, &i->patience.since};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
     walk_works(a, &i->works);
     imp_archive_long(a, &i->patience.steps);

@@ -26,7 +26,7 @@ typedef struct imp_saved_member {
 
 typedef struct imp_saved_island {
     double t; /* one that rests: since when; else now */
-    double loss, fallen, looked_at;
+    double loss, fallen, looked_at, slip_speed;
     imp_works works;
     imp_patience patience;
     bool stepped, lenient;

@@ -76,6 +76,7 @@ static imp_saved_island head_of(const imp_island *island, double t)
                               .fallen = island->motion.fallen,
                               .looked_at = fmin(island->looked_at, t),
                               .works = imp_island_works(island, t),
+                              .slip_speed = island->world.slip_speed,
                               .patience = island->patience,
                               .stepped = island->stepped,
                               .lenient = island->motion.persist.lenient,
@@ -239,6 +240,7 @@ static impact_status fill_island(imp_island *island, const imp_saved_island *fro
         island->motion.resting[i] = members[m].resting;
     }
     for (int p = 0; p < from->pair_count; p++) restore_pair(island, &pairs[p]);
+    imp_island_set_slip_speed(island, from->slip_speed);
     status = imp_island_take_forces(island);
     island->stepped = from->stepped;
     if (status == IMPACT_OK && island->stepped) status = imp_island_resume_steps(island);
