@@ -85,7 +85,8 @@ impact_sample *imp_report_new_states(const imp_report *r)
 
 /* ---- times ---- */
 
-/* k T/times; one nearer to an event than a thousandth of their distance goes that far before it. */
+/* (k/times) T, which ends at T whatever it is (0.2 48/48 is above 0.2); one nearer to an event than a thousandth of
+ * their distance goes that far before it. */
 static double moved(const imp_report_work *w, double t)
 {
     const double near = w->report.def.duration / (1000.0 * w->report.time_count);
@@ -111,8 +112,8 @@ static impact_status choose_times(imp_report_work *w)
     r->times = imp_arena_take(r->arena, (size_t)r->time_count, sizeof *r->times);
     if (!r->times) return IMPACT_ENOMEM;
     for (int k = 0; k < r->time_count; k++) {
-        r->times[k] =
-            how->oracle ? how->oracle[k * r->moving_count].t : moved(w, r->def.duration * (k + 1) / r->time_count);
+        r->times[k] = how->oracle ? how->oracle[k * r->moving_count].t
+                                  : moved(w, r->def.duration * ((double)(k + 1) / r->time_count));
         for (int i = 0; how->oracle && i < r->moving_count; i++) {
             const impact_sample *s = &how->oracle[k * r->moving_count + i];
             if (s->t != r->times[k] || s->body != r->moving[i] || (k > 0 && !(s->t > r->times[k - 1])))

@@ -302,6 +302,67 @@ static void what_cannot_be_compared_is_said(void **state)
            "overlaps"); /* what making the scene says */
 }
 
+/* Without a name, behind a force that is not custom; with no laws at all; and with nobody to tell. */
+static void what_is_refused_without_a_place_for_words(void **state)
+{
+    (void)state;
+    bounce_scene s;
+    impact_force_def forces[2] = {impact_default_force_def(IMPACT_FORCE_WIND)};
+    const impact_report_def how = {.struct_size = sizeof how};
+    make_bounce(&s);
+    s.force.function = counting_push, s.force.name = NULL;
+    forces[1] = s.force;
+    s.def.forces = forces, s.def.force_count = 2;
+    refuse(&s.def, how, IMPACT_EARGUMENT, "force '' is not the same in two runs");
+    assert_int_equal(impact_report(&s.def, &how, NULL, NULL, NULL, NULL, 0), IMPACT_EARGUMENT);
+    char none[1] = {'x'};
+    assert_int_equal(impact_report(&s.def, &how, NULL, NULL, NULL, none, 0), IMPACT_EARGUMENT);
+    assert_int_equal(none[0], 'x');
+    assert_int_equal(impact_report(&s.def, &(impact_report_def){.struct_size = 7}, NULL, NULL, NULL, NULL, 0),
+                     IMPACT_EARGUMENT);
+}
+
+/* Without a definition all is as by default, a sink is not asked for; and the last time is the duration itself, also
+ * where duration times/times is not. */
+static void without_a_definition_it_is_the_default(void **state)
+{
+    (void)state;
+    bounce_scene s;
+    impact_report_summary summary;
+    make_bounce(&s);
+    s.def.force_count = 0, s.def.duration = 0.2;
+    char message[300];
+    if (impact_report(&s.def, NULL, NULL, NULL, &summary, message, sizeof message) != IMPACT_OK)
+        fail_msg("%s", message);
+    assert_int_equal(summary.times, 48);
+    assert_true(summary.sure && summary.horizon == s.def.duration);
+}
+
+/* Nothing vouches for what steps move, and no solver beside them is of use where impacts are compliant. */
+static void what_has_no_witness_is_not_sure(void **state)
+{
+    (void)state;
+    bounce_scene s;
+    table t;
+    const double tolerance = 1e-6;
+    const impact_report_def how = {
+        .struct_size = sizeof how, .times = 6, .rounds = 1, .tolerances = &tolerance, .tolerance_count = 1};
+    make_bounce(&s);
+    s.def.force_count = 0, s.def.duration = 0.3;
+    s.bodies[1].position.z = radius, s.bodies[1].velocity = (qvec3){1, 0, 0}, s.bodies[1].friction = 0.3;
+    s.bodies[1].rolling_friction = 0.01, s.bodies[1].restitution = 0;
+    impact_shape_ellipsoid(radius, radius, radius, &s.bodies[1].shape);
+    s.def.piles = IMPACT_PILES_STEPS;
+    get(&s.def, &how, &t);
+    assert_false(t.summary.sure);
+    assert_true(isinf(impact_report_worst(t.summary.certainty)));
+    make_bounce(&s);
+    s.def.law = IMPACT_STRONGE, s.def.compliance = 1.2;
+    s.def.duration = 0.6;
+    get(&s.def, &how, &t);
+    assert_true(t.summary.useless[IMPACT_REPORT_IMPACTS]);
+}
+
 static void numbers_out_of_range_are_refused(void **state)
 {
     (void)state;
@@ -401,10 +462,17 @@ int main(void)
 {
     const struct CMUnitTest always[] = {cmocka_unit_test(numbers_out_of_range_are_refused)};
     const struct CMUnitTest with_cvode[] = {
-        cmocka_unit_test(its_certainty_is_no_flattery),        cmocka_unit_test(its_rows_are_what_they_say),
-        cmocka_unit_test(a_flight_in_closed_form_has_one_row), cmocka_unit_test(a_run_that_failed_has_no_error_to_show),
-        cmocka_unit_test(behind_the_horizon_nothing_is_said),  cmocka_unit_test(swapped_bodies_make_the_same_table),
-        cmocka_unit_test(what_cannot_be_compared_is_said),     cmocka_unit_test(it_ends_when_it_is_told_to),
+        cmocka_unit_test(its_certainty_is_no_flattery),
+        cmocka_unit_test(its_rows_are_what_they_say),
+        cmocka_unit_test(a_flight_in_closed_form_has_one_row),
+        cmocka_unit_test(a_run_that_failed_has_no_error_to_show),
+        cmocka_unit_test(behind_the_horizon_nothing_is_said),
+        cmocka_unit_test(swapped_bodies_make_the_same_table),
+        cmocka_unit_test(what_is_refused_without_a_place_for_words),
+        cmocka_unit_test(without_a_definition_it_is_the_default),
+        cmocka_unit_test(what_has_no_witness_is_not_sure),
+        cmocka_unit_test(what_cannot_be_compared_is_said),
+        cmocka_unit_test(it_ends_when_it_is_told_to),
     };
     const int failed = impact_has(IMPACT_PART_CVODE) ? cmocka_run_group_tests(with_cvode, NULL, NULL) : 0;
     return failed + (impact_has(IMPACT_PART_CVODE) ? cmocka_run_group_tests(always, NULL, NULL) : 0);
