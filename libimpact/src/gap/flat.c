@@ -183,13 +183,6 @@ void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offse
     name_corners(one, other, 2 * slack, offset);
 }
 
-double imp_flat_area(const imp_flat *flat)
-{
-    double sum = 0;
-    for (int i = 1; i + 1 < flat->count; i++) sum += turn_at(flat->p[0], flat->p[i], flat->p[i + 1]);
-    return sum;
-}
-
 void imp_flat_thin(imp_flat *flat, int most)
 {
     while (flat->count > most) {

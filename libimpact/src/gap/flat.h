@@ -22,9 +22,6 @@ void imp_flat_hull(imp_flat *flat, double slack);
  * that lie in it get the number from + offset. */
 void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offset);
 
-/* Signed area times 2; 0 of a segment. */
-double imp_flat_area(const imp_flat *flat);
-
 /* Leaves out the corners that cost least area until so many are left. */
 void imp_flat_thin(imp_flat *flat, int most);
 

@@ -91,8 +91,3 @@ bool imp_motion_load(imp_motion *motion, double t, const imp_state *states)
     }
     return true;
 }
-
-bool imp_motion_is_ballistic(const imp_motion *motion)
-{
-    return motion->persist.count == 0 && motion->world->field_count == 0;
-}

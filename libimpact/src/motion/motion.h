@@ -118,9 +118,6 @@ impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states);
  * Nothing else changes. */
 impact_status imp_motion_touches(imp_motion *motion, double t, const imp_state *states, imp_touch *touches);
 
-/* Nothing but gravity and damping acts, and nothing is held: the motion is in closed form. */
-bool imp_motion_is_ballistic(const imp_motion *motion);
-
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
 bool imp_motion_load(imp_motion *motion, double t, const imp_state *states);
 

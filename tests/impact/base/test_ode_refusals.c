@@ -11,6 +11,7 @@ typedef struct witness {
     long rates, roots; /* calls so far */
     long refused_rate, refused_root;
     int refusal;
+    long refuse_from; /* from this call of the rates on they ask for a shorter step; 0: never */
 } witness;
 
 /* The oscillator, whose y0 falls at pi/2. */
@@ -20,7 +21,8 @@ static int swing(double t, const double *y, double *rate, void *context)
     witness *w = context;
     rate[0] = y[1];
     rate[1] = -y[0];
-    return ++w->rates == w->refused_rate ? w->refusal : 0;
+    if (++w->rates == w->refused_rate) return w->refusal;
+    return w->refuse_from > 0 && w->rates >= w->refuse_from ? 1 : 0;
 }
 
 static int swing_root(double t, const double *y, double *value, void *context)
@@ -146,11 +148,41 @@ static void what_leaves_double_precision_is_told(void **state)
         }
 }
 
+/* What refuses from the first call on, or asks for shorter steps for ever, and what no step can reach: each in words.
+ */
+static void what_no_step_can_do_is_told(void **state)
+{
+    static const struct {
+        long from; /* the call from which on it is refused */
+        double relative;
+        impact_ode_method method;
+        const char *words;
+    } cases[] = {{1, 1e-8, IMPACT_ODE_ADAMS, "at the start"},
+                 {40, 1e-8, IMPACT_ODE_ADAMS, "do not converge"},
+                 {40, 1e-8, IMPACT_ODE_BDF, "asking for a shorter step"},
+                 {0, 1e-17, IMPACT_ODE_ADAMS, "more than double precision holds"}};
+    (void)state;
+    if (!impact_has(IMPACT_PART_CVODE)) skip();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        witness w = {.refuse_from = cases[k].from};
+        impact_ode_def def = def_of(cases[k].method, &w);
+        impact_ode *ode;
+        def.relative_tolerance = cases[k].relative;
+        if (cases[k].from == 0) def.absolute_tolerance = 1e-19;
+        assert_int_equal(impact_ode_create(&def, &ode), IMPACT_OK);
+        const impact_status status = go(ode);
+        if (status != IMPACT_EINTEGRATOR || !strstr(impact_ode_message(ode), cases[k].words))
+            fail_msg("case %zu: status %d, '%s'", k, status, impact_ode_message(ode));
+        impact_ode_destroy(ode);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_call_refused_in_turn),
         cmocka_unit_test(each_piece_of_memory_refused_in_turn),
+        cmocka_unit_test(what_no_step_can_do_is_told),
         cmocka_unit_test(what_leaves_double_precision_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

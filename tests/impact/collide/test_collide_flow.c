@@ -64,6 +64,13 @@ static void bad_input(void **state)
     assert_int_equal(impact_flow_sample(&flow, u, 1, 1, points), IMPACT_EARGUMENT);
     flow.c = 2; /* not positive definite */
     assert_int_equal(impact_flow_sample(&flow, u, 1, 4, points), IMPACT_EARGUMENT);
+    const impact_flow others[] = {
+        {.a = 1, .b = 2, .m = -1, .friction = 0.3}, {.a = -1, .b = 2, .m = 1, .friction = 0.3},
+        {.a = 1, .b = -2, .m = 1, .friction = 0.3}, {.a = INFINITY, .b = 2, .m = 1, .friction = 0.3},
+        {.a = 1, .b = 2, .m = 1, .friction = -0.3}, {.a = 1, .b = 2, .m = 1, .friction = INFINITY}};
+    for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+        assert_int_equal(impact_flow_sample(&others[k], u, 1, 4, points), IMPACT_EARGUMENT);
+    assert_int_equal(impact_flow_sample(&good, u, INFINITY, 4, points), IMPACT_EARGUMENT);
     impact_flow_direction directions[4];
     assert_int_equal(impact_flow_directions(&flow, directions), 0);
     flow = (impact_flow){.a = 1, .b = 1, .m = 1, .friction = 0.3};

@@ -231,6 +231,39 @@ static void other_choices_are_refused(void **state)
     }
 }
 
+/* A force that gives up ends motion by steps in words, which name the heaviest of the bodies that move. */
+static bool gives_up(double t, int body, double mass, qvec3 x, quat q, qvec3 v, qvec3 omega, qvec3 *force,
+                     qvec3 *torque, void *context)
+{
+    (void)body, (void)mass, (void)x, (void)q, (void)v, (void)omega;
+    *force = *torque = (qvec3){0, 0, 0};
+    return t < *(const double *)context;
+}
+
+static void a_force_that_gives_up_is_told(void **state)
+{
+    (void)state;
+    double until = 0.1;
+    char message[256];
+    impact_scene *scene;
+    impact_body_def bodies[5] = {plane_body("floor", (qvec3){0, 0, 0}, flat, 1, 1),
+                                 ball("light", (qvec3){0, 0, radius}, 0.3, 0),
+                                 ball("heavy", (qvec3){2.02 * radius, 0, radius}, 0.3, 0),
+                                 plane_body("wall", (qvec3){-1, 0, 0}, (quat){sqrt(0.5), 0, sqrt(0.5), 0}, 0.3, 0),
+                                 ball("last", (qvec3){4.04 * radius, 0, radius}, 0.3, 0)};
+    bodies[1].velocity = (qvec3){2, 0, 0}, bodies[1].mass = 1, bodies[2].mass = 3, bodies[4].mass = 2;
+    impact_force_def force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
+    force.name = "law", force.function = gives_up, force.context = &until;
+    impact_scene_def def = scene_of(bodies, 5, 1, IMPACT_PILES_STEPS);
+    def.forces = &force, def.force_count = 1;
+    assert_int_equal(impact_scene_create(&def, &scene, message, sizeof message), IMPACT_OK);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_EDOMAIN);
+    assert_near(impact_scene_time(scene), until, 0.05);
+    if (!strstr(impact_scene_message(scene), "of which body 'heavy' is the heaviest (3 kg)"))
+        fail_msg("%s", impact_scene_message(scene));
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest closed_forms[] = {
@@ -239,6 +272,7 @@ int main(void)
         cmocka_unit_test(a_ball_slides_until_it_rolls),
         cmocka_unit_test(what_rests_is_at_rest_at_once),
         cmocka_unit_test(exact_motion_takes_no_steps),
+        cmocka_unit_test(a_force_that_gives_up_is_told),
         cmocka_unit_test(other_choices_are_refused),
     };
     const struct CMUnitTest integrated[] = {
