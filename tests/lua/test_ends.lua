@@ -228,6 +228,8 @@ do
     check.truth(said:find(message), said)
   end
   refused("--resume script.lua", 1, "^impact: cannot go on from script.lua: scene 'long' cannot go on from these bytes: they are no saved scene\n$")
+  runner.write("empty", "")
+  refused("--resume empty", 1, "^impact: cannot read empty: it is empty\n$")
   refused("--resume absent", 1, "^impact: cannot read absent: No such file or directory\n$")
   refused("--save 1 a/b", 2, "plain name of a file, got 'a/b'")
   refused("--save soon a", 2, "'soon' is no time")
@@ -240,6 +242,31 @@ do
   for _, code in ipairs { "0  done", "1  the script", "2  the command", "3  the run", "4  an output", "5  a limit", "6  done, but", "128 %+ N" } do
     check.truth(out:find("\n  " .. code), "--help tells: " .. code)
   end
+end
+
+-- However little may be written, what is asked for is whole or is not there; and a limit that was reached is told, with exit code 5.
+do
+  runner.write("small.lua", [[
+    local impact, plot = require "impact", require "quat.plot"
+    local written, why = require "quat.host".write("words", ("word\n"):rep(100))
+    if not written then error(why, 0) end
+    return impact.scene { name = "small", duration = 0.3, plot = function() return plot.figure { plot.panel { plot.line { { 1, 2 }, { 1, 4 } } } } end,
+      bodies = { impact.body { name = "floor", shape = impact.plane(), restitution = 1 },
+        impact.body { name = "ball", shape = impact.sphere(0.1), position = { 0, 0, 0.3 }, restitution = 0.9 } } }]])
+  local names, ends, sizes = { "small.csv", "small_events.csv", "words", "half", "small.run" }, {}, {}
+  for _, bytes in ipairs { 1e8, 100, 499, 501, 1000, 1500, 4000, 6000, 8000, 12000, 16000, 24000 } do
+    runner.shell("cd " .. runner.quote(runner.folder) .. " && rm -rf o")
+    local status, _, said = runner.command(string.format("small.lua --out o --quiet --record --save 0.2 half --max-disk %.9f", bytes / 1048576))
+    for _, name in ipairs(names) do
+      local got = runner.read("o/" .. name)
+      sizes[name] = sizes[name] or got and #got
+      check.truth(not got or #got == sizes[name], name .. " is whole")
+    end
+    ends[status] = true
+    check.truth(status == 5 and said:find "disk limit of" or status == 4 and said == "impact: no picture: gnuplot failed\n" or
+      status == 0 and not said:find "limit", status .. ": " .. said)
+  end
+  check.truth(ends[0] and ends[5], "both ends are met")
 end
 
 check.report("ends")

@@ -340,4 +340,40 @@ for place, message in pairs {
   check.truth(runner.read("rows/rows.csv"):find(message, 1, true), place .. ": " .. runner.read("rows/rows.csv"))
 end
 
+-- What a run gives comes back in the table as it was: words that CSV, a spreadsheet or a part would trip over; numbers of both kinds in one column;
+-- several kinds in one, which are text.
+runner.write("cells.lua", begin .. [[
+  local words = { 'a,b', 'say "no"', "two\nlines", "tab\there", "back\\slash", "return\rhere", "=1+1", "", "t" }
+  local mixed = { 1, 2.5, "x", true, -3, 7, 8, 9, 10 }
+  return impact.sweep { parameters = { n = impact.range(1, 9) }, scene = function() return { duration = 0.01, bodies = {
+      impact.body { name = "b", shape = impact.sphere(1) } } } end,
+    reduce = function(run) return { word = words[run.parameters.n], number = run.parameters.n % 2 == 0 and 0.5 or run.parameters.n, kinds = mixed[run.parameters.n] } end }]])
+clean "cells"
+check.equal((runner.command("sweep cells.lua --out cells")), 0)
+local cells = table.concat({ "run,n,kinds,number,word,status,message", '0,1,1,1,"a,b"', '1,2,2.5,0.5,"say ""no"""', '2,3,x,3,"two\nlines"',
+  "3,4,true,0.5,tab\there", "4,5,-3,5,back\\slash", '5,6,7,0.5,"return\rhere"', '6,7,8,7,"\'=1+1"', "7,8,9,0.5,", "8,9,10,9,t" }, ",end of time,\n")
+  :gsub("message,end of time,", "message") .. ",end of time,\n"
+check.equal(runner.read "cells/cells.csv", cells)
+
+-- Parts whose first line is not ours, or whose later lines were cut or changed, count for nothing: the runs are made again, and the table is the same.
+for _, damage in ipairs {
+  "printf x > $f", "printf 'impact sweep 1 12\\nrows' > $f", "printf 'impact sweep 1 12 0 x\\n' > $f", "printf 'impact sweep 1 12 3x\\n' > $f",
+  "truncate -s -5 $f", "sed -i 's/^@ [0-9]* /@ 99999 /' $f", "sed -i 's/^@ \\([0-9]*\\) ./@ \\1 x/' $f", "sed -i 's/^@ .*/&y/' $f", ": > $f" } do
+  clean "cells"
+  check.equal((runner.command("sweep cells.lua --out cells --shard 0/2 --quiet")), 0)
+  check.equal(runner.shell("cd " .. quote(folder) .. " && for f in cells/*.rows; do " .. damage .. "; done"), 0)
+  check.equal((runner.command("sweep cells.lua --out cells --quiet")), 0)
+  check.equal(runner.read "cells/cells.csv", cells)
+end
+
+-- However little may be written, a sweep says that it is that, with exit code 5, or is whole.
+local ends = {}
+for _, bytes in ipairs { 10, 60, 200, 700, 1200, 1e5 } do
+  clean "cells"
+  local status, _, said = runner.command(string.format("sweep cells.lua --out cells --quiet --max-disk %.9f", bytes / 1048576))
+  ends[status] = true
+  check.equal(status == 5 and said:find "disk limit of" ~= nil or status == 0 and runner.exists "cells/cells.csv", true)
+end
+check.truth(ends[5] and ends[0], "both ends are met")
+
 check.report("sweep")
