@@ -4,10 +4,11 @@
  * function. That both points stay together gives, with n = m2 = -m1 and u the relative velocity,
  *
  *     both round        (W1 + W2) n' = u + W1 (w1 x n) + W2 (w2 x n)
- *     body 2 flatter    (1 + W1 S2) z = u + W1 (w1 x n - w2 x n), n' = w2 x n + S2 z, z = W2 (n' - w2 x n); S2 = 1/W2
- * is how the normal turns along the surface. Where that is nearly flat the first equation takes z out of W2 times a
- * difference: 1e-3 was left wrong of a ball's bias on a face of exponent 50 a face of body 2  n' = w2 x n (W2 is
- * infinite); where body 1 lies flat on it W1 = 0: each point stays on it
+ *     body 2 flatter    (1 + W1 S2) z = u + W1 (w1 x n - w2 x n), n' = w2 x n + S2 z, z = W2 (n' - w2 x n)
+ *     a face of body 2  n' = w2 x n (W2 is infinite); where body 1 lies flat on it W1 = 0: each point stays on it
+ *
+ * S2 = 1/W2 is how the normal turns along the surface. Where that is nearly flat the first equation takes z out of W2
+ * times a difference: of a ball's bias on a face of exponent 50 it left 1e-3 wrong.
  *
  * and, whatever n' is, (n . u)' = n . u' + n' . u along the contact.
  */
