@@ -55,17 +55,21 @@ static impact_status find_root(impact_ode *ode, imp_ode_roots *roots, int i, dou
 impact_status imp_ode_roots_first(impact_ode *ode, imp_ode_roots *roots, double low, double high, bool *found)
 {
     double t = high;
+    int last = 0;
     *found = false;
     for (int i = 0; i < ode->roots; i++) {
         const double after = *found ? roots->value[2][i] : roots->value[1][i];
         if (crosses(ode, roots->value[0][i], after) == 0) continue;
         *found = true;
+        last = i;
         impact_status status = find_root(ode, roots, i, low, after, &t);
         if (status == IMPACT_OK) status = look_at(ode, roots, t);
         if (status != IMPACT_OK) return status;
     }
     if (!*found) return IMPACT_OK;
     for (int i = 0; i < ode->roots; i++) ode->roots_found[i] = crosses(ode, roots->value[0][i], roots->value[2][i]);
+    /* Asked again, a function that is known to rounding may be on the other side of zero: the crossing was found. */
+    ode->roots_found[last] = crosses(ode, roots->value[0][last], 0);
     ode->t = t;
     return IMPACT_OK;
 }

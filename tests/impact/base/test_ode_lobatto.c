@@ -153,6 +153,50 @@ static void roots_are_found_where_the_rates_were(void **state)
     impact_ode_destroy(ode);
 }
 
+/* sin t with an error of rounding that is another at each call. */
+static int rough_root(double t, const double *y, double *value, void *context)
+{
+    unsigned *calls = context;
+    (void)t;
+    *calls = *calls * 1664525u + 1013904223u;
+    value[0] = -y[1] + 1e-13 * ((double)(*calls >> 16) / 65536 - 0.5);
+    return 0;
+}
+
+static int swing_alone(double t, const double *y, double *rate, void *context)
+{
+    (void)context;
+    return swing(t, y, rate, NULL);
+}
+
+/* What was found to cross is told, whatever the function says when it is asked there again; it is not lost. */
+static void roots_known_to_rounding_are_told(void **state)
+{
+    (void)state;
+    const impact_ode_method methods[] = {IMPACT_ODE_LOBATTO, IMPACT_ODE_RK4};
+    for (int m = 0; m < 2; m++) {
+        unsigned calls = 1;
+        impact_ode_def def = def_of(1e-12, 1);
+        def.rhs = swing_alone, def.root_functions = rough_root, def.context = &calls;
+        def.falling_roots_only = true;
+        def.method = methods[m];
+        if (def.method == IMPACT_ODE_RK4) def.step = 1e-3;
+        impact_ode *ode;
+        assert_int_equal(impact_ode_create(&def, &ode), IMPACT_OK);
+        for (int k = 0; k < 50; k++) {
+            double t, y[2];
+            int crossed;
+            bool found;
+            assert_int_equal(impact_ode_start(ode, 0, (double[]){cos(1 + 0.03 * k), -sin(1 + 0.03 * k)}), IMPACT_OK);
+            assert_int_equal(impact_ode_advance(ode, 5, &t, y, &crossed, &found), IMPACT_OK);
+            assert_true(found);
+            assert_int_equal(crossed, -1);
+            assert_near(t, pi - (1 + 0.03 * k), 1e-11);
+        }
+        impact_ode_destroy(ode);
+    }
+}
+
 /* A start leaves nothing of what was done before; and ends at the same bits. */
 static void starts_anew(void **state)
 {
@@ -283,6 +327,7 @@ int main(void)
         cmocka_unit_test(errors_are_as_asked_for),
         cmocka_unit_test(polynomials_are_exact),
         cmocka_unit_test(roots_are_found_where_the_rates_were),
+        cmocka_unit_test(roots_known_to_rounding_are_told),
         cmocka_unit_test(starts_anew),
         cmocka_unit_test(forces_jump_at_stops),
         cmocka_unit_test(what_cannot_be_followed_ends_with_words),
