@@ -115,8 +115,8 @@ imp_works imp_motion_works(const imp_motion *motion, double t);
 impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states);
 
 /* What is held at t, where the states are, with the reactions that hold then: touches has room for persist.count.
- * Nothing else changes. */
-impact_status imp_motion_touches(imp_motion *motion, double t, const imp_state *states, imp_touch *touches);
+ * moves: t lies in the last step. Nothing else changes. */
+impact_status imp_motion_touches(imp_motion *motion, double t, bool moves, const imp_state *states, imp_touch *touches);
 
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
 bool imp_motion_load(imp_motion *motion, double t, const imp_state *states);

@@ -98,13 +98,21 @@ impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states)
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }
 
-impact_status imp_motion_touches(imp_motion *motion, double t, const imp_state *states, imp_touch *touches)
+/* Where the contacts stand at t in the last step, as its polynomial has them: it goes with the bodies' states there. */
+static void go_on_feet(imp_motion *motion, double t)
+{
+    imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
+    imp_motion_unpack(motion, motion->kept, motion->scratch);
+}
+
+impact_status imp_motion_touches(imp_motion *motion, double t, bool moves, const imp_state *states, imp_touch *touches)
 {
     imp_persist *persist = &motion->persist;
     const impact_usage usage = motion->world->usage;
     const bool lenient = persist->lenient, redundant = persist->redundant;
     if (persist->count == 0) return IMPACT_OK;
     if (!keep_contacts(motion)) return IMPACT_ENOMEM;
+    if (moves) go_on_feet(motion, t);
     const bool loaded = imp_motion_load(motion, t, states);
     if (loaded) imp_persist_solve(persist, motion->world, states, motion->loads);
     memcpy(touches, persist->touches, sizeof *touches * (size_t)persist->count);

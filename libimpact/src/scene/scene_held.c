@@ -49,7 +49,8 @@ static impact_status exact_rows(imp_island *island, double t, held_rows *rows)
     const size_t count = (size_t)island->motion.persist.count;
     imp_touch *touches = imp_arena_take(island->world.arena, count + 1, sizeof *touches);
     if (!touches) return IMPACT_ENOMEM;
-    const impact_status status = imp_motion_touches(&island->motion, t, island->motion.sampled, touches);
+    const bool moves = island->moves && !island->rests && !island->rolls;
+    const impact_status status = imp_motion_touches(&island->motion, t, moves, island->motion.sampled, touches);
     for (size_t c = 0; status == IMPACT_OK && c < count; c++) {
         impact_held row = row_of(island, t, &touches[c]);
         add_rolling(island, &row);
