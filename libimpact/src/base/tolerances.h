@@ -819,9 +819,10 @@
 #define IMP_PILE_FIRST 1e-2
 #define IMP_PILE_LONGEST 5e-2
 #define IMP_PILE_SHORTEST 1e-5
-/* Steps of the integrator, with bodies held on each other, for the time in which the smallest falls its radius: more is
- * a pile that does not get on. With 1000 two ellipsoids that settle on each other, and balls that roll about in a box,
- * are stepped too, which the exact motion brings to their end. */
+/* Stretches of motion and events of a body, in islands in which bodies that move are held on each other or have faces,
+ * for the time in which the smallest falls its radius: more is a pile that does not get on. With 1000 two ellipsoids
+ * that settle on each other, and balls that roll about in a box, are stepped too, which the exact motion brings to
+ * their end. */
 #define IMP_PILE_PATIENCE 4000
 
 /* ---- one impact: what is given, and rare places ---- */

@@ -60,7 +60,8 @@ static impact_status conclude(imp_island *island, impact_status status)
 {
     impact_scene *scene = island->scene;
     step_where_unsettled(island, &status);
-    if (status == IMPACT_OK && (island->lies || imp_island_needs_steps(island))) {
+    const bool impatient = imp_island_loses_patience(island);
+    if (status == IMPACT_OK && (island->lies || impatient || imp_island_needs_steps(island))) {
         imp_island *stepped;
         imp_scene_receipt_look(island);
         status = imp_gather_steps(island, &stepped);
@@ -224,7 +225,7 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     island->t = t;
     if (!finish(island)) return IMPACT_ESINK;
     if (island->stepped) return continue_steps(island);
-    if (imp_island_loses_patience(island)) return turn_to_steps(scene, island, t);
+    if (island->end.kind == IMP_END_TIME && imp_island_loses_patience(island)) return turn_to_steps(scene, island, t);
     if (island->end.kind == IMP_END_TIME) return go_on_or_by_steps(scene, island, t);
     if (!imp_scene_account_before(scene)) return IMPACT_ESINK;
     if (crosses_border(island)) return cross_border(scene, island, t);

@@ -219,13 +219,6 @@ static bool rests_alone(const imp_island *island)
     return island->rests && moving == 1;
 }
 
-/* How the islands that go over into this one have got on, and by what. */
-static void take_over(imp_island *island, const imp_island *old, bool *were_stepped)
-{
-    *were_stepped = *were_stepped || (old->stepped && !rests_alone(old));
-    if (old->patience.steps > island->patience.steps) island->patience = old->patience;
-}
-
 /* The energy of all but the members at t, for the rows of events. */
 double imp_gather_energy_outside(impact_scene *scene, const imp_island *island, double t)
 {
@@ -245,7 +238,7 @@ static impact_status close_old(impact_scene *scene, double t, imp_island *island
         if (!old) continue;
         imp_island_go_to(old, t);
         if (!imp_scene_held_until(old)) return IMPACT_ESINK;
-        take_over(island, old, &were_stepped);
+        were_stepped = were_stepped || (old->stepped && !rests_alone(old));
         status = add_held(scene, old);
     }
     scene->world.usage.islands_stepped += island->stepped && !were_stepped;

@@ -58,7 +58,6 @@ void imp_island_clear(imp_island *island)
     island->number = -1;
     island->impact_loss = island->loss_before = island->outside = 0;
     island->rests = island->rolls = island->loses = island->lies = island->stepped = island->moves = false;
-    island->patience = (imp_patience){0};
     island->end = (imp_end){IMP_END_TIME, 0};
     island->pushed = (imp_push){.off = 0};
     imp_motion_reset(&island->motion, world, &island->scene->methods, island->scene->rest_speed);

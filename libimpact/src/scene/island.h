@@ -12,12 +12,6 @@
 #include "motion/pile.h"
 #include "motion/segment.h"
 
-/* Steps of the integrator in which a pile has not got on, and since when, s. */
-typedef struct imp_patience {
-    double since;
-    long steps;
-} imp_patience;
-
 /* kg m/s: the momentum that bodies had before impacts; what static ones gave, as it was booked; the sizes of all its
  * terms; and what of them the receipt has not looked at yet was off by at most. */
 typedef struct imp_push {
@@ -49,11 +43,10 @@ typedef struct imp_island {
     double loss_before; /* as the receipt saw it last */
     double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
     double looked_at;   /* s: by the receipt */
-    imp_patience patience;
-    bool unanswered; /* scratch: at this instant the law of encounters has found no answer once */
-    bool lies;       /* bodies with faces stay on each other: it is to be moved by steps */
-    bool stepped;    /* it moves by steps (stepped.h): */
-    imp_pile *pile;  /* absent until then */
+    bool unanswered;    /* scratch: at this instant the law of encounters has found no answer once */
+    bool lies;          /* bodies with faces stay on each other: it is to be moved by steps */
+    bool stepped;       /* it moves by steps (stepped.h): */
+    imp_pile *pile;     /* absent until then */
     long steps;
     double outside;    /* J: of all other bodies, for the rows of events */
     int number;        /* among the scene's; -1: of none */

@@ -116,14 +116,15 @@ static void walk_body(imp_archive *a, imp_saved_body *b)
     imp_archive_bool(a, &b->told);
     imp_archive_int(a, &b->stalls, 0, INT32_MAX);
     imp_archive_double(a, &b->last_event);
+    imp_archive_double(a, &b->patience.since);
+    imp_archive_long(a, &b->patience.count);
 }
 
 static void walk_island(imp_archive *a, imp_saved_island *i)
 {
-    double *const numbers[] = {&i->t, &i->loss, &i->fallen, &i->looked_at, &i->slip_speed, &i->patience.since};
+    double *const numbers[] = {&i->t, &i->loss, &i->fallen, &i->looked_at, &i->slip_speed};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
     walk_works(a, &i->works);
-    imp_archive_long(a, &i->patience.steps);
     imp_archive_bool(a, &i->stepped);
     imp_archive_bool(a, &i->lenient);
     imp_archive_int(a, &i->member_count, 0, INT32_MAX);

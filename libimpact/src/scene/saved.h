@@ -16,6 +16,7 @@ typedef struct imp_saved_body {
     bool resting, told;
     int stalls;
     double last_event;
+    imp_patience patience;
 } imp_saved_body;
 
 typedef struct imp_saved_member {
@@ -28,7 +29,6 @@ typedef struct imp_saved_island {
     double t; /* one that rests: since when; else now */
     double loss, fallen, looked_at, slip_speed;
     imp_works works;
-    imp_patience patience;
     bool stepped, lenient;
     int member_count, pair_count;
 } imp_saved_island;

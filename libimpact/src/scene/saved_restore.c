@@ -52,7 +52,8 @@ static void collect_bodies(imp_saved *s, const impact_scene *scene)
                                         .resting = track->resting,
                                         .told = track->told,
                                         .stalls = track->stalls,
-                                        .last_event = track->last_event};
+                                        .last_event = track->last_event,
+                                        .patience = track->patience};
     }
 }
 
@@ -77,7 +78,6 @@ static imp_saved_island head_of(const imp_island *island, double t)
                               .looked_at = fmin(island->looked_at, t),
                               .works = imp_island_works(island, t),
                               .slip_speed = island->world.slip_speed,
-                              .patience = island->patience,
                               .stepped = island->stepped,
                               .lenient = island->motion.persist.lenient,
                               .member_count = island->world.body_count,
@@ -189,6 +189,7 @@ static void restore_bodies(const imp_saved *s, impact_scene *scene)
         track->resting = from->resting && !body->is_static;
         track->stalls = from->stalls;
         track->last_event = from->last_event;
+        track->patience = from->patience;
         scene->moving -= track->resting;
         scene->states[i] = from->state;
         if (!s->begun || body->is_static) continue;
@@ -245,7 +246,6 @@ static impact_status fill_island(imp_island *island, const imp_saved_island *fro
     island->stepped = from->stepped;
     if (status == IMPACT_OK && island->stepped) status = imp_island_resume_steps(island);
     island->looked_at = from->looked_at;
-    island->patience = from->patience;
     island->motion.persist.lenient = from->lenient;
     island->motion.works = from->works;
     island->motion.fallen = from->fallen;

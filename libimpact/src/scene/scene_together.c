@@ -5,6 +5,7 @@
 #include "contact/persist_still.h"
 #include "scene/scene_events.h"
 #include "scene/scene_methods.h"
+#include "scene/scene_press.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -183,6 +184,8 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
         const impact_status status = imp_together_workspace_in(scene->world.arena, &scene->together_workspace);
         if (status != IMPACT_OK) return status;
     }
+    const impact_status pressed = imp_scene_press_all(island, g->met, g->count);
+    if (pressed != IMPACT_OK) return pressed;
     describe(island, g, how.spent);
     const double energy = imp_scene_tells_events(island) ? imp_scene_total_energy(island) : 0;
     const impact_encounter encounter = {.bodies = g->bodies,

@@ -26,14 +26,28 @@ static bool is_pile(const imp_world *world)
     return rough && held >= 3;
 }
 
+/* Whether a pair has faces, or holds a flat place on what it may lie on. */
+static bool meets_faces(const imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++)
+        if (imp_pair_has_faces(&island->world, &island->world.pairs[p])) return true;
+    return imp_scene_holds_features(island);
+}
+
 bool imp_island_loses_patience(imp_island *island)
 {
-    imp_patience *patience = &island->patience;
-    if (island->scene->piles == IMPACT_PILES_EXACT) return false;
-    if (!is_pile(&island->world) && !imp_scene_holds_features(island)) return false;
-    if (!(fabs(island->t - patience->since) <= imp_pile_natural_time(&island->world, island->states)))
-        *patience = (imp_patience){.since = island->t};
-    return ++patience->steps >= IMP_PILE_PATIENCE;
+    if (island->stepped || island->scene->piles == IMPACT_PILES_EXACT) return false;
+    if (!is_pile(&island->world) && !meets_faces(island)) return false;
+    const double natural = imp_pile_natural_time(&island->world, island->states);
+    long most = 0;
+    for (int i = 0; i < island->world.body_count; i++) {
+        const imp_body *body = &island->world.bodies[i];
+        imp_patience *patience = &island->scene->tracks.tracks[body->index].patience;
+        if (body->is_static) continue;
+        if (!(fabs(island->t - patience->since) <= natural)) *patience = (imp_patience){.since = island->t};
+        if (++patience->count > most) most = patience->count;
+    }
+    return most >= IMP_PILE_PATIENCE;
 }
 
 /* A pile that remembers nothing. */
@@ -54,7 +68,6 @@ impact_status imp_island_begin_steps(imp_island *island)
     const impact_status status = open_pile(island);
     if (status != IMPACT_OK) return status;
     island->steps = 0;
-    island->patience = (imp_patience){.since = island->t};
     for (int i = 0; i < island->world.body_count; i++) island->motion.resting[i] = false;
     for (int p = 0; p < island->world.pair_count; p++) {
         imp_pair *pair = &island->world.pairs[p];

@@ -9,8 +9,8 @@
 #include "motion/pile.h"
 #include "scene/island.h"
 
-/* Counts one more step of the island's integrator; whether bodies that move have been held on each other for so many of
- * them that the island is to go on by steps. */
+/* Counts one more stretch of motion or event of each of the island's bodies; whether one of them has had so many that
+ * the island, in which bodies that move are held on each other or have faces, is to go on by steps. */
 bool imp_island_loses_patience(imp_island *island);
 
 /* The island, which has just been gathered with all its bodies' near pairs, begins its steps. */

@@ -22,6 +22,12 @@ typedef struct imp_near {
     qvec3 axis;   /* search.h */
 } imp_near;
 
+/* A body's stretches of motion and events in which it has not got on, and since when, s. */
+typedef struct imp_patience {
+    double since;
+    long count;
+} imp_patience;
+
 /* What the pairs' other bodies ask stands side by side at the front. */
 typedef struct imp_track {
     double leave;    /* when it leaves its box */
@@ -38,7 +44,8 @@ typedef struct imp_track {
     long round;            /* of looking ahead: its last */
     int stalls;            /* events at the time of the last one, and that: */
     double last_event;
-    double fatness; /* of its box: the part of its radius that it goes before the box is made anew */
+    imp_patience patience; /* it stays with the body, whichever islands it is in and whether it flies between them */
+    double fatness;        /* of its box: the part of its radius that it goes before the box is made anew */
 } imp_track;
 
 /* A body without a box: the plane n . x = d. */
