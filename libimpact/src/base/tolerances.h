@@ -520,8 +520,6 @@
 #define IMP_WEDGE_STEPS 20000
 /* Of the largest |G^T r|^2, and of its rates: sums' rounding over as many steps, 2^-52 each, that goes and comes. */
 #define IMP_WEDGE_BALANCED 0x1p-44
-/* Of the energy stored in a contact: what moves with less changes its force by 2^-15 of it at most. */
-#define IMP_WEDGE_STILL 0x1p-30
 /* Of the largest: what so many steps bring it under where it is none. */
 #define IMP_WEDGE_TAKEN (4.0 / IMP_WEDGE_STEPS)
 /* Steps and events of one group: forty times what the longest random encounters with ratios of 1e4 take that end. */
@@ -545,9 +543,8 @@
  * second step towards none, from which Newton goes on. Rounding over both, 1e-11, is what is left to chance. */
 #define IMP_MOREAU_SHARING 1e-3
 #define IMP_MOREAU_SHARED 0.03
-/* Where Newton does not go on from there steps are shortened, to this ratio, and begin nearer to none, to this part. */
+/* Where Newton does not go on from there steps are shortened, to this ratio, and begin nearer to none. */
 #define IMP_MOREAU_SHORTEST 0.9
-#define IMP_MOREAU_SHARING_LEAST 1e-12
 /* Seeds of contacts that are pressed and may be drawn on: of the group's fastest speed, under which velocities are none
  * (IMP_SPRINGS_STILL) and whose energy that of an open spring; and of the slip, far over what the cone problem takes
  * for none (its answer's modes are then solved for without). */
@@ -793,8 +790,8 @@
 /* Of that: how far bodies may be off, in the time in which the smallest falls its radius, where friction acts along the
  * slip of the step's end instead of its middle's. */
 #define IMP_PILE_LEAD 1e-1
-/* The residual of impulses up to which a step is taken: as a part of the speeds, over the step, it counts as its error.
- */
+/* The residual of impulses up to which a step is taken: as a part of the speeds, over the step, it counts as its error;
+ * and of works that impulses do, what is none. */
 #define IMP_PILE_USABLE 1e-3
 /* Of a step's error: what the residual of its impulses may make of it; and of the fastest body's speed, so that what
  * settles comes to rest. */
@@ -810,10 +807,6 @@
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
-/* Of the works of a step's impulses: up to where their sum is looked for, as a part of IMP_PILE_GAIN that is no
- * trouble.
- */
-#define IMP_PILE_GIVEN 1e-3
 /* Steps in units of the time in which the smallest body falls its radius: the first; the longest, in which contacts
  * turn by less than .05; and the shortest, in which a fall is 1e-10 of the radius. */
 #define IMP_PILE_FIRST 1e-2

@@ -177,7 +177,7 @@ static void share(moreau *m, const imp_cone_problem *problem, double *p)
             if (ratio > IMP_MOREAU_SHORTEST) return;
         } else {
             least *= IMP_MOREAU_SHARED;
-            if (least < IMP_MOREAU_SHARING_LEAST) return;
+            if (least < DBL_EPSILON) return; /* a rounding of W is no giving way */
         }
     }
     memcpy(p, m->r + n * at, n * sizeof *p);

@@ -125,18 +125,6 @@ static bool have_stuck(const imp_springs *s, const double *r, double spent)
     return true;
 }
 
-/* Whether what moves has so little of the energy that is stored that no force changes by more than its root. */
-static bool are_still(const imp_springs *s)
-{
-    for (int i = 0; i < s->count; i++) {
-        const imp_spring *c = &s->springs[i];
-        const double own = imp_springs_entry(s, 3 * i, 3 * i), *u = c->u;
-        if (imp_springs_presses(c) && u[0] * u[0] + u[1] * u[1] + u[2] * u[2] > IMP_WEDGE_STILL * own * c->stored)
-            return false;
-    }
-    return imp_springs_pressed(s);
-}
-
 /* What is wedged bounces in its dents for ever, or comes to rest in them; where it slips it may yet come loose, and is
  * waited for. *next: when it is asked again. */
 static bool is_wedged(imp_springs *s, double *next)
@@ -150,8 +138,7 @@ static bool is_wedged(imp_springs *s, double *next)
     const bool last = spent >= IMP_SPRINGS_ASKED_LAST;
     *next = last ? 2 * spent : fmin(2 * spent, IMP_SPRINGS_ASKED_LAST);
     const double left = find_wedge(s, s->factor);
-    if (last) return left <= IMP_WEDGE_TAKEN;
-    return left <= IMP_WEDGE_BALANCED && (are_still(s) || have_stuck(s, s->factor, spent));
+    return last ? left <= IMP_WEDGE_TAKEN : left <= IMP_WEDGE_BALANCED && have_stuck(s, s->factor, spent);
 }
 
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)

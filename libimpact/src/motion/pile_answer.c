@@ -246,14 +246,14 @@ static imp_cone_outcome solve_with_part(imp_pile *pile, const imp_world *world, 
 }
 
 /* Newton's restitution at several contacts gives energy, where they differ or rub (Kane 1984). Without bounces they
- * give none: what is taken is the greatest part of all that gives none either. */
+ * give none: what is taken is the greatest part of all that gives none either, as far as impulses are known. */
 static imp_cone_outcome lessen_bounces(imp_pile *pile, const imp_world *world, const imp_pile_question *question,
                                        imp_cone_outcome outcome)
 {
     enum { MOST = 8 };
     double size, part = 1, work = given(pile, question->count, part, &size);
     imp_bracket b = {.high = 1, .at_low = -size, .at_high = work};
-    for (int k = 0; k < MOST && outcome.status != IMP_CONE_NO_ROOM && fabs(work) > IMP_PILE_GIVEN * size; k++) {
+    for (int k = 0; k < MOST && outcome.status != IMP_CONE_NO_ROOM && fabs(work) > IMP_PILE_USABLE * size; k++) {
         if (part == 1 && work <= 0) return outcome;
         const double guess = k + 1 < MOST ? imp_bracket_guess(&b) : b.low;
         outcome = solve_with_part(pile, world, question, part, guess);

@@ -47,6 +47,7 @@ static void test_bounces_give_no_energy(void **state)
 {
     (void)state;
     run(1009, PILE_SET);
+    run(3015, PILE_SET);
     run(1005, PILE_IN_BOX);
     run(1023, PILE_IN_BOX);
 }
