@@ -182,7 +182,8 @@ const char *impact_runner_fence(impact_runner *runner);
 
 /* ---- runner_drawer.c ---- */
 
-enum { IMPACT_NO_PROGRAM = 127 }; /* gnuplot's exit code where there is no gnuplot */
+/* gnuplot's exit code where there is no gnuplot; and in its place where its picture was over what files may hold */
+enum { IMPACT_NO_PROGRAM = 127, IMPACT_FILE_TOO_LARGE = -2 };
 
 /* Before the fence; false: no pictures. */
 bool impact_runner_start_drawer(impact_runner *runner);

@@ -195,6 +195,9 @@ static impact_draw_result draw_commands(FILE *commands, impact_runner *runner, c
     if (complaints && !drawn) {
         if (code == IMPACT_NO_PROGRAM)
             snprintf(message, size, "gnuplot is not installed"), result = IMPACT_DRAW_NO_GNUPLOT;
+        else if (code == IMPACT_FILE_TOO_LARGE || length > 0)
+            snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, file_name,
+                     runner->quota.spent ? "the disk limit is reached" : strerror(EFBIG));
         else
             last_complaint(complaints, message, size);
     }

@@ -73,7 +73,9 @@ static void serve(int link)
         for (int i = 0; i < FILES; i++) close(files[i]);
         if (!tell(link, (int)child)) return;
         if (child > 0 && waitpid(child, &status, 0) != child) status = -1;
-        if (!tell(link, child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1)) return;
+        const bool over = child > 0 && WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ;
+        const int failed = over ? IMPACT_FILE_TOO_LARGE : -1;
+        if (!tell(link, child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : failed)) return;
     }
 }
 
@@ -131,5 +133,8 @@ int impact_runner_gnuplot(impact_runner *runner, int commands, int picture, int 
     memcpy(CMSG_DATA(header), files, sizeof files);
     int gnuplot = -1, code = -1;
     if (runner->drawer_link < 0 || sendmsg(runner->drawer_link, &message, 0) < 0) return -1;
-    return hear(runner, -1, &gnuplot) && hear(runner, gnuplot, &code) ? code : -1;
+    if (!hear(runner, -1, &gnuplot) || !hear(runner, gnuplot, &code)) return -1;
+    /* the system may bound files by less than the quota */
+    if (code == IMPACT_FILE_TOO_LARGE && lseek(picture, 0, SEEK_END) >= (off_t)room) runner->quota.spent = true;
+    return code;
 }

@@ -102,6 +102,8 @@ do
   local sweep = begin .. "return impact.sweep { runs = 1, scene = function() return { duration = 0.1, bodies = { " .. ball .. " } } end }"
   local gsl = "require 'quat.gsl'"
   alone(drop, 0, "^$")
+  alone(drop, 0, "^$", "--version")
+  check.truth(runner.read "stdout.txt":find "CVODE: no, libccd: no%)\n$", runner.read "stdout.txt")
   alone(springy, 1, "compliance needs CVODE, and this program has none")
   alone(sweep, 2, "this build holds no sweep_hdf5", "sweep part.lua --hdf5")
   alone(sweep, 2, "this build holds no sweep_mpi", "sweep part.lua --mpi")
@@ -112,6 +114,37 @@ do
   alone(springy, 1, "compliance needs CVODE, and this program has none")
   alone(sweep, 2, "alone/modules/impact/sweep_hdf5.so: file too short", "sweep part.lua --hdf5")
   alone(gsl, 1, "quat.gsl: .*alone/modules/quat/gsl.so: file too short")
+end
+
+-- ---- names that are taken by folders, and folders that cannot be ----
+
+do
+  local here = runner.quote(runner.folder)
+  local written = "local said = {} local function try(what, ok, why) said[#said + 1] = what .. ': ' .. tostring(ok) .. ' ' .. tostring(why) end " ..
+    "local plot, host = require 'quat.plot', require 'quat.host' " ..
+    "try('picture', plot.save(plot.figure { plot.panel { plot.line { { 1, 2 }, { 1, 2 } } } }, 'taken')) try('text', host.write('taken', 'words')) print(table.concat(said, '\\n'))"
+  runner.write("taken.lua", written)
+  runner.shell("cd " .. here .. " && rm -rf o bin && mkdir -p o/taken o/taken.png bin")
+  runner.write("bin/gnuplot", "#!/bin/sh\ncat >/dev/null; echo picture\n")
+  local function said_of(options)
+    local code = runner.shell(string.format("cd %s && chmod +x bin/gnuplot && env -u LD_PRELOAD PATH=\"$PWD/bin:$PATH\" %s taken.lua %s >stdout.txt 2>stderr.txt </dev/null",
+      here, runner.quote(runner.program), options))
+    return code, runner.read "stdout.txt", runner.read "stderr.txt"
+  end
+  local code, out, err = said_of "--out o"
+  check.equal(code, 0)
+  check.equal(err, "")
+  -- (the kernel's fence refuses it before the file system does)
+  check.equal((out:gsub("Permission denied", "Is a directory")),
+    "picture: nil cannot write 'o/taken.png': Is a directory\ntext: nil cannot write 'o/taken': Is a directory\n")
+  code, out = said_of "--out taken.lua/o"
+  check.equal(code, 0)
+  for what in out:gmatch "[^\n]+" do check.truth(what:find "nil cannot write to the folder 'taken.lua/o': Not a directory$", what) end
+  code, out = said_of "--out o/new --max-disk 0.000002"
+  check.equal(code, 0)
+  check.equal(out, "picture: nil cannot write 'o/new/taken.png': the disk limit is reached\ntext: nil cannot write 'o/new/taken': the disk limit is reached\n")
+  code = runner.shell(string.format("cd %s && { %s wrong.lua --out o >/dev/full; } 2>stderr.txt", here, runner.quote(runner.program)))
+  check.truth(code == 1, "an error of the script comes before one of the output: " .. code)
 end
 
 -- ---- a gnuplot that fails ----
@@ -136,7 +169,12 @@ do
   drawn_by("echo half; echo 'first complaint' >&2; echo 'line 0: no such thing' >&2; echo '    ^' >&2; echo >&2; exit 1", 4,
     "^impact: no picture: gnuplot: line 0: no such thing\n$")
   drawn_by("echo half; kill -KILL $$", 4, "^impact: no picture: gnuplot failed\n$")
-  drawn_by("exec head -c 3000000 /dev/zero", 4, "^impact: no picture: gnuplot failed\n$", "--max-disk 1")
+  drawn_by("exec head -c 3000000 /dev/zero", 5, "^impact: disk limit of 1 MB reached\n$", "--max-disk 1")
+  local here_too = runner.quote(runner.program)
+  runner.write("bin/gnuplot", "#!/bin/sh\nexec head -c 3000000 /dev/zero\n") -- where it is the system that bounds files
+  check.equal(runner.shell(string.format("cd %s && rm -rf o && (ulimit -f 1000; exec env -u LD_PRELOAD PATH=\"$PWD/bin:$PATH\" %s drawn.lua --quiet --out o >stdout.txt 2>stderr.txt)",
+    here, here_too)), 4)
+  check.equal(runner.read "stderr.txt", "impact: no picture: cannot write 'o/drawn.png': File too large\n")
   drawn_by("exec sleep 30", 5, "^impact: time limit of 1.5 s reached", "--max-time 1.5")
 end
 
@@ -170,6 +208,8 @@ for mode, good in pairs { r = true, rb = true, w = true, wb = true, a = true, ["
     "assert(ok == " .. tostring(good) .. ", why) if ok then assert(why) why:close() " ..
     "f = io.open('f', 'r') assert((f:read 'a' == 'abc') == ('" .. mode .. "' ~= 'w' and '" .. mode .. "' ~= 'wb' and not ('" .. mode .. "'):find '^w%+')) end print 'done'", 0)
 end
+script("local f = assert(io.open('f', 'w+')) f:write 'abc' assert(not f:seek('set', -2)) assert(f:seek('end', -1) == 2 and f:read(1) == 'c') " ..
+  "assert(not pcall(io.open, 'f', 'r+b+')) print 'done'", 0)
 script("assert(not io.open('no', 'r+') and not io.open(('x'):rep(5000), 'w') and not io.open('a/../b', 'w'))\nprint 'done'", 0)
 
 -- ---- a sweep, and what else lies in its folder ----
@@ -181,6 +221,7 @@ local rows = begin .. [[
 runner.write("words.lua", "#!/usr/bin/env impact\n" .. rows)
 runner.shell("rm -rf " .. runner.quote(runner.folder .. "/o"))
 run("sweep words.lua --out o --quiet", 0)
+run("sweep words.lua --out o --quiet", 0) -- nothing is left to do
 local table_of = runner.read "o/words.csv"
 
 --- The rows of a CSV text (RFC 4180).
@@ -285,6 +326,24 @@ runner.write("o/more.0-2.rows", head)
 run("gather o", 3, "'more' has 1 of 5 runs; the rest is to do") -- another sweep beside it, put together as far as it is
 check.equal(runner.read "o/words.csv", table_of)
 check.truth(runner.exists "o/more.partial.csv")
+
+-- ---- cells that hold anything ----
+
+runner.write("cells.lua", begin .. [[
+  return impact.sweep { name = "cells", parameters = { length = impact.values { 1, 2, 3 } }, scene = function()
+    return { duration = 0.01, bodies = { impact.body { name = "b", shape = impact.sphere(1) } } } end,
+    reduce = function(r) local word = ({ "a\0b\r", '"', "" })[r.parameters.length] return { lengths = word, len = word .. "=SUM(1)", le = #word } end }]])
+run("sweep cells.lua --out o --quiet --trust", 0)
+do
+  local rows = parse((runner.read "o/cells.csv":gsub("\r", "r")))
+  check.equal(table.concat(rows[1], " "), "run length le len lengths status message")
+  check.equal(rows[2][5]:gsub("%z", "0"), "abr") -- no reader takes a zero
+  check.equal(rows[3][5], '"')
+  check.equal(rows[4][5], "")
+  check.equal(rows[4][4], "'=SUM(1)")
+end
+runner.write("o/cells.0-1.rows", head:gsub("word\n", ("w"):rep(5000) .. "\n")) -- a head that is too long for any sweep
+run("sweep words.lua --mpi --fence --out o", 2, "%-%-fence and %-%-mpi exclude each other")
 
 -- ---- scripts of sweeps that are none ----
 

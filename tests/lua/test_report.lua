@@ -94,6 +94,32 @@ code, out, err = runner.script(script, "--report --seconds 1 --quiet")
 check.equal(code, 0)
 check.truth(out == "" and err == "" and runner.exists "o/toss_report.csv", out .. err)
 check.equal(runner.script(script, "--report --record"), 2)
+
+-- Its picture and its CSV file, where one of them cannot be, and a scene whose run fails.
+local here = runner.quote(runner.folder)
+local function drawn_by(gnuplot, wanted, said, options)
+  runner.shell("cd " .. here .. " && rm -rf o bin && mkdir bin")
+  runner.write("script.lua", script)
+  if gnuplot then runner.write("bin/gnuplot", "#!/bin/sh\n" .. gnuplot .. "\n") end
+  local got = runner.shell(string.format("cd %s && chmod -f +x bin/gnuplot; env -u LD_PRELOAD PATH=%s %s script.lua --out o --report --seconds 1 %s " ..
+    ">stdout.txt 2>stderr.txt </dev/null", here, gnuplot and "$PWD/bin:/usr/bin:/bin" or "$PWD/bin", runner.quote(runner.program), options or ""))
+  local complained = runner.read "stderr.txt"
+  if got ~= wanted or not complained:find(said) then error(string.format("wanted exit code %d and '%s', got %d and %s", wanted, said, got, complained), 2) end
+  return runner.read "stdout.txt"
+end
+local table_alone, both = "wrote       o/toss_report.csv\n", "wrote       o/toss_report.csv, o/toss_report.png\n"
+check.truth(drawn_by("cat >/dev/null; echo picture", 0, "^$"):find(both, 1, true))
+check.truth(drawn_by("cat >/dev/null; exit 1", 4, "^impact: no picture: gnuplot failed\n$"):find(table_alone, 1, true))
+check.truth(drawn_by(nil, 0, "^impact: gnuplot is not installed: no picture is drawn; the CSV file is complete\n$"):find(table_alone, 1, true))
+check.equal(drawn_by("exit 0", 5, "^impact: disk limit of 0.0001 MB reached\n$", "--max-disk 0.0001"), "")
+check.truth(not runner.exists "o/toss_report.csv" and not runner.exists "o/toss_report.png")
+runner.shell("cd " .. here .. " && rm -rf o && mkdir -p o/toss_report.csv")
+check.equal(runner.command "script.lua --out o --report --seconds 1", 4)
+check.truth(runner.read "stderr.txt":find("^impact: cannot write 'o/toss_report.csv'"), runner.read "stderr.txt")
+code, _, err = runner.script("local impact = require 'impact' return impact.scene { duration = 0.5, bodies = { { name = 'wall', shape = impact.plane() } } }",
+  "--report --seconds 1")
+check.equal(code, 3)
+check.truth(err:find "nothing moves", err)
 check.equal(runner.script(script, "--seconds 2"), 2)
 
 check.report "report"

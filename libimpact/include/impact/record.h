@@ -101,7 +101,9 @@ typedef struct impact_recorder {
     void *context;
     bool (*sample)(void *context, const impact_sample *sample);
     bool (*event)(void *context, const impact_event *event);
-    bool (*progress)(void *context, double t, double t_end); /* now and then; false stops the run with IMPACT_STOPPED */
+    /* now and then; false stops the run with IMPACT_STOPPED; where that is amid an instant, of hundreds of impacts, it
+     * can go on no more */
+    bool (*progress)(void *context, double t, double t_end);
     bool (*key)(void *context, const impact_key *key);
     bool (*held)(void *context, const impact_held *contact);
     /* the energy account beside events, and about every hundredth of the run */

@@ -149,13 +149,20 @@ static void clip_faces(face_side s[2], const patch_frame *f, double height, impa
     for (int i = 0; i < common.count; i++) put_point(s, f, common.p[i], height, patch);
 }
 
+/* No less than the bounding radius, which of shapes without a core takes a search. */
+static double shape_reach(const impact_shape *shape)
+{
+    const bool quadric = shape->kind == IMPACT_SUPERQUADRIC || shape->kind == IMPACT_SUPERELLIPSOID;
+    return quadric ? qvec3_norm((qvec3){shape->a, shape->b, shape->c}) : impact_shape_bounding_radius(shape);
+}
+
 static patch_frame frame_of(const impact_solid *body1, const impact_solid *body2, const impact_contact *contact)
 {
     const double n[3] = {contact->normal.x, contact->normal.y, contact->normal.z};
     double t[2][3];
     imp_across(n, t);
-    const double r1 = impact_shape_bounding_radius(&body1->shape), r2 = impact_shape_bounding_radius(&body2->shape);
-    const double size = fmin(r1, r2) + qvec3_norm(qvec3_sub(body1->position, body2->position));
+    const double size = fmin(shape_reach(&body1->shape), shape_reach(&body2->shape)) +
+                        qvec3_norm(qvec3_sub(body1->position, body2->position));
     return (patch_frame){.n = contact->normal, /* x, y, n: right-handed */
                          .x = {t[0][0], t[0][1], t[0][2]},
                          .y = qvec3_cross(contact->normal, (qvec3){t[0][0], t[0][1], t[0][2]}),

@@ -20,8 +20,9 @@ typedef struct imp_bounds {
     qvec3 torque;       /* at t, N m */
     double speed;       /* |x'|, m/s */
     double jerk;        /* |x'''|, m/s^3 */
-    double omega;       /* 1/s */
-    double spin_up;     /* |omega'| + |omega|^2 >= |m''|, m fixed in the world seen from the body, 1/s^2 */
+    double momentum;    /* |L|, N m s */
+    double most_torque; /* |L'|, N m */
+    double torque_rate; /* |L''|, N m/s */
 } imp_bounds;
 
 /* What was last asked of a body: every pair that it is near asks the same. */

@@ -94,45 +94,6 @@ static bool turns(const imp_search *s, int k)
     return s->segment[k]->kind == IMP_SEGMENT_DENSE || L.x != 0 || L.y != 0 || L.z != 0;
 }
 
-/* veer: the rate of `towards`, held; most: |veer| T is no more. */
-static void add_turning(imp_psi *p, const imp_search *s, int k, const imp_state *state, qvec3 towards, qvec3 veer,
-                        double most, const imp_bounds *bounds)
-{
-    const bool veers = !same(veer, (qvec3){0, 0, 0}), spins = turns(s, k);
-    if (!spins && !veers) return;
-    const imp_body *body = s->body[k];
-    imp_turning *b = &p->body[p->count++];
-    b->body = body;
-    b->m = quat_rotate_inverse(state->q, towards);
-    const qvec3 momentum = spins ? quat_rotate_inverse(state->q, state->momentum) : (qvec3){0, 0, 0},
-                i = body->inverse_moments, along = veers ? quat_rotate_inverse(state->q, veer) : veer;
-    const qvec3 omega = {momentum.x * i.x, momentum.y * i.y, momentum.z * i.z};
-    b->rate = qvec3_add(qvec3_cross(b->m, omega), along);
-    qvec3 point;
-    b->h = imp_world_support(body, b->m, &point);
-    p->slope -= qvec3_dot(b->rate, point);
-    if (!spins) return;
-    if (s->segment[k]->kind != IMP_SEGMENT_FREE) {
-        const double bend = (1 + most) * bounds->spin_up + 2 * qvec3_norm(veer) * bounds->omega;
-        p->bend += body->radius * bend;
-        p->spread += body->radius * bend;
-        return;
-    }
-    const qvec3 torque = qvec3_cross(momentum, omega), spin_up = {torque.x * i.x, torque.y * i.y, torque.z * i.z};
-    const qvec3 second = qvec3_add(qvec3_cross(qvec3_add(b->rate, along), omega), qvec3_cross(b->m, spin_up));
-    p->spread += body->radius * qvec3_norm(second);
-    if (qvec3_norm(second) > 0) p->bend += imp_world_support(body, second, &point);
-    p->jerk += body->radius * ((1 + most) * s->segment[k]->jerk + 3 * qvec3_norm(veer) * bounds->spin_up);
-}
-
-/* The largest T <= limit, or next to it, with psi(T) >= 0. */
-static double safe_step(const imp_psi *p, double limit)
-{
-    double T = fmin(limit, impact_flight_fall_time(p->gap, p->slope, -p->bend));
-    if (p->jerk > 0) T = fmin(T, fmax(cbrt(12 * p->gap / p->jerk), sqrt(12 * fmax(0, p->slope) / p->jerk)));
-    return isfinite(T) ? imp_psi_safe_step(p, T) : T;
-}
-
 /* ---- advancement ---- */
 
 /* What is known at one time of the search. */
@@ -140,6 +101,7 @@ typedef struct sight {
     double t;
     imp_state state[2];
     imp_bounds bounds[2];
+    imp_spin spin[2];
     impact_contact contact;
     double rate;   /* d(gap)/dt */
     double window; /* s: to the end of the shorter segment */
@@ -158,6 +120,8 @@ static void see_motion(const imp_search *s, double t, sight *l)
         const imp_segment *segment = s->segment[k];
         l->state[k] = imp_segment_at(segment, s->body[k], t);
         l->bounds[k] = imp_segment_bounds(segment, s->body[k], t, l->window);
+        l->spin[k] = turns(s, k) ? imp_segment_spin(segment, s->body[k], &l->state[k], &l->bounds[k], l->window)
+                                 : (imp_spin){.most = 0};
         if (falls(segment) || segment->kind == IMP_SEGMENT_REST) continue;
         l->parabola = false;
         /* damping's acceleration keeps its direction and only falls: it bends by no more than it does now, and by
@@ -165,6 +129,26 @@ static void see_motion(const imp_search *s, double t, sight *l)
         l->jerk += segment->kind == IMP_SEGMENT_DAMPED ? 0 : l->bounds[k].jerk;
     }
     l->pull = qvec3_sub(l->bounds[0].acceleration, l->bounds[1].acceleration);
+}
+
+/* veer: the rate of `towards`, held; most: |veer| T is no more. */
+static void add_turning(imp_psi *p, const imp_search *s, int k, const sight *l, qvec3 towards, qvec3 veer, double most)
+{
+    const bool veers = !same(veer, (qvec3){0, 0, 0}), spins = turns(s, k);
+    if (!spins && !veers) return;
+    const imp_body *body = s->body[k];
+    const imp_spin *spin = &l->spin[k];
+    imp_turning *b = &p->body[p->count++];
+    b->body = body;
+    b->m = quat_rotate_inverse(l->state[k].q, towards);
+    const qvec3 along = veers ? quat_rotate_inverse(l->state[k].q, veer) : veer;
+    b->rate = qvec3_add(qvec3_cross(b->m, spin->omega), along);
+    b->second = qvec3_add(qvec3_cross(qvec3_add(b->rate, along), spin->omega), qvec3_cross(b->m, spin->rate));
+    qvec3 point;
+    b->h = imp_world_support(body, b->m, &point);
+    p->slope -= qvec3_dot(b->rate, point);
+    p->spread += body->radius * qvec3_norm(b->second);
+    p->jerk += body->radius * ((1 + most) * spin->third + 3 * qvec3_norm(veer) * spin->second);
 }
 
 static bool is_fixed(const imp_search *s, int k)
@@ -190,10 +174,10 @@ static void look_at(const imp_search *s, double t, sight *l)
     l->rate = impact_gap_rate(&l->contact, l->state[0].v, omega1, l->state[1].v, omega2);
 }
 
-/* A, where the centres move on no parabolas; each damped one's falls by itself. */
+/* The centres' part of A; each damped one's falls by itself. */
 static double bend_of(const imp_search *s, const sight *l, qvec3 n)
 {
-    if (l->parabola) return fmax(0, -qvec3_dot(n, l->pull));
+    if (l->parabola) return -qvec3_dot(n, l->pull);
     double bend = 0, others = 0;
     for (int k = 0; k < 2; k++) {
         const double along = qvec3_dot(k ? qvec3_neg(n) : n, l->bounds[k].acceleration);
@@ -203,7 +187,7 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
             others += along;
     }
     const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0;
-    return bend + fmax(0, drift - others);
+    return bend + drift - others;
 }
 
 /* Whether the step is far less than what the gap's own rate promises, of bodies of which one turns and both have a
@@ -219,7 +203,7 @@ static bool creeps(const imp_search *s, const sight *l, double gap, double step)
  * later. */
 static double step_veering(const imp_search *s, const sight *l, double gap)
 {
-    const double spin = l->bounds[0].omega + l->bounds[1].omega, apart = IMP_VEERING / spin;
+    const double spin = l->spin[0].most + l->spin[1].most, apart = IMP_VEERING / spin;
     if (!(spin > 0)) return 0;
     const qvec3 n = l->contact.normal;
     qvec3 around[2];
@@ -239,16 +223,16 @@ static double step_veering(const imp_search *s, const sight *l, double gap)
     const double speed = qvec3_dot(n, v) + qvec3_dot(veer, c), along = -2 * qvec3_dot(veer, v);
     imp_psi p = {.gap = gap, .speed = speed, .slope = speed};
     if (l->parabola) {
-        p.bend = fmax(0, along - qvec3_dot(n, l->pull));
+        p.bend = along - qvec3_dot(n, l->pull);
         p.jerk = 3 * fmax(0, -qvec3_dot(veer, l->pull));
     } else {
         const double most = qvec3_norm(l->bounds[0].acceleration) + qvec3_norm(l->bounds[1].acceleration);
-        p.bend = fmax(0, along + bend_of(s, l, n));
+        p.bend = along + bend_of(s, l, n);
         p.jerk = 3 * rate * (most + (l->jerk > 0 ? l->jerk * l->window : 0));
     }
-    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), qvec3_neg(veer), 0.5, &l->bounds[0]);
-    add_turning(&p, s, 1, &l->state[1], n, veer, 0.5, &l->bounds[1]);
-    return safe_step(&p, limit);
+    add_turning(&p, s, 0, l, qvec3_neg(n), qvec3_neg(veer), 0.5);
+    add_turning(&p, s, 1, l, n, veer, 0.5);
+    return imp_psi_safe_step(&p, limit);
 }
 
 static double scale_of(const imp_search *s, const sight *l)
@@ -262,9 +246,9 @@ static double step_along(const imp_search *s, const sight *l, double gap)
     const qvec3 n = l->contact.normal, none = {0, 0, 0};
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
-    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), none, 0, &l->bounds[0]);
-    add_turning(&p, s, 1, &l->state[1], n, none, 0, &l->bounds[1]);
-    return safe_step(&p, l->window);
+    add_turning(&p, s, 0, l, qvec3_neg(n), none, 0);
+    add_turning(&p, s, 1, l, n, none, 0);
+    return imp_psi_safe_step(&p, l->window);
 }
 
 /* What the body reaches along n from its centre of mass. */
@@ -322,7 +306,7 @@ static double step_behind(const imp_search *s, const sight *l)
     const double deep = fmax(0, -l->contact.gap);
     const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0, pull = qvec3_dot(n, l->pull);
     imp_psi p = {.slope = qvec3_dot(n, l->state[0].v)};
-    add_turning(&p, s, 0, &l->state[0], qvec3_neg(n), (qvec3){0, 0, 0}, 0, &l->bounds[0]);
+    add_turning(&p, s, 0, l, qvec3_neg(n), (qvec3){0, 0, 0}, 0);
     const double bend = p.count > 0 || !l->parabola ? fmax(0, pull) + drift + p.spread : pull;
     double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
     if (p.jerk == 0) return high;
@@ -339,7 +323,7 @@ static double still_rate(const imp_search *s, const sight *l)
 {
     double speed = 0;
     for (int k = 0; k < 2; k++)
-        if (turns(s, k)) speed += qvec3_norm(l->state[k].v) + s->body[k]->radius * l->bounds[k].omega;
+        if (turns(s, k)) speed += qvec3_norm(l->state[k].v) + s->body[k]->radius * l->spin[k].most;
     return s->still + IMP_STILL_OF_SPEED * speed;
 }
 
@@ -371,9 +355,9 @@ static double shortest_step(const imp_search *s)
 /* How fast the gap's rate can fall: by the centres, and by what turns. */
 static double most_bend(const imp_search *s, const sight *l)
 {
-    double bend = bend_of(s, l, l->contact.normal);
+    double bend = fmax(0, bend_of(s, l, l->contact.normal));
     for (int k = 0; k < 2; k++)
-        if (turns(s, k)) bend += s->body[k]->radius * (l->bounds[k].omega * l->bounds[k].omega + l->bounds[k].spin_up);
+        if (turns(s, k)) bend += s->body[k]->radius * (l->spin[k].most * l->spin[k].most + l->spin[k].second);
     return bend;
 }
 
@@ -397,6 +381,21 @@ static double nearer_at_once(const imp_search *s, const sight *l, double t)
     for (int k = 0; k < 2; k++)
         if (turns(s, k)) speed += s->body[k]->radius * qvec3_norm(imp_omega(s->body[k], &l->state[k]));
     return speed * (nextafter(t, INFINITY) - t);
+}
+
+/* A time between the two at which what was leaving at the first had left, further than what counts as touching; NaN:
+ * none. */
+static double away_between(const imp_search *s, double from, double t, double touching, double *gap)
+{
+    enum { HALVINGS = 8 };
+    sight l;
+    double part = 0.5;
+    for (int i = 0; i < HALVINGS; i++, part *= 0.5) {
+        look_at(s, t - part * (t - from), &l);
+        *gap = l.contact.lower;
+        if (*gap > touching) return l.t;
+    }
+    return NAN;
 }
 
 static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->segment[1]->t0); }
@@ -423,6 +422,13 @@ static imp_found advance(const imp_search *s, double from, double until)
                 const bool still = fabs(l.rate) <= still_rate(s, &l);
                 slack = touching + fmax(0, -gap); /* of bodies that began with an overlap */
                 leaving = fabs(gap) <= slack && (still || (l.rate > 0 && (turns(s, 0) || turns(s, 1))));
+            }
+            if (leaving && t > start &&
+                l.rate < 0) { /* a step that had the slack may have passed over a whole bounce */
+                double high;
+                const double away = away_between(s, before, t, touching, &high);
+                if (isfinite(away) && gap < 0) return (imp_found){bisect(s, away, high, t, gap, 0), true};
+                leaving = !isfinite(away);
             }
             leaving = leaving && gap <= touching;
             const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l) + error;

@@ -22,27 +22,18 @@ double imp_phi2(double k, double T)
 
 /* ---- making ---- */
 
-/* A bound of |m'''| of any unit vector m seen from a tumbling body, 1/s^3: |omega|^3 + 3 |omega| |omega'| + |omega''|
- * from Euler's equations and the largest components of omega. */
-static double tumble_jerk(const impact_tumble *tumble)
+/* No less than the components of a tumble's omega ever are, body axes: those of its ends, or where omega is steady, its
+ * own. */
+static qvec3 fastest_of(const imp_body *body, const imp_state *start, const impact_tumble *tumble)
 {
-    if (tumble->steady) return pow(qvec3_norm(tumble->turn), 3);
-    const double I[3] = {tumble->moments.x, tumble->moments.y, tumble->moments.z};
-    double w[3], rate[3], second[3];
-    for (int k = 0; k < 3; k++)
-        w[tumble->axis[k]] = fabs(tumble->amplitude[k]) * qvec3_norm(tumble->momentum) / I[tumble->axis[k]];
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        rate[i] = fabs(I[j] - I[k]) / I[i] * w[j] * w[k];
+    const double L = qvec3_norm(start->momentum);
+    double w[3];
+    if (!tumble || tumble->steady) {
+        const qvec3 omega = quat_rotate_inverse(start->q, imp_omega(body, start));
+        return (qvec3){fabs(omega.x), fabs(omega.y), fabs(omega.z)};
     }
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        second[i] = fabs(I[j] - I[k]) / I[i] * (rate[j] * w[k] + w[j] * rate[k]);
-    }
-    const double omega = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    const double rates = sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
-    const double seconds = sqrt(second[0] * second[0] + second[1] * second[1] + second[2] * second[2]);
-    return omega * omega * omega + 3 * omega * rates + seconds;
+    for (int k = 0; k < 3; k++) w[tumble->axis[k]] = fabs(tumble->amplitude[k]) * L;
+    return (qvec3){w[0] * body->inverse_moments.x, w[1] * body->inverse_moments.y, w[2] * body->inverse_moments.z};
 }
 
 static bool is_zero(qvec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
@@ -60,13 +51,11 @@ imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *st
     s.kind = body->linear_rate != 0 || body->angular_rate != 0 ? IMP_SEGMENT_DAMPED : IMP_SEGMENT_FREE;
     s.acceleration = acceleration;
     if (is_zero(start->momentum)) return s;
-    if (body->spherical) {
-        s.jerk = pow(qvec3_norm(imp_omega(body, start)), 3);
-        return s;
+    if (!body->spherical) {
+        impact_tumble_make(body->moments, start->q, start->momentum, tumble);
+        s.tumble = tumble;
     }
-    impact_tumble_make(body->moments, start->q, start->momentum, tumble);
-    s.tumble = tumble;
-    s.jerk = tumble_jerk(tumble);
+    s.fastest = fastest_of(body, start, s.tumble);
     return s;
 }
 
@@ -225,21 +214,7 @@ qvec3 imp_segment_pose(const imp_segment *s, const imp_body *body, double own, d
 
 /* ---- bounds ---- */
 
-static double least_moment(const imp_body *body)
-{
-    return fmin(body->moments.x, fmin(body->moments.y, body->moments.z));
-}
-
-/* |omega'| <= (|L'| + |omega| |L|)/I. */
-static void bound_spin(const imp_body *body, double momentum, double torque, imp_bounds *b)
-{
-    const double least = least_moment(body);
-    b->omega = momentum / least;
-    const double rate = body->spherical ? torque / least : (torque + b->omega * momentum) / least;
-    b->spin_up = rate + b->omega * b->omega;
-}
-
-static imp_bounds find_dense_bounds(const imp_segment *s, const imp_body *body, double t, double window)
+static imp_bounds find_dense_bounds(const imp_segment *s, double t, double window)
 {
     const imp_dense_window at = imp_dense_window_of(s->dense, t, window);
     imp_dense_rate time = {.rate = 1, .most_rate = 1}, r[IMP_DENSE_AT_ONCE];
@@ -248,27 +223,30 @@ static imp_bounds find_dense_bounds(const imp_segment *s, const imp_body *body, 
     /* the clock is slowest where it may have come from here at its fastest change, and no slower than a tenth: within a
      * step of the integrator it changes by less */
     const double slowest = fmax(0.1 * time.rate, time.rate - at.w * s->dense->h * time.most_second);
-    double speed = 0, rate = 0, second = 0, momentum = 0, torque = 0;
+    double speed = 0, rate = 0, second = 0, momentum = 0, torque = 0, twist = 0;
     for (int k = 0; k < 3; k++) {
         speed += r[k].most * r[k].most;
         rate += r[k].most_rate * r[k].most_rate;
         second += r[k].most_second * r[k].most_second;
         momentum += r[3 + k].most * r[3 + k].most;
         torque += r[3 + k].most_rate * r[3 + k].most_rate;
+        twist += r[3 + k].most_second * r[3 + k].most_second;
     }
     imp_bounds b = {.acceleration = qvec3_scale((qvec3){r[0].rate, r[1].rate, r[2].rate}, 1 / time.rate),
                     .torque = qvec3_scale((qvec3){r[3].rate, r[4].rate, r[5].rate}, 1 / time.rate),
                     .speed = sqrt(speed)};
     b.jerk = (sqrt(second) + sqrt(rate) * time.most_second / slowest) / (slowest * slowest);
-    bound_spin(body, sqrt(momentum), sqrt(torque) / slowest, &b);
+    b.momentum = sqrt(momentum);
+    b.most_torque = sqrt(torque) / slowest;
+    b.torque_rate = (sqrt(twist) + sqrt(torque) * time.most_second / slowest) / (slowest * slowest);
     return b;
 }
 
-static imp_bounds dense_bounds(const imp_segment *s, const imp_body *body, double t, double window)
+static imp_bounds dense_bounds(const imp_segment *s, double t, double window)
 {
     imp_dense_seen *seen = s->dense->seen ? &s->dense->seen[s->place] : NULL;
     if (seen && seen->t == t && seen->window == window) return seen->bounds;
-    const imp_bounds bounds = find_dense_bounds(s, body, t, window);
+    const imp_bounds bounds = find_dense_bounds(s, t, window);
     if (seen) *seen = (imp_dense_seen){t, window, bounds};
     return bounds;
 }
@@ -289,8 +267,8 @@ imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double
     const double L = qvec3_norm(s->start.momentum), T = t - s->t0;
     switch (s->kind) {
     case IMP_SEGMENT_REST: return (imp_bounds){.jerk = 0};
-    case IMP_SEGMENT_DENSE: return dense_bounds(s, body, t, window);
-    case IMP_SEGMENT_FREE: bound_spin(body, L, 0, &b); break;
+    case IMP_SEGMENT_DENSE: return dense_bounds(s, t, window);
+    case IMP_SEGMENT_FREE: b.momentum = L; break;
     case IMP_SEGMENT_DAMPED: {
         const double k = body->linear_rate, left = L * exp(-body->angular_rate * T);
         qvec3 v;
@@ -298,19 +276,30 @@ imp_bounds imp_segment_bounds(const imp_segment *s, const imp_body *body, double
         b.acceleration = qvec3_axpy(-k, v, s->acceleration);
         b.torque = qvec3_scale(s->start.momentum, -body->angular_rate * exp(-body->angular_rate * T));
         b.jerk = k * qvec3_norm(b.acceleration); /* both only fall */
-        bound_spin(body, left, body->angular_rate * left, &b);
+        b.momentum = left;                       /* it and its rates only fall, too */
+        b.most_torque = body->angular_rate * left;
+        b.torque_rate = body->angular_rate * b.most_torque;
         break;
     }
     case IMP_SEGMENT_ROLL: {
         const double alpha = qvec3_norm(s->spin_up), I = fmax(body->moments.x, fmax(body->moments.y, body->moments.z)),
                      gained = alpha > 0 ? I * alpha * (T + window) : 0; /* the window may have no end */
         b.torque = imp_inertia(body, s->start.q, s->spin_up);
-        bound_spin(body, L + gained, I * alpha, &b);
+        b.momentum = L + gained;
+        b.most_torque = I * alpha;
         break;
     }
     }
     b.speed = bound_speed(s, body, t, window);
     return b;
+}
+
+imp_spin imp_segment_spin(const imp_segment *s, const imp_body *body, const imp_state *now, const imp_bounds *b,
+                          double window)
+{
+    const bool flies = s->kind == IMP_SEGMENT_FREE || s->kind == IMP_SEGMENT_DAMPED;
+    return imp_spin_of(body, now, flies ? &s->fastest : NULL, b->momentum,
+                       (imp_torques){b->torque, b->most_torque, b->torque_rate}, window);
 }
 
 void imp_segment_rates(const imp_segment *s, const imp_body *body, double own, qvec3 *acceleration, qvec3 *torque)

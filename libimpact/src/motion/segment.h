@@ -24,6 +24,7 @@
 
 #include <impact/tumble.h>
 #include "motion/dense.h"
+#include "motion/spin.h"
 
 typedef enum imp_segment_kind {
     IMP_SEGMENT_REST,
@@ -40,7 +41,7 @@ typedef struct imp_segment {
     imp_state start;             /* at t0 */
     qvec3 spin_up;               /* ROLL: alpha, 1/s^2; of an unequal body along a steady omega */
     const impact_tumble *tumble; /* FREE, DAMPED of unequal moments that turn; else NULL */
-    double jerk;                 /* FREE with a tumble: |m'''| of any unit vector m seen from the body, 1/s^3 */
+    qvec3 fastest;               /* FREE, DAMPED: no less than omega's components in body axes ever are, 1/s */
     const imp_dense *dense;      /* DENSE: its island's step, and */
     int place;                   /* the body's place in it */
 } imp_segment;
@@ -81,6 +82,9 @@ static inline qvec3 imp_segment_place(const imp_segment *segment, const imp_body
 
 /* Over [t, t + window]. */
 imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, double t, double window);
+/* The same of its turning, which is `now` at t and within those bounds. */
+imp_spin imp_segment_spin(const imp_segment *segment, const imp_body *body, const imp_state *now,
+                          const imp_bounds *bounds, double window);
 /* Its acceleration and torque alone, where its own variable is this. */
 void imp_segment_rates(const imp_segment *segment, const imp_body *body, double own, qvec3 *acceleration,
                        qvec3 *torque);

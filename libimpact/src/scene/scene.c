@@ -162,6 +162,10 @@ static impact_status run(impact_scene *scene, double t_end)
 {
     scene->message[0] = '\0';
     scene->stop = IMPACT_OK;
+    if (scene->failed) {
+        snprintf(scene->message, sizeof scene->message, "the scene's run has failed, or was stopped amid an instant");
+        return IMPACT_EUNSETTLED;
+    }
     if (!isfinite(t_end)) {
         snprintf(scene->message, sizeof scene->message, "t = %g is no time to run to", t_end);
         return IMPACT_EDOMAIN;

@@ -104,6 +104,8 @@ double imp_scene_energy_beside(impact_scene *scene, const imp_island *island, do
 
 /* Counts a step, and tells the recorder how far the run is; false: it is to stop, for scene->stop. */
 bool imp_scene_told(impact_scene *scene);
+/* The same without a step. */
+bool imp_scene_may_go_on(impact_scene *scene);
 /* Whether all of the row's numbers are finite, as every row is that is handed on; else the message says whose are not.
  */
 bool imp_scene_good_row(impact_scene *scene, const impact_sample *sample);

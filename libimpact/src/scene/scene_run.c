@@ -161,13 +161,18 @@ static impact_status gaps_failed(impact_scene *scene)
 
 bool imp_scene_told(impact_scene *scene)
 {
-    const impact_recorder *recorder = scene->recorder;
     if (++scene->steps > scene->max_steps) {
         scene->stop = IMPACT_EUNSETTLED;
         snprintf(scene->message, sizeof scene->message, "%ld steps by t = %s: the limit, max_steps", scene->max_steps,
                  imp_number_of(scene->t).text);
         return false;
     }
+    return imp_scene_may_go_on(scene);
+}
+
+bool imp_scene_may_go_on(impact_scene *scene)
+{
+    const impact_recorder *recorder = scene->recorder;
     if (!recorder || !recorder->progress || recorder->progress(recorder->context, scene->t, scene->duration))
         return true;
     scene->stop = IMPACT_STOPPED;

@@ -140,7 +140,7 @@ static bool goes_round(const imp_island *island, int impacts)
 
 static impact_status strike_on(imp_island *island, bool *parted)
 {
-    enum { MAX_IMPACTS = 100000 };
+    enum { MAX_IMPACTS = 100000, ASKED_EVERY = 100 };
     imp_world *world = &island->world;
     imp_meeting m;
     bool fresh = true; /* the loads know of the last impact */
@@ -165,6 +165,10 @@ static impact_status strike_on(imp_island *island, bool *parted)
             snprintf(island->scene->message, sizeof island->scene->message,
                      "%d impacts in the one instant t = %s brought no end", count, imp_number_of(island->t).text);
             return IMPACT_EUNSETTLED;
+        }
+        if (count > 0 && count % ASKED_EVERY == 0 && !imp_scene_may_go_on(island->scene)) {
+            island->scene->failed = true; /* half of an instant is no state to go on from */
+            return island->scene->stop;
         }
         imp_answer by;
         status = imp_scene_answer_together(island, &m, &by);

@@ -143,9 +143,70 @@ static void what_is_locked_is_answered_one_after_another(void **state)
     impact_scene_destroy(scene);
 }
 
+/* A light ball between a wall and a heavy one of 100^N times its mass, at one instant, one impact after another: as
+ * many as pi has in its first N + 1 digits (Galperin 2003). */
+static impact_scene_def wall_and_two(impact_body_def bodies[3], double ratio)
+{
+    bodies[0] = impact_default_body_def();
+    bodies[0].name = "wall";
+    bodies[0].is_static = true;
+    bodies[0].restitution = 1;
+    impact_shape_plane(INFINITY, INFINITY, &bodies[0].shape);
+    bodies[1] = smooth_ball("light", (qvec3){0, 0, radius}, (qvec3){0, 0, 0});
+    bodies[2] = smooth_ball("heavy", (qvec3){0, 0, 3 * radius}, (qvec3){0, 0, -1});
+    bodies[1].mass = 1;
+    bodies[2].mass = ratio;
+    return scene_of(bodies, 3, IMPACT_SCENE_SEQUENCE);
+}
+
+static void impacts_of_an_instant_count_pi(void **state)
+{
+    (void)state;
+    static const long digits[] = {3, 31, 314, 3141, 31415};
+    for (int n = 0; n < 5; n++) {
+        impact_body_def bodies[3];
+        const impact_scene_def def = wall_and_two(bodies, pow(100, n));
+        impact_scene *scene = make_scene(&def);
+        assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+        assert_int_equal(impact_scene_usage(scene).events[IMPACT_EVENT_IMPACT], digits[n]);
+        impact_scene_destroy(scene);
+    }
+}
+
+static bool few(void *context, double t, double t_end)
+{
+    (void)t, (void)t_end;
+    return ++*(int *)context < 20;
+}
+
+/* More than there may be: told with the time. The host is asked meanwhile; what it stops then goes on no more. */
+static void impacts_of_an_instant_are_bounded(void **state)
+{
+    (void)state;
+    impact_body_def bodies[3];
+    const impact_scene_def def = wall_and_two(bodies, 1e10);
+    impact_scene *scene = make_scene(&def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_EUNSETTLED);
+    assert_string_equal(impact_scene_message(scene), "100000 impacts in the one instant t = 0 brought no end");
+    impact_scene_destroy(scene);
+    int calls = 0;
+    const impact_recorder recorder = {.struct_size = sizeof recorder, .context = &calls, .progress = few};
+    scene = make_scene(&def);
+    assert_int_equal(impact_scene_run(scene, &recorder), IMPACT_STOPPED);
+    assert_int_equal(calls, 20);
+    assert_true(impact_scene_usage(scene).events[IMPACT_EVENT_IMPACT] <= 2000);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_EUNSETTLED);
+    assert_non_null(strstr(impact_scene_message(scene), "stopped amid an instant"));
+    size_t size;
+    assert_int_equal(impact_scene_save(scene, NULL, &size), IMPACT_EARGUMENT);
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(impacts_of_an_instant_count_pi),
+        cmocka_unit_test(impacts_of_an_instant_are_bounded),
         cmocka_unit_test(a_ball_meets_two),
         cmocka_unit_test(a_cradle),
         cmocka_unit_test(laws_that_do_not_fit_are_refused),
