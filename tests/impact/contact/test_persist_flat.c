@@ -295,6 +295,66 @@ static void a_box_tips_over_its_edge(void **state)
     }
 }
 
+/* Pushed at its centre by m g t, a box of half sides a and c stands until the centre of its pressure has come to its
+ * edge, t = a/c, and then turns about that, at R = (a, c): R^2 (4/3) theta'' = g (t z - x), where the edge is from the
+ * centre by x = a cos - c sin, z = c cos + a sin. */
+static double sharp_box_tips(double a, double c, double duration)
+{
+    enum { STEPS = 4000 };
+    const double g = 9.8, begin = a / c, h = (duration - begin) / STEPS, inertia = (a * a + c * c) * 4 / 3;
+    double theta = 0, omega = 0;
+    for (int i = 0; i < STEPS; i++) { /* leapfrog */
+        const double middle = theta + 0.5 * h * omega, t = begin + (i + 0.5) * h;
+        omega += h * g * (t * (c * cos(middle) + a * sin(middle)) - (a * cos(middle) - c * sin(middle))) / inertia;
+        theta = middle + 0.5 * h * omega;
+    }
+    return omega;
+}
+
+static bool push_rising(double t, int body, double weight, qvec3 x, quat q, qvec3 v, qvec3 w, qvec3 *force,
+                        qvec3 *torque, void *context)
+{
+    (void)body, (void)x, (void)q, (void)v, (void)w, (void)torque, (void)context;
+    *force = (qvec3){9.8 * weight * t, 0, 0};
+    return true;
+}
+
+static void what_a_rising_push_tips_goes_on_exactly(void **state)
+{
+    (void)state;
+    static const double exponents[] = {100, 200, 400};
+    const double a = 0.1, c = 0.2, duration = 0.7, sharp = sharp_box_tips(a, c, duration);
+    double off[3];
+    for (int k = 0; k < 3; k++) {
+        impact_body_def bodies[2] = {floor_body(), impact_default_body_def()};
+        bodies[1].name = "box";
+        bodies[1].position.z = c;
+        const double p = exponents[k];
+        assert_int_equal(impact_shape_superquadric(a, a, c, p, p, p, &bodies[1].shape), IMPACT_OK);
+        impact_force_def force = impact_default_force_def(IMPACT_FORCE_CUSTOM);
+        force.function = push_rising;
+        impact_scene_def def = scene_of(bodies, 2, duration);
+        def.gravity = (qvec3){0, 0, -9.8};
+        def.friction_rule = IMPACT_MAXIMUM;
+        bodies[1].friction = 2;
+        def.forces = &force;
+        def.force_count = 1;
+        impact_scene *scene = make_scene(&def);
+        assert_true(impact_scene_run(scene, NULL) >= 0);
+        impact_sample end;
+        assert_int_equal(impact_scene_body(scene, 1, &end), IMPACT_OK);
+        assert_near3((qvec3){end.omega.x, end.omega.z, end.position.y}, ((qvec3){0, 0, 0}), 1e-9);
+        off[k] = fabs(end.omega.y - sharp);
+        const impact_usage usage = impact_scene_usage(scene);
+        assert_true(usage.events[IMPACT_EVENT_IMPACT] == 0 && usage.events[IMPACT_EVENT_LIFTOFF] == 0); /* held on */
+        impact_scene_destroy(scene);
+    }
+    /* the edge's roundness is as 1/p, and so is what it changes */
+    assert_true(off[2] < 0.12 * sharp && sharp > 0.5);
+    assert_near(off[0] / off[1], 2, 0.03);
+    assert_near(off[1] / off[2], 2, 0.03);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -306,6 +366,7 @@ int main(void)
         cmocka_unit_test(a_turning_box_moves_as_a_prism),
         cmocka_unit_test(what_drops_on_a_face_comes_to_rest),
         cmocka_unit_test(a_box_tips_over_its_edge),
+        cmocka_unit_test(what_a_rising_push_tips_goes_on_exactly),
     };
     return impact_has(IMPACT_PART_CVODE) ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
 }
