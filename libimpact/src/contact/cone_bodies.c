@@ -144,18 +144,12 @@ static void iterate(imp_bodies_problem *p, double enough, bool brief, double *r,
     }
 }
 
-/* What Newton's steps leave far off is swept for longer, and they begin again; brief: not so. */
-static void iterate_and_sweep(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
+/* What begins far off is swept first. */
+static void sweep_and_iterate(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
 {
     imp_bodies_effect(p, p->r);
-    double found = residual_of(p, p->r);
-    for (int sweeps = IMP_BODIES_SWEEPS; sweeps <= IMP_BODIES_SWEEPS_MOST; sweeps *= 10) {
-        if (found > IMP_BODIES_FAR) imp_bodies_sweep(p, sweeps);
-        iterate(p, enough, brief, r, u);
-        found = p->outcome->residual;
-        if (!(found > IMP_BODIES_FAR) || brief) return;
-        memcpy(p->r, r, (size_t)p->width * sizeof *r * (size_t)p->count);
-    }
+    if (residual_of(p, p->r) > IMP_BODIES_FAR) imp_bodies_sweep(p, IMP_BODIES_SWEEPS);
+    iterate(p, enough, brief, r, u);
 }
 
 /* ---- moments as forces ---- */
@@ -239,7 +233,7 @@ imp_cone_outcome imp_cone_solve_bodies(imp_cone_bodies *workspace, const imp_con
         change_units(&p, false, false, p.r, p.r);
         p.q = p.own_q;
     }
-    iterate_and_sweep(&p, problem->enough > 0 ? problem->enough : IMP_BODIES_ACCEPTED,
+    sweep_and_iterate(&p, problem->enough > 0 ? problem->enough : IMP_BODIES_ACCEPTED,
                       problem->effort == IMP_CONE_BRIEF, r, u);
     if (!(outcome.residual < INFINITY)) return outcome;
     if (width > 3) {
