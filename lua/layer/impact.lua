@@ -384,7 +384,7 @@ end
 function methods:track(body, rate)
   local track = recorded_track(self, body)
   if not rate then return track end
-  need(type(rate) == "number", "track: rate must be a number", 2)
+  need(type(rate) == "number" and rate > 0, string.format("track: rate must be a number > 0, got %s", tostring(rate)), 2)
   local times, place = {}, {} -- of the rows put between, and after which recorded row they stand
   for i = 2, #track.t do
     local from, to = track.t[i - 1], track.t[i]
@@ -445,24 +445,26 @@ function impact.along(t, column, times)
   return result
 end
 
+local function find_body(self, name)
+  for _, body in ipairs(methods.definition(self).bodies) do
+    if body.name == name then return body end
+  end
+  error(string.format("scene '%s' has no body '%s'", self:name(), tostring(name)), 3)
+end
+
 --- The first recorded event of a kind ("impact", "contact", ...) between two bodies, or nil; a nil name is any.
 ---@return table?
 function methods:first(kind, body1, body2)
   local known = table.concat(event_kinds, ", ")
-  need((", " .. known .. ","):find(", " .. tostring(kind) .. ",", 1, true), "first: the kind must be one of " .. known, 2)
+  need((", " .. known .. ","):find(", " .. tostring(kind) .. ",", 1, true),
+    string.format("first: the kind must be one of %s, got '%s'", known, tostring(kind)), 2)
+  for _, name in pairs { body1, body2 } do find_body(self, name) end
   for _, event in ipairs(methods.events(self)) do
     local straight = (not body1 or event.body1 == body1) and (not body2 or event.body2 == body2)
     local turned = (not body1 or event.body2 == body1) and (not body2 or event.body1 == body2)
     if event.event == kind and (straight or turned) then return event end
   end
   return nil
-end
-
-local function find_body(self, name)
-  for _, body in ipairs(methods.definition(self).bodies) do
-    if body.name == name then return body end
-  end
-  error(string.format("scene '%s' has no body '%s'", self:name(), tostring(name)), 3)
 end
 
 --- A vector's three numbers, by place or by letter.

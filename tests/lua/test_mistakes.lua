@@ -109,6 +109,8 @@ impact.scene { name = "crowd", duration = 1, bodies = bodies }]],
   "impact: script.lua:2: body 'coin': the name is taken by another body")
 refused_by_library(scene(good, "forces = { impact.wind { strength = 1, body = 'cone' } },"), "impact: script.lua:6: ")
 refused_by_library(scene(good, "pairs = { { bodies = { 'coin', 'cone' } } },"), "impact: script.lua:6: ")
+refused_by_library(scene(good, "pairs = { { bodies = { 'coin', 'floor' }, friction = 0 }, { bodies = { 'floor', 'coin' }, restitution = 1 } },"),
+  "impact: script.lua:6: pair with ")
 refused_by_library(scene("shape = impact.plane(), static = false,"), "impact: script.lua:2: body 'coin': ")
 refused_by_library(scene("shape = impact.plane(), velocity = { 1, 0, 1 },"),
   "impact: script.lua:2: body 'coin': velocity of a static body is its surface's: a plane's must lie along it")

@@ -195,15 +195,20 @@ do
   refuses("scene 'drop' has no rows: run it with record = true", function() local events = scene:events() return events end)
   scene:run { record = true }
   local track = scene:track "ball"
-  refuses("track: rate must be a number", function() local fine = scene:track("ball", "x") return fine end)
+  refuses("track: rate must be a number > 0, got x", function() local fine = scene:track("ball", "x") return fine end)
+  for _, rate in ipairs { 0, -1, 0 / 0 } do
+    refuses("track: rate must be a number > 0, got " .. tostring(rate), function() local fine = scene:track("ball", rate) return fine end)
+  end
   refuses("energies: a track of scene:track is needed", function() local energies = scene:energies "ball" return energies end)
   refuses("split: a track of scene:track is needed", function() return impact.split({ t = quat.vec3(1, 2, 3) }, 1) end)
   refuses("split: t must be a number", function() local before = impact.split(track) return before end)
   refuses("along: 2 times for 1 values", function() local values = impact.along({ 1, 2 }, { 3 }, { 1.5 }) return values end)
-  refuses("first: the kind must be one of impact, contact, slip, stick, liftoff, force, rest", function()
+  refuses("first: the kind must be one of impact, contact, slip, stick, liftoff, force, rest, got 'bounce'", function()
     local event = scene:first "bounce"
     return event
   end)
+  refuses("scene 'drop' has no body 'bal'", function() local event = scene:first("impact", "bal") return event end)
+  refuses("scene 'drop' has no body 'flor'", function() local event = scene:first("impact", nil, "flor") return event end)
 end
 
 -- Moments by letters, in the energies too; and the body's surface as it stands at the end.

@@ -7,8 +7,7 @@ static int by_rule_bodies(const void *a, const void *b)
 {
     const imp_own_rule *x = a, *y = b;
     if (x->low != y->low) return (x->low > y->low) - (x->low < y->low);
-    if (x->high != y->high) return (x->high > y->high) - (x->high < y->high);
-    return (x->order > y->order) - (x->order < y->order);
+    return (x->high > y->high) - (x->high < y->high);
 }
 
 impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_scene_def *def, const imp_names *names)
@@ -21,7 +20,6 @@ impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_sc
         const int i = imp_names_find(names, def->pairs[k].body1), j = imp_names_find(names, def->pairs[k].body2);
         rules->own[rules->own_count++] = (imp_own_rule){.low = i < j ? i : j,
                                                         .high = i < j ? j : i,
-                                                        .order = k,
                                                         .friction = def->pairs[k].friction,
                                                         .restitution = def->pairs[k].restitution,
                                                         .torsional = def->pairs[k].torsional_friction,
@@ -30,6 +28,13 @@ impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_sc
     }
     qsort(rules->own, (size_t)rules->own_count, sizeof *rules->own, by_rule_bodies);
     return IMPACT_OK;
+}
+
+const imp_own_rule *imp_rules_second(const imp_rules *rules)
+{
+    for (int k = 1; k < rules->own_count; k++)
+        if (by_rule_bodies(&rules->own[k - 1], &rules->own[k]) == 0) return &rules->own[k];
+    return NULL;
 }
 
 static double joined(impact_pair_rule rule, double a, double b)
@@ -46,7 +51,7 @@ static double joined(impact_pair_rule rule, double a, double b)
 static const imp_own_rule *own_of(const imp_rules *rules, int low, int high)
 {
     int first = 0, end = rules->own_count;
-    const imp_own_rule sought = {.low = low, .high = high, .order = -1};
+    const imp_own_rule sought = {.low = low, .high = high};
     while (first < end) {
         const int middle = (first + end) / 2;
         if (by_rule_bodies(&rules->own[middle], &sought) < 0)

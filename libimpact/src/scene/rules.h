@@ -11,7 +11,6 @@
 
 typedef struct imp_own_rule {
     int low, high; /* the bodies' indices */
-    int order;     /* in the definition: the first of a pair counts */
     double friction, restitution, torsional, rolling, stiffness;
 } imp_own_rule;
 
@@ -22,6 +21,9 @@ typedef struct imp_rules {
 } imp_rules;
 
 impact_status imp_rules_open(imp_rules *rules, imp_arena *arena, const impact_scene_def *def, const imp_names *names);
+
+/* The second of two rules for one pair; NULL: every pair has one at most. */
+const imp_own_rule *imp_rules_second(const imp_rules *rules);
 
 /* An open pair of the world's bodies i and j: one that moves first, else as the definition has them. */
 imp_pair imp_rules_pair(const imp_rules *rules, const imp_world *world, int i, int j);

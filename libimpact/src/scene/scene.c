@@ -17,6 +17,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of two rules for one pair either could be meant. */
+static impact_status check_rules(const impact_scene *scene, char *message, size_t message_size)
+{
+    const imp_own_rule *second = imp_rules_second(&scene->rules);
+    if (!second) return IMPACT_OK;
+    if (message)
+        snprintf(message, message_size, "pair with '%s': its rule with '%s' is given twice",
+                 scene->names.names[second->low], scene->names.names[second->high]);
+    return IMPACT_EARGUMENT;
+}
+
 /* A touch of a few rounding errors is no overlap. */
 static impact_status check_overlaps(impact_scene *scene, char *message, unsigned long message_size)
 {
@@ -114,6 +125,7 @@ static impact_status create(const impact_scene_def *given, impact_scene **out, c
     scene->output_rate = def->output_rate;
     status = imp_scene_build(scene, def);
     imp_scene_receipt_begin(scene);
+    if (status == IMPACT_OK) status = check_rules(scene, message, message_size);
     if (status == IMPACT_OK) status = open_workspace(scene, message, message_size);
     if (status == IMPACT_OK) {
         imp_field_locate(&scene->world, scene->t, scene->states, false);

@@ -119,24 +119,40 @@ static void pairs_are_what_their_rules_say(void **state)
     }
 }
 
-/* Of two rules for one pair the first in the definition counts. */
-static void the_first_of_two_counts(void **state)
+/* Two rules for one pair, whichever body is named first, are refused by their names: either could be meant. */
+static void two_rules_for_a_pair_are_refused(void **state)
 {
     (void)state;
-    random_stream random = {52};
-    static stock s;
-    open_stock(&s, &random, IMPACT_PRODUCT, IMPACT_PRODUCT);
-    const impact_pair_def twice[] = {{.body1 = "c", .body2 = "b", .friction = 0.25, .restitution = NAN},
-                                     {.body1 = "b", .body2 = "c", .friction = 0.75, .restitution = NAN}};
-    s.def.pairs = twice, s.def.pair_count = 2;
-    assert_int_equal(imp_rules_open(&s.rules, s.arena, &s.def, &s.names), IMPACT_OK);
-    assert_true(imp_rules_pair(&s.rules, &s.world, 1, 2).law.friction == 0.25);
-    imp_arena_destroy(s.arena);
+    const char *names[] = {"a", "b", "c"};
+    impact_body_def bodies[3];
+    for (int i = 0; i < 3; i++) {
+        bodies[i] = impact_default_body_def();
+        bodies[i].name = names[i];
+        bodies[i].position.x = 3 * i;
+        assert_int_equal(impact_shape_sphere(1, &bodies[i].shape), IMPACT_OK);
+    }
+    const char *of[3][2] = {{"c", "b"}, {"a", "b"}, {"b", "c"}};
+    impact_pair_def rules[3];
+    for (int k = 0; k < 3; k++) {
+        rules[k] = impact_default_pair_def(of[k][0], of[k][1]);
+        rules[k].friction = 0.25 * k;
+    }
+    impact_scene_def def = impact_default_scene_def();
+    def.bodies = bodies, def.body_count = 3;
+    def.pairs = rules, def.pair_count = 3;
+    def.duration = 1;
+    impact_scene *scene = NULL;
+    char why[200];
+    assert_int_equal(impact_scene_create(&def, &scene, why, sizeof why), IMPACT_EARGUMENT);
+    assert_string_equal(why, "pair with 'b': its rule with 'c' is given twice");
+    def.pair_count = 2;
+    assert_int_equal(impact_scene_create(&def, &scene, why, sizeof why), IMPACT_OK);
+    impact_scene_destroy(scene);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_are_what_their_rules_say),
-                                       cmocka_unit_test(the_first_of_two_counts)};
+                                       cmocka_unit_test(two_rules_for_a_pair_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
