@@ -10,13 +10,13 @@
 #include <xmmintrin.h>
 #endif
 
-/* Doubles trap in the unit that computes them. */
-static bool something_traps(void)
+/* Doubles trap, and are rounded, in the unit that computes them. */
+static bool is_unlike_ours(void)
 {
 #if defined(__SSE2__) && defined(__x86_64__)
-    return (_mm_getcsr() & _MM_MASK_MASK) != _MM_MASK_MASK;
+    return (_mm_getcsr() & (_MM_MASK_MASK | _MM_ROUND_MASK)) != (_MM_MASK_MASK | _MM_ROUND_NEAREST);
 #elif defined(__GLIBC__)
-    return fegetexcept() != 0;
+    return fegetexcept() != 0 || fegetround() != FE_TONEAREST;
 #else
     return true; /* it cannot be asked */
 #endif
@@ -24,8 +24,9 @@ static bool something_traps(void)
 
 imp_floats imp_floats_hold(void)
 {
-    imp_floats floats = {.held = something_traps()};
+    imp_floats floats = {.held = is_unlike_ours()};
     if (floats.held) floats.held = feholdexcept(&floats.theirs) == 0;
+    if (floats.held) fesetround(FE_TONEAREST);
     return floats;
 }
 

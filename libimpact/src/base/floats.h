@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * floats: the caller's floating-point environment. A host may let operations trap; libimpact forms infinities and NaNs
- * that it then looks at (a root of a negative number, a quotient by zero), which must not stop it. Internal.
+ * that it then looks at (a root of a negative number, a quotient by zero), which must not stop it. It may round
+ * otherwise than to nearest: every bound on an error of rounding is of that. Internal.
  */
 #ifndef IMP_FLOATS_H
 #define IMP_FLOATS_H
@@ -14,8 +15,8 @@ typedef struct imp_floats {
     bool held;
 } imp_floats;
 
-/* No traps until imp_floats_give_back, where there are some; otherwise nothing is done: to ask costs a few cycles, to
- * change a hundred. */
+/* No traps, and rounding to nearest, until imp_floats_give_back, where it is not so; otherwise nothing is done: to ask
+ * costs a few cycles, to change a hundred. */
 imp_floats imp_floats_hold(void);
 /* The environment as it was, its flags too. */
 void imp_floats_give_back(const imp_floats *floats);

@@ -28,6 +28,9 @@ static bool take(void *context, const impact_sample *s)
     return true;
 }
 
+/* As the host rounds, and did when the scene was destroyed. */
+static int rounding = FE_TONEAREST, rounding_after;
+
 /* Kinds 0 to 3: spheres, superquadrics; without and with a force. */
 static impact_status run(int kind, char *message)
 {
@@ -60,11 +63,14 @@ static impact_status run(int kind, char *message)
     impact_scene *scene;
     hash = 14695981039346656037u;
     message[0] = '\0';
+    fesetround(rounding);
     impact_status status = impact_scene_create(&def, &scene, message, 300);
     if (status < 0) return status;
     status = impact_scene_run(scene, &(impact_recorder){.struct_size = sizeof(impact_recorder), .sample = take});
     snprintf(message, 300, "%s", impact_scene_message(scene));
     impact_scene_destroy(scene);
+    rounding_after = fegetround();
+    fesetround(FE_TONEAREST);
     return status;
 }
 
@@ -91,6 +97,26 @@ static void traps_are_survived(void **state)
 #else
     skip();
 #endif
+}
+
+/* A host that rounds otherwise gets the same bits, and its rounding back. */
+static void rounding_is_to_nearest(void **state)
+{
+    (void)state;
+    const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+    for (int kind = 0; kind < (impact_has(IMPACT_PART_CVODE) ? 4 : 1); kind++) {
+        char message[300];
+        if (run(kind, message) < 0) fail_msg("%s", message);
+        const uint64_t wanted = hash;
+        for (int m = 0; m < 3; m++) {
+            rounding = modes[m];
+            const impact_status status = run(kind, message);
+            rounding = FE_TONEAREST;
+            if (status < 0) fail_msg("%s", message);
+            assert_true(hash == wanted);
+            assert_int_equal(rounding_after, modes[m]);
+        }
+    }
 }
 
 static void the_time_of_impact_too(void **state)
@@ -137,6 +163,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(traps_are_survived),
+        cmocka_unit_test(rounding_is_to_nearest),
         cmocka_unit_test(the_time_of_impact_too),
         cmocka_unit_test(flush_to_zero_is_refused),
     };
