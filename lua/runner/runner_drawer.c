@@ -43,7 +43,8 @@ static bool take_files(int link, unsigned long long *room, int files[FILES])
     struct iovec text = {room, sizeof *room};
     struct msghdr message = message_of(&text, &own);
     if (recvmsg(link, &message, 0) != (ssize_t)sizeof *room) return false;
-    const struct cmsghdr *header = CMSG_FIRSTHDR(&message);
+    const struct cmsghdr *header =
+        CMSG_FIRSTHDR(&message); /* NULL is unreachable: the runner alone sends, always files */
     if (!header || header->cmsg_len != CMSG_LEN(sizeof(int) * FILES)) return false;
     memcpy(files, CMSG_DATA(header), sizeof(int) * FILES);
     return true;
@@ -128,7 +129,7 @@ int impact_runner_gnuplot(impact_runner *runner, int commands, int picture, int 
     control own = {0};
     struct iovec text = {&room, sizeof room};
     struct msghdr message = message_of(&text, &own);
-    struct cmsghdr *header = CMSG_FIRSTHDR(&message);
+    struct cmsghdr *header = CMSG_FIRSTHDR(&message); /* NULL is unreachable: there is room */
     *header = (struct cmsghdr){.cmsg_len = CMSG_LEN(sizeof files), .cmsg_level = SOL_SOCKET, .cmsg_type = SCM_RIGHTS};
     memcpy(CMSG_DATA(header), files, sizeof files);
     int gnuplot = -1, code = -1;

@@ -71,8 +71,7 @@ int impact_runner_view_record(lua_State *L, impact_runner *runner)
     char name[256];
     const char *slash = strrchr(runner->script, '/');
     snprintf(name, sizeof name, "%s", slash ? slash + 1 : runner->script);
-    char *tail = strrchr(name, '.');
-    if (tail) *tail = '\0';
+    *strrchr(name, '.') = '\0'; /* that of .run */
     const int code = impact_runner_view(L, lua_gettop(L), runner, name);
     if (code == IMPACT_EXIT_OK && !runner->quiet) printf("wrote %s/%s.%s\n", runner->directory, name, runner->ending);
     return code;
