@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ode: y' = f(t, y) to the next root of g(t, y), by SUNDIALS' CVODE, by collocation, or by the classical Runge-Kutta
- * method with a fixed step. Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT to the methods of
- * CVODE.
+ * ode: y' = f(t, y) to the next root of g(t, y), by SUNDIALS' CVODE, by collocation, or by Runge-Kutta methods of order
+ * 8, and of order 4 with a fixed step. Without IMPACT_WITH_CVODE, impact_ode_create answers IMPACT_EABSENT to the
+ * methods of CVODE.
  */
 #ifndef IMPACT_ODE_H
 #define IMPACT_ODE_H
@@ -27,7 +27,11 @@ typedef enum impact_ode_method {
     /* Collocation at Lobatto's eight nodes, of order 14, with a step of its own choice and fixed-point iteration: for
      * smooth problems that are not stiff; no memory of the steps before is needed, so that a start costs little. Roots
      * are looked for between the nodes; samples by the step's polynomial, of degree 8, to the tolerance. */
-    IMPACT_ODE_LOBATTO
+    IMPACT_ODE_LOBATTO,
+    /* Dormand and Prince's explicit Runge-Kutta method of order 8 (Hairer's DOP853), with a step of its own choice: for
+     * motion that is not smooth for long, or that asks for shorter and shorter steps. Roots are looked for in both
+     * halves of a step; samples by its polynomial of order 7. */
+    IMPACT_ODE_DOP853
 } impact_ode_method;
 
 /* y' into rate[n]. Return 0; > 0: try a smaller step; < 0: give up. */

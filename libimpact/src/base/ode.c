@@ -18,7 +18,8 @@ static bool valid(const impact_ode_def *def)
     switch (def->method) {
     case IMPACT_ODE_ADAMS:
     case IMPACT_ODE_BDF:
-    case IMPACT_ODE_LOBATTO: return def->step == 0 && def->relative_tolerance > 0 && def->absolute_tolerance >= 0;
+    case IMPACT_ODE_LOBATTO:
+    case IMPACT_ODE_DOP853: return def->step == 0 && def->relative_tolerance > 0 && def->absolute_tolerance >= 0;
     case IMPACT_ODE_RK4: return def->step > 0 && isfinite(def->step);
     }
     return false;
@@ -27,6 +28,7 @@ static bool valid(const impact_ode_def *def)
 static const imp_ode_driver *driver_of(impact_ode_method method)
 {
     if (method == IMPACT_ODE_RK4) return &imp_ode_rk4;
+    if (method == IMPACT_ODE_DOP853) return &imp_ode_dop853;
     return method == IMPACT_ODE_LOBATTO ? &imp_ode_lobatto : imp_cvode();
 }
 

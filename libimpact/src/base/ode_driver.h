@@ -37,7 +37,7 @@ struct impact_ode {
     char message[256];
 };
 
-extern const imp_ode_driver imp_ode_rk4, imp_ode_lobatto;
+extern const imp_ode_driver imp_ode_rk4, imp_ode_lobatto, imp_ode_dop853;
 
 /* "integration stopped at t = ..., step ...: why". IMPACT_EINTEGRATOR. */
 impact_status imp_ode_explain(impact_ode *ode, double reached, double step, const char *why);

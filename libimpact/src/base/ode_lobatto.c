@@ -17,7 +17,7 @@
  *
  * Hairer, Norsett, Wanner 1993, II.7; Everhart 1985 and Rein and Spiegel 2015 for its use between encounters.
  */
-#include "base/ode_roots.h"
+#include "base/ode_one_step.h"
 #include "base/tolerances.h"
 
 #include <math.h>
@@ -34,25 +34,14 @@ typedef struct lobatto_tables {
 } lobatto_tables;
 
 typedef struct lobatto_ode {
-    impact_ode ode;
+    imp_one_step one;
     lobatto_tables tables;
-    double *memory;
-    double *y, *before;  /* now; at the step's begin */
-    double *rate[NODES]; /* f_j; rate[LAST] is that of the next step's begin */
-    double *term[TERMS]; /* the last step's polynomial: y = sum_m term[m] s^m */
-    double *absolute, *scale, *guess;
-    imp_ode_roots roots;
-    double relative;
-    double limit;   /* of the step; 0: none */
-    double h;       /* the next step's */
-    double ratio;   /* of the last sweep's change to that before, in the last step; it goes as the step's length */
-    bool fresh;     /* no step since the start: rate[LAST] and roots.value[1] are not those of y yet */
-    bool continued; /* there is a polynomial to go on with */
-    bool at_root;   /* the step was cut off: roots.state is the state now */
-    impact_ode_counts counts;
+    double *rate[NODES]; /* f_j */
+    double *guess;       /* a component's error */
+    double ratio;        /* of the last sweep's change to that before, in the last step; it goes as the step's length */
 } lobatto_ode;
 
-static lobatto_ode *lobatto_of(const impact_ode *ode) { return (lobatto_ode *)(uintptr_t)ode; }
+static lobatto_ode *lobatto_of(const imp_one_step *one) { return (lobatto_ode *)(uintptr_t)one; }
 
 /* ---- tables ---- */
 
@@ -98,106 +87,13 @@ static void make_tables(lobatto_tables *t)
     }
 }
 
-/* ---- memory ---- */
-
-static impact_status lobatto_open(impact_ode *ode)
-{
-    lobatto_ode *lo = lobatto_of(ode);
-    enum { VECTORS = 5 + NODES + TERMS };
-    const size_t n = (size_t)ode->def.size;
-    lo->memory = imp_arena_take(ode->arena, VECTORS * n + imp_ode_roots_room(ode), sizeof *lo->memory);
-    if (!lo->memory) return IMPACT_ENOMEM;
-    double *next = imp_ode_roots_lay_out(ode, &lo->roots, lo->memory);
-    double **vectors[] = {&lo->y, &lo->before, &lo->absolute, &lo->scale, &lo->guess};
-    for (int k = 0; k < 5; k++, next += n) *vectors[k] = next;
-    for (int k = 0; k < NODES; k++, next += n) lo->rate[k] = next;
-    for (int k = 0; k < TERMS; k++, next += n) lo->term[k] = next;
-    lo->relative = ode->def.relative_tolerance;
-    for (int i = 0; i < ode->def.size; i++)
-        lo->absolute[i] = ode->def.absolute_tolerances ? ode->def.absolute_tolerances[i] : ode->def.absolute_tolerance;
-    make_tables(&lo->tables);
-    return IMPACT_OK;
-}
-
-static void lobatto_close(impact_ode *ode) { imp_arena_give(ode->arena, lobatto_of(ode)->memory); }
-
-static void lobatto_resize(impact_ode *ode) { (void)ode; }
-
-static impact_status lobatto_start(impact_ode *ode, double t, const double *y)
-{
-    (void)t;
-    lobatto_ode *lo = lobatto_of(ode);
-    memcpy(lo->y, y, sizeof *y * (size_t)ode->size);
-    lo->fresh = true;
-    lo->at_root = lo->continued = false;
-    lo->h = 0;
-    lo->counts = (impact_ode_counts){0};
-    lo->roots.calls = 0;
-    return IMPACT_OK;
-}
-
-static bool lobatto_limit_step(impact_ode *ode, double max_step)
-{
-    if (!(max_step >= 0)) return false;
-    lobatto_of(ode)->limit = max_step;
-    return true;
-}
-
-static impact_status lobatto_set_tolerances(impact_ode *ode, double relative, const double *absolute, double same)
-{
-    lobatto_ode *lo = lobatto_of(ode);
-    lo->relative = relative;
-    for (int i = 0; i < ode->size; i++) lo->absolute[i] = absolute ? absolute[i] : same;
-    return IMPACT_OK;
-}
-
-/* ---- f ---- */
-
-static impact_status gave_up(lobatto_ode *lo, double h)
-{
-    return imp_ode_explain(&lo->ode, lo->ode.t, h, "the right-hand side gave up");
-}
-
-/* f into rate; > 0, < 0: as the right-hand side answers. */
-static int node_rate(lobatto_ode *lo, double t, const double *y, double *rate)
-{
-    lo->counts.rhs_calls++;
-    return lo->ode.def.rhs(t, y, rate, lo->ode.def.context);
-}
-
 /* ---- the polynomial ---- */
 
-/* Its derivative at s, in t. At the end, s = 0, which is asked for most, that is one term. */
-static void polynomial_at(const lobatto_ode *lo, int derivative, double s, double h, double *y)
-{
-    const int n = lo->ode.size, most = s != 0 ? TERMS - 1 : derivative;
-    for (int m = most; m >= derivative; m--) {
-        double factor = 1;
-        for (int k = 0; k < derivative; k++) factor *= (m - k) / h;
-        for (int i = 0; i < n; i++) y[i] = (m < most ? y[i] * s : 0) + factor * lo->term[m][i];
-    }
-}
-
-static impact_status lobatto_interpolate(const impact_ode *ode, double t, int derivative, double *y)
-{
-    const lobatto_ode *lo = lobatto_of(ode);
-    const double h = ode->step_end - ode->step_begin;
-    const double low = fmin(ode->step_begin, ode->step_end), high = fmax(ode->step_begin, ode->step_end);
-    const double slack = 100 * (nextafter(high, INFINITY) - high); /* as CVODE has it: roundings of t */
-    if (derivative < 0 || derivative >= TERMS || !(t >= low - slack && t <= high + slack)) return IMPACT_EARGUMENT;
-    if (lo->fresh) {
-        if (derivative > 0) return IMPACT_EARGUMENT; /* no step was taken yet */
-        memcpy(y, lo->y, sizeof *y * (size_t)ode->size);
-        return IMPACT_OK;
-    }
-    polynomial_at(lo, derivative, (t - ode->step_end) / h, h, y);
-    return IMPACT_OK;
-}
-
 /* From p_k to powers of s, over the integral; y at the end stands in term[0]. */
-static void make_polynomial(lobatto_ode *lo, double h)
+static void make_polynomial(imp_one_step *one, double h)
 {
-    for (int i = 0; i < lo->ode.size; i++) {
+    const lobatto_ode *lo = lobatto_of(one);
+    for (int i = 0; i < one->ode.size; i++) {
         double p[NODES];
         for (int k = 0; k < NODES; k++) {
             p[k] = 0;
@@ -207,52 +103,34 @@ static void make_polynomial(lobatto_ode *lo, double h)
         for (int m = 0; m < NODES; m++) {
             double sum = 0;
             for (int k = m; k < NODES; k++) sum += lo->tables.power[k][m] * p[k];
-            lo->term[m + 1][i] = h / (m + 1) * sum;
+            one->term[m + 1][i] = h / (m + 1) * sum;
         }
-        lo->term[0][i] = lo->y[i];
     }
 }
 
 /* ---- a step ---- */
 
-/* What counts in each component: the tolerance, but never what rounding makes of it. */
-static void set_scale(lobatto_ode *lo, double h)
-{
-    const double *f = lo->rate[0];
-    for (int i = 0; i < lo->ode.size; i++) {
-        const double size = fabs(lo->before[i]), way = fabs(h * f[i]);
-        lo->scale[i] = fmax(lo->relative * size + lo->absolute[i], IMP_LOBATTO_ROUNDING * (size + way));
-        if (!(lo->scale[i] > 0)) lo->scale[i] = IMP_LOBATTO_LEAST;
-    }
-}
-
-static double norm_of(const lobatto_ode *lo, const double *v)
-{
-    double most = 0;
-    for (int i = 0; i < lo->ode.size; i++) most = fmax(most, fabs(v[i]) / lo->scale[i]);
-    return most;
-}
-
 /* y_i, by the rates as they stand. */
 static void node_state(const lobatto_ode *lo, int i, double h, double *y)
 {
-    const int n = lo->ode.size;
+    const int n = lo->one.ode.size;
     for (int k = 0; k < n; k++) y[k] = 0;
     for (int j = 0; j < NODES; j++)
         for (int k = 0; k < n; k++) y[k] += lo->tables.sum[i][j] * lo->rate[j][k];
-    for (int k = 0; k < n; k++) y[k] = lo->before[k] + h * y[k];
+    for (int k = 0; k < n; k++) y[k] = lo->one.before[k] + h * y[k];
 }
 
-/* The rates at the nodes as they may be expected: the polynomial continued, or along a line with the rate `guess`. */
+/* The rates at the nodes as they may be expected: the polynomial continued, or at a start along a line. */
 static void predict(lobatto_ode *lo, double t, double h)
 {
-    const double last = lo->ode.step_end - lo->ode.step_begin;
+    const imp_one_step *one = &lo->one;
+    const double last = one->ode.step_end - one->ode.step_begin;
     for (int j = 1; j < NODES; j++) {
         const double after = lo->tables.place[j] * h;
-        if (lo->continued)
-            polynomial_at(lo, 1, (t + after - lo->ode.step_end) / last, last, lo->rate[j]);
+        if (!one->fresh)
+            imp_one_step_at(one, 1, (t + after - one->ode.step_end) / last, last, lo->rate[j]);
         else
-            for (int i = 0; i < lo->ode.size; i++) lo->rate[j][i] = lo->rate[0][i] + after * lo->guess[i];
+            for (int i = 0; i < one->ode.size; i++) lo->rate[j][i] = one->first[i] + after * one->slope[i];
     }
 }
 
@@ -261,199 +139,122 @@ static double node_time(const lobatto_ode *lo, int j, double t, double end)
     return j == LAST ? end : t + lo->tables.place[j] * (end - t);
 }
 
-/* Where f is asked: at t_stop, where it may jump, before that. */
-static double asked_at(double time, double t, double t_stop)
-{
-    const double inside = t_stop - copysign(IMP_SWITCH_ROUNDING * fabs(t_stop), t_stop - t);
-    return time == t_stop && (inside - t) * (t_stop - t) > 0 ? inside : time;
-}
-
-typedef enum lobatto_outcome { STANDS, TOO_LONG, GAVE_UP } lobatto_outcome;
-
 /* Once over the nodes; the greatest change of a rate, as a way in scales. */
-static lobatto_outcome sweep(lobatto_ode *lo, double t, double end, double t_stop, double *change)
+static imp_one_step_outcome sweep(lobatto_ode *lo, double t, double end, double t_stop, double *change)
 {
+    imp_one_step *one = &lo->one;
     const double h = end - t;
+    double *rate = one->roots.state;
     *change = 0;
     for (int j = 1; j < NODES; j++) {
-        node_state(lo, j, h, lo->y);
-        const double time = asked_at(node_time(lo, j, t, end), t, t_stop);
-        const int answer = node_rate(lo, time, lo->y, lo->roots.state);
-        if (answer != 0) return answer > 0 ? TOO_LONG : GAVE_UP;
-        for (int i = 0; i < lo->ode.size; i++) {
-            const double here = fabs(h * (lo->roots.state[i] - lo->rate[j][i])) / lo->scale[i];
-            if (!(here <= IMP_LOBATTO_FAR)) return TOO_LONG;
+        node_state(lo, j, h, one->y);
+        const imp_one_step_outcome outcome = imp_one_step_rate(one, node_time(lo, j, t, end), t_stop, one->y, rate);
+        if (outcome != IMP_STEP_STANDS) return outcome;
+        for (int i = 0; i < one->ode.size; i++) {
+            const double here = fabs(h * (rate[i] - lo->rate[j][i])) / one->scale[i];
+            if (!(here <= IMP_LOBATTO_FAR)) return IMP_STEP_TOO_LONG;
             *change = fmax(*change, here);
-            lo->rate[j][i] = lo->roots.state[i];
+            lo->rate[j][i] = rate[i];
         }
     }
-    return STANDS;
+    return IMP_STEP_STANDS;
 }
 
 /* Sweeps until what is left of them, as a geometric series would have it, is a tenth of the tolerance. */
-static lobatto_outcome iterate(lobatto_ode *lo, double t, double end, double t_stop)
+static imp_one_step_outcome iterate(lobatto_ode *lo, double t, double end, double t_stop)
 {
     enum { MOST = 15 };
     double before = INFINITY;
     lo->ratio = 0;
     for (int k = 0; k < MOST; k++) {
         double change;
-        const lobatto_outcome outcome = sweep(lo, t, end, t_stop, &change);
-        if (outcome != STANDS) return outcome;
+        const imp_one_step_outcome outcome = sweep(lo, t, end, t_stop, &change);
+        if (outcome != IMP_STEP_STANDS) return outcome;
         if (k > 0) lo->ratio = change / before;
-        if (change <= IMP_LOBATTO_LEFT) return STANDS;
-        if (k > 0 && lo->ratio < 1 && change * lo->ratio <= IMP_LOBATTO_LEFT * (1 - lo->ratio)) return STANDS;
-        if (k > 1 && lo->ratio > IMP_LOBATTO_SLOW) return TOO_LONG;
+        if (change <= IMP_LOBATTO_LEFT) return IMP_STEP_STANDS;
+        if (k > 0 && lo->ratio < 1 && change * lo->ratio <= IMP_LOBATTO_LEFT * (1 - lo->ratio)) return IMP_STEP_STANDS;
+        if (k > 1 && lo->ratio > IMP_LOBATTO_SLOW) return IMP_STEP_TOO_LONG;
         before = change;
     }
-    return TOO_LONG;
+    return IMP_STEP_TOO_LONG;
 }
 
 /* The error of the polynomial, in scales. */
 static double error_of(lobatto_ode *lo, double h)
 {
+    const imp_one_step *one = &lo->one;
     double size[NODES];
     for (int k = LAST - 3; k < NODES; k++) {
-        for (int i = 0; i < lo->ode.size; i++) {
+        for (int i = 0; i < one->ode.size; i++) {
             double p = 0;
-            for (int j = 0; j < NODES; j++) p += lo->tables.transform[k][j] * (lo->rate[j][i] - lo->rate[0][i]);
-            const double rounding = IMP_LOBATTO_ROUNDING * fabs(h * lo->rate[0][i]);
+            for (int j = 0; j < NODES; j++) p += lo->tables.transform[k][j] * (lo->rate[j][i] - one->first[i]);
+            const double rounding = IMP_ONE_STEP_ROUNDING * fabs(h * one->first[i]);
             lo->guess[i] = fmax(fabs(h * p) / (2 * k + 1) - rounding, 0);
         }
-        size[k] = norm_of(lo, lo->guess);
+        size[k] = imp_one_step_norm(one, lo->guess);
     }
     const double last = fmax(size[LAST], size[LAST - 1]), earlier = fmax(size[LAST - 2], size[LAST - 3]);
     return earlier > last ? last * last / earlier : last;
 }
 
-/* The first step, by f and its rate, which stays in guess: h^9 of what the rate alone tells is a hundredth of the
- * tolerance (Hairer, Norsett, Wanner 1993, II.4). */
-static lobatto_outcome first_step(lobatto_ode *lo, double t, double left)
-{
-    set_scale(lo, 0);
-    const double size = norm_of(lo, lo->before), fast = norm_of(lo, lo->rate[0]);
-    double h = size > IMP_LOBATTO_NOTHING && fast > IMP_LOBATTO_NOTHING ? 0.01 * size / fast : IMP_LOBATTO_FIRST;
-    h = fmin(h, 0.5 * fabs(left));
-    for (int i = 0; i < lo->ode.size; i++) lo->y[i] = lo->before[i] + copysign(h, left) * lo->rate[0][i];
-    const int answer = node_rate(lo, t + copysign(h, left), lo->y, lo->roots.state);
-    if (answer < 0) return GAVE_UP;
-    for (int i = 0; i < lo->ode.size; i++)
-        lo->guess[i] = answer == 0 ? (lo->roots.state[i] - lo->rate[0][i]) / copysign(h, left) : 0;
-    const double turning = fmax(fast, norm_of(lo, lo->guess));
-    lo->h = turning > 0 ? pow(0.01 / turning, 1.0 / TERMS) : fabs(left);
-    return STANDS;
-}
-
-/* From here on: after a root from there, where the rates are not known yet. */
-static impact_status begin_collocation(lobatto_ode *lo, double t, double left)
-{
-    const size_t bytes = sizeof *lo->y * (size_t)lo->ode.size;
-    if (lo->at_root) memcpy(lo->y, lo->roots.state, bytes);
-    if (lo->fresh || lo->at_root) {
-        if (node_rate(lo, t, lo->y, lo->rate[LAST]) != 0) return gave_up(lo, 0);
-        const impact_status seen = imp_ode_roots_at(&lo->ode, &lo->roots, t, lo->y, lo->roots.value[1]);
-        if (seen != IMPACT_OK) return seen;
-    }
-    memcpy(lo->before, lo->y, bytes);
-    memcpy(lo->rate[0], lo->rate[LAST], bytes);
-    memcpy(lo->roots.value[0], lo->roots.value[1], sizeof *lo->y * (size_t)lo->ode.roots);
-    if (!lo->fresh) return IMPACT_OK;
-    return first_step(lo, t, left) == GAVE_UP ? gave_up(lo, 0) : IMPACT_OK;
-}
-
-/* The end of the step: t_stop, which a last step longer by a rounding reaches, no sliver being left over, or before. */
-static double end_of(const lobatto_ode *lo, double t, double t_stop)
-{
-    const double left = t_stop - t, h = lo->limit > 0 ? fmin(lo->h, lo->limit) : lo->h;
-    return fabs(left) <= h * (1 + IMP_RK4_SLIVER) ? t_stop : t + copysign(h, left);
-}
-
 /* The next step's length: as the error, which goes as h^9, and the sweeps allow. Of sweeps that shrink errors by r,
  * which goes as h, a time takes 1/(h log 1/r): the least at r = 1/e. */
-static double next_length(const lobatto_ode *lo, double h, lobatto_outcome outcome, double error)
+static double next_length(const lobatto_ode *lo, double h, imp_one_step_outcome outcome, double error)
 {
-    const double least = 0.1, part = outcome == STANDS ? 0.9 * pow(fmax(error, IMP_LOBATTO_GROWTH), -1.0 / TERMS) : 0.5;
+    const double least = 0.1,
+                 part = outcome == IMP_STEP_STANDS ? 0.9 * pow(fmax(error, IMP_ONE_STEP_GROWTH), -1.0 / TERMS) : 0.5;
     return fabs(h) * fmax(least, fmin(part, IMP_LOBATTO_RATIO / lo->ratio));
 }
 
 /* Shorter and shorter until it stands. */
-static impact_status take_collocation(lobatto_ode *lo, double t, double t_stop, double *end)
+static impact_status take_collocation(imp_one_step *one, double t, double t_stop, double *end)
 {
+    lobatto_ode *lo = lobatto_of(one);
     for (double failed = INFINITY;;) {
-        *end = end_of(lo, t, t_stop);
+        *end = imp_one_step_end(one, t, t_stop);
         const double h = *end - t;
-        if (!(h != 0 && fabs(h) < failed)) /* a rounding of t is the shortest */
-            return imp_ode_explain(&lo->ode, t, lo->h, "the error test fails however short the step is");
-        set_scale(lo, h);
+        if (!(h != 0 && fabs(h) < failed)) return imp_one_step_too_short(one);
+        imp_one_step_set_scale(one, h);
         predict(lo, t, h);
-        const lobatto_outcome outcome = iterate(lo, t, *end, t_stop);
-        if (outcome == GAVE_UP) return gave_up(lo, h);
-        const double error = outcome == STANDS ? error_of(lo, h) : INFINITY;
-        lo->h = next_length(lo, h, outcome, error);
+        const imp_one_step_outcome outcome = iterate(lo, t, *end, t_stop);
+        if (outcome == IMP_STEP_GAVE_UP) return imp_one_step_gave_up(one, h);
+        const double error = outcome == IMP_STEP_STANDS ? error_of(lo, h) : INFINITY;
+        one->h = next_length(lo, h, outcome, error);
+        node_state(lo, LAST, h, one->y);
         if (error <= 1) return IMPACT_OK;
         failed = fabs(h);
-        lo->counts.error_test_failures++;
-        if (lo->fresh) memset(lo->guess, 0, sizeof *lo->guess * (size_t)lo->ode.size);
+        one->counts.error_test_failures++;
+        if (one->fresh) memset(one->slope, 0, sizeof *one->slope * (size_t)one->ode.size);
     }
 }
 
-/* Roots between each two neighbours of the nodes: what comes and goes within a step is seen where the rates were. */
-static impact_status look_for_roots(lobatto_ode *lo, double t, bool *found)
+static impact_status lobatto_open(impact_ode *ode)
 {
-    impact_ode *ode = &lo->ode;
-    double low = t;
-    for (int j = 1; j < NODES && ode->roots > 0; j++) {
-        const double high = node_time(lo, j, t, ode->step_end);
-        if (j > 1) memcpy(lo->roots.value[0], lo->roots.value[1], sizeof *lo->y * (size_t)ode->roots);
-        impact_status status = lobatto_interpolate(ode, high, 0, lo->roots.state);
-        if (status == IMPACT_OK) status = imp_ode_roots_at(ode, &lo->roots, high, lo->roots.state, lo->roots.value[1]);
-        if (status == IMPACT_OK) status = imp_ode_roots_first(ode, &lo->roots, low, high, found);
-        if (status != IMPACT_OK || *found) return status;
-        low = high;
-    }
-    return IMPACT_OK;
-}
-
-static impact_status lobatto_step(impact_ode *ode, double t_stop, double *y, bool *found)
-{
-    lobatto_ode *lo = lobatto_of(ode);
-    const double t = ode->t;
-    double end = t;
-    *found = false;
-    if (t == t_stop) {
-        memcpy(y, lo->at_root ? lo->roots.state : lo->y, sizeof *y * (size_t)ode->size);
-        return IMPACT_OK;
-    }
-    impact_status status = begin_collocation(lo, t, t_stop - t);
-    if (status == IMPACT_OK) status = take_collocation(lo, t, t_stop, &end);
+    static const imp_one_step_method method = {.terms = TERMS,
+                                               .order = TERMS,
+                                               .vectors = NODES + 1,
+                                               .take = take_collocation,
+                                               .make_polynomial = make_polynomial};
+    imp_one_step *one = (imp_one_step *)ode;
+    lobatto_ode *lo = lobatto_of(one);
+    double *next;
+    const impact_status status = imp_one_step_open(ode, &method, &next);
     if (status != IMPACT_OK) return status;
-    node_state(lo, LAST, end - t, lo->y);
-    ode->step_begin = t, ode->step_end = ode->t = end;
-    make_polynomial(lo, end - t);
-    lo->fresh = lo->at_root = false;
-    lo->continued = true;
-    status = look_for_roots(lo, t, found);
-    if (status != IMPACT_OK) return status;
-    lo->counts.steps++;
-    lo->at_root = *found;
-    memcpy(y, *found ? lo->roots.state : lo->y, sizeof *y * (size_t)ode->size);
+    for (int k = 0; k < NODES; k++, next += ode->def.size) lo->rate[k] = next;
+    lo->guess = next;
+    make_tables(&lo->tables);
+    one->first = lo->rate[0], one->last = lo->rate[LAST];
+    one->look = lo->tables.place + 1, one->looks = LAST; /* what comes and goes within a step is seen at the nodes */
     return IMPACT_OK;
-}
-
-static impact_ode_counts lobatto_count(const impact_ode *ode)
-{
-    impact_ode_counts counts = lobatto_of(ode)->counts;
-    counts.root_calls = lobatto_of(ode)->roots.calls;
-    return counts;
 }
 
 const imp_ode_driver imp_ode_lobatto = {.bytes = sizeof(lobatto_ode),
                                         .open = lobatto_open,
-                                        .close = lobatto_close,
-                                        .resize = lobatto_resize,
-                                        .start = lobatto_start,
-                                        .limit_step = lobatto_limit_step,
-                                        .set_tolerances = lobatto_set_tolerances,
-                                        .step = lobatto_step,
-                                        .interpolate = lobatto_interpolate,
-                                        .count = lobatto_count};
+                                        .close = imp_one_step_close,
+                                        .resize = imp_one_step_resize,
+                                        .start = imp_one_step_start,
+                                        .limit_step = imp_one_step_limit,
+                                        .set_tolerances = imp_one_step_set_tolerances,
+                                        .step = imp_one_step_go,
+                                        .interpolate = imp_one_step_interpolate,
+                                        .count = imp_one_step_count};

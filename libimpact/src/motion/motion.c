@@ -47,12 +47,13 @@ void imp_motion_forget(imp_motion *motion)
     impact_ode_destroy(motion->bdf);
     impact_ode_destroy(motion->rk4);
     impact_ode_destroy(motion->lobatto);
+    impact_ode_destroy(motion->dop853);
     imp_arena_give(arena, motion->kept);
     imp_arena_give(arena, motion->y);
     imp_arena_give(arena, motion->found);
     imp_arena_give(arena, motion->probe);
     imp_arena_give(arena, motion->absolute);
-    motion->ode = motion->adams = motion->bdf = motion->rk4 = motion->lobatto = NULL;
+    motion->ode = motion->adams = motion->bdf = motion->rk4 = motion->lobatto = motion->dop853 = NULL;
     motion->kept = motion->y = motion->probe = motion->absolute = NULL;
     motion->found = NULL;
     motion->counted = (impact_ode_counts){0};

@@ -45,7 +45,7 @@ typedef struct imp_stride {
 
 typedef struct imp_motion {
     imp_world *world;
-    impact_motion_method method; /* AUTO and CVODE are the same here */
+    impact_motion_method method;
     double tolerance, step, rest_speed;
     bool *resting; /* per body: no longer watched for rest */
     imp_persist persist;
@@ -57,11 +57,11 @@ typedef struct imp_motion {
     imp_dense dense; /* the last step */
     imp_stride stride;
     impact_ode_counts counted; /* in the world's usage already */
+    long last_rates;           /* right-hand sides asked for by the last step */
 
     /* the integrator's side; absent until it is needed */
-    impact_ode *ode; /* the one at work: adams for smooth motion; bdf for what is stiff: slow slip after an onset,
-                      * forces that brake hard; or rk4, where it was asked for, for all */
-    impact_ode *adams, *bdf, *rk4, *lobatto;
+    impact_ode *ode; /* the one at work: motion_method.c */
+    impact_ode *adams, *bdf, *rk4, *lobatto, *dop853;
     int size, roots;
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated; */
     imp_touch *kept_touches;

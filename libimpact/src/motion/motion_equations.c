@@ -4,10 +4,11 @@
  * carried, and where surfaces are driven the drives' work). While a contact slides, time is not the variable of
  * integration: with s the slip speed, du/dt is singular where s dies out, since the direction of slip turns ever
  * faster. In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign
- * can flip. Where slip begins from rest it has no direction but its acceleration's (persist.c); once it has, the
- * direction is bound to the acceleration the more stiffly the slower the slip is: BDF takes that stretch, in t. Over a
- * flat place of a surface the contact point runs without bound, and with it the reactions: u' of persist_spot slows the
- * clock alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
+ * can flip. So CVODE has it; the explicit method's steps are as short as the slip asks (motion_guard.c), and tau is
+ * time since the stretch began, which has digits for the shortest. Where slip begins from rest it has no direction but
+ * its acceleration's (persist.c); once it has, the direction is bound to the acceleration the more stiffly the slower
+ * the slip is: BDF takes that stretch, in t. Over a flat place of a surface the contact point runs without bound, and
+ * with it the reactions: u' of persist_spot slows the clock alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
  */
 #include "motion/motion_equations.h"
 #include "base/number.h"
@@ -114,6 +115,8 @@ static double rubbing(const imp_persist *persist, int contact)
     return pressure < least * most ? pressure / (least * most) : 1;
 }
 
+static bool slip_slows_clock(const imp_motion *motion) { return motion->sliding && motion->ode != motion->dop853; }
+
 /* dt/dtau. */
 double imp_motion_clock(const imp_motion *motion)
 {
@@ -121,7 +124,7 @@ double imp_motion_clock(const imp_motion *motion)
     for (int c = 0; c < motion->persist.count && motion->creeping; c++)
         if (imp_touch_creeps(&motion->persist.touches[c]))
             slowness = hypot(slowness, motion->persist.touches[c].creep / motion->creep_scale);
-    for (int c = 0; c < motion->persist.count && motion->sliding; c++)
+    for (int c = 0; c < motion->persist.count && slip_slows_clock(motion); c++)
         if (motion->persist.touches[c].mode == IMP_SLIDE && !motion->persist.touches[c].onset &&
             motion->persist.touches[c].friction > 0)
             slowness += rubbing(&motion->persist, c) * motion->slip_scale / motion->persist.touches[c].speed;

@@ -38,7 +38,8 @@ static impact_status choose_integrator(imp_motion *motion, impact_ode_method met
     impact_ode **all[] = {[IMPACT_ODE_ADAMS] = &motion->adams,
                           [IMPACT_ODE_BDF] = &motion->bdf,
                           [IMPACT_ODE_RK4] = &motion->rk4,
-                          [IMPACT_ODE_LOBATTO] = &motion->lobatto};
+                          [IMPACT_ODE_LOBATTO] = &motion->lobatto,
+                          [IMPACT_ODE_DOP853] = &motion->dop853};
     impact_ode **ode = all[method];
     impact_status status = imp_motion_make_room(motion);
     if (status == IMPACT_OK && !*ode) {
@@ -64,9 +65,9 @@ static impact_status choose_integrator(imp_motion *motion, impact_ode_method met
 
 void imp_motion_count_work(imp_motion *motion)
 {
-    const impact_ode *all[] = {motion->adams, motion->bdf, motion->rk4, motion->lobatto};
+    const impact_ode *all[] = {motion->adams, motion->bdf, motion->rk4, motion->lobatto, motion->dop853};
     long starts = 0, steps = 0, calls = 0;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 5; k++) {
         if (!all[k]) continue;
         const impact_ode_counts counts = impact_ode_count(all[k]);
         starts += counts.starts, steps += counts.steps, calls += counts.rhs_calls;
@@ -74,6 +75,7 @@ void imp_motion_count_work(imp_motion *motion)
     impact_usage *usage = &motion->world->usage;
     usage->integrator_starts += starts - motion->counted.starts;
     usage->integrator_steps += steps - motion->counted.steps;
+    motion->last_rates = calls - motion->counted.rhs_calls;
     usage->integrator_rhs_calls += calls - motion->counted.rhs_calls;
     motion->counted = (impact_ode_counts){.starts = starts, .steps = steps, .rhs_calls = calls};
 }
@@ -181,11 +183,13 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     motion->distrusted = false;
     if (motion->method == IMPACT_MOTION_RK4) return choose_integrator(motion, IMPACT_ODE_RK4);
     if (stiff != other) return choose_integrator(motion, IMPACT_ODE_BDF);
-    /* At one contact collocation takes a tenth of the steps and a third of the time, for two digits more (sphere_wall,
-     * turntable); of slip that begins its long steps lose seven digits, and of many contacts, whose modes end them
-     * again and again, they take five times as long as CVODE. */
-    const bool collocates = motion->method == IMPACT_MOTION_AUTO && motion->persist.count <= 1 && !slip_begins(motion);
-    return choose_integrator(motion, collocates ? IMPACT_ODE_LOBATTO : IMPACT_ODE_ADAMS);
+    if (motion->method != IMPACT_MOTION_AUTO) return choose_integrator(motion, IMPACT_ODE_ADAMS);
+    /* At one contact collocation takes a tenth of Adams' steps and a third of the time, for two digits more
+     * (sphere_wall, turntable). Of slip that begins its long steps lose seven digits; where slip dies out, and where
+     * the modes of many contacts end steps again and again, the explicit method takes a fourteenth of Adams' steps and
+     * a third of the time (ramp, dominoes; tests/lua/test_fading.lua). */
+    const bool collocates = motion->persist.count <= 1 && !slip_begins(motion);
+    return choose_integrator(motion, collocates ? IMPACT_ODE_LOBATTO : IMPACT_ODE_DOP853);
 }
 
 static double stretch_tolerance(const imp_motion *motion)

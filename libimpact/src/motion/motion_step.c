@@ -27,7 +27,7 @@ impact_status imp_motion_keep_step(imp_motion *motion, double t0, double t1)
     dense->size = motion->size;
     dense->clocked = imp_motion_clocked(motion);
     dense->stepped = false;
-    dense->fixed = motion->ode == motion->rk4 || motion->ode == motion->lobatto;
+    dense->fixed = motion->ode == motion->rk4 || motion->ode == motion->lobatto || motion->ode == motion->dop853;
     if (!(t1 > t0)) {
         keep_still(dense, motion->y);
         return IMPACT_OK;

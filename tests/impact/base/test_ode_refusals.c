@@ -33,11 +33,12 @@ static int swing_root(double t, const double *y, double *value, void *context)
     return ++w->roots == w->refused_root ? -1 : 0;
 }
 
-static const impact_ode_method methods[] = {IMPACT_ODE_RK4, IMPACT_ODE_LOBATTO, IMPACT_ODE_ADAMS, IMPACT_ODE_BDF};
+static const impact_ode_method methods[] = {IMPACT_ODE_RK4, IMPACT_ODE_LOBATTO, IMPACT_ODE_DOP853, IMPACT_ODE_ADAMS,
+                                            IMPACT_ODE_BDF};
 
 static bool is_here(impact_ode_method method)
 {
-    return method == IMPACT_ODE_RK4 || method == IMPACT_ODE_LOBATTO || impact_has(IMPACT_PART_CVODE);
+    return (method != IMPACT_ODE_ADAMS && method != IMPACT_ODE_BDF) || impact_has(IMPACT_PART_CVODE);
 }
 
 static impact_ode_def def_of(impact_ode_method method, witness *w)

@@ -1,14 +1,42 @@
 /* SPDX-License-Identifier: MIT
  *
- * Collocation at Lobatto's nodes on the oscillator y = (cos t, -sin t) and on problems known in closed form: its order,
- * errors as asked for at the ends of steps, between them and at roots, what comes and goes within a step, and what it
- * refuses.
+ * Collocation at Lobatto's nodes, and Dormand and Prince's method of order 8, on the oscillator y = (cos t, -sin t) and
+ * on problems known in closed form: its order, errors as asked for at the ends of steps, between them and at roots,
+ * what comes and goes within a step, and what it refuses.
  */
 #include <string.h>
 #include <impact/ode.h>
 #include "kit/ledger.h"
 
 static const double pi = 3.14159265358979323846;
+
+/* What one of them is tested by. */
+typedef struct one_step_case {
+    impact_ode_method method;
+    long steps;        /* at most, of the swing over ten units of time, to 1e-13 */
+    double between;    /* its polynomial's error, in tolerances */
+    double power[2];   /* of t in a rate: right throughout a step; and at its end */
+    double longest;    /* a step in which what comes and goes within .12 is seen */
+    double least_step; /* of that of powers */
+} one_step_case;
+
+static const one_step_case lobatto = {IMPACT_ODE_LOBATTO, 40, 10, {7, 13}, 0, 0.3},
+                           dop853 = {IMPACT_ODE_DOP853, 100, 100, {6, 7}, 0.2, 0.1};
+static const one_step_case *tested;
+
+static int test_lobatto(void **state)
+{
+    (void)state;
+    tested = &lobatto;
+    return 0;
+}
+
+static int test_dop853(void **state)
+{
+    (void)state;
+    tested = &dop853;
+    return 0;
+}
 
 typedef struct swing_answer {
     double refuse_from;
@@ -40,7 +68,7 @@ static impact_ode_def def_of(double tolerance, int roots)
                             .roots = roots,
                             .rhs = swing,
                             .root_functions = roots ? swing_roots : NULL,
-                            .method = IMPACT_ODE_LOBATTO,
+                            .method = tested->method,
                             .relative_tolerance = tolerance,
                             .absolute_tolerance = tolerance};
 }
@@ -92,18 +120,18 @@ static void errors_are_as_asked_for(void **state)
         for (int way = -1; way <= 1; way += 2) {
             const swing_errors e = errors_to(10 * way, tolerance, 0);
             assert_at_most(e.end, 10 * tolerance + 1e-15);
-            assert_at_most(e.within, 10 * tolerance + 1e-15);
+            assert_at_most(e.within, tested->between * tolerance + 1e-15);
         }
     }
-    assert_true(errors_to(10, 1e-13, 0).counts.steps < 40);
+    assert_true(errors_to(10, 1e-13, 0).counts.steps < tested->steps);
 }
 
-/* y0' = t^7 to rounding throughout a step, y1' = t^13 at its end. */
+/* y0' to rounding throughout a step, y1' at its end. */
 static int powers(double t, const double *y, double *rate, void *context)
 {
     (void)y, (void)context;
-    rate[0] = pow(t, 7);
-    rate[1] = pow(t, 13);
+    rate[0] = pow(t, tested->power[0]);
+    rate[1] = pow(t, tested->power[1]);
     return 0;
 }
 
@@ -119,25 +147,27 @@ static void polynomials_are_exact(void **state)
     bool found;
     do assert_int_equal(impact_ode_step(ode, 1, &t, y, NULL, &found), IMPACT_OK);
     while (t != 1);
-    assert_near(y[0], 1 + 1 / 8., 1e-15);
-    assert_near(y[1], 1 + 1 / 14., 1e-15);
+    assert_near(y[0], 1 + 1 / (tested->power[0] + 1), 1e-15);
+    assert_near(y[1], 1 + 1 / (tested->power[1] + 1), 1e-15);
     impact_ode_last_step(ode, &begin, &end);
-    assert_true(end - begin > 0.3); /* of order 14 where the step is long */
+    assert_true(end - begin > tested->least_step); /* exact where the step is long */
     for (int k = 0; k <= 10; k++) {
         const double at = k < 10 ? begin + 0.1 * k * (end - begin) : end;
         assert_int_equal(impact_ode_interpolate(ode, at, 0, y), IMPACT_OK);
-        assert_near(y[0], 1 + pow(at, 8) / 8, 1e-15);
+        const double p = tested->power[0];
+        assert_near(y[0], 1 + pow(at, p + 1) / (p + 1), 1e-15);
         assert_int_equal(impact_ode_interpolate(ode, at, 3, y), IMPACT_OK);
-        assert_near(y[0], 42 * pow(at, 5), 1e-11);
+        assert_near(y[0], p * (p - 1) * pow(at, p - 2), 1e-11);
     }
     impact_ode_destroy(ode);
 }
 
-static void roots_are_found_where_the_rates_were(void **state)
+static void roots_are_found_within_steps(void **state)
 {
     (void)state;
     const impact_ode_def def = def_of(1e-12, 3);
     impact_ode *ode = start_at(&def);
+    assert_int_equal(impact_ode_limit_step(ode, tested->longest), IMPACT_OK);
     const double expected[] = {0.24, 0.36, 0.5 * pi, 1.5 * pi, 2.5 * pi};
     const int which[] = {2, 2, 0, 0, 0}, way[] = {-1, 1, -1, 1, -1};
     for (int k = 0; k < 5; k++) {
@@ -326,12 +356,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_as_asked_for),
         cmocka_unit_test(polynomials_are_exact),
-        cmocka_unit_test(roots_are_found_where_the_rates_were),
+        cmocka_unit_test(roots_are_found_within_steps),
         cmocka_unit_test(roots_known_to_rounding_are_told),
         cmocka_unit_test(starts_anew),
         cmocka_unit_test(forces_jump_at_stops),
         cmocka_unit_test(what_cannot_be_followed_ends_with_words),
         cmocka_unit_test(a_smaller_problem_in_the_same_memory),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const int failed = cmocka_run_group_tests_name("collocation", tests, test_lobatto, NULL);
+    return failed + cmocka_run_group_tests_name("DOP853", tests, test_dop853, NULL);
 }
