@@ -166,11 +166,22 @@ static bool slip_begins(const imp_motion *motion)
     return false;
 }
 
+/* Up to where slip that begins may be led by its acceleration: twice the onset speed, as a step may go past that; or
+ * what it has already. */
+static double most_onset(const imp_motion *motion)
+{
+    double most = motion->world->onset_speed;
+    for (int c = 0; c < motion->persist.count; c++)
+        if (motion->persist.touches[c].onset) most = fmax(most, motion->persist.touches[c].speed);
+    return 2 * most;
+}
+
 /* Which variable and which method the stretch needs. */
 static impact_status choose_road(imp_motion *motion, double t, double t_end, const imp_state *states)
 {
     if (motion->persist.count > 0) imp_persist_solve(&motion->persist, motion->world, states, motion->loads);
     motion->slip_scale = slip_scale(motion, states);
+    motion->onset_most = most_onset(motion);
     grow_up(motion);
     motion->stiff = isfinite(slowest_slip(motion, true));
     const double grown = slowest_slip(motion, false);
@@ -185,11 +196,13 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     if (stiff != other) return choose_integrator(motion, IMPACT_ODE_BDF);
     if (motion->method != IMPACT_MOTION_AUTO) return choose_integrator(motion, IMPACT_ODE_ADAMS);
     /* At one contact collocation takes a tenth of Adams' steps and a third of the time, for two digits more
-     * (sphere_wall, turntable). Of slip that begins its long steps lose seven digits; where slip dies out, and where
+     * (sphere_wall, turntable); of slip that begins its long steps lose seven digits. Where slip dies out, and where
      * the modes of many contacts end steps again and again, the explicit method takes a fourteenth of Adams' steps and
-     * a third of the time (ramp, dominoes; tests/lua/test_fading.lua). */
-    const bool collocates = motion->persist.count <= 1 && !slip_begins(motion);
-    return choose_integrator(motion, collocates ? IMPACT_ODE_LOBATTO : IMPACT_ODE_DOP853);
+     * a third of the time (ramp, dominoes; tests/lua/test_fading.lua). What creeps over flat places, pressed by 1e8
+     * times its weight, leaves rates whose rounding one step's errors are taken from: Adams' history is above that. */
+    if (motion->persist.count <= 1 && !slip_begins(motion)) return choose_integrator(motion, IMPACT_ODE_LOBATTO);
+    const bool explicitly = !motion->creeping && (motion->sliding || motion->persist.count > 1);
+    return choose_integrator(motion, explicitly ? IMPACT_ODE_DOP853 : IMPACT_ODE_ADAMS);
 }
 
 static double stretch_tolerance(const imp_motion *motion)

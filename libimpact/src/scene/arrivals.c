@@ -60,7 +60,7 @@ static impact_status conclude(imp_island *island, impact_status status)
 {
     impact_scene *scene = island->scene;
     step_where_unsettled(island, &status);
-    const bool impatient = imp_island_loses_patience(island);
+    const bool impatient = imp_island_loses_patience(island, 0);
     if (status == IMPACT_OK && (island->lies || impatient || imp_island_needs_steps(island))) {
         imp_island *stepped;
         imp_scene_receipt_look(island);
@@ -225,7 +225,8 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     island->t = t;
     if (!finish(island)) return IMPACT_ESINK;
     if (island->stepped) return continue_steps(island);
-    if (island->end.kind == IMP_END_TIME && imp_island_loses_patience(island)) return turn_to_steps(scene, island, t);
+    if (island->end.kind == IMP_END_TIME && imp_island_loses_patience(island, island->motion.last_rates))
+        return turn_to_steps(scene, island, t);
     if (island->end.kind == IMP_END_TIME) return go_on_or_by_steps(scene, island, t);
     if (!imp_scene_account_before(scene)) return IMPACT_ESINK;
     if (crosses_border(island)) return cross_border(scene, island, t);

@@ -117,7 +117,7 @@ static void walk_body(imp_archive *a, imp_saved_body *b)
     imp_archive_int(a, &b->stalls, 0, INT32_MAX);
     imp_archive_double(a, &b->last_event);
     imp_archive_double(a, &b->patience.since);
-    imp_archive_long(a, &b->patience.count);
+    imp_archive_long(a, &b->patience.work);
 }
 
 static void walk_island(imp_archive *a, imp_saved_island *i)

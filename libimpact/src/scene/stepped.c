@@ -34,10 +34,11 @@ static bool meets_faces(const imp_island *island)
     return imp_scene_holds_features(island);
 }
 
-bool imp_island_loses_patience(imp_island *island)
+bool imp_island_loses_patience(imp_island *island, long rates)
 {
     if (island->stepped || island->scene->piles == IMPACT_PILES_EXACT) return false;
-    if (!is_pile(&island->world) && !meets_faces(island)) return false;
+    const bool faces = meets_faces(island);
+    if (!faces && !is_pile(&island->world)) return false;
     const double natural = imp_pile_natural_time(&island->world, island->states);
     long most = 0;
     for (int i = 0; i < island->world.body_count; i++) {
@@ -45,9 +46,10 @@ bool imp_island_loses_patience(imp_island *island)
         imp_patience *patience = &island->scene->tracks.tracks[body->index].patience;
         if (body->is_static) continue;
         if (!(fabs(island->t - patience->since) <= natural)) *patience = (imp_patience){.since = island->t};
-        if (++patience->count > most) most = patience->count;
+        patience->work += rates > IMP_EVENT_RATES ? rates : IMP_EVENT_RATES;
+        if (patience->work > most) most = patience->work;
     }
-    return most >= IMP_PILE_PATIENCE;
+    return most >= (faces ? IMP_FACES_PATIENCE : IMP_PILE_PATIENCE);
 }
 
 /* A pile that remembers nothing. */

@@ -22,10 +22,10 @@ typedef struct imp_near {
     qvec3 axis;   /* search.h */
 } imp_near;
 
-/* A body's stretches of motion and events in which it has not got on, and since when, s. */
+/* Rates of a body's motion, and events for some of them, in which it has not got on; and since when, s. */
 typedef struct imp_patience {
     double since;
-    long count;
+    long work;
 } imp_patience;
 
 /* What the pairs' other bodies ask stands side by side at the front. */
