@@ -7,6 +7,7 @@
 size_t imp_definition_size(const void *given)
 {
     size_t size;
+    if (!given) return 0;
     memcpy(&size, given, sizeof size);
     return size;
 }
@@ -15,6 +16,7 @@ const char *imp_definition_refusal(const void *given, size_t own_size)
 {
     const size_t size = imp_definition_size(given);
     const unsigned char *bytes = given;
+    if (!given) return "there is none: NULL was given";
     if (size < sizeof size || size > IMP_MOST_DEFINITION || size % sizeof(void *) != 0)
         return "is no size of this struct: it is sizeof of it, as the functions set it that give defaults";
     for (size_t i = own_size; i < size; i++)

@@ -11,10 +11,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Of the struct at `given`. */
+/* Of the struct at `given`; 0 for NULL. */
 size_t imp_definition_size(const void *given);
 
-/* Why a struct of that size cannot be read, in words; NULL: it can. */
+/* Why the struct at `given` cannot be read, in words, as where that is NULL; NULL: it can. */
 const char *imp_definition_refusal(const void *given, size_t own_size);
 
 /* Reads one that is not refused into *own, which has the defaults and its own size. */

@@ -14,29 +14,29 @@
 #include <string.h>
 
 /* Stages 0 .. 11; that of the step's end, which is the next one's begin; and three more. */
-enum { STAGES = 16, END_STAGE = 12, TERMS = 8, ORDER = 8 };
+enum { DOP853_STAGES = 16, DOP853_END = 12, DOP853_TERMS = 8, DOP853_ORDER = 8 };
 
 typedef struct weight {
     int row, column;
     double value;
 } weight;
 
-static const double stage_place[STAGES] = {0.0,
-                                           0.05260015195876773,
-                                           0.0789002279381516,
-                                           0.1183503419072274,
-                                           0.2816496580927726,
-                                           0.3333333333333333,
-                                           0.25,
-                                           0.3076923076923077,
-                                           0.6512820512820513,
-                                           0.6,
-                                           0.8571428571428571,
-                                           1.0,
-                                           1.0,
-                                           0.1,
-                                           0.2,
-                                           0.7777777777777778};
+static const double stage_place[DOP853_STAGES] = {0.0,
+                                                  0.05260015195876773,
+                                                  0.0789002279381516,
+                                                  0.1183503419072274,
+                                                  0.2816496580927726,
+                                                  0.3333333333333333,
+                                                  0.25,
+                                                  0.3076923076923077,
+                                                  0.6512820512820513,
+                                                  0.6,
+                                                  0.8571428571428571,
+                                                  1.0,
+                                                  1.0,
+                                                  0.1,
+                                                  0.2,
+                                                  0.7777777777777778};
 static const weight stage_weight[] = {
     {1, 0, 0.05260015195876773},       {2, 0, 0.0197250569845379},        {2, 1, 0.0591751709536137},
     {3, 0, 0.02958758547680685},       {3, 2, 0.08876275643042054},       {4, 0, 0.2413651341592667},
@@ -93,7 +93,7 @@ static const weight between_weight[] = {
 
 typedef struct dop853_ode {
     imp_one_step one;
-    double *rate[STAGES];
+    double *rate[DOP853_STAGES];
 } dop853_ode;
 
 static dop853_ode *dop853_of(const imp_one_step *one) { return (dop853_ode *)(uintptr_t)one; }
@@ -101,21 +101,21 @@ static dop853_ode *dop853_of(const imp_one_step *one) { return (dop853_ode *)(ui
 /* DOP853's nested form about the step's begin, x = 1 + s,
  *     y = y_0 + x (F_0 + (1 - x) (F_1 + x (F_2 + (1 - x) (F_3 + x (F_4 + (1 - x) (F_5 + x F_6)))))),
  * multiplied out in powers of s. */
-static void make_polynomial(imp_one_step *one, double h)
+static void make_dop853_polynomial(imp_one_step *one, double h)
 {
-    enum { PARTS = 7 };
+    enum { DOP853_PARTS = 7 };
     const dop853_ode *own = dop853_of(one);
     for (int i = 0; i < one->ode.size; i++) {
         const double rise = one->y[i] - one->before[i], first = h * one->first[i], last = h * one->last[i];
-        double part[PARTS] = {rise, first - rise, 2 * rise - (first + last)}, c[TERMS] = {0};
+        double part[DOP853_PARTS] = {rise, first - rise, 2 * rise - (first + last)}, c[DOP853_TERMS] = {0};
         for (size_t k = 0; k < sizeof between_weight / sizeof *between_weight; k++)
             part[3 + between_weight[k].row] += h * between_weight[k].value * own->rate[between_weight[k].column][i];
-        for (int k = PARTS - 1; k >= 0; k--) { /* c := (c + part) times x, or 1 - x = -s */
+        for (int k = DOP853_PARTS - 1; k >= 0; k--) { /* c := (c + part) times x, or 1 - x = -s */
             c[0] += part[k];
-            for (int m = TERMS - 1; m > 0; m--) c[m] = k % 2 == 0 ? c[m] + c[m - 1] : -c[m - 1];
+            for (int m = DOP853_TERMS - 1; m > 0; m--) c[m] = k % 2 == 0 ? c[m] + c[m - 1] : -c[m - 1];
             if (k % 2 == 1) c[0] = 0;
         }
-        for (int m = 1; m < TERMS; m++) one->term[m][i] = c[m];
+        for (int m = 1; m < DOP853_TERMS; m++) one->term[m][i] = c[m];
     }
 }
 
@@ -125,7 +125,7 @@ static imp_one_step_outcome take_stage(dop853_ode *own, const weight **weights, 
     imp_one_step *one = &own->one;
     const int stage = (*weights)->row, n = one->ode.size;
     const weight *last = stage_weight + sizeof stage_weight / sizeof *stage_weight;
-    double *y = stage == END_STAGE ? one->y : one->roots.state;
+    double *y = stage == DOP853_END ? one->y : one->roots.state;
     for (int i = 0; i < n; i++) y[i] = 0;
     for (; *weights < last && (*weights)->row == stage; ++*weights)
         for (int i = 0; i < n; i++) y[i] += (*weights)->value * own->rate[(*weights)->column][i];
@@ -160,7 +160,7 @@ static double error_by(const dop853_ode *own, const weight *weights, size_t coun
 }
 
 /* The error, in scales: the fifth order's, the less the further it is below the third's. */
-static double error_of(const dop853_ode *own, double h)
+static double dop853_error(const dop853_ode *own, double h)
 {
     const double five = error_by(own, error_5, sizeof error_5 / sizeof *error_5, h),
                  three = error_by(own, error_3, sizeof error_3 / sizeof *error_3, h);
@@ -169,14 +169,14 @@ static double error_of(const dop853_ode *own, double h)
 }
 
 /* As the error, which goes as h^8, allows. */
-static double next_length(double h, double error)
+static double next_dop853_length(double h, double error)
 {
-    const double least = 0.2, part = 0.9 * pow(fmax(error, IMP_ONE_STEP_GROWTH), -1.0 / ORDER);
+    const double least = 0.2, part = 0.9 * pow(fmax(error, IMP_ONE_STEP_GROWTH), -1.0 / DOP853_ORDER);
     return fabs(h) * fmax(part, least);
 }
 
 /* Shorter and shorter until it stands. */
-static impact_status take_step(imp_one_step *one, double t, double t_stop, double *end)
+static impact_status take_dop853_step(imp_one_step *one, double t, double t_stop, double *end)
 {
     dop853_ode *own = dop853_of(one);
     for (double failed = INFINITY;;) {
@@ -185,11 +185,11 @@ static impact_status take_step(imp_one_step *one, double t, double t_stop, doubl
         const double h = *end - t;
         if (!(h != 0 && fabs(h) < failed)) return imp_one_step_too_short(one);
         imp_one_step_set_scale(one, h);
-        imp_one_step_outcome outcome = take_stages(own, &weights, END_STAGE, t, *end, t_stop);
+        imp_one_step_outcome outcome = take_stages(own, &weights, DOP853_END, t, *end, t_stop);
         if (outcome == IMP_STEP_GAVE_UP) return imp_one_step_gave_up(one, h);
-        const double error = outcome == IMP_STEP_STANDS ? error_of(own, h) : INFINITY;
-        one->h = next_length(h, error);
-        if (error <= 1) outcome = take_stages(own, &weights, STAGES, t, *end, t_stop);
+        const double error = outcome == IMP_STEP_STANDS ? dop853_error(own, h) : INFINITY;
+        one->h = next_dop853_length(h, error);
+        if (error <= 1) outcome = take_stages(own, &weights, DOP853_STAGES, t, *end, t_stop);
         if (outcome == IMP_STEP_GAVE_UP) return imp_one_step_gave_up(one, h);
         if (error <= 1 && outcome == IMP_STEP_STANDS) return IMPACT_OK;
         if (!(error > 1)) one->h = 0.5 * fabs(h);
@@ -200,16 +200,19 @@ static impact_status take_step(imp_one_step *one, double t, double t_stop, doubl
 
 static impact_status dop853_open(impact_ode *ode)
 {
-    static const imp_one_step_method method = {
-        .terms = TERMS, .order = ORDER, .vectors = STAGES, .take = take_step, .make_polynomial = make_polynomial};
+    static const imp_one_step_method method = {.terms = DOP853_TERMS,
+                                               .order = DOP853_ORDER,
+                                               .vectors = DOP853_STAGES,
+                                               .take = take_dop853_step,
+                                               .make_polynomial = make_dop853_polynomial};
     static const double halves[] = {0.5, 1};
     imp_one_step *one = (imp_one_step *)ode;
     dop853_ode *own = dop853_of(one);
     double *next;
     const impact_status status = imp_one_step_open(ode, &method, &next);
     if (status != IMPACT_OK) return status;
-    for (int k = 0; k < STAGES; k++, next += ode->def.size) own->rate[k] = next;
-    one->first = own->rate[0], one->last = own->rate[END_STAGE];
+    for (int k = 0; k < DOP853_STAGES; k++, next += ode->def.size) own->rate[k] = next;
+    one->first = own->rate[0], one->last = own->rate[DOP853_END];
     one->look = halves, one->looks = 2;
     return IMPACT_OK;
 }

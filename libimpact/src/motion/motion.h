@@ -74,7 +74,6 @@ typedef struct imp_motion {
     bool stiff;         /* some slip has just begun */
     bool bounces;       /* the motion begins with an open pair that touches */
     double slip_scale;  /* m/s */
-    double onset_most;  /* m/s: slip faster than this has a direction of its own, whatever its pair says */
     double creep_scale; /* 1/s */
 
     /* what is seen of its own work: motion_guard.h */

@@ -170,18 +170,6 @@ static void clear_still_loads(imp_motion *motion)
     }
 }
 
-/* Slip that begins is led by its acceleration up to the onset speed: where a step goes beyond, that is not its
- * direction any more. Of CVODE, whose first steps are short, that is not asked. */
-static bool onset_is_over(const imp_motion *motion)
-{
-    bool over = false;
-    for (int c = 0; c < motion->persist.count && motion->ode == motion->dop853; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        over = over || (touch->mode == IMP_SLIDE && touch->onset && touch->speed > motion->onset_most);
-    }
-    return over;
-}
-
 int imp_motion_rates(double tau, const double *y, double *rate, void *context)
 {
     imp_motion *motion = context;
@@ -194,9 +182,8 @@ int imp_motion_rates(double tau, const double *y, double *rate, void *context)
         rate[Y_DAMPING] += motion->loads[i].damping_rate;
     }
     if (motion->persist.count > 0) imp_persist_solve(&motion->persist, world, motion->scratch, motion->loads);
-    if (onset_is_over(motion)) return 1;
     for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].mode == IMP_SLIDE)
+        if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
             rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
     clear_still_loads(motion);
     for (int c = 0; c < motion->persist.count; c++) {

@@ -15,20 +15,16 @@
 
 static double *state_before(const imp_motion *motion) { return motion->probe + 3 * motion->size; }
 
-/* Of a step of the explicit method. Slip that begins is led by its acceleration until it has the onset speed, and no
- * longer; of slip that fades, as it does now, part of the time in which it is gone: behind that its friction turns
- * round. */
-static double slip_limit(const imp_motion *motion)
+/* Of a step of the explicit method, part of the time in which slip that fades, as it does now, is gone: behind that its
+ * friction turns round. */
+static double fading_limit(const imp_motion *motion)
 {
     double limit = INFINITY;
     if (motion->ode != motion->dop853) return limit; /* others go by a clock that slip slows */
     for (int c = 0; c < motion->persist.count; c++) {
         const imp_touch *touch = &motion->persist.touches[c];
         const double fall = -qvec3_dot(touch->slip, touch->slip_rate);
-        if (touch->mode != IMP_SLIDE || !(touch->friction > 0)) continue;
-        if (touch->onset)
-            limit = fmin(limit, motion->world->onset_speed / qvec3_norm(touch->slip_rate));
-        else if (fall > 0)
+        if (touch->mode == IMP_SLIDE && touch->friction > 0 && fall > 0)
             limit = fmin(limit, IMP_FADING_PART * touch->speed * touch->speed / fall);
     }
     return limit;
@@ -37,8 +33,8 @@ static double slip_limit(const imp_motion *motion)
 double imp_motion_step_limit(imp_motion *motion, const double *y)
 {
     imp_motion_unpack(motion, y, motion->scratch);
-    return fmin(slip_limit(motion), fmin(imp_field_step_limit(motion->world, motion->scratch, motion->loads),
-                                         imp_field_custom_step_limit(motion->world, motion->scratch, motion->loads)));
+    return fmin(fading_limit(motion), fmin(imp_field_step_limit(motion->world, motion->scratch, motion->loads),
+                                           imp_field_custom_step_limit(motion->world, motion->scratch, motion->loads)));
 }
 
 bool imp_motion_has_custom_force(const imp_world *world)

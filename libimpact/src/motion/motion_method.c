@@ -166,14 +166,11 @@ static bool slip_begins(const imp_motion *motion)
     return false;
 }
 
-/* Up to where slip that begins may be led by its acceleration: twice the onset speed, as a step may go past that; or
- * what it has already. */
-static double most_onset(const imp_motion *motion)
+static bool has_onset(const imp_motion *motion)
 {
-    double most = motion->world->onset_speed;
     for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].onset) most = fmax(most, motion->persist.touches[c].speed);
-    return 2 * most;
+        if (motion->persist.touches[c].onset) return true;
+    return false;
 }
 
 /* Which variable and which method the stretch needs. */
@@ -181,7 +178,6 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
 {
     if (motion->persist.count > 0) imp_persist_solve(&motion->persist, motion->world, states, motion->loads);
     motion->slip_scale = slip_scale(motion, states);
-    motion->onset_most = most_onset(motion);
     grow_up(motion);
     motion->stiff = isfinite(slowest_slip(motion, true));
     const double grown = slowest_slip(motion, false);
@@ -198,10 +194,12 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     /* At one contact collocation takes a tenth of Adams' steps and a third of the time, for two digits more
      * (sphere_wall, turntable); of slip that begins its long steps lose seven digits. Where slip dies out, and where
      * the modes of many contacts end steps again and again, the explicit method takes a fourteenth of Adams' steps and
-     * a third of the time (ramp, dominoes; tests/lua/test_fading.lua). What creeps over flat places, pressed by 1e8
-     * times its weight, leaves rates whose rounding one step's errors are taken from: Adams' history is above that. */
+     * a third of the time (ramp, dominoes; tests/lua/test_fading.lua). Slip that has just begun has its direction from
+     * the last that was found, which long steps lose; and what creeps over flat places, pressed by 1e8 times its
+     * weight, leaves rates whose rounding one step's errors are taken from. */
     if (motion->persist.count <= 1 && !slip_begins(motion)) return choose_integrator(motion, IMPACT_ODE_LOBATTO);
-    const bool explicitly = !motion->creeping && (motion->sliding || motion->persist.count > 1);
+    const bool led = motion->creeping || has_onset(motion);
+    const bool explicitly = !led && (motion->sliding || motion->persist.count > 1);
     return choose_integrator(motion, explicitly ? IMPACT_ODE_DOP853 : IMPACT_ODE_ADAMS);
 }
 

@@ -9,7 +9,7 @@
 #include "motion/pile.h"
 #include "scene/island.h"
 
-/* Counts an event, or a stretch of motion that took so many rates, of each body of the island; whether one has had so
+/* Counts an event, or a stretch of motion that took so many rates, for each body of the island; whether one has had so
  * many that the island, in which bodies that move are held on each other or have faces, is to go on by steps. */
 bool imp_island_loses_patience(imp_island *island, long rates);
 

@@ -3,6 +3,7 @@
  * Definitions of other versions: a struct that was shorter, one that is longer; whatever its length, the scene is the
  * one that a struct of this version gives. What a scene saves has a fingerprint of its definition in it.
  */
+#include <impact/ode.h>
 #include "kit/random_scene.h"
 #include "kit/scene_log.h"
 
@@ -54,6 +55,21 @@ static bool assert_same(const impact_scene_def *a, const impact_scene_def *b)
     free(bytes[0]), free(bytes[1]);
     impact_scene_destroy(one), impact_scene_destroy(two);
     return true;
+}
+
+/* What is not there at all is told, too. */
+static void no_definition_is_refused(void **state)
+{
+    (void)state;
+    impact_scene *scene;
+    char words[300];
+    assert_int_equal(impact_scene_create(NULL, &scene, words, sizeof words), IMPACT_EARGUMENT);
+    assert_null(scene);
+    assert_non_null(strstr(words, "NULL"));
+    assert_int_equal(impact_scene_create(NULL, &scene, NULL, 0), IMPACT_EARGUMENT);
+    impact_ode *ode;
+    assert_int_equal(impact_ode_create(NULL, &ode), IMPACT_EARGUMENT);
+    assert_null(ode);
 }
 
 static size_t random_bytes(random_stream *random, size_t least, size_t most)
@@ -347,6 +363,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_length_is_read),
+        cmocka_unit_test(no_definition_is_refused),
         cmocka_unit_test(forces_too),
         cmocka_unit_test(a_later_field_that_is_set_is_refused),
         cmocka_unit_test(what_is_no_size_is_refused),
