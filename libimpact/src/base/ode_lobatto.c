@@ -93,6 +93,7 @@ static void make_tables(lobatto_tables *t)
 static void make_polynomial(imp_one_step *one, double h)
 {
     const lobatto_ode *lo = lobatto_of(one);
+    memcpy(one->term[0], one->y, sizeof *one->y * (size_t)one->ode.size);
     for (int i = 0; i < one->ode.size; i++) {
         double p[NODES];
         for (int k = 0; k < NODES; k++) {
@@ -221,7 +222,10 @@ static impact_status take_collocation(imp_one_step *one, double t, double t_stop
         const double error = outcome == IMP_STEP_STANDS ? error_of(lo, h) : INFINITY;
         one->h = next_length(lo, h, outcome, error);
         node_state(lo, LAST, h, one->y);
-        if (error <= 1) return IMPACT_OK;
+        if (error <= 1) {
+            make_polynomial(one, h);
+            return IMPACT_OK;
+        }
         failed = fabs(h);
         one->counts.error_test_failures++;
         if (one->fresh) memset(one->slope, 0, sizeof *one->slope * (size_t)one->ode.size);
@@ -230,11 +234,8 @@ static impact_status take_collocation(imp_one_step *one, double t, double t_stop
 
 static impact_status lobatto_open(impact_ode *ode)
 {
-    static const imp_one_step_method method = {.terms = TERMS,
-                                               .order = TERMS,
-                                               .vectors = NODES + 1,
-                                               .take = take_collocation,
-                                               .make_polynomial = make_polynomial};
+    static const imp_one_step_method method = {
+        .terms = TERMS, .order = TERMS, .vectors = NODES + 1, .take = take_collocation};
     imp_one_step *one = (imp_one_step *)ode;
     lobatto_ode *lo = lobatto_of(one);
     double *next;

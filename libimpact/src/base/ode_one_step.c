@@ -163,7 +163,7 @@ static impact_status choose_first(imp_one_step *one, double t, double t_stop)
 }
 
 /* From here on: after a root from there, where the rates are not known yet. */
-static impact_status begin_step(imp_one_step *one, double t, double t_stop)
+static impact_status begin_one_step(imp_one_step *one, double t, double t_stop)
 {
     const size_t bytes = sizeof *one->y * (size_t)one->ode.size;
     if (one->at_root) memcpy(one->y, one->roots.state, bytes);
@@ -208,12 +208,10 @@ impact_status imp_one_step_go(impact_ode *ode, double t_stop, double *y, bool *f
         memcpy(y, one->at_root ? one->roots.state : one->y, bytes);
         return IMPACT_OK;
     }
-    impact_status status = begin_step(one, t, t_stop);
+    impact_status status = begin_one_step(one, t, t_stop);
     if (status == IMPACT_OK) status = one->method->take(one, t, t_stop, &end);
     if (status != IMPACT_OK) return status;
     ode->step_begin = t, ode->step_end = ode->t = end;
-    memcpy(one->term[0], one->y, bytes);
-    one->method->make_polynomial(one, end - t);
     one->fresh = one->at_root = false;
     status = look_for_roots(one, t, found);
     if (status != IMPACT_OK) return status;

@@ -17,10 +17,9 @@ typedef struct imp_one_step_method {
     int terms;   /* of its polynomial */
     int order;   /* its error goes as the length to that */
     int vectors; /* of its own, each as long as y; rates among them */
-    /* A step from t as long as one->h and the limit let it be, t_stop not passed: y at its end, the rates at both, and
-     * the next step's length. */
+    /* A step from t as long as one->h and the limit let it be, t_stop not passed: y at its end, the rates at both, its
+     * polynomial, and the next step's length. */
     impact_status (*take)(imp_one_step *one, double t, double t_stop, double *end);
-    void (*make_polynomial)(imp_one_step *one, double h); /* into term[1] and on */
 } imp_one_step_method;
 
 /* Its integrator begins with it. */

@@ -821,9 +821,10 @@
  * each other, and balls that roll about in a box, are stepped too, which the exact motion brings to their end. */
 #define IMP_PILE_PATIENCE 8000
 #define IMP_EVENT_RATES 16
-/* Of what has faces, or stands on a flat place, the motion is smooth for longer, and its bounces die out: a superquadric
- * of exponents 3 and 4 that wobbles asks for 8500 in a row. */
-#define IMP_FACES_PATIENCE 64000
+/* Stretches and events of what has faces, or stands on a flat place, in the same time: the motion between them is
+ * smooth for longer (a superquadric of exponents 3 and 4 that wobbles asks for 8500 rates), and bounces on corners die
+ * out. */
+#define IMP_FACES_PATIENCE 4000
 
 /* ---- one impact: what is given, and rare places ---- */
 
@@ -929,6 +930,9 @@
  * Wanner 1993, II.4). */
 #define IMP_ONE_STEP_NOTHING 1e-5
 #define IMP_ONE_STEP_FIRST 1e-6
+/* What the polynomial of an explicit step is off by, of its defect in the middle: it is the integral of that, which
+ * changes its sign some seven times in the step. */
+#define IMP_DOP853_DEFECT 0.1
 /* Collocation, of the error allowed: what the sweeps may leave, */
 #define IMP_LOBATTO_LEFT 0.1
 /* the ratio of one sweep's change to that before from which they are taken to go nowhere, */

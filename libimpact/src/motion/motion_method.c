@@ -5,6 +5,7 @@
 #include "motion/motion_stretch.h"
 #include "base/parts.h"
 #include "contact/persist_spot.h"
+#include "contact/points.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -166,11 +167,20 @@ static bool slip_begins(const imp_motion *motion)
     return false;
 }
 
-static bool has_onset(const imp_motion *motion)
+/* Whether the explicit method's steps suit what is held. Slip that has just begun has its direction from the last that
+ * was found, which long steps lose; what creeps over flat places, pressed by 1e8 times its weight, leaves rates whose
+ * rounding one step's errors are taken from; and of faces that land, the corners held drift apart by what few long
+ * steps err, 1e-13 m, which is more than corners that are struck together may. */
+static bool suits_explicit(const imp_motion *motion)
 {
-    for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].onset) return true;
-    return false;
+    bool suits = !motion->creeping && (motion->sliding || motion->persist.count > 1);
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        const imp_pair *pair = &motion->world->pairs[touch->pair];
+        suits = suits && !touch->onset && !imp_pair_has_faces(motion->world, pair) &&
+                !imp_pair_can_lie(motion->world, pair);
+    }
+    return suits;
 }
 
 /* Which variable and which method the stretch needs. */
@@ -194,13 +204,9 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
     /* At one contact collocation takes a tenth of Adams' steps and a third of the time, for two digits more
      * (sphere_wall, turntable); of slip that begins its long steps lose seven digits. Where slip dies out, and where
      * the modes of many contacts end steps again and again, the explicit method takes a fourteenth of Adams' steps and
-     * a third of the time (ramp, dominoes; tests/lua/test_fading.lua). Slip that has just begun has its direction from
-     * the last that was found, which long steps lose; and what creeps over flat places, pressed by 1e8 times its
-     * weight, leaves rates whose rounding one step's errors are taken from. */
+     * a third of the time (tests/lua/test_fading.lua). */
     if (motion->persist.count <= 1 && !slip_begins(motion)) return choose_integrator(motion, IMPACT_ODE_LOBATTO);
-    const bool led = motion->creeping || has_onset(motion);
-    const bool explicitly = !led && (motion->sliding || motion->persist.count > 1);
-    return choose_integrator(motion, explicitly ? IMPACT_ODE_DOP853 : IMPACT_ODE_ADAMS);
+    return choose_integrator(motion, suits_explicit(motion) ? IMPACT_ODE_DOP853 : IMPACT_ODE_ADAMS);
 }
 
 static double stretch_tolerance(const imp_motion *motion)

@@ -46,7 +46,7 @@ bool imp_island_loses_patience(imp_island *island, long rates)
         imp_patience *patience = &island->scene->tracks.tracks[body->index].patience;
         if (body->is_static) continue;
         if (!(fabs(island->t - patience->since) <= natural)) *patience = (imp_patience){.since = island->t};
-        patience->work += rates > IMP_EVENT_RATES ? rates : IMP_EVENT_RATES;
+        patience->work += faces ? 1 : rates > IMP_EVENT_RATES ? rates : IMP_EVENT_RATES;
         if (patience->work > most) most = patience->work;
     }
     return most >= (faces ? IMP_FACES_PATIENCE : IMP_PILE_PATIENCE);

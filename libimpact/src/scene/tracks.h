@@ -22,7 +22,7 @@ typedef struct imp_near {
     qvec3 axis;   /* search.h */
 } imp_near;
 
-/* Rates of a body's motion, and events for some of them, in which it has not got on; and since when, s. */
+/* What a body's motion has asked for without getting on (stepped.c), and since when, s. */
 typedef struct imp_patience {
     double since;
     long work;
