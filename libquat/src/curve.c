@@ -5,6 +5,7 @@
 #include <quat/rotation.h>
 #include "curve.h"
 #include "difference.h"
+#include "scale.h"
 
 static const qvec3 zero = {0, 0, 0};
 
@@ -144,10 +145,46 @@ quat_status quat_curve_tangent(const quat_curve *curve, double t, qvec3 *positio
     return qvec3_normalize(d[1], tangent);
 }
 
+/* Neither a unit of length nor one of t changes more than the curvature's own unit: with those that bring d[1] and d[2]
+ * close to 1 no product of them vanishes or overflows that the curvature and the torsion do not. Returns the unit of
+ * length, as a power of two. */
+static int to_own_units(qvec3 d[4], double e[4])
+{
+    const int first = quat_vector_exponent(d[1]), second = quat_vector_exponent(d[2]),
+              rate = qvec3_norm(d[2]) > 0 ? second - first : 0, length = first - rate;
+    for (int k = 1; k < 4; k++) {
+        d[k] = quat_ldexp_vector(d[k], -length - k * rate);
+        e[k] = ldexp(e[k], -length - k * rate);
+    }
+    return length;
+}
+
+/* What follows from the first three derivatives, `unit` being the unit of length. */
+static quat_status bend(const qvec3 d[4], const double e[4], int unit, quat_curve_point *point)
+{
+    const qvec3 cross = qvec3_cross(d[1], d[2]);
+    const double speed = qvec3_norm(d[1]), turn = qvec3_norm(cross), cube = speed * speed * speed,
+                 turn_error = speed * e[2] + qvec3_norm(d[2]) * e[1];
+    qvec3 tangent, normal;
+    point->curvature_error = ldexp(turn_error / cube + 3 * (turn / cube) * (e[1] / speed), -unit);
+    qvec3_normalize(d[1], &tangent);
+    if (turn <= 4 * turn_error) {
+        quat_from_two_vectors(qvec3_make(1, 0, 0), tangent, &point->frame);
+        return QUAT_NOT_UNIQUE;
+    }
+    const double torsion = qvec3_dot(cross, d[3]) / turn / turn;
+    point->curvature = ldexp(turn / cube, -unit);
+    point->torsion = ldexp(torsion, -unit);
+    point->torsion_error =
+        ldexp(e[3] / turn + (qvec3_norm(d[3]) / turn + 2 * fabs(torsion)) * (turn_error / turn), -unit);
+    qvec3_normalize(qvec3_cross(cross, d[1]), &normal);
+    return quat_from_axes(tangent, normal, &point->frame);
+}
+
 quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve_point *point)
 {
     const quat_curve_point none = {.frame = {1, 0, 0, 0}};
-    qvec3 d[4], tangent, normal;
+    qvec3 d[4];
     double e[4];
     *point = none;
     const quat_status status = quat_curve_derivatives(curve, t, 3, d, e);
@@ -156,19 +193,7 @@ quat_status quat_curve_at(const quat_curve *curve, double t, quat_curve_point *p
     const double speed = qvec3_norm(d[1]);
     if (speed <= 4 * e[1]) return QUAT_EDOMAIN;
     if (!(speed >= 1e-100) || fmax(speed, fmax(qvec3_norm(d[2]), qvec3_norm(d[3]))) > 1e100) return QUAT_ERANGE;
-    const qvec3 cross = qvec3_cross(d[1], d[2]);
-    const double turn = qvec3_norm(cross), turn_error = speed * e[2] + qvec3_norm(d[2]) * e[1],
-                 cube = speed * speed * speed;
     point->speed = speed;
-    point->curvature_error = turn_error / cube + 3 * (turn / cube) * (e[1] / speed);
-    qvec3_normalize(d[1], &tangent);
-    if (turn <= 4 * turn_error) {
-        quat_from_two_vectors(qvec3_make(1, 0, 0), tangent, &point->frame);
-        return QUAT_NOT_UNIQUE;
-    }
-    point->curvature = turn / cube;
-    point->torsion = qvec3_dot(cross, d[3]) / turn / turn;
-    point->torsion_error = e[3] / turn + (qvec3_norm(d[3]) / turn + 2 * fabs(point->torsion)) * (turn_error / turn);
-    qvec3_normalize(qvec3_cross(cross, d[1]), &normal);
-    return quat_from_axes(tangent, normal, &point->frame);
+    const int unit = to_own_units(d, e);
+    return bend(d, e, unit, point);
 }

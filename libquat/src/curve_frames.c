@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "curve.h"
 
+#include <float.h>
 #include <quat/rotation.h>
 
 static const qvec3 x_axis = {1, 0, 0};
@@ -13,8 +14,12 @@ quat_status quat_frame_step(quat q, qvec3 x0, qvec3 x1, qvec3 tangent1, quat *ne
     if (qvec3_normalize(tangent1, &t1) != QUAT_OK) return QUAT_EDOMAIN;
     /* The tangent mirrored in the chord's bisecting plane, then onto the next tangent; of the frame's own x axis, so
      * that nothing adds up. */
-    const qvec3 mirrored = quat_reflect(chord, quat_rotate(q, x_axis));
-    if (qvec3_normalize(qvec3_sub(t1, mirrored), &bisector) != QUAT_OK) return QUAT_EDOMAIN;
+    const qvec3 mirrored = quat_reflect(chord, quat_rotate(q, x_axis)), sum = qvec3_add(t1, mirrored);
+    bisector = qvec3_sub(t1, mirrored);
+    if (qvec3_norm(bisector) <= 8 * DBL_EPSILON) return QUAT_EDOMAIN; /* nothing but rounding */
+    /* Of two unit vectors the difference stands on the sum; what rounding adds to it along the sum would turn x off. */
+    const double slant = qvec3_dot(bisector, sum) / fmax(qvec3_dot(sum, sum), 1);
+    qvec3_normalize(qvec3_axpy(-slant, sum, bisector), &bisector);
     *next = quat_nearest(quat_renormalize(quat_mul(quat_from_reflections(chord, bisector), q)), q);
     return QUAT_OK;
 }

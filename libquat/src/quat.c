@@ -119,7 +119,12 @@ double quat_rotation_distance(quat p, quat q)
     return 4 * atan2(fmin(minus, plus), fmax(minus, plus));
 }
 
-double quat_angle(quat q) { return 2 * atan2(qvec3_norm(quat_vector(q)), fabs(q.w)); }
+double quat_angle(quat q)
+{
+    int exponent;
+    if (quat_isfinite(q)) q = quat_prescale(q, &exponent); /* |v| overflows before q does, and loses digits below */
+    return 2 * atan2(qvec3_norm(quat_vector(q)), fabs(q.w));
+}
 
 bool quat_near(quat p, quat q, double tolerance) { return quat_norm(quat_sub(p, q)) <= tolerance; }
 

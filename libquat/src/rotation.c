@@ -2,6 +2,7 @@
 #include <quat/rotation.h>
 #include <quat/exponential.h>
 #include "attitude.h"
+#include "scale.h"
 
 /* ---- axis and angle ---- */
 
@@ -96,16 +97,19 @@ quat_status quat_from_frame(qvec3 x, qvec3 y, qvec3 z, quat *q)
 
 quat_status quat_swing_twist(quat q, qvec3 axis, quat *swing, quat *twist)
 {
-    qvec3 n;
+    qvec3 unit;
     *twist = quat_identity();
     const quat_status status = quat_normalize(q, swing);
-    if (status != QUAT_OK || qvec3_normalize(axis, &n) != QUAT_OK) return QUAT_EDOMAIN;
-    q = *swing;
-    const double along = qvec3_dot(quat_vector(q), n);
+    if (status != QUAT_OK || qvec3_normalize(axis, &unit) != QUAT_OK) return QUAT_EDOMAIN;
+    int exponent;
+    q = quat_prescale(q, &exponent);
+    const quat n = quat_prescale(quat_pure(axis), &exponent);
+    /* (w |n|, (v.n) n/|n|), and v.n with no rounding of its own: near a half turn across the axis it is all there is */
+    const double along = -quat_mul_compensated(quat_pure(quat_vector(q)), n).w, length = quat_norm(n);
     quat t;
-    if (quat_normalize(quat_from_parts(q.w, qvec3_scale(n, along)), &t) != QUAT_OK) return QUAT_NOT_UNIQUE;
+    if (quat_normalize(quat_from_parts(q.w * length, qvec3_scale(unit, along)), &t) != QUAT_OK) return QUAT_NOT_UNIQUE;
     if (t.w < 0) t = quat_neg(t);
     *twist = t;
-    *swing = quat_mul(q, quat_conj(t));
+    *swing = quat_mul(*swing, quat_conj(t));
     return QUAT_OK;
 }

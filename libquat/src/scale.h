@@ -20,4 +20,16 @@ static inline quat quat_prescale(quat q, int *exponent)
     return quat_ldexp(q, -*exponent);
 }
 
+static inline qvec3 quat_ldexp_vector(qvec3 v, int exponent)
+{
+    return qvec3_make(ldexp(v.x, exponent), ldexp(v.y, exponent), ldexp(v.z, exponent));
+}
+
+/* The exponent of v's largest component; 0 for zero. v must be finite. */
+static inline int quat_vector_exponent(qvec3 v)
+{
+    const double largest = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+    return largest > 0 ? ilogb(largest) : 0;
+}
+
 #endif

@@ -2,8 +2,10 @@
 #include <quat/surface.h>
 
 #include <float.h>
+#include <limits.h>
 #include <quat/rotation.h>
 #include "difference.h"
+#include "scale.h"
 #include "surface.h"
 
 static const qvec3 zero = {0, 0, 0};
@@ -104,19 +106,19 @@ static quat_status derivatives(const quat_surface *s, double u, double v, qvec3 
 
 /* ---- curvature ---- */
 
-/* |x_u x x_v|; 0 when the tangents do not span a plane to rounding. */
-static double span(qvec3 xu, qvec3 xv)
+/* Whether the tangents span a plane, to rounding: of their directions, so that nothing vanishes or overflows. */
+static bool spans(qvec3 xu, qvec3 xv)
 {
-    const double u = qvec3_norm(xu), v = qvec3_norm(xv), area = qvec3_norm(qvec3_cross(xu, xv));
-    return fmin(u, v) > 1e-15 * fmax(u, v) && area > 4 * DBL_EPSILON * u * v ? area : 0;
+    const double u = qvec3_norm(xu), v = qvec3_norm(xv);
+    if (!(fmin(u, v) > 1e-15 * fmax(u, v))) return false;
+    const qvec3 by_u = quat_ldexp_vector(xu, -quat_vector_exponent(xu)),
+                by_v = quat_ldexp_vector(xv, -quat_vector_exponent(xv));
+    return qvec3_norm(qvec3_cross(by_u, by_v)) > 4 * DBL_EPSILON * qvec3_norm(by_u) * qvec3_norm(by_v);
 }
 
-quat_status quat_curvature_of_frame(quat q, qvec3 a, qvec3 b, qvec3 xu, qvec3 xv, quat_curvature *c)
+/* The curvature of tangents near 1 and rates at most 2, which `unit`, a power of two, has been taken out of. */
+static quat_status curvature_of(quat q, qvec3 a, qvec3 b, qvec3 xu, qvec3 xv, int unit, quat_curvature *c)
 {
-    const quat_curvature none = {0};
-    *c = none;
-    if (!qvec3_isfinite(xu) || !qvec3_isfinite(xv) || !qvec3_isfinite(a) || !qvec3_isfinite(b)) return QUAT_EDOMAIN;
-    if (quat_normalize(q, &q) != QUAT_OK || span(xu, xv) == 0) return QUAT_EDOMAIN;
     const qvec3 t1 = quat_rotate(q, qvec3_make(1, 0, 0)), t2 = quat_rotate(q, qvec3_make(0, 1, 0));
     const double j11 = qvec3_dot(xu, t1), j12 = qvec3_dot(xv, t1), j21 = qvec3_dot(xu, t2), j22 = qvec3_dot(xv, t2);
     const double det = j11 * j22 - j12 * j21;
@@ -125,20 +127,38 @@ quat_status quat_curvature_of_frame(quat q, qvec3 a, qvec3 b, qvec3 xu, qvec3 xv
     const double s11 = (a.y * j22 - b.y * j21) / det, s12 = (b.y * j11 - a.y * j12) / det,
                  s21 = (b.x * j21 - a.x * j22) / det, s22 = (a.x * j12 - b.x * j11) / det;
     const double off = (s12 + s21) / 2, half = (s11 - s22) / 2, radius = hypot(half, off),
-                 size = fabs(s11) + fabs(s22) + fabs(off);
-    c->gauss = (a.x * b.y - a.y * b.x) / det;
-    c->mean = (s11 + s22) / 2;
-    c->principal[0] = c->mean + radius;
-    c->principal[1] = c->mean - radius;
-    c->asymmetry = fabs(s12 - s21);
+                 size = fabs(s11) + fabs(s22) + fabs(off), mean = (s11 + s22) / 2;
+    c->gauss = ldexp((a.x * b.y - a.y * b.x) / det, 2 * unit);
+    c->mean = ldexp(mean, unit);
+    c->principal[0] = ldexp(mean + radius, unit);
+    c->principal[1] = ldexp(mean - radius, unit);
+    c->asymmetry = ldexp(fabs(s12 - s21), unit);
     const bool umbilic = radius <= 16 * DBL_EPSILON * size;
     const double angle = umbilic ? 0 : atan2(off, half) / 2;
     c->direction[0] = qvec3_axpy(sin(angle), t2, qvec3_scale(t1, cos(angle)));
     c->direction[1] = qvec3_axpy(-sin(angle), t1, qvec3_scale(t2, cos(angle)));
-    if (isfinite(c->gauss) && isfinite(c->principal[0] - c->principal[1]) && isfinite(c->asymmetry) && isfinite(det))
-        return umbilic ? QUAT_NOT_UNIQUE : QUAT_OK;
+    if (!isfinite(c->gauss) || !isfinite(c->principal[0] - c->principal[1]) || !isfinite(c->asymmetry))
+        return QUAT_ERANGE;
+    return umbilic ? QUAT_NOT_UNIQUE : QUAT_OK;
+}
+
+/* Parameters counted in other units change a and x_u, or b and x_v, alike; a unit of length changes the curvatures
+ * alone: with units that bring x_u, x_v and the larger rate close to 1 no product vanishes or overflows that the
+ * curvatures do not. */
+quat_status quat_curvature_of_frame(quat q, qvec3 a, qvec3 b, qvec3 xu, qvec3 xv, quat_curvature *c)
+{
+    const quat_curvature none = {0};
     *c = none;
-    return QUAT_ERANGE;
+    if (!qvec3_isfinite(xu) || !qvec3_isfinite(xv) || !qvec3_isfinite(a) || !qvec3_isfinite(b)) return QUAT_EDOMAIN;
+    if (quat_normalize(q, &q) != QUAT_OK || !spans(xu, xv)) return QUAT_EDOMAIN;
+    const int u = quat_vector_exponent(xu), v = quat_vector_exponent(xv),
+              of_a = qvec3_norm(a) > 0 ? quat_vector_exponent(a) - u : INT_MIN / 2,
+              of_b = qvec3_norm(b) > 0 ? quat_vector_exponent(b) - v : INT_MIN / 2, larger = of_a > of_b ? of_a : of_b,
+              unit = larger > INT_MIN / 2 ? larger : 0;
+    const quat_status status = curvature_of(q, quat_ldexp_vector(a, -u - unit), quat_ldexp_vector(b, -v - unit),
+                                            quat_ldexp_vector(xu, -u), quat_ldexp_vector(xv, -v), unit, c);
+    if (status < 0) *c = none;
+    return status;
 }
 
 /* A vector of the body in axes turned by `angle` about z. */
@@ -168,12 +188,14 @@ static qvec3 rate(const quat_surface_point *p, qvec3 t1, qvec3 t2, qvec3 n, qvec
     return qvec3_make((on_v + y * ev) / gv, y, qvec3_dot(xu_rate, t2) / eu);
 }
 
+/* The curvatures are the second derivatives' share along the normal, times 1/sine^2 of the angle between the tangents;
+ * a tangent's error turns the normal, and changes the sine, by 1/sine of itself. */
 static double error_of(const quat_surface_point *p, const double e[6], const qvec3 d[6])
 {
     const double u = qvec3_norm(p->xu), v = qvec3_norm(p->xv), sine = p->area / (u * v);
     const double second = e[3] / (u * u) + 2 * e[4] / (u * v) + e[5] / (v * v),
                  size = qvec3_norm(d[3]) / (u * u) + 2 * qvec3_norm(d[4]) / (u * v) + qvec3_norm(d[5]) / (v * v);
-    return (second + size * (e[1] / u + e[2] / v) * 2) / (sine * sine);
+    return (second + size * (e[1] / u + e[2] / v) * 2 / sine) / (sine * sine);
 }
 
 /* Beside a degenerate point the curvatures may err by more than they are, or than one over the surface's extent. */
@@ -193,15 +215,14 @@ quat_status quat_surface_at(const quat_surface *surface, double u, double v, qua
     const quat_status status = derivatives(surface, u, v, d, e);
     if (qvec3_isfinite(d[0])) p->position = d[0];
     if (status != QUAT_OK) return status;
-    const double area = span(d[1], d[2]);
-    if (area == 0 || qvec3_norm(d[1]) <= 4 * e[1] || qvec3_norm(d[2]) <= 4 * e[2]) return QUAT_EDOMAIN;
+    if (!spans(d[1], d[2]) || qvec3_norm(d[1]) <= 4 * e[1] || qvec3_norm(d[2]) <= 4 * e[2]) return QUAT_EDOMAIN;
     for (int i = 1; i <= 2; i++)
         if (!(qvec3_norm(d[i]) >= 1e-100 && qvec3_norm(d[i]) <= 1e100)) return QUAT_ERANGE;
     for (int i = 3; i < 6; i++)
         if (qvec3_norm(d[i]) > 1e100) return QUAT_ERANGE;
     p->xu = d[1];
     p->xv = d[2];
-    p->area = area;
+    p->area = qvec3_norm(qvec3_cross(d[1], d[2]));
     qvec3_normalize(d[1], &t1);
     qvec3_normalize(qvec3_cross(d[1], d[2]), &n);
     t2 = qvec3_cross(n, t1);

@@ -585,6 +585,53 @@ static void bad_input_has_a_status(void **state)
     assert_int_equal(handled, 0);
 }
 
+/* ---- units ---- */
+
+typedef struct scaled_knot {
+    double length, rate;
+} scaled_knot;
+
+/* (cos rt, sin rt, rt/2) times a length: curvature 4/5 and torsion 2/5 of one over the length, whatever the rate. */
+static bool at_scaled_helix(double t, qvec3 d[4], void *context)
+{
+    const scaled_knot *const k = context;
+    const double turn = k->rate * t, c = cos(turn), s = sin(turn);
+    const qvec3 unit[4] = {{c, s, turn / 2}, {-s, c, 0.5}, {-c, -s, 0}, {s, -c, 0}};
+    double size = k->length;
+    for (int i = 0; i < 4; i++, size *= k->rate) d[i] = qvec3_scale(unit[i], size);
+    return true;
+}
+
+/* What has a speed within 1e-100 ... 1e100 has its curvature, torsion and frame, however slow its parameter. */
+static void units_change_units_alone(void **state)
+{
+    (void)state;
+    random_state r = {409};
+    int answered = 0;
+    for (int round = 0; round < 20000; round++) {
+        scaled_knot k = {random_scale(&r, -100, 100), random_scale(&r, -100, 60)};
+        const quat_curve curve = {at_scaled_helix, &k, 0, 10 / k.rate, false, 3};
+        const double turn = random_between(&r, 0, 10), speed = k.length * k.rate * sqrt(1.25);
+        quat_curve_point p;
+        const quat_status status = quat_curve_at(&curve, turn / k.rate, &p);
+        const bool within = speed > 1.01e-100 && fmax(speed, speed * k.rate * k.rate) < 0.99e100;
+        /* derivatives that are no normal doubles are no data */
+        if (!within || k.length * k.rate * k.rate * k.rate < 1e-307) continue;
+        answered++;
+        assert_int_equal(status, QUAT_OK);
+        assert_near(p.curvature * k.length, 0.8, 2e-15);
+        assert_near(p.torsion * k.length, 0.4, 2e-15);
+        assert_true(p.curvature_error * k.length < 1e-14 && p.torsion_error * k.length < 1e-14);
+        assert_near3(quat_rotate(p.frame, qvec3_make(0, 1, 0)), qvec3_make(-cos(turn), -sin(turn), 0), 2e-14);
+    }
+    assert_true(answered > 8000);
+    /* all derivatives but the first vanish beside it, or it beside them */
+    scaled_knot k = {1, 1e-150};
+    const quat_curve still = {at_scaled_helix, &k, 0, 1, false, 3};
+    quat_curve_point p;
+    assert_int_equal(quat_curve_at(&still, 0, &p), QUAT_ERANGE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(knots_in_quad),
@@ -597,6 +644,7 @@ int main(void)
                                        cmocka_unit_test(degenerate_curves),
                                        cmocka_unit_test(totals_of_closed_curves),
                                        cmocka_unit_test(samples_stand_for_their_curve),
+                                       cmocka_unit_test(units_change_units_alone),
                                        cmocka_unit_test(bad_input_has_a_status)};
     gsl_set_error_handler(count_call);
     return cmocka_run_group_tests(tests, NULL, NULL);

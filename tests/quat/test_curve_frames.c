@@ -308,9 +308,39 @@ static void inflections_are_reported(void **state)
     for (int i = 0; i < 101; i++) assert_near3(quat_rotate(q[i], qvec3_make(0, 0, 1)), qvec3_make(0, 0, 1), 1e-14);
 }
 
+/* A tangent that is almost the mirror image of the one before in the chord: the frame about it hangs on rounding, and
+ * its x axis is the tangent all the same; a cusp has a status. */
+static void beside_a_cusp(void **state)
+{
+    (void)state;
+    random_state r = {317};
+    int cusps = 0;
+    double tangents = 0;
+    for (int round = 0; round < 20000; round++) {
+        const quat q = random_unit(&r);
+        const qvec3 x1 = random_direction(&r), o = {0, 0, 0},
+                    cusp = quat_reflect(x1, quat_rotate(q, qvec3_make(1, 0, 0)));
+        qvec3 t1;
+        quat next;
+        const quat_status exact = quat_frame_step(q, o, x1, cusp, &next);
+        assert_int_equal(exact, QUAT_EDOMAIN);
+        assert_true(quat_equal(next, q));
+        assert_int_equal(qvec3_normalize(qvec3_axpy(random_scale(&r, -17, 0), random_direction(&r), cusp), &t1),
+                         QUAT_OK);
+        const quat_status status = quat_frame_step(q, o, x1, t1, &next);
+        const double apart = qvec3_norm(qvec3_sub(t1, cusp));
+        assert_true(status == (apart > 2e-15 ? QUAT_OK : QUAT_EDOMAIN) || (apart > 1e-15 && apart < 3e-15));
+        cusps += status != QUAT_OK;
+        if (status == QUAT_OK) worse(&tangents, qvec3_norm(qvec3_sub(quat_rotate(next, qvec3_make(1, 0, 0)), t1)));
+    }
+    assert_true(cusps > 1000 && cusps < 4000);
+    assert_bound("the tangent beside a cusp", tangents, 4e-15);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_are_two_mirrors),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(beside_a_cusp),
+                                       cmocka_unit_test(steps_are_two_mirrors),
                                        cmocka_unit_test(minimal_frames_are_of_order_four),
                                        cmocka_unit_test(closed_frames_close),
                                        cmocka_unit_test(holonomy_is_taken_back_evenly),

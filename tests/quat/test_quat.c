@@ -224,6 +224,15 @@ static void distances_are_right_for_every_angle(void **state)
                 isnan(quat_rotation_distance(q, quat_make(NAN, 0, 0, 0))));
     assert_false(quat_same_rotation(q, quat_make(NAN, 0, 0, 0), 10));
     assert_true(quat_angle(quat_make(0, 0, 0, 0)) == 0 && quat_angle(quat_make(-2, 0, 0, 0)) == 0);
+    /* |v| is no double, or not with all digits, but the angle of (1, 1, 1, 1) is 2 pi/3 and of (1, 3, 4, 0) 2 atan 5 */
+    const double end[2] = {0x1p1021, 0x1p-1074};
+    for (int n = 0; n < 2; n++) {
+        assert_true(fabs(quat_angle(quat_make(end[n], end[n], -end[n], end[n])) - 4 * atan2(1, 0) / 3) < 1e-15);
+        assert_true(fabs(quat_angle(quat_make(end[n], 3 * end[n], 4 * end[n], 0)) - 2 * atan(5)) < 1e-15);
+    }
+    assert_true(fabs(quat_angle(quat_make(1.7e308, 1.7e308, 1.7e308, 1.7e308)) - 4 * atan2(1, 0) / 3) < 1e-15);
+    assert_true(isnan(quat_angle(quat_make(1, NAN, 0, 0))) &&
+                quat_angle(quat_make(1, INFINITY, 0, 0)) == 2 * atan2(1, 0));
 }
 
 /* ---- random rotations ---- */

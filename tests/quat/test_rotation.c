@@ -301,6 +301,39 @@ static void swing_and_twist(void **state)
     assert_true(quat_near(twist, quat_make(sqrt(0.5), 0, 0, sqrt(0.5)), 2e-16));
 }
 
+/* Half turns exactly across the axis, in whole numbers, leave the twist open, whatever q's length; and what is beside
+ * one by less than a rounding unit is known from q's digits as they are given. */
+static void half_turns_across_the_axis(void **state)
+{
+    (void)state;
+    random_state r = {29};
+    double beside = 0;
+    for (int n = 0; n < 20000; n++) {
+        qvec3 axis, other;
+        do {
+            axis = qvec3_make(floor(random_between(&r, -9, 10)), floor(random_between(&r, -9, 10)),
+                              floor(random_between(&r, -9, 10)));
+            other = qvec3_make(floor(random_between(&r, -9, 10)), floor(random_between(&r, -9, 10)),
+                               floor(random_between(&r, -9, 10)));
+        } while (qvec3_norm(qvec3_cross(axis, other)) == 0);
+        const double scale = ldexp(1, (int)random_between(&r, -900, 900));
+        quat q = quat_pure(qvec3_scale(qvec3_cross(axis, other), scale)), swing, twist, unit;
+        assert_int_equal(quat_swing_twist(q, axis, &swing, &twist), QUAT_NOT_UNIQUE);
+        quat_normalize(q, &unit);
+        assert_true(quat_equal(twist, quat_identity()) && quat_equal(swing, unit));
+        /* a tilt by one of the last digits of q.x: (w, along) = (e, axis.x e/|axis|) */
+        if (axis.x == 0) continue;
+        const double e = 0x1p-44 * scale * (random_uniform(&r) < 0.5 ? 1 : -1), length = qvec3_norm(axis);
+        q.w = fabs(e), q.x += e;
+        assert_int_equal(quat_swing_twist(q, axis, &swing, &twist), QUAT_OK);
+        quat want;
+        assert_int_equal(quat_normalize(quat_from_parts(q.w, qvec3_scale(axis, e * axis.x / length / length)), &want),
+                         QUAT_OK);
+        worse(&beside, quat_norm(quat_sub(twist, want)));
+    }
+    assert_bound("the twist beside a half turn across", beside, 1e-15);
+}
+
 /* ---- angular velocity ---- */
 
 static void angular_velocity(void **state)
@@ -344,6 +377,7 @@ int main(void)
         cmocka_unit_test(two_vectors),
         cmocka_unit_test(frames),
         cmocka_unit_test(swing_and_twist),
+        cmocka_unit_test(half_turns_across_the_axis),
         cmocka_unit_test(angular_velocity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -490,6 +490,116 @@ static void bad_input_has_a_status(void **state)
     assert_int_equal(handled, 0);
 }
 
+/* ---- units, and parameters that run nearly together ---- */
+
+/* A point of a torus of radii 3 and 1, |x_u| and |x_v| of units of their own, x_v sheared towards x_u. */
+typedef struct skewed {
+    double length, along_u, along_v, angle;
+} skewed;
+
+static bool at_skewed(double u, double v, qvec3 d[6], void *context)
+{
+    const skewed *const s = context;
+    (void)u, (void)v;
+    /* of the torus at its outermost circle: x_u = (0, 4, 0), x_v = (0, 0, 1), x_uu = (-4, 0, 0), x_vv = (-1, 0, 0) */
+    const double c = cos(s->angle), w = sin(s->angle), uu = s->along_u * s->along_u, uv = s->along_u * s->along_v,
+                 vv = s->along_v * s->along_v;
+    const qvec3 unit[6] = {{4, 0, 0},       {0, 4 * s->along_u, 0}, {0, 4 * c * s->along_v, w * s->along_v},
+                           {-4 * uu, 0, 0}, {-4 * c * uv, 0, 0},    {-(4 * c * c + w * w) * vv, 0, 0}};
+    for (int i = 0; i < 6; i++) d[i] = qvec3_scale(unit[i], s->length);
+    return true;
+}
+
+static void units_change_units_alone(void **state)
+{
+    (void)state;
+    random_state r = {419};
+    int answered = 0;
+    for (int round = 0; round < 20000; round++) {
+        const double rate = random_scale(&r, -100, 60);
+        skewed s = {random_scale(&r, -99, 99), rate, rate * random_scale(&r, -8, 8), pi / 2};
+        const quat_surface surface = {at_skewed, &s, 0, 1, 0, 1, false, false, 2};
+        const double u = s.length * s.along_u, v = s.length * s.along_v, most = 8 * fmax(s.along_u, s.along_v);
+        quat_surface_point p;
+        const quat_status status = quat_surface_at(&surface, 0.5, 0.5, &p);
+        if (fmin(u, v) < 1.01e-100 || s.length * fmax(most, most * most) > 0.99e100) continue;
+        if (fmin(u * s.along_u, v * s.along_v) < 1e-307) continue; /* no normal doubles */
+        answered++;
+        assert_true(status == QUAT_OK);
+        assert_near(p.curvature.principal[0] * s.length, 1, 4e-15);
+        assert_near(p.curvature.principal[1] * s.length, 0.25, 4e-15);
+        assert_near(p.curvature.gauss * s.length * s.length, 0.25, 4e-15);
+        assert_true(p.error * s.length < 1e-14);
+    }
+    assert_true(answered > 5000);
+}
+
+/* Rates and tangents of any size that doubles hold: a cylinder's x_u along T1, curved along x_v. */
+static void frames_of_every_size(void **state)
+{
+    (void)state;
+    random_state r = {421};
+    quat_curvature c;
+    for (int round = 0; round < 20000; round++) {
+        const double u = random_scale(&r, -300, 300), v = u * random_scale(&r, -7, 7), k = random_scale(&r, -140, 140),
+                     h = k * random_scale(&r, -3, 3);
+        const qvec3 a = {0, k * u, 0}, b = {-h * v, 0, 0}, xu = {u, 0, 0}, xv = {0, v, 0};
+        if (!(fmin(fmin(u, v), fmin(k * u, h * v)) > 1e-307 && fmax(fmax(u, v), fmax(k * u, h * v)) < 1e307)) continue;
+        assert_true(quat_curvature_of_frame(quat_identity(), a, b, xu, xv, &c) >= 0);
+        assert_near(c.gauss / k / h, 1, 4e-15);
+        assert_near(c.principal[0] / fmax(k, h), 1, 4e-15);
+        assert_near(c.principal[1] / fmax(k, h), fmin(k, h) / fmax(k, h), 4e-15);
+        assert_true(c.asymmetry <= 4e-15 * fmax(k, h));
+    }
+    const qvec3 x = {1, 0, 0}, y = {0, 1, 0}, none = {0, 0, 0};
+    assert_int_equal(quat_curvature_of_frame(quat_identity(), none, none, x, y, &c), QUAT_NOT_UNIQUE);
+    assert_true(c.gauss == 0 && c.mean == 0);
+    assert_int_equal(quat_curvature_of_frame(quat_identity(), qvec3_scale(y, 1e300), none, x, y, &c), QUAT_OK);
+    assert_near(c.principal[0], 1e300, 1e285);
+    assert_int_equal(quat_curvature_of_frame(quat_identity(), qvec3_scale(y, 1e300), qvec3_scale(x, -1e300), x, y, &c),
+                     QUAT_ERANGE); /* K = 1e600 */
+    assert_true(c.gauss == 0 && c.mean == 0 && c.principal[0] == 0);
+}
+
+typedef struct turned_point {
+    qvec3 d[6];
+} turned_point;
+
+static bool at_turned(double u, double v, qvec3 d[6], void *context)
+{
+    (void)u, (void)v;
+    memcpy(d, ((const turned_point *)context)->d, 6 * sizeof *d);
+    return true;
+}
+
+/* Rounded tangents at an angle of 1e-12 know the curvature to 1e-4 only; the estimate says so, and beyond 1e-3 the
+ * status. */
+static void tangents_that_run_together(void **state)
+{
+    (void)state;
+    random_state r = {431};
+    int doubtful = 0, wrong = 0;
+    for (int round = 0; round < 20000; round++) {
+        const quat q = random_unit(&r);
+        skewed s = {1, 1, 1, random_scale(&r, -14.5, 0)};
+        qvec3 d[6];
+        at_skewed(0, 0, d, &s);
+        quat_surface_point p;
+        turned_point turned;
+        for (int i = 0; i < 6; i++) turned.d[i] = quat_rotate(q, d[i]);
+        const quat_surface surface = {at_turned, &turned, 0, 1, 0, 1, false, false, 2};
+        const quat_status status = quat_surface_at(&surface, 0.5, 0.5, &p);
+        if (status == QUAT_EDOMAIN) continue;
+        assert_true(status >= 0);
+        doubtful += status == QUAT_NOT_CONVERGED;
+        const double error = fmax(fabs(p.curvature.principal[0] - 1), fabs(p.curvature.principal[1] - 0.25));
+        assert_true(error <= 8 * p.error);
+        wrong += error > 0.01;
+        assert_true(status == QUAT_NOT_CONVERGED || error < 0.01);
+    }
+    assert_true(doubtful > 1000 && wrong > 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(ellipsoids_in_quad),
@@ -501,6 +611,9 @@ int main(void)
                                        cmocka_unit_test(nothing_depends_on_place_parameter_or_gauge),
                                        cmocka_unit_test(rates_are_the_frames),
                                        cmocka_unit_test(fewer_derivatives),
+                                       cmocka_unit_test(units_change_units_alone),
+                                       cmocka_unit_test(frames_of_every_size),
+                                       cmocka_unit_test(tangents_that_run_together),
                                        cmocka_unit_test(bad_input_has_a_status)};
     gsl_set_error_handler(count_call);
     return cmocka_run_group_tests(tests, NULL, NULL);

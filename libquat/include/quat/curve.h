@@ -119,7 +119,7 @@ QUAT_API quat_status quat_curve_frames(const quat_curve *curve, quat_framing fra
 
 /* One step of the double reflection: the frame at (x1, unit tangent1) of the frame q at x0, whose tangent is its x
  * axis. QUAT_EDOMAIN and *next = q when x0 = x1, when the tangent is zero, infinite or NaN, and when it is the mirror
- * image of the other in the chord's plane (a cusp between the two). */
+ * image of the other in the chord's plane to rounding (2e-15 rad: a cusp between the two). */
 QUAT_API quat_status quat_frame_step(quat q, qvec3 x0, qvec3 x1, qvec3 tangent1, quat *next);
 
 #ifdef __cplusplus
