@@ -497,7 +497,7 @@
 /* tau: further than this no step goes; where the last terms vanish they bound nothing. */
 #define IMP_SPRINGS_FARTHEST 4.0
 /* Of the time at which three terms have the next event: what later terms shift it by, mostly. */
-#define IMP_LINEAR_AHEAD 1.25
+#define IMP_LINEAR_AHEAD 1.0625
 /* Radii of a power's series that a step goes: 5^22 eps is .5, of a force that is small where the radius is. */
 #define IMP_SPRINGS_REACH 5
 /* The least restitution of springs: what unloads is 1/eps times as stiff in time as what loads, and a pressed contact

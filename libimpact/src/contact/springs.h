@@ -152,14 +152,16 @@ double imp_springs_creep(imp_springs *s, double reach);
 
 /* ---- springs_events.c ---- */
 
-/* h^k */
-void imp_springs_find_powers(double h, imp_terms power);
+/* h^k, k < count */
+void imp_springs_find_powers(double h, int count, double *power);
 /* Whether sum c_k t^k, k < terms, is above zero on (0, h], by its coefficients: the first that count are by more than
  * what the others take; false where they do not tell. */
 bool imp_springs_stay_above(const double *c, int terms, const double *power);
 /* The first time in [0, h] at which sum c_k t^k, k <= order, falls to 0, or h where it does not: none is missed. *found
  * tells. c[0] <= 0 falls at 0. */
 double imp_springs_first_fall(const double *c, int order, double h, bool *found);
+/* The same of what falls, or bends down, all along. */
+double imp_springs_only_fall(const double *c, int order, double h, bool *found);
 
 /* Where sum c_k t^k changes its sign in (0, t): the times, at most so many; returns how many. */
 int imp_springs_sign_changes(const double *c, int order, double t, double *when, int most);

@@ -14,12 +14,12 @@
 static double value_and_slope(const double *c, int order, double t, double *slope)
 {
     const double square = t * t;
-    double even = 0, odd = 0, even_slope = 0, odd_slope = 0;
-    for (int k = order - order % 2; k >= 0; k -= 2) {
+    double even = order % 2 ? 0 : c[order], odd = 0, even_slope = 0, odd_slope = 0;
+    for (int k = order % 2 ? order : order - 1; k > 0; k -= 2) {
         even_slope = even_slope * square + even;
-        even = even * square + c[k];
+        even = even * square + c[k - 1];
         odd_slope = odd_slope * square + odd;
-        odd = odd * square + (k < order ? c[k + 1] : 0);
+        odd = odd * square + c[k];
     }
     *slope = odd + 2 * t * (even_slope + t * odd_slope);
     return even + t * odd;
@@ -67,7 +67,7 @@ bool imp_springs_stay_above(const double *c, int terms, const double *power)
 /* Whether f' < 0 on all of (0, h], or f'' < 0. */
 static bool falls_once(const double *c, int order, const double *power)
 {
-    imp_terms slope = {0}, bend = {0};
+    imp_terms slope, bend;
     for (int k = 0; k < order; k++) slope[k] = -(k + 1) * c[k + 1];
     if (imp_springs_stay_above(slope, order, power)) return true;
     for (int k = 0; k + 1 < order; k++) bend[k] = (k + 1) * slope[k + 1];
@@ -113,10 +113,20 @@ static double safe_stride(const double *c, int order, double t, double h)
     return best;
 }
 
-void imp_springs_find_powers(double h, imp_terms power)
+void imp_springs_find_powers(double h, int count, double *power)
 {
     power[0] = 1, power[1] = h;
-    for (int k = 2; k < IMP_SPRINGS_TERMS; k++) power[k] = power[k / 2] * power[k - k / 2]; /* short chains */
+    for (int k = 2; k < count; k++) power[k] = power[k - 2] * (h * h); /* short chains */
+}
+
+double imp_springs_only_fall(const double *c, int order, double h, bool *found)
+{
+    double slope;
+    *found = c[0] <= 0;
+    if (*found) return 0;
+    const double at_end = value_and_slope(c, order, h, &slope);
+    *found = at_end <= 0;
+    return *found ? only_zero(c, order, h, at_end) : h;
 }
 
 double imp_springs_first_fall(const double *c, int order, double h, bool *found)
@@ -124,16 +134,14 @@ double imp_springs_first_fall(const double *c, int order, double h, bool *found)
     *found = c[0] <= 0;
     if (*found) return 0;
     imp_terms power;
-    imp_springs_find_powers(h, power);
+    imp_springs_find_powers(h, order + 1, power);
     if (imp_springs_stay_above(c, order + 1, power)) return h;
-    double t = 0, slope;
+    double t = 0;
     for (double end = h; t == 0 && end > h / 16; end /= 2) {
-        if (end < h) imp_springs_find_powers(end, power);
+        if (end < h) imp_springs_find_powers(end, order + 1, power);
         if (!falls_once(c, order, power)) continue;
-        const double at_end = value_and_slope(c, order, end, &slope);
-        *found = at_end <= 0;
-        if (*found) return only_zero(c, order, end, at_end);
-        t = end;
+        t = imp_springs_only_fall(c, order, end, found);
+        if (*found) return t;
     }
     if (t == h) return h;
     for (int i = 0; i < 200; i++) {
@@ -163,7 +171,7 @@ int imp_springs_sign_changes(const double *c, int order, double t, double *when,
     for (int k = 0; k <= order; k++) f[k] = sign * c[k];
     if (f[0] == 0) f[0] = DBL_MIN; /* it begins at a zero */
     for (bool found = true; n < most;) {
-        imp_springs_find_powers(t - at, power);
+        imp_springs_find_powers(t - at, order + 1, power);
         if (imp_springs_stay_above(f, order + 1, power)) break;
         const double further = imp_springs_first_fall(f, order, t - at, &found);
         if (!found) break;

@@ -125,7 +125,8 @@ static bool take_line_room(imp_linear_springs *s, impact_together_workspace *wor
     s->closed_row = imp_encounter_take(workspace, n * n, sizeof *s->closed_row);
     s->closed_value = imp_encounter_take(workspace, n * n, sizeof *s->closed_value);
     s->depth = imp_encounter_take(workspace, IMP_LINEAR_PAIRS * n, sizeof *s->depth);
-    s->bound = imp_encounter_take(workspace, n, sizeof *s->bound);
+    s->kappa = imp_encounter_take(workspace, n, sizeof *s->kappa);
+    s->force = imp_encounter_take(workspace, 2 * n, sizeof *s->force);
     s->push = imp_encounter_take(workspace, n, sizeof *s->push);
     s->gain = imp_encounter_take(workspace, n, sizeof *s->gain);
     return !workspace->work.spent;
@@ -178,6 +179,7 @@ static void set_up_lines(imp_linear_springs *s, const imp_group *group, line_uni
         l->stiffness = group->contacts[i].stiffness / unit.stiffness;
         l->finding = &group->findings[i];
         take_branch(l, IMP_SPRING_OPEN, 0, l->stiffness);
+        s->place[i] = -1;
     }
 }
 

@@ -42,15 +42,19 @@ typedef struct imp_linear_springs {
     double *value;
     /* What is closed: the contacts; of each contact its place among them, or -1; their part of W. */
     int closed_count, *closed, *place, *closed_start, *closed_row;
-    double *closed_value; /* times kappa of the column */
-    int pairs;            /* of terms that are made */
-    imp_term_pair factor[IMP_LINEAR_PAIRS],
-        greatest;         /* of terms to sums over W K; |.| of the last terms, the largest */
-    imp_term_pair *depth; /* IMP_LINEAR_PAIRS rows of x's terms, of all that is closed each */
-    imp_term_pair *bound; /* of those: how far x and x' go from where they are */
-    imp_term_pair *push;  /* of what is closed: F's integral to the step's end, and that one's */
-    imp_term_pair *gain;  /* of each contact: W times that */
-    imp_terms power;      /* h^k of the step */
+    double *closed_value;
+    int pairs; /* of terms that are made */
+    imp_term_pair factor[IMP_LINEAR_PAIRS + 1], once[IMP_LINEAR_PAIRS],
+        twice[IMP_LINEAR_PAIRS];              /* of terms to sums over W; of integrals; of theirs */
+    imp_term_pair greatest[IMP_LINEAR_PAIRS]; /* |.| of those terms, from the second pair on, the largest */
+    double rest[4];                           /* of any x and its rates what terms from the fifth on make, at most */
+    double rest_open, hardest;                /* of what is open, for each unit of sum |W|; the largest kappa */
+    double *kappa;                            /* of what is closed */
+    imp_term_pair *depth;                     /* IMP_LINEAR_PAIRS rows of x's terms, of all that is closed each */
+    imp_term_pair *force;                     /* the last two of those rows times kappa */
+    imp_term_pair *push;                      /* of what is closed: F's integral to the step's end, and that one's */
+    imp_term_pair *gain;                      /* of each contact: W times that */
+    imp_terms power;                          /* h^k of the step */
     long events, steps;
 } imp_linear_springs;
 
