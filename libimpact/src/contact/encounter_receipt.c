@@ -115,7 +115,7 @@ static void check_meeting_of(const impact_encounter *e, const impact_together_ou
     sum->by_impulses += 0.5 * qvec3_dot(own->impulse, qvec3_add(before, after));
     sum->driven += driven_work(e, m, own->impulse);
     if (e->law == IMPACT_TOGETHER_SPRINGS) /* an impulse against the slip at its end may have been with it before */
-        miss(t, fmax(0, own->work_friction), fabs(own->work_friction) + size * qvec3_norm(own->impulse));
+        miss(t, fmax(0, own->work_friction), fabs(own->work_friction) + (size + t->speed) * qvec3_norm(own->impulse));
 }
 
 double imp_encounter_receipt(const impact_encounter *encounter, const impact_together_outcome *outcome)

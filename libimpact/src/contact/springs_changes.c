@@ -100,21 +100,34 @@ double imp_springs_pace(const imp_springs *s)
     return fmax(pace, rate / most);
 }
 
+/* Whether the contact opens before its friction could change a velocity by more than rounding: in the time x/u_n its
+ * force, as of now, falls to nothing. */
+static bool is_spent(const imp_springs *s, int contact)
+{
+    const imp_spring *c = &s->springs[contact];
+    if (!(c->u[0] > 0)) return false;
+    const double left = c->friction * s->now[3 * contact] * c->x / c->u[0];
+    return left * fmax(imp_springs_entry(s, 3 * contact + 1, 3 * contact + 1),
+                       imp_springs_entry(s, 3 * contact + 2, 3 * contact + 2)) <=
+           IMP_SPRINGS_SPENT;
+}
+
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
- * What it still turns by in the time speed/|along| that is left, and by what forces change in it, is under rounding. */
+ * What it still turns by in the time speed/|along| that is left, and by what forces change in it, is under rounding.
+ * Where the contact is about to open, and too little of its friction is left, any direction will do: what begins there,
+ * or creeps, is turned by a force that vanishes, and its series hold for no time. */
 static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
 {
-    if (c->normal == IMP_SPRING_OPEN || c->slip != IMP_SPRING_SLIDES) return false;
+    if (c->normal == IMP_SPRING_OPEN || (c->slip != IMP_SPRING_SLIDES && c->slip != IMP_SPRING_BEGINS)) return false;
     const double speed = hypot(c->u[1], c->u[2]);
-    if (speed <= c->none) {
-        c->still = true;
-        return true;
-    }
-    if (speed > IMP_SPRINGS_SLOW || c->creeps) return false;
+    const bool begins = c->slip == IMP_SPRING_BEGINS, over = !begins && speed <= c->none,
+               spent = !over && is_spent(s, contact);
+    if (over) c->still = true;
+    if (over || (!spent && (begins || speed > IMP_SPRINGS_SLOW || c->creeps))) return over;
     const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
-    const double e[2] = {c->u[1] / speed, c->u[2] / speed};
+    const double e[2] = {begins ? c->along[0] : c->u[1] / speed, begins ? c->along[1] : c->u[2] / speed};
     const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
-    if (along < 0 && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along) {
+    if (spent || (along < 0 && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along)) {
         c->slip = IMP_SPRING_STRAIGHT;
         c->along[0] = e[0], c->along[1] = e[1];
     }

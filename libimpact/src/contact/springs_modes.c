@@ -7,8 +7,7 @@
  * discs: springs_choose.c chooses them.
  *
  * Slip goes straight where nothing turns it: the response across it vanishes for every force that is there, each
- * against its own direction; or where the contact is about to open, and too little of its friction is left. (Slip that
- * begins by and by there, from no acceleration, is a series that holds for no time.)
+ * against its own direction.
  */
 #include "contact/springs.h"
 
@@ -114,22 +113,10 @@ static void find_across(imp_springs *s, int c, const double e[2], double *row)
         for (int j = 0; j < width; j++) row[j] -= s->scratch[a] * imp_springs_entry(s, s->stick[a], j);
 }
 
-/* Whether the contact opens before its friction could change a velocity by more than rounding: in the time x/u_n its
- * force falls from lambda to nothing. */
-static bool is_spent(const imp_springs *s, int c)
-{
-    const imp_spring *own = &s->springs[c];
-    if (!(own->u[0] > 0)) return false;
-    const double left = own->friction * own->kappa * pow(own->x, s->exponent) * own->x / own->u[0];
-    return left * fmax(imp_springs_entry(s, 3 * c + 1, 3 * c + 1), imp_springs_entry(s, 3 * c + 2, 3 * c + 2)) <=
-           IMP_SPRINGS_SPENT;
-}
-
 /* Whether nothing that presses turns the slip of contact c. */
 static bool goes_straight(imp_springs *s, int c)
 {
     double e[2], size = 0, *row = s->now;
-    if (is_spent(s, c)) return true;
     find_direction(&s->springs[c], e);
     for (int j = 0; j < 3 * s->count; j++)
         size = fmax(size, fmax(fabs(imp_springs_entry(s, 3 * c + 1, j)), fabs(imp_springs_entry(s, 3 * c + 2, j))));
