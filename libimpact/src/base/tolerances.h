@@ -759,8 +759,9 @@
  * near a border, where the part is small. */
 #define IMP_FACE_PRESSINGS 60
 #define IMP_FACE_PRESSED 1e-12
-/* A step's last Legendre term, of what its numbers change by: the next is as much smaller, and its end closer still. */
-#define IMP_FACE_TOLERANCE 1e-10
+/* A step's last Legendre term, of what its numbers change by: the next is as much smaller, and its end closer still;
+ * and by how much its rates miss those of its begin, before the first node, where a force may end or friction bend. */
+#define IMP_FACE_TOLERANCE 1e-11
 /* Newton's iteration for a step: it has settled; how many rounds it may take, each of which brings a digit or more;
  * and, of the speed, by how much its slopes are differences. */
 #define IMP_FACE_SETTLED 1e-14

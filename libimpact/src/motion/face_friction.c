@@ -13,6 +13,8 @@ static place at(const double x[2]) { return (place){x[0], x[1]}; }
 static place less(place a, place b) { return (place){a.x - b.x, a.y - b.y}; }
 static double dot(place a, place b) { return a.x * b.x + a.y * b.y; }
 static double cross(place a, place b) { return a.x * b.y - a.y * b.x; }
+/* Of what is of the order of 1, or need not be known where it is far less. */
+static double face_length(place a) { return sqrt(dot(a, a)); }
 static place along(place from, double t, place step) { return (place){from.x + t * step.x, from.y + t * step.y}; }
 
 /* ---- the face and its parts ---- */
@@ -47,10 +49,8 @@ static void begin_part(const imp_flat_face *face, imp_pressed *pressed)
     place middle = {0, 0};
     for (int i = 0; i < face->count; i++) middle = along(middle, 1.0 / face->count, at(face->corner[i]));
     pressed->reach = 0;
-    for (int i = 0; i < face->count; i++) {
-        const place d = less(at(face->corner[i]), middle);
-        pressed->reach = fmax(pressed->reach, hypot(d.x, d.y));
-    }
+    for (int i = 0; i < face->count; i++)
+        pressed->reach = fmax(pressed->reach, face_length(less(at(face->corner[i]), middle)));
     pressed->middle[0] = middle.x, pressed->middle[1] = middle.y;
 }
 
@@ -224,8 +224,9 @@ typedef struct rub_sum {
 static void add_rub(place x, double weight, void *sum)
 {
     const rub_sum *r = sum;
-    const double *v = r->twist, u[2] = {v[0] - v[2] * x.y, v[1] + v[2] * x.x}, size = hypot(u[0], u[1]);
-    const double force[2] = {-weight * u[0] / size, -weight * u[1] / size}, f[3] = {1, x.x, x.y};
+    const double *v = r->twist;
+    const place u = {v[0] - v[2] * x.y, v[1] + v[2] * x.x};
+    const double part = -weight / face_length(u), force[2] = {part * u.x, part * u.y}, f[3] = {1, x.x, x.y};
     for (int j = 0; j < 3; j++) {
         r->rub[0][j] += f[j] * force[0];
         r->rub[1][j] += f[j] * force[1];
@@ -239,16 +240,23 @@ typedef struct border_sums {
     double size, turn[2];        /* of |r| and |r| r_i */
 } border_sums;
 
+/* The integral of 1/|r|, asinh(s2/h) - asinh(s1/h), as one: of the argument (s2 r1 - s1 r2)/h^2, by its conjugate where
+ * that cancels. */
+static double inverse_sum(double h, double s1, double s2, double r1, double r2)
+{
+    return asinh(s1 * s2 > 0 ? (s2 - s1) * (s2 + s1) / (s2 * r1 + s1 * r2) : (s2 * r1 - s1 * r2) / (h * h));
+}
+
 /* s^k/|r| for k = 0, 1, 2 and s^k |r| for k = 0, 1 from s1 to s2, |r|^2 = h^2 + s^2. */
 static void add_side_sums(place from, place to, border_sums *sums)
 {
     const place side = less(to, from);
-    const double length = hypot(side.x, side.y);
+    const double length = face_length(side);
     if (!(length > 0)) return;
     const place t = {side.x / length, side.y / length}, n = {t.y, -t.x};
-    const double h = dot(n, from), s1 = dot(t, from), s2 = dot(t, to), r1 = hypot(h, s1), r2 = hypot(h, s2);
-    if (h == 0) return;
-    const double inverse = asinh(s2 / fabs(h)) - asinh(s1 / fabs(h)), first = (s2 - s1) * (s2 + s1) / (r1 + r2),
+    const double h = dot(n, from), s1 = dot(t, from), s2 = dot(t, to), r1 = face_length(from), r2 = face_length(to);
+    if (!(h * h > IMP_NOT_ZERO)) return;
+    const double inverse = inverse_sum(h, s1, s2, r1, r2), first = (s2 - s1) * (s2 + s1) / (r1 + r2),
                  second = 0.5 * (s2 * r2 - s1 * r1 - h * h * inverse), size = second + h * h * inverse,
                  turn = (r2 * r2 * r2 - r1 * r1 * r1) / 3;
     const double axis[2][2] = {{n.x, t.x}, {n.y, t.y}};
@@ -266,7 +274,7 @@ static void add_side_sums(place from, place to, border_sums *sums)
 
 static void add_arc_place(place r, place outward, double weight, border_sums *sums)
 {
-    const double x[2] = {r.x, r.y}, size = hypot(r.x, r.y), across = weight * dot(r, outward);
+    const double x[2] = {r.x, r.y}, size = face_length(r), across = weight * dot(r, outward);
     if (!(size > 0)) return;
     for (int i = 0; i < 2; i++) {
         sums->once[i] += across * x[i] / size;
@@ -342,7 +350,8 @@ void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub
         rub_along_border(pressed, twist, rub);
         return;
     }
-    rub_sum sum = {twist, rub};
+    const double along[3] = {twist[0] / speed, twist[1] / speed, twist[2] / speed};
+    rub_sum sum = {along, rub};
     for (int i = 0; i < pressed->count; i++)
         (pressed->border[i].arc ? cover_arc : cover_side)(pressed, &pressed->border[i], add_rub, &sum);
 }

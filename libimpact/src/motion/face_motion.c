@@ -164,6 +164,7 @@ static void legendre(double x, double p[IMP_FACE_NODES + 1])
 typedef struct collocation {
     double term[IMP_FACE_NODES][IMP_FACE_NODES];     /* P_k at the nodes */
     double integral[IMP_FACE_NODES][IMP_FACE_NODES]; /* of P_k from 0 to them */
+    double way[IMP_FACE_NODES][IMP_FACE_NODES];      /* A: of what has 1 at a node and 0 at the others */
 } collocation;
 
 static void lay_out(collocation *c)
@@ -177,6 +178,12 @@ static void lay_out(collocation *c)
             if (k > 0) c->integral[i][k] = (p[k + 1] - p[k - 1]) / (2 * (2 * k + 1));
         }
     }
+    for (int i = 0; i < IMP_FACE_NODES; i++)
+        for (int j = 0; j < IMP_FACE_NODES; j++) {
+            c->way[i][j] = 0;
+            for (int k = 0; k < IMP_FACE_NODES; k++)
+                c->way[i][j] += c->integral[i][k] * (2 * k + 1) * weight[j] * c->term[j][k];
+        }
 }
 
 /* The rates' coefficients in Legendre's polynomials from their values at the nodes. */
@@ -256,8 +263,7 @@ static void back_solve(double a[SYSTEM][SYSTEM], const int *row, double *b)
     }
 }
 
-/* 1 - h A J of the velocities: J their rates' slopes at y, by differences, A what the nodes' rates make of the nodes'
- * states. */
+/* 1 - h A J of the velocities: J their rates' slopes at y, by differences. */
 static bool linearize(const imp_face_motion *motion, const collocation *c, const double *y, const double *rate,
                       double h, imp_face_balance *last, double a[SYSTEM][SYSTEM], int *row)
 {
@@ -272,43 +278,40 @@ static bool linearize(const imp_face_motion *motion, const collocation *c, const
     }
     for (int n = 0; n < SYSTEM; n++)
         for (int m = 0; m < SYSTEM; m++) {
-            const int i = n / MOVING, j = m / MOVING;
-            double part = 0;
-            for (int k = 0; k < IMP_FACE_NODES; k++)
-                part += c->integral[i][k] * (2 * k + 1) * weight[j] * c->term[j][k];
-            a[n][m] = (n == m) - h * part * slope[n % MOVING][m % MOVING];
+            const double part = h * c->way[n / MOVING][m / MOVING];
+            a[n][m] = (n == m) - part * slope[n % MOVING][m % MOVING];
         }
     return factor(a, row);
 }
 
-static void states_at_nodes(const collocation *c, const double *y, double h, double k[][IMP_FACE_STATE],
+static void states_at_nodes(const collocation *c, const double *y, double h, double rate[][IMP_FACE_STATE],
                             double there[][IMP_FACE_STATE])
 {
     for (int i = 0; i < IMP_FACE_NODES; i++)
         for (int n = 0; n < IMP_FACE_STATE; n++) {
-            there[i][n] = y[n];
-            for (int j = 0; j < IMP_FACE_NODES; j++) there[i][n] += h * c->integral[i][j] * k[j][n];
+            double way = 0;
+            for (int j = 0; j < IMP_FACE_NODES; j++) way += c->way[i][j] * rate[j][n];
+            there[i][n] = y[n] + h * way;
         }
 }
 
-/* The rates at the nodes, by Newton's iteration for the velocities; all else only follows them. */
+/* The rates at the nodes, by Newton's iteration for the velocities; all else only follows them; and those at y. */
 static bool collocate(const imp_face_motion *motion, const collocation *c, const double *y, double h,
-                      const double *unit, double k[][IMP_FACE_STATE])
+                      const double *unit, double k[][IMP_FACE_STATE], double *first)
 {
     double rate[IMP_FACE_NODES][IMP_FACE_STATE], there[IMP_FACE_NODES][IMP_FACE_STATE], a[SYSTEM][SYSTEM],
         change = INFINITY;
     int row[SYSTEM];
-    imp_face_balance last = {.p = {0}}; /* from one place to the next it hardly changes */
-    if (!rates_in_tau(motion, y, rate[0], &last) || !linearize(motion, c, y, rate[0], h, &last, a, row)) return false;
-    for (int i = 1; i < IMP_FACE_NODES; i++) memcpy(rate[i], rate[0], sizeof rate[0]);
-    expand(c, rate, k);
-    states_at_nodes(c, y, h, k, there);
+    imp_face_balance begun = {.p = {0}}, last[IMP_FACE_NODES]; /* from one round to the next they hardly change */
+    if (!rates_in_tau(motion, y, first, &begun) || !linearize(motion, c, y, first, h, &begun, a, row)) return false;
+    for (int i = 0; i < IMP_FACE_NODES; i++) memcpy(rate[i], first, sizeof rate[i]);
+    for (int i = 0; i < IMP_FACE_NODES; i++) last[i] = begun;
+    states_at_nodes(c, y, h, rate, there);
     for (int round = 0; round < IMP_FACE_ROUNDS; round++) {
         double made[IMP_FACE_NODES][IMP_FACE_STATE], off[SYSTEM], moved = 0;
         for (int i = 0; i < IMP_FACE_NODES; i++)
-            if (!rates_in_tau(motion, there[i], rate[i], &last)) return false;
-        expand(c, rate, k);
-        states_at_nodes(c, y, h, k, made);
+            if (!rates_in_tau(motion, there[i], rate[i], &last[i])) return false;
+        states_at_nodes(c, y, h, rate, made);
         for (int n = 0; n < SYSTEM; n++)
             off[n] = made[n / MOVING][IMP_FACE_V + n % MOVING] - there[n / MOVING][IMP_FACE_V + n % MOVING];
         back_solve(a, row, off);
@@ -319,7 +322,10 @@ static bool collocate(const imp_face_motion *motion, const collocation *c, const
                 if (n <= IMP_FACE_W) moved = fmax(moved, fabs(by) / unit[n]);
                 there[i][n] += by;
             }
-        if (moved <= IMP_FACE_SETTLED || (moved >= change && moved <= IMP_FACE_TOLERANCE)) return true;
+        if (moved <= IMP_FACE_SETTLED || (moved >= change && moved <= IMP_FACE_TOLERANCE)) {
+            expand(c, rate, k);
+            return true;
+        }
         if (moved >= change && round > 2) return false;
         change = moved;
     }
@@ -349,10 +355,22 @@ void imp_face_at(const imp_face_path *path, double s, double *y)
     }
 }
 
+/* In tolerances: the last term; and by how much the rates miss those of the begin, where no node stands. */
+static double error_of(double k[][IMP_FACE_STATE], const double *first, double h, const double *unit)
+{
+    double error = 0;
+    for (int n = 0; n < IMP_FACE_STATE; n++) {
+        double miss = first[n];
+        for (int j = 0; j < IMP_FACE_NODES; j++) miss += j % 2 ? k[j][n] : -k[j][n];
+        error = fmax(error, h * fmax(fabs(k[IMP_FACE_NODES - 1][n]), fabs(miss)) / (unit[n] * IMP_FACE_TOLERANCE));
+    }
+    return error;
+}
+
 bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
 {
     collocation c;
-    double k[IMP_FACE_NODES][IMP_FACE_STATE], unit[IMP_FACE_STATE];
+    double k[IMP_FACE_NODES][IMP_FACE_STATE], unit[IMP_FACE_STATE], first[IMP_FACE_STATE];
     const double clock = clock_of(motion, y), turns = fabs(y[IMP_FACE_W]) * clock;
     /* |(v, k w)| grows as e^tau at most */
     const double longest = motion->loads ? log1p(motion->longest / clock) : INFINITY;
@@ -360,14 +378,12 @@ bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double
     lay_out(&c);
     for (double h = fmin(fmin(*length, longest), IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN)); h > IMP_FACE_SHORTEST;) {
         measure(motion, y, unit);
-        if (!collocate(motion, &c, y, h, unit, k)) {
+        if (!collocate(motion, &c, y, h, unit, k, first)) {
             cut = true;
             h *= 0.5;
             continue;
         }
-        double error = 0;
-        for (int n = 0; n < IMP_FACE_STATE; n++)
-            error = fmax(error, h * fabs(k[IMP_FACE_NODES - 1][n]) / (unit[n] * IMP_FACE_TOLERANCE));
+        const double error = error_of(k, first, h, unit);
         const double next = h * fmin(fmax(0.9 * pow(error, -1.0 / IMP_FACE_NODES), 0.2), 2);
         if (error <= 1) {
             keep_path(y, h, k, path);
