@@ -153,6 +153,8 @@ static const double node[IMP_FACE_NODES] =
                                               0.15617353852000146,  0.16511967750062992,  0.15617353852000146,
                                               0.1303053482014678,   0.090324080347428684, 0.040637194180787081};
 
+const double imp_face_last_node = 0.98408011975381304;
+
 /* Legendre's polynomials P_0 ... P_9 over [0, 1] at x. */
 static void legendre(double x, double p[IMP_FACE_NODES + 1])
 {
@@ -337,6 +339,7 @@ static bool collocate(const imp_face_motion *motion, const collocation *c, const
 static void keep_path(const double *y, double h, double k[][IMP_FACE_STATE], imp_face_path *path)
 {
     memset(path, 0, sizeof *path);
+    path->length = h;
     for (int n = 0; n < IMP_FACE_STATE; n++) path->c[0][n] = y[n] + h * k[0][n];
     for (int j = 0; j < IMP_FACE_NODES; j++) {
         double binomials = 1;

@@ -97,7 +97,11 @@ enum { IMP_FACE_NODES = 9, IMP_FACE_TERMS = IMP_FACE_NODES + 1 };
 /* y over the step = sum of c[k] s^k, s in [-1, 0]. */
 typedef struct imp_face_path {
     double c[IMP_FACE_TERMS][IMP_FACE_STATE];
+    double length; /* in tau */
 } imp_face_path;
+
+/* How far along a step its last node is: rates beyond are not asked for. */
+extern const double imp_face_last_node;
 
 /* One step from y, of a length (in tau) that begins with *length and suits its error; *length for the next. False:
  * there is none, for the body tips or leaves the border at once. */

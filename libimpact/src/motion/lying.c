@@ -340,6 +340,19 @@ double imp_lying_end(const imp_lying *lying, const imp_face_path *path, imp_end 
     return s;
 }
 
+double imp_lying_until_edge(const imp_lying *lying, const imp_face_path *path)
+{
+    enum { HALVINGS = 20 };
+    int edge;
+    double s = 2, within = 0;
+    if (lying->moves->world->field_count == 0 || !(nearest_edge(lying, path, s, &edge) < 0)) return INFINITY;
+    for (int i = 0; i < HALVINGS; i++) {
+        const double middle = 0.5 * (within + s);
+        *(nearest_edge(lying, path, middle, &edge) < 0 ? &s : &within) = middle;
+    }
+    return path->length * s * 2 / (1 + imp_face_last_node);
+}
+
 impact_status imp_motion_next_lying(imp_motion *motion, const imp_lying *lying, const imp_face_path *path, double s,
                                     imp_state *states)
 {

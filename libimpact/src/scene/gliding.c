@@ -372,6 +372,7 @@ impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool
     }
     *closed = false;
     const double to = imp_lying_end(&lying, &path, &island->end);
+    if (island->end.kind == IMP_END_TIME) island->glide = fmin(island->glide, imp_lying_until_edge(&lying, &path));
     const impact_status status = imp_motion_next_lying(motion, &lying, &path, to, island->states);
     if (status == IMPACT_OK) *segment = imp_segment_dense(&motion->dense, 0, &start);
     return status;
