@@ -2,6 +2,7 @@
 #include <quat/spline.h>
 #include <quat/jacobian.h>
 #include <quat/rotation.h>
+#include "quadrature.h"
 #include <float.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -275,36 +276,19 @@ static double speed(const key *k, double s)
     return qvec3_norm(qmat3_apply(&j, r[1]));
 }
 
-/* The integral of the speed over a ... b in the segment after k: five Gauss points. */
-static double gauss(const key *k, double a, double b)
+/* The speed at s, and how far the rounding of the cubic's terms may put it off. */
+static double rounded_speed(double s, void *context, double *error)
 {
-    static const double x[3] = {0, 0.53846931010568309104, 0.90617984593866399280};
-    static const double w[3] = {0.56888888888888888889, 0.47862867049936646804, 0.23692688505618908751};
-    const double middle = 0.5 * (a + b), half = 0.5 * (b - a);
-    double sum = w[0] * speed(k, middle);
-    for (int i = 1; i < 3; i++) sum += w[i] * (speed(k, middle - half * x[i]) + speed(k, middle + half * x[i]));
-    return half * sum;
+    const key *const k = context;
+    *error = DBL_EPSILON * whirl(k) / (k[1].t - k[0].t);
+    return speed(k, s);
 }
 
-/* The integral over a ... b, halved until halving changes nothing: the speed has a kink where it passes through
- * zero. */
-static double adaptive(const key *k, double a, double b, double whole, double tolerance, int depth)
-{
-    const double m = 0.5 * (a + b), left = gauss(k, a, m), right = gauss(k, m, b);
-    if (depth == 0 || fabs(left + right - whole) <= tolerance) return left + right;
-    return adaptive(k, a, m, left, tolerance, depth - 1) + adaptive(k, m, b, right, tolerance, depth - 1);
-}
-
-/* The angle turned through from the key to time s after it. */
+/* The angle turned through from the key to time s after it. The speed has a kink where it passes through zero. */
 static double part_length(const key *k, double s)
 {
-    enum { parts = 4, depth = 40 };
-    const double tolerance = 1e-15 * whirl(k);
-    double sum = 0;
-    for (int i = 0; i < parts; i++) {
-        const double a = s * i / parts, b = s * (i + 1) / parts;
-        sum += adaptive(k, a, b, gauss(k, a, b), tolerance, depth);
-    }
+    double sum, noise;
+    quat_quadrature(rounded_speed, (void *)k, 0, s, 1e-16, &sum, &noise); /* once for each of up to 40 halvings */
     return sum;
 }
 

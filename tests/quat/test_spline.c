@@ -142,6 +142,44 @@ static void periodic_splines_go_round(void **state)
     assert_bound("one period on", again, 1e-13);
 }
 
+static double cubic(double first, double a, double b, double s) { return s * (first + s * (a + s * b)); }
+
+/* Turns about one axis stop and go back: the speed has kinks, of any place in the segment. r = first s + a s^2 + b s^3
+ * in 0 ... 1 goes monotonically between the roots of its derivative. */
+static void arc_length_to_and_fro(void **state)
+{
+    (void)state;
+    random_state r = {73};
+    double worst = 0, part = 0;
+    for (int round = 0; round < 20000; round++) {
+        const double turn = random_between(&r, -3, 3), first = random_between(&r, -1, 1) * random_scale(&r, -2, 1.5),
+                     last = random_between(&r, -1, 1) * random_scale(&r, -2, 1.5);
+        const double a = 3 * turn - 2 * first - last, b = first + last - 2 * turn, t[2] = {0, 1};
+        const qvec3 axis = random_direction(&r);
+        quat keys[2] = {quat_identity(), quat_from_rotation_vector(qvec3_scale(axis, turn))};
+        quat_spline *s;
+        assert_int_equal(
+            quat_spline_new(2, t, keys, QUAT_SPLINE_CLAMPED, qvec3_scale(axis, first), qvec3_scale(axis, last), &s),
+            QUAT_OK);
+        /* roots of first + 2 a s + 3 b s^2, without cancellation */
+        const double square = a * a - 3 * b * first, q = -(a + copysign(sqrt(fmax(square, 0)), a));
+        const double root[2] = {square > 0 ? q / (3 * b) : 2, square > 0 ? first / q : 2};
+        double at = random_between(&r, 0, 1), want[2] = {0, 0};
+        for (int k = 0; k < 2; k++) {
+            const double end = k ? at : 1;
+            double stop[4] = {0, fmin(fmax(fmin(root[0], root[1]), 0), end), fmin(fmax(fmax(root[0], root[1]), 0), end),
+                              end};
+            for (int i = 0; i < 3; i++) want[k] += fabs(cubic(first, a, b, stop[i + 1]) - cubic(first, a, b, stop[i]));
+        }
+        const double size = fabs(turn) + fabs(first) + fabs(last);
+        worse(&worst, fabs(quat_spline_length(s, INFINITY) - want[0]) / size);
+        worse(&part, fabs(quat_spline_length(s, at) - want[1]) / size);
+        quat_spline_free(s);
+    }
+    assert_bound("to and fro: the whole", worst, 2e-14);
+    assert_bound("to and fro: a part", part, 2e-14);
+}
+
 static void arc_length(void **state)
 {
     (void)state;
@@ -210,9 +248,9 @@ static void outside_and_bad_input(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(splines_are_twice_smooth),
-                                       cmocka_unit_test(exact_where_it_must_be),
-                                       cmocka_unit_test(periodic_splines_go_round), cmocka_unit_test(arc_length),
-                                       cmocka_unit_test(outside_and_bad_input)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(splines_are_twice_smooth),  cmocka_unit_test(exact_where_it_must_be),
+        cmocka_unit_test(periodic_splines_go_round), cmocka_unit_test(arc_length),
+        cmocka_unit_test(arc_length_to_and_fro),     cmocka_unit_test(outside_and_bad_input)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,7 +47,7 @@ QUAT_API quat quat_spline_state(const quat_spline *spline, double t, qvec3 *omeg
 /* ---- by arc length ---- */
 
 /* The angle turned through (rad), integral of |omega|, from the first key to time t; between 0 and the whole, which is
- * what t = INFINITY gives. Adaptive Gauss-Legendre, to about 1e-14 of it. */
+ * what t = INFINITY gives. Adaptive Gauss-Kronrod, to about 1e-14 of it. */
 QUAT_API double quat_spline_length(const quat_spline *spline, double t);
 /* The time at which the angle turned through is `length`, limited to the spline's own range. With t = time_at(s), s at
  * constant rate, the motion has constant angular speed. NaN for NaN. */
