@@ -5,24 +5,41 @@
 #include <stdlib.h>
 #include <string.h>
 #include <quat/rotation.h>
+#include "scale.h"
 
 static const qvec3 z_axis = {0, 0, 1};
 
 /* ---- the mesh ---- */
 
-static double half_cotangent(qvec3 corner, qvec3 a, qvec3 b)
+/* A unit of length, as a power of two, in which no edge overflows and no triangle's area vanishes but beside others. */
+static int unit_of(size_t n, const qvec3 x[])
 {
-    const qvec3 u = qvec3_sub(a, corner), v = qvec3_sub(b, corner);
+    qvec3 most = {0, 0, 0};
+    for (size_t i = 0; i < n; i++)
+        most = qvec3_make(fmax(most.x, fabs(x[i].x)), fmax(most.y, fabs(x[i].y)), fmax(most.z, fabs(x[i].z)));
+    return quat_vector_exponent(most);
+}
+
+static qvec3 edge(qvec3 from, qvec3 to, int unit)
+{
+    return qvec3_sub(quat_ldexp_vector(to, -unit), quat_ldexp_vector(from, -unit));
+}
+
+/* Of the angle between two edges, whatever their lengths. */
+static double half_cotangent(qvec3 u, qvec3 v)
+{
+    u = quat_ldexp_vector(u, -quat_vector_exponent(u)), v = quat_ldexp_vector(v, -quat_vector_exponent(v));
     const double sine = qvec3_norm(qvec3_cross(u, v)), cosine = qvec3_dot(u, v);
     return sine > 1e-12 * fabs(cosine) ? cosine / sine / 2 : 0; /* a triangle without area has no say */
 }
 
-static void weigh(const qvec3 x[], size_t m, const size_t triangle[][3], double weight[][3])
+static void weigh(const qvec3 x[], int unit, size_t m, const size_t triangle[][3], double weight[][3])
 {
     for (size_t i = 0; i < m; i++)
         for (int c = 0; c < 3; c++) {
             const size_t *const t = triangle[i];
-            weight[i][c] = half_cotangent(x[t[c]], x[t[(c + 1) % 3]], x[t[(c + 2) % 3]]);
+            const qvec3 corner = x[t[c]];
+            weight[i][c] = half_cotangent(edge(corner, x[t[(c + 1) % 3]], unit), edge(corner, x[t[(c + 2) % 3]], unit));
         }
 }
 
@@ -86,9 +103,10 @@ static bool mean_normal(const quat_mesh *mesh, const qvec3 x[], const quat q[], 
 {
     qvec3 sum = {0, 0, 0};
     double area = 0;
+    const int unit = unit_of(mesh->n, x);
     for (size_t i = 0; i < mesh->m; i++) {
         const size_t *const t = mesh->triangle[i];
-        const double twice = qvec3_norm(qvec3_cross(qvec3_sub(x[t[1]], x[t[0]]), qvec3_sub(x[t[2]], x[t[0]])));
+        const double twice = qvec3_norm(qvec3_cross(edge(x[t[0]], x[t[1]], unit), edge(x[t[0]], x[t[2]], unit)));
         for (int c = 0; c < 3; c++) sum = qvec3_axpy(twice / 3, quat_rotate(q[t[c]], z_axis), sum);
         area += twice;
     }
@@ -183,7 +201,7 @@ quat_status quat_choose_frames(size_t n, const qvec3 x[], size_t m, const size_t
     char *const seen = (char *)(weight + m);
     const size_t(*const triangle)[3] = (const size_t(*)[3])triangles;
     const quat_mesh mesh = {n, m, triangle, (const double(*)[3])weight};
-    weigh(x, m, triangle, weight);
+    weigh(x, unit_of(n, x), m, triangle, weight);
     status = start(&mesh, x, q, trial, seen);
     if (status >= 0) {
         quat_status least = QUAT_OK;

@@ -393,6 +393,32 @@ static void a_flat_patch_costs_nothing(void **state)
 
 /* ---- bad input ---- */
 
+/* A unit of length, a power of two, changes no bit: angles are all that lengths are asked for. */
+static void units_change_nothing(void **state)
+{
+    (void)state;
+    static cap c, other;
+    static const int exponents[] = {-900, -545, -300, 520, 1020};
+    for (int gauge = 0; gauge <= QUAT_MINIMAL_AREA; gauge++) {
+        quat_gauge_report want, got;
+        make_cap(1, 1.2, &c);
+        assert_int_equal(
+            quat_choose_frames(cap_nodes, c.x, cap_triangles, c.triangle[0], (quat_gauge)gauge, c.q, &want), QUAT_OK);
+        assert_true(want.energy > 1);
+        for (size_t k = 0; k < sizeof exponents / sizeof *exponents; k++) {
+            make_cap(1, 1.2, &other);
+            for (int i = 0; i < cap_nodes; i++)
+                other.x[i] = qvec3_make(ldexp(other.x[i].x, exponents[k]), ldexp(other.x[i].y, exponents[k]),
+                                        ldexp(other.x[i].z, exponents[k]));
+            assert_int_equal(quat_choose_frames(cap_nodes, other.x, cap_triangles, other.triangle[0], (quat_gauge)gauge,
+                                                other.q, &got),
+                             QUAT_OK);
+            assert_true(got.energy == want.energy && got.area == want.area && got.rounds == want.rounds);
+            assert_memory_equal(c.q, other.q, sizeof c.q);
+        }
+    }
+}
+
 static void bad_input_has_a_status(void **state)
 {
     (void)state;
@@ -424,6 +450,7 @@ int main(void)
                                        cmocka_unit_test(whole_tori),
                                        cmocka_unit_test(nothing_is_less),
                                        cmocka_unit_test(a_flat_patch_costs_nothing),
+                                       cmocka_unit_test(units_change_nothing),
                                        cmocka_unit_test(bad_input_has_a_status)};
     gsl_set_error_handler(count_call);
     return cmocka_run_group_tests(tests, NULL, NULL);
