@@ -150,6 +150,23 @@ int quat_lua_quietly(lua_State *L, lua_CFunction work)
 
 /* ---- one value, of an argument (reader NULL) or of a key ---- */
 
+/* How many keys the table at index has, as far as one more than `most`. */
+static int keys_of(lua_State *L, int index, int most)
+{
+    int count = 0;
+    luaL_checkstack(L, 3, NULL);
+    index = lua_absindex(L, index);
+    lua_pushnil(L);
+    while (lua_next(L, index)) {
+        lua_pop(L, 1);
+        if (++count > most) {
+            lua_pop(L, 1);
+            break;
+        }
+    }
+    return count;
+}
+
 /* Numbers as they stand in a short table, by place or by letter, or in a quaternion; false when it is none of these. */
 static bool describe_numbers(lua_State *L, int index, char *text, size_t size)
 {
@@ -176,7 +193,7 @@ static bool describe_numbers(lua_State *L, int index, char *text, size_t size)
             used += (size_t)snprintf(text + used, size - used, length > 0 ? "%s%s%.6g" : "%s%s = %.6g", separator,
                                      length > 0 ? "" : letters[i], isnan(value) ? (double)NAN : value);
     }
-    if (used < size) snprintf(text + used, size - used, "}");
+    if (used < size) snprintf(text + used, size - used, keys_of(L, index, count) > count ? " and more}" : "}");
     return count > 0;
 }
 
@@ -273,7 +290,7 @@ static int choice_at(lua_State *L, const quat_lua_reader *reader, const char *ke
 }
 
 /* The components of the table at index, by place or by letter; all must be finite. False when it is not such
- * a table. */
+ * a table, or has more in it. */
 static bool components_at(lua_State *L, int index, const char *letters, double *values)
 {
     const int count = (int)strlen(letters);
@@ -288,7 +305,7 @@ static bool components_at(lua_State *L, int index, const char *letters, double *
         lua_pop(L, 1);
         if (type != LUA_TNUMBER || !isfinite(values[i])) return false;
     }
-    return !by_place || lua_rawlen(L, index) == (lua_Unsigned)count;
+    return keys_of(L, index, count) == count;
 }
 
 static qvec3 vec3_at(lua_State *L, const quat_lua_reader *reader, const char *key, int index)
@@ -327,6 +344,19 @@ double quat_lua_arg_number_or(lua_State *L, int arg, const char *name, quat_lua_
 lua_Integer quat_lua_arg_integer(lua_State *L, int arg, const char *name, lua_Integer least, lua_Integer most)
 {
     return integer_at(L, NULL, name, arg, least, most);
+}
+
+bool quat_lua_is_vec3(lua_State *L, int index, qvec3 *v)
+{
+    double value[3];
+    if (!components_at(L, index, "xyz", value)) return false;
+    *v = (qvec3){value[0], value[1], value[2]};
+    return true;
+}
+
+const char *quat_lua_describe(lua_State *L, int index, char *text, size_t size)
+{
+    return describe(L, index, text, size);
 }
 
 qvec3 quat_lua_arg_vec3(lua_State *L, int arg, const char *name) { return vec3_at(L, NULL, name, arg); }

@@ -71,6 +71,9 @@ lua_Integer quat_lua_arg_integer(lua_State *L, int arg, const char *name, lua_In
 qvec3 quat_lua_arg_vec3(lua_State *L, int arg, const char *name);
 /* A quaternion userdata, {w, x, y, z} or {w=, x=, y=, z=}, all finite; not normalised. */
 quat quat_lua_arg_quat(lua_State *L, int arg, const char *name);
+/* Whether the value at index is such a vector, finite; and any value in words for an error, in `text`. */
+bool quat_lua_is_vec3(lua_State *L, int index, qvec3 *v);
+const char *quat_lua_describe(lua_State *L, int index, char *text, size_t size);
 /* Raises "argument 'name' must be <wanted>, got <what it is>". */
 int quat_lua_refuse(lua_State *L, int arg, const char *name, const char *wanted);
 /* The index of the word in words (NULL-terminated). */

@@ -93,6 +93,14 @@ static void read_orientation(const quat_lua_reader *reader, impact_body_def *def
         quat_lua_reader_error(reader, "orientation must not be zero");
 }
 
+/* What a static body does not follow is a mistake of the script's: a mass that does nothing. */
+static void refuse_of_static(const quat_lua_reader *reader)
+{
+    static const char *const idle[] = {"mass", "density", "moments", "linear_damping", "angular_damping", NULL};
+    for (int i = 0; idle[i]; i++)
+        if (quat_lua_has(reader, idle[i])) quat_lua_reader_error(reader, "is static: it has no use for %s", idle[i]);
+}
+
 void impact_lua_read_body(lua_State *L, int index, const char *where, impact_body_def *def)
 {
     static const char *const keys[] = {"name",
@@ -123,6 +131,7 @@ void impact_lua_read_body(lua_State *L, int index, const char *where, impact_bod
     if (!def->name[0]) quat_lua_reader_error(&reader, "name must not be empty");
     read_shape(&reader, def);
     def->is_static = quat_lua_get_boolean(&reader, "static", def->shape.kind == IMPACT_PLANE);
+    if (def->is_static) refuse_of_static(&reader);
     if (quat_lua_has(&reader, "mass") && quat_lua_has(&reader, "density"))
         quat_lua_reader_error(&reader, "give mass or density, not both");
     def->mass =

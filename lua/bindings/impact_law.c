@@ -62,27 +62,15 @@ static double positive_nan(double x) { return isnan(x) ? (double)NAN : x; }
 /* A vector that a law returned; nil is zero. The law's entry is at index 2. */
 static qvec3 returned_vec3(lua_State *L, int index, const char *what)
 {
-    double v[3] = {0, 0, 0};
-    if (lua_isnil(L, index)) return (qvec3){0, 0, 0};
-    bool good = lua_istable(L, index);
-    for (int i = 0; good && i < 3; i++) {
-        lua_rawgeti(L, index, i + 1);
-        v[i] = lua_tonumber(L, -1);
-        good = lua_type(L, -1) == LUA_TNUMBER && isfinite(v[i]);
-        lua_pop(L, 1);
-    }
-    if (good) return (qvec3){v[0], v[1], v[2]};
+    qvec3 v = {0, 0, 0};
+    char got[120];
+    if (lua_isnil(L, index) || quat_lua_is_vec3(L, index, &v)) return v;
     lua_rawgeti(L, 2, IMPACT_LUA_LAW_WHERE);
     lua_rawgeti(L, 2, IMPACT_LUA_LAW_NAME);
-    char got[100];
-    if (lua_istable(L, index))
-        snprintf(got, sizeof got, "{%.6g, %.6g, %.6g}", positive_nan(v[0]), positive_nan(v[1]), positive_nan(v[2]));
-    else
-        snprintf(got, sizeof got, "a %s", luaL_typename(L, index));
     lua_pushfstring(L, "%sforce '%s': the %s must be a vector {x, y, z} of finite numbers, got %s", lua_tostring(L, -2),
-                    lua_tostring(L, -1), what, got);
+                    lua_tostring(L, -1), what, quat_lua_describe(L, index, got, sizeof got));
     lua_error(L);
-    return (qvec3){0, 0, 0};
+    return v;
 }
 
 /* Pushes the body as the script sees it. The law's entry is at index 2. */

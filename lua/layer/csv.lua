@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: MIT
 --- Columns of numbers as CSV files: `local csv = require "quat.csv"`.
 
-local format, gmatch, gsub, match, sub, concat = string.format, string.gmatch, string.gsub, string.match, string.sub, table.concat
-local error, ipairs, tonumber, type, pcall, require, io, os = error, ipairs, tonumber, type, pcall, require, io, os
+local format, gsub, match, sub, concat = string.format, string.gsub, string.match, string.sub, table.concat
+local error, ipairs, math, tonumber, type, pcall, require, io, os = error, ipairs, math, tonumber, type, pcall, require, io, os
 
 local csv = {}
 
@@ -12,7 +12,7 @@ local function cell(value)
   local text = tostring(value)
   -- What a spreadsheet would take for a formula has an apostrophe before it, and so has what begins with one; a number is none.
   if text:find("^[=+@\t\r'-]") and not tonumber(text) then return '"\'' .. text:gsub('"', '""') .. '"' end
-  if text:find('[,"\r\n]') then return '"' .. text:gsub('"', '""') .. '"' end
+  if text:find('[,"\r\n]') or text:find "^#" then return '"' .. text:gsub('"', '""') .. '"' end
   return text
 end
 
@@ -46,50 +46,82 @@ function csv.text(names, columns)
   return text
 end
 
---- One line's cells, as text.
-local function cells_of(line)
-  local cells, at = {}, 1
+--- The quoted cell that begins at `at`, and what is behind it; `number` is the row's, for an error.
+local function quoted_at(text, at, number)
+  local parts = {}
   repeat
-    local quoted, behind = match(line, '^"([^"]*)"()', at)
-    while quoted and sub(line, behind, behind) == '"' do -- a doubled quote stands for one
-      local more, next_behind = match(line, '^"([^"]*)"()', behind)
-      if not more then break end
-      quoted, behind = quoted .. '"' .. more, next_behind
+    local part, behind = match(text, '^"([^"]*)"()', at)
+    if not part then error(format("csv: row %d has a quote without an end", number), 0) end
+    parts[#parts + 1], at = part, behind
+  until sub(text, at, at) ~= '"' -- a doubled quote stands for one
+  if not match(text, "^[,\r\n]", at) and at <= #text then error(format("csv: row %d goes on behind a closing quote", number), 0) end
+  return concat(parts, '"'), at
+end
+
+--- The cells of the row that begins at `at`, as text, and where the next line may begin.
+local function cells_at(text, at, number)
+  local cells, more = {}, true
+  while more do
+    if sub(text, at, at) == '"' then
+      cells[#cells + 1], at = quoted_at(text, at, number)
+    else
+      cells[#cells + 1], at = match(text, "^([^,\r\n]*)()", at)
     end
-    if not quoted then quoted, behind = match(line, "^([^,]*)()", at) end
-    cells[#cells + 1] = quoted
-    at = sub(line, behind, behind) == "," and behind + 1 or nil
-  until not at
-  return cells
+    more = sub(text, at, at) == ","
+    if more then at = at + 1 end
+  end
+  return cells, at
 end
 
 --- A cell without the apostrophe that keeps it from being a formula.
 local function plain(text)
-  return text and match(text, "^'([=+@\t\r'-].*)$") or text
+  return match(text, "^'([=+@\t\r'-].*)$") or text
 end
 
---- The rows of a CSV text below its header, each a table by the header's names; what reads as a number is one, lines that begin with
---- "#" are left out. No cell may hold a line's end.
+local no_numbers = { nan = 0 / 0, ["-nan"] = 0 / 0, inf = math.huge, ["-inf"] = -math.huge }
+
+local function names_of(cells)
+  local names, seen = {}, {}
+  for i = 1, #cells do
+    names[i] = plain(cells[i])
+    if seen[names[i]] then error(format("csv: two columns have the name '%s'", names[i]), 0) end
+    seen[names[i]] = true
+  end
+  return names
+end
+
+local function row_of(names, cells, number)
+  if #cells ~= #names then error(format("csv: row %d has %d cells, the header has %d", number, #cells, #names), 0) end
+  local row = {}
+  for i, name in ipairs(names) do row[name] = tonumber(cells[i]) or no_numbers[cells[i]] or plain(cells[i]) end
+  return row
+end
+
+local function read(text)
+  local names, rows, cells = nil, {}, nil
+  local at = match(text, "^\xEF\xBB\xBF()") or 1 -- a mark of UTF-8
+  while true do
+    at = match(text, "^[\r\n]*()", at)
+    if at > #text then return rows end
+    if sub(text, at, at) == "#" then
+      at = match(text, "^[^\r\n]*()", at)
+    else
+      cells, at = cells_at(text, at, names and #rows + 1 or 0)
+      if names then rows[#rows + 1] = row_of(names, cells, #rows + 1) else names = names_of(cells) end
+    end
+  end
+end
+
+--- The rows of a CSV text below its header, each a table by the header's names; what reads as a number is one, "nan", "inf" and "-inf"
+--- too. Empty lines and those that begin with "#" are left out. A text that is no such table is an error: a row of more or fewer cells
+--- than the header (row 0), two columns of one name, a quote without an end.
 ---@param text string
 ---@return table<string, number|string>[]
 function csv.rows(text)
   if type(text) ~= "string" then error("csv: rows reads a text, got a " .. type(text), 2) end
-  local names, rows
-  for line in gmatch(text, "[^\r\n]+") do
-    if sub(line, 1, 1) ~= "#" then
-      local cells = cells_of(line)
-      if not names then
-        names = {}
-        for i = 1, #cells do names[i] = plain(cells[i]) end
-      else
-        local row = {}
-        for i, name in ipairs(names) do row[name] = tonumber(cells[i]) or plain(cells[i]) end
-        rows[#rows + 1] = row
-      end
-      rows = rows or {}
-    end
-  end
-  return rows or {}
+  local good, rows = pcall(read, text)
+  if not good then error(rows, 2) end
+  return rows
 end
 
 --- Writes the whole file or none: NAME is NAME.csv in the runner's output folder, or where the name says in a stock Lua.

@@ -318,9 +318,14 @@ local function read_reference(scene, path)
   local place, list = {}, {}
   for i, body in ipairs(scene:definition().bodies) do place[body.name] = i - 1 end
   for n, row in ipairs(csv.rows(text)) do
-    if not place[row.body] then error(format("%s: row %d: the scene has no body '%s'", path, n, tostring(row.body)), 0) end
-    list[#list + 1], list[#list + 2] = row.t, place[row.body]
-    for _, key in ipairs(components) do list[#list + 1] = row[key] end
+    local body = place[tostring(row.body)]
+    if not body then error(format("%s: row %d: the scene has no body '%s'", path, n, tostring(row.body)), 0) end
+    if type(row.t) ~= "number" then error(format("%s: row %d: t is no number", path, n), 0) end
+    list[#list + 1], list[#list + 2] = row.t, body
+    for _, key in ipairs(components) do
+      if type(row[key]) ~= "number" then error(format("%s: row %d: %s is no number", path, n, key), 0) end
+      list[#list + 1] = row[key]
+    end
   end
   return list
 end

@@ -55,6 +55,16 @@ refused(scene("shape = impact.sphere(-0.1),"), "script.lua:3: argument 'radius' 
 refused(scene(good .. "density = 3,"), "script.lua:2: body 'coin': give mass or density, not both")
 refused(scene(good .. "velocity = { 1, 2 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got {1, 2}")
 refused(scene(good .. "velocity = { 1, 2, 0/0 },"), "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got {1, 2, nan}")
+refused(scene(good .. "velocity = { 1, 2, 3, x = 9 },"),
+  "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got {1, 2, 3 and more}")
+refused(scene(good .. "velocity = { x = 1, y = 2, z = 3, w = 4 },"),
+  "script.lua:2: body 'coin': velocity must be a vector {x, y, z} of finite numbers, got {w = 4, x = 1, y = 2, z = 3}")
+refused(scene(good .. "orientation = { 1, 0, 0, 0, axis = 'x' },"),
+  "script.lua:2: body 'coin': orientation must be a quaternion or {w, x, y, z} of finite numbers, got {1, 0, 0, 0 and more}")
+for _, idle in ipairs { "mass", "density", "linear_damping", "angular_damping" } do
+  refused(scene("shape = impact.sphere(0.1), static = true, " .. idle .. " = 0.5,"), "script.lua:2: body 'coin': is static: it has no use for " .. idle)
+end
+refused(scene("shape = impact.plane(), moments = { 1, 1, 1 },"), "script.lua:2: body 'coin': is static: it has no use for moments")
 refused(scene(good .. "omega = 3,"), "script.lua:2: body 'coin': omega must be a vector {x, y, z} of finite numbers, got 3")
 refused(scene(good .. "orientation = { 0, 0, 0, 0 },"), "script.lua:2: body 'coin': orientation must not be zero")
 refused(scene(good .. "normal = { 0, 0, 1 },"), "script.lua:2: body 'coin': normal is for planes; give orientation")
@@ -158,6 +168,11 @@ if require "impact".has "cvode" then
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) error('no') end } },"), "script.lua:7: no")
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) return { 0, 0, 0/0 } end } },"),
     "script.lua:7: force 'pull': the force must be a vector {x, y, z} of finite numbers, got {0, 0, nan}")
+  for _, wrong in ipairs { "{1, 2}", "{1, 2, 3, 4}", "{1, 2, 3 and more}", "{x = 1, z = 2}", "3", "the string 'up'" } do
+    local written = wrong:gsub(" and more", ", up = 4"):gsub("the string ", "")
+    refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t) return " .. written .. " end } },"),
+      "script.lua:7: force 'pull': the force must be a vector {x, y, z} of finite numbers, got " .. wrong)
+  end
   refused(scene(good, "forces = { impact.force { name = 'pull', law = function(t, b) return { 0, 0, b.posision.x } end } },"),
     "script.lua:7: no field 'posision' in the body of a law (did you mean 'position'?)")
   -- in arithmetic on what may be nil a wrong name would pass in silence

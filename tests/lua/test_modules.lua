@@ -66,7 +66,7 @@ local rows = csv.rows('t,name,x\n# a remark\n1,"a, b ""c""",2.5e-3\n2,plain,nan\
 check.equal(#rows, 2)
 check.equal(rows[1].name, 'a, b "c"')
 check.equal(rows[1].x + rows[2].t, 2.0025)
-check.equal(rows[2].x, "nan")
+check.truth(rows[2].x ~= rows[2].x, "nan is a number, if none")
 -- In front of surfaces: objects of their own, none where the pen is lifted; and a zoom in a box, which margins on the screen would undo.
 local front = plot.gnuplot(plot.figure { plot.panel { three = true, box = { 0.1, 0.2, 0.6, 0.7 }, zoom = 2,
   plot.points { { 1, 0 / 0 }, { 2, 0 }, { 3, 0 }, front = true }, plot.arrows { { 0 }, { 0 }, { 0 }, { 1 }, { 2 }, { 3 }, front = true, head = 0 } } })
@@ -111,6 +111,24 @@ refuses("save: the picture's name must be a string, got a nil", plot.save, plot.
 local text = csv.text({ "a,b", 'q"' }, { { 1, 0 / 0 }, { "x", "y" } })
 check.equal(text, '"a,b","q"""\n1,x\nnan,y\n')
 check.equal(csv.rows(text)[2]['q"'], "y")
+-- Whatever the cells hold comes back: line ends, quotes, what looks like a remark or a formula; with any line ends, and a mark of UTF-8.
+local odd = { "two\nlines", '"', '""', 'a"b', "#", "=1", "'=1", "", "a,\r\nb", "'", "-", "\t", "ä" }
+local again = csv.rows(csv.text({ "x\ny", "#n" }, { odd, odd }))
+check.equal(#again, #odd)
+for i, want in ipairs(odd) do check.equal(again[i]["x\ny"], want) check.equal(again[i]["#n"], want) end
+for _, ends in ipairs { "\n", "\r\n", "\r" } do
+  local got = csv.rows(("\xEF\xBB\xBFt,x|1,2|# remark||3,-inf"):gsub("|", ends))
+  check.equal(#got, 2)
+  check.equal(got[1].t + got[1].x + got[2].t, 6)
+  check.equal(got[2].x, -math.huge)
+end
+check.equal(#csv.rows "" + #csv.rows "a,b\n" + #csv.rows "# nothing", 0)
+refuses("csv: row 2 has 3 cells, the header has 2", csv.rows, "a,b\n1,2\n1,2,3\n")
+refuses("csv: row 1 has 1 cells, the header has 2", csv.rows, "a,b\n1\n")
+refuses("csv: row 1 has 3 cells, the header has 1", csv.rows, "t;x\n0,5;1,5\n")
+refuses("csv: two columns have the name 'a'", csv.rows, "a,a\n1,2\n")
+refuses("csv: row 1 has a quote without an end", csv.rows, 'a,b\n1,"2\n3,4\n')
+refuses("csv: row 1 goes on behind a closing quote", csv.rows, 'a,b\n1,"2"3\n')
 refuses("csv: 1 names for 0 columns", csv.save, "x", { "a" }, {})
 refuses("csv: column 'a' must be a list, got a number", csv.text, { "a" }, { 1 })
 refuses("csv: rows reads a text, got a nil", csv.rows)

@@ -148,7 +148,8 @@ static bool has_faces(const impact_body_def *body)
 
 static void check_bodies(check *c, const impact_scene_def *def, imp_arena *arena)
 {
-    require(c, def->body_count >= 1 && def->bodies, "bodies", def->body_count, "a scene needs at least one body");
+    require(c, def->body_count >= 1, "bodies", def->body_count, "a scene needs at least one body");
+    require_words(c, def->bodies != NULL, "bodies is NULL, and body_count is not 0");
     if (c->status == IMPACT_OK) c->status = imp_names_open(c->names, arena, def->body_count);
     for (int i = 0; c->status == IMPACT_OK && i < def->body_count; i++) {
         const impact_body_def *body = &def->bodies[i];
@@ -246,6 +247,15 @@ static void check_force(check *c, const impact_force_def *force)
     }
 }
 
+/* Arrays that stand beside a count. */
+static void check_arrays(check *c, const impact_scene_def *def)
+{
+    require(c, def->force_count >= 0, "force_count", def->force_count, "must be >= 0");
+    require_words(c, def->force_count == 0 || def->forces != NULL, "forces is NULL, and force_count is not 0");
+    require(c, def->pair_count >= 0, "pair_count", def->pair_count, "must be >= 0");
+    require_words(c, def->pair_count == 0 || def->pairs != NULL, "pairs is NULL, and pair_count is not 0");
+}
+
 static void check_pair(check *c, const impact_pair_def *pair)
 {
     const int i = imp_names_find(c->names, pair->body1), j = imp_names_find(c->names, pair->body2);
@@ -319,6 +329,7 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
             def->friction_rule, "is no rule");
     require(&c, def->restitution_rule >= IMPACT_PRODUCT && def->restitution_rule <= IMPACT_MAXIMUM, "restitution_rule",
             def->restitution_rule, "is no rule");
+    check_arrays(&c, def);
     check_bodies(&c, def, arena);
     if (c.status == IMPACT_OK) check_faces(&c, def);
     if (c.status == IMPACT_OK) check_turning(&c, def);

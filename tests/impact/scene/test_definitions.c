@@ -72,6 +72,32 @@ static void no_definition_is_refused(void **state)
     assert_null(ode);
 }
 
+/* An array that is not there, beside a count; and counts below 0. */
+static void arrays_stand_beside_their_counts(void **state)
+{
+    (void)state;
+    impact_scene *scene;
+    char words[300];
+    impact_body_def body = impact_default_body_def();
+    body.name = "ball", body.mass = 1;
+    assert_int_equal(impact_shape_sphere(1, &body.shape), IMPACT_OK);
+    impact_scene_def good = impact_default_scene_def();
+    good.bodies = &body, good.body_count = 1, good.duration = 1;
+    assert_int_equal(impact_scene_create(&good, &scene, NULL, 0), IMPACT_OK);
+    impact_scene_destroy(scene);
+    impact_scene_def wrong[5] = {good, good, good, good, good};
+    wrong[0].bodies = NULL;
+    wrong[1].force_count = 2, wrong[2].pair_count = 3;
+    wrong[3].force_count = -1, wrong[4].pair_count = -1;
+    static const char *const said[5] = {"bodies is NULL", "forces is NULL", "pairs is NULL", "force_count = -1",
+                                        "pair_count = -1"};
+    for (int k = 0; k < 5; k++) {
+        assert_int_equal(impact_scene_create(&wrong[k], &scene, words, sizeof words), IMPACT_EARGUMENT);
+        assert_null(scene);
+        assert_non_null(strstr(words, said[k]));
+    }
+}
+
 static size_t random_bytes(random_stream *random, size_t least, size_t most)
 {
     return least + sizeof(void *) * (size_t)(random_unit(random) * (double)((most - least) / sizeof(void *) + 1));
@@ -364,6 +390,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_length_is_read),
         cmocka_unit_test(no_definition_is_refused),
+        cmocka_unit_test(arrays_stand_beside_their_counts),
         cmocka_unit_test(forces_too),
         cmocka_unit_test(a_later_field_that_is_set_is_refused),
         cmocka_unit_test(what_is_no_size_is_refused),
