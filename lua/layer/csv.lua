@@ -4,11 +4,13 @@
 local format, gsub, match, sub, concat = string.format, string.gsub, string.match, string.sub, table.concat
 local error, ipairs, math, tonumber, type, pcall, require, io, os = error, ipairs, math, tonumber, type, pcall, require, io, os
 
+local digits = require "quat.gnuplot".digits
+
 local csv = {}
 
 local function cell(value)
   if value ~= value then return "nan" end
-  if type(value) == "number" then return format(math.type(value) == "integer" and "%d" or "%.17g", value) end
+  if type(value) == "number" then return digits(value) end
   local text = tostring(value)
   -- What a spreadsheet would take for a formula has an apostrophe before it, and so has what begins with one; a number is none.
   if text:find("^[=+@\t\r'-]") and not tonumber(text) then return '"\'' .. text:gsub('"', '""') .. '"' end
@@ -80,6 +82,11 @@ end
 
 local no_numbers = { nan = 0 / 0, ["-nan"] = 0 / 0, inf = math.huge, ["-inf"] = -math.huge }
 
+--- A number whose point is a point: tonumber takes the locale's too.
+local function number_in(text)
+  return match(text, "^ *[%w.+-]+ *$") and tonumber(text) or no_numbers[text]
+end
+
 local function names_of(cells)
   local names, seen = {}, {}
   for i = 1, #cells do
@@ -93,7 +100,7 @@ end
 local function row_of(names, cells, number)
   if #cells ~= #names then error(format("csv: row %d has %d cells, the header has %d", number, #cells, #names), 0) end
   local row = {}
-  for i, name in ipairs(names) do row[name] = tonumber(cells[i]) or no_numbers[cells[i]] or plain(cells[i]) end
+  for i, name in ipairs(names) do row[name] = number_in(cells[i]) or plain(cells[i]) end
   return row
 end
 

@@ -6,9 +6,19 @@
 local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
 local format, gsub, match, rep = string.format, string.gsub, string.match, string.rep
 local concat, unpack = table.concat, table.unpack
-local abs, ceil, floor, log, max, min = math.abs, math.ceil, math.floor, math.log, math.max, math.min
+local abs, ceil, floor, log, max, min, math_type = math.abs, math.ceil, math.floor, math.log, math.max, math.min, math.type
 
 local gnuplot = {}
+
+--- A number's digits by string.format's `look` (all of them, when it is nil), "." whatever the locale: for all that other programs read.
+---@param value number
+---@param look? string
+---@return string
+function gnuplot.digits(value, look)
+  return (gsub(format(look or math_type(value) == "integer" and "%d" or "%.17g", value), "[^%w+-]+", "."))
+end
+
+local digits_of = gnuplot.digits
 
 --- The colours of Okabe and Ito (2008), which stand apart for every eye.
 gnuplot.colors = {
@@ -45,7 +55,7 @@ end
 local function number(value, what, look)
   if type(value) ~= "number" then error((what or "a value") .. " must be a number, got a " .. type(value), 0) end
   if not is_finite(value) then return "NaN" end
-  return format(look or "%.9g", value)
+  return digits_of(value, look or "%.9g")
 end
 
 --- A number of the data, or of the axes that measure it: all its digits.
@@ -358,7 +368,7 @@ local function put_place(out, panel, place, top, three, digits)
   if three then
     add("set lmargin 2; set rmargin 2; set tmargin 2; set bmargin 1")
   else
-    add("set lmargin %g; set rmargin 3; set tmargin 2.2; set bmargin 3.6", max(9.5, digits + 4))
+    add("set lmargin %s; set rmargin 3; set tmargin 2.2; set bmargin 3.6", number(max(9.5, digits + 4)))
   end
 end
 
@@ -421,7 +431,7 @@ end
 local terminals = {
   png = function(w, h) return format("pngcairo noenhanced size %d,%d", w, h) end,
   svg = function(w, h) return format("svg noenhanced size %d,%d", w, h) end,
-  pdf = function(w, h) return format("pdfcairo noenhanced size %.4fin,%.4fin", w / 96, h / 96) end,
+  pdf = function(w, h) return format("pdfcairo noenhanced size %sin,%sin", digits_of(w / 96, "%.4f"), digits_of(h / 96, "%.4f")) end,
 }
 
 -- The figure's flat panels alone, side by side; nil where there are none.

@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --- A figure as a page of its own, drawn by our renderer (view/figure.js): `require "quat.page"`; behind quat.plot and the runner.
 local gnuplot = require "quat.gnuplot"
+local digits = gnuplot.digits
 local template = require "quat.page_template"
 
 local pairs, type = pairs, type
@@ -24,7 +25,7 @@ local deepest = 12
 function page.json(value, depth)
   depth = depth or 0
   local kind = type(value)
-  if kind == "number" then return value - value == 0 and format("%.17g", value) or "null" end
+  if kind == "number" then return value - value == 0 and digits(value, "%.17g") or "null" end
   if kind == "string" then return quoted(value) end
   if kind == "boolean" then return tostring(value) end
   if kind ~= "table" or depth > deepest then return "null" end

@@ -6,6 +6,7 @@
 
 local core = require "impact.core"
 local sobol = require "impact.sobol"
+local digits = require "quat.gnuplot".digits
 core.layer()
 
 local format, concat, sort = string.format, table.concat, table.sort
@@ -362,7 +363,7 @@ local function cell(value)
   if type(value) == "string" then return '"' .. escaped(value) end
   if type(value) == "boolean" then return tostring(value) end
   if value ~= value then return "nan" end
-  return format(math_type(value) == "integer" and "%d" or "%.17g", value)
+  return digits(value)
 end
 
 --- Run i as a line of the runner's table: run, status, message, the parameters in order, the results as name=value; tabs between.

@@ -146,7 +146,7 @@ static int take_value(impact_runner *runner, const char *option, char *value)
     if (strcmp(option, "--shard") == 0) return take_shard(runner, value);
     if (strcmp(option, "-j") == 0) return take_threads(runner, value);
     const double number = positive(value);
-    if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number", value);
+    if (!(number < 1e9)) return wrong_usage("'%s' is not a positive number below 1e9", value);
     if (strcmp(option, "--seconds") == 0)
         runner->report_seconds = number;
     else if (strcmp(option, "--tolerance") == 0)

@@ -80,7 +80,8 @@ int impact_runner_read_resumed(impact_runner *runner)
     char message[400];
     if (!runner->resume) return IMPACT_EXIT_OK;
     FILE *file = fopen(runner->resume, "rb");
-    bool good = file && fseek(file, 0, SEEK_END) == 0;
+    /* a folder opens, and has a length, but cannot be read */
+    bool good = file && (getc(file) != EOF || !ferror(file)) && fseek(file, 0, SEEK_END) == 0;
     const long size = good ? ftell(file) : -1;
     runner->resumed = size > 0 ? malloc((size_t)size) : NULL;
     good = runner->resumed && fseek(file, 0, SEEK_SET) == 0 &&

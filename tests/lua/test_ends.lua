@@ -230,6 +230,8 @@ do
   refused("--resume script.lua", 1, "^impact: cannot go on from script.lua: scene 'long' cannot go on from these bytes: they are no saved scene\n$")
   runner.write("empty", "")
   refused("--resume empty", 1, "^impact: cannot read empty: it is empty\n$")
+  refused("--resume .", 1, "^impact: cannot read .: Is a directory\n$")
+  refused("--max-memory 1e9", 2, "'1e9' is not a positive number below 1e9")
   refused("--resume absent", 1, "^impact: cannot read absent: No such file or directory\n$")
   refused("--save 1 a/b", 2, "plain name of a file, got 'a/b'")
   refused("--save soon a", 2, "'soon' is no time")
