@@ -88,3 +88,21 @@ for case = 1, 60 do
   if math.abs(scene:state("body").velocity.x) > 1e-12 then steps = steps + scene:usage().pile_steps end
 end
 check.equal(steps, 0) -- what rests under a force that may change is asked step by step; what moves is not
+
+-- A push that jumps at two times, of which nothing tells: a sliding box's steps find them.
+for case = 1, 30 do
+  local mu, v, x, t = .1, 4, 0, 0
+  local first = uniform(.1, .6)
+  local jumps, pushes = { first, first + .3 * 10 ^ uniform(-4, 0), 1.3 }, { uniform(-1, 3), uniform(-3, 3), uniform(-1, 3) }
+  local law = function(time) return { time < jumps[1] and pushes[1] or time < jumps[2] and pushes[2] or pushes[3], 0, 0 } end
+  local scene = impact.scene { gravity = { 0, 0, -G }, duration = jumps[3], forces = { impact.force { name = "push", law = law } }, bodies = {
+    impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 0 },
+    impact.body { name = "box", shape = impact.box { a = .1, b = .1, c = .05 }, mass = mass, position = { 0, 0, .05 }, velocity = { v, 0, 0 }, friction = mu } } }
+  check.truth(scene:run(), "it runs")
+  for i, jump in ipairs(jumps) do
+    local a, time = pushes[i] - mu * G, jump - t
+    x, v, t = x + v * time + a * time * time / 2, v + a * time, jump
+  end
+  check.truth(v > 0, "it never stops")
+  check.close(scene:state("box").position.x, x, 1e-9)
+end

@@ -397,3 +397,15 @@ bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double
     }
     return false;
 }
+
+double imp_face_end_miss(const imp_face_motion *motion, const imp_face_path *path)
+{
+    double begin[IMP_FACE_STATE], unit[IMP_FACE_STATE], rate[IMP_FACE_STATE], most = 0;
+    imp_face_balance balance = {.p = {0}};
+    imp_face_at(path, -1, begin);
+    measure(motion, begin, unit);
+    if (!rates_in_tau(motion, path->c[0], rate, &balance)) return 0;
+    for (int n = 0; n < IMP_FACE_STATE; n++)
+        most = fmax(most, fabs(path->length * rate[n] - path->c[1][n]) / (unit[n] * IMP_FACE_TOLERANCE));
+    return most;
+}

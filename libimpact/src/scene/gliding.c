@@ -341,6 +341,17 @@ static imp_segment ends_here(imp_island *island, const imp_pair *pair)
     return s;
 }
 
+/* A step to an edge, or one whose end is as its path has it: what changed behind the last node is not missed. */
+static bool step_to_end(imp_island *island, const imp_lying *lying, imp_face_path *path, double *to)
+{
+    while (imp_face_motion_step(&lying->motion, lying->start, &island->glide, path)) {
+        *to = imp_lying_end(lying, path, &island->end);
+        if (island->end.kind != IMP_END_TIME || !(imp_face_end_miss(&lying->motion, path) > 1)) return true;
+        island->glide = 0.5 * path->length;
+    }
+    return false;
+}
+
 impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool *closed)
 {
     const imp_pair *pair = imp_island_lying(island);
@@ -366,12 +377,12 @@ impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool
                                              : IMP_END_TIME);
         return IMPACT_OK;
     }
-    if (!imp_face_motion_step(&lying.motion, lying.start, &island->glide, &path)) {
+    double to;
+    if (!step_to_end(island, &lying, &path, &to)) {
         *segment = ends_here(island, pair);
         return IMPACT_OK;
     }
     *closed = false;
-    const double to = imp_lying_end(&lying, &path, &island->end);
     if (island->end.kind == IMP_END_TIME) island->glide = fmin(island->glide, imp_lying_until_edge(&lying, &path));
     const impact_status status = imp_motion_next_lying(motion, &lying, &path, to, island->states);
     if (status == IMPACT_OK) *segment = imp_segment_dense(&motion->dense, 0, &start);
