@@ -4,6 +4,7 @@
  * path; then, of what neither solves, whether a direction excludes a solution. What is accepted is proved from the
  * problem's own numbers, by none of the formulas that found it.
  */
+#include "base/numbers.h"
 #include "base/tolerances.h"
 #include "contact/cone_map.h"
 #include "contact/cone_order.h"
@@ -215,8 +216,7 @@ double imp_cone_residual(const imp_cone_problem *problem, const double *r, doubl
             continue;
         }
         const double s = size > 0 ? most / size : 1;
-        const double part = contact_residual(problem, c, &r[width * c], &u[width * c], s) / most;
-        if (!(part <= worst)) worst = part; /* no number is the worst */
+        worst = imp_worse(worst, contact_residual(problem, c, &r[width * c], &u[width * c], s) / most);
     }
     return worst;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/cone_bodies_parts.h"
+#include "base/numbers.h"
 #include "base/tolerances.h"
 
 #include <math.h>
@@ -100,8 +101,7 @@ static double residual_of(const imp_bodies_problem *p, const double *r)
             const double rolling = k > 3 ? p->rolling[c] : 1;
             if (k == 0 || k > 2 || p->friction[c] > 0) off += (own[k] - on[k]) / rolling * ((own[k] - on[k]) / rolling);
         }
-        const double part = sqrt(off) / (most > 0 ? most : s * (size > 0 ? size : 1));
-        if (!(part <= worst)) worst = part;
+        worst = imp_worse(worst, sqrt(off) / (most > 0 ? most : s * (size > 0 ? size : 1)));
     }
     return worst;
 }

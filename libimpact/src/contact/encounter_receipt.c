@@ -14,6 +14,7 @@
 #include "contact/encounter.h"
 
 #include <quat/rotation.h>
+#include "base/numbers.h"
 #include "base/tolerances.h"
 
 /* The largest of the encounter: what is as small as their rounding is none. */
@@ -22,11 +23,7 @@ typedef struct tally {
     double impulse, arm, speed;
 } tally;
 
-static void miss(tally *t, double off, double size)
-{
-    const double part = off == 0 ? 0 : off / size;
-    if (!(part <= t->worst)) t->worst = part; /* NaN too */
-}
+static void miss(tally *t, double off, double size) { t->worst = imp_worse(t->worst, off == 0 ? 0 : off / size); }
 
 static void check_body(const impact_encounter *e, const impact_together_outcome *o, int b, tally *t)
 {

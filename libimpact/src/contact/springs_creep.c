@@ -15,6 +15,7 @@
 #include "contact/springs.h"
 
 #include <math.h>
+#include "base/numbers.h"
 #include "base/tolerances.h"
 
 /* Rounds settle at a tenth each, Newton's steps square: more are none that converge. */
@@ -123,7 +124,7 @@ static double take_node_forces(creep *k, int j, double *most)
     imp_springs_forces(s);
     for (int i = 0; i < 3 * s->count; i++) {
         const double change = fabs(s->now[i] - force[i]), size = fabs(s->now[i]);
-        if (!(change <= changed)) changed = change; /* NaN too */
+        changed = imp_worse(changed, change);
         *most = size > *most ? size : *most;
         force[i] = s->now[i];
     }
@@ -212,7 +213,7 @@ static double find_creep_residual(creep *k)
             double sum = (k->start[4 * k->which[a / 2] + 2 + a % 2] - k->speed[place] * e) / k->h;
             for (int m = 0; m < NODES; m++) sum += k->rule.integral[j][m] * k->matrix[n * m + a];
             k->right[n * j + a] = sum;
-            if (!(fabs(sum) <= worst)) worst = fabs(sum);
+            worst = imp_worse(worst, fabs(sum));
         }
     return worst;
 }

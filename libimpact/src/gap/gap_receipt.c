@@ -7,6 +7,7 @@
  */
 #include <quat/rotation.h>
 #include <float.h>
+#include "base/numbers.h"
 #include "gap/gap_solver.h"
 #include "shape/solid.h"
 
@@ -138,7 +139,6 @@ double impact_gap_receipt(const impact_solid *body1, const impact_solid *body2, 
     if (residuals) *residuals = r;
     const double all[6] = {r.normal, r.dual, r.primal, r.order, r.inside1, r.inside2};
     double worst = 0;
-    for (int i = 0; i < 6; i++)
-        if (!(all[i] <= worst)) worst = isnan(all[i]) ? INFINITY : all[i];
+    for (int i = 0; i < 6; i++) worst = imp_worse(worst, all[i]);
     return worst;
 }

@@ -7,6 +7,7 @@
  */
 #include "scene/scene_receipt.h"
 #include "scene/scene_meeting.h"
+#include "base/numbers.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -26,7 +27,7 @@ void imp_scene_receipt_begin(impact_scene *scene)
 static void look_at(impact_scene *scene, const char *field, double *worst, double value, double limit)
 {
     impact_scene_residuals *r = &scene->receipt;
-    if (!(value <= *worst)) *worst = value;
+    *worst = imp_worse(*worst, value);
     if (r->failed || value <= limit) return;
     r->failed = field;
     r->failed_begin = r->begin, r->failed_end = r->end;
@@ -36,7 +37,7 @@ static double worst_unit(const imp_island *island, const imp_state *states)
 {
     double worst = 0;
     for (int i = 0; i < island->world.body_count; i++)
-        if (!island->world.bodies[i].is_static) worst = fmax(worst, fabs(quat_dot(states[i].q, states[i].q) - 1));
+        if (!island->world.bodies[i].is_static) worst = imp_worse(worst, fabs(quat_dot(states[i].q, states[i].q) - 1));
     return 0.5 * worst; /* | |q| - 1 |, but for its square */
 }
 
@@ -52,7 +53,7 @@ static double worst_gap(imp_island *island, const imp_state *states)
         pair.site.corner = 0; /* all of the body: no other corner may be below */
         impact_contact contact;
         imp_world_gap(world, &pair, states, &contact);
-        worst = fmax(worst, fabs(contact.gap) / imp_world_place_scale(world, &pair, states));
+        worst = imp_worse(worst, fabs(contact.gap) / imp_world_place_scale(world, &pair, states));
     }
     world->usage = usage;
     return worst;
@@ -70,7 +71,7 @@ static double worst_contact(imp_island *island)
         const imp_touch *touch = &persist->touches[c];
         const double normal = qvec3_dot(touch->normal, touch->force);
         const double rubs = qvec3_norm(qvec3_axpy(-normal, touch->normal, touch->force));
-        worst = fmax(worst, fmax(-normal, rubs - touch->friction * fmax(normal, 0)));
+        worst = imp_worse(imp_worse(worst, -normal), rubs - touch->friction * fmax(normal, 0));
     }
     return greatest > 0 ? worst / greatest : 0;
 }

@@ -166,8 +166,6 @@ static bool stands_on(const imp_body *const body[2], const imp_state *const stat
                                 .normal = k == 1 ? n : qvec3_neg(n),
                                 .offset1 = k == 1 ? own : foot,
                                 .offset2 = k == 1 ? foot : own};
-    contact->point1 = qvec3_add(state[0]->x, contact->offset1);
-    contact->point2 = qvec3_add(state[1]->x, contact->offset2);
     return true;
 }
 
