@@ -334,6 +334,11 @@ function methods:record(i, path)
   return true
 end
 
+--- What was raised: of a table the address is all that tostring tells, another one each time.
+local function in_words(raised)
+  return (type(raised) == "string" or type(raised) == "number") and tostring(raised) or "an error that is not a text"
+end
+
 --- Run i: its parameters, its results, its status and message. An error of the script's is a status, too.
 ---@param i integer
 ---@return {parameters: table, results: table, status: string, message: string}
@@ -349,7 +354,7 @@ function methods:run(i)
     end
   end)
   local row = { parameters = run and run.parameters or self:parameters(i), results = results or {} }
-  row.status, row.message = fine and run.status or "error", fine and run.message or tostring(why)
+  row.status, row.message = fine and run.status or "error", fine and run.message or in_words(why)
   return row
 end
 

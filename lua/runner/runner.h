@@ -131,6 +131,8 @@ void impact_runner_leave_folder(const impact_runner *runner);
 int impact_runner_open_file(impact_runner *runner, const char *path, int flags);
 /* A name that stands for a file of the folder itself: no '/', no leading '.', no control characters. */
 bool impact_runner_is_plain(const char *name);
+/* All of it, whatever interrupts; false with errno. */
+bool impact_runner_write(int file, const char *text, size_t size);
 /* A new file of the folder that has no name yet, or stands under NAME.part; -1 with errno. */
 int impact_runner_new_file(impact_runner *runner, const char *name, bool *nameless);
 /* Gives it its name, in place of what had it, or drops it; false with errno. */

@@ -168,11 +168,7 @@ static int copy_page(FILE *page, int picture)
 {
     char bytes[4096];
     for (size_t length; (length = fread(bytes, 1, sizeof bytes, page)) > 0;)
-        for (size_t done = 0; done < length;) {
-            const ssize_t written = write(picture, bytes + done, length - done);
-            if (written < 0 && errno != EINTR) return 1;
-            if (written > 0) done += (size_t)written;
-        }
+        if (!impact_runner_write(picture, bytes, length)) return 1;
     return 0;
 }
 
@@ -266,16 +262,6 @@ static int host_save(lua_State *L)
     }
 }
 
-static bool write_all(int file, const char *text, size_t length)
-{
-    while (length > 0) {
-        const ssize_t written = write(file, text, length);
-        if (written < 0 && errno != EINTR) return false;
-        if (written > 0) text += written, length -= (size_t)written;
-    }
-    return true;
-}
-
 /* write(name, text): the whole file or none; true, or nil and why */
 static int host_write(lua_State *L)
 {
@@ -286,7 +272,7 @@ static int host_write(lua_State *L)
     if (!impact_runner_open_folder(runner, message, sizeof message)) return quat_lua_failure(L, message);
     bool nameless = false;
     const int file = impact_runner_new_file(runner, name, &nameless);
-    const bool good = file >= 0 && impact_runner_spend(runner, length) && write_all(file, text, length);
+    const bool good = file >= 0 && impact_runner_spend(runner, length) && impact_runner_write(file, text, length);
     const int error = errno;
     const bool there = file >= 0 && impact_runner_finish_file(runner, file, nameless, name, good);
     if (good) snprintf(message, sizeof message, "cannot write '%s/%s': %s", runner->directory, name, strerror(errno));

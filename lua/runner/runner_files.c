@@ -66,6 +66,16 @@ bool impact_runner_is_plain(const char *name)
     return true;
 }
 
+bool impact_runner_write(int file, const char *text, size_t size)
+{
+    while (size > 0) {
+        const ssize_t written = write(file, text, size);
+        if (written < 0 && errno != EINTR) return false;
+        if (written > 0) text += written, size -= (size_t)written;
+    }
+    return true;
+}
+
 int impact_runner_open_file(impact_runner *runner, const char *path, int flags)
 {
     char message[16];

@@ -328,7 +328,6 @@ static int begin_ranks(impact_sweep *sweep)
     char message[400];
     sweep->rank_count = 1;
     if (!runner->mpi) return IMPACT_EXIT_OK;
-    if (runner->fence) return impact_runner_complain(runner, IMPACT_EXIT_USAGE, "--fence and --mpi exclude each other");
     const impact_sweep_ranks *ranks = impact_runner_extra("sweep_mpi", "impact_sweep_mpi", message, sizeof message);
     const char *wrong = ranks ? ranks->begin(&sweep->rank, &sweep->rank_count) : message;
     if (wrong) return impact_runner_complain(runner, IMPACT_EXIT_USAGE, wrong);

@@ -41,16 +41,6 @@ bool impact_sweep_add(impact_sweep_block *block, const char *text, size_t size)
 
 /* ---- writing ---- */
 
-static bool write_all(int file, const char *text, size_t size)
-{
-    while (size > 0) {
-        const ssize_t written = write(file, text, size);
-        if (written < 0 && errno != EINTR) return false;
-        if (written > 0) text += written, size -= (size_t)written;
-    }
-    return true;
-}
-
 static int head_line(const impact_sweep_id *id, char *line, size_t size)
 {
     return snprintf(line, size, "impact sweep 1 %016" PRIx64 " %ld %s\n", id->hash, id->runs, id->parameters);
@@ -67,7 +57,8 @@ int impact_sweep_new_part(impact_runner *runner, const impact_sweep_id *id, char
         part = openat(runner->folder, name, O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
     }
     const int length = head_line(id, line, sizeof line);
-    if (part >= 0 && impact_runner_spend(runner, (unsigned long long)length) && write_all(part, line, (size_t)length))
+    if (part >= 0 && impact_runner_spend(runner, (unsigned long long)length) &&
+        impact_runner_write(part, line, (size_t)length))
         return part;
     snprintf(message, size, "cannot write '%s/%s': %s", runner->directory, name, strerror(errno));
     if (part >= 0) close(part);
@@ -81,7 +72,8 @@ bool impact_sweep_write_block(impact_runner *runner, int part, impact_sweep_bloc
     const int length = snprintf(head, sizeof head, "@ %zu %016" PRIx64 "\n", block->size,
                                 impact_sweep_hash(0, block->text, block->size));
     const bool good = impact_runner_spend(runner, (unsigned long long)length + block->size) &&
-                      write_all(part, head, (size_t)length) && write_all(part, block->text, block->size);
+                      impact_runner_write(part, head, (size_t)length) &&
+                      impact_runner_write(part, block->text, block->size);
     block->size = 0;
     return good;
 }

@@ -258,7 +258,7 @@ local head = part:match "^[^\n]*\n"
 for _, name in ipairs { "words.rows", "words.0.rows", "words.0-.rows", "words.-1.rows", ".0-1.rows", "0-1.rows", "words.0-1.row", "wordsx0-1.rows" } do
   runner.write("o/" .. name, "impact sweep 1 0 nothing")
 end
-for number, damaged in ipairs { "", "impact", "impact sweep 2 0 5 \n", head:gsub(" 5 ", " 0 "), head:sub(1, -2), head .. "@ 5", head .. "@ 999 0\nx\n",
+for number, damaged in ipairs { "", "impact", "impact sweep 2 0 5 \n", head:gsub(" 5 ", " 0 "), head:sub(1, -2), head:gsub("word\n", ("w"):rep(3000) .. "\n"), "impact sweep 1 0\n5 word\n", "impact sweep 1 0 5x\n", head .. "@ 5", head .. "@ 999 0\nx\n",
   head .. "@ 2 0000000000000000\nx\n", part:sub(1, -3), part:gsub("@ ", "& ") } do
   runner.write("o/words.0-1.rows", damaged)
   runner.shell("cd " .. runner.quote(runner.folder) .. "/o && rm -f words.csv words.0-2.rows")
@@ -279,6 +279,17 @@ runner.write("hash.lua", "# nothing else")
 run("sweep hash.lua --out l", 1, "this one returned a n")
 runner.write("hash.lua", "")
 run("sweep hash.lua --out l", 1, "this one returned a n")
+
+-- What is raised need not be a text.
+for _, raised in ipairs { "nil", "{}", "function() end" } do
+  runner.write("raise.lua", "error(" .. raised .. ")")
+  run("raise.lua --out r", 1, "the script raised an error that is not a text")
+  runner.write("raise.lua", begin .. "return impact.sweep { parameters = { x = impact.grid(1, 2, 2) }, keep = function() error(" .. raised .. ") end, " ..
+    "scene = function() return { duration = 1, bodies = { impact.body { name = 'ball', shape = impact.sphere(1) } } } end }")
+  run("sweep raise.lua --quiet --out r", 3, "every run of the sweep failed")
+  check.equal(runner.read "r/raise.csv", "run,x,status,message\n0,1,error,an error that is not a text\n1,2,error,an error that is not a text\n")
+  runner.shell("rm -rf " .. runner.quote(runner.folder .. "/r"))
+end
 
 -- ---- rows that are whole, but not right ----
 
