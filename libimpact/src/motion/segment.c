@@ -147,6 +147,13 @@ qvec3 imp_segment_place_of(const imp_segment *s, const imp_body *body, double t,
     return s->start.x;
 }
 
+/* Of what rolls, or turns about an axis that stays, T on; it stands as q says. */
+static qvec3 rolled_momentum(const imp_segment *s, const imp_body *body, quat q, double T)
+{
+    return body->spherical ? qvec3_axpy(T * body->moments.x, s->spin_up, s->start.momentum)
+                           : imp_inertia(body, q, qvec3_axpy(T, s->spin_up, imp_omega(body, &s->start)));
+}
+
 imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
 {
     imp_state state = s->start;
@@ -157,8 +164,7 @@ imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
     if (s->kind == IMP_SEGMENT_ROLL) {
         const qvec3 omega = imp_omega(body, &s->start);
         state.q = quat_unit((body->spherical ? roll_turn : straight_turn)(s->start.q, omega, s->spin_up, T));
-        state.momentum = body->spherical ? qvec3_axpy(T * body->moments.x, s->spin_up, s->start.momentum)
-                                         : imp_inertia(body, state.q, qvec3_axpy(T, s->spin_up, omega));
+        state.momentum = rolled_momentum(s, body, state.q, T);
         return state;
     }
     const double kappa = s->kind == IMP_SEGMENT_DAMPED ? body->angular_rate : 0;
@@ -175,7 +181,7 @@ imp_state imp_segment_unturned(const imp_segment *s, const imp_body *body, doubl
     if (s->kind == IMP_SEGMENT_DENSE) return dense_state(s, t);
     state.x = imp_segment_place(s, body, t, &state.v);
     if (s->kind == IMP_SEGMENT_ROLL)
-        state.momentum = qvec3_axpy(T * body->moments.x, s->spin_up, state.momentum);
+        state.momentum = rolled_momentum(s, body, state.q, T);
     else if (s->kind == IMP_SEGMENT_DAMPED && body->angular_rate > 0)
         state.momentum = qvec3_scale(state.momentum, exp(-body->angular_rate * T));
     return state;

@@ -166,7 +166,74 @@ static void bounds_hold(void **state)
             const qvec3 a = qvec3_axpy(-body.linear_rate, at.v, s.acceleration);
             assert_at_most(qvec3_norm(qvec3_sub(a, b.acceleration)), b.jerk * T * (1 + 1e-9) + 1e-12);
             assert_at_most(qvec3_norm(at.momentum), b.momentum * (1 + 1e-12));
+            assert_at_most(qvec3_norm(at.v), b.speed * (1 + 1e-12));
         }
+    }
+}
+
+/* A body that rolls, or turns about an axis of its own that stays. */
+static imp_body random_roller(random_stream *random, bool ball, imp_state *start, qvec3 *alpha)
+{
+    const double moment = random_log(random, 0.1, 1);
+    const imp_body body = ball ? solid((qvec3){moment, moment, moment}, 0, 0) : random_solid(random, false);
+    *start = random_state(random);
+    *alpha = random_vector(random, 0.1, 10);
+    if (ball) return body;
+    const qvec3 axis = quat_rotate(start->q, (qvec3){0, 0, 1});
+    start->momentum = imp_inertia(&body, start->q, qvec3_scale(axis, 20 * random_unit(random) - 10));
+    *alpha = qvec3_scale(axis, 20 * random_unit(random) - 10);
+    return body;
+}
+
+/* The same of what rolls, whose spin may grow; and what turns seen from it. */
+static void bounds_of_what_rolls_hold(void **state)
+{
+    (void)state;
+    random_stream random = {19};
+    for (int i = 0; i < 4000; i++) {
+        imp_state start;
+        qvec3 alpha;
+        const imp_body body = random_roller(&random, i % 2, &start, &alpha);
+        const imp_segment s = imp_segment_roll(0, INFINITY, &start, random_vector(&random, 0.1, 10), alpha);
+        const double t = random_log(&random, 1e-2, 1), window = random_log(&random, 1e-3, 0.3);
+        const imp_state at = imp_segment_at(&s, &body, t);
+        const imp_bounds b = imp_segment_bounds(&s, &body, t, window);
+        const imp_spin spin = imp_segment_spin(&s, &body, &at, &b, window);
+        for (int k = 0; k < 20; k++) {
+            const double T = window * random_unit(&random);
+            const imp_state then = imp_segment_at(&s, &body, t + T);
+            const qvec3 omega = imp_omega(&body, &then);
+            assert_at_most(qvec3_norm(then.v), b.speed * (1 + 1e-12));
+            assert_at_most(qvec3_norm(then.momentum), b.momentum * (1 + 1e-12));
+            assert_at_most(qvec3_norm(omega), spin.most * (1 + 1e-12));
+        }
+    }
+}
+
+/* The state without its orientation: places, speeds and energies are the same to rounding. */
+static void unturned_states_have_the_energies(void **state)
+{
+    (void)state;
+    random_stream random = {20};
+    for (int i = 0; i < 6000; i++) {
+        imp_state start;
+        qvec3 alpha;
+        imp_body body = random_roller(&random, i % 3 == 2, &start, &alpha);
+        impact_tumble tumble;
+        imp_segment s;
+        if (i % 3 == 0) {
+            body = random_solid(&random, i % 2);
+            start = random_state(&random);
+            s = imp_segment_fly(&body, 1, &start, (qvec3){0, 1, -9.8}, &tumble);
+        } else
+            s = imp_segment_roll(1, INFINITY, &start, random_vector(&random, 0.1, 10), alpha);
+        const double t = 1 + random_log(&random, 1e-2, 2);
+        const imp_state whole = imp_segment_at(&s, &body, t), brief = imp_segment_unturned(&s, &body, t);
+        assert_near3(brief.x, whole.x, 0);
+        assert_near3(brief.v, whole.v, 0);
+        const double energy = qvec3_dot(whole.momentum, imp_omega(&body, &whole)),
+                     size = qvec3_dot(start.momentum, imp_omega(&body, &start)) + energy;
+        assert_near(qvec3_dot(brief.momentum, imp_omega(&body, &brief)), energy, 1e-13 * size);
     }
 }
 
@@ -283,6 +350,8 @@ int main(void)
         cmocka_unit_test(damping_dies_out_and_falls_at_g_over_k),
         cmocka_unit_test(a_rolling_balls_turning),
         cmocka_unit_test(bounds_hold),
+        cmocka_unit_test(bounds_of_what_rolls_hold),
+        cmocka_unit_test(unturned_states_have_the_energies),
         cmocka_unit_test(turning_is_bounded),
         cmocka_unit_test(a_steps_polynomial),
         cmocka_unit_test(bounds_are_of_their_step),
