@@ -140,5 +140,5 @@ double impact_gap_receipt(const impact_solid *body1, const impact_solid *body2, 
     const double all[6] = {r.normal, r.dual, r.primal, r.order, r.inside1, r.inside2};
     double worst = 0;
     for (int i = 0; i < 6; i++) worst = imp_worse(worst, all[i]);
-    return worst;
+    return isnan(worst) ? INFINITY : worst;
 }
