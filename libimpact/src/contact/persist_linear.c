@@ -173,11 +173,24 @@ static void find_basis(const imp_linear *system)
     }
 }
 
+/* The largest entry, by four maxima at a time, none of which waits for another. */
+static double largest_entry(const imp_linear *system)
+{
+    enum { LANES = 4 };
+    const int count = system->n * system->n;
+    double most[LANES] = {0, 0, 0, 0};
+    for (int i = 0; i < count; i += LANES)
+        for (int k = 0; k < LANES && i + k < count; k++) {
+            const double size = fabs(system->matrix[i + k]);
+            most[k] = size > most[k] ? size : most[k];
+        }
+    return fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
+}
+
 void imp_linear_factor(imp_linear *system)
 {
     const size_t bytes = (size_t)system->n * (size_t)system->n * sizeof *system->matrix;
-    double most = 0;
-    for (int k = 0; k < system->n * system->n; k++) most = fmax(most, fabs(system->matrix[k]));
+    const double most = largest_entry(system);
     memcpy(system->spare, system->matrix, bytes);
     if (reduce_regular(system, IMP_LINEAR_VANISHING * most)) return;
     memcpy(system->matrix, system->spare, bytes);

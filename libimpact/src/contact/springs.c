@@ -45,6 +45,7 @@ static bool take_room(imp_springs *s, impact_together_workspace *workspace)
     s->modes = imp_encounter_take(workspace, n, sizeof *s->modes);
     s->kept = imp_encounter_take(workspace, n, sizeof *s->kept);
     s->creep_room = imp_encounter_take(workspace, imp_springs_creep_size(n), sizeof *s->creep_room);
+    s->bounces.room = imp_encounter_take(workspace, imp_springs_bounces_size(n), sizeof *s->bounces.room);
     s->cone = &workspace->cone;
     return !workspace->work.spent && imp_cone_reserve(s->cone, s->count);
 }
@@ -157,7 +158,9 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
         if (group->wedged) return IMPACT_EUNSETTLED;
         if (imp_springs_pressed(&s)) {
             if (!imp_springs_step(&s)) return IMPACT_EUNSETTLED;
-        } else if (!imp_springs_drift(&s)) {
+        } else {
+            const int closing = imp_springs_drift(&s);
+            if (closing >= 0 && !imp_springs_end_bounces(&s, closing)) continue;
             report(&s, &unit, group);
             return IMPACT_OK;
         }

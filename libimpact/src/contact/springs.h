@@ -68,6 +68,14 @@ typedef struct imp_spring {
 /* What leads: the factor g of time. */
 typedef enum imp_spring_lead { IMP_SPRING_TIME, IMP_SPRING_ROOT, IMP_SPRING_SPEED } imp_spring_lead;
 
+/* Moments of bounces that may never end: at the closings of one contact. */
+typedef struct imp_springs_bounces {
+    int contact;
+    long rounds, span; /* closings since the first of three moments; between them */
+    long expected;     /* events until which it closes again */
+    double *room;
+} imp_springs_bounces;
+
 typedef struct imp_springs {
     int count;
     double exponent;
@@ -94,6 +102,7 @@ typedef struct imp_springs {
     imp_spring *kept;
     bool creeping; /* the series are springs_creep.c's */
     bool stopped;  /* a slip has: what sticks must be chosen anew */
+    imp_springs_bounces bounces;
     long events, steps;
     double work; /* multiplications so far, roughly */
     bool chosen;
@@ -166,6 +175,14 @@ double imp_springs_only_fall(const double *c, int order, double h, bool *found);
 /* Where sum c_k t^k changes its sign in (0, t): the times, at most so many; returns how many. */
 int imp_springs_sign_changes(const double *c, int order, double t, double *when, int most);
 
+/* ---- springs_bounces.c ---- */
+
+/* Doubles of room for n contacts. */
+size_t imp_springs_bounces_size(size_t n);
+/* Nothing presses, and that contact closes next: whether bounces are like those before, to whose end impulses, works
+ * and velocities have gone then. */
+bool imp_springs_end_bounces(imp_springs *s, int closing);
+
 /* ---- springs_changes.c ---- */
 
 /* The force's branch; delta stays as it is. */
@@ -184,8 +201,8 @@ bool imp_springs_settle(imp_springs *s);
 
 /* To the next event, or as far as the series reach, and what happens there. False: not settled. */
 bool imp_springs_step(imp_springs *s);
-/* Nothing presses: to the next closing. False: there is none. */
-bool imp_springs_drift(imp_springs *s);
+/* Nothing presses: to the next closing. The contact; -1: there is none. */
+int imp_springs_drift(imp_springs *s);
 /* u = u0 + W p */
 void imp_springs_find_velocities(imp_springs *s);
 

@@ -321,7 +321,7 @@ bool imp_springs_step(imp_springs *s)
     return take_event(s, &first);
 }
 
-bool imp_springs_drift(imp_springs *s)
+int imp_springs_drift(imp_springs *s)
 {
     double soonest = INFINITY;
     int next = -1;
@@ -330,8 +330,8 @@ bool imp_springs_drift(imp_springs *s)
         const double time = c->u[0] < -c->none ? fmax(0, c->tiny - c->x) / -c->u[0] : INFINITY;
         if (time < soonest) soonest = time, next = i;
     }
-    if (next < 0) return false;
+    if (next < 0) return next;
     for (int i = 0; i < s->count; i++) s->springs[i].x -= s->springs[i].u[0] * soonest;
     s->springs[next].x = s->springs[next].tiny;
-    return true;
+    return next;
 }

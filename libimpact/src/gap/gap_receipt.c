@@ -19,29 +19,30 @@ static double mass_of(double x, double p)
     return x > 0 ? exp(p * log(x)) : 0;
 }
 
-/* The left-hand side of a body's inequality, less 1, and the masses that it is the sum of; a superellipsoid's section
- * counts as one, parts are x's and y's of it. */
+/* The left-hand side of a body's inequality, less 1, and the masses that it is the sum of; x's and y's of a
+ * superellipsoid's section are in the ratio of its sum's terms, and `sum` times too large. */
 typedef struct excess {
-    double over, mass[3], part[2];
+    double over, mass[3], sum;
 } excess;
 
 static excess plain_excess(const imp_form *form, const double x[3])
 {
-    excess e = {.over = -1};
+    excess e = {.over = -1, .sum = 1};
     for (int i = 0; i < 3; i++) e.over += e.mass[i] = mass_of(fabs(x[i]) / form->axis[i], form->p[i]);
     return e;
 }
 
+/* (u^p + v^p)^(t/p) by the logarithms of both: the larger's times t and that of 1 + (less/larger)^p times t/p. */
 static excess nested_excess(const imp_form *form, const double x[3])
 {
     const double p = form->p[0], t = form->p[IMP_SECTION], u = fabs(x[0]) / form->axis[0],
-                 v = fabs(x[1]) / form->axis[1], larger = fmax(u, v);
-    const double less = mass_of(larger > 0 ? fmin(u, v) / larger : 0, p), sum = 1 + less;
-    const double section = larger > 0 ? exp(t * (log(larger) + log(sum) / p)) : 0,
-                 along = mass_of(fabs(x[2]) / form->axis[2], t);
+                 v = fabs(x[1]) / form->axis[1], along = mass_of(fabs(x[2]) / form->axis[2], t);
+    const bool first = u >= v;
+    const double larger = log(first ? u : v), less = u + v > 0 ? exp(p * (log(first ? v : u) - larger)) : 0;
+    const double sum = 1 + less, section = exp(t * larger + t / p * log(sum));
     return (excess){.over = section + along - 1,
-                    .mass = {section, section, along},
-                    .part = {(u == larger ? 1 : less) / sum, (u == larger ? less : 1) / sum}};
+                    .mass = {first ? section : less * section, first ? less * section : section, along},
+                    .sum = sum};
 }
 
 static excess excess_at(const imp_form *form, const double body[3])
@@ -54,9 +55,8 @@ static double slope_at(const imp_form *form, const double x[3], const excess *e)
 {
     double square = 0;
     for (int i = 0; i < 3; i++) {
-        const double p = form->nested ? form->p[IMP_SECTION] : form->p[i],
-                     part = form->nested && i < 2 ? e->part[i] : 1;
-        const double slope = x[i] != 0 ? p * e->mass[i] * part / x[i] : 0;
+        const double p = form->nested ? form->p[IMP_SECTION] : form->p[i], sum = i < 2 ? e->sum : 1;
+        const double slope = x[i] != 0 ? p * e->mass[i] / (sum * x[i]) : 0;
         square += slope * slope;
     }
     return sqrt(square);

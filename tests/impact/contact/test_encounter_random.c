@@ -208,6 +208,31 @@ static void what_found_no_end_is_answered(void **state)
     }
 }
 
+/* Encounters of the campaign whose bodies bounce from contact to contact, ever less, each round like the one before:
+ * two that once spent the work allowed, and one that came to where its springs count as open, after 45000 steps, with
+ * 2e-9 of its speed left. */
+static void bounces_that_never_end_are_followed_to_their_end(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t seed, number;
+        double exponent;
+        int least, most;
+    } cases[] = {{905, 3316, 1, 2, 3}, {906, 1717, 1.5, 4, 6}, {903, 4606, 1, 4, 6}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
+        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
+        const random_encounter e = encounter_draw(&random, &ranges);
+        const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_at_most(a.outcome.residual, 1e-12);
+        assert_true(a.outcome.steps < 40000);
+        int closed = 0; /* what bounced stays together */
+        for (int i = 0; i < e.meeting_count; i++) closed += fabs(a.meetings[i].normal_after) < 1e-11;
+        assert_int_equal(closed, 2);
+    }
+}
+
 /* Encounters of the campaign to whose answers by Moreau's law no path leads, one with reactions 1e4 times what is
  * exchanged: they are swept to. */
 static void what_no_path_leads_to_is_answered(void **state)
@@ -360,6 +385,7 @@ int main(void)
         cmocka_unit_test(moreau_s_energy_rises_only_by_different_restitutions),
         cmocka_unit_test(receipts_hold_over_random_encounters),
         cmocka_unit_test(what_found_no_end_is_answered),
+        cmocka_unit_test(bounces_that_never_end_are_followed_to_their_end),
         cmocka_unit_test(what_never_ends_is_told_and_what_takes_long_is_answered),
         cmocka_unit_test(what_no_path_leads_to_is_answered),
         cmocka_unit_test(a_wedge_of_many_contacts_is_told),

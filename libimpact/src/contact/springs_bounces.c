@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Bounces that never end. Forces, friction and restitution are homogeneous: velocities c times as large make all else
+ * happen alike. What bounces from contact to contact, ever less, through all but a wedge thus comes to multiples of
+ * itself, and its impulses p and works E to geometric series. Of three moments in equal numbers of rounds
+ *
+ *     p'' - p' = R (p' - p)      p_end = p'' + (p'' - p') R/(1 - R)      E_end = E'' + (E'' - E') R^2/(1 - R^2)
+ *
+ * R is that of as many rounds as leave it under IMP_BOUNCES_RATIO: 1/(1 - R)^2 is by what p_end has the rounding of p.
+ * The rounds take ever longer, and what else approaches ends them: then there is no such end.
+ */
+#include "contact/springs.h"
+
+#include <math.h>
+#include <string.h>
+#include "base/tolerances.h"
+
+size_t imp_springs_bounces_size(size_t n) { return 12 * n; }
+
+static double *impulses_at(const imp_springs *s, int moment) { return s->bounces.room + 6 * s->count * moment; }
+
+static double *works_at(const imp_springs *s, int moment) { return impulses_at(s, moment) + 3 * s->count; }
+
+static void note_moment(const imp_springs *s, int moment)
+{
+    double *p = impulses_at(s, moment), *work = works_at(s, moment);
+    for (int i = 0; i < s->count; i++)
+        for (int j = 0; j < 3; j++) {
+            p[3 * i + j] = s->springs[i].p[j];
+            work[3 * i + j] = s->springs[i].finding->work[j];
+        }
+}
+
+/* The ratio of the last two differences of impulses, least squares; *off: the most that is not in it. */
+static double find_ratio(const imp_springs *s, double *off)
+{
+    const double *first = impulses_at(s, 0), *second = impulses_at(s, 1);
+    double both = 0, square = 0, worst = 0;
+    for (int i = 0; i < 3 * s->count; i++) {
+        const double before = second[i] - first[i], after = s->springs[i / 3].p[i % 3] - second[i];
+        both += before * after, square += before * before;
+    }
+    for (int i = 0; i < 3 * s->count; i++) {
+        const double before = second[i] - first[i], after = s->springs[i / 3].p[i % 3] - second[i];
+        worst = fmax(worst, fabs(after - both / square * before));
+    }
+    *off = worst;
+    return both / square;
+}
+
+/* To the end, where that ratio leads; works too. */
+static void go_to_end(imp_springs *s, double ratio)
+{
+    const double *p = impulses_at(s, 1), *work = works_at(s, 1), more = ratio / (1 - ratio),
+                 square = ratio * ratio / (1 - ratio * ratio);
+    for (int i = 0; i < s->count; i++) {
+        imp_spring *c = &s->springs[i];
+        for (int j = 0; j < 3; j++) {
+            c->p[j] += more * (c->p[j] - p[3 * i + j]);
+            c->finding->work[j] += square * (c->finding->work[j] - work[3 * i + j]);
+        }
+    }
+    imp_springs_find_velocities(s);
+}
+
+static bool none_approaches(const imp_springs *s, double error)
+{
+    for (int i = 0; i < s->count; i++)
+        if (s->springs[i].u[0] < -fmax(error, s->springs[i].none)) return false;
+    return true;
+}
+
+/* What has not been pushed since the moment before does not approach. */
+static bool only_they_approach(const imp_springs *s)
+{
+    const double *p = impulses_at(s, 1);
+    for (int i = 0; i < s->count; i++)
+        if (s->springs[i].p[0] == p[3 * i] && s->springs[i].u[0] < -s->springs[i].none) return false;
+    return true;
+}
+
+/* To the end by that ratio; the state stays as it was where that is none. */
+static bool ends(imp_springs *s, double ratio)
+{
+    if (!only_they_approach(s)) return false;
+    double *p = impulses_at(s, 0), *work = works_at(s, 0); /* of the first there is no need now */
+    note_moment(s, 0);
+    go_to_end(s, ratio);
+    if (none_approaches(s, IMP_BOUNCES_ERROR)) return true;
+    for (int i = 0; i < s->count; i++)
+        for (int j = 0; j < 3; j++) {
+            s->springs[i].p[j] = p[3 * i + j];
+            s->springs[i].finding->work[j] = work[3 * i + j];
+        }
+    imp_springs_find_velocities(s);
+    return false;
+}
+
+/* At the third moment. If it is not the end, the next three are as far apart as the ratio asks, or twice as far. */
+static bool look_for_end(imp_springs *s)
+{
+    imp_springs_bounces *b = &s->bounces;
+    double off;
+    const double ratio = find_ratio(s, &off), left = 1 - ratio;
+    const bool falls = ratio > 0 && ratio < 1;
+    if (falls && ratio <= IMP_BOUNCES_RATIO && off <= IMP_BOUNCES_ERROR * left * left && ends(s, ratio)) return true;
+    note_moment(s, 0);
+    b->rounds = 0;
+    b->span =
+        (long)fmax(2 * (double)b->span, falls ? fmin(log(IMP_BOUNCES_RATIO) / log(ratio), 4) * (double)b->span + 1 : 0);
+    return false;
+}
+
+bool imp_springs_end_bounces(imp_springs *s, int closing)
+{
+    imp_springs_bounces *b = &s->bounces;
+    if (s->events < IMP_BOUNCES_ASKED) return false;
+    if (b->span == 0 || s->events > b->expected) { /* the contact no longer takes part */
+        *b = (imp_springs_bounces){.room = b->room, .contact = closing, .span = IMP_BOUNCES_ROUNDS};
+        note_moment(s, 0);
+    }
+    if (closing != b->contact) return false;
+    b->expected = s->events + IMP_BOUNCES_LONGEST;
+    b->rounds++;
+    if (b->rounds == b->span) note_moment(s, 1);
+    return b->rounds == 2 * b->span && look_for_end(s);
+}
