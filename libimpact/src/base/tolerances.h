@@ -534,7 +534,7 @@
 #define IMP_BOUNCES_LONGEST 100
 /* The ratio over so many rounds: at the end impulses have 1/(1 - R)^2 = 16 times the rounding of those before. */
 #define IMP_BOUNCES_RATIO 0.75
-/* Of velocities: what is left at the end of what no ratio explains, as much of it: a tenth of what the receipt takes. */
+/* Of velocities: what is left at the end of what no ratio explains: a tenth of what the receipt takes. */
 #define IMP_BOUNCES_ERROR 0x1p-40
 
 /* ---- contact: encounters, docs/together.md ---- */

@@ -179,6 +179,7 @@ static void set_up_lines(imp_linear_springs *s, const imp_group *group, line_uni
         l->stiffness = group->contacts[i].stiffness / unit.stiffness;
         l->finding = &group->findings[i];
         take_branch(l, IMP_SPRING_OPEN, 0, l->stiffness);
+        if (l->u < 0) l->x = l->tiny; /* all touch: those that approach close at one time */
         s->place[i] = -1;
     }
 }
