@@ -56,14 +56,14 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
            (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
 }
 
-/* Whether what pressed has the velocities that the modes say: where nothing solves a problem its impulses grow without
- * end, and their rounding hides what they leave. */
-static bool comes_to(const imp_group *g, const double *u, const double *modes_say)
+/* Whether what pressed has the velocities that the modes say, and what did not keeps its rebound: where nothing solves
+ * a problem its impulses grow without end, and their rounding hides what they leave. */
+static bool comes_to(const imp_group *g, const double *u, const double *modes_say, const double *rebound)
 {
     double off = 0, speed = 0;
     for (int i = 0; i < g->count; i++) {
         speed = fmax(speed, fmax(fabs(g->u0[3 * i]), fabs(u[3 * i])));
-        if (g->p[3 * i] > 0) off = fmax(off, fabs(u[3 * i] - modes_say[3 * i]));
+        off = fmax(off, g->p[3 * i] > 0 ? fabs(u[3 * i] - modes_say[3 * i]) : rebound[i] - u[3 * i]);
     }
     return off <= IMP_ENCOUNTER_RECEIPT * speed;
 }
@@ -244,7 +244,7 @@ static bool compress(moreau *m)
     imp_encounter_mend(m->group, m->u, m->group->p, m->workspace);
     memcpy(m->q, m->u, 3 * (size_t)n * sizeof *m->q);
     imp_encounter_look(m->group, m->u);
-    if (o.status == IMP_CONE_UNSETTLED && !comes_to(m->group, m->u, m->q)) return false;
+    if (o.status == IMP_CONE_UNSETTLED && !comes_to(m->group, m->u, m->q, m->rebound)) return false;
     for (int i = 0; i < n; i++)
         book(&m->group->findings[i], 0, &m->group->p[3 * i], &m->group->u0[3 * i], &m->u[3 * i]);
     return true;

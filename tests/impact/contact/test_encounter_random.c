@@ -252,6 +252,20 @@ static void what_no_path_leads_to_is_answered(void **state)
     }
 }
 
+/* By Newton's law speeds are asked for that no bodies have: impulses grew to 1e14, whose rounding hid that contacts
+ * which they do not press approach, and an answer was given with them. */
+static void impulses_without_end_are_no_answer(void **state)
+{
+    (void)state;
+    const encounter_ranges ranges = {4, 6, 10, 0.05, 1e4, 1e4};
+    random_stream random = {909 + 0x9e3779b97f4a7c15u * 10337u};
+    random_encounter e = encounter_draw(&random, &ranges);
+    e.restitution = IMPACT_NEWTON;
+    const answer a = solve(&e, IMPACT_TOGETHER_MOREAU, 0, NULL);
+    assert_int_equal(a.status, IMPACT_EUNSETTLED);
+    assert_true(a.outcome.wedged >= 0);
+}
+
 /* Eleven contacts of two bodies, which no motion takes apart: they come to the end of their work, as each step costs
  * so much, long before they have made the steps after which others are asked. */
 static void a_wedge_of_many_contacts_is_told(void **state)
@@ -388,6 +402,7 @@ int main(void)
         cmocka_unit_test(bounces_that_never_end_are_followed_to_their_end),
         cmocka_unit_test(what_never_ends_is_told_and_what_takes_long_is_answered),
         cmocka_unit_test(what_no_path_leads_to_is_answered),
+        cmocka_unit_test(impulses_without_end_are_no_answer),
         cmocka_unit_test(a_wedge_of_many_contacts_is_told),
         cmocka_unit_test(a_struck_cube_on_the_floor_is_answered),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
