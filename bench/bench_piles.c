@@ -2,7 +2,7 @@
  *
  * bench_piles: what scenes cost whose bodies pile up, moved exactly as long as that gets on ("auto") and by steps
  * ("steps"): docs/scene.md, Piles. CSV: scene; piles; s of motion, reached and asked; how it ended; s of CPU, at most
- * some 20; steps of the integrator, events, and steps of the pile; their measured error, m; what the energy account is
+ * some 20; steps of the integrator, events, and steps of the pile; what these leave places uncertain by, m; what the energy account is
  * off by, of the energy lost.
  * Scenes: five balls in a shaft (friction .3, restitution .25); 27 balls on a floor in three layers (.3, .3); 32 balls
  * dropped into a box (.3, .7). Of boxes: a cube that falls on a corner (.5, .3), ten set on each other with masses 1

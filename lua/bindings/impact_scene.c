@@ -4,6 +4,7 @@
  */
 #include "impact_record.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -186,6 +187,11 @@ static int scene_usage(lua_State *L)
     }
     lua_pushnumber(L, impact_scene_pile_error(impact_lua_check_scene(L)->scene));
     lua_setfield(L, -2, "pile_error");
+    const double parted = impact_scene_pile_parted(impact_lua_check_scene(L)->scene);
+    if (isfinite(parted)) {
+        lua_pushnumber(L, parted);
+        lua_setfield(L, -2, "pile_parted");
+    }
     lua_createtable(L, 0, IMPACT_EVENT_REST + 1);
     for (int kind = 0; kind <= IMPACT_EVENT_REST; kind++) {
         lua_pushinteger(L, usage.events[kind]);
@@ -304,6 +310,7 @@ static void add_defaults(lua_State *L)
         {"rest_height", scene.rest_height},
         {"rest_speed", scene.rest_speed},
         {"key_tolerance", scene.key_tolerance},
+        {"pile_tolerance", scene.pile_tolerance},
         {"max_events", (double)scene.max_events},
         {"density", body.density},
         {"friction", body.friction},

@@ -190,10 +190,11 @@ static void read_plot(const quat_lua_reader *reader)
 
 impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene *self, int laws)
 {
-    static const char *const keys[] = {
-        "name",          "gravity", "duration",  "output_rate", "bodies",     "forces",     "pairs", "rules",
-        "law",           "solver",  "tolerance", "rest_height", "rest_speed", "max_events", "plot",  "compliance",
-        "key_tolerance", "piles",   "max_steps", "together",    "samples",    "methods",    NULL};
+    static const char *const keys[] = {"name",       "gravity",       "duration",       "output_rate", "bodies",
+                                       "forces",     "pairs",         "rules",          "law",         "solver",
+                                       "tolerance",  "rest_height",   "rest_speed",     "max_events",  "plot",
+                                       "compliance", "key_tolerance", "piles",          "max_steps",   "together",
+                                       "samples",    "methods",       "pile_tolerance", NULL};
     const quat_lua_reader reader = quat_lua_read(L, index, "scene", NULL, keys);
     impact_scene_def def = impact_default_scene_def();
     const impact_lua_host *host = impact_lua_get_host(L);
@@ -210,6 +211,7 @@ impact_scene_def impact_lua_read_scene(lua_State *L, int index, impact_lua_scene
     def.rest_speed = quat_lua_get_number(&reader, "rest_speed", QUAT_LUA_NOT_NEGATIVE, def.rest_speed);
     def.max_events = (long)quat_lua_get_integer(&reader, "max_events", 1, 1000000000, def.max_events);
     def.key_tolerance = quat_lua_get_number(&reader, "key_tolerance", QUAT_LUA_POSITIVE, def.key_tolerance);
+    def.pile_tolerance = quat_lua_get_number(&reader, "pile_tolerance", QUAT_LUA_POSITIVE, def.pile_tolerance);
     def.max_steps = (long)quat_lua_get_integer(&reader, "max_steps", 1, 1000000000000, def.max_steps);
     read_plot(&reader);
     def.bodies = read_bodies(&reader, &def);

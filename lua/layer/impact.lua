@@ -144,6 +144,7 @@ core.layer()
 ---@field view? table  what its page shows: docs/view.md
 ---@field together? "auto"|"springs"|"moreau"|"sequence"  what answers contacts struck at one instant, (auto): docs/together.md
 ---@field piles? "auto"|"exact"|"steps"  how bodies are moved that touch each other and do not settle
+---@field pile_tolerance? number  what one of their steps may err, of the smallest body's radius
 ---@field samples? "all"|"moving"  which bodies have rows: every one, or only those that do not rest
 ---@field plot? fun(scene: impact.scene): plot.figure
 
@@ -595,8 +596,9 @@ function methods:summary(reason)
     end
   end
   local stepped = usage.pile_steps > 0 and
-      string.format("\n  stepped    bodies that touch each other, not exactly: %d steps, whose measured errors sum to %.2g m", usage.pile_steps,
-        usage.pile_error) or ""
+      string.format("\n  stepped    bodies that touch each other, not exactly: %d steps, that leave places uncertain by %.2g m%s", usage.pile_steps,
+        usage.pile_error, usage.pile_parted and string.format("; from t = %.3g s on motions part, and this is one of them",
+          usage.pile_parted) or "") or ""
   local steps = usage.integrator_steps > 0 and
       string.format("\n             it took %d steps from %d starts, with %d evaluations of the forces", usage.integrator_steps,
         usage.integrator_starts, usage.integrator_rhs_calls) or ""

@@ -43,7 +43,7 @@ return dofile ${JSON.stringify(script)}`);
 
 // Every scene runs in WebAssembly, too. In closed form they differ by libm's last digits; what is integrated, by no more than its tolerance makes of
 // it, or than the keys of two records may (their own tolerance, of a body's size and in rad, of each). Steps that held faces want choose their lengths by a rounding: their
-// places agree to the sum of the errors that the run itself declares, up to the first impact, from where on that grows.
+// places agree to the error that the run itself declares, up to the first impact, from where on that grows.
 async function agreement() {
   const closed = ['bouncing_ball', 'superball', 'bowling_ball', 't_handle', 'newtons_cradle', 'stack'];
   const wasmBinary = fs.readFileSync(path.join(build, 'playground.wasm')), make = require(path.join(build, 'playground.js'));
@@ -52,7 +52,7 @@ async function agreement() {
     const script = path.join(tree, 'examples/scenes', name + '.lua'), here = native(script);
     assert.strictEqual(run(name, fs.readFileSync(script, 'utf8'), ''), 0, answer());
     const at = m._playground_bytes(0), there = openRecord(m.HEAPU8.slice(at, at + m._playground_size(0)));
-    const exact = closed.includes(name), declared = /measured errors sum to (\S+) m/.exec(JSON.parse(answer()).summary);
+    const exact = closed.includes(name), declared = /leave places uncertain by ([0-9.e+-]+) m/.exec(JSON.parse(answer()).summary);
     const strikes = [here, there].flatMap(run => run.events.filter(e => e.kind === 'impact').map(e => e.t));
     const end = declared && strikes.length ? 0.99 * Math.min(...strikes) : undefined;
     const off = difference(here, there, exact ? ['x', 'q', 'v', 'w'] : declared ? ['x'] : ['x', 'q'], end);

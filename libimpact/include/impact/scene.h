@@ -162,6 +162,8 @@ typedef struct impact_scene_def {
     impact_scene_together together;
     impact_samples samples;
     impact_methods methods;
+    /* in [1e-9, 1e-2], of the smallest radius of an island that moves by steps: what one of them may err */
+    double pile_tolerance;
 } impact_scene_def;
 
 /* The same defaults into a struct of struct_size bytes: what it is short of is left out, what it has beyond is zero. */
@@ -171,7 +173,7 @@ IMPACT_API void impact_fill_pair_def(impact_pair_def *def, size_t struct_size);
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
  * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events,
- * 1e8 steps, key_tolerance 1e-10, every body's samples. */
+ * 1e8 steps, key_tolerance 1e-10, pile_tolerance 1e-5, every body's samples. */
 IMPACT_INLINE impact_scene_def impact_default_scene_def(void)
 {
     impact_scene_def def;
@@ -308,9 +310,13 @@ IMPACT_API impact_memory impact_scene_memory(const impact_scene *scene); /* what
 /* Its counts by number, from 0, each with its name above, but for the events; false: there is none of this number. */
 IMPACT_API bool impact_usage_entry(const impact_usage *usage, int number, const char **name, long *value);
 
-/* m: the measured error of the motion by steps, each step's the farthest any point of a body lies from where two steps
- * of half its length lead; their sum. 0 where nothing was stepped. How motion goes on after an error is not in it. */
+/* m: how far places may be off because bodies moved by steps, at most so far. The scene is moved on twice from its first
+ * step, once by steps that may err ten times as much; where any point of a body was then, farthest from where it is,
+ * three times. 0 where nothing was stepped. What a host changes meanwhile is changed in both. */
 IMPACT_API double impact_scene_pile_error(const impact_scene *scene);
+/* s: from when that is no measure any more, as it was a tenth of a body's radius, or the second found no
+ * answer: motion that others, as right, leave; infinite: it is one to the end. */
+IMPACT_API double impact_scene_pile_parted(const impact_scene *scene);
 
 /* The energy account, J: kinetic + potential = start + work of forces and of drives - the losses, to the tolerance of
  * the run. */

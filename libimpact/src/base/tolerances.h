@@ -28,6 +28,10 @@
 /* Of a key's place, without one: of a body of 1 m an atom's diameter. A finer one than the least is its rounding. */
 #define IMP_LEAST_KEY_TOLERANCE 1e-14
 #define IMP_DEFAULT_KEY_TOLERANCE 1e-10
+/* Of the smallest radius, what a step of a pile may err: a thousandth of what a picture shows; and the least: where the
+ * shortest step falls its radius's 1e-18, two roundings of a millimetre in a metre. */
+#define IMP_DEFAULT_PILE_TOLERANCE 1e-5
+#define IMP_LEAST_PILE_TOLERANCE 1e-9
 /* m, of a bounce, and m/s: what no eye and no instrument sees of bodies of centimetres to metres, and doubles hold to
  * three digits in gaps of 1 m. */
 #define IMP_DEFAULT_REST_HEIGHT 1e-12
@@ -793,13 +797,13 @@
 
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 
-/* Of the smallest body's radius: gaps up to this are closed, a tenth of a step's error. Where contacts are more than
- * motions overlaps that are put back leave gaps elsewhere: taken as open those bodies would fall and be caught for
- * ever.
+/* Of a step's error: gaps up to this are closed. Where contacts are more than motions overlaps that are put back leave
+ * gaps elsewhere: taken as open those bodies would fall and be caught for ever.
  */
-#define IMP_PILE_SLACK 1e-6
-/* Of the smallest body's radius: what one step and its two halves may differ by. */
-#define IMP_PILE_ERROR 1e-5
+#define IMP_PILE_SLACK 1e-1
+/* Of the smaller body's radius: faces of static boxes that lie no farther apart are one, a tenth of what steps of the
+ * default tolerance err. */
+#define IMP_PILE_FLUSH 1e-6
 /* Of that: how far bodies may be off, in the time in which the smallest falls its radius, where friction acts along the
  * slip of the step's end instead of its middle's. */
 #define IMP_PILE_LEAD 1e-1
@@ -815,16 +819,25 @@
  * multiplications then for each of 20 to 60 systems. */
 #define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100
+/* How much more the steps of the coarser scene may err, that tells what all of them make of the motion; how often it is
+ * looked at, of the duration; and what is told of a body, of its radius, where that is no small difference any more:
+ * what it meets then, and with which side, is another. */
+#define IMP_COARSER_STEPS 10
+/* Where errors are as the cube root of what a step may err, D = (10^(1/3) - 1) e: told is three times what is seen. */
+#define IMP_COARSER_SAFETY 3
+#define IMP_COARSER_LOOKS (1 / 64.)
+#define IMP_COARSER_PARTED 1e-1
 /* Of a step that leads over the edge of a force: how far beyond it ends that is shortened to end there. */
 #define IMP_PILE_EDGE 1e-11
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
-/* Steps in units of the time in which the smallest body falls its radius: the first; the longest, in which contacts
- * turn by less than .05; and the shortest, in which a fall is 1e-10 of the radius. */
-#define IMP_PILE_FIRST 1e-2
+/* The longest step at the default tolerance, in which contacts turn by less than .05, in units of the time in which the
+ * smallest body falls its radius; as the cube root of the tolerance at others, as errors are. Of it, the first. The
+ * shortest is the tolerance of them: what it meets an impact wrong by, at the speed of that
+ * fall, is as much of the radius. */
+#define IMP_PILE_FIRST 0.2
 #define IMP_PILE_LONGEST 5e-2
-#define IMP_PILE_SHORTEST 1e-5
 /* Rates of the motion asked for, an event and a stretch in closed form for 16 of them, as for a step of the explicit
  * method: with bodies held on each other, for the time in which the smallest falls its radius, more is a pile that does
  * not get on. They are some twenty slips that begin and die out. With a quarter of them two ellipsoids that settle on

@@ -66,8 +66,7 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
     }
     pile->memory[2].count = 0;
     imp_pile_contacts_mark(&pile->touching, world, &pile->memory[1]);
-    if (!imp_pile_find_points(&pile->touching, world, pile->middle, to, h, IMP_PILE_SLACK * imp_pile_smallest(world),
-                              false) ||
+    if (!imp_pile_find_points(&pile->touching, world, pile->middle, to, h, imp_pile_slack(pile, world), false) ||
         !imp_pile_reserve_contacts(pile, world, pile->touching.count))
         return IMPACT_ENOMEM;
     imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[1], IMP_PILE_BEFORE);
@@ -175,7 +174,7 @@ static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_stat
     imp_pile_contacts *touching = &pile->touching;
     pile->begun = true;
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
-    if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * imp_pile_smallest(world), false))
+    if (!imp_pile_find_points(touching, world, states, NULL, 0, imp_pile_slack(pile, world), false))
         return IMPACT_ENOMEM;
     pile->memory[0].count = 0;
     for (int k = 0; k < touching->count; k++) {
@@ -192,10 +191,10 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
                             imp_pile_step_result *result)
 {
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
-    const double natural = imp_pile_natural_time(world, states), wanted = IMP_PILE_ERROR * imp_pile_smallest(world);
-    const double least = IMP_PILE_SHORTEST * natural;
-    if (!(pile->step > 0)) pile->step = IMP_PILE_FIRST * natural;
-    double h = fmin(most, fmin(pile->step, IMP_PILE_LONGEST * natural));
+    const double natural = imp_pile_natural_time(world, states), wanted = pile->tolerance * imp_pile_smallest(world);
+    const double least = pile->tolerance * natural;
+    if (!(pile->step > 0)) pile->step = IMP_PILE_FIRST * pile->longest * natural;
+    double h = fmin(most, fmin(pile->step, pile->longest * natural));
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
     bool halfway = false;
     if (status == IMPACT_OK) status = try_step(pile, world, t, h, states, false, &halfway, result);

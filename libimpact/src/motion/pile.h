@@ -31,6 +31,8 @@
 
 typedef struct imp_pile {
     imp_arena *arena; /* the pile's own */
+    double tolerance; /* of the smallest body's radius: what a step may err */
+    double longest;   /* of its natural time: a step at most */
     int bodies;       /* there is room for */
     double step;      /* s: to be tried next; 0: chosen anew */
     bool begun;
@@ -75,7 +77,7 @@ typedef struct imp_pile_step_result {
 } imp_pile_step_result;
 
 /* Nothing is taken from the arena before it is needed; all of it goes with the arena. */
-void imp_pile_open(imp_pile *pile, imp_arena *arena);
+void imp_pile_open(imp_pile *pile, imp_arena *arena, double tolerance);
 
 /* s: in which the smallest body falls its radius; without gravity, in which the fastest goes as far. */
 double imp_pile_natural_time(const imp_world *world, const imp_state *states);

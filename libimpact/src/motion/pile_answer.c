@@ -183,7 +183,7 @@ static imp_pile_question question_of(const imp_pile *pile, const imp_world *worl
                                      double h)
 {
     const double fastest = imp_pile_fastest(pile, count) + IMP_NOT_ZERO,
-                 error = IMP_PILE_RESIDUAL * IMP_PILE_ERROR * imp_pile_smallest(world) / h,
+                 error = IMP_PILE_RESIDUAL * pile->tolerance * imp_pile_smallest(world) / h,
                  still = IMP_PILE_STILL * fastest_body(pile, world, states, count);
     return (imp_pile_question){.count = count,
                                .recalls = true,
@@ -200,7 +200,7 @@ static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, cons
     const double natural = imp_pile_natural_time(world, pile->middle), smallest = imp_pile_smallest(world);
     double most = 0, lead[6];
     for (int c = 0; c < count; c++) most = fmax(most, lead_of(pile, c, smallest, lead));
-    if (!(most / h * natural * natural > IMP_PILE_LEAD * IMP_PILE_ERROR * smallest)) return first;
+    if (!(most / h * natural * natural > IMP_PILE_LEAD * pile->tolerance * smallest)) return first;
     for (int c = 0; c < count; c++) {
         lead_of(pile, c, smallest, lead);
         memcpy(&pile->lead[pile->width * c], lead, sizeof *lead * (size_t)pile->width);

@@ -6,10 +6,15 @@
 
 /* ---- room ---- */
 
-void imp_pile_open(imp_pile *pile, imp_arena *arena)
+void imp_pile_open(imp_pile *pile, imp_arena *arena, double tolerance)
 {
-    *pile = (imp_pile){
-        .arena = arena, .cone.arena = arena, .rest.arena = arena, .touching.arena = arena, .by_bodies.arena = arena};
+    *pile = (imp_pile){.arena = arena,
+                       .tolerance = tolerance,
+                       .longest = IMP_PILE_LONGEST * cbrt(tolerance / IMP_DEFAULT_PILE_TOLERANCE),
+                       .cone.arena = arena,
+                       .rest.arena = arena,
+                       .touching.arena = arena,
+                       .by_bodies.arena = arena};
 }
 
 static void *replaced(imp_pile *pile, void *old, size_t count, size_t size, bool *there)
@@ -93,6 +98,11 @@ double imp_pile_smallest(const imp_world *world)
     for (int i = 0; i < world->body_count; i++)
         if (!world->bodies[i].is_static) least = fmin(least, world->bodies[i].radius);
     return least;
+}
+
+double imp_pile_slack(const imp_pile *pile, const imp_world *world)
+{
+    return IMP_PILE_SLACK * pile->tolerance * imp_pile_smallest(world);
 }
 
 /* The points of the next island to the front of the arrays, with their gaps; how many. */

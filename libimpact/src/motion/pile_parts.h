@@ -14,6 +14,8 @@ bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int conta
 
 /* A measure of the pile: its smallest body, m. */
 double imp_pile_smallest(const imp_world *world);
+/* Gaps up to this are closed, m: a tenth of a step's error. */
+double imp_pile_slack(const imp_pile *pile, const imp_world *world);
 
 /* The orientation, turned by omega over h. */
 quat imp_pile_turned(quat q, qvec3 omega, double h);

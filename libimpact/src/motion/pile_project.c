@@ -10,7 +10,7 @@
 static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states, double h, double slack)
 {
     imp_pile_contacts *touching = &pile->touching;
-    double apart = fmax(slack, IMP_PILE_ERROR * imp_pile_smallest(world));
+    double apart = fmax(slack, pile->tolerance * imp_pile_smallest(world));
     for (int k = 0; k < pile->memory[0].count; k++) apart = fmax(apart, 2 * pile->memory[0].list[k].gap);
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
@@ -71,7 +71,7 @@ static void part_overlaps(imp_pile *pile, const imp_world *world, int count)
  * apart. Gaps within the slack may stay. */
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states)
 {
-    const double slack = IMP_PILE_SLACK * imp_pile_smallest(world), rounding = IMP_TOUCHING * imp_pile_smallest(world);
+    const double slack = imp_pile_slack(pile, world), rounding = IMP_TOUCHING * imp_pile_smallest(world);
     for (int pass = 0; pass < 2; pass++) {
         const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
                                      : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -rounding, false);

@@ -60,7 +60,7 @@ impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const i
     }
     if (!imp_field_loads(world, t, states, pile->loads)) return IMPACT_OK;
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
-    if (!imp_pile_find_points(touching, world, states, NULL, 0, IMP_PILE_SLACK * imp_pile_smallest(world), false))
+    if (!imp_pile_find_points(touching, world, states, NULL, 0, imp_pile_slack(pile, world), false))
         return IMPACT_ENOMEM;
     for (int i = 0; i < world->body_count; i++)
         if (!world->bodies[i].is_static && !is_touched(touching, i)) return IMPACT_OK;

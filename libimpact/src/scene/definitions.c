@@ -8,7 +8,7 @@
 /* No padding at the ends, so that no later field can stand where an older caller has some. */
 #if UINTPTR_MAX > 0xffffffffu
 #define ENDS_WITH(type, field) (offsetof(type, field) + sizeof((type *)0)->field == sizeof(type))
-_Static_assert(ENDS_WITH(impact_scene_def, methods), "impact_scene_def ends with padding");
+_Static_assert(ENDS_WITH(impact_scene_def, pile_tolerance), "impact_scene_def ends with padding");
 _Static_assert(ENDS_WITH(impact_body_def, user), "impact_body_def ends with padding");
 _Static_assert(ENDS_WITH(impact_force_def, edge), "impact_force_def ends with padding");
 _Static_assert(ENDS_WITH(impact_pair_def, rolling_friction), "impact_pair_def ends with padding");

@@ -85,7 +85,7 @@ static void walk_scalars(imp_archive *a, imp_saved *s)
 {
     double *const numbers[] = {&s->t,           &s->impact_loss,        &s->greatest_energy,
                                &s->pile_error,  &s->impact_loss_fallen, &s->sliding_fallen,
-                               &s->energy_start};
+                               &s->pile_parted, &s->energy_start};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
     imp_archive_bool(a, &s->begun);
     imp_archive_long(a, &s->next_sample);

@@ -4,6 +4,7 @@
  * integrator's history and a pile's are not kept. So a scene that is saved is restored too, from its own bytes: both go
  * on alike, bit for bit, and what flies or rests goes on as if nothing had been.
  */
+#include "scene/coarser.h"
 #include "scene/following.h"
 #include "scene/islands.h"
 #include "scene/saved.h"
@@ -109,7 +110,8 @@ static void collect_scalars(imp_saved *s, const impact_scene *scene)
                      .greatest_energy = scene->greatest_energy,
                      .impact_loss_fallen = scene->impact_loss_fallen,
                      .sliding_fallen = scene->sliding_fallen,
-                     .pile_error = scene->pile_error,
+                     .pile_error = scene->pile_error + scene->made,
+                     .pile_parted = scene->pile_parted,
                      .energy_start = scene->energy_start,
                      .receipt = scene->receipt,
                      .usage = scene->world.usage};
@@ -164,6 +166,8 @@ static void restore_scalars(const imp_saved *s, impact_scene *scene)
     scene->impact_loss_fallen = s->impact_loss_fallen;
     scene->sliding_fallen = s->sliding_fallen;
     scene->pile_error = s->pile_error;
+    scene->pile_parted = s->pile_parted;
+    scene->made = scene->made_before = 0;
     scene->energy_start = s->energy_start;
     scene->receipt = s->receipt;
     scene->receipt.limit_unit = limits.limit_unit, scene->receipt.limit_gap = limits.limit_gap;
@@ -285,6 +289,7 @@ static impact_status restore_islands(const imp_saved *s, impact_scene *scene)
 
 impact_status imp_saved_restore(const imp_saved *s, impact_scene *scene)
 {
+    imp_coarser_end(scene);
     forget_all(scene);
     restore_scalars(s, scene);
     restore_bodies(s, scene);

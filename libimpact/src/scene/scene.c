@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_internal.h"
+#include "scene/coarser.h"
 #include "scene/definitions.h"
 #include "scene/scene_check.h"
 #include "scene/scene_keys.h"
@@ -73,7 +74,7 @@ static impact_status open_memory(const impact_scene_def *def, impact_scene **sce
     return IMPACT_ENOMEM;
 }
 
-static impact_status open_workspace(impact_scene *scene, char *message, unsigned long size)
+impact_status imp_scene_open_workspace(impact_scene *scene, char *message, unsigned long size)
 {
     const bool springs = scene->compliance > 0;
     if (!springs && scene->methods.impacts != IMPACT_SOLVER_CVODE) return IMPACT_OK;
@@ -116,6 +117,8 @@ static impact_status create(const impact_scene_def *given, impact_scene **out, c
     scene->together = imp_scene_together_of(def);
     scene->rest_height = def->rest_height;
     scene->rest_speed = def->rest_speed;
+    scene->pile_tolerance = def->pile_tolerance;
+    scene->pile_parted = INFINITY;
     scene->max_events = def->max_events;
     scene->max_steps = def->max_steps;
     scene->piles = imp_scene_piles_of(def);
@@ -126,7 +129,7 @@ static impact_status create(const impact_scene_def *given, impact_scene **out, c
     status = imp_scene_build(scene, def);
     imp_scene_receipt_begin(scene);
     if (status == IMPACT_OK) status = check_rules(scene, message, message_size);
-    if (status == IMPACT_OK) status = open_workspace(scene, message, message_size);
+    if (status == IMPACT_OK) status = imp_scene_open_workspace(scene, message, message_size);
     if (status == IMPACT_OK) {
         imp_field_locate(&scene->world, scene->t, scene->states, false);
         scene->energy_start =
@@ -163,6 +166,7 @@ impact_status impact_scene_create(const impact_scene_def *def, impact_scene **ou
 void impact_scene_destroy(impact_scene *scene)
 {
     if (!scene) return;
+    imp_coarser_end(scene);
     for (int k = 0; k < scene->island_count; k++)
         if (scene->islands[k]) imp_motion_forget(&scene->islands[k]->motion);
     for (int k = 0; k < scene->spare_count; k++) imp_motion_forget(&scene->spares[k]->motion);
@@ -207,6 +211,8 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     if (status == IMPACT_OK) {
         const impact_status ran = run(scene, t), seen = imp_scene_look(scene, scene->t);
         status = imp_scene_receipt_judge(scene, ran == IMPACT_OK ? seen : ran);
+        const impact_status followed = imp_coarser_follow(scene);
+        if (followed != IMPACT_OK) status = followed;
     }
     if (!imp_scene_keys_end(scene) && status >= 0) status = IMPACT_ESINK;
     scene->recorder = NULL;
@@ -294,7 +300,9 @@ double impact_scene_key_tolerance(const impact_scene *scene) { return scene->key
 
 impact_usage impact_scene_usage(const impact_scene *scene) { return scene->world.usage; }
 
-double impact_scene_pile_error(const impact_scene *scene) { return scene->pile_error; }
+double impact_scene_pile_error(const impact_scene *scene) { return scene->pile_error + scene->made; }
+
+double impact_scene_pile_parted(const impact_scene *scene) { return scene->pile_parted; }
 
 impact_energy impact_scene_energy(const impact_scene *scene) { return imp_scene_energy_of(scene, scene->states); }
 

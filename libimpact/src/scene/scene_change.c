@@ -6,6 +6,7 @@
  */
 #include "base/floats.h"
 #include "scene/arrivals.h"
+#include "scene/coarser.h"
 #include "scene/gather.h"
 #include "scene/stepped.h"
 #include "contact/persist_still.h"
@@ -207,7 +208,10 @@ static impact_status set_state(impact_scene *scene, int body, const impact_sampl
 impact_status impact_scene_set_state(impact_scene *scene, int body, const impact_sample *sample)
 {
     const imp_floats floats = imp_floats_hold();
-    const impact_status status = set_state(scene, body, sample);
+    impact_status status = imp_coarser_follow(scene);
+    if (status == IMPACT_OK) status = set_state(scene, body, sample);
+    if (status == IMPACT_OK && scene->coarser)
+        imp_coarser_changed(scene, impact_scene_set_state(scene->coarser, body, sample));
     imp_floats_give_back(&floats);
     return status;
 }
@@ -230,7 +234,10 @@ static impact_status push(impact_scene *scene, int body, qvec3 impulse, qvec3 po
 impact_status impact_scene_push(impact_scene *scene, int body, qvec3 impulse, qvec3 point)
 {
     const imp_floats floats = imp_floats_hold();
-    const impact_status status = push(scene, body, impulse, point);
+    impact_status status = imp_coarser_follow(scene);
+    if (status == IMPACT_OK) status = push(scene, body, impulse, point);
+    if (status == IMPACT_OK && scene->coarser)
+        imp_coarser_changed(scene, impact_scene_push(scene->coarser, body, impulse, point));
     imp_floats_give_back(&floats);
     return status;
 }

@@ -312,6 +312,8 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
             "must be positive and finite");
     require(&c, def->key_tolerance >= IMP_LEAST_KEY_TOLERANCE && def->key_tolerance <= IMP_MOST_TOLERANCE,
             "key_tolerance", def->key_tolerance, "must lie in [1e-14, 1e-2]");
+    require(&c, def->pile_tolerance >= IMP_LEAST_PILE_TOLERANCE && def->pile_tolerance <= IMP_MOST_TOLERANCE,
+            "pile_tolerance", def->pile_tolerance, "must lie in [1e-9, 1e-2]");
     require(&c, def->max_events > 0, "max_events", (double)def->max_events, "must be positive");
     require(&c, def->piles >= IMPACT_PILES_AUTO && def->piles <= IMPACT_PILES_STEPS, "piles", def->piles,
             "is no way to move them");

@@ -25,6 +25,7 @@ void impact_fill_scene_def(impact_scene_def *def, size_t struct_size)
         .piles = IMPACT_PILES_AUTO,
         .together = IMPACT_SCENE_TOGETHER_AUTO,
         .samples = IMPACT_SAMPLES_ALL,
+        .pile_tolerance = IMP_DEFAULT_PILE_TOLERANCE,
     };
     imp_definition_give(&own, sizeof own, def, struct_size);
 }

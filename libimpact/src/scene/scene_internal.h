@@ -65,11 +65,17 @@ struct impact_scene {
     long encounter_count;
     impact_methods methods; /* filled in: scene_methods.h */
     imp_gaps gaps;
-    double rest_height, rest_speed;
+    double rest_height, rest_speed, pile_tolerance;
     long max_events, event_count, max_steps, steps; /* steps: slots of the queue */
     impact_piles piles;
     impact_samples samples;
-    double pile_error;               /* m, of all steps of piles */
+    bool stepped;                 /* some island has moved by steps: */
+    double pile_error;            /* m: of all steps of piles, their sum; and what the motion makes of them: */
+    double made, made_before;     /* m: by how far the coarser scene is; by those before it */
+    double pile_parted;           /* s: from where that is no measure any more; infinite: it is one */
+    struct impact_scene *coarser; /* coarser.h */
+    double coarser_due;           /* s: it is followed next */
+    bool is_coarser;
     double output_rate;              /* samples per second; 0: none */
     long next_sample;                /* k of the next, at k/output_rate */
     int movable, moving;             /* bodies that are not static; not at rest */
@@ -87,6 +93,9 @@ struct impact_scene {
 
 /* The world, in its arena, of a definition that imp_scene_check has passed. */
 impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def);
+
+/* What solves impacts by CVODE, where it is asked to. */
+impact_status imp_scene_open_workspace(impact_scene *scene, char *message, unsigned long size);
 
 /* Goes on to t_end. IMPACT_OK there; IMPACT_AT_REST, or why not. */
 impact_status imp_scene_go_on(impact_scene *scene, double t_end);

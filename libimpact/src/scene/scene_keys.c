@@ -234,7 +234,7 @@ static bool put_points(impact_scene *scene, const imp_island *island, const impa
     }
     for (int k = 0; island->rests && k < count; k++) {
         const int near = imp_tracks_find(&scene->tracks, rows[k].body1, rows[k].body2);
-        if (near >= 0) scene->keys->held[near].rests = true;
+        if (near >= 0 && near < scene->keys->held_room) scene->keys->held[near].rests = true;
     }
     return true;
 }

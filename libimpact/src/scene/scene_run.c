@@ -4,6 +4,7 @@
  */
 #include "base/number.h"
 #include "scene/arrivals.h"
+#include "scene/coarser.h"
 #include "scene/scene_keys.h"
 #include "world/world_gap.h"
 
@@ -210,6 +211,8 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end)
                      imp_number_of(scene->t).text);
             return IMPACT_EVENT_LIMIT;
         }
+        status = imp_coarser_attend(scene, t);
+        if (status != IMPACT_OK) return status;
         if (!imp_scene_told(scene)) return scene->stop;
         scene->t = fmax(scene->t, t);
         status = due(scene, imp_queue_first(&scene->queue), t, t_end);

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FORMAT = 3, NAME = 64, SUM = 8 };
+enum { FORMAT = 4, NAME = 64, SUM = 8 };
 
 static const char magic[16] = "impact saved";
 
@@ -92,7 +92,8 @@ uint64_t imp_scene_print(const impact_scene_def *def)
     PRINT(&a, def->friction_rule, def->restitution_rule, def->law, def->compliance);
     const impact_methods m = imp_scene_methods_of(def);
     PRINT(&a, m.motion, m.impacts, m.gaps, m.tolerance, m.impact_tolerance, m.gap_tolerance, m.step);
-    PRINT(&a, def->rest_height, def->rest_speed, imp_scene_piles_of(def), def->together, def->samples);
+    PRINT(&a, def->rest_height, def->rest_speed, imp_scene_piles_of(def), def->together, def->samples,
+          def->pile_tolerance);
     return a.sum;
 }
 

@@ -59,7 +59,7 @@ static impact_status open_pile(imp_island *island)
     if (!island->pile) {
         island->pile = imp_arena_take(arena, 1, sizeof *island->pile);
         if (!island->pile) return IMPACT_ENOMEM;
-        imp_pile_open(island->pile, arena);
+        imp_pile_open(island->pile, arena, island->scene->pile_tolerance);
     }
     imp_pile_begin(island->pile);
     return IMPACT_OK;
@@ -70,6 +70,7 @@ impact_status imp_island_begin_steps(imp_island *island)
     const impact_status status = open_pile(island);
     if (status != IMPACT_OK) return status;
     island->steps = 0;
+    island->scene->stepped = true;
     for (int i = 0; i < island->world.body_count; i++) island->motion.resting[i] = false;
     for (int p = 0; p < island->world.pair_count; p++) {
         imp_pair *pair = &island->world.pairs[p];

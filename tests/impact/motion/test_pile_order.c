@@ -71,7 +71,7 @@ static imp_state by_steps(const held_case *c, int steps)
     impact_scene *scene = scene_of(c, bodies);
     imp_island *island = whole_island(scene);
     imp_pile pile;
-    imp_pile_open(&pile, scene->world.arena);
+    imp_pile_open(&pile, scene->world.arena, 1e-5);
     imp_pile_begin(&pile);
     const double h = c->duration / steps;
     for (int k = 0; k < steps; k++) {

@@ -29,7 +29,7 @@ static double tilt_after(double tilt, double rolling, double time, double h)
     impact_scene *scene = make_scene(&def);
     imp_island *island = whole_island(scene);
     imp_pile pile;
-    imp_pile_open(&pile, scene->world.arena);
+    imp_pile_open(&pile, scene->world.arena, 1e-5);
     imp_pile_begin(&pile);
     for (double t = 0; t < time - 0.5 * h;) {
         imp_pile_step_result result;
@@ -118,7 +118,7 @@ static thrown by_steps(thrown b, double time, int steps)
     impact_scene *scene = make_scene(&def);
     imp_island *island = whole_island(scene);
     imp_pile pile;
-    imp_pile_open(&pile, scene->world.arena);
+    imp_pile_open(&pile, scene->world.arena, 1e-5);
     imp_pile_begin(&pile);
     for (int k = 0; k < steps; k++) {
         imp_pile_step_result result;

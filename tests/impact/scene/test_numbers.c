@@ -139,7 +139,8 @@ static void scenes(void **state)
     (void)state;
     tally t = {0};
     DOUBLES(def.gravity), DOUBLES(def.output_rate), DOUBLES(def.compliance), DOUBLES(def.tolerance);
-    DOUBLES(def.rest_height), DOUBLES(def.rest_speed), DOUBLES(def.key_tolerance), DOUBLES(def.methods.tolerance);
+    DOUBLES(def.rest_height), DOUBLES(def.rest_speed), DOUBLES(def.key_tolerance), DOUBLES(def.pile_tolerance),
+        DOUBLES(def.methods.tolerance);
     DOUBLES(def.methods.impact_tolerance), DOUBLES(def.methods.gap_tolerance), DOUBLES(def.methods.step);
     CHOICE(def.friction_rule), CHOICE(def.restitution_rule), CHOICE(def.law), CHOICE(def.solver), CHOICE(def.piles);
     CHOICE(def.together), CHOICE(def.samples), CHOICE(def.methods.motion), CHOICE(def.methods.impacts);

@@ -281,7 +281,7 @@ static const field scene_fields[] = {
     FIELD(impact_scene_def, max_steps, LIMIT, false),        FIELD(impact_scene_def, allocator, OTHER, false),
     FIELD(impact_scene_def, key_tolerance, NUMBER, false),   FIELD(impact_scene_def, piles, CHOICE, true),
     FIELD(impact_scene_def, together, CHOICE, true),         FIELD(impact_scene_def, samples, CHOICE, true),
-    FIELD(impact_scene_def, methods, OTHER, true),
+    FIELD(impact_scene_def, methods, OTHER, true),           FIELD(impact_scene_def, pile_tolerance, NUMBER, true),
 };
 
 static const field methods_fields[] = {
@@ -422,7 +422,7 @@ static void every_field_that_decides_is_in_the_print(void **state)
     assert_all_listed(ALL(body_fields), sizeof(impact_body_def));
     assert_all_listed(ALL(force_fields), sizeof(impact_force_def));
     assert_all_listed(ALL(pair_fields), sizeof(impact_pair_def));
-    assert_int_equal(check_prints(ALL(scene_fields), offsetof(whole_definition, scene)), 18);
+    assert_int_equal(check_prints(ALL(scene_fields), offsetof(whole_definition, scene)), 19);
     assert_int_equal(check_prints(ALL(methods_fields), offsetof(whole_definition, scene.methods)), 7);
     assert_int_equal(check_prints(ALL(body_fields), offsetof(whole_definition, bodies)), 19);
     assert_int_equal(check_prints(ALL(force_fields), offsetof(whole_definition, forces)), 16);

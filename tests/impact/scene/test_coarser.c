@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What steps err and the motion makes of it, told by a second run with coarser steps, against a third with finer
+ * ones.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include "kit/pile_scene.h"
+#include "kit/random_scene.h"
+#include "kit/scene_log.h"
+
+enum { LOOKS = 20 };
+
+/* ---- against far finer steps ---- */
+
+static double apart(const impact_scene_def *def, impact_scene *a, impact_scene *b)
+{
+    double most = 0;
+    for (int i = 0; i < def->body_count; i++) {
+        impact_sample one, other;
+        if (def->bodies[i].is_static) continue;
+        impact_scene_body(a, i, &one);
+        impact_scene_body(b, i, &other);
+        most = fmax(most, qvec3_norm(qvec3_sub(one.position, other.position)));
+    }
+    return most;
+}
+
+static impact_scene *created(const impact_scene_def *def)
+{
+    char message[256];
+    impact_scene *scene;
+    if (impact_scene_create(def, &scene, message, sizeof message) != IMPACT_OK) fail_msg("%s", message);
+    return scene;
+}
+
+static bool runs_to(impact_scene *scene, double t)
+{
+    const impact_status status = impact_scene_run_to(scene, t, NULL);
+    return status == IMPACT_OK || status == IMPACT_AT_REST;
+}
+
+/* Up to where motions part the scene is off by no more than it says in the end; by what. */
+static double off_as_told(impact_scene_def def)
+{
+    impact_scene *scene = created(&def);
+    def.pile_tolerance = 1e-6;
+    impact_scene *finer = created(&def);
+    double off = 0;
+    for (int k = 1; k <= LOOKS; k++) {
+        const double t = def.duration * k / LOOKS;
+        if (!runs_to(scene, t) || impact_scene_pile_parted(scene) <= t || !runs_to(finer, t)) break;
+        off = apart(&def, scene, finer);
+    }
+    const double told = impact_scene_pile_error(scene);
+    if (!(off <= told)) fail_msg("off by %g m, told are %g", off, told);
+    impact_scene_destroy(scene);
+    impact_scene_destroy(finer);
+    return off;
+}
+
+/* Of each of these the errors of its steps sum to less. */
+static void what_is_told_is_not_too_small(void **state)
+{
+    (void)state;
+    const unsigned long seeds[] = {3001, 3002, 3032, 3049};
+    for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
+        static pile_scene pile;
+        random_pile_scene(seeds[k], (int)(seeds[k] % PILE_STARTS), &pile);
+        assert_true(off_as_told(pile.def) > 2e-5);
+        pile_scene_end(&pile);
+    }
+}
+
+/* 81 steps, whose errors sum to 2e-5 m; after them it flies and is struck. */
+static void what_goes_on_after_steps_is_in_it(void **state)
+{
+    (void)state;
+    static random_scene s;
+    random_scene_make(310001, &s);
+    assert_true(off_as_told(s.def) > 4e-4);
+}
+
+/* ---- the second scene is where the first is ---- */
+
+enum { DROPPED = 3049 };
+
+/* What a host pushes or puts elsewhere is pushed and put there in both: else they had parted. */
+static void what_a_host_changes_is_changed_in_both(void **state)
+{
+    (void)state;
+    static pile_scene pile;
+    random_pile_scene(DROPPED, DROPPED % PILE_STARTS, &pile);
+    for (int put = 0; put < 2; put++) {
+        impact_scene *scene = created(&pile.def);
+        impact_sample s;
+        assert_true(runs_to(scene, 0.3));
+        assert_true(impact_scene_pile_error(scene) > 0 && isinf(impact_scene_pile_parted(scene)));
+        impact_scene_body(scene, 1, &s);
+        s.position.z += 1;
+        const qvec3 blow = {0.5 * 1000 * 8e-4, 0, 0};
+        assert_int_equal(put ? impact_scene_set_state(scene, 1, &s) : impact_scene_push(scene, 1, blow, s.position),
+                         IMPACT_OK);
+        assert_true(runs_to(scene, 0.35));
+        assert_true(isinf(impact_scene_pile_parted(scene)));
+        impact_scene_destroy(scene);
+    }
+    pile_scene_end(&pile);
+}
+
+/* What was told before goes with what is saved. */
+static void what_is_saved_says_as_much(void **state)
+{
+    (void)state;
+    static pile_scene pile;
+    random_pile_scene(DROPPED, DROPPED % PILE_STARTS, &pile);
+    impact_scene *scene = created(&pile.def), *other = created(&pile.def);
+    assert_true(runs_to(scene, 0.5));
+    const double told = impact_scene_pile_error(scene);
+    size_t size;
+    assert_int_equal(impact_scene_save(scene, NULL, &size), IMPACT_OK);
+    void *bytes = malloc(size);
+    assert_int_equal(impact_scene_save(scene, bytes, &size), IMPACT_OK);
+    assert_int_equal(impact_scene_load(other, bytes, size), IMPACT_OK);
+    assert_true(impact_scene_pile_error(scene) == impact_scene_pile_error(other));
+    assert_true(told > 0 && impact_scene_pile_error(other) >= told); /* with the step that it departs by */
+    assert_true(runs_to(scene, 0.8) && runs_to(other, 0.8));
+    assert_true(impact_scene_pile_error(scene) == impact_scene_pile_error(other));
+    assert_true(impact_scene_pile_error(other) > told);
+    free(bytes);
+    impact_scene_destroy(scene);
+    impact_scene_destroy(other);
+    pile_scene_end(&pile);
+}
+
+/* The tolerance is a part of the radius, and refused where it is none. */
+static void tolerances_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    static pile_scene pile;
+    random_pile_scene(DROPPED, DROPPED % PILE_STARTS, &pile);
+    const double wrong[] = {0, 1e-10, 0.1, NAN, INFINITY};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        char message[256];
+        impact_scene *scene;
+        pile.def.pile_tolerance = wrong[k];
+        assert_true(impact_scene_create(&pile.def, &scene, message, sizeof message) < 0);
+        assert_non_null(strstr(message, "pile_tolerance"));
+    }
+    pile_scene_end(&pile);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_told_is_not_too_small),          cmocka_unit_test(what_goes_on_after_steps_is_in_it),
+        cmocka_unit_test(what_a_host_changes_is_changed_in_both), cmocka_unit_test(what_is_saved_says_as_much),
+        cmocka_unit_test(tolerances_that_are_none_are_refused),
+    };
+    if (!impact_has(IMPACT_PART_CVODE)) return 0;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
