@@ -797,10 +797,10 @@
 
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 
-/* Of a step's error: gaps up to this are closed. Where contacts are more than motions overlaps that are put back leave
- * gaps elsewhere: taken as open those bodies would fall and be caught for ever.
+/* Gaps up to one of so many parts of a step's error are closed. Where contacts are more than motions overlaps that are
+ * put back leave gaps elsewhere: taken as open those bodies would fall and be caught for ever.
  */
-#define IMP_PILE_SLACK 1e-1
+#define IMP_PILE_SLACK 10
 /* Of the smaller body's radius: faces of static boxes that lie no farther apart are one, a tenth of what steps of the
  * default tolerance err. */
 #define IMP_PILE_FLUSH 1e-6
@@ -833,10 +833,10 @@
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
 /* The longest step at the default tolerance, in which contacts turn by less than .05, in units of the time in which the
- * smallest body falls its radius; as the cube root of the tolerance at others, as errors are. Of it, the first. The
- * shortest is the tolerance of them: what it meets an impact wrong by, at the speed of that
+ * smallest body falls its radius; as the cube root of the tolerance at others, as errors are; and of how many parts of
+ * it the first is one. The shortest is the tolerance of them: what it meets an impact wrong by, at the speed of that
  * fall, is as much of the radius. */
-#define IMP_PILE_FIRST 0.2
+#define IMP_PILE_FIRST 5
 #define IMP_PILE_LONGEST 5e-2
 /* Rates of the motion asked for, an event and a stretch in closed form for 16 of them, as for a step of the explicit
  * method: with bodies held on each other, for the time in which the smallest falls its radius, more is a pile that does

@@ -193,7 +193,7 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
     const double natural = imp_pile_natural_time(world, states), wanted = pile->tolerance * imp_pile_smallest(world);
     const double least = pile->tolerance * natural;
-    if (!(pile->step > 0)) pile->step = IMP_PILE_FIRST * pile->longest * natural;
+    if (!(pile->step > 0)) pile->step = pile->longest / IMP_PILE_FIRST * natural;
     double h = fmin(most, fmin(pile->step, pile->longest * natural));
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
     bool halfway = false;
