@@ -98,7 +98,8 @@ static double off_by(const pile_scene *pile, const course *way, int look, impact
 }
 
 /* Up to where the scene says that motions part, or they do. */
-static void compare(const pile_scene *pile, const course *way, double told, double tolerance, double seconds, tally *row)
+static void compare(const pile_scene *pile, const course *way, double told, double tolerance, double seconds,
+                    tally *row)
 {
     impact_scene_def def = pile->def;
     impact_scene *finer;

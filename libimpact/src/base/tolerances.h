@@ -797,10 +797,11 @@
 
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 
-/* Gaps up to one of so many parts of a step's error are closed. Where contacts are more than motions overlaps that are
- * put back leave gaps elsewhere: taken as open those bodies would fall and be caught for ever.
+/* Of the smallest body's radius: gaps up to this are closed at the default tolerance, a tenth of a step's error, and as
+ * much more or less at others. Where contacts are more than motions overlaps that are put back leave gaps elsewhere:
+ * taken as open those bodies would fall and be caught for ever.
  */
-#define IMP_PILE_SLACK 10
+#define IMP_PILE_SLACK 1e-6
 /* Of the smaller body's radius: faces of static boxes that lie no farther apart are one, a tenth of what steps of the
  * default tolerance err. */
 #define IMP_PILE_FLUSH 1e-6

@@ -102,7 +102,7 @@ double imp_pile_smallest(const imp_world *world)
 
 double imp_pile_slack(const imp_pile *pile, const imp_world *world)
 {
-    return pile->tolerance / IMP_PILE_SLACK * imp_pile_smallest(world);
+    return pile->tolerance / IMP_DEFAULT_PILE_TOLERANCE * IMP_PILE_SLACK * imp_pile_smallest(world);
 }
 
 /* The points of the next island to the front of the arrays, with their gaps; how many. */

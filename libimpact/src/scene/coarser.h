@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * coarser: the same scene once more, gone on from where its bodies first moved by steps, by steps that may err ten times
- * as much. A step's own error says nothing of what the motion makes of it; how far two motions are apart that err
+ * coarser: the same scene once more, gone on from where its bodies first moved by steps, by steps that may err ten
+ * times as much. A step's own error says nothing of what the motion makes of it; how far two motions are apart that err
  * differently does: of the second order and where contacts begin within a step alike, the scene errs by less than that.
  * Internal.
  */

@@ -39,8 +39,7 @@ typedef struct imp_saved {
     bool begun;
     long next_sample, encounter_count, event_count, steps;
     imp_works works;
-    double impact_loss, greatest_energy, impact_loss_fallen, sliding_fallen, pile_error, pile_parted,
-        energy_start;
+    double impact_loss, greatest_energy, impact_loss_fallen, sliding_fallen, pile_error, pile_parted, energy_start;
     impact_scene_residuals receipt;
     impact_usage usage;
     int body_count, inside_count, beyond_count, island_count, member_count, pair_count;
