@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --- Bodies that go through bands of constant force, down to 4e-6 m wide, there and back: a ball in flight, a ball that slides without friction, and a
---- box that slides with it, against the same motion put together band by band from its closed form.
+--- box that slides with it, against the same motion put together band by band from its closed form; of half of the forces nothing tells where they jump.
 local impact = require "impact"
 local check = require "check"
 
@@ -59,12 +59,12 @@ end
 
 local function uniform(low, high) return low + (high - low) * math.random() end
 
-local function steps_of(edges, forces)
+local function steps_of(edges, forces, told)
   local laws = {}
   for i, e in ipairs(edges) do
     local before, beyond = i == 1 and forces[1] or 0, i == 1 and forces[2] or forces[i + 1] - forces[i]
     laws[i] = impact.force { name = "band " .. i, law = function(_, b) return { b.position.x < e and before or beyond, 0, 0 } end,
-      edge = function(_, b) return b.position.x - e end }
+      edge = told and function(_, b) return b.position.x - e end or nil }
   end
   return laws
 end
@@ -82,7 +82,7 @@ for case = 1, 60 do
   local bodies = { impact.body { name = "body", shape = kind == 0 and impact.box { a = .05, b = .05, c = .05 } or impact.sphere(.05), mass = mass,
     position = { 0, 0, .05 }, velocity = { speed, 0, 0 }, friction = mu, restitution = 0 } }
   if kind < 2 then bodies[2] = impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 0 } end
-  local scene = impact.scene { gravity = { 0, 0, kind < 2 and -G or 0 }, duration = duration, bodies = bodies, forces = steps_of(edges, forces) }
+  local scene = impact.scene { gravity = { 0, 0, kind < 2 and -G or 0 }, duration = duration, bodies = bodies, forces = steps_of(edges, forces, case % 6 < 3) }
   check.truth(scene:run(), "it runs")
   check.close(scene:state("body").position.x, truth(edges, forces, speed, mu * G, duration), 1e-9)
   if math.abs(scene:state("body").velocity.x) > 1e-12 then steps = steps + scene:usage().pile_steps end

@@ -785,6 +785,9 @@
 /* tau: the longest step, in which the speed falls to a half; and the shortest: what does not go on so far tips. */
 #define IMP_FACE_LONGEST 0.7
 #define IMP_FACE_SHORTEST 1e-10
+/* tau: a step so short is taken whatever its error: over it a force jumps, and may be off so far of what it does in the
+ * time in which the speed falls to a part. */
+#define IMP_FACE_JUMP 1e-12
 /* In rest speeds: what is set in motion by a load that changes is accelerated as at rest up to this. */
 #define IMP_FACE_SET_OUT 4.0
 /* Of the face's reach: a centre of pressure nearer to a border stands on it. */

@@ -379,21 +379,23 @@ bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double
     const double longest = motion->loads ? log1p(motion->longest / clock) : INFINITY;
     bool cut = false;
     lay_out(&c);
-    for (double h = fmin(fmin(*length, longest), IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN)); h > IMP_FACE_SHORTEST;) {
+    for (double h = fmin(fmin(*length, longest), IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN)); h > 0;) {
         measure(motion, y, unit);
         if (!collocate(motion, &c, y, h, unit, k, first)) {
             cut = true;
             h *= 0.5;
+            if (h <= IMP_FACE_SHORTEST) return false;
             continue;
         }
         const double error = error_of(k, first, h, unit);
         const double next = h * fmin(fmax(0.9 * pow(error, -1.0 / IMP_FACE_NODES), 0.2), 2);
-        if (error <= 1) {
+        if (error <= 1 || (h <= IMP_FACE_JUMP && isfinite(error))) {
             keep_path(y, h, k, path);
-            *length = cut ? h : next;
+            *length = !(error <= 1) ? IMP_FACE_LONGEST : cut ? h : next;
             return true;
         }
-        h = next;
+        if (h <= IMP_FACE_JUMP) return false;
+        h = fmax(next, IMP_FACE_JUMP);
     }
     return false;
 }
@@ -402,6 +404,7 @@ double imp_face_end_miss(const imp_face_motion *motion, const imp_face_path *pat
 {
     double begin[IMP_FACE_STATE], unit[IMP_FACE_STATE], rate[IMP_FACE_STATE], most = 0;
     imp_face_balance balance = {.p = {0}};
+    if (path->length <= IMP_FACE_JUMP) return 0;
     imp_face_at(path, -1, begin);
     measure(motion, begin, unit);
     if (!rates_in_tau(motion, path->c[0], rate, &balance)) return 0;

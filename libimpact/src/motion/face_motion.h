@@ -108,7 +108,7 @@ extern const double imp_face_last_node;
 bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path);
 void imp_face_at(const imp_face_path *path, double s, double *y);
 /* By how much, in tolerances of a step, the path's rates miss those of its end, where no node stands; 0 where the body
- * tips. */
+ * tips, and of a step over a jump. */
 double imp_face_end_miss(const imp_face_motion *motion, const imp_face_path *path);
 
 #endif

@@ -199,11 +199,39 @@ static void a_force_ends_just_after_the_begin(void **state)
     }
 }
 
+/* A wall of force, a million times what else acts, that nothing tells of. */
+static bool walled(const void *context, const double *y, imp_face_load *load)
+{
+    load->pull[0] = y[IMP_FACE_X] < *(const double *)context ? 0 : -1e6;
+    load->power = load->pull[0] * y[IMP_FACE_V];
+    return true;
+}
+
+/* However high it is, a jump is stepped over: no step is so short that time stands. */
+static void a_jump_is_stepped_over(void **state)
+{
+    (void)state;
+    const double end = .3;
+    imp_face_motion m = square_motion(0, .2);
+    m.loads = walled, m.context = &end, m.longest = 1;
+    double y[IMP_FACE_STATE] = {0, 0, 0, 1, 0, 0}, length = .7;
+    imp_face_path path;
+    for (int steps = 0; y[IMP_FACE_X] < end; steps++) {
+        assert_true(steps < 100 && imp_face_motion_step(&m, y, &length, &path));
+        assert_true(path.length >= .99e-12);
+        imp_face_at(&path, 0, y);
+        y[IMP_FACE_TIME] = 0;
+    }
+    assert_near(y[IMP_FACE_V], sqrt(1 - 2 * .2 * end), 1e-4); /* the height times the time of the shortest step */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_pressure_balances),
                                        cmocka_unit_test(steps_are_the_limit_of_short_ones),
-                                       cmocka_unit_test(energy_is_kept), cmocka_unit_test(mirrored),
-                                       cmocka_unit_test(a_force_ends_just_after_the_begin)};
+                                       cmocka_unit_test(energy_is_kept),
+                                       cmocka_unit_test(mirrored),
+                                       cmocka_unit_test(a_force_ends_just_after_the_begin),
+                                       cmocka_unit_test(a_jump_is_stepped_over)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
