@@ -3,15 +3,16 @@
  * report_piles: three to five boxes, cylinders and polyhedra set on each other, dropped on each other, and dropped into
  * a box (tests/kit/pile_scene.h), for two seconds each.
  *
- * report_piles [--scenes N] [--seed S] [--seconds T] [--against E]
+ * report_piles [--scenes N] [--seed S] [--seconds T] [--tolerance P] [--against E]
  * CSV: a row for each way to begin, over N scenes in all (500), scene i of its own seed S + i. rest: came to rest;
  * ended: still moved after two seconds; long: not at its end after T seconds of the processor's time (5); refused: with
  * an error, or the word that the account is off; of the ended, median and slowest: seconds, and the slowest's seed;
  * overlap: of any two bodies, looked at every twentieth of a second, m; account: what the energy account is off by at
  * the end, of its greatest term; error: the greatest that a scene tells of its places, m; parted: those in which it
- * tells that motions part. With E every scene that was stepped is done again with pile_tolerance E (1e-7): compared; in
- * how many, up to where they part by a tenth of a body's radius, it was off by more than it tells in the end, and by
- * how many times at most; and in how many they part unsaid. What is not good is told on stderr.
+ * tells that motions part. P: pile_tolerance (its default). With E every scene that was stepped is done again with
+ * pile_tolerance E (1e-7): compared; in how many, up to where they part by a tenth of a body's radius, it was off by
+ * more than it tells in the end, and by how many times at most; and in how many they part unsaid. What is not good is
+ * told on stderr.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,6 +39,10 @@ typedef struct watch {
     clock_t begin;
     double most;
 } watch;
+
+typedef struct choice {
+    double seconds, tolerance, against; /* the last two: 0, not given */
+} choice;
 
 static double spent(const watch *w) { return (double)(clock() - w->begin) / CLOCKS_PER_SEC; }
 
@@ -132,15 +137,16 @@ static void count(tally *row, impact_status status, double seconds, long seed)
     if (seconds >= row->most) row->most = seconds, row->slowest = seed;
 }
 
-static void run(long seed, int start, double most, double against, tally *row)
+static void run(long seed, int start, const choice *chosen, tally *row)
 {
     pile_scene pile;
     static course way;
     way.looks = 0;
     random_pile_scene((uint64_t)seed, start, &pile);
+    if (chosen->tolerance > 0) pile.def.pile_tolerance = chosen->tolerance;
     impact_scene *scene = NULL;
     char words[256];
-    watch w = {.begin = clock(), .most = most};
+    watch w = {.begin = clock(), .most = chosen->seconds};
     tally own = {.overlap = 0};
     impact_status status = impact_scene_create(&pile.def, &scene, words, sizeof words);
     if (status == IMPACT_OK) {
@@ -151,8 +157,8 @@ static void run(long seed, int start, double most, double against, tally *row)
     }
     const double seconds = spent(&w);
     row->parted += scene && impact_scene_pile_parted(scene) < INFINITY;
-    if (against > 0 && scene && impact_scene_usage(scene).pile_steps > 0 && way.looks > 0)
-        compare(&pile, &way, own.error, against, 10 * most, row);
+    if (chosen->against > 0 && scene && impact_scene_usage(scene).pile_steps > 0 && way.looks > 0)
+        compare(&pile, &way, own.error, chosen->against, 10 * chosen->seconds, row);
     row->scenes++;
     row->overlap = fmax(row->overlap, own.overlap);
     row->account = fmax(row->account, own.account);
@@ -169,13 +175,14 @@ static void run(long seed, int start, double most, double against, tally *row)
 
 int main(int argc, char **argv)
 {
-    static const char *const names[] = {"--scenes", "--seed", "--seconds", "--against", NULL};
+    static const char *const names[] = {"--scenes", "--seed", "--seconds", "--tolerance", "--against", NULL};
     const long scenes = options_known(argc, argv, names) ? options_count(argc, argv, "--scenes", 500) : -1,
                seed = options_count(argc, argv, "--seed", 1);
-    const double most = options_number(argc, argv, "--seconds", 5),
-                 against = options_number(argc, argv, "--against", 0);
-    if (scenes < PILE_STARTS || seed < 0 || !(most > 0)) {
-        fprintf(stderr, "usage: report_piles [--scenes N] [--seed S] [--seconds T] [--against E]\n");
+    const choice chosen = {.seconds = options_number(argc, argv, "--seconds", 5),
+                           .tolerance = options_number(argc, argv, "--tolerance", 0),
+                           .against = options_number(argc, argv, "--against", 0)};
+    if (scenes < PILE_STARTS || seed < 0 || !(chosen.seconds > 0)) {
+        fprintf(stderr, "usage: report_piles [--scenes N] [--seed S] [--seconds T] [--tolerance P] [--against E]\n");
         return 2;
     }
     double *seconds = malloc((size_t)scenes * sizeof *seconds);
@@ -184,7 +191,7 @@ int main(int argc, char **argv)
            "worst,unsaid\n");
     for (int start = 0; start < PILE_STARTS; start++) {
         tally row = {.seconds = seconds};
-        for (long i = start; i < scenes; i += PILE_STARTS) run(seed + i, start, most, against, &row);
+        for (long i = start; i < scenes; i += PILE_STARTS) run(seed + i, start, &chosen, &row);
         const int good = (int)(row.rest + row.ended);
         const double median = measure_quantile(seconds, good, 0.5);
         printf("%s,%ld,%ld,%ld,%ld,%ld,%.2g,%.2g,%ld,%.1e,%.1e,%.1e,%ld,%ld,%ld,%.2g,%ld\n", pile_start_name(start),
