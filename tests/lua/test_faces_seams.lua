@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --- Static boxes laid flush are one: what goes over their seams goes as on one slab (parts against whole), without friction by uniform motion,
---- whichever way the world is turned; a brick falls through a slot of its own width; what lands beside an edge that it is flush with passes it.
+--- whichever way the world is turned; a brick falls through a slot of its own width; what lands beside an edge that it is flush with passes it;
+--- a wall that stands on the floor strikes as one that goes on below it: its bottom is hidden, and what leans over its foot meets its side.
 local impact = require "impact"
 local quat = require "quat"
 local check = require "check"
@@ -92,4 +93,42 @@ for sides = 1, 2 do
   check.close(s.position.x, 0, 1e-12)
   check.close(s.position.y, .15, 1e-12)
   check.close(s.position.z, .3 - G * .125, 1e-12)
+end
+
+-- What leans away from a wall slides into its foot on the floor: corner first, or with an edge.
+local leaning = {
+  { impact.polyhedron { vertices = { { .1, .1, 0 }, { -.1, .1, 0 }, { .1, -.1, 0 }, { -.1, -.1, 0 }, { 0, 0, .2 } } }, .05 },
+  { impact.polyhedron { vertices = { { .1, .06, 0 }, { -.1, .06, 0 }, { .1, -.06, 0 }, { -.1, -.06, 0 }, { 0, 0, .26 } } }, .065 },
+  { impact.cone { radius = .1, height = .2 }, .05 },
+}
+local function strike(shape, height, bottom, q, yaw, velocity, friction)
+  local scene = impact.scene { gravity = turned(q, 0, 0, -G), duration = .08, bodies = {
+    impact.body { name = "floor", shape = impact.plane(), static = true, orientation = q, friction = 1, restitution = 1 },
+    impact.body { name = "wall", shape = impact.box { a = .05, b = 1, c = .2 }, static = true, orientation = q, friction = 1, restitution = 1,
+      position = turned(q, .25, 0, .2 + bottom) },
+    impact.body { name = "body", shape = shape, mass = 1, orientation = q * quat.from_axis_angle({ 0, 0, 1 }, yaw), friction = friction, restitution = .5,
+      position = turned(q, 0, 0, height), velocity = turned(q, table.unpack(velocity)) } } }
+  check.truth(scene:run { record = true }, "it runs")
+  local impulses, normal = { floor = quat.vec3(0, 0, 0), wall = quat.vec3(0, 0, 0) }, nil
+  for _, event in ipairs(scene:events()) do
+    if event.event == "impact" and event.encounter == 1 then
+      impulses[event.body2] = impulses[event.body2] + quat.vec3(event.impulse)
+      if event.body2 == "wall" then normal = quat.vec3(event.normal) end
+    end
+  end
+  return impulses, normal
+end
+for i = 1, 32 do
+  local solid = leaning[i % #leaning + 1]
+  local q, yaw = i <= 6 and quat.new(1, 0, 0, 0) or quat.random(), i % 2 == 0 and 0 or draw(-3, 3)
+  -- with friction at two contacts of one point the impulses that answer are many
+  local velocity, friction = { draw(2, 3), draw(-.3, .3), 0 }, i % 4 < 2 and 0 or draw(.05, .4)
+  local stands, normal = strike(solid[1], solid[2], 0, q, yaw, velocity, friction)
+  local below, side = strike(solid[1], solid[2], draw(-.15, -.05), q, yaw, velocity, friction)
+  check.close((side - q:rotate(quat.vec3(-1, 0, 0))):norm(), 0, 1e-12)
+  check.close((normal - side):norm(), 0, 1e-12)
+  if friction == 0 then
+    check.close((stands.wall - below.wall):norm(), 0, 1e-9)
+    check.close((stands.floor - below.floor):norm(), 0, 1e-9)
+  end
 end

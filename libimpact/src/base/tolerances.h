@@ -805,12 +805,15 @@
  * taken as open those bodies would fall and be caught for ever.
  */
 #define IMP_PILE_SLACK 1e-6
-/* Of the smaller body's radius: faces of static boxes that lie no farther apart are one, a tenth of what steps of the
- * default tolerance err. */
-#define IMP_PILE_FLUSH 1e-6
+/* Of the smaller body's radius: faces of static boxes that lie no farther apart are one, and what goes that deep into a
+ * floor meets the side of a wall that stands there: what steps of the default tolerance err. */
+#define IMP_PILE_FLUSH 1e-5
 /* Of that: how far bodies may be off, in the time in which the smallest falls its radius, where friction acts along the
  * slip of the step's end instead of its middle's. */
 #define IMP_PILE_LEAD 1e-1
+/* Of the smaller body's radius: how far a contact's place may go over the bodies in half a step whose ends are told by
+ * the rates of its middle, .3 rad of a turn of which the rest is a hundredth. */
+#define IMP_PILE_WAY 0.3
 /* The residual of impulses up to which a step is taken: as a part of the speeds, over the step, it counts as its error;
  * and of works that impulses do, what is none. */
 #define IMP_PILE_USABLE 1e-3
@@ -819,8 +822,8 @@
 #define IMP_PILE_RESIDUAL 1e-1
 #define IMP_PILE_STILL 1e-2
 /* Contacts of an island up to which its impulses are looked for in their own space: at once, as with so few it costs no
- * more than that of the bodies and is right to rounding; and where that of the bodies does not settle: some 3e7
- * multiplications then for each of 20 to 60 systems. */
+ * more than that of the bodies; and where that of the bodies does not settle: some 3e7 multiplications then for each of
+ * 20 to 60 systems. */
 #define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100
 /* How much more the steps of the coarser scene may err, that tells what all of them make of the motion; how often it is

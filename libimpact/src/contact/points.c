@@ -72,7 +72,7 @@ int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, d
         pair->cache.normal = contact.normal;
     else
         (void)imp_world_gap(world, pair, states, &contact);
-    imp_settle_normal(b1, s1, b2, s2, flush, &contact);
+    imp_settle_among(world, pair, states, flush, &contact);
     if (!(contact.gap <= height)) return 0;
     int count = 0;
     if (imp_pair_can_lie(world, pair)) {

@@ -87,28 +87,90 @@ static parting parting_along(const imp_body *const body[2], const imp_state *con
     return p;
 }
 
-void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
-                       double within, impact_contact *contact)
+/* The direction in which `place` (world axes) on the body's surface is nearest to be left; false: it is farther off, or
+ * deeper, than `within`. */
+static bool leaves(const imp_body *body, const imp_state *state, qvec3 place, double within, qvec3 *normal)
 {
-    const imp_body *const body[2] = {body1, body2};
-    const imp_state *const state[2] = {state1, state2};
-    const int faces[2] = {own_faces(&body1->shape), own_faces(&body2->shape)};
+    const qvec3 from = qvec3_sub(place, state->x);
+    if (body->shape.kind == IMPACT_PLANE) {
+        const qvec3 local = quat_rotate_inverse(state->q, from);
+        *normal = quat_rotate(state->q, (qvec3){0, 0, 1});
+        return fabs(local.z) <= within && fabs(local.x) <= body->shape.a && fabs(local.y) <= body->shape.b;
+    }
+    if (qvec3_norm(from) > body->radius + within) return false;
+    impact_solid ball = {.position = place, .orientation = quat_identity()};
+    const impact_solid solid = imp_solid_of(body, state);
+    impact_contact contact;
+    if (impact_shape_sphere(within, &ball.shape) != IMPACT_OK) return false;
+    if (impact_gap(&ball, &solid, NULL, &contact) < 0) return false;
+    *normal = contact.normal;
+    return fabs(contact.gap + within) <= within;
+}
+
+/* Two bodies, and all static ones there are, with where they are (NULL: no others). */
+typedef struct meeting {
+    const imp_body *body[2];
+    const imp_state *state[2];
+    const imp_world *others;
+    const imp_state *states;
+} meeting;
+
+/* Whether what goes along the direction away from that of the bodies that is static goes into another that is. */
+static bool is_hidden(const meeting *m, const qvec3 offset[2], qvec3 n, double within)
+{
+    const int own = m->body[1]->is_static ? 1 : 0;
+    if (!m->others || !m->body[own]->is_static) return false;
+    const qvec3 place = qvec3_add(m->state[own]->x, offset[own]), out = own ? n : qvec3_neg(n);
+    for (int i = 0; i < m->others->body_count; i++) {
+        const imp_body *other = &m->others->bodies[i];
+        qvec3 free;
+        if (!other->is_static || other == m->body[own]) continue;
+        if (!leaves(other, &m->states[i], place, within, &free)) continue;
+        if (qvec3_dot(out, free) < -IMP_TOUCHING) return true;
+    }
+    return false;
+}
+
+static void settle(const meeting *m, double within, impact_contact *contact)
+{
+    const imp_body *const *body = m->body;
+    const int faces[2] = {own_faces(&body[0]->shape), own_faces(&body[1]->shape)};
     if (faces[0] + faces[1] == 0 || !(fabs(contact->gap) <= within)) return;
     const impact_contact found = *contact;
-    double slowest = parting_along(body, state, &found, found.normal).rate;
+    const qvec3 touches[2] = {found.offset1, found.offset2};
+    double slowest = is_hidden(m, touches, found.normal, within)
+                         ? -INFINITY
+                         : parting_along(body, m->state, &found, found.normal).rate;
     for (int k = 0; k < 2; k++)
         for (int f = 0; f < faces[k] && slowest < 0; f++) {
-            const qvec3 out = quat_rotate(imp_shape_axes(body[k], state[k]), outward_normal(&body[k]->shape, f)),
+            const qvec3 out = quat_rotate(imp_shape_axes(body[k], m->state[k]), outward_normal(&body[k]->shape, f)),
                         n = k == 0 ? qvec3_neg(out) : out;
             if (qvec3_norm(qvec3_sub(n, found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
-            if (!(separated_by(body, state, n) >= -within)) continue;
-            const parting p = parting_along(body, state, &found, n);
-            if (!(p.rate > slowest && p.gap >= -within)) continue;
+            if (!(separated_by(body, m->state, n) >= -within)) continue;
+            const parting p = parting_along(body, m->state, &found, n);
+            if (!(p.rate > slowest && p.gap >= -within) || is_hidden(m, p.offset, n, within)) continue;
             slowest = p.rate;
             contact->normal = n;
             contact->gap = contact->lower = contact->upper = p.gap;
             contact->offset1 = p.offset[0], contact->offset2 = p.offset[1];
         }
+}
+
+void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
+                       double within, impact_contact *contact)
+{
+    const meeting m = {.body = {body1, body2}, .state = {state1, state2}};
+    settle(&m, within, contact);
+}
+
+void imp_settle_among(const imp_world *world, const imp_pair *pair, const imp_state *states, double within,
+                      impact_contact *contact)
+{
+    const meeting m = {.body = {&world->bodies[pair->body1], &world->bodies[pair->body2]},
+                       .state = {&states[pair->body1], &states[pair->body2]},
+                       .others = world,
+                       .states = states};
+    settle(&m, within, contact);
 }
 
 /* ---- a gap by a face ---- */

@@ -20,6 +20,13 @@
 void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
                        double within, impact_contact *contact);
 
+/* The same of a pair among the world's static bodies: no normal that leads from one of them into another. The foot of a
+ * wall that stands on a floor has normals from the wall's side to its bottom, and what the floor holds cannot go
+ * under the wall: it touches the side. With u the velocity of what touches there, f.u >= 0 for the floor's normal f and
+ * n.u >= 0 for one n = a s - b f between the side's s and the bottom's leave s.u >= 0. */
+void imp_settle_among(const imp_world *world, const imp_pair *pair, const imp_state *states, double within,
+                      impact_contact *contact);
+
 /* The gap where one body stands on a face of the other, near the direction `normal` (from body 2 to body 1): its lowest
  * place, whose foot is within the face, is as far from it as the face's plane parts them, which no gap exceeds and no
  * distance is under. False: it is not so, or they overlap by more than the foot is within. Shapes of which one is

@@ -22,15 +22,20 @@ static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_b
     case IMPACT_PATH_CCD: usage->gap_ccd++; break;
     case IMPACT_PATH_NONE: break;
     }
-    const double scale = imp_place_scale(b1, s1->x, b2, s2->x, contact->normal);
-    imp_settle_normal(b1, s1, b2, s2, IMP_TOUCHING * scale, contact);
     return status;
+}
+
+static double touching(const imp_body *b1, const imp_state *s1, const imp_body *b2, const imp_state *s2, qvec3 normal)
+{
+    return IMP_TOUCHING * imp_place_scale(b1, s1->x, b2, s2->x, normal);
 }
 
 impact_status imp_gap_of(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
                          imp_gaps *gaps, impact_usage *usage, impact_contact *contact)
 {
-    return gap_of(body1, state1, body2, state2, NULL, gaps, usage, contact);
+    const impact_status status = gap_of(body1, state1, body2, state2, NULL, gaps, usage, contact);
+    imp_settle_normal(body1, state1, body2, state2, touching(body1, state1, body2, state2, contact->normal), contact);
+    return status;
 }
 
 double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body *body2)
@@ -46,8 +51,11 @@ impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *s
         *contact = pair->site.corner > 0 ? imp_corner_contact(world, pair, states) : pair->site.contact;
         return IMPACT_OK;
     }
-    return gap_of(&world->bodies[pair->body1], &states[pair->body1], &world->bodies[pair->body2], &states[pair->body2],
-                  &pair->cache, world->gaps, &world->usage, contact);
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const impact_status status = gap_of(b1, s1, b2, s2, &pair->cache, world->gaps, &world->usage, contact);
+    imp_settle_among(world, pair, states, touching(b1, s1, b2, s2, contact->normal), contact);
+    return status;
 }
 
 double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point)
