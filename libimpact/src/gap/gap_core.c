@@ -143,7 +143,7 @@ impact_status imp_core_solve(const imp_core_pair *pair, const double *cached, im
     }
     if (imp_core_nearest(pair, answer)) {
         if (answer->lower > 0 && settled(pair, answer)) return told_apart(pair, answer);
-        if (answer->upper > IMP_CORE_TOUCHING * pair->reach) return told_apart(pair, answer);
+        if (answer->upper > IMP_CORE_TOUCHING * pair->reach && told_apart(pair, answer) == IMPACT_OK) return IMPACT_OK;
     }
     if (!boxes) {
         double n[3];

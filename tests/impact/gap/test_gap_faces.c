@@ -9,6 +9,7 @@
 #include <cmocka.h>
 #include <string.h>
 #include "kit/face_pairs.h"
+#include "kit/pile_scene.h"
 #ifdef HAVE_QUADMATH
 #include "faces_oracle.h"
 #endif
@@ -155,6 +156,30 @@ static void by_hand(void **state)
     assert_true(fabs(c.gap - 2) < 1e-15 && fabs(c.normal.y + 1) < 1e-15);
 }
 
+/* A box on a polyhedron's face, held there by steps: what is nearest touches to rounding, and no direction but the best
+ * of all faces and edges tells that. An answer was a bracket of three centimetres, and its lower end the gap. */
+static void what_touches_to_rounding_has_no_bracket(void **state)
+{
+    (void)state;
+    pile_scene pile;
+    random_pile_scene(9097, PILE_DROPPED, &pile);
+    const impact_solid box = {pile.bodies[1].shape,
+                              {-0.010950671131763793, 0.020253146303398716, 0.042486816856147212},
+                              {0.69400135786586303, 0.69400135786588513, -0.13550688277834827, -0.13550688277848078}},
+                       rock = {pile.bodies[3].shape,
+                               {0.043016644517666673, -0.02313710575812597, 0.0087619069302349237},
+                               {-0.012862932252123253, -0.73926579825999539, 0.12764487111115227, 0.66108048781968032}};
+    impact_contact contact;
+    assert_int_equal(impact_gap(&box, &rock, NULL, &contact), IMPACT_OK);
+    assert_true(fabs(contact.gap) <= 2e-12);
+    assert_true(contact.upper - contact.lower <= 1e-15);
+    assert_true(impact_gap_receipt(&box, &rock, &contact, NULL) <= 20);
+#ifdef HAVE_QUADMATH
+    assert_true(faces_oracle_error(&box, &rock, &contact, faces_oracle_gap(&box, &rock)) <= bar);
+#endif
+    pile_scene_end(&pile);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -166,6 +191,7 @@ int main(void)
         cmocka_unit_test(one_lipschitz_along_lines),
         cmocka_unit_test(caches_change_nothing),
         cmocka_unit_test(by_hand),
+        cmocka_unit_test(what_touches_to_rounding_has_no_bracket),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
