@@ -304,6 +304,44 @@ static void identities(void **state)
     }
 }
 
+/* Random polyhedra on a plane, whatever lies within random heights: each point is where it is said to be, on one face,
+ * and the lowest is among them. A plane laid through corners of several faces told of corners far below the body. */
+static void points_of_polyhedra_are_theirs(void **state)
+{
+    (void)state;
+    random_stream random = {83};
+    long bent = 0;
+    for (int run = 0; run < 4000; run++) {
+        impact_hull *hull = random_hull(&random, 4 + (int)(12 * random_unit(&random)), 0);
+        impact_solid solid = {.orientation = random_rotation(&random)}, floor = {.orientation = {1, 0, 0, 0}};
+        impact_contact contact;
+        impact_patch patch;
+        qvec3 place;
+        impact_shape_polyhedron(hull, &solid.shape);
+        impact_shape_plane(INFINITY, INFINITY, &floor.shape);
+        const qvec3 down = quat_rotate_inverse(solid.orientation, (qvec3){0, 0, -1});
+        solid.position.z = impact_shape_support(&solid.shape, down, &place);
+        const double height = random_log(&random, 1e-4, 1) * impact_shape_bounding_radius(&solid.shape);
+        assert_int_equal(impact_gap(&solid, &floor, NULL, &contact), IMPACT_OK);
+        assert_int_equal(impact_patch_find(&solid, &floor, &contact, height, &patch), IMPACT_OK);
+        double lowest = INFINITY;
+        for (int i = 0; i < patch.count; i++) {
+            const impact_patch_point *p = &patch.point[i];
+            lowest = fmin(lowest, p->height);
+            assert_true(fabs(solid.position.z + p->offset1.z - p->height) <= 1e-13);
+            assert_true(p->height <= height + 1e-13);
+            bent += p->height > 1e-12;
+            if (p->feature1.kind != IMPACT_VERTEX) continue;
+            qvec3 corner = impact_hull_vertex(hull, p->feature1.index);
+            corner = qvec3_add(solid.position, quat_rotate(solid.orientation, corner));
+            assert_true(qvec3_norm(qvec3_sub(corner, qvec3_add(solid.position, p->offset1))) <= 1e-12);
+        }
+        assert_true(fabs(lowest) <= 1e-13);
+        impact_hull_destroy(hull);
+    }
+    assert_true(bent > 1000);
+}
+
 static void mistakes(void **state)
 {
     (void)state;
@@ -328,8 +366,13 @@ static void mistakes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(integer_boxes),          cmocka_unit_test(by_hand),    cmocka_unit_test(a_small_tilt_is_told),
-        cmocka_unit_test(flats_of_superquadrics), cmocka_unit_test(identities), cmocka_unit_test(mistakes),
+        cmocka_unit_test(integer_boxes),
+        cmocka_unit_test(by_hand),
+        cmocka_unit_test(a_small_tilt_is_told),
+        cmocka_unit_test(flats_of_superquadrics),
+        cmocka_unit_test(identities),
+        cmocka_unit_test(mistakes),
+        cmocka_unit_test(points_of_polyhedra_are_theirs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

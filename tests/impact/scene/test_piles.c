@@ -78,6 +78,14 @@ static void test_normals_that_jump(void **state)
 {
     (void)state;
     run(1057, PILE_SET);
+    run(6036, PILE_SET);
+}
+
+/* What leans over a wall's foot on the floor was held by the wall's hidden bottom too: no impulses answer that. */
+static void test_hidden_bottoms_hold_nothing(void **state)
+{
+    (void)state;
+    run(3008, PILE_IN_BOX);
 }
 
 static void test_glides_meet_what_they_touch(void **state)
@@ -181,6 +189,7 @@ int main(void)
         cmocka_unit_test(test_reactions_that_are_past),
         cmocka_unit_test(test_what_parts_is_searched_for),
         cmocka_unit_test(test_normals_that_jump),
+        cmocka_unit_test(test_hidden_bottoms_hold_nothing),
         cmocka_unit_test(test_glides_meet_what_they_touch),
         cmocka_unit_test(test_bounces_on_what_stands_die_out),
         cmocka_unit_test(test_time_advances),
