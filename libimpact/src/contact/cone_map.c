@@ -85,17 +85,6 @@ void imp_cone_values(const imp_cone_system *system, const double *z, double e, d
     }
 }
 
-/* A row by a vector, in four sums, whose order is fixed: one sum would wait for each of its additions. */
-static double row_product(const double *row, const double *x, int n)
-{
-    double sum[4] = {0, 0, 0, 0};
-    int j = 0;
-    for (; j + 4 <= n; j += 4)
-        for (int k = 0; k < 4; k++) sum[k] += row[j + k] * x[j + k];
-    for (; j < n; j++) sum[0] += row[j] * x[j];
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
 void imp_cone_reactions(const imp_cone_system *system, const double *x, double *r)
 {
     const double unit = system->size / system->d;
@@ -144,7 +133,7 @@ double imp_cone_defect(imp_cone_system *system, const double *z, double e, doubl
         ask_problem(system, value);
     else
         for (int i = 0; i < n; i++)
-            value[i] = row_product(&system->a[(size_t)i * (size_t)n], system->x, n) + system->b[i];
+            value[i] = imp_linear_dot(&system->a[(size_t)i * (size_t)n], system->x, n) + system->b[i];
     for (int i = 0; i < n; i++) {
         value[i] = system->u[i] - value[i];
         square += value[i] * value[i];
@@ -255,7 +244,7 @@ void imp_cone_drift(imp_cone_system *system, const double *z, double e, double *
         for (int k = 1; k < dimension; k++) x[i + k] = u[i + k] = 0.5 * (high - low) * s.dir[k - 1];
         tie(system, c, u);
     }
-    for (int i = 0; i < n; i++) rate[i] = u[i] - row_product(&system->a[(size_t)i * (size_t)n], x, n);
+    for (int i = 0; i < n; i++) rate[i] = u[i] - imp_linear_dot(&system->a[(size_t)i * (size_t)n], x, n);
 }
 
 /* Along the step, halved until |F| falls; false where it does not. */

@@ -42,16 +42,20 @@ static void begin_elimination(imp_linear *system)
     for (int k = 0; k < system->n; k++) system->rows[k] = system->columns[k] = k;
 }
 
-static void eliminate(imp_linear *system, int k)
+double imp_linear_dot(const double *a, const double *b, int n)
 {
-    const double *from = row_of(system, k);
-    for (int i = k + 1; i < system->n; i++) {
-        double *row = row_of(system, i);
-        if (row[k] == 0) continue;
-        row[k] /= from[k];
-        const double factor = row[k];
-        for (int j = k + 1; j < system->n; j++) row[j] -= factor * from[j];
-    }
+    double sum[4] = {0, 0, 0, 0};
+    int i = 0;
+    for (; i + 4 <= n; i += 4)
+        for (int k = 0; k < 4; k++) sum[k] += a[i + k] * b[i + k];
+    for (; i < n; i++) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/* a less factor b. */
+static void subtract(double *a, double factor, const double *b, int n)
+{
+    for (int i = 0; i < n; i++) a[i] -= factor * b[i];
 }
 
 /* ---- pivots from columns, four at a time: one pass over what is left instead of four, in the same order of sums ----
@@ -112,24 +116,50 @@ static bool reduce_regular(imp_linear *system, double least)
 
 bool imp_linear_factor_regular(imp_linear *system) { return reduce_regular(system, 0); }
 
-/* With complete pivoting, as far as pivots do not vanish. */
+/* The largest of so many numbers, by four maxima at a time, none of which waits for another. */
+static double largest_of(const double *a, int count)
+{
+    enum { LANES = 4 };
+    double most[LANES] = {0, 0, 0, 0};
+    int i = 0;
+    for (; i + LANES <= count; i += LANES)
+        for (int k = 0; k < LANES; k++) {
+            const double size = fabs(a[i + k]);
+            most[k] = size > most[k] ? size : most[k];
+        }
+    for (; i < count; i++) most[0] = fabs(a[i]) > most[0] ? fabs(a[i]) : most[0];
+    const double low = most[0] > most[1] ? most[0] : most[1], high = most[2] > most[3] ? most[2] : most[3];
+    return low > high ? low : high;
+}
+
+/* With complete pivoting, as far as pivots do not vanish. What is largest in each row is kept as rows change: of rows
+ * that do not change, by a pivot column with a zero there, it stays. */
 static void reduce_singular(imp_linear *system, double least)
 {
     const int n = system->n;
-    const double *a = system->matrix;
+    double *most = system->scratch;
     begin_elimination(system);
+    for (int i = 0; i < n; i++) most[i] = largest_of(row_of(system, i), n);
     for (int k = 0; k < n; k++) {
         int row = k, column = k;
-        for (int i = k; i < n; i++)
-            for (int j = k; j < n; j++)
-                if (fabs(a[i * n + j]) > fabs(a[row * n + column])) row = i, column = j;
-        if (!(fabs(a[row * n + column]) > least)) {
+        for (int i = k + 1; i < n; i++)
+            if (most[i] > most[row]) row = i;
+        if (!(most[row] > least)) {
             system->rank = k;
             return;
         }
+        while (fabs(row_of(system, row)[column]) < most[row]) column++;
         swap_rows(system, k, row);
+        most[row] = most[k];
         swap_columns(system, k, column);
-        eliminate(system, k);
+        const double *from = row_of(system, k);
+        for (int i = k + 1; i < n; i++) {
+            double *own = row_of(system, i);
+            if (own[k] == 0) continue;
+            own[k] /= from[k];
+            subtract(&own[k + 1], own[k], &from[k + 1], n - k - 1);
+            most[i] = largest_of(&own[k + 1], n - k - 1);
+        }
     }
 }
 
@@ -143,19 +173,6 @@ static void substitute_back(const imp_linear *system, double *z)
     }
 }
 
-/* a less factor b. */
-static void subtract(double *a, double factor, const double *b, int n)
-{
-    for (int i = 0; i < n; i++) a[i] -= factor * b[i];
-}
-
-static double dot(const double *a, const double *b, int n)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
 static double *basis_of(const imp_linear *system, int k) { return &system->spare[(k - system->rank) * system->n]; }
 
 /* Of the homogeneous system: by Gram and Schmidt, twice, from those with a single one of the free unknowns. */
@@ -167,30 +184,17 @@ static void find_basis(const imp_linear *system)
         for (int i = 0; i < n; i++) own[i] = i < rank ? -row_of(system, i)[k] : i == k;
         substitute_back(system, own);
         for (int twice = 0; twice < 2; twice++)
-            for (int l = rank; l < k; l++) subtract(own, dot(own, basis_of(system, l), n), basis_of(system, l), n);
-        const double size = sqrt(dot(own, own, n));
+            for (int l = rank; l < k; l++)
+                subtract(own, imp_linear_dot(own, basis_of(system, l), n), basis_of(system, l), n);
+        const double size = sqrt(imp_linear_dot(own, own, n));
         for (int i = 0; i < n; i++) own[i] /= size;
     }
-}
-
-/* The largest entry, by four maxima at a time, none of which waits for another. */
-static double largest_entry(const imp_linear *system)
-{
-    enum { LANES = 4 };
-    const int count = system->n * system->n;
-    double most[LANES] = {0, 0, 0, 0};
-    for (int i = 0; i < count; i += LANES)
-        for (int k = 0; k < LANES && i + k < count; k++) {
-            const double size = fabs(system->matrix[i + k]);
-            most[k] = size > most[k] ? size : most[k];
-        }
-    return fmax(fmax(most[0], most[1]), fmax(most[2], most[3]));
 }
 
 void imp_linear_factor(imp_linear *system)
 {
     const size_t bytes = (size_t)system->n * (size_t)system->n * sizeof *system->matrix;
-    const double most = largest_entry(system);
+    const double most = largest_of(system->matrix, system->n * system->n);
     memcpy(system->spare, system->matrix, bytes);
     if (reduce_regular(system, IMP_LINEAR_VANISHING * most)) return;
     memcpy(system->matrix, system->spare, bytes);
@@ -204,8 +208,8 @@ void imp_linear_solve(const imp_linear *system, double *x)
     const int n = system->n, rank = system->rank;
     double *z = system->scratch;
     for (int i = 0; i < n; i++) z[i] = i < rank ? x[system->rows[i]] : 0;
-    for (int i = 0; i < rank; i++) z[i] -= dot(row_of(system, i), z, i);
+    for (int i = 0; i < rank; i++) z[i] -= imp_linear_dot(row_of(system, i), z, i);
     substitute_back(system, z);
-    for (int k = rank; k < n; k++) subtract(z, dot(z, basis_of(system, k), n), basis_of(system, k), n);
+    for (int k = rank; k < n; k++) subtract(z, imp_linear_dot(z, basis_of(system, k), n), basis_of(system, k), n);
     for (int i = 0; i < n; i++) x[system->columns[i]] = z[i];
 }

@@ -24,6 +24,9 @@ void imp_linear_factor(imp_linear *system);
 /* The same where no pivot but zero is refused: false of those. The matrix is badly conditioned, and known to be. */
 bool imp_linear_factor_regular(imp_linear *system);
 
+/* In four sums, whose order is fixed: one sum would wait for each of its additions. */
+double imp_linear_dot(const double *a, const double *b, int n);
+
 /* x, in place of the right-hand side: of all that satisfy the equations that tell something, the one of least norm. */
 void imp_linear_solve(const imp_linear *system, double *x);
 

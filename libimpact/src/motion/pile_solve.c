@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * The cone problem of an island's impulses. Few contacts in their own space, to rounding; many in that of the bodies,
+ * The cone problem of an island's impulses. Few contacts in their own space; many in that of the bodies,
  * and where that leaves what counts in the other again, if they are not too many for that.
  */
 #include "motion/pile_parts.h"
 #include "base/tolerances.h"
+
+#include <string.h>
 
 /* Whom each contact couples, by numbers of their own from 0; how many move. */
 static int couple_bodies(imp_pile *pile, const imp_world *world, int count)
@@ -40,7 +42,6 @@ static imp_cone_problem problem_of(const imp_pile *pile, const imp_pile_question
 static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
 {
     imp_cone_problem problem = problem_of(pile, question);
-    if (question->count <= IMP_PILE_FEW) problem.enough = 0; /* rounding costs no more */
     if (pile->width > 3)
         imp_cone_assemble_turning(world, pile->middle, pile->contacts, problem.count, pile->rows, pile->turns, pile->w);
     else
@@ -73,11 +74,22 @@ double imp_pile_fastest(const imp_pile *pile, int count)
     return most;
 }
 
+/* What was found in the bodies' space is where the contacts' own begins: from there its Newton ends in a few steps
+ * where from the last step's answer one in two went the long way. */
+static imp_cone_outcome by_contacts_from_there(imp_pile *pile, const imp_world *world, imp_pile_question question)
+{
+    const size_t size = (size_t)(pile->width * question.count) * sizeof *pile->r;
+    memcpy(pile->last_r, pile->r, size);
+    memcpy(pile->last_u, pile->u, size);
+    question.recalls = true;
+    return by_contacts(pile, world, &question);
+}
+
 imp_cone_outcome imp_pile_solve(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
 {
     if (question->count <= IMP_PILE_FEW) return by_contacts(pile, world, question);
     const imp_cone_outcome quick = by_bodies(pile, world, question);
     const bool answered = quick.status != IMP_CONE_BAD && quick.status != IMP_CONE_NO_ROOM;
     if (!answered || quick.residual <= question->usable || question->count > IMP_PILE_DENSE) return quick;
-    return by_contacts(pile, world, question);
+    return by_contacts_from_there(pile, world, *question);
 }
