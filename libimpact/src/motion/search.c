@@ -190,33 +190,23 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
     return bend + drift - others;
 }
 
-/* Whether the step is far less than what the gap's own rate promises, of bodies of which one turns and both have a
- * support function that knows where the normal goes. */
-static bool creeps(const imp_search *s, const sight *l, double gap, double step)
+/* Whether the step is far less than what the gap's own rate promises. */
+static bool creeps_on(const sight *l, double gap, double step)
 {
-    if (is_plane(s->body[1]) || !(turns(s, 0) || turns(s, 1)) || !(step < l->window)) return false;
-    return l->rate >= 0 || step < IMP_CREEPING * gap / -l->rate;
+    return step < l->window && (l->rate >= 0 || step < IMP_CREEPING * gap / -l->rate);
 }
 
-/* The same with a direction that goes along as the contact's normal does, n + n' T: two edges stay across it, and a
- * corner does not fall behind on one. Any n' proves what it does; it is taken from the normals a little earlier and
- * later. */
-static double step_veering(const imp_search *s, const sight *l, double gap)
+/* The same of bodies of which one turns and both have a support function that knows where the normal goes. */
+static bool creeps(const imp_search *s, const sight *l, double gap, double step)
 {
-    const double spin = l->spin[0].most + l->spin[1].most, apart = IMP_VEERING / spin;
-    if (!(spin > 0)) return 0;
-    const qvec3 n = l->contact.normal;
-    qvec3 around[2];
-    for (int k = 0; k < 2; k++) {
-        const double then = k ? apart : -apart; /* as they move now: their segments may be shorter */
-        const imp_state a = imp_drifted(s->body[0], &l->state[0], then),
-                        b = imp_drifted(s->body[1], &l->state[1], then);
-        impact_contact contact;
-        imp_gap_of(s->body[0], &a, s->body[1], &b, s->gaps, s->usage, &contact);
-        around[k] = contact.normal;
-    }
-    const qvec3 turned = qvec3_scale(qvec3_sub(around[1], around[0]), 0.5 / apart),
-                veer = qvec3_axpy(-qvec3_dot(turned, n), n, turned);
+    return !is_plane(s->body[1]) && (turns(s, 0) || turns(s, 1)) && creeps_on(l, gap, step);
+}
+
+/* The same with a direction n + n' T that goes along: two edges stay across it, and a corner does not fall behind on
+ * one. Any n' proves what it does. */
+static double step_going_along(const imp_search *s, const sight *l, double gap, qvec3 turned)
+{
+    const qvec3 n = l->contact.normal, veer = qvec3_axpy(-qvec3_dot(turned, n), n, turned);
     const double rate = qvec3_norm(veer), limit = fmin(l->window, 0.5 / rate);
     const qvec3 v = qvec3_sub(l->state[0].v, l->state[1].v), c = qvec3_sub(l->state[0].x, l->state[1].x);
     if (!(rate > 0) || !isfinite(rate)) return 0;
@@ -233,6 +223,26 @@ static double step_veering(const imp_search *s, const sight *l, double gap)
     add_turning(&p, s, 0, l, qvec3_neg(n), qvec3_neg(veer), 0.5);
     add_turning(&p, s, 1, l, n, veer, 0.5);
     return imp_psi_safe_step(&p, limit);
+}
+
+/* Of such directions that which the contact's normals have a little earlier and later: where it turns on as it did, or
+ * otherwise from here on, the rates of before and after tell, and their mean neither. */
+static double step_veering(const imp_search *s, const sight *l, double gap)
+{
+    const double spin = l->spin[0].most + l->spin[1].most, apart = IMP_VEERING / spin;
+    if (!(spin > 0)) return 0;
+    qvec3 turned[2];
+    for (int k = 0; k < 2; k++) {
+        const double then = k ? apart : -apart; /* as they move now: their segments may be shorter */
+        const imp_state a = imp_drifted(s->body[0], &l->state[0], then),
+                        b = imp_drifted(s->body[1], &l->state[1], then);
+        impact_contact contact;
+        imp_gap_of(s->body[0], &a, s->body[1], &b, s->gaps, s->usage, &contact);
+        turned[k] = qvec3_scale(qvec3_sub(contact.normal, l->contact.normal), 1 / then);
+    }
+    const double step = step_going_along(s, l, gap, qvec3_scale(qvec3_add(turned[0], turned[1]), 0.5));
+    if (!creeps_on(l, gap, step)) return step;
+    return fmax(step, fmax(step_going_along(s, l, gap, turned[0]), step_going_along(s, l, gap, turned[1])));
 }
 
 static double scale_of(const imp_search *s, const sight *l)
