@@ -545,6 +545,9 @@
 
 /* The receipt of what is answered as OK: a hundred times what rounding leaves of a thousand steps. */
 #define IMP_ENCOUNTER_RECEIPT 1e-11
+/* Of the lighter body's mass times the fastest speed: what an impulse may be off by without telling: the roundings of
+ * a solve for dozens of contacts, whose velocities, slip among them, are as large as that. */
+#define IMP_ENCOUNTER_GRAIN (512 * IMP_ROUNDOFF)
 /* eps, of the terms of a velocity u0 + W p in a group: their sums' rounding, and that of the bodies' velocities. */
 #define IMP_ENCOUNTER_ROUNDINGS 32
 /* Contacts of an encounter from which Moreau's problems begin in the space of the bodies: a brick wall's 77 take 4 s

@@ -208,7 +208,12 @@ void imp_linear_solve(const imp_linear *system, double *x)
     const int n = system->n, rank = system->rank;
     double *z = system->scratch;
     for (int i = 0; i < n; i++) z[i] = i < rank ? x[system->rows[i]] : 0;
-    for (int i = 0; i < rank; i++) z[i] -= imp_linear_dot(row_of(system, i), z, i);
+    for (int i = 0; i < rank; i++) {
+        const double *row = row_of(system, i);
+        double sum = 0;
+        for (int j = 0; j < i; j++) sum += row[j] * z[j];
+        z[i] -= sum;
+    }
     substitute_back(system, z);
     for (int k = rank; k < n; k++) subtract(z, imp_linear_dot(z, basis_of(system, k), n), basis_of(system, k), n);
     for (int i = 0; i < n; i++) x[system->columns[i]] = z[i];

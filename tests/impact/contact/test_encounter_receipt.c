@@ -185,9 +185,32 @@ static void springs_give_nothing(void **state)
     }
 }
 
+/* A light blow on what goes by: an impulse along it by a rounding of the momentum is none, a thousand times as large it
+ * is friction where there should be none. */
+static void roundings_of_momentum_are_none(void **state)
+{
+    (void)state;
+    random_stream random = {89};
+    for (int run = 0; run < 500; run++) {
+        blow b;
+        const double u = draw(&random, run % 2, true, &b), light = lightness(&b), blows = 1e-10;
+        const qvec3 n = b.meeting.normal, good = qvec3_scale(n, 1.5 * blows / light);
+        qvec3 across;
+        b.meeting.friction = 0;
+        b.bodies[0].velocity = qvec3_axpy(-u - blows, n, b.bodies[0].velocity);
+        const double mass = fmin(b.bodies[0].mass, b.bodies[1].mass);
+        assert_int_equal(qvec3_normalize(qvec3_cross(n, random_direction(&random)), &across), QUAT_OK);
+        strike(&b, qvec3_axpy(1e-15 * mass, across, good));
+        assert_at_most(receipt(&b, IMPACT_TOGETHER_MOREAU), 1e-11);
+        strike(&b, qvec3_axpy(1e-12 * mass, across, good));
+        assert_true(receipt(&b, IMPACT_TOGETHER_MOREAU) > 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(each_identity_is_missed_in_turn),
-                                       cmocka_unit_test(contacts_do_not_pull), cmocka_unit_test(springs_give_nothing)};
+                                       cmocka_unit_test(contacts_do_not_pull), cmocka_unit_test(springs_give_nothing),
+                                       cmocka_unit_test(roundings_of_momentum_are_none)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
