@@ -117,7 +117,7 @@ static bool reduce_regular(imp_linear *system, double least)
 bool imp_linear_factor_regular(imp_linear *system) { return reduce_regular(system, 0); }
 
 /* The largest of so many numbers, by four maxima at a time, none of which waits for another. */
-static double largest_of(const double *a, int count)
+static double largest_entry(const double *a, int count)
 {
     enum { LANES = 4 };
     double most[LANES] = {0, 0, 0, 0};
@@ -139,7 +139,7 @@ static void reduce_singular(imp_linear *system, double least)
     const int n = system->n;
     double *most = system->scratch;
     begin_elimination(system);
-    for (int i = 0; i < n; i++) most[i] = largest_of(row_of(system, i), n);
+    for (int i = 0; i < n; i++) most[i] = largest_entry(row_of(system, i), n);
     for (int k = 0; k < n; k++) {
         int row = k, column = k;
         for (int i = k + 1; i < n; i++)
@@ -158,7 +158,7 @@ static void reduce_singular(imp_linear *system, double least)
             if (own[k] == 0) continue;
             own[k] /= from[k];
             subtract(&own[k + 1], own[k], &from[k + 1], n - k - 1);
-            most[i] = largest_of(&own[k + 1], n - k - 1);
+            most[i] = largest_entry(&own[k + 1], n - k - 1);
         }
     }
 }
@@ -194,7 +194,7 @@ static void find_basis(const imp_linear *system)
 void imp_linear_factor(imp_linear *system)
 {
     const size_t bytes = (size_t)system->n * (size_t)system->n * sizeof *system->matrix;
-    const double most = largest_of(system->matrix, system->n * system->n);
+    const double most = largest_entry(system->matrix, system->n * system->n);
     memcpy(system->spare, system->matrix, bytes);
     if (reduce_regular(system, IMP_LINEAR_VANISHING * most)) return;
     memcpy(system->matrix, system->spare, bytes);
