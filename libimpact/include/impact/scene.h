@@ -312,7 +312,7 @@ IMPACT_API bool impact_usage_entry(const impact_usage *usage, int number, const 
 
 /* m: how far places may be off because bodies moved by steps, at most so far. The scene is moved on twice from its
  * first step, once by steps that may err ten times as much; where any point of a body was then, farthest from where it
- * is, three times. 0 where nothing was stepped. What a host changes meanwhile is changed in both. */
+ * is, five times. 0 where nothing was stepped. What a host changes meanwhile is changed in both. */
 IMPACT_API double impact_scene_pile_error(const impact_scene *scene);
 /* s: from when that is no measure any more, as it was a tenth of a body's radius, or the second found no
  * answer: motion that others, as right, leave; infinite: it is one to the end. */

@@ -833,8 +833,10 @@
  * looked at, of the duration; and what is told of a body, of its radius, where that is no small difference any more:
  * what it meets then, and with which side, is another. */
 #define IMP_COARSER_STEPS 10
-/* Where errors are as the cube root of what a step may err, D = (10^(1/3) - 1) e: told is three times what is seen. */
-#define IMP_COARSER_SAFETY 3
+/* Where errors are as the cube root of what a step may err, D = (10^(1/3) - 1) e; but motions that are about to part do
+ * so by chance: of seventy scenes done again with finer steps one was off by 5.1 times what is seen, two by more
+ * than 4, the others by less than 3. */
+#define IMP_COARSER_SAFETY 5
 #define IMP_COARSER_LOOKS (1 / 64.)
 #define IMP_COARSER_PARTED 1e-1
 /* Of a step that leads over the edge of a force: how far beyond it ends that is shortened to end there. */

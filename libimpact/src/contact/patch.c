@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Both faces are brought into the plane across the normal, where they are convex polygons, segments or points, and
- * clipped against one another. Each face is the plane z(x, y) through its points; heights are the difference.
+ * clipped against one another. Each face is the plane z(x, y) through its points; heights are the difference. What lies
+ * within a height of a polytope may be corners of several faces, in no plane: then z is each corner's own there, and
+ * between them that of the triangles from the first corner on.
  */
 #include <impact/patch.h>
 #include <quat/rotation.h>
@@ -17,6 +19,8 @@ typedef struct face_side {
     qvec3 center; /* from body 2's */
     imp_flat flat;
     double z, slope[2]; /* height over the plane across the normal: z + slope.(x, y) */
+    bool bent;          /* its corners lie in no plane: each has its own height */
+    double own[IMPACT_FACE_POINTS], corner[IMPACT_FACE_POINTS][2];
 } face_side;
 
 typedef struct patch_frame {
@@ -42,6 +46,11 @@ static void lay_plane(face_side *s, const patch_frame *f)
     s->z -= s->slope[0] * qvec3_dot(a, f->x) + s->slope[1] * qvec3_dot(a, f->y);
 }
 
+static double height_of_plane(const face_side *s, const double p[2])
+{
+    return s->z + s->slope[0] * p[0] + s->slope[1] * p[1];
+}
+
 static bool lay_face(const impact_solid *body, qvec3 center, qvec3 direction, double height, const patch_frame *f,
                      face_side *s)
 {
@@ -50,22 +59,34 @@ static bool lay_face(const impact_solid *body, qvec3 center, qvec3 direction, do
     if (shape.kind == IMPACT_PLANE) shape.a = fmin(shape.a, f->room), shape.b = fmin(shape.b, f->room);
     if (impact_shape_face(&shape, quat_rotate_inverse(s->turn, direction), height, &s->face) < 0) return false;
     lay_plane(s, f);
+    s->bent = false;
     s->flat.count = s->face.count;
     for (int i = 0; i < s->face.count; i++) {
         const qvec3 p = placed(s, i);
         s->flat.p[i][0] = qvec3_dot(p, f->x), s->flat.p[i][1] = qvec3_dot(p, f->y);
         s->flat.from[i] = (short)i;
+        s->own[i] = qvec3_dot(p, f->n);
+        memcpy(s->corner[i], s->flat.p[i], sizeof s->corner[i]);
+        s->bent = s->bent || !(fabs(s->own[i] - height_of_plane(s, s->flat.p[i])) <= f->slack);
     }
     if (s->face.count > 1) imp_flat_hull(&s->flat, 0);
     return true;
 }
 
-/* What of the body is at a place of the plane: a corner, a side or the inside of its face. */
+/* The corner of the face at a place of the plane; -1: none. */
+static int corner_at(const face_side *s, const double p[2], double slack)
+{
+    for (int i = 0; i < s->face.count; i++)
+        if (hypot(p[0] - s->corner[i][0], p[1] - s->corner[i][1]) <= slack) return i;
+    return -1;
+}
+
+/* What of the body is there: a corner, a side or the inside of its face. */
 static impact_feature feature_at(const face_side *s, const double p[2], double slack)
 {
     const imp_flat *flat = &s->flat;
-    for (int i = 0; i < flat->count; i++)
-        if (hypot(p[0] - flat->p[i][0], p[1] - flat->p[i][1]) <= slack) return s->face.corner[flat->from[i]];
+    const int corner = corner_at(s, p, slack);
+    if (corner >= 0) return s->face.corner[corner];
     for (int i = 0; s->face.dimension == 2 && i < flat->count; i++) {
         const double *a = flat->p[i], *b = flat->p[(i + 1) % flat->count];
         const double x = b[0] - a[0], y = b[1] - a[1];
@@ -76,14 +97,36 @@ static impact_feature feature_at(const face_side *s, const double p[2], double s
     return s->face.feature;
 }
 
-static double height_at(const face_side *s, const double p[2])
+/* Over the triangle of a bent face's corners from its first that holds the place, or is nearest to. */
+static double height_of_triangles(const face_side *s, const double p[2])
 {
-    return s->z + s->slope[0] * p[0] + s->slope[1] * p[1];
+    const imp_flat *flat = &s->flat;
+    double height = s->own[flat->from[0]], best = -INFINITY;
+    for (int i = 1; i + 1 < flat->count; i++) {
+        const double *a = flat->p[0], u[2] = {flat->p[i][0] - a[0], flat->p[i][1] - a[1]},
+                     v[2] = {flat->p[i + 1][0] - a[0], flat->p[i + 1][1] - a[1]}, w[2] = {p[0] - a[0], p[1] - a[1]};
+        const double area = u[0] * v[1] - u[1] * v[0];
+        if (!(area > 0)) continue;
+        const double second = fmax(0, (w[0] * v[1] - w[1] * v[0]) / area),
+                     third = fmax(0, (u[0] * w[1] - u[1] * w[0]) / area), first = 1 - second - third,
+                     least = fmin(first, fmin(second, third));
+        if (!(least > best)) continue;
+        best = least;
+        height = first * s->own[flat->from[0]] + second * s->own[flat->from[i]] + third * s->own[flat->from[i + 1]];
+    }
+    return height;
+}
+
+static double height_at(const face_side *s, const double p[2], double slack)
+{
+    if (!s->bent) return height_of_plane(s, p);
+    const int corner = corner_at(s, p, slack);
+    return corner >= 0 ? s->own[corner] : height_of_triangles(s, p);
 }
 
 static void put_point(const face_side s[2], const patch_frame *f, const double p[2], double height, impact_patch *patch)
 {
-    const double z1 = height_at(&s[0], p), z2 = height_at(&s[1], p);
+    const double z1 = height_at(&s[0], p, f->slack), z2 = height_at(&s[1], p, f->slack);
     const qvec3 flat = qvec3_axpy(p[0], f->x, qvec3_scale(f->y, p[1]));
     patch->point[patch->count++] = (impact_patch_point){.offset1 = qvec3_sub(qvec3_axpy(z1, f->n, flat), s[0].center),
                                                         .offset2 = qvec3_axpy(z2, f->n, flat),
@@ -137,6 +180,18 @@ static void thin_disc(imp_flat *common)
     common->count = kept;
 }
 
+/* Where the contact is, if no point of the patch is as near: a corner amid others that are a little higher. */
+static void put_nearest(const face_side s[2], const patch_frame *f, const impact_contact *contact, double height,
+                        impact_patch *patch)
+{
+    for (int i = 0; i < patch->count; i++)
+        if (patch->point[i].height <= contact->gap + f->slack) return;
+    const qvec3 place = qvec3_add(s[0].center, contact->offset1);
+    const double p[2] = {qvec3_dot(place, f->x), qvec3_dot(place, f->y)};
+    if (patch->count == IMPACT_PATCH_POINTS) patch->count--;
+    put_point(s, f, p, height, patch);
+}
+
 static void clip_faces(face_side s[2], const patch_frame *f, double height, impact_patch *patch)
 {
     imp_flat common = s[0].flat;
@@ -185,6 +240,7 @@ impact_status impact_patch_find(const impact_solid *body1, const impact_solid *b
         return IMPACT_EARGUMENT;
     patch->dimension1 = s[0].face.dimension, patch->dimension2 = s[1].face.dimension;
     if (s[0].face.dimension > 0 && s[1].face.dimension > 0) clip_faces(s, &f, height, patch);
+    if (patch->count > 0 && (s[0].bent || s[1].bent)) put_nearest(s, &f, contact, height, patch);
     if (patch->count == 0) lone_point(s, contact, height, patch);
     patch->dimension = patch_dimension(patch);
     return IMPACT_OK;

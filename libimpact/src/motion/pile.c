@@ -187,6 +187,21 @@ static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_stat
     return IMPACT_OK;
 }
 
+/* Tries the step, and puts where it ends into `to`, gaps closed and overlaps parted: what came to overlap after the
+ * middle of the second half no contact has met, and how far that has to be moved apart is error too. */
+static impact_status try_and_project(imp_pile *pile, imp_world *world, double t, double h, const imp_state *from,
+                                     bool there, bool *halfway, double wanted, imp_state *to,
+                                     imp_pile_step_result *result)
+{
+    impact_status status = try_step(pile, world, t, h, from, there, halfway, result);
+    double parted = 0;
+    if (status != IMPACT_OK || result->error > wanted) return status;
+    memcpy(to, pile->end, sizeof *to * (size_t)world->body_count);
+    status = imp_pile_project(pile, world, h, to, &parted);
+    result->error += parted;
+    return status;
+}
+
 impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
                             imp_pile_step_result *result)
 {
@@ -197,15 +212,21 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     double h = fmin(most, fmin(pile->step, pile->longest * natural));
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
     bool halfway = false;
-    if (status == IMPACT_OK) status = try_step(pile, world, t, h, states, false, &halfway, result);
+    imp_state *to = pile->projected;
+    if (status == IMPACT_OK) status = try_and_project(pile, world, t, h, states, false, &halfway, wanted, to, result);
     while (h > least && (status == IMPACT_EUNSETTLED || (status == IMPACT_OK && result->error > wanted))) {
         h *= 0.5;
-        status = try_step(pile, world, t, h, states, keep_first_half(pile, halfway), &halfway, result);
+        const bool there = keep_first_half(pile, halfway);
+        status = try_and_project(pile, world, t, h, states, there, &halfway, wanted, to, result);
+    }
+    if (status == IMPACT_OK && h <= least) { /* whatever its error */
+        double parted;
+        memcpy(to, pile->end, sizeof *to * (size_t)world->body_count);
+        status = imp_pile_project(pile, world, h, to, &parted);
     }
     if (status != IMPACT_OK) return status;
-    memcpy(states, pile->end, sizeof *states * (size_t)world->body_count);
-    if (!imp_pile_copy_memories(pile->arena, &pile->memory[0], &pile->memory[3])) return IMPACT_ENOMEM;
+    memcpy(states, to, sizeof *states * (size_t)world->body_count);
     /* h³ where modes stay, h where they change: doubled where the first would allow as much */
     pile->step = result->error < 0.1 * wanted ? 2 * h : h;
-    return imp_pile_project(pile, world, h, states);
+    return imp_pile_copy_memories(pile->arena, &pile->memory[0], imp_pile_ended(pile)) ? IMPACT_OK : IMPACT_ENOMEM;
 }

@@ -17,9 +17,10 @@
  * w_t.
  *
  * Free flight in uniform gravity is exact. A step is taken once whole and once in two halves; what their ends differ by
- * is its measured error, and chooses the next. Overlaps that arrivals leave, and gaps by which held contacts
- * open on round bodies, h² in each step, are put back along normals, least in the metric of mass. The limit h -> 0 is
- * Coulomb's law with Newton's restitution, at simultaneous contacts Moreau's.
+ * is its measured error, and chooses the next; what overlaps at its end, as it came after the last middle, and has to
+ * be parted is error too. Overlaps that arrivals leave, and gaps by which held contacts open on round bodies, h² in
+ * each step, are put back along normals, least in the metric of mass. The limit h -> 0 is Coulomb's law with Newton's
+ * restitution, at simultaneous contacts Moreau's.
  */
 #ifndef IMP_PILE_H
 #define IMP_PILE_H
@@ -40,7 +41,7 @@ typedef struct imp_pile {
     imp_cone_bodies by_bodies;
     int *number; /* per body of the world: its own in an island, -1: it does not move */
     imp_rest_workspace rest;
-    imp_state *middle, *mean, *whole, *half, *end;
+    imp_state *middle, *mean, *whole, *half, *end, *projected;
     imp_load *loads;
     imp_pile_contacts touching;
     /* as the accepted step left them, those before the step at hand, what it leaves, what the second half of a step

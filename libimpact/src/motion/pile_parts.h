@@ -45,8 +45,12 @@ qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, 
 impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
                               imp_state *next, imp_pile_step_result *result);
 
+/* What the second half of the step tried last left held. */
+static inline imp_pile_memories *imp_pile_ended(imp_pile *pile) { return &pile->memory[3]; }
+
 /* Moves bodies along normals, least in the metric of mass: what is held to gap zero, where that can be; then overlaps
- * apart. Gaps within the slack may stay. */
-impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states);
+ * apart, *parted (m) being how far that moves any point. Gaps within the slack may stay. The step over h ended in the
+ * states. */
+impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted);
 
 #endif

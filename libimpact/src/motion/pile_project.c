@@ -11,10 +11,11 @@ static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states,
 {
     imp_pile_contacts *touching = &pile->touching;
     double apart = fmax(slack, pile->tolerance * imp_pile_smallest(world));
-    for (int k = 0; k < pile->memory[0].count; k++) apart = fmax(apart, 2 * pile->memory[0].list[k].gap);
-    imp_pile_contacts_mark(touching, world, &pile->memory[0]);
+    imp_pile_memories *held = imp_pile_ended(pile);
+    for (int k = 0; k < held->count; k++) apart = fmax(apart, 2 * held->list[k].gap);
+    imp_pile_contacts_mark(touching, world, held);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
-    imp_pile_recall(touching, world, states, h, &pile->memory[0], IMP_PILE_BEFORE);
+    imp_pile_recall(touching, world, states, h, held, IMP_PILE_BEFORE);
     for (int k = 0; k < touching->count; k++)
         touching->points[k].taken = touching->points[k].memory[IMP_PILE_BEFORE] < 0 || touching->points[k].gap > apart;
     return true;
@@ -67,9 +68,19 @@ static void part_overlaps(imp_pile *pile, const imp_world *world, int count)
         imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
 }
 
-/* Moves bodies along normals, least in the metric of mass: what is held to gap zero, where that can be; then overlaps
- * apart. Gaps within the slack may stay. */
-impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states)
+/* How far the displacements move any body's point, m. */
+static double way_of(const imp_world *world, const imp_state *displaced)
+{
+    double most = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (body->is_static) continue;
+        most = fmax(most, qvec3_norm(displaced[i].v) + body->radius * qvec3_norm(imp_omega(body, &displaced[i])));
+    }
+    return most;
+}
+
+impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
     const double slack = imp_pile_slack(pile, world), rounding = IMP_TOUCHING * imp_pile_smallest(world);
     for (int pass = 0; pass < 2; pass++) {
@@ -85,6 +96,7 @@ impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_s
             } else
                 part_overlaps(pile, world, count);
         }
+        *parted = way_of(world, pile->middle);
         imp_pile_drift(world, pile->middle, 1, states);
     }
     return IMPACT_OK;

@@ -59,39 +59,12 @@ static int face_along(const imp_core *core, const double d[3])
     return best;
 }
 
-static bool is_corner(const impact_hull *hull, int face, short vertex)
-{
-    for (int k = hull->start[face]; k < hull->start[face + 1]; k++)
-        if (hull->loop[k] == vertex) return true;
-    return false;
-}
-
-/* Of so many vertices those on one face: of the faces at the farthest along d the one that looks most along it. What
- * is not on one face has no plane. How many stay. */
-static int keep_one_face(const imp_core *core, const double d[3], short *vertex, int count)
-{
-    const impact_hull *hull = core->hull;
-    int farthest, best = -1, kept = 0;
-    double most = -INFINITY;
-    (void)imp_core_support(core, d, &farthest);
-    for (int f = 0; f < hull->face_count; f++) {
-        double n[3];
-        imp_core_normal(core, f, n);
-        const double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
-        if (along > most && is_corner(hull, f, (short)farthest)) most = along, best = f;
-    }
-    for (int i = 0; i < count; i++)
-        if (best < 0 || is_corner(hull, best, vertex[i])) vertex[kept++] = vertex[i];
-    return kept;
-}
-
 static void polytope_face(const imp_form *form, qvec3 d, double height, impact_face *face)
 {
     short vertex[IMPACT_HULL_POINTS];
     const double at[3] = {d.x, d.y, d.z}, size = fmax(form->axis[0], fmax(form->axis[1], form->axis[2]));
     double mean[3], x[3];
-    int count = imp_core_reached(&form->core, at, fmax(height, IMP_CORE_TIE * size), vertex, mean);
-    if (count > 2) count = keep_one_face(&form->core, at, vertex, count);
+    const int count = imp_core_reached(&form->core, at, fmax(height, IMP_CORE_TIE * size), vertex, mean);
     for (int i = 0; i < count; i++) {
         imp_core_vertex(&form->core, vertex[i], x);
         put_point(face, (qvec3){x[0], x[1], x[2]}, IMPACT_VERTEX, vertex[i]);
