@@ -187,15 +187,16 @@ static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_stat
     return IMPACT_OK;
 }
 
-/* Tries the step, and puts where it ends into `to`, gaps closed and overlaps parted: what came to overlap after the
- * middle of the second half no contact has met, and how far that has to be moved apart is error too. */
+/* Tries the step, and puts where it ends, if its error is allowed, into `to`, gaps closed and overlaps parted: what
+ * came to overlap after the middle of the second half no contact has met, and how far that has to be moved apart is
+ * error too. */
 static impact_status try_and_project(imp_pile *pile, imp_world *world, double t, double h, const imp_state *from,
-                                     bool there, bool *halfway, double wanted, imp_state *to,
+                                     bool there, bool *halfway, double allowed, imp_state *to,
                                      imp_pile_step_result *result)
 {
     impact_status status = try_step(pile, world, t, h, from, there, halfway, result);
     double parted = 0;
-    if (status != IMPACT_OK || result->error > wanted) return status;
+    if (status != IMPACT_OK || result->error > allowed) return status;
     memcpy(to, pile->end, sizeof *to * (size_t)world->body_count);
     status = imp_pile_project(pile, world, h, to, &parted);
     result->error += parted;
@@ -207,25 +208,20 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
 {
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
     const double natural = imp_pile_natural_time(world, states), wanted = pile->tolerance * imp_pile_smallest(world);
-    const double least = pile->tolerance * natural;
+    const double least = pile->tolerance * natural; /* of which any error is allowed */
     if (!(pile->step > 0)) pile->step = pile->longest / IMP_PILE_FIRST * natural;
     double h = fmin(most, fmin(pile->step, pile->longest * natural));
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
-    bool halfway = false;
-    imp_state *to = pile->projected;
-    if (status == IMPACT_OK) status = try_and_project(pile, world, t, h, states, false, &halfway, wanted, to, result);
-    while (h > least && (status == IMPACT_EUNSETTLED || (status == IMPACT_OK && result->error > wanted))) {
-        h *= 0.5;
-        const bool there = keep_first_half(pile, halfway);
-        status = try_and_project(pile, world, t, h, states, there, &halfway, wanted, to, result);
-    }
-    if (status == IMPACT_OK && h <= least) { /* whatever its error */
-        double parted;
-        memcpy(to, pile->end, sizeof *to * (size_t)world->body_count);
-        status = imp_pile_project(pile, world, h, to, &parted);
+    bool halfway = false, good = false;
+    for (bool there = false; status == IMPACT_OK && !good; h *= good ? 1 : 0.5) {
+        const double allowed = h > least ? wanted : INFINITY;
+        status = try_and_project(pile, world, t, h, states, there, &halfway, allowed, pile->projected, result);
+        good = status == IMPACT_OK && result->error <= allowed;
+        if (status == IMPACT_EUNSETTLED && h > least) status = IMPACT_OK;
+        if (!good) there = keep_first_half(pile, halfway);
     }
     if (status != IMPACT_OK) return status;
-    memcpy(states, to, sizeof *states * (size_t)world->body_count);
+    memcpy(states, pile->projected, sizeof *states * (size_t)world->body_count);
     /* h³ where modes stay, h where they change: doubled where the first would allow as much */
     pile->step = result->error < 0.1 * wanted ? 2 * h : h;
     return imp_pile_copy_memories(pile->arena, &pile->memory[0], imp_pile_ended(pile)) ? IMPACT_OK : IMPACT_ENOMEM;
