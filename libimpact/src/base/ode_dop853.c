@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * The explicit Runge-Kutta method of order 8 by Dormand and Prince, with errors of orders 5 and 3 within, and its
- * polynomial of order 7 between the ends by three stages more: sixteen rates a step, with one that checks the polynomial,
- * none of them of the steps before, so that the length of a step is free to fall as fast as the motion asks.
+ * polynomial of order 7 between the ends by three stages more: sixteen rates a step, with one that checks the
+ * polynomial, none of them of the steps before, so that the length of a step is free to fall as fast as the motion
+ * asks.
  *
  * Hairer, Norsett, Wanner 1993, II.5 and II.6, and their program DOP853, for the method and its numbers.
  */
