@@ -304,8 +304,8 @@ static void identities(void **state)
     }
 }
 
-/* Random polyhedra on a plane, whatever lies within random heights: each point is where it is said to be, and the lowest
- * is among them. A plane laid through corners of several faces told of corners far below the body. */
+/* Random polyhedra on a plane, whatever lies within random heights: each point is where it is said to be, and the
+ * lowest is among them. A plane laid through corners of several faces told of corners far below the body. */
 static void points_of_polyhedra_are_theirs(void **state)
 {
     (void)state;
