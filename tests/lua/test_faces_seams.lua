@@ -101,9 +101,10 @@ local leaning = {
   { impact.polyhedron { vertices = { { .1, .06, 0 }, { -.1, .06, 0 }, { .1, -.06, 0 }, { -.1, -.06, 0 }, { 0, 0, .26 } } }, .065 },
   { impact.cone { radius = .1, height = .2 }, .05 },
 }
-local function strike(shape, height, bottom, q, yaw, velocity, friction)
+local function strike(shape, height, bottom, q, yaw, velocity, friction, slab)
   local scene = impact.scene { gravity = turned(q, 0, 0, -G), duration = .08, bodies = {
-    impact.body { name = "floor", shape = impact.plane(), static = true, orientation = q, friction = 1, restitution = 1 },
+    impact.body { name = "floor", shape = slab and impact.box { a = 1, b = 1, c = .2 } or impact.plane(), static = true, orientation = q, friction = 1,
+      restitution = 1, position = turned(q, 0, 0, slab and -.2 or 0) },
     impact.body { name = "wall", shape = impact.box { a = .05, b = 1, c = .2 }, static = true, orientation = q, friction = 1, restitution = 1,
       position = turned(q, .25, 0, .2 + bottom) },
     impact.body { name = "body", shape = shape, mass = 1, orientation = q * quat.from_axis_angle({ 0, 0, 1 }, yaw), friction = friction, restitution = .5,
@@ -118,13 +119,13 @@ local function strike(shape, height, bottom, q, yaw, velocity, friction)
   end
   return impulses, normal
 end
-for i = 1, 32 do
-  local solid = leaning[i % #leaning + 1]
+for i = 1, 48 do
+  local solid, slab = leaning[i % #leaning + 1], i % 8 > 3
   local q, yaw = i <= 6 and quat.new(1, 0, 0, 0) or quat.random(), i % 2 == 0 and 0 or draw(-3, 3)
   -- with friction at two contacts of one point the impulses that answer are many
   local velocity, friction = { draw(2, 3), draw(-.3, .3), 0 }, i % 4 < 2 and 0 or draw(.05, .4)
-  local stands, normal = strike(solid[1], solid[2], 0, q, yaw, velocity, friction)
-  local below, side = strike(solid[1], solid[2], draw(-.15, -.05), q, yaw, velocity, friction)
+  local stands, normal = strike(solid[1], solid[2], 0, q, yaw, velocity, friction, slab)
+  local below, side = strike(solid[1], solid[2], draw(-.15, -.05), q, yaw, velocity, friction, slab)
   check.close((side - q:rotate(quat.vec3(-1, 0, 0))):norm(), 0, 1e-12)
   check.close((normal - side):norm(), 0, 1e-12)
   if friction == 0 then
