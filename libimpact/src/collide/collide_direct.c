@@ -32,7 +32,11 @@ static double along_normal(const imp_ready *ready, qvec3 n)
 }
 
 /* |M| |M^-1| / 3 of M = diag(l, l, 1). */
-static double diagonal_conditioning(double l) { return sqrt((2 * l * l + 1) * (2 + l * l)) / (3 * l); }
+static double diagonal_conditioning(double l)
+{
+    const double inverse = 1 / l;
+    return sqrt(2 * (l * l + inverse * inverse) + 5) / 3;
+}
 
 /* The impulse of friction on the tangential velocity t: how large, its work, and whether it stops it, in compression or
  * at all. */
