@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # symbols.sh NAME SHARED STATIC: the shared library shows our public prefix only; the archive defines names of that and of
-# the internal prefix (impact_: imp_). Vectors are quat's: qvec3_.
+# the internal prefix (impact_: imp_). Vectors are quat's: qvec3_. A library is a guest: it neither speaks on its host's
+# streams, nor asks its environment, nor ends it.
 set -euo pipefail
 prefix=${1%%_*}
 [ "$prefix" = impact ] || prefix='quat|qvec[23]|qmat3'
@@ -16,6 +17,9 @@ check() { # check FILE PREFIXES NM-FLAG...
     [ -n "$names" ] || { echo "  none at all"; bad=1; }
     [ -z "$strangers" ] || { echo "  not ours: ${strangers//$'\n'/ }"; bad=1; }
 }
+rude=$(nm --dynamic --undefined-only --format=posix "$2" | sed 's/[ @].*//' |
+    grep -xE 'std(in|out|err)|v?printf|puts|putchar|perror|(secure_)?getenv|setenv|setlocale|signal|exit|_exit|abort|__assert_fail' || true)
+[ -z "$rude" ] || { echo "$2 calls ${rude//$'\n'/ }"; bad=1; }
 check "$2" "$prefix" --dynamic
 check "$3" "$prefix|imp"
 exit "$bad"

@@ -6,7 +6,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <stdlib.h>
 
 /* Along the contact's axes, and, of a width of six, about them. */
 static void parts_of(const imp_cone_contact *contact, qvec3 along, qvec3 about, int width, double factor, double *to)
@@ -301,23 +300,6 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
     if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, &question, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !is_usable(pile, world, count, outcome.residual)) {
-        if (getenv("PB")) {
-            fprintf(stderr, "BAD h %.3g residual %.3g fastest %.3g status %d smooth %d\n", h, outcome.residual,
-                    imp_pile_fastest(pile, count), outcome.status, smooth);
-            for (int c = 0; c < count; c++) {
-                imp_pile_point *p = &pile->touching.points[pile->members[c]];
-                imp_cone_contact *k = &pile->contacts[c];
-                fprintf(stderr,
-                        " pair %d bodies %s-%s f %d.%d/%d.%d gap %.3g n (%.9f %.9f %.9f) at1 (%.5f %.5f %.5f) mu %.3g "
-                        "mem %d q (%.3g %.3g %.3g) r (%.3g %.3g %.3g) u (%.3g %.3g %.3g) before %.3g\n",
-                        p->pair, world->bodies[k->body1].name, world->bodies[k->body2].name, p->feature[0].kind,
-                        p->feature[0].index, p->feature[1].kind, p->feature[1].index, p->gap, k->axes[0].x,
-                        k->axes[0].y, k->axes[0].z, k->arm1.x, k->arm1.y, k->arm1.z, pile->friction[c], p->memory[0],
-                        pile->q[3 * c], pile->q[3 * c + 1], pile->q[3 * c + 2], pile->r[3 * c], pile->r[3 * c + 1],
-                        pile->r[3 * c + 2], pile->u[3 * c], pile->u[3 * c + 1], pile->u[3 * c + 2],
-                        pile->before[3 * c]);
-            }
-        }
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
                  imp_cone_status_name(outcome.status));
         return IMPACT_EUNSETTLED;
