@@ -42,11 +42,12 @@ static inline void note_off(double *field, double x, double size)
     if (!(fabs(x) <= *field * (DBL_EPSILON * size))) note(field, off(x, size));
 }
 
-/* An impulse may be 1e-200 in an impact's units (approach and moments 1e-100): its square is none. */
+/* An impulse may be 1e-200 in an impact's units (approach and moments 1e-100), and a static body that is touched at its
+ * centre turn at 1e200: the square is none. */
 static inline double length(qvec3 v)
 {
     const double n2 = qvec3_dot(v, v);
-    if (n2 > 1 / IMP_COLLIDE_SQUARES) return sqrt(n2);
+    if (n2 > 1 / IMP_COLLIDE_SQUARES && n2 < IMP_COLLIDE_SQUARES) return sqrt(n2);
     return v.x == 0 && v.y == 0 && v.z == 0 ? 0 : qvec3_norm(v);
 }
 
