@@ -284,7 +284,9 @@ do
   for _, name in ipairs { ".csv", "_events.csv", ".csv.part", "_events.csv.part" } do
     check.equal(io.open(base .. name), nil)
   end
-  os.remove(base)
+  for _, name in ipairs { base, base .. ".partial.csv", base .. "_events.partial.csv" } do
+    check.truth(os.remove(name), "what there is up to then is kept as " .. name)
+  end
   local reason, message, kind = drop():run { csv = "/no/such/folder/x" }
   check.equal(reason, nil)
   check.equal(kind, "output")

@@ -68,11 +68,12 @@ int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, d
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     impact_contact contact;
-    if (is_mixed(b1, b2) && pair->cache.valid && imp_face_gap(b1, s1, b2, s2, pair->cache.normal, &contact))
+    if (is_mixed(b1, b2) && pair->cache.valid && imp_face_gap(b1, s1, b2, s2, pair->cache.normal, &contact)) {
         pair->cache.normal = contact.normal;
-    else
-        (void)imp_world_gap(world, pair, states, &contact);
-    imp_settle_among(world, pair, states, flush, &contact);
+        imp_settle_among(world, pair, states, flush, &contact);
+    } else {
+        (void)imp_world_gap_within(world, pair, states, flush, &contact);
+    }
     if (!(contact.gap <= height)) return 0;
     int count = 0;
     if (imp_pair_can_lie(world, pair)) {

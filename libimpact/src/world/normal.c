@@ -5,26 +5,50 @@
 
 #include <impact/face.h>
 
-/* How many faces the body has, and the normal of each, in the shape's axes: those of what has edges beside them. */
-static int own_faces(const impact_shape *shape)
+/* The faces of what has edges beside them. */
+typedef struct face_list {
+    const impact_shape *shape;
+    int count;
+    imp_form form; /* of polytopes, in the shape's axes */
+} face_list;
+
+static face_list faces_of(const impact_shape *shape)
 {
+    face_list list = {.shape = shape};
     switch (shape->kind) {
     case IMPACT_BOX:
-    case IMPACT_POLYHEDRON: return imp_core_hull(shape)->face_count;
-    case IMPACT_CYLINDER: return 2;
-    case IMPACT_CONE: return 1;
-    default: return 0;
+    case IMPACT_POLYHEDRON:
+        list.count = imp_core_hull(shape)->face_count;
+        imp_form_make(shape, 1, quat_identity(), &list.form);
+        break;
+    case IMPACT_CYLINDER: list.count = 2; break;
+    case IMPACT_CONE: list.count = 1; break;
+    default: break;
     }
+    return list;
 }
 
-static qvec3 outward_normal(const impact_shape *shape, int face)
+static bool is_flat_sided(const impact_shape *shape)
 {
-    if (shape->kind == IMPACT_CYLINDER || shape->kind == IMPACT_CONE) return (qvec3){0, 0, face == 0 ? -1 : 1};
-    imp_form form;
+    return shape->kind != IMPACT_CYLINDER && shape->kind != IMPACT_CONE;
+}
+
+/* Outward, in the shape's axes. */
+static qvec3 normal_of_face(const face_list *list, int face)
+{
+    if (!is_flat_sided(list->shape)) return (qvec3){0, 0, face == 0 ? -1 : 1};
     double n[3];
-    imp_form_make(shape, 1, quat_identity(), &form);
-    imp_core_normal(&form.core, face, n);
+    imp_core_normal(&list->form.core, face, n);
     return (qvec3){n[0], n[1], n[2]};
+}
+
+/* How far the shape reaches along the face's normal. */
+static double height_of_face(const face_list *list, int face, qvec3 normal)
+{
+    qvec3 place;
+    if (!is_flat_sided(list->shape)) return impact_shape_support(list->shape, normal, &place);
+    const double n[3] = {normal.x, normal.y, normal.z};
+    return imp_core_height(&list->form.core, face, n) + list->shape->rounding;
 }
 
 /* A direction, from body 2 to body 1: how far it separates them, how fast more, and where they reach farthest. */
@@ -131,29 +155,58 @@ static bool is_hidden(const meeting *m, const qvec3 offset[2], qvec3 n, double w
     return false;
 }
 
+/* A look for the normal along which bodies part fastest, of that found and those of faces. */
+typedef struct settling {
+    const meeting *m;
+    impact_contact found;
+    double within, fastest; /* NAN: what is found has not been looked at */
+} settling;
+
+static double rate_found(const settling *s)
+{
+    const qvec3 touches[2] = {s->found.offset1, s->found.offset2};
+    return is_hidden(s->m, touches, s->found.normal, s->within)
+               ? -INFINITY
+               : parting_along(s->m->body, s->m->state, &s->found, s->found.normal).rate;
+}
+
+/* One that separates them, from body 2 to body 1. */
+static void consider(settling *s, qvec3 n, impact_contact *contact)
+{
+    if (isnan(s->fastest)) s->fastest = rate_found(s);
+    if (s->fastest >= 0) return;
+    const parting p = parting_along(s->m->body, s->m->state, &s->found, n);
+    if (!(p.rate > s->fastest && p.gap >= -s->within) || is_hidden(s->m, p.offset, n, s->within)) return;
+    s->fastest = p.rate;
+    contact->normal = n;
+    contact->gap = contact->lower = contact->upper = p.gap;
+    contact->offset1 = p.offset[0], contact->offset2 = p.offset[1];
+}
+
+/* Those of body k's faces. The other's place there lies under the plane of most: they separate nothing. */
+static void consider_faces(settling *s, int k, impact_contact *contact)
+{
+    const imp_body *own = s->m->body[k];
+    const imp_state *state = s->m->state[k], *others = s->m->state[1 - k];
+    const face_list faces = faces_of(&own->shape);
+    const quat axes = imp_shape_axes(own, state);
+    const qvec3 touches = k == 0 ? s->found.offset2 : s->found.offset1,
+                from = qvec3_sub(qvec3_sub(others->x, state->x), imp_shape_offset(own, state)),
+                place = quat_rotate_inverse(axes, qvec3_add(from, touches));
+    for (int f = 0; f < faces.count; f++) {
+        const qvec3 local = normal_of_face(&faces, f);
+        if (qvec3_dot(local, place) - height_of_face(&faces, f, local) < -s->within) continue;
+        const qvec3 out = quat_rotate(axes, local), n = k == 0 ? qvec3_neg(out) : out;
+        if (qvec3_norm(qvec3_sub(n, s->found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
+        if (separated_by(s->m->body, s->m->state, n) >= -s->within) consider(s, n, contact);
+    }
+}
+
 static void settle(const meeting *m, double within, impact_contact *contact)
 {
-    const imp_body *const *body = m->body;
-    const int faces[2] = {own_faces(&body[0]->shape), own_faces(&body[1]->shape)};
-    if (faces[0] + faces[1] == 0 || !(fabs(contact->gap) <= within)) return;
-    const impact_contact found = *contact;
-    const qvec3 touches[2] = {found.offset1, found.offset2};
-    double slowest = is_hidden(m, touches, found.normal, within)
-                         ? -INFINITY
-                         : parting_along(body, m->state, &found, found.normal).rate;
-    for (int k = 0; k < 2; k++)
-        for (int f = 0; f < faces[k] && slowest < 0; f++) {
-            const qvec3 out = quat_rotate(imp_shape_axes(body[k], m->state[k]), outward_normal(&body[k]->shape, f)),
-                        n = k == 0 ? qvec3_neg(out) : out;
-            if (qvec3_norm(qvec3_sub(n, found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
-            if (!(separated_by(body, m->state, n) >= -within)) continue;
-            const parting p = parting_along(body, m->state, &found, n);
-            if (!(p.rate > slowest && p.gap >= -within) || is_hidden(m, p.offset, n, within)) continue;
-            slowest = p.rate;
-            contact->normal = n;
-            contact->gap = contact->lower = contact->upper = p.gap;
-            contact->offset1 = p.offset[0], contact->offset2 = p.offset[1];
-        }
+    if (!(fabs(contact->gap) <= within)) return;
+    settling s = {.m = m, .found = *contact, .within = within, .fastest = NAN};
+    for (int k = 0; k < 2; k++) consider_faces(&s, k, contact);
 }
 
 void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
@@ -178,11 +231,11 @@ void imp_settle_among(const imp_world *world, const imp_pair *pair, const imp_st
 /* The body's face that looks most along d (shape's axes), or -1; its normal. */
 static int face_along(const imp_body *body, qvec3 d, qvec3 *normal)
 {
-    const int count = own_faces(&body->shape);
+    const face_list faces = faces_of(&body->shape);
     int best = -1;
     double most = -INFINITY;
-    for (int f = 0; f < count; f++) {
-        const qvec3 n = outward_normal(&body->shape, f);
+    for (int f = 0; f < faces.count; f++) {
+        const qvec3 n = normal_of_face(&faces, f);
         const double along = qvec3_dot(n, d);
         if (along > most) most = along, best = f, *normal = n;
     }
@@ -243,5 +296,5 @@ double imp_stepped_flush(const imp_body *body1, const imp_body *body2)
 {
     const double radius1 = body1->is_static ? INFINITY : body1->radius,
                  radius2 = body2->is_static ? INFINITY : body2->radius;
-    return IMP_PILE_FLUSH * fmin(radius1, radius2);
+    return IMP_PILE_SLACK * fmin(radius1, radius2);
 }

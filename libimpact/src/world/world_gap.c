@@ -45,7 +45,8 @@ double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body
     return gaps->tolerance * fmax(body1->radius, body2->radius);
 }
 
-impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
+impact_status imp_world_gap_within(imp_world *world, imp_pair *pair, const imp_state *states, double within,
+                                   impact_contact *contact)
 {
     if (pair->site.placed || pair->site.corner > 0) {
         *contact = pair->site.corner > 0 ? imp_corner_contact(world, pair, states) : pair->site.contact;
@@ -54,8 +55,13 @@ impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *s
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const impact_status status = gap_of(b1, s1, b2, s2, &pair->cache, world->gaps, &world->usage, contact);
-    imp_settle_among(world, pair, states, touching(b1, s1, b2, s2, contact->normal), contact);
+    imp_settle_among(world, pair, states, fmax(within, touching(b1, s1, b2, s2, contact->normal)), contact);
     return status;
+}
+
+impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact)
+{
+    return imp_world_gap_within(world, pair, states, 0, contact);
 }
 
 double imp_world_support(const imp_body *body, qvec3 direction, qvec3 *point)

@@ -10,6 +10,10 @@
 /* The pair's contact, counted by the road that answered; of a pair that is placed the one that it has. */
 impact_status imp_world_gap(imp_world *world, imp_pair *pair, const imp_state *states, impact_contact *contact);
 
+/* The same where bodies that are so near, m, are taken to touch (normal.h). */
+impact_status imp_world_gap_within(imp_world *world, imp_pair *pair, const imp_state *states, double within,
+                                   impact_contact *contact);
+
 /* The contact of two bodies, from no cache; the same count. gaps may be NULL. */
 impact_status imp_gap_of(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
                          imp_gaps *gaps, impact_usage *usage, impact_contact *contact);
