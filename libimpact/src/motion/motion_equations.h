@@ -39,6 +39,10 @@ double imp_motion_clock(const imp_motion *motion);
 /* How fast any point of the body moves at most, m/s. */
 double imp_motion_speed(const imp_body *body, const imp_state *state);
 
+/* Contacts and pairs as they are, and back: to look must leave no traces. False: there is no room. */
+bool imp_motion_keep_contacts(imp_motion *motion);
+void imp_motion_restore_contacts(imp_motion *motion);
+
 /* For impact_ode: the rates of y, and the root functions: ROOTS_PER_PAIR for each pair that is held (its pressure, what
  * is left of its mode, its distance from the plane's bounds), ROOTS_PER_EDGE for each edge of a field (its value, minus
  * the value's rate), one for each body (its speed over the rest speed). Every one falls through zero when its event

@@ -193,3 +193,15 @@ impact_status imp_motion_next_by_steps(imp_motion *motion, imp_pile *pile, const
     motion->works.sliding += result->sliding;
     return keep_pile_step(motion, t0, &works, before, states);
 }
+
+impact_status imp_motion_look_by_steps(imp_motion *motion, imp_pile *pile, double t, imp_state *states)
+{
+    const impact_usage usage = motion->world->usage;
+    impact_status status = imp_motion_look(motion, t, states);
+    if (status != IMPACT_OK) return status;
+    if (!imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
+    status = imp_pile_part(pile, motion->world, states);
+    imp_motion_restore_contacts(motion);
+    motion->world->usage = usage;
+    return status;
+}

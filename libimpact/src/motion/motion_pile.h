@@ -13,4 +13,7 @@
 impact_status imp_motion_next_by_steps(imp_motion *motion, imp_pile *pile, const imp_state *before, imp_state *states,
                                        imp_pile_step_result *result);
 
+/* Every body's state at t within the last step, as imp_motion_look; what overlaps between the step's ends is parted. */
+impact_status imp_motion_look_by_steps(imp_motion *motion, imp_pile *pile, double t, imp_state *states);
+
 #endif

@@ -64,8 +64,7 @@ void imp_motion_go_to(imp_motion *motion, double t, imp_state *states)
     motion->works = imp_motion_works_of(motion, motion->kept);
 }
 
-/* Contacts and pairs as they are, and back: to look must leave no traces. */
-static bool keep_contacts(imp_motion *motion)
+bool imp_motion_keep_contacts(imp_motion *motion)
 {
     imp_arena *arena = motion->world->arena;
     const int touches = motion->persist.count, pairs = motion->world->pair_count;
@@ -79,7 +78,7 @@ static bool keep_contacts(imp_motion *motion)
     return true;
 }
 
-static void restore_contacts(imp_motion *motion)
+void imp_motion_restore_contacts(imp_motion *motion)
 {
     memcpy(motion->persist.touches, motion->kept_touches, sizeof *motion->kept_touches * (size_t)motion->persist.count);
     memcpy(motion->world->pairs, motion->kept_pairs, sizeof *motion->kept_pairs * (size_t)motion->world->pair_count);
@@ -88,13 +87,13 @@ static void restore_contacts(imp_motion *motion)
 impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states)
 {
     const bool held = motion->persist.count > 0;
-    if (held && !keep_contacts(motion)) return IMPACT_ENOMEM;
+    if (held && !imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
     imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
     imp_motion_unpack(motion, motion->kept, states);
     if (!held) return IMPACT_OK;
     const bool loaded = imp_motion_load(motion, t, states);
     if (loaded) imp_persist_project(&motion->persist, motion->world, states, motion->loads);
-    restore_contacts(motion);
+    imp_motion_restore_contacts(motion);
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }
 
@@ -111,12 +110,12 @@ impact_status imp_motion_touches(imp_motion *motion, double t, bool moves, const
     const impact_usage usage = motion->world->usage;
     const bool lenient = persist->lenient, redundant = persist->redundant;
     if (persist->count == 0) return IMPACT_OK;
-    if (!keep_contacts(motion)) return IMPACT_ENOMEM;
+    if (!imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
     if (moves) go_on_feet(motion, t);
     const bool loaded = imp_motion_load(motion, t, states);
     if (loaded) imp_persist_solve(persist, motion->world, states, motion->loads);
     memcpy(touches, persist->touches, sizeof *touches * (size_t)persist->count);
-    restore_contacts(motion);
+    imp_motion_restore_contacts(motion);
     persist->lenient = lenient, persist->redundant = redundant;
     motion->world->usage = usage;
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;

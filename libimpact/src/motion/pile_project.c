@@ -80,6 +80,37 @@ static double way_of(const imp_world *world, const imp_state *displaced)
     return most;
 }
 
+/* Everything that moves stands where it is in the states, pile->middle has its displacement. */
+static void displace_nothing(imp_pile *pile, const imp_world *world, const imp_state *states)
+{
+    memcpy(pile->middle, states, sizeof *states * (size_t)world->body_count);
+    for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
+}
+
+static double deepest(const imp_pile_contacts *touching)
+{
+    double most = 0;
+    for (int k = 0; k < touching->count; k++) most = fmax(most, -touching->points[k].gap);
+    return most;
+}
+
+impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states)
+{
+    enum { PASSES = 8 }; /* places turn: each leaves the square of what the one before did */
+    const double rounding = IMP_TOUCHING * imp_pile_smallest(world), near = pile->tolerance * imp_pile_smallest(world);
+    if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
+    imp_pile_contacts_mark(&pile->touching, world, imp_pile_held(pile));
+    for (int pass = 0; pass < PASSES; pass++) {
+        if (!imp_pile_find_points(&pile->touching, world, states, NULL, 0, near, false)) return IMPACT_ENOMEM;
+        if (!(deepest(&pile->touching) > rounding)) return IMPACT_OK;
+        if (!imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
+        displace_nothing(pile, world, states);
+        for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) part_overlaps(pile, world, count);
+        imp_pile_drift(world, pile->middle, 1, states);
+    }
+    return IMPACT_OK;
+}
+
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
     const double slack = imp_pile_slack(pile, world), rounding = IMP_TOUCHING * imp_pile_smallest(world);
@@ -87,8 +118,7 @@ impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_s
         const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
                                      : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -rounding, false);
         if (!found || !imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
-        memcpy(pile->middle, states, sizeof *states * (size_t)world->body_count);
-        for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
+        displace_nothing(pile, world, states);
         for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
             if (pass == 0) {
                 close_gaps(pile, world, states, count);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/island.h"
 #include "motion/motion_equations.h"
+#include "motion/motion_pile.h"
 #include "scene/scene_internal.h"
 #include "scene/stepped.h"
 #include "world/world_gap.h"
@@ -172,7 +173,8 @@ impact_status imp_island_look(imp_island *island, double t)
     }
     memcpy(motion->sampled, island->states, (size_t)world->body_count * sizeof *island->states); /* static ones */
     if (!island->moves) return IMPACT_OK;
-    return imp_motion_look(motion, t, motion->sampled);
+    return island->stepped ? imp_motion_look_by_steps(motion, island->pile, t, motion->sampled)
+                           : imp_motion_look(motion, t, motion->sampled);
 }
 
 void imp_island_go_to(imp_island *island, double t)

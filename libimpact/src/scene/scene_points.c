@@ -42,7 +42,7 @@ static int corner_of(const imp_island *island, const imp_pair *pair, const imp_p
         impact_contact foot = point->contact;
         if (speed > 0) foot.offset2 = qvec3_axpy(ahead / speed, v, foot.offset2);
         *face = imp_corner_face_under(under, &island->states[pair->body2], &foot,
-                                      island->stepped ? IMP_PILE_FLUSH : 2 * IMP_TOUCHING);
+                                      island->stepped ? IMP_PILE_SLACK : 2 * IMP_TOUCHING);
         return *face > 0 ? 1 : 0;
     }
     *face = on.kind == IMPACT_FACE && on.index >= 0 && on.index < imp_corner_faces(under) ? on.index + 1 : 0;

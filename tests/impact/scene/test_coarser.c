@@ -72,13 +72,14 @@ static void what_is_told_is_not_too_small(void **state)
     }
 }
 
-/* 81 steps, whose errors sum to 2e-5 m; after them it flies and is struck. */
+/* Some 80 steps, whose errors sum to 2e-5 m; after them it flies and is struck. */
 static void what_goes_on_after_steps_is_in_it(void **state)
 {
     (void)state;
     static random_scene s;
     random_scene_make(310001, &s);
-    assert_true(off_as_told(s.def) > 4e-4);
+    s.def.pile_tolerance = 1e-5;
+    assert_true(off_as_told(s.def) > 2e-4);
 }
 
 /* ---- the second scene is where the first is ---- */
