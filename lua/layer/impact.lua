@@ -556,6 +556,7 @@ local parts = {
   { "impacts_closed_form", "impacts in closed form", "impact", "impacts" },
   { "impacts_series", "impacts by series", "impact", "impacts" },
   { "impacts_cvode", "impacts by CVODE", "impact", "impacts" },
+  { "impacts_gaining", "impacts that gave energy, as their law may", "impact", "impacts", rare = true },
   { "impacts_turning", "impacts with friction against turning", "impact", "impacts", rare = true },
 }
 

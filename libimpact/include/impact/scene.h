@@ -288,6 +288,7 @@ typedef struct impact_usage {
     long gap_closed_form, gap_newton, gap_gjk, gap_fallback, gap_ccd; /* gap queries, by the road that answered */
     long impacts_closed_form, impacts_series, impacts_cvode;          /* impacts, by solver */
     long impacts_second, impacts_soft; /* of these, answered in 128 bits; answered though no receipt passed */
+    long impacts_gaining;              /* answers that gave bodies energy, as their law may: energy_rose */
     long impacts_turning;              /* impacts of pairs with torsional or rolling friction, of none of the solvers */
     /* of these, answers to another impact in the same instant, one after another in the order of the definition */
     long impacts_simultaneous;

@@ -48,7 +48,7 @@ void imp_islands_give_account(imp_island *island)
     *works = (imp_works){0};
     scene->impact_loss += island->impact_loss;
     scene->sliding_fallen += island->motion.fallen;
-    island->impact_loss = island->loss_before = island->motion.fallen = 0;
+    island->impact_loss = island->loss_before = island->gained = island->motion.fallen = 0;
     imp_islands_add_usage(&scene->world.usage, &island->world.usage);
 }
 

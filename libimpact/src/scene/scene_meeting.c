@@ -150,3 +150,9 @@ double imp_scene_drive_impulse(imp_island *island, const imp_touch *touch, qvec3
     if (other->is_static) imp_island_push(island, impulse);
     return work;
 }
+
+void imp_scene_gain(imp_island *island, double works)
+{
+    island->gained += works;
+    island->world.usage.impacts_gaining++;
+}

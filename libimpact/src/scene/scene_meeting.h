@@ -41,5 +41,7 @@ impact_collider imp_scene_collider(const imp_island *island, int body, qvec3 off
 void imp_scene_set_velocities(imp_island *island, int body, qvec3 velocity, qvec3 omega);
 /* The work of the static body's drive with the impulse on body 1 is booked, J. */
 double imp_scene_drive_impulse(imp_island *island, const imp_touch *touch, qvec3 impulse);
+/* An answer whose law let it give bodies so much energy, J. */
+void imp_scene_gain(imp_island *island, double works);
 
 #endif

@@ -81,12 +81,14 @@ static double largest_of(double a, double b, double c, double d)
     return fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(d)));
 }
 
-/* What impacts took must not come back; friction's and damping's part is seen step by step (motion_guard). */
+/* What impacts took must not come back, but for what their law gave, as Newton's of restitution may (energy_rose);
+ * friction's and damping's part is seen step by step (motion_guard). */
 static double fallen(imp_island *island)
 {
     impact_scene *scene = island->scene;
-    scene->impact_loss_fallen += fmax(0, island->loss_before - island->impact_loss);
+    scene->impact_loss_fallen += fmax(0, island->loss_before - island->impact_loss - island->gained);
     island->loss_before = island->impact_loss;
+    island->gained = 0;
     return scene->impact_loss_fallen + scene->sliding_fallen + island->motion.fallen;
 }
 

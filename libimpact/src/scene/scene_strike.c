@@ -19,6 +19,8 @@ static void count_solver(imp_island *island, const impact_outcome *outcome)
     if (outcome->solver == IMPACT_SOLVER_SERIES) usage->impacts_series++;
     if (outcome->solver == IMPACT_SOLVER_CVODE) usage->impacts_cvode++;
     if (outcome->second) usage->impacts_second++;
+    if (outcome->energy_rose)
+        imp_scene_gain(island, outcome->work_compression + outcome->work_restitution + outcome->work_friction);
 }
 
 /* The impact of a pair that resists turning: forces and moments at once (contact/turning.h). */

@@ -166,6 +166,15 @@ static impact_status record_all(imp_island *island, const gathering *g, const ch
     return status;
 }
 
+/* What the answer gave the bodies, J, but for what drives did. */
+static double works_of(const gathering *g)
+{
+    double works = 0;
+    for (int c = 0; c < g->count; c++)
+        works += g->outcomes[c].work_compression + g->outcomes[c].work_restitution + g->outcomes[c].work_friction;
+    return works;
+}
+
 /* Whether what jams was drawn on. */
 static bool was_drawn(const gathering *g)
 {
@@ -206,6 +215,7 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
                  world->bodies[g->met[0].touch.body2].name);
     for (int i = 0; i < world->body_count; i++) imp_scene_set_velocities(island, i, g->velocity[i], g->omega[i]);
     imp_persist_stir(world);
+    if (outcome.energy_rose) imp_scene_gain(island, works_of(g));
     return record_all(island, g, how.name, energy);
 }
 

@@ -30,6 +30,7 @@ static const struct {
     ENTRY(impacts_cvode),
     ENTRY(impacts_second),
     ENTRY(impacts_soft),
+    ENTRY(impacts_gaining),
     ENTRY(impacts_turning),
     ENTRY(impacts_simultaneous),
     ENTRY(lifts_chosen),
