@@ -138,10 +138,13 @@ static void note_low(search *s, double g, const double n[3])
     memcpy(s->low_n, n, sizeof s->low_n);
 }
 
+/* A local maximum is taken where the bodies are known to overlap: by a point in common, or as g is nowhere >= 0. The
+ * witness points of a deep overlap, and all between them, may well lie outside the other body. */
 static bool newton_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
 {
     imp_gap_bracket meeting;
-    if (!imp_gap_newton(s->pair, n, x, &meeting) || (s->found && !(meeting.gap > s->best.gap))) return false;
+    if (!imp_gap_newton(s->pair, n, x, &meeting) || !(meeting.shares || s->most < 0)) return false;
+    if (s->found && !(meeting.gap > s->best.gap)) return false;
     s->best = meeting;
     s->path = path;
     s->found = true;
@@ -372,6 +375,13 @@ static void look_along_faces(search *s, int body)
     }
 }
 
+/* Of the depth, which is told to within it: where it turns out half as deep, or less, it is told again. */
+static double coarse_slack(const search *s)
+{
+    return fmax(IMP_GAP_SLACK * s->pair->reach,
+                fmin(IMP_GAP_COARSE_DEPTH * -s->low, IMP_GAP_COARSE_SIZE * s->pair->size));
+}
+
 /* An overlap without a proof: bounded from both sides, and the nearest way out looked for over the whole sphere. True
  * when it is proved. */
 static bool surround(search *s)
@@ -380,8 +390,9 @@ static bool surround(search *s)
     look_along_faces(s, 0);
     look_along_faces(s, 1);
     if (s->sharp && (!s->found || s->low > s->best.gap) && settle_low(s) && prove_best(s)) return true;
-    climb(s, fmax(IMP_GAP_SLACK * s->pair->reach,
-                  fmin(IMP_GAP_COARSE_DEPTH * -s->low, IMP_GAP_COARSE_SIZE * s->pair->size)));
+    double slack;
+    do slack = coarse_slack(s);
+    while (climb(s, slack) && coarse_slack(s) < 0.5 * slack);
     if (!s->found || s->low > s->best.gap) newton_from(s, s->low_n, NULL, IMPACT_PATH_FALLBACK);
     if (s->found && s->best.gap >= s->low - IMP_GAP_SLACK * s->pair->reach && prove_best(s)) return true;
     if (s->found && s->best.gap >= s->low - IMP_GAP_SLACK * s->pair->reach) return false;
@@ -399,15 +410,18 @@ static bool form_holds(const imp_form *form, const double x[3])
     return imp_form_inside(form, body) <= 1 + IMP_GAP_LEVEL;
 }
 
-/* Moves one of the points that the normal touches across it to face the other; false when it leaves its body, or the
- * other is not in its own: at exponents near 1 a point follows its normal by 1/(exponent - 1) of rounding. */
+/* Moves one of the points that the normal touches across it to face the other, unless they do; false when it leaves its
+ * body, or the other is not in its own: at exponents near 1 a point follows its normal by 1/(exponent - 1) of rounding.
+ */
 static bool face(const imp_gap_solids *pair, const double n[3], double gap, double x[2][3])
 {
-    double v[3];
-    difference(pair, (const double(*)[3])x, v);
+    double aside[3];
+    difference(pair, (const double(*)[3])x, aside);
+    for (int i = 0; i < 3; i++) aside[i] -= gap * n[i];
+    if (distance_of(aside) <= IMP_GAP_CLOSED * pair->reach) return true;
     for (int k = 0; k < 2; k++) {
         double moved[3];
-        for (int i = 0; i < 3; i++) moved[i] = x[k][i] + (k ? -1 : 1) * (v[i] - gap * n[i]);
+        for (int i = 0; i < 3; i++) moved[i] = x[k][i] + (k ? -1 : 1) * aside[i];
         if (!form_holds(&pair->form[k], moved) || !form_holds(&pair->form[1 - k], x[1 - k])) continue;
         memcpy(x[k], moved, sizeof moved);
         return true;
@@ -451,22 +465,19 @@ static impact_status bracket(const search *s, double upper, imp_gap_bracket *mee
     meeting->upper = fmax(held ? fmin(s->most, fmin(upper, apart)) : distance_of(s->pair->c), meeting->lower);
     meeting->stiffness = 0;
     if (!(meeting->upper - meeting->lower <= IMP_GAP_CLOSED * s->pair->reach)) return IMPACT_BRACKET;
-    return apart - fabs(meeting->gap) <= IMP_GAP_CLOSED * s->pair->reach ||
-                   face(s->pair, meeting->n, meeting->gap, meeting->x)
-               ? IMPACT_OK
-               : IMPACT_BRACKET;
+    return face(s->pair, meeting->n, meeting->gap, meeting->x) ? IMPACT_OK : IMPACT_BRACKET;
 }
 
 bool imp_gap_first(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting, impact_gap_path *path)
 {
     double n[3];
     *path = IMPACT_PATH_NEWTON;
-    if (cached && imp_gap_newton(pair, cached, NULL, meeting)) return true;
+    if (cached && imp_gap_newton(pair, cached, NULL, meeting) && meeting->shares) return true;
     centre_line(pair, n);
     ellipsoid_seed(pair, SEED_STEPS, n);
-    if (imp_gap_newton(pair, n, NULL, meeting)) return true;
+    if (imp_gap_newton(pair, n, NULL, meeting) && meeting->shares) return true;
     *path = IMPACT_PATH_GJK;
-    return imp_gap_harvest(pair, n) && imp_gap_newton(pair, n, NULL, meeting);
+    return imp_gap_harvest(pair, n) && imp_gap_newton(pair, n, NULL, meeting) && meeting->shares;
 }
 
 /* The best answer, with what is known of better ones: an overlap that is not over may have a nearer way out, by no more

@@ -24,6 +24,7 @@ typedef struct imp_gap_bracket {
     double x[2][3];      /* witness points relative to the centres, world axes */
     double stiffness;    /* smallest eigenvalue of H_A + H_B + gap I across n */
     double lower, upper; /* bracket of the gap; upper is certain for separated bodies only */
+    bool shares;         /* the bodies are seen to have a point in common, or gap >= 0 */
 } imp_gap_bracket;
 
 /* Whether impact_gap takes the bodies; their orientations, normalised. */
@@ -46,8 +47,8 @@ qvec3 imp_gap_guess(const impact_solid *body1, const impact_solid *body2);
 double imp_pair_gap(const imp_gap_solids *pair, const double n[3], double x[2][3]);
 
 /* Mixed primal/dual Newton from the unit seed n, and from points near the witness points (x; NULL: the support points):
- * true when it settled on the global maximum of g (gap >= 0) or on a local one that two overlapping bodies have;
- * *meeting is then the answer. */
+ * true when it settled on the global maximum of g (gap >= 0) or on a local one; *meeting is then the answer. A negative
+ * local maximum may be of bodies that are apart, unless it shares, or is proved the highest. */
 bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double (*x)[3], imp_gap_bracket *meeting);
 
 /* Two moving bodies, as a search for their contact in time sees them. */

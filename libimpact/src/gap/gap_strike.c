@@ -59,7 +59,7 @@ static bool trim(strike *s, imp_surface surface[2], double low, double high, dou
     for (int i = 0; i < MAX_TRIMS; i++) {
         imp_gap_bracket meeting;
         const double rate = closing(s);
-        if (!imp_face_judge(&s->pair, &s->face, &meeting) || !(rate < 0)) break;
+        if (!imp_face_judge(&s->pair, &s->face, &meeting) || !meeting.shares || !(rate < 0)) break;
         const double width = meeting.upper - meeting.lower, off = fabs(meeting.lower) + width;
         if (off < least) {
             least = off;

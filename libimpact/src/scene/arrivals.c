@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/arrivals.h"
 #include "base/number.h"
+#include "base/tolerances.h"
 #include "scene/following.h"
 #include "scene/gather.h"
 #include "scene/islands.h"
@@ -15,19 +16,18 @@
 
 #include <stdio.h>
 
-/* A body may have so many events at one time. */
+/* A body has no end of events at one time. */
 static impact_status check_stall(impact_scene *scene, const imp_island *island)
 {
-    enum { MAX_STALLS = 10000 };
     for (int i = 0; i < island->world.body_count; i++) {
         const imp_body *body = &island->world.bodies[i];
         imp_track *track = &scene->tracks.tracks[body->index];
         if (body->is_static) continue;
         track->stalls = track->last_event == island->t ? track->stalls + 1 : 0;
         track->last_event = island->t;
-        if (track->stalls < MAX_STALLS) continue;
+        if (track->stalls < IMP_EVENTS_AT_ONCE * (1 + track->near_count)) continue;
         snprintf(scene->message, sizeof scene->message, "body '%s': %d events at the one instant t = %s brought no end",
-                 body->name, MAX_STALLS, imp_number_of(island->t).text);
+                 body->name, track->stalls, imp_number_of(island->t).text);
         return IMPACT_EUNSETTLED;
     }
     return IMPACT_OK;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Deep overlaps: octahedra against brute force over all features in 128 bits; other bodies with edges, in random and
- * in symmetric poses, against normals without number: no way out is nearer than the bracket says.
+ * in symmetric poses, against normals without number: no way out is nearer than the bracket says; and the way that is
+ * given leads out, by the bodies' inequalities.
  */
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,8 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <impact/gap.h>
-#include "kit/contact_random.h"
+#include "kit/face_pairs.h"
 #include "kit/figures.h"
+#include "kit/mixed_pairs.h"
 
 static double thinnest(const impact_shape *s) { return fmin(s->a, fmin(s->b, s->c)); }
 
@@ -260,6 +262,108 @@ static void rings_of_ways_out(void **state)
     assert_true(t.widest <= 0.01);
 }
 
+/* ---- the way out, by the bodies' inequalities ---- */
+
+/* How far x (from the body's position, world) is off its surface, negative inside: to first order, by differences. */
+static double off_surface(const impact_solid *body, qvec3 x)
+{
+    const impact_shape *s = &body->shape;
+    const qvec3 at = quat_rotate_inverse(body->orientation, x);
+    const double off = impact_shape_inside(s, at) - 1, axis[3] = {s->a, s->b, s->c}, place[3] = {at.x, at.y, at.z};
+    if (s->kind != IMPACT_SUPERQUADRIC && s->kind != IMPACT_SUPERELLIPSOID && s->kind != IMPACT_SPHERE)
+        return off * contact_size(s);
+    double square = 0;
+    for (int i = 0; i < 3; i++) {
+        const double by = copysign(1e-7 * axis[i], place[i]);
+        const qvec3 beside = {at.x + (i == 0) * by, at.y + (i == 1) * by, at.z + (i == 2) * by};
+        const double slope = (impact_shape_inside(s, beside) - 1 - off) / by;
+        square += slope * slope;
+    }
+    return off / sqrt(square);
+}
+
+/* How deep points of either surface, most of them near the normal's, lie in the other body. */
+static double deepest_point(random_stream *random, const impact_solid body[2], qvec3 normal)
+{
+    double deepest = 0;
+    for (int i = 0; i < 200; i++) {
+        const impact_solid *one = &body[i % 2], *other = &body[1 - i % 2];
+        const qvec3 towards = i % 2 ? normal : qvec3_neg(normal);
+        const qvec3 d = qvec3_axpy(random_log(random, 1e-6, 3), random_direction(random), towards);
+        const qvec3 x = qvec3_add(qvec3_sub(one->position, other->position),
+                                  contact_support(one, qvec3_scale(d, 1 / qvec3_norm(d))));
+        deepest = fmax(deepest, -off_surface(other, x));
+    }
+    return deepest;
+}
+
+typedef struct leads {
+    int asked, bracket;
+    double inside, off, along, aside, widest;
+} leads;
+
+/* Whatever its status, an overlap's normal and lower end lead out, and its points lie on the surfaces, gap apart along
+ * the normal; but in a bracket they also face each other. */
+static void check_way(random_stream *random, const impact_solid body[2], leads *l)
+{
+    impact_contact c;
+    const impact_status status = impact_gap(&body[0], &body[1], NULL, &c);
+    const double reach = reach_of(body);
+    if (!(c.upper < -1e-6 * reach)) return;
+    const impact_solid out[2] = {
+        {.shape = body[0].shape, .position = qvec3_axpy(-c.lower, c.normal, body[0].position), body[0].orientation},
+        body[1]};
+    const qvec3 v = qvec3_sub(qvec3_add(qvec3_sub(body[0].position, body[1].position), c.offset1), c.offset2);
+    l->asked++;
+    l->bracket += status == IMPACT_BRACKET;
+    l->inside = fmax(l->inside, deepest_point(random, out, c.normal) / reach);
+    l->off = fmax(l->off, fabs(off_surface(&body[0], c.offset1)) / reach);
+    l->off = fmax(l->off, fabs(off_surface(&body[1], c.offset2)) / reach);
+    l->along = fmax(l->along, fabs(qvec3_dot(c.normal, v) - c.gap) / reach);
+    if (status != IMPACT_BRACKET) l->aside = fmax(l->aside, qvec3_norm(qvec3_axpy(-c.gap, c.normal, v)) / reach);
+    l->widest = fmax(l->widest, (c.upper - c.lower) / -c.gap);
+}
+
+/* Body 1's place: a thousandth to one and a half of the thinnest semi-axis away, or up to a size. */
+static void check_random_way(random_stream *random, int one, int two, bool far, leads *l)
+{
+    impact_solid body[2] = {{.orientation = random_rotation(random)}, {.orientation = random_rotation(random)}};
+    body[0].shape = random_shape(random, one), body[1].shape = random_shape(random, two);
+    const double thin = fmin(thinnest(&body[0].shape), thinnest(&body[1].shape));
+    body[0].position = random_vector(random, 1e-3 * thin, far ? reach_of(body) : 1.5 * thin);
+    check_way(random, body, l);
+}
+
+static void ways_lead_out(void **state)
+{
+    (void)state;
+    random_stream random = {35};
+    leads l = {0};
+    for (int k = 0; k < 120 * RANDOM_FAMILIES; k++) {
+        const int family = k % RANDOM_FAMILIES, other = (int)(random_bits(&random) % RANDOM_FAMILIES);
+        check_random_way(&random, family, k % 2 ? family : other, k % 3 == 0, &l);
+    }
+    for (int k = 0; k < 120 * PAIR_FAMILIES; k++) {
+        face_pair pair = random_face_pair(&random, k % PAIR_FAMILIES);
+        check_way(&random, pair.body, &l);
+        end_face_pair(&pair);
+    }
+    for (int k = 0; k < 120 * MIXED_FAMILIES; k++) {
+        mixed_pair pair = random_mixed_pair(&random, k % MIXED_FAMILIES, -random_log(&random, 1e-3, 1));
+        check_way(&random, pair.body, &l);
+        end_mixed_pair(&pair);
+    }
+    show_figure("ways out, asked", l.asked);
+    show_figure("ways out, bracket", l.bracket);
+    show_figure("ways out, moved by it deeper than", l.inside);
+    show_figure("ways out, points off the surfaces", l.off);
+    show_figure("ways out, points aside of each other", l.aside);
+    show_figure("ways out, widest over depth", l.widest);
+    assert_true(l.asked >= 2800 && l.bracket <= l.asked / 100);
+    assert_true(l.inside <= 4e-15 && l.off <= 2e-14 && l.along <= 1e-14 && l.aside <= 2e-14);
+    assert_true(l.widest <= 0.01);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -269,6 +373,7 @@ int main(void)
         cmocka_unit_test(nearest_way_out_of_random_overlaps),
         cmocka_unit_test(nearest_way_out_of_symmetric_poses),
         cmocka_unit_test(rings_of_ways_out),
+        cmocka_unit_test(ways_lead_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

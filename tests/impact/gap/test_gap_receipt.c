@@ -156,13 +156,70 @@ static void held_is_by_the_distance(void **state)
     assert_false(imp_gap_holds(&form, (double[]){NAN, 0, 0}, 1));
 }
 
+/* (f - 1)/|grad f| of sum |x_i|^p_i and of (|x|^p + |y|^p)^(t/p) + |z|^t, by libm's powers. */
+static double outside_by_libm(const impact_shape *s, const double x[3])
+{
+    const double p[3] = {s->r, s->s, s->t};
+    double f = 0, square = 0;
+    const bool nested = s->kind == IMPACT_SUPERELLIPSOID;
+    const double section = nested ? pow(x[0], p[0]) + pow(x[1], p[0]) : 1;
+    if (!(fmin(section, fmin(x[0], fmin(x[1], x[2]))) > 1e-250)) return NAN; /* its powers have no digits left */
+    for (int i = 0; i < 3; i++) {
+        const bool within = nested && i < 2;
+        const double slope =
+            within ? p[2] * pow(section, p[2] / p[0] - 1) * pow(x[i], p[0] - 1) : p[i] * pow(x[i], p[i] - 1);
+        f += within ? (i == 0 ? pow(section, p[2] / p[0]) : 0) : pow(x[i], p[i]);
+        square += slope * slope;
+    }
+    return (f - 1) / sqrt(square);
+}
+
+/* Near the surface and as far from it as half and double, of exponents 1 to 1000, by other powers than the receipt's.
+ */
+static void outside_is_by_the_inequality(void **state)
+{
+    (void)state;
+    random_stream random = {6};
+    double worst = 0;
+    int asked = 0;
+    for (int k = 0; k < 40000; k++) {
+        impact_shape shape;
+        const double most = k % 4 ? 10 : 1000, t = random_log(&random, 1, most);
+        if (k % 2)
+            impact_shape_superellipsoid(1, 1, 1, 2 / t, 2 / random_log(&random, 1, most), &shape);
+        else
+            impact_shape_superquadric(1, 1, 1, t, random_log(&random, 1, most), random_log(&random, 1, most), &shape);
+        const qvec3 d = random_direction(&random);
+        qvec3 x;
+        imp_form form;
+        imp_form_make(&shape, 1, quat_identity(), &form);
+        impact_shape_support(&shape, (qvec3){fabs(d.x), fabs(d.y), fabs(d.z)}, &x);
+        const double part = k % 3 ? 1 + 1e-3 * (random_unit(&random) - 0.5) : random_log(&random, 0.5, 2);
+        const double place[3] = {part * x.x, part * x.y, part * x.z};
+        const double wanted = outside_by_libm(&shape, place), got = imp_gap_outside(&form, place);
+        if (!(fabs(wanted) < 10)) continue;
+        asked++;
+        worst = fmax(worst, fabs(got - wanted) / (1 + most * fabs(wanted)));
+    }
+    show_figure("outside against libm's powers", worst);
+    assert_true(asked > 30000);
+    assert_at_most(worst, 1e-15);
+    imp_form form;
+    impact_shape ball;
+    impact_shape_superquadric(1, 1, 1, 3, 3, 3, &ball);
+    imp_form_make(&ball, 1, quat_identity(), &form);
+    assert_true(imp_gap_outside(&form, (double[]){0, 1, 0}) == 0);
+    assert_true(imp_gap_outside(&form, (double[]){5e-324, 1, 0}) == 0);
+    assert_true(!imp_gap_holds(&form, (double[]){1e300, 0, 0}, 1));
+    assert_true(!imp_gap_holds(&form, (double[]){INFINITY, 0, 0}, 1));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_that_leaves_its_body),
-        cmocka_unit_test(right_answers_pass),
-        cmocka_unit_test(spoilt_answers_fail),
-        cmocka_unit_test(held_is_by_the_distance),
+        cmocka_unit_test(a_point_that_leaves_its_body), cmocka_unit_test(right_answers_pass),
+        cmocka_unit_test(spoilt_answers_fail),          cmocka_unit_test(held_is_by_the_distance),
+        cmocka_unit_test(outside_is_by_the_inequality),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
