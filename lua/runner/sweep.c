@@ -246,7 +246,7 @@ static int complain_early(impact_sweep *sweep, int code)
     impact_runner *runner = sweep->runner;
     snprintf(runner->early, sizeof runner->early, "; %ld of %ld runs done here, the same command goes on",
              atomic_load(&sweep->done), sweep->todo_count);
-    return impact_runner_complain_limits(runner, code, sweep->message[0] ? sweep->message : "the sweep stopped");
+    return impact_runner_complain_limits(runner, code, sweep->message);
 }
 
 /* When every run is there, whoever did it: the table, by rank 0. */

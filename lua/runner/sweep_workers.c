@@ -33,12 +33,13 @@ static double thread_time(void)
 
 /* ---- ends ---- */
 
+/* message: NULL for an error that is not a text. */
 static void stop_all(impact_sweep *sweep, int code, const char *message)
 {
     pthread_mutex_lock(&sweep->gate);
     if (!atomic_load(&sweep->stopped)) {
         sweep->code = code;
-        snprintf(sweep->message, sizeof sweep->message, "%s", message);
+        snprintf(sweep->message, sizeof sweep->message, "%s", message ? message : "an error that is not a text");
         atomic_store(&sweep->stopped, true);
     }
     pthread_mutex_unlock(&sweep->gate);
@@ -128,10 +129,7 @@ static bool run_one(worker *self, lua_State *L, long run)
     lua_pushinteger(L, run);
     const int status = lua_pcall(L, 2, 1, 0);
     if (is_over(self->sweep)) return false; /* a run that was ended is no row */
-    if (status != LUA_OK) {
-        const char *text = lua_tostring(L, -1);
-        return stop_all(self->sweep, IMPACT_EXIT_SCRIPT, text ? text : "an error that is not a text"), false;
-    }
+    if (status != LUA_OK) return stop_all(self->sweep, IMPACT_EXIT_SCRIPT, lua_tostring(L, -1)), false;
     if (!keep_line(self, L, thread_time() - before)) return false;
     lua_settop(L, 1);
     const double now = impact_runner_now();
@@ -163,10 +161,8 @@ static void work_in_state(worker *self)
     }
     lua_pushcfunction(L, work);
     lua_pushlightuserdata(L, self);
-    if (lua_pcall(L, 1, 0, 0) != LUA_OK && !is_over(self->sweep)) {
-        const char *text = lua_tostring(L, -1);
-        stop_all(self->sweep, IMPACT_EXIT_SCRIPT, text ? text : "an error that is not a text");
-    }
+    if (lua_pcall(L, 1, 0, 0) != LUA_OK && !is_over(self->sweep))
+        stop_all(self->sweep, IMPACT_EXIT_SCRIPT, lua_tostring(L, -1));
     impact_runner_watch_thread(NULL);
     write_block(self);
     lua_close(L);
@@ -206,15 +202,16 @@ static void make_worker(worker *self, impact_sweep *sweep, int threads)
 
 /* ---- while they work ---- */
 
-static void tell_progress(const impact_sweep *sweep, double started)
+static void tell_progress(const impact_sweep *sweep, double seconds, bool terminal)
 {
     const long done = atomic_load(&sweep->done), failed = atomic_load(&sweep->failed);
-    const double seconds = impact_runner_now() - started, rate = seconds > 0 ? (double)done / seconds : 0;
+    const double rate = (double)done / seconds;
     const long all = sweep->todo_count / sweep->rank_count; /* of this rank, about */
     char left[60] = "";
     if (rate > 0 && all > done) snprintf(left, sizeof left, ", about %.0f s left", (double)(all - done) / rate);
-    fprintf(stderr, "%s%ld of %ld runs, %.4g per second%s, %ld failed%s", isatty(STDERR_FILENO) ? "\r\033[K" : "", done,
-            all, rate, left, failed, isatty(STDERR_FILENO) ? "" : "\n");
+    const char *const around[2] = {terminal ? "\r\033[K" : "", terminal ? "" : "\n"};
+    fprintf(stderr, "%s%ld of %ld runs, %.4g per second%s, %ld failed%s", around[0], done, all, rate, left, failed,
+            around[1]);
     fflush(stderr);
 }
 
@@ -237,7 +234,7 @@ static void watch(impact_sweep *sweep, worker *workers, int threads)
         over = is_over(sweep);
         if (quiet || impact_runner_now() - told < pause) continue;
         told = impact_runner_now();
-        tell_progress(sweep, started);
+        tell_progress(sweep, told - started, terminal);
         shown = true;
     }
     pthread_mutex_unlock(&sweep->gate);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * For LD_PRELOAD: of the process's calls of the system below, number FAIL_AT is answered with an error (FAIL_WITH, or
- * EIO); FAIL_COUNT puts their number on stderr at the end. FAIL_TTY: every descriptor is a terminal. A child that is
+ * For LD_PRELOAD: of the process's calls of the system below, or of those named FAIL_ONLY, number FAIL_AT is answered
+ * with an error (FAIL_WITH, or EIO); FAIL_COUNT puts their number on stderr at the end. FAIL_CLOCK: the clock that is
+ * read goes so many times as fast. FAIL_TTY: every descriptor is a terminal. A child that is
  * forked goes on counting; a program that is started is left alone.
  */
 #define _GNU_SOURCE
@@ -9,6 +10,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -20,20 +22,23 @@
 #include <sys/stat.h>
 #include <sys/time.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static long count, fail_at;
 static int ready, ended, wanted = EIO;
+static const char *only;
 
-static int fails(void)
+static int fails(const char *name)
 {
     if (!ready) {
         const char *at = getenv("FAIL_AT"), *with = getenv("FAIL_WITH");
         ready = 1;
         fail_at = at ? atol(at) : 0;
         if (with) wanted = atoi(with);
+        only = getenv("FAIL_ONLY");
     }
-    if (ended || ++count != fail_at) return 0;
+    if (ended || (only && strcmp(only, name) != 0) || ++count != fail_at) return 0;
     errno = wanted;
     return 1;
 }
@@ -41,7 +46,7 @@ static int fails(void)
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
 #define REFUSED(type, bad, name, parameters, arguments)                                                                \
-    type name parameters { return fails() ? (bad) : REAL(name) arguments; }
+    type name parameters { return fails(#name) ? (bad) : REAL(name) arguments; }
 
 static mode_t mode_of(int flags, va_list rest) { return flags & (O_CREAT | O_TMPFILE) ? va_arg(rest, mode_t) : 0; }
 
@@ -59,7 +64,7 @@ int open(const char *path, int flags, ...)
     va_start(rest, flags);
     const mode_t mode = mode_of(flags, rest);
     va_end(rest);
-    return !is_count(path) && fails() ? -1 : REAL(open)(path, flags, mode);
+    return !is_count(path) && fails(__func__) ? -1 : REAL(open)(path, flags, mode);
 }
 
 int openat(int folder, const char *path, int flags, ...)
@@ -68,25 +73,25 @@ int openat(int folder, const char *path, int flags, ...)
     va_start(rest, flags);
     const mode_t mode = mode_of(flags, rest);
     va_end(rest);
-    return fails() ? -1 : REAL(openat)(folder, path, flags, mode);
+    return fails(__func__) ? -1 : REAL(openat)(folder, path, flags, mode);
 }
 
 /* What is refused is closed all the same, as Linux does. */
 int close(int file)
 {
-    const int refused = fails(), closed = REAL(close)(file);
+    const int refused = fails(__func__), closed = REAL(close)(file);
     return refused ? errno = wanted, -1 : closed;
 }
 
 int fflush(FILE *file)
 {
-    const int refused = fails(), flushed = REAL(fflush)(file);
+    const int refused = fails(__func__), flushed = REAL(fflush)(file);
     return refused ? errno = wanted, EOF : flushed;
 }
 
 int fclose(FILE *file)
 {
-    const int refused = fails(), closed = REAL(fclose)(file);
+    const int refused = fails(__func__), closed = REAL(fclose)(file);
     return refused ? errno = wanted, EOF : closed;
 }
 
@@ -99,15 +104,35 @@ static size_t none_of(FILE *file)
 
 size_t fwrite(const void *from, size_t size, size_t number, FILE *file)
 {
-    return fails() ? none_of(file) : REAL(fwrite)(from, size, number, file);
+    return fails(__func__) ? none_of(file) : REAL(fwrite)(from, size, number, file);
 }
 
 size_t fread(void *to, size_t size, size_t number, FILE *file)
 {
-    return fails() ? none_of(file) : REAL(fread)(to, size, number, file);
+    return fails(__func__) ? none_of(file) : REAL(fread)(to, size, number, file);
 }
 
 int isatty(int file) { return getenv("FAIL_TTY") != NULL || REAL(isatty)(file); }
+
+/* Its errors are what it returns. */
+int pthread_create(pthread_t *thread, const pthread_attr_t *with, void *(*run)(void *), void *of)
+{
+    return fails(__func__) ? wanted : REAL(pthread_create)(thread, with, run, of);
+}
+
+int clock_gettime(clockid_t clock, struct timespec *now)
+{
+    const int answer = REAL(clock_gettime)(clock, now);
+    const char *faster = clock == CLOCK_MONOTONIC ? getenv("FAIL_CLOCK") : NULL;
+    if (answer != 0 || !faster) return answer;
+    static struct timespec first;
+    if (first.tv_sec == 0) first = *now;
+    const double passed =
+        atof(faster) * ((double)(now->tv_sec - first.tv_sec) + 1e-9 * (double)(now->tv_nsec - first.tv_nsec));
+    now->tv_sec = first.tv_sec + (time_t)passed;
+    now->tv_nsec = (long)(1e9 * (passed - (double)(time_t)passed));
+    return answer;
+}
 
 REFUSED(int, -1, memfd_create, (const char *name, unsigned flags), (name, flags))
 REFUSED(ssize_t, -1, readlink, (const char *path, char *to, size_t size), (path, to, size))

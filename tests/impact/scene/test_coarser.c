@@ -72,6 +72,28 @@ static void what_is_told_is_not_too_small(void **state)
     }
 }
 
+/* Piles whose motions part: some body comes to lie its own size from where finer steps bring it, and the time from
+ * which what is told is no measure is named before. */
+static void motions_that_part_are_told(void **state)
+{
+    (void)state;
+    const unsigned long seeds[] = {3008, 3011};
+    for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
+        static pile_scene pile;
+        random_pile_scene(seeds[k], (int)(seeds[k] % PILE_STARTS), &pile);
+        pile.def.pile_tolerance = 1e-5;
+        impact_scene_def finer_def = pile.def;
+        finer_def.pile_tolerance = 1e-6;
+        impact_scene *scene = created(&pile.def), *finer = created(&finer_def);
+        assert_true(runs_to(scene, pile.def.duration) && runs_to(finer, pile.def.duration));
+        assert_true(apart(&pile.def, scene, finer) > 2 * impact_scene_pile_error(scene));
+        assert_true(impact_scene_pile_parted(scene) < 0.5 * pile.def.duration);
+        impact_scene_destroy(scene);
+        impact_scene_destroy(finer);
+        pile_scene_end(&pile);
+    }
+}
+
 /* Some 80 steps, whose errors sum to 2e-5 m; after them it flies and is struck. */
 static void what_goes_on_after_steps_is_in_it(void **state)
 {
@@ -154,9 +176,9 @@ static void tolerances_that_are_none_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_told_is_not_too_small),          cmocka_unit_test(what_goes_on_after_steps_is_in_it),
-        cmocka_unit_test(what_a_host_changes_is_changed_in_both), cmocka_unit_test(what_is_saved_says_as_much),
-        cmocka_unit_test(tolerances_that_are_none_are_refused),
+        cmocka_unit_test(what_is_told_is_not_too_small),     cmocka_unit_test(motions_that_part_are_told),
+        cmocka_unit_test(what_goes_on_after_steps_is_in_it), cmocka_unit_test(what_a_host_changes_is_changed_in_both),
+        cmocka_unit_test(what_is_saved_says_as_much),        cmocka_unit_test(tolerances_that_are_none_are_refused),
     };
     if (!impact_has(IMPACT_PART_CVODE)) return 0;
     return cmocka_run_group_tests(tests, NULL, NULL);
