@@ -51,10 +51,10 @@ typedef struct impact_contact {
  * between the positions; an overlap deeper than 5 % of the smallest semi-axis or of the radii at the contact, or of two
  * bodies with edges, is then proved the nearest way out, or one of several equally near. With an answer too:
  * IMPACT_DEEP, a way out that no other is nearer than by more than the bracket; IMPACT_BRACKET, the gap lies in [lower,
- * upper]. There too lower is g along the normal, so that body 1 moved by -lower along it has left an overlap; the points
- * are where the normal touches the bodies, on their surfaces and lower apart along it, but they need not face each other
- * (else point1 - point2 = gap normal, to the same 2e-14). Both brackets of an overlap are at most one per cent of its
- * depth wide, but where the work allowed is not enough: then upper is the distance of the centres or 0. Two
+ * upper]. There too lower is g along the normal, so that body 1 moved by -lower along it has left an overlap; the
+ * points are where the normal touches the bodies, on their surfaces and lower apart along it, but they need not face
+ * each other (else point1 - point2 = gap normal, to the same 2e-14). Both brackets of an overlap are at most one per
+ * cent of its depth wide, but where the work allowed is not enough: then upper is the distance of the centres or 0. Two
  * polytopes (boxes, polyhedra, capsules, octahedra, and spheres with them) are exact in any overlap. IMPACT_EDOMAIN: a
  * position that is not finite, an orientation that is zero or not finite. A negative status leaves every number of
  * *contact NaN. Method: docs/gap.md.

@@ -246,8 +246,9 @@
 /* A body's radius over its speed bounds a step no more than this part of max_step does: a million steps in a run are
  * the most that is spent on looking. */
 #define IMP_LEAST_OF_MAX_STEP 1e-3
-/* Events of one body at one instant, for itself and for each pair that it may meet: the pair is met, held, slides and is
- * let go, each for the sake of two others and once more as those answer. No scene of the tests has more than three. */
+/* Events of one body at one instant, for itself and for each pair that it may meet: the pair is met, held, slides and
+ * is let go, each for the sake of two others and once more as those answer. No scene of the tests has more than three.
+ */
 #define IMP_EVENTS_AT_ONCE 12
 /* Of the time left, what two million steps (motion_stretch.c) must gain: with less a run takes 2e12 of them. */
 #define IMP_LEAST_GAIN 1e-6
