@@ -3,6 +3,7 @@
 #include "base/numbers.h"
 #include "base/tolerances.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -122,33 +123,60 @@ static double settle_friction(imp_bodies_problem *p, double rho, double enough)
     return fmax(0.1 * rho, IMP_BODIES_STIFF);
 }
 
-/* From p->r, as far as it goes, brief: in some steps of Newton's; the best goes to r and u. */
+/* The motion for the reactions, and how good they are; the best go to r and u. */
+static double try_reactions(const imp_bodies_problem *p, const double *reactions, double *r, double *u)
+{
+    const size_t size = (size_t)(p->width * p->count) * sizeof *r;
+    imp_bodies_effect(p, reactions);
+    const double residual = residual_of(p, reactions);
+    if (residual < p->outcome->residual) {
+        p->outcome->residual = residual;
+        memcpy(r, reactions, size);
+        memcpy(u, p->u, size);
+    }
+    return residual;
+}
+
+/* From p->r, as far as it goes, or brief: in some steps of Newton's. */
 static void iterate(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
 {
     enum { MOST = 40, PATIENCE = 10 };
     const size_t size = (size_t)p->width * sizeof *r * (size_t)p->count;
-    imp_cone_outcome *outcome = p->outcome;
+    const imp_cone_outcome *outcome = p->outcome;
+    const int last = brief ? outcome->steps + IMP_BODIES_BRIEF : INT_MAX;
     double rho = IMP_BODIES_SOFT;
     for (int k = 0, idle = 0; k <= MOST && idle < PATIENCE; k++) {
-        imp_bodies_effect(p, p->r);
-        const double found = residual_of(p, p->r);
-        idle = found < 0.5 * outcome->residual ? 0 : idle + 1;
-        if (found < outcome->residual) {
-            outcome->residual = found;
-            memcpy(r, p->r, size);
-            memcpy(u, p->u, size);
-        }
-        if (outcome->residual <= enough || (brief && outcome->steps > IMP_BODIES_BRIEF)) return;
+        const double before = outcome->residual;
+        const double found = try_reactions(p, p->r, r, u);
+        idle = outcome->residual < 0.5 * before ? 0 : idle + 1;
+        if (outcome->residual <= enough || outcome->steps > last) return;
         rho = fmax(settle_friction(p, rho, IMP_BODIES_INNER * fmin(found, 1)), IMP_BODIES_STIFF);
         memcpy(p->r, p->pressed, size);
     }
 }
 
-/* What begins far off is swept first. */
+/* By way of contacts that give, r = P_K(-rho û): one answer for each rho, whichever reactions bear it. */
+static void let_give(imp_bodies_problem *p, double enough, double *r, double *u)
+{
+    memset(p->r, 0, (size_t)(p->width * p->count) * sizeof *r);
+    imp_bodies_effect(p, r);
+    p->follows = true;
+    for (double rho = IMP_BODIES_EASIEST; rho <= IMP_BODIES_HARDEST && p->outcome->residual > enough; rho *= 10) {
+        imp_bodies_stiffen(p, rho);
+        if (imp_bodies_settle(p, IMP_BODIES_EASED) < 0) return;
+        (void)try_reactions(p, p->pressed, r, u);
+    }
+}
+
+/* What begins far off is swept first; what does not settle is eased, and goes on from there. */
 static void sweep_and_iterate(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
 {
     imp_bodies_effect(p, p->r);
     if (residual_of(p, p->r) > IMP_BODIES_FAR) imp_bodies_sweep(p, IMP_BODIES_SWEEPS);
+    iterate(p, enough, brief, r, u);
+    if (p->outcome->residual <= enough) return;
+    let_give(p, enough, r, u);
+    memcpy(p->r, r, (size_t)(p->width * p->count) * sizeof *r);
     iterate(p, enough, brief, r, u);
 }
 

@@ -10,8 +10,10 @@
  *
  * by semismooth Newton on the bodies, s with its slope; where that leads nowhere s is held, and x minimises |x|²/2 +
  * sum |P_K(r - rho (q + s + G x))|²/(2 rho) (the method of multipliers: Rockafellar 1976; Hestenes, Powell 1969; s from
- * iteration to iteration: Cadoux 2009). rho grows as Newton takes fewer steps. Reactions that are not unique are no
- * trouble, as x is. Moments are forces in the units of imp_cone_units, their rows of G divided by them.
+ * iteration to iteration: Cadoux 2009). rho grows as Newton takes fewer steps. Where that does not settle, as
+ * of faces that slide and turn on each other under masses far apart, contacts are let give: with r = 0 each rho has its
+ * own answer, whichever reactions bear it, and from soft to stiff x hardly changes. Reactions that are not unique are
+ * no trouble, as x is. Moments are forces in the units of imp_cone_units, their rows of G divided by them.
  */
 #ifndef IMP_CONE_BODIES_H
 #define IMP_CONE_BODIES_H
