@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_together.h"
+#include "base/tolerances.h"
 #include "base/number.h"
 #include "contact/encounter.h"
 #include "contact/persist_still.h"
@@ -134,17 +135,29 @@ static void describe(imp_island *island, gathering *g, bool spent)
     }
 }
 
+/* N s: impulses up to this are rounding of the greatest. */
+static double rounding_of_impulses(const gathering *g)
+{
+    double greatest = 0;
+    for (int c = 0; c < g->count; c++) greatest = fmax(greatest, qvec3_norm(g->outcomes[c].impulse));
+    return IMP_ENCOUNTER_GRAIN * greatest;
+}
+
 /* A row for each contact that exchanged an impulse; all share the encounter's number. */
 static impact_status record_all(imp_island *island, const gathering *g, const char *name, double energy)
 {
     impact_status status = IMPACT_OK;
     const long number = ++island->scene->encounter_count;
+    const double none = rounding_of_impulses(g);
     island->world.usage.encounters++;
     for (int c = 0; status == IMPACT_OK && c < g->count; c++) {
         const impact_meeting_outcome *o = &g->outcomes[c];
         const imp_touch *touch = &g->met[c].touch;
         char words[128];
-        if (qvec3_dot(o->impulse, o->impulse) == 0) continue;
+        const double before = energy;
+        energy += o->work_compression + o->work_restitution + o->work_friction +
+                  imp_scene_drive_impulse(island, touch, o->impulse);
+        if (qvec3_norm(o->impulse) <= none) continue;
         impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
         event.encounter = number;
         event.phases =
@@ -154,9 +167,7 @@ static impact_status record_all(imp_island *island, const gathering *g, const ch
         event.impulse_tangential = qvec3_norm(qvec3_axpy(-event.impulse_normal, touch->normal, o->impulse));
         event.normal_before = o->normal_before;
         event.normal_after = o->normal_after;
-        event.energy_before = energy;
-        energy += o->work_compression + o->work_restitution + o->work_friction +
-                  imp_scene_drive_impulse(island, touch, o->impulse);
+        event.energy_before = before;
         event.energy_after = energy;
         island->motion.resting[touch->body1] = island->motion.resting[touch->body2] = false;
         island->notes[touch->pair].struck = true;
