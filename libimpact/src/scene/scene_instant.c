@@ -132,7 +132,16 @@ static impact_status change_mode(imp_island *island, int p, imp_mode mode)
     return status;
 }
 
-/* A rolling contact's friction has reached its cone: it slides, against the friction that held it. */
+/* Whether a rolling contact's friction is at its cone beside that of another: of reactions that are not unique which
+ * one gets there first is rounding, and whichever slid alone would leave the rest to hold what both had held. */
+static bool gives_way_too(const imp_touch *touch, double greatest)
+{
+    return touch->mode == IMP_ROLL && !touch->still && touch->redundant &&
+           touch->margin <= IMP_MODE_ROUNDING * greatest;
+}
+
+/* A rolling contact's friction has reached its cone: it slides, against the friction that held it; what sticks then
+ * rolls on (persist.h). */
 static impact_status begin_slide(imp_island *island, int p)
 {
     imp_scene_remember(island);
@@ -140,8 +149,13 @@ static impact_status begin_slide(imp_island *island, int p)
     const impact_status status = imp_scene_load(island);
     if (status != IMPACT_OK) return status;
     imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
-    for (int c = 0; c < persist->count; c++)
-        if (persist->touches[c].pair == p) imp_persist_begin_slide(&island->world.pairs[p], &persist->touches[c]);
+    double greatest = 0;
+    for (int c = 0; c < persist->count; c++) greatest = fmax(greatest, qvec3_norm(persist->touches[c].force));
+    for (int c = 0; c < persist->count; c++) {
+        const imp_touch *touch = &persist->touches[c];
+        if (touch->pair == p || gives_way_too(touch, greatest))
+            imp_persist_begin_slide(&island->world.pairs[touch->pair], touch);
+    }
     return hold(island, -1, true);
 }
 
