@@ -57,6 +57,7 @@ local rooms = {
   { "^libimpact/src/scene/tracks", { "impact_crowd", "impact_scene", "impact_scene_answers" } },
   { "^libimpact/src/scene/", { "impact_scene_answers", "impact_scene", "impact_cases", "impact_drive", "impact_scene_together", "impact_random_scenes" } },
   { "^libimpact/src/motion/search", { "impact_search", "impact_crowd" } }, { "^libimpact/src/motion/motion_guard", { "impact_motion_guard", "impact_force_time", "impact_motion" } },
+  { "^libimpact/src/motion/pile", { "impact_pile", "impact_piles" } },
   { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases" } },
   { "^libimpact/src/contact/persist", { "impact_persist_still", "impact_persist_modes", "impact_persist", "impact_cases" } },
   { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning", "impact_cone_bodies" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning", "impact_rolling", "impact_scene_answers" } },
