@@ -276,8 +276,9 @@
 #define IMP_LEAST_ACCELERATION 1e-100
 /* Of what an integrator's component passes zero by, over the relative tolerance. */
 #define IMP_ABSOLUTE_OF_RELATIVE 1e-2
-/* Up to this many of SI's units a body's size, speed and angular momentum are measured in those; larger ones by
- * themselves, or where they pass through 0 rounding counts as error: that of 1e3 is the default tolerance of 1. */
+/* From one to this many of SI's units a body's size, speed and angular momentum are measured in those; smaller ones by
+ * themselves, or the tolerance would be as great as they are; larger ones too, or where they pass through 0 rounding
+ * counts as error: that of 1e3 is the default tolerance of 1. */
 #define IMP_ORDINARY_SIZE 1e3
 /* Steps in flight are many and their errors add up, over a thousand seconds to ten thousand times one's: what nothing
  * holds is integrated closer than asked by IMP_FLIGHT_OF_TOLERANCE, and down to what doubles hold. */

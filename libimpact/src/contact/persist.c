@@ -227,6 +227,11 @@ void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *stat
     if (persist->count == 0) return;
     enum { SWEEPS = 3 }; /* contacts that share a body disturb each other by the square of their gaps */
     for (int sweep = 0; sweep < (persist->count > 1 ? SWEEPS : 1); sweep++) close_gaps(world, states);
+    imp_persist_project_velocities(persist, world, states, loads);
+}
+
+void imp_persist_project_velocities(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads)
+{
     imp_persist_find_touches(persist, world, states, loads);
     for (int c = 0; c < persist->count; c++) {
         imp_touch *touch = &persist->touches[c];

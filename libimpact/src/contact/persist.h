@@ -99,6 +99,8 @@ void imp_persist_close_gap(imp_world *world, imp_pair *pair, const impact_contac
 
 /* Puts positions and velocities back on the held contacts exactly. */
 void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads);
+/* The velocities alone. */
+void imp_persist_project_velocities(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads);
 
 /* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and
  * slide what must. Where reactions are not unique friction gives way first: what pulls is sure only once they are. */

@@ -47,7 +47,22 @@ void imp_motion_pack(const imp_motion *motion, double t, const imp_state *states
     if (motion->world->driven) y[imp_motion_drive(motion)] = motion->works.drive;
 }
 
-static double measure_of(double size) { return size > IMP_ORDINARY_SIZE ? size : 1; }
+static double measure_of(double size) { return size > IMP_ORDINARY_SIZE || (size > 0 && size < 1) ? size : 1; }
+
+/* How fast the bodies are, or would be once the loads have moved a point of theirs by its body's size, m/s: what others
+ * push may not be moving yet. */
+static double speed_scale(const imp_motion *motion, const imp_state *states)
+{
+    double fastest = 0;
+    for (int i = 0; i < motion->world->body_count; i++) {
+        const imp_body *body = &motion->world->bodies[i];
+        if (body->is_static) continue;
+        const qvec3 turned = imp_inverse_inertia(body, states[i].q, motion->loads[i].torque);
+        const double pushed = qvec3_norm(motion->loads[i].force) / body->mass + body->radius * qvec3_norm(turned);
+        fastest = fmax(fastest, hypot(imp_motion_speed(body, &states[i]), sqrt(pushed * body->radius)));
+    }
+    return fastest;
+}
 
 /* Works are differences of energies: that which moves, and what the loads do over the bodies' sizes, J. */
 static double energy_scale(const imp_motion *motion, const imp_state *states)
@@ -62,15 +77,13 @@ static double energy_scale(const imp_motion *motion, const imp_state *states)
 void imp_motion_measures(const imp_motion *motion, const imp_state *states, double *measure)
 {
     for (int i = 0; i < motion->size; i++) measure[i] = 1;
-    const double energy = energy_scale(motion, states) / IMP_ABSOLUTE_OF_RELATIVE;
+    const double energy = energy_scale(motion, states) / IMP_ABSOLUTE_OF_RELATIVE, speed = speed_scale(motion, states);
     for (int k = Y_FORCE_WORK; k <= Y_SLIDING; k++) measure[k] = energy;
     if (motion->world->driven) measure[imp_motion_drive(motion)] = energy;
     double *b = measure + Y_BODIES;
     for (int i = 0; i < motion->world->body_count; i++) {
         const imp_body *body = &motion->world->bodies[i];
         if (body->is_static) continue;
-        const double pushed = qvec3_norm(motion->loads[i].force) / body->mass * body->radius;
-        const double speed = hypot(imp_motion_speed(body, &states[i]), sqrt(pushed));
         const double moment = fmax(body->moments.x, fmax(body->moments.y, body->moments.z));
         for (int k = 0; k < 3; k++) {
             b[k] = measure_of(body->radius);

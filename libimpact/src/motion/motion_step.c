@@ -56,14 +56,6 @@ imp_works imp_motion_works(const imp_motion *motion, double t)
     return (imp_works){y[Y_FORCE_WORK], y[Y_DAMPING], y[Y_SLIDING], drive};
 }
 
-void imp_motion_go_to(imp_motion *motion, double t, imp_state *states)
-{
-    if (t == motion->dense.t1) return; /* the states are there */
-    imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
-    imp_motion_unpack(motion, motion->kept, states);
-    motion->works = imp_motion_works_of(motion, motion->kept);
-}
-
 bool imp_motion_keep_contacts(imp_motion *motion)
 {
     imp_arena *arena = motion->world->arena;
@@ -82,6 +74,26 @@ void imp_motion_restore_contacts(imp_motion *motion)
 {
     memcpy(motion->persist.touches, motion->kept_touches, sizeof *motion->kept_touches * (size_t)motion->persist.count);
     memcpy(motion->world->pairs, motion->kept_pairs, sizeof *motion->kept_pairs * (size_t)motion->world->pair_count);
+}
+
+/* The contacts stay as they are: what they press with was told before. */
+impact_status imp_motion_put_back(imp_motion *motion, double t, imp_state *states)
+{
+    if (motion->persist.count == 0) return IMPACT_OK;
+    if (!imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
+    const bool loaded = imp_motion_load(motion, t, states);
+    if (loaded) imp_persist_project_velocities(&motion->persist, motion->world, states, motion->loads);
+    imp_motion_restore_contacts(motion);
+    return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
+}
+
+void imp_motion_go_to(imp_motion *motion, double t, imp_state *states)
+{
+    if (t == motion->dense.t1) return; /* the states are there */
+    imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
+    imp_motion_unpack(motion, motion->kept, states);
+    (void)imp_motion_put_back(motion, t, states); /* what is refused is found when it departs */
+    motion->works = imp_motion_works_of(motion, motion->kept);
 }
 
 impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states)

@@ -323,6 +323,8 @@ impact_status imp_motion_next(imp_motion *motion, imp_state *states, imp_end *en
     }
     impact_status status = step_on(motion, motion->y, end);
     imp_motion_unpack(motion, motion->y, states);
+    if (status == IMPACT_OK && end->kind != IMP_END_TIME)
+        status = imp_motion_put_back(motion, motion->stride.t, states);
     imp_motion_count_work(motion);
     if (status == IMPACT_OK && motion->stride.t >= imp_field_next_switch(motion->world)) {
         imp_field_enter(motion->world, motion->stride.t);
