@@ -64,7 +64,7 @@ static void part_overlaps(imp_pile *pile, const imp_world *world, int count)
     memset(pile->q, 0, sizeof *pile->q * 3 * (size_t)count);
     for (int c = 0; c < count; c++) pile->q[3 * c] = pile->gap[c], pile->friction[c] = 0;
     const imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
-    if (outcome.status == IMP_CONE_SOLVED || outcome.status == IMP_CONE_INEXACT)
+    if (outcome.residual <= question.usable) /* what it leaves is a part of the overlaps */
         imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
 }
 

@@ -87,6 +87,7 @@ static void test_hidden_bottoms_hold_nothing(void **state)
 {
     (void)state;
     run(3008, PILE_IN_BOX);
+    run(3068, PILE_IN_BOX);
 }
 
 static void test_glides_meet_what_they_touch(void **state)
