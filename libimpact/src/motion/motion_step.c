@@ -65,14 +65,15 @@ bool imp_motion_keep_contacts(imp_motion *motion)
     imp_pair *kept_pairs = imp_arena_grow(arena, motion->kept_pairs, &motion->kept_room[1], pairs, sizeof *kept_pairs);
     if (kept_pairs) motion->kept_pairs = kept_pairs;
     if (!kept || !kept_pairs) return false;
-    memcpy(kept, motion->persist.touches, sizeof *kept * (size_t)touches);
+    if (touches > 0) memcpy(kept, motion->persist.touches, sizeof *kept * (size_t)touches);
     memcpy(kept_pairs, motion->world->pairs, sizeof *kept_pairs * (size_t)pairs);
     return true;
 }
 
 void imp_motion_restore_contacts(imp_motion *motion)
 {
-    memcpy(motion->persist.touches, motion->kept_touches, sizeof *motion->kept_touches * (size_t)motion->persist.count);
+    const size_t touches = (size_t)motion->persist.count;
+    if (touches > 0) memcpy(motion->persist.touches, motion->kept_touches, sizeof *motion->kept_touches * touches);
     memcpy(motion->world->pairs, motion->kept_pairs, sizeof *motion->kept_pairs * (size_t)motion->world->pair_count);
 }
 
