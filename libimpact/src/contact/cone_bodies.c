@@ -168,7 +168,8 @@ static void let_give(imp_bodies_problem *p, double enough, double *r, double *u)
     }
 }
 
-/* What begins far off is swept first; what does not settle is eased, and goes on from there. */
+/* What begins far off is swept first; where that does not settle contacts are let give, and it goes on from there.
+ */
 static void sweep_and_iterate(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
 {
     imp_bodies_effect(p, p->r);

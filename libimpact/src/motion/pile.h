@@ -92,8 +92,8 @@ void imp_pile_begin(imp_pile *pile);
 impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
                             imp_pile_step_result *result);
 
-/* Parts what overlaps in states that no step ended in, as they stand between the ends of one: least in the metric of
- * mass. What the pile remembers stays. IMPACT_ENOMEM. */
+/* Parts what overlaps, to rounding, in states that stand between the ends of a step, or are to rest: least in the
+ * metric of mass. What the pile remembers stays. IMPACT_ENOMEM. */
 impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states);
 
 /* Keeps what the pile remembers, to take it back: the next step is then taken from there anew. IMPACT_ENOMEM. */
