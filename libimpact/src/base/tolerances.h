@@ -537,9 +537,8 @@
 /* Multiplications of one group, some two seconds: a hundred contacts with friction take a thirtieth; of random ones
  * whose stiffnesses and restitutions make ratios of 1e6 the longest that are known end at 1.1e9. */
 #define IMP_SPRINGS_WORK 3e9
-/* Bounces that never end: events from which they are looked for, more than all but a few encounters have; rounds
- * between the first three moments; events in which a contact that takes part closes again. */
-#define IMP_BOUNCES_ASKED 300
+/* Bounces that never end: rounds between the first three moments; events in which a contact that takes part closes
+ * again. */
 #define IMP_BOUNCES_ROUNDS 8
 #define IMP_BOUNCES_LONGEST 100
 /* The ratio over so many rounds: at the end impulses have 1/(1 - R)^2 = 16 times the rounding of those before. */

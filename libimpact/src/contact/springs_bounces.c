@@ -114,7 +114,6 @@ static bool look_for_end(imp_springs *s)
 bool imp_springs_end_bounces(imp_springs *s, int closing)
 {
     imp_springs_bounces *b = &s->bounces;
-    if (s->events < IMP_BOUNCES_ASKED) return false;
     if (b->span == 0 || s->events > b->expected) { /* the contact no longer takes part */
         *b = (imp_springs_bounces){.room = b->room, .contact = closing, .span = IMP_BOUNCES_ROUNDS};
         note_moment(s, 0);
