@@ -138,10 +138,8 @@
 /* Of the reach: a bracket that cannot be narrower, 4 eps; and the one that is promised, 100 eps. */
 #define IMP_GAP_TIGHT 1e-15
 #define IMP_GAP_CLOSED 2e-14
-/* Of the level function f, whose terms are powers: 18 eps times the exponent, of a size; and 45 eps of a point that is
- * asked by itself. */
+/* Of the level function f, whose terms are powers: 18 eps times the exponent, of a size. */
 #define IMP_GAP_INSIDE 4e-15
-#define IMP_GAP_LEVEL 1e-14
 /* Of the reach: how far witness points may lie outside their bodies: 20 eps; right answers of all families stay below
  * 4. */
 #define IMP_GAP_OUTSIDE 4.4e-15

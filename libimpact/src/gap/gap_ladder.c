@@ -399,34 +399,13 @@ static bool surround(search *s)
     return climb(s, IMP_GAP_SLACK * s->pair->reach) && settle_low(s);
 }
 
-static bool form_holds(const imp_form *form, const double x[3])
-{
-    double body[3];
-    for (int i = 0; i < 3; i++)
-        body[i] = form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2];
-    if (form->kind != IMP_FORM_QUADRIC)
-        return imp_core_distance(form, body) <=
-               IMP_WALK_INSIDE * fmax(form->axis[0], fmax(form->axis[1], form->axis[2]));
-    return imp_form_inside(form, body) <= 1 + IMP_GAP_LEVEL;
-}
-
-/* Moves one of the points that the normal touches across it to face the other, unless they do; false when it leaves its
- * body, or the other is not in its own: at exponents near 1 a point follows its normal by 1/(exponent - 1) of rounding.
- */
-static bool face(const imp_gap_solids *pair, const double n[3], double gap, double x[2][3])
+/* Whether the points that the normal touches face each other across it. */
+static bool face_across(const imp_gap_solids *pair, const double n[3], double gap, const double x[2][3])
 {
     double aside[3];
-    difference(pair, (const double(*)[3])x, aside);
+    difference(pair, x, aside);
     for (int i = 0; i < 3; i++) aside[i] -= gap * n[i];
-    if (distance_of(aside) <= IMP_GAP_CLOSED * pair->reach) return true;
-    for (int k = 0; k < 2; k++) {
-        double moved[3];
-        for (int i = 0; i < 3; i++) moved[i] = x[k][i] + (k ? -1 : 1) * aside[i];
-        if (!form_holds(&pair->form[k], moved) || !form_holds(&pair->form[1 - k], x[1 - k])) continue;
-        memcpy(x[k], moved, sizeof moved);
-        return true;
-    }
-    return false;
+    return distance_of(aside) <= IMP_GAP_CLOSED * pair->reach;
 }
 
 static bool in_bodies(const imp_gap_solids *pair, const double x[2][3])
@@ -465,7 +444,8 @@ static impact_status bracket(const search *s, double upper, imp_gap_bracket *mee
     meeting->upper = fmax(held ? fmin(s->most, fmin(upper, apart)) : distance_of(s->pair->c), meeting->lower);
     meeting->stiffness = 0;
     if (!(meeting->upper - meeting->lower <= IMP_GAP_CLOSED * s->pair->reach)) return IMPACT_BRACKET;
-    return face(s->pair, meeting->n, meeting->gap, meeting->x) ? IMPACT_OK : IMPACT_BRACKET;
+    const bool faces = face_across(s->pair, meeting->n, meeting->gap, (const double(*)[3])meeting->x);
+    return faces ? IMPACT_OK : IMPACT_BRACKET;
 }
 
 bool imp_gap_first(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting, impact_gap_path *path)

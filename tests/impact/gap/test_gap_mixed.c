@@ -11,6 +11,14 @@
 #include <impact/toi.h>
 #include "kit/mixed_pairs.h"
 
+/* Of the reach: how far the points of a contact that is settled are from facing each other, x1 - x2 = gap n. */
+static double aside_of(const mixed_pair *pair, const impact_contact *contact)
+{
+    const qvec3 x1 = qvec3_add(pair->body[0].position, contact->offset1),
+                x2 = qvec3_add(pair->body[1].position, contact->offset2);
+    return qvec3_norm(qvec3_sub(qvec3_sub(x1, x2), qvec3_scale(contact->normal, contact->gap))) / pair->reach;
+}
+
 /* 1: the answer is told not to be settled, with a bracket that holds what was made. */
 static int check_pair(const mixed_pair *pair, const char *what, int i)
 {
@@ -18,6 +26,7 @@ static int check_pair(const mixed_pair *pair, const char *what, int i)
     const impact_status status = impact_gap(&pair->body[0], &pair->body[1], NULL, &contact);
     const double error = (contact.gap - pair->gap) / pair->reach;
     const double receipt = impact_gap_receipt(&pair->body[0], &pair->body[1], &contact, NULL);
+    if (status == IMPACT_OK) assert_true(aside_of(pair, &contact) <= 2e-14);
     /* apart the gap is what was made; overlapping it is no less */
     if (status == IMPACT_OK && (pair->gap >= 0 ? fabs(error) : -error) <= 1e-14 && receipt <= 20) return 0;
     if (pair->gap < 0 && (status == IMPACT_BRACKET || status == IMPACT_DEEP) && contact.upper >= pair->gap) return 1;
