@@ -18,7 +18,7 @@ typedef struct stage {
 } stage;
 
 /* At t = .25 the ball slides, the wind and friction have done work, and the island has been looked at before. */
-static void raise(stage *s)
+static void raise_with(stage *s, double tolerance)
 {
     memset(s, 0, sizeof *s);
     s->bodies[0] = floor_body(0.5, 0.5);
@@ -28,6 +28,7 @@ static void raise(stage *s)
     s->wind.name = "wind", s->wind.strength = 2, s->wind.direction = (qvec3){0, 1, 0};
     s->def = scene_of(s->bodies, 2, 1);
     s->def.forces = &s->wind, s->def.force_count = 1;
+    s->def.tolerance = tolerance;
     s->scene = make_scene(&s->def);
     assert_true(impact_scene_run_to(s->scene, 0.25, NULL) >= 0);
     for (int k = 0; k < s->scene->island_count && !s->island; k++) s->island = s->scene->islands[k];
@@ -35,6 +36,8 @@ static void raise(stage *s)
     imp_island_go_to(s->island, 0.25);
     s->island->looked_at = 0.125;
 }
+
+static void raise(stage *s) { raise_with(s, 1e-13); }
 
 static imp_state *ball_of(stage *s) { return &s->island->states[imp_island_find(s->island, 1)]; }
 
@@ -106,6 +109,51 @@ static void what_is_wrong_is_told(void **state)
     check_told(&s, "loss_fallen", r->loss_fallen, 0.5, "losses of energy fell by 0.5 J of ");
 }
 
+/* Spoil one residual by so much. */
+static void spoil_unit(stage *s, double by) { ball_of(s)->q = quat_scale(ball_of(s)->q, 1 + by); }
+
+static void spoil_gap(stage *s, double by)
+{
+    const imp_pair pair = s->island->world.pairs[0];
+    ball_of(s)->x.z += by * imp_world_place_scale(&s->island->world, &pair, s->island->states);
+}
+
+static void spoil_energy(stage *s, double by) { s->island->balance += by * s->scene->greatest_energy; }
+
+static void spoil_momentum(stage *s, double by) { s->island->pushed.off = by; }
+
+static void spoil_loss(stage *s, double by)
+{
+    s->island->loss_before = s->island->impact_loss + by * s->scene->greatest_energy;
+}
+
+/* The limits that docs/scene.md names, of a tolerance of 1e-12: less passes, more is told. */
+static void limits_are_those_that_are_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *field;
+        void (*spoil)(stage *, double);
+        double limit;
+    } all[] = {{"unit", spoil_unit, 0x1p-49},
+               {"gap", spoil_gap, 1e-9 + 1e-9},
+               {"energy", spoil_energy, 1e-8 + 1e-9},
+               {"momentum", spoil_momentum, 1e-12},
+               {"loss_fallen", spoil_loss, 1e-8 + 1e-9}};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+        for (int more = 0; more < 2; more++) {
+            stage s;
+            raise_with(&s, 1e-12);
+            impact_scene_residuals *r = &s.scene->receipt;
+            assert_near(r->limit_contact, 1e-8, 0);
+            all[k].spoil(&s, (more ? 1.5 : 0.7) * all[k].limit);
+            imp_scene_receipt_look(s.island);
+            if (more ? !r->failed || strcmp(r->failed, all[k].field) != 0 : r->failed != NULL)
+                fail_msg("%s: %s", all[k].field, r->failed ? r->failed : "passes");
+            impact_scene_destroy(s.scene);
+        }
+}
+
 /* A NaN passes no comparison: it is wrong wherever it comes. */
 static void no_number_is_wrong(void **state)
 {
@@ -124,6 +172,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_right_passes),
         cmocka_unit_test(what_is_wrong_is_told),
+        cmocka_unit_test(limits_are_those_that_are_named),
         cmocka_unit_test(no_number_is_wrong),
     };
     if (!impact_has(IMPACT_PART_CVODE)) return 0; /* what slides is its */
