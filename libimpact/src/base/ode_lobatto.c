@@ -153,7 +153,7 @@ static imp_one_step_outcome sweep(lobatto_ode *lo, double t, double end, double 
         if (outcome != IMP_STEP_STANDS) return outcome;
         for (int i = 0; i < one->ode.size; i++) {
             const double here = fabs(h * (rate[i] - lo->rate[j][i])) / one->scale[i];
-            if (!(here <= IMP_LOBATTO_FAR)) return IMP_STEP_TOO_LONG;
+            if (!isfinite(here)) return IMP_STEP_TOO_LONG;
             *change = fmax(*change, here);
             lo->rate[j][i] = rate[i];
         }

@@ -951,8 +951,6 @@
 #define IMP_RF_NEAR 2e-3
 /* Of a cosine or sine: a quarter turn given in doubles. */
 #define IMP_QUARTER_TURN 2.5e-16
-/* A level set's bisection ends where both ends are as near, relative. */
-#define IMP_LEVEL_OF_MASS 1e-15
 /* Of the time that slip which fades has left: a step of the explicit method. Its direction turns at a rate that goes as
  * 1/slip; with .3 or .9 a slip that dies out takes a fifth more rates. */
 #define IMP_FADING_PART 0.6
@@ -979,9 +977,8 @@
 #define IMP_LOBATTO_LEFT 0.1
 /* the ratio of one sweep's change to that before from which they are taken to go nowhere, */
 #define IMP_LOBATTO_SLOW 0.7
-/* the ratio that steps are chosen for, 1/e; */
+/* and the ratio r that steps are chosen for, 1/e: r is as the step, and sweeps are as 1/-log r, so that a sweep goes
+ * farthest where -r log r is largest. */
 #define IMP_LOBATTO_RATIO 0.37
-/* and a change that no sweep after it mends. */
-#define IMP_LOBATTO_FAR 1e100
 
 #endif

@@ -79,14 +79,14 @@ static double log_slope_of(const terms *t, double mass)
         low = fmax(low, c - (1 - t->power[i]) * log(mass));
         high = fmax(high, c - (1 - t->power[i]) * log(mass / t->count));
     }
-    for (int k = 0; k < 200 && high - low > IMP_LEVEL_OF_MASS * (fabs(low) + fabs(high)); k++) {
-        const double middle = 0.5 * (low + high);
+    double middle = 0.5 * (low + high);
+    for (int k = 0; k < 200 && middle > low && middle < high; k++, middle = 0.5 * (low + high)) {
         if (mass_at(t, middle) > mass)
             low = middle;
         else
             high = middle;
     }
-    return 0.5 * (low + high);
+    return middle;
 }
 
 /* Largest value the concave terms reach with the given mass. */

@@ -201,6 +201,25 @@ static void surface_points_and_normals(void **state)
     near_relative(normals[4 * 8].z, 1, 1e-15);
 }
 
+/* Where quarter turns are given in doubles: on the axes, of exponents with which a rounding u of its cosine would be
+ * u^(2/p), 1e-3 of the size and more; and none else, as near as 1e-14 rad. */
+static void quarter_turns_are_on_the_axes(void **state)
+{
+    (void)state;
+    const impact_shape shape = superquadric(1, 2, 3, 10, 10, 10);
+    for (int k = -4; k < 4; k++) {
+        const qvec3 x = impact_shape_point(&shape, k * pi / 2, 0), beside = impact_shape_point(&shape, 1e-14, 0);
+        assert_true(x.z == 0 && (k % 2 ? x.x == 0 && fabs(x.y) == 2 : fabs(x.x) == 1 && x.y == 0));
+        near_relative(beside.y, 2 * pow(1e-14, 0.2), 1e-12);
+    }
+    for (int side = -1; side <= 1; side += 2) {
+        const qvec3 pole = impact_shape_point(&shape, 1, side * pi / 2),
+                    n = impact_shape_normal(&shape, 1, side * pi / 2);
+        assert_true(pole.x == 0 && pole.y == 0 && pole.z == 3 * side);
+        assert_true(n.x == 0 && n.y == 0 && n.z == side);
+    }
+}
+
 /* A plane answers every question, with what it has: no size, no curvature, support along +z alone. */
 static void planes_answer_too(void **state)
 {
@@ -254,6 +273,7 @@ int main(void)
         cmocka_unit_test(hessian_is_the_derivative),
         cmocka_unit_test(curvatures),
         cmocka_unit_test(surface_points_and_normals),
+        cmocka_unit_test(quarter_turns_are_on_the_axes),
         cmocka_unit_test(planes_answer_too),
         cmocka_unit_test(flat_one_way),
     };
