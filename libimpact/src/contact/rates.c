@@ -224,8 +224,8 @@ static void turn_along(const qvec3 axes[3], qvec3 normal_rate, qvec3 vector, qve
         along[k] = qvec3_dot(axes[k], rate) - qvec3_dot(normal_rate, axes[k]) * qvec3_dot(axes[0], vector);
 }
 
-double imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
-                        const qvec3 axes[3], const imp_state *states, double bend[6])
+void imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
+                      const qvec3 axes[3], const imp_state *states, double bend[6])
 {
     const imp_body *body[2] = {&world->bodies[pair->body1], &world->bodies[pair->body2]};
     const imp_state *state[2] = {&states[pair->body1], &states[pair->body2]};
@@ -244,5 +244,4 @@ double imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer beare
     turn_along(axes, rates.normal, qvec3_sub(velocity[0], velocity[1]), qvec3_sub(acceleration[0], acceleration[1]),
                bend);
     turn_along(axes, rates.normal, qvec3_sub(turning[0], turning[1]), qvec3_sub(bending[0], bending[1]), bend + 3);
-    return fmax(qvec3_norm(arm_rate[0]), qvec3_norm(arm_rate[1]));
 }

@@ -31,8 +31,8 @@ qvec3 imp_point_acceleration(const imp_body *body, const imp_state *state, const
 
 /* The rates of the contact's velocity, and of how the bodies turn on each other, along axes that turn with its normal:
  * those of the velocities alone, without loads or reactions. axes: the normal and two tangents; 6 numbers, m/s^2 and
- * 1/s^2. How fast the contact's place goes about a body's centre, m/s: that of the faster. */
-double imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
-                        const qvec3 axes[3], const imp_state *states, double bend[6]);
+ * 1/s^2. */
+void imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
+                      const qvec3 axes[3], const imp_state *states, double bend[6]);
 
 #endif

@@ -72,8 +72,6 @@ static double most_lasting_press(const imp_island *island, const imp_meeting *m)
         pull += b->radius * length(imp_inverse_inertia(b, states[body[k]].q, l->torque));
         radius = fmin(radius, b->radius);
     }
-    const double passing = IMP_PASSING_PRESS * length(island->world.gravity);
-    if (passing > 0) pull = fmin(pull, passing);
     return pull + speed * speed / (IMP_ROUNDEST_PRESS * radius);
 }
 
