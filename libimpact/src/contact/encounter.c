@@ -27,18 +27,22 @@ qvec3 imp_encounter_turn(const impact_collider *body, qvec3 a)
     return quat_rotate(body->orientation, (qvec3){b.x / j.x, b.y / j.y, b.z / j.z});
 }
 
-static void find_row(const impact_collider *body, const qvec3 axes[3], qvec3 arm, double sign, double row[3][6])
+/* Of the first so many axes. */
+static void find_row(const impact_collider *body, const qvec3 axes[3], int count, qvec3 arm, double sign,
+                     double row[3][6])
 {
-    const qvec3 j = body->moments;
-    for (int k = 0; k < 3 && !imp_encounter_is_static(body); k++) {
-        const qvec3 line = qvec3_scale(axes[k], sign / sqrt(body->mass));
+    if (imp_encounter_is_static(body)) return;
+    const double part = sign / sqrt(body->mass);
+    const qvec3 j = body->moments, root = {sqrt(j.x), sqrt(j.y), sqrt(j.z)};
+    for (int k = 0; k < count; k++) {
+        const qvec3 line = qvec3_scale(axes[k], part);
         const qvec3 own = quat_rotate_inverse(body->orientation, qvec3_scale(qvec3_cross(arm, axes[k]), sign));
-        const double numbers[6] = {line.x, line.y, line.z, own.x / sqrt(j.x), own.y / sqrt(j.y), own.z / sqrt(j.z)};
+        const double numbers[6] = {line.x, line.y, line.z, own.x / root.x, own.y / root.y, own.z / root.z};
         memcpy(row[k], numbers, sizeof numbers);
     }
 }
 
-imp_contact imp_encounter_contact(const impact_encounter *encounter, int meeting)
+imp_contact imp_encounter_contact(const impact_encounter *encounter, int meeting, bool smooth)
 {
     const impact_meeting *m = &encounter->meetings[meeting];
     imp_contact c = {.source = meeting,
@@ -47,10 +51,10 @@ imp_contact imp_encounter_contact(const impact_encounter *encounter, int meeting
                      .friction = m->friction,
                      .restitution = m->restitution,
                      .stiffness = m->stiffness};
-    qvec3 normal;
-    (void)qvec3_normalize(m->normal, &normal);
-    imp_cone_find_axes(normal, c.axes);
-    for (int s = 0; s < 2; s++) find_row(&encounter->bodies[c.body[s]], c.axes, c.arm[s], s == 0 ? 1 : -1, c.row[s]);
+    (void)qvec3_normalize(m->normal, &c.axes[0]);
+    if (!smooth) imp_cone_find_axes(c.axes[0], c.axes);
+    for (int s = 0; s < 2; s++)
+        find_row(&encounter->bodies[c.body[s]], c.axes, smooth ? 1 : 3, c.arm[s], s == 0 ? 1 : -1, c.row[s]);
     return c;
 }
 
@@ -73,6 +77,7 @@ void imp_encounter_velocity(const imp_contact *contact, const qvec3 *velocity, c
 typedef struct plan {
     const impact_encounter *encounter;
     imp_order order;
+    qvec3 *normal; /* of each meeting, unit */
     qvec3 *velocity, *omega;
     impact_meeting_outcome *meetings;
     impact_together_outcome *outcome;
@@ -108,7 +113,7 @@ static size_t group_bytes(size_t n, bool linear)
     const size_t creep =
         linear ? 0
                : sizeof(double) * (imp_springs_creep_size(n) + imp_springs_bounces_size(n)) + n * sizeof(imp_spring);
-    return own + creep + n * n * (linear ? 24 : 3 * 72 + 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);
+    return own + creep + n * n * (linear ? 48 : 3 * 72 + 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);
 }
 
 static void take_finding(const imp_finding *f, impact_meeting_outcome *m)
@@ -169,7 +174,7 @@ static bool make_group(plan *call, int from, int count, bool linear, impact_toge
                          .omega = call->omega};
     if (!group->findings) return false;
     for (int i = 0; i < count; i++) {
-        contacts[i] = imp_encounter_contact(call->encounter, call->order.meeting[from + i]);
+        contacts[i] = imp_encounter_contact(call->encounter, call->order.meeting[from + i], linear);
         imp_encounter_velocity(&contacts[i], call->velocity, call->omega, &u0[3 * i]);
         if (call->encounter->meetings[contacts[i].source].pressed) imp_encounter_press(group, &contacts[i], &u0[3 * i]);
     }
@@ -275,10 +280,9 @@ static impact_status solve_alone(plan *call, int meeting)
 static double normal_velocity(const plan *call, int meeting)
 {
     const impact_meeting *m = &call->encounter->meetings[meeting];
-    qvec3 n;
-    (void)qvec3_normalize(m->normal, &n);
-    return qvec3_dot(n, qvec3_sub(point_velocity(call->velocity[m->body1], call->omega[m->body1], m->offset1),
-                                  point_velocity(call->velocity[m->body2], call->omega[m->body2], m->offset2)));
+    return qvec3_dot(call->normal[meeting],
+                     qvec3_sub(point_velocity(call->velocity[m->body1], call->omega[m->body1], m->offset1),
+                               point_velocity(call->velocity[m->body2], call->omega[m->body2], m->offset2)));
 }
 
 /* Down the caller's list, again and again, until what approaches is rounding. */
@@ -326,11 +330,13 @@ static bool make_plan(plan *call, imp_order *order, uint64_t **keys, int **paren
                       impact_together_workspace *workspace)
 {
     const size_t bodies = (size_t)call->encounter->body_count, meetings = (size_t)call->encounter->meeting_count;
-    const size_t bytes = bodies * (2 * sizeof(qvec3) + 24) + meetings * (sizeof(impact_meeting_outcome) + 64) + 1024;
+    const size_t bytes =
+        bodies * (2 * sizeof(qvec3) + 24) + meetings * (sizeof(impact_meeting_outcome) + sizeof(qvec3) + 64) + 1024;
     imp_block *block = &workspace->plan;
     if (!imp_block_clear(workspace->arena, block, bytes)) return false;
     call->velocity = imp_block_take(block, bodies, sizeof *call->velocity);
     call->omega = imp_block_take(block, bodies, sizeof *call->omega);
+    call->normal = imp_block_take(block, meetings, sizeof *call->normal);
     call->meetings = imp_block_take(block, meetings, sizeof *call->meetings);
     order->meeting = imp_block_take(block, meetings, sizeof(int));
     order->group = imp_block_take(block, meetings, sizeof(int));
@@ -385,6 +391,7 @@ static impact_status solve_plan(plan *call, impact_together_workspace *workspace
     if (!make_plan(call, &call->order, &keys, &parents, workspace)) return IMPACT_ENOMEM;
     for (int b = 0; b < e->body_count; b++)
         call->velocity[b] = e->bodies[b].velocity, call->omega[b] = e->bodies[b].omega;
+    for (int i = 0; i < e->meeting_count; i++) (void)qvec3_normalize(e->meetings[i].normal, &call->normal[i]);
     imp_encounter_sort(e, &call->order, keys, parents);
     o->groups = call->order.groups;
     o->energy_before = imp_encounter_energy(e, call->velocity, call->omega);

@@ -95,8 +95,9 @@ int imp_encounter_same(const impact_encounter *encounter, int meeting);
 impact_collision imp_encounter_collision(const impact_encounter *encounter, int meeting, const qvec3 *velocity,
                                          const qvec3 *omega);
 
-/* The axes, arms and rows of the meeting; the frictions and so on copied. */
-imp_contact imp_encounter_contact(const impact_encounter *encounter, int meeting);
+/* The axes, arms and rows of the meeting; the frictions and so on copied. Without friction (smooth) the normal alone.
+ */
+imp_contact imp_encounter_contact(const impact_encounter *encounter, int meeting, bool smooth);
 
 /* The relative velocity of the contact's points along its axes. */
 void imp_encounter_velocity(const imp_contact *contact, const qvec3 *velocity, const qvec3 *omega, double u[3]);

@@ -169,8 +169,14 @@ bool imp_springs_stay_above(const double *c, int terms, const double *power);
 /* The first time in [0, h] at which sum c_k t^k, k <= order, falls to 0, or h where it does not: none is missed. *found
  * tells. c[0] <= 0 falls at 0. */
 double imp_springs_first_fall(const double *c, int order, double h, bool *found);
-/* The same of what falls, or bends down, all along. */
-double imp_springs_only_fall(const double *c, int order, double h, bool *found);
+/* Of t in [0, 1], as of series in units of their reach. Whether sum c_k t^k, k < 5, less what is taken is above zero on
+ * (0, 1], by three terms, the first one, two or none of which are zero or give; false where they do not tell. */
+bool imp_springs_begins_above(const double c[5], double takes);
+/* The same of terms >= 5. */
+bool imp_springs_is_clear(const double *c, int terms);
+/* The time at which sum c_k t^k, k <= order, falls from c[0] > 0 to 0, where it is shown that there is no other; *found
+ * false where that does not tell. about: when, or 0. */
+double imp_springs_lone_fall(const double *c, int order, double about, bool *found);
 
 /* Where sum c_k t^k changes its sign in (0, t): the times, at most so many; returns how many. */
 int imp_springs_sign_changes(const double *c, int order, double t, double *when, int most);

@@ -3,7 +3,8 @@
  * Where a polynomial first falls to zero. As far as it falls, or bends down, which its coefficients' signs tell, its
  * zero is the only one, and Newton's in a bracket finds it. Else strides: with |f''| <= B on [0, h],
  * f(t + d) >= f + f' d - B d^2/2, so that there is no zero before d = (f' + sqrt(f'^2 + 2 B f))/B. They pass no zero,
- * and near a simple one they are Newton's: they end there quadratically.
+ * and near a simple one they are Newton's: they end there quadratically. Where a zero is guessed at Newton goes there
+ * at once, and the polynomial over t - zero tells that it is the only one.
  */
 #include "contact/springs.h"
 
@@ -119,7 +120,8 @@ void imp_springs_find_powers(double h, int count, double *power)
     for (int k = 2; k < count; k++) power[k] = power[k - 2] * (h * h); /* short chains */
 }
 
-double imp_springs_only_fall(const double *c, int order, double h, bool *found)
+/* The same of what falls, or bends down, all along. */
+static double only_fall(const double *c, int order, double h, bool *found)
 {
     double slope;
     *found = c[0] <= 0;
@@ -127,6 +129,61 @@ double imp_springs_only_fall(const double *c, int order, double h, bool *found)
     const double at_end = value_and_slope(c, order, h, &slope);
     *found = at_end <= 0;
     return *found ? only_zero(c, order, h, at_end) : h;
+}
+
+/* Whether a + b t + c t^2 is above what is taken. */
+static inline bool bends_above(double a, double b, double c, double takes)
+{
+    const double end = a + b + c, least = a < end ? a : end;
+    if (!(least > takes)) return false;
+    return !(c > 0 && b < 0 && -b < 2 * c) || a - b * b / (4 * c) > takes;
+}
+
+bool imp_springs_begins_above(const double c[5], double takes)
+{
+    const double one = takes - (c[4] < 0 ? c[4] : 0), two = one - (c[3] < 0 ? c[3] : 0);
+    if (bends_above(c[0], c[1], c[2], two)) return true;
+    if (!(c[0] >= 0)) return false;
+    return bends_above(c[1], c[2], c[3], one) || (c[1] >= 0 && bends_above(c[2], c[3], c[4], takes));
+}
+
+bool imp_springs_is_clear(const double *c, int terms)
+{
+    double takes = 0;
+    for (int k = 5; k < terms; k++) takes -= c[k] < 0 ? c[k] : 0;
+    return imp_springs_begins_above(c, takes);
+}
+
+/* Whether the sum over t - zero is below zero on [0, 1], a zero of it. */
+static bool is_lone(const double *c, int order, double zero)
+{
+    imp_terms rest;
+    double sum = 0;
+    for (int k = order; k > 0; k--) rest[k - 1] = sum = sum * zero - c[k];
+    return imp_springs_is_clear(rest, order);
+}
+
+/* Steps of Newton's: of t the next is off by bend/(2 slope) of the step's square, the bend by the slopes of two. */
+double imp_springs_lone_fall(const double *c, int order, double about, bool *found)
+{
+    double t = about, slope, before = 0, step = INFINITY;
+    *found = false;
+    if (t == 0) {
+        const double at_end = value_and_slope(c, order, 1, &slope);
+        if (at_end > 0) return 1;
+        t = c[0] / (c[0] - at_end);
+    }
+    for (int i = 0; i < 8; i++) {
+        const double value = value_and_slope(c, order, t, &slope), bend = fabs((slope - before) / step);
+        before = slope;
+        step = -value / slope;
+        t += step;
+        if (!(t > 0 && t <= 1)) return 1;
+        if (i == 0 || !(bend * step * step <= 4 * DBL_EPSILON * t * fabs(slope))) continue;
+        *found = is_lone(c, order, t);
+        return *found ? t : 1;
+    }
+    return 1;
 }
 
 double imp_springs_first_fall(const double *c, int order, double h, bool *found)
@@ -140,7 +197,7 @@ double imp_springs_first_fall(const double *c, int order, double h, bool *found)
     for (double end = h; t == 0 && end > h / 16; end /= 2) {
         if (end < h) imp_springs_find_powers(end, order + 1, power);
         if (!falls_once(c, order, power)) continue;
-        t = imp_springs_only_fall(c, order, end, found);
+        t = only_fall(c, order, end, found);
         if (*found) return t;
     }
     if (t == h) return h;

@@ -107,8 +107,10 @@ static double normal_product(const imp_contact *a, const imp_contact *b)
 {
     double sum = 0;
     for (int s = 0; s < 2; s++)
-        for (int t = 0; t < 2; t++)
-            for (int m = 0; m < 6 && a->body[s] == b->body[t]; m++) sum += a->row[s][0][m] * b->row[t][0][m];
+        for (int t = 0; t < 2; t++) {
+            if (a->body[s] != b->body[t]) continue;
+            for (int m = 0; m < 6; m++) sum += a->row[s][0][m] * b->row[t][0][m];
+        }
     return sum;
 }
 
@@ -121,33 +123,32 @@ static bool take_line_room(imp_linear_springs *s, impact_together_workspace *wor
     s->value = imp_encounter_take(workspace, n * n, sizeof *s->value);
     s->closed = imp_encounter_take(workspace, n, sizeof *s->closed);
     s->place = imp_encounter_take(workspace, n, sizeof *s->place);
-    s->closed_start = imp_encounter_take(workspace, n + 1, sizeof *s->closed_start);
-    s->closed_row = imp_encounter_take(workspace, n * n, sizeof *s->closed_row);
-    s->closed_value = imp_encounter_take(workspace, n * n, sizeof *s->closed_value);
-    s->depth = imp_encounter_take(workspace, IMP_LINEAR_PAIRS * n, sizeof *s->depth);
-    s->kappa = imp_encounter_take(workspace, n, sizeof *s->kappa);
-    s->force = imp_encounter_take(workspace, 2 * n, sizeof *s->force);
+    s->entry = imp_encounter_take(workspace, n * n, sizeof *s->entry);
+    s->entry_end = imp_encounter_take(workspace, n, sizeof *s->entry_end);
+    s->term = imp_encounter_take(workspace, IMP_LINEAR_PAIRS * n, sizeof *s->term);
     s->push = imp_encounter_take(workspace, n, sizeof *s->push);
     s->gain = imp_encounter_take(workspace, n, sizeof *s->gain);
+    s->kappa = imp_encounter_take(workspace, n, sizeof *s->kappa);
+    s->drawn = imp_encounter_take(workspace, n, sizeof *s->drawn);
     return !workspace->work.spent;
 }
 
 static void lay_out_lines(imp_linear_springs *s, const imp_contact *contacts)
 {
     const int n = s->count;
-    double *whole = s->closed_value; /* each product once, so that it is symmetric to the bit */
+    imp_linear_entry *whole = s->entry; /* each product once, so that it is symmetric to the bit */
     int filled = 0;
     for (int i = 0; i < n; i++)
-        for (int j = i; j < n; j++) whole[i * n + j] = whole[j * n + i] = normal_product(&contacts[i], &contacts[j]);
+        for (int j = i; j < n; j++)
+            whole[i * n + j].value[0] = whole[j * n + i].value[0] = normal_product(&contacts[i], &contacts[j]);
     for (int i = 0; i < n; i++) {
         s->start[i] = filled;
         for (int j = 0; j < n; j++) {
-            if (whole[i * n + j] == 0) continue;
+            if (whole[i * n + j].value[0] == 0) continue;
             s->row[filled] = j;
-            s->value[filled++] = whole[i * n + j];
-            s->line[i].column += fabs(whole[i * n + j]);
+            s->value[filled++] = whole[i * n + j].value[0];
         }
-        s->line[i].own = whole[i * n + i];
+        s->line[i].own = whole[i * n + i].value[0];
     }
     s->start[n] = filled;
 }
@@ -173,7 +174,6 @@ static void set_up_lines(imp_linear_springs *s, const imp_group *group, line_uni
     for (int i = 0; i < s->count; i++) {
         imp_linear_spring *l = &s->line[i];
         l->own /= unit.mobility;
-        l->column /= unit.mobility;
         l->u = l->u0 = group->u0[3 * i] / unit.velocity;
         l->restitution = fmax(group->contacts[i].restitution, group->least);
         l->stiffness = group->contacts[i].stiffness / unit.stiffness;

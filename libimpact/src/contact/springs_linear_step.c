@@ -7,190 +7,164 @@
 #include <math.h>
 #include "base/tolerances.h"
 
+static double below(double a) { return a < 0 ? a : 0; }
+
 /* ---- what is closed ---- */
 
-/* Whether other contacts are closed than were. */
-static bool change_places(imp_linear_springs *s)
+static void place_closed(imp_linear_springs *s)
 {
-    bool changed = false;
-    for (int i = 0; i < s->count; i++) changed |= (s->line[i].normal == IMP_SPRING_OPEN) != (s->place[i] < 0);
-    if (!changed) return false;
     s->closed_count = 0;
     for (int i = 0; i < s->count; i++) {
         const bool open = s->line[i].normal == IMP_SPRING_OPEN;
         s->place[i] = open ? -1 : s->closed_count;
         if (!open) s->closed[s->closed_count++] = i;
+        s->kappa[i] = s->line[i].kappa;
     }
-    return true;
 }
 
 bool imp_linear_find_closed(imp_linear_springs *s)
 {
-    int filled = 0;
-    if (!change_places(s)) return s->closed_count > 0;
+    imp_linear_entry *restrict entry = s->entry;
+    const int *place = s->place;
+    const double *kappa = s->kappa;
+    place_closed(s);
+    s->growth = 0;
     for (int c = 0; c < s->closed_count; c++) {
-        const int j = s->closed[c], to = s->start[j + 1];
-        s->closed_start[c] = filled;
-        for (int e = s->start[j]; e < to; e++) {
-            const int place = s->place[s->row[e]];
-            s->closed_row[filled] = place;
-            s->closed_value[filled] = s->value[e];
-            filled += place >= 0; /* what is open is written over */
+        const int i = s->closed[c], to = s->start[i + 1];
+        double sum = 0;
+        for (int e = s->start[i]; e < to; e++) {
+            const int j = s->row[e];
+            if (place[j] < 0) continue;
+            const double own = s->value[e], value = own * kappa[j];
+            entry->value = (imp_term_pair){value, value};
+            (entry++)->place = (size_t)place[j];
+            sum += fabs(own);
         }
+        s->entry_end[c] = entry;
+        s->growth = sum * kappa[i] > s->growth ? sum * kappa[i] : s->growth;
     }
-    s->closed_start[s->closed_count] = filled;
     return s->closed_count > 0;
-}
-
-/* to += f W's column */
-static void add_column(const double *restrict value, const int *restrict row, int count, imp_term_pair f,
-                       imp_term_pair *restrict to)
-{
-    for (int e = 0; e < count; e++) {
-        to[row[e]].even += value[e] * f.even;
-        to[row[e]].odd += value[e] * f.odd;
-    }
 }
 
 /* ---- the series ---- */
 
-/* What next terms are of the sums over W: -1/((k-1)k) and -1/(k(k+1)); of t^(k+1) and t^(k+2) integrals are
- * 1/(k+1) and 1/(k+2) of those, and their integrals 1/(k+2) and 1/(k+3). */
+/* What next terms are of the sums over W kappa: -1/((k-1)k) and -1/(k(k+1)); integrals and theirs of t^k to 1:
+ * 1/(k+1) and 1/((k+1)(k+2)). */
 static void find_factors(imp_linear_springs *s)
 {
     for (int m = 0; m < IMP_LINEAR_PAIRS; m++) {
         const int k = 2 * m;
         s->factor[m + 1] = (imp_term_pair){-1.0 / ((k + 1) * (k + 2)), -1.0 / ((k + 2) * (k + 3))};
         s->once[m] = (imp_term_pair){1.0 / (k + 1), 1.0 / (k + 2)};
-        s->twice[m] = (imp_term_pair){1.0 / (k + 2), 1.0 / (k + 3)};
+        s->twice[m] = -s->factor[m + 1];
     }
 }
 
 static void begin_series(imp_linear_springs *s)
 {
-    if (s->factor[1].even == 0) find_factors(s);
-    s->pairs = 1, s->hardest = 0;
+    if (s->factor[1][0] == 0) find_factors(s);
+    s->pairs = 1, s->unit = 1;
+    s->last = s->term;
     for (int c = 0; c < s->closed_count; c++) {
         const imp_linear_spring *l = &s->line[s->closed[c]];
-        s->kappa[c] = l->kappa;
-        s->hardest = l->kappa > s->hardest ? l->kappa : s->hardest;
-        s->depth[c] = (imp_term_pair){l->x, -l->u};
-        s->force[c] = (imp_term_pair){l->kappa * l->x, -l->kappa * l->u};
+        s->term[c] = (imp_term_pair){l->x, -l->u};
     }
 }
+
+static imp_term_pair size_of(imp_term_pair p) { return (imp_term_pair){fabs(p[0]), fabs(p[1])}; }
 
 /* The next two terms of what is closed. */
 static void expand(imp_linear_springs *s)
 {
-    const int n = s->closed_count, *restrict column = s->closed_row, odd = s->pairs % 2;
-    const double *restrict value = s->closed_value, *restrict kappa = s->kappa;
-    const imp_term_pair factor = s->factor[s->pairs], *restrict last = &s->force[odd ? 0 : n];
-    imp_term_pair *restrict next = &s->depth[s->pairs * n], *restrict force = &s->force[odd ? n : 0], most = {0, 0};
-    for (int c = 0; c < n; c++) {
+    const size_t n = (size_t)s->closed_count;
+    const imp_term_pair factor = s->unit * s->unit * s->factor[s->pairs];
+    const imp_term_pair *restrict last = s->last;
+    imp_term_pair *restrict next = &s->term[(size_t)s->pairs * n], sizes = {0, 0};
+    const imp_linear_entry *e = s->entry;
+    for (size_t c = 0; c < n; c++) {
+        const imp_linear_entry *const end = s->entry_end[c];
         imp_term_pair sum = {0, 0};
-        for (int e = s->closed_start[c]; e < s->closed_start[c + 1]; e++) {
-            sum.even += value[e] * last[column[e]].even;
-            sum.odd += value[e] * last[column[e]].odd;
-        }
-        next[c] = (imp_term_pair){factor.even * sum.even, factor.odd * sum.odd};
-        force[c] = (imp_term_pair){kappa[c] * next[c].even, kappa[c] * next[c].odd};
-        const double even_size = fabs(next[c].even), odd_size = fabs(next[c].odd);
-        most.even = even_size > most.even ? even_size : most.even;
-        most.odd = odd_size > most.odd ? odd_size : most.odd;
+        for (; e != end; e++) sum += e->value * last[e->place];
+        next[c] = sum *= factor;
+        sizes += size_of(sum);
     }
-    s->greatest[s->pairs++] = most;
+    s->sizes[s->pairs++] = sizes;
+    s->last = next;
 }
 
-/* S */
-static double growth_of(const imp_linear_springs *s)
+/* Time in units that are so many times as long. */
+static void change_unit(imp_linear_springs *s, double ratio)
 {
-    double most = 0;
-    for (int c = 0; c < s->closed_count; c++) {
-        const imp_linear_spring *l = &s->line[s->closed[c]];
-        most = l->kappa * l->column > most ? l->kappa * l->column : most;
+    const int n = s->closed_count;
+    const double square = ratio * ratio;
+    imp_term_pair power = {1, ratio}, *term = s->term;
+    for (int m = 0; m < s->pairs; m++, power *= square) {
+        for (const imp_term_pair *end = term + n; term != end; term++) *term *= power;
+        s->sizes[m] *= power;
     }
-    return most;
+    s->unit *= ratio;
 }
 
-/* The largest of the last two terms, as velocities have them. */
-static imp_term_pair greatest_terms(const imp_linear_springs *s)
+/* How far the terms that are made reach where they do not to 1: of a sum of cosines and sines the last ones tell. */
+static double reach_of(const imp_linear_springs *s, double left, double last)
 {
-    const int order = 2 * s->pairs - 2;
-    const imp_term_pair last = s->greatest[s->pairs - 1];
-    return (imp_term_pair){order * last.even, (order + 1) * last.odd};
+    const double some = left > 1 ? sqrt(1 / left) : 1;
+    return last > IMP_SPRINGS_TRUNCATION ? fmin(some, pow(IMP_SPRINGS_TRUNCATION / last, 1.0 / (2 * s->pairs - 3)))
+                                         : some;
 }
 
-/* How far the terms that are made reach: of a sum of cosines and sines the last even and odd ones tell. */
-static double reach_of(const imp_linear_springs *s, imp_term_pair most, double growth)
+/* Terms that reach to 1, or as far as there are terms; returns how far. What velocities' last are followed by is less
+ * than a sum that falls by their ratio, twice its first. */
+static double make_terms(imp_linear_springs *s)
 {
-    const int order = 2 * s->pairs - 2; /* of velocities */
-    const double digits = log2(IMP_SPRINGS_TRUNCATION);
-    double h = sqrt(order * (order + 1) / (2 * growth));
-    if (most.even > 0) h = fmin(h, exp2((digits - log2(most.even)) / (order - 1)));
-    if (most.odd > 0) h = fmin(h, exp2((digits - log2(most.odd)) / order));
-    return h;
-}
-
-/* Whether the terms that are made reach so far as the powers are of; *most: the last. What follows those is less than
- * a sum that falls by their ratio, twice its first. */
-static bool reaches(const imp_linear_springs *s, double growth, imp_term_pair *most)
-{
-    const int order = 2 * s->pairs - 2;
-    const double ratio = growth * s->power[2] / (order * (order + 1)), left = 2 * ratio;
-    *most = greatest_terms(s);
-    return left <= 1 && left * most->even * s->power[order - 1] <= IMP_SPRINGS_TRUNCATION &&
-           left * most->odd * s->power[order] <= IMP_SPRINGS_TRUNCATION;
-}
-
-static void find_powers(imp_linear_springs *s, double h) { imp_springs_find_powers(h, 2 * s->pairs, s->power); }
-
-/* Terms that reach so far, or as far as there are terms; returns how far. */
-static double reach_for(imp_linear_springs *s, double growth, double far)
-{
-    imp_term_pair most;
-    find_powers(s, far);
-    while (!reaches(s, growth, &most)) {
-        if (s->pairs == IMP_LINEAR_PAIRS) return fmin(far, reach_of(s, most, growth));
-        expand(s);
-        for (int k = 2 * s->pairs - 2; k < 2 * s->pairs; k++) s->power[k] = s->power[k - 2] * s->power[2];
-    }
-    return far;
-}
-
-/* Of what is closed the depth, or its velocity u = -x'. */
-static void gather(const imp_linear_springs *s, int closed, double sign, imp_terms f)
-{
-    for (int m = 0; m < s->pairs; m++) {
-        const imp_term_pair p = s->depth[m * s->closed_count + closed];
-        f[2 * m] = sign * p.even;
-        f[2 * m + 1] = sign * p.odd;
+    const double twice = 2 * s->growth * s->unit * s->unit, allowed = IMP_SPRINGS_TRUNCATION * s->unit;
+    for (;; expand(s)) {
+        const imp_term_pair sizes = s->sizes[s->pairs - 1];
+        const double left = -twice * s->factor[s->pairs - 1][1],
+                     last = (2 * s->pairs - 1) * (sizes[0] > sizes[1] ? sizes[0] : sizes[1]);
+        if (left <= 1 && left * last <= allowed) return 1;
+        if (s->pairs == IMP_LINEAR_PAIRS) return reach_of(s, left, last / s->unit);
     }
 }
 
-static void gather_velocity(const imp_linear_springs *s, int closed, double sign, imp_terms f)
+/* Of what is closed the depth's terms; as many. */
+static int gather(const imp_linear_springs *s, int closed, double sign, imp_terms f)
 {
-    gather(s, closed, -sign, f);
-    for (int k = 0; k + 1 < 2 * s->pairs; k++) f[k] = (k + 1) * f[k + 1];
-    f[2 * s->pairs - 1] = 0;
+    const imp_term_pair *term = &s->term[closed];
+    for (int m = 0; m < s->pairs; m++, term += s->closed_count) {
+        const imp_term_pair p = sign * *term;
+        f[2 * m] = p[0], f[2 * m + 1] = p[1];
+    }
+    return 2 * s->pairs;
 }
 
-/* Minus the depth of what is open. */
-static void gather_open(const imp_linear_springs *s, int i, imp_terms f)
+/* Those of its rate. */
+static int gather_rate(const imp_linear_springs *s, int closed, double sign, imp_terms f)
 {
-    f[0] = -s->line[i].x;
-    f[1] = s->line[i].u;
-    for (int k = 2; k < 2 * s->pairs; k++) f[k] = 0;
+    const imp_term_pair *term = &s->term[closed];
+    imp_term_pair factor = {0, sign};
+    f[0] = sign * (*term)[1];
+    for (int m = 1; m < s->pairs; m++) {
+        term += s->closed_count, factor += 2 * sign;
+        const imp_term_pair p = factor * *term;
+        f[2 * m - 1] = p[0], f[2 * m] = p[1];
+    }
+    return 2 * s->pairs - 1;
+}
+
+/* Those of minus the depth of what is open, which begins with the one given. */
+static int gather_open(const imp_linear_springs *s, int i, double first, imp_terms f)
+{
+    imp_term_pair pair[IMP_LINEAR_PAIRS] = {{first, s->line[i].u * s->unit}};
     for (int e = s->start[i]; e < s->start[i + 1]; e++) {
         const int c = s->place[s->row[e]];
         if (c < 0) continue;
-        const double factor = s->value[e] * s->line[s->row[e]].kappa;
-        for (int m = 1; m < s->pairs; m++) {
-            const imp_term_pair p = s->depth[(m - 1) * s->closed_count + c];
-            f[2 * m] += factor * p.even;
-            f[2 * m + 1] += factor * p.odd;
-        }
+        const double factor = -s->unit * s->unit * s->value[e] * s->line[s->row[e]].kappa;
+        const imp_term_pair *term = &s->term[c];
+        for (int m = 1; m < s->pairs; m++, term += s->closed_count) pair[m] += factor * s->factor[m] * *term;
     }
-    for (int m = 1; m < s->pairs; m++) f[2 * m] *= -s->factor[m].even, f[2 * m + 1] *= -s->factor[m].odd;
+    for (int m = 0; m < s->pairs; m++) f[2 * m] = pair[m][0], f[2 * m + 1] = pair[m][1];
+    return 2 * s->pairs;
 }
 
 /* ---- which event comes first ---- */
@@ -203,179 +177,155 @@ typedef struct first_change {
     double when;
 } first_change;
 
-/* A series by its beginning: four terms, t in units of the time whose powers are given, and what later ones make of it
- * and of its first two rates, at most. */
-typedef struct outline {
-    double terms[4];
-    const double *rest;
-} outline;
-
-static double below(double a) { return a < 0 ? a : 0; }
-static double above(double a) { return a > 0 ? a : 0; }
-
-/* Whether it is above 0 all along, but for its beginning. */
-static bool outline_stays(const outline *o)
-{
-    const double *f = o->terms, takes = below(f[2]) + below(f[3]) - o->rest[0];
-    return f[0] + below(f[1]) + takes > 0 || (f[0] >= 0 && f[1] + takes > 0);
-}
-
-/* Whether it falls, or bends down, all along. */
-static bool outline_falls(const outline *o)
-{
-    const double *f = o->terms, more = above(f[3]);
-    return f[1] + 2 * above(f[2]) + 3 * more + o->rest[1] < 0 || 2 * f[2] + 6 * more + o->rest[2] < 0;
-}
-
-/* Of what is closed. */
-static outline outline_depth(const imp_linear_springs *s, int closed, double sign, double shift)
-{
-    const imp_term_pair first = s->depth[closed], second = s->depth[s->closed_count + closed];
-    const double *h = s->power;
-    return (outline){
-        {sign * first.even + shift, sign * first.odd * h[1], sign * second.even * h[2], sign * second.odd * h[3]},
-        s->rest};
-}
-
-static outline outline_rate(const imp_linear_springs *s, int closed, double sign)
-{
-    const imp_term_pair first = s->depth[closed], second = s->depth[s->closed_count + closed];
-    const double *h = s->power;
-    return (outline){{sign * first.odd * h[1], sign * 2 * second.even * h[2], sign * 3 * second.odd * h[3], 0},
-                     s->rest + 1};
-}
-
-/* What terms from the fifth on make of any depth, and of its first rates, at most, in the time whose powers are given;
- * and of one for each unit of sum |W| what those from the seventh on make by forces. */
+/* A depth by six terms, its rate by five. */
 static void bound_rest(imp_linear_springs *s)
 {
-    double rest[4] = {0, 0, 0, 0}, open = 0;
-    for (int m = 2; m < s->pairs; m++) {
-        const imp_term_pair most = s->greatest[m];
-        const int k = 2 * m + 1;
-        const double even = most.even * s->power[2 * m], odd = most.odd * s->power[k], both = even + odd;
-        rest[0] += both;
-        rest[1] += k * both;
-        rest[2] += k * (k - 1) * both;
-        rest[3] += k * (k - 1) * (k - 2) * both;
-        open -= s->factor[m + 1].even * both;
+    double depth = 0, rate = 0, k = 7;
+    for (int m = 3; m < s->pairs; m++, k += 2) {
+        const double both = s->sizes[m][0] + s->sizes[m][1];
+        depth += both;
+        rate += k * both;
     }
-    for (int k = 0; k < 4; k++) s->rest[k] = rest[k];
-    s->rest_open = open * s->hardest * s->power[2];
+    s->rest[0] = depth, s->rest[1] = rate;
 }
 
-/* f, whose outline is given, falls to 0 sooner. */
-static void see_fall(imp_linear_springs *s, const outline *o, const imp_terms f, change what, imp_linear_spring *line,
+/* Whether sign x, from `first` just above 0 where it is not yet, stays above. */
+static bool depth_stays(const imp_linear_springs *s, int closed, double sign, double first)
+{
+    const imp_term_pair *term = &s->term[closed];
+    const imp_term_pair a = sign * term[0], b = sign * term[s->closed_count], c = sign * term[2 * s->closed_count];
+    const double f[5] = {first, a[1], b[0], b[1], c[0]};
+    return imp_springs_begins_above(f, s->rest[0] - below(c[1]));
+}
+
+static bool rate_stays(const imp_linear_springs *s, int closed, double sign)
+{
+    const imp_term_pair *term = &s->term[closed], two = {2, 3}, four = {4, 5};
+    const imp_term_pair a = sign * term[0], b = sign * two * term[s->closed_count],
+                        c = sign * four * term[2 * s->closed_count];
+    const double f[5] = {a[1], b[0], b[1], c[0], c[1]};
+    return imp_springs_begins_above(f, s->rest[1]);
+}
+
+/* f may fall to 0 sooner, about when it is told, or 0. */
+static void see_fall(const imp_terms f, int terms, double about, change what, imp_linear_spring *line,
                      first_change *first)
 {
     bool found;
-    const int order = 2 * s->pairs - 1;
-    const double t = outline_falls(o) ? imp_springs_only_fall(f, order, first->when, &found)
-                                      : imp_springs_first_fall(f, order, first->when, &found);
-    if (!found) return;
-    *first = (first_change){what, line, t};
-    find_powers(s, t);
+    if (about == 0 && imp_springs_is_clear(f, terms)) return;
+    double t = imp_springs_lone_fall(f, terms - 1, about, &found);
+    if (!found && !imp_springs_is_clear(f, terms)) t = imp_springs_first_fall(f, terms - 1, first->when, &found);
+    if (found && t < first->when) *first = (first_change){what, line, t};
 }
 
-static void see_turn(imp_linear_springs *s, int closed, first_change *first)
+static void see_turn(const imp_linear_springs *s, int closed, double about, first_change *first)
 {
     imp_terms f;
-    const outline o = outline_rate(s, closed, 1);
-    if (outline_stays(&o)) return;
-    gather_velocity(s, closed, -1, f);
-    see_fall(s, &o, f, CHANGE_TURN, &s->line[s->closed[closed]], first);
+    if (rate_stays(s, closed, 1)) return;
+    const int terms = gather_rate(s, closed, 1, f);
+    see_fall(f, terms, about, CHANGE_TURN, &s->line[s->closed[closed]], first);
 }
 
 /* sign x + shift; from just above 0 where it is not yet. */
-static void see_depth(imp_linear_springs *s, int closed, double sign, double shift, change what, first_change *first)
+static void see_depth(const imp_linear_springs *s, int closed, double sign, double shift, double about, change what,
+                      first_change *first)
 {
     imp_terms f;
     imp_linear_spring *l = &s->line[s->closed[closed]];
-    outline o = outline_depth(s, closed, sign, shift);
-    if (!(o.terms[0] > 0)) o.terms[0] = IMP_SPRINGS_JUST * l->tiny;
-    if (outline_stays(&o)) return;
-    gather(s, closed, sign, f);
-    f[0] = o.terms[0];
-    see_fall(s, &o, f, what, l, first);
+    const double begins = sign * l->x + shift, above = begins > 0 ? begins : IMP_SPRINGS_JUST * l->tiny;
+    if (depth_stays(s, closed, sign, above)) return;
+    const int terms = gather(s, closed, sign, f);
+    f[0] = above;
+    see_fall(f, terms, about, what, l, first);
 }
 
-static void see_closed(imp_linear_springs *s, int closed, first_change *first)
+static bool will_turn(const imp_linear_spring *l) { return l->normal == IMP_SPRING_LOADS && l->restitution < 1; }
+
+static void see_closed(const imp_linear_springs *s, int closed, double about, first_change *first)
 {
     const imp_linear_spring *l = &s->line[s->closed[closed]];
-    if (l->normal == IMP_SPRING_LOADS && l->restitution < 1) {
-        see_turn(s, closed, first);
+    if (will_turn(l)) {
+        see_turn(s, closed, about, first);
         return;
     }
-    see_depth(s, closed, 1, -l->tiny, CHANGE_TOUCH, first);
+    see_depth(s, closed, 1, -l->tiny, about, CHANGE_TOUCH, first);
     const double again = imp_linear_again(l);
-    if (l->normal == IMP_SPRING_UNLOADS && l->x < again) see_depth(s, closed, -1, again, CHANGE_AGAIN, first);
+    if (l->normal == IMP_SPRING_UNLOADS && l->x < again) see_depth(s, closed, -1, again, 0, CHANGE_AGAIN, first);
 }
 
-/* The largest impulse of one contact before t. */
-static double greatest_push(const imp_linear_springs *s, double t)
-{
-    double most = 0;
-    for (int c = 0; c < s->closed_count; c++) {
-        const imp_linear_spring *l = &s->line[s->closed[c]];
-        const outline o = outline_depth(s, c, 1, 0);
-        const double *f = o.terms, force = l->kappa * (f[0] + above(f[1]) + above(f[2]) + above(f[3]) + o.rest[0]);
-        most = force > most ? force : most;
-    }
-    return t * most;
-}
-
-/* Minus the depth of what is open. */
-static outline outline_open(const imp_linear_springs *s, int i, double rest[3])
-{
-    const imp_linear_spring *l = &s->line[i];
-    const int n = s->closed_count;
-    imp_term_pair first = {0, 0}, second = {0, 0};
-    for (int e = s->start[i]; e < s->start[i + 1]; e++) {
-        const int c = s->place[s->row[e]];
-        if (c < 0) continue;
-        const double factor = s->value[e] * s->kappa[c];
-        first.even += factor * s->depth[c].even, first.odd += factor * s->depth[c].odd;
-        second.even += factor * s->depth[n + c].even, second.odd += factor * s->depth[n + c].odd;
-    }
-    const double even = fabs(second.even) / 12 * s->power[4], odd = fabs(second.odd) / 20 * s->power[5];
-    rest[0] = even + odd + l->column * s->rest_open, rest[1] = rest[2] = INFINITY;
-    return (outline){{l->tiny - l->x, l->u * s->power[1], first.even / 2 * s->power[2], first.odd / 6 * s->power[3]},
-                     rest};
-}
-
-/* What is open may close before t only if u gets below zero; nothing pulls, and no contact pushes by more than `most`.
- */
-static void see_open(imp_linear_springs *s, int i, double most, first_change *first)
+/* What is open moves by -u t - W Q to t. Nothing pulls, so that Q'' = kappa x >= 0, and of those that draw it deeper Q
+ * is at most its last value's part of time: between its place and one on that line it comes no further. */
+static void see_open(const imp_linear_springs *s, int i, double t, first_change *first)
 {
     imp_linear_spring *l = &s->line[i];
     imp_terms f;
-    double rest[3];
-    if (l->normal != IMP_SPRING_OPEN) return;
-    const double fastest = (l->column - l->own) * most - l->u;
-    if (!(fastest > 0) || l->x + fastest * first->when < l->tiny * (1 - IMP_SPRINGS_JUST)) return;
-    outline o = outline_open(s, i, rest);
-    if (!(o.terms[0] > 0)) o.terms[0] = IMP_SPRINGS_JUST * l->tiny;
-    if (outline_stays(&o)) return;
-    gather_open(s, i, f);
-    f[0] = o.terms[0];
-    see_fall(s, &o, f, CHANGE_TOUCH, l, first);
+    const double off = l->tiny - l->x, above = off > 0 ? off : IMP_SPRINGS_JUST * l->tiny;
+    if (above + below(l->u * t - s->drawn[i]) > 0) return;
+    const int terms = gather_open(s, i, above, f);
+    see_fall(f, terms, 0, CHANGE_TOUCH, l, first);
 }
 
-/* The one that seems to come first is looked for first: others have less time then. */
-static first_change find_first(imp_linear_springs *s, int nearest, double far)
+/* Of what is closed F's integral to t, and that one's. */
+static void sum_up(imp_linear_springs *s, double t)
 {
-    first_change first = {CHANGE_NONE, NULL, far};
-    find_powers(s, far);
-    bound_rest(s);
-    if (nearest >= 0) {
-        see_closed(s, nearest, &first);
-        bound_rest(s);
+    const int n = s->closed_count;
+    const double time = t * s->unit, square = t * t;
+    imp_term_pair part[2 * IMP_LINEAR_PAIRS], power = {time, time * t}, *restrict push = s->push;
+    for (int m = 0; m < s->pairs; m++, power *= square) {
+        part[2 * m] = power * s->once[m];
+        part[2 * m + 1] = power * time * s->twice[m];
     }
+    for (int c = 0; c < n; c++) {
+        imp_term_pair first = {0, 0}, second = {0, 0};
+        const imp_term_pair *term = &s->term[s->pairs * n + c];
+        for (const imp_term_pair *p = part + 2 * s->pairs; p != part;) {
+            term -= n, p -= 2;
+            first += *term * p[0];
+            second += *term * p[1];
+        }
+        push[c] = s->kappa[s->closed[c]] * (imp_term_pair){first[0] + first[1], second[0] + second[1]};
+    }
+}
+
+/* What that makes of all velocities and depths. */
+static void find_gains(imp_linear_springs *s)
+{
+    imp_term_pair *restrict gain = s->gain;
+    double *restrict drawn = s->drawn;
+    const int *restrict row = s->row;
+    const double *restrict value = s->value;
+    for (int i = 0; i < s->count; i++) gain[i] = (imp_term_pair){0, 0}, drawn[i] = 0;
+    for (int c = 0; c < s->closed_count; c++) {
+        const int j = s->closed[c], to = s->start[j + 1];
+        const imp_term_pair push = s->push[c];
+        for (int e = s->start[j]; e < to; e++) {
+            gain[row[e]] += value[e] * push;
+            drawn[row[e]] -= below(value[e]) * push[1];
+        }
+    }
+}
+
+static void push_to(imp_linear_springs *s, double t)
+{
+    sum_up(s, t);
+    find_gains(s);
+}
+
+/* The one that seems to come first, and when, is looked for first. Pushes and gains are those to its time. */
+static first_change find_first(imp_linear_springs *s, int nearest, double soonest)
+{
+    first_change first = {CHANGE_NONE, NULL, 1};
+    const double reach = make_terms(s);
+    if (reach < 1) change_unit(s, reach);
+    bound_rest(s);
+    if (nearest >= 0) see_closed(s, nearest, soonest < s->unit ? soonest / s->unit : 0, &first);
     for (int c = 0; c < s->closed_count; c++)
-        if (c != nearest) see_closed(s, c, &first);
-    if (s->closed_count == s->count) return first;
-    const double most = greatest_push(s, first.when);
-    for (int i = 0; i < s->count; i++) see_open(s, i, most, &first);
+        if (c != nearest) see_closed(s, c, 0, &first);
+    push_to(s, first.when);
+    const double closed = first.when;
+    for (int i = 0; i < s->count; i++)
+        if (s->place[i] < 0) see_open(s, i, closed * s->unit, &first);
+    if (first.when < closed) push_to(s, first.when);
     return first;
 }
 
@@ -399,15 +349,12 @@ static double look_closer(const imp_linear_springs *s, int closed, double t)
     const imp_linear_spring *l = &s->line[s->closed[closed]];
     imp_terms f;
     double when = t;
-    const bool turns = l->normal == IMP_SPRING_LOADS && l->restitution < 1;
-    if (turns)
-        gather_velocity(s, closed, -1, f);
-    else
-        gather(s, closed, 1, f);
+    const bool turns = will_turn(l);
+    const int terms = turns ? gather_rate(s, closed, 1, f) : gather(s, closed, 1, f);
     f[0] -= turns ? 0 : l->tiny;
     for (int k = 0; k < 2; k++) {
         double value = 0, slope = 0;
-        for (int m = 5; m >= 0; m--) slope = slope * when + value, value = value * when + f[m];
+        for (int m = terms - 1; m >= 0; m--) slope = slope * when + value, value = value * when + f[m];
         when -= value / slope;
     }
     return when > t / 2 && when < 2 * t ? when : IMP_LINEAR_AHEAD * t;
@@ -421,17 +368,17 @@ static double look_ahead(const imp_linear_springs *s, int *nearest)
     *nearest = -1;
     for (int c = 0; c < s->closed_count; c++) {
         const imp_linear_spring *l = &s->line[s->closed[c]];
-        const imp_term_pair first = s->depth[c], second = s->depth[s->closed_count + c];
-        const bool turns = l->normal == IMP_SPRING_LOADS && l->restitution < 1;
-        const double f0 = turns ? first.odd : first.even - l->tiny, f1 = turns ? 2 * second.even : first.odd,
-                     f2 = turns ? 3 * second.odd : second.even;
+        const imp_term_pair first = s->term[c], second = s->term[s->closed_count + c];
+        const bool turns = will_turn(l);
+        const double f0 = turns ? first[1] : first[0] - l->tiny, f1 = turns ? 2 * second[0] : first[1],
+                     f2 = turns ? 3 * second[1] : second[0];
         if (!may_fall(f0, f1, f2, soonest)) continue;
         const double t = zero_of(f0, f1, f2);
         if (t < soonest) soonest = t, *nearest = c;
     }
     for (int i = 0; i < s->count; i++) {
         const imp_linear_spring *l = &s->line[i];
-        if (l->normal == IMP_SPRING_OPEN && l->x < 0 && l->x - l->u * soonest > 0) soonest = l->x / l->u, *nearest = -1;
+        if (s->place[i] < 0 && l->x < 0 && l->x - l->u * soonest > 0) soonest = l->x / l->u, *nearest = -1;
     }
     return soonest;
 }
@@ -455,51 +402,23 @@ static void book_line_energy(imp_linear_spring *l, double x)
 
 static double depth_at(const imp_linear_springs *s, int closed, double t)
 {
+    imp_terms f;
     double x = 0;
-    for (int m = s->pairs - 1; m >= 0; m--) {
-        const imp_term_pair p = s->depth[m * s->closed_count + closed];
-        x = (x * t + p.odd) * t + p.even;
-    }
+    for (int k = gather(s, closed, 1, f) - 1; k >= 0; k--) x = x * t + f[k];
     return x;
-}
-
-/* Of what is closed F's integral from the beginning to t, whose powers are given, and that one's. */
-static void sum_up(imp_linear_springs *s, double t)
-{
-    const int n = s->closed_count;
-    imp_term_pair by_even[IMP_LINEAR_PAIRS], by_odd[IMP_LINEAR_PAIRS]; /* what a term makes of both */
-    for (int m = 0; m < s->pairs; m++) {
-        const double even = t * s->power[2 * m] * s->once[m].even, odd = t * s->power[2 * m + 1] * s->once[m].odd;
-        by_even[m] = (imp_term_pair){even, even * (s->twice[m].even * t)};
-        by_odd[m] = (imp_term_pair){odd, odd * (s->twice[m].odd * t)};
-    }
-    for (int c = 0; c < n; c++) {
-        imp_term_pair even = {0, 0}, odd = {0, 0};
-        const imp_term_pair *term = &s->depth[s->pairs * n + c];
-        for (int m = s->pairs - 1; m >= 0; m--) {
-            term -= n;
-            even.even += by_even[m].even * term->even;
-            even.odd += by_even[m].odd * term->even;
-            odd.even += by_odd[m].even * term->odd;
-            odd.odd += by_odd[m].odd * term->odd;
-        }
-        s->push[c] = (imp_term_pair){s->kappa[c] * (even.even + odd.even), s->kappa[c] * (even.odd + odd.odd)};
-    }
 }
 
 /* Where u changes its sign before t; what loads and will turn has no such time, and most have one at most. */
 static int see_changes(const imp_linear_springs *s, int closed, double sign, double t, double *when)
 {
     const imp_linear_spring *l = &s->line[s->closed[closed]];
-    const outline o = outline_rate(s, closed, sign);
     imp_terms f;
-    bool found;
-    if ((l->normal == IMP_SPRING_LOADS && l->restitution < 1) || outline_stays(&o)) return 0;
-    gather_velocity(s, closed, -sign, f);
-    if (!(f[0] > 0) || !outline_falls(&o))
-        return imp_springs_sign_changes(f, 2 * s->pairs - 2, t, when, IMP_SPRINGS_EXTREMES);
-    *when = imp_springs_only_fall(f, 2 * s->pairs - 1, t, &found);
-    return found;
+    bool found = false;
+    if (will_turn(l) || rate_stays(s, closed, sign)) return 0;
+    const int terms = gather_rate(s, closed, sign, f);
+    if (imp_springs_is_clear(f, terms)) return 0;
+    if (f[0] > 0) *when = imp_springs_lone_fall(f, terms - 1, 0, &found);
+    return found ? *when < t : imp_springs_sign_changes(f, terms - 1, t, when, IMP_SPRINGS_EXTREMES);
 }
 
 /* The spring's work to t; where u changes its sign on the way the energy has an extreme. */
@@ -507,7 +426,7 @@ static void book_line(const imp_linear_springs *s, int closed, double t)
 {
     imp_linear_spring *l = &s->line[s->closed[closed]];
     double when[IMP_SPRINGS_EXTREMES];
-    const double rate = s->depth[closed].odd;
+    const double rate = s->term[closed][1];
     bool compressed = rate > 0 || (rate == 0 && l->u < 0);
     const int changes = see_changes(s, closed, compressed ? 1 : -1, t, when);
     note_line_phase(l, compressed);
@@ -520,40 +439,40 @@ static void book_line(const imp_linear_springs *s, int closed, double t)
     book_line_energy(l, l->x);
 }
 
-static void move_lines_on(imp_linear_springs *s, double t)
+/* By the gains to t; false: they are none. */
+static bool move_lines_on(imp_linear_springs *s, double t)
 {
-    sum_up(s, t);
-    for (int i = 0; i < s->count; i++) s->gain[i] = (imp_term_pair){0, 0};
-    for (int c = 0; c < s->closed_count; c++) {
-        const int j = s->closed[c], from = s->start[j];
-        add_column(&s->value[from], &s->row[from], s->start[j + 1] - from, s->push[c], s->gain);
-        s->line[j].p += s->push[c].even;
-    }
+    const double time = t * s->unit;
+    double sum = 0;
     for (int i = 0; i < s->count; i++) {
         imp_linear_spring *l = &s->line[i];
-        l->x -= l->u * t + s->gain[i].odd;
-        l->u += s->gain[i].even;
+        l->x -= l->u * time + s->gain[i][1];
+        l->u += s->gain[i][0];
+        sum += l->x;
     }
-    for (int c = 0; c < s->closed_count; c++) book_line(s, c, t);
+    for (int c = 0; c < s->closed_count; c++) {
+        s->line[s->closed[c]].p += s->push[c][0];
+        book_line(s, c, t);
+    }
+    return isfinite(sum);
 }
 
 bool imp_linear_step(imp_linear_springs *s)
 {
-    const double growth = growth_of(s);
-    first_change first = {CHANGE_NONE, NULL, 0};
+    int nearest;
     begin_series(s);
     expand(s);
     expand(s);
-    int nearest;
-    double far = look_ahead(s, &nearest);
-    far = IMP_LINEAR_AHEAD * (nearest >= 0 ? look_closer(s, nearest, far) : far);
-    do {
-        first = find_first(s, nearest, reach_for(s, growth, far));
-        far *= 2;
-    } while (first.what == CHANGE_NONE && s->pairs < IMP_LINEAR_PAIRS && far <= IMP_SPRINGS_FARTHEST);
-    if (isnan(s->rest[0])) return false;
+    double soonest = look_ahead(s, &nearest);
+    if (nearest >= 0) soonest = look_closer(s, nearest, soonest);
+    change_unit(s, IMP_LINEAR_AHEAD * soonest);
+    first_change first = find_first(s, nearest, soonest);
+    while (first.what == CHANGE_NONE && s->pairs < IMP_LINEAR_PAIRS && 2 * s->unit <= IMP_SPRINGS_FARTHEST) {
+        change_unit(s, 2);
+        first = find_first(s, nearest, soonest);
+    }
+    if (!move_lines_on(s, first.when)) return false;
     s->steps++;
-    move_lines_on(s, first.when);
     s->events += first.line != NULL;
     if (first.what == CHANGE_TURN) first.line->u = fmax(first.line->u, 0);
     if (first.what == CHANGE_TOUCH) first.line->x = first.line->tiny;

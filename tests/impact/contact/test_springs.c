@@ -47,6 +47,47 @@ static void what_touches_zero_from_above_is_not_passed(void **state)
     assert_near(imp_springs_first_fall(late, 3, 1, &found), 1e-10, 1e-20);
 }
 
+/* (1 - t/a) for each root, some of them beyond 1, some complex; how many are in [0, 1], and the first. */
+static int draw_polynomial(random_stream *random, double c[8], double *first)
+{
+    int within = 0, order = 0;
+    for (int k = 0; k < 8; k++) c[k] = k == 0;
+    *first = INFINITY;
+    while (order < 6) {
+        if (random_unit(random) < 0.4) { /* 1 - b t + c t^2, b^2 < 4 c */
+            const double root = random_log(random, 0.5, 5), b = 1.9 * (2 * random_unit(random) - 1) / root;
+            for (int k = order + 2; k >= 1; k--) c[k] += (k >= 2 ? c[k - 2] / (root * root) : 0) - b * c[k - 1];
+            order += 2;
+        } else {
+            const double root = random_log(random, 0.1, 100);
+            for (int k = ++order; k >= 1; k--) c[k] -= c[k - 1] / root;
+            within += root <= 1;
+            *first = fmin(*first, root);
+        }
+    }
+    return within;
+}
+
+static void a_lone_zero_is_shown_to_be_the_only_one(void **state)
+{
+    (void)state;
+    random_stream random = {2};
+    int lone = 0, one = 0, clear = 0, none = 0;
+    for (int run = 0; run < 4000; run++) {
+        double c[8], first;
+        bool found;
+        const int within = draw_polynomial(&random, c, &first);
+        const double about = run % 2 ? first * (1 + 0.1 * (random_unit(&random) - 0.5)) : 0;
+        const double at = imp_springs_lone_fall(c, 7, about > 1 ? 0 : about, &found);
+        if (found) assert_int_equal(within, 1);
+        if (found) assert_near(at / first, 1, 1e-12);
+        if (imp_springs_is_clear(c, 8)) assert_int_equal(within, 0);
+        lone += found, one += within == 1;
+        clear += imp_springs_is_clear(c, 8), none += within == 0;
+    }
+    assert_true(lone > one / 2 && clear > none / 2); /* and they do tell */
+}
+
 /* ---- one contact ---- */
 
 static impact_collider any_body(random_stream *random, bool is_static)
@@ -74,7 +115,7 @@ static impact_status by_springs(const impact_collision *c, double exponent, impa
                               .restitution = c->restitution,
                               .stiffness = 3};
     const impact_encounter e = {.bodies = c->body, .body_count = 2, .meetings = &m, .meeting_count = 1};
-    const imp_contact contact = imp_encounter_contact(&e, 0);
+    const imp_contact contact = imp_encounter_contact(&e, 0, false);
     const qvec3 v[2] = {c->body[0].velocity, c->body[1].velocity}, omega[2] = {c->body[0].omega, c->body[1].omega};
     double w[9] = {0}, u0[3];
     imp_finding finding = {.compressions = 0};
@@ -236,6 +277,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_zero_of_a_polynomial_is_found),
         cmocka_unit_test(what_touches_zero_from_above_is_not_passed),
+        cmocka_unit_test(a_lone_zero_is_shown_to_be_the_only_one),
         cmocka_unit_test(a_block_too_small_is_told),
         cmocka_unit_test(one_contact_is_impact_collide),
         cmocka_unit_test(random_encounters_are_the_oracle_s),
