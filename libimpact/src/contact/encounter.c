@@ -113,7 +113,7 @@ static size_t group_bytes(size_t n, bool linear)
     const size_t creep =
         linear ? 0
                : sizeof(double) * (imp_springs_creep_size(n) + imp_springs_bounces_size(n)) + n * sizeof(imp_spring);
-    return own + creep + n * n * (linear ? 48 : 3 * 72 + 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);
+    return own + creep + n * n * (linear ? 48 : 2 * 72 + 2 * 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);
 }
 
 static void take_finding(const imp_finding *f, impact_meeting_outcome *m)

@@ -28,13 +28,18 @@ static units find_units(const imp_group *group)
 
 /* ---- room ---- */
 
+static imp_spring_rows take_rows(impact_together_workspace *workspace, size_t width)
+{
+    return (imp_spring_rows){imp_encounter_take(workspace, width + 1, sizeof(int)),
+                             imp_encounter_take(workspace, width * width, sizeof(int))};
+}
+
 static bool take_room(imp_springs *s, impact_together_workspace *workspace)
 {
     const size_t n = (size_t)s->count, width = 3 * n;
     s->springs = imp_encounter_take(workspace, n, sizeof *s->springs);
-    s->row_start = imp_encounter_take(workspace, width + 1, sizeof *s->row_start);
-    s->column = imp_encounter_take(workspace, width * width, sizeof *s->column);
-    s->value = imp_encounter_take(workspace, width * width, sizeof *s->value);
+    s->rows = take_rows(workspace, width);
+    s->pressed = take_rows(workspace, width);
     s->stick = imp_encounter_take(workspace, 2 * n, sizeof *s->stick);
     s->inverse = imp_encounter_take(workspace, 4 * n * n, sizeof *s->inverse);
     s->now = imp_encounter_take(workspace, width, sizeof *s->now);
@@ -50,21 +55,20 @@ static bool take_room(imp_springs *s, impact_together_workspace *workspace)
     return !workspace->work.spent && imp_cone_reserve(s->cone, s->count);
 }
 
-/* W's rows without zeros and without columns that never push. */
 static void pack_rows(imp_springs *s)
 {
     const int width = 3 * s->count;
+    const imp_spring_rows *r = &s->rows;
     int filled = 0;
     for (int i = 0; i < width; i++) {
-        s->row_start[i] = filled;
+        r->start[i] = filled;
         for (int j = 0; j < width; j++) {
             const double entry = s->w[(size_t)i * (size_t)width + (size_t)j];
             if (entry == 0 || (j % 3 > 0 && s->springs[j / 3].friction == 0)) continue;
-            s->column[filled] = j;
-            s->value[filled++] = entry;
+            r->column[filled++] = j;
         }
     }
-    s->row_start[width] = filled;
+    r->start[width] = filled;
 }
 
 static void set_up(imp_springs *s, const imp_group *group, const units *unit, double *w, double *u0)
@@ -153,14 +157,14 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     set_up(&s, group, &unit, w, u0);
     double next = IMP_SPRINGS_ASKED;
     while (s.steps + s.events < group->patience && s.work < IMP_SPRINGS_WORK) {
+        s.closing = -1;
         if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
         group->wedged = is_wedged(&s, &next);
         if (group->wedged) return IMPACT_EUNSETTLED;
-        if (imp_springs_pressed(&s)) {
+        const bool pressed = imp_springs_pressed(&s);
+        if (pressed && !imp_springs_end_bounces(&s)) {
             if (!imp_springs_step(&s)) return IMPACT_EUNSETTLED;
-        } else {
-            const int closing = imp_springs_drift(&s);
-            if (closing >= 0 && !imp_springs_end_bounces(&s, closing)) continue;
+        } else if (pressed || !imp_springs_drift(&s)) {
             report(&s, &unit, group);
             return IMPACT_OK;
         }

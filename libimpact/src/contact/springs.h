@@ -65,6 +65,11 @@ typedef struct imp_spring {
     imp_terms cosine, sine;
 } imp_spring;
 
+/* Of W by rows: the columns without zeros, and without those of no friction where they are tangential. */
+typedef struct imp_spring_rows {
+    int *start, *column;
+} imp_spring_rows;
+
 /* What leads: the factor g of time. */
 typedef enum imp_spring_lead { IMP_SPRING_TIME, IMP_SPRING_ROOT, IMP_SPRING_SPEED } imp_spring_lead;
 
@@ -82,9 +87,7 @@ typedef struct imp_springs {
     imp_spring *springs;
     const double *w; /* (3 count)^2, without units */
     const double *u0;
-    /* W by rows without its zeros, columns of contacts without friction left out where they are tangential */
-    int *row_start, *column;
-    double *value;
+    imp_spring_rows rows, pressed; /* all; columns of what presses alone */
     /* What sticks: its components, and the pseudo-inverse of their part of W. */
     int stick_count, *stick;
     double *inverse;
@@ -102,6 +105,7 @@ typedef struct imp_springs {
     imp_spring *kept;
     bool creeping; /* the series are springs_creep.c's */
     bool stopped;  /* a slip has: what sticks must be chosen anew */
+    int closing;   /* what has just closed, of several the one that bounces are counted by; -1: nothing */
     imp_springs_bounces bounces;
     long events, steps;
     double work; /* multiplications so far, roughly */
@@ -123,7 +127,9 @@ void imp_springs_tie(imp_springs *s);
 bool imp_springs_is_tied(const imp_springs *s);
 /* push[..][k] of the sticking contacts from those of the others. */
 void imp_springs_hold(imp_springs *s, int k);
-/* Row i of W times the forces of order k. */
+/* The columns of what presses, anew. */
+void imp_springs_pack_pressed(imp_springs *s);
+/* Row i of W times the forces `now`, of what presses. */
 double imp_springs_row(const imp_springs *s, int i);
 /* The accelerations of now: forces into `now`; du/dt of contact c, component i by imp_springs_row. */
 void imp_springs_forces(imp_springs *s);
@@ -185,9 +191,9 @@ int imp_springs_sign_changes(const double *c, int order, double t, double *when,
 
 /* Doubles of room for n contacts. */
 size_t imp_springs_bounces_size(size_t n);
-/* Nothing presses, and that contact closes next: whether bounces are like those before, to whose end impulses, works
- * and velocities have gone then. */
-bool imp_springs_end_bounces(imp_springs *s, int closing);
+/* Whether bounces are like those before, to whose end impulses, works and velocities have gone then; s->closing closes.
+ */
+bool imp_springs_end_bounces(imp_springs *s);
 
 /* ---- springs_changes.c ---- */
 
@@ -207,8 +213,8 @@ bool imp_springs_settle(imp_springs *s);
 
 /* To the next event, or as far as the series reach, and what happens there. False: not settled. */
 bool imp_springs_step(imp_springs *s);
-/* Nothing presses: to the next closing. The contact; -1: there is none. */
-int imp_springs_drift(imp_springs *s);
+/* Nothing presses: to the next closing; false: there is none. */
+bool imp_springs_drift(imp_springs *s);
 /* u = u0 + W p */
 void imp_springs_find_velocities(imp_springs *s);
 

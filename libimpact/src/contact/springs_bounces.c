@@ -7,7 +7,9 @@
  *     p'' - p' = R (p' - p)      p_end = p'' + (p'' - p') R/(1 - R)      E_end = E'' + (E'' - E') R^2/(1 - R^2)
  *
  * R is that of as many rounds as leave it under IMP_BOUNCES_RATIO: 1/(1 - R)^2 is by what p_end has the rounding of p.
- * The rounds take ever longer, and what else approaches ends them: then there is no such end.
+ * Moments are closings of one contact, whatever presses then: of two that bounce in turn one may always do. What
+ * presses without bouncing is in no ratio. Where nothing does in between, rounds take ever longer, and what else
+ * approaches ends them: then there is no such end.
  */
 #include "contact/springs.h"
 
@@ -83,16 +85,14 @@ static bool only_they_approach(const imp_springs *s)
 static bool ends(imp_springs *s, double ratio)
 {
     if (!only_they_approach(s)) return false;
-    double *p = impulses_at(s, 0), *work = works_at(s, 0); /* of the first there is no need now */
+    double *work = works_at(s, 0); /* of the first there is no need now */
     note_moment(s, 0);
+    memcpy(s->kept, s->springs, (size_t)s->count * sizeof *s->kept);
     go_to_end(s, ratio);
     if (none_approaches(s, IMP_BOUNCES_ERROR)) return true;
+    memcpy(s->springs, s->kept, (size_t)s->count * sizeof *s->kept);
     for (int i = 0; i < s->count; i++)
-        for (int j = 0; j < 3; j++) {
-            s->springs[i].p[j] = p[3 * i + j];
-            s->springs[i].finding->work[j] = work[3 * i + j];
-        }
-    imp_springs_find_velocities(s);
+        for (int j = 0; j < 3; j++) s->springs[i].finding->work[j] = work[3 * i + j];
     return false;
 }
 
@@ -102,8 +102,9 @@ static bool look_for_end(imp_springs *s)
     imp_springs_bounces *b = &s->bounces;
     double off;
     const double ratio = find_ratio(s, &off), left = 1 - ratio;
-    const bool falls = ratio > 0 && ratio < 1;
-    if (falls && ratio <= IMP_BOUNCES_RATIO && off <= IMP_BOUNCES_ERROR * left * left && ends(s, ratio)) return true;
+    const bool falls = ratio > 0 && ratio < 1, told = s->springs[b->contact].u[0] <= -IMP_BOUNCES_SLOWEST;
+    if (falls && told && ratio <= IMP_BOUNCES_RATIO && off <= IMP_BOUNCES_ERROR * left * left && ends(s, ratio))
+        return true;
     note_moment(s, 0);
     b->rounds = 0;
     b->span =
@@ -111,14 +112,15 @@ static bool look_for_end(imp_springs *s)
     return false;
 }
 
-bool imp_springs_end_bounces(imp_springs *s, int closing)
+bool imp_springs_end_bounces(imp_springs *s)
 {
     imp_springs_bounces *b = &s->bounces;
+    if (s->closing < 0) return false;
     if (b->span == 0 || s->events > b->expected) { /* the contact no longer takes part */
-        *b = (imp_springs_bounces){.room = b->room, .contact = closing, .span = IMP_BOUNCES_ROUNDS};
+        *b = (imp_springs_bounces){.room = b->room, .contact = s->closing, .span = IMP_BOUNCES_ROUNDS};
         note_moment(s, 0);
     }
-    if (closing != b->contact) return false;
+    if (s->closing != b->contact) return false;
     b->expected = s->events + IMP_BOUNCES_LONGEST;
     b->rounds++;
     if (b->rounds == b->span) note_moment(s, 1);

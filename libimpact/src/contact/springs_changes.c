@@ -73,6 +73,7 @@ static bool settle_normal(imp_springs *s, int contact, bool pressed)
     if (c->normal == IMP_SPRING_OPEN) {
         if (c->x < c->tiny * (1 - IMP_SPRINGS_TOGETHER) || c->u[0] >= (pressed ? 0 : -c->none)) return false;
         close_spring(s, c);
+        if (s->closing < 0 || contact == s->bounces.contact) s->closing = contact;
     } else if (c->x <= c->tiny * (1 + IMP_SPRINGS_TOGETHER) && c->u[0] >= 0) {
         open_spring(c);
     } else if (c->normal == IMP_SPRING_LOADS && c->restitution < 1 && c->u[0] >= 0) {
@@ -160,6 +161,7 @@ bool imp_springs_settle(imp_springs *s)
         undecided = undecided || (!was && is_undecided(&s->springs[i]));
         frictional = frictional || (s->springs[i].normal != IMP_SPRING_OPEN && s->springs[i].friction > 0);
     }
+    if (changed) imp_springs_pack_pressed(s);
     if (!frictional) {
         s->stick_count = 0;
         return true;

@@ -283,7 +283,7 @@ static bool settle_nodes(creep *k)
         if (!find_slips(k)) return false;
         for (int j = 0; j < NODES; j++) (void)take_node_forces(k, j, &most);
         integrate(k);
-        k->s->work += 4.0 * NODES * k->s->row_start[3 * k->s->count];
+        k->s->work += 4.0 * NODES * k->s->pressed.start[3 * k->s->count];
     }
     return false;
 }

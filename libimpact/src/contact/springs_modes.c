@@ -15,10 +15,25 @@
 #include "base/tolerances.h"
 #include "contact/least.h"
 
+void imp_springs_pack_pressed(imp_springs *s)
+{
+    const int width = 3 * s->count;
+    const imp_spring_rows *all = &s->rows, *own = &s->pressed;
+    int filled = 0;
+    for (int i = 0; i < width; i++) {
+        own->start[i] = filled;
+        for (int k = all->start[i]; k < all->start[i + 1]; k++)
+            if (imp_springs_presses(&s->springs[all->column[k] / 3])) own->column[filled++] = all->column[k];
+    }
+    own->start[width] = filled;
+}
+
 double imp_springs_row(const imp_springs *s, int i)
 {
+    const imp_spring_rows *r = &s->pressed;
+    const double *row = &s->w[(size_t)i * 3 * (size_t)s->count];
     double sum = 0;
-    for (int k = s->row_start[i]; k < s->row_start[i + 1]; k++) sum += s->value[k] * s->now[s->column[k]];
+    for (int k = r->start[i]; k < r->start[i + 1]; k++) sum += row[r->column[k]] * s->now[r->column[k]];
     return sum;
 }
 

@@ -343,10 +343,12 @@ static double reach_of_powers(const imp_springs *s)
     return reach;
 }
 
-/* Of W's entries each order's products; of each contact a dozen sums of products over the orders. */
+/* Of W's entries each order's products; of each contact that presses a dozen sums of products over the orders. */
 static double work_of_step(const imp_springs *s)
 {
-    return IMP_SPRINGS_ORDER * (s->row_start[3 * s->count] + 6.0 * IMP_SPRINGS_ORDER * s->count);
+    int pressed = 0;
+    for (int i = 0; i < s->count; i++) pressed += imp_springs_presses(&s->springs[i]);
+    return IMP_SPRINGS_ORDER * (s->pressed.start[3 * s->count] + 6.0 * IMP_SPRINGS_ORDER * pressed);
 }
 
 /* How far tau = h is in time, at the beginning's rate. */

@@ -184,13 +184,25 @@ static void push_on(imp_spring *c, double t)
     }
 }
 
+/* Row i of W times all that has been pushed. */
+static double velocity_pushed(const imp_springs *s, int i)
+{
+    const imp_spring_rows *r = &s->rows;
+    double sum = 0;
+    for (int k = r->start[i]; k < r->start[i + 1]; k++)
+        sum += imp_springs_entry(s, i, r->column[k]) * s->now[r->column[k]];
+    return sum;
+}
+
 /* The largest sum of terms of the contact's velocities. */
 static double terms_of_velocity(const imp_springs *s, int contact)
 {
+    const imp_spring_rows *r = &s->rows;
     double most = 0;
     for (int i = 3 * contact; i < 3 * contact + (s->springs[contact].friction > 0 ? 3 : 1); i++) {
         double sum = 0;
-        for (int k = s->row_start[i]; k < s->row_start[i + 1]; k++) sum += fabs(s->value[k] * s->now[s->column[k]]);
+        for (int k = r->start[i]; k < r->start[i + 1]; k++)
+            sum += fabs(imp_springs_entry(s, i, r->column[k]) * s->now[r->column[k]]);
         most = fmax(most, sum);
     }
     return most;
@@ -209,7 +221,7 @@ void imp_springs_find_velocities(imp_springs *s)
     for (int i = 0; i < s->count; i++)
         for (int j = 0; j < 3; j++) s->now[3 * i + j] = s->springs[i].p[j];
     for (int i = 0; i < s->count; i++) {
-        for (int j = 0; j < 3; j++) s->springs[i].u[j] = s->u0[3 * i + j] + imp_springs_row(s, 3 * i + j);
+        for (int j = 0; j < 3; j++) s->springs[i].u[j] = s->u0[3 * i + j] + velocity_pushed(s, 3 * i + j);
         s->springs[i].rounding = IMP_SPRINGS_STILL * fmax(1, terms_of_velocity(s, i));
     }
     const double drift = drift_of_held(s);
@@ -321,7 +333,7 @@ bool imp_springs_step(imp_springs *s)
     return take_event(s, &first);
 }
 
-int imp_springs_drift(imp_springs *s)
+bool imp_springs_drift(imp_springs *s)
 {
     double soonest = INFINITY;
     int next = -1;
@@ -330,8 +342,8 @@ int imp_springs_drift(imp_springs *s)
         const double time = c->u[0] < -c->none ? fmax(0, c->tiny - c->x) / -c->u[0] : INFINITY;
         if (time < soonest) soonest = time, next = i;
     }
-    if (next < 0) return next;
+    if (next < 0) return false;
     for (int i = 0; i < s->count; i++) s->springs[i].x -= s->springs[i].u[0] * soonest;
     s->springs[next].x = s->springs[next].tiny;
-    return next;
+    return true;
 }

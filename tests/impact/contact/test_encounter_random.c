@@ -187,7 +187,9 @@ static void moreau_s_energy_rises_only_by_different_restitutions(void **state)
 /* Encounters of the campaign (./run report together) that once found no end: slip that begins by and by where the
  * contact is about to open; slip as slow as the rounding of impulses a hundred times the largest momentum; slip that
  * creeps among impulses as great, each step of which began with their rounding; slip that creeps until its contact
- * opens; and one that came to an end, but for a contact of no more than rounding, whose friction drove by that. */
+ * opens; one that came to an end, but for a contact of no more than rounding, whose friction drove by that; bounces
+ * that die out in 106723 steps and events; and a pressed few of nine contacts, whose work was counted as that of all.
+ */
 static void what_found_no_end_is_answered(void **state)
 {
     (void)state;
@@ -195,9 +197,10 @@ static void what_found_no_end_is_answered(void **state)
         uint64_t seed, number;
         double exponent;
         int least, most;
-    } cases[] = {{1, 1192, 1.5, 2, 3},    {1, 433, 1, 4, 6},       {1, 555, 1, 7, 12},     {1, 4055, 1.5, 4, 6},
-                 {102, 1111, 1.5, 7, 12}, {101, 2857, 1, 7, 12},   {102, 2166, 1, 4, 6},   {905, 341, 1.5, 2, 3},
-                 {907, 1184, 1.5, 4, 6},  {901, 2839, 1.5, 7, 12}, {904, 2771, 1.5, 7, 12}};
+    } cases[] = {{1, 1192, 1.5, 2, 3},    {1, 433, 1, 4, 6},       {1, 555, 1, 7, 12},      {1, 4055, 1.5, 4, 6},
+                 {102, 1111, 1.5, 7, 12}, {101, 2857, 1, 7, 12},   {102, 2166, 1, 4, 6},    {905, 341, 1.5, 2, 3},
+                 {907, 1184, 1.5, 4, 6},  {901, 2839, 1.5, 7, 12}, {904, 2771, 1.5, 7, 12}, {36, 5065, 1, 7, 12},
+                 {31, 5405, 1, 7, 12}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
         random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
@@ -210,7 +213,7 @@ static void what_found_no_end_is_answered(void **state)
 
 /* Encounters of the campaign whose bodies bounce from contact to contact, ever less, each round like the one before:
  * two that once spent the work allowed, and one that came to where its springs count as open, after 45000 steps, with
- * 2e-9 of its speed left. */
+ * 2e-9 of its speed left; and two of whose two contacts one always presses, which come to rest. */
 static void bounces_that_never_end_are_followed_to_their_end(void **state)
 {
     (void)state;
@@ -218,7 +221,11 @@ static void bounces_that_never_end_are_followed_to_their_end(void **state)
         uint64_t seed, number;
         double exponent;
         int least, most;
-    } cases[] = {{905, 3316, 1, 2, 3}, {906, 1717, 1.5, 4, 6}, {903, 4606, 1, 4, 6}};
+    } cases[] = {{905, 3316, 1, 2, 3},
+                 {906, 1717, 1.5, 4, 6},
+                 {903, 4606, 1, 4, 6},
+                 {35, 5506, 1, 7, 12},
+                 {406, 485, 1.5, 4, 6}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
         random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
@@ -376,10 +383,10 @@ static void what_never_ends_is_told_and_what_takes_long_is_answered(void **state
         double exponent;
         int least, most;
         bool wedged;
-    } cases[] = {{403, 775, 1, 2, 3, true},    {404, 308, 1.5, 4, 6, true},  {406, 485, 1.5, 4, 6, true},
-                 {406, 1241, 1, 4, 6, true},   {402, 651, 1.5, 7, 12, true}, {407, 569, 1.5, 7, 12, false},
-                 {404, 1469, 1, 7, 12, false}, {406, 1269, 1, 7, 12, false}, {402, 1305, 1, 7, 12, false},
-                 {404, 1159, 1, 4, 6, false},  {406, 1425, 1, 7, 12, false}};
+    } cases[] = {{403, 775, 1, 2, 3, true},    {404, 308, 1.5, 4, 6, true},   {406, 1241, 1, 4, 6, true},
+                 {402, 651, 1.5, 7, 12, true}, {407, 569, 1.5, 7, 12, false}, {404, 1469, 1, 7, 12, false},
+                 {406, 1269, 1, 7, 12, false}, {402, 1305, 1, 7, 12, false},  {404, 1159, 1, 4, 6, false},
+                 {406, 1425, 1, 7, 12, false}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
         random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
