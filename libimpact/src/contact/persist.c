@@ -180,7 +180,7 @@ double imp_persist_own_acceleration(const imp_persist *persist, const imp_world 
 
 /* ---- constraints put back ---- */
 
-void imp_persist_close_gap(imp_world *world, imp_pair *pair, const impact_contact *contact, imp_state *states)
+static void close_gap(imp_world *world, imp_pair *pair, const impact_contact *contact, imp_state *states)
 {
     const double w1 = world->bodies[pair->body1].inverse_mass, w2 = world->bodies[pair->body2].inverse_mass;
     imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
@@ -199,34 +199,66 @@ static void align(const imp_world *world, const imp_pair *pair, imp_state *state
     quat_normalize(quat_mul(quat_from_rotation_vector(turn), s1->q), &s1->q);
 }
 
-static void close_gaps(imp_world *world, imp_state *states)
+/* Lays a carried contact on the plane: its body is all that moves, along the normal. */
+static impact_contact close_carried(imp_world *world, imp_pair *pair, imp_state *states)
 {
+    const bool flat = pair->footing.on == IMP_FOOT_FLAT;
+    imp_spot spot = imp_spot_at(&world->bodies[pair->body1].shape, pair->footing.spot);
+    if (flat)
+        imp_flat_level(world, pair, states);
+    else
+        align(world, pair, states, &spot);
+    if (pair->footing.on == IMP_FOOT_LINE) imp_line_level(world, pair, states);
+    impact_contact contact = carried_contact(world, pair, states, &spot);
+    if (!flat) close_gap(world, pair, &contact, states);
+    contact.gap = 0;
+    return contact;
+}
+
+/* Where the held contacts are, and the displacements that close their gaps. One alone is closed along its normal: the
+ * gap is linear in that, and where a body is all but flat its place would go far with the least turn. */
+static void find_gaps(imp_persist *persist, imp_world *world, imp_state *states)
+{
+    int c = 0;
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
         if (!imp_is_held(pair)) continue;
         impact_contact contact;
-        imp_spot spot;
-        if (pair->footing.on == IMP_FOOT_FLAT) {
-            imp_flat_level(world, pair, states);
-            continue;
-        }
-        if (imp_is_carried(pair)) {
-            spot = imp_spot_at(&world->bodies[pair->body1].shape, pair->footing.spot);
-            align(world, pair, states, &spot);
-            if (pair->footing.on == IMP_FOOT_LINE) imp_line_level(world, pair, states);
-            contact = carried_contact(world, pair, states, &spot);
-        } else {
+        if (imp_is_carried(pair))
+            contact = close_carried(world, pair, states);
+        else if (pair->site.placed)
+            contact = pair->site.contact;
+        else
             imp_world_gap(world, pair, states, &contact);
-        }
-        imp_persist_close_gap(world, pair, &contact, states);
+        if (persist->count == 1) close_gap(world, pair, &contact, states), contact.gap = 0;
+        persist->touches[c] = imp_persist_meet(world, p, &contact);
+        persist->touches[c].still = pair->rest.still;
+        persist->touches[c++].wanted = qvec3_scale(contact.normal, -contact.gap);
     }
+}
+
+static void displace(const imp_persist *persist, const imp_world *world, imp_state *states)
+{
+    for (int i = 0; i < world->body_count; i++) {
+        if (world->bodies[i].is_static) continue;
+        const imp_effect *effect = &persist->effects[i];
+        states[i].x = qvec3_add(states[i].x, effect->linear);
+        if (qvec3_norm(effect->angular) > 0)
+            quat_normalize(quat_mul(quat_from_rotation_vector(effect->angular), states[i].q), &states[i].q);
+    }
+}
+
+void imp_persist_close_gaps(imp_persist *persist, imp_world *world, imp_state *states)
+{
+    find_gaps(persist, world, states);
+    imp_system_solve(persist, world, states, false);
+    displace(persist, world, states);
 }
 
 void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads)
 {
     if (persist->count == 0) return;
-    enum { SWEEPS = 3 }; /* contacts that share a body disturb each other by the square of their gaps */
-    for (int sweep = 0; sweep < (persist->count > 1 ? SWEEPS : 1); sweep++) close_gaps(world, states);
+    for (int round = 0; round < IMP_PERSIST_ROUNDS; round++) imp_persist_close_gaps(persist, world, states);
     imp_persist_project_velocities(persist, world, states, loads);
 }
 

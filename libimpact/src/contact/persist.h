@@ -94,9 +94,14 @@ imp_touch imp_persist_touch(imp_world *world, int pair, const imp_state *states,
 /* Lets the touch's pair slide from rest, against the friction as solved for. */
 void imp_persist_begin_slide(imp_pair *pair, const imp_touch *touch);
 
-/* Moves the pair's bodies along the normal so that the gap is zero. */
-void imp_persist_close_gap(imp_world *world, imp_pair *pair, const impact_contact *contact, imp_state *states);
+/* Newton's rounds to take gaps to zero: each leaves the square of what it began with, and that is an integrator's
+ * error.
+ */
+enum { IMP_PERSIST_ROUNDS = 2 };
 
+/* One such round: the least displacements, in the measure of masses and inertias, that take the gaps of the held
+ * contacts to zero, without slip where they roll. */
+void imp_persist_close_gaps(imp_persist *persist, imp_world *world, imp_state *states);
 /* Puts positions and velocities back on the held contacts exactly. */
 void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads);
 /* The velocities alone. */

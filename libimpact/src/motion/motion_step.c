@@ -83,7 +83,7 @@ impact_status imp_motion_put_back(imp_motion *motion, double t, imp_state *state
     if (motion->persist.count == 0) return IMPACT_OK;
     if (!imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
     const bool loaded = imp_motion_load(motion, t, states);
-    if (loaded) imp_persist_project_velocities(&motion->persist, motion->world, states, motion->loads);
+    if (loaded) imp_persist_project(&motion->persist, motion->world, states, motion->loads);
     imp_motion_restore_contacts(motion);
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }

@@ -168,11 +168,19 @@ static bool crosses_border(const imp_island *island)
 
 static impact_status cross_border(impact_scene *scene, imp_island *island, double t)
 {
+    const imp_pair ended = island->world.pairs[island->end.index];
+    const int body[2] = {island->world.bodies[ended.body1].index, island->world.bodies[ended.body2].index};
     imp_island *wider;
-    imp_gather_company(scene, island->world.bodies[island->world.pairs[island->end.index].body1].index);
+    imp_gather_company(scene, body[0]);
     const impact_status status = imp_gather(scene, -1, t, false, &wider);
     if (status != IMPACT_OK) return status;
     wider->outside = imp_gather_energy_outside(scene, wider, t);
+    const int i = imp_island_find(wider, body[0]), j = imp_island_find(wider, body[1]);
+    for (int p = 0; p < wider->world.pair_count; p++) {
+        const imp_pair *pair = &wider->world.pairs[p];
+        if (pair->body1 == i && pair->body2 == j && pair->site.corner == ended.site.corner && imp_is_held(pair))
+            return conclude(wider, imp_scene_handle(wider, (imp_end){IMP_END_BOUNDS, p}));
+    }
     return conclude(wider, imp_scene_settle(wider));
 }
 

@@ -13,6 +13,7 @@
 #include "scene/scene_meeting.h"
 #include "scene/scene_points.h"
 #include "scene/scene_strike.h"
+#include "world/corner.h"
 #include "world/world_gap.h"
 
 #include <string.h>
@@ -103,6 +104,39 @@ impact_status imp_scene_strike_steps(imp_island *island)
 
 /* ---- the ends of stretches of motion ---- */
 
+/* Of what touches, or lands at `within` from it: every point's contact is to be closed, and pairs[p]. */
+static impact_status list_landing(imp_island *island, int p, double within)
+{
+    const imp_pair arriving = island->world.pairs[p];
+    island->landing = within;
+    const impact_status status = imp_scene_place_points(island);
+    island->landing = 0;
+    for (int k = 0; status == IMPACT_OK && k < island->world.pair_count; k++) {
+        imp_pair *pair = &island->world.pairs[k];
+        if (pair->site.placed || imp_same_bodies(pair, &arriving)) pair->mode = IMP_SLIDE;
+    }
+    return status == IMPACT_OK ? imp_persist_reserve(&island->motion.persist, &island->world, island->states) : status;
+}
+
+/* Takes the gaps of what lands to zero with those of what is held, none at the cost of another: putting back what was
+ * held has moved the rest by the integrator's error. */
+static impact_status close_landing(imp_island *island, int p, double within)
+{
+    imp_world *world = &island->world;
+    const int count = world->pair_count;
+    imp_pair *pairs = imp_arena_take(world->arena, (size_t)count, sizeof *pairs);
+    impact_status status = pairs ? IMPACT_OK : IMPACT_ENOMEM;
+    if (pairs) memcpy(pairs, world->pairs, sizeof *pairs * (size_t)count);
+    for (int round = 0; status == IMPACT_OK && round < IMP_PERSIST_ROUNDS; round++) {
+        status = list_landing(island, p, within);
+        if (status == IMPACT_OK) imp_persist_close_gaps(&island->motion.persist, world, island->states);
+        memcpy(world->pairs, pairs, sizeof *pairs * (size_t)count);
+        world->pair_count = count;
+    }
+    imp_arena_give(world->arena, pairs);
+    return status == IMPACT_OK ? imp_persist_reserve(&island->motion.persist, world, island->states) : status;
+}
+
 static impact_status arrive(imp_island *island, int p)
 {
     imp_world *world = &island->world;
@@ -114,8 +148,10 @@ static impact_status arrive(imp_island *island, int p)
         return IMPACT_OK;
     }
     /* a rounding, of the gap or of the time; many would sum up */
-    if (contact.gap < 0 || contact.gap > imp_world_touching_distance(world, pair, island->states))
-        imp_persist_close_gap(world, pair, &contact, island->states);
+    if (contact.gap < 0 || contact.gap > imp_world_touching_distance(world, pair, island->states)) {
+        const impact_status status = close_landing(island, p, fmax(0, contact.gap));
+        if (status != IMPACT_OK) return status;
+    }
     return imp_scene_settle(island);
 }
 
@@ -230,6 +266,14 @@ static impact_status stop_gliding(imp_island *island, int p)
     return status == IMPACT_OK ? imp_scene_settle(island) : status;
 }
 
+/* Another corner than pairs[p]'s has landed, or that has come to a border. */
+static impact_status land(imp_island *island, int p)
+{
+    const double off = imp_corner_clearance(&island->world, &island->world.pairs[p], island->states);
+    const impact_status status = close_landing(island, p, fmax(0, off));
+    return status == IMPACT_OK ? imp_scene_settle(island) : status;
+}
+
 impact_status imp_scene_handle(imp_island *island, imp_end end)
 {
     switch (end.kind) {
@@ -238,8 +282,7 @@ impact_status imp_scene_handle(imp_island *island, imp_end end)
     case IMP_END_BOUNDS:
         if (island->world.pairs[end.index].footing.on == IMP_FOOT_FACE)
             return imp_scene_settle(island); /* its face has come to an end */
-        if (island->world.pairs[end.index].site.corner > 0)
-            return imp_scene_settle(island); /* another corner has landed */
+        if (island->world.pairs[end.index].site.corner > 0) return land(island, end.index);
         if (tips(island, end.index)) return hold(island, -1, true);
         return change_mode(island, end.index, IMP_BEYOND);
     case IMP_END_LIFTOFF: return change_mode(island, end.index, IMP_OPEN);

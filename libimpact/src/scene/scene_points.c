@@ -62,21 +62,6 @@ static imp_pair point_pair(const imp_pair *whole, int corner, int face, const im
     return own;
 }
 
-/* How far the integrator's error has left apart what the same bodies are held at: it touches all the same, as what is
- * not of points does (imp_scene_meets), however loose the tolerance is. */
-static double held_apart(imp_island *island, const imp_pair *before, int p, int pairs)
-{
-    double most = 0;
-    for (int k = p; k < pairs; k++) {
-        imp_pair held = before[k];
-        impact_contact contact;
-        if (held.site.corner == 0 || !imp_is_held(&held) || !imp_same_bodies(&held, &before[p])) continue;
-        imp_world_gap(&island->world, &held, island->states, &contact);
-        most = fmax(most, contact.gap);
-    }
-    return most;
-}
-
 /* The points of the bodies of before[p], of so many pairs. */
 static impact_status place(imp_island *island, const imp_pair *before, int p, int pairs)
 {
@@ -86,15 +71,13 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
     const double touching = imp_world_touching_distance(world, &whole, island->states);
     const imp_body *b1 = &world->bodies[whole.body1], *b2 = &world->bodies[whole.body2];
     const double flush = island->stepped ? imp_stepped_flush(b1, b2) : touching;
-    const double apart = held_apart(island, before, p, pairs);
-    const int count = imp_points_find(world, &whole, island->states, touching + apart, flush, points);
+    const int count = imp_points_find(world, &whole, island->states, touching + island->landing, flush, points);
     const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
     const int first = world->pair_count;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
         int face;
         const int corner = corner_of(island, &whole, &points[k], count, &face);
         imp_pair own = point_pair(&whole, corner, face, before, pairs);
-        if (points[k].contact.gap > touching && !imp_is_held(&own)) continue;
         own.site.placed = true;
         own.site.contact = points[k].contact;
         own.site.bearer = points[k].bearer;
