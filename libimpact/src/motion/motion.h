@@ -109,7 +109,7 @@ void imp_motion_depart(imp_motion *motion, double t, double t_end, bool renewed)
 impact_status imp_motion_next(imp_motion *motion, imp_state *states, imp_end *end);
 /* States and works at t, in the last step; the motion has to depart anew from there. */
 void imp_motion_go_to(imp_motion *motion, double t, imp_state *states);
-/* Velocities at t of the last step are put back to what the held contacts allow, which the integrator's error has left.
+/* Places and velocities at t are put back to what the held contacts allow, which the integrator's error has left.
  * IMPACT_EDOMAIN: a load was refused; IMPACT_ENOMEM. */
 impact_status imp_motion_put_back(imp_motion *motion, double t, imp_state *states);
 /* Works at t, in the last step. */

@@ -93,7 +93,6 @@ void imp_motion_go_to(imp_motion *motion, double t, imp_state *states)
     if (t == motion->dense.t1) return; /* the states are there */
     imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
     imp_motion_unpack(motion, motion->kept, states);
-    (void)imp_motion_put_back(motion, t, states); /* what is refused is found when it departs */
     motion->works = imp_motion_works_of(motion, motion->kept);
 }
 

@@ -7,6 +7,7 @@
 #include "base/number.h"
 #include "motion/motion_guard.h"
 #include "world/corner.h"
+#include "world/world_gap.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -115,6 +116,24 @@ static bool is_lowest_point(const imp_motion *motion, int root, last_step_functi
     return edge_root >= 0 && edge_root % ROOTS_PER_EDGE == 1 && value->index < imp_field_edge_count(motion->world);
 }
 
+/* Where held rims stand. */
+static void mark_sides(imp_world *world, const imp_state *states)
+{
+    for (int p = 0; p < world->pair_count; p++)
+        if (world->pairs[p].site.corner > 0 && imp_is_held(&world->pairs[p]))
+            world->pairs[p].site.side = imp_corner_side(world, &world->pairs[p], states);
+}
+
+/* Whether the pair's rim has but run round to its other side, and has not passed flat. */
+static bool has_run_round(imp_motion *motion, int p, const double *y)
+{
+    const imp_pair *pair = &motion->world->pairs[p];
+    imp_motion_unpack(motion, y, motion->scratch);
+    mark_sides(motion->world, motion->scratch);
+    return imp_corner_clearance(motion->world, pair, motion->scratch) >
+           imp_world_touching_distance(motion->world, pair, motion->scratch);
+}
+
 /* A corner lands where its height is 0: its root, which no rounding is to find, lies a little below. One that left the
  * ground where the step began is highest about the middle. */
 static impact_status find_landing(imp_motion *motion, int p, double tau_before, double *tau, double *y)
@@ -130,6 +149,19 @@ static impact_status find_landing(imp_motion *motion, int p, double tau_before, 
     return status == IMPACT_OK ? impact_ode_interpolate(motion->ode, at, 0, y) : status;
 }
 
+/* What a pair's other corners fall through between tau_before and y, within the distance that touches: what presses
+ * otherwise than before where a rim is flat, and its lowest place changes over, is the landing's to change. */
+static bool lands(imp_motion *motion, int p, double tau_before, const double *y)
+{
+    const imp_pair *pair = &motion->world->pairs[p];
+    const last_step_function height = {.kind = CLEARANCE, .index = p};
+    if (!imp_is_held(pair) || pair->site.corner == 0) return false;
+    const double now = last_step_value(motion, height, y),
+                 near = imp_world_touching_distance(motion->world, pair, motion->scratch);
+    if (!(now <= near) || impact_ode_interpolate(motion->ode, tau_before, 0, motion->kept) != IMPACT_OK) return false;
+    return last_step_value(motion, height, motion->kept) > near;
+}
+
 /* Looks through the roots found at *tau for the event that ends the segment; a zero that the step hid moves *tau and y
  * back to it. */
 static impact_status pick_event(imp_motion *motion, double tau_before, double *tau, double *y, imp_end *end)
@@ -143,13 +175,17 @@ static impact_status pick_event(imp_motion *motion, double tau_before, double *t
             motion->found[root] = 0;
             if (end->kind != IMP_END_BOUNDS || motion->world->pairs[end->index].site.corner == 0) continue;
             memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
-            return find_landing(motion, end->index, tau_before, tau, y);
+            const impact_status status = find_landing(motion, end->index, tau_before, tau, y);
+            if (status == IMPACT_OK && has_run_round(motion, end->index, y)) *end = (imp_end){IMP_END_TIME, 0};
+            return status;
         }
         if (last_step_value(motion, value, y) >= 0) continue;
         *end = (imp_end){IMP_END_EDGE, value.index};
         memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
         return find_in_last_step(motion, value, tau_before, *tau, tau, y);
     }
+    for (int p = 0; p < motion->world->pair_count && end->kind == IMP_END_LIFTOFF; p++)
+        if (lands(motion, p, tau_before, y)) *end = (imp_end){IMP_END_BOUNDS, p};
     return IMPACT_OK;
 }
 
@@ -292,6 +328,7 @@ static impact_status start(imp_motion *motion, const imp_state *states)
     if (!imp_motion_load(motion, s->t, states)) return IMPACT_EDOMAIN;
     memcpy(motion->scratch, states,
            sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
+    mark_sides(motion->world, states);
     find_sunk_corners(motion->world, states);
     impact_status status = imp_motion_choose(motion, states);
     if (status != IMPACT_OK) return status;
@@ -323,8 +360,7 @@ impact_status imp_motion_next(imp_motion *motion, imp_state *states, imp_end *en
     }
     impact_status status = step_on(motion, motion->y, end);
     imp_motion_unpack(motion, motion->y, states);
-    if (status == IMPACT_OK && end->kind != IMP_END_TIME)
-        status = imp_motion_put_back(motion, motion->stride.t, states);
+    mark_sides(motion->world, states);
     imp_motion_count_work(motion);
     if (status == IMPACT_OK && motion->stride.t >= imp_field_next_switch(motion->world)) {
         imp_field_enter(motion->world, motion->stride.t);

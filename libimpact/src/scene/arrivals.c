@@ -232,6 +232,7 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     const double t = island->motion.stride.t;
     if (island->rolls) imp_island_go_to(island, t);
     island->t = t;
+    if (island->end.kind != IMP_END_TIME) imp_island_put_back(island);
     if (!finish(island)) return IMPACT_ESINK;
     if (island->stepped) return continue_steps(island);
     if (island->end.kind == IMP_END_TIME && imp_island_loses_patience(island, island->motion.last_rates))

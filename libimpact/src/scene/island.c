@@ -177,6 +177,15 @@ impact_status imp_island_look(imp_island *island, double t)
                            : imp_motion_look(motion, t, motion->sampled);
 }
 
+void imp_island_put_back(imp_island *island)
+{
+    if (island->rests || island->rolls || island->stepped || !island->moves) return;
+    const double account = imp_island_energy(island) + island->impact_loss;
+    (void)imp_motion_put_back(&island->motion, island->t,
+                              island->states); /* what is refused is found when it departs */
+    island->impact_loss = account - imp_island_energy(island);
+}
+
 void imp_island_go_to(imp_island *island, double t)
 {
     const imp_tracks *tracks = &island->scene->tracks;
@@ -193,6 +202,7 @@ void imp_island_go_to(imp_island *island, double t)
             island->impact_loss = imp_island_stepped_loss(island, island->states, &island->motion.works);
     }
     island->t = t;
+    imp_island_put_back(island);
 }
 
 /* What friction has taken of a ball since its segment began, at t, J. */

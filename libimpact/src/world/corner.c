@@ -195,6 +195,20 @@ int imp_corner_face_under(const imp_body *body, const imp_state *state, const im
 /* Edges that meet in an apex have their places there together. */
 static bool is_same(qvec3 a, qvec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
+qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const corner_view v = view_of(world, pair, states);
+    const corner_place place = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
+    return place.rim > 0 && place.slope > 0 ? place.along : (qvec3){0, 0, 0};
+}
+
+/* The tilt of a held rim towards the side that it stood on. */
+static double tilt_of(const imp_pair *pair, const corner_place *place)
+{
+    const bool known = pair->site.side.x != 0 || pair->site.side.y != 0;
+    return known ? place->slope * qvec3_dot(place->along, pair->site.side) : place->slope;
+}
+
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
@@ -210,7 +224,7 @@ double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const 
         const corner_place place = place_of(&v.form, v.up, i, IMP_RIDGE_END);
         const bool held = imp_corner_is_held(world, pair, i + 1);
         if (held ? !(place.rim > 0) : is_same(place.at, own)) continue;
-        least = fmin(least, height_of(&v, held ? qvec3_axpy(-2 * place.rim, place.along, place.at) : place.at));
+        least = fmin(least, held ? 2 * place.rim * tilt_of(pair, &place) : height_of(&v, place.at));
     }
     return least;
 }

@@ -40,8 +40,12 @@ impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, 
 /* How the contact point moves from body 1's centre, m/s. */
 qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
+/* Where the pair's rim stands, unit, body 1's shape's axes; 0 of a corner. */
+qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
 /* m: how high over the plane the lowest is of what may land yet: body 1's corners and rims but those that are held,
- * and of those rims their far side; or, where that is less, how far the pair's corner is within its face's border. */
+ * and of those rims the side across from imp_site.side: below it once the rim has passed flat, and its lowest place has
+ * changed over; or, where that is less, how far the pair's corner is within its face's border. */
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states);
 /* m: how high the lowest of them all is: < 0 beside the border of a face. */
 double imp_corner_lowest(const imp_world *world, const imp_pair *pair, const imp_state *states);

@@ -102,6 +102,7 @@ typedef struct imp_site {
     int corner;  /* > 0: it is this corner of body 1, counted from 1, on a plane, and may be held there (corner.h) */
     int face;    /* > 0: not a plane but this face of body 2, counted from 1 */
     double sunk; /* held corner: m: how far below it the other corners were where the stretch began, <= 0 */
+    qvec3 side;  /* held rim: unit, body 1's shape's axes: where it stood where the step began; 0: not known */
 } imp_site;
 
 /* Whether both bodies stand still, held, and nothing is solved for. */
