@@ -124,14 +124,29 @@ static void mark_sides(imp_world *world, const imp_state *states)
             world->pairs[p].site.side = imp_corner_side(world, &world->pairs[p], states);
 }
 
-/* Whether the pair's rim has but run round to its other side, and has not passed flat. */
+/* Where they have gone on round to; not where one has changed over: it passed flat, by less yet than a landing's root.
+ */
+static void follow_sides(imp_world *world, const imp_state *states)
+{
+    for (int p = 0; p < world->pair_count; p++) {
+        imp_pair *pair = &world->pairs[p];
+        if (pair->site.corner == 0 || !imp_is_held(pair)) continue;
+        const qvec3 side = imp_corner_side(world, pair, states);
+        if (qvec3_dot(side, pair->site.side) > 0) pair->site.side = side;
+    }
+}
+
+/* Whether the pair's rim has but run round to its other side, and has not passed flat: it goes on from there. */
 static bool has_run_round(imp_motion *motion, int p, const double *y)
 {
-    const imp_pair *pair = &motion->world->pairs[p];
+    imp_pair *pair = &motion->world->pairs[p];
+    const qvec3 side = pair->site.side;
     imp_motion_unpack(motion, y, motion->scratch);
-    mark_sides(motion->world, motion->scratch);
-    return imp_corner_clearance(motion->world, pair, motion->scratch) >
-           imp_world_touching_distance(motion->world, pair, motion->scratch);
+    pair->site.side = (qvec3){0, 0, 0};
+    const bool runs = imp_corner_clearance(motion->world, pair, motion->scratch) >
+                      imp_world_touching_distance(motion->world, pair, motion->scratch);
+    pair->site.side = runs ? imp_corner_side(motion->world, pair, motion->scratch) : side;
+    return runs;
 }
 
 /* A corner lands where its height is 0: its root, which no rounding is to find, lies a little below. One that left the
@@ -149,17 +164,18 @@ static impact_status find_landing(imp_motion *motion, int p, double tau_before, 
     return status == IMPACT_OK ? impact_ode_interpolate(motion->ode, at, 0, y) : status;
 }
 
-/* What a pair's other corners fall through between tau_before and y, within the distance that touches: what presses
- * otherwise than before where a rim is flat, and its lowest place changes over, is the landing's to change. */
+/* Whether other corners of a pair's come down at y, within the distance that touches: what presses otherwise than
+ * before where a rim is flat, and its lowest place changes over, is the landing's to change. */
 static bool lands(imp_motion *motion, int p, double tau_before, const double *y)
 {
     const imp_pair *pair = &motion->world->pairs[p];
     const last_step_function height = {.kind = CLEARANCE, .index = p};
     if (!imp_is_held(pair) || pair->site.corner == 0) return false;
-    const double now = last_step_value(motion, height, y),
-                 near = imp_world_touching_distance(motion->world, pair, motion->scratch);
-    if (!(now <= near) || impact_ode_interpolate(motion->ode, tau_before, 0, motion->kept) != IMPACT_OK) return false;
-    return last_step_value(motion, height, motion->kept) > near;
+    const double now = last_step_value(motion, height, y);
+    if (now > imp_world_touching_distance(motion->world, pair, motion->scratch) ||
+        impact_ode_interpolate(motion->ode, tau_before, 0, motion->kept) != IMPACT_OK)
+        return false;
+    return last_step_value(motion, height, motion->kept) > now;
 }
 
 /* Looks through the roots found at *tau for the event that ends the segment; a zero that the step hid moves *tau and y
@@ -360,7 +376,7 @@ impact_status imp_motion_next(imp_motion *motion, imp_state *states, imp_end *en
     }
     impact_status status = step_on(motion, motion->y, end);
     imp_motion_unpack(motion, motion->y, states);
-    mark_sides(motion->world, states);
+    follow_sides(motion->world, states);
     imp_motion_count_work(motion);
     if (status == IMPACT_OK && motion->stride.t >= imp_field_next_switch(motion->world)) {
         imp_field_enter(motion->world, motion->stride.t);

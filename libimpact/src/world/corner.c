@@ -116,10 +116,22 @@ static double height_of(const corner_view *v, qvec3 at)
     return qvec3_dot(v->normal, qvec3_add(v->apart, from_centre(v, at))) - v->form.rounding - v->level;
 }
 
+/* The place of the pair's corner. A rim's stays on the side where it stood while that comes down: it passes flat with
+ * the other side below the plane, as a corner would that lands, and does not change over on the way. */
+static corner_place own_place(const corner_view *v, const imp_pair *pair)
+{
+    corner_place place = place_of(&v->form, v->up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
+    if (!(place.rim > 0) || qvec3_dot(place.along, pair->site.side) >= 0) return place;
+    place.along = pair->site.side;
+    place.at.x = place.rim * place.along.x, place.at.y = place.rim * place.along.y;
+    place.slope = 0;
+    return place;
+}
+
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const corner_view v = view_of(world, pair, states);
-    const qvec3 corner = from_centre(&v, place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND).at);
+    const qvec3 corner = from_centre(&v, own_place(&v, pair).at);
     impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
     contact.offset2 = qvec3_add(v.apart, contact.offset1);
     contact.gap = qvec3_dot(contact.normal, contact.offset2) - v.level;
@@ -141,7 +153,7 @@ qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_st
 {
     const corner_view v = view_of(world, pair, states);
     const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]);
-    const corner_place place = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
+    const corner_place place = own_place(&v, pair);
     const qvec3 up_rate = qvec3_cross(v.up, quat_rotate_inverse(v.axes, omega));
     return qvec3_add(qvec3_cross(omega, from_centre(&v, place.at)),
                      quat_rotate(v.axes, place_rate(&v.form, &place, pair->site.corner - 1, v.up, up_rate)));
@@ -213,7 +225,7 @@ double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const 
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
     const corner_view v = view_of(world, pair, states);
-    const qvec3 own = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND).at;
+    const qvec3 own = own_place(&v, pair).at;
     double least = INFINITY;
     if (pair->site.face > 0)
         least = within_border(&world->bodies[pair->body2], &states[pair->body2], pair->site.face - 1,
