@@ -25,25 +25,6 @@ static bool end_onsets(imp_motion *motion)
     return ended;
 }
 
-/* Friction turns with the slip whose onset has ended: whether a contact now pulls, or rolls with more friction than it
- * has. No root function tells, for it does not fall through zero: it jumps. */
-static bool modes_break(imp_motion *motion, double t, const double *y)
-{
-    imp_persist *persist = &motion->persist;
-    double greatest = 0;
-    bool breaks = false;
-    imp_motion_unpack(motion, y, motion->scratch);
-    if (!imp_motion_load(motion, t, motion->scratch)) return true;
-    imp_persist_solve(persist, motion->world, motion->scratch, motion->loads);
-    for (int c = 0; c < persist->count; c++) greatest = fmax(greatest, qvec3_norm(persist->touches[c].force));
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        const double spare = touch->mode == IMP_ROLL ? fmin(touch->pressure, touch->margin) : touch->pressure;
-        breaks = breaks || (!touch->still && spare < -IMP_MODE_ROUNDING * greatest);
-    }
-    return breaks;
-}
-
 /* The function of the interpolated state whose zero is looked for in the last step. */
 typedef struct last_step_function {
     enum { CLOCK, FIELD_EDGE, CLEARANCE } kind;
@@ -116,23 +97,16 @@ static bool is_lowest_point(const imp_motion *motion, int root, last_step_functi
     return edge_root >= 0 && edge_root % ROOTS_PER_EDGE == 1 && value->index < imp_field_edge_count(motion->world);
 }
 
-/* Where held rims stand. */
-static void mark_sides(imp_world *world, const imp_state *states)
-{
-    for (int p = 0; p < world->pair_count; p++)
-        if (world->pairs[p].site.corner > 0 && imp_is_held(&world->pairs[p]))
-            world->pairs[p].site.side = imp_corner_side(world, &world->pairs[p], states);
-}
-
-/* Where they have gone on round to; not where one has changed over: it passed flat, by less yet than a landing's root.
- */
+/* Where held rims stand, and have gone on round to; not where one has changed over: that passed flat, by less yet than
+ * a landing's root. */
 static void follow_sides(imp_world *world, const imp_state *states)
 {
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
-        if (pair->site.corner == 0 || !imp_is_held(pair)) continue;
-        const qvec3 side = imp_corner_side(world, pair, states);
-        if (qvec3_dot(side, pair->site.side) > 0) pair->site.side = side;
+        const bool stands = pair->site.corner > 0 && imp_is_held(pair);
+        const qvec3 side = stands ? imp_corner_side(world, pair, states) : (qvec3){0, 0, 0};
+        const bool known = pair->site.side.x != 0 || pair->site.side.y != 0;
+        if (!stands || !known || qvec3_dot(side, pair->site.side) > 0) pair->site.side = side;
     }
 }
 
@@ -200,7 +174,8 @@ static impact_status pick_event(imp_motion *motion, double tau_before, double *t
         memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
         return find_in_last_step(motion, value, tau_before, *tau, tau, y);
     }
-    for (int p = 0; p < motion->world->pair_count && end->kind == IMP_END_LIFTOFF; p++)
+    const bool changes = end->kind == IMP_END_LIFTOFF || end->kind == IMP_END_SLIP || end->kind == IMP_END_STICK;
+    for (int p = 0; changes && p < motion->world->pair_count; p++)
         if (lands(motion, p, tau_before, y)) *end = (imp_end){IMP_END_BOUNDS, p};
     return IMPACT_OK;
 }
@@ -277,14 +252,12 @@ static impact_status cut_off(imp_motion *motion, double *y, imp_end *end)
 
 /* Whether what the integrator follows changes at the end of this step, so that it begins anew; or the contacts have to
  * be put back. */
-static void see_changes(imp_motion *motion, const double *y, imp_end *end)
+static void see_changes(imp_motion *motion, imp_end *end)
 {
     imp_stride *s = &motion->stride;
-    if (end_onsets(motion)) {
-        s->restart = true;
-        if (modes_break(motion, s->t, y)) renew(end);
-    }
-    s->restart = s->restart || imp_motion_outgrows(motion);
+    const bool ended = end_onsets(motion);
+    if (ended) renew(end); /* friction turns with the slip from here: what rolls beside it may have slipped a little */
+    s->restart = ended || imp_motion_outgrows(motion);
 }
 
 /* One step, to an event or to t_end at most; y at the end is the state at stride.t. */
@@ -318,7 +291,7 @@ static impact_status step_on(imp_motion *motion, double *y, imp_end *end)
     if (s->t >= s->t_end) s->restart = true;
     if (end->kind != IMP_END_TIME || s->restart) return IMPACT_OK;
     if (s->tau == stop) return renew(end); /* slip so slow that time all but stands, and that does not die out */
-    see_changes(motion, y, end);
+    see_changes(motion, end);
     if (s->restart) return IMPACT_OK;
     s->still = s->tau > tau_before ? 0 : s->still + 1;
     s->passed = found;
@@ -344,7 +317,7 @@ static impact_status start(imp_motion *motion, const imp_state *states)
     if (!imp_motion_load(motion, s->t, states)) return IMPACT_EDOMAIN;
     memcpy(motion->scratch, states,
            sizeof *states * (size_t)motion->world->body_count); /* static bodies stand there too */
-    mark_sides(motion->world, states);
+    follow_sides(motion->world, states);
     find_sunk_corners(motion->world, states);
     impact_status status = imp_motion_choose(motion, states);
     if (status != IMPACT_OK) return status;

@@ -2,6 +2,7 @@
 #include "world/corner.h"
 #include "shape/ridge.h"
 #include "shape/solid.h"
+#include "world/world_gap.h"
 
 /* What of a core can stand on a plane alone: a corner, or the lowest place of a rim. */
 typedef struct corner_place {
@@ -116,22 +117,37 @@ static double height_of(const corner_view *v, qvec3 at)
     return qvec3_dot(v->normal, qvec3_add(v->apart, from_centre(v, at))) - v->form.rounding - v->level;
 }
 
+/* How the normal turns as the body sees it. */
+static qvec3 up_rate(const imp_world *world, const imp_pair *pair, const imp_state *states, const corner_view *v)
+{
+    const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]);
+    return qvec3_cross(v->up, quat_rotate_inverse(v->axes, omega));
+}
+
 /* The place of the pair's corner. A rim's stays on the side where it stood while that comes down: it passes flat with
- * the other side below the plane, as a corner would that lands, and does not change over on the way. */
-static corner_place own_place(const corner_view *v, const imp_pair *pair)
+ * the other side below the plane, as a corner would that lands, its slope < 0 from there, and does not change over on
+ * the way. Where its tilt is but roundings it points where it changes: u_xy is (t - t0) u'_xy there. */
+static corner_place own_place(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                              const corner_view *v)
 {
     corner_place place = place_of(&v->form, v->up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
-    if (!(place.rim > 0) || qvec3_dot(place.along, pair->site.side) >= 0) return place;
-    place.along = pair->site.side;
+    const qvec3 side = pair->site.side;
+    if (!(place.rim > 0) || (side.x == 0 && side.y == 0)) return place;
+    if (2 * place.rim * place.slope <= imp_world_touching_distance(world, pair, states)) {
+        const qvec3 rate = up_rate(world, pair, states, v);
+        const double size = hypot(rate.x, rate.y);
+        place.along = size > 0 ? (qvec3){rate.x / size, rate.y / size, 0} : side;
+        place.slope = 0;
+    }
+    if (qvec3_dot(place.along, side) < 0) place.along = qvec3_neg(place.along), place.slope = -place.slope;
     place.at.x = place.rim * place.along.x, place.at.y = place.rim * place.along.y;
-    place.slope = 0;
     return place;
 }
 
 impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const corner_view v = view_of(world, pair, states);
-    const qvec3 corner = from_centre(&v, own_place(&v, pair).at);
+    const qvec3 corner = from_centre(&v, own_place(world, pair, states, &v).at);
     impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
     contact.offset2 = qvec3_add(v.apart, contact.offset1);
     contact.gap = qvec3_dot(contact.normal, contact.offset2) - v.level;
@@ -140,12 +156,12 @@ impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, 
 }
 
 /* How the place moves in the shape's axes, where the normal turns in them. */
-static qvec3 place_rate(const imp_form *form, const corner_place *place, int i, qvec3 up, qvec3 up_rate)
+static qvec3 place_rate(const imp_form *form, const corner_place *place, int i, qvec3 up, qvec3 rate)
 {
     if (form->kind == IMP_FORM_QUADRIC && !form->round)
-        return imp_ridge_rate(form, i, qvec3_neg(up), qvec3_neg(up_rate), IMP_RIDGE_BEYOND);
-    if (!(place->rim > 0 && place->slope > 0)) return (qvec3){0, 0, 0};
-    const qvec3 e = place->along, turn = {-up_rate.x / place->slope, -up_rate.y / place->slope, 0};
+        return imp_ridge_rate(form, i, qvec3_neg(up), qvec3_neg(rate), IMP_RIDGE_BEYOND);
+    if (!(place->rim > 0 && place->slope != 0)) return (qvec3){0, 0, 0};
+    const qvec3 e = place->along, turn = {-rate.x / place->slope, -rate.y / place->slope, 0};
     return qvec3_scale(qvec3_axpy(-qvec3_dot(e, turn), e, turn), place->rim);
 }
 
@@ -153,10 +169,10 @@ qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_st
 {
     const corner_view v = view_of(world, pair, states);
     const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]);
-    const corner_place place = own_place(&v, pair);
-    const qvec3 up_rate = qvec3_cross(v.up, quat_rotate_inverse(v.axes, omega));
+    const corner_place place = own_place(world, pair, states, &v);
+    const qvec3 turns = up_rate(world, pair, states, &v);
     return qvec3_add(qvec3_cross(omega, from_centre(&v, place.at)),
-                     quat_rotate(v.axes, place_rate(&v.form, &place, pair->site.corner - 1, v.up, up_rate)));
+                     quat_rotate(v.axes, place_rate(&v.form, &place, pair->site.corner - 1, v.up, turns)));
 }
 
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner)
@@ -211,21 +227,15 @@ qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_st
 {
     const corner_view v = view_of(world, pair, states);
     const corner_place place = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
-    return place.rim > 0 && place.slope > 0 ? place.along : (qvec3){0, 0, 0};
-}
-
-/* The tilt of a held rim towards the side that it stood on. */
-static double tilt_of(const imp_pair *pair, const corner_place *place)
-{
-    const bool known = pair->site.side.x != 0 || pair->site.side.y != 0;
-    return known ? place->slope * qvec3_dot(place->along, pair->site.side) : place->slope;
+    return 2 * place.rim * place.slope > imp_world_touching_distance(world, pair, states) ? place.along
+                                                                                          : (qvec3){0, 0, 0};
 }
 
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
     const corner_view v = view_of(world, pair, states);
-    const qvec3 own = own_place(&v, pair).at;
+    const corner_place own = own_place(world, pair, states, &v);
     double least = INFINITY;
     if (pair->site.face > 0)
         least = within_border(&world->bodies[pair->body2], &states[pair->body2], pair->site.face - 1,
@@ -235,8 +245,8 @@ double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const 
     for (int i = 0; i < count; i++) {
         const corner_place place = place_of(&v.form, v.up, i, IMP_RIDGE_END);
         const bool held = imp_corner_is_held(world, pair, i + 1);
-        if (held ? !(place.rim > 0) : is_same(place.at, own)) continue;
-        least = fmin(least, held ? 2 * place.rim * tilt_of(pair, &place) : height_of(&v, place.at));
+        if (held ? !(place.rim > 0) : is_same(place.at, own.at)) continue;
+        least = fmin(least, held ? 2 * place.rim * own.slope : height_of(&v, place.at));
     }
     return least;
 }

@@ -94,14 +94,14 @@ static void motions_that_part_are_told(void **state)
     }
 }
 
-/* Some 80 steps, whose errors sum to 2e-5 m; after them it flies and is struck. */
+/* Some 120 steps, which are off by 3e-12 m when they end; after them it flies and is struck. */
 static void what_goes_on_after_steps_is_in_it(void **state)
 {
     (void)state;
     static random_scene s;
-    random_scene_make(310001, &s);
+    random_scene_make(310716, &s);
     s.def.pile_tolerance = 1e-5;
-    assert_true(off_as_told(s.def) > 2e-4);
+    assert_true(off_as_told(s.def) > 1e-3);
 }
 
 /* ---- the second scene is where the first is ---- */
