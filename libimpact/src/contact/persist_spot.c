@@ -77,12 +77,24 @@ static void section_part(double s, double b, double r, double *v, double *e)
     }
 }
 
-/* v = u/K, e and K of the section from s = K v + K^(t-1) e, both v >= 0 and sum v^r = 1. That sum falls with K: Newton
- * in log K. */
-static double section_of(const double s[2], double r, double t, double v[2], double e[2])
+/* v = u/K, e and K^(t-1), told, of the section so near the pole that K v is nothing beside s = K v + K^(t-1) e: sum
+ * v^r = 1 gives K^(t-1), the norm of s of the exponent r/(r-1). */
+static double section_at_pole(const double s[2], double r, double v[2], double e[2])
 {
-    double k, other;
-    part(fmax(s[0], s[1]), t, &k, &other);
+    const double dual = r / (r - 1), most = fmax(s[0], s[1]), least = fmin(s[0], s[1]),
+                 weight = most * pow(1 + pow(least / most, dual), 1 / dual);
+    for (int j = 0; j < 2; j++) e[j] = s[j] / weight, v[j] = pow(e[j], 1 / (r - 1));
+    return weight;
+}
+
+/* v = u/K, e and K of the section from s = K v + K^(t-1) e, both v >= 0 and sum v^r = 1; K^(t-1) is told. That sum
+ * falls with K: Newton in log K, within what is known of it. */
+static double section_of(const double s[2], double r, double t, double v[2], double e[2], double *told)
+{
+    double k, other, low = 0, high = INFINITY;
+    *told = section_at_pole(s, r, v, e);
+    part(*told, t, &k, &other); /* K + K^(t-1) is that norm, but for that of v */
+    if (k < IMP_ROUNDOFF * IMP_ROUNDOFF * *told) return k;
     for (int i = 0; i < 60; i++) {
         const double weight = pow(k, t - 2);
         double sum = 0, slope = 0;
@@ -93,9 +105,15 @@ static double section_of(const double s[2], double r, double t, double v[2], dou
             slope += r * v[j] * e[j] * (1 + (t - 1) * bent) / (1 + (r - 1) * bent);
         }
         const double step = log(sum) * sum / slope;
-        k *= exp(step);
-        if (!(fabs(step) > 4 * IMP_SPOT_STEP)) break;
+        if (sum > 1)
+            low = k;
+        else
+            high = k;
+        if (fabs(step) <= 4 * IMP_SPOT_STEP) break;
+        const double next = k * exp(step);
+        k = next > low && next < high ? next : high < INFINITY ? 0.5 * (low + high) : 2 * k;
     }
+    *told = pow(k, t - 1);
     return k;
 }
 
@@ -103,19 +121,19 @@ static double section_of(const double s[2], double r, double t, double v[2], dou
 static void nested_section(const impact_shape *shape, const double s[3], imp_spot *spot)
 {
     const double size[2] = {fabs(s[0]), fabs(s[1])}, r = shape->r, t = shape->t;
-    double v[2], e[2], k = 0;
+    double v[2], e[2], k = 0, weight = 0; /* K^(t-1) */
     if (fmax(size[0], size[1]) > IMP_SPOT_LEAST_SLOPE) {
-        k = section_of(size, r, t, v, e);
+        k = section_of(size, r, t, v, e, &weight);
     } else {
         v[0] = v[1] = pow(0.5, 1 / r);
         e[0] = e[1] = 0.5 / v[0];
     }
-    spot->k_ratio = ratio_of(pow(k, t - 1), k, t);
+    spot->k_ratio = ratio_of(weight, k, t);
     for (int i = 0; i < 2; i++) {
         spot->section[i] = copysign(v[i], s[i]);
         spot->slope[i] = (r - 1) * ratio_of(e[i], v[i], r);
         spot->u[i] = copysign(k * v[i], s[i]);
-        spot->e[i] = copysign(pow(k, t - 1) * e[i], s[i]);
+        spot->e[i] = copysign(weight * e[i], s[i]);
     }
 }
 

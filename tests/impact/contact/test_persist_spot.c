@@ -3,6 +3,7 @@
  * Contacts that run over flat and sharp places of a surface: the coordinates that carry them, revolutions whose period
  * is a quadrature, and the integrals of free rolling and gliding.
  */
+#include <float.h>
 #include "contact/persist_spot.h"
 #include "kit/held_bodies.h"
 
@@ -42,6 +43,30 @@ static void a_spot_is_where_the_support_is(void **state)
         assert_near3(spot.normal, n, 1e-14);
         assert_near3(spot.point, point, 1e-14);
         assert_near(qvec3_dot(spot.point, n), h, k % 2 ? 2e-15 : 4e-15); /* one power more */
+    }
+}
+
+/* Exponents all but 1: sections smaller than the least number stand about a pole whose normals are as many as ever. */
+static void spots_of_all_but_cones_are_too(void **state)
+{
+    (void)state;
+    random_stream random = {33};
+    for (int k = 0; k < 20000; k++) {
+        const double sharp = 1 + random_log(&random, 1e-6, 0.1), other = random_log(&random, 1.1, 30);
+        const bool pointed = k % 2; /* along z, or all around */
+        impact_shape shape;
+        assert_int_equal(impact_shape_superellipsoid(0.3, 0.2, 0.4, 2 / (pointed ? sharp : other),
+                                                     2 / (pointed ? other : sharp), &shape),
+                         IMPACT_OK);
+        const qvec3 n = random_direction(&random);
+        double s[3];
+        qvec3 point;
+        impact_shape_support(&shape, n, &point);
+        imp_spot_find(&shape, n, s);
+        const imp_spot spot = imp_spot_at(&shape, s);
+        const double rounding = 1e-14 + DBL_EPSILON / (sharp - 1); /* what that of the normal makes of the place */
+        assert_near3(spot.normal, n, rounding);
+        assert_near3(spot.point, point, rounding);
     }
 }
 
@@ -279,6 +304,7 @@ int main(void)
 {
     const struct CMUnitTest instants[] = {
         cmocka_unit_test(a_spot_is_where_the_support_is),
+        cmocka_unit_test(spots_of_all_but_cones_are_too),
         cmocka_unit_test(flat_and_sharp_spots_are_exact),
         cmocka_unit_test(spots_move_as_their_normals_turn),
     };
