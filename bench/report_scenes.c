@@ -116,7 +116,9 @@ static double redo(impact_scene *first, impact_scene *other, const random_scene 
     if (!take_over(first, other, t0 + 0.001 * (t1 - t0), s->def.body_count)) return -1;
     look(first, s->def.body_count, from);
     const double end = t0 + 0.999 * (t1 - t0);
+    const long steps = impact_scene_usage(first).pile_steps;
     if (!runs_to(first, end) || !runs_to(other, end)) return -1;
+    if (impact_scene_usage(first).pile_steps > steps) return 0; /* begun, and maybe ended, on the way */
     look(first, s->def.body_count, one);
     look(other, s->def.body_count, two);
     return apart(one, two, s, from);
