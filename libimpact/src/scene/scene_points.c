@@ -101,10 +101,12 @@ impact_status imp_scene_place_points(imp_island *island)
     world->pair_count = 0;
     impact_status status = IMPACT_OK;
     for (int p = 0; status == IMPACT_OK && p < count; p++) {
-        if (!imp_pair_has_faces(world, &before[p]))
-            world->pairs[world->pair_count++] = before[p];
-        else if (!is_among(before, p, &before[p]))
+        if (!imp_pair_has_faces(world, &before[p])) {
+            status = imp_island_reserve(island, world->body_count, world->pair_count + 1);
+            if (status == IMPACT_OK) world->pairs[world->pair_count++] = before[p];
+        } else if (!is_among(before, p, &before[p])) {
             status = place(island, before, p, count);
+        }
     }
     imp_arena_give(world->arena, before);
     return status;
