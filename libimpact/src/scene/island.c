@@ -180,10 +180,8 @@ impact_status imp_island_look(imp_island *island, double t)
 void imp_island_put_back(imp_island *island)
 {
     if (island->rests || island->rolls || island->stepped || !island->moves) return;
-    const double account = imp_island_energy(island) + island->impact_loss;
     (void)imp_motion_put_back(&island->motion, island->t,
                               island->states); /* what is refused is found when it departs */
-    island->impact_loss = account - imp_island_energy(island);
 }
 
 void imp_island_go_to(imp_island *island, double t)

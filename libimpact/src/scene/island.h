@@ -79,8 +79,8 @@ void imp_island_give_forces(imp_island *island);
 
 /* All its bodies' states at t, in a segment that covers it, held contacts put back exactly: in motion.sampled. */
 impact_status imp_island_look(imp_island *island, double t);
-/* States at island->t, where an integrator brought them, back to what the held contacts allow; what energy that takes
- * or gives is an integrator's error, and stands under impacts as what steps err does. */
+/* States at island->t, where an integrator brought them, back to what the held contacts allow; no energy is booked:
+ * the constraint's force has done as much on the way off as putting back undoes. */
 void imp_island_put_back(imp_island *island);
 /* Its own clock to t: states, put back, and works. */
 void imp_island_go_to(imp_island *island, double t);
