@@ -48,7 +48,11 @@ static int corner_of(const imp_island *island, const imp_pair *pair, const imp_p
     *face = on.kind == IMPACT_FACE && on.index >= 0 && on.index < imp_corner_faces(under) ? on.index + 1 : 0;
     if (under->shape.kind != IMPACT_PLANE && *face == 0) return 0;
     const bool of_disc = point->feature[0].kind == IMPACT_RIM && count > 2;
-    return of_disc ? 0 : imp_corner_number(&world->bodies[pair->body1], point->feature[0]);
+    if (of_disc) return 0;
+    imp_pair stands = *pair;
+    stands.site.face = *face;
+    return imp_corner_ahead(world, &stands, island->states,
+                            imp_corner_number(&world->bodies[pair->body1], point->feature[0]));
 }
 
 /* What was held there goes on being held until it is settled anew. */
@@ -60,6 +64,14 @@ static imp_pair point_pair(const imp_pair *whole, int corner, int face, const im
     imp_pair own = *whole;
     own.site.corner = corner, own.site.face = face;
     return own;
+}
+
+/* Whether one of the pairs from `first` on is of that corner: edges that end in one apex have it together. */
+static bool is_placed(const imp_world *world, int first, int corner, int face)
+{
+    for (int k = first; corner > 0 && k < world->pair_count; k++)
+        if (world->pairs[k].site.corner == corner && world->pairs[k].site.face == face) return true;
+    return false;
 }
 
 /* The points of the bodies of before[p], of so many pairs. */
@@ -77,6 +89,7 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
     for (int k = 0; status == IMPACT_OK && k < count; k++) {
         int face;
         const int corner = corner_of(island, &whole, &points[k], count, &face);
+        if (is_placed(world, first, corner, face)) continue;
         imp_pair own = point_pair(&whole, corner, face, before, pairs);
         own.site.placed = true;
         own.site.contact = points[k].contact;

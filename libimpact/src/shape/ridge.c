@@ -109,14 +109,38 @@ void imp_ridge_facing(const imp_form *form, qvec3 direction, int feature[2])
     if (s[farther] >= 1) feature[farther] = apex_along(form, d);
 }
 
+/* The arc that is first to take over from an apex. */
+static int least_turned(const imp_form *form, const double d[3])
+{
+    int first = 0;
+    for (int k = 1; k < ARCS; k++)
+        if (turned(form, k, d) < turned(form, first, d)) first = k;
+    return first;
+}
+
 double imp_ridge_room(const imp_form *form, int feature, qvec3 direction)
 {
     const double d[3] = {direction.x, direction.y, direction.z}, length = form->axis[curved_axis(form)];
     if (form->nested) return INFINITY;
     if (!imp_ridge_is_apex(form, feature)) return length * (1 - turned(form, feature, d));
-    double least = INFINITY;
-    for (int k = 0; k < ARCS; k++) least = fmin(least, turned(form, k, d));
-    return length * (least - 1);
+    return length * (turned(form, least_turned(form, d), d) - 1);
+}
+
+/* How s = beta/(t alpha) grows where it is 1: the sign of (beta/t - alpha)'. */
+static double turns_on(const imp_form *form, int arc, const double d[3], const double rate[3])
+{
+    const curve c = curve_of(form, arc);
+    return copysign(form->axis[c.z], d[c.z]) * rate[c.z] / c.t - form->axis[c.x] * c.side * rate[c.x];
+}
+
+int imp_ridge_ahead(const imp_form *form, int feature, qvec3 direction, qvec3 direction_rate, double within)
+{
+    const double d[3] = {direction.x, direction.y, direction.z},
+                 rate[3] = {direction_rate.x, direction_rate.y, direction_rate.z};
+    if (!(imp_ridge_room(form, feature, direction) <= within)) return feature;
+    if (!imp_ridge_is_apex(form, feature)) return turns_on(form, feature, d, rate) > 0 ? apex_along(form, d) : feature;
+    const int arc = least_turned(form, d);
+    return turns_on(form, arc, d, rate) < 0 ? arc : feature;
 }
 
 static qvec3 apex_place(const imp_form *form, int feature)

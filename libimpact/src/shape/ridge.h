@@ -29,6 +29,8 @@ void imp_ridge_facing(const imp_form *form, qvec3 d, int feature[2]);
 /* m: how far the feature is from giving way to another in a sharp apex: an arc that comes to its end, the apex where an
  * arc's place leaves it; 0 there, < 0 beyond. INFINITY where there is no such end. */
 double imp_ridge_room(const imp_form *form, int feature, qvec3 d);
+/* The feature; or the one that it gives way to, where its room is `within` (m) at most and falls as d turns. */
+int imp_ridge_ahead(const imp_form *form, int feature, qvec3 d, qvec3 d_rate, double within);
 
 /* An arc ends in its apex; that of a stretch of motion that an event ends there goes on for a while, smoothly: zeta. */
 #define IMP_RIDGE_END 1.0

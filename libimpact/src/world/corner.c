@@ -124,6 +124,15 @@ static qvec3 up_rate(const imp_world *world, const imp_pair *pair, const imp_sta
     return qvec3_cross(v->up, quat_rotate_inverse(v->axes, omega));
 }
 
+int imp_corner_ahead(const imp_world *world, const imp_pair *pair, const imp_state *states, int corner)
+{
+    if (corner == 0 || imp_ridge_count(&world->bodies[pair->body1].shape) == 0) return corner;
+    const corner_view v = view_of(world, pair, states);
+    const qvec3 rate = up_rate(world, pair, states, &v);
+    return 1 + imp_ridge_ahead(&v.form, corner - 1, qvec3_neg(v.up), qvec3_neg(rate),
+                               imp_world_touching_distance(world, pair, states));
+}
+
 /* The place of the pair's corner. A rim's stays on the side where it stood while that comes down: it passes flat with
  * the other side below the plane, as a corner would that lands, its slope < 0 from there, and does not change over on
  * the way. Where its tilt is but roundings it points where it changes: u_xy is (t - t0) u'_xy there. */

@@ -23,6 +23,10 @@ int imp_corner_count(const imp_body *body);
 /* The feature's number among them, from 1; 0: it is none. */
 int imp_corner_number(const imp_body *body, impact_feature feature);
 
+/* The number; or that of the corner that is the lowest next, where an edge of a superquadric ends in an apex, and both
+ * are as low as gaps can tell: what gives way at once is not held. */
+int imp_corner_ahead(const imp_world *world, const imp_pair *pair, const imp_state *states, int corner);
+
 /* How many faces the body has on which a corner may be held; 0 where it is not static, or none of a box or polyhedron;
  * a plane is not one of them. */
 int imp_corner_faces(const imp_body *body);

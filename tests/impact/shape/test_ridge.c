@@ -104,6 +104,39 @@ static void rates_are_differences(void **state)
     assert_true(compared > 1000);
 }
 
+/* Where an edge has come to its apex both say the same: what is ahead as d turns on, by the room it has there. */
+static void what_is_ahead(void **state)
+{
+    (void)state;
+    random_stream random = {74};
+    int edges = 0, apexes = 0;
+    for (int k = 0; k < SHAPES; k++) {
+        const impact_shape shape = ridged_shape(&random);
+        const imp_form form = form_of(&shape);
+        if (imp_ridge_count(&shape) != 6) continue;
+        const double p[3] = {shape.r, shape.s, shape.t}, axis[3] = {shape.a, shape.b, shape.c};
+        const int z = p[0] > 1 ? 0 : p[1] > 1 ? 1 : 2, x = (z + 1) % 3, y = (z + 2) % 3;
+        for (int i = 0; i < DIRECTIONS; i++) {
+            double c[3] = {random_unit(&random) - 0.5, random_unit(&random) - 0.5, random_unit(&random) - 0.5};
+            const double most = fmax(axis[x] * fabs(c[x]), axis[y] * fabs(c[y]));
+            c[z] = copysign(p[z] * most / axis[z], c[z]);
+            const qvec3 d = {c[0], c[1], c[2]}, d_rate = qvec3_cross(random_direction(&random), d),
+                        next = qvec3_axpy(1e-7, d_rate, d);
+            const int arc = axis[x] * fabs(c[x]) == most ? c[x] > 0 : 2 + (c[y] > 0), apex = 4 + (c[z] > 0);
+            const double room = imp_ridge_room(&form, arc, next);
+            if (fabs(room) < 1e-10 * axis[z]) continue;
+            const int ahead = room > 0 ? arc : apex;
+            assert_int_equal(imp_ridge_ahead(&form, arc, d, d_rate, 1e-14 * axis[z]), ahead);
+            assert_int_equal(imp_ridge_ahead(&form, apex, d, d_rate, 1e-14 * axis[z]), ahead);
+            /* with more room than that nothing gives way */
+            const int stands = room > 0 ? arc : apex;
+            assert_int_equal(imp_ridge_ahead(&form, stands, next, qvec3_neg(d_rate), 1e-14 * axis[z]), stands);
+            edges += room > 0, apexes += room < 0;
+        }
+    }
+    assert_true(edges > 1000 && apexes > 1000);
+}
+
 /* At the axes themselves: finite, and nothing where an arc looks away. */
 static void rates_at_the_axes(void **state)
 {
@@ -209,8 +242,11 @@ static void which_have_them(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(their_hull_is_the_body), cmocka_unit_test(rates_are_differences),
-        cmocka_unit_test(rates_at_the_axes),      cmocka_unit_test(lines_lie_on_the_surface),
+        cmocka_unit_test(their_hull_is_the_body),
+        cmocka_unit_test(rates_are_differences),
+        cmocka_unit_test(what_is_ahead),
+        cmocka_unit_test(rates_at_the_axes),
+        cmocka_unit_test(lines_lie_on_the_surface),
         cmocka_unit_test(which_have_them),
     };
     return cmocka_run_group_tests_name("impact.ridge", tests, NULL, NULL);
