@@ -32,9 +32,11 @@ static void add_effect_of(const imp_bodies_problem *p, const imp_cone_row *row, 
 {
     for (int side = 0; side < 2; side++) {
         if (p->couples[c][side] < 0) continue;
-        double *own = &x[6 * p->couples[c][side]];
+        double *own = &x[6 * p->couples[c][side]], sum[6];
+        memcpy(sum, own, sizeof sum);
         for (int k = 0; k < 3; k++)
-            for (int l = 0; l < 6; l++) own[l] += factor * f[k] * row->side[side][k][l];
+            for (int l = 0; l < 6; l++) sum[l] += factor * f[k] * row->side[side][k][l];
+        memcpy(own, sum, sizeof sum);
     }
 }
 
@@ -73,20 +75,15 @@ static void add_bend_of(const imp_bodies_problem *p, const imp_cone_row *row, co
                         const double *slope)
 {
     for (int i = 0; i < 2; i++) {
-        double left[6][3] = {{0}};
+        double left[3][6] = {{0}};
         if (p->couples[c][i] < 0) continue;
-        for (int k = 0; k < 6; k++)
-            for (int m = 0; m < 3; m++)
-                for (int o = 0; o < 3; o++)
-                    left[k][m] += p->stiffness[c] * row->side[i][o][k] * slope[p->width * o + m];
-        for (int j = 0; j < 2; j++) {
-            double block[6][6] = {{0}};
-            if (p->couples[c][j] < 0) continue;
-            for (int k = 0; k < 6; k++)
-                for (int m = 0; m < 3; m++)
-                    for (int l = 0; l < 6; l++) block[k][l] += left[k][m] * other->side[j][m][l];
-            imp_skyline_add(p->sky, p->couples[c][i], p->couples[c][j], block);
-        }
+        for (int m = 0; m < 3; m++)
+            for (int o = 0; o < 3; o++)
+                for (int k = 0; k < 6; k++)
+                    left[m][k] += p->stiffness[c] * row->side[i][o][k] * slope[p->width * o + m];
+        for (int j = 0; j < 2; j++)
+            if (p->couples[c][j] >= 0)
+                imp_skyline_add_product(p->sky, p->couples[c][i], p->couples[c][j], left, other->side[j]);
     }
 }
 
@@ -130,17 +127,18 @@ void imp_bodies_effect(const imp_bodies_problem *p, const double *r)
 static double scaled_slip(double slope, double *u, int count)
 {
     const double size = count == 1 ? fabs(u[0]) : sqrt(u[0] * u[0] + u[1] * u[1]);
-    for (int k = 0; k < count; k++) u[k] *= size > 0 ? slope / size : 0;
+    const double part = size > 0 ? slope / size : 0;
+    for (int k = 0; k < count; k++) u[k] *= part;
     return slope * size;
 }
 
 double imp_bodies_slip(const imp_bodies_problem *p, int c, const double *u, double slope[6])
 {
     const double friction = p->friction[c];
-    memcpy(slope, u, (size_t)p->width * sizeof *u);
-    slope[0] = 0;
+    slope[0] = 0, slope[1] = u[1], slope[2] = u[2];
     const double rubs = scaled_slip(friction > 0 ? friction : 0, slope + 1, 2);
     if (p->width == 3) return rubs;
+    slope[3] = u[3], slope[4] = u[4], slope[5] = u[5];
     const double cone = friction > 0 ? friction : 1; /* with which spin is one slip */
     const double spins = scaled_slip(p->lengths[c].torsional > 0 ? cone : 0, slope + 3, 1),
                  one = sqrt(rubs * rubs + spins * spins);

@@ -194,7 +194,8 @@ static void put_nearest(const face_side s[2], const patch_frame *f, const impact
 
 static void clip_faces(face_side s[2], const patch_frame *f, double height, impact_patch *patch)
 {
-    imp_flat common = s[0].flat;
+    imp_flat common;
+    imp_flat_copy(&common, &s[0].flat);
     imp_flat_clip(&common, &s[1].flat, f->slack, IMPACT_FACE_POINTS);
     if (common.count > 1) imp_flat_hull(&common, f->slack);
     patch->disc = whole_disc(s, &common);

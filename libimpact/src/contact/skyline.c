@@ -172,6 +172,16 @@ void imp_skyline_add(imp_skyline *sky, int a, int b, double block[6][6])
         for (int l = 0; l < SIDE; l++) own->a[k][l] += block[k][l];
 }
 
+void imp_skyline_add_product(imp_skyline *sky, int a, int b, double left[restrict 3][6],
+                             const double right[restrict 3][6])
+{
+    const int i = sky->place[a], j = sky->place[b];
+    imp_skyline_block *own = i >= j ? block_at(sky, sky->lower, i, j) : block_at(sky, sky->upper, j, i);
+    for (int k = 0; k < SIDE; k++)
+        for (int l = 0; l < SIDE; l++)
+            own->a[k][l] += left[0][k] * right[0][l] + left[1][k] * right[1][l] + left[2][k] * right[2][l];
+}
+
 /* A = (1 + L)(D + U): S_ij = A_ij - sum L_ik U_kj on both sides of the diagonal, U_ji = S_ji, L_ij = S_ij D_j^-1. */
 bool imp_skyline_factor(imp_skyline *sky)
 {

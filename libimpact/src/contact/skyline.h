@@ -33,6 +33,8 @@ void imp_skyline_clear(imp_skyline *sky);
 
 /* Adds to the block of row a, column b: two bodies that touch, or one twice. */
 void imp_skyline_add(imp_skyline *sky, int a, int b, double block[6][6]);
+/* The same of left^T right. */
+void imp_skyline_add_product(imp_skyline *sky, int a, int b, double left[3][6], const double right[3][6]);
 
 /* False: a pivot is zero, or no number. */
 bool imp_skyline_factor(imp_skyline *sky);

@@ -14,7 +14,7 @@ static double beside(const double a[2], const double b[2], const double p[2])
     return turn_at(a, b, p) / hypot(b[0] - a[0], b[1] - a[1]);
 }
 
-static void copy(imp_flat *to, const imp_flat *from)
+void imp_flat_copy(imp_flat *to, const imp_flat *from)
 {
     to->count = from->count;
     memcpy(to->p, from->p, (size_t)from->count * sizeof from->p[0]);
@@ -109,7 +109,7 @@ void imp_flat_hull(imp_flat *flat, double slack)
     made.count = chain(at, count, false, 0, &made);
     if (made.count > 1) made.count = chain(at, count, true, made.count - 1, &made) - 1; /* the ends of both are one */
     straighten(&made, slack);
-    copy(flat, &made);
+    imp_flat_copy(flat, &made);
 }
 
 /* What is left of the line, or by no more than slack right of it (Sutherland & Hodgman 1974); a corner that comes about
@@ -126,7 +126,7 @@ static void cut(imp_flat *flat, const double a[2], const double b[2], double sla
         const double share = fmax(0, fmin(1, at_p / (at_p - at_q)));
         put_corner(&part, p[0] + (q[0] - p[0]) * share, p[1] + (q[1] - p[1]) * share, -1);
     }
-    copy(flat, &part);
+    imp_flat_copy(flat, &part);
 }
 
 /* Between both sides of a segment's line, and its ends. */
@@ -166,13 +166,13 @@ void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offse
 {
     if (other->count == 1 || (other->count == 2 && one->count > 2)) { /* what is smaller is clipped */
         imp_flat part;
-        copy(&part, other);
+        imp_flat_copy(&part, other);
         if (other->count == 1 && !holds(one, other->p[0], slack)) part.count = 0;
         if (other->count == 2)
             for (int i = 0; i < one->count; i++) cut(&part, one->p[i], one->p[(i + 1) % one->count], slack);
         for (int i = 0; i < part.count; i++)
             if (part.from[i] >= 0) part.from[i] = (short)(part.from[i] + offset);
-        copy(one, &part);
+        imp_flat_copy(one, &part);
         return;
     }
     if (other->count == 2)

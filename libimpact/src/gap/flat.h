@@ -15,6 +15,9 @@ typedef struct imp_flat {
     short from[IMP_FLAT_CORNERS]; /* what a corner is: the caller's number; -1 where two borders cross */
 } imp_flat;
 
+/* The corners that there are. */
+void imp_flat_copy(imp_flat *to, const imp_flat *from);
+
 /* The convex hull of the corners, in place, those within slack of a side left out. */
 void imp_flat_hull(imp_flat *flat, double slack);
 

@@ -186,20 +186,27 @@ static void cover_side(const imp_pressed *pressed, const imp_border *b, area_fun
     }
 }
 
+/* Above the diagonal. */
 static void add_moment(place x, double weight, void *sum)
 {
     double(*m)[3] = sum;
     const double f[3] = {1, x.x, x.y};
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) m[i][j] += weight * f[i] * f[j];
+        for (int j = i; j < 3; j++) m[i][j] += weight * f[i] * f[j];
 }
 
-/* Of a triangle the middles of its sides give squares exactly. */
+/* Of a triangle of the area A: A, a third of it times its corners' sum s, a twelfth of it times s s + the sum of their
+ * squares. */
 static void add_triangle_moments(place a, place b, place c, double m[3][3])
 {
-    const double part = cross(less(b, a), less(c, a)) / 6;
-    const place corner[4] = {a, b, c, a};
-    for (int k = 0; k < 3; k++) add_moment(along(corner[k], 0.5, less(corner[k + 1], corner[k])), part, m);
+    const double area = cross(less(b, a), less(c, a)) / 2, third = area / 3, twelfth = area / 12;
+    const place s = {a.x + b.x + c.x, a.y + b.y + c.y};
+    m[0][0] += area;
+    m[0][1] += third * s.x;
+    m[0][2] += third * s.y;
+    m[1][1] += twelfth * (s.x * s.x + a.x * a.x + b.x * b.x + c.x * c.x);
+    m[1][2] += twelfth * (s.x * s.y + a.x * a.y + b.x * b.y + c.x * c.y);
+    m[2][2] += twelfth * (s.y * s.y + a.y * a.y + b.y * b.y + c.y * c.y);
 }
 
 void imp_press_moments(const imp_pressed *pressed, double m[3][3])
@@ -212,6 +219,8 @@ void imp_press_moments(const imp_pressed *pressed, double m[3][3])
         else
             add_triangle_moments(at(pressed->middle), at(b->from), at(b->to), m);
     }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < i; j++) m[i][j] = m[j][i];
 }
 
 /* ---- friction ---- */

@@ -246,7 +246,8 @@ static bool factor(double a[SYSTEM][SYSTEM], int *row)
         }
         for (int i = k + 1; i < SYSTEM; i++) {
             const double part = a[i][k] /= a[k][k];
-            for (int j = k + 1; j < SYSTEM && part != 0; j++) a[i][j] -= part * a[k][j];
+            if (part == 0) continue;
+            for (int j = k + 1; j < SYSTEM; j++) a[i][j] -= part * a[k][j];
         }
     }
     return true;
@@ -297,34 +298,65 @@ static void states_at_nodes(const collocation *c, const double *y, double h, dou
         }
 }
 
-/* The rates at the nodes, by Newton's iteration for the velocities; all else only follows them; and those at y. */
+/* The places at the nodes, as the velocities there lead to them; returns by how much they change, in units. */
+static double follow_velocities(const imp_face_motion *motion, const collocation *c, const double *y, double h,
+                                const double *unit, double there[][IMP_FACE_STATE])
+{
+    double going[IMP_FACE_NODES][MOVING], moved = 0;
+    for (int i = 0; i < IMP_FACE_NODES; i++) {
+        const double clock = clock_of(motion, there[i]);
+        for (int n = 0; n < MOVING; n++) going[i][n] = clock * there[i][IMP_FACE_V + n];
+    }
+    for (int i = 0; i < IMP_FACE_NODES; i++)
+        for (int n = 0; n < MOVING; n++) {
+            double way = 0;
+            for (int j = 0; j < IMP_FACE_NODES; j++) way += c->way[i][j] * going[j][n];
+            moved = fmax(moved, fabs(y[n] + h * way - there[i][n]) / unit[n]);
+            there[i][n] = y[n] + h * way;
+        }
+    return moved;
+}
+
+/* The velocities at the nodes by one step of Newton's, from those that their rates lead to, and the places that go with
+ * them; returns by how much they change, in units. */
+static double follow_rates(double a[SYSTEM][SYSTEM], const int *row, const double *unit, double made[][IMP_FACE_STATE],
+                           double there[][IMP_FACE_STATE])
+{
+    double off[SYSTEM], moved = 0;
+    for (int n = 0; n < SYSTEM; n++)
+        off[n] = made[n / MOVING][IMP_FACE_V + n % MOVING] - there[n / MOVING][IMP_FACE_V + n % MOVING];
+    back_solve(a, row, off);
+    for (int n = 0; n < SYSTEM; n++) {
+        there[n / MOVING][IMP_FACE_V + n % MOVING] += off[n];
+        moved = fmax(moved, fabs(off[n]) / unit[IMP_FACE_V + n % MOVING]);
+    }
+    return moved;
+}
+
+/* The rates at the nodes, by Newton's iteration for the velocities; all else only follows them; and those at y. It
+ * begins with what rates would lead to that go from those as their slopes. */
 static bool collocate(const imp_face_motion *motion, const collocation *c, const double *y, double h,
                       const double *unit, double k[][IMP_FACE_STATE], double *first)
 {
-    double rate[IMP_FACE_NODES][IMP_FACE_STATE], there[IMP_FACE_NODES][IMP_FACE_STATE], a[SYSTEM][SYSTEM],
-        change = INFINITY;
+    double rate[IMP_FACE_NODES][IMP_FACE_STATE], there[IMP_FACE_NODES][IMP_FACE_STATE],
+        made[IMP_FACE_NODES][IMP_FACE_STATE], a[SYSTEM][SYSTEM], change = INFINITY;
     int row[SYSTEM];
     imp_face_balance begun = {.p = {0}}, last[IMP_FACE_NODES]; /* from one round to the next they hardly change */
     if (!rates_in_tau(motion, y, first, &begun) || !linearize(motion, c, y, first, h, &begun, a, row)) return false;
-    for (int i = 0; i < IMP_FACE_NODES; i++) memcpy(rate[i], first, sizeof rate[i]);
-    for (int i = 0; i < IMP_FACE_NODES; i++) last[i] = begun;
-    states_at_nodes(c, y, h, rate, there);
-    for (int round = 0; round < IMP_FACE_ROUNDS; round++) {
-        double made[IMP_FACE_NODES][IMP_FACE_STATE], off[SYSTEM], moved = 0;
-        for (int i = 0; i < IMP_FACE_NODES; i++)
+    for (int i = 0; i < IMP_FACE_NODES; i++) {
+        memcpy(rate[i], first, sizeof rate[i]);
+        memcpy(there[i], y, sizeof there[i]);
+        last[i] = begun;
+    }
+    for (int round = -1; round < IMP_FACE_ROUNDS; round++) {
+        for (int i = 0; round >= 0 && i < IMP_FACE_NODES; i++)
             if (!rates_in_tau(motion, there[i], rate[i], &last[i])) return false;
         states_at_nodes(c, y, h, rate, made);
-        for (int n = 0; n < SYSTEM; n++)
-            off[n] = made[n / MOVING][IMP_FACE_V + n % MOVING] - there[n / MOVING][IMP_FACE_V + n % MOVING];
-        back_solve(a, row, off);
+        const double turned = follow_rates(a, row, unit, made, there);
+        const double moved = fmax(turned, follow_velocities(motion, c, y, h, unit, there));
         for (int i = 0; i < IMP_FACE_NODES; i++)
-            for (int n = 0; n < IMP_FACE_STATE; n++) {
-                const bool moves = n >= IMP_FACE_V && n <= IMP_FACE_W;
-                const double by = moves ? off[MOVING * i + n - IMP_FACE_V] : made[i][n] - there[i][n];
-                if (n <= IMP_FACE_W) moved = fmax(moved, fabs(by) / unit[n]);
-                there[i][n] += by;
-            }
-        if (moved <= IMP_FACE_SETTLED || (moved >= change && moved <= IMP_FACE_TOLERANCE)) {
+            for (int n = IMP_FACE_TIME; n < IMP_FACE_STATE; n++) there[i][n] = made[i][n];
+        if (round >= 0 && (moved <= IMP_FACE_SETTLED || (moved >= change && moved <= IMP_FACE_TOLERANCE))) {
             expand(c, rate, k);
             return true;
         }

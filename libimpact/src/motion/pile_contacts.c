@@ -79,6 +79,7 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
         if (held_only && !held) continue;
         const double height = held && next ? slack + 0.5 * h * fastest(world, pair, next) : slack;
         if (imp_world_distance_bound(world, pair, states) > height) continue;
+        if (imp_pair_has_faces(world, pair) && imp_world_separation(world, pair, states) > height) continue;
         imp_point points[IMP_POINTS];
         const double flush = imp_stepped_flush(&world->bodies[pair->body1], &world->bodies[pair->body2]);
         const int found = imp_points_find(world, pair, states, height, flush, points);

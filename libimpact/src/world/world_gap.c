@@ -122,6 +122,21 @@ double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, co
     return qvec3_norm(d) - b1->radius - b2->radius;
 }
 
+static double reach_along(const imp_body *body, const imp_state *state, qvec3 direction)
+{
+    qvec3 place;
+    if (body->shape.kind == IMPACT_PLANE) return 0; /* along its normal */
+    return imp_world_support(body, quat_rotate_inverse(state->q, direction), &place);
+}
+
+double imp_world_separation(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    const qvec3 n = about_normal(world, pair, states);
+    return qvec3_dot(n, qvec3_sub(s1->x, s2->x)) - reach_along(&world->bodies[pair->body1], s1, qvec3_neg(n)) -
+           reach_along(&world->bodies[pair->body2], s2, n);
+}
+
 double imp_world_inside_bounds(const imp_world *world, const imp_pair *pair, const imp_state *states,
                                const impact_contact *contact)
 {

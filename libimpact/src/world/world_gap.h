@@ -41,6 +41,9 @@ double imp_world_touching_distance(const imp_world *world, const imp_pair *pair,
 /* A lower bound of the gap without a query, from the bounding balls; -inf when there is none. */
 double imp_world_distance_bound(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
+/* Another: how far the direction of the pair's last contact, or of a plane, separates them. */
+double imp_world_separation(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
 /* Whether the contact lies within the bounds of the pair's plane (always, for other shapes); > 0 inside, m. */
 double imp_world_inside_bounds(const imp_world *world, const imp_pair *pair, const imp_state *states,
                                const impact_contact *contact);
