@@ -52,15 +52,21 @@ local rooms = {
   { "^libimpact/src/contact/persist_linear", { "impact_persist_linear", "impact_persist_still", "impact_persist" } },
   { "^libimpact/src/contact/persist_s[po]", { "impact_persist_spot", "impact_persist_still", "impact_persist_modes", "impact_persist" } },
   { "^libimpact/src/contact/persist_system", { "impact_persist_system", "impact_persist_still", "impact_persist_modes", "impact_persist" } },
-  { "^libimpact/src/scene/coarser", { "impact_coarser", "impact_piles" } }, { "^libimpact/src/scene/arrivals", { "impact_arrivals", "impact_scene" } },
+  { "^libimpact/src/scene/coarser", { "impact_coarser", "impact_piles" } }, { "^libimpact/src/scene/arrivals", { "impact_arrivals", "impact_scene", "lua_faces_tolerance", "lua_scene" } },
   { "^libimpact/src/scene/queue", { "impact_queue" } }, { "^libimpact/src/scene/rules", { "impact_rules" } },
   { "^libimpact/src/scene/scene_receipt", { "impact_scene_receipt", "impact_scene_answers", "impact_cases" } },
   { "^libimpact/src/scene/scene_hold", { "impact_scene", "impact_scene_answers", "impact_cases", "impact_motion" } },
   { "^libimpact/src/scene/tracks", { "impact_crowd", "impact_scene", "impact_scene_answers" } },
   { "^libimpact/src/scene/scene_build", { "impact_rolling", "impact_scene", "impact_scene_answers", "impact_cases" } },
+  { "^libimpact/src/scene/island", { "impact_scene_answers", "impact_scene", "lua_scene", "lua_units", "lua_faces_tolerance", "impact_random_scenes" } },
+  { "^libimpact/src/scene/scene_instant", { "lua_faces_exact", "lua_faces_tolerance", "lua_alike", "lua_units", "impact_scene", "impact_cases", "impact_random_scenes" } },
+  { "^libimpact/src/scene/gliding", { "lua_faces_gliding", "impact_scene", "impact_cases" } },
   { "^libimpact/src/scene/", { "impact_scene_answers", "impact_scene", "impact_cases", "impact_drive", "impact_scene_together", "impact_random_scenes" } },
   { "^libimpact/src/motion/search", { "impact_search", "impact_crowd", "impact_motion" } }, { "^libimpact/src/motion/face", { "impact_face_motion", "impact_face_friction" } }, { "^libimpact/src/motion/motion_guard", { "impact_motion_guard", "impact_force_time", "impact_motion" } },
   { "^libimpact/src/motion/pile", { "impact_pile", "impact_piles" } },
+  { "^libimpact/src/motion/motion_stretch", { "impact_motion", "lua_faces_exact", "lua_faces_held", "lua_faces_turned", "impact_persist_modes", "impact_cases", "lua_faces_seams" } },
+  { "^libimpact/src/motion/lying", { "lua_faces_gliding", "lua_faces_turned" } },
+  { "^libimpact/src/world/corner", { "lua_faces_exact", "lua_faces_held", "lua_faces_seams", "impact_cases" } },
   { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases" } },
   { "^libimpact/src/contact/persist", { "impact_persist_still", "impact_persist_modes", "impact_persist", "impact_cases" } },
   { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning", "impact_cone_bodies" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning", "impact_rolling", "impact_scene_answers" } },
@@ -219,10 +225,20 @@ local function runner_passes(build, work, test, object, file)
     "'%s' '%s/tests/lua/test_%s.lua' '%s' '%s/lua_%s' '%s'", work, build, root, build, arg[-1], root, name, runner, work, name, extra))
 end
 
+--- A module of Lua with the mutant's object before the archive, and the Lua test that loads it.
+local function module_passes(build, work, test, object)
+  local text, modules = edge(build, "lua/modules/impact/core.so"), work .. "/modules"
+  assert(command(string.format("rm -rf '%s' && cp -r '%s/lua/modules' '%s' && cd '%s' && cc -shared -O2 %s %s %s -o '%s/impact/core.so' %s", modules,
+    build, modules, build, text:match "LINK_FLAGS = ([^\n]*)", text:match "^build lua/modules/impact/core.so: %S+ ([^|]*)", object, modules,
+    text:match "LINK_LIBRARIES = ([^\n]*)")), "no link of the module")
+  return command(string.format("ulimit -t 60 && LUA_PATH='%s/?.lua;%s/tests/lua/?.lua' LUA_CPATH='%s/?.so' '%s' '%s/tests/lua/test_%s.lua'", modules,
+    root, modules, arg[-1], root, test:match "^lua_(.*)$"))
+end
+
 --- Runs the test linked with the mutant's object before everything else, to its first failure; at most 60 s of computing.
 local function passes(build, work, test, object, file)
   local library, name = test:match "^(%a+)_(.*)$"
-  if library == "lua" then return runner_passes(build, work, test, object, file) end
+  if library == "lua" then return (file:find "^lua/" and runner_passes or module_passes)(build, work, test, object, file) end
   local folder = string.format("%s/tests/%s/CMakeFiles/test_%s.dir", build, library, test)
   local text = edge(build, "tests/" .. library .. "/test_" .. test)
   local wrap, libraries = text:match "LINK_FLAGS = ([^\n]*)" or "", text:match "LINK_LIBRARIES = ([^\n]*)" or ""

@@ -110,19 +110,6 @@ static void follow_sides(imp_world *world, const imp_state *states)
     }
 }
 
-/* Whether the pair's rim has but run round to its other side, and has not passed flat: it goes on from there. */
-static bool has_run_round(imp_motion *motion, int p, const double *y)
-{
-    imp_pair *pair = &motion->world->pairs[p];
-    const qvec3 side = pair->site.side;
-    imp_motion_unpack(motion, y, motion->scratch);
-    pair->site.side = (qvec3){0, 0, 0};
-    const bool runs = imp_corner_clearance(motion->world, pair, motion->scratch) >
-                      imp_world_touching_distance(motion->world, pair, motion->scratch);
-    pair->site.side = runs ? imp_corner_side(motion->world, pair, motion->scratch) : side;
-    return runs;
-}
-
 /* A corner lands where its height is 0: its root, which no rounding is to find, lies a little below. One that left the
  * ground where the step began is highest about the middle. */
 static impact_status find_landing(imp_motion *motion, int p, double tau_before, double *tau, double *y)
@@ -138,18 +125,15 @@ static impact_status find_landing(imp_motion *motion, int p, double tau_before, 
     return status == IMPACT_OK ? impact_ode_interpolate(motion->ode, at, 0, y) : status;
 }
 
-/* Whether other corners of a pair's come down at y, within the distance that touches: what presses otherwise than
+/* Whether other corners of a pair's are down at y, within the distance that touches: what presses otherwise than
  * before where a rim is flat, and its lowest place changes over, is the landing's to change. */
-static bool lands(imp_motion *motion, int p, double tau_before, const double *y)
+static bool lands(imp_motion *motion, int p, const double *y)
 {
     const imp_pair *pair = &motion->world->pairs[p];
-    const last_step_function height = {.kind = CLEARANCE, .index = p};
     if (!imp_is_held(pair) || pair->site.corner == 0) return false;
-    const double now = last_step_value(motion, height, y);
-    if (now > imp_world_touching_distance(motion->world, pair, motion->scratch) ||
-        impact_ode_interpolate(motion->ode, tau_before, 0, motion->kept) != IMPACT_OK)
-        return false;
-    return last_step_value(motion, height, motion->kept) > now;
+    imp_motion_unpack(motion, y, motion->scratch);
+    return imp_corner_clearance(motion->world, pair, motion->scratch) <=
+           imp_world_touching_distance(motion->world, pair, motion->scratch);
 }
 
 /* Looks through the roots found at *tau for the event that ends the segment; a zero that the step hid moves *tau and y
@@ -165,9 +149,7 @@ static impact_status pick_event(imp_motion *motion, double tau_before, double *t
             motion->found[root] = 0;
             if (end->kind != IMP_END_BOUNDS || motion->world->pairs[end->index].site.corner == 0) continue;
             memset(motion->found, 0, sizeof *motion->found * (size_t)motion->roots); /* of later times */
-            const impact_status status = find_landing(motion, end->index, tau_before, tau, y);
-            if (status == IMPACT_OK && has_run_round(motion, end->index, y)) *end = (imp_end){IMP_END_TIME, 0};
-            return status;
+            return find_landing(motion, end->index, tau_before, tau, y);
         }
         if (last_step_value(motion, value, y) >= 0) continue;
         *end = (imp_end){IMP_END_EDGE, value.index};
@@ -176,7 +158,7 @@ static impact_status pick_event(imp_motion *motion, double tau_before, double *t
     }
     const bool changes = end->kind == IMP_END_LIFTOFF || end->kind == IMP_END_SLIP || end->kind == IMP_END_STICK;
     for (int p = 0; changes && p < motion->world->pair_count; p++)
-        if (lands(motion, p, tau_before, y)) *end = (imp_end){IMP_END_BOUNDS, p};
+        if (lands(motion, p, y)) *end = (imp_end){IMP_END_BOUNDS, p};
     return IMPACT_OK;
 }
 

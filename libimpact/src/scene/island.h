@@ -41,7 +41,6 @@ typedef struct imp_island {
     imp_end end;        /* what its segments end in */
     double impact_loss; /* J, not given to the scene yet; */
     double loss_before; /* as the receipt saw it last */
-    double landing;     /* m: scratch: how far what lands at this instant stands off, its bodies being put back */
     double gained;      /* J: since then, by impacts whose law gave it */
     double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
     double looked_at;   /* s: by the receipt */

@@ -104,13 +104,11 @@ impact_status imp_scene_strike_steps(imp_island *island)
 
 /* ---- the ends of stretches of motion ---- */
 
-/* Of what touches, or lands at `within` from it: every point's contact is to be closed, and pairs[p]. */
-static impact_status list_landing(imp_island *island, int p, double within)
+/* Of what touches: every point's contact is to be closed, and pairs[p]. */
+static impact_status list_landing(imp_island *island, int p)
 {
     const imp_pair arriving = island->world.pairs[p];
-    island->landing = within;
     const impact_status status = imp_scene_place_points(island);
-    island->landing = 0;
     for (int k = 0; status == IMPACT_OK && k < island->world.pair_count; k++) {
         imp_pair *pair = &island->world.pairs[k];
         if (pair->site.placed || imp_same_bodies(pair, &arriving)) pair->mode = IMP_SLIDE;
@@ -120,7 +118,7 @@ static impact_status list_landing(imp_island *island, int p, double within)
 
 /* Takes the gaps of what lands to zero with those of what is held, none at the cost of another: putting back what was
  * held has moved the rest by the integrator's error. */
-static impact_status close_landing(imp_island *island, int p, double within)
+static impact_status close_landing(imp_island *island, int p)
 {
     imp_world *world = &island->world;
     const int count = world->pair_count;
@@ -128,7 +126,7 @@ static impact_status close_landing(imp_island *island, int p, double within)
     impact_status status = pairs ? IMPACT_OK : IMPACT_ENOMEM;
     if (pairs) memcpy(pairs, world->pairs, sizeof *pairs * (size_t)count);
     for (int round = 0; status == IMPACT_OK && round < IMP_PERSIST_ROUNDS; round++) {
-        status = list_landing(island, p, within);
+        status = list_landing(island, p);
         if (status == IMPACT_OK) imp_persist_close_gaps(&island->motion.persist, world, island->states);
         memcpy(world->pairs, pairs, sizeof *pairs * (size_t)count);
         world->pair_count = count;
@@ -149,7 +147,7 @@ static impact_status arrive(imp_island *island, int p)
     }
     /* a rounding, of the gap or of the time; many would sum up */
     if (contact.gap < 0 || contact.gap > imp_world_touching_distance(world, pair, island->states)) {
-        const impact_status status = close_landing(island, p, fmax(0, contact.gap));
+        const impact_status status = close_landing(island, p);
         if (status != IMPACT_OK) return status;
     }
     return imp_scene_settle(island);
@@ -270,9 +268,8 @@ static impact_status stop_gliding(imp_island *island, int p)
  * stands under impacts: of two thousand such landings it was 1e-9 of all. */
 static impact_status land(imp_island *island, int p)
 {
-    const double off = imp_corner_clearance(&island->world, &island->world.pairs[p], island->states);
     const double account = imp_island_energy(island) + island->impact_loss;
-    const impact_status status = close_landing(island, p, fmax(0, off));
+    const impact_status status = close_landing(island, p);
     island->impact_loss = account - imp_island_energy(island);
     return status == IMPACT_OK ? imp_scene_settle(island) : status;
 }

@@ -83,7 +83,7 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
     const double touching = imp_world_touching_distance(world, &whole, island->states);
     const imp_body *b1 = &world->bodies[whole.body1], *b2 = &world->bodies[whole.body2];
     const double flush = island->stepped ? imp_stepped_flush(b1, b2) : touching;
-    const int count = imp_points_find(world, &whole, island->states, touching + island->landing, flush, points);
+    const int count = imp_points_find(world, &whole, island->states, touching, flush, points);
     const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
     const int first = world->pair_count;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {

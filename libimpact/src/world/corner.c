@@ -135,7 +135,7 @@ int imp_corner_ahead(const imp_world *world, const imp_pair *pair, const imp_sta
 
 /* The place of the pair's corner. A rim's stays on the side where it stood while that comes down: it passes flat with
  * the other side below the plane, as a corner would that lands, its slope < 0 from there, and does not change over on
- * the way. Where its tilt is but roundings it points where it changes: u_xy is (t - t0) u'_xy there. */
+ * the way, nor where its tilt is but roundings. */
 static corner_place own_place(const imp_world *world, const imp_pair *pair, const imp_state *states,
                               const corner_view *v)
 {
@@ -143,9 +143,7 @@ static corner_place own_place(const imp_world *world, const imp_pair *pair, cons
     const qvec3 side = pair->site.side;
     if (!(place.rim > 0) || (side.x == 0 && side.y == 0)) return place;
     if (2 * place.rim * place.slope <= imp_world_touching_distance(world, pair, states)) {
-        const qvec3 rate = up_rate(world, pair, states, v);
-        const double size = hypot(rate.x, rate.y);
-        place.along = size > 0 ? (qvec3){rate.x / size, rate.y / size, 0} : side;
+        place.along = side;
         place.slope = 0;
     }
     if (qvec3_dot(place.along, side) < 0) place.along = qvec3_neg(place.along), place.slope = -place.slope;
