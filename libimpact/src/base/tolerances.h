@@ -857,6 +857,10 @@
  * fall, is as much of the radius. */
 #define IMP_PILE_FIRST 5
 #define IMP_PILE_LONGEST 1e-1
+/* In that unit, too: what has not touched the rest of a pile for so long goes on exactly. A time, not a number of
+ * steps: what strikes then is answered by another law (docs/scene.md), and which it is must not hang on the tolerance.
+ */
+#define IMP_PILE_APART 1
 /* Rates of the motion asked for, an event and a stretch in closed form for 16 of them, as for a step of the explicit
  * method: with bodies held on each other, for the time in which the smallest falls its radius, more is a pile that does
  * not get on. They are some twenty slips that begin and die out. With a quarter of them two ellipsoids that settle on

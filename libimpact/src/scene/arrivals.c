@@ -116,8 +116,26 @@ static impact_status conclude_steps(imp_island *island)
     return conclude(island, IMPACT_OK);
 }
 
+/* Whether both bodies go by the same steps, which find by themselves what meets: those answer it, and by one law,
+ * whenever the pair has come to be near. */
+static bool is_of_one_pile(const impact_scene *scene, const imp_near *near)
+{
+    const int number = scene->tracks.tracks[near->body[0]].island;
+    const imp_island *island = number < 0 ? NULL : scene->islands[number];
+    if (!island || !island->stepped || imp_island_all_rest(island)) return false;
+    const int i = imp_island_find(island, near->body[0]), j = imp_island_find(island, near->body[1]);
+    for (int p = 0; p < island->world.pair_count; p++)
+        if (island->world.pairs[p].body1 == i && island->world.pairs[p].body2 == j) return true;
+    return false;
+}
+
 impact_status imp_scene_meet(impact_scene *scene, int n, double t)
 {
+    if (is_of_one_pile(scene, &scene->tracks.near[n])) {
+        scene->tracks.near[n].held = true;
+        imp_tracks_predict(&scene->tracks, n, t);
+        return IMPACT_OK;
+    }
     if (!imp_scene_account_before(scene)) return IMPACT_ESINK;
     const imp_near *near = &scene->tracks.near[n];
     const int body[2] = {near->body[0], near->body[1]};

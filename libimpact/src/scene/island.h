@@ -48,12 +48,12 @@ typedef struct imp_island {
     bool lies;          /* bodies with faces stay on each other: it is to be moved by steps */
     bool stepped;       /* it moves by steps (stepped.h): */
     imp_pile *pile;     /* absent until then */
-    long steps;
-    double outside;    /* J: of all other bodies, for the rows of events */
-    int number;        /* among the scene's; -1: of none */
-    double glide;      /* tau: how long the next step of a body that glides is to be (gliding.h) */
-    bool rests, rolls; /* no integrator is at work: its bodies' segments say all */
-    bool loses;        /* it rolls, and friction takes energy: what there was when its segment began, J */
+    double met_since;   /* s: from when on its pairs are marked that touch (imp_pair.met) */
+    double outside;     /* J: of all other bodies, for the rows of events */
+    int number;         /* among the scene's; -1: of none */
+    double glide;       /* tau: how long the next step of a body that glides is to be (gliding.h) */
+    bool rests, rolls;  /* no integrator is at work: its bodies' segments say all */
+    bool loses;         /* it rolls, and friction takes energy: what there was when its segment began, J */
     double begun_with;
     bool moves;   /* it has segments; false where its next step failed */
     bool leaving; /* scratch: its bodies go over to another */

@@ -66,7 +66,8 @@ static bool stays_stepped(const imp_island *island, const int *root, int compone
     const bool always = island->scene->piles == IMPACT_PILES_STEPS;
     for (int p = 0; island->stepped && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        const bool rough = imp_is_rough(pair) && (island->steps == 0 || !imp_island_rolls_out(island, pair));
+        const bool rough =
+            imp_is_rough(pair) && (island->t == island->met_since || !imp_island_rolls_out(island, pair));
         const bool counts = pair->met && (always || rough || has_flats(world, pair));
         if (counts && root[pair->body1] == component) return true;
     }

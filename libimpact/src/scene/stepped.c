@@ -69,7 +69,7 @@ impact_status imp_island_begin_steps(imp_island *island)
 {
     const impact_status status = open_pile(island);
     if (status != IMPACT_OK) return status;
-    island->steps = 0;
+    island->met_since = island->t;
     island->scene->stepped = true;
     for (int i = 0; i < island->world.body_count; i++) island->motion.resting[i] = false;
     for (int p = 0; p < island->world.pair_count; p++) {
@@ -181,14 +181,15 @@ impact_status imp_island_can_stand(imp_island *island, bool *can)
 
 impact_status imp_island_after_step(imp_island *island, imp_stepped *found)
 {
-    enum { LOOK = 64 };
     bool stands;
     const impact_status status = imp_island_can_stand(island, &stands);
-    *found = stands ? IMP_STEPPED_REST : ++island->steps % LOOK == 0 ? IMP_STEPPED_LOOK : IMP_STEPPED_ON;
+    const double apart = IMP_PILE_APART * imp_pile_natural_time(&island->world, island->states);
+    *found = stands ? IMP_STEPPED_REST : island->t - island->met_since >= apart ? IMP_STEPPED_LOOK : IMP_STEPPED_ON;
     return status;
 }
 
 void imp_island_forget_met(imp_island *island)
 {
     for (int p = 0; p < island->world.pair_count; p++) island->world.pairs[p].met = false;
+    island->met_since = island->t;
 }

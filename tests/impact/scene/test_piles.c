@@ -183,6 +183,52 @@ static void test_a_few(void **state)
         for (uint64_t seed = 2; seed < 4; seed++) run(seed, start);
 }
 
+/* The greatest that any point of a body is off at t, of another scene's. */
+static double apart(const pile_scene *pile, const impact_scene *one, const impact_scene *other)
+{
+    double most = 0;
+    for (int i = 0; i < pile->def.body_count; i++) {
+        impact_sample a, b;
+        impact_scene_body(one, i, &a);
+        impact_scene_body(other, i, &b);
+        if (pile->bodies[i].is_static) continue;
+        const quat turn = quat_mul(a.orientation, quat_conj(b.orientation));
+        const double angle = 2 * qvec3_norm((qvec3){turn.x, turn.y, turn.z}),
+                     radius = impact_shape_bounding_radius(&pile->bodies[i].shape);
+        most = fmax(most, qvec3_norm(qvec3_sub(a.position, b.position)) + radius * angle);
+    }
+    return most;
+}
+
+static impact_scene *scene_at(pile_scene *pile, double tolerance, double t)
+{
+    impact_scene *scene;
+    pile->def.pile_tolerance = tolerance;
+    assert_int_equal(impact_scene_create(&pile->def, &scene, NULL, 0), IMPACT_OK);
+    assert_int_equal(impact_scene_run_to(scene, t, NULL), IMPACT_OK);
+    return scene;
+}
+
+/* A cylinder leaves what it rattled on and strikes the floor. By which law it does, that of steps or the exact one, is
+ * the same for all tolerances, so that errors fall with them; and for the second run, so that what it tells does. */
+static void test_errors_fall_with_the_tolerance(void **state)
+{
+    (void)state;
+    const double t = 0.32, tolerance[] = {1e-5, 1e-6, 1e-7}, most[] = {1.5e-3, 3e-4, 6e-5};
+    pile_scene pile;
+    random_pile_scene(310331, PILE_DROPPED, &pile);
+    impact_scene *finest = scene_at(&pile, 1e-8, t);
+    for (int k = 0; k < 3; k++) {
+        impact_scene *scene = scene_at(&pile, tolerance[k], t);
+        assert_true(apart(&pile, scene, finest) <= most[k]);
+        assert_true(apart(&pile, scene, finest) <= impact_scene_pile_error(scene));
+        if (tolerance[k] == 1e-7) assert_true(impact_scene_pile_error(scene) <= 1e-3);
+        impact_scene_destroy(scene);
+    }
+    impact_scene_destroy(finest);
+    pile_scene_end(&pile);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -195,6 +241,7 @@ int main(void)
         cmocka_unit_test(test_glides_meet_what_they_touch),
         cmocka_unit_test(test_bounces_on_what_stands_die_out),
         cmocka_unit_test(test_time_advances),
+        cmocka_unit_test(test_errors_fall_with_the_tolerance),
         cmocka_unit_test(test_a_few),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
