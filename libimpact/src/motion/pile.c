@@ -214,10 +214,11 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
     bool halfway = false, good = false;
     for (bool there = false; status == IMPACT_OK && !good; h *= good ? 1 : 0.5) {
-        const double allowed = h > least ? wanted : INFINITY;
+        pile->shortest = !(h > least);
+        const double allowed = pile->shortest ? INFINITY : wanted;
         status = try_and_project(pile, world, t, h, states, there, &halfway, allowed, pile->projected, result);
         good = status == IMPACT_OK && result->error <= allowed;
-        if (status == IMPACT_EUNSETTLED && h > least) status = IMPACT_OK;
+        if (status == IMPACT_EUNSETTLED && !pile->shortest) status = IMPACT_OK;
         if (!good) there = keep_first_half(pile, halfway);
     }
     if (status != IMPACT_OK) return status;

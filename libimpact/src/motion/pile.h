@@ -53,6 +53,7 @@ typedef struct imp_pile {
         bool begun;
     } kept;            /* imp_pile_keep */
     bool halved;       /* the step at hand is whole, its halves done */
+    bool shortest;     /* it is so short that any error is allowed */
     int contacts_most; /* there is room for in: */
     imp_cone_contact *contacts;
     int *members, *pivots; /* members: the points' numbers in `touching` */

@@ -187,6 +187,7 @@ static imp_pile_question question_of(const imp_pile *pile, const imp_world *worl
                  still = IMP_PILE_STILL * fastest_body(pile, world, states, count);
     return (imp_pile_question){.count = count,
                                .recalls = true,
+                               .effort = IMP_CONE_BRIEF,
                                .enough = fmax(fmin(fmin(error, still) / fastest, IMP_PILE_USABLE), IMP_BODIES_ACCEPTED),
                                .usable = fmin(error / fastest, IMP_PILE_USABLE)};
 }
@@ -245,31 +246,52 @@ static imp_cone_outcome solve_with_part(imp_pile *pile, const imp_world *world, 
     return imp_pile_solve(pile, world, question);
 }
 
-/* Newton's restitution at several contacts gives energy, where they differ or rub (Kane 1984). Without bounces they
- * give none: what is taken is the greatest part of all that gives none either, as far as impulses are known. */
+/* Against the speeds that contacts have, or those of a fall: what is all but at rest has none to be measured by. */
+static bool is_usable(const imp_pile *pile, const imp_world *world, int count, double residual)
+{
+    const double fall = imp_pile_smallest(world) / imp_pile_natural_time(world, pile->middle);
+    return residual <= IMP_PILE_USABLE || residual * imp_pile_fastest(pile, count) <= IMP_PILE_USABLE * fall;
+}
+
+/* Of given(), that of bounces which no impulses hold: towards them both grow without bound. */
+static double given_if_held(const imp_pile *pile, const imp_world *world, int count, double part, double residual,
+                            double *size)
+{
+    const double work = given(pile, count, part, size);
+    return is_usable(pile, world, count, residual) ? work : INFINITY;
+}
+
+/* Newton's restitution at several contacts gives energy, where they differ or rub (Kane 1984), and where friction jams
+ * no impulses hold it: a body that is caught between two others cannot leave the one by as much. Without bounces they
+ * give none, and are there: what is taken is the greatest part of all that gives none either, as far as impulses are
+ * known. */
 static imp_cone_outcome lessen_bounces(imp_pile *pile, const imp_world *world, const imp_pile_question *question,
                                        imp_cone_outcome outcome)
 {
     enum { MOST = 8 };
-    double size, part = 1, work = given(pile, question->count, part, &size);
+    const int count = question->count;
+    double size, part = 1, work = given_if_held(pile, world, count, part, outcome.residual, &size);
     imp_bracket b = {.high = 1, .at_low = -size, .at_high = work};
     for (int k = 0; k < MOST && outcome.status != IMP_CONE_NO_ROOM && fabs(work) > IMP_PILE_USABLE * size; k++) {
         if (part == 1 && work <= 0) return outcome;
         const double guess = k + 1 < MOST ? imp_bracket_guess(&b) : b.low;
         outcome = solve_with_part(pile, world, question, part, guess);
         part = guess;
-        work = given(pile, question->count, part, &size);
+        work = given_if_held(pile, world, count, part, outcome.residual, &size);
         imp_bracket_take(&b, part, work, work > 0);
     }
-    for (int c = 0; c < question->count; c++) pile->bounce[c] *= part;
+    for (int c = 0; c < count; c++) pile->bounce[c] *= part;
     return outcome;
 }
 
-/* Against the speeds that contacts have, or those of a fall: what is all but at rest has none to be measured by. */
-static bool is_usable(const imp_pile *pile, const imp_world *world, int count, double residual)
+/* Where no shorter step is to be had. */
+static imp_cone_outcome solve_at_length(imp_pile *pile, const imp_world *world, imp_pile_question question)
 {
-    const double fall = imp_pile_smallest(world) / imp_pile_natural_time(world, pile->middle);
-    return residual <= IMP_PILE_USABLE || residual * imp_pile_fastest(pile, count) <= IMP_PILE_USABLE * fall;
+    const size_t size = (size_t)(pile->width * question.count) * sizeof *pile->r;
+    memcpy(pile->last_r, pile->r, size);
+    memcpy(pile->last_u, pile->u, size);
+    question.effort = IMP_CONE_WANDERS;
+    return imp_pile_solve(pile, world, &question);
 }
 
 /* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
@@ -285,6 +307,8 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
     const imp_pile_question question = question_of(pile, world, states, count, h);
     imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
     if (!smooth) outcome = lessen_bounces(pile, world, &question, outcome);
+    if (pile->shortest && outcome.status != IMP_CONE_NO_ROOM && !is_usable(pile, world, count, outcome.residual))
+        outcome = solve_at_length(pile, world, question);
     if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, &question, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !is_usable(pile, world, count, outcome.residual)) {

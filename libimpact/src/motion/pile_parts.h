@@ -30,6 +30,7 @@ typedef struct imp_pile_question {
     int count;
     bool recalls;          /* pile->last_r and last_u are a start */
     double enough, usable; /* residuals: that does; up to which no other way is tried */
+    imp_cone_effort effort;
 } imp_pile_question;
 
 /* Into pile->r and u. */

@@ -36,7 +36,7 @@ static imp_cone_problem problem_of(const imp_pile *pile, const imp_pile_question
                               .last_r = question->recalls ? pile->last_r : NULL,
                               .last_u = question->recalls ? pile->last_u : NULL,
                               .enough = question->enough,
-                              .effort = IMP_CONE_BRIEF};
+                              .effort = question->effort};
 }
 
 static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, const imp_pile_question *question)

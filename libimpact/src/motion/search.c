@@ -401,7 +401,7 @@ static double away_between(const imp_search *s, double from, double t, double to
     sight l;
     double part = 0.5;
     for (int i = 0; i < HALVINGS; i++, part *= 0.5) {
-        look_at(s, t - part * (t - from), &l);
+        look_at(s, from + part * (t - from), &l);
         *gap = l.contact.lower;
         if (*gap > touching) return l.t;
     }
@@ -443,8 +443,8 @@ static imp_found advance(const imp_search *s, double from, double until)
             leaving = leaving && gap <= touching;
             const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l) + error;
             if (leaving) gap += slack;
-            if (gap < -touching && gap_before > 0 && isfinite(gap_before) && !leaving)
-                return (imp_found){bisect(s, before, gap_before, t, gap, 0), true};
+            if (gap < -touching && gap_before > 0 && isfinite(gap_before))
+                return (imp_found){bisect(s, before, gap_before, t, gap, leaving ? slack : 0), true};
             if (gap <= rounding && l.rate <= (t > start ? still_rate(s, &l) : -DBL_MIN)) return (imp_found){t, true};
             const bool near = gap <= IMP_ALL_BUT_CLOSED * scale_of(s, &l) && gap + l.rate * least > 0;
             step = least > 0 && near ? crawl(s, &l, least, touching) : 0;
