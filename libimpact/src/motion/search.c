@@ -11,9 +11,9 @@
  * contact until then. Steps to the zero of psi converge quadratically and never pass the contact.
  *
  * On the integrator's polynomials J W does not vanish, and bodies that stay next to each other would be followed in
- * steps of sqrt(2 g/A). Where the gap is all but closed and its rate alone would not close it in a 64th of the segment,
- * a step is that long at least: what dips below zero and rises again within it, by less than A (W/64)^2/8, is passed
- * over.
+ * steps of sqrt(2 g/A). Where the gap is all but closed, below c, and its rate alone would not close it in a 64th of
+ * the segment, a step is that long at least, or sqrt(8 c/A): what dips below zero and rises again within it, by less
+ * than A (W/64)^2/8 and c, is passed over.
  */
 #include "motion/search.h"
 #include "base/bracket.h"
@@ -362,20 +362,24 @@ static double shortest_step(const imp_search *s)
     return isfinite(longest) ? longest / IMP_CRAWL_PARTS : 0;
 }
 
-/* How fast the gap's rate can fall: by the centres, and by what turns. */
-static double most_bend(const imp_search *s, const sight *l)
+/* How fast the gap's rate can fall within the window: by the centres, and by what turns. */
+static double most_bend(const imp_search *s, const sight *l, double window)
 {
-    double bend = fmax(0, bend_of(s, l, l->contact.normal));
+    sight near = *l;
+    near.window = fmin(l->window, window);
+    double bend = fmax(0, bend_of(s, &near, l->contact.normal));
     for (int k = 0; k < 2; k++)
         if (turns(s, k)) bend += s->body[k]->radius * (l->spin[k].most * l->spin[k].most + l->spin[k].second);
     return bend;
 }
 
-/* Where bodies crawl along each other: over a dip that is no deeper than the segment's step allows, or, while they
- * part, than what counts as touching, A T^2/2; of a fixed step, which is long behind a bounce too, over no other. */
-static double crawl(const imp_search *s, const sight *l, double least, double touching)
+/* Where bodies crawl along each other: over a dip, A T^2/8, that is no deeper than what is all but closed, or, while
+ * they part, than what counts as touching, A T^2/2; of a fixed step, which is long behind a bounce too, over no other.
+ */
+static double crawl(const imp_search *s, const sight *l, double longest, double closed, double touching)
 {
-    const double bend = most_bend(s, l), flat = bend > 0 ? sqrt(2 * touching / bend) : INFINITY;
+    const double bend = most_bend(s, l, longest), flat = bend > 0 ? sqrt(2 * touching / bend) : INFINITY,
+                 least = bend > 0 ? fmin(longest, sqrt(8 * closed / bend)) : longest;
     double step = least;
     if (is_fixed(s, 0) || is_fixed(s, 1))
         step = fmin(least, 2 * flat);
@@ -446,8 +450,9 @@ static imp_found advance(const imp_search *s, double from, double until)
             if (gap < -touching && gap_before > 0 && isfinite(gap_before))
                 return (imp_found){bisect(s, before, gap_before, t, gap, leaving ? slack : 0), true};
             if (gap <= rounding && l.rate <= (t > start ? still_rate(s, &l) : -DBL_MIN)) return (imp_found){t, true};
-            const bool near = gap <= IMP_ALL_BUT_CLOSED * scale_of(s, &l) && gap + l.rate * least > 0;
-            step = least > 0 && near ? crawl(s, &l, least, touching) : 0;
+            const double closed = IMP_ALL_BUT_CLOSED * scale_of(s, &l);
+            const bool near = gap <= closed && gap + l.rate * least > 0;
+            step = least > 0 && near ? crawl(s, &l, least, closed, touching) : 0;
             if (step < l.window)
                 step = fmax(step, step_before(s, &l, fmax(gap, 0))); /* they part from where they are */
         }
