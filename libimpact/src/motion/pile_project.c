@@ -59,7 +59,7 @@ static void push_together(imp_pile *pile, imp_world *world, int count, double sl
 /* Impulses of displacement along the normals, that part what overlaps: a cone problem without friction. */
 static void part_overlaps(imp_pile *pile, const imp_world *world, int count)
 {
-    const imp_pile_question question = {.count = count, .usable = IMP_PILE_USABLE};
+    const imp_pile_question question = {.count = count, .usable = IMP_PILE_USABLE, .effort = IMP_CONE_BRIEF};
     pile->width = 3;
     memset(pile->q, 0, sizeof *pile->q * 3 * (size_t)count);
     for (int c = 0; c < count; c++) pile->q[3 * c] = pile->gap[c], pile->friction[c] = 0;
