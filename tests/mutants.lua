@@ -65,7 +65,7 @@ local rooms = {
   { "^libimpact/src/motion/search", { "impact_search", "impact_crowd", "impact_motion" } }, { "^libimpact/src/motion/face", { "impact_face_motion", "impact_face_friction" } }, { "^libimpact/src/motion/motion_guard", { "impact_motion_guard", "impact_force_time", "impact_motion" } },
   { "^libimpact/src/motion/pile", { "impact_pile", "impact_piles" } },
   { "^libimpact/src/motion/motion_stretch", { "impact_motion", "lua_faces_exact", "lua_faces_held", "lua_faces_turned", "impact_persist_modes", "impact_cases", "lua_faces_seams" } },
-  { "^libimpact/src/motion/lying", { "lua_faces_gliding", "lua_faces_turned" } },
+  { "^libimpact/src/motion/lying", { "lua_faces_gliding", "lua_faces_turned", "impact_ramps" } },
   { "^libimpact/src/world/corner", { "lua_faces_exact", "lua_faces_held", "lua_faces_seams", "impact_cases" } },
   { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases" } },
   { "^libimpact/src/contact/persist", { "impact_persist_still", "impact_persist_modes", "impact_persist", "impact_cases" } },

@@ -167,6 +167,15 @@ static bool is_attracted(const imp_world *world)
     return false;
 }
 
+/* By how much more the centre rises as a body comes to stand on a place of its flat than that place is off its plane:
+ * |u|^p (p - 1)/p of a flat that bends as |u|^p/p, at the most (persist_flat.c: rise). */
+static double lift_of(const imp_body *body)
+{
+    const impact_shape *s = &body->shape;
+    const bool curved = s->kind == IMPACT_SUPERQUADRIC || s->kind == IMPACT_SUPERELLIPSOID;
+    return curved ? fmax(1, fmax(s->r, fmax(s->s, s->t)) - 1) : 1;
+}
+
 bool imp_lying_find(imp_motion *motion, const imp_pair *given, double t, const imp_state *states, imp_lying *lying)
 {
     imp_world *world = motion->world;
@@ -179,7 +188,7 @@ bool imp_lying_find(imp_motion *motion, const imp_pair *given, double t, const i
     imp_world_gap(world, &pair, states, &contact);
     /* what rocks by less lies; of a superquadric that height is what its flat place is of */
     const double touching = imp_has_faces(body) ? imp_world_touching_distance(world, &pair, states) : 0,
-                 height = touching + world->flat_height;
+                 height = touching + world->flat_height / fmax(lift_of(body), lift_of(under));
     const bool on_plane = under->shape.kind == IMPACT_PLANE;
     if (!face_towards(body, state, qvec3_neg(contact.normal), height, &face)) return false;
     if (!on_plane && !face_towards(under, below, contact.normal, height, &ground)) return false;

@@ -173,14 +173,15 @@ static void a_belt_takes_a_box_along(void **state)
 
 /* ---- with it ---- */
 
-/* Between z = -c and c over the flat place of the shape's largest face: within 1e-10 m of it, a hundred rest heights.
- */
+/* Between z = -c and c over the flat place of the shape's largest face: from whose places it would rise by 1e-10 m, a
+ * hundred rest heights, which is p - 1 times as much as they are off its plane. */
 static impact_hull *prism_on_flat(const impact_shape *shape)
 {
     impact_face face;
     qvec3 points[2 * IMPACT_FACE_RIM];
     impact_hull *hull;
-    assert_int_equal(impact_shape_face(shape, (qvec3){0, 0, -1}, 1e-10, &face), 2);
+    const double most = fmax(shape->r, fmax(shape->s, shape->t));
+    assert_int_equal(impact_shape_face(shape, (qvec3){0, 0, -1}, 1e-10 / (most - 1), &face), 2);
     for (int i = 0; i < face.count; i++) {
         points[i] = points[face.count + i] = face.point[i];
         points[face.count + i].z = -face.point[i].z;

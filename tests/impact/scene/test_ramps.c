@@ -35,11 +35,13 @@ static impact_sample run(const impact_scene_def *def, impact_status *status, imp
     return sample;
 }
 
+/* The last ends its glide on the border of its flat place: from places beyond it would rise, out of nothing. */
 static void test_all_end(void **state)
 {
     (void)state;
     int closed = 0;
-    for (uint64_t seed = 1; seed <= 90; seed++) {
+    for (uint64_t n = 1; n <= 91; n++) {
+        const uint64_t seed = n <= 90 ? n : 272;
         random_stream random = {seed};
         ramp_scene ramp;
         random_ramp_scene(&random, (int)(seed % RAMP_STARTS), &ramp);
