@@ -213,6 +213,34 @@ static void arc_length(void **state)
     assert_bound("length(time_at(l)) = l", inverse, 2e-14);
 }
 
+/* What turns between keys hangs on the times between them alone: times that are exact, 2^30 s later. */
+static void the_clock_may_begin_anywhere(void **state)
+{
+    (void)state;
+    const double late = ldexp(1, 30);
+    random_state r = {107};
+    for (int round = 0; round < 200; round++) {
+        double t[count], later[count];
+        quat q[count];
+        random_keys(&r, 1.5, t, q);
+        for (int i = 0; i < count; i++) t[i] = ldexp(rint(ldexp(t[i], 16)), -16), later[i] = late + t[i];
+        quat_spline *s, *l;
+        assert_int_equal(quat_spline_new(count, t, q, QUAT_SPLINE_NATURAL, zero, zero, &s), QUAT_OK);
+        assert_int_equal(quat_spline_new(count, later, q, QUAT_SPLINE_NATURAL, zero, zero, &l), QUAT_OK);
+        for (int k = 0; k < 20; k++) {
+            const double at = ldexp(rint(ldexp(t[0] + (t[count - 1] - t[0]) * random_uniform(&r), 16)), -16);
+            qvec3 omega[2], acceleration[2];
+            assert_true(quat_equal(quat_spline_state(s, at, &omega[0], &acceleration[0]),
+                                   quat_spline_state(l, late + at, &omega[1], &acceleration[1])));
+            assert_true(qvec3_norm(qvec3_sub(omega[0], omega[1])) == 0);
+            assert_true(qvec3_norm(qvec3_sub(acceleration[0], acceleration[1])) == 0);
+            assert_true(quat_spline_length(s, at) == quat_spline_length(l, late + at));
+        }
+        quat_spline_free(s);
+        quat_spline_free(l);
+    }
+}
+
 static void outside_and_bad_input(void **state)
 {
     (void)state;
@@ -251,6 +279,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(splines_are_twice_smooth),  cmocka_unit_test(exact_where_it_must_be),
         cmocka_unit_test(periodic_splines_go_round), cmocka_unit_test(arc_length),
-        cmocka_unit_test(arc_length_to_and_fro),     cmocka_unit_test(outside_and_bad_input)};
+        cmocka_unit_test(arc_length_to_and_fro),     cmocka_unit_test(the_clock_may_begin_anywhere),
+        cmocka_unit_test(outside_and_bad_input)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -267,15 +267,20 @@ static void workspaces_too(void **state)
     }
 }
 
+/* "././ ... test_memory.csv": a name that takes more than a first piece, and more than all before it together. */
+static void lengthen(char longer[4000], const char *name)
+{
+    enum { DOTS = 3700 };
+    for (int i = 0; i < DOTS; i += 2) memcpy(longer + i, "./", 2);
+    strcpy(longer + DOTS, name);
+}
+
 /* However little it may hold, a sink opens whole or not at all, says so, and leaves no file. */
 static void sinks_too(void **state)
 {
     (void)state;
-    char longer[3000], message[4000];
-    memset(longer, 'x', sizeof longer);
-    memcpy(longer, "./", 2);
-    for (int i = 2; i < 2900; i += 2) memcpy(longer + i, "./", 2); /* a name that takes more than a first piece */
-    memcpy(longer + 2900, "test_memory.csv", sizeof "test_memory.csv");
+    char longer[4000], message[5000];
+    lengthen(longer, "test_memory.csv");
     int opened = 0, refused = 0;
     for (size_t limit = 1024; limit < 1u << 19; limit += limit < 1u << 14 ? 512 : 1u << 14) {
         ledger l = {0};
@@ -294,6 +299,34 @@ static void sinks_too(void **state)
     assert_true(opened > 3 && refused > 3);
 }
 
+/* Whichever piece alone is refused: a sink that opens all the same lacks nothing for its rows to be kept as partial. */
+static void what_a_sink_lacks_is_told_when_it_opens(void **state)
+{
+    (void)state;
+    char longer[4000], partial[4000], message[5000];
+    lengthen(longer, "test_memory.csv");
+    lengthen(partial, "test_memory.partial.csv");
+    int opened = 0, refused = 0;
+    for (long fail_at = 1; fail_at < 12; fail_at++) {
+        ledger l = {.fail_at = fail_at};
+        const impact_allocator allocator = ledger_allocator(&l, 0);
+        const impact_csv_def def = {.struct_size = sizeof def, .samples_path = longer, .allocator = &allocator};
+        impact_csv *csv = NULL;
+        const impact_status status = impact_csv_open_with(&def, &csv, message, sizeof message);
+        opened += status == IMPACT_OK, refused += status < 0;
+        if (csv) {
+            impact_recorder recorder = {.struct_size = sizeof recorder};
+            const impact_sample sample = {.name = "ball"};
+            impact_csv_fill_recorder(csv, &recorder, sizeof recorder);
+            assert_true(recorder.sample(recorder.context, &sample));
+            assert_int_equal(impact_csv_close(csv, IMPACT_CSV_PARTIAL, message, sizeof message), IMPACT_OK);
+            assert_int_equal(remove(partial), 0);
+        }
+        assert_int_equal(l.live, 0);
+    }
+    assert_true(opened > 1 && refused > 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -301,6 +334,7 @@ int main(void)
         cmocka_unit_test(malloc_serves_as_well),
         cmocka_unit_test(workspaces_too),
         cmocka_unit_test(sinks_too),
+        cmocka_unit_test(what_a_sink_lacks_is_told_when_it_opens),
     };
     return impact_has(IMPACT_PART_CVODE) ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
 }
