@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <impact/gap.h>
+#include "gap/gap_solver.h"
 #include "kit/allocations.h"
 #include "kit/contact_random.h"
 
@@ -282,6 +283,28 @@ static void cache_helps_and_never_harms(void **state)
         assert_int_equal(impact_gap(&body[0], &body[1], &cache, &warm), IMPACT_OK);
         near(warm.gap, cold.gap, 1e-13 * reach_of(&body[0], &body[1]));
     }
+}
+
+/* Flat bodies face each other with their far sides too, where g has a peak below 0 however far they are apart: a glance
+ * from any normal, the worst among them, tells no overlap of bodies that have none. */
+static void a_glance_tells_no_overlap_of_what_is_apart(void **state)
+{
+    (void)state;
+    random_stream random = {22};
+    int told = 0;
+    for (int k = 0; k < 20000; k++) {
+        impact_solid body[2];
+        qvec3 normal;
+        const double gap = random_log(&random, 1e-6, 1);
+        random_pair(&random, k % RANDOM_FAMILIES, gap, body, &normal);
+        impact_gap_cache cache = {true, k % 3 ? random_direction(&random) : qvec3_neg(normal)};
+        impact_contact c;
+        if (imp_gap_glance(&body[0], &body[1], &cache, &c) != IMPACT_OK) continue;
+        told++;
+        near(c.gap, gap * fmax(contact_size(&body[0].shape), contact_size(&body[1].shape)),
+             1e-13 * reach_of(&body[0], &body[1]));
+    }
+    assert_true(told > 15000);
 }
 
 /* ---- closed forms ---- */
@@ -589,6 +612,7 @@ int main(void)
         cmocka_unit_test(rate_is_the_derivative),
         cmocka_unit_test(smooth_through_zero),
         cmocka_unit_test(cache_helps_and_never_harms),
+        cmocka_unit_test(a_glance_tells_no_overlap_of_what_is_apart),
         cmocka_unit_test(closed_forms),
         cmocka_unit_test(octahedra),
         cmocka_unit_test(overlapping_octahedra),
