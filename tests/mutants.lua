@@ -75,6 +75,7 @@ local rooms = {
   { "^libimpact/src/contact/springs", { "impact_springs", "impact_encounter_known", "impact_encounter", "impact_encounter_random" } },
   { "^libimpact/src/contact/rates", { "impact_rates", "impact_persist_spot", "impact_persist_line", "impact_persist", "impact_persist_modes" } },
   { "^libimpact/src/gap/gap_ladder", { "impact_gap", "impact_gap_mixed", "impact_gap_faces", "impact_gap_deep", "impact_gap_receipt" } },
+  { "^libimpact/src/gap/gap_simplex", { "impact_gjk", "impact_gap", "impact_gap_mixed" } },
   { "^libimpact/src/gap/", { "impact_gap", "impact_gap_deep", "impact_gap_receipt", "impact_gjk", "impact_toi" } }, { "^libimpact/src/motion/toi_proof", { "impact_toi_proof", "impact_toi" } },
   { "^libimpact/src/motion/toi", { "impact_toi" } },
   { "^libimpact/src/collide/", { "impact_collide", "impact_collide_frame", "impact_collide_ready", "impact_collide_direct",

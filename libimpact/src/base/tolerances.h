@@ -154,8 +154,6 @@
 #define IMP_GAP_PARTED 1e-8
 /* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
 #define IMP_GAP_SHARP 1.3
-/* Sine of the angle of two edges: under it they are parallel, and no disc lies between them. */
-#define IMP_GAP_ACROSS 1e-2
 /* Of the reach, what a proof that there is no nearer way out leaves: half of the bracket that is promised. Of the depth
  * and of the size, what it leaves where that cannot be had (a ring of ways out, alike but for rounding). */
 #define IMP_GAP_SLACK 1e-14

@@ -54,73 +54,13 @@ static double inner_radius(const imp_form *form, const double x[3], double depth
     return sqrt(slope) >= bend * depth ? depth : sqrt(slope) / bend;
 }
 
-/* A witness point by an edge, where one coordinate is as good as 0 and its exponent under 2. */
-typedef struct edge {
-    int axis;
-    double along[3]; /* the edge's direction, world */
-    double facing;   /* cosine of the angle from the edge's plane of symmetry to the normal */
-} edge;
-
-static bool edge_at(const imp_form *form, const double x[3], const double n[3], double depth, edge *e)
-{
-    const double(*m)[3] = form->rotation;
-    int found = 0;
-    if (form->nested || form->kind != IMP_FORM_QUADRIC) return false;
-    for (int i = 0; i < 3; i++) {
-        const double place = fabs(m[0][i] * x[0] + m[1][i] * x[1] + m[2][i] * x[2]);
-        if (form->p[i] < 2 && place < 20 * depth) e->axis = i, found++;
-    }
-    if (found != 1) return false;
-    const double a[3] = {m[0][e->axis], m[1][e->axis], m[2][e->axis]};
-    for (int i = 0; i < 3; i++) e->along[i] = n[(i + 1) % 3] * a[(i + 2) % 3] - n[(i + 2) % 3] * a[(i + 1) % 3];
-    e->facing = distance_of(e->along);
-    for (int i = 0; i < 3; i++) e->along[i] /= e->facing;
-    return e->facing > IMP_GAP_ACROSS;
-}
-
-/* Whether the body holds the disc of that radius, touching at x from inside, of the directions along and
- * -m = -g/(g.n), g the gradient without the edge's axis; m stretches it by up to 1/facing. As for inner_radius; the
- * edge's own coordinate stands still. */
-static bool holds_disc(const imp_form *form, const edge *e, const double x[3], double radius)
-{
-    const double(*m)[3] = form->rotation;
-    double slope = 0, bend = 0;
-    for (int i = 0; i < 3; i++) {
-        if (i == e->axis) continue;
-        const double place = fabs(m[0][i] * x[0] + m[1][i] * x[1] + m[2][i] * x[2]), p = form->p[i],
-                     axis = form->axis[i], reach = 2 * radius / e->facing, near = (place - reach) / axis,
-                     far = (place + reach) / axis;
-        if (p < 2 && !(near > 0)) return false;
-        const double first = p * pow(place / axis, p - 1) / axis;
-        slope += first * first;
-        bend = fmax(bend, p * (p - 1) * pow(p < 2 ? near : far, p - 2) / (axis * axis));
-    }
-    return sqrt(slope) * e->facing >= bend * radius;
-}
-
-/* Two edges across each other. The support function of a disc of radius r is r (sqrt(a^2 + b^2) - b), a = n'.along and
- * b = n'.m, at least r a^2/(2 M), M^2 = 1 + 1/facing^2; the sum of both a^2 is at least sin^2(n, n') (1 - |cos|), of
- * the angle between the edges. So with r = 16 depth M^3/(1 - |cos|) it is over depth (1 - n.n'), the ball's, for every
- * n'. */
-static bool certain_edges(const search *s, double depth)
-{
-    edge e[2];
-    for (int k = 0; k < 2; k++)
-        if (!edge_at(&s->pair->form[k], s->best.x[k], s->best.n, depth, &e[k])) return false;
-    const double cosine = e[0].along[0] * e[1].along[0] + e[0].along[1] * e[1].along[1] + e[0].along[2] * e[1].along[2];
-    const double stretch = sqrt(1 + 1 / pow(fmin(e[0].facing, e[1].facing), 2));
-    const double radius = 16 * depth * stretch * stretch * stretch / (1 - fabs(cosine));
-    return holds_disc(&s->pair->form[0], &e[0], s->best.x[0], radius) &&
-           holds_disc(&s->pair->form[1], &e[1], s->best.x[1], radius);
-}
-
 /* Whether an overlap's answer is proved the nearest way out: balls in both bodies, touching them at their witness
  * points, add up to one in their difference that touches it there. */
 static bool certain(const search *s)
 {
     const double depth = -s->best.gap, balls = inner_radius(&s->pair->form[0], s->best.x[0], depth) +
                                                inner_radius(&s->pair->form[1], s->best.x[1], depth);
-    return balls >= depth || certain_edges(s, depth);
+    return balls >= depth;
 }
 
 /* Whether the best answer needs no proof, or has one that is cheap. */

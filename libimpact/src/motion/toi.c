@@ -119,23 +119,13 @@ typedef struct search {
     double strike_gap;      /* below it Newton for the contact may be tried, again */
 } search;
 
-/* t(g) at g = 0 by the cubic through two instants with their rates; NaN when they do not fall steadily to it. */
-static double cubic_zero(const imp_instant *a, const imp_instant *b)
-{
-    const double d = b->gap - a->gap, u = -a->gap / d;
-    if (!(a->rate < 0 && b->rate < 0 && fabs(b->gap) < 0.5 * fabs(a->gap))) return NAN;
-    return a->t + (b->t - a->t) * u * u * (3 - 2 * u) + d * u * (1 - u) * ((1 - u) / a->rate - u / b->rate);
-}
-
-/* The gap's zero as it seems from the nearer end. */
+/* The gap's zero as it seems from the nearer end, by its rate there. */
 static double foresee(const search *s)
 {
     const imp_instant *here = &s->here, *beyond = &s->beyond;
     const bool far_end = s->crossed && -beyond->gap < here->gap;
-    const imp_instant *near = far_end ? beyond : here, *other = far_end ? here : s->crossed ? beyond : &s->last;
-    const double newton = near->rate < 0 ? near->t - near->gap / near->rate : far_end ? NAN : INFINITY;
-    const double cubic = s->crossed || s->followed ? cubic_zero(other, near) : NAN;
-    return fabs(cubic - newton) < 0.3 * fabs(newton - near->t) ? cubic : newton;
+    const imp_instant *near = far_end ? beyond : here;
+    return near->rate < 0 ? near->t - near->gap / near->rate : far_end ? NAN : INFINITY;
 }
 
 /* Where to look next, nothing waiting. */
