@@ -52,7 +52,7 @@ local rooms = {
   { "^libimpact/src/contact/persist_linear", { "impact_persist_linear", "impact_persist_still", "impact_persist" } },
   { "^libimpact/src/contact/persist_s[po]", { "impact_persist_spot", "impact_persist_still", "impact_persist_modes", "impact_persist" } },
   { "^libimpact/src/contact/persist_system", { "impact_persist_system", "impact_persist_still", "impact_persist_modes", "impact_persist" } },
-  { "^libimpact/src/scene/coarser", { "impact_coarser", "impact_piles" } }, { "^libimpact/src/scene/arrivals", { "impact_arrivals", "impact_scene", "lua_faces_tolerance", "lua_scene" } },
+  { "^libimpact/src/scene/coarser", { "impact_coarser", "impact_piles" } }, { "^libimpact/src/scene/arrivals", { "impact_arrivals", "impact_scene", "impact_rolling", "lua_faces_tolerance", "lua_scene" } },
   { "^libimpact/src/scene/queue", { "impact_queue" } }, { "^libimpact/src/scene/rules", { "impact_rules" } },
   { "^libimpact/src/scene/scene_receipt", { "impact_scene_receipt", "impact_scene_answers", "impact_cases" } },
   { "^libimpact/src/scene/scene_hold", { "impact_scene", "impact_scene_answers", "impact_cases", "impact_motion" } },
