@@ -6,6 +6,7 @@
 #include <cmocka.h>
 #include <string.h>
 #include <impact/toi.h>
+#include "gap/gap_solver.h"
 #include "kit/contact_random.h"
 #include "motion/toi_proof.h"
 
@@ -88,6 +89,37 @@ static void nothing_is_missed(void **state)
                        right = solid(sphere(1e-3), (qvec3){0, 1.9e-3, 0}, quat_identity());
     assert_int_equal(impact_toi(&left, &shot, &right, &at_rest, 1, &t, NULL), IMPACT_OK);
     near(t, (1e3 - sqrt(4e-6 - 1.9e-3 * 1.9e-3)) / 1e6, 1e-15);
+}
+
+/* Thin plates all but face to face: their gap is told to the rounding of their width, however near their centres come.
+ */
+static void thin_plates_meet(void **state)
+{
+    (void)state;
+    random_stream random = {44};
+    int met = 0;
+    for (int k = 0; k < 3000; k++) {
+        impact_solid plate[2];
+        const quat turn = random_rotation(&random);
+        const qvec3 n = quat_rotate(turn, (qvec3){0, 0, 1}), centre = random_vector(&random, 0.01, 1);
+        const double thin = random_log(&random, 1e-9, 1e-3), away = random_log(&random, 0.1, 1);
+        for (int i = 0; i < 2; i++) {
+            const qvec3 tilt = random_vector(&random, 1e-3 * thin, thin);
+            const double wide = random_log(&random, 0.3, 1), p = k % 3 ? 2 : 2 + 2 * random_unit(&random);
+            plate[i] = solid((impact_shape){0}, qvec3_axpy(i ? 0 : away, n, centre),
+                             quat_mul(quat_from_rotation_vector(tilt), turn));
+            assert_int_equal(impact_shape_superquadric(1, wide, thin, p, p, p, &plate[i].shape), IMPACT_OK);
+        }
+        const impact_motion fall = {qvec3_neg(n), {0, 0, 0}, k % 2 ? qvec3_scale(n, 3) : (qvec3){0, 0, 0}};
+        double t;
+        const impact_status status = impact_toi(&plate[0], &fall, &plate[1], &at_rest, 2, &t, NULL);
+        if (status != IMPACT_OK) fail_msg("%d: status %d at %g, plates of %g from %g", k, status, t, thin, away);
+        const impact_solid there = impact_motion_at(&plate[0], &fall, t);
+        impact_contact c;
+        met += impact_gap(&there, &plate[1], NULL, &c) == IMPACT_OK;
+        near(c.gap, 0, 1e-14);
+    }
+    assert_true(met > 2500);
 }
 
 /* One draw a statement: the order of evaluation within one is the compiler's. */
@@ -287,6 +319,42 @@ static void advancement_by_speed_alone(void **state)
     if (met < 80 || near_it < 0.8 * met) fail_msg("%d met, %d approached", met, near_it);
 }
 
+/* Newton for contact and time at once, from a tenth of a second before one: most often it settles, and where it says so
+ * a query of the gap has the bodies touch. */
+static void newton_strikes_what_closes(void **state)
+{
+    (void)state;
+    random_stream random = {43};
+    int asked = 0, struck = 0;
+    for (int k = 0; k < 3000; k++) {
+        const impact_solid a = random_solid(&random, k % RANDOM_FAMILIES, 3),
+                           b = random_solid(&random, k % RANDOM_FAMILIES, 0);
+        const impact_motion ma = random_motion(&random, a.position), mb = random_motion(&random, b.position);
+        double t;
+        if (impact_toi(&a, &ma, &b, &mb, 8, &t, NULL) != IMPACT_OK || t < 0.1) continue;
+        imp_gap_course course = {.body = {&a, &b}, .motion = {&ma, &mb}, .longest = 0.5};
+        for (int i = 0; i < 2; i++) {
+            const qvec3 omega = course.motion[i]->omega;
+            course.half_spin[i] = 0.5 * qvec3_norm(omega);
+            course.axis[i] = quat_pure(qvec3_scale(omega, 0.5 / course.half_spin[i]));
+        }
+        const double from = t - 0.1;
+        const impact_solid at = impact_motion_at(&a, &ma, from), bt = impact_motion_at(&b, &mb, from);
+        impact_contact before, contact, there;
+        if (impact_gap(&at, &bt, NULL, &before) != IMPACT_OK) continue;
+        asked++;
+        double when = from;
+        if (!imp_gap_strike(&course, from, t + 0.1, before.normal, &when, &contact)) continue;
+        struck++;
+        assert_true(when >= from && when <= t + 0.1);
+        const impact_solid ac = impact_motion_at(&a, &ma, when), bc = impact_motion_at(&b, &mb, when);
+        assert_true(impact_gap(&ac, &bc, NULL, &there) >= 0);
+        near(contact.gap, 0, 1e-13);
+        near(there.gap, 0, 1e-13);
+    }
+    if (asked < 1200 || struck < 0.95 * asked) fail_msg("%d of %d struck", struck, asked);
+}
+
 /* The receipt of a contact: right ones pass, those of another time fail. */
 static void receipts_tell_wrong_times(void **state)
 {
@@ -347,11 +415,13 @@ int main(void)
         cmocka_unit_test(spheres_meet_in_closed_form),
         cmocka_unit_test(falling_on_a_plane),
         cmocka_unit_test(nothing_is_missed),
+        cmocka_unit_test(thin_plates_meet),
         cmocka_unit_test(first_contact_of_random_pairs),
         cmocka_unit_test(any_spin),
         cmocka_unit_test(any_motion),
         cmocka_unit_test(contact_is_the_gaps),
         cmocka_unit_test(advancement_by_speed_alone),
+        cmocka_unit_test(newton_strikes_what_closes),
         cmocka_unit_test(receipts_tell_wrong_times),
         cmocka_unit_test(bad_input),
     };
