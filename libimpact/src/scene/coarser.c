@@ -190,6 +190,7 @@ impact_status imp_coarser_attend(impact_scene *scene, double t)
     while (status == IMPACT_OK && scene->coarser && scene->coarser_due < t) {
         const double due = scene->coarser_due;
         scene->coarser_due += IMP_COARSER_LOOKS * scene->duration;
+        if (due <= scene->coarser->t) continue; /* the run was paused behind it, and both were looked at there */
         status = imp_scene_look(scene, due);
         if (status == IMPACT_OK) status = follow_to(scene, due);
     }

@@ -156,6 +156,24 @@ static void what_is_saved_says_as_much(void **state)
     pile_scene_end(&pile);
 }
 
+/* Pauses between looks ask both runs where they are at one time; what was due before is not asked again. */
+static void what_is_told_does_not_hang_on_pauses(void **state)
+{
+    (void)state;
+    static pile_scene pile;
+    random_pile_scene(DROPPED, DROPPED % PILE_STARTS, &pile);
+    const double end = pile.def.duration = 0.3;
+    impact_scene *whole = created(&pile.def), *parts = created(&pile.def);
+    assert_true(runs_to(whole, end));
+    for (int k = 1; k <= 50; k++) assert_true(runs_to(parts, k < 50 ? end * k / 50 : end));
+    const double told = impact_scene_pile_error(whole), in_parts = impact_scene_pile_error(parts);
+    assert_true(told > 0 && in_parts < 1.01 * told);
+    assert_true(impact_scene_pile_parted(whole) == impact_scene_pile_parted(parts));
+    impact_scene_destroy(whole);
+    impact_scene_destroy(parts);
+    pile_scene_end(&pile);
+}
+
 /* The tolerance is a part of the radius, and refused where it is none. */
 static void tolerances_that_are_none_are_refused(void **state)
 {
@@ -178,7 +196,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_told_is_not_too_small),     cmocka_unit_test(motions_that_part_are_told),
         cmocka_unit_test(what_goes_on_after_steps_is_in_it), cmocka_unit_test(what_a_host_changes_is_changed_in_both),
-        cmocka_unit_test(what_is_saved_says_as_much),        cmocka_unit_test(tolerances_that_are_none_are_refused),
+        cmocka_unit_test(what_is_saved_says_as_much),        cmocka_unit_test(what_is_told_does_not_hang_on_pauses),
+        cmocka_unit_test(tolerances_that_are_none_are_refused),
     };
     if (!impact_has(IMPACT_PART_CVODE)) return 0;
     return cmocka_run_group_tests(tests, NULL, NULL);
