@@ -194,9 +194,12 @@ static void tolerances_that_are_none_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_told_is_not_too_small),     cmocka_unit_test(motions_that_part_are_told),
-        cmocka_unit_test(what_goes_on_after_steps_is_in_it), cmocka_unit_test(what_a_host_changes_is_changed_in_both),
-        cmocka_unit_test(what_is_saved_says_as_much),        cmocka_unit_test(what_is_told_does_not_hang_on_pauses),
+        cmocka_unit_test(what_is_told_is_not_too_small),
+        cmocka_unit_test(motions_that_part_are_told),
+        cmocka_unit_test(what_goes_on_after_steps_is_in_it),
+        cmocka_unit_test(what_a_host_changes_is_changed_in_both),
+        cmocka_unit_test(what_is_saved_says_as_much),
+        cmocka_unit_test(what_is_told_does_not_hang_on_pauses),
         cmocka_unit_test(tolerances_that_are_none_are_refused),
     };
     if (!impact_has(IMPACT_PART_CVODE)) return 0;
