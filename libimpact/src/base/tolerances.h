@@ -844,6 +844,10 @@
 #define IMP_COARSER_SAFETY 5
 #define IMP_COARSER_LOOKS (1 / 64.)
 #define IMP_COARSER_PARTED 1e-1
+/* Of what a step may err, the height to which a rim's rocking would lift its far side: more, and whether it lands is no
+ * small difference. A disc that wobbles ever lower, which steps bring to rest as well, has four times its far side's.
+ */
+#define IMP_RIM_ROCKS 10
 /* Of a step that leads over the edge of a force: how far beyond it ends that is shortened to end there. */
 #define IMP_PILE_EDGE 1e-11
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of

@@ -2,6 +2,7 @@
 #include "scene/arrivals.h"
 #include "base/number.h"
 #include "base/tolerances.h"
+#include "scene/coarser.h"
 #include "scene/following.h"
 #include "scene/gather.h"
 #include "scene/islands.h"
@@ -13,6 +14,7 @@
 #include "scene/scene_points.h"
 #include "scene/scene_receipt.h"
 #include "scene/stepped.h"
+#include "world/corner.h"
 
 #include <stdio.h>
 
@@ -202,10 +204,32 @@ static impact_status cross_border(impact_scene *scene, imp_island *island, doubl
     return conclude(wider, imp_scene_settle(wider));
 }
 
+/* Whether a rim passes flat, but for a tilt: its lowest place runs round to the other side, where steps, whose error
+ * its far side is within, land that side. What it rocks by would lift it far higher than they err. */
+static bool rim_passes(const imp_island *island)
+{
+    const imp_world *world = &island->world;
+    for (int p = 0; p < world->pair_count; p++) {
+        const imp_pair *pair = &world->pairs[p];
+        if (!imp_is_held(pair) || pair->site.corner == 0) continue;
+        const imp_body *body = &world->bodies[pair->body1];
+        const double allowed = island->scene->pile_tolerance * body->radius;
+        const qvec3 normal = imp_corner_contact(world, pair, island->states).normal,
+                    across = imp_corner_across(world, pair, island->states),
+                    tips = qvec3_cross(normal, imp_omega(body, &island->states[pair->body1]));
+        const double speed = qvec3_norm(across) * qvec3_norm(tips);
+        if (qvec3_dot(normal, across) <= allowed &&
+            speed * speed > IMP_RIM_ROCKS * 2 * qvec3_norm(world->gravity) * allowed)
+            return true;
+    }
+    return false;
+}
+
 /* Patience is at its end: the island goes on by steps, with all pairs that its bodies may make. */
 static impact_status turn_to_steps(impact_scene *scene, imp_island *island, double t)
 {
     imp_island *stepped;
+    if (rim_passes(island)) imp_coarser_parts(scene);
     imp_gather_company(scene, island->world.bodies[island->world.pairs[0].body1].index);
     const impact_status status = imp_gather(scene, -1, t, true, &stepped);
     return status == IMPACT_OK ? conclude_steps(stepped) : status;

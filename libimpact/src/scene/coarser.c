@@ -147,6 +147,11 @@ static void end_parted(impact_scene *scene, double t)
     imp_coarser_end(scene);
 }
 
+void imp_coarser_parts(impact_scene *scene)
+{
+    if (!scene->is_coarser && !(scene->pile_parted < INFINITY)) end_parted(scene, scene->t);
+}
+
 void imp_coarser_changed(impact_scene *scene, impact_status change)
 {
     if (change < 0) end_parted(scene, scene->t);

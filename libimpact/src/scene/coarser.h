@@ -15,6 +15,8 @@
 impact_status imp_coarser_attend(impact_scene *scene, double t);
 /* How far the other is from the scene at its time, whose states were looked at. IMPACT_ENOMEM. */
 impact_status imp_coarser_follow(impact_scene *scene);
+/* From its time on the scene's motion is one of several that its steps cannot tell apart. */
+void imp_coarser_parts(impact_scene *scene);
 /* The other was changed as the scene was; one that could not be has parted from it. */
 void imp_coarser_changed(impact_scene *scene, impact_status change);
 /* Without the other; what was told stays told. */

@@ -230,6 +230,13 @@ int imp_corner_face_under(const imp_body *body, const imp_state *state, const im
 /* Edges that meet in an apex have their places there together. */
 static bool is_same(qvec3 a, qvec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
+qvec3 imp_corner_across(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    const corner_view v = view_of(world, pair, states);
+    const corner_place place = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
+    return quat_rotate(v.axes, qvec3_scale(place.along, -2 * place.rim));
+}
+
 qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const corner_view v = view_of(world, pair, states);

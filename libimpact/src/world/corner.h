@@ -44,6 +44,9 @@ impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, 
 /* How the contact point moves from body 1's centre, m/s. */
 qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
+/* From the lowest place of the pair's rim to its far side, m; 0 of a corner. */
+qvec3 imp_corner_across(const imp_world *world, const imp_pair *pair, const imp_state *states);
+
 /* Where the pair's rim stands, unit, body 1's shape's axes; 0 of a corner. */
 qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
