@@ -262,6 +262,18 @@ void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *stat
     imp_persist_project_velocities(persist, world, states, loads);
 }
 
+/* Whether what puts the velocities back is far more than what is put back: a contact sticks beside another that holds
+ * the same place but for roundings, and would hold the body from turning about it by that arm. */
+static bool levers(const imp_persist *persist, const imp_world *world)
+{
+    double wanted = 0, given = 0;
+    for (int c = 0; c < persist->count; c++) wanted = fmax(wanted, qvec3_norm(persist->touches[c].wanted));
+    for (int i = 0; i < world->body_count; i++)
+        if (!world->bodies[i].is_static)
+            given = fmax(given, world->bodies[i].radius * qvec3_norm(persist->effects[i].angular));
+    return given > IMP_PUT_BACK_BY * wanted;
+}
+
 void imp_persist_project_velocities(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads)
 {
     imp_persist_find_touches(persist, world, states, loads);
@@ -270,6 +282,10 @@ void imp_persist_project_velocities(imp_persist *persist, imp_world *world, imp_
         touch->wanted = qvec3_neg(qvec3_axpy(imp_persist_approach(world, touch, states), touch->normal, touch->slip));
     }
     imp_system_solve(persist, world, states, false);
+    if (levers(persist, world)) {
+        for (int c = 0; c < persist->count; c++) persist->touches[c].mode = IMP_SLIDE;
+        imp_system_solve(persist, world, states, false); /* along normals alone */
+    }
     imp_system_apply(persist, world, states);
 }
 
