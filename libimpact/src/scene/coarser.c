@@ -4,10 +4,13 @@
 #include "scene/saved.h"
 #include "scene/scene_receipt.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- the other scene ---- */
 
+/* Forces that may change unsaid bound all steps alike: the other's are longer, as errors of the third order allow, so
+ * that it misses more. */
 static impact_status copy_fields(impact_scene *other)
 {
     imp_world *world = &other->world;
@@ -15,6 +18,7 @@ static impact_status copy_fields(impact_scene *other)
     if (!fields) return IMPACT_ENOMEM;
     for (int k = 0; k < world->field_count; k++) {
         fields[k] = world->fields[k];
+        fields[k].def.max_step *= cbrt(IMP_COARSER_STEPS);
         fields[k].inside = imp_arena_take(world->arena, (size_t)fields[k].slots + 1, sizeof *fields[k].inside);
         if (!fields[k].inside) return IMPACT_ENOMEM;
     }
