@@ -204,6 +204,9 @@
 #define IMP_FLAT_EXPONENT 3
 /* Of the bodies' distance and size: places of corners in the plane of a patch, three products and sums each. */
 #define IMP_PATCH_BORDER (16 * IMP_ROUNDOFF)
+/* Of the area that a corner of a patch costs: what is less apart is so by rounding. A disc's 64 places cost
+ * (2 pi/64)^3/2 of its radius squared each, which places are rounded to 1e-12 of. */
+#define IMP_FLAT_ALIKE 1e-9
 
 /* A plane whose slope is less than this is level, and directions that differ by less are one line: of a ball that has
  * slid through hundreds of turns, each put back on its plane with a few roundings; and as closely as slip is integrated

@@ -2,6 +2,7 @@
 #include "gap/flat.h"
 #include <math.h>
 #include <string.h>
+#include "base/tolerances.h"
 
 /* > 0 where p is left of the line from a to b: twice the area. */
 static double turn_at(const double a[2], const double b[2], const double p[2])
@@ -183,15 +184,29 @@ void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offse
     name_corners(one, other, 2 * slack, offset);
 }
 
+/* Twice the area that goes with the corner. */
+static double area_at(const imp_flat *flat, int corner)
+{
+    const int last = flat->count - 1;
+    return turn_at(flat->p[corner > 0 ? corner - 1 : last], flat->p[corner], flat->p[corner < last ? corner + 1 : 0]);
+}
+
+/* Which goes of two corners whose areas are one but for rounding: that of the lower number, which is of its body; where
+ * borders cross there is none, and what is there stays. */
+static bool goes_first(const imp_flat *flat, int corner, double area, int other, double least)
+{
+    if (!(fabs(area - least) <= IMP_FLAT_ALIKE * least)) return area < least;
+    return (unsigned short)flat->from[corner] < (unsigned short)flat->from[other];
+}
+
 void imp_flat_thin(imp_flat *flat, int most)
 {
     while (flat->count > most) {
         int least = 0;
-        double cost = INFINITY;
-        for (int i = 0; i < flat->count; i++) {
-            const double *p = flat->p[(i + flat->count - 1) % flat->count], *q = flat->p[(i + 1) % flat->count];
-            const double area = turn_at(p, flat->p[i], q);
-            if (area < cost) cost = area, least = i;
+        double cost = area_at(flat, 0);
+        for (int i = 1; i < flat->count; i++) {
+            const double area = area_at(flat, i);
+            if (goes_first(flat, i, area, least, cost)) cost = area, least = i;
         }
         leave_out(flat, least);
     }

@@ -25,7 +25,8 @@ void imp_flat_hull(imp_flat *flat, double slack);
  * that lie in it get the number from + offset. */
 void imp_flat_clip(imp_flat *one, const imp_flat *other, double slack, int offset);
 
-/* Leaves out the corners that cost least area until so many are left. */
+/* Leaves out the corners that cost least area until so many are left; of those that cost the same, as all of a disc do,
+ * that of the lowest number: what is left turns with its body. */
 void imp_flat_thin(imp_flat *flat, int most);
 
 #endif
