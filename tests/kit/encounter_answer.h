@@ -78,14 +78,13 @@ static inline double distance(const random_encounter *e, const answer *a, const 
     return off / size;
 }
 
-/* How far an answer may be off that is right to 1e-11 times its sensitivity: as far as it goes after relative changes
- * of the data of 1e-11, the most of 32 tries, or until one is `enough`; at least 1e-11. */
-static inline double allowance(random_stream *random, const random_encounter *e, impact_together_law law,
-                               double exponent, const answer *a, double enough)
+/* How far the answer goes after relative changes of the data of so much, the most of 512 tries, or until one is
+ * `enough`. */
+static inline double spread(random_stream *random, const random_encounter *e, impact_together_law law, double exponent,
+                            const answer *a, double change, double enough)
 {
-    const double change = 1e-11;
-    double most = change;
-    for (int k = 0; k < 32 && most < enough; k++) {
+    double most = 0;
+    for (int k = 0; k < 512 && most < enough; k++) {
         random_encounter near = *e;
         for (int b = 0; b < e->body_count; b++)
             near.bodies[b].velocity = qvec3_axpy(change, random_direction(random), near.bodies[b].velocity);
@@ -94,9 +93,18 @@ static inline double allowance(random_stream *random, const random_encounter *e,
             near.meetings[i].stiffness *= 1 + change * random_unit(random);
         }
         const answer b = solve(&near, law, exponent, NULL);
-        most = fmax(most, distance(e, a, &b));
+        if (b.status >= 0) most = fmax(most, distance(e, a, &b));
     }
     return most;
+}
+
+/* How far an answer may be off that is right to 1e-11 times its sensitivity: as far as it goes after such changes of
+ * the data; at least 1e-11. */
+static inline double allowance(random_stream *random, const random_encounter *e, impact_together_law law,
+                               double exponent, const answer *a, double enough)
+{
+    const double change = 1e-11;
+    return fmax(change, spread(random, e, law, exponent, a, change, enough));
 }
 
 #endif

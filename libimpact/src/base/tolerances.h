@@ -509,6 +509,10 @@
 #define IMP_SPRINGS_FARTHEST 4.0
 /* Of the time at which three terms have the next event: what later terms shift it by, mostly. */
 #define IMP_LINEAR_AHEAD 1.0625
+/* Gaps between bounces, in units of dents: from the first on they are taken so much smaller, which leaves dents nothing
+ * beside them, as before. */
+#define IMP_SPRINGS_FAR 0x1p600
+#define IMP_SPRINGS_NEARER 0x1p-400
 /* Radii of a power's series that a step goes: 5^22 eps is .5, of a force that is small where the radius is. */
 #define IMP_SPRINGS_REACH 5
 /* The least restitution of springs: what unloads is 1/eps times as stiff in time as what loads, and a pressed contact

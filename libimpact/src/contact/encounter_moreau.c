@@ -231,7 +231,8 @@ static bool compress(moreau *m)
                                       .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
-                                      .last_u = m->last_u};
+                                      .last_u = m->last_u,
+                                      .effort = IMP_CONE_WANDERS};
     const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->group->p, m->u, m->modes);
     if (!solved(&problem, &o, m->group->p, m->group)) return false;
     if (o.chosen) share(m, &problem, m->group->p);
@@ -334,7 +335,8 @@ static bool restore(moreau *m)
                                       .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
-                                      .last_u = m->last_u};
+                                      .last_u = m->last_u,
+                                      .effort = IMP_CONE_WANDERS};
     const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->r, m->v, m->modes);
     clean(n, m->modes, m->modes + n, m->v);
     if (!solved(&problem, &o, m->r, g)) return false;
