@@ -27,6 +27,7 @@ typedef struct moreau {
     double *u;                        /* 3 count: after compression */
     imp_cone_mode *modes;             /* 2 count */
     double *last_r, *last_u;          /* 6 count: where a problem may begin */
+    double *room;                     /* 6 count */
     double *least;                    /* count: eps c_n */
     double *rebound;                  /* count: b; by Poisson's law 0 */
     int bodies, (*couples)[2];        /* those that move; count */
@@ -54,6 +55,22 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
     group->chosen = group->chosen || o->chosen;
     return o->status == IMP_CONE_SOLVED || o->status == IMP_CONE_INEXACT ||
            (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
+}
+
+/* The problem's answer. Where none is found, and the group is not wedged, one exists (encounter_wedge.c), and is looked
+ * for on. Where pressures balance impulses may be as great as they like, and what they leave is not told from their
+ * rounding: then there is none. */
+static bool find_answer(moreau *m, imp_cone_problem problem, double *r, double *u, imp_cone_outcome *o)
+{
+    *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
+    if (o->status == IMP_CONE_UNSETTLED) {
+        const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL};
+        const double left = imp_encounter_wedged(&question, m->room);
+        if (left <= IMP_WEDGE_BALANCED) return false;
+        problem.effort = IMP_CONE_WANDERS;
+        if (left > IMP_WEDGE_TAKEN) *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
+    }
+    return solved(&problem, o, r, m->group);
 }
 
 /* Whether what pressed has the velocities that the modes say, and what did not keeps its rebound: where nothing solves
@@ -231,10 +248,9 @@ static bool compress(moreau *m)
                                       .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
-                                      .last_u = m->last_u,
-                                      .effort = IMP_CONE_WANDERS};
-    const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->group->p, m->u, m->modes);
-    if (!solved(&problem, &o, m->group->p, m->group)) return false;
+                                      .last_u = m->last_u};
+    imp_cone_outcome o;
+    if (!find_answer(m, problem, m->group->p, m->u, &o)) return false;
     if (o.chosen) share(m, &problem, m->group->p);
     if (seeded && !take_seeds_away(m, problem)) return false;
     m->strikes = imp_encounter_strikes(m->group);
@@ -335,11 +351,10 @@ static bool restore(moreau *m)
                                       .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
-                                      .last_u = m->last_u,
-                                      .effort = IMP_CONE_WANDERS};
-    const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, m->r, m->v, m->modes);
+                                      .last_u = m->last_u};
+    imp_cone_outcome o;
+    if (!find_answer(m, problem, m->r, m->v, &o)) return false;
     clean(n, m->modes, m->modes + n, m->v);
-    if (!solved(&problem, &o, m->r, g)) return false;
     take_restitution(m);
     return true;
 }
@@ -357,6 +372,7 @@ impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_wo
     m.modes = imp_encounter_take(workspace, 2 * n, sizeof *m.modes);
     m.last_r = imp_encounter_take(workspace, 6 * n, sizeof *m.last_r);
     m.last_u = imp_encounter_take(workspace, 6 * n, sizeof *m.last_u);
+    m.room = imp_encounter_take(workspace, 6 * n, sizeof *m.room);
     m.least = imp_encounter_take(workspace, n, sizeof *m.least);
     m.rebound = imp_encounter_take(workspace, n, sizeof *m.rebound);
     m.couples = imp_encounter_take(workspace, n, sizeof *m.couples);
