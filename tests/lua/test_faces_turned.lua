@@ -154,4 +154,22 @@ for k, shape in ipairs { impact.cylinder { radius = .2, half_height = .1 }, impa
   end
 end
 
+--- A cone that lands flat on a cylinder and slides so that friction at all sixteen places just holds it, or not, as roundings have it: what creeps then is
+--- followed at all of them, where it once took all the work there is for an instant, and one place was struck alone.
+local answered = 0
+for n = 0, 11 do
+  local whole = n == 0 and none or quat.normalize { math.random() - .5, math.random() - .5, math.random() - .5, math.random() - .5 }
+  local target = impact.body { name = "target", shape = impact.cylinder { radius = .4375046954943746, half_height = .50025151725742789 }, orientation = whole,
+    static = true, friction = .42039207730656059, restitution = .58728589692072386 }
+  local body = impact.body { name = "body", shape = impact.cone { radius = .21920434015608353, height = 2 * .20796657806471139 }, mass = 1, orientation = whole,
+    position = whole:rotate { -.18726638063851175, .57022329839328645, 1.9132248261216047 },
+    velocity = whole:rotate { .33487730028894247, -.53428998458880428, -1.6687231355010894 }, friction = 1, restitution = 1 }
+  local scene = impact.scene { gravity = { 0, 0, 0 }, duration = 3, law = "stronge", bodies = { target, body } }
+  repeat local event = scene:step(3) until not event or event.event == "impact"
+  answered = answered + scene:usage().encounters
+  local omega = whole:conj():rotate(scene:state("body").omega)
+  check.close(math.sqrt(omega.x ^ 2 + omega.y ^ 2), 1.16335042590, 1e-5)
+end
+check.close(answered, 12, 0)
+
 check.report "faces_turned"

@@ -20,8 +20,8 @@
 
 /* Of a step of some radians no velocity has more zeros than a handful. */
 enum { IMP_SPRINGS_ORDER = 22, IMP_SPRINGS_TERMS = IMP_SPRINGS_ORDER + 2, IMP_SPRINGS_EXTREMES = 8 };
-/* Of slips that creep: nodes of a step, and how many are taken together. */
-enum { IMP_SPRINGS_NODES = 8, IMP_SPRINGS_CREEPERS = 12 };
+/* Of slips that creep: nodes of a step, and how many are taken together: as many as two bodies have points. */
+enum { IMP_SPRINGS_NODES = 8, IMP_SPRINGS_CREEPERS = 16 };
 
 typedef enum imp_spring_normal { IMP_SPRING_OPEN, IMP_SPRING_LOADS, IMP_SPRING_UNLOADS } imp_spring_normal;
 
