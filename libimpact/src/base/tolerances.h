@@ -597,6 +597,15 @@
 #define IMP_ALL_BUT_CLOSED 1e-9
 /* and a step is then no shorter than the polynomial's by this factor. */
 #define IMP_CRAWL_PARTS 64
+/* rad: the faster of two bodies turns by no more in one look ahead, as a normal's guess is good for as much; and as
+ * many looks make a window, a turn and more: what struck once is cleared at once. Neither changes what is found. */
+#define IMP_WINDOW_TURN 0.5
+#define IMP_WINDOW_LOOKS 16
+/* Of gaps at both ends: what a time between must have to be of use; of the gap, what one ahead must; of a look ahead,
+ * where sketched normals are too rough for links. */
+#define IMP_WINDOW_GLIMPSE 0.1
+#define IMP_WINDOW_SCOUT 0.2
+#define IMP_WINDOW_NEAR 0.02
 /* Queries of one search; it goes on from there when the queue comes back to it, and with 20 finds the same bits. */
 #define IMP_SEARCH_QUERIES 2000
 /* Of the time: bisection of a bound of fall ends; it is a bound from below. */
@@ -619,11 +628,6 @@
 #define IMP_GRID_CELLS 0x1p62
 #define IMP_GRID_LEAST 0x1p-1000
 
-/* ---- normals that go with edges and corners ---- */
-
-/* rad: a little earlier and later, for the rate of a normal: errors are its square over that of the turning, and eps
- * over it. The search's need not be right, only near. */
-#define IMP_VEERING 1e-4
 /* Steps of the search: a bound is made for steps that reach so many times as far as the last: at the last one's end
  * its 1 - k T^2/2 is 1 to 1/512, as good as for none longer. */
 #define IMP_PSI_REACH 16
@@ -949,11 +953,9 @@
 /* Of the time, times the gap's rate: what a gap is off by its time's rounding, half an eps; and by an answer's, two. */
 #define IMP_TOI_TIME_ROUNDING 1.2e-16
 #define IMP_TOI_TIME_NEAR 4.5e-16
-/* Roundings of the gap that an answer may be early by: an advancement's last step leaves a few, its proof's gap others.
- */
+/* Roundings of the gap that an answer may be early by: an advancement's last step leaves a few, its proof's gap others;
+ * and that a normal must part bodies by for them to be apart. */
 #define IMP_TOI_NEAR 40
-/* Of the time: bounding balls that come nearer by less are near: the bodies themselves are asked. */
-#define IMP_TOI_BALL_STEP 1e-3
 /* Of the bodies' length: so far back along the way an answer's bodies must have been apart: rounding of places is 1e-10
  * of it. */
 #define IMP_TOI_GLANCE_BACK 1e-6

@@ -82,7 +82,7 @@ static void body_plane(const impact_solid *body, quat body_orientation, const im
     on_plane(body, plane, normal, h, offset, contact);
 }
 
-static impact_contact swapped(impact_contact c)
+impact_contact imp_contact_swapped(impact_contact c)
 {
     impact_contact s = c;
     s.normal = qvec3_neg(c.normal);
@@ -217,7 +217,7 @@ static impact_status solve_pair(const impact_solid *body1, const impact_solid *b
     }
     if (plane1) {
         body_plane(body2, q2, body1, q1, contact);
-        *contact = swapped(*contact);
+        *contact = imp_contact_swapped(*contact);
         return IMPACT_OK;
     }
     if (imp_core_takes(&body1->shape, &body2->shape))

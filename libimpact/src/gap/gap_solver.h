@@ -51,21 +51,25 @@ double imp_pair_gap(const imp_gap_solids *pair, const double n[3], double x[2][3
  * local maximum may be of bodies that are apart, unless it shares, or is proved the highest. */
 bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double (*x)[3], imp_gap_bracket *meeting);
 
-/* Two moving bodies, as a search for their contact in time sees them. */
+/* Two moving bodies at one time. */
+typedef struct imp_gap_moved {
+    impact_solid body[2]; /* orientations unit */
+    qvec3 v, omega[2];    /* of body 1's centre less that of body 2's; of both */
+} imp_gap_moved;
+
+/* Two bodies that move, as Newton for their contact in time sees them. */
 typedef struct imp_gap_course {
-    const impact_solid *body[2]; /* at time 0 */
-    const impact_motion *motion[2];
-    quat axis[2]; /* of the spins, pure and unit */
-    double half_spin[2];
+    void (*at)(const void *of, double t, imp_gap_moved *moved);
+    const void *of;
     double longest; /* no step in time is longer, s */
 } imp_gap_course;
-
-/* Body k at time t: impact_motion_at but for the last digits, and faster. */
-impact_solid imp_course_at(const imp_gap_course *course, int k, double t);
 
 /* Newton for a time in [low, high] at which two bodies, no plane among them, come into contact, from *t in there and
  * the normal n: true when it settled on one to rounding, but not always the first; *t, and the contact then. */
 bool imp_gap_strike(const imp_gap_course *course, double low, double high, qvec3 n, double *t, impact_contact *contact);
+
+/* The same with the other body first. */
+impact_contact imp_contact_swapped(impact_contact c);
 
 typedef enum imp_simplex_end { IMP_SIMPLEX_APART, IMP_SIMPLEX_OVERLAP } imp_simplex_end;
 

@@ -11,7 +11,7 @@ enum { STRIKE_STEPS = 32, MAX_TURNS = 3, MAX_TRIMS = 4 };
 typedef struct strike {
     const imp_gap_course *course;
     double scale, t;
-    impact_solid body[2];
+    imp_gap_moved moved;
     imp_gap_solids pair;
     imp_face face;
     imp_drift drift;
@@ -24,27 +24,21 @@ static void spin(qvec3 omega, const imp_chart *chart, double x[3], double N[3])
     imp_cross(w, chart->N, N);
 }
 
-static void place(strike *s, bool exact)
+static void place(strike *s)
 {
-    const imp_gap_course *course = s->course;
-    for (int k = 0; k < 2; k++) {
-        s->body[k] =
-            exact ? impact_motion_at(course->body[k], course->motion[k], s->t) : imp_course_at(course, k, s->t);
-        imp_form_turn(&s->pair.form[1 - k], s->body[k].orientation);
-    }
-    imp_gap_apart(qvec3_sub(s->body[0].position, s->body[1].position), s->scale, &s->pair);
+    s->course->at(s->course->of, s->t, &s->moved);
+    for (int k = 0; k < 2; k++) imp_form_turn(&s->pair.form[1 - k], s->moved.body[k].orientation);
+    imp_gap_apart(qvec3_sub(s->moved.body[0].position, s->moved.body[1].position), s->scale, &s->pair);
 }
 
 /* Bodies, points and drift at s->t; false when the normals do not face each other. */
-static bool look(strike *s, bool exact, const imp_surface surface[2])
+static bool look(strike *s, const imp_surface surface[2])
 {
-    const impact_motion *motion1 = s->course->motion[0], *motion2 = s->course->motion[1];
-    place(s, exact);
+    place(s);
     if (!imp_face_look(&s->pair, surface, &s->face)) return false;
-    spin(motion2->omega, &s->face.chart[0], s->drift.x[0], s->drift.N[0]);
-    spin(motion1->omega, &s->face.chart[1], s->drift.x[1], s->drift.N[1]);
-    const qvec3 v = qvec3_axpy(s->t, qvec3_sub(motion1->acceleration, motion2->acceleration),
-                               qvec3_sub(motion1->velocity, motion2->velocity));
+    spin(s->moved.omega[1], &s->face.chart[0], s->drift.x[0], s->drift.N[0]);
+    spin(s->moved.omega[0], &s->face.chart[1], s->drift.x[1], s->drift.N[1]);
+    const qvec3 v = s->moved.v;
     s->drift.x[1][0] += v.x * s->scale, s->drift.x[1][1] += v.y * s->scale, s->drift.x[1][2] += v.z * s->scale;
     return true;
 }
@@ -64,7 +58,7 @@ static bool trim(strike *s, imp_surface surface[2], double low, double high, dou
         if (off < least) {
             least = off;
             *t = s->t;
-            imp_gap_contact(&s->body[0], &s->body[1], s->scale, &meeting, IMPACT_PATH_NEWTON, contact);
+            imp_gap_contact(&s->moved.body[0], &s->moved.body[1], s->scale, &meeting, IMPACT_PATH_NEWTON, contact);
         }
         const double next = fmin(high, fmax(low, s->t - meeting.lower / rate));
         const bool there = fabs(meeting.lower) <= IMP_TOI_ROUNDING * s->pair.reach || next == s->t;
@@ -72,7 +66,7 @@ static bool trim(strike *s, imp_surface surface[2], double low, double high, dou
         if (!there) s->t = next;
         double step[2][2];
         imp_face_step(&s->pair, &s->face, step);
-        if (!imp_face_advance(&s->pair, &s->face, step, surface, &last) || !look(s, true, surface)) break;
+        if (!imp_face_advance(&s->pair, &s->face, step, surface, &last) || !look(s, surface)) break;
     }
     return least < INFINITY;
 }
@@ -92,17 +86,18 @@ static void reins(const strike *s, double low, double high, double *least, doubl
 
 bool imp_gap_strike(const imp_gap_course *course, double low, double high, qvec3 n, double *t, impact_contact *contact)
 {
-    if (course->body[0]->shape.rounding > 0 || course->body[1]->shape.rounding > 0) return false; /* of cores alone */
-    strike s = {.course = course, .scale = imp_gap_scale(course->body[0], course->body[1]), .t = *t};
+    strike s = {.course = course, .t = *t};
+    course->at(course->of, *t, &s.moved);
+    const impact_solid *one = &s.moved.body[0], *other = &s.moved.body[1];
+    if (one->shape.rounding > 0 || other->shape.rounding > 0) return false; /* of cores alone */
     const double normal[3] = {n.x, n.y, n.z};
     imp_surface surface[2];
-    imp_gap_pair(course->body[0], course->body[0]->orientation, course->body[1], course->body[1]->orientation, s.scale,
-                 &s.pair);
-    place(&s, false);
+    s.scale = imp_gap_scale(one, other);
+    imp_gap_pair(one, one->orientation, other, other->orientation, s.scale, &s.pair);
     imp_face_start(&s.pair, normal, NULL, surface);
     double last = INFINITY;
     for (int i = 0, turns = 0, trims = 0; i < STRIKE_STEPS; i++) {
-        if (!look(&s, last < IMP_GAP_LAST_STEP, surface)) return false;
+        if (!look(&s, surface)) return false;
         if (last < IMP_GAP_LAST_STEP) {
             if (trim(&s, surface, low, high, t, contact)) return true;
             if (++trims == MAX_TURNS) return false;

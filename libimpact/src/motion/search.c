@@ -1,14 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Balls that fall alike, and a ball over a plane: a quadratic. All others by conservative advancement. From a time at
- * which the gap is g, with normal n, w = n . (v1 - v2), a = a1 - a2 and J no less than the centres' jerks over a window
- * W, m = n in a body's axes, h its support function and r its radius: for T <= W
+ * The one search for contact: of scenes, and of impact_toi (toi.c). It goes from time to time, before each of which
+ * there is no contact, and each follows from the last and the segments alone. In order:
  *
- *     psi(T) = g + w T - A T^2/2 - sum over the bodies that turn [h(m + m' T) - h(m) + e(T)],  A = max(0, -n.a + J W/3)
- *     e(T) = h(m'') T^2/2 + r j T^3/6 where j >= |m'''| for the whole segment (FREE), r M T^2/2, M >= |m''|, elsewhere
+ *  1. Balls that fall alike, and a ball over a plane: the zero of a quadratic.
+ *  2. While bounding balls are apart: their zero.
+ *  3. Two bodies with support functions, in closed form: a window in which they turn by some radians, its far end
+ *     first (search_window.c), cleared by links between times at which normals part the bodies (search_proof.c):
+ *     with g0, g1 the gaps there and K a bound of second order in the time between, sqrt(g0) + sqrt(g1) >= sqrt(K).
+ *  4. Planes, integrated motions, and where a window ends for want of a proof: a step of psi (psi.c). From a time at
+ *     which the gap is g, with normal n, w = n . (v1 - v2), a = a1 - a2 and J no less than the centres' jerks over the
+ *     time W that is left, m = n in a body's axes, h its support function and r its radius: for T <= W
  *
- * is concave and never more than the gap T later, as h is convex and subadditive: psi(T) >= 0 proves that there is no
- * contact until then. Steps to the zero of psi converge quadratically and never pass the contact.
+ *       psi(T) = g + w T - A T^2/2 - sum over the bodies that turn [h(m + m' T) - h(m) + h(m'') T^2/2 + r j T^3/6],
+ *       A = max(0, -n.a + J W/3),  j >= |m'''|
+ *
+ *     is concave and never more than the gap T later, as h is convex and subadditive: psi(T) >= 0 proves that there is
+ *     no contact until then. Steps to the zero of psi converge quadratically and never pass the contact. Integrated
+ *     bodies whose steps creep, an edge along an edge, are looked at by a window (3).
  *
  * On the integrator's polynomials J W does not vanish, and bodies that stay next to each other would be followed in
  * steps of sqrt(2 g/A). Where the gap is all but closed, below c, and its rate alone would not close it in a 64th of
@@ -18,6 +27,7 @@
 #include "motion/search.h"
 #include "base/bracket.h"
 #include "motion/psi.h"
+#include "motion/search_window.h"
 #include "world/normal.h"
 #include "world/world_gap.h"
 
@@ -31,14 +41,11 @@ static bool falls(const imp_segment *s) { return s->kind == IMP_SEGMENT_FREE || 
 
 static bool same(qvec3 a, qvec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-static qvec3 fall_of(const imp_segment *s) { return s->kind == IMP_SEGMENT_REST ? (qvec3){0, 0, 0} : s->acceleration; }
-
 /* Centres on a straight line towards each other. */
 static bool fall_alike(const imp_search *s)
 {
     const imp_segment *a = s->segment[0], *b = s->segment[1];
-    return (falls(a) || a->kind == IMP_SEGMENT_REST) && (falls(b) || b->kind == IMP_SEGMENT_REST) &&
-           same(fall_of(a), fall_of(b));
+    return imp_segment_is_parabola(a) && imp_segment_is_parabola(b) && same(a->acceleration, b->acceleration);
 }
 
 static bool is_plane(const imp_body *body) { return body->shape.kind == IMPACT_PLANE; }
@@ -64,6 +71,20 @@ static double line_time(qvec3 d, qvec3 w, double R)
     return fmax(qvec3_dot(d, d) - R * R, 0) / (b + sqrt(left));
 }
 
+static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->segment[1]->t0); }
+
+/* When two bodies on a line past each other have parted for good; infinite where that is not known. */
+static double gone_by(const imp_search *s)
+{
+    if (is_plane(s->body[1]) || !fall_alike(s)) return INFINITY;
+    qvec3 w;
+    const qvec3 d = centres_apart(s, start_of(s), &w), aside = qvec3_cross(d, w);
+    const double R = (s->body[0]->radius + s->body[1]->radius) * (1 + IMP_SEARCH_BALLS), square = qvec3_dot(w, w),
+                 left = square * R * R - qvec3_dot(aside, aside), b = -qvec3_dot(d, w);
+    if (!(square > 0)) return INFINITY;
+    return start_of(s) + fmax(0, (b + sqrt(fmax(0, left))) / square);
+}
+
 static qvec3 plane_normal(const imp_search *s) { return quat_rotate(s->segment[1]->start.q, (qvec3){0, 0, 1}); }
 
 /* Nothing can happen before this: of the bounding balls, a little too large so that the time is never late. */
@@ -87,12 +108,7 @@ static double balls_meet(const imp_search *s, double from)
 
 /* ---- psi ---- */
 
-static bool turns(const imp_search *s, int k)
-{
-    if (imp_is_ball(s->body[k]) || s->segment[k]->kind == IMP_SEGMENT_REST) return false;
-    const qvec3 L = s->segment[k]->start.momentum;
-    return s->segment[k]->kind == IMP_SEGMENT_DENSE || L.x != 0 || L.y != 0 || L.z != 0;
-}
+static bool turns(const imp_search *s, int k) { return imp_segment_turns(s->segment[k], s->body[k]); }
 
 /* ---- advancement ---- */
 
@@ -122,7 +138,7 @@ static void see_motion(const imp_search *s, double t, sight *l)
         l->bounds[k] = imp_segment_bounds(segment, s->body[k], t, l->window);
         l->spin[k] = turns(s, k) ? imp_segment_spin(segment, s->body[k], &l->state[k], &l->bounds[k], l->window)
                                  : (imp_spin){.most = 0};
-        if (falls(segment) || segment->kind == IMP_SEGMENT_REST) continue;
+        if (imp_segment_is_parabola(segment)) continue;
         l->parabola = false;
         /* damping's acceleration keeps its direction and only falls: it bends by no more than it does now, and by
          * nothing back */
@@ -131,24 +147,22 @@ static void see_motion(const imp_search *s, double t, sight *l)
     l->pull = qvec3_sub(l->bounds[0].acceleration, l->bounds[1].acceleration);
 }
 
-/* veer: the rate of `towards`, held; most: |veer| T is no more. */
-static void add_turning(imp_psi *p, const imp_search *s, int k, const sight *l, qvec3 towards, qvec3 veer, double most)
+/* How the body's turning takes its support along `towards`. */
+static void add_turning(imp_psi *p, const imp_search *s, int k, const sight *l, qvec3 towards)
 {
-    const bool veers = !same(veer, (qvec3){0, 0, 0}), spins = turns(s, k);
-    if (!spins && !veers) return;
+    if (!turns(s, k)) return;
     const imp_body *body = s->body[k];
     const imp_spin *spin = &l->spin[k];
     imp_turning *b = &p->body[p->count++];
     b->body = body;
     b->m = quat_rotate_inverse(l->state[k].q, towards);
-    const qvec3 along = veers ? quat_rotate_inverse(l->state[k].q, veer) : veer;
-    b->rate = qvec3_add(qvec3_cross(b->m, spin->omega), along);
-    b->second = qvec3_add(qvec3_cross(qvec3_add(b->rate, along), spin->omega), qvec3_cross(b->m, spin->rate));
+    b->rate = qvec3_cross(b->m, spin->omega);
+    b->second = qvec3_add(qvec3_cross(b->rate, spin->omega), qvec3_cross(b->m, spin->rate));
     qvec3 point;
     b->h = imp_world_support(body, b->m, &point);
     p->slope -= qvec3_dot(b->rate, point);
     p->spread += body->radius * qvec3_norm(b->second);
-    p->jerk += body->radius * ((1 + most) * spin->third + 3 * qvec3_norm(veer) * spin->second);
+    p->jerk += body->radius * spin->third;
 }
 
 static bool is_fixed(const imp_search *s, int k)
@@ -161,10 +175,14 @@ static bool is_stepped(const imp_search *s, int k)
     return s->segment[k]->kind == IMP_SEGMENT_DENSE && s->segment[k]->dense->stepped;
 }
 
-static void look_at(const imp_search *s, double t, sight *l)
+/* known: the contact then; NULL: it is asked for. */
+static void look_at(const imp_search *s, double t, const impact_contact *known, sight *l)
 {
     see_motion(s, t, l);
-    imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->gaps, s->usage, &l->contact);
+    if (known)
+        l->contact = *known;
+    else
+        imp_gap_of(s->body[0], &l->state[0], s->body[1], &l->state[1], s->gaps, s->usage, &l->contact);
     if (is_stepped(s, 0) || is_stepped(s, 1))
         imp_settle_normal(s->body[0], &l->state[0], s->body[1], &l->state[1], imp_stepped_flush(s->body[0], s->body[1]),
                           &l->contact);
@@ -190,59 +208,10 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
     return bend + drift - others;
 }
 
-/* Whether the step is far less than what the gap's own rate promises. */
-static bool creeps_on(const sight *l, double gap, double step)
-{
-    return step < l->window && (l->rate >= 0 || step < IMP_CREEPING * gap / -l->rate);
-}
-
-/* The same of bodies of which one turns and both have a support function that knows where the normal goes. */
+/* Whether the step is far less than what the gap's own rate promises, of bodies of which one turns. */
 static bool creeps(const imp_search *s, const sight *l, double gap, double step)
 {
-    return !is_plane(s->body[1]) && (turns(s, 0) || turns(s, 1)) && creeps_on(l, gap, step);
-}
-
-/* The same with a direction n + n' T that goes along: two edges stay across it, and a corner does not fall behind on
- * one. Any n' proves what it does. */
-static double step_going_along(const imp_search *s, const sight *l, double gap, qvec3 turned)
-{
-    const qvec3 n = l->contact.normal, veer = qvec3_axpy(-qvec3_dot(turned, n), n, turned);
-    const double rate = qvec3_norm(veer), limit = fmin(l->window, 0.5 / rate);
-    const qvec3 v = qvec3_sub(l->state[0].v, l->state[1].v), c = qvec3_sub(l->state[0].x, l->state[1].x);
-    if (!(rate > 0) || !isfinite(rate)) return 0;
-    const double speed = qvec3_dot(n, v) + qvec3_dot(veer, c), along = -2 * qvec3_dot(veer, v);
-    imp_psi p = {.gap = gap, .speed = speed, .slope = speed};
-    if (l->parabola) {
-        p.bend = along - qvec3_dot(n, l->pull);
-        p.jerk = 3 * fmax(0, -qvec3_dot(veer, l->pull));
-    } else {
-        const double most = qvec3_norm(l->bounds[0].acceleration) + qvec3_norm(l->bounds[1].acceleration);
-        p.bend = along + bend_of(s, l, n);
-        p.jerk = 3 * rate * (most + (l->jerk > 0 ? l->jerk * l->window : 0));
-    }
-    add_turning(&p, s, 0, l, qvec3_neg(n), qvec3_neg(veer), 0.5);
-    add_turning(&p, s, 1, l, n, veer, 0.5);
-    return imp_psi_safe_step(&p, limit);
-}
-
-/* Of such directions that which the contact's normals have a little earlier and later: where it turns on as it did, or
- * otherwise from here on, the rates of before and after tell, and their mean neither. */
-static double step_veering(const imp_search *s, const sight *l, double gap)
-{
-    const double spin = l->spin[0].most + l->spin[1].most, apart = IMP_VEERING / spin;
-    if (!(spin > 0)) return 0;
-    qvec3 turned[2];
-    for (int k = 0; k < 2; k++) {
-        const double then = k ? apart : -apart; /* as they move now: their segments may be shorter */
-        const imp_state a = imp_drifted(s->body[0], &l->state[0], then),
-                        b = imp_drifted(s->body[1], &l->state[1], then);
-        impact_contact contact;
-        imp_gap_of(s->body[0], &a, s->body[1], &b, s->gaps, s->usage, &contact);
-        turned[k] = qvec3_scale(qvec3_sub(contact.normal, l->contact.normal), 1 / then);
-    }
-    const double step = step_going_along(s, l, gap, qvec3_scale(qvec3_add(turned[0], turned[1]), 0.5));
-    if (!creeps_on(l, gap, step)) return step;
-    return fmax(step, fmax(step_going_along(s, l, gap, turned[0]), step_going_along(s, l, gap, turned[1])));
+    return (turns(s, 0) || turns(s, 1)) && step < l->window && (l->rate >= 0 || step < IMP_CREEPING * gap / -l->rate);
 }
 
 static double scale_of(const imp_search *s, const sight *l)
@@ -253,11 +222,11 @@ static double scale_of(const imp_search *s, const sight *l)
 /* The step that psi allows along the contact's normal, where that leaves a gap. */
 static double step_along(const imp_search *s, const sight *l, double gap)
 {
-    const qvec3 n = l->contact.normal, none = {0, 0, 0};
+    const qvec3 n = l->contact.normal;
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
-    add_turning(&p, s, 0, l, qvec3_neg(n), none, 0);
-    add_turning(&p, s, 1, l, n, none, 0);
+    add_turning(&p, s, 0, l, qvec3_neg(n));
+    add_turning(&p, s, 1, l, n);
     return imp_psi_safe_step(&p, l->window);
 }
 
@@ -304,8 +273,7 @@ static double step_before(const imp_search *s, const sight *l, double gap)
     const qvec3 n = l->contact.normal;
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     if (l->parabola && !turns(s, 0) && !turns(s, 1)) return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
-    const double step = step_along(s, l, gap);
-    return creeps(s, l, gap, step) ? fmax(step, step_veering(s, l, gap)) : step;
+    return step_along(s, l, gap);
 }
 
 /* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its
@@ -316,7 +284,7 @@ static double step_behind(const imp_search *s, const sight *l)
     const double deep = fmax(0, -l->contact.gap);
     const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0, pull = qvec3_dot(n, l->pull);
     imp_psi p = {.slope = qvec3_dot(n, l->state[0].v)};
-    add_turning(&p, s, 0, l, qvec3_neg(n), (qvec3){0, 0, 0}, 0);
+    add_turning(&p, s, 0, l, qvec3_neg(n));
     const double bend = p.count > 0 || !l->parabola ? fmax(0, pull) + drift + p.spread : pull;
     double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
     if (p.jerk == 0) return high;
@@ -346,7 +314,7 @@ static double bisect(const imp_search *s, double low, double gap_low, double hig
     for (int i = 0; i < IMP_BRACKET_MOST && b.at_low != b.at_high; i++) {
         const double t = imp_bracket_guess(&b);
         if (t == b.low || t == b.high) break;
-        look_at(s, t, &l);
+        look_at(s, t, NULL, &l);
         const double gap = l.contact.gap + slack;
         if (gap == 0) return t;
         imp_bracket_take(&b, t, gap, gap < 0);
@@ -405,66 +373,156 @@ static double away_between(const imp_search *s, double from, double t, double to
     sight l;
     double part = 0.5;
     for (int i = 0; i < HALVINGS; i++, part *= 0.5) {
-        look_at(s, from + part * (t - from), &l);
+        look_at(s, from + part * (t - from), NULL, &l);
         *gap = l.contact.lower;
         if (*gap > touching) return l.t;
     }
     return NAN;
 }
 
-static double start_of(const imp_search *s) { return fmax(s->segment[0]->t0, s->segment[1]->t0); }
+/* What is sought, and how far the search has come: before t there is no contact. */
+typedef struct march {
+    const imp_search *of;
+    double start, end, gone; /* no contact after `gone`, nor is one asked for after `end` */
+    double least;            /* a part of an integrator's step, where one of the segments is one; else 0 */
+    double error;            /* of the gaps, m */
+    bool ahead;              /* windows may be looked over */
+    double t, before, gap_before;
+    bool leaving; /* they touched at the start, and are no further apart yet: */
+    double slack; /* what their gap may fall to */
+} march;
+
+/* Whether both have a support function and Newton answers for their gap; of steps of a fixed length it is not asked. */
+static bool may_look_ahead(const imp_search *s)
+{
+    const bool balls = imp_is_ball(s->body[0]) && imp_is_ball(s->body[1]);
+    if (s->beyond || balls || is_plane(s->body[1]) || (s->gaps && s->gaps->method == IMPACT_GAP_CCD)) return false;
+    for (int k = 0; k < 2; k++)
+        if (is_fixed(s, k) || is_stepped(s, k)) return false;
+    return true;
+}
+
+static march march_from(const imp_search *s, double from)
+{
+    march m = {.of = s, .start = start_of(s), .least = shortest_step(s), .gone = INFINITY, .gap_before = INFINITY};
+    m.end = fmin(s->segment[0]->t1, s->segment[1]->t1);
+    m.error = imp_gap_error(s->gaps, s->body[0], s->body[1]);
+    m.ahead = may_look_ahead(s);
+    if (m.ahead) m.gone = gone_by(s);
+    m.t = m.before = from + (from == m.start ? balls_meet(s, from) : 0);
+    return m;
+}
+
+static double touching_of(const march *m, const sight *l) { return IMP_TOUCHING * scale_of(m->of, l) + m->error; }
+
+static bool met(const march *m, double t, const impact_contact *contact, imp_found *found)
+{
+    if (m->of->contact && contact) *m->of->contact = *contact;
+    *found = (imp_found){t, true};
+    return true;
+}
+
+/* Over a window of both motions: whether that settles the matter. known: the contact at its start, or NULL; then that
+ * at the time reached, where it is known. */
+static imp_reached look_ahead(march *m, const impact_contact *known)
+{
+    const imp_search *s = m->of;
+    const imp_reached reached = imp_search_window(s, m->t, fmin(m->end, m->gone), known);
+    if (reached.t > m->t) m->t = reached.t, m->gap_before = INFINITY;
+    if (s->axis && reached.known) *s->axis = reached.contact.normal;
+    return reached;
+}
+
+/* What is made of bodies that touched at the start; true: they meet. */
+static bool settle_start(march *m, const sight *l, imp_found *found)
+{
+    const imp_search *s = m->of;
+    const double gap = l->contact.lower, touching = touching_of(m, l);
+    if (m->t == m->start) {
+        const bool still = fabs(l->rate) <= still_rate(s, l);
+        m->slack = touching + fmax(0, -gap); /* of bodies that began with an overlap */
+        m->leaving = fabs(gap) <= m->slack && (still || (l->rate > 0 && (turns(s, 0) || turns(s, 1))));
+    } else if (m->leaving && l->rate < 0) { /* a step that had the slack may have passed over a whole bounce */
+        double high;
+        const double away = away_between(s, m->before, m->t, touching, &high);
+        if (isfinite(away) && gap < 0) return met(m, bisect(s, away, high, m->t, gap, 0), NULL, found);
+        m->leaving = !isfinite(away);
+    }
+    m->leaving = m->leaving && gap <= touching;
+    return false;
+}
+
+/* Whether they touch: between the last look and this one, or now. gap: with the slack of what leaves. */
+static bool touch(const march *m, const sight *l, double gap, imp_found *found)
+{
+    const imp_search *s = m->of;
+    const double rounding = IMP_GAP_ROUNDING * scale_of(s, l) + m->error,
+                 most_rate = m->t > m->start ? still_rate(s, l) : -DBL_MIN;
+    if (gap < -touching_of(m, l) && m->gap_before > 0 && isfinite(m->gap_before))
+        return met(m, bisect(s, m->before, m->gap_before, m->t, gap, m->leaving ? m->slack : 0), NULL, found);
+    return gap <= rounding && l->rate <= most_rate && met(m, m->t, &l->contact, found);
+}
+
+/* A step in which there is no contact, or none that is not passed over. */
+static double step_from(const march *m, const sight *l, double gap)
+{
+    const imp_search *s = m->of;
+    const double closed = IMP_ALL_BUT_CLOSED * scale_of(s, l);
+    const bool near = gap <= closed && gap + l->rate * m->least > 0;
+    const double step = m->least > 0 && near ? crawl(s, l, m->least, closed, touching_of(m, l)) : 0;
+    return step < l->window ? fmax(step, step_before(s, l, fmax(gap, 0))) : step; /* they part from where they are */
+}
+
+/* One step on; true: *found is the answer. */
+static bool go_on(march *m, imp_found *found)
+{
+    const imp_search *s = m->of;
+    sight l;
+    imp_reached reached = {.known = false};
+    *found = (imp_found){INFINITY, false};
+    if (m->ahead && !m->leaving && m->least == 0) {
+        reached = look_ahead(m, NULL);
+        if (reached.touches) return met(m, m->t, &reached.contact, found);
+        if (reached.cleared) return m->t >= m->end;
+    }
+    look_at(s, m->t, reached.known ? &reached.contact : NULL, &l);
+    if (s->axis) *s->axis = l.contact.normal;
+    double gap = l.contact.lower, step;
+    if (s->beyond) {
+        step = step_behind(s, &l);
+    } else {
+        if (settle_start(m, &l, found)) return true;
+        if (m->leaving) gap += m->slack;
+        if (touch(m, &l, gap, found)) return true;
+        step = step_from(m, &l, gap);
+        if (m->ahead && m->least > 0 && !m->leaving && creeps(s, &l, gap, step)) {
+            const double t = m->t;
+            reached = look_ahead(m, &l.contact);
+            if (reached.touches) return met(m, m->t, &reached.contact, found);
+            if (m->t > t + step) return m->t >= m->end;
+            m->t = t;
+        }
+    }
+    m->before = m->t, m->gap_before = gap;
+    if (l.window <= 0 || !(m->t + step <= m->end) || step == INFINITY) return true;
+    /* a stretch in which time all but stands bounds the rates of no gap: what is wide open stays so */
+    if (m->t + step == m->t && (s->beyond || gap <= touching_of(m, &l) + nearer_at_once(s, &l, m->t)))
+        return met(m, m->t, &l.contact, found);
+    m->t = fmax(m->t + step, nextafter(m->t, INFINITY));
+    return false;
+}
 
 static imp_found advance(const imp_search *s, double from, double until)
 {
     const imp_found never = {INFINITY, false};
-    const double end = fmin(s->segment[0]->t1, s->segment[1]->t1), least = shortest_step(s), start = start_of(s),
-                 error = imp_gap_error(s->gaps, s->body[0], s->body[1]);
-    if (least > 0 && from == start && (is_out_of_reach(s, from, end) || is_parted(s, from))) return never;
-    double t = from + (from == start ? balls_meet(s, from) : 0), slack = 0, before = t, gap_before = INFINITY;
-    bool leaving = false;
-    for (int i = 0; i < IMP_SEARCH_QUERIES && t <= end; i++) {
-        if (t > until && !leaving && least == 0) return (imp_found){t, false};
-        sight l;
-        look_at(s, t, &l);
-        if (s->axis) *s->axis = l.contact.normal;
-        double step, gap = l.contact.lower;
-        if (s->beyond) {
-            step = step_behind(s, &l);
-        } else {
-            const double touching = IMP_TOUCHING * scale_of(s, &l) + error;
-            if (t == start) {
-                const bool still = fabs(l.rate) <= still_rate(s, &l);
-                slack = touching + fmax(0, -gap); /* of bodies that began with an overlap */
-                leaving = fabs(gap) <= slack && (still || (l.rate > 0 && (turns(s, 0) || turns(s, 1))));
-            }
-            if (leaving && t > start &&
-                l.rate < 0) { /* a step that had the slack may have passed over a whole bounce */
-                double high;
-                const double away = away_between(s, before, t, touching, &high);
-                if (isfinite(away) && gap < 0) return (imp_found){bisect(s, away, high, t, gap, 0), true};
-                leaving = !isfinite(away);
-            }
-            leaving = leaving && gap <= touching;
-            const double rounding = IMP_GAP_ROUNDING * scale_of(s, &l) + error;
-            if (leaving) gap += slack;
-            if (gap < -touching && gap_before > 0 && isfinite(gap_before))
-                return (imp_found){bisect(s, before, gap_before, t, gap, leaving ? slack : 0), true};
-            if (gap <= rounding && l.rate <= (t > start ? still_rate(s, &l) : -DBL_MIN)) return (imp_found){t, true};
-            const double closed = IMP_ALL_BUT_CLOSED * scale_of(s, &l);
-            const bool near = gap <= closed && gap + l.rate * least > 0;
-            step = least > 0 && near ? crawl(s, &l, least, closed, touching) : 0;
-            if (step < l.window)
-                step = fmax(step, step_before(s, &l, fmax(gap, 0))); /* they part from where they are */
-        }
-        before = t, gap_before = gap;
-        if (l.window <= 0) return never;
-        if (!(t + step <= end) || step == INFINITY) return never;
-        /* a stretch in which time all but stands bounds the rates of no gap: what is wide open stays so */
-        if (t + step == t && (s->beyond || gap <= IMP_TOUCHING * scale_of(s, &l) + error + nearer_at_once(s, &l, t)))
-            return (imp_found){t, true};
-        t = fmax(t + step, nextafter(t, INFINITY));
+    march m = march_from(s, from);
+    if (m.least > 0 && from == m.start && (is_out_of_reach(s, from, m.end) || is_parted(s, from))) return never;
+    for (int i = 0; i < IMP_SEARCH_QUERIES && m.t <= m.end && m.t < m.gone; i++) {
+        imp_found found;
+        if (m.t > until && !m.leaving && m.least == 0) return (imp_found){m.t, false};
+        if (go_on(&m, &found)) return found;
     }
-    return t <= end ? (imp_found){t, false} : never;
+    return m.t <= m.end && m.t < m.gone ? (imp_found){m.t, false} : never;
 }
 
 /* Whether the line from d along w passes the origin at the distance R at most: most do not. */

@@ -54,6 +54,11 @@ imp_segment imp_segment_fly(const imp_body *body, double t0, const imp_state *st
     if (!body->spherical) {
         impact_tumble_make(body->moments, start->q, start->momentum, tumble);
         s.tumble = tumble;
+    } else {
+        const qvec3 omega = imp_omega(body, start);
+        const double spin = qvec3_norm(omega);
+        s.half_spin = 0.5 * spin;
+        s.axis = spin > 0 ? qvec3_scale(omega, 1 / spin) : omega;
     }
     s.fastest = fastest_of(body, start, s.tumble);
     return s;
@@ -114,12 +119,14 @@ static quat roll_turn(quat q, qvec3 omega, qvec3 alpha, double T)
     return q;
 }
 
-static quat turned(const imp_segment *s, const imp_body *body, double clock)
+static quat turned(const imp_segment *s, double clock)
 {
     if (s->tumble) return impact_tumble_at(s->tumble, clock);
-    if (is_zero(s->start.momentum)) return s->start.q;
-    const qvec3 turn = qvec3_scale(imp_omega(body, &s->start), clock);
-    return quat_unit(quat_mul(quat_from_rotation_vector(turn), s->start.q));
+    if (s->half_spin == 0) return s->start.q;
+    const double half = s->half_spin * clock, sine = sin(half);
+    quat q = quat_mul((quat){cos(half), sine * s->axis.x, sine * s->axis.y, sine * s->axis.z}, s->start.q);
+    (void)quat_normalize(q, &q); /* to the last digit: a gap takes no other */
+    return q;
 }
 
 qvec3 imp_segment_place_of(const imp_segment *s, const imp_body *body, double t, qvec3 *velocity)
@@ -168,7 +175,7 @@ imp_state imp_segment_at(const imp_segment *s, const imp_body *body, double t)
         return state;
     }
     const double kappa = s->kind == IMP_SEGMENT_DAMPED ? body->angular_rate : 0;
-    state.q = turned(s, body, imp_phi1(kappa, T));
+    state.q = turned(s, imp_phi1(kappa, T));
     if (kappa > 0) state.momentum = qvec3_scale(state.momentum, exp(-kappa * T));
     return state;
 }
@@ -216,6 +223,17 @@ qvec3 imp_segment_pose(const imp_segment *s, const imp_body *body, double own, d
     imp_dense_there(s->dense, own, first_of(s), Y_VELOCITY, b);
     *q = quat_unit((quat){b[3], b[4], b[5], b[6]});
     return (qvec3){b[0], b[1], b[2]};
+}
+
+bool imp_segment_is_parabola(const imp_segment *s)
+{
+    return s->kind != IMP_SEGMENT_DAMPED && s->kind != IMP_SEGMENT_DENSE;
+}
+
+bool imp_segment_turns(const imp_segment *s, const imp_body *body)
+{
+    if (imp_is_ball(body) || s->kind == IMP_SEGMENT_REST) return false;
+    return s->kind == IMP_SEGMENT_DENSE || !is_zero(s->start.momentum) || !is_zero(s->spin_up);
 }
 
 /* ---- bounds ---- */

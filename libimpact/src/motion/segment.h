@@ -41,6 +41,8 @@ typedef struct imp_segment {
     imp_state start;             /* at t0 */
     qvec3 spin_up;               /* ROLL: alpha, 1/s^2; of an unequal body along a steady omega */
     const impact_tumble *tumble; /* FREE, DAMPED of unequal moments that turn; else NULL */
+    qvec3 axis;                  /* FREE, DAMPED of equal moments that turn: unit, along omega */
+    double half_spin;            /* |omega|/2 of those, 1/s */
     qvec3 fastest;               /* FREE, DAMPED: no less than omega's components in body axes ever are, 1/s */
     const imp_dense *dense;      /* DENSE: its island's step, and */
     int place;                   /* the body's place in it */
@@ -79,6 +81,10 @@ static inline qvec3 imp_segment_place(const imp_segment *segment, const imp_body
     *velocity = qvec3_axpy(T, segment->acceleration, segment->start.v);
     return qvec3_axpy(T, qvec3_axpy(0.5 * T, segment->acceleration, segment->start.v), segment->start.x);
 }
+
+/* Whether the centre has a constant acceleration; whether the body turns in a way that moves its surface. */
+bool imp_segment_is_parabola(const imp_segment *segment);
+bool imp_segment_turns(const imp_segment *segment, const imp_body *body);
 
 /* Over [t, t + window]. */
 imp_bounds imp_segment_bounds(const imp_segment *segment, const imp_body *body, double t, double window);

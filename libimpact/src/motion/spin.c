@@ -60,20 +60,28 @@ static components most_omega(const double I[3], qvec3 omega, double momentum, do
     return w;
 }
 
+static qvec3 by_axes(qvec3 a, qvec3 b) { return (qvec3){a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+qvec3 imp_spin_rate(const imp_body *body, const imp_state *now, qvec3 torque)
+{
+    const qvec3 L = quat_rotate_inverse(now->q, now->momentum), tau = quat_rotate_inverse(now->q, torque);
+    return by_axes(qvec3_add(tau, qvec3_cross(L, by_axes(L, body->inverse_moments))), body->inverse_moments);
+}
+
 imp_spin imp_spin_of(const imp_body *body, const imp_state *now, const qvec3 *fastest, double momentum,
                      imp_torques torques, double window)
 {
     const double I[3] = {body->moments.x, body->moments.y, body->moments.z};
-    const qvec3 L = quat_rotate_inverse(now->q, now->momentum), tau = quat_rotate_inverse(now->q, torques.now),
-                inverse = body->inverse_moments, omega = {L.x * inverse.x, L.y * inverse.y, L.z * inverse.z},
-                gained = qvec3_add(tau, qvec3_cross(L, omega));
+    const qvec3 omega = by_axes(quat_rotate_inverse(now->q, now->momentum), body->inverse_moments);
     const components w = fastest ? components_of(*fastest) : most_omega(I, omega, momentum, torques.most, window),
                      rate = rate_of(I, w, torques.most),
                      second = euler(I, cross_bound(rate, w), torques.rate + torques.most * norm_of(w));
-    const double most = norm_of(w), turning = norm_of(rate);
+    const double most = norm_of(w), turning = norm_of(rate), swing = norm_of(second);
     return (imp_spin){.omega = omega,
-                      .rate = {gained.x * inverse.x, gained.y * inverse.y, gained.z * inverse.z},
+                      .rate = imp_spin_rate(body, now, torques.now),
                       .most = most,
+                      .most_rate = turning,
+                      .most_second = swing,
                       .second = most * most + turning,
-                      .third = most * most * most + 3 * most * turning + norm_of(second)};
+                      .third = most * most * most + 3 * most * turning + swing};
 }

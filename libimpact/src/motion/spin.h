@@ -11,6 +11,8 @@
 typedef struct imp_spin {
     qvec3 omega, rate;    /* W and W' at the window's start, 1/s and 1/s^2 */
     double most;          /* |W|, 1/s */
+    double most_rate;     /* |W'|, 1/s^2 */
+    double most_second;   /* |W''|, 1/s^3 */
     double second, third; /* |m''|, 1/s^2, and |m'''|, 1/s^3 */
 } imp_spin;
 
@@ -24,5 +26,8 @@ typedef struct imp_torques {
  * known; else NULL. */
 imp_spin imp_spin_of(const imp_body *body, const imp_state *now, const qvec3 *fastest, double momentum,
                      imp_torques torques, double window);
+
+/* W' in body axes at a state under a torque, world axes. */
+qvec3 imp_spin_rate(const imp_body *body, const imp_state *now, qvec3 torque);
 
 #endif

@@ -4,6 +4,18 @@
 #include "world/corner.h"
 #include "world/normal.h"
 
+void imp_count_gap(impact_gap_path path, impact_usage *usage)
+{
+    switch (path) {
+    case IMPACT_PATH_CLOSED_FORM: usage->gap_closed_form++; break;
+    case IMPACT_PATH_NEWTON: usage->gap_newton++; break;
+    case IMPACT_PATH_GJK: usage->gap_gjk++; break;
+    case IMPACT_PATH_FALLBACK: usage->gap_fallback++; break;
+    case IMPACT_PATH_CCD: usage->gap_ccd++; break;
+    case IMPACT_PATH_NONE: break;
+    }
+}
+
 static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_body *b2, const imp_state *s2,
                             impact_gap_cache *cache, imp_gaps *gaps, impact_usage *usage, impact_contact *contact)
 {
@@ -14,14 +26,7 @@ static impact_status gap_of(const imp_body *b1, const imp_state *s1, const imp_b
     if (ccd && status < 0 && !gaps->failed[0]) gaps->failed[0] = b1->name, gaps->failed[1] = b2->name;
     contact->offset1 = qvec3_add(contact->offset1, imp_shape_offset(b1, s1));
     contact->offset2 = qvec3_add(contact->offset2, imp_shape_offset(b2, s2));
-    switch (contact->path) {
-    case IMPACT_PATH_CLOSED_FORM: usage->gap_closed_form++; break;
-    case IMPACT_PATH_NEWTON: usage->gap_newton++; break;
-    case IMPACT_PATH_GJK: usage->gap_gjk++; break;
-    case IMPACT_PATH_FALLBACK: usage->gap_fallback++; break;
-    case IMPACT_PATH_CCD: usage->gap_ccd++; break;
-    case IMPACT_PATH_NONE: break;
-    }
+    imp_count_gap(contact->path, usage);
     return status;
 }
 

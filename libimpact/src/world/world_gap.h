@@ -18,6 +18,9 @@ impact_status imp_world_gap_within(imp_world *world, imp_pair *pair, const imp_s
 impact_status imp_gap_of(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
                          imp_gaps *gaps, impact_usage *usage, impact_contact *contact);
 
+/* Counts a query by the road that answered. */
+void imp_count_gap(impact_gap_path path, impact_usage *usage);
+
 /* How far off a gap of the two may be by the tolerance that libccd was given, m; 0 of all others. */
 double imp_gap_error(const imp_gaps *gaps, const imp_body *body1, const imp_body *body2);
 
