@@ -26,18 +26,18 @@ typedef struct family {
     impact_together_law law;
     double exponent;
     int least, most;
-    impact_law restitution; /* Moreau's: the law it restores by */
+    impact_law restitution; /* Moreau's: the law it restores by; springs have their own */
 } family;
 
-static const family families[] = {{IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3},
-                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 4, 6},
-                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12},
-                                  {IMPACT_TOGETHER_SPRINGS, 1, 2, 3},
-                                  {IMPACT_TOGETHER_SPRINGS, 1, 4, 6},
-                                  {IMPACT_TOGETHER_SPRINGS, 1, 7, 12},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 2, 3},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 4, 6},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 7, 12},
+static const family families[] = {{IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 4, 6, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_SPRINGS, 1, 2, 3, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_SPRINGS, 1, 4, 6, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_SPRINGS, 1, 7, 12, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 2, 3, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 4, 6, IMPACT_POISSON},
+                                  {IMPACT_TOGETHER_MOREAU, 0, 7, 12, IMPACT_POISSON},
                                   {IMPACT_TOGETHER_MOREAU, 0, 2, 3, IMPACT_NEWTON},
                                   {IMPACT_TOGETHER_MOREAU, 0, 4, 6, IMPACT_NEWTON},
                                   {IMPACT_TOGETHER_MOREAU, 0, 7, 12, IMPACT_NEWTON}};

@@ -628,6 +628,11 @@
 #define IMP_GRID_CELLS 0x1p62
 #define IMP_GRID_LEAST 0x1p-1000
 
+/* ---- normals that go with edges and corners ---- */
+
+/* rad: a little earlier and later, for the rate of a normal: errors are its square over that of the turning, and eps
+ * over it. The search's need not be right, only near. */
+#define IMP_VEERING 1e-4
 /* Steps of the search: a bound is made for steps that reach so many times as far as the last: at the last one's end
  * its 1 - k T^2/2 is 1 to 1/512, as good as for none longer. */
 #define IMP_PSI_REACH 16

@@ -147,22 +147,24 @@ static void see_motion(const imp_search *s, double t, sight *l)
     l->pull = qvec3_sub(l->bounds[0].acceleration, l->bounds[1].acceleration);
 }
 
-/* How the body's turning takes its support along `towards`. */
-static void add_turning(imp_psi *p, const imp_search *s, int k, const sight *l, qvec3 towards)
+/* veer: the rate of `towards`, held; most: |veer| T is no more. */
+static void add_turning(imp_psi *p, const imp_search *s, int k, const sight *l, qvec3 towards, qvec3 veer, double most)
 {
-    if (!turns(s, k)) return;
+    const bool veers = !same(veer, (qvec3){0, 0, 0}), spins = turns(s, k);
+    if (!spins && !veers) return;
     const imp_body *body = s->body[k];
     const imp_spin *spin = &l->spin[k];
     imp_turning *b = &p->body[p->count++];
     b->body = body;
     b->m = quat_rotate_inverse(l->state[k].q, towards);
-    b->rate = qvec3_cross(b->m, spin->omega);
-    b->second = qvec3_add(qvec3_cross(b->rate, spin->omega), qvec3_cross(b->m, spin->rate));
+    const qvec3 along = veers ? quat_rotate_inverse(l->state[k].q, veer) : veer;
+    b->rate = qvec3_add(qvec3_cross(b->m, spin->omega), along);
+    b->second = qvec3_add(qvec3_cross(qvec3_add(b->rate, along), spin->omega), qvec3_cross(b->m, spin->rate));
     qvec3 point;
     b->h = imp_world_support(body, b->m, &point);
     p->slope -= qvec3_dot(b->rate, point);
     p->spread += body->radius * qvec3_norm(b->second);
-    p->jerk += body->radius * spin->third;
+    p->jerk += body->radius * ((1 + most) * spin->third + 3 * qvec3_norm(veer) * spin->second);
 }
 
 static bool is_fixed(const imp_search *s, int k)
@@ -208,10 +210,59 @@ static double bend_of(const imp_search *s, const sight *l, qvec3 n)
     return bend + drift - others;
 }
 
-/* Whether the step is far less than what the gap's own rate promises, of bodies of which one turns. */
+/* Whether the step is far less than what the gap's own rate promises. */
+static bool creeps_on(const sight *l, double gap, double step)
+{
+    return step < l->window && (l->rate >= 0 || step < IMP_CREEPING * gap / -l->rate);
+}
+
+/* The same of bodies of which one turns and both have a support function that knows where the normal goes. */
 static bool creeps(const imp_search *s, const sight *l, double gap, double step)
 {
-    return (turns(s, 0) || turns(s, 1)) && step < l->window && (l->rate >= 0 || step < IMP_CREEPING * gap / -l->rate);
+    return !is_plane(s->body[1]) && (turns(s, 0) || turns(s, 1)) && creeps_on(l, gap, step);
+}
+
+/* The same with a direction n + n' T that goes along: two edges stay across it, and a corner does not fall behind on
+ * one. Any n' proves what it does. */
+static double step_going_along(const imp_search *s, const sight *l, double gap, qvec3 turned)
+{
+    const qvec3 n = l->contact.normal, veer = qvec3_axpy(-qvec3_dot(turned, n), n, turned);
+    const double rate = qvec3_norm(veer), limit = fmin(l->window, 0.5 / rate);
+    const qvec3 v = qvec3_sub(l->state[0].v, l->state[1].v), c = qvec3_sub(l->state[0].x, l->state[1].x);
+    if (!(rate > 0) || !isfinite(rate)) return 0;
+    const double speed = qvec3_dot(n, v) + qvec3_dot(veer, c), along = -2 * qvec3_dot(veer, v);
+    imp_psi p = {.gap = gap, .speed = speed, .slope = speed};
+    if (l->parabola) {
+        p.bend = along - qvec3_dot(n, l->pull);
+        p.jerk = 3 * fmax(0, -qvec3_dot(veer, l->pull));
+    } else {
+        const double most = qvec3_norm(l->bounds[0].acceleration) + qvec3_norm(l->bounds[1].acceleration);
+        p.bend = along + bend_of(s, l, n);
+        p.jerk = 3 * rate * (most + (l->jerk > 0 ? l->jerk * l->window : 0));
+    }
+    add_turning(&p, s, 0, l, qvec3_neg(n), qvec3_neg(veer), 0.5);
+    add_turning(&p, s, 1, l, n, veer, 0.5);
+    return imp_psi_safe_step(&p, limit);
+}
+
+/* Of such directions that which the contact's normals have a little earlier and later: where it turns on as it did, or
+ * otherwise from here on, the rates of before and after tell, and their mean neither. */
+static double step_veering(const imp_search *s, const sight *l, double gap)
+{
+    const double spin = l->spin[0].most + l->spin[1].most, apart = IMP_VEERING / spin;
+    if (!(spin > 0)) return 0;
+    qvec3 turned[2];
+    for (int k = 0; k < 2; k++) {
+        const double then = k ? apart : -apart; /* as they move now: their segments may be shorter */
+        const imp_state a = imp_drifted(s->body[0], &l->state[0], then),
+                        b = imp_drifted(s->body[1], &l->state[1], then);
+        impact_contact contact;
+        imp_gap_of(s->body[0], &a, s->body[1], &b, s->gaps, s->usage, &contact);
+        turned[k] = qvec3_scale(qvec3_sub(contact.normal, l->contact.normal), 1 / then);
+    }
+    const double step = step_going_along(s, l, gap, qvec3_scale(qvec3_add(turned[0], turned[1]), 0.5));
+    if (!creeps_on(l, gap, step)) return step;
+    return fmax(step, fmax(step_going_along(s, l, gap, turned[0]), step_going_along(s, l, gap, turned[1])));
 }
 
 static double scale_of(const imp_search *s, const sight *l)
@@ -222,11 +273,11 @@ static double scale_of(const imp_search *s, const sight *l)
 /* The step that psi allows along the contact's normal, where that leaves a gap. */
 static double step_along(const imp_search *s, const sight *l, double gap)
 {
-    const qvec3 n = l->contact.normal;
+    const qvec3 n = l->contact.normal, none = {0, 0, 0};
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     imp_psi p = {.gap = gap, .speed = speed, .slope = speed, .bend = bend_of(s, l, n)};
-    add_turning(&p, s, 0, l, qvec3_neg(n));
-    add_turning(&p, s, 1, l, n);
+    add_turning(&p, s, 0, l, qvec3_neg(n), none, 0);
+    add_turning(&p, s, 1, l, n, none, 0);
     return imp_psi_safe_step(&p, l->window);
 }
 
@@ -273,7 +324,8 @@ static double step_before(const imp_search *s, const sight *l, double gap)
     const qvec3 n = l->contact.normal;
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
     if (l->parabola && !turns(s, 0) && !turns(s, 1)) return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
-    return step_along(s, l, gap);
+    const double step = step_along(s, l, gap);
+    return creeps(s, l, gap, step) ? fmax(step, step_veering(s, l, gap)) : step;
 }
 
 /* Behind a plane, a step over which the gap cannot rise to zero: its normal is fixed and -h concave, below its
@@ -284,7 +336,7 @@ static double step_behind(const imp_search *s, const sight *l)
     const double deep = fmax(0, -l->contact.gap);
     const double drift = l->jerk > 0 ? l->jerk * l->window / 3 : 0, pull = qvec3_dot(n, l->pull);
     imp_psi p = {.slope = qvec3_dot(n, l->state[0].v)};
-    add_turning(&p, s, 0, l, qvec3_neg(n));
+    add_turning(&p, s, 0, l, qvec3_neg(n), (qvec3){0, 0, 0}, 0);
     const double bend = p.count > 0 || !l->parabola ? fmax(0, pull) + drift + p.spread : pull;
     double low = 0, high = impact_flight_fall_time(deep, -p.slope, -bend);
     if (p.jerk == 0) return high;

@@ -8,7 +8,7 @@
 #include "base/tolerances.h"
 #include "world/world_gap.h"
 
-enum { MOST_MOVES = 200, MOST_WAITING = 12 };
+enum { MOST_MOVES = 200, MOST_WAITING = 40 };
 
 /* Before `here` there is no contact. `waiting`: later instants without contact, or (the first) at the contact, the
  * nearest last, all of them before `beyond`, where the bodies overlap. */
@@ -176,6 +176,17 @@ static bool settle(const chase *s, imp_instant *at)
     return solve(s, &seed, false, at);
 }
 
+/* Looks nearer where the far end did not settle, as where the bodies overlap by then: half as far each time. */
+static bool look_nearer(chase *s, double t)
+{
+    for (int k = 0; k < MOST_WAITING; k++) {
+        t = 0.5 * (s->here.t + t);
+        if (!(t > s->here.t)) return false;
+        if (scout(s, t) || look(s, t)) return true;
+    }
+    return false;
+}
+
 /* One move on: links the instant that waits, or finds a new one. False: neither can be had. */
 static bool move_on(chase *s)
 {
@@ -199,6 +210,7 @@ static bool move_on(chase *s)
             s->stalls = s->crossed && s->beyond.t - here->t > 0.5 * width ? s->stalls + 1 : 0;
             return true;
         }
+        if (!next && !here->sketched) return look_nearer(s, t);
     }
     return here->sketched && settle(s, here);
 }

@@ -191,11 +191,20 @@ impact_status imp_coarser_follow(impact_scene *scene)
     return scene->coarser ? follow_to(scene, scene->t) : IMPACT_OK;
 }
 
+/* Where it finds no answer to begin with they have parted at once. */
+static impact_status begin(impact_scene *scene)
+{
+    const impact_status status = begin_other(scene);
+    if (status == IMPACT_OK || status == IMPACT_ENOMEM) return status;
+    end_parted(scene, scene->t);
+    return IMPACT_OK;
+}
+
 impact_status imp_coarser_attend(impact_scene *scene, double t)
 {
     const bool wanted = scene->stepped && !scene->is_coarser && !(scene->pile_parted < INFINITY);
     impact_status status = IMPACT_OK;
-    if (wanted && !scene->coarser && t > scene->t) status = begin_other(scene);
+    if (wanted && !scene->coarser && t > scene->t) status = begin(scene);
     while (status == IMPACT_OK && scene->coarser && scene->coarser_due < t) {
         const double due = scene->coarser_due;
         scene->coarser_due += IMP_COARSER_LOOKS * scene->duration;

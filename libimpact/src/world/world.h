@@ -241,6 +241,17 @@ static inline qvec3 imp_point_velocity(const imp_body *body, const imp_state *st
                            : qvec3_add(state->v, qvec3_cross(imp_omega(body, state), r));
 }
 
+/* The body that much time (s) later or earlier, as it moves now. */
+static inline imp_state imp_drifted(const imp_body *body, const imp_state *state, double time)
+{
+    imp_state then = *state;
+    if (body->is_static) return then;
+    const qvec3 turn = qvec3_scale(imp_omega(body, state), time);
+    then.x = qvec3_axpy(time, state->v, state->x);
+    (void)quat_normalize(quat_mul(quat_from_rotation_vector(turn), state->q), &then.q);
+    return then;
+}
+
 /* The shape's axes to the world's. */
 static inline quat imp_shape_axes(const imp_body *body, const imp_state *state)
 {

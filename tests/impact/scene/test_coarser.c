@@ -104,6 +104,18 @@ static void what_goes_on_after_steps_is_in_it(void **state)
     assert_true(off_as_told(s.def) > 1e-3);
 }
 
+/* The second's first step finds no answer: motions part there, and the run is not ended by it. */
+static void a_second_run_without_an_answer_has_parted(void **state)
+{
+    (void)state;
+    static random_scene s;
+    random_scene_make(708324, &s);
+    impact_scene *scene = created(&s.def);
+    assert_true(runs_to(scene, s.def.duration));
+    assert_true(impact_scene_usage(scene).pile_steps > 0 && impact_scene_pile_parted(scene) < s.def.duration);
+    impact_scene_destroy(scene);
+}
+
 /* ---- the second scene is where the first is ---- */
 
 enum { DROPPED = 3049 };
@@ -197,6 +209,7 @@ int main(void)
         cmocka_unit_test(what_is_told_is_not_too_small),
         cmocka_unit_test(motions_that_part_are_told),
         cmocka_unit_test(what_goes_on_after_steps_is_in_it),
+        cmocka_unit_test(a_second_run_without_an_answer_has_parted),
         cmocka_unit_test(what_a_host_changes_is_changed_in_both),
         cmocka_unit_test(what_is_saved_says_as_much),
         cmocka_unit_test(what_is_told_does_not_hang_on_pauses),
