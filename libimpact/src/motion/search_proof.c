@@ -72,7 +72,7 @@ void imp_instant_place(const imp_window *w, double t, imp_instant *at)
 static double rounding_along(const imp_window *w, const imp_instant *at, qvec3 n)
 {
     const imp_search *s = w->of;
-    return IMP_ROUNDOFF * imp_place_scale(s->body[0], at->state[0].x, s->body[1], at->state[1].x, n);
+    return IMP_TOI_ROUNDING * imp_place_scale(s->body[0], at->state[0].x, s->body[1], at->state[1].x, n);
 }
 
 void imp_instant_take(const imp_window *w, imp_instant *at)

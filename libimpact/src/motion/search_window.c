@@ -215,7 +215,7 @@ static bool move_on(chase *s)
     return here->sketched && settle(s, here);
 }
 
-static bool is_apart(const imp_instant *at) { return at->gap > IMP_TOUCHING / IMP_ROUNDOFF * at->tolerance; }
+static bool is_apart(const imp_instant *at) { return at->gap > IMP_TOUCHING / IMP_TOI_ROUNDING * at->tolerance; }
 
 /* Where the window begins: a normal parts the bodies, or their gap is known. */
 static bool set_out(chase *s, const impact_contact *known)
