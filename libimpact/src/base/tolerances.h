@@ -293,6 +293,9 @@
 /* Contact forces pull, or leave their cone, where they do so by more than this part of the greatest of them: they are
  * the solutions of linear systems with conditions up to 1e4. */
 #define IMP_MODE_ROUNDING 1e-12
+/* Of the largest acceleration: what Coulomb's law in accelerations has along the slip of what slides on. Its direction
+ * is then off by 1e-4, of which each of two rounds of correction leaves 1e-4; accelerations round by 1e4 eps. */
+#define IMP_MODES_FAR 1e4
 /* Slip that was to begin goes on where the friction needed over what there is passes 1 by more than this: it is the
  * outcome of Newton's iteration in the direction, which is left at this. */
 #define IMP_DRIVE_ROUNDING 1e-9
@@ -301,6 +304,8 @@
 #define IMP_PRESSED_OF_LOADS 1e-9
 /* Of the greatest element: a pivot of the contacts' linear system that is none: 4000 eps, of conditions up to 1e4. */
 #define IMP_LINEAR_VANISHING 1e-12
+/* The same of pivots taken by columns, beyond which the next ones, whose rounding is eps over this, tell of no rank. */
+#define IMP_LINEAR_DOUBTFUL 1e-7
 /* Newton's step of a secular equation's multiplier, relative: half an eps. */
 #define IMP_SECULAR_STEP 1e-16
 /* rad: directions of slip that begins have come to rest where none turns by 4 eps; what Newton's linear step leaves of

@@ -291,59 +291,6 @@ void imp_persist_project_velocities(imp_persist *persist, imp_world *world, imp_
 
 /* ---- modes ---- */
 
-/* Whether the touch's pressure is less than it may be: what nothing presses does not slide either, where that is no
- * matter of choice. */
-static bool pulls(const imp_touch *touch, double scale)
-{
-    const bool slides = touch->mode == IMP_SLIDE && !touch->redundant;
-    return !touch->still && touch->pressure < (slides ? IMP_MODE_ROUNDING : -IMP_MODE_ROUNDING) * scale;
-}
-
-/* The contact that pulls hardest, or -1. */
-static int worst_pull(const imp_persist *persist, double scale)
-{
-    int worst = -1;
-    for (int c = 0; c < persist->count; c++)
-        if (pulls(&persist->touches[c], scale) &&
-            (worst < 0 || persist->touches[c].pressure < persist->touches[worst].pressure))
-            worst = c;
-    return worst;
-}
-
-/* The rolling contact whose friction is furthest out of its cone, or -1. */
-static int worst_grip(const imp_persist *persist, double scale)
-{
-    int worst = -1;
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (!touch->still && touch->mode == IMP_ROLL && touch->margin < -IMP_MODE_ROUNDING * scale &&
-            (worst < 0 || touch->margin < persist->touches[worst].margin))
-            worst = c;
-    }
-    return worst;
-}
-
-/* The contact whose slip was to begin, but which sticks now that others slide too, furthest within its cone; or -1.
- * Each has one such chance: where no modes are consistent none is to be taken back for ever. */
-static int worst_onset(const imp_persist *persist, const bool *tried)
-{
-    int worst = -1;
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (touch->onset && !tried[touch->pair] && touch->drive < 1 - IMP_DRIVE_ROUNDING &&
-            (worst < 0 || touch->drive < persist->touches[worst].drive))
-            worst = c;
-    }
-    return worst;
-}
-
-static bool onsets_slide(const imp_persist *persist)
-{
-    for (int c = 0; c < persist->count; c++)
-        if (persist->touches[c].onset && persist->touches[c].drive < 1 - IMP_DRIVE_ROUNDING) return false;
-    return true;
-}
-
 qvec3 imp_against_friction(const imp_touch *touch)
 {
     const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
@@ -351,70 +298,11 @@ qvec3 imp_against_friction(const imp_touch *touch)
     return size > 0 ? qvec3_scale(friction, -1 / size) : imp_tangent(touch->normal);
 }
 
-static double force_scale(const imp_persist *persist)
-{
-    double scale = 0;
-    for (int c = 0; c < persist->count; c++) scale = fmax(scale, qvec3_norm(persist->touches[c].force));
-    return scale;
-}
-
 void imp_persist_begin_slide(imp_pair *pair, const imp_touch *touch)
 {
     pair->mode = IMP_SLIDE;
     pair->slip = (imp_sliding){.age = pair->law.friction > 0 ? IMP_SLIP_BEGUN : IMP_SLIP_OLD,
                                .direction = imp_against_friction(touch)};
-}
-
-/* Sliding that has died out, here or because another contact's did, is rolling until its friction says otherwise. */
-static void stop_slow_slides(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads)
-{
-    imp_persist_find_touches(persist, world, states, loads);
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (touch->mode == IMP_SLIDE && touch->friction > 0 && touch->speed <= world->slip_speed && !touch->onset)
-            world->pairs[touch->pair].mode = IMP_ROLL;
-    }
-}
-
-/* tried: of each pair whose slip was to begin, that it has been let stick again. */
-static impact_status resolve(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads,
-                             bool *tried)
-{
-    impact_status status = imp_persist_reserve(persist, world, states);
-    stop_slow_slides(persist, world, states, loads);
-    persist->lenient = false;
-    for (int round = 0; status == IMPACT_OK && persist->count > 0 && round < 6 * world->pair_count + 8; round++) {
-        imp_persist_solve(persist, world, states, loads);
-        const double scale = force_scale(persist);
-        const int pull = worst_pull(persist, scale), grip = worst_grip(persist, scale),
-                  stuck = worst_onset(persist, tried);
-        if (pull >= 0 && !(persist->redundant && grip >= 0)) {
-            world->pairs[persist->touches[pull].pair].mode = IMP_OPEN;
-            status = imp_persist_reserve(persist, world, states);
-        } else if (grip >= 0) {
-            imp_persist_begin_slide(&world->pairs[persist->touches[grip].pair], &persist->touches[grip]);
-        } else if (stuck >= 0) {
-            imp_pair *pair = &world->pairs[persist->touches[stuck].pair];
-            pair->mode = IMP_ROLL;
-            imp_end_onset(pair);
-            tried[persist->touches[stuck].pair] = true;
-        } else {
-            if (!onsets_slide(persist)) status = imp_persist_try_modes(persist, world, states, loads);
-            persist->lenient = !onsets_slide(persist);
-            return status;
-        }
-    }
-    return persist->count == 0 ? status : IMPACT_EUNSETTLED;
-}
-
-impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const imp_state *states,
-                                  const imp_load *loads)
-{
-    bool *tried = imp_arena_take(persist->arena, (size_t)world->pair_count, sizeof *tried);
-    if (!tried) return IMPACT_ENOMEM;
-    const impact_status status = resolve(persist, world, states, loads, tried);
-    imp_arena_give(persist->arena, tried);
-    return status;
 }
 
 double imp_persist_approach(const imp_world *world, const imp_touch *touch, const imp_state *states)

@@ -58,13 +58,11 @@ typedef struct imp_persist {
     struct imp_unknown *unknowns; /* 3 capacity */
     double *matrix, *right;       /* 2 (3 capacity)^2 and 6 capacity */
     int *order;                   /* 6 capacity */
-    bool lenient; /* no modes were found in which all slip that begins goes on: directions are then not looked for anew
-                   */
-    bool redundant;      /* more contacts were solved for than the balance of forces can tell apart */
-    int *island;         /* capacity; touches of the same number share bodies */
-    int bodies;          /* bodies there is room for */
-    int *first;          /* per body: scratch */
-    imp_effect *effects; /* per body: of the reactions that were solved for */
+    bool redundant;               /* more contacts were solved for than the balance of forces can tell apart */
+    int *island;                  /* capacity; touches of the same number share bodies */
+    int bodies;                   /* bodies there is room for */
+    int *first;                   /* per body: scratch */
+    imp_effect *effects;          /* per body: of the reactions that were solved for */
 } imp_persist;
 
 /* Room for every pair of the world that is held now; the place of contact of those newly held that carry it. */
@@ -107,21 +105,13 @@ void imp_persist_project(imp_persist *persist, imp_world *world, imp_state *stat
 /* The velocities alone. */
 void imp_persist_project_velocities(imp_persist *persist, imp_world *world, imp_state *states, const imp_load *loads);
 
-/* Makes the modes consistent with the reactions: opens contacts that would pull, lets roll what can and
- * slide what must. Where reactions are not unique friction gives way first: what pulls is sure only once they are. */
+/* Gives what is held the modes of Coulomb's law (persist_modes.c), and solves for the reactions: what pulls is opened,
+ * what can rolls and what must slides. IMPACT_EUNSETTLED: no answer was found. */
 impact_status imp_persist_resolve(imp_persist *persist, imp_world *world, const imp_state *states,
                                   const imp_load *loads);
 
 /* Unit vector against a touch's friction as solved for: the way it would slide if the friction gave way. */
 qvec3 imp_against_friction(const imp_touch *touch);
-
-/* Lets roll, until their friction says otherwise, the contacts whose slip was to begin and that others hold. */
-void imp_persist_stop_onsets(imp_persist *persist, imp_world *world, const imp_state *states, const imp_load *loads);
-
-/* Of few contacts without slip: rolling, sliding or open, whichever is consistent; otherwise as they were
- * (persist_modes.c). */
-impact_status imp_persist_try_modes(imp_persist *persist, imp_world *world, const imp_state *states,
-                                    const imp_load *loads);
 
 /* Normal relative velocity at a touch, m/s; < 0: approaching. */
 double imp_persist_approach(const imp_world *world, const imp_touch *touch, const imp_state *states);

@@ -191,6 +191,17 @@ static balance find_balance(const imp_world *world, const imp_pair *pair, const 
     return b;
 }
 
+qvec3 imp_flat_holding(const imp_world *world, int p, const imp_state *states, const imp_load *loads)
+{
+    imp_pair stuck = world->pairs[p];
+    double height, sign;
+    stuck.mode = IMP_ROLL;
+    const gliding g = glide(world, &stuck, states);
+    face_below(&world->bodies[stuck.body1], &states[stuck.body1], g.n, &height, &sign);
+    const balance b = find_balance(world, &stuck, &g, height, &loads[stuck.body1]);
+    return qvec3_axpy(b.pressure, g.n, b.friction);
+}
+
 imp_touch imp_flat_touch(const imp_world *world, int p, const imp_state *states, const imp_load *loads)
 {
     const imp_pair *pair = &world->pairs[p];

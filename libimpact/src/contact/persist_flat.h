@@ -31,6 +31,9 @@ void imp_flat_level(const imp_world *world, const imp_pair *pair, imp_state *sta
  * the balance. */
 imp_touch imp_flat_touch(const imp_world *world, int pair, const imp_state *states, const imp_load *loads);
 
+/* The force of the plane on the pair's flat body under which that sticks, N. */
+qvec3 imp_flat_holding(const imp_world *world, int pair, const imp_state *states, const imp_load *loads);
+
 /* The body tips over a centre of pressure that has gone too far out: its contact is carried on from there. */
 void imp_flat_tip(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_touch *touch);
 

@@ -10,6 +10,7 @@
 /* A system of n equations, taken apart; the arrays are the caller's. */
 typedef struct imp_linear {
     int n, rank;
+    double doubtful;     /* pivots under this part of the greatest element are looked at again, by complete pivoting */
     int sign;            /* of the determinant; 0 where equations are missing */
     double *matrix;      /* n^2: comes in by rows, and is spent */
     double *spare;       /* n^2 of scratch */
@@ -17,8 +18,8 @@ typedef struct imp_linear {
     int *rows, *columns; /* n each */
 } imp_linear;
 
-/* Takes the matrix apart by Gauss' elimination, with complete pivoting if pivots under 1e-12 of the greatest element
- * show that the equations do not determine all unknowns. */
+/* Takes the matrix apart by Gauss' elimination, with complete pivoting if pivots under 1e-12 of the greatest element,
+ * or under `doubtful`, show that the equations do not determine all unknowns. */
 void imp_linear_factor(imp_linear *system);
 
 /* The same where no pivot but zero is refused: false of those. The matrix is badly conditioned, and known to be. */

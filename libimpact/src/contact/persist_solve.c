@@ -18,10 +18,12 @@ static void finish_touches(imp_persist *persist)
     }
 }
 
+/* Where they are not unique, next to those that the pairs remember. */
 static void solve_reactions(imp_persist *persist, const imp_world *world, const imp_state *states)
 {
     for (int c = 0; c < persist->count; c++) {
         imp_touch *touch = &persist->touches[c];
+        touch->force = world->pairs[touch->pair].rest.reaction;
         touch->wanted = qvec3_neg(qvec3_axpy(qvec3_dot(touch->normal_rate, touch->slip), touch->normal, touch->bias));
     }
     imp_system_solve(persist, world, states, true);
@@ -202,10 +204,10 @@ static bool solve_anew(imp_persist *persist, imp_world *world, const imp_state *
 static void solve_onsets(imp_persist *persist, imp_world *world, const imp_state *states)
 {
     bool settled = recall_turns(persist, world) && turn_together(persist, world, states);
-    bool good = settled && (drive_onsets(persist, world, states) || persist->lenient);
+    bool good = settled && drive_onsets(persist, world, states);
     if (!good) {
         settled = solve_anew(persist, world, states);
-        good = settled && (drive_onsets(persist, world, states) || persist->lenient);
+        good = settled && drive_onsets(persist, world, states);
     }
     if (good) keep_turns(persist, world);
 }

@@ -283,6 +283,17 @@ static void find_forces(imp_persist *persist, const imp_linear *system)
     }
 }
 
+/* Where forces are not unique those nearest to what the touches have. */
+static void begin_forces(imp_persist *persist, int n)
+{
+    imp_unknown *u = persist->unknowns;
+    for (int i = 0; i < n; i++) {
+        const imp_touch *touch = &persist->touches[u[i].touch];
+        const bool own = touch->mode == IMP_ROLL || i == 0 || u[i].touch != u[i - 1].touch;
+        if (own) add_force(persist, &u[i], qvec3_dot(touch->force, u[i].row));
+    }
+}
+
 static void take_forces(imp_persist *persist, int island, bool with_friction, bool unique)
 {
     const imp_unknown *u = persist->unknowns;
@@ -299,11 +310,12 @@ static void take_forces(imp_persist *persist, int island, bool with_friction, bo
     }
 }
 
-static void solve_island(imp_persist *persist, const imp_world *world, const imp_state *states, bool with_friction,
-                         int island)
+static imp_linear factor_island(imp_persist *persist, const imp_world *world, const imp_state *states,
+                                bool with_friction, int island)
 {
     const int n = list_unknowns(persist, world, states, island, with_friction);
     imp_linear system = {.n = n,
+                         .doubtful = IMP_LINEAR_DOUBTFUL,
                          .matrix = persist->matrix,
                          .spare = persist->matrix + n * n,
                          .scratch = persist->right + n,
@@ -311,9 +323,38 @@ static void solve_island(imp_persist *persist, const imp_world *world, const imp
                          .columns = persist->order + n};
     build_matrix(persist->unknowns, n, system.matrix);
     imp_linear_factor(&system);
+    return system;
+}
+
+static void solve_island(imp_persist *persist, const imp_world *world, const imp_state *states, bool with_friction,
+                         int island)
+{
+    const imp_linear system = factor_island(persist, world, states, with_friction, island);
+    const bool unique = system.rank == system.n;
+    if (with_friction && !unique) begin_forces(persist, system.n);
     find_forces(persist, &system);
-    persist->redundant = persist->redundant || system.rank < n;
-    take_forces(persist, island, with_friction, system.rank == n);
+    persist->redundant = persist->redundant || !unique;
+    take_forces(persist, island, with_friction, unique);
+}
+
+int imp_system_count_idle(imp_persist *persist, const imp_world *world, const imp_state *states, int island)
+{
+    const imp_linear system = factor_island(persist, world, states, true, island);
+    return system.n - system.rank;
+}
+
+void imp_system_idle(const imp_persist *persist, int island, int k, qvec3 *force)
+{
+    int n = 0;
+    for (int c = island; c < persist->count; c++) {
+        force[c] = (qvec3){0, 0, 0};
+        n += persist->island[c] == island ? unknowns_of(&persist->touches[c], true) : 0;
+    }
+    const double *own = persist->matrix + n * n + k * n;
+    for (int i = 0; i < n; i++) {
+        const imp_unknown *u = &persist->unknowns[persist->order[n + i]];
+        force[u->touch] = qvec3_axpy(own[i] / u->scale, u->force, force[u->touch]);
+    }
 }
 
 /* What is still keeps its reaction, and needs no impulse. */

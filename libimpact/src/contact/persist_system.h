@@ -17,9 +17,16 @@ qvec3 imp_system_response(const imp_world *world, const imp_state *states, const
 /* Finds each touch's force (or impulse) and pressure, so that its relative acceleration (or velocity) changes by what
  * is wanted: along the normal, and for a rolling contact across it too. with_friction: a sliding contact's pressure
  * brings its friction along, and where its direction is solved for too, across that direction u' changes by pull x (the
- * force across it). Where the reactions are not unique, those of the least sum of squares, each over the inertia at its
- * contact: they follow the state as smoothly as it goes. What is still keeps its reaction, and no impulse. */
+ * force across it). Where the reactions are not unique, those
+ * whose changes have the least sum of squares, each over the inertia at its contact, of what the touches' force comes
+ * as (of impulses: of none): they follow the state as smoothly as it goes. What is still keeps its reaction, and no
+ * impulse. */
 void imp_system_solve(imp_persist *persist, const imp_world *world, const imp_state *states, bool with_friction);
+
+/* Of an island, by its first touch: how many independent forces of its contacts move nothing; and the k-th, per touch,
+ * N: until anything else is solved. */
+int imp_system_count_idle(imp_persist *persist, const imp_world *world, const imp_state *states, int island);
+void imp_system_idle(const imp_persist *persist, int island, int k, qvec3 *force);
 
 /* By how much all forces that were solved for change this touch's relative acceleration. */
 qvec3 imp_system_change(const imp_persist *persist, const imp_touch *touch);

@@ -35,7 +35,6 @@ void imp_motion_reset(imp_motion *motion, imp_world *world, const impact_methods
     motion->steady_steps = motion->pace_steps = 0;
     motion->fallen = motion->last_fall = 0;
     motion->persist.count = 0;
-    motion->persist.lenient = false;
     motion->message[0] = '\0'; /* integrators that fit are used again: a start leaves nothing of what they did */
 }
 

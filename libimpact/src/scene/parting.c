@@ -90,7 +90,6 @@ static impact_status split_off(imp_island *island, const int *root, int componen
     imp_island *part = *out = imp_islands_spare(scene);
     if (!part) return IMPACT_ENOMEM;
     part->t = part->looked_at = island->t;
-    part->motion.persist.lenient = island->motion.persist.lenient;
     part->stepped = stays_stepped(island, root, component);
     impact_status status = imp_island_reserve(part, world->body_count, world->pair_count);
     if (status != IMPACT_OK) return status;

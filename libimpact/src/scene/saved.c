@@ -126,7 +126,6 @@ static void walk_island(imp_archive *a, imp_saved_island *i)
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) imp_archive_double(a, numbers[k]);
     walk_works(a, &i->works);
     imp_archive_bool(a, &i->stepped);
-    imp_archive_bool(a, &i->lenient);
     imp_archive_int(a, &i->member_count, 0, INT32_MAX);
     imp_archive_int(a, &i->pair_count, 0, INT32_MAX);
 }

@@ -29,7 +29,7 @@ typedef struct imp_saved_island {
     double t; /* one that rests: since when; else now */
     double loss, fallen, looked_at, slip_speed;
     imp_works works;
-    bool stepped, lenient;
+    bool stepped;
     int member_count, pair_count;
 } imp_saved_island;
 

@@ -80,7 +80,6 @@ static imp_saved_island head_of(const imp_island *island, double t)
                               .works = imp_island_works(island, t),
                               .slip_speed = island->world.slip_speed,
                               .stepped = island->stepped,
-                              .lenient = island->motion.persist.lenient,
                               .member_count = island->world.body_count,
                               .pair_count = island->world.pair_count};
 }
@@ -250,7 +249,6 @@ static impact_status fill_island(imp_island *island, const imp_saved_island *fro
     island->stepped = from->stepped;
     if (status == IMPACT_OK && island->stepped) status = imp_island_resume_steps(island);
     island->looked_at = from->looked_at;
-    island->motion.persist.lenient = from->lenient;
     island->motion.works = from->works;
     island->motion.fallen = from->fallen;
     island->impact_loss = from->loss;

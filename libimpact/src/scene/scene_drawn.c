@@ -81,6 +81,7 @@ static void ask_contacts(const imp_island *island, imp_persist *persist, const i
     for (int c = 0; c < persist->count; c++) {
         imp_touch *beside = &persist->touches[c];
         beside->still = beside->turning = false;
+        beside->force = (qvec3){0, 0, 0};
         beside->wanted = qvec3_neg(imp_system_response(&island->world, island->states, beside, touch, force));
     }
 }

@@ -166,16 +166,8 @@ static impact_status change_mode(imp_island *island, int p, imp_mode mode)
     return status;
 }
 
-/* Whether a rolling contact's friction is at its cone beside that of another: of reactions that are not unique which
- * one gets there first is rounding, and whichever slid alone would leave the rest to hold what both had held. */
-static bool gives_way_too(const imp_touch *touch, double greatest)
-{
-    return touch->mode == IMP_ROLL && !touch->still && touch->redundant &&
-           touch->margin <= IMP_MODE_ROUNDING * greatest;
-}
-
-/* A rolling contact's friction has reached its cone: it slides, against the friction that held it; what sticks then
- * rolls on (persist.h). */
+/* A rolling contact's friction has reached its cone: it slides, against the friction that held it; where reactions are
+ * not unique it may have another: that is asked (persist_modes.c). */
 static impact_status begin_slide(imp_island *island, int p)
 {
     imp_scene_remember(island);
@@ -183,12 +175,12 @@ static impact_status begin_slide(imp_island *island, int p)
     const impact_status status = imp_scene_load(island);
     if (status != IMPACT_OK) return status;
     imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
-    double greatest = 0;
-    for (int c = 0; c < persist->count; c++) greatest = fmax(greatest, qvec3_norm(persist->touches[c].force));
+    imp_pair *pair = &island->world.pairs[p];
     for (int c = 0; c < persist->count; c++) {
         const imp_touch *touch = &persist->touches[c];
-        if (touch->pair == p || gives_way_too(touch, greatest))
-            imp_persist_begin_slide(&island->world.pairs[touch->pair], touch);
+        if (touch->pair != p) continue;
+        imp_persist_begin_slide(pair, touch);
+        if (touch->redundant) pair->mode = IMP_ROLL;
     }
     return hold(island, -1, true);
 }
@@ -239,13 +231,10 @@ static impact_status cross_edge(imp_island *island, int edge)
     return status == IMPACT_OK ? hold(island, -1, true) : status;
 }
 
-/* Held contacts are put back, and those that others hold are asked again whether they must give way. */
+/* Held contacts are put back. */
 static impact_status renew(imp_island *island)
 {
     imp_scene_remember(island);
-    const impact_status status = imp_scene_load(island);
-    if (status != IMPACT_OK) return status;
-    imp_persist_stop_onsets(&island->motion.persist, &island->world, island->states, island->motion.loads);
     return hold(island, -1, true);
 }
 

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FORMAT = 4, NAME = 64, SUM = 8 };
+enum { FORMAT = 5, NAME = 64, SUM = 8 };
 
 static const char magic[16] = "impact saved";
 
