@@ -58,7 +58,6 @@ typedef struct imp_persist {
     struct imp_unknown *unknowns; /* 3 capacity */
     double *matrix, *right;       /* 2 (3 capacity)^2 and 6 capacity */
     int *order;                   /* 6 capacity */
-    bool redundant;               /* more contacts were solved for than the balance of forces can tell apart */
     int *island;                  /* capacity; touches of the same number share bodies */
     int bodies;                   /* bodies there is room for */
     int *first;                   /* per body: scratch */

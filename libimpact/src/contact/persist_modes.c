@@ -179,6 +179,7 @@ static bool straighten(const imp_persist *persist, modes_room *room)
     return any;
 }
 
+/* Modes are shown right by the linear system alone: what residual they are found with does not matter. */
 static bool solve_law(const imp_persist *persist, modes_room *room)
 {
     enum { ROUNDS = 3 };
@@ -188,7 +189,7 @@ static bool solve_law(const imp_persist *persist, modes_room *room)
     imp_cone_problem problem = {.count = room->count, .w = room->w, .q = room->q, .friction = room->friction};
     for (int k = 0; k < ROUNDS; k++) {
         const imp_cone_outcome o = imp_cone_solve(&problem, &room->cone, room->r, room->u, room->modes);
-        if (o.status != IMP_CONE_SOLVED && o.status != IMP_CONE_INEXACT) return false;
+        if (o.status == IMP_CONE_NO_SOLUTION || o.status == IMP_CONE_BAD) return false;
         if (!straighten(persist, room)) return true;
     }
     return true;
@@ -236,7 +237,7 @@ static bool take_modes(const imp_persist *persist, imp_world *world, const modes
     for (int i = 0; i < room->count; i++) most = fmax(most, room->r[3 * i]);
     for (int i = 0; i < room->count; i++) {
         const imp_touch *touch = &persist->touches[room->touch[i]];
-        const bool presses = room->r[3 * i] > IMP_MODE_ROUNDING * most;
+        const bool presses = room->r[3 * i] > IMP_PRESSED_OF_LOADS * most;
         if (presses && room->modes[i] == IMP_CONE_STICKS && slides_on(touch)) return false;
         take_mode(&world->pairs[touch->pair], touch, room->contacts[i].axes, presses ? room->modes[i] : IMP_CONE_OPEN,
                   room->size, &room->r[3 * i], &room->u[3 * i]);

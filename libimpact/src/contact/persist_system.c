@@ -333,7 +333,6 @@ static void solve_island(imp_persist *persist, const imp_world *world, const imp
     const bool unique = system.rank == system.n;
     if (with_friction && !unique) begin_forces(persist, system.n);
     find_forces(persist, &system);
-    persist->redundant = persist->redundant || !unique;
     take_forces(persist, island, with_friction, unique);
 }
 
@@ -368,7 +367,6 @@ void imp_system_solve(imp_persist *persist, const imp_world *world, const imp_st
 {
     find_islands(persist, world);
     clear_effects(persist, world);
-    persist->redundant = false;
     for (int c = 0; c < persist->count; c++)
         if (persist->island[c] == c && !persist->touches[c].still)
             solve_island(persist, world, states, with_friction, c);

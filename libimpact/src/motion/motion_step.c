@@ -120,7 +120,6 @@ impact_status imp_motion_touches(imp_motion *motion, double t, bool moves, const
 {
     imp_persist *persist = &motion->persist;
     const impact_usage usage = motion->world->usage;
-    const bool redundant = persist->redundant;
     if (persist->count == 0) return IMPACT_OK;
     if (!imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
     if (moves) go_on_feet(motion, t);
@@ -128,7 +127,6 @@ impact_status imp_motion_touches(imp_motion *motion, double t, bool moves, const
     if (loaded) imp_persist_solve(persist, motion->world, states, motion->loads);
     memcpy(touches, persist->touches, sizeof *touches * (size_t)persist->count);
     imp_motion_restore_contacts(motion);
-    persist->redundant = redundant;
     motion->world->usage = usage;
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }

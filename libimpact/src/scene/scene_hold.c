@@ -158,7 +158,9 @@ static impact_status make_consistent(imp_island *island)
 }
 
 /* The first open pair that touches, is all but still along the normal, and is pressed together by the loads and the
- * reactions; or -1. */
+ * reactions; or -1. One by one, not all in the law that gives the modes: whether what is left of a bounce dies out
+ * hangs on what presses the pair, and of one that joins its velocity is ended before the law of accelerations holds for
+ * it. */
 static int find_pressed(imp_island *island, imp_meeting *m)
 {
     imp_world *world = &island->world;

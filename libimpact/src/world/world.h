@@ -108,7 +108,8 @@ typedef struct imp_site {
 /* Whether both bodies stand still, held, and nothing is solved for. */
 typedef struct imp_rest {
     bool still;
-    qvec3 reaction; /* one that lets them, or did: on body 1, N */
+    qvec3
+        reaction; /* on body 1, N: one that lets them, or did; what others are chosen next to, if they are not unique */
 } imp_rest;
 
 /* Two bodies that can touch, or one point of them; body1 moves. */
