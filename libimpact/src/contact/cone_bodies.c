@@ -168,12 +168,29 @@ static void let_give(imp_bodies_problem *p, double enough, double *r, double *u)
     }
 }
 
+static double residual_of_start(const imp_bodies_problem *p)
+{
+    imp_bodies_effect(p, p->r);
+    return residual_of(p, p->r);
+}
+
+/* A few sweeps at a time, as long as they lead on. */
+static void sweep_near(const imp_bodies_problem *p)
+{
+    enum { FEW = 5 };
+    double before = INFINITY, found = residual_of_start(p);
+    for (int k = 0; k < IMP_BODIES_SWEEPS && found > IMP_BODIES_FAR && found < IMP_BODIES_SWEPT * before; k += FEW) {
+        before = found;
+        imp_bodies_sweep(p, FEW);
+        found = residual_of_start(p);
+    }
+}
+
 /* What begins far off is swept first; where that does not settle contacts are let give, and it goes on from there.
  */
 static void sweep_and_iterate(imp_bodies_problem *p, double enough, bool brief, double *r, double *u)
 {
-    imp_bodies_effect(p, p->r);
-    if (residual_of(p, p->r) > IMP_BODIES_FAR) imp_bodies_sweep(p, IMP_BODIES_SWEEPS);
+    sweep_near(p);
     iterate(p, enough, brief, r, u);
     if (p->outcome->residual <= enough) return;
     let_give(p, enough, r, u);

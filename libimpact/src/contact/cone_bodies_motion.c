@@ -47,9 +47,25 @@ static void add_effect(const imp_bodies_problem *p, int c, const double *f, doub
     if (p->width > 3) add_effect_of(p, &p->turns[c], c, f + 3, factor, x);
 }
 
+/* P_K without its derivative, by the formula of imp_cone_project: sweeps and line searches ask for nothing else. */
+static inline void project_plain(double friction, const double *v, double *to)
+{
+    const double across = friction > 0 ? sqrt(v[1] * v[1] + v[2] * v[2]) : 0;
+    const bool within = v[0] >= 0 && across <= friction * v[0], under = !within && v[0] <= -friction * across;
+    const double size = (v[0] + friction * across) / (1 + friction * friction), part = within ? friction > 0
+                                                                                       : under || !(friction > 0)
+                                                                                           ? 0
+                                                                                           : friction * size / across;
+    to[0] = within ? v[0] : under ? 0 : size;
+    to[1] = part * v[1], to[2] = part * v[2];
+}
+
 void imp_bodies_project(double friction, double least, const double *v, double *to, double slope[3][3])
 {
-    imp_cone_project(friction, v, to, slope);
+    if (slope)
+        imp_cone_project(friction, v, to, slope);
+    else
+        project_plain(friction, v, to);
     if (to[0] >= least) return;
     const double across = hypot(v[1], v[2]), bound = friction * least, part = across > bound ? bound / across : 1;
     to[0] = least;
@@ -146,9 +162,17 @@ double imp_bodies_slip(const imp_bodies_problem *p, int c, const double *u, doub
     return one + scaled_slip(p->lengths[c].rolling > 0 ? p->rolling[c] : 0, slope + 4, 2);
 }
 
+/* s alone. */
+static double slip_part(const imp_bodies_problem *p, int c, const double *u)
+{
+    double slope[6];
+    if (p->width > 3) return imp_bodies_slip(p, c, u, slope);
+    return p->friction[c] > 0 ? p->friction[c] * sqrt(u[1] * u[1] + u[2] * u[2]) : 0;
+}
+
 /* ---- Newton ---- */
 
-/* Of x: r - rho (q + s + G x), and where s follows x its slope in what is seen of x. */
+/* Of x: r - rho (q + s + G x), and where s follows x the velocities whose s it is. */
 static void look_at_contact(const imp_bodies_problem *p, int c, const double *x)
 {
     const int i = p->width * c;
@@ -156,7 +180,8 @@ static void look_at_contact(const imp_bodies_problem *p, int c, const double *x)
     seen_at(p, c, x, v);
     if (p->follows) {
         for (int k = 0; k < p->width; k++) v[k] += p->q[i + k];
-        v[0] += imp_bodies_slip(p, c, v, &p->lean[i]);
+        memcpy(&p->lean[i], v, sizeof *v * (size_t)p->width);
+        v[0] += slip_part(p, c, v);
     } else {
         for (int k = 0; k < p->width; k++) v[k] += p->offset[i + k];
     }
@@ -193,11 +218,12 @@ static bool newton_step(const imp_bodies_problem *p)
     }
     for (int c = 0; c < p->count; c++) {
         const int i = p->width * c;
-        double f[6], slope[36];
+        double f[6], slope[36], lean[6];
         if (!(p->pressed[i] > 0)) continue;
         project_pressed(p, c, &p->y[i], f, slope);
+        if (p->follows) (void)imp_bodies_slip(p, c, &p->lean[i], lean);
         for (int k = 0; p->follows && k < p->width; k++)
-            for (int l = 1; l < p->width; l++) slope[p->width * k + l] += slope[p->width * k] * p->lean[i + l];
+            for (int l = 1; l < p->width; l++) slope[p->width * k + l] += slope[p->width * k] * lean[l];
         add_bend(p, c, slope);
     }
     p->outcome->factorings++;
@@ -255,10 +281,10 @@ int imp_bodies_settle(const imp_bodies_problem *p, double enough)
 /* r of one contact, as x is while the others stay. */
 static void sweep_contact(const imp_bodies_problem *p, int c)
 {
-    double v[6], own[6], slope[6], *r = &p->r[p->width * c];
+    double v[6], own[6], *r = &p->r[p->width * c];
     seen_at(p, c, p->x, v);
     for (int k = 0; k < p->width; k++) v[k] += p->q[p->width * c + k];
-    v[0] += imp_bodies_slip(p, c, v, slope);
+    v[0] += slip_part(p, c, v);
     for (int k = 0; k < p->width; k++) own[k] = r[k] - p->stiffness[c] * v[k];
     project_pressed(p, c, own, v, NULL);
     for (int k = 0; k < p->width; k++) own[k] = v[k] - r[k], r[k] = v[k];

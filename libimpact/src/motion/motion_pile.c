@@ -191,7 +191,7 @@ impact_status imp_motion_next_by_steps(imp_motion *motion, imp_pile *pile, const
     motion->works.damping += result->damping;
     motion->works.drive += result->drive_work;
     motion->works.sliding += result->sliding;
-    return keep_pile_step(motion, t0, &works, before, states);
+    return keep_pile_step(motion, t0, &works, pile->from, states);
 }
 
 impact_status imp_motion_look_by_steps(imp_motion *motion, imp_pile *pile, double t, imp_state *states)

@@ -53,7 +53,8 @@ static void find_mean(imp_pile *pile, const imp_world *world, const imp_state *f
     }
 }
 
-/* The velocities at the end of the step, the places being those of its middle; loads are those of the states given. */
+/* The velocities at the end of the step, the places being those of its middle; loads are those of the states given.
+ * What strikes too hard in it is found instead. */
 static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, double h, const imp_state *loaded,
                                  imp_state *to, imp_pile_step_result *result)
 {
@@ -73,7 +74,9 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
     if (pile->halved) {
         imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[4], IMP_PILE_HALF);
         imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[3], IMP_PILE_END);
-    }
+    } else
+        imp_pile_seek_strikes(pile, world, pile->middle, pile->strike.begun + 0.5 * h);
+    if (pile->strike.found) return IMPACT_OK;
     for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
         const impact_status status = imp_pile_answer(pile, world, pile->middle, count, h, to, result);
         if (status != IMPACT_OK) return status;
@@ -91,12 +94,12 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
     imp_pile_drift(world, from, 0.5 * h, pile->middle);
     const imp_pile_step_result before = *result;
     impact_status status = push_bodies(pile, world, t, h, pile->middle, to, result);
-    if (status == IMPACT_OK && loads_follow(world)) {
+    if (status == IMPACT_OK && loads_follow(world) && !pile->strike.found) {
         *result = before;
         find_mean(pile, world, from, to);
         status = push_bodies(pile, world, t, h, pile->mean, to, result);
     }
-    if (status != IMPACT_OK) return status;
+    if (status != IMPACT_OK || pile->strike.found) return status;
     if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[2])) return IMPACT_ENOMEM;
     /* x' = x_m + h v'/2; of what tumbles with the turning that it has in its end's orientation, near enough */
     imp_pile_drift(world, to, 0.5 * h, to);
@@ -144,11 +147,12 @@ static impact_status try_step(imp_pile *pile, imp_world *world, double t, double
     *result = (imp_pile_step_result){.taken = h};
     if (!imp_pile_copy_memories(pile->arena, &memory[1], &memory[0])) return IMPACT_ENOMEM;
     impact_status status = step_once(pile, world, t, 0.5 * h, states, pile->half, result);
-    *halfway = status == IMPACT_OK;
-    if (status != IMPACT_OK) return status;
+    *halfway = status == IMPACT_OK && !pile->strike.found;
+    if (!*halfway) return status;
     if (!imp_pile_copy_memories(pile->arena, &memory[4], &memory[1])) return IMPACT_ENOMEM;
+    pile->strike.begun = 0.5 * h;
     status = step_once(pile, world, t + 0.5 * h, 0.5 * h, pile->half, pile->end, result);
-    if (status != IMPACT_OK) return status;
+    if (status != IMPACT_OK || pile->strike.found) return status;
     if (!imp_pile_copy_memories(pile->arena, &memory[3], &memory[1]) ||
         !imp_pile_copy_memories(pile->arena, &memory[1], &memory[0]))
         return IMPACT_ENOMEM;
@@ -196,10 +200,55 @@ static impact_status try_and_project(imp_pile *pile, imp_world *world, double t,
 {
     impact_status status = try_step(pile, world, t, h, from, there, halfway, result);
     double parted = 0;
-    if (status != IMPACT_OK || result->error > allowed) return status;
+    if (status != IMPACT_OK || pile->strike.found || result->error > allowed) return status;
     memcpy(to, pile->end, sizeof *to * (size_t)world->body_count);
     status = imp_pile_project(pile, world, h, to, &parted);
     result->error += parted;
+    if (result->error > allowed) imp_pile_seek_strikes(pile, world, to, h);
+    return status;
+}
+
+/* The steps that are tried for one. */
+typedef struct pile_trial {
+    double h, cut; /* s; that was to be tried where a strike was met */
+    bool there, halfway, good;
+    int strikes;
+    imp_pile_step_result struck; /* what strikes at its begin does */
+} pile_trial;
+
+/* Strikes what strikes at the begin, or ends the step where it does. */
+static impact_status meet_strike(imp_pile *pile, imp_world *world, pile_trial *trial)
+{
+    enum { MOST = 16 };
+    const imp_pile_strike *strike = &pile->strike;
+    bool struck = false;
+    const bool at_once = strike->time * strike->approach <= imp_pile_slack(pile, world);
+    trial->there = false;
+    if (at_once && trial->strikes++ < MOST) {
+        const impact_status status = imp_pile_strike_now(pile, world, pile->from, &trial->struck, &struck);
+        if (status == IMPACT_ENOMEM) return status;
+    }
+    if (struck) return IMPACT_OK;
+    trial->cut = fmax(trial->cut, trial->h);
+    const double passes = strike->allowed / strike->approach; /* in which it moves no farther than the step may err */
+    trial->h = fmin(fmax(at_once ? 0 : strike->time, passes), (at_once ? 0.5 : 1) * trial->h);
+    return IMPACT_OK;
+}
+
+static impact_status try_length(imp_pile *pile, imp_world *world, double t, double wanted, double least,
+                                pile_trial *trial, imp_pile_step_result *result)
+{
+    pile->shortest = !(trial->h > least);
+    const double allowed = pile->shortest ? INFINITY : wanted;
+    pile->strike = (imp_pile_strike){.allowed = allowed, .span = trial->h};
+    impact_status status = try_and_project(pile, world, t, trial->h, pile->from, trial->there, &trial->halfway, allowed,
+                                           pile->projected, result);
+    if (status == IMPACT_OK && pile->strike.found) return meet_strike(pile, world, trial);
+    trial->good = status == IMPACT_OK && result->error <= allowed;
+    if (status == IMPACT_EUNSETTLED && !pile->shortest) status = IMPACT_OK;
+    if (trial->good) return status;
+    trial->there = keep_first_half(pile, trial->halfway);
+    trial->h *= 0.5;
     return status;
 }
 
@@ -207,23 +256,19 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
                             imp_pile_step_result *result)
 {
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
+    const size_t size = sizeof *states * (size_t)world->body_count;
     const double natural = imp_pile_natural_time(world, states), wanted = pile->tolerance * imp_pile_smallest(world);
     const double least = pile->tolerance * natural; /* of which any error is allowed */
     if (!(pile->step > 0)) pile->step = pile->longest / IMP_PILE_FIRST * natural;
-    double h = fmin(most, fmin(pile->step, pile->longest * natural));
+    pile_trial trial = {.h = fmin(most, fmin(pile->step, pile->longest * natural))};
+    memcpy(pile->from, states, size);
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
-    bool halfway = false, good = false;
-    for (bool there = false; status == IMPACT_OK && !good; h *= good ? 1 : 0.5) {
-        pile->shortest = !(h > least);
-        const double allowed = pile->shortest ? INFINITY : wanted;
-        status = try_and_project(pile, world, t, h, states, there, &halfway, allowed, pile->projected, result);
-        good = status == IMPACT_OK && result->error <= allowed;
-        if (status == IMPACT_EUNSETTLED && !pile->shortest) status = IMPACT_OK;
-        if (!good) there = keep_first_half(pile, halfway);
-    }
+    while (status == IMPACT_OK && !trial.good) status = try_length(pile, world, t, wanted, least, &trial, result);
     if (status != IMPACT_OK) return status;
-    memcpy(states, pile->projected, sizeof *states * (size_t)world->body_count);
+    memcpy(states, pile->projected, size);
+    result->error += trial.struck.error, result->sliding += trial.struck.sliding;
+    result->drive_work += trial.struck.drive_work;
     /* h³ where modes stay, h where they change: doubled where the first would allow as much */
-    pile->step = result->error < 0.1 * wanted ? 2 * h : h;
+    pile->step = fmax(trial.cut, result->error < IMP_PILE_LENGTHENS * wanted ? 2 * trial.h : trial.h);
     return imp_pile_copy_memories(pile->arena, &pile->memory[0], imp_pile_ended(pile)) ? IMPACT_OK : IMPACT_ENOMEM;
 }

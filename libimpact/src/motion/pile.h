@@ -18,9 +18,11 @@
  *
  * Free flight in uniform gravity is exact. A step is taken once whole and once in two halves; what their ends differ by
  * is its measured error, and chooses the next; what overlaps at its end, as it came after the last middle, and has to
- * be parted is error too. Overlaps that arrivals leave, and gaps by which held contacts open on round bodies, h² in
- * each step, are put back along normals, least in the metric of mass. The limit h -> 0 is Coulomb's law with Newton's
- * restitution, at simultaneous contacts Moreau's.
+ * be parted is error too. Where what closes within a step strikes so hard that half a step of it is more than may be
+ * off, the step ends where it closes, and all of its island is struck at that instant, q = G v with neither loads nor
+ * time: the next step begins with what that leaves. Overlaps that arrivals leave, and gaps by which held contacts open
+ * on round bodies, h² in each step, are put back along normals, least in the metric of mass. The limit h -> 0 is
+ * Coulomb's law with Newton's restitution, at simultaneous contacts Moreau's.
  */
 #ifndef IMP_PILE_H
 #define IMP_PILE_H
@@ -29,6 +31,14 @@
 #include "contact/rest.h"
 #include "motion/pile_contacts.h"
 #include "world/field.h"
+
+/* What first strikes within the step that is tried. */
+typedef struct imp_pile_strike {
+    double allowed, span; /* m, s: what the step may err; how long it is */
+    double begun;         /* s: where its part at hand begins */
+    bool found;
+    double time, approach; /* s from its begin, where the gap closes; m/s, at what rate */
+} imp_pile_strike;
 
 typedef struct imp_pile {
     imp_arena *arena; /* the pile's own */
@@ -42,6 +52,7 @@ typedef struct imp_pile {
     int *number; /* per body of the world: its own in an island, -1: it does not move */
     imp_rest_workspace rest;
     imp_state *middle, *mean, *whole, *half, *end, *projected;
+    imp_state *from; /* where the last step began: with what strikes there struck */
     imp_load *loads;
     imp_pile_contacts touching;
     /* as the accepted step left them, those before the step at hand, what it leaves, what the second half of a step
@@ -51,7 +62,8 @@ typedef struct imp_pile {
         imp_pile_memories memory;
         double step;
         bool begun;
-    } kept;            /* imp_pile_keep */
+    } kept; /* imp_pile_keep */
+    imp_pile_strike strike;
     bool halved;       /* the step at hand is whole, its halves done */
     bool shortest;     /* it is so short that any error is allowed */
     int contacts_most; /* there is room for in: */
@@ -88,8 +100,8 @@ double imp_pile_natural_time(const imp_world *world, const imp_state *states);
 void imp_pile_begin(imp_pile *pile);
 
 /* One step from time t of all bodies of the world that move, at most `most` long; the states are its end. Loads
- * are asked at (t, states). IMPACT_ENOMEM; IMPACT_EDOMAIN: a load refused; IMPACT_EUNSETTLED, with a message: a cone
- * problem found no answer, however short the step. */
+ * are asked at (t, states). pile->from is where it began. IMPACT_ENOMEM; IMPACT_EDOMAIN: a load refused;
+ * IMPACT_EUNSETTLED, with a message: a cone problem found no answer, however short the step. */
 impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double most, imp_state *states,
                             imp_pile_step_result *result);
 

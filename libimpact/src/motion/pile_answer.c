@@ -74,13 +74,18 @@ static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count
     for (int c = 0; c < count; c++) {
         const int i = pile->width * c;
         if (pile->u[i] > mobility_of(pile, c) * pile->r[i]) continue;
-        imp_pile_memory *m = imp_pile_remember(pile->arena, memories, &pile->touching.points[pile->members[c]]);
+        const imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        const imp_pile_memory *before = remembered(pile, point, IMP_PILE_BEFORE);
+        imp_pile_memory *m = imp_pile_remember(pile->arena, memories, point);
         if (!m) return false;
-        m->reaction = imp_pile_from_parts(&pile->contacts[c], &pile->r[i], h);
         m->velocity = imp_pile_from_parts(&pile->contacts[c], &pile->u[i], 1);
-        if (pile->width == 3) continue;
-        m->moment = imp_pile_from_parts(&pile->contacts[c], &pile->r[i + 3], h);
-        m->turning = imp_pile_from_parts(&pile->contacts[c], &pile->u[i + 3], 1);
+        if (pile->width > 3) m->turning = imp_pile_from_parts(&pile->contacts[c], &pile->u[i + 3], 1);
+        if (!(h > 0)) { /* impulses at an instant are no reactions */
+            if (before) m->reaction = before->reaction, m->moment = before->moment;
+            continue;
+        }
+        m->reaction = imp_pile_from_parts(&pile->contacts[c], &pile->r[i], h);
+        if (pile->width > 3) m->moment = imp_pile_from_parts(&pile->contacts[c], &pile->r[i + 3], h);
     }
     return true;
 }
@@ -294,7 +299,8 @@ static imp_cone_outcome solve_at_length(imp_pile *pile, const imp_world *world, 
     return imp_pile_solve(pile, world, &question);
 }
 
-/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
+/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. h = 0: at
+ * an instant; what they leave acts over the step that it is in. */
 impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
                               imp_state *next, imp_pile_step_result *result)
 {
@@ -302,14 +308,16 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, next, pile->contacts, count, pile->q);
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, states, pile->contacts, count,
                                                                        pile->before);
-    add_bends(pile, world, states, count, h);
+    if (h > 0) add_bends(pile, world, states, count, h);
+    const double span = h > 0 ? h : pile->strike.span;
     const bool smooth = recall_step(pile, world, count, h);
-    const imp_pile_question question = question_of(pile, world, states, count, h);
+    const imp_pile_question question = question_of(pile, world, states, count, span);
     imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
     if (!smooth) outcome = lessen_bounces(pile, world, &question, outcome);
     if (pile->shortest && outcome.status != IMP_CONE_NO_ROOM && !is_usable(pile, world, count, outcome.residual))
         outcome = solve_at_length(pile, world, question);
-    if (smooth && outcome.residual <= IMP_PILE_USABLE) outcome = follow_slip(pile, world, &question, h, outcome);
+    if (smooth && h > 0 && outcome.residual <= IMP_PILE_USABLE)
+        outcome = follow_slip(pile, world, &question, h, outcome);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !is_usable(pile, world, count, outcome.residual)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,
@@ -317,7 +325,7 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
         return IMPACT_EUNSETTLED;
     }
     (turning ? imp_cone_push_turning : imp_cone_push)(world, pile->contacts, count, pile->r, next);
-    result->error += h * outcome.residual * imp_pile_fastest(pile, count);
+    result->error += span * outcome.residual * imp_pile_fastest(pile, count);
     if (!remember_step(pile, &pile->memory[2], count, h)) return IMPACT_ENOMEM;
     result->drive_work += drive_work(pile, world, count);
     result->sliding += rubbed(pile, count);

@@ -42,9 +42,19 @@ double imp_pile_fastest(const imp_pile *pile, int count);
 /* The vector whose parts along the contact's axes these are, over the divisor. */
 qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, double divisor);
 
-/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. */
+/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. h = 0: at
+ * an instant. */
 impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
                               imp_state *next, imp_pile_step_result *result);
+
+/* Looks among the points that were found in states of the velocities, at the time since the step's begin, for what
+ * was open and closes so fast that the step would err by more than it may: into pile->strike, if it is the first. */
+void imp_pile_seek_strikes(imp_pile *pile, const imp_world *world, const imp_state *states, double time);
+
+/* Strikes at an instant what of the states touches and approaches so, with its islands; *struck: something did.
+ * IMPACT_ENOMEM, IMPACT_EUNSETTLED: the states, and what is remembered, are as they were. */
+impact_status imp_pile_strike_now(imp_pile *pile, imp_world *world, imp_state *states, imp_pile_step_result *result,
+                                  bool *struck);
 
 /* What the second half of the step tried last left held. */
 static inline imp_pile_memories *imp_pile_ended(imp_pile *pile) { return &pile->memory[3]; }
