@@ -29,18 +29,13 @@ typedef struct family {
     impact_law restitution; /* Moreau's: the law it restores by; springs have their own */
 } family;
 
-static const family families[] = {{IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 4, 6, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_SPRINGS, 1, 2, 3, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_SPRINGS, 1, 4, 6, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_SPRINGS, 1, 7, 12, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 2, 3, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 4, 6, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 7, 12, IMPACT_POISSON},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 2, 3, IMPACT_NEWTON},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 4, 6, IMPACT_NEWTON},
-                                  {IMPACT_TOGETHER_MOREAU, 0, 7, 12, IMPACT_NEWTON}};
+static const family families[] = {
+    {IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3, IMPACT_POISSON},  {IMPACT_TOGETHER_SPRINGS, 1.5, 4, 6, IMPACT_POISSON},
+    {IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12, IMPACT_POISSON}, {IMPACT_TOGETHER_SPRINGS, 1, 2, 3, IMPACT_POISSON},
+    {IMPACT_TOGETHER_SPRINGS, 1, 4, 6, IMPACT_POISSON},    {IMPACT_TOGETHER_SPRINGS, 1, 7, 12, IMPACT_POISSON},
+    {IMPACT_TOGETHER_MOREAU, 0, 2, 3, IMPACT_POISSON},     {IMPACT_TOGETHER_MOREAU, 0, 4, 6, IMPACT_POISSON},
+    {IMPACT_TOGETHER_MOREAU, 0, 7, 12, IMPACT_POISSON},    {IMPACT_TOGETHER_MOREAU, 0, 2, 3, IMPACT_NEWTON},
+    {IMPACT_TOGETHER_MOREAU, 0, 4, 6, IMPACT_NEWTON},      {IMPACT_TOGETHER_MOREAU, 0, 7, 12, IMPACT_NEWTON}};
 enum { FAMILIES = sizeof families / sizeof *families };
 
 typedef struct tally {

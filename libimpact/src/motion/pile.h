@@ -109,6 +109,9 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
  * metric of mass. What the pile remembers stays. IMPACT_ENOMEM. */
 impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states);
 
+/* Of what comes to rest where the last step ended: closes the gaps that it has left, to their square, too. */
+impact_status imp_pile_lay_down(imp_pile *pile, imp_world *world, imp_state *states);
+
 /* Keeps what the pile remembers, to take it back: the next step is then taken from there anew. IMPACT_ENOMEM. */
 impact_status imp_pile_keep(imp_pile *pile);
 impact_status imp_pile_take_back(imp_pile *pile);

@@ -94,23 +94,6 @@ static double deepest(const imp_pile_contacts *touching)
     return most;
 }
 
-impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states)
-{
-    enum { PASSES = 8 }; /* places turn: each leaves the square of what the one before did */
-    const double rounding = IMP_TOUCHING * imp_pile_smallest(world), near = pile->tolerance * imp_pile_smallest(world);
-    if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
-    imp_pile_contacts_mark(&pile->touching, world, imp_pile_held(pile));
-    for (int pass = 0; pass < PASSES; pass++) {
-        if (!imp_pile_find_points(&pile->touching, world, states, NULL, 0, near, false)) return IMPACT_ENOMEM;
-        if (!(deepest(&pile->touching) > rounding)) return IMPACT_OK;
-        if (!imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
-        displace_nothing(pile, world, states);
-        for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) part_overlaps(pile, world, count);
-        imp_pile_drift(world, pile->middle, 1, states);
-    }
-    return IMPACT_OK;
-}
-
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
     const double slack = imp_pile_slack(pile, world), rounding = IMP_TOUCHING * imp_pile_smallest(world);
@@ -130,4 +113,28 @@ impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_s
         imp_pile_drift(world, pile->middle, 1, states);
     }
     return IMPACT_OK;
+}
+
+impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states)
+{
+    enum { PASSES = 8 }; /* places turn: each leaves the square of what the one before did */
+    const double rounding = IMP_TOUCHING * imp_pile_smallest(world), near = pile->tolerance * imp_pile_smallest(world);
+    if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
+    imp_pile_contacts_mark(&pile->touching, world, imp_pile_held(pile));
+    for (int pass = 0; pass < PASSES; pass++) {
+        if (!imp_pile_find_points(&pile->touching, world, states, NULL, 0, near, false)) return IMPACT_ENOMEM;
+        if (!(deepest(&pile->touching) > rounding)) return IMPACT_OK;
+        if (!imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
+        displace_nothing(pile, world, states);
+        for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) part_overlaps(pile, world, count);
+        imp_pile_drift(world, pile->middle, 1, states);
+    }
+    return IMPACT_OK;
+}
+
+impact_status imp_pile_lay_down(imp_pile *pile, imp_world *world, imp_state *states)
+{
+    double way;
+    const impact_status status = imp_pile_project(pile, world, 0, states, &way);
+    return status == IMPACT_OK ? imp_pile_part(pile, world, states) : status;
 }

@@ -94,8 +94,8 @@ static impact_status bring_all_to_rest(imp_island *island)
 {
     imp_scene_remember(island);
     const double energy = imp_island_energy(island);
-    /* what were left of overlaps would stay for ever */
-    impact_status status = imp_pile_part(island->pile, &island->world, island->states);
+    /* what were left of overlaps and gaps would stay for ever */
+    impact_status status = imp_pile_lay_down(island->pile, &island->world, island->states);
     for (int i = 0; status == IMPACT_OK && i < island->world.body_count; i++) {
         if (island->world.bodies[i].is_static) continue;
         island->states[i].v = island->states[i].momentum = (qvec3){0, 0, 0};
