@@ -183,6 +183,26 @@ static bool suits_explicit(const imp_motion *motion)
     return suits;
 }
 
+/* Whether the surface all but has edges: those of two exponents of 1 are contacts of their own. */
+static bool is_sharp(const impact_shape *s)
+{
+    const bool bends = s->kind == IMPACT_SUPERQUADRIC || s->kind == IMPACT_SUPERELLIPSOID;
+    const int straight = (s->r == 1) + (s->s == 1) + (s->t == 1);
+    return bends && straight < 2 && fmin(s->r, fmin(s->s, s->t)) < IMP_COLLOCATED_EXPONENT;
+}
+
+/* Whether a held body has such: the contact crosses them between two of collocation's nodes. */
+static bool crosses_edges(const imp_motion *motion)
+{
+    for (int c = 0; c < motion->persist.count; c++) {
+        const imp_touch *touch = &motion->persist.touches[c];
+        if (is_sharp(&motion->world->bodies[touch->body1].shape) ||
+            is_sharp(&motion->world->bodies[touch->body2].shape))
+            return true;
+    }
+    return false;
+}
+
 /* Which variable and which method the stretch needs. */
 static impact_status choose_road(imp_motion *motion, double t, double t_end, const imp_state *states)
 {
@@ -205,7 +225,8 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
      * (sphere_wall, turntable); of slip that begins its long steps lose seven digits. Where slip dies out, and where
      * the modes of many contacts end steps again and again, the explicit method takes a fourteenth of Adams' steps and
      * a third of the time (tests/lua/test_fading.lua). */
-    if (motion->persist.count <= 1 && !slip_begins(motion)) return choose_integrator(motion, IMPACT_ODE_LOBATTO);
+    if (motion->persist.count <= 1 && !slip_begins(motion) && !crosses_edges(motion))
+        return choose_integrator(motion, IMPACT_ODE_LOBATTO);
     return choose_integrator(motion, suits_explicit(motion) ? IMPACT_ODE_DOP853 : IMPACT_ODE_ADAMS);
 }
 
