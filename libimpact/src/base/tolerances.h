@@ -219,7 +219,7 @@
  * last changes of mode on the way there do not fill. */
 #define IMP_SLIP_OF_REST_SPEED 1e-2
 /* Slip faster than this part of the slip scale turns no faster than the motion goes. */
-#define IMP_SLIP_GROWN 1e-2
+#define IMP_SLIP_SLOW_OF_SCALE 1e-2
 /* Of mu h omega, h the height that turning's friction has: a face's slip so near to a pivot's, where the friction just
  * suffices and goes on doing so, is the pivot's: sqrt(w^2 - (mu h omega)^2) of roundings of both is 1e-8 of them, and
  * integration adds two digits to that. */
@@ -230,7 +230,7 @@
 /* Slip that begins from rest is led by its acceleration up to so many times the slip speed. There the direction of slip
  * has come to within 1e-5 of that of its acceleration, and the stiffness of the direction, (friction
  * acceleration)/slip, is one that BDF follows. */
-#define IMP_ONSET_OF_SLIP_SPEED 1e5
+#define IMP_INCIPIENT_OF_SLIP_SPEED 1e5
 /* A distance that opens no faster than this part of the motion's speed stays as it is: rates are differences of
  * velocities with the errors of a thousand steps. */
 #define IMP_STILL_OF_SPEED 1e-9
@@ -298,7 +298,7 @@
 #define IMP_MODES_FAR 1e4
 /* Slip that was to begin goes on where the friction needed over what there is passes 1 by more than this: it is the
  * outcome of Newton's iteration in the direction, which is left at this. */
-#define IMP_DRIVE_ROUNDING 1e-9
+#define IMP_HOLD_ROUNDING 1e-9
 /* A pair that is open is pressed where the loads' part of its acceleration towards the body is more than this: what the
  * reactions of others balance leaves less. */
 #define IMP_PRESSED_OF_LOADS 1e-9
@@ -347,7 +347,7 @@
 #define IMP_RECEIPT_UNIT (16 * IMP_ROUNDOFF)
 /* Held contacts are put back exactly at every event, to the gap's own error on bodies with edges. */
 #define IMP_RECEIPT_GAP 1e-9
-/* Reactions are asked for their cones to 1e-12 of the greatest where modes are chosen, and onsets to 1e-9. */
+/* Reactions are asked for their cones to 1e-12 of the greatest where modes are chosen, and incipient slip to 1e-9. */
 #define IMP_RECEIPT_CONTACT 1e-8
 /* The account is a sum of as many terms as there are steps; 1e8 of them, each off by a rounding. */
 #define IMP_RECEIPT_ENERGY 1e-8
@@ -995,7 +995,7 @@
  * 1/slip; with .3 or .9 a slip that dies out takes a fifth more rates. */
 #define IMP_FADING_PART 0.6
 /* Of a unit direction: more than what a script's arithmetic leaves of zero. */
-#define IMP_DRIVE_CRUMB 1e-12
+#define IMP_SURFACE_CRUMB 1e-12
 /* Of a body's speed: how far a force's brake is asked beside it: the difference keeps 32 digits of 52. */
 #define IMP_BRAKE_NUDGE 0x1p-20
 /* Of a fixed step: a last one may be longer by this, so that no sliver is left over. */

@@ -20,7 +20,7 @@
 #define IMP_CONE_MAP_H
 
 #include "contact/cone.h"
-#include "contact/persist_linear.h"
+#include "contact/held_linear.h"
 
 typedef struct imp_cone_system {
     const imp_cone_problem *problem;

@@ -13,7 +13,7 @@
 /* ---- hashes ---- */
 
 /* splitmix64's last step (Steele, Lea, Flood 2014) */
-static uint64_t stir(uint64_t key, uint64_t with)
+static uint64_t hash(uint64_t key, uint64_t with)
 {
     uint64_t z = key + 0x9e3779b97f4a7c15u + (with ^ (with >> 32)) * 0xd6e8feb86659fd93u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -21,30 +21,30 @@ static uint64_t stir(uint64_t key, uint64_t with)
     return z ^ (z >> 31);
 }
 
-static uint64_t stir_number(uint64_t key, double value)
+static uint64_t hash_number(uint64_t key, double value)
 {
     const double plain = value + 0.0; /* -0 is 0 */
     uint64_t bits;
     memcpy(&bits, &plain, sizeof bits);
-    return stir(key, bits);
+    return hash(key, bits);
 }
 
-static uint64_t stir_vector(uint64_t key, qvec3 v) { return stir_number(stir_number(stir_number(key, v.x), v.y), v.z); }
+static uint64_t hash_vector(uint64_t key, qvec3 v) { return hash_number(hash_number(hash_number(key, v.x), v.y), v.z); }
 
 static uint64_t body_key(const impact_collider *body)
 {
-    uint64_t key = stir_vector(stir_vector(stir_number(1, body->mass), body->velocity), body->omega);
+    uint64_t key = hash_vector(hash_vector(hash_number(1, body->mass), body->velocity), body->omega);
     if (imp_encounter_is_static(body)) return key;
     const quat q = body->orientation;
-    key = stir_vector(key, body->moments);
-    return stir_vector(stir_number(key, q.w), (qvec3){q.x, q.y, q.z});
+    key = hash_vector(key, body->moments);
+    return hash_vector(hash_number(key, q.w), (qvec3){q.x, q.y, q.z});
 }
 
 static uint64_t meeting_key(const impact_meeting *m)
 {
-    uint64_t key = stir_vector(stir_vector(stir_vector(2, m->normal), m->offset1), m->offset2);
-    key = stir_number(stir_number(stir_number(key, m->friction), m->restitution), m->stiffness);
-    return m->pressed ? stir(key, 4) : key;
+    uint64_t key = hash_vector(hash_vector(hash_vector(2, m->normal), m->offset1), m->offset2);
+    key = hash_number(hash_number(hash_number(key, m->friction), m->restitution), m->stiffness);
+    return m->pressed ? hash(key, 4) : key;
 }
 
 /* ---- refinement ---- */
@@ -62,16 +62,16 @@ static void refine_colours(const colours *c)
     for (int i = 0; i < c->count; i++) {
         const impact_meeting *m = &e->meetings[c->meeting[i]];
         uint64_t *key = &c->contact[c->meeting[i]];
-        *key = stir(stir(*key, c->body[m->body1]), c->body[m->body2]);
+        *key = hash(hash(*key, c->body[m->body1]), c->body[m->body2]);
     }
     for (int b = 0; b < e->body_count; b++) c->sum[b] = 0;
     for (int i = 0; i < c->count; i++) {
         const impact_meeting *m = &e->meetings[c->meeting[i]];
-        c->sum[m->body1] += stir(c->contact[c->meeting[i]], 1);
-        c->sum[m->body2] += stir(c->contact[c->meeting[i]], 2);
+        c->sum[m->body1] += hash(c->contact[c->meeting[i]], 1);
+        c->sum[m->body2] += hash(c->contact[c->meeting[i]], 2);
     }
     for (int b = 0; b < e->body_count; b++)
-        if (!imp_encounter_is_static(&e->bodies[b])) c->body[b] = stir(c->body[b], c->sum[b]);
+        if (!imp_encounter_is_static(&e->bodies[b])) c->body[b] = hash(c->body[b], c->sum[b]);
 }
 
 /* The first of two that have one key; -1: none. By insertion: the list is short, or sorted already. */
@@ -107,7 +107,7 @@ static void sort_canonically(const impact_encounter *encounter, imp_order *order
         alike = sort_by_key(&c, order->meeting);
     }
     for (int marked = 0; marked < c.count && alike >= 0; marked++) {
-        c.contact[order->meeting[alike]] = stir(c.contact[order->meeting[alike]], 3);
+        c.contact[order->meeting[alike]] = hash(c.contact[order->meeting[alike]], 3);
         for (int round = 0; round < c.count; round++) refine_colours(&c);
         alike = sort_by_key(&c, order->meeting);
     }

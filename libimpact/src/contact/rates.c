@@ -13,7 +13,7 @@
  * and, whatever n' is, (n . u)' = n . u' + n' . u along the contact.
  */
 #include "contact/rates.h"
-#include "contact/persist_system.h"
+#include "contact/held_system.h"
 #include "contact/points.h"
 #include "world/world_gap.h"
 

@@ -10,7 +10,7 @@
  */
 #include "contact/rates.h"
 #include "contact/points.h"
-#include "contact/persist_system.h"
+#include "contact/held_system.h"
 
 #include <impact/face.h>
 

@@ -6,7 +6,7 @@
  */
 #include "contact/rest.h"
 #include "base/tolerances.h"
-#include "contact/persist_linear.h"
+#include "contact/held_linear.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/lying.h"
 #include "motion/motion_equations.h"
-#include "contact/persist_system.h"
+#include "contact/held_system.h"
 #include "contact/points.h"
 #include "world/world_gap.h"
 
@@ -168,7 +168,7 @@ static bool is_attracted(const imp_world *world)
 }
 
 /* By how much more the centre rises as a body comes to stand on a place of its flat than that place is off its plane:
- * |u|^p (p - 1)/p of a flat that bends as |u|^p/p, at the most (persist_flat.c: rise). */
+ * |u|^p (p - 1)/p of a flat that bends as |u|^p/p, at the most (held_flat.c: rise). */
 static double lift_of(const imp_body *body)
 {
     const impact_shape *s = &body->shape;

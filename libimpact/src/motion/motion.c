@@ -25,7 +25,7 @@ bool imp_motion_reserve(imp_motion *motion, imp_arena *arena, int bodies)
 void imp_motion_reset(imp_motion *motion, imp_world *world, const impact_methods *methods, double rest_speed)
 {
     motion->world = world;
-    motion->persist.arena = world->arena;
+    motion->held.arena = world->arena;
     motion->method = methods->motion;
     motion->tolerance = methods->tolerance;
     motion->step = methods->step;
@@ -34,7 +34,7 @@ void imp_motion_reset(imp_motion *motion, imp_world *world, const impact_methods
     motion->bounces = motion->distrusted = motion->retried = false;
     motion->steady_steps = motion->pace_steps = 0;
     motion->fallen = motion->last_fall = 0;
-    motion->persist.count = 0;
+    motion->held.count = 0;
     motion->message[0] = '\0'; /* integrators that fit are used again: a start leaves nothing of what they did */
 }
 
@@ -63,10 +63,10 @@ void imp_motion_close(imp_motion *motion)
     if (!motion->world) return;
     imp_arena *arena = motion->world->arena;
     imp_motion_forget(motion);
-    imp_persist_free(&motion->persist);
+    imp_held_free(&motion->held);
     imp_arena_give(arena, motion->dense.c);
     imp_arena_give(arena, motion->dense.seen);
-    imp_arena_give(arena, motion->kept_touches);
+    imp_arena_give(arena, motion->kept_contacts);
     imp_arena_give(arena, motion->kept_pairs);
     imp_arena_give(arena, motion->resting);
     imp_arena_give(arena, motion->loads);

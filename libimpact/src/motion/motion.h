@@ -7,7 +7,7 @@
 #define IMP_MOTION_H
 
 #include "base/ode_in.h"
-#include "contact/persist.h"
+#include "contact/held.h"
 #include "motion/dense.h"
 
 typedef enum imp_end_kind {
@@ -48,7 +48,7 @@ typedef struct imp_motion {
     impact_motion_method method;
     double tolerance, step, rest_speed;
     bool *resting; /* per body: no longer watched for rest */
-    imp_persist persist;
+    imp_held held;
     imp_load *loads;
     imp_works works;
     char message[256];
@@ -64,17 +64,17 @@ typedef struct imp_motion {
     impact_ode *adams, *bdf, *rk4, *lobatto, *dop853;
     int size, roots;
     double *y, *kept; /* the integrated state, and a copy while samples are interpolated; */
-    imp_touch *kept_touches;
+    imp_held_contact *kept_contacts;
     imp_pair *kept_pairs;
     int kept_room[2];
     int *found;
     imp_state *scratch, *sampled;
-    bool sliding;       /* slip slows the clock: see motion_equations.c */
-    bool creeping;      /* contacts that move fast over flat places do */
-    bool stiff;         /* some slip has just begun */
-    bool bounces;       /* the motion begins with an open pair that touches */
-    double slip_scale;  /* m/s */
-    double creep_scale; /* 1/s */
+    bool sliding;             /* slip slows the clock: see motion_equations.c */
+    bool following;           /* contacts that move fast over flat places do */
+    bool stiff;               /* some slip has just begun */
+    bool bounces;             /* the motion begins with an open pair that touches */
+    double slip_scale;        /* m/s */
+    double point_speed_scale; /* 1/s */
 
     /* what is seen of its own work: motion_guard.h */
     double *probe;                     /* 4 size: of a step that is looked into */
@@ -101,7 +101,7 @@ void imp_motion_close(imp_motion *motion);
  * the restarted integrator would never see it. False when there is none. */
 bool imp_motion_also_crossed(imp_motion *motion, imp_end *end);
 
-/* The motion begins anew at t (consistent modes: see imp_persist_resolve), and is followed to t_end at most: that alone
+/* The motion begins anew at t (consistent modes: see imp_held_resolve), and is followed to t_end at most: that alone
  * of what is asked bears on how the integrator steps. renewed: only put back exactly, the count of its steps goes on.
  */
 void imp_motion_depart(imp_motion *motion, double t, double t_end, bool renewed);
@@ -117,9 +117,10 @@ imp_works imp_motion_works(const imp_motion *motion, double t);
 /* The states at t, in the last step, with the held contacts put back exactly; nothing else changes. */
 impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states);
 
-/* What is held at t, where the states are, with the reactions that hold then: touches has room for persist.count.
+/* What is held at t, where the states are, with the reactions that hold then: contacts has room for held.count.
  * moves: t lies in the last step. Nothing else changes. */
-impact_status imp_motion_touches(imp_motion *motion, double t, bool moves, const imp_state *states, imp_touch *touches);
+impact_status imp_motion_contacts(imp_motion *motion, double t, bool moves, const imp_state *states,
+                                  imp_held_contact *contacts);
 
 /* Loads on every body; false, with a message, when a custom force refuses or gives a NaN. */
 bool imp_motion_load(imp_motion *motion, double t, const imp_state *states);

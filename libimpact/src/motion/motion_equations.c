@@ -6,16 +6,16 @@
  * faster. In tau with dt/dtau = 1/(1 + sum slip_scale/s_i) the motion is smooth, s dies out exponentially, and no sign
  * can flip. So CVODE has it; the explicit method's steps are as short as the slip asks (motion_guard.c), and tau is
  * time since the stretch began, which has digits for the shortest. Where slip begins from rest it has no direction but
- * its acceleration's (persist.c); once it has, the direction is bound to the acceleration the more stiffly the slower
+ * its acceleration's (held.c); once it has, the direction is bound to the acceleration the more stiffly the slower
  * the slip is: BDF takes that stretch, in t. Over a flat place of a surface the contact point runs without bound, and
- * with it the reactions: u' of persist_spot slows the clock alike, dt/dtau = 1/hypot(1, |u'|/creep_scale).
+ * with it the reactions: u' of held_spot slows the clock alike, dt/dtau = 1/hypot(1, |u'|/point_speed_scale).
  */
 #include "motion/motion_equations.h"
 #include "base/number.h"
-#include "world/drive.h"
-#include "contact/persist_flat.h"
-#include "contact/persist_line.h"
-#include "contact/persist_spot.h"
+#include "world/surface_velocity.h"
+#include "contact/held_flat.h"
+#include "contact/held_line.h"
+#include "contact/held_spot.h"
 #include "world/corner.h"
 #include "world/world_gap.h"
 
@@ -119,12 +119,12 @@ void imp_motion_unpack(const imp_motion *motion, const double *y, imp_state *sta
 
 /* How far a contact's slip is to slow the clock: what next to nothing presses changes nothing, and need never die out.
  */
-static double rubbing(const imp_persist *persist, int contact)
+static double rubbing(const imp_held *held, int contact)
 {
     const double least = 0.01; /* of the greatest pressure */
     double most = 0;
-    for (int c = 0; c < persist->count; c++) most = fmax(most, fabs(persist->touches[c].pressure));
-    const double pressure = fabs(persist->touches[contact].pressure);
+    for (int c = 0; c < held->count; c++) most = fmax(most, fabs(held->contacts[c].pressure));
+    const double pressure = fabs(held->contacts[contact].pressure);
     return pressure < least * most ? pressure / (least * most) : 1;
 }
 
@@ -134,13 +134,13 @@ static bool slip_slows_clock(const imp_motion *motion) { return motion->sliding 
 double imp_motion_clock(const imp_motion *motion)
 {
     double slowness = 1;
-    for (int c = 0; c < motion->persist.count && motion->creeping; c++)
-        if (imp_touch_creeps(&motion->persist.touches[c]))
-            slowness = hypot(slowness, motion->persist.touches[c].creep / motion->creep_scale);
-    for (int c = 0; c < motion->persist.count && slip_slows_clock(motion); c++)
-        if (motion->persist.touches[c].mode == IMP_SLIDE && !motion->persist.touches[c].onset &&
-            motion->persist.touches[c].friction > 0)
-            slowness += rubbing(&motion->persist, c) * motion->slip_scale / motion->persist.touches[c].speed;
+    for (int c = 0; c < motion->held.count && motion->following; c++)
+        if (imp_held_contact_is_followed(&motion->held.contacts[c]))
+            slowness = hypot(slowness, motion->held.contacts[c].point_speed / motion->point_speed_scale);
+    for (int c = 0; c < motion->held.count && slip_slows_clock(motion); c++)
+        if (motion->held.contacts[c].mode == IMP_SLIDE && !motion->held.contacts[c].incipient &&
+            motion->held.contacts[c].friction > 0)
+            slowness += rubbing(&motion->held, c) * motion->slip_scale / motion->held.contacts[c].speed;
     return 1 / slowness;
 }
 
@@ -160,26 +160,26 @@ static void body_rates(const imp_body *body, const imp_state *s, const imp_load 
     for (int k = 0; k < Y_PER_BODY; k++) rate[k] = clock * values[k];
 }
 
-/* Of the contacts that are carried, in the order of their pairs, as the touches are. */
+/* Of the contacts that are carried, in the order of their pairs, as the contacts are. */
 static void spot_rates(const imp_motion *motion, double clock, double *rate)
 {
     const imp_world *world = motion->world;
     for (int p = 0, c = 0; p < world->pair_count; p++) {
-        const imp_touch *touch = imp_is_held(&world->pairs[p]) ? &motion->persist.touches[c++] : NULL;
+        const imp_held_contact *contact = imp_is_held(&world->pairs[p]) ? &motion->held.contacts[c++] : NULL;
         if (!imp_spot_suits(world, &world->pairs[p])) continue;
         for (int k = 0; k < Y_PER_SPOT; k++)
-            *rate++ = touch && imp_touch_creeps(touch) ? clock * touch->spot_rate[k] : 0;
+            *rate++ = contact && imp_held_contact_is_followed(contact) ? clock * contact->spot_rate[k] : 0;
     }
 }
 
 /* What is still is balanced by its reactions. */
 static void clear_still_loads(imp_motion *motion)
 {
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (!touch->still) continue;
-        motion->loads[touch->body1].force = motion->loads[touch->body1].torque = motion->loads[touch->body2].force =
-            motion->loads[touch->body2].torque = (qvec3){0, 0, 0};
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (!contact->still) continue;
+        motion->loads[contact->body1].force = motion->loads[contact->body1].torque =
+            motion->loads[contact->body2].force = motion->loads[contact->body2].torque = (qvec3){0, 0, 0};
     }
 }
 
@@ -194,14 +194,14 @@ int imp_motion_rates(double tau, const double *y, double *rate, void *context)
         rate[Y_FORCE_WORK] += motion->loads[i].work_rate;
         rate[Y_DAMPING] += motion->loads[i].damping_rate;
     }
-    if (motion->persist.count > 0) imp_persist_solve(&motion->persist, world, motion->scratch, motion->loads);
-    for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
-            rate[Y_SLIDING] -= qvec3_dot(motion->persist.touches[c].force, motion->persist.touches[c].slip);
+    if (motion->held.count > 0) imp_held_solve(&motion->held, world, motion->scratch, motion->loads);
+    for (int c = 0; c < motion->held.count; c++)
+        if (motion->held.contacts[c].mode == IMP_SLIDE && motion->held.contacts[c].friction > 0)
+            rate[Y_SLIDING] -= qvec3_dot(motion->held.contacts[c].force, motion->held.contacts[c].slip);
     clear_still_loads(motion);
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        imp_line_brace(world, touch, motion->scratch, &motion->loads[touch->body1]);
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        imp_line_brace(world, contact, motion->scratch, &motion->loads[contact->body1]);
     }
     const double clock = imp_motion_clock(motion);
     rate[Y_TIME] = clock;
@@ -210,11 +210,11 @@ int imp_motion_rates(double tau, const double *y, double *rate, void *context)
     for (int i = 0; i < world->body_count; i++) {
         if (world->bodies[i].is_static) continue;
         body_rates(&world->bodies[i], &motion->scratch[i], &motion->loads[i],
-                   motion->persist.count > 0 ? &motion->persist.effects[i] : NULL, clock, b);
+                   motion->held.count > 0 ? &motion->held.effects[i] : NULL, clock, b);
         b += Y_PER_BODY;
     }
     spot_rates(motion, clock, b);
-    if (world->driven) rate[imp_motion_drive(motion)] = clock * imp_persist_drive_power(&motion->persist, world);
+    if (world->driven) rate[imp_motion_drive(motion)] = clock * imp_held_drive_power(&motion->held, world);
     return 0;
 }
 
@@ -225,23 +225,23 @@ double imp_motion_speed(const imp_body *body, const imp_state *state)
     return qvec3_norm(state->v) + body->radius * qvec3_norm(imp_omega(body, state));
 }
 
-static void held_pair_roots(imp_world *world, const imp_touch *touch, const imp_state *states, const imp_load *loads,
-                            double *value)
+static void held_pair_roots(imp_world *world, const imp_held_contact *contact, const imp_state *states,
+                            const imp_load *loads, double *value)
 {
-    const impact_contact contact = {.offset2 = touch->r2};
-    value[0] = touch->still ? 1 : touch->pressure;
-    value[1] = touch->still              ? 1
-               : touch->mode == IMP_ROLL ? touch->margin
-               : touch->friction == 0    ? 1 /* slip neither begins nor ends */
-               : touch->onset            ? touch->drive - (1 - IMP_DRIVE_ROUNDING)
-                                         : touch->speed - world->slip_speed;
-    const imp_pair *pair = &world->pairs[touch->pair];
+    const impact_contact met = {.offset2 = contact->r2};
+    value[0] = contact->still ? 1 : contact->pressure;
+    value[1] = contact->still               ? 1
+               : contact->mode == IMP_STICK ? contact->margin
+               : contact->friction == 0     ? 1 /* slip neither begins nor ends */
+               : contact->incipient         ? contact->hold - (1 - IMP_HOLD_ROUNDING)
+                                            : contact->speed - world->slip_speed;
+    const imp_pair *pair = &world->pairs[contact->pair];
     value[2] = pair->site.corner > 0 ? imp_corner_clearance(world, pair, states) - pair->site.sunk +
                                            0.5 * imp_world_touching_distance(world, pair, states)
-                                     : imp_world_inside_bounds(world, pair, states, &contact);
+                                     : imp_world_inside_bounds(world, pair, states, &met);
     if (!isfinite(value[2])) value[2] = 1;
-    if (touch->foot == IMP_FOOT_FLAT) value[2] = fmin(value[2], touch->spare);
-    if (touch->foot == IMP_FOOT_LINE) value[2] = fmin(value[2], imp_line_spare(world, touch, states, loads));
+    if (contact->foot == IMP_FOOT_FLAT) value[2] = fmin(value[2], contact->spare);
+    if (contact->foot == IMP_FOOT_LINE) value[2] = fmin(value[2], imp_line_spare(world, contact, states, loads));
 }
 
 /* A custom force's edge may answer anything. */
@@ -262,14 +262,14 @@ int imp_motion_root_values(double tau, const double *y, double *value, void *con
     imp_world *world = motion->world;
     imp_state *states = motion->scratch;
     imp_motion_unpack(motion, y, states);
-    if (motion->persist.count > 0) {
+    if (motion->held.count > 0) {
         if (!imp_motion_load(motion, imp_motion_clocked(motion) ? y[Y_TIME] : tau, states)) return -1;
-        imp_persist_solve(&motion->persist, world, states, motion->loads);
+        imp_held_solve(&motion->held, world, states, motion->loads);
     }
     for (int p = 0, c = 0; p < world->pair_count; p++, value += ROOTS_PER_PAIR) {
         value[2] = 1;
         if (imp_is_held(&world->pairs[p]))
-            held_pair_roots(world, &motion->persist.touches[c++], states, motion->loads, value);
+            held_pair_roots(world, &motion->held.contacts[c++], states, motion->loads, value);
         else
             value[0] = value[1] = 1; /* found by search.h */
     }

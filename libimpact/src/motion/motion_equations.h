@@ -31,9 +31,9 @@ void imp_motion_unpack(const imp_motion *motion, const double *y, imp_state *sta
 void imp_motion_measures(const imp_motion *motion, const imp_state *states, double *measure);
 
 /* Whether the variable of integration is not time. */
-static inline bool imp_motion_clocked(const imp_motion *motion) { return motion->sliding || motion->creeping; }
+static inline bool imp_motion_clocked(const imp_motion *motion) { return motion->sliding || motion->following; }
 
-/* dt/dtau, for the touches as they stand. */
+/* dt/dtau, for the contacts as they stand. */
 double imp_motion_clock(const imp_motion *motion);
 
 /* How fast any point of the body moves at most, m/s. */

@@ -21,11 +21,11 @@ static double fading_limit(const imp_motion *motion)
 {
     double limit = INFINITY;
     if (motion->ode != motion->dop853) return limit; /* others go by a clock that slip slows */
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        const double fall = -qvec3_dot(touch->slip, touch->slip_rate);
-        if (touch->mode == IMP_SLIDE && touch->friction > 0 && fall > 0)
-            limit = fmin(limit, IMP_FADING_PART * touch->speed * touch->speed / fall);
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        const double fall = -qvec3_dot(contact->slip, contact->slip_rate);
+        if (contact->mode == IMP_SLIDE && contact->friction > 0 && fall > 0)
+            limit = fmin(limit, IMP_FADING_PART * contact->speed * contact->speed / fall);
     }
     return limit;
 }
@@ -57,7 +57,7 @@ static double defect(imp_motion *motion, double tau, double h)
     return worst;
 }
 
-/* Asked at thirds of the step. Leaves the touches as they are at the step's end. A fixed step is not asked. */
+/* Asked at thirds of the step. Leaves the contacts as they are at the step's end. A fixed step is not asked. */
 static bool step_is_seen(imp_motion *motion, double tau, const double *y)
 {
     if (!imp_motion_has_custom_force(motion->world) || motion->method == IMPACT_MOTION_RK4) return true;

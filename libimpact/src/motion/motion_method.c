@@ -4,7 +4,7 @@
  */
 #include "motion/motion_stretch.h"
 #include "base/parts.h"
-#include "contact/persist_spot.h"
+#include "contact/held_spot.h"
 #include "contact/points.h"
 #include "world/world_gap.h"
 
@@ -81,40 +81,41 @@ void imp_motion_count_work(imp_motion *motion)
     motion->counted = (impact_ode_counts){.starts = starts, .steps = steps, .rhs_calls = calls};
 }
 
-/* The slowest slip, as the touches stand, of the contacts that slide past their onset, m/s; infinite when none does.
- * young: of those alone whose slip has just begun, or of the others. */
-static double slowest_slip(const imp_motion *motion, bool young)
+/* The slowest slip, as the contacts stand, of the contacts whose slip is past incipient, m/s; infinite when none does.
+ * slow: of those alone whose slip has just begun, or of the others. */
+static double slowest_slip(const imp_motion *motion, bool slow)
 {
     double slowest = INFINITY;
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (touch->mode == IMP_SLIDE && !touch->onset && touch->friction > 0 &&
-            (motion->world->pairs[touch->pair].slip.age == IMP_SLIP_YOUNG) == young)
-            slowest = fmin(slowest, touch->speed);
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (contact->mode == IMP_SLIDE && !contact->incipient && contact->friction > 0 &&
+            (motion->world->pairs[contact->pair].slip.stage == IMP_SLIP_SLOW) == slow)
+            slowest = fmin(slowest, contact->speed);
     }
     return slowest;
 }
 
 /* Whether some slip dies out again that has just begun. */
-static bool young_fades(const imp_motion *motion)
+static bool slow_slip_fades(const imp_motion *motion)
 {
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (touch->mode == IMP_SLIDE && !touch->onset && motion->world->pairs[touch->pair].slip.age == IMP_SLIP_YOUNG &&
-            qvec3_dot(touch->slip_rate, touch->slip) < 0)
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (contact->mode == IMP_SLIDE && !contact->incipient &&
+            motion->world->pairs[contact->pair].slip.stage == IMP_SLIP_SLOW &&
+            qvec3_dot(contact->slip_rate, contact->slip) < 0)
             return true;
     }
     return false;
 }
 
-/* What has its direction from itself again is not young any more. */
-static void grow_up(imp_motion *motion)
+/* Slip that has its direction from itself again is slow no more. */
+static void end_slow_slip(imp_motion *motion)
 {
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        imp_pair *pair = &motion->world->pairs[touch->pair];
-        const bool grown = touch->mode != IMP_SLIDE || touch->speed >= IMP_SLIP_GROWN * motion->slip_scale;
-        if (pair->slip.age == IMP_SLIP_YOUNG && grown) pair->slip.age = IMP_SLIP_OLD;
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        imp_pair *pair = &motion->world->pairs[contact->pair];
+        const bool grown = contact->mode != IMP_SLIDE || contact->speed >= IMP_SLIP_SLOW_OF_SCALE * motion->slip_scale;
+        if (pair->slip.stage == IMP_SLIP_SLOW && grown) pair->slip.stage = IMP_SLIP_GROSS;
     }
 }
 
@@ -122,27 +123,27 @@ static void grow_up(imp_motion *motion)
 static double slip_scale(const imp_motion *motion, const imp_state *states)
 {
     double scale = 0;
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (touch->mode != IMP_SLIDE) continue;
-        const imp_body *body = &motion->world->bodies[touch->body1];
-        const double fall = fabs(touch->pressure) * body->inverse_mass * body->radius;
-        scale = fmax(scale, 0.05 * (imp_motion_speed(body, &states[touch->body1]) + sqrt(fall)));
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (contact->mode != IMP_SLIDE) continue;
+        const imp_body *body = &motion->world->bodies[contact->body1];
+        const double fall = fabs(contact->pressure) * body->inverse_mass * body->radius;
+        scale = fmax(scale, 0.05 * (imp_motion_speed(body, &states[contact->body1]) + sqrt(fall)));
     }
     return fmax(scale, motion->world->slip_speed);
 }
 
 /* How fast a carried contact may move over its surface before it slows the clock, 1/s: as the body itself moves, about;
  * 0: none is. */
-static double creep_scale(const imp_motion *motion, const imp_state *states)
+static double point_speed_scale(const imp_motion *motion, const imp_state *states)
 {
     double scale = 0;
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (!imp_touch_creeps(touch)) continue;
-        const imp_body *body = &motion->world->bodies[touch->body1];
-        const double fall = qvec3_norm(motion->loads[touch->body1].force) * body->inverse_mass;
-        const double rate = qvec3_norm(imp_omega(body, &states[touch->body1])) + sqrt(fall / body->radius);
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (!imp_held_contact_is_followed(contact)) continue;
+        const imp_body *body = &motion->world->bodies[contact->body1];
+        const double fall = qvec3_norm(motion->loads[contact->body1].force) * body->inverse_mass;
+        const double rate = qvec3_norm(imp_omega(body, &states[contact->body1])) + sqrt(fall / body->radius);
         scale = fmax(scale, rate);
     }
     return scale;
@@ -160,9 +161,9 @@ static bool is_braked(const imp_motion *motion, double t, double t_end, const im
  * velocities leave of a slip so small. */
 static bool slip_begins(const imp_motion *motion)
 {
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (touch->mode == IMP_SLIDE && (touch->onset || touch->speed < motion->slip_scale)) return true;
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (contact->mode == IMP_SLIDE && (contact->incipient || contact->speed < motion->slip_scale)) return true;
     }
     return false;
 }
@@ -173,11 +174,11 @@ static bool slip_begins(const imp_motion *motion)
  * steps err, 1e-13 m, which is more than corners that are struck together may. */
 static bool suits_explicit(const imp_motion *motion)
 {
-    bool suits = !motion->creeping && (motion->sliding || motion->persist.count > 1);
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        const imp_pair *pair = &motion->world->pairs[touch->pair];
-        suits = suits && !touch->onset && !imp_pair_has_faces(motion->world, pair) &&
+    bool suits = !motion->following && (motion->sliding || motion->held.count > 1);
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        const imp_pair *pair = &motion->world->pairs[contact->pair];
+        suits = suits && !contact->incipient && !imp_pair_has_faces(motion->world, pair) &&
                 !imp_pair_can_lie(motion->world, pair);
     }
     return suits;
@@ -194,10 +195,10 @@ static bool is_sharp(const impact_shape *s)
 /* Whether a held body has such: the contact crosses them between two of collocation's nodes. */
 static bool crosses_edges(const imp_motion *motion)
 {
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (is_sharp(&motion->world->bodies[touch->body1].shape) ||
-            is_sharp(&motion->world->bodies[touch->body2].shape))
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (is_sharp(&motion->world->bodies[contact->body1].shape) ||
+            is_sharp(&motion->world->bodies[contact->body2].shape))
             return true;
     }
     return false;
@@ -206,15 +207,15 @@ static bool crosses_edges(const imp_motion *motion)
 /* Which variable and which method the stretch needs. */
 static impact_status choose_road(imp_motion *motion, double t, double t_end, const imp_state *states)
 {
-    if (motion->persist.count > 0) imp_persist_solve(&motion->persist, motion->world, states, motion->loads);
+    if (motion->held.count > 0) imp_held_solve(&motion->held, motion->world, states, motion->loads);
     motion->slip_scale = slip_scale(motion, states);
-    grow_up(motion);
+    end_slow_slip(motion);
     motion->stiff = isfinite(slowest_slip(motion, true));
     const double grown = slowest_slip(motion, false);
-    motion->sliding = isfinite(grown) && (!motion->stiff || grown < IMP_SLIP_GROWN * motion->slip_scale);
-    motion->sliding = motion->sliding || young_fades(motion);
-    motion->creep_scale = creep_scale(motion, states);
-    motion->creeping = motion->creep_scale > 0;
+    motion->sliding = isfinite(grown) && (!motion->stiff || grown < IMP_SLIP_SLOW_OF_SCALE * motion->slip_scale);
+    motion->sliding = motion->sliding || slow_slip_fades(motion);
+    motion->point_speed_scale = point_speed_scale(motion, states);
+    motion->following = motion->point_speed_scale > 0;
     const bool stiff = motion->stiff || is_braked(motion, t, t_end, states),
                other = motion->distrusted != (motion->method == IMPACT_MOTION_OTHER);
     motion->distrusted = false;
@@ -225,18 +226,18 @@ static impact_status choose_road(imp_motion *motion, double t, double t_end, con
      * (sphere_wall, turntable); of slip that begins its long steps lose seven digits. Where slip dies out, and where
      * the modes of many contacts end steps again and again, the explicit method takes a fourteenth of Adams' steps and
      * a third of the time (tests/lua/test_fading.lua). */
-    if (motion->persist.count <= 1 && !slip_begins(motion) && !crosses_edges(motion))
+    if (motion->held.count <= 1 && !slip_begins(motion) && !crosses_edges(motion))
         return choose_integrator(motion, IMPACT_ODE_LOBATTO);
     return choose_integrator(motion, suits_explicit(motion) ? IMPACT_ODE_DOP853 : IMPACT_ODE_ADAMS);
 }
 
 static double stretch_tolerance(const imp_motion *motion)
 {
-    const double part = motion->persist.count == 0 ? IMP_FLIGHT_OF_TOLERANCE : IMP_HELD_OF_TOLERANCE;
+    const double part = motion->held.count == 0 ? IMP_FLIGHT_OF_TOLERANCE : IMP_HELD_OF_TOLERANCE;
     double tolerance = fmin(motion->tolerance, fmax(IMP_FLIGHT_TOLERANCE, part * motion->tolerance));
     if (motion->bounces && motion->ode != motion->lobatto) tolerance = fmin(tolerance, IMP_BOUNCE_TOLERANCE);
-    for (int c = 0; c < motion->persist.count; c++)
-        if (motion->persist.touches[c].mode == IMP_SLIDE && motion->persist.touches[c].friction > 0)
+    for (int c = 0; c < motion->held.count; c++)
+        if (motion->held.contacts[c].mode == IMP_SLIDE && motion->held.contacts[c].friction > 0)
             tolerance = fmin(tolerance, IMP_SLIDING_TOLERANCE);
     return tolerance;
 }
@@ -275,6 +276,6 @@ impact_status imp_motion_choose(imp_motion *motion, const imp_state *states)
 bool imp_motion_outgrows(const imp_motion *motion)
 {
     if (!motion->stiff) return false;
-    return slowest_slip(motion, true) > IMP_SLIP_GROWN * motion->slip_scale ||
-           (!motion->sliding && young_fades(motion));
+    return slowest_slip(motion, true) > IMP_SLIP_SLOW_OF_SCALE * motion->slip_scale ||
+           (!motion->sliding && slow_slip_fades(motion));
 }

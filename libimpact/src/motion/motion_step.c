@@ -59,31 +59,32 @@ imp_works imp_motion_works(const imp_motion *motion, double t)
 bool imp_motion_keep_contacts(imp_motion *motion)
 {
     imp_arena *arena = motion->world->arena;
-    const int touches = motion->persist.count, pairs = motion->world->pair_count;
-    imp_touch *kept = imp_arena_grow(arena, motion->kept_touches, &motion->kept_room[0], touches, sizeof *kept);
-    if (kept) motion->kept_touches = kept;
+    const int contacts = motion->held.count, pairs = motion->world->pair_count;
+    imp_held_contact *kept =
+        imp_arena_grow(arena, motion->kept_contacts, &motion->kept_room[0], contacts, sizeof *kept);
+    if (kept) motion->kept_contacts = kept;
     imp_pair *kept_pairs = imp_arena_grow(arena, motion->kept_pairs, &motion->kept_room[1], pairs, sizeof *kept_pairs);
     if (kept_pairs) motion->kept_pairs = kept_pairs;
     if (!kept || !kept_pairs) return false;
-    if (touches > 0) memcpy(kept, motion->persist.touches, sizeof *kept * (size_t)touches);
+    if (contacts > 0) memcpy(kept, motion->held.contacts, sizeof *kept * (size_t)contacts);
     memcpy(kept_pairs, motion->world->pairs, sizeof *kept_pairs * (size_t)pairs);
     return true;
 }
 
 void imp_motion_restore_contacts(imp_motion *motion)
 {
-    const size_t touches = (size_t)motion->persist.count;
-    if (touches > 0) memcpy(motion->persist.touches, motion->kept_touches, sizeof *motion->kept_touches * touches);
+    const size_t contacts = (size_t)motion->held.count;
+    if (contacts > 0) memcpy(motion->held.contacts, motion->kept_contacts, sizeof *motion->kept_contacts * contacts);
     memcpy(motion->world->pairs, motion->kept_pairs, sizeof *motion->kept_pairs * (size_t)motion->world->pair_count);
 }
 
 /* The contacts stay as they are: what they press with was told before. */
 impact_status imp_motion_put_back(imp_motion *motion, double t, imp_state *states)
 {
-    if (motion->persist.count == 0) return IMPACT_OK;
+    if (motion->held.count == 0) return IMPACT_OK;
     if (!imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
     const bool loaded = imp_motion_load(motion, t, states);
-    if (loaded) imp_persist_project(&motion->persist, motion->world, states, motion->loads);
+    if (loaded) imp_held_project(&motion->held, motion->world, states, motion->loads);
     imp_motion_restore_contacts(motion);
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }
@@ -98,13 +99,13 @@ void imp_motion_go_to(imp_motion *motion, double t, imp_state *states)
 
 impact_status imp_motion_look(imp_motion *motion, double t, imp_state *states)
 {
-    const bool held = motion->persist.count > 0;
+    const bool held = motion->held.count > 0;
     if (held && !imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
     imp_dense_at(&motion->dense, t, 0, motion->size, motion->kept);
     imp_motion_unpack(motion, motion->kept, states);
     if (!held) return IMPACT_OK;
     const bool loaded = imp_motion_load(motion, t, states);
-    if (loaded) imp_persist_project(&motion->persist, motion->world, states, motion->loads);
+    if (loaded) imp_held_project(&motion->held, motion->world, states, motion->loads);
     imp_motion_restore_contacts(motion);
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;
 }
@@ -116,16 +117,17 @@ static void go_on_feet(imp_motion *motion, double t)
     imp_motion_unpack(motion, motion->kept, motion->scratch);
 }
 
-impact_status imp_motion_touches(imp_motion *motion, double t, bool moves, const imp_state *states, imp_touch *touches)
+impact_status imp_motion_contacts(imp_motion *motion, double t, bool moves, const imp_state *states,
+                                  imp_held_contact *contacts)
 {
-    imp_persist *persist = &motion->persist;
+    imp_held *held = &motion->held;
     const impact_usage usage = motion->world->usage;
-    if (persist->count == 0) return IMPACT_OK;
+    if (held->count == 0) return IMPACT_OK;
     if (!imp_motion_keep_contacts(motion)) return IMPACT_ENOMEM;
     if (moves) go_on_feet(motion, t);
     const bool loaded = imp_motion_load(motion, t, states);
-    if (loaded) imp_persist_solve(persist, motion->world, states, motion->loads);
-    memcpy(touches, persist->touches, sizeof *touches * (size_t)persist->count);
+    if (loaded) imp_held_solve(held, motion->world, states, motion->loads);
+    memcpy(contacts, held->contacts, sizeof *contacts * (size_t)held->count);
     imp_motion_restore_contacts(motion);
     motion->world->usage = usage;
     return loaded ? IMPACT_OK : IMPACT_EDOMAIN;

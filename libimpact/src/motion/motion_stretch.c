@@ -12,14 +12,15 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Ends the onset of every contact that slides fast enough to have a direction of its own; tells whether one did. */
-static bool end_onsets(imp_motion *motion)
+/* Ends the incipient slip of every contact that slides fast enough to have a direction of its own; tells whether one
+ * did. */
+static bool end_incipient(imp_motion *motion)
 {
     bool ended = false;
-    for (int c = 0; c < motion->persist.count; c++) {
-        const imp_touch *touch = &motion->persist.touches[c];
-        if (!touch->onset || touch->speed < motion->world->onset_speed) continue;
-        motion->world->pairs[touch->pair].slip.age = IMP_SLIP_YOUNG;
+    for (int c = 0; c < motion->held.count; c++) {
+        const imp_held_contact *contact = &motion->held.contacts[c];
+        if (!contact->incipient || contact->speed < motion->world->incipient_speed) continue;
+        motion->world->pairs[contact->pair].slip.stage = IMP_SLIP_SLOW;
         ended = true;
     }
     return ended;
@@ -80,7 +81,7 @@ static imp_end end_of_root(const imp_motion *motion, int root)
         const int p = root / ROOTS_PER_PAIR, slot = root % ROOTS_PER_PAIR;
         if (slot == 0) return (imp_end){IMP_END_LIFTOFF, p};
         if (slot == 2) return (imp_end){IMP_END_BOUNDS, p};
-        return (imp_end){world->pairs[p].mode == IMP_ROLL ? IMP_END_SLIP : IMP_END_STICK, p};
+        return (imp_end){world->pairs[p].mode == IMP_STICK ? IMP_END_SLIP : IMP_END_STICK, p};
     }
     root -= ROOTS_PER_PAIR * world->pair_count;
     const int edges = ROOTS_PER_EDGE * imp_field_edge_count(world);
@@ -211,7 +212,7 @@ static impact_status look_back(imp_motion *motion, imp_end *end)
 {
     enum { LOOK = 2000000, RENEWAL = 20000, CARRIED_RENEWAL = 500 };
     const imp_stride *s = &motion->stride;
-    const long renewal = motion->creeping ? CARRIED_RENEWAL : RENEWAL;
+    const long renewal = motion->following ? CARRIED_RENEWAL : RENEWAL;
     if (s->steps % renewal != 0) return IMPACT_OK;
     const bool looks = s->steps >= LOOK; /* long runs are the caller's to stop, unless they get nowhere */
     if (looks && s->t - s->began < IMP_LEAST_GAIN * (s->t_end - s->began))
@@ -237,7 +238,7 @@ static impact_status cut_off(imp_motion *motion, double *y, imp_end *end)
 static void see_changes(imp_motion *motion, imp_end *end)
 {
     imp_stride *s = &motion->stride;
-    const bool ended = end_onsets(motion);
+    const bool ended = end_incipient(motion);
     if (ended) renew(end); /* friction turns with the slip from here: what rolls beside it may have slipped a little */
     s->restart = ended || imp_motion_outgrows(motion);
 }
@@ -257,7 +258,7 @@ static impact_status step_on(imp_motion *motion, double *y, imp_end *end)
         s->restart = true;
         return IMPACT_OK;
     }
-    if (status == IMPACT_EINTEGRATOR && s->t > s->began && motion->persist.count > 0) return renew(end); /* a corner */
+    if (status == IMPACT_EINTEGRATOR && s->t > s->began && motion->held.count > 0) return renew(end); /* a corner */
     if (status == IMPACT_OK && found) status = pick_event(motion, tau_before, &s->tau, y, end);
     if (status != IMPACT_OK) return fail(motion, status);
     if (!clocked) y[Y_TIME] = s->tau;

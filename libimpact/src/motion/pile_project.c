@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/pile_parts.h"
 #include "base/tolerances.h"
-#include "contact/persist_linear.h"
+#include "contact/held_linear.h"
 
 #include <string.h>
 

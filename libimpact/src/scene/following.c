@@ -128,11 +128,11 @@ static impact_status move_closed(imp_island *island, const imp_segment *segment,
 
 static impact_status roll(imp_island *island, const imp_segment *segment)
 {
-    imp_touch *touch = &island->motion.persist.touches[0];
-    const imp_body *body = &island->world.bodies[touch->body1];
-    const bool rough = imp_is_rough(&island->world.pairs[touch->pair]);
-    if (rough) touch->force = qvec3_scale(qvec3_sub(segment->acceleration, island->world.gravity), body->mass);
-    return move_closed(island, segment, (touch->mode == IMP_SLIDE && touch->friction > 0) || rough);
+    imp_held_contact *contact = &island->motion.held.contacts[0];
+    const imp_body *body = &island->world.bodies[contact->body1];
+    const bool rough = imp_is_rough(&island->world.pairs[contact->pair]);
+    if (rough) contact->force = qvec3_scale(qvec3_sub(segment->acceleration, island->world.gravity), body->mass);
+    return move_closed(island, segment, (contact->mode == IMP_SLIDE && contact->friction > 0) || rough);
 }
 
 /* The next segment of what glides on a face. */

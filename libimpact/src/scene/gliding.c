@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/gliding.h"
 #include "base/tolerances.h"
-#include "contact/persist_flat.h"
-#include "contact/persist_spot.h"
+#include "contact/held_flat.h"
+#include "contact/held_spot.h"
 #include "contact/points.h"
 #include "motion/lying.h"
 #include "scene/scene_events.h"
@@ -160,12 +160,12 @@ static bool glides(imp_island *island, const imp_lying *lying)
 static impact_status tell_contact(imp_island *island, int p, const imp_lying *lying)
 {
     const imp_pair *pair = &island->world.pairs[p];
-    const imp_touch touch = {.pair = p,
-                             .body1 = pair->body1,
-                             .body2 = pair->body2,
-                             .normal = lying->normal,
-                             .r1 = qvec3_scale(lying->normal, -lying->motion.height * lying->size)};
-    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_CONTACT, &touch);
+    const imp_held_contact contact = {.pair = p,
+                                      .body1 = pair->body1,
+                                      .body2 = pair->body2,
+                                      .normal = lying->normal,
+                                      .r1 = qvec3_scale(lying->normal, -lying->motion.height * lying->size)};
+    impact_event event = imp_scene_event_of_contact(island, IMPACT_EVENT_CONTACT, &contact);
     event.phases = "slide";
     return imp_scene_record(island, &event);
 }
@@ -224,7 +224,7 @@ static void lie(imp_island *island, int p)
     imp_pair *pair = &island->world.pairs[p];
     pair->footing.on = IMP_FOOT_FACE;
     pair->mode = island->notes[p].mode = IMP_OPEN;
-    imp_end_onset(pair);
+    imp_end_incipient(pair);
     pair->site.corner = pair->site.face = 0;
 }
 
@@ -286,7 +286,7 @@ static void glide_on_flat(imp_island *island, imp_pair *pair)
     island->states[body] = now;
     island->impact_loss += energy - imp_scene_undriven_energy(island);
     pair->mode = IMP_OPEN;
-    imp_end_onset(pair);
+    imp_end_incipient(pair);
     pair->footing.on = IMP_FOOT_FACE;
 }
 

@@ -19,7 +19,7 @@
  * body brought exactly onto its face. any: whether there are such. A row of contact is written unless it lay before. */
 impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any);
 
-/* The superquadrics that are held flat on a plane (persist_flat.h), and slide or turn there: what their flat place is
+/* The superquadrics that are held flat on a plane (held_flat.h), and slide or turn there: what their flat place is
  * of is a face. They lie, and are held no more; where their places end they are to be held again. */
 void imp_island_glide_on_flats(imp_island *island);
 /* The lying pair p, held again where its pressure is, so that it may tip; false: it is one of faces. */

@@ -54,7 +54,7 @@ void imp_island_clear(imp_island *island)
     world->driven = false;
     world->gaps = whole->gaps;
     world->slip_speed = whole->slip_speed;
-    world->onset_speed = whole->onset_speed;
+    world->incipient_speed = whole->incipient_speed;
     world->flat_height = whole->flat_height;
     island->number = -1;
     island->impact_loss = island->loss_before = island->gained = island->outside = 0;
@@ -75,7 +75,7 @@ static void free_fields(imp_world *world)
 void imp_island_set_slip_speed(imp_island *island, double speed)
 {
     island->world.slip_speed = speed;
-    island->world.onset_speed = IMP_ONSET_OF_SLIP_SPEED * speed;
+    island->world.incipient_speed = IMP_INCIPIENT_OF_SLIP_SPEED * speed;
 }
 
 int imp_island_add_body(imp_island *island, int body, const imp_state *state)

@@ -9,7 +9,7 @@ typedef struct ball_roll {
     const imp_body *ball, *plane;
     const imp_state *state, *ground;
     imp_mode mode;
-    bool onset;
+    bool incipient;
     qvec3 slip;
     qvec3 normal, down; /* down: g_t, m/s^2 */
     double press;       /* -g.n, m/s^2 */
@@ -44,18 +44,18 @@ static bool find_ball(const imp_island *island, const imp_pair *pair, qvec3 norm
 
 static bool find_roll(const imp_island *island, ball_roll *r)
 {
-    const imp_persist *persist = &island->motion.persist;
-    if (persist->count != 1 || persist->touches[0].still) return false;
-    const imp_touch *touch = &persist->touches[0];
-    r->mode = touch->mode, r->onset = touch->onset, r->slip = touch->slip;
-    return find_ball(island, &island->world.pairs[touch->pair], touch->normal, r);
+    const imp_held *held = &island->motion.held;
+    if (held->count != 1 || held->contacts[0].still) return false;
+    const imp_held_contact *contact = &held->contacts[0];
+    r->mode = contact->mode, r->incipient = contact->incipient, r->slip = contact->slip;
+    return find_ball(island, &island->world.pairs[contact->pair], contact->normal, r);
 }
 
 /* The line of the slip, or of what it begins along; false where it turns. */
 static bool find_line(const ball_roll *r, qvec3 *line)
 {
     const double slip = qvec3_norm(r->slip), pull = qvec3_norm(r->down);
-    const bool begins = r->onset;
+    const bool begins = r->incipient;
     if (begins || slip == 0) {
         *line = qvec3_scale(r->down, pull > 0 ? 1 / pull : 0);
         return pull > 0;
@@ -180,7 +180,7 @@ static bool slide_against(const ball_roll *r, double spin, ball_motion *motion)
 
 static bool find_motion(const ball_roll *r, ball_motion *motion)
 {
-    const bool rolls = r->mode == IMP_ROLL;
+    const bool rolls = r->mode == IMP_STICK;
     if (r->torsional == 0 && r->rolling == 0) {
         if (rolls) return *motion = roll_freely(r), true;
         *motion = (ball_motion){.a = r->down, .until = INFINITY};
@@ -203,7 +203,7 @@ bool imp_island_rolls(const imp_island *island, imp_segment *segment, imp_end *e
     const imp_end_kind kind = motion.fades && time == motion.until ? IMP_END_STICK
                               : time == leaves                     ? IMP_END_BOUNDS
                                                                    : IMP_END_RENEWAL;
-    *end = (imp_end){isfinite(time) ? kind : IMP_END_TIME, island->motion.persist.touches[0].pair};
+    *end = (imp_end){isfinite(time) ? kind : IMP_END_TIME, island->motion.held.contacts[0].pair};
     *segment = imp_segment_roll(island->t, island->t + time, r.state, motion.a, motion.alpha);
     return time > 0 && island->t + time > island->t;
 }
@@ -239,14 +239,14 @@ bool imp_island_needs_steps(const imp_island *island)
     imp_end end;
     if (rough == 0 || island->stepped) return false;
     if (balls < rough) return true;
-    return island->motion.persist.count == 1 && world->body_count == 2 && !imp_island_rolls(island, &segment, &end);
+    return island->motion.held.count == 1 && world->body_count == 2 && !imp_island_rolls(island, &segment, &end);
 }
 
 bool imp_island_rolls_out(const imp_island *island, const imp_pair *pair)
 {
     const imp_world *world = &island->world;
     const quat axes = imp_shape_axes(&world->bodies[pair->body2], &island->states[pair->body2]);
-    ball_roll r = {.mode = IMP_ROLL};
+    ball_roll r = {.mode = IMP_STICK};
     ball_motion motion;
     if (!find_ball(island, pair, quat_rotate(axes, (qvec3){0, 0, 1}), &r)) return false;
     const qvec3 slip = qvec3_axpy(-r.ball->radius, qvec3_cross(imp_omega(r.ball, r.state), r.normal), r.state->v);

@@ -140,13 +140,13 @@ static void walk_member(imp_archive *a, imp_saved_member *m)
 /* Coefficients are the rules'; the cache and what is scratch begin anew. */
 static void walk_pair(imp_archive *a, imp_pair *p)
 {
-    int mode = (int)p->mode, age = (int)p->slip.age, foot = (int)p->footing.on;
-    double *const numbers[] = {&p->slip.pull, &p->footing.spot[0], &p->footing.spot[1], &p->footing.spot[2],
+    int mode = (int)p->mode, stage = (int)p->slip.stage, foot = (int)p->footing.on;
+    double *const numbers[] = {&p->slip.mobility, &p->footing.spot[0], &p->footing.spot[1], &p->footing.spot[2],
                                &p->footing.lying};
     imp_archive_int(a, &p->body1, 0, INT32_MAX);
     imp_archive_int(a, &p->body2, 0, INT32_MAX);
-    imp_archive_int(a, &mode, IMP_OPEN, IMP_ROLL);
-    imp_archive_int(a, &age, IMP_SLIP_OLD, IMP_SLIP_YOUNG);
+    imp_archive_int(a, &mode, IMP_OPEN, IMP_STICK);
+    imp_archive_int(a, &stage, IMP_SLIP_GROSS, IMP_SLIP_SLOW);
     imp_archive_int(a, &foot, IMP_FOOT_POINT, IMP_FOOT_FACE);
     imp_archive_int(a, &p->footing.line, 0, 2);
     imp_archive_int(a, &p->site.corner, 0, IMPACT_HULL_POINTS);
@@ -157,7 +157,7 @@ static void walk_pair(imp_archive *a, imp_pair *p)
     walk_vector(a, &p->slip.direction);
     walk_vector(a, &p->rest.reaction);
     p->mode = (imp_mode)mode;
-    p->slip.age = (imp_slip_age)age;
+    p->slip.stage = (imp_slip_stage)stage;
     p->footing.on = (imp_foot)foot;
 }
 
@@ -205,7 +205,7 @@ static const char *body_fault(const imp_saved *s, const impact_scene *scene)
 static const char *pair_fault(const imp_saved *s, const impact_scene *scene, const bool *here, const imp_pair *pair)
 {
     const imp_body *bodies = scene->world.bodies;
-    const double sum = pair->slip.pull + pair->footing.spot[0] + pair->footing.spot[1] + pair->footing.spot[2] +
+    const double sum = pair->slip.mobility + pair->footing.spot[0] + pair->footing.spot[1] + pair->footing.spot[2] +
                        pair->footing.lying + pair->slip.direction.x + pair->slip.direction.y + pair->slip.direction.z +
                        pair->rest.reaction.x + pair->rest.reaction.y + pair->rest.reaction.z;
     const bool known = pair->body1 < s->body_count && pair->body2 < s->body_count && pair->body1 != pair->body2;

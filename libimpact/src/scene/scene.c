@@ -29,7 +29,7 @@ static impact_status check_rules(const impact_scene *scene, char *message, size_
     return IMPACT_EARGUMENT;
 }
 
-/* A touch of a few rounding errors is no overlap. */
+/* A contact of a few rounding errors is no overlap. */
 static impact_status check_overlaps(impact_scene *scene, char *message, unsigned long message_size)
 {
     const imp_world *world = &scene->world;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_internal.h"
-#include "world/drive.h"
+#include "world/surface_velocity.h"
 #include "scene/scene_check.h"
 #include "shape/solid.h"
 
@@ -46,7 +46,7 @@ static void build_body(const impact_body_def *def, char *name, imp_body *body, i
     quat_normalize(def->shape_orientation, &body->turn);
     body->shifted = imp_scene_shape_stands_aside(def);
     if (body->is_static) {
-        imp_drive_make(def, body);
+        imp_surface_velocity_make(def, body);
         return;
     }
     qvec3 moments;
@@ -125,7 +125,7 @@ impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def)
                          .slip_speed = IMP_SLIP_OF_REST_SPEED * def->rest_speed};
     scene->name = imp_arena_copy(world->arena, def->name ? def->name : "scene");
     if (!scene->name) return IMPACT_ENOMEM;
-    world->onset_speed = IMP_ONSET_OF_SLIP_SPEED * world->slip_speed;
+    world->incipient_speed = IMP_INCIPIENT_OF_SLIP_SPEED * world->slip_speed;
     world->flat_height = IMP_LYING_OF_REST_HEIGHT * def->rest_height;
     scene->queue.arena = world->arena;
     impact_status status = build_bodies(scene, def);

@@ -9,7 +9,7 @@
 #include "scene/coarser.h"
 #include "scene/gather.h"
 #include "scene/stepped.h"
-#include "contact/persist_still.h"
+#include "contact/held_still.h"
 #include "world/world_gap.h"
 
 #include <stdio.h>
@@ -125,7 +125,7 @@ static void put_state_of(imp_island *island, int body, const imp_state *state)
 {
     const int i = imp_island_find(island, body);
     const double energy = imp_island_energy(island);
-    imp_persist_stir(&island->world);
+    imp_held_wake(&island->world);
     island->states[i] = *state;
     island->motion.resting[i] = false;
     for (int custom = 0; custom < 2; custom++) imp_field_locate(&island->world, island->t, island->states, custom);
@@ -147,7 +147,7 @@ static bool touches_any(impact_scene *scene, int body)
 {
     const imp_track *track = &scene->tracks.tracks[body];
     for (int k = 0; k < track->near_count; k++)
-        if (imp_gather_touches(scene, &scene->tracks.near[track->near[k]], scene->t)) return true;
+        if (imp_gather_contacts(scene, &scene->tracks.near[track->near[k]], scene->t)) return true;
     return false;
 }
 

@@ -4,7 +4,7 @@
 #include "scene/scene_methods.h"
 #include "shape/ridge.h"
 #include "shape/solid.h"
-#include "world/drive.h"
+#include "world/surface_velocity.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -136,7 +136,7 @@ static void check_body(check *c, const impact_body_def *body)
     check_exponents(c, &body->shape);
     if (c->status != IMPACT_OK) return;
     if (!body->is_static) check_solid(c, body);
-    const char *refusal = imp_drive_refusal(body);
+    const char *refusal = imp_surface_velocity_refusal(body);
     require_words(c, !refusal, refusal);
 }
 

@@ -90,18 +90,19 @@ static double energy_told(const imp_island *island)
     return imp_scene_tells_events(island) ? imp_scene_total_energy(island) : 0;
 }
 
-impact_event imp_scene_event_of_touch(const imp_island *island, impact_event_kind kind, const imp_touch *touch)
+impact_event imp_scene_event_of_contact(const imp_island *island, impact_event_kind kind,
+                                        const imp_held_contact *contact)
 {
     const imp_world *world = &island->world;
     const double energy = energy_told(island);
     return (impact_event){.t = island->t,
                           .kind = kind,
-                          .body1 = touch->body1,
-                          .body2 = touch->body2,
-                          .name1 = world->bodies[touch->body1].name,
-                          .name2 = world->bodies[touch->body2].name,
-                          .point = qvec3_add(island->states[touch->body1].x, touch->r1),
-                          .normal = touch->normal,
+                          .body1 = contact->body1,
+                          .body2 = contact->body2,
+                          .name1 = world->bodies[contact->body1].name,
+                          .name2 = world->bodies[contact->body2].name,
+                          .point = qvec3_add(island->states[contact->body1].x, contact->r1),
+                          .normal = contact->normal,
                           .phases = "",
                           .energy_before = energy,
                           .energy_after = energy};

@@ -17,7 +17,8 @@ void imp_scene_remember(imp_island *island);
 bool imp_scene_tells_events(const imp_island *island);
 
 /* An event now; its energies are the present ones. */
-impact_event imp_scene_event_of_touch(const imp_island *island, impact_event_kind kind, const imp_touch *touch);
+impact_event imp_scene_event_of_contact(const imp_island *island, impact_event_kind kind,
+                                        const imp_held_contact *contact);
 impact_event imp_scene_event_of_body(const imp_island *island, impact_event_kind kind, int body);
 
 /* Counts the event, and hands it on between its bodies' rows before and after. A recorder that refuses is not obeyed

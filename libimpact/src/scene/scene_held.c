@@ -21,42 +21,42 @@ static void add_row(held_rows *rows, const impact_held *row)
     rows->count++;
 }
 
-static impact_held row_of(const imp_island *island, double t, const imp_touch *touch)
+static impact_held row_of(const imp_island *island, double t, const imp_held_contact *contact)
 {
     const imp_body *bodies = island->world.bodies;
     return (impact_held){.t = t,
-                         .body1 = bodies[touch->body1].index,
-                         .body2 = bodies[touch->body2].index,
-                         .mode = touch->mode == IMP_ROLL ? IMPACT_HOLD_STICK : IMPACT_HOLD_SLIP,
-                         .point = qvec3_add(island->motion.sampled[touch->body1].x, touch->r1),
-                         .normal = touch->normal,
-                         .force = touch->force};
+                         .body1 = bodies[contact->body1].index,
+                         .body2 = bodies[contact->body2].index,
+                         .mode = contact->mode == IMP_STICK ? IMPACT_HOLD_STICK : IMPACT_HOLD_SLIP,
+                         .point = qvec3_add(island->motion.sampled[contact->body1].x, contact->r1),
+                         .normal = contact->normal,
+                         .force = contact->force};
 }
 
-/* A ball that rolls in closed form against friction of its turning: that is in its segment, not among the touches. */
+/* A ball that rolls in closed form against friction of its turning: that is in its segment, not among the contacts. */
 static void add_rolling(const imp_island *island, impact_held *row)
 {
-    const imp_touch *touch = &island->motion.persist.touches[0];
-    const imp_body *body = &island->world.bodies[touch->body1];
-    if (!island->rolls || !imp_is_rough(&island->world.pairs[touch->pair])) return;
+    const imp_held_contact *contact = &island->motion.held.contacts[0];
+    const imp_body *body = &island->world.bodies[contact->body1];
+    if (!island->rolls || !imp_is_rough(&island->world.pairs[contact->pair])) return;
     const qvec3 turns = island->scene->tracks.tracks[body->index].segment.spin_up;
-    row->force = touch->force;
-    row->moment = qvec3_sub(qvec3_scale(turns, body->moments.x), qvec3_cross(touch->r1, touch->force));
+    row->force = contact->force;
+    row->moment = qvec3_sub(qvec3_scale(turns, body->moments.x), qvec3_cross(contact->r1, contact->force));
 }
 
 static impact_status exact_rows(imp_island *island, double t, held_rows *rows)
 {
-    const size_t count = (size_t)island->motion.persist.count;
-    imp_touch *touches = imp_arena_take(island->world.arena, count + 1, sizeof *touches);
-    if (!touches) return IMPACT_ENOMEM;
+    const size_t count = (size_t)island->motion.held.count;
+    imp_held_contact *contacts = imp_arena_take(island->world.arena, count + 1, sizeof *contacts);
+    if (!contacts) return IMPACT_ENOMEM;
     const bool moves = island->moves && !island->rests && !island->rolls;
-    const impact_status status = imp_motion_touches(&island->motion, t, moves, island->motion.sampled, touches);
+    const impact_status status = imp_motion_contacts(&island->motion, t, moves, island->motion.sampled, contacts);
     for (size_t c = 0; status == IMPACT_OK && c < count; c++) {
-        impact_held row = row_of(island, t, &touches[c]);
+        impact_held row = row_of(island, t, &contacts[c]);
         add_rolling(island, &row);
         add_row(rows, &row);
     }
-    imp_arena_give(island->world.arena, touches);
+    imp_arena_give(island->world.arena, contacts);
     return status;
 }
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_hold.h"
 #include "base/number.h"
-#include "world/drive.h"
-#include "contact/persist_flat.h"
-#include "contact/persist_line.h"
-#include "contact/persist_still.h"
+#include "world/surface_velocity.h"
+#include "contact/held_flat.h"
+#include "contact/held_line.h"
+#include "contact/held_still.h"
 #include "scene/scene_drawn.h"
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
@@ -12,9 +12,9 @@
 #include <stdio.h>
 
 /* What has no friction slides even where it stands still. */
-static imp_mode held_mode(const imp_touch *touch, bool slides)
+static imp_mode held_mode(const imp_held_contact *contact, bool slides)
 {
-    return slides || touch->friction == 0 ? IMP_SLIDE : IMP_ROLL;
+    return slides || contact->friction == 0 ? IMP_SLIDE : IMP_STICK;
 }
 
 void imp_scene_choose_modes(imp_island *island)
@@ -27,9 +27,9 @@ void imp_scene_choose_modes(imp_island *island)
         imp_scene_press(island, &m);
         const bool stays =
             m.acceleration < 0 ? imp_scene_dies_out(island, &m, m.velocity) : m.velocity <= world->slip_speed;
-        const bool slides = m.touch.speed > world->slip_speed || (imp_is_held(pair) && m.touch.onset);
-        pair->mode = stays ? held_mode(&m.touch, slides) : IMP_OPEN;
-        if (!slides || m.touch.speed >= world->onset_speed) imp_end_onset(pair);
+        const bool slides = m.contact.speed > world->slip_speed || (imp_is_held(pair) && m.contact.incipient);
+        pair->mode = stays ? held_mode(&m.contact, slides) : IMP_OPEN;
+        if (!slides || m.contact.speed >= world->incipient_speed) imp_end_incipient(pair);
     }
     for (int p = 0; p < world->pair_count; p++) { /* now that it is known what holds whose bodies */
         imp_meeting m;
@@ -47,7 +47,7 @@ static impact_event_kind change_of_mode(imp_mode before, imp_mode now)
 {
     if (!imp_mode_holds(now)) return IMPACT_EVENT_LIFTOFF;
     if (!imp_mode_holds(before)) return IMPACT_EVENT_CONTACT;
-    return now == IMP_ROLL ? IMPACT_EVENT_STICK : IMPACT_EVENT_SLIP;
+    return now == IMP_STICK ? IMPACT_EVENT_STICK : IMPACT_EVENT_SLIP;
 }
 
 static impact_status record_changes(imp_island *island)
@@ -56,11 +56,11 @@ static impact_status record_changes(imp_island *island)
     for (int p = 0; p < world->pair_count; p++) {
         const imp_mode now = world->pairs[p].mode;
         if (now == island->notes[p].mode) continue;
-        const imp_touch touch = imp_persist_touch(world, p, island->states, island->motion.loads);
-        impact_event event = imp_scene_event_of_touch(island, change_of_mode(island->notes[p].mode, now), &touch);
-        const bool stands = touch.friction == 0 && touch.speed <= world->slip_speed;
-        event.phases = !imp_mode_holds(now) ? "" : now == IMP_ROLL || stands ? "roll" : "slide";
-        island->motion.resting[touch.body1] = island->motion.resting[touch.body2] = false;
+        const imp_held_contact contact = imp_held_contact_at(world, p, island->states, island->motion.loads);
+        impact_event event = imp_scene_event_of_contact(island, change_of_mode(island->notes[p].mode, now), &contact);
+        const bool stands = contact.friction == 0 && contact.speed <= world->slip_speed;
+        event.phases = !imp_mode_holds(now) ? "" : now == IMP_STICK || stands ? "roll" : "slide";
+        island->motion.resting[contact.body1] = island->motion.resting[contact.body2] = false;
         const impact_status status = imp_scene_record(island, &event);
         if (status != IMPACT_OK) return status;
     }
@@ -82,17 +82,17 @@ static bool comes_to_rest(const imp_island *island, int body)
     if (fastest_point(b, s) > island->scene->rest_speed) return false;
     qvec3 force = island->motion.loads[body].force, torque = island->motion.loads[body].torque;
     bool held = false;
-    for (int c = 0; c < island->motion.persist.count; c++) {
-        const imp_touch *touch = &island->motion.persist.touches[c];
-        if (touch->body1 != body && touch->body2 != body) continue;
-        if (imp_is_turned(&island->world, &island->world.pairs[touch->pair])) return false;
-        if (touch->still) return true;
-        const bool fades = touch->mode == IMP_SLIDE && !touch->onset && touch->friction > 0;
-        if (fades && touch->speed <= 2 * island->scene->rest_speed) return false; /* it sticks first */
+    for (int c = 0; c < island->motion.held.count; c++) {
+        const imp_held_contact *contact = &island->motion.held.contacts[c];
+        if (contact->body1 != body && contact->body2 != body) continue;
+        if (imp_is_turned(&island->world, &island->world.pairs[contact->pair])) return false;
+        if (contact->still) return true;
+        const bool fades = contact->mode == IMP_SLIDE && !contact->incipient && contact->friction > 0;
+        if (fades && contact->speed <= 2 * island->scene->rest_speed) return false; /* it sticks first */
         held = true;
-        const qvec3 f = touch->body1 == body ? touch->force : qvec3_neg(touch->force);
+        const qvec3 f = contact->body1 == body ? contact->force : qvec3_neg(contact->force);
         force = qvec3_add(force, f);
-        torque = qvec3_add(torque, qvec3_cross(touch->body1 == body ? touch->r1 : touch->r2, f));
+        torque = qvec3_add(torque, qvec3_cross(contact->body1 == body ? contact->r1 : contact->r2, f));
     }
     const double acceleration =
         qvec3_norm(force) * b->inverse_mass + b->radius * qvec3_norm(imp_inverse_inertia(b, s->q, torque));
@@ -126,8 +126,8 @@ static impact_status find_still(imp_island *island)
     imp_world *world = &island->world;
     const double jam_speed =
         fmax(island->scene->rest_speed, sqrt(2 * qvec3_norm(world->gravity) * island->scene->rest_height));
-    const impact_status status = imp_persist_find_still(&motion->persist, world, island->states, motion->loads,
-                                                        island->scene->rest_speed, jam_speed);
+    const impact_status status =
+        imp_held_find_still(&motion->held, world, island->states, motion->loads, island->scene->rest_speed, jam_speed);
     for (int p = 0; status == IMPACT_OK && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
         if (!imp_is_held(pair) || !pair->rest.still) continue;
@@ -141,16 +141,15 @@ static impact_status find_still(imp_island *island)
 static impact_status make_consistent(imp_island *island)
 {
     imp_motion *motion = &island->motion;
-    imp_persist_stir(&island->world);
-    impact_status status = imp_persist_reserve(&motion->persist, &island->world, island->states);
+    imp_held_wake(&island->world);
+    impact_status status = imp_held_reserve(&motion->held, &island->world, island->states);
     if (status == IMPACT_OK) status = imp_scene_load(island);
     if (status != IMPACT_OK) return status;
-    imp_persist_project(&motion->persist, &island->world, island->states, motion->loads);
-    motion->works.drive += imp_persist_drive_power(&motion->persist, &island->world);
+    imp_held_project(&motion->held, &island->world, island->states, motion->loads);
+    motion->works.drive += imp_held_drive_power(&motion->held, &island->world);
     status = imp_scene_load(island);
     if (status == IMPACT_OK) status = find_still(island);
-    if (status == IMPACT_OK)
-        status = imp_persist_resolve(&motion->persist, &island->world, island->states, motion->loads);
+    if (status == IMPACT_OK) status = imp_held_resolve(&motion->held, &island->world, island->states, motion->loads);
     if (status == IMPACT_EUNSETTLED)
         snprintf(island->scene->message, sizeof island->scene->message,
                  "no consistent set of contact forces found at t = %s", imp_number_of(island->t).text);
@@ -186,7 +185,7 @@ static impact_status lie_down(imp_island *island)
     impact_status status = imp_scene_load(island);
     if (status != IMPACT_OK) return status;
     const bool flat = imp_flat_lay(&island->world, island->states, island->motion.loads);
-    const bool lined = imp_line_lay(&island->motion.persist, &island->world, island->states, island->motion.loads);
+    const bool lined = imp_line_lay(&island->motion.held, &island->world, island->states, island->motion.loads);
     if (!flat && !lined) return status;
     status = make_consistent(island);
     island->impact_loss += energy - imp_scene_undriven_energy(island);
@@ -196,11 +195,11 @@ static impact_status lie_down(imp_island *island)
 /* Whether a body that moves is held with friction by reactions that are not unique. */
 static bool hangs_on_choice(const imp_island *island)
 {
-    const imp_persist *persist = &island->motion.persist;
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (touch->still || !touch->redundant || !(touch->friction > 0)) continue;
-        const int bodies[2] = {touch->body1, touch->body2};
+    const imp_held *held = &island->motion.held;
+    for (int c = 0; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        if (contact->still || !contact->redundant || !(contact->friction > 0)) continue;
+        const int bodies[2] = {contact->body1, contact->body2};
         for (int k = 0; k < 2; k++) {
             const imp_body *body = &island->world.bodies[bodies[k]];
             const imp_state *state = &island->states[bodies[k]];
@@ -222,8 +221,8 @@ impact_status imp_scene_hold(imp_island *island, int opened, bool rejoin)
         if (p < 0) break;
         imp_pair *pair = &world->pairs[p];
         island->notes[p].settled = true;
-        imp_end_onset(pair);
-        pair->mode = held_mode(&m.touch, m.touch.speed > world->slip_speed);
+        imp_end_incipient(pair);
+        pair->mode = held_mode(&m.contact, m.contact.speed > world->slip_speed);
         status = make_consistent(island);
     }
     if (status == IMPACT_OK) status = lie_down(island);

@@ -4,8 +4,8 @@
  * the ends of stretches of motion stand for.
  */
 #include "base/tolerances.h"
-#include "contact/persist_flat.h"
-#include "contact/persist_line.h"
+#include "contact/held_flat.h"
+#include "contact/held_line.h"
 #include "contact/points.h"
 #include "scene/gliding.h"
 #include "scene/scene_events.h"
@@ -113,7 +113,7 @@ static impact_status list_landing(imp_island *island, int p)
         imp_pair *pair = &island->world.pairs[k];
         if (pair->site.placed || imp_same_bodies(pair, &arriving)) pair->mode = IMP_SLIDE;
     }
-    return status == IMPACT_OK ? imp_persist_reserve(&island->motion.persist, &island->world, island->states) : status;
+    return status == IMPACT_OK ? imp_held_reserve(&island->motion.held, &island->world, island->states) : status;
 }
 
 /* Takes the gaps of what lands to zero with those of what is held, none at the cost of another: putting back what was
@@ -125,14 +125,14 @@ static impact_status close_landing(imp_island *island, int p)
     imp_pair *pairs = imp_arena_take(world->arena, (size_t)count, sizeof *pairs);
     impact_status status = pairs ? IMPACT_OK : IMPACT_ENOMEM;
     if (pairs) memcpy(pairs, world->pairs, sizeof *pairs * (size_t)count);
-    for (int round = 0; status == IMPACT_OK && round < IMP_PERSIST_ROUNDS; round++) {
+    for (int round = 0; status == IMPACT_OK && round < IMP_HELD_ROUNDS; round++) {
         status = list_landing(island, p);
-        if (status == IMPACT_OK) imp_persist_close_gaps(&island->motion.persist, world, island->states);
+        if (status == IMPACT_OK) imp_held_close_gaps(&island->motion.held, world, island->states);
         memcpy(world->pairs, pairs, sizeof *pairs * (size_t)count);
         world->pair_count = count;
     }
     imp_arena_give(world->arena, pairs);
-    return status == IMPACT_OK ? imp_persist_reserve(&island->motion.persist, world, island->states) : status;
+    return status == IMPACT_OK ? imp_held_reserve(&island->motion.held, world, island->states) : status;
 }
 
 static impact_status arrive(imp_island *island, int p)
@@ -159,7 +159,7 @@ static impact_status change_mode(imp_island *island, int p, imp_mode mode)
     imp_scene_remember(island);
     imp_pair *pair = &island->world.pairs[p];
     pair->mode = mode;
-    imp_end_onset(pair);
+    imp_end_incipient(pair);
     const double account = imp_scene_undriven_energy(island) + island->impact_loss;
     const impact_status status = hold(island, imp_mode_holds(mode) ? -1 : p, true);
     island->impact_loss = account - imp_scene_undriven_energy(island);
@@ -167,20 +167,20 @@ static impact_status change_mode(imp_island *island, int p, imp_mode mode)
 }
 
 /* A rolling contact's friction has reached its cone: it slides, against the friction that held it; where reactions are
- * not unique it may have another: that is asked (persist_modes.c). */
+ * not unique it may have another: that is asked (held_modes.c). */
 static impact_status begin_slide(imp_island *island, int p)
 {
     imp_scene_remember(island);
-    imp_persist *persist = &island->motion.persist;
+    imp_held *held = &island->motion.held;
     const impact_status status = imp_scene_load(island);
     if (status != IMPACT_OK) return status;
-    imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
+    imp_held_solve(held, &island->world, island->states, island->motion.loads);
     imp_pair *pair = &island->world.pairs[p];
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (touch->pair != p) continue;
-        imp_persist_begin_slide(pair, touch);
-        if (touch->redundant) pair->mode = IMP_ROLL;
+    for (int c = 0; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        if (contact->pair != p) continue;
+        imp_held_begin_slide(pair, contact);
+        if (contact->redundant) pair->mode = IMP_STICK;
     }
     return hold(island, -1, true);
 }
@@ -189,19 +189,19 @@ static impact_status begin_slide(imp_island *island, int p)
 static bool tips(imp_island *island, int p)
 {
     imp_world *world = &island->world;
-    imp_persist *persist = &island->motion.persist;
+    imp_held *held = &island->motion.held;
     imp_pair *pair = &world->pairs[p];
     imp_scene_remember(island);
     if ((pair->footing.on != IMP_FOOT_FLAT && pair->footing.on != IMP_FOOT_LINE) || imp_scene_load(island) != IMPACT_OK)
         return false;
-    imp_persist_solve(persist, world, island->states, island->motion.loads);
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (touch->pair != p) continue;
-        if (touch->foot == IMP_FOOT_FLAT && touch->spare <= IMP_SPARE_SPENT)
-            imp_flat_tip(world, pair, island->states, touch);
-        else if (touch->foot == IMP_FOOT_LINE &&
-                 imp_line_spare(world, touch, island->states, island->motion.loads) <= IMP_SPARE_SPENT)
+    imp_held_solve(held, world, island->states, island->motion.loads);
+    for (int c = 0; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        if (contact->pair != p) continue;
+        if (contact->foot == IMP_FOOT_FLAT && contact->spare <= IMP_SPARE_SPENT)
+            imp_flat_tip(world, pair, island->states, contact);
+        else if (contact->foot == IMP_FOOT_LINE &&
+                 imp_line_spare(world, contact, island->states, island->motion.loads) <= IMP_SPARE_SPENT)
             pair->footing.on = IMP_FOOT_SPOT;
         else
             return false;
@@ -246,8 +246,8 @@ static impact_status stop_gliding(imp_island *island, int p)
     imp_scene_remember(island);
     island->states[pair->body1].v = island->states[pair->body1].momentum = (qvec3){0, 0, 0};
     if (flat) return imp_scene_settle(island);
-    const imp_touch touch = imp_persist_touch(&island->world, p, island->states, island->motion.loads);
-    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_STICK, &touch);
+    const imp_held_contact contact = imp_held_contact_at(&island->world, p, island->states, island->motion.loads);
+    impact_event event = imp_scene_event_of_contact(island, IMPACT_EVENT_STICK, &contact);
     event.phases = "roll";
     const impact_status status = imp_scene_record(island, &event);
     return status == IMPACT_OK ? imp_scene_settle(island) : status;
@@ -278,7 +278,7 @@ impact_status imp_scene_handle(imp_island *island, imp_end end)
     case IMP_END_SLIP: return begin_slide(island, end.index);
     case IMP_END_STICK:
         if (island->world.pairs[end.index].footing.on == IMP_FOOT_FACE) return stop_gliding(island, end.index);
-        return change_mode(island, end.index, IMP_ROLL);
+        return change_mode(island, end.index, IMP_STICK);
     case IMP_END_EDGE: return cross_edge(island, end.index);
     case IMP_END_SLOW:
         imp_scene_remember(island);

@@ -199,23 +199,23 @@ bool imp_scene_held_until(imp_island *island)
 {
     impact_scene *scene = island->scene;
     if (!scene->keys || !scene->recorder->held) return true;
-    const imp_persist *persist = &island->motion.persist;
+    const imp_held *held = &island->motion.held;
     const imp_body *bodies = island->world.bodies;
     const double least = scene->duration / IMP_DISPLAY_ROWS;
     bool taken = true;
-    for (int c = 0; taken && c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        const int body1 = bodies[touch->body1].index, body2 = bodies[touch->body2].index;
+    for (int c = 0; taken && c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        const int body1 = bodies[contact->body1].index, body2 = bodies[contact->body2].index;
         const int near = imp_tracks_find(&scene->tracks, body1, body2);
         imp_held_line *line = near < 0 ? NULL : held_line(scene, near);
         const impact_held row = {.t = island->t,
                                  .body1 = body1,
                                  .body2 = body2,
-                                 .mode = touch->mode == IMP_ROLL ? IMPACT_HOLD_STICK : IMPACT_HOLD_SLIP,
-                                 .point = qvec3_add(island->states[touch->body1].x, touch->r1),
-                                 .normal = touch->normal,
-                                 .force = touch->force};
-        if (line) taken = add_held_row(scene, line, &row, bodies[touch->body1].radius, least);
+                                 .mode = contact->mode == IMP_STICK ? IMPACT_HOLD_STICK : IMPACT_HOLD_SLIP,
+                                 .point = qvec3_add(island->states[contact->body1].x, contact->r1),
+                                 .normal = contact->normal,
+                                 .force = contact->force};
+        if (line) taken = add_held_row(scene, line, &row, bodies[contact->body1].radius, least);
     }
     return taken;
 }

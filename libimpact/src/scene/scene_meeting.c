@@ -14,12 +14,12 @@ impact_status imp_scene_load(imp_island *island)
 
 impact_status imp_scene_load_with_reactions(imp_island *island)
 {
-    imp_persist *persist = &island->motion.persist;
-    impact_status status = imp_persist_reserve(persist, &island->world, island->states);
+    imp_held *held = &island->motion.held;
+    impact_status status = imp_held_reserve(held, &island->world, island->states);
     if (status == IMPACT_OK) status = imp_scene_load(island);
-    if (status != IMPACT_OK || persist->count == 0) return status;
-    imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
-    imp_persist_add_reactions(persist, island->motion.loads);
+    if (status != IMPACT_OK || held->count == 0) return status;
+    imp_held_solve(held, &island->world, island->states, island->motion.loads);
+    imp_held_add_reactions(held, island->motion.loads);
     return IMPACT_OK;
 }
 
@@ -36,9 +36,9 @@ bool imp_scene_meets(imp_island *island, int p, imp_meeting *m)
     if (!imp_is_held(pair) &&
         (contact.gap > m->touching || imp_world_inside_bounds(world, pair, island->states, &contact) < 0))
         return false;
-    m->touch = imp_persist_meet(world, p, &contact);
-    m->velocity = imp_persist_approach(world, &m->touch, island->states);
-    m->own = imp_persist_own_acceleration(&island->motion.persist, world, island->states, p);
+    m->contact = imp_held_meet(world, p, &contact);
+    m->velocity = imp_held_approach(world, &m->contact, island->states);
+    m->own = imp_held_own_acceleration(&island->motion.held, world, island->states, p);
     m->pressed = m->jams = false;
     return true;
 }
@@ -46,9 +46,9 @@ bool imp_scene_meets(imp_island *island, int p, imp_meeting *m)
 void imp_scene_press(imp_island *island, imp_meeting *m)
 {
     if (m->pressed) return;
-    m->touch = imp_persist_touch(&island->world, m->touch.pair, island->states, island->motion.loads);
+    m->contact = imp_held_contact_at(&island->world, m->contact.pair, island->states, island->motion.loads);
     m->acceleration =
-        qvec3_dot(m->touch.normal, m->touch.bias) + qvec3_dot(m->touch.normal_rate, m->touch.slip) - m->own;
+        qvec3_dot(m->contact.normal, m->contact.bias) + qvec3_dot(m->contact.normal_rate, m->contact.slip) - m->own;
     m->pressed = true;
 }
 
@@ -60,7 +60,7 @@ static double length(qvec3 v) { return sqrt(qvec3_dot(v, v)); }
  * reaction, which its acceleration does not. */
 static double most_lasting_press(const imp_island *island, const imp_meeting *m)
 {
-    const int body[2] = {m->touch.body1, m->touch.body2};
+    const int body[2] = {m->contact.body1, m->contact.body2};
     const imp_state *states = island->states;
     double speed = length(qvec3_sub(states[body[0]].v, states[body[1]].v)), pull = fabs(m->own), radius = INFINITY;
     for (int k = 0; k < 2; k++) {
@@ -80,7 +80,7 @@ static double most_lasting_press(const imp_island *island, const imp_meeting *m)
 static double least_rise(const imp_island *island, const imp_meeting *m)
 {
     enum { MOST = 10 };
-    const imp_pair *pair = &island->world.pairs[m->touch.pair];
+    const imp_pair *pair = &island->world.pairs[m->contact.pair];
     const double own = 1 / (1 - pair->law.restitution * pair->law.restitution),
                  gain = imp_pair_has_faces(&island->world, pair) ? MOST : own;
     return fmax(island->scene->rest_height, m->touching * fmin(gain, MOST));
@@ -115,13 +115,13 @@ impact_collider imp_scene_collider(const imp_island *island, int body, qvec3 off
  * + e + ...) - m |a| T with T = 2 e w/(|a| (1 - e)) is m w. */
 impact_collision imp_scene_collision(imp_island *island, imp_meeting *m)
 {
-    const double restitution = island->world.pairs[m->touch.pair].law.restitution;
+    const double restitution = island->world.pairs[m->contact.pair].law.restitution;
     const bool dies = !m->jams && imp_scene_dies_out(island, m, restitution * m->velocity);
-    const imp_touch *touch = &m->touch;
-    return (impact_collision){.body = {imp_scene_collider(island, touch->body1, touch->r1),
-                                       imp_scene_collider(island, touch->body2, touch->r2)},
-                              .normal = touch->normal,
-                              .friction = touch->friction,
+    const imp_held_contact *contact = &m->contact;
+    return (impact_collision){.body = {imp_scene_collider(island, contact->body1, contact->r1),
+                                       imp_scene_collider(island, contact->body2, contact->r2)},
+                              .normal = contact->normal,
+                              .friction = contact->friction,
                               .restitution = dies ? 0 : restitution,
                               .law = island->scene->law,
                               .pressed = m->jams,
@@ -140,10 +140,10 @@ void imp_scene_set_velocities(imp_island *island, int i, qvec3 velocity, qvec3 o
 }
 
 /* A static body's drive does work with the impulse on body 1, which gets its momentum from outside. */
-double imp_scene_drive_impulse(imp_island *island, const imp_touch *touch, qvec3 impulse)
+double imp_scene_drive_impulse(imp_island *island, const imp_held_contact *contact, qvec3 impulse)
 {
-    const imp_body *other = &island->world.bodies[touch->body2];
-    const double work = qvec3_dot(impulse, imp_surface_velocity(other, touch->r2));
+    const imp_body *other = &island->world.bodies[contact->body2];
+    const double work = qvec3_dot(impulse, imp_surface_velocity(other, contact->r2));
     island->motion.works.drive += work;
     if (other->is_static) imp_island_push(island, impulse);
     return work;

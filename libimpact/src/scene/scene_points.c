@@ -13,7 +13,7 @@ static imp_pair whole_pair(const imp_pair *pair)
 {
     imp_pair whole = *pair;
     if (imp_is_held(pair)) whole.mode = IMP_OPEN;
-    whole.slip.age = IMP_SLIP_OLD;
+    whole.slip.stage = IMP_SLIP_GROSS;
     whole.site.placed = whole.rest.still = false;
     whole.site.corner = whole.site.face = 0;
     return whole;

@@ -52,8 +52,8 @@ static int list_pressed(imp_island *island, imp_meeting *met, int count, press_r
         if (m->velocity > island->world.slip_speed) continue;
         imp_cone_contact *own = &room->contacts[n];
         *own = (imp_cone_contact){
-            .body1 = m->touch.body1, .body2 = m->touch.body2, .arm1 = m->touch.r1, .arm2 = m->touch.r2};
-        imp_cone_find_axes(m->touch.normal, own->axes);
+            .body1 = m->contact.body1, .body2 = m->contact.body2, .arm1 = m->contact.r1, .arm2 = m->contact.r2};
+        imp_cone_find_axes(m->contact.normal, own->axes);
         room->q[3 * n] = m->acceleration, room->q[3 * n + 1] = room->q[3 * n + 2] = 0;
         room->friction[n] = 0;
         room->of[n++] = c;

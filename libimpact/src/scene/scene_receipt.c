@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Identities that the solvers of the motion do not use: orientations are unit, what is held touches, contact forces lie
- * in their cones, energy is where the account says, losses do not fall, and impacts change the bodies' momentum by
+ * Identities that the solvers of the motion do not use: orientations are unit, what is held contacts, contact forces
+ * lie in their cones, energy is where the account says, losses do not fall, and impacts change the bodies' momentum by
  * what static ones gave, all impulses between bodies being equal and opposite. A wrong impact or a wrong reaction
  * cannot hide: what it gives shows as a loss that falls.
  */
@@ -62,16 +62,16 @@ static double worst_gap(imp_island *island, const imp_state *states)
 /* What goes on by steps from here was settled by nobody: what was held is held no more. */
 static double worst_contact(imp_island *island)
 {
-    imp_persist *persist = &island->motion.persist;
+    imp_held *held = &island->motion.held;
     double greatest = 0, worst = 0;
-    if (island->lies || persist->count == 0 || imp_scene_load(island) != IMPACT_OK) return 0;
-    imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
-    for (int c = 0; c < persist->count; c++) greatest = fmax(greatest, qvec3_norm(persist->touches[c].force));
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        const double normal = qvec3_dot(touch->normal, touch->force);
-        const double rubs = qvec3_norm(qvec3_axpy(-normal, touch->normal, touch->force));
-        worst = imp_worse(imp_worse(worst, -normal), rubs - touch->friction * fmax(normal, 0));
+    if (island->lies || held->count == 0 || imp_scene_load(island) != IMPACT_OK) return 0;
+    imp_held_solve(held, &island->world, island->states, island->motion.loads);
+    for (int c = 0; c < held->count; c++) greatest = fmax(greatest, qvec3_norm(held->contacts[c].force));
+    for (int c = 0; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        const double normal = qvec3_dot(contact->normal, contact->force);
+        const double rubs = qvec3_norm(qvec3_axpy(-normal, contact->normal, contact->force));
+        worst = imp_worse(imp_worse(worst, -normal), rubs - contact->friction * fmax(normal, 0));
     }
     return greatest > 0 ? worst / greatest : 0;
 }

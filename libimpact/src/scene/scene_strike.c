@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene/scene_strike.h"
 #include "base/number.h"
-#include "contact/persist_still.h"
+#include "contact/held_still.h"
 #include "contact/turning.h"
 #include "scene/scene_drawn.h"
 #include "scene/scene_events.h"
@@ -27,12 +27,12 @@ static void count_solver(imp_island *island, const impact_outcome *outcome)
 static impact_status strike_turning(imp_island *island, imp_meeting *m)
 {
     imp_world *world = &island->world;
-    const imp_touch *touch = &m->touch;
-    const imp_pair *pair = &world->pairs[touch->pair];
-    imp_cone_contact contact = {.body1 = touch->body1, .body2 = touch->body2, .arm1 = touch->r1, .arm2 = touch->r2};
+    const imp_held_contact *held = &m->contact;
+    const imp_pair *pair = &world->pairs[held->pair];
+    imp_cone_contact contact = {.body1 = held->body1, .body2 = held->body2, .arm1 = held->r1, .arm2 = held->r2};
     imp_cone_workspace room = {.arena = world->arena};
     imp_turning_impact impact;
-    imp_cone_find_axes(touch->normal, contact.axes);
+    imp_cone_find_axes(held->normal, contact.axes);
     const impact_status status = imp_turning_collide(world, island->states, &contact, pair->law.friction,
                                                      (imp_cone_lengths){pair->law.torsional, pair->law.rolling},
                                                      imp_scene_collision(island, m).restitution, &room, &impact);
@@ -40,21 +40,21 @@ static impact_status strike_turning(imp_island *island, imp_meeting *m)
     if (status == IMPACT_EUNSETTLED)
         snprintf(island->scene->message, sizeof island->scene->message,
                  "impact of '%s' and '%s' at t = %s, with friction against turning: no answer was found",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, imp_number_of(island->t).text);
+                 world->bodies[held->body1].name, world->bodies[held->body2].name, imp_number_of(island->t).text);
     if (status != IMPACT_OK) return status;
-    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
+    impact_event event = imp_scene_event_of_contact(island, IMPACT_EVENT_IMPACT, held);
     const qvec3 rubs = qvec3_axpy(impact.p[1], contact.axes[1], qvec3_scale(contact.axes[2], impact.p[2]));
-    event.impulse = qvec3_axpy(impact.p[0], touch->normal, rubs);
+    event.impulse = qvec3_axpy(impact.p[0], held->normal, rubs);
     event.impulse_normal = impact.p[0];
     event.impulse_tangential = qvec3_norm(rubs);
     event.normal_before = impact.before[0];
     event.normal_after = impact.after[0];
-    imp_scene_drive_impulse(island, touch, event.impulse);
+    imp_scene_drive_impulse(island, held, event.impulse);
     for (int k = 0; k < 3; k++)
-        island->motion.works.drive += impact.p[3 + k] * qvec3_dot(contact.axes[k], world->bodies[touch->body2].spin);
-    imp_persist_stir(world);
+        island->motion.works.drive += impact.p[3 + k] * qvec3_dot(contact.axes[k], world->bodies[held->body2].spin);
+    imp_held_wake(world);
     imp_cone_push_turning(world, &contact, 1, impact.p, island->states);
-    island->motion.resting[touch->body1] = island->motion.resting[touch->body2] = false;
+    island->motion.resting[held->body1] = island->motion.resting[held->body2] = false;
     world->usage.impacts_turning++;
     event.phases = "turning";
     if (imp_scene_tells_events(island)) event.energy_after = imp_scene_total_energy(island);
@@ -64,27 +64,27 @@ static impact_status strike_turning(imp_island *island, imp_meeting *m)
 static impact_status strike(imp_island *island, imp_meeting *m)
 {
     imp_world *world = &island->world;
-    const imp_touch *touch = &m->touch;
-    if (imp_is_rough(&world->pairs[touch->pair]) && !m->jams) return strike_turning(island, m);
+    const imp_held_contact *contact = &m->contact;
+    if (imp_is_rough(&world->pairs[contact->pair]) && !m->jams) return strike_turning(island, m);
     const impact_collision collision = imp_scene_collision(island, m);
     impact_outcome outcome;
     const impact_status status = impact_collide(&collision, &outcome);
     if (status == IMPACT_SOFT && island->world.usage.impacts_soft++ == 0)
         snprintf(island->scene->message, sizeof island->scene->message,
                  "impact of '%s' and '%s' at t = %s: no solver's answer passes its receipt, the best is taken",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, imp_number_of(island->t).text);
+                 world->bodies[contact->body1].name, world->bodies[contact->body2].name, imp_number_of(island->t).text);
     if (status != IMPACT_OK && status != IMPACT_SOFT) {
         snprintf(island->scene->message, sizeof island->scene->message, "impact of '%s' and '%s' at t = %s: %s",
-                 world->bodies[touch->body1].name, world->bodies[touch->body2].name, imp_number_of(island->t).text,
+                 world->bodies[contact->body1].name, world->bodies[contact->body2].name, imp_number_of(island->t).text,
                  status == IMPACT_EARGUMENT && island->scene->methods.impacts == IMPACT_SOLVER_CLOSED_FORM
                      ? "it has no closed form, and the scene asks for no other solver"
                      : impact_status_string(status));
         return status < 0 ? status : IMPACT_EUNSETTLED;
     }
-    impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
-    const int bodies[2] = {touch->body1, touch->body2};
-    imp_scene_drive_impulse(island, touch, outcome.impulse);
-    imp_persist_stir(world);
+    impact_event event = imp_scene_event_of_contact(island, IMPACT_EVENT_IMPACT, contact);
+    const int bodies[2] = {contact->body1, contact->body2};
+    imp_scene_drive_impulse(island, contact, outcome.impulse);
+    imp_held_wake(world);
     for (int k = 0; k < 2; k++) {
         imp_scene_set_velocities(island, bodies[k], outcome.velocity[k], outcome.omega[k]);
         island->motion.resting[bodies[k]] = false;
@@ -181,8 +181,8 @@ static impact_status strike_on(imp_island *island, bool *parted)
         status = strike(island, &m);
         island->notes[p].struck = true;
         if (world->pair_count > 1) continue;
-        const double speed = imp_persist_approach(world, &m.touch, island->states);
-        const bool was_held = imp_mode_holds(m.touch.mode); /* by a push: it has to be let go yet */
+        const double speed = imp_held_approach(world, &m.contact, island->states);
+        const bool was_held = imp_mode_holds(m.contact.mode); /* by a push: it has to be let go yet */
         *parted = !was_held && imp_scene_leaves_for_good(island, &m, speed);
         if (speed > 0) return status;
     }
@@ -197,7 +197,7 @@ static bool has_sliding(const imp_world *world)
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
         held += imp_is_held(pair);
-        sliding += pair->mode == IMP_SLIDE && pair->law.friction > 0 && !imp_is_onset(pair);
+        sliding += pair->mode == IMP_SLIDE && pair->law.friction > 0 && !imp_is_incipient(pair);
     }
     return held > 1 && sliding > 0;
 }

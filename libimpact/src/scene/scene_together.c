@@ -3,7 +3,7 @@
 #include "base/tolerances.h"
 #include "base/number.h"
 #include "contact/encounter.h"
-#include "contact/persist_still.h"
+#include "contact/held_still.h"
 #include "scene/scene_events.h"
 #include "scene/scene_methods.h"
 #include "scene/scene_press.h"
@@ -62,28 +62,28 @@ static impact_status make_gathering(imp_island *island, int jammed, gathering *g
 static bool approaches(imp_island *island, imp_meeting *m)
 {
     return m->velocity < -island->world.slip_speed &&
-           !(imp_is_held(&island->world.pairs[m->touch.pair]) && imp_scene_dies_out(island, m, m->velocity));
+           !(imp_is_held(&island->world.pairs[m->contact.pair]) && imp_scene_dies_out(island, m, m->velocity));
 }
 
 /* Whether the struck pair's impact alone, of all that touch, leaves none approaching. */
 static bool suffices_alone(imp_island *island, gathering *g, imp_meeting *struck)
 {
-    const imp_touch *touch = &struck->touch;
+    const imp_held_contact *contact = &struck->contact;
     for (int c = 0; c < g->count; c++)
-        if (g->met[c].touch.pair != touch->pair && approaches(island, &g->met[c])) return false;
+        if (g->met[c].contact.pair != contact->pair && approaches(island, &g->met[c])) return false;
     impact_outcome outcome;
     const impact_collision collision = imp_scene_collision(island, struck);
     if (impact_collide(&collision, &outcome) < 0) return true; /* for that one to be told */
     imp_state kept[2];
-    const int body[2] = {touch->body1, touch->body2};
+    const int body[2] = {contact->body1, contact->body2};
     for (int k = 0; k < 2; k++) {
         kept[k] = island->states[body[k]];
         imp_scene_set_velocities(island, body[k], outcome.velocity[k], outcome.omega[k]);
     }
     bool alone = true;
     for (int c = 0; c < g->count; c++)
-        alone = alone &&
-                imp_persist_approach(&island->world, &g->met[c].touch, island->states) >= -island->world.slip_speed;
+        alone =
+            alone && imp_held_approach(&island->world, &g->met[c].contact, island->states) >= -island->world.slip_speed;
     for (int k = 0; k < 2; k++) island->states[body[k]] = kept[k];
     return alone;
 }
@@ -92,13 +92,13 @@ static bool suffices_alone(imp_island *island, gathering *g, imp_meeting *struck
 
 /* Of Hertz's springs of one modulus, up to a factor: the root of the radius of the two surfaces' mean curvature, or
  * where that is nothing of the smaller body. */
-static double hertz_stiffness(const imp_island *island, const imp_touch *touch)
+static double hertz_stiffness(const imp_island *island, const imp_held_contact *contact)
 {
-    const int body[2] = {touch->body1, touch->body2};
+    const int body[2] = {contact->body1, contact->body2};
     double bent = 0, smaller = INFINITY;
     for (int k = 0; k < 2; k++) {
         const imp_body *b = &island->world.bodies[body[k]];
-        const qvec3 towards = k == 0 ? qvec3_neg(touch->normal) : touch->normal;
+        const qvec3 towards = k == 0 ? qvec3_neg(contact->normal) : contact->normal;
         double k1, k2;
         smaller = fmin(smaller, b->radius);
         if (b->shape.kind == IMPACT_PLANE) continue;
@@ -120,17 +120,17 @@ static void describe(imp_island *island, gathering *g, bool spent)
 {
     for (int c = 0; c < g->count; c++) {
         imp_meeting *m = &g->met[c];
-        const imp_pair *pair = &island->world.pairs[m->touch.pair];
+        const imp_pair *pair = &island->world.pairs[m->contact.pair];
         const bool dies = spent || (!m->jams && imp_scene_dies_out(island, m, pair->law.restitution * m->velocity));
-        g->meetings[c] = (impact_meeting){.body1 = m->touch.body1,
-                                          .body2 = m->touch.body2,
-                                          .normal = m->touch.normal,
-                                          .offset1 = m->touch.r1,
-                                          .offset2 = m->touch.r2,
+        g->meetings[c] = (impact_meeting){.body1 = m->contact.body1,
+                                          .body2 = m->contact.body2,
+                                          .normal = m->contact.normal,
+                                          .offset1 = m->contact.r1,
+                                          .offset2 = m->contact.r2,
                                           .friction = pair->law.friction,
                                           .restitution = dies ? 0 : pair->law.restitution,
                                           .stiffness = pair->law.stiffness > 0 ? pair->law.stiffness
-                                                                               : hertz_stiffness(island, &m->touch),
+                                                                               : hertz_stiffness(island, &m->contact),
                                           .pressed = m->jams};
     }
 }
@@ -152,25 +152,25 @@ static impact_status record_all(imp_island *island, const gathering *g, const ch
     island->world.usage.encounters++;
     for (int c = 0; status == IMPACT_OK && c < g->count; c++) {
         const impact_meeting_outcome *o = &g->outcomes[c];
-        const imp_touch *touch = &g->met[c].touch;
+        const imp_held_contact *contact = &g->met[c].contact;
         char words[128];
         const double before = energy;
         energy += o->work_compression + o->work_restitution + o->work_friction +
-                  imp_scene_drive_impulse(island, touch, o->impulse);
+                  imp_scene_drive_impulse(island, contact, o->impulse);
         if (qvec3_norm(o->impulse) <= none) continue;
-        impact_event event = imp_scene_event_of_touch(island, IMPACT_EVENT_IMPACT, touch);
+        impact_event event = imp_scene_event_of_contact(island, IMPACT_EVENT_IMPACT, contact);
         event.encounter = number;
         event.phases =
             o->phase_count > 0 ? imp_scene_phases_in_words(o->phases, o->phase_count, words, sizeof words) : name;
         event.impulse = o->impulse;
-        event.impulse_normal = qvec3_dot(touch->normal, o->impulse);
-        event.impulse_tangential = qvec3_norm(qvec3_axpy(-event.impulse_normal, touch->normal, o->impulse));
+        event.impulse_normal = qvec3_dot(contact->normal, o->impulse);
+        event.impulse_tangential = qvec3_norm(qvec3_axpy(-event.impulse_normal, contact->normal, o->impulse));
         event.normal_before = o->normal_before;
         event.normal_after = o->normal_after;
         event.energy_before = before;
         event.energy_after = energy;
-        island->motion.resting[touch->body1] = island->motion.resting[touch->body2] = false;
-        island->notes[touch->pair].struck = true;
+        island->motion.resting[contact->body1] = island->motion.resting[contact->body2] = false;
+        island->notes[contact->pair].struck = true;
         island->world.usage.impacts_together++;
         status = imp_scene_record(island, &event);
     }
@@ -222,10 +222,10 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
     if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0)
         snprintf(scene->message, sizeof scene->message,
                  "%d contacts at t = %s, one of '%s' and '%s': their answer together does not pass its receipt",
-                 g->count, imp_number_of(island->t).text, world->bodies[g->met[0].touch.body1].name,
-                 world->bodies[g->met[0].touch.body2].name);
+                 g->count, imp_number_of(island->t).text, world->bodies[g->met[0].contact.body1].name,
+                 world->bodies[g->met[0].contact.body2].name);
     for (int i = 0; i < world->body_count; i++) imp_scene_set_velocities(island, i, g->velocity[i], g->omega[i]);
-    imp_persist_stir(world);
+    imp_held_wake(world);
     if (outcome.energy_rose) imp_scene_gain(island, works_of(g));
     return record_all(island, g, how.name, energy);
 }
@@ -238,8 +238,8 @@ static void tell_unsettled(imp_island *island, const gathering *g, const imp_mee
     if (scene->message[0]) return;
     snprintf(scene->message, sizeof scene->message,
              "%d contacts at t = %s, that of '%s' and '%s' among them%s: %s finds no answer to all together%s",
-             g->count, imp_number_of(island->t).text, bodies[struck->touch.body1].name,
-             bodies[struck->touch.body2].name, struck->jams ? ", which jams" : "", impact_together_law_name(by),
+             g->count, imp_number_of(island->t).text, bodies[struck->contact.body1].name,
+             bodies[struck->contact.body2].name, struck->jams ? ", which jams" : "", impact_together_law_name(by),
              struck->jams ? "" : "; they are answered one after another");
 }
 
@@ -257,7 +257,7 @@ impact_status imp_scene_answer_together(imp_island *island, imp_meeting *struck,
     if (island->world.pair_count < 2) return IMPACT_OK;
     if (!struck->jams && (asked == IMPACT_SCENE_SEQUENCE || island->unanswered)) return IMPACT_OK;
     gathering g;
-    impact_status status = make_gathering(island, struck->jams ? struck->touch.pair : -1, &g);
+    impact_status status = make_gathering(island, struck->jams ? struck->contact.pair : -1, &g);
     if (status == IMPACT_OK && !is_alone(island, &g, struck)) {
         status = answer(island, &g, (answering){law, impact_together_law_name(law), false, struck->jams});
         const bool nothing = status == IMPACT_EUNSETTLED || (struck->jams && status == IMPACT_SEPARATING);

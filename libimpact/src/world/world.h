@@ -49,7 +49,7 @@ typedef enum imp_mode {
     IMP_OPEN,   /* apart, or about to be */
     IMP_BEYOND, /* apart: body 1 passed beside the bounds of the plane and is behind it */
     IMP_SLIDE,  /* held, sliding */
-    IMP_ROLL    /* held, the contact point at rest: rolling, pivoting or resting */
+    IMP_STICK   /* held, the contact point at rest: rolling, pivoting or resting */
 } imp_mode;
 
 /* What a contact makes of its bodies' surfaces. */
@@ -60,27 +60,28 @@ typedef struct imp_law {
 } imp_law;
 
 /* How far slip that began from rest has come. */
-typedef enum imp_slip_age {
-    IMP_SLIP_OLD,    /* it goes as it goes */
-    IMP_SLIP_BEGUN,  /* slower than the world's onset_speed yet, along a direction that others' answers may turn */
-    IMP_SLIP_TURNED, /* the same: that is where the slip went when it was last solved for, with this pull */
-    IMP_SLIP_YOUNG   /* just past its onset, and too slow yet for its direction to change smoothly */
-} imp_slip_age;
+typedef enum imp_slip_stage {
+    IMP_SLIP_GROSS,     /* it goes as it goes */
+    IMP_SLIP_INCIPIENT, /* slower than the world's incipient_speed yet, along a direction that others' answers may turn
+                         */
+    IMP_SLIP_TURNED,    /* the same: that is where the slip went when it was last solved for, with this mobility */
+    IMP_SLIP_SLOW       /* past incipient slip, and too slow yet for its direction to change smoothly */
+} imp_slip_stage;
 
 /* Of a contact that slides. */
 typedef struct imp_sliding {
-    imp_slip_age age;
+    imp_slip_stage stage;
     qvec3 direction; /* begun: about where the slip goes */
-    double pull;     /* turned: imp_touch's */
+    double mobility; /* turned: imp_held_contact's */
 } imp_sliding;
 
 /* What body 1 stands on body 2 with. */
 typedef enum imp_foot {
     IMP_FOOT_POINT, /* where gap and orientation put it */
-    IMP_FOOT_SPOT,  /* held: a place of its surface that is integrated along (persist_spot) */
-    IMP_FOOT_FLAT,  /* held: a spot on whose face it lies as long as it rocks with less energy than lying (persist_flat)
+    IMP_FOOT_SPOT,  /* held: a place of its surface that is integrated along (held_spot) */
+    IMP_FOOT_FLAT,  /* held: a spot on whose face it lies as long as it rocks with less energy than lying (held_flat)
                      */
-    IMP_FOOT_LINE,  /* the same along a line of its surface, its axis line kept level (persist_line) */
+    IMP_FOOT_LINE,  /* the same along a line of its surface, its axis line kept level (held_line) */
     IMP_FOOT_FACE   /* with a face on what is static, and glides there (scene/gliding.h): not among what is held */
 } imp_foot;
 
@@ -152,11 +153,11 @@ typedef struct imp_world {
     imp_pair *pairs;
     imp_field *fields;
     qvec3 gravity;
-    bool driven;        /* one of its bodies is */
-    double slip_speed;  /* m/s: slip that dies out below this sticks */
-    double onset_speed; /* m/s: slip that begins goes the way it is accelerated up to this */
-    double flat_height; /* m: bodies that rock on a face and rise less lie on it */
-    imp_gaps *gaps;     /* the scene's; NULL: by Newton */
+    bool driven;            /* one of its bodies is */
+    double slip_speed;      /* m/s: slip that dies out below this sticks */
+    double incipient_speed; /* m/s: slip that begins goes the way it is accelerated up to this */
+    double flat_height;     /* m: bodies that rock on a face and rise less lie on it */
+    imp_gaps *gaps;         /* the scene's; NULL: by Newton */
     impact_usage usage;
 } imp_world;
 
@@ -175,14 +176,14 @@ static inline bool imp_mode_holds(imp_mode mode) { return mode >= IMP_SLIDE; }
 static inline bool imp_is_held(const imp_pair *pair) { return imp_mode_holds(pair->mode); }
 
 /* Whether it slides from rest, if it slides. */
-static inline bool imp_is_onset(const imp_pair *pair)
+static inline bool imp_is_incipient(const imp_pair *pair)
 {
-    return pair->slip.age == IMP_SLIP_BEGUN || pair->slip.age == IMP_SLIP_TURNED;
+    return pair->slip.stage == IMP_SLIP_INCIPIENT || pair->slip.stage == IMP_SLIP_TURNED;
 }
 
-static inline void imp_end_onset(imp_pair *pair)
+static inline void imp_end_incipient(imp_pair *pair)
 {
-    if (imp_is_onset(pair)) pair->slip.age = IMP_SLIP_OLD;
+    if (imp_is_incipient(pair)) pair->slip.stage = IMP_SLIP_GROSS;
 }
 
 /* Whether its place on body 1 is integrated along. */

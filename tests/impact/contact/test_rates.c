@@ -39,7 +39,7 @@ static impact_shape shape_of(random_stream *random, int kind, double exponent)
 }
 
 /* Side by side along n, as the support functions have it; the normal velocities are made equal. */
-static impact_contact touch(touching *t, random_stream *random, qvec3 n)
+static impact_contact contact_along(touching *t, random_stream *random, qvec3 n)
 {
     imp_state *one = &t->states[0], *two = &t->states[1];
     qvec3 arm[2];
@@ -112,7 +112,7 @@ static void rates_are_those_of_the_contact_that_moves(void **state)
         const impact_shape shapes[2] = {shape_of(&random, run % 3, exponents[0]),
                                         shape_of(&random, run / 3 % 3, exponents[1])};
         touching t = bodies_of(shapes, &random);
-        const impact_contact contact = touch(&t, &random, random_direction(&random));
+        const impact_contact contact = contact_along(&t, &random, random_direction(&random));
         const imp_rates rates = imp_contact_rates(&t.world, &t.pair, IMP_BORNE_BY_BOTH, &contact, t.states),
                         wide = measured(&t, 2e-4), narrow = measured(&t, 1e-4);
         const double fast = apart(&narrow, &none);
@@ -138,7 +138,7 @@ static void a_flat_place_makes_no_noise(void **state)
         const double share = 0.3 + 0.5 * random_unit(&random);
         const qvec3 own = {pow(share, shapes[flat].r - 1), pow(share, shapes[flat].s - 1), 1},
                     out = quat_rotate(t.states[flat].q, qvec3_scale(own, 1 / qvec3_norm(own)));
-        impact_contact contact = touch(&t, &random, flat == 1 ? out : qvec3_neg(out));
+        impact_contact contact = contact_along(&t, &random, flat == 1 ? out : qvec3_neg(out));
         const imp_rates rates = imp_contact_rates(&t.world, &t.pair, IMP_BORNE_BY_BOTH, &contact, t.states);
         const double fast = qvec3_norm(rates.arm1) + qvec3_norm(rates.arm2) + qvec3_norm(rates.normal);
         for (int k = 0; k < 10; k++) {

@@ -50,7 +50,7 @@ static int add_box(pile *p, double mass, qvec3 position, qvec3 gravity)
     return i;
 }
 
-static void touch(pile *p, int upper, int lower, qvec3 at, qvec3 normal, double friction)
+static void contact(pile *p, int upper, int lower, qvec3 at, qvec3 normal, double friction)
 {
     imp_cone_contact *c = &p->contacts[p->count];
     *c = (imp_cone_contact){.body1 = upper, .body2 = lower};
@@ -64,7 +64,7 @@ static void touch(pile *p, int upper, int lower, qvec3 at, qvec3 normal, double 
 static void lie(pile *p, int upper, int lower, double z, double low, double high, double friction)
 {
     for (int k = 0; k < 4; k++)
-        touch(p, upper, lower, (qvec3){k % 2 ? high : low, k / 2 ? 0.5 : -0.5, z}, (qvec3){0, 0, 1}, friction);
+        contact(p, upper, lower, (qvec3){k % 2 ? high : low, k / 2 ? 0.5 : -0.5, z}, (qvec3){0, 0, 1}, friction);
 }
 
 static imp_rest_status solve(pile *p)
@@ -203,7 +203,7 @@ static void loads_made_from_reactions_are_balanced(void **state)
         for (int c = 0; c < contacts; c++) {
             const int one = 1 + c % bodies, two = (int)(random_unit(&random) * one);
             const double friction = c % 5 ? random_log(&random, 0.05, 2) : 0;
-            touch(p, one, two, random_vector(&random, 0.5, 2), random_direction(&random), friction);
+            contact(p, one, two, random_vector(&random, 0.5, 2), random_direction(&random), friction);
             const double push = random_unit(&random), angle = 6.28 * random_unit(&random),
                          rub = friction * push * random_unit(&random);
             const double r[3] = {push, rub * cos(angle), rub * sin(angle)};

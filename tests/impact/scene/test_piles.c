@@ -97,8 +97,8 @@ static void test_glides_meet_what_they_touch(void **state)
     run(1017, PILE_IN_BOX);
 }
 
-/* A bounce on a body that glides, over in a twelfth of the step that looked for its end, was followed as a touch: what
- * met lay twenty micrometres within each other by then. */
+/* A bounce on a body that glides, over in a twelfth of the step that looked for its end, was followed as a contact:
+ * what met lay twenty micrometres within each other by then. */
 static void test_small_bounces_on_what_glides_end(void **state)
 {
     (void)state;

@@ -3,7 +3,7 @@
  * Bodies at rest on more contacts than the balance of forces can tell apart: whichever way they are turned, with
  * reactions that balance; and what does not rest.
  */
-#include "contact/persist_still.h"
+#include "contact/held_still.h"
 #include "kit/held_bodies.h"
 #include "kit/islands.h"
 
@@ -32,32 +32,32 @@ static void make_slot(slot *s, double friction, qvec3 pull, quat q)
     s->def.gravity = quat_rotate(q, pull);
 }
 
-/* Newton and Euler for the bodies that move, from the reactions as the touches have them. */
+/* Newton and Euler for the bodies that move, from the reactions as the contacts have them. */
 static void assert_balanced(const impact_scene *scene)
 {
-    const imp_persist *persist = &island_of(scene, WALLS)->motion.persist;
+    const imp_held *held = &island_of(scene, WALLS)->motion.held;
     const imp_world *world = &island_of(scene, WALLS)->world;
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         if (body->is_static) continue;
         const double weight = body->mass * qvec3_norm(world->gravity);
         qvec3 force = qvec3_scale(world->gravity, body->mass), torque = {0, 0, 0};
-        for (int c = 0; c < persist->count; c++) {
-            const imp_touch *touch = &persist->touches[c];
-            if (touch->body1 != i && touch->body2 != i) continue;
-            const qvec3 f = touch->body1 == i ? touch->force : qvec3_neg(touch->force);
+        for (int c = 0; c < held->count; c++) {
+            const imp_held_contact *contact = &held->contacts[c];
+            if (contact->body1 != i && contact->body2 != i) continue;
+            const qvec3 f = contact->body1 == i ? contact->force : qvec3_neg(contact->force);
             force = qvec3_add(force, f);
-            torque = qvec3_add(torque, qvec3_cross(touch->body1 == i ? touch->r1 : touch->r2, f));
+            torque = qvec3_add(torque, qvec3_cross(contact->body1 == i ? contact->r1 : contact->r2, f));
         }
         assert_near3(force, (qvec3){0, 0, 0}, 1e-10 * weight);
         assert_near3(torque, (qvec3){0, 0, 0}, 1e-10 * weight * body->radius);
     }
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        const double pressure = qvec3_dot(touch->force, touch->normal);
+    for (int c = 0; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        const double pressure = qvec3_dot(contact->force, contact->normal);
         assert_true(pressure >= 0);
-        assert_at_most(qvec3_norm(qvec3_axpy(-pressure, touch->normal, touch->force)),
-                       touch->friction * pressure + 1e-13 * qvec3_norm(touch->force));
+        assert_at_most(qvec3_norm(qvec3_axpy(-pressure, contact->normal, contact->force)),
+                       contact->friction * pressure + 1e-13 * qvec3_norm(contact->force));
     }
 }
 
@@ -74,7 +74,7 @@ static void a_clamped_ball_rests_however_it_is_turned(void **state)
         if (status != IMPACT_AT_REST) fail_msg("turn %d: status %d: %s", k, status, impact_scene_message(scene));
         assert_true(impact_scene_time(scene) == 0);
         assert_int_equal(impact_scene_usage(scene).integrator_starts, 0);
-        assert_int_equal(island_of(scene, WALLS)->motion.persist.count, WALLS);
+        assert_int_equal(island_of(scene, WALLS)->motion.held.count, WALLS);
         for (int p = 0; p < WALLS; p++) assert_true(island_of(scene, WALLS)->world.pairs[p].rest.still);
         assert_balanced(scene);
         impact_scene_destroy(scene);

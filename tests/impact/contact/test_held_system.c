@@ -7,15 +7,15 @@
 #include "kit/islands.h"
 
 /* The only pair's reactions in the mode given, as the scene's states are. */
-static imp_touch solve_touch(imp_island *island, imp_mode mode)
+static imp_held_contact solve_contact(imp_island *island, imp_mode mode)
 {
-    imp_persist *persist = &island->motion.persist;
+    imp_held *held = &island->motion.held;
     island->world.pairs[0].mode = mode;
-    assert_int_equal(imp_persist_reserve(persist, &island->world, island->states), IMPACT_OK);
+    assert_int_equal(imp_held_reserve(held, &island->world, island->states), IMPACT_OK);
     assert_true(imp_field_loads(&island->world, 0, island->states, island->motion.loads));
-    imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
-    assert_int_equal(persist->count, 1);
-    return persist->touches[0];
+    imp_held_solve(held, &island->world, island->states, island->motion.loads);
+    assert_int_equal(held->count, 1);
+    return held->contacts[0];
 }
 
 static void turn_at(imp_island *island, int body, qvec3 omega)
@@ -188,21 +188,21 @@ static void reactions_by_newton_and_euler(void **state)
         const double angle = 6.3 * random_unit(&random), speed = slides ? random_log(&random, 1e-3, 10) : 0;
         const qvec3 slip = {speed * cos(angle), speed * sin(angle), 0};
         s->v = qvec3_add(rolling, slip);
-        const imp_touch touch = solve_touch(island, slides ? IMP_SLIDE : IMP_ROLL);
-        assert_near3(touch.slip, slip, 1e-14 * (1 + qvec3_norm(s->v)));
+        const imp_held_contact contact = solve_contact(island, slides ? IMP_SLIDE : IMP_STICK);
+        assert_near3(contact.slip, slip, 1e-14 * (1 + qvec3_norm(s->v)));
         real u[3];
-        to_real(touch.slip, u);
+        to_real(contact.slip, u);
         if (slides)
             sliding_force(&twin, u, mu, wanted);
         else
             rolling_force(&twin, wanted);
         const qvec3 force = {(double)wanted[0], (double)wanted[1], (double)wanted[2]};
         const double scale = mass * (gravity + qvec3_dot(w, w));
-        assert_near3(touch.force, force, 2e-11 * scale);
-        assert_near(touch.pressure, (double)wanted[2], 2e-11 * scale);
+        assert_near3(contact.force, force, 2e-11 * scale);
+        assert_near(contact.pressure, (double)wanted[2], 2e-11 * scale);
         if (slides) { /* friction opposes slip */
-            const qvec3 tangential = {touch.force.x, touch.force.y, 0};
-            assert_near(qvec3_dot(tangential, slip), -mu * touch.pressure * speed, 1e-12 * scale * speed);
+            const qvec3 tangential = {contact.force.x, contact.force.y, 0};
+            assert_near(qvec3_dot(tangential, slip), -mu * contact.pressure * speed, 1e-12 * scale * speed);
         }
         imp_motion_close(&island->motion);
         impact_scene_destroy(scene);
@@ -293,9 +293,9 @@ static void reactions_keep_the_contact(void **state)
         const qvec3 u = contact_velocity(island, s, &rate);
         s[0].v = qvec3_sub(s[0].v, u);
         if (slides) s[0].v = qvec3_add(s[0].v, qvec3_cross(contact.normal, random_vector(&random, 0.1, 1)));
-        solve_touch(island, slides ? IMP_SLIDE : IMP_ROLL);
+        solve_contact(island, slides ? IMP_SLIDE : IMP_STICK);
         imp_load loads[2] = {island->motion.loads[0], island->motion.loads[1]};
-        imp_persist_add_reactions(&island->motion.persist, loads);
+        imp_held_add_reactions(&island->motion.held, loads);
         const double h = 3e-4;
         qvec3 velocity[4];
         double rates[4];

@@ -3,7 +3,7 @@
  * Linear systems of known rank: A = B C of random factors, of which the solution of least norm lies in the span of the
  * rows of C.
  */
-#include "contact/persist_linear.h"
+#include "contact/held_linear.h"
 #include "kit/contact_random.h"
 #include "kit/near.h"
 

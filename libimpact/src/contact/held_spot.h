@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * persist_spot: where a held contact stands on a surface that is flat or sharp along an axis, in coordinates that move
+ * held_spot: where a held contact stands on a surface that is flat or sharp along an axis, in coordinates that move
  * gently. Internal.
  *
  * A superquadric's contact point is no smooth function of its orientation where an exponent p is over 2: with
@@ -9,8 +9,8 @@
  * most 1. A superellipsoid of two exponents, K^t + |u_z|^t = 1 with K^r = |u_x|^r + |u_y|^r, has e = K^(t-r) |u|^(r-1)
  * sgn u along x and y: the gradient of K^t/t, so that s = u + e is that of a convex function still.
  */
-#ifndef IMP_PERSIST_SPOT_H
-#define IMP_PERSIST_SPOT_H
+#ifndef IMP_HELD_SPOT_H
+#define IMP_HELD_SPOT_H
 
 #include "world/world.h"
 
@@ -26,8 +26,8 @@ typedef struct imp_spot {
 /* How the spot moves as the body's normal at the contact turns. */
 typedef struct imp_spot_rate {
     double s[3];
-    double creep;     /* |u'|, 1/s: grows without bound towards a flat point */
-    qvec3 point_rate; /* m/s, body axes */
+    double point_speed; /* |u'|, 1/s: grows without bound towards a flat point */
+    qvec3 point_rate;   /* m/s, body axes */
 } imp_spot_rate;
 
 /* Whether the pair's contact is integrated along while it is held: a superquadric or superellipsoid with an exponent

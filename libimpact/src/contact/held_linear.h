@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * persist_linear: square linear systems, and where they leave something open, their solution of least norm. Internal.
+ * held_linear: square linear systems, and where they leave something open, their solution of least norm. Internal.
  */
-#ifndef IMP_PERSIST_LINEAR_H
-#define IMP_PERSIST_LINEAR_H
+#ifndef IMP_HELD_LINEAR_H
+#define IMP_HELD_LINEAR_H
 
 #include <stdbool.h>
 

@@ -4,7 +4,7 @@
  * is a quadrature, and the integrals of free rolling and gliding.
  */
 #include <float.h>
-#include "contact/persist_spot.h"
+#include "contact/held_spot.h"
 #include "kit/held_bodies.h"
 
 static impact_shape random_superquadric(random_stream *random, double low, double high)

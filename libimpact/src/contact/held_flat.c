@@ -13,9 +13,9 @@
  * Sticking, rho is where the body's turning leaves no velocity, rho = n x v/omega, and f = -N (rho - rho0)/c; without
  * turning f is what holds the body. v and omega are relative to the plane's surface.
  */
-#include "contact/persist_flat.h"
-#include "contact/persist_spot.h"
-#include "contact/persist_system.h"
+#include "contact/held_flat.h"
+#include "contact/held_spot.h"
+#include "contact/held_system.h"
 #include "world/world_gap.h"
 
 /* A slide that ends in a pivot leaves friction that just suffices, and goes on doing so: what integration adds is not
@@ -133,7 +133,7 @@ void imp_flat_level(const imp_world *world, const imp_pair *pair, imp_state *sta
     quat_normalize(quat_mul(quat_from_rotation_vector(turn), state->q), &state->q);
     const double gap = qvec3_dot(qvec3_sub(state->x, states[pair->body2].x), g.n) - height;
     state->x = qvec3_axpy(-gap, g.n, state->x);
-    const bool stands = pair->mode == IMP_ROLL && !pivots(world, pair, &g, height);
+    const bool stands = pair->mode == IMP_STICK && !pivots(world, pair, &g, height);
     const qvec3 v = across(state->v, g.n);
     state->v = stands ? qvec3_sub(v, g.v) : v;
     state->momentum = imp_inertia(body, state->q, qvec3_scale(g.n, g.spin + g.omega));
@@ -157,7 +157,7 @@ static void slide(const imp_world *world, const imp_pair *pair, const gliding *g
     const qvec3 w = qvec3_axpy(g->omega, qvec3_cross(g->n, shift), g->v);
     const double size = qvec3_norm(w), speed = sqrt(fmax(0, (size - fabs(k)) * (size + fabs(k))));
     qvec3 d = qvec3_axpy(speed, w, qvec3_scale(qvec3_cross(g->n, w), k));
-    if (imp_is_onset(pair) && !pivots(world, pair, g, height)) d = across(pair->slip.direction, g->n);
+    if (imp_is_incipient(pair) && !pivots(world, pair, g, height)) d = across(pair->slip.direction, g->n);
     if (!(qvec3_norm(d) > 0)) d = imp_tangent(g->n);
     b->direction = qvec3_scale(d, 1 / qvec3_norm(d));
     b->slip = qvec3_scale(size > 0 ? b->direction : (qvec3){0, 0, 0}, speed);
@@ -195,14 +195,14 @@ qvec3 imp_flat_holding(const imp_world *world, int p, const imp_state *states, c
 {
     imp_pair stuck = world->pairs[p];
     double height, sign;
-    stuck.mode = IMP_ROLL;
+    stuck.mode = IMP_STICK;
     const gliding g = glide(world, &stuck, states);
     face_below(&world->bodies[stuck.body1], &states[stuck.body1], g.n, &height, &sign);
     const balance b = find_balance(world, &stuck, &g, height, &loads[stuck.body1]);
     return qvec3_axpy(b.pressure, g.n, b.friction);
 }
 
-imp_touch imp_flat_touch(const imp_world *world, int p, const imp_state *states, const imp_load *loads)
+imp_held_contact imp_flat_contact(const imp_world *world, int p, const imp_state *states, const imp_load *loads)
 {
     const imp_pair *pair = &world->pairs[p];
     const imp_body *body = &world->bodies[pair->body1];
@@ -212,28 +212,29 @@ imp_touch imp_flat_touch(const imp_world *world, int p, const imp_state *states,
     const gliding g = glide(world, pair, states);
     const int face = face_below(body, state, g.n, &height, &sign);
     const balance b = find_balance(world, pair, &g, height, load);
-    imp_touch touch = {.pair = p,
-                       .body1 = pair->body1,
-                       .body2 = pair->body2,
-                       .mode = pair->mode,
-                       .friction = pair->law.friction * (pair->mode == IMP_ROLL ? grip : 1),
-                       .normal = g.n,
-                       .r1 = qvec3_axpy(-height, g.n, b.foot),
-                       .foot = IMP_FOOT_FLAT,
-                       .slip = b.slip,
-                       .speed = b.speed,
-                       .direction = b.direction,
-                       .onset = pair->mode == IMP_SLIDE && imp_is_onset(pair) && !pivots(world, pair, &g, height)};
-    touch.r2 = qvec3_add(qvec3_sub(state->x, states[pair->body2].x), touch.r1);
-    touch.spare = 1 - rise(&body->shape, face, quat_rotate_inverse(state->q, b.foot)) / world->flat_height;
+    imp_held_contact contact = {.pair = p,
+                                .body1 = pair->body1,
+                                .body2 = pair->body2,
+                                .mode = pair->mode,
+                                .friction = pair->law.friction * (pair->mode == IMP_STICK ? grip : 1),
+                                .normal = g.n,
+                                .r1 = qvec3_axpy(-height, g.n, b.foot),
+                                .foot = IMP_FOOT_FLAT,
+                                .slip = b.slip,
+                                .speed = b.speed,
+                                .direction = b.direction,
+                                .incipient = pair->mode == IMP_SLIDE && imp_is_incipient(pair) &&
+                                             !pivots(world, pair, &g, height)};
+    contact.r2 = qvec3_add(qvec3_sub(state->x, states[pair->body2].x), contact.r1);
+    contact.spare = 1 - rise(&body->shape, face, quat_rotate_inverse(state->q, b.foot)) / world->flat_height;
     const qvec3 force = qvec3_axpy(b.pressure, g.n, b.friction);
-    touch.bias = qvec3_neg(imp_system_response(world, states, &touch, &touch, force));
+    contact.bias = qvec3_neg(imp_system_response(world, states, &contact, &contact, force));
     if (pair->mode == IMP_SLIDE) { /* what the system leaves across the normal is the slip's acceleration */
         const qvec3 pushed = qvec3_add(b.friction, across(load->force, g.n));
         const qvec3 rate = qvec3_axpy(-body->mass, g.surface_rate, pushed);
-        touch.bias = qvec3_axpy(qvec3_dot(rate, b.direction) * body->inverse_mass, b.direction, touch.bias);
+        contact.bias = qvec3_axpy(qvec3_dot(rate, b.direction) * body->inverse_mass, b.direction, contact.bias);
     }
-    return touch;
+    return contact;
 }
 
 /* ---- lying down, and tipping ---- */
@@ -246,7 +247,7 @@ static bool is_held_fast(const imp_world *world, const imp_pair *pair, const imp
     imp_pair stuck = *pair;
     g.v = (qvec3){0, 0, 0};
     g.omega = 0;
-    stuck.mode = IMP_ROLL;
+    stuck.mode = IMP_STICK;
     const balance b = find_balance(world, &stuck, &g, height, load);
     return qvec3_norm(b.friction) < pair->law.friction * b.pressure;
 }
@@ -259,11 +260,11 @@ static bool stops(const imp_world *world, imp_pair *pair, imp_state *states, con
     const gliding g = glide(world, pair, states);
     const double moment = qvec3_dot(g.n, imp_inertia(body, state->q, g.n));
     const double moving = 0.5 * (body->mass * qvec3_dot(g.v, g.v) + moment * g.omega * g.omega);
-    if ((moving == 0 && pair->mode == IMP_ROLL) || !(moving <= pair->footing.lying) || !(pair->law.friction > 0))
+    if ((moving == 0 && pair->mode == IMP_STICK) || !(moving <= pair->footing.lying) || !(pair->law.friction > 0))
         return false;
     if (!is_held_fast(world, pair, states, load, height)) return false;
-    pair->mode = IMP_ROLL;
-    imp_end_onset(pair);
+    pair->mode = IMP_STICK;
+    imp_end_incipient(pair);
     state->v = qvec3_sub(state->v, g.v);
     state->momentum = imp_inertia(body, state->q, qvec3_scale(g.n, g.spin));
     return true;
@@ -277,10 +278,10 @@ static void let_slide(const imp_world *world, imp_pair *pair, const imp_state *s
     const gliding g = glide(world, pair, states);
     const qvec3 pulled = qvec3_axpy(-world->bodies[pair->body1].mass, g.surface_rate, across(load->force, g.n));
     const double pull = qvec3_norm(pulled);
-    if (pair->mode != IMP_ROLL || !(pull > 0) || qvec3_norm(g.v) > world->slip_speed || g.omega != 0) return;
+    if (pair->mode != IMP_STICK || !(pull > 0) || qvec3_norm(g.v) > world->slip_speed || g.omega != 0) return;
     if (is_held_fast(world, pair, states, load, height)) return;
     pair->mode = IMP_SLIDE;
-    pair->slip.age = pair->law.friction > 0 ? IMP_SLIP_BEGUN : IMP_SLIP_OLD;
+    pair->slip.stage = pair->law.friction > 0 ? IMP_SLIP_INCIPIENT : IMP_SLIP_GROSS;
     pair->slip.direction = qvec3_scale(pulled, 1 / pull);
 }
 
@@ -340,10 +341,10 @@ bool imp_flat_lay(imp_world *world, imp_state *states, const imp_load *loads)
     return any;
 }
 
-void imp_flat_tip(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_touch *touch)
+void imp_flat_tip(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_held_contact *contact)
 {
     const impact_shape *shape = &world->bodies[pair->body1].shape;
-    const qvec3 at = quat_rotate_inverse(states[pair->body1].q, touch->r1);
+    const qvec3 at = quat_rotate_inverse(states[pair->body1].q, contact->r1);
     imp_spot_on(shape, at, pair->footing.spot);
     pair->footing.on = IMP_FOOT_SPOT;
 }

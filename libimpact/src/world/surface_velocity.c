@@ -4,7 +4,7 @@
  * on the surface: of a plane, a drift along it and a spin about its normal; of other shapes, a spin about an axis on
  * which they are round.
  */
-#include "world/drive.h"
+#include "world/surface_velocity.h"
 #include "base/tolerances.h"
 
 static quat shape_axes(const impact_body_def *def)
@@ -43,31 +43,31 @@ static const char *spin_refusal(const impact_body_def *def)
     const qvec3 aside = quat_rotate_inverse(shape_axes(def), quat_rotate(q, def->shape_position));
     const double speed = qvec3_norm(omega);
     const bool plane = def->shape.kind == IMPACT_PLANE;
-    if (!(qvec3_norm(qvec3_sub(omega, round_part(&def->shape, omega))) <= IMP_DRIVE_CRUMB * speed))
+    if (!(qvec3_norm(qvec3_sub(omega, round_part(&def->shape, omega))) <= IMP_SURFACE_CRUMB * speed))
         return plane
                    ? "omega of a static body is its surface's: a plane's must stand along the normal"
                    : "omega of a static body is its surface's: it must stand along an axis on which the shape is round";
     if (plane && (isfinite(def->shape.a) || isfinite(def->shape.b)))
         return "omega of a static body is its surface's: a plane with edges would turn them";
-    if (!(qvec3_norm(qvec3_cross(omega, aside)) <= IMP_DRIVE_CRUMB * speed * qvec3_norm(aside)))
+    if (!(qvec3_norm(qvec3_cross(omega, aside)) <= IMP_SURFACE_CRUMB * speed * qvec3_norm(aside)))
         return "omega of a static body is its surface's: its axis must pass through the shape's centre";
     return NULL;
 }
 
-const char *imp_drive_refusal(const impact_body_def *def)
+const char *imp_surface_velocity_refusal(const impact_body_def *def)
 {
     if (!def->is_static) return NULL;
     if (!is_still(def->velocity)) {
         if (def->shape.kind != IMPACT_PLANE)
             return "velocity of a static body is its surface's: only a plane's can move along itself";
         const double off = fabs(qvec3_dot(quat_rotate(shape_axes(def), (qvec3){0, 0, 1}), def->velocity));
-        if (!(off <= IMP_DRIVE_CRUMB * qvec3_norm(def->velocity)))
+        if (!(off <= IMP_SURFACE_CRUMB * qvec3_norm(def->velocity)))
             return "velocity of a static body is its surface's: a plane's must lie along it";
     }
     return is_still(def->omega) ? NULL : spin_refusal(def);
 }
 
-void imp_drive_make(const impact_body_def *def, imp_body *body)
+void imp_surface_velocity_make(const impact_body_def *def, imp_body *body)
 {
     const quat q = shape_axes(def);
     const qvec3 along = quat_rotate_inverse(q, def->velocity);

@@ -3,7 +3,7 @@
  * P A Q = L U, of rank r: with z = Q^-1 x, the first r of z follow from the others, which are free. The least z is one
  * solution less its part along those of the homogeneous system, for which an orthonormal basis is kept.
  */
-#include "contact/persist_linear.h"
+#include "contact/held_linear.h"
 #include "base/tolerances.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * persist_flat: bodies that lie on a flat face, where the contact's place follows the balance and no longer the tilt.
+ * held_flat: bodies that lie on a flat face, where the contact's place follows the balance and no longer the tilt.
  * Internal.
  *
  * On a plane, a face whose exponents are high carries the body at any of its points at a tilt of next to nothing: 1e-50
@@ -8,10 +8,10 @@
  * flat_height the tilt is 0 and the contact point, as the centre of pressure, stands where no torque is left to tip the
  * body: the limit of those motions as they grow smaller.
  */
-#ifndef IMP_PERSIST_FLAT_H
-#define IMP_PERSIST_FLAT_H
+#ifndef IMP_HELD_FLAT_H
+#define IMP_HELD_FLAT_H
 
-#include "contact/persist.h"
+#include "contact/held.h"
 
 /* Lays down the bodies that rock on a face with less energy than lifts them by flat_height, and rest or slide there on
  * a point that does not either; whose whole energy is no more than that, and whose friction holds them, are stopped.
@@ -29,12 +29,12 @@ void imp_flat_level(const imp_world *world, const imp_pair *pair, imp_state *sta
 
 /* The contact of a flat pair, at its centre of pressure: its bias is such that the linear system of the contacts finds
  * the balance. */
-imp_touch imp_flat_touch(const imp_world *world, int pair, const imp_state *states, const imp_load *loads);
+imp_held_contact imp_flat_contact(const imp_world *world, int pair, const imp_state *states, const imp_load *loads);
 
 /* The force of the plane on the pair's flat body under which that sticks, N. */
 qvec3 imp_flat_holding(const imp_world *world, int pair, const imp_state *states, const imp_load *loads);
 
 /* The body tips over a centre of pressure that has gone too far out: its contact is carried on from there. */
-void imp_flat_tip(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_touch *touch);
+void imp_flat_tip(const imp_world *world, imp_pair *pair, const imp_state *states, const imp_held_contact *contact);
 
 #endif

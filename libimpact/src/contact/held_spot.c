@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "contact/persist_spot.h"
+#include "contact/held_spot.h"
 #include "shape/support.h"
 
 static bool is_nested(const impact_shape *shape)
@@ -225,7 +225,7 @@ imp_spot_rate imp_spot_move(const impact_shape *shape, const imp_spot *spot, qve
         u_rate[i] = e_rate[i] / spot->slope[i];
     }
     if (nested) section_rates(shape, spot, e_rate, u_rate);
-    imp_spot_rate rate = {.creep = hypot(u_rate[0], hypot(u_rate[1], u_rate[2]))};
+    imp_spot_rate rate = {.point_speed = hypot(u_rate[0], hypot(u_rate[1], u_rate[2]))};
     for (int i = 0; i < 3; i++) rate.s[i] = u_rate[i] + e_rate[i];
     rate.point_rate = (qvec3){shape->a * u_rate[0], shape->b * u_rate[1], shape->c * u_rate[2]};
     return rate;

@@ -4,7 +4,7 @@
  * planes, and of bodies on planes and on each other that slide and stand there. What is dropped in a groove slides,
  * rocks and rests without a stall.
  */
-#include "contact/persist_system.h"
+#include "contact/held_system.h"
 #include "kit/held_bodies.h"
 #include "kit/islands.h"
 
@@ -47,30 +47,30 @@ static void set_down(groove *g)
     egg->position = at;
 }
 
-/* By how much a touch as solved for is off Signorini's conditions and Coulomb's law in accelerations, of forces and of
- * accelerations such as these. */
-static double touch_off(const imp_persist *persist, const imp_touch *touch, double load, double pull)
+/* By how much a contact as solved for is off Signorini's conditions and Coulomb's law in accelerations, of forces and
+ * of accelerations such as these. */
+static double touch_off(const imp_held *held, const imp_held_contact *contact, double load, double pull)
 {
-    const qvec3 rate = qvec3_add(touch->bias, imp_system_change(persist, touch));
-    const qvec3 friction = qvec3_axpy(-touch->pressure, touch->normal, touch->force);
-    const double gap_rate = qvec3_dot(touch->normal, rate) + qvec3_dot(touch->normal_rate, touch->slip);
-    double off = fmax(-touch->pressure / load, fabs(gap_rate) / pull);
-    off = fmax(off, (qvec3_norm(friction) - touch->friction * touch->pressure) / load);
-    if (touch->mode == IMP_ROLL) return fmax(off, qvec3_norm(touch->slip_rate) / pull);
-    const qvec3 against = qvec3_axpy(touch->friction * touch->pressure, touch->direction, friction);
+    const qvec3 rate = qvec3_add(contact->bias, imp_system_change(held, contact));
+    const qvec3 friction = qvec3_axpy(-contact->pressure, contact->normal, contact->force);
+    const double gap_rate = qvec3_dot(contact->normal, rate) + qvec3_dot(contact->normal_rate, contact->slip);
+    double off = fmax(-contact->pressure / load, fabs(gap_rate) / pull);
+    off = fmax(off, (qvec3_norm(friction) - contact->friction * contact->pressure) / load);
+    if (contact->mode == IMP_STICK) return fmax(off, qvec3_norm(contact->slip_rate) / pull);
+    const qvec3 against = qvec3_axpy(contact->friction * contact->pressure, contact->direction, friction);
     off = fmax(off, qvec3_norm(against) / load);
-    if (!touch->onset) return off;
-    const double along = qvec3_dot(touch->slip_rate, touch->direction);
-    off = fmax(off, qvec3_norm(qvec3_axpy(-along, touch->direction, touch->slip_rate)) / pull);
+    if (!contact->incipient) return off;
+    const double along = qvec3_dot(contact->slip_rate, contact->direction);
+    off = fmax(off, qvec3_norm(qvec3_axpy(-along, contact->direction, contact->slip_rate)) / pull);
     return fmax(off, -along / pull);
 }
 
 static double off_coulomb(const imp_island *island)
 {
-    const imp_persist *persist = &island->motion.persist;
+    const imp_held *held = &island->motion.held;
     const double load = mass * qvec3_norm(island->world.gravity), pull = qvec3_norm(island->world.gravity);
     double off = 0;
-    for (int c = 0; c < persist->count; c++) off = fmax(off, touch_off(persist, &persist->touches[c], load, pull));
+    for (int c = 0; c < held->count; c++) off = fmax(off, touch_off(held, &held->contacts[c], load, pull));
     return off;
 }
 
@@ -87,9 +87,9 @@ static void modes_obey_coulomb(void **state)
         imp_island *island = whole_island(scene);
         imp_motion *motion = &island->motion;
         assert_int_equal(imp_scene_settle(island), IMPACT_OK);
-        assert_true(motion->persist.count > 0 || g.def.gravity.z > -0.5);
+        assert_true(motion->held.count > 0 || g.def.gravity.z > -0.5);
         imp_field_loads(&island->world, 0, island->states, motion->loads);
-        imp_persist_solve(&motion->persist, &island->world, island->states, motion->loads);
+        imp_held_solve(&motion->held, &island->world, island->states, motion->loads);
         assert_at_most(off_coulomb(island), 1e-9);
         imp_motion_close(&island->motion);
         impact_scene_destroy(scene);
@@ -145,14 +145,14 @@ static void hold_pair(imp_island *island, int i, int j, bool slides)
     for (int p = 0; p < island->world.pair_count; p++) {
         imp_pair *pair = &island->world.pairs[p];
         if (pair->body1 + pair->body2 != i + j || (pair->body1 != i && pair->body1 != j)) continue;
-        pair->mode = slides || pair->law.friction == 0 ? IMP_SLIDE : IMP_ROLL;
+        pair->mode = slides || pair->law.friction == 0 ? IMP_SLIDE : IMP_STICK;
     }
 }
 
 /* Puts the bodies there, and moves them so that some contacts slide and others stand. */
 static void set_up_row(const row *r, imp_island *island, random_stream *random, double sliding)
 {
-    imp_persist *persist = &island->motion.persist;
+    imp_held *held = &island->motion.held;
     for (int i = 1; i < r->movers; i++) {
         const qvec3 n = r->normals[i - 1]; /* from the one before */
         island->states[i].x =
@@ -172,21 +172,21 @@ static void set_up_row(const row *r, imp_island *island, random_stream *random, 
         island->states[i].momentum =
             imp_inertia(&island->world.bodies[i], island->states[i].q, random_vector(random, 0.1, 3));
     }
-    assert_int_equal(imp_persist_reserve(persist, &island->world, island->states), IMPACT_OK);
+    assert_int_equal(imp_held_reserve(held, &island->world, island->states), IMPACT_OK);
     assert_true(imp_field_loads(&island->world, 0, island->states, island->motion.loads));
-    imp_persist_project_velocities(persist, &island->world, island->states, island->motion.loads);
-    imp_persist_project_velocities(persist, &island->world, island->states, island->motion.loads);
+    imp_held_project_velocities(held, &island->world, island->states, island->motion.loads);
+    imp_held_project_velocities(held, &island->world, island->states, island->motion.loads);
 }
 
 /* What cannot slide stands. */
 static void let_stand(imp_island *island)
 {
-    const imp_persist *persist = &island->motion.persist;
-    imp_persist_find_touches(&island->motion.persist, &island->world, island->states, island->motion.loads);
-    for (int c = 0; c < persist->count; c++) {
-        const imp_touch *touch = &persist->touches[c];
-        if (touch->friction > 0 && touch->speed <= island->world.slip_speed)
-            island->world.pairs[touch->pair].mode = IMP_ROLL;
+    const imp_held *held = &island->motion.held;
+    imp_held_find_contacts(&island->motion.held, &island->world, island->states, island->motion.loads);
+    for (int c = 0; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        if (contact->friction > 0 && contact->speed <= island->world.slip_speed)
+            island->world.pairs[contact->pair].mode = IMP_STICK;
     }
 }
 
@@ -213,16 +213,16 @@ static double greatest_pull(const row *r, const imp_island *island)
 /* By how much the pairs' modes, as solved for, are off the law; `asked`: pairs that were held. */
 static double row_off(const row *r, imp_island *island, const bool *asked)
 {
-    imp_persist *persist = &island->motion.persist;
+    imp_held *held = &island->motion.held;
     double load = 0, pull = greatest_pull(r, island), off = 0;
-    for (int c = 0; c < persist->count; c++) load = fmax(load, qvec3_norm(persist->touches[c].force));
+    for (int c = 0; c < held->count; c++) load = fmax(load, qvec3_norm(held->contacts[c].force));
     for (int i = 0; i < r->movers; i++) load = fmax(load, qvec3_norm(island->motion.loads[i].force));
-    for (int c = 0; c < persist->count; c++) off = fmax(off, touch_off(persist, &persist->touches[c], load, pull));
+    for (int c = 0; c < held->count; c++) off = fmax(off, touch_off(held, &held->contacts[c], load, pull));
     for (int p = 0; p < island->world.pair_count; p++) {
         if (!asked[p] || imp_is_held(&island->world.pairs[p])) continue;
-        const imp_touch touch = imp_persist_touch(&island->world, p, island->states, island->motion.loads);
-        const qvec3 rate = qvec3_add(touch.bias, imp_system_change(persist, &touch));
-        off = fmax(off, -(qvec3_dot(touch.normal, rate) + qvec3_dot(touch.normal_rate, touch.slip)) / pull);
+        const imp_held_contact contact = imp_held_contact_at(&island->world, p, island->states, island->motion.loads);
+        const qvec3 rate = qvec3_add(contact.bias, imp_system_change(held, &contact));
+        off = fmax(off, -(qvec3_dot(contact.normal, rate) + qvec3_dot(contact.normal_rate, contact.slip)) / pull);
     }
     return off;
 }
@@ -230,15 +230,15 @@ static double row_off(const row *r, imp_island *island, const bool *asked)
 static void clear_effects_of(imp_island *island)
 {
     for (int i = 0; i < island->world.body_count; i++)
-        island->motion.persist.effects[i] = (imp_effect){{0, 0, 0}, {0, 0, 0}};
+        island->motion.held.effects[i] = (imp_effect){{0, 0, 0}, {0, 0, 0}};
 }
 
 static double solve_row(const row *r, imp_island *island, const bool *asked)
 {
-    imp_persist *persist = &island->motion.persist;
-    assert_int_equal(imp_persist_reserve(persist, &island->world, island->states), IMPACT_OK);
-    if (persist->count > 0)
-        imp_persist_solve(persist, &island->world, island->states, island->motion.loads);
+    imp_held *held = &island->motion.held;
+    assert_int_equal(imp_held_reserve(held, &island->world, island->states), IMPACT_OK);
+    if (held->count > 0)
+        imp_held_solve(held, &island->world, island->states, island->motion.loads);
     else
         clear_effects_of(island);
     return row_off(r, island, asked);
@@ -247,34 +247,34 @@ static double solve_row(const row *r, imp_island *island, const bool *asked)
 /* ---- all modes there are ---- */
 
 /* The pair's choice: open, as it slides, rolling, or sliding from rest against the friction that would hold it. */
-static void choose_mode(imp_pair *pair, const imp_touch *touch, int choice)
+static void choose_mode(imp_pair *pair, const imp_held_contact *contact, int choice)
 {
-    const bool goes = touch->mode == IMP_SLIDE && !touch->onset;
-    pair->mode = choice == 0 ? IMP_OPEN : goes || choice == 2 ? IMP_SLIDE : IMP_ROLL;
+    const bool goes = contact->mode == IMP_SLIDE && !contact->incipient;
+    pair->mode = choice == 0 ? IMP_OPEN : goes || choice == 2 ? IMP_SLIDE : IMP_STICK;
     if (!goes)
-        pair->slip =
-            (imp_sliding){.age = choice == 2 ? IMP_SLIP_BEGUN : IMP_SLIP_OLD, .direction = imp_against_friction(touch)};
+        pair->slip = (imp_sliding){.stage = choice == 2 ? IMP_SLIP_INCIPIENT : IMP_SLIP_GROSS,
+                                   .direction = imp_against_friction(contact)};
 }
 
 /* How many of all modes obey the law to that; the accelerations of the last that does. */
 static int count_answers(const row *r, imp_island *island, const bool *asked, double allowed, imp_effect *found)
 {
     imp_world *world = &island->world;
-    imp_touch touches[CONTACTS];
+    imp_held_contact contacts[CONTACTS];
     int answers = 0, choices[CONTACTS], all = 1;
     (void)solve_row(r, island, asked);
-    const int count = island->motion.persist.count;
-    memcpy(touches, island->motion.persist.touches, sizeof *touches * (size_t)count);
+    const int count = island->motion.held.count;
+    memcpy(contacts, island->motion.held.contacts, sizeof *contacts * (size_t)count);
     for (int c = 0; c < count; c++) {
-        choices[c] = touches[c].mode == IMP_SLIDE ? 2 : 3;
+        choices[c] = contacts[c].mode == IMP_SLIDE ? 2 : 3;
         all *= choices[c];
     }
     for (int k = 0; k < all; k++) {
         for (int c = 0, rest = k; c < count; rest /= choices[c++])
-            choose_mode(&world->pairs[touches[c].pair], &touches[c], rest % choices[c]);
+            choose_mode(&world->pairs[contacts[c].pair], &contacts[c], rest % choices[c]);
         if (!(solve_row(r, island, asked) <= allowed)) continue;
         answers++;
-        memcpy(found, island->motion.persist.effects, sizeof *found * (size_t)r->movers);
+        memcpy(found, island->motion.held.effects, sizeof *found * (size_t)r->movers);
     }
     return answers;
 }
@@ -294,17 +294,17 @@ static double apart(const row *r, const imp_effect *a, const imp_effect *b)
 static void check_row(const row *r, imp_island *island, int *solved, int *alike)
 {
     imp_world *world = &island->world;
-    imp_persist *persist = &island->motion.persist;
+    imp_held *held = &island->motion.held;
     imp_pair given[(MOVERS + PLANES) * (MOVERS + PLANES)];
     bool asked[(MOVERS + PLANES) * (MOVERS + PLANES)];
     imp_effect own[MOVERS], found[MOVERS];
     const size_t bytes = sizeof *given * (size_t)world->pair_count;
     memcpy(given, world->pairs, bytes);
     for (int p = 0; p < world->pair_count; p++) asked[p] = imp_is_held(&given[p]);
-    const impact_status status = imp_persist_resolve(persist, world, island->states, island->motion.loads);
+    const impact_status status = imp_held_resolve(held, world, island->states, island->motion.loads);
     if (status == IMPACT_OK) {
         assert_at_most(solve_row(r, island, asked), 1e-9);
-        memcpy(own, persist->effects, sizeof *own * (size_t)r->movers);
+        memcpy(own, held->effects, sizeof *own * (size_t)r->movers);
         ++*solved;
     }
     memcpy(world->pairs, given, bytes);
