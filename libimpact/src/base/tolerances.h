@@ -313,14 +313,10 @@
 #define IMP_ONSET_TURNED 1e-15
 #define IMP_ONSET_LEFT 1e-16
 #define IMP_ONSET_FAR 1e3
-/* What bodies at rest have: of the island's loads, acceleration that is none, the reactions being a sweep's to ten
- * digits; of them, and of a reaction, a sweep's last change, 450 eps; of what changed fifty sweeps ago, what tells of
- * sweeps that do not settle (20 000 would leave 3e-4 of the first change); and of a ball's response across the normal,
- * what its rounding may lack. */
+/* What bodies at rest have: of the island's loads, acceleration that is none, the cone solver's to ten digits; and of a
+ * reaction that is remembered, what leaves its cone by rounding, 450 eps. */
 #define IMP_STILL_BALANCED 1e-10
 #define IMP_STILL_SETTLED 1e-13
-#define IMP_STILL_PROGRESS 0.98
-#define IMP_STILL_ROUND 1e-12
 /* No surface that presses is rounder than this part of its body's size: about edges the normal turns faster, but not
  * for long. */
 #define IMP_ROUNDEST_PRESS 1e-3

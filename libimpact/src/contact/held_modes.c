@@ -17,9 +17,8 @@
  * unique the law's own, amid what the cones allow, is what they stay next to from there on: friction gives way only
  * where none holds.
  */
-#include "contact/cone_assemble.h"
 #include "contact/held_choice.h"
-#include "contact/held_flat.h"
+#include "contact/held_law.h"
 #include "contact/held_system.h"
 
 #include <math.h>
@@ -64,86 +63,7 @@ static bool all_obey(const imp_held *held, const imp_world *world)
     return true;
 }
 
-/* ---- the cone problem of an island ---- */
-
-typedef struct modes_room {
-    int count;
-    int *contact; /* which of the held's each is */
-    imp_cone_contact *contacts;
-    imp_cone_row *rows;
-    imp_cone_mode *modes;
-    double *w, *q, *r, *u, *friction;
-    double size; /* the largest part of q as the loads make it, m/s^2 */
-    imp_cone_workspace cone;
-} modes_room;
-
-static bool take_modes_room(imp_arena *arena, size_t count, modes_room *room)
-{
-    const size_t n = 3 * count;
-    *room = (modes_room){.contact = imp_arena_take(arena, count, sizeof *room->contact),
-                         .contacts = imp_arena_take(arena, count, sizeof *room->contacts),
-                         .rows = imp_arena_take(arena, count, sizeof *room->rows),
-                         .modes = imp_arena_take(arena, count, sizeof *room->modes),
-                         .w = imp_arena_take(arena, n * n + 3 * n + count, sizeof *room->w),
-                         .cone = {.arena = arena}};
-    if (!room->contact || !room->contacts || !room->rows || !room->modes || !room->w) return false;
-    room->q = room->w + n * n, room->r = room->q + n, room->u = room->r + n, room->friction = room->u + n;
-    return imp_cone_reserve(&room->cone, (int)count);
-}
-
-static void give_modes_room(imp_arena *arena, modes_room *room)
-{
-    imp_cone_release(&room->cone);
-    imp_arena_give(arena, room->contact);
-    imp_arena_give(arena, room->contacts);
-    imp_arena_give(arena, room->rows);
-    imp_arena_give(arena, room->modes);
-    imp_arena_give(arena, room->w);
-}
-
-static void list_contacts(const imp_held *held, int island, modes_room *room)
-{
-    room->count = 0;
-    for (int c = island; c < held->count; c++) {
-        const imp_held_contact *contact = &held->contacts[c];
-        if (held->island[c] != island) continue;
-        imp_cone_contact *own = &room->contacts[room->count];
-        *own = (imp_cone_contact){
-            .body1 = contact->body1, .body2 = contact->body2, .arm1 = contact->r1, .arm2 = contact->r2};
-        imp_cone_find_axes(contact->normal, own->axes);
-        room->friction[room->count] = contact->friction;
-        room->contact[room->count++] = c;
-    }
-}
-
-/* A body that lies on a flat place has no other contact. */
-static void lie_on_flat(const imp_world *world, const imp_held_contact *contact, const imp_state *states,
-                        const imp_load *loads, modes_room *room)
-{
-    const double response = world->bodies[contact->body1].inverse_mass;
-    const qvec3 holding = imp_flat_holding(world, contact->pair, states, loads);
-    for (int k = 0; k < 3; k++) {
-        for (int l = 0; l < 3; l++) room->w[3 * k + l] = k == l ? response : 0;
-        room->q[k] = -response * qvec3_dot(room->contacts[0].axes[k], holding);
-    }
-}
-
-/* W and q. */
-static void find_problem(const imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
-                         modes_room *room)
-{
-    const imp_held_contact *first = &held->contacts[room->contact[0]];
-    if (first->foot == IMP_FOOT_FLAT) {
-        lie_on_flat(world, first, states, loads, room);
-        return;
-    }
-    imp_cone_assemble(world, states, room->contacts, room->count, room->rows, room->w);
-    for (int i = 0; i < room->count; i++) {
-        const imp_held_contact *contact = &held->contacts[room->contact[i]];
-        for (int k = 0; k < 3; k++) room->q[3 * i + k] = qvec3_dot(room->contacts[i].axes[k], contact->bias);
-        room->q[3 * i] += qvec3_dot(contact->normal_rate, contact->slip);
-    }
-}
+/* ---- the law of an island ---- */
 
 /* Whether it slides as it goes, whatever the law says of what begins. */
 static bool slides_on(const imp_held_contact *contact)
@@ -152,45 +72,41 @@ static bool slides_on(const imp_held_contact *contact)
 }
 
 /* Adds to q, of what slides on, so much along its slip. */
-static void send_far(const imp_held *held, modes_room *room, double far)
+static void send_far(const imp_held *held, imp_held_law *law, double far)
 {
-    for (int i = 0; i < room->count; i++) {
-        const imp_held_contact *contact = &held->contacts[room->contact[i]];
+    for (int i = 0; i < law->count; i++) {
+        const imp_held_contact *contact = &held->contacts[law->contact[i]];
         for (int k = 1; k < 3 && slides_on(contact); k++)
-            room->q[3 * i + k] += far * qvec3_dot(room->contacts[i].axes[k], contact->direction);
+            law->q[3 * i + k] += far * qvec3_dot(law->contacts[i].axes[k], contact->direction);
     }
 }
 
 /* Takes from q what u has across the slip of what slides on; whether there was such. */
-static bool straighten(const imp_held *held, modes_room *room)
+static bool straighten(const imp_held *held, imp_held_law *law)
 {
     bool any = false;
-    for (int i = 0; i < room->count; i++) {
-        const imp_held_contact *contact = &held->contacts[room->contact[i]];
+    for (int i = 0; i < law->count; i++) {
+        const imp_held_contact *contact = &held->contacts[law->contact[i]];
         if (!slides_on(contact)) continue;
         const qvec3 across = qvec3_cross(contact->normal, contact->direction);
-        const double a1 = qvec3_dot(room->contacts[i].axes[1], across),
-                     a2 = qvec3_dot(room->contacts[i].axes[2], across),
-                     off = a1 * room->u[3 * i + 1] + a2 * room->u[3 * i + 2];
-        room->q[3 * i + 1] -= off * a1;
-        room->q[3 * i + 2] -= off * a2;
+        const double a1 = qvec3_dot(law->contacts[i].axes[1], across), a2 = qvec3_dot(law->contacts[i].axes[2], across),
+                     off = a1 * law->u[3 * i + 1] + a2 * law->u[3 * i + 2];
+        law->q[3 * i + 1] -= off * a1;
+        law->q[3 * i + 2] -= off * a2;
         any = true;
     }
     return any;
 }
 
 /* Modes are shown right by the linear system alone: what residual they are found with does not matter. */
-static bool solve_law(const imp_held *held, modes_room *room)
+static bool solve_law(const imp_held *held, imp_held_law *law)
 {
     enum { ROUNDS = 3 };
-    room->size = 0;
-    for (int i = 0; i < 3 * room->count; i++) room->size = fmax(room->size, fabs(room->q[i]));
-    send_far(held, room, IMP_MODES_FAR * room->size);
-    imp_cone_problem problem = {.count = room->count, .w = room->w, .q = room->q, .friction = room->friction};
+    send_far(held, law, IMP_MODES_FAR * law->size);
     for (int k = 0; k < ROUNDS; k++) {
-        const imp_cone_outcome o = imp_cone_solve(&problem, &room->cone, room->r, room->u, room->modes);
+        const imp_cone_outcome o = imp_held_law_solve(law);
         if (o.status == IMP_CONE_NO_SOLUTION || o.status == IMP_CONE_BAD) return false;
-        if (!straighten(held, room)) return true;
+        if (!straighten(held, law)) return true;
     }
     return true;
 }
@@ -231,39 +147,38 @@ static void take_mode(imp_pair *pair, const imp_held_contact *contact, const qve
 }
 
 /* False where what slides on would be stopped at once: that is an impact. */
-static bool take_modes(const imp_held *held, imp_world *world, const modes_room *room)
+static bool take_modes(const imp_held *held, imp_world *world, const imp_held_law *law)
 {
     double most = 0;
-    for (int i = 0; i < room->count; i++) most = fmax(most, room->r[3 * i]);
-    for (int i = 0; i < room->count; i++) {
-        const imp_held_contact *contact = &held->contacts[room->contact[i]];
-        const bool presses = room->r[3 * i] > IMP_PRESSED_OF_LOADS * most;
-        if (presses && room->modes[i] == IMP_CONE_STICKS && slides_on(contact)) return false;
-        take_mode(&world->pairs[contact->pair], contact, room->contacts[i].axes,
-                  presses ? room->modes[i] : IMP_CONE_OPEN, room->size, &room->r[3 * i], &room->u[3 * i]);
+    for (int i = 0; i < law->count; i++) most = fmax(most, law->r[3 * i]);
+    for (int i = 0; i < law->count; i++) {
+        const imp_held_contact *contact = &held->contacts[law->contact[i]];
+        const bool presses = law->r[3 * i] > IMP_PRESSED_OF_LOADS * most;
+        if (presses && law->modes[i] == IMP_CONE_STICKS && slides_on(contact)) return false;
+        take_mode(&world->pairs[contact->pair], contact, law->contacts[i].axes, presses ? law->modes[i] : IMP_CONE_OPEN,
+                  law->size, &law->r[3 * i], &law->u[3 * i]);
     }
     return true;
 }
 
 /* The modes of every island that disobeys; false where the law is not solved. */
 static bool find_modes(const imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads,
-                       modes_room *room)
+                       imp_held_law *law)
 {
     for (int c = 0; c < held->count; c++) {
         if (held->island[c] != c || island_obeys(held, world, c)) continue;
-        list_contacts(held, c, room);
-        find_problem(held, world, states, loads, room);
-        if (!solve_law(held, room) || !take_modes(held, world, room)) return false;
+        imp_held_law_find(held, world, states, loads, c, law);
+        if (!solve_law(held, law) || !take_modes(held, world, law)) return false;
     }
     return true;
 }
 
 static impact_status solve_modes(imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads)
 {
-    modes_room room;
-    impact_status status = take_modes_room(held->arena, (size_t)held->count, &room) ? IMPACT_OK : IMPACT_ENOMEM;
-    if (status == IMPACT_OK && !find_modes(held, world, states, loads, &room)) status = IMPACT_EUNSETTLED;
-    give_modes_room(held->arena, &room);
+    imp_held_law law;
+    impact_status status = imp_held_law_take(held->arena, held->count, &law) ? IMPACT_OK : IMPACT_ENOMEM;
+    if (status == IMPACT_OK && !find_modes(held, world, states, loads, &law)) status = IMPACT_EUNSETTLED;
+    imp_held_law_give(&law);
     if (status == IMPACT_OK) status = imp_held_reserve(held, world, states);
     if (status != IMPACT_OK) return status;
     imp_held_solve(held, world, states, loads);

@@ -1,32 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rest needs reactions that balance the loads, not that they be unique. They are looked for by Gauss's sweeps over the
- * contacts, each solved against the others as they are, as together does with impulses: f_n >= 0, a_n >= 0, f_n
- * a_n = 0, |f_t| <= mu f_n and f_t against a_t (Moreau 1988). The sweeps begin without reactions, so that contacts are
- * pressed by the loads alone: of a ball that just fits between two walls friction gives way, though walls that squeezed
- * it could hold it.
+ * Rest needs reactions that balance the loads, not that they be unique. They are Coulomb's law's answer if all
+ * velocities were 0 (held_law.h), which begins without reactions, so that contacts are pressed by the loads alone: of a
+ * ball that just fits between two walls friction gives way, though walls that squeezed it could hold it.
  */
 #include "contact/held_still.h"
+#include "contact/held_law.h"
 #include "contact/held_system.h"
 #include "world/world_gap.h"
 
-#include <stdlib.h>
-
-/* What the loads and the reactions so far do to each body. */
+/* What the loads and the reactions do to each body. */
 typedef struct body_rate {
     qvec3 linear, angular; /* m/s^2, 1/s^2 */
 } body_rate;
 
-/* Of a contact to its own force, 1/kg. */
-typedef struct contact_response {
-    double along, across;
-} contact_response;
-
 typedef struct workspace {
-    body_rate *rates;            /* per body */
-    contact_response *responses; /* per contact */
-    imp_pair *before;            /* the pairs as they were */
-    bool *locked;                /* per body: what sticks at its contacts leaves it no motion */
+    body_rate *rates; /* per body */
+    imp_pair *before; /* the pairs as they were */
+    bool *locked;     /* per body: what sticks at its contacts leaves it no motion */
+    bool room;        /* false: memory was refused */
 } workspace;
 
 static bool is_slow(const imp_world *world, const imp_state *states, int i, double rest_speed)
@@ -41,7 +33,7 @@ static bool pair_is_slow(const imp_world *world, const imp_state *states, const 
     return is_slow(world, states, pair->body1, rest_speed) && is_slow(world, states, pair->body2, rest_speed);
 }
 
-/* ---- sweeps ---- */
+/* ---- reactions ---- */
 
 static void push(const imp_world *world, const imp_state *states, const imp_held_contact *contact, qvec3 f,
                  body_rate *rates)
@@ -66,15 +58,15 @@ static qvec3 acceleration(const imp_held_contact *contact, const body_rate *rate
                      qvec3_add(two->linear, qvec3_cross(two->angular, contact->r2)));
 }
 
-/* Response of a contact to its own force: along the normal, and no less than the most across it. */
-static contact_response response_of(const imp_world *world, const imp_state *states, const imp_held_contact *contact)
+static void begin_rates(const imp_world *world, const imp_state *states, const imp_load *loads, body_rate *rates)
 {
-    const qvec3 t = imp_tangent(contact->normal), axes[3] = {contact->normal, t, qvec3_cross(contact->normal, t)};
-    const bool round = world->bodies[contact->body1].spherical && world->bodies[contact->body2].spherical;
-    double own[3];
-    for (int i = 0; i < 3; i++)
-        own[i] = qvec3_dot(axes[i], imp_system_response(world, states, contact, contact, axes[i]));
-    return (contact_response){own[0], round ? fmax(own[1], own[2]) * (1 + IMP_STILL_ROUND) : own[1] + own[2]};
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        rates[i] = (body_rate){{0, 0, 0}, {0, 0, 0}};
+        if (body->is_static) continue;
+        rates[i].linear = qvec3_scale(loads[i].force, body->inverse_mass);
+        rates[i].angular = imp_inverse_inertia(body, states[i].q, loads[i].torque);
+    }
 }
 
 /* The bodies' greatest acceleration, any point's. */
@@ -92,25 +84,6 @@ static double greatest(const imp_held *held, const imp_world *world, int island,
     return most;
 }
 
-/* Gives the contact the pressure under which its bodies do not approach, then the friction that does most against their
- * slip. Returns by how much accelerations changed. */
-static double improve_reaction(const imp_world *world, const imp_state *states, imp_held_contact *contact,
-                               contact_response response, body_rate *rates)
-{
-    const qvec3 n = contact->normal;
-    const double pressure = fmax(0, contact->pressure - qvec3_dot(n, acceleration(contact, rates)) / response.along);
-    const double pushed = pressure - contact->pressure;
-    push(world, states, contact, qvec3_scale(n, pushed), rates);
-    const qvec3 rubs = qvec3_axpy(-contact->pressure, n, contact->force), slip = acceleration(contact, rates);
-    qvec3 wanted = qvec3_axpy(-1 / response.across, qvec3_axpy(-qvec3_dot(n, slip), n, slip), rubs);
-    const double size = qvec3_norm(wanted), most = contact->friction * pressure;
-    if (size > most) wanted = qvec3_scale(wanted, most / size);
-    push(world, states, contact, qvec3_sub(wanted, rubs), rates);
-    contact->pressure = pressure;
-    contact->force = qvec3_axpy(pressure, n, wanted);
-    return fabs(pushed) * response.along + qvec3_norm(qvec3_sub(wanted, rubs)) * response.across;
-}
-
 /* The reaction that the contact's pair remembers, if that still is one. */
 static qvec3 last_reaction(const imp_world *world, const imp_held_contact *contact)
 {
@@ -119,52 +92,60 @@ static qvec3 last_reaction(const imp_world *world, const imp_held_contact *conta
     return pressure >= 0 && rubs <= contact->friction * pressure + IMP_STILL_SETTLED * pressure ? f : (qvec3){0, 0, 0};
 }
 
-/* Gives the island's contacts reactions to begin with, those they had or none; returns the acceleration that they
- * leave.
- */
-static double begin_reactions(imp_held *held, const imp_world *world, const imp_state *states, int island, bool anew,
-                              workspace *work)
+/* Whether the island's bodies have no acceleration under the loads and its contacts' forces: none next to `load`. */
+static bool balances(const imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
+                     int island, double load, body_rate *rates)
 {
-    for (int c = 0; c < held->count; c++) {
-        imp_held_contact *contact = &held->contacts[c];
-        if (held->island[c] != island) continue;
-        const qvec3 before = anew ? contact->force : (qvec3){0, 0, 0};
-        contact->force = anew ? (qvec3){0, 0, 0} : last_reaction(world, contact);
-        contact->pressure = qvec3_dot(contact->normal, contact->force);
-        work->responses[c] = response_of(world, states, contact);
-        push(world, states, contact, qvec3_sub(contact->force, before), work->rates);
-    }
-    return greatest(held, world, island, work->rates);
+    begin_rates(world, states, loads, rates);
+    for (int c = 0; c < held->count; c++)
+        if (held->island[c] == island) push(world, states, &held->contacts[c], held->contacts[c].force, rates);
+    return greatest(held, world, island, rates) <= IMP_STILL_BALANCED * load;
 }
 
-typedef enum answer {
-    UNKNOWN,  /* the sweeps did not settle */
-    BALANCED, /* the bodies have no acceleration */
-    MOVES     /* the sweeps settled on some */
-} answer;
-
-/* Looks for the reactions of the island's contacts: those that they had, if they balance the loads, or else from none
- * at all. */
-static answer sweep_reactions(imp_held *held, const imp_world *world, const imp_state *states, int island,
-                              workspace *work, double load)
+/* The contacts' forces by the law, if all velocities were 0; false: it has no answer. */
+static bool solve_motionless(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
+                             int island, workspace *work, imp_held_law *law)
 {
-    enum { SWEEPS = 20000, CHECK = 50 };
-    const double balanced = IMP_STILL_BALANCED * load, settled = IMP_STILL_SETTLED * load;
-    if (begin_reactions(held, world, states, island, false, work) <= balanced) return BALANCED;
-    begin_reactions(held, world, states, island, true, work);
-    double before = INFINITY;
-    for (int k = 1; k <= SWEEPS; k++) {
-        double change = 0;
-        for (int c = 0; c < held->count; c++)
-            if (held->island[c] == island)
-                change =
-                    fmax(change, improve_reaction(world, states, &held->contacts[c], work->responses[c], work->rates));
-        if (change <= settled) return greatest(held, world, island, work->rates) <= balanced ? BALANCED : MOVES;
-        if (k % CHECK != 0) continue;
-        if (change > IMP_STILL_PROGRESS * before) return UNKNOWN;
-        before = change;
+    begin_rates(world, states, loads, work->rates);
+    imp_held_law_find(held, world, states, loads, island, law);
+    for (int i = 0; i < law->count; i++) {
+        const qvec3 a = acceleration(&held->contacts[law->contact[i]], work->rates);
+        for (int k = 0; k < 3; k++) law->q[3 * i + k] = qvec3_dot(law->contacts[i].axes[k], a);
     }
-    return UNKNOWN;
+    const imp_cone_outcome o = imp_held_law_solve(law);
+    if (o.status != IMP_CONE_SOLVED && o.status != IMP_CONE_INEXACT) return false;
+    for (int i = 0; i < law->count; i++) {
+        imp_held_contact *contact = &held->contacts[law->contact[i]];
+        const qvec3 *axes = law->contacts[i].axes;
+        const double *r = &law->r[3 * i];
+        contact->pressure = r[0];
+        contact->force = qvec3_axpy(r[0], axes[0], qvec3_axpy(r[1], axes[1], qvec3_scale(axes[2], r[2])));
+    }
+    return true;
+}
+
+static bool find_reactions(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
+                           int island, workspace *work)
+{
+    imp_held_law law;
+    const bool room = imp_held_law_take(world->arena, held->count, &law);
+    const bool found = room && solve_motionless(held, world, states, loads, island, work, &law);
+    imp_held_law_give(&law);
+    work->room = work->room && room;
+    return found;
+}
+
+/* Whether the reactions that the island had, or else the law's, balance the loads. */
+static bool rests(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads, int island,
+                  workspace *work)
+{
+    begin_rates(world, states, loads, work->rates);
+    const double load = greatest(held, world, island, work->rates);
+    for (int c = 0; c < held->count; c++)
+        if (held->island[c] == island) held->contacts[c].force = last_reaction(world, &held->contacts[c]);
+    return balances(held, world, states, loads, island, load, work->rates) ||
+           (find_reactions(held, world, states, loads, island, work) &&
+            balances(held, world, states, loads, island, load, work->rates));
 }
 
 /* ---- islands ---- */
@@ -193,36 +174,6 @@ static void make_still(imp_held *held, imp_world *world, int island)
         pair->rest.still = true;
         pair->rest.reaction = held->contacts[c].force;
     }
-}
-
-/* Of an island that moves: what nothing presses, and parts, is open. */
-static void open_parting(imp_held *held, imp_world *world, int island, const workspace *work, double load)
-{
-    for (int c = 0; c < held->count; c++) {
-        const imp_held_contact *contact = &held->contacts[c];
-        if (held->island[c] == island && contact->pressure == 0 &&
-            qvec3_dot(contact->normal, acceleration(contact, work->rates)) > IMP_PRESSED_OF_LOADS * load)
-            world->pairs[contact->pair].mode = IMP_OPEN;
-    }
-}
-
-static void begin_rates(const imp_world *world, const imp_state *states, const imp_load *loads, body_rate *rates)
-{
-    for (int i = 0; i < world->body_count; i++) {
-        const imp_body *body = &world->bodies[i];
-        rates[i] = (body_rate){{0, 0, 0}, {0, 0, 0}};
-        if (body->is_static) continue;
-        rates[i].linear = qvec3_scale(loads[i].force, body->inverse_mass);
-        rates[i].angular = imp_inverse_inertia(body, states[i].q, loads[i].torque);
-    }
-}
-
-static void settle(imp_held *held, imp_world *world, const imp_state *states, int island, workspace *work)
-{
-    const double load = greatest(held, world, island, work->rates);
-    const answer found = sweep_reactions(held, world, states, island, work, load);
-    if (found == BALANCED) make_still(held, world, island);
-    if (found == MOVES) open_parting(held, world, island, work, load);
 }
 
 /* Which bodies, slower than jam_speed, would not move any more if their contacts stuck. */
@@ -261,10 +212,10 @@ static void find(imp_held *held, imp_world *world, const imp_state *states, cons
     }
     find_locked(held, world, states, loads, rest_speed, jam_speed, work->locked);
     imp_held_solve(held, world, states, loads);
-    begin_rates(world, states, loads, work->rates);
     for (int c = 0; c < held->count; c++)
-        if (held->island[c] == c && can_be_still(held, world, states, c, rest_speed, work->locked))
-            settle(held, world, states, c, work);
+        if (held->island[c] == c && can_be_still(held, world, states, c, rest_speed, work->locked) &&
+            rests(held, world, states, loads, c, work))
+            make_still(held, world, c);
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair *pair = &world->pairs[p];
         if (pair->rest.still || !imp_is_held(pair)) continue;
@@ -288,14 +239,12 @@ impact_status imp_held_find_still(imp_held *held, imp_world *world, const imp_st
     if (!any || world->field_count > 0) return IMPACT_OK;
     imp_arena *arena = world->arena;
     workspace work = {.rates = imp_arena_take(arena, (size_t)world->body_count, sizeof *work.rates),
-                      .responses = imp_arena_take(arena, (size_t)held->count, sizeof *work.responses),
                       .before = imp_arena_take(arena, (size_t)world->pair_count, sizeof *work.before),
                       .locked = imp_arena_take(arena, (size_t)world->body_count, sizeof *work.locked)};
-    const bool room = work.rates && work.responses && work.before && work.locked;
-    if (room) find(held, world, states, loads, rest_speed, jam_speed, &work);
+    work.room = work.rates && work.before && work.locked;
+    if (work.room) find(held, world, states, loads, rest_speed, jam_speed, &work);
     imp_arena_give(arena, work.rates);
-    imp_arena_give(arena, work.responses);
     imp_arena_give(arena, work.before);
     imp_arena_give(arena, work.locked);
-    return room ? IMPACT_OK : IMPACT_ENOMEM;
+    return work.room ? IMPACT_OK : IMPACT_ENOMEM;
 }

@@ -505,7 +505,7 @@ static bool settle_start(march *m, const sight *l, imp_found *found)
 }
 
 /* Whether they touch: between the last look and this one, or now. gap: with the slack of what leaves. */
-static bool contact(const march *m, const sight *l, double gap, imp_found *found)
+static bool touch(const march *m, const sight *l, double gap, imp_found *found)
 {
     const imp_search *s = m->of;
     const double rounding = IMP_GAP_ROUNDING * scale_of(s, l) + m->error,
@@ -534,7 +534,7 @@ static bool go_on(march *m, imp_found *found)
     *found = (imp_found){INFINITY, false};
     if (m->ahead && !m->leaving && m->least == 0) {
         reached = look_ahead(m, NULL);
-        if (reached.contacts) return met(m, m->t, &reached.contact, found);
+        if (reached.touches) return met(m, m->t, &reached.contact, found);
         if (reached.cleared) return m->t >= m->end;
     }
     look_at(s, m->t, reached.known ? &reached.contact : NULL, &l);
@@ -545,12 +545,12 @@ static bool go_on(march *m, imp_found *found)
     } else {
         if (settle_start(m, &l, found)) return true;
         if (m->leaving) gap += m->slack;
-        if (contact(m, &l, gap, found)) return true;
+        if (touch(m, &l, gap, found)) return true;
         step = step_from(m, &l, gap);
         if (m->ahead && m->least > 0 && !m->leaving && creeps(s, &l, gap, step)) {
             const double t = m->t;
             reached = look_ahead(m, &l.contact);
-            if (reached.contacts) return met(m, m->t, &reached.contact, found);
+            if (reached.touches) return met(m, m->t, &reached.contact, found);
             if (m->t > t + step) return m->t >= m->end;
             m->t = t;
         }
@@ -594,8 +594,8 @@ static imp_found meet_in_line(const imp_search *s, double from)
     if (!(qvec3_dot(d, w) < 0) || !passes_within(d, w, R)) return (imp_found){INFINITY, false};
     const qvec3 n = qvec3_scale(d, 1 / R), x1 = s->segment[0]->start.x, x2 = s->segment[1]->start.x;
     const double slack = IMP_TOUCHING * imp_place_scale(s->body[0], x1, s->body[1], x2, n);
-    const bool contacts = qvec3_dot(d, d) <= R * (R + 2 * slack), still = qvec3_dot(n, w) >= -s->still;
-    const double met = from + line_time(d, w, contacts && still ? R - slack : R);
+    const bool touches = qvec3_dot(d, d) <= R * (R + 2 * slack), still = qvec3_dot(n, w) >= -s->still;
+    const double met = from + line_time(d, w, touches && still ? R - slack : R);
     const double end = fmin(s->segment[0]->t1, s->segment[1]->t1);
     return isfinite(met) && met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
 }
@@ -609,9 +609,9 @@ static imp_found meet_plane(const imp_search *s, double from)
                  pull = qvec3_dot(n, s->segment[0]->acceleration), gap = qvec3_dot(n, d) - s->body[0]->radius;
     const double slack = IMP_TOUCHING * imp_place_scale(s->body[0], qvec3_add(s->segment[1]->start.x, d), s->body[1],
                                                         s->segment[1]->start.x, n);
-    const bool contacts = gap <= slack, still = rate >= -s->still && rate <= s->still;
-    if (contacts && rate < -s->still) return (imp_found){from, true};
-    const double deep = contacts && still ? slack + fmax(0, -gap) : 0;
+    const bool touches = gap <= slack, still = rate >= -s->still && rate <= s->still;
+    if (touches && rate < -s->still) return (imp_found){from, true};
+    const double deep = touches && still ? slack + fmax(0, -gap) : 0;
     const double met = from + impact_flight_fall_time(fmax(gap, 0) + deep, rate, pull);
     return isfinite(met) && met <= end ? (imp_found){met, true} : (imp_found){INFINITY, false};
 }

@@ -23,8 +23,8 @@ typedef struct imp_search {
 } imp_search;
 
 typedef struct imp_found {
-    double t;      /* infinite: nothing before one of the segments ends */
-    bool contacts; /* false: nothing before t, from where the search goes on */
+    double t;     /* infinite: nothing before one of the segments ends */
+    bool touches; /* false: nothing before t, from where the search goes on */
 } imp_found;
 
 /* From the time `from`: where both segments have begun, or where an earlier search stopped; stops behind `until`. */

@@ -27,7 +27,7 @@ static double slack_of(const imp_instant *at)
     return fmax(at->tolerance, IMP_TOI_TIME_ROUNDING * fabs(at->t * at->rate));
 }
 
-static bool contacts(const imp_instant *at) { return at->gap <= slack_of(at); }
+static bool touches(const imp_instant *at) { return at->gap <= slack_of(at); }
 
 /* The gap at the instant, its bodies placed, from the normal seed (NULL: none). glance: it may lie beyond the contact.
  */
@@ -84,7 +84,7 @@ static void keep(chase *s, const imp_instant *at)
         s->crossed = true;
         s->waiting_count = 0;
     } else {
-        if (contacts(at)) s->waiting_count = 0;
+        if (touches(at)) s->waiting_count = 0;
         s->waiting[s->waiting_count++] = *at;
     }
 }
@@ -239,11 +239,11 @@ imp_reached imp_search_window(const imp_search *search, double t, double end, co
     s.strike_gap = INFINITY;
     imp_window_open(search, t, end, &s.w);
     if (!isfinite(s.w.t1) || !set_out(&s, known)) return (imp_reached){.t = t};
-    for (int i = 0; i < MOST_MOVES && s.here.t < s.w.t1 && !contacts(&s.here) && move_on(&s); i++)
+    for (int i = 0; i < MOST_MOVES && s.here.t < s.w.t1 && !touches(&s.here) && move_on(&s); i++)
         ;
-    const bool met = contacts(&s.here) && s.here.rate < 0;
+    const bool met = touches(&s.here) && s.here.rate < 0;
     return (imp_reached){.t = s.here.t,
-                         .contacts = met,
+                         .touches = met,
                          .cleared = !met && s.here.t >= s.w.t1,
                          .known = !s.here.sketched && is_apart(&s.here),
                          .contact = s.here.contact};

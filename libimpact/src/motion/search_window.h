@@ -49,9 +49,9 @@ bool imp_search_link(const imp_window *w, const imp_instant *from, const imp_ins
 /* Before t there is no contact. */
 typedef struct imp_reached {
     double t;
-    bool contacts; /* at t, and the bodies come nearer */
-    bool cleared;  /* t is the window's end */
-    bool known;    /* the contact at t is, and the bodies do not touch */
+    bool touches; /* at t, and the bodies come nearer */
+    bool cleared; /* t is the window's end */
+    bool known;   /* the contact at t is, and the bodies do not touch */
     impact_contact contact;
 } imp_reached;
 

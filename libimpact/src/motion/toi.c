@@ -173,10 +173,10 @@ static impact_status first_contact(const impact_solid body[2], const impact_moti
     const imp_found found = search(body, motion, t_max, contact);
     *t = fmin(found.t, t_max);
     const bool closed_form = contact->path == IMPACT_PATH_NONE;
-    if (!found.contacts || closed_form) status = contact_at(body, motion, *t, contact);
+    if (!found.touches || closed_form) status = contact_at(body, motion, *t, contact);
     if (status < 0) return status;
-    if (found.contacts && closed_form) trim(body, motion, t, contact);
-    if (!found.contacts) return isfinite(found.t) ? IMPACT_EUNSETTLED : IMPACT_NO_CONTACT;
+    if (found.touches && closed_form) trim(body, motion, t, contact);
+    if (!found.touches) return isfinite(found.t) ? IMPACT_EUNSETTLED : IMPACT_NO_CONTACT;
     if (imp_toi_holds(body, motion, *t, contact)) return IMPACT_OK;
     *t = 0;
     return IMPACT_EUNSETTLED;

@@ -297,7 +297,7 @@ static bool begins_alone(impact_scene *scene, int body)
     for (int k = 0; k < scene->world.field_count; k++)
         if (scene->world.fields[k].only < 0 || scene->world.fields[k].only == body) return false;
     for (int k = 0; k < track->near_count; k++)
-        if (imp_gather_contacts(scene, &scene->tracks.near[track->near[k]], scene->t)) return false;
+        if (imp_gather_touches(scene, &scene->tracks.near[track->near[k]], scene->t)) return false;
     return true;
 }
 

@@ -33,7 +33,7 @@ static void add_attracted(impact_scene *scene)
 }
 
 /* Whether the pair touches at t, but for a rounding. */
-bool imp_gather_contacts(impact_scene *scene, const imp_near *near, double t)
+bool imp_gather_touches(impact_scene *scene, const imp_near *near, double t)
 {
     const imp_body *b1 = &scene->world.bodies[near->body[0]], *b2 = &scene->world.bodies[near->body[1]];
     const imp_segment *s1 = &scene->tracks.tracks[near->body[0]].segment,
@@ -80,7 +80,7 @@ static impact_status follow_contacts(impact_scene *scene, int seed, double t)
             const imp_near *near = &scene->tracks.near[track->near[k]];
             const int other = imp_near_other(near, body);
             if (near->held || (scene->root[other] >= 0 && scene->root[other] < m)) continue; /* an island's; seen */
-            if (track->near[k] != seed && !imp_gather_contacts(scene, near, t)) continue;
+            if (track->near[k] != seed && !imp_gather_touches(scene, near, t)) continue;
             imp_gather_member(scene, other);
             imp_pair pair = imp_rules_pair(&scene->rules, &scene->world, near->body[0], near->body[1]);
             if (near->beyond) pair.mode = IMP_BEYOND;

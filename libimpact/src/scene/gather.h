@@ -21,7 +21,7 @@ impact_status imp_gather(impact_scene *scene, int seed, double t, bool stepped, 
 impact_status imp_gather_steps(imp_island *island, imp_island **stepped);
 
 /* Whether the pair touches at t, but for a rounding. */
-bool imp_gather_contacts(impact_scene *scene, const imp_near *near, double t);
+bool imp_gather_touches(impact_scene *scene, const imp_near *near, double t);
 /* The energy of all but the island's bodies at t, J, for the rows of events; theirs leaves the account. */
 double imp_gather_energy_outside(impact_scene *scene, const imp_island *island, double t);
 

@@ -147,7 +147,7 @@ static bool touches_any(impact_scene *scene, int body)
 {
     const imp_track *track = &scene->tracks.tracks[body];
     for (int k = 0; k < track->near_count; k++)
-        if (imp_gather_contacts(scene, &scene->tracks.near[track->near[k]], scene->t)) return true;
+        if (imp_gather_touches(scene, &scene->tracks.near[track->near[k]], scene->t)) return true;
     return false;
 }
 

@@ -140,7 +140,7 @@ static void search(imp_tracks *tracks, imp_near *near, double from)
 {
     const int i = near->body[0], j = near->body[1];
     if (near->held || (stands(tracks, i) && stands(tracks, j))) {
-        near->t = INFINITY, near->contacts = false;
+        near->t = INFINITY, near->touches = false;
         return;
     }
     const imp_track *a = &tracks->tracks[i], *b = &tracks->tracks[j];
@@ -152,7 +152,7 @@ static void search(imp_tracks *tracks, imp_near *near, double from)
                           .usage = &tracks->world->usage,
                           .axis = &near->axis};
     const imp_found found = imp_search_contact(&s, from, smaller(a->leave, b->leave));
-    near->t = found.t, near->contacts = found.contacts;
+    near->t = found.t, near->touches = found.touches;
 }
 
 /* The pair's next contact, from t on; false: there is none, as there was none. */
@@ -471,7 +471,7 @@ impact_status imp_tracks_due(imp_tracks *tracks, int body, double t, int *touchi
     *touching = -1;
     if (track->leave <= t && track->leave <= track->meet) return renew_box(tracks, body, t);
     imp_near *near = &tracks->near[track->first_near];
-    if (near->contacts) {
+    if (near->touches) {
         *touching = track->first_near;
         return IMPACT_OK;
     }

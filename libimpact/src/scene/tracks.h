@@ -14,12 +14,12 @@
 /* Two bodies whose boxes overlap, of which one moves; a moving one first, a plane last. */
 typedef struct imp_near {
     int body[2];
-    int place[2];  /* in each body's list */
-    double t;      /* of the next contact, or of where the search for it goes on */
-    bool contacts; /* which of the two */
-    bool beyond;   /* the first is behind a plane, beside its bounds */
-    bool held;     /* an island's: nothing is searched for */
-    qvec3 axis;    /* search.h */
+    int place[2]; /* in each body's list */
+    double t;     /* of the next contact, or of where the search for it goes on */
+    bool touches; /* which of the two */
+    bool beyond;  /* the first is behind a plane, beside its bounds */
+    bool held;    /* an island's: nothing is searched for */
+    qvec3 axis;   /* search.h */
 } imp_near;
 
 /* What a body's motion has asked for without getting on (stepped.c), and since when, s. */

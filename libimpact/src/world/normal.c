@@ -65,7 +65,7 @@ static qvec3 nearest_on_segment(qvec3 a, qvec3 b, qvec3 p)
 }
 
 /* How far the body reaches along d, and where: with an edge or a face, nearest to where it touches. */
-static double reach(const imp_body *body, const imp_state *state, qvec3 d, qvec3 contacts, qvec3 towards, qvec3 *place)
+static double reach(const imp_body *body, const imp_state *state, qvec3 d, qvec3 touches, qvec3 towards, qvec3 *place)
 {
     const quat axes = imp_shape_axes(body, state);
     const qvec3 own = quat_rotate_inverse(axes, d), shift = imp_shape_offset(body, state);
@@ -76,8 +76,8 @@ static double reach(const imp_body *body, const imp_state *state, qvec3 d, qvec3
     const int dimension = impact_shape_face(&body->shape, own, IMP_TOUCHING * body->radius, &face);
     if (dimension == 1)
         *place = nearest_on_segment(qvec3_add(shift, quat_rotate(axes, face.point[0])),
-                                    qvec3_add(shift, quat_rotate(axes, face.point[1])), contacts);
-    if (dimension == 2) *place = qvec3_axpy(body->shape.rounding, qvec3_sub(d, towards), contacts);
+                                    qvec3_add(shift, quat_rotate(axes, face.point[1])), touches);
+    if (dimension == 2) *place = qvec3_axpy(body->shape.rounding, qvec3_sub(d, towards), touches);
     return h;
 }
 
@@ -98,12 +98,12 @@ static double separated_by(const imp_body *const body[2], const imp_state *const
 static parting parting_along(const imp_body *const body[2], const imp_state *const state[2],
                              const impact_contact *contact, qvec3 n)
 {
-    const qvec3 contacts[2] = {contact->offset1, contact->offset2};
+    const qvec3 touches[2] = {contact->offset1, contact->offset2};
     parting p = {.gap = qvec3_dot(n, qvec3_sub(state[0]->x, state[1]->x))};
     for (int k = 0; k < 2; k++) {
         const double side = k == 0 ? -1 : 1;
         const qvec3 towards = qvec3_scale(contact->normal, side);
-        p.gap -= reach(body[k], state[k], qvec3_scale(n, side), contacts[k], towards, &p.offset[k]);
+        p.gap -= reach(body[k], state[k], qvec3_scale(n, side), touches[k], towards, &p.offset[k]);
         if (body[k]->is_static) continue; /* a belt moves, and its surface stays */
         const qvec3 v = qvec3_add(state[k]->v, qvec3_cross(imp_omega(body[k], state[k]), p.offset[k]));
         p.rate -= side * qvec3_dot(n, v);
@@ -164,8 +164,8 @@ typedef struct settling {
 
 static double rate_found(const settling *s)
 {
-    const qvec3 contacts[2] = {s->found.offset1, s->found.offset2};
-    return is_hidden(s->m, contacts, s->found.normal, s->within)
+    const qvec3 touches[2] = {s->found.offset1, s->found.offset2};
+    return is_hidden(s->m, touches, s->found.normal, s->within)
                ? -INFINITY
                : parting_along(s->m->body, s->m->state, &s->found, s->found.normal).rate;
 }
@@ -190,9 +190,9 @@ static void consider_faces(settling *s, int k, impact_contact *contact)
     const imp_state *state = s->m->state[k], *others = s->m->state[1 - k];
     const face_list faces = faces_of(&own->shape);
     const quat axes = imp_shape_axes(own, state);
-    const qvec3 contacts = k == 0 ? s->found.offset2 : s->found.offset1,
+    const qvec3 touches = k == 0 ? s->found.offset2 : s->found.offset1,
                 from = qvec3_sub(qvec3_sub(others->x, state->x), imp_shape_offset(own, state)),
-                place = quat_rotate_inverse(axes, qvec3_add(from, contacts));
+                place = quat_rotate_inverse(axes, qvec3_add(from, touches));
     for (int f = 0; f < faces.count; f++) {
         const qvec3 local = normal_of_face(&faces, f);
         if (qvec3_dot(local, place) - height_of_face(&faces, f, local) < -s->within) continue;

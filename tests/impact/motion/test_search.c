@@ -84,8 +84,8 @@ static void balls_meet_on_a_line(void **state)
         const imp_found found = imp_search_contact(&s, late, INFINITY);
         const double graze = fabs(R - qvec3_norm(qvec3_cross(d, w)) / qvec3_norm(w));
         if (graze < 1e-6 * R) continue;
-        assert_int_equal(found.contacts, isfinite(wanted));
-        if (!found.contacts) continue;
+        assert_int_equal(found.touches, isfinite(wanted));
+        if (!found.touches) continue;
         assert_near(found.t, wanted, 1e-13 * (1 + wanted) * R / graze * 10);
         met++;
         /* named the other way round the bits are the same */
@@ -114,11 +114,11 @@ static void damped_balls_meet(void **state)
         const double clock = line_time(d, w, 0.5), wanted = k * clock < 1 ? -log1p(-k * clock) / k : INFINITY;
         if (graze < 1e-4 || fabs(k * clock - 1) < 1e-3) continue;
         imp_found found = imp_search_contact(&s, 0, INFINITY);
-        for (int again = 0; again < 100 && !found.contacts && isfinite(found.t); again++)
+        for (int again = 0; again < 100 && !found.touches && isfinite(found.t); again++)
             found = imp_search_contact(&s, found.t, INFINITY);
-        assert_int_equal(found.contacts, isfinite(wanted));
-        if (found.contacts) assert_near(found.t, wanted, 1e-10 * (1 + wanted));
-        met += found.contacts;
+        assert_int_equal(found.touches, isfinite(wanted));
+        if (found.touches) assert_near(found.t, wanted, 1e-10 * (1 + wanted));
+        met += found.touches;
     }
     assert_true(met > 1000);
 }
@@ -145,7 +145,7 @@ static void nothing_is_passed_over(void **state)
         begin(&c, 1, 0, (qvec3){0, 0, 0}, (qvec3){0, 0, 0}, random_vector(&random, 1, 20), (qvec3){0, 0, -1});
         const imp_search s = search_of(&c);
         imp_found found = imp_search_contact(&s, 0, 10);
-        for (int again = 0; again < 100 && !found.contacts && found.t < 10; again++)
+        for (int again = 0; again < 100 && !found.touches && found.t < 10; again++)
             found = imp_search_contact(&s, found.t, 10);
         const double last = fmin(found.t, 5);
         for (int k = 0; k <= 200; k++) {
@@ -155,9 +155,9 @@ static void nothing_is_passed_over(void **state)
             impact_contact contact;
             imp_gap_of(&c.body[0], &a, &c.body[1], &b, NULL, &c.usage, &contact);
             assert_true(contact.gap > -1e-12 * reach);
-            if (k == 200 && found.contacts && last == found.t) assert_near(contact.gap, 0, 1e-12 * reach);
+            if (k == 200 && found.touches && last == found.t) assert_near(contact.gap, 0, 1e-12 * reach);
         }
-        met += found.contacts;
+        met += found.touches;
     }
     assert_true(met > 100);
 }
@@ -185,9 +185,9 @@ static void what_is_behind_a_plane_comes_back(void **state)
         imp_search s = search_of(&c);
         s.beyond = true;
         imp_found found = imp_search_contact(&s, 0, 10);
-        for (int again = 0; again < 100 && !found.contacts && found.t < 10; again++)
+        for (int again = 0; again < 100 && !found.touches && found.t < 10; again++)
             found = imp_search_contact(&s, found.t, 10);
-        back += found.contacts, never += !found.contacts;
+        back += found.touches, never += !found.touches;
         const double last = fmin(found.t, 3);
         for (int k = 0; k <= 200; k++) {
             const double t = last * k / 200;
@@ -195,7 +195,7 @@ static void what_is_behind_a_plane_comes_back(void **state)
             impact_contact contact;
             imp_gap_of(&c.body[0], &a, &c.body[1], &b, NULL, &c.usage, &contact);
             assert_true(contact.gap < 1e-12 * reach);
-            if (k == 200 && found.contacts) assert_near(contact.gap, 0, 1e-9 * reach);
+            if (k == 200 && found.touches) assert_near(contact.gap, 0, 1e-9 * reach);
         }
     }
     assert_true(back > 50 && never > 50);
@@ -247,9 +247,9 @@ static void what_leaves_and_comes_back_within_a_step_is_found(void **state)
         c.segment[1] = imp_segment_rest(0, &(imp_state){.q = {1, 0, 0, 0}});
         const imp_search s = search_of(&c);
         imp_found found = imp_search_contact(&s, t0, INFINITY);
-        for (int again = 0; again < 100 && !found.contacts && isfinite(found.t); again++)
+        for (int again = 0; again < 100 && !found.touches && isfinite(found.t); again++)
             found = imp_search_contact(&s, found.t, INFINITY);
-        assert_true(found.contacts);
+        assert_true(found.touches);
         /* as closely as gaps of places of this size tell */
         assert_near(found.t, t0 + a, 1e-12 * radius / (k * a * (b - a)) + 1e-12 * (1 + t0));
     }
@@ -270,9 +270,9 @@ static void pauses_change_no_bits(void **state)
         const imp_search s = search_of(&c);
         const imp_found whole = imp_search_contact(&s, 0, INFINITY);
         imp_found part = imp_search_contact(&s, 0, 0.1);
-        for (int again = 0; again < 10000 && !part.contacts && isfinite(part.t); again++)
+        for (int again = 0; again < 10000 && !part.touches && isfinite(part.t); again++)
             part = imp_search_contact(&s, part.t, part.t);
-        assert_true(whole.t == part.t && whole.contacts == part.contacts);
+        assert_true(whole.t == part.t && whole.touches == part.touches);
     }
 }
 
@@ -305,7 +305,7 @@ static void what_has_left_the_ground_is_let_go(void **state)
         imp_search s = search_of(&c);
 
         const imp_found found = imp_search_contact(&s, 0, 0.1 / spin);
-        assert_true(!found.contacts && found.t > 0.1 / spin);
+        assert_true(!found.touches && found.t > 0.1 / spin);
         assert_true(c.usage.gap_closed_form + c.usage.gap_newton + c.usage.gap_gjk < 12);
     }
 }
