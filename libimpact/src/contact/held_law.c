@@ -8,11 +8,11 @@ bool imp_held_law_take(imp_arena *arena, int count, imp_held_law *law)
 {
     const size_t size = (size_t)count, n = 3 * size;
     *law = (imp_held_law){.contact = imp_arena_take(arena, size, sizeof *law->contact),
-                         .contacts = imp_arena_take(arena, size, sizeof *law->contacts),
-                         .rows = imp_arena_take(arena, size, sizeof *law->rows),
-                         .modes = imp_arena_take(arena, size, sizeof *law->modes),
-                         .w = imp_arena_take(arena, n * n + 3 * n + size, sizeof *law->w),
-                         .cone = {.arena = arena}};
+                          .contacts = imp_arena_take(arena, size, sizeof *law->contacts),
+                          .rows = imp_arena_take(arena, size, sizeof *law->rows),
+                          .modes = imp_arena_take(arena, size, sizeof *law->modes),
+                          .w = imp_arena_take(arena, n * n + 3 * n + size, sizeof *law->w),
+                          .cone = {.arena = arena}};
     if (!law->contact || !law->contacts || !law->rows || !law->modes || !law->w) return false;
     law->q = law->w + n * n, law->r = law->q + n, law->u = law->r + n, law->friction = law->u + n;
     return imp_cone_reserve(&law->cone, count);

@@ -7,6 +7,8 @@
 #include "scene/scene_events.h"
 #include "scene/scene_methods.h"
 #include "scene/scene_press.h"
+#include "shape/support.h"
+#include "world/world_gap.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -91,10 +93,12 @@ static bool suffices_alone(imp_island *island, gathering *g, imp_meeting *struck
 /* ---- all together ---- */
 
 /* Of Hertz's springs of one modulus, up to a factor: the root of the radius of the two surfaces' mean curvature, or
- * where that is nothing of the smaller body. */
+ * where that is nothing, or sharp, of the smaller body. A face is one that touches with all that is its. */
 static double hertz_stiffness(const imp_island *island, const imp_held_contact *contact)
 {
     const int body[2] = {contact->body1, contact->body2};
+    const double touching =
+        imp_world_touching_distance(&island->world, &island->world.pairs[contact->pair], island->states);
     double bent = 0, smaller = INFINITY;
     for (int k = 0; k < 2; k++) {
         const imp_body *b = &island->world.bodies[body[k]];
@@ -102,8 +106,8 @@ static double hertz_stiffness(const imp_island *island, const imp_held_contact *
         double k1, k2;
         smaller = fmin(smaller, b->radius);
         if (b->shape.kind == IMPACT_PLANE) continue;
-        impact_shape_curvatures(&b->shape, quat_rotate_inverse(imp_shape_axes(b, &island->states[body[k]]), towards),
-                                &k1, &k2);
+        imp_shape_curvatures(&b->shape, quat_rotate_inverse(imp_shape_axes(b, &island->states[body[k]]), towards),
+                             touching, &k1, &k2);
         bent += 0.5 * (k1 + k2);
     }
     return sqrt(bent > 0 && isfinite(bent) ? 1 / bent : smaller);

@@ -2,6 +2,7 @@
  *
  * The shape as a surface: support, curvature, parametrisation, mesh.
  */
+#include <impact/face.h>
 #include <impact/shape.h>
 #include "base/numbers.h"
 #include "base/tolerances.h"
@@ -110,29 +111,27 @@ double impact_shape_inside(const impact_shape *shape, qvec3 x)
 static double curvature_of(double radius) { return radius > 0 ? 1 / radius : INFINITY; }
 
 /* Radii rounding + R/rho and rounding on a rim; rounding + R and infinite on a side (half R/rho in the middle of a
- * cone's); of a polytope rounding across an edge and infinite along it: by the dimension of what is reached. */
-static void core_curvatures(const impact_shape *shape, qvec3 n, double *k1, double *k2)
+ * cone's); of a polytope rounding across an edge and infinite along it: by the dimension of what lies within the height
+ * of the supporting plane. */
+static void core_curvatures(const impact_shape *shape, qvec3 n, double height, double *k1, double *k2)
 {
-    const double d[3] = {n.x, n.y, n.z}, r = shape->rounding, size = fmax(shape->a, fmax(shape->b, shape->c));
+    const double r = shape->rounding;
     const imp_form form = form_of(shape);
-    if (form.kind == IMP_FORM_CYLINDER || form.kind == IMP_FORM_CONE) {
-        const bool cone = form.kind == IMP_FORM_CONE;
-        const double across = hypot(n.x, n.y), tilt = cone ? form.axis[0] * across - form.axis[2] * n.z : n.z;
-        const bool cap = across == 0 && (!cone || n.z < 0),
-                   side = !cap && fabs(tilt) <= IMP_CORE_TIE * (cone ? size : 1);
-        const double radius = cone && tilt < 0 && !side ? 0 : form.axis[0] / across;
-        *k1 = cap ? 0 : side ? curvature_of(r + form.axis[0] / across / (cone ? 2 : 1)) : curvature_of(r);
-        *k2 = cap || side ? 0 : curvature_of(r + radius);
+    impact_face face;
+    impact_shape_face(shape, n, height, &face);
+    *k1 = *k2 = 0;
+    if (face.dimension == 2) return;
+    const bool cone = form.kind == IMP_FORM_CONE, turned = cone || form.kind == IMP_FORM_CYLINDER;
+    const double around = turned ? form.axis[0] / hypot(n.x, n.y) : 0; /* R/rho */
+    if (face.dimension == 1) {
+        *k1 = curvature_of(r + (cone ? around / 2 : around));
         return;
     }
-    short vertex[IMPACT_HULL_POINTS];
-    double mean[3];
-    const int count = imp_core_reached(&form.core, d, IMP_CORE_TIE * size, vertex, mean);
-    *k1 = count > 2 ? 0 : curvature_of(r);
-    *k2 = count > 1 ? 0 : curvature_of(r);
+    *k1 = curvature_of(r);
+    *k2 = curvature_of(face.feature.kind == IMPACT_RIM ? r + around : r);
 }
 
-void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double *k1, double *k2)
+void imp_shape_curvatures(const impact_shape *shape, qvec3 direction, double height, double *k1, double *k2)
 {
     *k1 = *k2 = NAN;
     const double length = qvec3_norm(direction);
@@ -142,7 +141,7 @@ void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double 
         return;
     }
     if (imp_has_core(shape)) {
-        core_curvatures(shape, qvec3_scale(direction, 1 / length), k1, k2);
+        core_curvatures(shape, qvec3_scale(direction, 1 / length), height, k1, k2);
         return;
     }
     const qmat3 H = impact_shape_support_hessian(shape, qvec3_scale(direction, 1 / length));
@@ -161,6 +160,11 @@ void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double 
     const double root = sqrt(fmax(0, trace * trace / 4 - minors)), larger = trace / 2 + root;
     *k2 = curvature_of(larger);
     *k1 = curvature_of(larger > 0 ? minors / larger : 0);
+}
+
+void impact_shape_curvatures(const impact_shape *shape, qvec3 direction, double *k1, double *k2)
+{
+    imp_shape_curvatures(shape, direction, IMP_CORE_TIE * fmax(shape->a, fmax(shape->b, shape->c)), k1, k2);
 }
 
 impact_status impact_shape_mesh(const impact_shape *shape, int nu, int nv, qvec3 *points, qvec3 *normals)

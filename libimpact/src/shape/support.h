@@ -60,6 +60,10 @@ void imp_surface_point(const imp_form *form, const imp_surface *surface, double 
 /* Hessian of h at d (body axes) into H. */
 void imp_form_hessian(const imp_form *form, const double d[3], double H[3][3]);
 
+/* impact_shape_curvatures of what lies within the height, m, of the supporting plane across the direction: a face that
+ * rounding has turned is flat. */
+void imp_shape_curvatures(const impact_shape *shape, qvec3 direction, double height, double *k1, double *k2);
+
 /* The left-hand side of the inequality of a quadric at x, body axes. */
 double imp_form_inside(const imp_form *form, const double x[3]);
 
