@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rest needs reactions that balance the loads, not that they be unique. They are Coulomb's law's answer if all
- * velocities were 0 (held_law.h), which begins without reactions, so that contacts are pressed by the loads alone: of a
- * ball that just fits between two walls friction gives way, though walls that squeezed it could hold it.
+ * Rest needs reactions that balance the loads (rest.h), not that they be unique, and that Coulomb's law keeps the
+ * bodies where they are if they stand (held_law.h). Its answer begins without reactions, so that contacts are pressed
+ * by the loads alone: of a ball that just fits between two walls friction gives way, though walls that squeezed it
+ * could hold it.
  */
 #include "contact/held_still.h"
 #include "contact/held_law.h"
 #include "contact/held_system.h"
+#include "contact/rest.h"
 #include "world/world_gap.h"
 
 /* What the loads and the reactions do to each body. */
@@ -92,28 +94,19 @@ static qvec3 last_reaction(const imp_world *world, const imp_held_contact *conta
     return pressure >= 0 && rubs <= contact->friction * pressure + IMP_STILL_SETTLED * pressure ? f : (qvec3){0, 0, 0};
 }
 
-/* Whether the island's bodies have no acceleration under the loads and its contacts' forces: none next to `load`. */
-static bool balances(const imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
-                     int island, double load, body_rate *rates)
+/* The acceleration that the loads and the contacts' forces leave the island's bodies. */
+static double left_by(const imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
+                      int island, body_rate *rates)
 {
     begin_rates(world, states, loads, rates);
     for (int c = 0; c < held->count; c++)
         if (held->island[c] == island) push(world, states, &held->contacts[c], held->contacts[c].force, rates);
-    return greatest(held, world, island, rates) <= IMP_STILL_BALANCED * load;
+    return greatest(held, world, island, rates);
 }
 
-/* The contacts' forces by the law, if all velocities were 0; false: it has no answer. */
-static bool solve_motionless(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
-                             int island, workspace *work, imp_held_law *law)
+/* Takes the contacts' forces from the law's r. */
+static void read_law(imp_held *held, const imp_held_law *law)
 {
-    begin_rates(world, states, loads, work->rates);
-    imp_held_law_find(held, world, states, loads, island, law);
-    for (int i = 0; i < law->count; i++) {
-        const qvec3 a = acceleration(&held->contacts[law->contact[i]], work->rates);
-        for (int k = 0; k < 3; k++) law->q[3 * i + k] = qvec3_dot(law->contacts[i].axes[k], a);
-    }
-    const imp_cone_outcome o = imp_held_law_solve(law);
-    if (o.status != IMP_CONE_SOLVED && o.status != IMP_CONE_INEXACT) return false;
     for (int i = 0; i < law->count; i++) {
         imp_held_contact *contact = &held->contacts[law->contact[i]];
         const qvec3 *axes = law->contacts[i].axes;
@@ -121,21 +114,57 @@ static bool solve_motionless(imp_held *held, const imp_world *world, const imp_s
         contact->pressure = r[0];
         contact->force = qvec3_axpy(r[0], axes[0], qvec3_axpy(r[1], axes[1], qvec3_scale(axes[2], r[2])));
     }
-    return true;
+}
+
+/* Whether the law, if all velocities were 0, leaves the bodies where they are. Of contacts that give way a little it
+ * has one answer; of those that do not its path may take one that squeezes 1e10 times as hard as need be. */
+static bool law_holds(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
+                      int island, double load, workspace *work, imp_held_law *law)
+{
+    begin_rates(world, states, loads, work->rates);
+    imp_held_law_find(held, world, states, loads, island, law);
+    const size_t n = 3 * (size_t)law->count;
+    double mean = 0;
+    for (size_t i = 0; i < n; i++) mean += law->w[i * (n + 1)] / (double)n;
+    for (size_t i = 0; i < n; i++) law->w[i * (n + 1)] += IMP_STILL_GIVES * mean;
+    for (int i = 0; i < law->count; i++) {
+        const qvec3 a = acceleration(&held->contacts[law->contact[i]], work->rates);
+        for (int k = 0; k < 3; k++) law->q[3 * i + k] = qvec3_dot(law->contacts[i].axes[k], a);
+    }
+    const imp_cone_outcome o = imp_held_law_solve(law);
+    if (o.status != IMP_CONE_SOLVED && o.status != IMP_CONE_INEXACT) return false;
+    read_law(held, law);
+    return left_by(held, world, states, loads, island, work->rates) <= IMP_STILL_HELD * load;
+}
+
+/* The contacts' least forces that balance the loads; false: there are none. */
+static bool take_least(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
+                       imp_rest_workspace *rest, imp_held_law *law, imp_rest_velocity *velocities)
+{
+    const imp_rest_outcome o =
+        imp_rest_solve(world, states, law->contacts, law->friction, NULL, law->count, loads, rest, law->r, velocities);
+    read_law(held, law);
+    return o.status == IMP_REST_RESTS;
 }
 
 static bool find_reactions(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
-                           int island, workspace *work)
+                           int island, double load, workspace *work)
 {
     imp_held_law law;
-    const bool room = imp_held_law_take(world->arena, held->count, &law);
-    const bool found = room && solve_motionless(held, world, states, loads, island, work, &law);
+    imp_rest_workspace rest = {.arena = world->arena};
+    imp_rest_velocity *velocities = imp_arena_take(world->arena, (size_t)world->body_count, sizeof *velocities);
+    const bool room = imp_held_law_take(world->arena, held->count, &law) && velocities &&
+                      imp_rest_reserve(&rest, held->count, world->body_count);
+    const bool found = room && law_holds(held, world, states, loads, island, load, work, &law) &&
+                       take_least(held, world, states, loads, &rest, &law, velocities);
     imp_held_law_give(&law);
+    imp_rest_release(&rest);
+    imp_arena_give(world->arena, velocities);
     work->room = work->room && room;
     return found;
 }
 
-/* Whether the reactions that the island had, or else the law's, balance the loads. */
+/* Whether the reactions that the island had balance the loads, or others do, by the law. */
 static bool rests(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads, int island,
                   workspace *work)
 {
@@ -143,9 +172,10 @@ static bool rests(imp_held *held, const imp_world *world, const imp_state *state
     const double load = greatest(held, world, island, work->rates);
     for (int c = 0; c < held->count; c++)
         if (held->island[c] == island) held->contacts[c].force = last_reaction(world, &held->contacts[c]);
-    return balances(held, world, states, loads, island, load, work->rates) ||
-           (find_reactions(held, world, states, loads, island, work) &&
-            balances(held, world, states, loads, island, load, work->rates));
+    const double balanced = IMP_STILL_BALANCED * load;
+    return left_by(held, world, states, loads, island, work->rates) <= balanced ||
+           (find_reactions(held, world, states, loads, island, load, work) &&
+            left_by(held, world, states, loads, island, work->rates) <= balanced);
 }
 
 /* ---- islands ---- */
