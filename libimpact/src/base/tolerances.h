@@ -313,12 +313,10 @@
 #define IMP_ONSET_TURNED 1e-15
 #define IMP_ONSET_LEFT 1e-16
 #define IMP_ONSET_FAR 1e3
-/* What bodies at rest have, of the island's loads: acceleration that is none. By the law contacts give way by this part
- * of the mean mobility, so that its answer is unique, and of the loads that much is left for each time that the
- * reactions are as great, up to a hundred. And of a reaction that is remembered, what leaves its cone by rounding, 450
- * eps. */
+/* What bodies at rest have, of the island's loads: acceleration that is none; and what is none by the law, whose
+ * reactions of 1e10 times the loads and more leave as many roundings. And of a reaction that is remembered, what leaves
+ * its cone by rounding, 450 eps. */
 #define IMP_STILL_BALANCED 1e-10
-#define IMP_STILL_GIVES 1e-6
 #define IMP_STILL_HELD 1e-4
 #define IMP_STILL_SETTLED 1e-13
 /* No surface that presses is rounder than this part of its body's size: about edges the normal turns faster, but not

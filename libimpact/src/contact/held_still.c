@@ -116,17 +116,13 @@ static void read_law(imp_held *held, const imp_held_law *law)
     }
 }
 
-/* Whether the law, if all velocities were 0, leaves the bodies where they are. Of contacts that give way a little it
- * has one answer; of those that do not its path may take one that squeezes 1e10 times as hard as need be. */
+/* Whether the law, if all velocities were 0, leaves the bodies where they are. Its reactions are no matter: its path
+ * may take such as squeeze 1e10 times as hard as need be. */
 static bool law_holds(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
                       int island, double load, workspace *work, imp_held_law *law)
 {
     begin_rates(world, states, loads, work->rates);
     imp_held_law_find(held, world, states, loads, island, law);
-    const size_t n = 3 * (size_t)law->count;
-    double mean = 0;
-    for (size_t i = 0; i < n; i++) mean += law->w[i * (n + 1)] / (double)n;
-    for (size_t i = 0; i < n; i++) law->w[i * (n + 1)] += IMP_STILL_GIVES * mean;
     for (int i = 0; i < law->count; i++) {
         const qvec3 a = acceleration(&held->contacts[law->contact[i]], work->rates);
         for (int k = 0; k < 3; k++) law->q[3 * i + k] = qvec3_dot(law->contacts[i].axes[k], a);
@@ -137,14 +133,12 @@ static bool law_holds(imp_held *held, const imp_world *world, const imp_state *s
     return left_by(held, world, states, loads, island, work->rates) <= IMP_STILL_HELD * load;
 }
 
-/* The contacts' least forces that balance the loads; false: there are none. */
-static bool take_least(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
+/* The contacts' least forces that balance the loads, if there are any. */
+static void take_least(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
                        imp_rest_workspace *rest, imp_held_law *law, imp_rest_velocity *velocities)
 {
-    const imp_rest_outcome o =
-        imp_rest_solve(world, states, law->contacts, law->friction, NULL, law->count, loads, rest, law->r, velocities);
+    imp_rest_solve(world, states, law->contacts, law->friction, NULL, law->count, loads, rest, law->r, velocities);
     read_law(held, law);
-    return o.status == IMP_REST_RESTS;
 }
 
 static bool find_reactions(imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
@@ -155,8 +149,8 @@ static bool find_reactions(imp_held *held, const imp_world *world, const imp_sta
     imp_rest_velocity *velocities = imp_arena_take(world->arena, (size_t)world->body_count, sizeof *velocities);
     const bool room = imp_held_law_take(world->arena, held->count, &law) && velocities &&
                       imp_rest_reserve(&rest, held->count, world->body_count);
-    const bool found = room && law_holds(held, world, states, loads, island, load, work, &law) &&
-                       take_least(held, world, states, loads, &rest, &law, velocities);
+    const bool found = room && law_holds(held, world, states, loads, island, load, work, &law);
+    if (found) take_least(held, world, states, loads, &rest, &law, velocities);
     imp_held_law_give(&law);
     imp_rest_release(&rest);
     imp_arena_give(world->arena, velocities);
