@@ -5,6 +5,7 @@
  * rounds of timing, all settings in turn, so that what the machine drifts hits all alike.
  */
 #include "report/report_work.h"
+#include "base/tolerances.h"
 #include "base/definition.h"
 #include "scene/definitions.h"
 
@@ -338,7 +339,7 @@ impact_status impact_report(const impact_scene_def *def, const impact_report_def
     impact_status status = take(&w, def, how, &own_how);
     if (status == IMPACT_OK) status = imp_arena_create(w.report.def.allocator, &w.report.arena);
     if (status != IMPACT_OK) return status;
-    w.seconds = own_how.seconds > 0 ? own_how.seconds : 20;
+    w.seconds = IMP_REPORT_WORK * (own_how.seconds > 0 ? own_how.seconds : 20);
     w.report.deadline = w.began + 0.5 * w.seconds;
     w.report.how = &own_how;
     w.report.def.methods = (impact_methods){0};
