@@ -154,6 +154,10 @@ void imp_springs_centre(imp_springs *s);
 /* The series from here on; their usable length in tau. */
 double imp_springs_expand(imp_springs *s);
 
+/* W across to across of what begins (begin[begin_count]), stick answering, into `turning`: column d by a unit of force
+ * across at contact d. */
+void imp_springs_make_turning(imp_springs *s);
+
 /* Gauss with pivoting: a x = b of order n, row by row; a is lost, b becomes x. */
 void imp_springs_gauss(double *a, double *b, int n);
 

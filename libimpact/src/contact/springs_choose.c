@@ -134,6 +134,47 @@ static void take_rims(imp_springs *s, const int *which, int n, const imp_cone_mo
     imp_springs_tie(s);
 }
 
+/* One of Newton's steps for the directions of what begins; returns the most that one is turned by. */
+static double turn_to_accelerations(imp_springs *s)
+{
+    const int n = s->begin_count;
+    double *matrix = s->turning + n * n, *angle = matrix + n * n, most = 0;
+    imp_springs_make_turning(s);
+    imp_springs_forces(s);
+    for (int c = 0; c < n; c++) {
+        const int i = s->begin[c];
+        const double *e = s->springs[i].along, x = imp_springs_row(s, 3 * i + 1), y = imp_springs_row(s, 3 * i + 2);
+        for (int d = 0; d < n; d++) {
+            const int j = s->begin[d];
+            matrix[c * n + d] = s->turning[c * n + d] * s->springs[j].friction * s->now[3 * j];
+        }
+        matrix[c * n + c] += x * e[0] + y * e[1];
+        angle[c] = y * e[0] - x * e[1];
+    }
+    imp_springs_gauss(matrix, angle, n);
+    for (int c = 0; c < n; c++) most = fmax(most, fabs(angle[c]));
+    for (int c = 0; c < n; c++) {
+        double *e = s->springs[s->begin[c]].along;
+        const double part = most > 0.5 ? 0.5 / most : 1, cosine = cos(part * angle[c]), sine = sin(part * angle[c]);
+        const double x = cosine * e[0] - sine * e[1], y = sine * e[0] + cosine * e[1];
+        e[0] = x, e[1] = y;
+    }
+    return most;
+}
+
+/* What begins, from accelerations, along these to rounding: the cone solver is good to 1e-13 of the largest, and
+ * accelerations of slip that has just given way are little more; but friction turns with its direction, and tells it by
+ * what it leaves across. */
+static void point_beginnings(imp_springs *s)
+{
+    s->begin_count = 0;
+    for (int i = 0; i < s->count; i++)
+        if (imp_springs_presses(&s->springs[i]) && s->springs[i].slip == IMP_SPRING_BEGINS && !s->springs[i].weak)
+            s->begin[s->begin_count++] = i;
+    for (int turn = 0; turn < 8 && s->begin_count > 0 && turn_to_accelerations(s) > 1e-15; turn++) {
+    }
+}
+
 bool imp_springs_choose(imp_springs *s)
 {
     if (all_stick(s)) return true;
@@ -158,5 +199,6 @@ bool imp_springs_choose(imp_springs *s)
         hold_what_can_be(s);
     else
         take_rims(s, which, n, modes);
+    point_beginnings(s);
     return true;
 }

@@ -128,14 +128,38 @@ static void find_across(imp_springs *s, int c, const double e[2], double *row)
         for (int j = 0; j < width; j++) row[j] -= s->scratch[a] * imp_springs_entry(s, s->stick[a], j);
 }
 
+/* A response across the slip of contact c that is rounding. */
+static double no_response(const imp_springs *s, int c)
+{
+    double size = 0;
+    for (int j = 0; j < 3 * s->count; j++)
+        size = fmax(size, fmax(fabs(imp_springs_entry(s, 3 * c + 1, j)), fabs(imp_springs_entry(s, 3 * c + 2, j))));
+    return IMP_SPRINGS_STRAIGHT * size;
+}
+
+/* Where what sticks leaves contact c but one way to go its slip is along that: a box that lies along a capsule and
+ * sticks at one of two points slips at the other across it. */
+static void take_only_way(imp_springs *s, int c)
+{
+    double *row = s->now, *along = s->springs[c].along;
+    find_across(s, c, (double[]){0, -1}, row);
+    const double xx = row[3 * c + 1];
+    find_across(s, c, (double[]){1, 0}, row);
+    const double angle = 0.5 * atan2(2 * row[3 * c + 1], xx - row[3 * c + 2]), bound = no_response(s, c);
+    double e[2] = {cos(angle), sin(angle)};
+    if (e[0] * along[0] + e[1] * along[1] < 0) e[0] = -e[0], e[1] = -e[1];
+    find_across(s, c, e, row);
+    for (int j = 0; j < 3 * s->count; j++)
+        if (fabs(row[j]) > bound) return;
+    along[0] = e[0], along[1] = e[1];
+}
+
 /* Whether nothing that presses turns the slip of contact c. */
 static bool goes_straight(imp_springs *s, int c)
 {
-    double e[2], size = 0, *row = s->now;
+    double e[2], *row = s->now;
     find_direction(&s->springs[c], e);
-    for (int j = 0; j < 3 * s->count; j++)
-        size = fmax(size, fmax(fabs(imp_springs_entry(s, 3 * c + 1, j)), fabs(imp_springs_entry(s, 3 * c + 2, j))));
-    const double bound = IMP_SPRINGS_STRAIGHT * size;
+    const double bound = no_response(s, c);
     find_across(s, c, e, row);
     for (int d = 0; d < s->count; d++) {
         const imp_spring *other = &s->springs[d];
@@ -158,6 +182,7 @@ void imp_springs_straighten(imp_springs *s)
         imp_spring *c = &s->springs[i];
         if (!imp_springs_presses(c) || c->slip < IMP_SPRING_SLIDES) continue;
         find_direction(c, c->along);
+        if (c->slip == IMP_SPRING_BEGINS) take_only_way(s, i);
         c->slip = IMP_SPRING_STRAIGHT;
     }
     bool again = true;

@@ -150,16 +150,14 @@ static void find_pushes(imp_springs *s, const double *factor, int k)
 
 /* ---- slip that begins ---- */
 
-/* W across to across of what begins, stick answering: column d by a unit of friction across at contact d. */
-static void make_turning(imp_springs *s)
+void imp_springs_make_turning(imp_springs *s)
 {
     const int n = s->begin_count;
     for (int d = 0; d < n; d++) {
         for (int i = 0; i < 3 * s->count; i++) s->now[i] = 0;
         const imp_spring *own = &s->springs[s->begin[d]];
-        const double size = own->friction * own->push[0][0];
-        s->now[3 * s->begin[d] + 1] = -size * own->along[1];
-        s->now[3 * s->begin[d] + 2] = size * own->along[0];
+        s->now[3 * s->begin[d] + 1] = -own->along[1];
+        s->now[3 * s->begin[d] + 2] = own->along[0];
         imp_springs_hold(s, -1);
         for (int c = 0; c < n; c++) {
             const imp_spring *other = &s->springs[s->begin[c]];
@@ -231,7 +229,10 @@ static void turn_beginnings(imp_springs *s, int k)
             double turned = 0;
             for (int j = 1; j < k; j++) turned += j * own->angle[j] * own->speed[k - j + 1];
             angles[c] = across - turned;
-            for (int d = 0; d < n; d++) matrix[c * n + d] = s->turning[c * n + d];
+            for (int d = 0; d < n; d++) {
+                const imp_spring *other = &s->springs[s->begin[d]];
+                matrix[c * n + d] = s->turning[c * n + d] * other->friction * other->push[0][0];
+            }
             matrix[c * n + c] += (own->weak ? 0 : (k + 1) * own->speed[1]);
         }
         imp_springs_gauss(matrix, angles, n);
@@ -295,7 +296,7 @@ static void step_order(imp_springs *s, const double *factor, int k)
     imp_springs_hold(s, k);
     if (s->begin_count > 0) {
         if (k == 0) {
-            make_turning(s);
+            imp_springs_make_turning(s);
             imp_springs_hold(s, 0);
         }
         turn_beginnings(s, k);
