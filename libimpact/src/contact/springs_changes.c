@@ -113,12 +113,20 @@ static bool is_spent(const imp_springs *s, int contact)
            IMP_SPRINGS_SPENT;
 }
 
+/* Whether slip that went straight to its stop, all but there, has come by it and goes elsewhere. */
+static bool has_turned(const imp_spring *c)
+{
+    return c->normal != IMP_SPRING_OPEN && c->slip == IMP_SPRING_STRAIGHT && !c->still &&
+           fabs(c->along[0] * c->u[2] - c->along[1] * c->u[1]) > IMP_SPRINGS_TOLD * c->none;
+}
+
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
  * What it still turns by in the time speed/|along| that is left, and by what forces change in it, is under rounding.
  * Where the contact is about to open, and too little of its friction is left, any direction will do: what begins there,
  * or creeps, is turned by a force that vanishes, and its series hold for no time. */
 static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
 {
+    if (has_turned(c)) c->slip = IMP_SPRING_SLIDES;
     if (c->normal == IMP_SPRING_OPEN || (c->slip != IMP_SPRING_SLIDES && c->slip != IMP_SPRING_BEGINS)) return false;
     const double speed = hypot(c->u[1], c->u[2]);
     const bool begins = c->slip == IMP_SPRING_BEGINS, over = !begins && speed <= c->none,
