@@ -113,11 +113,13 @@ static bool is_spent(const imp_springs *s, int contact)
            IMP_SPRINGS_SPENT;
 }
 
+double imp_springs_turned(const imp_spring *c) { return IMP_SPRINGS_TOLD * c->none; }
+
 /* Whether slip that went straight to its stop, all but there, has come by it and goes elsewhere. */
 static bool has_turned(const imp_spring *c)
 {
     return c->normal != IMP_SPRING_OPEN && c->slip == IMP_SPRING_STRAIGHT && !c->still &&
-           fabs(c->along[0] * c->u[2] - c->along[1] * c->u[1]) > IMP_SPRINGS_TOLD * c->none;
+           fabs(c->along[0] * c->u[2] - c->along[1] * c->u[1]) > imp_springs_turned(c);
 }
 
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.

@@ -99,6 +99,19 @@ static void see_slowing(const imp_springs *s, int i, first_event *first)
     if (f[0] > 0) see(first, EVENT_SLOW, i, f);
 }
 
+/* Slip that goes straight to its stop, and comes by it: the stride ends where it is told that it does. */
+static void see_turning(const imp_springs *s, int i, first_event *first)
+{
+    const imp_spring *c = &s->springs[i];
+    imp_terms f;
+    for (int side = -1; side <= 1; side += 2) {
+        for (int k = 0; k <= IMP_SPRINGS_ORDER; k++)
+            f[k] = side * (c->along[0] * c->velocity[2][k] - c->along[1] * c->velocity[1][k]);
+        f[0] += 2 * imp_springs_turned(c);
+        if (f[0] > 0) see(first, EVENT_SLOW, i, f);
+    }
+}
+
 static void see_slip(const imp_springs *s, int i, first_event *first)
 {
     const imp_spring *c = &s->springs[i];
@@ -112,6 +125,7 @@ static void see_slip(const imp_springs *s, int i, first_event *first)
             f[k] = c->along[0] * c->velocity[1][k] + c->along[1] * c->velocity[2][k];
         if (f[0] < c->rounding) f[0] = c->rounding; /* it begins, from where it was held: that must not grow */
         see(first, EVENT_STOP, i, f);
+        see_turning(s, i, first);
     } else if (s->creeping && c->slip == IMP_SPRING_SLIDES) {
         shifted(c->speed, 1, 0, f);
         if (f[0] < c->rounding) f[0] = c->rounding;
