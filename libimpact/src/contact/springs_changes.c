@@ -101,6 +101,13 @@ double imp_springs_pace(const imp_springs *s)
     return fmax(pace, rate / most);
 }
 
+/* Of its friction alone the contact's slip changes by up to so much. */
+static double mobility_along(const imp_springs *s, int contact)
+{
+    return fmax(imp_springs_entry(s, 3 * contact + 1, 3 * contact + 1),
+                imp_springs_entry(s, 3 * contact + 2, 3 * contact + 2));
+}
+
 /* Whether the contact opens before its friction could change a velocity by more than rounding: in the time x/u_n its
  * force, as of now, falls to nothing. */
 static bool is_spent(const imp_springs *s, int contact)
@@ -108,9 +115,7 @@ static bool is_spent(const imp_springs *s, int contact)
     const imp_spring *c = &s->springs[contact];
     if (!(c->u[0] > 0)) return false;
     const double left = c->friction * s->now[3 * contact] * c->x / c->u[0];
-    return left * fmax(imp_springs_entry(s, 3 * contact + 1, 3 * contact + 1),
-                       imp_springs_entry(s, 3 * contact + 2, 3 * contact + 2)) <=
-           IMP_SPRINGS_SPENT;
+    return left * mobility_along(s, contact) <= IMP_SPRINGS_SPENT;
 }
 
 double imp_springs_turned(const imp_spring *c) { return IMP_SPRINGS_TOLD * c->none; }
@@ -123,9 +128,10 @@ static bool has_turned(const imp_spring *c)
 }
 
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
- * What it still turns by in the time speed/|along| that is left, and by what forces change in it, is under rounding.
- * Where the contact is about to open, and too little of its friction is left, any direction will do: what begins there,
- * or creeps, is turned by a force that vanishes, and its series hold for no time. */
+ * It has to be slowed down by a good part of its own friction: of what creeps friction balances all else, and what is
+ * left has any sign. What it still turns by in the time speed/|along| that is left, and by what forces change in it, is
+ * under rounding. Where the contact is about to open, and too little of its friction is left, any direction will do:
+ * what begins there, or creeps, is turned by a force that vanishes, and its series hold for no time. */
 static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
 {
     if (has_turned(c)) c->slip = IMP_SPRING_SLIDES;
@@ -138,7 +144,8 @@ static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
     const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
     const double e[2] = {begins ? c->along[0] : c->u[1] / speed, begins ? c->along[1] : c->u[2] / speed};
     const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
-    if (spent || (along < 0 && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along)) {
+    const bool stops = -along > IMP_SPRINGS_STOPS * c->friction * s->now[3 * contact] * mobility_along(s, contact);
+    if (spent || (stops && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along)) {
         c->slip = IMP_SPRING_STRAIGHT;
         c->along[0] = e[0], c->along[1] = e[1];
     }
