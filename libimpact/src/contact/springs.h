@@ -206,8 +206,9 @@ void imp_springs_take_branch(imp_springs *s, int contact, imp_spring_normal norm
 double imp_springs_energy(const imp_springs *s, const imp_spring *c, double x);
 /* x from which an unloading spring is loaded on. */
 double imp_springs_again(const imp_spring *c);
-/* The velocity across slip that goes straight from which on it does no longer. */
-double imp_springs_turned(const imp_spring *c);
+/* The velocity across slip that goes straight from which on it does no longer; INFINITY: whatever it does is nothing.
+ */
+double imp_springs_turned(const imp_springs *s, int contact);
 /* How fast forces change: springs swing, or are let go. */
 double imp_springs_pace(const imp_springs *s);
 /* Whether any is closed. */

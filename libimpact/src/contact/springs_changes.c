@@ -109,22 +109,26 @@ static double mobility_along(const imp_springs *s, int contact)
 }
 
 /* Whether the contact opens before its friction could change a velocity by more than rounding: in the time x/u_n its
- * force, as of now, falls to nothing. */
+ * force falls to nothing. */
 static bool is_spent(const imp_springs *s, int contact)
 {
     const imp_spring *c = &s->springs[contact];
     if (!(c->u[0] > 0)) return false;
-    const double left = c->friction * s->now[3 * contact] * c->x / c->u[0];
+    const double left = c->friction * c->kappa * pow(c->x, s->exponent) * c->x / c->u[0];
     return left * mobility_along(s, contact) <= IMP_SPRINGS_SPENT;
 }
 
-double imp_springs_turned(const imp_spring *c) { return IMP_SPRINGS_TOLD * c->none; }
+double imp_springs_turned(const imp_springs *s, int contact)
+{
+    return is_spent(s, contact) ? INFINITY : IMP_SPRINGS_TOLD * s->springs[contact].none;
+}
 
 /* Whether slip that went straight to its stop, all but there, has come by it and goes elsewhere. */
-static bool has_turned(const imp_spring *c)
+static bool has_turned(const imp_springs *s, int contact)
 {
+    const imp_spring *c = &s->springs[contact];
     return c->normal != IMP_SPRING_OPEN && c->slip == IMP_SPRING_STRAIGHT && !c->still &&
-           fabs(c->along[0] * c->u[2] - c->along[1] * c->u[1]) > imp_springs_turned(c);
+           fabs(c->along[0] * c->u[2] - c->along[1] * c->u[1]) > imp_springs_turned(s, contact);
 }
 
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
@@ -134,7 +138,7 @@ static bool has_turned(const imp_spring *c)
  * what begins there, or creeps, is turned by a force that vanishes, and its series hold for no time. */
 static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
 {
-    if (has_turned(c)) c->slip = IMP_SPRING_SLIDES;
+    if (has_turned(s, contact)) c->slip = IMP_SPRING_SLIDES;
     if (c->normal == IMP_SPRING_OPEN || (c->slip != IMP_SPRING_SLIDES && c->slip != IMP_SPRING_BEGINS)) return false;
     const double speed = hypot(c->u[1], c->u[2]);
     const bool begins = c->slip == IMP_SPRING_BEGINS, over = !begins && speed <= c->none,

@@ -103,11 +103,12 @@ static void see_slowing(const imp_springs *s, int i, first_event *first)
 static void see_turning(const imp_springs *s, int i, first_event *first)
 {
     const imp_spring *c = &s->springs[i];
+    const double turned = imp_springs_turned(s, i);
     imp_terms f;
-    for (int side = -1; side <= 1; side += 2) {
+    for (int side = -1; side <= 1 && isfinite(turned); side += 2) {
         for (int k = 0; k <= IMP_SPRINGS_ORDER; k++)
             f[k] = side * (c->along[0] * c->velocity[2][k] - c->along[1] * c->velocity[1][k]);
-        f[0] += 2 * imp_springs_turned(c);
+        f[0] += 2 * turned;
         if (f[0] > 0) see(first, EVENT_SLOW, i, f);
     }
 }
