@@ -4,7 +4,8 @@
  * events, and whatever begins to slip or stops is told by that problem alone. Runge & Kutta's implicit method of two
  * stages and order two (Alexander 1977), L-stable, so that sticking and creeping are no other than slipping:
  *
- *     U = u + sum a h W F,   D = delta - sum a h U_n,   F = (lambda(D), f),   f against U_t, or within its disc: U_t = 0
+ *     U = u + sum a h W F,   D = delta - sum a h U_n,   F = (lambda(D), f),   f against U_t, or within its disc: U_t =
+ * 0
  *
  * by Gauss's sweeps over the contacts. The error falls with the square of the step, though where slip begins or stops
  * not evenly. Forms and rows are springs_oracle.h's.

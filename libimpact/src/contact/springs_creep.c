@@ -288,6 +288,17 @@ static bool settle_nodes(creep *k)
     return false;
 }
 
+/* How fast what friction balances goes out of balance, of contact i: the pace at which forces change of what friction
+ * alone would do. */
+static double rate_of_onset(const imp_springs *s, int i)
+{
+    const imp_spring *c = &s->springs[i];
+    return imp_springs_pace(s) * c->friction * c->kappa * pow(c->x, s->exponent) *
+           imp_springs_entry(s, 3 * i + 1, 3 * i + 1);
+}
+
+/* Speeds as of slip that sets in by and by, a tenth of that rate t^2: at rest angles of more contacts than two bodies
+ * need are not told apart, and Newton's steps would find none. A hundredth and all of it do as well. */
 static void begin_nodes(creep *k)
 {
     const imp_springs *s = k->s;
@@ -298,7 +309,8 @@ static void begin_nodes(creep *k)
         }
         for (int a = 0; a < k->count; a++) {
             const double *own = &k->start[4 * k->which[a]];
-            k->speed[j * k->count + a] = hypot(own[2], own[3]);
+            const double t = k->h * k->rule.node[j];
+            k->speed[j * k->count + a] = hypot(own[2], own[3]) + 0.1 * t * t * rate_of_onset(s, k->which[a]);
             k->angle[j * k->count + a] = k->first[a];
         }
     }
