@@ -106,7 +106,7 @@ static inline void stepped_stage(const stepped *s, double exponent, double h, co
                 force[3 * c + k] = next[k];
             }
         }
-        if (most < 1e-16) break;
+        if (most < 1e-14) break;
     }
 }
 
