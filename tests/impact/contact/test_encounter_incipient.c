@@ -39,14 +39,17 @@ static random_encounter draw_struck_box(random_stream *random, bool flat)
     e.bodies[0] = make_box(25, (qvec3){0.3, flat ? 0.2 : 0.1, 0.1}, (qvec3){0, 0, random_unit(random)});
     e.bodies[1] = make_box(12 + 70 * random_unit(random), (qvec3){0.3, 0.2, 0.05},
                            (qvec3){around_zero(random, 0.3), around_zero(random, 0.3), -0.2 * random_unit(random)});
-    e.bodies[2] = (impact_collider){.mass = 4.2,
-                                    .moments = {0.017, 0.017, 0.017},
-                                    .orientation = quat_identity(),
-                                    .velocity = {around_zero(random, 1), around_zero(random, 1), -1 - random_unit(random)},
-                                    .omega = qvec3_scale(random_direction(random), 2)};
+    e.bodies[2] =
+        (impact_collider){.mass = 4.2,
+                          .moments = {0.017, 0.017, 0.017},
+                          .orientation = quat_identity(),
+                          .velocity = {around_zero(random, 1), around_zero(random, 1), -1 - random_unit(random)},
+                          .omega = qvec3_scale(random_direction(random), 2)};
     for (int i = 0; i < (flat ? 4 : 2); i++) {
-        const double x = i % 2 ? fmin(0.3, along + 0.3) : fmax(-0.3, along - 0.3),
-                     y = !flat ? 0 : i / 2 ? fmin(0.2, aside + 0.2) : fmax(-0.2, aside - 0.2);
+        const double x = i % 2 ? fmin(0.3, along + 0.3) : fmax(-0.3, along - 0.3), y = !flat ? 0
+                                                                                       : i / 2
+                                                                                           ? fmin(0.2, aside + 0.2)
+                                                                                           : fmax(-0.2, aside - 0.2);
         add_contact(&e, 0, 1, (qvec3){x, y, 0.1}, (qvec3){x - along, y - aside, -0.05});
     }
     const double x = around_zero(random, 0.4), y = around_zero(random, 0.3);
