@@ -12,6 +12,7 @@
  */
 #include "contact/springs.h"
 
+#include <float.h>
 #include <math.h>
 #include "base/tolerances.h"
 
@@ -171,7 +172,7 @@ static void point_beginnings(imp_springs *s)
     for (int i = 0; i < s->count; i++)
         if (imp_springs_presses(&s->springs[i]) && s->springs[i].slip == IMP_SPRING_BEGINS && !s->springs[i].weak)
             s->begin[s->begin_count++] = i;
-    for (int turn = 0; turn < 8 && s->begin_count > 0 && turn_to_accelerations(s) > 1e-15; turn++) {
+    for (int turn = 0; turn < 8 && s->begin_count > 0 && turn_to_accelerations(s) > 4 * DBL_EPSILON; turn++) {
     }
 }
 

@@ -290,7 +290,7 @@ static bool settle_nodes(creep *k)
 
 /* How fast what friction balances goes out of balance, of contact i: the pace at which forces change of what friction
  * alone would do. */
-static double rate_of_onset(const imp_springs *s, int i)
+static double rate_of_setting_in(const imp_springs *s, int i)
 {
     const imp_spring *c = &s->springs[i];
     return imp_springs_pace(s) * c->friction * c->kappa * pow(c->x, s->exponent) *
@@ -310,7 +310,7 @@ static void begin_nodes(creep *k)
         for (int a = 0; a < k->count; a++) {
             const double *own = &k->start[4 * k->which[a]];
             const double t = k->h * k->rule.node[j];
-            k->speed[j * k->count + a] = hypot(own[2], own[3]) + 0.1 * t * t * rate_of_onset(s, k->which[a]);
+            k->speed[j * k->count + a] = hypot(own[2], own[3]) + 0.1 * t * t * rate_of_setting_in(s, k->which[a]);
             k->angle[j * k->count + a] = k->first[a];
         }
     }
