@@ -786,8 +786,8 @@
 #define IMP_REPORT_SPREAD 4.0
 /* Reference and witness have parted: what is left of agreement is no digit worth a comparison. */
 #define IMP_REPORT_PARTING 1e-3
-/* Of a report's budget: the rest is for a step that is under way as its time is up, and for the picture, which took .9
- * of 20 s at most. */
+/* Of a report's budget: the rest is for a step that is under way as its time is up, and for the picture, which took 1.2
+ * s over 20 (a wall of bricks). */
 #define IMP_REPORT_WORK 0.9
 
 /* ---- gap: libccd's own answer (gap/gap_ccd.c) ---- */

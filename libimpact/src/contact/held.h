@@ -31,8 +31,7 @@ typedef struct imp_held_contact {
     double pressure; /* normal force, N */
     qvec3 force;     /* on body 1, N */
     double margin;   /* rolling: friction x pressure - |tangential force|, N */
-    double
-        hold; /* of incipient slip: friction needed to hold the contact over what there is; below 1 it sticks again */
+    double hold;     /* of incipient slip: friction that would hold it over what there is; below 1 it sticks again */
     bool turning;    /* of incipient slip: the direction is solved for too, linearised about what it is: */
     double mobility; /* slip's acceleration over the friction, 1/kg */
     double turn;     /* the angle from direction about the normal */
