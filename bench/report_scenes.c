@@ -64,11 +64,21 @@ static bool is_good(impact_status status) { return status == IMPACT_OK || status
 
 static bool runs_to(impact_scene *scene, double t) { return is_good(impact_scene_run_to(scene, t, NULL)); }
 
+/* Out of each other's way: a body that is set beside one that is still elsewhere may strike it. */
+static bool set_apart(impact_scene *scene, int bodies)
+{
+    for (int i = 1; i < bodies; i++) {
+        const impact_sample away = {.position = {0, 0, 1000.0 * i}, .orientation = {1, 0, 0, 0}};
+        if (impact_scene_set_state(scene, i, &away) < 0) return false;
+    }
+    return true;
+}
+
 /* The other goes on from where the first is. */
 static bool take_over(impact_scene *first, impact_scene *other, double t, int bodies)
 {
     impact_sample state;
-    if (!runs_to(first, t) || !runs_to(other, t)) return false;
+    if (!runs_to(first, t) || !runs_to(other, t) || !set_apart(other, bodies)) return false;
     for (int i = 1; i < bodies; i++)
         if (impact_scene_body(first, i, &state) != IMPACT_OK || impact_scene_set_state(other, i, &state) < 0)
             return false;

@@ -228,7 +228,8 @@ IMPACT_API impact_status impact_scene_step(impact_scene *scene, double t_max, co
 IMPACT_API int impact_scene_held(const impact_scene *scene, impact_held *held, int room);
 
 /* Puts a body that moves into another state, now: position, orientation (normalised), velocity and omega of the sample;
- * its t, body and name do not count. What held the body is let go, what it touches there is settled as at a start;
+ * its t, body and name do not count. What held the body is let go, what it touches there is settled as at a start
+ * (of several that touch each other put all away first: one set beside one that is still elsewhere may strike it);
  * all else goes on with the same bits. The energy that comes or goes is work of forces in the account. Events of the
  * change are counted (usage) and go to no recorder.
  * IMPACT_EDOMAIN: a number is not finite, or the body would overlap another: the message names both; IMPACT_EARGUMENT:
