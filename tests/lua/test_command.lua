@@ -195,7 +195,15 @@ script("-- done\nlocal f = io.open('done', 'w') f:write 'x' f:close() print 'don
 for _, made in ipairs { "view", "gltf" } do
   runner.write("s.lua", "local x = 1")
   run(made .. " s.lua --out o", 1, "needs a script that returns a scene")
+  runner.write("s", "local x = 1")
+  run(made .. " s --out o", 1, "needs a script that returns a scene") -- a name shorter than a record's ending
 end
+run("drop.lua --quiet --out made/o/p", 0)
+check.truth(runner.exists "made/o/p/drop.csv")
+run("drop.lua --out drop.lua/o/p", 4, "cannot write to the folder 'drop.lua/o/p': Not a directory")
+runner.write("s.lua", "print 'x' error 'in vain'")
+check.equal(runner.shell(string.format("cd %s && %s s.lua >/dev/full 2>said", runner.quote(runner.folder), runner.quote(runner.program))), 1)
+check.truth(runner.read("said"):find "in vain") -- and not that it could not be printed
 local function plotted(plot) return begin .. "return impact.scene { duration = 0.1, plot = " .. plot .. ", bodies = { " .. ball .. " } }" end
 script(plotted "function() error 'no picture' end", 1, "no picture")
 script(plotted "function() return 3 end", 1, "a figure is made with plot.figure; this is a number")
