@@ -472,9 +472,6 @@
  * points where u_t . u_t vanishes; of slip that is all but straight they lie beside its stop, too weak to be felt by
  * its terms, and it would be taken through 0. */
 #define IMP_SPRINGS_SLOWED 0.125
-/* Of what a contact's friction alone would slow its slip down by: what is slowed down by less may be balanced by it,
- * and creep, instead of coming to its stop. A quarter and a sixty-fourth of it leave as little. */
-#define IMP_SPRINGS_STOPS 0.0625
 /* Of W: a response across a slip under this turns it by rounding only. W of a planar encounter that is turned in space
  * has a few eps, times the condition of what sticks. */
 #define IMP_SPRINGS_STRAIGHT 0x1p-46

@@ -132,8 +132,7 @@ static bool has_turned(const imp_springs *s, int contact)
 }
 
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
- * It has to be slowed down by a good part of its own friction: of what creeps friction balances all else, and what is
- * left has any sign. What it still turns by in the time speed/|along| that is left, and by what forces change in it, is
+ * What it still turns by in the time speed/|along| that is left, and by what forces change in it, is
  * under rounding. Where the contact is about to open, and too little of its friction is left, any direction will do:
  * what begins there, or creeps, is turned by a force that vanishes, and its series hold for no time. */
 static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
@@ -148,8 +147,7 @@ static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
     const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
     const double e[2] = {begins ? c->along[0] : c->u[1] / speed, begins ? c->along[1] : c->u[2] / speed};
     const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
-    const bool stops = -along > IMP_SPRINGS_STOPS * c->friction * s->now[3 * contact] * mobility_along(s, contact);
-    if (spent || (stops && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along)) {
+    if (spent || (along < 0 && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along)) {
         c->slip = IMP_SPRING_STRAIGHT;
         c->along[0] = e[0], c->along[1] = e[1];
     }
