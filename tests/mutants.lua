@@ -69,6 +69,7 @@ local rooms = {
   { "^libimpact/src/motion/lying", { "lua_faces_gliding", "lua_faces_turned", "impact_ramps" } },
   { "^libimpact/src/world/corner", { "lua_faces_exact", "lua_faces_held", "lua_faces_seams", "impact_cases" } },
   { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases", "impact_random_scenes" } },
+  { "^libimpact/src/contact/held%.c$", { "impact_held", "impact_cases", "lua_faces_turned" } },
   { "^libimpact/src/contact/held", { "impact_held_still", "impact_held_modes", "impact_held", "impact_cases" } },
   { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning", "impact_cone_bodies" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning", "impact_rolling", "impact_scene_answers" } },
   { "^libimpact/src/contact/encounter", { "impact_encounter", "impact_encounter_limits", "impact_encounter_known", "impact_encounter_wedge",
