@@ -871,7 +871,7 @@
  * so by chance: of seventy scenes done again with finer steps one was off by 5.1 times what is seen, two by more
  * than 4, the others by less than 3. */
 #define IMP_COARSER_SAFETY 5
-/* Of the duration, from one comparison of both runs to the next: motions that have parted seldom come together again. */
+/* Of the duration, from one comparison of both runs to the next: what has parted seldom comes together again. */
 #define IMP_COARSER_LOOKS (1 / 64.)
 #define IMP_COARSER_PARTED 1e-1
 /* Of what a step may err, the height to which a rim's rocking would lift its far side: more, and whether it lands is no
