@@ -204,13 +204,7 @@ static void make_still(imp_held *held, imp_world *world, int island)
 static void find_locked(imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads,
                         double rest_speed, double jam_speed, bool *locked)
 {
-    imp_held_find_contacts(held, world, states, loads);
-    for (int c = 0; c < held->count; c++) {
-        imp_held_contact *contact = &held->contacts[c];
-        contact->wanted =
-            qvec3_neg(qvec3_axpy(imp_held_approach(world, contact, states), contact->normal, contact->slip));
-    }
-    imp_system_solve(held, world, states, false);
+    imp_held_stop(held, world, states, loads);
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         locked[i] = body->is_static;
