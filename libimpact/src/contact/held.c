@@ -273,7 +273,7 @@ static bool levers(const imp_held *held, const imp_world *world)
     return given > IMP_PUT_BACK_BY * wanted;
 }
 
-void imp_held_stop(imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads)
+void imp_held_find_stop(imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads)
 {
     imp_held_find_contacts(held, world, states, loads);
     for (int c = 0; c < held->count; c++) {
@@ -286,7 +286,7 @@ void imp_held_stop(imp_held *held, imp_world *world, const imp_state *states, co
 
 void imp_held_project_velocities(imp_held *held, imp_world *world, imp_state *states, const imp_load *loads)
 {
-    imp_held_stop(held, world, states, loads);
+    imp_held_find_stop(held, world, states, loads);
     if (levers(held, world)) {
         for (int c = 0; c < held->count; c++) held->contacts[c].mode = IMP_SLIDE;
         imp_system_solve(held, world, states, false); /* along normals alone */

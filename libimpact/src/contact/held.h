@@ -100,7 +100,7 @@ enum { IMP_HELD_ROUNDS = 2 };
 void imp_held_close_gaps(imp_held *held, imp_world *world, imp_state *states);
 /* The impulses, held->effects by body, that take all velocity from the held contacts, none of it applied: along
  * normals, and across where they stick. */
-void imp_held_stop(imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads);
+void imp_held_find_stop(imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads);
 /* Puts positions and velocities back on the held contacts exactly. */
 void imp_held_project(imp_held *held, imp_world *world, imp_state *states, const imp_load *loads);
 /* The velocities alone. */

@@ -204,7 +204,7 @@ static void make_still(imp_held *held, imp_world *world, int island)
 static void find_locked(imp_held *held, imp_world *world, const imp_state *states, const imp_load *loads,
                         double rest_speed, double jam_speed, bool *locked)
 {
-    imp_held_stop(held, world, states, loads);
+    imp_held_find_stop(held, world, states, loads);
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         locked[i] = body->is_static;
