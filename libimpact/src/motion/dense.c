@@ -121,3 +121,14 @@ void imp_dense_slopes(const imp_dense *dense, double s, int first, int count, do
     const double rate = dense->clocked && moves ? slope_of(dense, s, 0) : dense->h;
     for (int i = 0; i < count; i++) slopes[i] = moves ? slope_of(dense, s, first + i) / rate : 0;
 }
+
+void imp_dense_jet(const imp_dense *dense, double s, int i, double jet[3])
+{
+    jet[0] = jet[1] = jet[2] = 0;
+    for (int j = dense->terms - 1; j >= 0; j--) {
+        jet[2] = jet[2] * s + 2 * jet[1];
+        jet[1] = jet[1] * s + jet[0];
+        jet[0] = jet[0] * s + dense->c[j * dense->size + i];
+    }
+    jet[1] /= dense->h, jet[2] /= dense->h * dense->h;
+}

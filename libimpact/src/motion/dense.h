@@ -67,5 +67,7 @@ typedef struct imp_dense_rate {
 void imp_dense_rates(const imp_dense *dense, imp_dense_window at, int first, int count, imp_dense_rate *rates);
 /* dy/dt at s, no bounds: a third of the work. */
 void imp_dense_slopes(const imp_dense *dense, double s, int first, int count, double *slopes);
+/* y_i, its rate and its second at s, by t: of a step whose variable is time. */
+void imp_dense_jet(const imp_dense *dense, double s, int i, double jet[3]);
 
 #endif

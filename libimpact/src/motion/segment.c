@@ -342,3 +342,25 @@ void imp_segment_rates(const imp_segment *s, const imp_body *body, double own, q
     *acceleration = b.acceleration;
     *torque = b.torque;
 }
+
+bool imp_segment_is_within_step(const imp_segment *s, double t)
+{
+    return s->kind == IMP_SEGMENT_DENSE && s->dense->stepped && t > s->dense->t0 && t < s->dense->t1;
+}
+
+static qvec3 twice_vector(quat a, quat b, double divisor)
+{
+    const quat product = quat_mul(a, quat_conj(b));
+    return qvec3_scale((qvec3){product.x, product.y, product.z}, 2 / divisor);
+}
+
+void imp_segment_turning(const imp_segment *s, double own, qvec3 *omega, qvec3 *alpha)
+{
+    double jet[4][3];
+    for (int k = 0; k < 4; k++) imp_dense_jet(s->dense, own, first_of(s) + 3 + k, jet[k]);
+    quat p[3];
+    for (int k = 0; k < 3; k++) p[k] = (quat){jet[0][k], jet[1][k], jet[2][k], jet[3][k]};
+    const double square = quat_dot(p[0], p[0]);
+    *omega = twice_vector(p[1], p[0], square);
+    *alpha = qvec3_axpy(-2 * quat_dot(p[0], p[1]) / square, *omega, twice_vector(p[2], p[0], square));
+}

@@ -47,9 +47,11 @@ static imp_pose pose_at(void *context, int body, double s)
     return pose;
 }
 
+/* Bodies that are stepped are parted where they are looked at, and go on from where they were. */
 static imp_state state_at(const done_piece *piece, int body, double t)
 {
-    return t < piece->to ? imp_segment_at(piece->segment, &piece->scene->world.bodies[body], t) : *piece->end;
+    const bool moving = t < piece->to || imp_segment_is_within_step(piece->segment, t);
+    return moving ? imp_segment_at(piece->segment, &piece->scene->world.bodies[body], t) : *piece->end;
 }
 
 static impact_key key_at(void *context, int body, double s)
@@ -61,20 +63,24 @@ static impact_key key_at(void *context, int body, double s)
     const imp_state state = state_at(piece, body, t);
     qvec3 acceleration, torque;
     imp_segment_rates(piece->segment, b, own, &acceleration, &torque);
-    return imp_key_of(b, body, t, &state, acceleration, torque);
+    impact_key key = imp_key_of(b, body, t, &state, acceleration, torque);
+    if (imp_segment_is_within_step(piece->segment, t)) imp_segment_turning(piece->segment, own, &key.omega, &key.alpha);
+    return key;
 }
 
 static impact_key begin_of(void *context, int body)
 {
-    const done_piece *piece = context;
+    done_piece *piece = context;
     const imp_state state = state_at(piece, body, piece->from);
-    const qvec3 omega = imp_omega(&piece->scene->world.bodies[body], &state);
-    return (impact_key){.t = piece->from,
-                        .body = body,
-                        .position = state.x,
-                        .orientation = state.q,
-                        .velocity = state.v,
-                        .omega = omega};
+    impact_key key = {.t = piece->from,
+                      .body = body,
+                      .position = state.x,
+                      .orientation = state.q,
+                      .velocity = state.v,
+                      .omega = imp_omega(&piece->scene->world.bodies[body], &state)};
+    if (imp_segment_is_within_step(piece->segment, piece->from))
+        imp_segment_turning(piece->segment, own_at(piece, 0), &key.omega, &key.alpha);
+    return key;
 }
 
 /* One key from where the piece begins, for as long as the segment lasts. */
