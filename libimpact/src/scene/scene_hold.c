@@ -8,6 +8,7 @@
 #include "scene/scene_drawn.h"
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
+#include "scene/scene_points.h"
 
 #include <stdio.h>
 
@@ -222,6 +223,7 @@ impact_status imp_scene_hold(imp_island *island, int opened, bool rejoin)
         imp_pair *pair = &world->pairs[p];
         island->notes[p].settled = true;
         imp_end_incipient(pair);
+        imp_scene_name_corner(island, pair);
         pair->mode = held_mode(&m.contact, m.contact.speed > world->slip_speed);
         status = make_consistent(island);
     }

@@ -74,6 +74,18 @@ static bool is_placed(const imp_world *world, int first, int corner, int face)
     return false;
 }
 
+void imp_scene_name_corner(imp_island *island, imp_pair *pair)
+{
+    imp_world *world = &island->world;
+    imp_point points[IMP_POINTS];
+    int face;
+    if (pair->site.placed || pair->site.corner > 0 || !imp_pair_has_faces(world, pair)) return;
+    const double touching = imp_world_touching_distance(world, pair, island->states);
+    const int count = imp_points_find(world, pair, island->states, touching, touching, points);
+    const int corner = count == 1 ? corner_of(island, pair, &points[0], count, &face) : 0;
+    if (corner > 0) pair->site.corner = corner, pair->site.face = face;
+}
+
 /* The points of the bodies of before[p], of so many pairs. */
 static impact_status place(imp_island *island, const imp_pair *before, int p, int pairs)
 {

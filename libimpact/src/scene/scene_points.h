@@ -21,6 +21,10 @@ typedef enum imp_stay {
 imp_stay imp_scene_points_stay(imp_island *island); /* but for what lies (gliding.h) */
 bool imp_scene_point_stays(imp_island *island, int p);
 
+/* What joins what is held between instants, when no points are placed: where it touches at one corner alone the pair is
+ * that corner's from here. As a whole its contact is at whichever is lowest, and would go on at another's velocity. */
+void imp_scene_name_corner(imp_island *island, imp_pair *pair);
+
 /* Of the points leaves the corners that are held; of bodies that none holds, the pair as a whole. */
 void imp_scene_drop_points(imp_island *island);
 /* Whether a corner is held, or what has a flat place: what the exact motion may not get on with. */
