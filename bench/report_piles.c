@@ -4,15 +4,15 @@
  * a box (tests/kit/pile_scene.h), for two seconds each.
  *
  * report_piles [--scenes N] [--seed S] [--seconds T] [--tolerance P] [--against E]
- * CSV: a row for each way to begin, over N scenes in all (500), scene i of its own seed S + i. rest: came to rest;
- * ended: still moved after two seconds; long: not at its end after T seconds of the processor's time (5); refused: with
- * an error, or the word that the account is off; of the ended, median and slowest: seconds, and the slowest's seed;
- * overlap: of any two bodies, looked at every twentieth of a second, m; account: what the energy account is off by at
- * the end, of its greatest term; error: the greatest that a scene tells of its places, m; parted: those in which it
- * tells that motions part. P: pile_tolerance (its default). With E every scene that was stepped is done again with
- * pile_tolerance E (1e-7): compared; in how many, up to where they part by a tenth of a body's radius, it was off by
- * more than it tells in the end, and by how many times at most; and in how many they part unsaid. What is not good is
- * told on stderr.
+ * CSV: a row for each way to begin, and one for all, over N scenes in all (500), scene i of its own seed S + i. rest:
+ * came to rest; ended: still moved after two seconds; long: not at its end after T seconds of the processor's time (5);
+ * refused: with an error, or the word that the account is off; of the ended, median and slowest: seconds, and the
+ * slowest's seed; overlap: of any two bodies, looked at every twentieth of a second, m; account: what the energy
+ * account is off by at the end, of its greatest term; error: the greatest that a scene tells of its places, m; parted:
+ * those in which it tells that motions part. P: pile_tolerance (its default). With E every scene that was stepped is
+ * done again with pile_tolerance E (1e-7): compared; in how many, up to where they part by a tenth of a body's radius,
+ * it was off by more than it tells in the end, and by how many times at most; and in how many they part unsaid. What is
+ * not good is told on stderr.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -173,6 +173,26 @@ static void run(long seed, int start, const choice *chosen, tally *row)
     pile_scene_end(&pile);
 }
 
+static void add(const tally *row, tally *all)
+{
+    all->scenes += row->scenes, all->rest += row->rest, all->ended += row->ended;
+    all->too_long += row->too_long, all->refused += row->refused;
+    all->parted += row->parted, all->compared += row->compared, all->under += row->under, all->unsaid += row->unsaid;
+    all->overlap = fmax(all->overlap, row->overlap), all->account = fmax(all->account, row->account);
+    all->error = fmax(all->error, row->error), all->worst = fmax(all->worst, row->worst);
+    if (row->most >= all->most) all->most = row->most, all->slowest = row->slowest;
+}
+
+static void print(const char *start, const tally *row)
+{
+    const int good = (int)(row->rest + row->ended);
+    printf("%s,%ld,%ld,%ld,%ld,%ld,%.2g,%.2g,%ld,%.1e,%.1e,%.1e,%ld,%ld,%ld,%.2g,%ld\n", start, row->scenes, row->rest,
+           row->ended, row->too_long, row->refused, good > 0 ? measure_quantile(row->seconds, good, 0.5) : 0, row->most,
+           row->slowest, row->overlap, row->account, row->error, row->parted, row->compared, row->under, row->worst,
+           row->unsaid);
+    fflush(stdout);
+}
+
 int main(int argc, char **argv)
 {
     static const char *const names[] = {"--scenes", "--seed", "--seconds", "--tolerance", "--against", NULL};
@@ -189,16 +209,14 @@ int main(int argc, char **argv)
     if (!seconds) return 1;
     printf("start,scenes,rest,ended,long,refused,median,slowest,its_seed,overlap,account,error,parted,compared,under,"
            "worst,unsaid\n");
+    tally all = {.seconds = seconds};
     for (int start = 0; start < PILE_STARTS; start++) {
-        tally row = {.seconds = seconds};
+        tally row = {.seconds = seconds + all.rest + all.ended};
         for (long i = start; i < scenes; i += PILE_STARTS) run(seed + i, start, &chosen, &row);
-        const int good = (int)(row.rest + row.ended);
-        const double median = measure_quantile(seconds, good, 0.5);
-        printf("%s,%ld,%ld,%ld,%ld,%ld,%.2g,%.2g,%ld,%.1e,%.1e,%.1e,%ld,%ld,%ld,%.2g,%ld\n", pile_start_name(start),
-               row.scenes, row.rest, row.ended, row.too_long, row.refused, good > 0 ? median : 0, row.most, row.slowest,
-               row.overlap, row.account, row.error, row.parted, row.compared, row.under, row.worst, row.unsaid);
-        fflush(stdout);
+        add(&row, &all);
+        print(pile_start_name(start), &row);
     }
+    print("all", &all);
     free(seconds);
     return 0;
 }

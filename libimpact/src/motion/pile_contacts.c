@@ -68,6 +68,27 @@ static double fastest(const imp_world *world, const imp_pair *pair, const imp_st
     return speed;
 }
 
+static bool is_on_rim(const imp_point *p)
+{
+    return p->feature[0].kind == IMPACT_RIM || p->feature[1].kind == IMPACT_RIM;
+}
+
+/* A rim's points are some of its places, and a face's border cuts it anywhere: bodies may overlap most between two of
+ * them. That contact is one more, after the points found, among which there is room for it; how many then. */
+static int add_deepest(imp_world *world, imp_pair *pair, const imp_state *states, imp_point *points, int found)
+{
+    bool rim = false;
+    double least = INFINITY;
+    for (int k = 0; k < found; k++) rim = rim || is_on_rim(&points[k]), least = fmin(least, points[k].contact.gap);
+    if (!rim) return found;
+    const double touching = imp_world_touching_distance(world, pair, states);
+    impact_contact deepest;
+    imp_world_gap(world, pair, states, &deepest);
+    if (!(deepest.gap < fmin(least, 0) - touching)) return found;
+    points[found] = (imp_point){.contact = deepest, .feature = {{IMPACT_SMOOTH, -1}, {IMPACT_SMOOTH, -1}}};
+    return found + 1;
+}
+
 bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const imp_state *states, const imp_state *next,
                           double h, double slack, bool held_only)
 {
@@ -80,9 +101,10 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
         const double height = held && next ? slack + 0.5 * h * fastest(world, pair, next) : slack;
         if (imp_world_distance_bound(world, pair, states) > height) continue;
         if (imp_pair_has_faces(world, pair) && imp_world_separation(world, pair, states) > height) continue;
-        imp_point points[IMP_POINTS];
+        imp_point points[IMP_POINTS + 1];
         const double flush = imp_stepped_flush(&world->bodies[pair->body1], &world->bodies[pair->body2]);
-        const int found = imp_points_find(world, pair, states, height, flush, points);
+        int found = imp_points_find(world, pair, states, height, flush, points);
+        if (!next) found = add_deepest(world, pair, states, points, found);
         for (int k = 0; k < found; k++) {
             const impact_contact *c = &points[k].contact;
             const bool closes =
@@ -124,17 +146,51 @@ static bool same_features(const imp_pile_memory *m, const imp_pile_point *point)
     return same_feature(m->feature[0], point->feature[0]) && same_feature(m->feature[1], point->feature[1]);
 }
 
-/* The nearest that is no point's yet, and no farther than that; alike: of its features. -1: there is none. */
-static int nearest_memory(const imp_pile_memories *memories, const imp_pile_point *point, double farthest, bool alike)
+/* How far apart a point and what is remembered are, of the pair, and alike: of its features; infinite: of others. */
+static double apart_of(const imp_pile_memory *m, const imp_pile_point *point, bool alike)
+{
+    if (m->pair != point->pair || (alike && !same_features(m, point))) return INFINITY;
+    return qvec3_norm(qvec3_sub(m->arm1, point->contact.arm1));
+}
+
+/* The nearest that is no point's yet; -1: there is none. */
+static int nearest_memory(const imp_pile_memories *memories, const imp_pile_point *point, bool alike, double *apart)
 {
     int best = -1;
+    *apart = INFINITY;
     for (int k = 0; k < memories->count; k++) {
-        const imp_pile_memory *m = &memories->list[k];
-        if (m->taken || m->pair != point->pair || (alike && !same_features(m, point))) continue;
-        const double apart = qvec3_norm(qvec3_sub(m->arm1, point->contact.arm1));
-        if (apart <= farthest) best = k, farthest = apart;
+        if (memories->list[k].taken) continue;
+        const double own = apart_of(&memories->list[k], point, alike);
+        if (own < *apart) best = k, *apart = own;
     }
     return best;
+}
+
+/* A point of which nothing is remembered yet is nearer than that. */
+static bool is_nearer_to_another(const imp_pile_contacts *contacts, imp_pile_recalled from, const imp_pile_memory *m,
+                                 double apart, bool alike)
+{
+    for (int i = 0; i < contacts->count; i++)
+        if (contacts->points[i].memory[from] < 0 && apart_of(m, &contacts->points[i], alike) < apart) return true;
+    return false;
+}
+
+/* Points and what is remembered of them that are each other's nearest; false: there are none. */
+static bool recall_nearest(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
+                           imp_pile_memories *memories, imp_pile_recalled from, bool alike)
+{
+    bool some = false;
+    for (int i = 0; i < contacts->count; i++) {
+        imp_pile_point *point = &contacts->points[i];
+        if (point->memory[from] >= 0) continue;
+        double apart;
+        const int k = nearest_memory(memories, point, alike, &apart);
+        if (k < 0 || (!alike && apart > h * fastest(world, &world->pairs[point->pair], states))) continue;
+        if (is_nearer_to_another(contacts, from, &memories->list[k], apart, alike)) continue;
+        point->memory[from] = k;
+        memories->list[k].taken = some = true;
+    }
+    return some;
 }
 
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
@@ -142,13 +198,7 @@ void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const 
 {
     for (int k = 0; k < memories->count; k++) memories->list[k].taken = false;
     for (int alike = 1; alike >= 0; alike--)
-        for (int i = 0; i < contacts->count; i++) {
-            imp_pile_point *point = &contacts->points[i];
-            if (point->memory[from] >= 0) continue;
-            const double far = alike ? INFINITY : h * fastest(world, &world->pairs[point->pair], states);
-            const int found = point->memory[from] = nearest_memory(memories, point, far, alike);
-            if (found >= 0) memories->list[found].taken = true;
-        }
+        while (recall_nearest(contacts, world, states, h, memories, from, alike)) continue;
 }
 
 imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point)

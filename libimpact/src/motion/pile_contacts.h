@@ -53,9 +53,9 @@ bool imp_pile_contacts_reserve(imp_pile_contacts *contacts, const imp_world *wor
 void imp_pile_contacts_mark(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories);
 
 /* All points whose gap is at most the slack, or, of the pairs marked as held, that close within half of the step h at
- * the velocities `next` (NULL: none). Pressed by the loads, what rolls over a round body leaves it by h² in every step:
- * it is held, not dropped and caught. held_only: of the marked pairs alone, all points that come as near as that.
- * False: there is no room. */
+ * the velocities `next` (NULL: none; with what bodies overlap most at). Pressed by the loads, what rolls over a round
+ * body leaves it by h² in every step: it is held, not dropped and caught. held_only: of the marked pairs alone, all
+ * points that come as near as that. False: there is no room. */
 bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const imp_state *states, const imp_state *next,
                           double h, double slack, bool held_only);
 
@@ -63,9 +63,10 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
  * How many; 0: all are taken. */
 int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, int *members);
 
-/* Finds what is remembered of each point: of its pair what has its features, and is nearest; else what was where it is,
- * as far as points of the pair move in h at the velocities of the states: on a border a point has the features of one
- * side or the other, and is held whichever. */
+/* Finds what is remembered of each point, those that are each other's nearest first, as of a rim's sixteen points, all
+ * of the same features, some open and close: of its pair what has its features; else what was where it is, as far as
+ * points of the pair move in h at the velocities of the states: on a border a point has the features of one side or the
+ * other, and is held whichever. */
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
                      imp_pile_memories *memories, imp_pile_recalled from);
 
