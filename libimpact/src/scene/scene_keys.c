@@ -47,11 +47,9 @@ static imp_pose pose_at(void *context, int body, double s)
     return pose;
 }
 
-/* Bodies that are stepped are parted where they are looked at, and go on from where they were. */
 static imp_state state_at(const done_piece *piece, int body, double t)
 {
-    const bool moving = t < piece->to || imp_segment_is_within_step(piece->segment, t);
-    return moving ? imp_segment_at(piece->segment, &piece->scene->world.bodies[body], t) : *piece->end;
+    return t < piece->to ? imp_segment_at(piece->segment, &piece->scene->world.bodies[body], t) : *piece->end;
 }
 
 static impact_key key_at(void *context, int body, double s)
@@ -70,17 +68,15 @@ static impact_key key_at(void *context, int body, double s)
 
 static impact_key begin_of(void *context, int body)
 {
-    done_piece *piece = context;
+    const done_piece *piece = context;
     const imp_state state = state_at(piece, body, piece->from);
-    impact_key key = {.t = piece->from,
-                      .body = body,
-                      .position = state.x,
-                      .orientation = state.q,
-                      .velocity = state.v,
-                      .omega = imp_omega(&piece->scene->world.bodies[body], &state)};
-    if (imp_segment_is_within_step(piece->segment, piece->from))
-        imp_segment_turning(piece->segment, own_at(piece, 0), &key.omega, &key.alpha);
-    return key;
+    const qvec3 omega = imp_omega(&piece->scene->world.bodies[body], &state);
+    return (impact_key){.t = piece->from,
+                        .body = body,
+                        .position = state.x,
+                        .orientation = state.q,
+                        .velocity = state.v,
+                        .omega = omega};
 }
 
 /* One key from where the piece begins, for as long as the segment lasts. */
