@@ -66,7 +66,7 @@ static void test_discs_are_parted_between_their_points(void **state)
 static void test_what_leans_is_held_at_its_corner(void **state)
 {
     (void)state;
-    run(345, PILE_IN_BOX);
+    run(1108, PILE_IN_BOX);
 }
 
 static bool count_key(void *context, const impact_key *key)
