@@ -6,8 +6,8 @@
  * when on motions part; what the energy account is off by, of the energy lost. Scenes: five balls in a shaft (friction
  * .3, restitution .25); 27 balls on a floor in three layers (.3, .3); 32 balls dropped into a box (.3, .7). Of boxes: a
  * cube that falls on a corner (.5, .3), ten set on each other with masses 1 and 1e4 in turn, five dropped with offsets,
- * two dice thrown (.4, .5), five dominoes (.3, .3); median and slowest of sets of three bodies with faces, dropped (.2
- * ... .8, 0 ... .6): docs/faces.md.
+ * two dice thrown (.4, .5), five dominoes and twenty (.3, .3), a wall of thirty bricks that a ball strikes (.6, .1);
+ * median and slowest of sets of three bodies with faces, dropped (.2 ... .8, 0 ... .6): docs/faces.md.
  */
 #include <math.h>
 #include <stdio.h>
@@ -26,6 +26,7 @@ typedef struct pile_scene {
     impact_body_def bodies[MOST];
     int count;
     double duration;
+    impact_scene_together together;
 } pile_scene;
 
 static double cpu_clock(void)
@@ -166,14 +167,33 @@ static pile_scene dice(void)
     return s;
 }
 
-static pile_scene dominoes(void)
+static pile_scene dominoes(int count, const char *name)
 {
-    pile_scene s = {.name = "5 dominoes", .duration = 2};
+    pile_scene s = {.name = name, .duration = 2};
     add_plane(&s, (qvec3){0, 0, 0}, quat_identity());
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < count; i++)
         add_box(&s, (qvec3){0.004, 0.012, 0.024}, 0, 0.008, (qvec3){0.02 * i, 0, 0.024}, 0.3, 0.3);
     s.bodies[1].velocity = (qvec3){0.1, 0, 0};
     s.bodies[1].omega = (qvec3){0, 4, 0};
+    return s;
+}
+
+/* A wall of five courses of six, laid dry in bond; a ball of 2 kg comes at 5 m/s. */
+static pile_scene bricks(void)
+{
+    enum { COURSES = 5, BRICKS = 6 };
+    pile_scene s = {.name = "30 bricks struck", .duration = 0.5, .together = IMPACT_SCENE_MOREAU};
+    add_plane(&s, (qvec3){0, 0, 0}, quat_identity());
+    for (int i = 0; i < COURSES * BRICKS; i++) {
+        const int course = i / BRICKS;
+        const double x = 0.2 * (i % BRICKS - (BRICKS - 1) / 2.0) + (course % 2 ? 0.05 : -0.05);
+        add_box(&s, (qvec3){0.1, 0.05, 0.03}, 0, 2.4, (qvec3){x, 0, 0.03 + 0.06 * course}, 0.6, 0.1);
+    }
+    impact_body_def *ball = add_body(&s, (qvec3){0.03, -0.4, 0.17});
+    impact_shape_sphere(0.06, &ball->shape);
+    ball->mass = 2;
+    ball->velocity = (qvec3){0, 5, 0.3};
+    ball->friction = 0.4, ball->restitution = 0.3;
     return s;
 }
 
@@ -230,6 +250,7 @@ static double measure(const pile_scene *s, impact_piles piles, bool told)
     def.output_rate = 0;
     def.friction_rule = def.restitution_rule = IMPACT_MINIMUM;
     def.piles = piles;
+    def.together = s->together;
     impact_scene *scene;
     char message[256];
     double begun = cpu_clock();
@@ -283,12 +304,13 @@ static void measure_drawn(void)
 int main(void)
 {
     const pile_scene balls[] = {shaft(), heap(), box()},
-                     boxes[] = {cube(), stack(10, 0, 1e4, "10 boxes set"), stack(5, 0.02, 1, "5 boxes dropped"), dice(),
-                                dominoes()};
+                     boxes[] = {cube(),  stack(10, 0, 1e4, "10 boxes set"), stack(5, 0.02, 1, "5 boxes dropped"),
+                                dice(),  dominoes(5, "5 dominoes"),         dominoes(20, "20 dominoes"),
+                                bricks()};
     printf("scene,piles,reached_s,asked_s,ended,cpu_s,integrator_steps,events,pile_steps,error_m,parted_s,account\n");
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++) measure_copy(balls[i], k ? IMPACT_PILES_STEPS : IMPACT_PILES_AUTO, true);
-    for (int i = 0; i < 5; i++) measure_copy(boxes[i], IMPACT_PILES_AUTO, true);
+    for (int i = 0; i < 7; i++) measure_copy(boxes[i], IMPACT_PILES_AUTO, true);
     measure_drawn();
     return 0;
 }
