@@ -252,8 +252,8 @@ static bool newton_step(const imp_bodies_problem *p)
 }
 
 /* Along the step, halved until the function falls by a part of what its slope promises; false where it does not.
- * Shorter steps lead nowhere: with thirty halvings one pile in a hundred took seven times as long, and thirty bricks
- * and twenty dominoes a tenth more; with eight they do too. */
+ * Shorter steps lead nowhere: with thirty halvings one pile of 167 took seven times as long, and thirty bricks and
+ * twenty dominoes a fifteenth more; with eight these take a sixth more. */
 static bool go_along(const imp_bodies_problem *p, double *value, double *scale)
 {
     enum { HALVINGS = 10 };

@@ -94,8 +94,8 @@ imp_spin imp_segment_spin(const imp_segment *segment, const imp_body *body, cons
 /* Its acceleration and torque alone, where its own variable is this. */
 void imp_segment_rates(const imp_segment *segment, const imp_body *body, double own, qvec3 *acceleration,
                        qvec3 *torque);
-/* Whether t is within a pile's step, not at its ends: there the momentum is not quite that of the turning, as what lay
- * on each other was put back by the step's end. */
+/* Whether t is within a pile's step, not at its ends. Within, the momentum is not that of the turning: one is a line,
+ * the other a quintic between the ends, and what lay on each other was put back at the last. */
 bool imp_segment_is_within_step(const imp_segment *segment, double t);
 /* How it turns within a pile's step, as the orientation's polynomial p has it: omega = 2 vec(p' p*)/|p|^2 and alpha =
  * 2 vec(p'' p*)/|p|^2 - 2 (p.p'/|p|^2) omega. */
