@@ -5,6 +5,7 @@
  * N^T N = 1: P's pivots are 1/n at the least as long as there is any, since those left sum to a whole number.
  */
 #include "contact/least.h"
+#include "contact/held_linear.h"
 
 #include <float.h>
 #include <math.h>
@@ -23,30 +24,30 @@ static double least_entry(const least_part *p, int i, int j)
     return p->w[(size_t)row * (size_t)p->width + (size_t)column];
 }
 
-/* Columns of L, n x rank, in the rows' own order; returns the rank. */
-static int least_factor(const least_part *p, double rank_of, double *l, double *diagonal)
+/* Columns of L by rows of n numbers, in the rows' own order; returns the rank. order, unless NULL: the rows as they were
+ * taken, of which L is a lower triangle. */
+static int least_factor(const least_part *p, double rank_of, double *l, double *diagonal, int *order)
 {
     const int n = p->n;
     double most = 0;
     for (int i = 0; i < n; i++) most = fmax(most, diagonal[i] = least_entry(p, i, i));
-    int rank = 0;
-    for (; rank < n; rank++) {
+    for (int rank = 0; rank < n; rank++) {
         int best = 0;
         for (int i = 1; i < n; i++)
             if (diagonal[i] > diagonal[best]) best = i;
-        if (!(diagonal[best] > rank_of * most)) break;
-        const double pivot = sqrt(diagonal[best]);
+        if (!(diagonal[best] > rank_of * most)) return rank;
+        const double *from = &l[(size_t)best * (size_t)n], pivot = sqrt(diagonal[best]);
+        diagonal[best] = -INFINITY; /* taken: zero from here on */
         for (int i = 0; i < n; i++) {
-            double sum = least_entry(p, i, best);
-            for (int k = 0; k < rank; k++) sum -= l[i * n + k] * l[best * n + k];
-            l[i * n + rank] = sum / pivot;
+            double *row = &l[(size_t)i * (size_t)n];
+            row[rank] = i == best              ? pivot
+                        : diagonal[i] < 0      ? 0
+                                               : (least_entry(p, i, best) - imp_linear_dot(row, from, rank)) / pivot;
+            diagonal[i] -= row[rank] * row[rank];
         }
-        for (int i = 0; i < n; i++) diagonal[i] -= l[i * n + rank] * l[i * n + rank];
-        diagonal[best] = -1;
-        for (int i = 0; i < n; i++)
-            if (diagonal[i] == -1) l[i * n + rank] = i == best ? pivot : l[i * n + rank];
+        if (order) order[rank] = best;
     }
-    return rank;
+    return n;
 }
 
 /* Solves (L^T L) x = b, r x r, by Cholesky in place; b becomes x. columns right sides by rows. */
@@ -77,7 +78,7 @@ int imp_least_inverse(const double *w, int width, const int *which, int n, doubl
 {
     const least_part p = {w, width, n, which};
     double *l = scratch, *normal = l + n * n, *h = normal + n * n, *diagonal = h + n * n;
-    const int r = least_factor(&p, rank, l, diagonal);
+    const int r = least_factor(&p, rank, l, diagonal, NULL);
     for (int i = 0; i < r; i++)
         for (int j = 0; j < r; j++) {
             double sum = 0;
@@ -107,7 +108,7 @@ int imp_least_null(const double *w, int width, const int *which, int n, const do
             for (int k = 0; k < n; k++) sum -= inverse[i * n + k] * least_entry(&p, k, j);
             projection[i * n + j] = sum;
         }
-    return least_factor(&(least_part){projection, n, n, NULL}, 0.5 / n, basis, diagonal);
+    return least_factor(&(least_part){projection, n, n, NULL}, 0.5 / n, basis, diagonal, NULL);
 }
 
 void imp_least_solve(double *a, int m, double *b)
@@ -129,4 +130,22 @@ void imp_least_solve(double *a, int m, double *b)
         for (int j = i + 1; j < m; j++) b[i] -= a[j * m + i] * b[j];
         b[i] /= a[i * m + i];
     }
+}
+
+int imp_least_solve_pivoted(const double *a, int n, double rank, double *scratch, int *order, double *b)
+{
+    const least_part p = {a, n, n, NULL};
+    double *l = scratch, *x = l + (size_t)n * (size_t)n;
+    const int r = least_factor(&p, rank, l, x, order);
+    for (int i = 0; i < r; i++) {
+        const double *row = &l[(size_t)order[i] * (size_t)n];
+        x[i] = (b[order[i]] - imp_linear_dot(row, x, i)) / row[i];
+    }
+    for (int i = 0; i < n; i++) b[i] = 0;
+    for (int i = r - 1; i >= 0; i--) {
+        const double *row = &l[(size_t)order[i] * (size_t)n];
+        b[order[i]] = x[i] / row[i];
+        for (int j = 0; j < i; j++) x[j] -= row[j] * b[order[i]];
+    }
+    return r;
 }

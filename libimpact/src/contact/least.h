@@ -20,4 +20,9 @@ int imp_least_null(const double *w, int width, const int *which, int n, const do
  * what has no pivot stays 0. */
 void imp_least_solve(double *a, int m, double *b);
 
+/* Solves A x = b in place of b (n), A (n x n) symmetric with no eigenvalue under zero, for those rows that are
+ * independent: each as its pivot is the largest left, as far as that is over `rank` of the largest; x is 0 at the
+ * others. order[n], scratch: n^2 + n. Returns the rank. */
+int imp_least_solve_pivoted(const double *a, int n, double rank, double *scratch, int *order, double *b);
+
 #endif

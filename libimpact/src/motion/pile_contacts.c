@@ -146,59 +146,84 @@ static bool same_features(const imp_pile_memory *m, const imp_pile_point *point)
     return same_feature(m->feature[0], point->feature[0]) && same_feature(m->feature[1], point->feature[1]);
 }
 
-/* How far apart a point and what is remembered are, of the pair, and alike: of its features; infinite: of others. */
+/* Of one pair: its points and what is remembered of them, both in a row. */
+typedef struct pair_points {
+    imp_pile_point *points;
+    int count;
+    imp_pile_memory *memories;
+    int memory_count, first; /* of those: its number among all */
+    imp_pile_recalled from;
+} pair_points;
+
+/* How far apart a point and what is remembered are; infinite: alike is asked for, and they are of other features. */
 static double apart_of(const imp_pile_memory *m, const imp_pile_point *point, bool alike)
 {
-    if (m->pair != point->pair || (alike && !same_features(m, point))) return INFINITY;
-    return qvec3_norm(qvec3_sub(m->arm1, point->contact.arm1));
+    return alike && !same_features(m, point) ? INFINITY : qvec3_norm(qvec3_sub(m->arm1, point->contact.arm1));
 }
 
-/* The nearest that is no point's yet; -1: there is none. */
-static int nearest_memory(const imp_pile_memories *memories, const imp_pile_point *point, bool alike, double *apart)
+/* The nearest that is no point's yet; NULL: there is none. */
+static imp_pile_memory *nearest_memory(const pair_points *own, const imp_pile_point *point, bool alike, double *apart)
 {
-    int best = -1;
+    imp_pile_memory *best = NULL;
     *apart = INFINITY;
-    for (int k = 0; k < memories->count; k++) {
-        if (memories->list[k].taken) continue;
-        const double own = apart_of(&memories->list[k], point, alike);
-        if (own < *apart) best = k, *apart = own;
+    for (int k = 0; k < own->memory_count; k++) {
+        if (own->memories[k].taken) continue;
+        const double distance = apart_of(&own->memories[k], point, alike);
+        if (distance < *apart) best = &own->memories[k], *apart = distance;
     }
     return best;
 }
 
 /* A point of which nothing is remembered yet is nearer than that. */
-static bool is_nearer_to_another(const imp_pile_contacts *contacts, imp_pile_recalled from, const imp_pile_memory *m,
-                                 double apart, bool alike)
+static bool is_nearer_to_another(const pair_points *own, const imp_pile_memory *m, double apart, bool alike)
 {
-    for (int i = 0; i < contacts->count; i++)
-        if (contacts->points[i].memory[from] < 0 && apart_of(m, &contacts->points[i], alike) < apart) return true;
+    for (int i = 0; i < own->count; i++)
+        if (own->points[i].memory[own->from] < 0 && apart_of(m, &own->points[i], alike) < apart) return true;
     return false;
 }
 
-/* Points and what is remembered of them that are each other's nearest; false: there are none. */
-static bool recall_nearest(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
-                           imp_pile_memories *memories, imp_pile_recalled from, bool alike)
+/* Points and what is remembered of them that are each other's nearest, no farther apart than `far`; false: none. */
+static bool recall_nearest(const pair_points *own, double far, bool alike)
 {
     bool some = false;
-    for (int i = 0; i < contacts->count; i++) {
-        imp_pile_point *point = &contacts->points[i];
-        if (point->memory[from] >= 0) continue;
+    for (int i = 0; i < own->count; i++) {
+        imp_pile_point *point = &own->points[i];
+        if (point->memory[own->from] >= 0) continue;
         double apart;
-        const int k = nearest_memory(memories, point, alike, &apart);
-        if (k < 0 || (!alike && apart > h * fastest(world, &world->pairs[point->pair], states))) continue;
-        if (is_nearer_to_another(contacts, from, &memories->list[k], apart, alike)) continue;
-        point->memory[from] = k;
-        memories->list[k].taken = some = true;
+        imp_pile_memory *memory = nearest_memory(own, point, alike, &apart);
+        if (!memory || apart > far || is_nearer_to_another(own, memory, apart, alike)) continue;
+        point->memory[own->from] = own->first + (int)(memory - own->memories);
+        memory->taken = some = true;
     }
     return some;
+}
+
+/* Those of the pair, which are in a row: a pair is of one island. */
+static void find_memories(pair_points *own, const imp_pile_memories *memories)
+{
+    const int pair = own->points->pair;
+    int first = 0, end;
+    while (first < memories->count && memories->list[first].pair != pair) first++;
+    for (end = first; end < memories->count && memories->list[end].pair == pair;) end++;
+    own->first = first;
+    own->memories = memories->list + first;
+    own->memory_count = end - first;
 }
 
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
                      imp_pile_memories *memories, imp_pile_recalled from)
 {
     for (int k = 0; k < memories->count; k++) memories->list[k].taken = false;
-    for (int alike = 1; alike >= 0; alike--)
-        while (recall_nearest(contacts, world, states, h, memories, from, alike)) continue;
+    if (memories->count == 0) return;
+    for (int i = 0; i < contacts->count;) {
+        pair_points own = {.points = &contacts->points[i], .from = from};
+        while (i < contacts->count && contacts->points[i].pair == own.points->pair) i++, own.count++;
+        find_memories(&own, memories);
+        if (own.memory_count == 0) continue;
+        while (recall_nearest(&own, INFINITY, true)) continue;
+        const double way = h * fastest(world, &world->pairs[own.points->pair], states);
+        while (recall_nearest(&own, way, false)) continue;
+    }
 }
 
 imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/pile_parts.h"
 #include "base/tolerances.h"
-#include "contact/held_linear.h"
+#include "contact/least.h"
 
 #include <string.h>
 
@@ -30,15 +30,8 @@ static void close_gaps(imp_pile *pile, const imp_world *world, const imp_state *
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++)
             pile->w[i * n + j] = pile->w[3 * (3 * i * n + j)]; /* to the front: none is lost */
-    imp_linear linear = {.n = count,
-                         .matrix = pile->w,
-                         .spare = pile->w + n * n,
-                         .scratch = pile->last_r,
-                         .rows = pile->pivots,
-                         .columns = pile->pivots + n};
-    imp_linear_factor(&linear);
     for (int c = 0; c < count; c++) pile->last_u[c] = -pile->gap[c];
-    imp_linear_solve(&linear, pile->last_u);
+    imp_least_solve_pivoted(pile->w, count, IMP_LINEAR_VANISHING, pile->w + n * n, pile->pivots, pile->last_u);
     memset(pile->r, 0, sizeof *pile->r * 3 * n);
     for (int c = 0; c < count; c++) pile->r[3 * c] = pile->last_u[c];
 }
