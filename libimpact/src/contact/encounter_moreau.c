@@ -248,7 +248,8 @@ static bool compress(moreau *m)
                                       .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
-                                      .last_u = m->last_u};
+                                      .last_u = m->last_u,
+                                      .enough = starts ? IMP_ENCOUNTER_ENOUGH : 0};
     imp_cone_outcome o;
     if (!find_answer(m, problem, m->group->p, m->u, &o)) return false;
     if (o.chosen) share(m, &problem, m->group->p);
@@ -351,7 +352,8 @@ static bool restore(moreau *m)
                                       .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
-                                      .last_u = m->last_u};
+                                      .last_u = m->last_u,
+                                      .enough = starts ? IMP_ENCOUNTER_ENOUGH : 0};
     imp_cone_outcome o;
     if (!find_answer(m, problem, m->r, m->v, &o)) return false;
     clean(n, m->modes, m->modes + n, m->v);

@@ -36,6 +36,7 @@ static imp_cone_problem problem_of(const imp_pile *pile, const imp_pile_question
                               .last_r = question->recalls ? pile->last_r : NULL,
                               .last_u = question->recalls ? pile->last_u : NULL,
                               .enough = question->enough,
+                              .work = question->effort == IMP_CONE_BRIEF ? IMP_PILE_WORK : 0,
                               .effort = question->effort};
 }
 
