@@ -24,8 +24,8 @@ static double least_entry(const least_part *p, int i, int j)
     return p->w[(size_t)row * (size_t)p->width + (size_t)column];
 }
 
-/* Columns of L by rows of n numbers, in the rows' own order; returns the rank. order, unless NULL: the rows as they were
- * taken, of which L is a lower triangle. */
+/* Columns of L by rows of n numbers, in the rows' own order; returns the rank. order, unless NULL: the rows as they
+ * were taken, of which L is a lower triangle. */
 static int least_factor(const least_part *p, double rank_of, double *l, double *diagonal, int *order)
 {
     const int n = p->n;
@@ -40,9 +40,9 @@ static int least_factor(const least_part *p, double rank_of, double *l, double *
         diagonal[best] = -INFINITY; /* taken: zero from here on */
         for (int i = 0; i < n; i++) {
             double *row = &l[(size_t)i * (size_t)n];
-            row[rank] = i == best              ? pivot
-                        : diagonal[i] < 0      ? 0
-                                               : (least_entry(p, i, best) - imp_linear_dot(row, from, rank)) / pivot;
+            row[rank] = i == best         ? pivot
+                        : diagonal[i] < 0 ? 0
+                                          : (least_entry(p, i, best) - imp_linear_dot(row, from, rank)) / pivot;
             diagonal[i] -= row[rank] * row[rank];
         }
         if (order) order[rank] = best;

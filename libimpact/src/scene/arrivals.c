@@ -27,7 +27,7 @@ static impact_status check_stall(impact_scene *scene, const imp_island *island)
         if (body->is_static) continue;
         track->stalls = track->last_event == island->t ? track->stalls + 1 : 0;
         track->last_event = island->t;
-        if (track->stalls < IMP_EVENTS_AT_ONCE * (1 + track->near_count)) continue;
+        if (track->stalls < IMP_EVENTS_AT_ONCE * (1 + track->companion_count)) continue;
         snprintf(scene->message, sizeof scene->message, "body '%s': %d events at the one instant t = %s brought no end",
                  body->name, track->stalls, imp_number_of(island->t).text);
         return IMPACT_EUNSETTLED;
@@ -296,8 +296,8 @@ static bool begins_alone(impact_scene *scene, int body)
     if (imp_scene_integrates_all(&scene->methods)) return false;
     for (int k = 0; k < scene->world.field_count; k++)
         if (scene->world.fields[k].only < 0 || scene->world.fields[k].only == body) return false;
-    for (int k = 0; k < track->near_count; k++)
-        if (imp_gather_touches(scene, &scene->tracks.near[track->near[k]], scene->t)) return false;
+    for (int k = 0; k < track->companion_count; k++)
+        if (imp_gather_touches(scene, &scene->tracks.near[track->companions[k].near], scene->t)) return false;
     return true;
 }
 

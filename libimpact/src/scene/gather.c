@@ -76,11 +76,11 @@ static impact_status follow_contacts(impact_scene *scene, int seed, double t)
         const int body = scene->members[m];
         const imp_track *track = &scene->tracks.tracks[body];
         imp_gather_company(scene, body);
-        for (int k = 0; status == IMPACT_OK && k < track->near_count; k++) {
-            const imp_near *near = &scene->tracks.near[track->near[k]];
-            const int other = imp_near_other(near, body);
+        for (int k = 0; status == IMPACT_OK && k < track->companion_count; k++) {
+            const imp_near *near = &scene->tracks.near[track->companions[k].near];
+            const int other = track->companions[k].other;
             if (near->held || (scene->root[other] >= 0 && scene->root[other] < m)) continue; /* an island's; seen */
-            if (track->near[k] != seed && !imp_gather_touches(scene, near, t)) continue;
+            if (track->companions[k].near != seed && !imp_gather_touches(scene, near, t)) continue;
             imp_gather_member(scene, other);
             imp_pair pair = imp_rules_pair(&scene->rules, &scene->world, near->body[0], near->body[1]);
             if (near->beyond) pair.mode = IMP_BEYOND;
@@ -110,8 +110,8 @@ static impact_status add_all_near(impact_scene *scene)
     scene->touching_count = 0;
     for (int m = 0; m < scene->member_count; m++) {
         const imp_track *track = &scene->tracks.tracks[scene->members[m]];
-        for (int k = 0; status == IMPACT_OK && k < track->near_count; k++) {
-            const imp_near *near = &scene->tracks.near[track->near[k]];
+        for (int k = 0; status == IMPACT_OK && k < track->companion_count; k++) {
+            const imp_near *near = &scene->tracks.near[track->companions[k].near];
             const bool within = scene->world.bodies[near->body[1]].is_static || scene->root[near->body[1]] >= 0;
             if (near->body[0] != scene->members[m] || !within) continue;
             imp_pair pair = imp_rules_pair(&scene->rules, &scene->world, near->body[0], near->body[1]);

@@ -146,8 +146,8 @@ static void tear_off(imp_island *island, int body)
 static bool touches_any(impact_scene *scene, int body)
 {
     const imp_track *track = &scene->tracks.tracks[body];
-    for (int k = 0; k < track->near_count; k++)
-        if (imp_gather_touches(scene, &scene->tracks.near[track->near[k]], scene->t)) return true;
+    for (int k = 0; k < track->companion_count; k++)
+        if (imp_gather_touches(scene, &scene->tracks.near[track->companions[k].near], scene->t)) return true;
     return false;
 }
 

@@ -21,8 +21,9 @@ impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *q
                            .first_slot = queue->slots,
                            .near_free = -1,
                            .tracks = imp_arena_take(world->arena, (size_t)n, sizeof *tracks->tracks),
+                           .paired_with = imp_arena_take(world->arena, (size_t)n, sizeof *tracks->paired_with),
                            .planes = imp_arena_take(world->arena, (size_t)n, sizeof *tracks->planes)};
-    if (!tracks->tracks || !tracks->planes) return IMPACT_ENOMEM;
+    if (!tracks->tracks || !tracks->paired_with || !tracks->planes) return IMPACT_ENOMEM;
     for (int i = 0; i < n; i++) {
         const imp_body *body = &world->bodies[i];
         imp_track *track = &tracks->tracks[i];
@@ -30,9 +31,9 @@ impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *q
                              .meet = INFINITY,
                              .first_near = -1,
                              .island = -1,
-                             .paired_with = -1,
                              .last_event = -INFINITY,
                              .fatness = IMP_BOX_FIRST};
+        tracks->paired_with[i] = -1;
         if (body->shape.kind == IMPACT_PLANE) tracks->planes[tracks->plane_count++].body = i;
         const bool tumbles = !body->is_static && !body->spherical;
         if (tumbles) track->tumble = imp_arena_take(world->arena, 1, sizeof *track->tumble);
@@ -44,15 +45,16 @@ impact_status imp_tracks_open(imp_tracks *tracks, imp_world *world, imp_queue *q
 
 /* ---- pairs ---- */
 
-static bool list_near(imp_arena *arena, imp_track *track, int near, int *place)
+static bool list_near(imp_arena *arena, imp_track *track, imp_companion near, int *place)
 {
-    if (track->near_count == track->near_room) {
-        int *list = imp_arena_grow(arena, track->near, &track->near_room, track->near_count + 1, sizeof *list);
+    if (track->companion_count == track->companion_room) {
+        imp_companion *list =
+            imp_arena_grow(arena, track->companions, &track->companion_room, track->companion_count + 1, sizeof *list);
         if (!list) return false;
-        track->near = list;
+        track->companions = list;
     }
-    *place = track->near_count;
-    track->near[track->near_count++] = near;
+    *place = track->companion_count;
+    track->companions[track->companion_count++] = near;
     return true;
 }
 
@@ -73,9 +75,10 @@ static int new_near(imp_tracks *tracks)
 static void leave_list(imp_tracks *tracks, int near, int k)
 {
     imp_track *track = &tracks->tracks[tracks->near[near].body[k]];
-    const int place = tracks->near[near].place[k], last = track->near[--track->near_count];
-    track->near[place] = last;
-    imp_near *moved = &tracks->near[last];
+    const int place = tracks->near[near].place[k];
+    const imp_companion last = track->companions[--track->companion_count];
+    track->companions[place] = last;
+    imp_near *moved = &tracks->near[last.near];
     moved->place[moved->body[0] != tracks->near[near].body[k]] = place;
 }
 
@@ -90,16 +93,16 @@ static void find_first(const imp_tracks *tracks, imp_track *track)
 {
     track->meet = INFINITY;
     track->first_near = -1;
-    for (int k = 0; k < track->near_count; k++) {
-        const double t = tracks->near[track->near[k]].t;
-        if (t < track->meet) track->meet = t, track->first_near = track->near[k];
+    for (int k = 0; k < track->companion_count; k++) {
+        const double t = tracks->near[track->companions[k].near].t;
+        if (t < track->meet) track->meet = t, track->first_near = track->companions[k].near;
     }
 }
 
 static void drop_near(imp_tracks *tracks, int near)
 {
     const int body[2] = {tracks->near[near].body[0], tracks->near[near].body[1]};
-    for (int k = 0; k < 2; k++) tracks->tracks[body[k]].paired_with = -1;
+    for (int k = 0; k < 2; k++) tracks->paired_with[body[k]] = -1;
     for (int k = 0; k < 2; k++) leave_list(tracks, near, k);
     for (int k = 0; k < 2; k++) {
         imp_track *track = &tracks->tracks[body[k]];
@@ -201,7 +204,9 @@ static impact_status make_near(imp_tracks *tracks, int i, int j, double t)
     *near = (imp_near){.t = INFINITY};
     name_bodies(tracks, i, j, near);
     for (int k = 0; k < 2; k++)
-        if (!list_near(tracks->world->arena, &tracks->tracks[near->body[k]], n, &near->place[k])) return IMPACT_ENOMEM;
+        if (!list_near(tracks->world->arena, &tracks->tracks[near->body[k]], (imp_companion){n, near->body[1 - k]},
+                       &near->place[k]))
+            return IMPACT_ENOMEM;
     near->beyond = is_beyond(tracks, near, t);
     imp_tracks_predict(tracks, n, t);
     return IMPACT_OK;
@@ -322,10 +327,10 @@ static bool box_meets_plane(const imp_box *box, const imp_wide *plane)
     return low <= 8 * DBL_EPSILON * size;
 }
 
+/* What is in no grid is a plane. */
 static bool boxes_meet(const imp_tracks *tracks, int other, const imp_box *box)
 {
-    if (tracks->world->bodies[other].shape.kind != IMPACT_PLANE)
-        return imp_boxes_overlap(box, &tracks->grid.entries[other].box);
+    if (tracks->grid.entries[other].level >= 0) return imp_boxes_overlap(box, &tracks->grid.entries[other].box);
     int k = 0;
     while (tracks->planes[k].body != other) k++;
     return box_meets_plane(box, &tracks->planes[k]);
@@ -334,10 +339,10 @@ static bool boxes_meet(const imp_tracks *tracks, int other, const imp_box *box)
 int imp_tracks_find(const imp_tracks *tracks, int i, int j)
 {
     const imp_track *a = &tracks->tracks[i], *b = &tracks->tracks[j];
-    const bool shorter = a->near_count <= b->near_count;
+    const bool shorter = a->companion_count <= b->companion_count;
     const imp_track *list = shorter ? a : b;
-    for (int k = 0; k < list->near_count; k++)
-        if (imp_near_other(&tracks->near[list->near[k]], shorter ? i : j) == (shorter ? j : i)) return list->near[k];
+    for (int k = 0; k < list->companion_count; k++)
+        if (list->companions[k].other == (shorter ? j : i)) return list->companions[k].near;
     return -1;
 }
 
@@ -347,21 +352,21 @@ static impact_status renew_pairs(imp_tracks *tracks, int body, double t)
     imp_track *track = &tracks->tracks[body];
     const imp_box box = tracks->grid.entries[body].box;
     const bool is_static = tracks->world->bodies[body].is_static;
-    for (int k = track->near_count - 1; k >= 0; k--) {
-        const int other = imp_near_other(&tracks->near[track->near[k]], body);
-        tracks->tracks[other].paired_with = body;
+    for (int k = track->companion_count - 1; k >= 0; k--) {
+        const int other = track->companions[k].other;
+        tracks->paired_with[other] = body;
         if (boxes_meet(tracks, other, &box)) continue;
-        drop_near(tracks, track->near[k]);
+        drop_near(tracks, track->companions[k].near);
     }
     impact_status status = imp_grid_query(&tracks->grid, &box);
     for (int k = 0; status == IMPACT_OK && k < tracks->grid.found_count; k++) {
         const int other = tracks->grid.found[k];
         if (other == body || (is_static && tracks->world->bodies[other].is_static)) continue;
-        if (tracks->tracks[other].paired_with != body) status = make_near(tracks, body, other, t);
+        if (tracks->paired_with[other] != body) status = make_near(tracks, body, other, t);
     }
     for (int k = 0; status == IMPACT_OK && !is_static && k < tracks->plane_count; k++) {
         const imp_wide *plane = &tracks->planes[k];
-        if (tracks->tracks[plane->body].paired_with != body && box_meets_plane(&box, plane))
+        if (tracks->paired_with[plane->body] != body && box_meets_plane(&box, plane))
             status = make_near(tracks, body, plane->body, t);
     }
     return status;
@@ -378,8 +383,8 @@ static void put_slot(imp_tracks *tracks, int body, double t)
 static impact_status renew_box(imp_tracks *tracks, int body, double t)
 {
     imp_track *track = &tracks->tracks[body];
-    if (track->near_count < FEW_NEAR) track->fatness = smaller(1.5 * track->fatness, IMP_BOX_FATTEST);
-    if (track->near_count > MANY_NEAR) track->fatness = larger(0.8 * track->fatness, IMP_BOX_LEAST);
+    if (track->companion_count < FEW_NEAR) track->fatness = smaller(1.5 * track->fatness, IMP_BOX_FATTEST);
+    if (track->companion_count > MANY_NEAR) track->fatness = larger(0.8 * track->fatness, IMP_BOX_LEAST);
     const imp_box box = fat_box(track, &tracks->world->bodies[body], t);
     impact_status status = imp_grid_put(&tracks->grid, body, &box);
     put_slot(tracks, body, t);
@@ -394,9 +399,9 @@ void imp_tracks_clear(imp_tracks *tracks)
     tracks->near_count = 0, tracks->near_free = -1;
     for (int i = 0; i < tracks->world->body_count; i++) {
         imp_track *track = &tracks->tracks[i];
-        track->near_count = 0;
+        track->companion_count = 0;
         track->leave = track->meet = INFINITY;
-        track->first_near = track->island = track->paired_with = -1;
+        track->first_near = track->island = tracks->paired_with[i] = -1;
         track->fatness = IMP_BOX_FIRST;
     }
 }
@@ -444,7 +449,7 @@ impact_status imp_tracks_follow(imp_tracks *tracks, int body, const imp_segment 
 impact_status imp_tracks_leap(imp_tracks *tracks, int body, double t)
 {
     const imp_track *track = &tracks->tracks[body];
-    while (track->near_count > 0) drop_near(tracks, track->near[track->near_count - 1]);
+    while (track->companion_count > 0) drop_near(tracks, track->companions[track->companion_count - 1].near);
     return renew_box(tracks, body, t);
 }
 
@@ -455,8 +460,8 @@ void imp_tracks_look_ahead(imp_tracks *tracks, int body, double t)
     imp_track *track = &tracks->tracks[body];
     bool changed = false;
     track->round = tracks->round;
-    for (int k = 0; k < track->near_count; k++) {
-        const int n = track->near[k], other = imp_near_other(&tracks->near[n], body);
+    for (int k = 0; k < track->companion_count; k++) {
+        const int n = track->companions[k].near, other = track->companions[k].other;
         if (tracks->tracks[other].round == tracks->round) continue;
         if (!predict(tracks, &tracks->near[n], t)) continue;
         if (hear(tracks, other, n)) set_slot(tracks, other);

@@ -28,14 +28,18 @@ typedef struct imp_patience {
     long work;
 } imp_patience;
 
+/* A body's pair, and its other one. */
+typedef struct imp_companion {
+    int near, other;
+} imp_companion;
+
 /* What the pairs' other bodies ask stands side by side at the front. */
 typedef struct imp_track {
-    double leave;    /* when it leaves its box */
-    double meet;     /* the first of its pairs' times */
-    int first_near;  /* that pair, or -1 */
-    int paired_with; /* scratch: a body known to be its pair's other one, or -1 */
-    int *near;       /* its pairs */
-    int near_count, near_room;
+    double leave;   /* when it leaves its box */
+    double meet;    /* the first of its pairs' times */
+    int first_near; /* that pair, or -1 */
+    imp_companion *companions;
+    int companion_count, companion_room;
     imp_segment segment;
     impact_tumble *tumble; /* room, for a body of unequal moments */
     int island;            /* or -1: alone */
@@ -57,6 +61,7 @@ typedef struct imp_wide {
 typedef struct imp_tracks {
     imp_world *world; /* bodies, gravity, slip_speed, usage */
     imp_track *tracks;
+    int *paired_with; /* per body, scratch: one known to be its pair's other, or -1 */
     imp_near *near;
     int near_count, near_room, near_free; /* near_free: first of a list through place[0], or -1 */
     imp_grid grid;
@@ -95,8 +100,5 @@ void imp_tracks_predict(imp_tracks *tracks, int near, double t);
 
 /* The pair of two bodies, or -1. */
 int imp_tracks_find(const imp_tracks *tracks, int i, int j);
-
-/* The other one of the pair's bodies. */
-static inline int imp_near_other(const imp_near *near, int body) { return near->body[near->body[0] == body]; }
 
 #endif

