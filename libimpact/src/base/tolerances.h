@@ -817,6 +817,9 @@
  * near a border, where the part is small. */
 #define IMP_FACE_PRESSINGS 60
 #define IMP_FACE_PRESSED 1e-12
+/* Of the pressure: a change after which the next, as its square, is rounding; a twelfth of what a cube that comes to
+ * rest takes. */
+#define IMP_FACE_NEXT 1e-8
 /* A step's last Legendre term, of what its numbers change by: the next is as much smaller, and its end closer still;
  * and by how much its rates miss those of its begin, before the first node, where a force may end or friction bend. */
 #define IMP_FACE_TOLERANCE 1e-11
@@ -867,9 +870,9 @@
  * 20 to 60 systems. */
 #define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100
-/* Multiplications of taking their systems apart, where a shorter step is to be had: 280 of 27 contacts, 15 of 70. Seven
+/* Multiplications of taking their systems apart, where a shorter step is to be had: 80 of 27 contacts, 4 of 70. Seven
  * questions for 72 contacts, which took more than a hundred each, were a fourth of the time of twenty dominoes. */
-#define IMP_PILE_WORK 1e8
+#define IMP_PILE_WORK 3e7
 /* How much more the steps of the coarser scene may err, that tells what all of them make of the motion; how often it is
  * looked at, of the duration; and what is told of a body, of its radius, where that is no small difference any more:
  * what it meets then, and with which side, is another. */

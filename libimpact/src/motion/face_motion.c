@@ -87,7 +87,7 @@ static bool balance_under(const imp_face_motion *motion, const imp_face_load *lo
             moved = fmax(moved, fabs(balance->p[k] - before[k]));
             size = fmax(size, fabs(balance->p[k]));
         }
-        if (moved <= IMP_LEVEL * size || (moved >= change && moved <= IMP_FACE_PRESSED * size)) return true;
+        if (moved <= IMP_FACE_NEXT * size || (moved >= change && moved <= IMP_FACE_PRESSED * size)) return true;
         change = moved;
     }
     return false;

@@ -20,8 +20,7 @@ typedef struct imp_box {
 static inline bool imp_boxes_overlap(const imp_box *a, const imp_box *b)
 {
     unsigned overlap = 1;
-    for (int k = 0; k < 3; k++)
-        overlap &= (unsigned)(a->low[k] <= b->high[k]) & (unsigned)(b->low[k] <= a->high[k]);
+    for (int k = 0; k < 3; k++) overlap &= (unsigned)(a->low[k] <= b->high[k]) & (unsigned)(b->low[k] <= a->high[k]);
     return overlap != 0;
 }
 

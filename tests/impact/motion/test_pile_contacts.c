@@ -23,7 +23,10 @@ static void rims_remember_their_own(void **state)
 {
     (void)state;
     random_stream random = {11};
-    const imp_world world = {.body_count = 0};
+    imp_body bodies[2] = {{.radius = 1}, {.is_static = true}};
+    imp_pair pair = {.body1 = 0, .body2 = 1};
+    const imp_world world = {.bodies = bodies, .body_count = 2, .pairs = &pair, .pair_count = 1};
+    const imp_state states[2] = {{.q = quat_identity()}, {.q = quat_identity()}};
     for (int run = 0; run < 2000; run++) {
         imp_pile_point points[RIM];
         imp_pile_memory list[RIM];
@@ -43,7 +46,7 @@ static void rims_remember_their_own(void **state)
                     .feature = {rim, face}, .contact.arm1 = place_of(k, ahead), .memory = {-1, -1, -1}};
             }
         }
-        imp_pile_recall(&contacts, &world, NULL, 0, &memories, IMP_PILE_BEFORE);
+        imp_pile_recall(&contacts, &world, states, 0, &memories, IMP_PILE_BEFORE);
         for (int i = 0; i < contacts.count; i++) {
             const int found = points[i].memory[IMP_PILE_BEFORE];
             bool there = false;
