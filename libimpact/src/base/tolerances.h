@@ -152,6 +152,10 @@
 #define IMP_GAP_SHALLOW 1e-13
 /* Of the reach: how far apart bodies are drawn for their normal, which is then off by this part of what it was. */
 #define IMP_GAP_PARTED 1e-8
+/* Of the size, how far apart bodies with faces are drawn for the points that Newton starts from, and how closely these
+ * are found: to rounding, as faces in touch may lean by no more. */
+#define IMP_GAP_APART 0.3
+#define IMP_GAP_APART_CLOSED 1e-15
 /* Below this exponent a body has edges; two such bodies may overlap shallowly in more than one way. */
 #define IMP_GAP_SHARP 1.3
 /* Of the reach, what a proof that there is no nearer way out leaves: half of the bracket that is promised. Of the depth

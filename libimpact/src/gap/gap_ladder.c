@@ -10,7 +10,7 @@
 #include "shape/solid.h"
 #include <string.h>
 
-enum { SEED_STEPS = 4, MAX_PROOFS = 8 };
+enum { SEED_STEPS = 4, MAX_PROOFS = 8, APART_STEPS = 60 };
 
 typedef struct search {
     const imp_gap_solids *pair;
@@ -115,6 +115,29 @@ static bool try_from(search *s, const double n[3], const double (*x)[3], impact_
     if (!newton_from(s, n, x, path)) return false;
     if (plain(s)) return true;
     return -s->best.gap <= IMP_GAP_DEEP * s->thin && prove_best(s);
+}
+
+/* Newton from the nearest points of the bodies drawn apart along n, and from their normal. From the points that n alone
+ * tells of two faces on each other, a corner and any place of a rim, Newton goes astray: they lie far aside of each
+ * other for the way along n. Nearest points of bodies a good way apart are well-posed, and face each other. */
+static bool try_apart(search *s, const double n[3], impact_gap_path path)
+{
+    imp_gap_solids apart = *s->pair;
+    const double way = fmax(0, IMP_GAP_APART * apart.size - imp_pair_gap(s->pair, n, NULL));
+    double m[3], x[2][3], low, high;
+    for (int i = 0; i < 3; i++) m[i] = n[i], apart.c[i] += way * n[i];
+    imp_gap_simplex(&apart, 1, IMP_GAP_APART_CLOSED, APART_STEPS, m, x, &low, &high);
+    return try_from(s, m, (const double(*)[3])x, path) || try_from(s, m, NULL, path);
+}
+
+static bool has_faces(const imp_gap_solids *pair)
+{
+    return pair->form[0].kind != IMP_FORM_QUADRIC && pair->form[1].kind != IMP_FORM_QUADRIC;
+}
+
+static bool try_normal(search *s, const double n[3], impact_gap_path path)
+{
+    return (has_faces(s->pair) && try_apart(s, n, path)) || try_from(s, n, NULL, path);
 }
 
 static void centre_line(const imp_gap_solids *pair, double n[3])
@@ -424,10 +447,10 @@ impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, i
         for (int i = 0; i < 3; i++) s.thin = fmin(s.thin, pair->form[k].axis[i]);
     double n[3], upper = distance_of(pair->c);
     centre_line(pair, n);
-    bool over = cached && try_from(&s, cached, NULL, IMPACT_PATH_NEWTON);
+    bool over = cached && try_normal(&s, cached, IMPACT_PATH_NEWTON);
     if (!over) {
         ellipsoid_seed(pair, SEED_STEPS, n);
-        over = try_from(&s, n, NULL, IMPACT_PATH_NEWTON);
+        over = try_normal(&s, n, IMPACT_PATH_NEWTON);
     }
     over = over || (imp_gap_harvest(pair, n) && try_from(&s, n, NULL, IMPACT_PATH_GJK));
     if (!s.found) over = try_simplex(&s, &upper) || try_slope(&s) || try_homotopy(&s);

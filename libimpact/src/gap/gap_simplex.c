@@ -47,12 +47,12 @@ static bool hull_shares(const simplex *s, const int *index, int count, double *s
     return share[0] > 0;
 }
 
-/* Reduces the simplex to the face that holds the point v nearest to the origin. */
+/* Reduces the simplex to the face that holds the point v nearest to the origin; the newest vertex is one of its. */
 static double reduce(simplex *s, double v[3])
 {
     double best = INFINITY, best_share[4] = {0};
     int best_mask = 0;
-    for (int mask = 1; mask < 1 << s->count; mask++) {
+    for (int mask = 1 << (s->count - 1); mask < 1 << s->count; mask++) {
         int index[4], count = 0;
         double share[4];
         for (int i = 0; i < s->count; i++)
