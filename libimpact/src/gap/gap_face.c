@@ -218,6 +218,54 @@ bool imp_face_advance(const imp_gap_solids *pair, const imp_face *face, double s
     return true;
 }
 
+/* What of d the point can do with the normal as it is; the ways to it. */
+static void keep_flat(const imp_chart *chart, double d[3], double way[2])
+{
+    double kept[3] = {0, 0, 0};
+    for (int j = 0; j < 2; j++) {
+        const double square = imp_dot(chart->P[j], chart->P[j]);
+        way[j] = imp_dot(chart->Q[j], chart->Q[j]) == 0 && square > 0 ? imp_dot(d, chart->P[j]) / square : 0;
+        for (int i = 0; i < 3; i++) kept[i] += way[j] * chart->P[j][i];
+    }
+    memcpy(d, kept, sizeof kept);
+}
+
+/* The part of the way d, or of `part` of it, that the point goes before it is at a border; where it is then. */
+static double slide(const imp_form *form, const imp_chart *chart, const double way[2], double part, const double d[3],
+                    const imp_surface *from, imp_surface *to)
+{
+    const double step[2] = {part * way[0], part * way[1]};
+    double gone[3];
+    imp_chart there;
+    *to = *from;
+    if (!imp_chart_move(form, chart, step, to)) return 0;
+    imp_chart_make(form, to, &there);
+    for (int i = 0; i < 3; i++) gone[i] = there.x[i] - chart->x[i];
+    return imp_dot(gone, d) / imp_dot(d, d);
+}
+
+bool imp_face_slide(const imp_gap_solids *pair, const imp_face *face, imp_surface s[2])
+{
+    double d[3], way[2][2], part[2];
+    imp_surface to[2];
+    for (int i = 0; i < 3; i++)
+        d[i] = (face->y[1][0] - face->y[0][0]) * face->t[0][i] + (face->y[1][1] - face->y[0][1]) * face->t[1][i];
+    keep_flat(&face->chart[0], d, way[0]);
+    keep_flat(&face->chart[1], d, way[1]);
+    const double length = imp_norm(d);
+    if (!(length > 0)) return false;
+    for (int i = 0; i < 3; i++) d[i] *= pair->size / length;
+    for (int k = 0; k < 2; k++) {
+        keep_flat(&face->chart[k], d, way[k]);
+        part[k] = slide(&pair->form[k], &face->chart[k], way[k], 1, d, &s[k], &to[k]);
+    }
+    const int far = part[1] > part[0];
+    if (!(part[1 - far] > 0)) return false;
+    slide(&pair->form[far], &face->chart[far], way[far], part[1 - far], d, &s[far], &to[far]);
+    memcpy(s, to, sizeof to);
+    return true;
+}
+
 double imp_pair_gap(const imp_gap_solids *pair, const double n[3], double x[2][3])
 {
     double h = 0, d[3], point[3], normal[3];

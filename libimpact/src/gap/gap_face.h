@@ -41,6 +41,10 @@ void imp_face_strike(const imp_gap_solids *pair, const imp_face *face, const imp
 bool imp_face_advance(const imp_gap_solids *pair, const imp_face *face, double step[2][2], imp_surface s[2],
                       double *taken);
 
+/* Two flats whose normals differ have their nearest points at a border: both points go there, down the slope of the
+ * height between them. False: they cannot, with their normals as they are. */
+bool imp_face_slide(const imp_gap_solids *pair, const imp_face *face, imp_surface s[2]);
+
 /* Closes the bracket at the points reached and says whether it is an answer. */
 bool imp_face_judge(const imp_gap_solids *pair, const imp_face *face, imp_gap_bracket *meeting);
 

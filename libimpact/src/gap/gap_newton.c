@@ -22,6 +22,9 @@ bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double 
             if (imp_face_judge(pair, &face, &now)) {
                 if (settled++ == 0 || now.upper - now.lower < meeting->upper - meeting->lower) *meeting = now;
                 if (meeting->upper - meeting->lower <= IMP_GAP_TIGHT * pair->reach || settled == 4) return true;
+            } else if (imp_face_slide(pair, &face, s)) {
+                last = INFINITY;
+                continue;
             }
         }
         double step[2][2];
