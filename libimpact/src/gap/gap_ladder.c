@@ -117,27 +117,31 @@ static bool try_from(search *s, const double n[3], const double (*x)[3], impact_
     return -s->best.gap <= IMP_GAP_DEEP * s->thin && prove_best(s);
 }
 
-/* Newton from the nearest points of the bodies drawn apart along n, and from their normal. From the points that n alone
- * tells of two faces on each other, a corner and any place of a rim, Newton goes astray: they lie far aside of each
- * other for the way along n. Nearest points of bodies a good way apart are well-posed, and face each other. */
-static bool try_apart(search *s, const double n[3], impact_gap_path path)
-{
-    imp_gap_solids apart = *s->pair;
-    const double way = fmax(0, IMP_GAP_APART * apart.size - imp_pair_gap(s->pair, n, NULL));
-    double m[3], x[2][3], low, high;
-    for (int i = 0; i < 3; i++) m[i] = n[i], apart.c[i] += way * n[i];
-    imp_gap_simplex(&apart, 1, IMP_GAP_APART_CLOSED, APART_STEPS, m, x, &low, &high);
-    return try_from(s, m, (const double(*)[3])x, path) || try_from(s, m, NULL, path);
-}
-
 static bool has_faces(const imp_gap_solids *pair)
 {
     return pair->form[0].kind != IMP_FORM_QUADRIC && pair->form[1].kind != IMP_FORM_QUADRIC;
 }
 
+/* Nearest points of the bodies drawn apart along n, and their normal. Of two faces on each other n alone tells a corner
+ * and any place of a rim, and from there Newton goes astray: they lie far aside of each other for the way along n. */
+static void nearest_apart(const imp_gap_solids *pair, const double n[3], double m[3], double x[2][3])
+{
+    imp_gap_solids apart = *pair;
+    double low, high;
+    const double way = fmax(0, IMP_GAP_APART * apart.size - imp_pair_gap(pair, n, NULL));
+    for (int i = 0; i < 3; i++) m[i] = n[i], apart.c[i] += way * n[i];
+    imp_gap_simplex(&apart, 1, IMP_GAP_APART_CLOSED, APART_STEPS, m, x, &low, &high);
+}
+
+/* The same as try_from, by a start that suits the bodies. */
 static bool try_normal(search *s, const double n[3], impact_gap_path path)
 {
-    return (has_faces(s->pair) && try_apart(s, n, path)) || try_from(s, n, NULL, path);
+    double m[3], x[2][3];
+    if (has_faces(s->pair)) {
+        nearest_apart(s->pair, n, m, x);
+        if (try_from(s, m, (const double(*)[3])x, path)) return true;
+    }
+    return try_from(s, n, NULL, path);
 }
 
 static void centre_line(const imp_gap_solids *pair, double n[3])
@@ -411,16 +415,26 @@ static impact_status bracket(const search *s, double upper, imp_gap_bracket *mee
     return faces ? IMPACT_OK : IMPACT_BRACKET;
 }
 
+static bool first_from(const imp_gap_solids *pair, const double n[3], imp_gap_bracket *meeting)
+{
+    double m[3], x[2][3];
+    if (has_faces(pair)) {
+        nearest_apart(pair, n, m, x);
+        if (imp_gap_newton(pair, m, (const double(*)[3])x, meeting) && meeting->shares) return true;
+    }
+    return imp_gap_newton(pair, n, NULL, meeting) && meeting->shares;
+}
+
 bool imp_gap_first(const imp_gap_solids *pair, const double *cached, imp_gap_bracket *meeting, impact_gap_path *path)
 {
     double n[3];
     *path = IMPACT_PATH_NEWTON;
-    if (cached && imp_gap_newton(pair, cached, NULL, meeting) && meeting->shares) return true;
+    if (cached && first_from(pair, cached, meeting)) return true;
     centre_line(pair, n);
     ellipsoid_seed(pair, SEED_STEPS, n);
-    if (imp_gap_newton(pair, n, NULL, meeting) && meeting->shares) return true;
+    if (first_from(pair, n, meeting)) return true;
     *path = IMPACT_PATH_GJK;
-    return imp_gap_harvest(pair, n) && imp_gap_newton(pair, n, NULL, meeting) && meeting->shares;
+    return imp_gap_harvest(pair, n) && first_from(pair, n, meeting);
 }
 
 /* The best answer, with what is known of better ones: an overlap that is not over may have a nearer way out, by no more
