@@ -437,6 +437,15 @@ void imp_walk_move(const imp_form *form, const double step[2], imp_surface *s)
     }
 }
 
+/* On a cap the ball is held by the side and the other cap, on the side by the axis and both caps. */
+static double radius_in_cylinder(const imp_form *form, const double x[3])
+{
+    const double slack = IMP_WALK_START * size_of_form(form), in = form->axis[0] - hypot(x[0], x[1]),
+                 under = form->axis[2] - fabs(x[2]);
+    if (in > slack && under <= slack) return fmin(in, form->axis[2]);
+    return in <= slack && under > slack ? fmin(form->axis[0], under) : 0;
+}
+
 /* On a face n the ball of radius r about x - r n is off another face m by d + r (n.m - 1), d that of x. */
 double imp_walk_inner_radius(const imp_form *form, const double x[3])
 {
@@ -444,7 +453,8 @@ double imp_walk_inner_radius(const imp_form *form, const double x[3])
     const double slack = IMP_WALK_START * size_of_form(form);
     double radius = INFINITY, n[3], m[3];
     int found[2];
-    if (is_turned(form) || faces_at(core, x, slack, found) != 1) return 0;
+    if (form->kind == IMP_FORM_CYLINDER) return radius_in_cylinder(form, x);
+    if (form->kind == IMP_FORM_CONE || faces_at(core, x, slack, found) != 1) return 0;
     imp_core_normal(core, found[0], n);
     for (int f = 0; f < core->hull->face_count; f++) {
         if (f == found[0]) continue;

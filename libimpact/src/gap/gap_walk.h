@@ -31,7 +31,7 @@ void imp_walk_start(const imp_form *form, const double d[3], const double *x, im
 void imp_walk_chart(const imp_form *form, const imp_surface *s, double P[2][3], double Q[2][3]);
 void imp_walk_move(const imp_form *form, const double step[2], imp_surface *s);
 
-/* Radius of a ball in the body that touches the surface at the point x: 0 but on faces and sides. */
+/* Radius of a ball in the body that touches the surface at the point x: 0 on edges, rims and vertices, and of cones. */
 double imp_walk_inner_radius(const imp_form *form, const double x[3]);
 
 #endif
