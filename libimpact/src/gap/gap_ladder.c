@@ -133,13 +133,19 @@ static void nearest_apart(const imp_gap_solids *pair, const double n[3], double 
     imp_gap_simplex(&apart, 1, IMP_GAP_APART_CLOSED, APART_STEPS, m, x, &low, &high);
 }
 
-/* The same as try_from, by a start that suits the bodies. */
+/* The same as try_from, by a start that suits the bodies. What it finds deep, and not proved the nearest, is but noted:
+ * the ways after it are gone all the same. */
 static bool try_normal(search *s, const double n[3], impact_gap_path path)
 {
     double m[3], x[2][3];
     if (has_faces(s->pair)) {
+        search other = *s;
         nearest_apart(s->pair, n, m, x);
-        if (try_from(s, m, (const double(*)[3])x, path)) return true;
+        if (try_from(&other, m, (const double(*)[3])x, path)) {
+            *s = other;
+            return true;
+        }
+        if (other.found) note_low(s, other.best.gap, other.best.n);
     }
     return try_from(s, n, NULL, path);
 }
