@@ -166,25 +166,6 @@ static int edge_of_faces(const impact_hull *hull, const int f[2])
     return -1;
 }
 
-/* On the edge at x, with the normal of its arc that is nearest to e. */
-static void start_on_edge(const imp_form *form, const int faces[2], int edge, const double x[3], imp_surface *s)
-{
-    double n[2][3], along[3], across[3], a[3], b[3], at = 0, lean = 0;
-    for (int side = 0; side < 2; side++) imp_core_normal(&form->core, faces[side], n[side]);
-    put_on(s, IMP_ON_EDGE, edge);
-    edge_frame(form, s, along, across);
-    edge_ends(&form->core, edge, a, b);
-    for (int k = 0; k < 3; k++) at += along[k] * (x[k] - a[k]), lean += along[k] * s->e[k];
-    for (int k = 0; k < 3; k++) s->u[k] = a[k] + at * along[k], s->e[k] -= lean * along[k];
-    for (int side = 0; side < 2; side++) {
-        double out[3];
-        imp_cross(n[side], n[1 - side], out);
-        imp_cross(out, n[side], across); /* from this face's normal to the other's */
-        if (!(imp_dot(across, s->e) > 0)) memcpy(s->e, n[side], sizeof n[side]);
-    }
-    make_unit(s->e);
-}
-
 static void start_at_point(const imp_form *form, const double x[3], imp_surface *s)
 {
     int found[2] = {-1, -1};
@@ -197,7 +178,17 @@ static void start_at_point(const imp_form *form, const double x[3], imp_surface 
         for (int k = 0; k < 3; k++) s->u[k] += off * s->e[k];
         put_on(s, IMP_ON_FACE, found[0]);
     } else if (edge >= 0) {
-        start_on_edge(form, found, edge, x, s);
+        double n[3], m[3], along[3], across[3], a[3], b[3];
+        imp_core_normal(&form->core, found[0], n);
+        imp_core_normal(&form->core, found[1], m);
+        for (int k = 0; k < 3; k++) s->e[k] = n[k] + m[k];
+        make_unit(s->e);
+        put_on(s, IMP_ON_EDGE, edge);
+        edge_frame(form, s, along, across);
+        edge_ends(&form->core, edge, a, b);
+        double at = 0;
+        for (int k = 0; k < 3; k++) at += along[k] * (x[k] - a[k]);
+        for (int k = 0; k < 3; k++) s->u[k] = a[k] + at * along[k];
     }
 }
 
@@ -359,8 +350,6 @@ static void start_turned_at(const imp_form *form, const double x[3], imp_surface
         place_on_cap(form, x[0], x[1], 1, s);
     else if (x[2] > low + slack && x[2] < high - slack)
         place_on_side(form, u, x[2], s);
-    else if (s->kind == IMP_ON_RIM && rho > 0)
-        place_on_rim(form, u, hypot(s->e[0], s->e[1]), s->e[2], s->index, s);
 }
 
 /* ---- all ---- */
