@@ -206,16 +206,42 @@ static void let_rise(imp_island *island, int first, int end, const imp_lying *ly
     }
 }
 
+static bool is_of(const imp_pair *pair, int body) { return pair->body1 == body || pair->body2 == body; }
+
 /* Whether another contact of the pair's body stays. */
 static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
 {
     for (int p = 0; p < island->world.pair_count; p++) {
         const imp_pair *other = &island->world.pairs[p];
-        const bool of_it = other->body1 == pair->body1 || other->body2 == pair->body1;
-        if (of_it && !imp_same_bodies(other, pair) && (imp_is_held(other) || imp_scene_point_stays(island, p)))
+        if (is_of(other, pair->body1) && !imp_same_bodies(other, pair) && (imp_is_held(other) || imp_scene_point_stays(island, p)))
             return true;
     }
     return false;
+}
+
+/* Whether another body will press on it: where the friction of its glide brakes it against one that touches. Of two that
+ * go on as they do under their loads alone none knows, and each bounce, lower than what touches, would be another. */
+static bool is_pressed_elsewhere_too(imp_island *island, const imp_pair *pair, const imp_lying *lying)
+{
+    double rate[IMP_FACE_STATE], moment;
+    imp_face_balance balance = {.p = {0}};
+    qvec3 force, arm;
+    if (!imp_face_rates(&lying->motion, lying->start, rate, &balance)) return false;
+    imp_lying_force(lying, lying->start, &balance, &force, &arm, &moment);
+    imp_load *load = &island->motion.loads[pair->body1];
+    const imp_load alone = *load;
+    load->force = qvec3_add(alone.force, force);
+    load->torque = qvec3_add(qvec3_axpy(moment, lying->normal, alone.torque), qvec3_cross(arm, force));
+    bool pressed = false;
+    for (int p = 0; p < island->world.pair_count && !pressed; p++) {
+        const imp_pair *other = &island->world.pairs[p];
+        imp_meeting m;
+        if (!is_of(other, pair->body1) || imp_same_bodies(other, pair) || !imp_scene_meets(island, p, &m)) continue;
+        imp_scene_press(island, &m);
+        pressed = m.acceleration < 0 && imp_scene_dies_out(island, &m, m.velocity);
+    }
+    *load = alone;
+    return pressed;
 }
 
 /* A corner that was held goes on as part of the face, and has not lifted off. */
@@ -248,6 +274,7 @@ static impact_status lay(imp_island *island, int first, int end, bool lay_before
         if (tips_over(&lying, &side)) let_rise(island, first, end, &lying, side), *any = true;
         return IMPACT_OK;
     }
+    if (is_pressed_elsewhere_too(island, &world->pairs[first], &lying)) return IMPACT_OK;
     for (int p = first; p < end; p++) lie(island, p);
     island->motion.resting[body] = false;
     *any = true;
