@@ -138,6 +138,13 @@ static void part_start(const moreau *m)
     }
 }
 
+/* What the contacts' own space may take from a start: a few steps of Newton's, or as many paths as that is. */
+static double work_of_start(int count)
+{
+    enum { STEPS = 8 };
+    return fmax(IMP_ENCOUNTER_WORK, STEPS * 2.0 / 3 * pow(3.0 * count, 3));
+}
+
 /* ---- compression ---- */
 
 /* Works by impulses: p . (u + u')/2, normal and tangential. */
@@ -249,7 +256,7 @@ static bool compress(moreau *m)
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
                                       .last_u = m->last_u,
-                                      .enough = starts ? IMP_ENCOUNTER_ENOUGH : 0};
+                                      .work = starts ? work_of_start(n) : 0};
     imp_cone_outcome o;
     if (!find_answer(m, problem, m->group->p, m->u, &o)) return false;
     if (o.chosen) share(m, &problem, m->group->p);
@@ -353,7 +360,7 @@ static bool restore(moreau *m)
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
                                       .last_u = m->last_u,
-                                      .enough = starts ? IMP_ENCOUNTER_ENOUGH : 0};
+                                      .work = starts ? work_of_start(2 * n) : 0};
     imp_cone_outcome o;
     if (!find_answer(m, problem, m->r, m->v, &o)) return false;
     clean(n, m->modes, m->modes + n, m->v);

@@ -11,7 +11,8 @@ static bool falls(const imp_segment *s) { return s->kind == IMP_SEGMENT_FREE || 
 static bool fall_alike(const imp_search *s)
 {
     const imp_segment *a = s->segment[0], *b = s->segment[1];
-    return imp_segment_is_parabola(a) && imp_segment_is_parabola(b) && imp_search_same(a->acceleration, b->acceleration);
+    return imp_segment_is_parabola(a) && imp_segment_is_parabola(b) &&
+           imp_search_same(a->acceleration, b->acceleration);
 }
 
 static qvec3 centres_apart(const imp_search *s, double t, qvec3 *velocity)
@@ -109,8 +110,8 @@ static imp_found meet_plane(const imp_search *s, double from)
 {
     qvec3 w;
     const qvec3 d = centres_apart(s, from, &w), n = plane_normal(s);
-    const double end = imp_search_end(s), rate = qvec3_dot(n, w),
-                 pull = qvec3_dot(n, s->segment[0]->acceleration), gap = qvec3_dot(n, d) - s->body[0]->radius;
+    const double end = imp_search_end(s), rate = qvec3_dot(n, w), pull = qvec3_dot(n, s->segment[0]->acceleration),
+                 gap = qvec3_dot(n, d) - s->body[0]->radius;
     const double slack = IMP_TOUCHING * imp_place_scale(s->body[0], qvec3_add(s->segment[1]->start.x, d), s->body[1],
                                                         s->segment[1]->start.x, n);
     const bool touches = gap <= slack, still = rate >= -s->still && rate <= s->still;

@@ -17,8 +17,9 @@ static void see_motion(const imp_search *s, double t, imp_sight *l)
         const imp_segment *segment = s->segment[k];
         l->state[k] = imp_segment_at(segment, s->body[k], t);
         l->bounds[k] = imp_segment_bounds(segment, s->body[k], t, l->window);
-        l->spin[k] = imp_search_turns(s, k) ? imp_segment_spin(segment, s->body[k], &l->state[k], &l->bounds[k], l->window)
-                                 : (imp_spin){.most = 0};
+        l->spin[k] = imp_search_turns(s, k)
+                         ? imp_segment_spin(segment, s->body[k], &l->state[k], &l->bounds[k], l->window)
+                         : (imp_spin){.most = 0};
         if (imp_segment_is_parabola(segment)) continue;
         l->parabola = false;
         /* damping's acceleration keeps its direction and only falls: it bends by no more than it does now, and by
@@ -29,7 +30,8 @@ static void see_motion(const imp_search *s, double t, imp_sight *l)
 }
 
 /* veer: the rate of `towards`, held; most: |veer| T is no more. */
-static void add_turning(imp_psi *p, const imp_search *s, int k, const imp_sight *l, qvec3 towards, qvec3 veer, double most)
+static void add_turning(imp_psi *p, const imp_search *s, int k, const imp_sight *l, qvec3 towards, qvec3 veer,
+                        double most)
 {
     const bool veers = !imp_search_same(veer, (qvec3){0, 0, 0}), spins = imp_search_turns(s, k);
     if (!spins && !veers) return;
@@ -173,7 +175,8 @@ double imp_sight_step(const imp_search *s, const imp_sight *l, double gap)
 {
     const qvec3 n = l->contact.normal;
     const double speed = qvec3_dot(n, qvec3_sub(l->state[0].v, l->state[1].v));
-    if (l->parabola && !imp_search_turns(s, 0) && !imp_search_turns(s, 1)) return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
+    if (l->parabola && !imp_search_turns(s, 0) && !imp_search_turns(s, 1))
+        return impact_flight_fall_time(gap, speed, qvec3_dot(n, l->pull));
     const double step = step_along(s, l, gap);
     return imp_sight_creeps(s, l, gap, step) ? fmax(step, step_veering(s, l, gap)) : step;
 }
@@ -210,6 +213,7 @@ double imp_sight_most_bend(const imp_search *s, const imp_sight *l, double windo
     near.window = fmin(l->window, window);
     double bend = fmax(0, bend_of(s, &near, l->contact.normal));
     for (int k = 0; k < 2; k++)
-        if (imp_search_turns(s, k)) bend += s->body[k]->radius * (l->spin[k].most * l->spin[k].most + l->spin[k].second);
+        if (imp_search_turns(s, k))
+            bend += s->body[k]->radius * (l->spin[k].most * l->spin[k].most + l->spin[k].second);
     return bend;
 }

@@ -213,14 +213,16 @@ static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
 {
     for (int p = 0; p < island->world.pair_count; p++) {
         const imp_pair *other = &island->world.pairs[p];
-        if (is_of(other, pair->body1) && !imp_same_bodies(other, pair) && (imp_is_held(other) || imp_scene_point_stays(island, p)))
+        if (is_of(other, pair->body1) && !imp_same_bodies(other, pair) &&
+            (imp_is_held(other) || imp_scene_point_stays(island, p)))
             return true;
     }
     return false;
 }
 
-/* Whether another body will press on it: where the friction of its glide brakes it against one that touches. Of two that
- * go on as they do under their loads alone none knows, and each bounce, lower than what touches, would be another. */
+/* Whether another body will press on it: where the friction of its glide brakes it against one that touches. Of two
+ * that go on as they do under their loads alone none knows, and each bounce, lower than what touches, would be another.
+ */
 static bool is_pressed_elsewhere_too(imp_island *island, const imp_pair *pair, const imp_lying *lying)
 {
     double rate[IMP_FACE_STATE], moment;
