@@ -15,7 +15,7 @@
 
 /* ---- room ---- */
 
-enum { SQUARES = 3, VECTORS = 15, INDICES = 6, UNKNOWNS_MOST = 7 };
+enum { SQUARES = 3, VECTORS = 16, INDICES = 6, UNKNOWNS_MOST = 7 };
 
 /* Every contact is two lobes at most. */
 static bool reserve_unknowns(imp_cone_workspace *workspace, int contacts, int unknowns)
@@ -68,7 +68,7 @@ static imp_cone_system lay_out(const imp_cone_problem *problem, imp_cone_workspa
     imp_cone_system s = {.problem = problem};
     s.a = next_part(&block, n * n), s.matrix = next_part(&block, n * n), s.spare = next_part(&block, n * n);
     double **vectors[VECTORS] = {&s.scale, &s.b, &s.r, &s.own,  &s.scratch, &s.z,       &s.trial, &s.step,
-                                 &s.value, &s.x, &s.u, &s.rate, &s.kept,    &s.tangent, &s.best};
+                                 &s.value, &s.x, &s.u, &s.rate, &s.kept,    &s.tangent, &s.best, &s.lift};
     for (int k = 0; k < VECTORS; k++) *vectors[k] = next_part(&block, n);
     int **indices[] = {&s.rows, &s.columns, &s.row, &s.order, &s.tied, &s.start};
     for (int k = 0; k < INDICES; k++) *indices[k] = workspace->indices + (size_t)k * n;
@@ -406,6 +406,19 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
     }
 }
 
+/* The path on which friction sets in, and at last sweeps and Newton's steps. */
+static void look_on(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
+{
+    enum { STEPS = 20 };
+    const double before = outcome->residual;
+    imp_cone_kindle(system);
+    polish(system, true, STEPS, r, u, outcome);
+    if (outcome->residual < before) outcome->stage = IMP_CONE_KINDLED;
+    memset(system->tangent, 0, 3 * (size_t)system->problem->count * sizeof *system->tangent);
+    if (!is_exact(system->problem, r, outcome)) wander(system, system->tangent, r, u, outcome);
+    outcome->status = status_of(outcome);
+}
+
 static imp_cone_mode mode_of(double friction, double torsional, const double *r)
 {
     if (!(r[0] > 0)) return IMP_CONE_OPEN;
@@ -439,9 +452,7 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
         const imp_cone_system spent = system; /* by the question of whether there is an answer */
         system = system_of(problem, workspace);
         system.factorings = spent.factorings, system.steps = spent.steps, system.work = spent.work;
-        memset(system.tangent, 0, 3 * (size_t)problem->count * sizeof *system.tangent);
-        wander(&system, system.tangent, r, u, &outcome);
-        outcome.status = status_of(&outcome);
+        look_on(&system, r, u, &outcome);
     }
     for (int c = 0; modes && c < problem->count; c++)
         modes[c] = mode_of(problem->friction[c], problem->lengths ? problem->lengths[c].torsional : 0, &r[width * c]);

@@ -74,7 +74,8 @@ typedef enum imp_cone_stage {
     IMP_CONE_PATH,  /* the central path */
     IMP_CONE_ARC,   /* the central path by arc length, round folds */
     IMP_CONE_EASED, /* by way of W + alpha 1, alpha to 0 */
-    IMP_CONE_SWEPT  /* contact by contact */
+    IMP_CONE_SWEPT,  /* contact by contact */
+    IMP_CONE_KINDLED /* the path on which friction sets in */
 } imp_cone_stage;
 
 /* The proof: with R = max |r_c|, Q = max |q_c| over the contacts and s = R/Q, the largest over the contacts of

@@ -60,6 +60,14 @@ static cone_spectrum spectrum_of(const double *z, int dimension, double e)
     return s;
 }
 
+static double theta_of(const imp_cone_system *system, double e) { return system->kindles ? 1 - e : 1; }
+
+/* y_n - theta |y_t|: of y_n -/+ |y_t|, or of their rates. */
+static double slip_set_apart(double theta, double less, double more)
+{
+    return 0.5 * ((1 + theta) * less + (1 - theta) * more);
+}
+
 /* The two s of tied lobes, or their rates, to s1 + s2 and s2 - s1. */
 static void tie(const imp_cone_system *system, int c, double *u)
 {
@@ -72,11 +80,12 @@ static void tie(const imp_cone_system *system, int c, double *u)
 
 void imp_cone_values(const imp_cone_system *system, const double *z, double e, double *x, double *u)
 {
+    const double theta = theta_of(system, e);
     for (int c = 0; c < system->count; c++) {
         const int i = system->start[c], dimension = system->start[c + 1] - i;
         const cone_spectrum s = spectrum_of(&z[i], dimension, e);
         x[i] = 0.5 * (s.f[0] + s.f[1]);
-        u[i] = s.g[1];
+        u[i] = slip_set_apart(theta, s.g[1], s.g[0]);
         for (int k = 1; k < dimension; k++) {
             x[i + k] = s.chord * z[i + k];
             u[i + k] = -s.counter * z[i + k];
@@ -134,23 +143,25 @@ double imp_cone_defect(imp_cone_system *system, const double *z, double e, doubl
     else
         for (int i = 0; i < n; i++)
             value[i] = imp_linear_dot(&system->a[(size_t)i * (size_t)n], system->x, n) + system->b[i];
+    const double left = 1 - theta_of(system, e);
     for (int i = 0; i < n; i++) {
         value[i] = system->u[i] - value[i];
+        if (left != 0) value[i] -= left * system->lift[i];
         square += value[i] * value[i];
     }
     return sqrt(square);
 }
 
 /* X' and -U' of one lobe. */
-static void derivatives(const cone_spectrum *s, int dimension, double rise[4][4], double fall[4][4])
+static void derivatives(const cone_spectrum *s, double theta, int dimension, double rise[4][4], double fall[4][4])
 {
     const double along = 0.5 * (s->rise[0] + s->rise[1]), skew = 0.5 * (s->rise[1] - s->rise[0]);
     const double back = 0.5 * (s->fall[0] + s->fall[1]), turn = 0.5 * (s->fall[1] - s->fall[0]);
     rise[0][0] = along;
-    fall[0][0] = s->fall[1];
+    fall[0][0] = slip_set_apart(theta, s->fall[1], s->fall[0]);
     for (int k = 0; k < dimension - 1; k++) {
         rise[0][k + 1] = rise[k + 1][0] = skew * s->dir[k];
-        fall[0][k + 1] = s->fall[1] * s->dir[k];
+        fall[0][k + 1] = slip_set_apart(theta, s->fall[1], -s->fall[0]) * s->dir[k];
         fall[k + 1][0] = turn * s->dir[k];
         for (int l = 0; l < dimension - 1; l++) {
             const double ray = s->dir[k] * s->dir[l];
@@ -190,7 +201,7 @@ void imp_cone_factor(imp_cone_system *system, const double *z, double e)
         const int i = system->start[c], dimension = system->start[c + 1] - i;
         const cone_spectrum s = spectrum_of(&z[i], dimension, e);
         double rise[4][4], fall[4][4];
-        derivatives(&s, dimension, rise, fall);
+        derivatives(&s, theta_of(system, e), dimension, rise, fall);
         if (dimension == 3)
             fill_columns(system, i, 3, rise, fall); /* the same, unrolled */
         else
@@ -234,17 +245,21 @@ void imp_cone_back(imp_cone_system *system, double *right)
 void imp_cone_drift(imp_cone_system *system, const double *z, double e, double *rate)
 {
     const int n = system->n;
+    const double theta = theta_of(system, e), kindling = system->kindles ? -0.5 / e : 0; /* dtheta/d(e²) */
     double *x = system->x, *u = system->u; /* d/d(e²) of both: df/d(e²) = 1/root */
     for (int c = 0; c < system->count; c++) {
         const int i = system->start[c], dimension = system->start[c + 1] - i;
         const cone_spectrum s = spectrum_of(&z[i], dimension, e);
         const double low = 1 / s.root[0], high = 1 / s.root[1];
         x[i] = 0.5 * (low + high);
-        u[i] = high;
+        u[i] = slip_set_apart(theta, high, low) - 0.5 * kindling * (s.g[0] - s.g[1]);
         for (int k = 1; k < dimension; k++) x[i + k] = u[i + k] = 0.5 * (high - low) * s.dir[k - 1];
         tie(system, c, u);
     }
-    for (int i = 0; i < n; i++) rate[i] = u[i] - imp_linear_dot(&system->a[(size_t)i * (size_t)n], x, n);
+    for (int i = 0; i < n; i++) {
+        rate[i] = u[i] - imp_linear_dot(&system->a[(size_t)i * (size_t)n], x, n);
+        if (system->kindles) rate[i] += kindling * system->lift[i];
+    }
 }
 
 /* Along the step, halved until |F| falls; false where it does not. */

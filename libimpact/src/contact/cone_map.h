@@ -15,6 +15,18 @@
  *     x_n = (x1_n + x2_n)/2       u_n = s1 + s2       x1_n - x2_n = s1 - s2
  *
  * At e = 0 the last says both are equal, as s_i > 0 only where x_i = 0; and it never loses its rank.
+ *
+ * That path may begin, at e = 1, where it does not lead to e = 0: with friction F has several zeros there. On the path
+ * where friction sets in, theta = 1 - e, from a b that z = 0 solves,
+ *
+ *     F(z) = y - theta |y_t| n - A X(z) - b(e),   b(e) = b + (1 - theta) l,   l: F(0) = 0 at e = 1
+ *
+ * there is but that zero: without |y_t| the problem is monotone. Where a motion takes the contacts apart, so that
+ * x . A x >= c |x|² over the cones (encounter_wedge.c), x is bounded all along the path:
+ *
+ *     x . y = count e² = x . A x + x . b(e) + theta sum x_n |y_t|   =>   c |x|² <= count + |x| (|b| + |l|)
+ *
+ * and for almost every q the path is a smooth curve (Chow, Mallet-Paret & Yorke 1978): it ends at e = 0, in an answer.
  */
 #ifndef IMP_CONE_MAP_H
 #define IMP_CONE_MAP_H
@@ -28,6 +40,7 @@ typedef struct imp_cone_system {
     double d, size;  /* the scales, so that no units remain: the mean of W's diagonal; Q, the largest |q_c| */
     double eased;    /* alpha, what A's diagonal has too much */
     bool by_rank;    /* small e: what A leaves open is told by -U' alone, of size e^2, which elimination may lose */
+    bool kindles;    /* F is that of the path on which friction sets in */
     bool exact;      /* F is asked of the problem itself, in twice the precision */
     int count, n;    /* lobes, unknowns */
     int *start;      /* count + 1: each lobe's first unknown, its z_n; it has one to four */
@@ -38,7 +51,7 @@ typedef struct imp_cone_system {
     double *r, *own; /* of the problem: scratch */
     double *matrix, *spare, *scratch;
     int *rows, *columns;
-    double *z, *trial, *step, *value, *x, *u, *rate, *kept, *tangent, *best; /* n each */
+    double *z, *trial, *step, *value, *x, *u, *rate, *kept, *tangent, *best, *lift; /* n each */
     int factorings, steps;
     double work;    /* multiplications of the factorings */
     int sign, rank; /* of the matrix taken apart last: of its determinant, 0 if singular */
@@ -78,6 +91,9 @@ imp_cone_stage imp_cone_follow(imp_cone_system *system);
 /* The same by way of A + alpha 1: so much of it that contacts hardly feel each other down to e, there alpha to 0, then
  * on; false where that fails. */
 bool imp_cone_follow_eased(imp_cone_system *system, double e);
+
+/* Follows the path on which friction sets in; z is as near the answer as it led. */
+void imp_cone_kindle(imp_cone_system *system);
 
 /* Three times so many times over all contacts from r on, one after another; r[3 count] of points that do not resist
  * turning. */

@@ -123,14 +123,13 @@ static bool correct_arc(imp_cone_system *system, const cone_arc *arc, double *lo
 }
 
 /* On by arc length to the end of the path, as far as the steps do not creep. */
-static void turn_round(imp_cone_system *system, double e)
+static void turn_round(imp_cone_system *system, double e, int most)
 {
-    enum { MOST_FACTORINGS = 200 };
     const int before = system->factorings;
     const double widest = 1; /* of a contact's size */
     cone_arc arc = {.log_e = log(e)};
     double length = 0.1;
-    while (arc.log_e > log(IMP_CONE_PATH_END) && arc.log_e < 1 && system->factorings - before < MOST_FACTORINGS &&
+    while (arc.log_e > log(IMP_CONE_PATH_END) && arc.log_e < 1 && system->factorings - before < most &&
            !imp_cone_is_spent(system)) {
         if (!find_tangent(system, &arc)) break;
         int used = 0;
@@ -202,9 +201,10 @@ static bool begin_path(imp_cone_system *system)
 /* Down from e, by arc length if there is no other way. */
 static imp_cone_stage go_on(imp_cone_system *system, double e)
 {
+    enum { TURNING = 200, KINDLED = 2000 };
     const double last = descend(system, e, system->by_rank ? IMP_CONE_RANK_END : IMP_CONE_PATH_END);
     if (last <= IMP_CONE_ARC_LEAST) return IMP_CONE_PATH;
-    turn_round(system, last);
+    turn_round(system, last, system->kindles ? KINDLED : TURNING);
     return IMP_CONE_ARC;
 }
 
@@ -220,4 +220,13 @@ bool imp_cone_follow_eased(imp_cone_system *system, double e)
     ease(system, 0);
     if (found) (void)go_on(system, e);
     return found;
+}
+
+void imp_cone_kindle(imp_cone_system *system)
+{
+    memset(system->z, 0, sizeof *system->z * (size_t)system->n);
+    (void)imp_cone_defect(system, system->z, 1, system->lift);
+    system->kindles = true;
+    (void)go_on(system, 1);
+    system->kindles = false;
 }
