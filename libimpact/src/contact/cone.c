@@ -68,7 +68,7 @@ static imp_cone_system lay_out(const imp_cone_problem *problem, imp_cone_workspa
     imp_cone_system s = {.problem = problem};
     s.a = next_part(&block, n * n), s.matrix = next_part(&block, n * n), s.spare = next_part(&block, n * n);
     double **vectors[VECTORS] = {&s.scale, &s.b, &s.r, &s.own,  &s.scratch, &s.z,       &s.trial, &s.step,
-                                 &s.value, &s.x, &s.u, &s.rate, &s.kept,    &s.tangent, &s.best, &s.lift};
+                                 &s.value, &s.x, &s.u, &s.rate, &s.kept,    &s.tangent, &s.best,  &s.lift};
     for (int k = 0; k < VECTORS; k++) *vectors[k] = next_part(&block, n);
     int **indices[] = {&s.rows, &s.columns, &s.row, &s.order, &s.tied, &s.start};
     for (int k = 0; k < INDICES; k++) *indices[k] = workspace->indices + (size_t)k * n;

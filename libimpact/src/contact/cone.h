@@ -70,10 +70,10 @@ typedef enum imp_cone_status {
 typedef enum imp_cone_mode { IMP_CONE_OPEN, IMP_CONE_STICKS, IMP_CONE_SLIDES } imp_cone_mode;
 
 typedef enum imp_cone_stage {
-    IMP_CONE_LAST,  /* the modes of last time */
-    IMP_CONE_PATH,  /* the central path */
-    IMP_CONE_ARC,   /* the central path by arc length, round folds */
-    IMP_CONE_EASED, /* by way of W + alpha 1, alpha to 0 */
+    IMP_CONE_LAST,   /* the modes of last time */
+    IMP_CONE_PATH,   /* the central path */
+    IMP_CONE_ARC,    /* the central path by arc length, round folds */
+    IMP_CONE_EASED,  /* by way of W + alpha 1, alpha to 0 */
     IMP_CONE_SWEPT,  /* contact by contact */
     IMP_CONE_KINDLED /* the path on which friction sets in */
 } imp_cone_stage;

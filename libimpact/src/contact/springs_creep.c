@@ -387,12 +387,22 @@ static void lay_out_creep(creep *k, double *room)
     for (int i = 0; i < 12; i++) *parts[i] = room, room += sizes[i];
 }
 
+/* The error that a step may have: u, as rounded as it is, has slip that creeps off its balance by that much, and no
+ * nodes resolve how it comes back. The rule damps it. */
+static double creep_error_taken(const creep *k)
+{
+    double taken = IMP_CREEP_ERROR;
+    for (int a = 0; a < k->count; a++) taken = fmax(taken, k->s->springs[k->which[a]].rounding);
+    return taken;
+}
+
 /* Nodes for the longest step up to h that settles; false: none does that is much longer than `least`. */
 static bool find_creep_step(creep *k, double h, double least)
 {
+    const double taken = creep_error_taken(k);
     for (k->h = h; k->h > IMP_CREEP_WORTH * least; k->h *= 0.25) {
         begin_nodes(k);
-        if (settle_nodes(k) && find_creep_error(k) <= IMP_CREEP_ERROR) return true;
+        if (settle_nodes(k) && find_creep_error(k) <= taken) return true;
     }
     return false;
 }
