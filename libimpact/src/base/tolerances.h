@@ -540,6 +540,9 @@
 #define IMP_SPRINGS_ASKED_LAST 10
 /* Steps that look for a motion out of a wedge: one of a hundredth of the contacts' own mobility is found. */
 #define IMP_WEDGE_STEPS 20000
+/* The same before springs that have taken long are given up as wedged, a tenth of their time: of a group that comes
+ * loose 60000 do not find the motion, of a thousandth of the mobility (seed 777, number 1829, turned). */
+#define IMP_WEDGE_STEPS_LAST 200000
 /* Of the largest |G^T r|^2, and of its rates: sums' rounding over as many steps, 2^-52 each, that goes and comes. */
 #define IMP_WEDGE_BALANCED 0x1p-44
 /* Of the largest: what so many steps bring it under where it is none. */

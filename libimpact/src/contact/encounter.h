@@ -124,6 +124,7 @@ typedef struct imp_wedge_question {
     const double *w;        /* (3 count)^2 */
     const double *friction; /* count */
     const bool *taken;      /* count: which take part; NULL: all */
+    long steps;             /* of the search; 0: IMP_WEDGE_STEPS */
 } imp_wedge_question;
 
 /* The least |G^T r|^2 that was found of pressures with sum r_n = 1, over the largest of one: INFINITY where a motion

@@ -64,7 +64,7 @@ static bool find_answer(moreau *m, imp_cone_problem problem, double *r, double *
 {
     *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
     if (o->status == IMP_CONE_UNSETTLED) {
-        const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL};
+        const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL, 0};
         const double left = imp_encounter_wedged(&question, m->room);
         if (left <= IMP_WEDGE_BALANCED) return false;
         problem.effort = IMP_CONE_WANDERS;
@@ -391,7 +391,7 @@ impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_wo
     const bool compressed = compress(&m);
     if (compressed && !m.strikes) return IMPACT_SEPARATING;
     if (compressed && (newton || !restores(group) || restore(&m))) return IMPACT_OK;
-    const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
+    const imp_wedge_question question = {group->count, group->w, m.friction, NULL, 0};
     group->wedged = imp_encounter_wedged(&question, m.r) <= IMP_WEDGE_TAKEN;
     return IMPACT_EUNSETTLED;
 }

@@ -86,7 +86,8 @@ double imp_encounter_wedged(const imp_wedge_question *question, double *room)
     go_towards(&g, first, normal, 1);
     g.most = entry_of(&g, 3 * first, 3 * first);
     double square = 0;
-    for (int k = 0; k < IMP_WEDGE_STEPS && step_on(&g, &square); k++) {
+    const long steps = question->steps > 0 ? question->steps : IMP_WEDGE_STEPS;
+    for (long k = 0; k < steps && step_on(&g, &square); k++) {
     }
     return square / g.most;
 }

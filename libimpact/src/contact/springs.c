@@ -107,7 +107,7 @@ static void report(const imp_springs *s, const units *unit, imp_group *group)
 }
 
 /* imp_encounter_wedged of the contacts that were pressed; room[6 count]: then with the pressures that it found. */
-static double find_wedge(imp_springs *s, double *room)
+static double find_wedge(imp_springs *s, long steps, double *room)
 {
     double *friction = s->factor + 6 * s->count;
     bool *taken = (bool *)(friction + s->count);
@@ -115,7 +115,7 @@ static double find_wedge(imp_springs *s, double *room)
         friction[i] = s->springs[i].friction;
         taken[i] = s->springs[i].p[0] > 0 || imp_springs_presses(&s->springs[i]);
     }
-    const imp_wedge_question question = {s->count, s->w, friction, taken};
+    const imp_wedge_question question = {s->count, s->w, friction, taken, steps};
     return imp_encounter_wedged(&question, room);
 }
 
@@ -142,7 +142,7 @@ static bool is_wedged(imp_springs *s, double *next)
     if (spent < *next) return false;
     const bool last = spent >= IMP_SPRINGS_ASKED_LAST;
     *next = last ? 2 * spent : fmin(2 * spent, IMP_SPRINGS_ASKED_LAST);
-    const double left = find_wedge(s, s->factor);
+    const double left = find_wedge(s, last ? IMP_WEDGE_STEPS_LAST : IMP_WEDGE_STEPS, s->factor);
     return last ? left <= IMP_WEDGE_TAKEN : left <= IMP_WEDGE_BALANCED && have_stuck(s, s->factor, spent);
 }
 

@@ -23,7 +23,7 @@ static double wedged(double angle, double friction, double mass, const bool *tak
             w[i * WIDTH + j] = (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / mass;
         }
     const double frictions[WALLS] = {friction, friction};
-    const imp_wedge_question question = {WALLS, w, frictions, taken};
+    const imp_wedge_question question = {WALLS, w, frictions, taken, 0};
     return imp_encounter_wedged(&question, room);
 }
 
