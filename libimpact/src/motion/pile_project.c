@@ -110,7 +110,9 @@ impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_s
 
 impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states)
 {
-    enum { PASSES = 8 }; /* places turn: each leaves the square of what the one before did */
+    /* places turn: each leaves the square of what the one before did; about a rim, where two normals take turns, half
+     */
+    enum { PASSES = 40 };
     const double rounding = IMP_TOUCHING * imp_pile_smallest(world), near = pile->tolerance * imp_pile_smallest(world);
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
     imp_pile_contacts_mark(&pile->touching, world, imp_pile_held(pile));

@@ -161,6 +161,8 @@ impact_status imp_island_step(imp_island *island)
     const double loss = imp_island_stepped_loss(island, island->states, &motion->works),
                  gain = island->impact_loss - loss;
     if (!(gain <= gain_allowed(island, island->before))) return refuse_gain(scene, motion->stride.t, gain);
+    /* what strikes where the step begins has struck in its segments */
+    memcpy(island->before, island->pile->from, sizeof *island->before * (size_t)island->world.body_count);
     island->impact_loss = loss;
     island->end = (imp_end){IMP_END_TIME, 0};
     scene->pile_error += result.error;
