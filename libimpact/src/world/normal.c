@@ -12,25 +12,27 @@ typedef struct face_list {
     imp_form form; /* of polytopes, in the shape's axes */
 } face_list;
 
-static face_list faces_of(const impact_shape *shape)
+static int face_count(const impact_shape *shape)
 {
-    face_list list = {.shape = shape};
     switch (shape->kind) {
     case IMPACT_BOX:
-    case IMPACT_POLYHEDRON:
-        list.count = imp_core_hull(shape)->face_count;
-        imp_form_make(shape, 1, quat_identity(), &list.form);
-        break;
-    case IMPACT_CYLINDER: list.count = 2; break;
-    case IMPACT_CONE: list.count = 1; break;
-    default: break;
+    case IMPACT_POLYHEDRON: return imp_core_hull(shape)->face_count;
+    case IMPACT_CYLINDER: return 2;
+    case IMPACT_CONE: return 1;
+    default: return 0;
     }
-    return list;
 }
 
 static bool is_flat_sided(const impact_shape *shape)
 {
     return shape->kind != IMPACT_CYLINDER && shape->kind != IMPACT_CONE;
+}
+
+static face_list faces_of(const impact_shape *shape)
+{
+    face_list list = {.shape = shape, .count = face_count(shape)};
+    if (list.count > 0 && is_flat_sided(shape)) imp_form_make(shape, 1, quat_identity(), &list.form);
+    return list;
 }
 
 /* Outward, in the shape's axes. */
@@ -187,6 +189,7 @@ static void consider(settling *s, qvec3 n, impact_contact *contact)
 static void consider_faces(settling *s, int k, impact_contact *contact)
 {
     const imp_body *own = s->m->body[k];
+    if (face_count(&own->shape) == 0) return;
     const imp_state *state = s->m->state[k], *others = s->m->state[1 - k];
     const face_list faces = faces_of(&own->shape);
     const quat axes = imp_shape_axes(own, state);
