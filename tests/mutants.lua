@@ -72,7 +72,7 @@ local rooms = {
   { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases", "impact_random_scenes" } },
   { "^libimpact/src/contact/held%.c$", { "impact_held", "impact_cases", "lua_faces_turned" } },
   { "^libimpact/src/contact/held", { "impact_held_still", "impact_held_modes", "impact_held", "impact_cases" } },
-  { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning", "impact_cone_bodies" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning", "impact_rolling", "impact_scene_answers" } },
+  { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning", "impact_cone_bodies", "impact_encounter_random" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning", "impact_rolling", "impact_scene_answers" } },
   { "^libimpact/src/contact/encounter", { "impact_encounter", "impact_encounter_limits", "impact_encounter_known", "impact_encounter_wedge",
     "impact_encounter_newton", "impact_encounter_pressed", "impact_encounter_receipt", "impact_encounter_random" } },
   { "^libimpact/src/contact/springs", { "impact_springs", "impact_encounter_known", "impact_encounter", "impact_encounter_random", "impact_encounter_incipient" } },
