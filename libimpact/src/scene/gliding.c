@@ -220,16 +220,28 @@ static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
     return false;
 }
 
+/* The force of its glide and where it acts, from the centre of mass; the moment there, about the normal. From rest it
+ * goes the way it is pulled. */
+static bool force_of_glide(const imp_lying *lying, qvec3 *force, qvec3 *arm, double *moment)
+{
+    double rate[IMP_FACE_STATE], y[IMP_FACE_STATE];
+    imp_face_balance balance = {.p = {0}};
+    memcpy(y, lying->start, sizeof y);
+    if (!(imp_face_speed(&lying->motion, y) > 0))
+        memcpy(&y[IMP_FACE_V], lying->motion.load.pull, sizeof lying->motion.load.pull);
+    if (!imp_face_rates(&lying->motion, y, rate, &balance)) return false;
+    imp_lying_force(lying, y, &balance, force, arm, moment);
+    return true;
+}
+
 /* Whether another body will press on it: where the friction of its glide brakes it against one that touches. Of two
  * that go on as they do under their loads alone none knows, and each bounce, lower than what touches, would be another.
  */
 static bool is_pressed_elsewhere_too(imp_island *island, const imp_pair *pair, const imp_lying *lying)
 {
-    double rate[IMP_FACE_STATE], moment;
-    imp_face_balance balance = {.p = {0}};
+    double moment;
     qvec3 force, arm;
-    if (!imp_face_rates(&lying->motion, lying->start, rate, &balance)) return false;
-    imp_lying_force(lying, lying->start, &balance, &force, &arm, &moment);
+    if (!force_of_glide(lying, &force, &arm, &moment)) return false;
     imp_load *load = &island->motion.loads[pair->body1];
     const imp_load alone = *load;
     load->force = qvec3_add(alone.force, force);
@@ -422,15 +434,9 @@ bool imp_island_glide_force(imp_island *island, double t, const imp_state *state
 {
     const imp_pair *pair = imp_island_lying(island);
     imp_lying lying;
-    imp_face_balance balance = {.p = {0}};
-    double rate[IMP_FACE_STATE], moment;
+    double moment;
     qvec3 force, arm;
-    if (!find_lying(island, pair, t, states, 0, &lying)) return false;
-    double *y = lying.start;
-    if (!(imp_face_speed(&lying.motion, y) > 0))
-        memcpy(&y[IMP_FACE_V], lying.motion.load.pull, sizeof lying.motion.load.pull);
-    if (!imp_face_rates(&lying.motion, y, rate, &balance)) return false;
-    imp_lying_force(&lying, y, &balance, &force, &arm, &moment);
+    if (!find_lying(island, pair, t, states, 0, &lying) || !force_of_glide(&lying, &force, &arm, &moment)) return false;
     *held = (impact_held){.body1 = island->world.bodies[pair->body1].index,
                           .body2 = island->world.bodies[pair->body2].index,
                           .mode = IMPACT_HOLD_SLIP,
