@@ -122,32 +122,50 @@ impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
     return IMPACT_OK;
 }
 
-static bool list_found(imp_grid *grid, int entry)
+static bool reserve_found(imp_grid *grid, int more)
 {
-    if (grid->found_count == grid->found_room) {
-        int *found = imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + 1, sizeof *found);
-        if (!found) return false;
-        grid->found = found;
-    }
-    grid->found[grid->found_count++] = entry;
-    return true;
+    int *found =
+        imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + more, sizeof *found);
+    if (found) grid->found = found;
+    return found;
+}
+
+/* Without a branch: whether it is found is as good as chance. */
+static void look_at(imp_grid *grid, int entry, bool among, const imp_box *box)
+{
+    grid->found[grid->found_count] = entry;
+    grid->found_count += among & imp_boxes_overlap(&grid->entries[entry].box, box);
 }
 
 static bool look_through(imp_grid *grid, int level, const imp_box *box)
 {
-    for (int i = grid->levels[level].first; i >= 0; i = grid->places[i].next)
-        if (imp_boxes_overlap(&grid->entries[i].box, box) && !list_found(grid, i)) return false;
+    if (!reserve_found(grid, grid->levels[level].count)) return false;
+    for (int i = grid->levels[level].first; i >= 0; i = grid->places[i].next) look_at(grid, i, true, box);
     return true;
 }
 
-/* The boxes in one cell; others lie in the same bucket. */
-static bool look_in_cell(imp_grid *grid, int level, uint32_t cell, uint64_t key, const imp_box *box)
+/* Cells of one level whose chains are walked abreast: the next entry of each is fetched while others are looked at. */
+enum { ABREAST = 32 };
+typedef struct cell_walk {
+    int level, count;
+    int at[ABREAST]; /* the entry that each stands at */
+    uint32_t cell[ABREAST];
+} cell_walk;
+
+/* To the end of all chains: the boxes in their cells; others lie in the same buckets. */
+static bool walk_cells(imp_grid *grid, cell_walk *walk, const imp_box *box)
 {
-    const imp_grid_entry *entries = grid->entries;
-    for (int i = *bucket_of(grid, grid->levels[level].exponent, key); i >= 0; i = entries[i].next) {
-        const imp_grid_entry *e = &entries[i];
-        if (!imp_boxes_overlap(&e->box, box) || e->level != level || e->cell != cell) continue;
-        if (!list_found(grid, i)) return false;
+    while (walk->count > 0) {
+        const int count = walk->count;
+        if (!reserve_found(grid, count)) return false;
+        walk->count = 0;
+        for (int k = 0; k < count; k++) {
+            const imp_grid_entry *e = &grid->entries[walk->at[k]];
+            const uint32_t cell = walk->cell[k];
+            look_at(grid, walk->at[k], (e->level == walk->level) & (e->cell == cell), box);
+            walk->at[walk->count] = e->next, walk->cell[walk->count] = cell;
+            walk->count += e->next >= 0;
+        }
     }
     return true;
 }
@@ -163,14 +181,18 @@ static bool look_on_level(imp_grid *grid, int level, const imp_box *box)
         cells *= along <= CELL_MASK ? along : INFINITY; /* no two cells of one query have the same short numbers */
     }
     if (cells > grid->levels[level].count) return look_through(grid, level, box);
+    cell_walk walk = {.level = level};
     for (int64_t x = low[0]; x <= high[0]; x++)
         for (int64_t y = low[1]; y <= high[1]; y++) {
             const uint64_t key = part_of(x, 0) ^ part_of(y, 1);
             for (int64_t z = low[2]; z <= high[2]; z++) {
-                if (!look_in_cell(grid, level, short_cell(x, y, z), key ^ part_of(z, 2), box)) return false;
+                const int first = *bucket_of(grid, grid->levels[level].exponent, key ^ part_of(z, 2));
+                walk.at[walk.count] = first, walk.cell[walk.count] = short_cell(x, y, z);
+                walk.count += first >= 0;
+                if (walk.count == ABREAST && !walk_cells(grid, &walk, box)) return false;
             }
         }
-    return true;
+    return walk_cells(grid, &walk, box);
 }
 
 impact_status imp_grid_query(imp_grid *grid, const imp_box *box)
