@@ -250,6 +250,7 @@ static void displace(const imp_held *held, const imp_world *world, imp_state *st
 void imp_held_close_gaps(imp_held *held, imp_world *world, imp_state *states)
 {
     find_gaps(held, world, states);
+    if (held->count == 1) return;
     imp_system_solve(held, world, states, false);
     displace(held, world, states);
 }
