@@ -129,6 +129,19 @@ static imp_rates flatter_rates(const round_pair *r, int flat, qvec3 n)
         .normal = qvec3_scale(turn, side), .arm1 = flat == 0 ? own : others, .arm2 = flat == 0 ? others : own};
 }
 
+/* Between balls the normal goes with their centres, as their arms do; a plane's stays. */
+static imp_rates ball_rates(const imp_world *world, const imp_pair *pair, qvec3 n, const imp_state *states)
+{
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
+    imp_rates rates = {.normal = {0, 0, 0}};
+    if (b2->shape.kind == IMPACT_PLANE) return rates;
+    const qvec3 v = qvec3_sub(s1->v, velocity_of(b2, s2)), aside = qvec3_axpy(-qvec3_dot(v, n), n, v);
+    rates.normal = qvec3_scale(aside, 1 / qvec3_norm(qvec3_sub(s1->x, s2->x)));
+    rates.arm1 = qvec3_scale(rates.normal, -b1->radius), rates.arm2 = qvec3_scale(rates.normal, b2->radius);
+    return rates;
+}
+
 /* A plane's normal stays. */
 static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const impact_contact *contact,
                              const imp_state *states)
@@ -196,7 +209,9 @@ imp_rates imp_contact_rates(imp_world *world, const imp_pair *pair, imp_bearer b
                             const imp_state *states)
 {
     if (bearer != IMP_BORNE_BY_BOTH) return borne_rates(world, pair, bearer, contact, states);
-    const bool on_plane = world->bodies[pair->body2].shape.kind == IMPACT_PLANE;
+    const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
+    const bool on_plane = b2->shape.kind == IMPACT_PLANE;
+    if (imp_is_ball(b1) && (on_plane || imp_is_ball(b2))) return ball_rates(world, pair, contact->normal, states);
     return on_plane || !imp_pair_has_faces(world, pair) ? round_rates(world, pair, contact, states)
                                                         : imp_feature_rates(world, pair, contact, states);
 }
