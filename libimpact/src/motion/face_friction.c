@@ -3,6 +3,7 @@
 #include "base/tolerances.h"
 
 #include <math.h>
+#include <quat/quat.h>
 #include <string.h>
 
 typedef struct place {
@@ -109,7 +110,7 @@ double imp_least_pressure(const imp_flat_face *face, const double p[3])
 double imp_side_spare(const imp_flat_face *face, int i, const double x[2])
 {
     const place a = at(face->corner[i]), side = less(at(face->corner[(i + 1) % face->count]), a);
-    return cross(side, less(at(x), a)) / hypot(side.x, side.y);
+    return cross(side, less(at(x), a)) / qvec3_norm((qvec3){side.x, side.y, 0});
 }
 
 double imp_face_spare(const imp_flat_face *face, const double x[2])
@@ -353,7 +354,7 @@ static void rub_along_border(const imp_pressed *pressed, const double twist[3], 
 void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub[3][3])
 {
     const double *m = pressed->middle, w = fabs(twist[2]);
-    const double speed = hypot(twist[0] - twist[2] * m[1], twist[1] + twist[2] * m[0]);
+    const double speed = qvec3_norm((qvec3){twist[0] - twist[2] * m[1], twist[1] + twist[2] * m[0], 0});
     memset(rub, 0, 9 * sizeof rub[0][0]);
     if (speed <= IMP_FACE_DISTANT * w * pressed->reach) {
         rub_along_border(pressed, twist, rub);

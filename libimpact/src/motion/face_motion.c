@@ -3,6 +3,7 @@
 #include "base/tolerances.h"
 
 #include <math.h>
+#include <quat/quat.h>
 #include <string.h>
 
 void imp_face_prepare(imp_face_motion *motion)
@@ -102,7 +103,7 @@ bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], i
 
 double imp_face_speed(const imp_face_motion *motion, const double *y)
 {
-    return hypot(hypot(y[IMP_FACE_V], y[IMP_FACE_V + 1]), motion->gyration * y[IMP_FACE_W]);
+    return qvec3_norm((qvec3){y[IMP_FACE_V], y[IMP_FACE_V + 1], motion->gyration * y[IMP_FACE_W]});
 }
 
 bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance)
@@ -204,10 +205,11 @@ static double greatest_rate(const imp_face_motion *motion)
     return motion->friction * motion->load.press + hypot(motion->load.pull[0], motion->load.pull[1]);
 }
 
-/* What each number is measured by: what it still changes by where the motion fades. */
+/* What each number is measured by: what it still changes by where the motion fades, as far as that counts. */
 static void measure(const imp_face_motion *motion, const double *y, double unit[IMP_FACE_STATE])
 {
-    const double speed = imp_face_speed(motion, y), time = speed / greatest_rate(motion);
+    const double least = IMP_FACE_STILL / IMP_FACE_TOLERANCE * motion->still;
+    const double speed = fmax(imp_face_speed(motion, y), least), time = speed / greatest_rate(motion);
     for (int n = 0; n < IMP_FACE_V; n++) unit[n] = speed * time;
     for (int n = IMP_FACE_V; n < IMP_FACE_TIME; n++) unit[n] = speed;
     unit[IMP_FACE_TIME] = time;

@@ -61,6 +61,7 @@ typedef struct imp_face_motion {
     imp_face_loads *loads; /* NULL: it is constant */
     const void *context;
     double longest;      /* s: of a step, under loads that change */
+    double still;        /* the rest speed; 0: none */
     double turning;      /* m size^2/J */
     double aside[2];     /* j/(m size^2) */
     double gyration;     /* k */

@@ -168,28 +168,39 @@ static bool slip_begins(const imp_motion *motion)
     return false;
 }
 
+static bool is_curved(const imp_body *body)
+{
+    return body->shape.kind == IMPACT_SUPERQUADRIC || body->shape.kind == IMPACT_SUPERELLIPSOID;
+}
+
+/* Whether more than a point of a superquadric can lie on the other body. */
+static bool lies_on_flats(const imp_world *world, const imp_pair *pair)
+{
+    return (is_curved(&world->bodies[pair->body1]) || is_curved(&world->bodies[pair->body2])) &&
+           (imp_pair_has_faces(world, pair) || imp_pair_can_lie(world, pair));
+}
+
 /* Whether the explicit method's steps suit what is held. Slip that has just begun has its direction from the last that
- * was found, which long steps lose; what creeps over flat places, pressed by 1e8 times its weight, leaves rates whose
- * rounding one step's errors are taken from; and of faces that land, the corners held drift apart by what few long
- * steps err, 1e-13 m, which is more than corners that are struck together may. */
+ * was found, which long steps lose; and what creeps over flat places of superquadrics, pressed by 1e8 times its weight,
+ * leaves rates whose rounding one step's errors are taken from. */
 static bool suits_explicit(const imp_motion *motion)
 {
-    bool suits = !motion->following && (motion->sliding || motion->held.count > 1);
-    for (int c = 0; c < motion->held.count; c++) {
+    const int count = motion->held.count;
+    bool suits = !motion->following && (motion->sliding || count > 1);
+    for (int c = 0; c < count; c++) {
         const imp_held_contact *contact = &motion->held.contacts[c];
         const imp_pair *pair = &motion->world->pairs[contact->pair];
-        suits = suits && !contact->incipient && !imp_pair_has_faces(motion->world, pair) &&
-                !imp_pair_can_lie(motion->world, pair);
+        suits = suits && !contact->incipient && (count == 1 || !lies_on_flats(motion->world, pair));
     }
     return suits;
 }
 
 /* Whether the surface all but has edges: those of two exponents of 1 are contacts of their own. */
-static bool is_sharp(const impact_shape *s)
+static bool is_sharp(const imp_body *body)
 {
-    const bool bends = s->kind == IMPACT_SUPERQUADRIC || s->kind == IMPACT_SUPERELLIPSOID;
+    const impact_shape *s = &body->shape;
     const int straight = (s->r == 1) + (s->s == 1) + (s->t == 1);
-    return bends && straight < 2 && fmin(s->r, fmin(s->s, s->t)) < IMP_COLLOCATED_EXPONENT;
+    return is_curved(body) && straight < 2 && fmin(s->r, fmin(s->s, s->t)) < IMP_COLLOCATED_EXPONENT;
 }
 
 /* Whether a held body has such: the contact crosses them between two of collocation's nodes. */
@@ -197,8 +208,7 @@ static bool crosses_edges(const imp_motion *motion)
 {
     for (int c = 0; c < motion->held.count; c++) {
         const imp_held_contact *contact = &motion->held.contacts[c];
-        if (is_sharp(&motion->world->bodies[contact->body1].shape) ||
-            is_sharp(&motion->world->bodies[contact->body2].shape))
+        if (is_sharp(&motion->world->bodies[contact->body1]) || is_sharp(&motion->world->bodies[contact->body2]))
             return true;
     }
     return false;

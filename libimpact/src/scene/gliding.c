@@ -135,7 +135,8 @@ static bool find_lying(imp_island *island, const imp_pair *pair, double t, const
 {
     if (island->scene->piles == IMPACT_PILES_STEPS) return false;
     if (!imp_lying_find(&island->motion, pair, t, states, lying)) return false;
-    clear_roundings(lying, slow);
+    lying->motion.still = island->scene->rest_speed / lying->size;
+    clear_roundings(lying, slow / lying->size);
     return true;
 }
 

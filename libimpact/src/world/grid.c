@@ -124,8 +124,7 @@ impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
 
 static bool reserve_found(imp_grid *grid, int more)
 {
-    int *found =
-        imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + more, sizeof *found);
+    int *found = imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + more, sizeof *found);
     if (found) grid->found = found;
     return found;
 }
