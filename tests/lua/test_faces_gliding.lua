@@ -229,3 +229,15 @@ for i = 1, 40 do
   check.equal(drop:run(), "end of time")
   check.equal(drop:receipt(), "ok")
 end
+
+-- A cube that falls comes to rest in a handful of steps: in those of its slide errors count by the rest speed, not by what is left of its
+-- own; what holds a corner or two goes by the explicit method, and its corners stay where they are.
+local cube = impact.scene { gravity = { 0, 0, -G }, duration = 2, bodies = {
+  impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 1 }, impact.body { name = "cube",
+  shape = impact.box { a = .1, b = .1, c = .1 }, mass = 1, friction = .5, restitution = .3, position = { 0, 0, .3 },
+  orientation = quat.from_axis_angle({ 1, .3, .2 }, .4) } } }
+check.equal(cube:run(), "at rest")
+check.equal(cube:usage().pile_steps, 0)
+check.truth(cube:usage().glides <= 85, cube:usage().glides .. " steps of its slide") -- 113 by its own speed
+check.truth(cube:usage().integrator_steps <= 100, cube:usage().integrator_steps .. " steps on corners") -- 517 by CVODE
+check.close(account(cube), 0, 1e-12)
