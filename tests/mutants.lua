@@ -80,6 +80,7 @@ local rooms = {
   { "^libimpact/src/gap/gap_ladder", { "impact_gap", "impact_gap_mixed", "impact_gap_faces", "impact_gap_deep", "impact_gap_receipt" } },
   { "^libimpact/src/gap/gap_simplex", { "impact_gjk", "impact_gap", "impact_gap_mixed" } },
   { "^libimpact/src/gap/flat", { "impact_patch", "lua_faces_turned", "impact_cases" } },
+  { "^libimpact/src/gap/gap_core%.c$", { "impact_gap_faces" } }, { "^libimpact/src/gap/gap_axes", { "impact_gap_faces" } },
   { "^libimpact/src/gap/", { "impact_gap", "impact_gap_mixed", "impact_gap_deep", "impact_gap_receipt", "impact_gjk", "impact_toi" } },
   { "^libimpact/src/motion/toi", { "impact_toi" } },
   { "^libimpact/src/collide/", { "impact_collide", "impact_collide_frame", "impact_collide_ready", "impact_collide_direct",

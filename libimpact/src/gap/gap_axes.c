@@ -21,42 +21,47 @@ static void offer(best_axis *best, int axis, double g, double sign, double x, do
     best->n[0] = sign * x, best->n[1] = sign * y, best->n[2] = sign * z;
 }
 
-static void cross_axes(const imp_core_pair *pair, int i, best_axis *best)
+/* e_i x R_k */
+static double box_cross(const imp_core_pair *pair, int i, int k, double n[3])
 {
     const double *a = pair->core[0].axis, *b = pair->core[1].axis;
     const double(*R)[3] = pair->R;
-    const int j = (i + 1) % 3, l = (i + 2) % 3;
-    for (int k = 0; k < 3; k++) { /* e_i x R_k */
-        const double y = -R[l][k], z = R[j][k], length = sqrt(y * y + z * z);
-        if (!(length > 0)) continue;
-        const int p = (k + 1) % 3, q = (k + 2) % 3;
-        const double at = y * pair->c[j] + z * pair->c[l];
-        const double h = a[j] * fabs(y) + a[l] * fabs(z) + b[p] * fabs(y * R[j][p] + z * R[l][p]) +
-                         b[q] * fabs(y * R[j][q] + z * R[l][q]);
-        double n[3] = {0, 0, 0};
-        n[j] = y / length, n[l] = z / length;
-        offer(best, 6, (fabs(at) - h) / length, at < 0 ? -1 : 1, n[0], n[1], n[2]);
-    }
+    const int j = (i + 1) % 3, l = (i + 2) % 3, p = (k + 1) % 3, q = (k + 2) % 3;
+    const double y = -R[l][k], z = R[j][k], length = sqrt(y * y + z * z);
+    if (!(length > 0)) return -INFINITY;
+    const double at = y * pair->c[j] + z * pair->c[l], part = (at < 0 ? -1 : 1) / length;
+    const double h = a[j] * fabs(y) + a[l] * fabs(z) + b[p] * fabs(y * R[j][p] + z * R[l][p]) +
+                     b[q] * fabs(y * R[j][q] + z * R[l][q]);
+    n[i] = 0, n[j] = part * y, n[l] = part * z;
+    return (fabs(at) - h) / length;
+}
+
+double imp_core_box_axis(const imp_core_pair *pair, int axis, double n[3])
+{
+    const double *a = pair->core[0].axis, *b = pair->core[1].axis, *c = pair->c;
+    const double(*R)[3] = pair->R;
+    const int k = axis % 3;
+    if (axis >= 6) return box_cross(pair, axis / 3 - 2, k, n);
+    const double x[3] = {axis < 3 ? k == 0 : R[0][k], axis < 3 ? k == 1 : R[1][k], axis < 3 ? k == 2 : R[2][k]};
+    const double at = imp_dot(c, x), sign = at < 0 ? -1 : 1;
+    const double h = axis < 3 ? a[k] + b[0] * fabs(R[k][0]) + b[1] * fabs(R[k][1]) + b[2] * fabs(R[k][2])
+                              : b[k] + a[0] * fabs(x[0]) + a[1] * fabs(x[1]) + a[2] * fabs(x[2]);
+    for (int j = 0; j < 3; j++) n[j] = sign * x[j];
+    return fabs(at) - h;
 }
 
 double imp_core_box_axes(const imp_core_pair *pair, double n[3], int *axis)
 {
-    const double *a = pair->core[0].axis, *b = pair->core[1].axis, *c = pair->c;
-    const double(*R)[3] = pair->R;
     best_axis best = {.g = -INFINITY};
-    for (int i = 0; i < 3; i++) {
-        const double h = a[i] + b[0] * fabs(R[i][0]) + b[1] * fabs(R[i][1]) + b[2] * fabs(R[i][2]);
-        offer(&best, i, fabs(c[i]) - h, c[i] < 0 ? -1 : 1, i == 0, i == 1, i == 2);
+    for (int i = 0; i < IMP_CORE_BOX_AXES; i++) {
+        double m[3];
+        const double g = imp_core_box_axis(pair, i, m);
+        if (g > best.g) offer(&best, i, g, 1, m[0], m[1], m[2]);
     }
-    for (int k = 0; k < 3; k++) {
-        const double at = c[0] * R[0][k] + c[1] * R[1][k] + c[2] * R[2][k];
-        const double h = b[k] + a[0] * fabs(R[0][k]) + a[1] * fabs(R[1][k]) + a[2] * fabs(R[2][k]);
-        offer(&best, 3 + k, fabs(at) - h, at < 0 ? -1 : 1, R[0][k], R[1][k], R[2][k]);
-    }
-    for (int i = 0; i < 3; i++) cross_axes(pair, i, &best);
-    memcpy(n, best.n, sizeof best.n);
+    const double length = imp_norm(best.n); /* of an axis of B as long as a rotation's column is, to some roundings */
+    for (int k = 0; k < 3; k++) n[k] = best.n[k] / length;
     *axis = best.axis;
-    return best.g;
+    return best.g / length;
 }
 
 bool imp_core_box_face(const imp_core_pair *pair, int axis, imp_core_gap *answer)
@@ -79,6 +84,27 @@ bool imp_core_box_face(const imp_core_pair *pair, int axis, imp_core_gap *answer
         answer->x[1][k] = face_body ? from[k] + gap * n[k] : b[k];
     }
     answer->gap = answer->upper = gap;
+    return true;
+}
+
+bool imp_core_box_edges(const imp_core_pair *pair, int axis, imp_core_gap *answer)
+{
+    const int i = axis / 3 - 2, k = axis % 3;
+    if (axis < 6) return false;
+    const double along[3] = {pair->R[0][k], pair->R[1][k], pair->R[2][k]}, cosine = along[i];
+    const double square = along[(i + 1) % 3] * along[(i + 1) % 3] + along[(i + 2) % 3] * along[(i + 2) % 3];
+    if (!(square > IMP_CORE_CROSSING)) return false;
+    imp_core_tip tip;
+    double a[3], b[3];
+    imp_core_height_between(pair, answer->n, &tip);
+    imp_core_place(pair, 0, tip.vertex[0], a);
+    imp_core_place(pair, 1, tip.vertex[1], b);
+    const double on = tip.w[i], off = imp_dot(tip.w, along);
+    const double t = (cosine * on - off) / square, s = on + t * cosine;
+    if (!(fabs(a[i] + s) <= pair->core[0].axis[i] && fabs(imp_dot(b, along) + t) <= pair->core[1].axis[k]))
+        return false;
+    for (int j = 0; j < 3; j++) answer->x[0][j] = a[j] + (j == i ? s : 0), answer->x[1][j] = b[j] + t * along[j];
+    answer->gap = answer->upper = answer->lower;
     return true;
 }
 
@@ -171,6 +197,14 @@ double imp_core_axes_of_all(const imp_core_pair *pair, double n[3])
             imp_core_face(pair, body, f, n);
             try_axis(pair, n, body ? -1 : 1, &best);
         }
+    edge_axes(pair, &best);
+    memcpy(n, best.n, sizeof best.n);
+    return best.g;
+}
+
+double imp_core_edge_axis(const imp_core_pair *pair, double n[3])
+{
+    best_axis best = {.g = -INFINITY, .n = {0, 0, 1}};
     edge_axes(pair, &best);
     memcpy(n, best.n, sizeof best.n);
     return best.g;

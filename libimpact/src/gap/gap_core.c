@@ -85,11 +85,37 @@ static impact_status told_apart(const imp_core_pair *pair, imp_core_gap *answer)
     return IMPACT_OK;
 }
 
+/* The answer along another normal, if that is as good and there are points for it. */
+static bool turned_to(const imp_core_pair *pair, double g, const double n[3], double slack, imp_core_gap *answer)
+{
+    imp_core_gap other = *answer;
+    if (!(answer->lower - g <= IMP_CORE_ACCEPTED * pair->reach)) return false;
+    other.gap = other.upper = other.lower = g;
+    memcpy(other.n, n, sizeof other.n);
+    if (!imp_core_witness(pair, slack, &other)) return false;
+    *answer = other;
+    return true;
+}
+
+static bool turned_to_any(const imp_core_pair *pair, double slack, imp_core_gap *answer)
+{
+    double n[3];
+    if (!pair->box[0] || !pair->box[1]) return turned_to(pair, imp_core_edge_axis(pair, n), n, slack, answer);
+    for (int axis = 0; axis < IMP_CORE_BOX_AXES; axis++)
+        if (turned_to(pair, imp_core_box_axis(pair, axis, n), n, slack, answer)) return true;
+    return false;
+}
+
+/* Where a normal is best by a rounding and no features along it lie on each other, as no vertex is over the face whose
+ * it is, others cross near by: their own normal is as good, and the points are theirs. Where there are none, more is
+ * taken to reach as far. */
 static impact_status overlapping(const imp_core_pair *pair, imp_core_gap *answer)
 {
     answer->gap = answer->upper = answer->lower;
     answer->firm = true;
-    return imp_core_witness(pair, answer) ? IMPACT_OK : IMPACT_BRACKET;
+    for (double slack = IMP_CORE_LEVEL; slack <= IMP_CORE_LEVEL_MOST; slack *= 8)
+        if (imp_core_witness(pair, slack, answer) || turned_to_any(pair, slack, answer)) return IMPACT_OK;
+    return IMPACT_BRACKET;
 }
 
 /* A unit vector normal to the segments, if any, whose middle lines meet: g is 0 along it. */
@@ -136,7 +162,7 @@ impact_status imp_core_solve(const imp_core_pair *pair, const double *cached, im
         int axis;
         answer->lower = imp_core_box_axes(pair, answer->n, &axis);
         answer->firm = true;
-        if (imp_core_box_face(pair, axis, answer)) return IMPACT_OK;
+        if (imp_core_box_face(pair, axis, answer) || imp_core_box_edges(pair, axis, answer)) return IMPACT_OK;
         if (!(answer->lower > 0)) return overlapping(pair, answer);
     } else if (cached) {
         memcpy(answer->n, cached, sizeof answer->n);

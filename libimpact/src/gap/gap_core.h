@@ -46,14 +46,21 @@ void imp_core_face(const imp_core_pair *pair, int body, int face, double n[3]);
 /* a x b, each component right to two roundings of itself (Kahan's ab - cd). */
 void imp_core_cross(const double a[3], const double b[3], double c[3]);
 
-/* The best of all faces' normals and crosses of edges, and its g: of two boxes (axis: 0 to 2 of A's faces, 3 to 5 of
- * B's, 6 of two edges); of any two, one of which has faces. */
+/* Of two boxes an axis, away from A, and its g: 0 to 2 of A's faces, 3 to 5 of B's, then the crosses of A's first edge
+ * with B's three, of its second, its third; -infinity: they are parallel. */
+enum { IMP_CORE_BOX_AXES = 15 };
+double imp_core_box_axis(const imp_core_pair *pair, int axis, double n[3]);
+/* The best of all faces' normals and crosses of edges, and its g: of two boxes; of any two, one of which has faces. */
 double imp_core_box_axes(const imp_core_pair *pair, double n[3], int *axis);
 double imp_core_axes_of_all(const imp_core_pair *pair, double n[3]);
+/* The best cross of edges alone. */
+double imp_core_edge_axis(const imp_core_pair *pair, double n[3]);
 
 /* The answer at such an axis of a box's face, when the vertex of the other that reaches it is over the face: then the
  * distance is g, in either sign. */
 bool imp_core_box_face(const imp_core_pair *pair, int axis, imp_core_gap *answer);
+/* The same at the axis of two edges that cross, not all but parallel, when their nearest points are on both. */
+bool imp_core_box_edges(const imp_core_pair *pair, int axis, imp_core_gap *answer);
 
 /* The point of c + B - A nearest to 0, from the direction n, with a normal made of the features met: false when 0 is
  * seen inside, or so near that no direction is left. *answer: upper, x and, when better than *lower's, lower and n. */
@@ -62,8 +69,9 @@ bool imp_core_nearest(const imp_core_pair *pair, imp_core_gap *answer);
 /* The same by all pairs of an edge with an edge and of a vertex with a face. */
 void imp_core_enumerate(const imp_core_pair *pair, imp_core_gap *answer);
 
-/* Witness points of an overlap, gap n apart: in the middle of where the features along n lie on each other. */
-bool imp_core_witness(const imp_core_pair *pair, imp_core_gap *answer);
+/* Witness points of an overlap, gap n apart: in the middle of where the features along n lie on each other, of which
+ * all is that reaches as far but for the slack (of the pair's reach); false: nowhere. */
+bool imp_core_witness(const imp_core_pair *pair, double slack, imp_core_gap *answer);
 
 /* All of it, from a direction to begin with (NULL: none). */
 impact_status imp_core_solve(const imp_core_pair *pair, const double *cached, imp_core_gap *answer);

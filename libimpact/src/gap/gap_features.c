@@ -187,30 +187,26 @@ static void reached(const imp_core_pair *pair, int body, const double d[3], doub
     imp_flat_hull(flat, 0);
 }
 
-bool imp_core_witness(const imp_core_pair *pair, imp_core_gap *answer)
+bool imp_core_witness(const imp_core_pair *pair, double slack, imp_core_gap *answer)
 {
     const double *n = answer->n, none[3] = {0, 0, 0};
-    double t[2][3], back[3], shift[3];
+    double t[2][3], back[3], shift[3], middle[2] = {0, 0};
     imp_core_tip tip;
+    imp_flat a, b;
     imp_across(n, t);
     imp_core_height_between(pair, n, &tip);
     imp_core_place(pair, 0, tip.vertex[0], back);
     const double height = imp_dot(n, back);
     for (int k = 0; k < 3; k++) back[k] = -n[k], shift[k] = pair->c[k] - answer->gap * n[k];
-    for (double slack = IMP_CORE_LEVEL; slack <= IMP_CORE_LEVEL_MOST; slack *= 8) {
-        imp_flat a, b;
-        double middle[2] = {0, 0};
-        reached(pair, 0, n, t, none, slack * pair->reach, &a);
-        reached(pair, 1, back, t, shift, slack * pair->reach, &b);
-        imp_flat_clip(&a, &b, slack * pair->reach, 0);
-        if (a.count == 0) continue;
-        for (int i = 0; i < a.count; i++)
-            for (int j = 0; j < 2; j++) middle[j] += a.p[i][j] / a.count;
-        for (int k = 0; k < 3; k++) {
-            answer->x[0][k] = middle[0] * t[0][k] + middle[1] * t[1][k] + height * n[k];
-            answer->x[1][k] = answer->x[0][k] - shift[k];
-        }
-        return true;
+    reached(pair, 0, n, t, none, slack * pair->reach, &a);
+    reached(pair, 1, back, t, shift, slack * pair->reach, &b);
+    imp_flat_clip(&a, &b, slack * pair->reach, 0);
+    if (a.count == 0) return false;
+    for (int i = 0; i < a.count; i++)
+        for (int j = 0; j < 2; j++) middle[j] += a.p[i][j] / a.count;
+    for (int k = 0; k < 3; k++) {
+        answer->x[0][k] = middle[0] * t[0][k] + middle[1] * t[1][k] + height * n[k];
+        answer->x[1][k] = answer->x[0][k] - shift[k];
     }
-    return false;
+    return true;
 }
