@@ -23,7 +23,7 @@ static bool reserve_unknowns(imp_cone_workspace *workspace, int contacts, int un
     if (contacts <= workspace->capacity && unknowns <= workspace->unknowns) return true;
     imp_cone_release(workspace);
     const size_t n = (size_t)unknowns;
-    workspace->block = imp_arena_take(workspace->arena, SQUARES * n * n + VECTORS * n, sizeof *workspace->block);
+    workspace->block = imp_arena_take_unset(workspace->arena, SQUARES * n * n + VECTORS * n, sizeof *workspace->block);
     workspace->keys = imp_arena_take(workspace->arena, (size_t)contacts, sizeof *workspace->keys);
     workspace->indices = imp_arena_take(workspace->arena, INDICES * n + 1, sizeof *workspace->indices);
     if (workspace->block && workspace->keys && workspace->indices) {

@@ -48,12 +48,13 @@ static int widest_of(const imp_world *world)
     return 3;
 }
 
-bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int contacts)
+bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int wanted)
 {
     const int widest = widest_of(world);
+    if (wanted <= pile->contacts_most && widest <= pile->widest) return true;
+    const int contacts = wanted > pile->contacts_most ? wanted + wanted / 2 : pile->contacts_most;
     const size_t count = (size_t)contacts, n = (size_t)widest * count;
     bool there = true;
-    if (contacts <= pile->contacts_most && widest <= pile->widest) return true;
     pile->lengths = replaced(pile, pile->lengths, count, sizeof *pile->lengths, &there);
     pile->turns = replaced(pile, pile->turns, count, sizeof *pile->turns, &there);
     pile->contacts = replaced(pile, pile->contacts, count, sizeof *pile->contacts, &there);
@@ -63,11 +64,14 @@ bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int conta
     pile->bounce = replaced(pile, pile->bounce, count, sizeof *pile->bounce, &there);
     pile->friction = replaced(pile, pile->friction, count, sizeof *pile->friction, &there);
     pile->pivots = replaced(pile, pile->pivots, 2 * count, sizeof *pile->pivots, &there);
-    pile->w = replaced(pile, pile->w, n * n, sizeof *pile->w, &there);
+    imp_arena_give(pile->arena, pile->w);
+    pile->w = imp_arena_take_unset(pile->arena, n * n, sizeof *pile->w); /* which many contacts never touch */
+    there = there && pile->w;
     pile->gap = replaced(pile, pile->gap, count, sizeof *pile->gap, &there);
     double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->before, &pile->last_r, &pile->last_u, &pile->lead};
     for (int k = 0; k < 7; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
-    there = (widest > 3 ? imp_cone_reserve_turning : imp_cone_reserve)(&pile->cone, contacts) && there;
+    const int dense = contacts < IMP_PILE_DENSE ? contacts : IMP_PILE_DENSE; /* more are never solved in their own space */
+    there = (widest > 3 ? imp_cone_reserve_turning : imp_cone_reserve)(&pile->cone, dense) && there;
     pile->contacts_most = there ? contacts : 0;
     pile->widest = widest;
     return there;

@@ -10,7 +10,7 @@
 
 /* False: there is no room. */
 bool imp_pile_reserve_bodies(imp_pile *pile, const imp_world *world);
-bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int contacts);
+bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int wanted);
 
 /* A measure of the pile: its smallest body, m. */
 double imp_pile_smallest(const imp_world *world);

@@ -89,10 +89,10 @@ static double deepest(const imp_pile_contacts *touching)
 
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
-    const double slack = imp_pile_slack(pile, world), rounding = IMP_TOUCHING * imp_pile_smallest(world);
+    const double slack = imp_pile_slack(pile, world), off = 0.1 * slack;
     for (int pass = 0; pass < 2; pass++) {
         const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
-                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -rounding, false);
+                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -off, false);
         if (!found || !imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
         displace_nothing(pile, world, states);
         for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
