@@ -149,7 +149,7 @@ static impact_status check_pause(impact_scene *scene)
         const imp_island *island = scene->islands[k];
         if (!island) continue;
         if (!island->moves) return refuse_save(scene, "its run has failed");
-        const bool is_due = scene->queue.time[imp_scene_island_slot(scene, k)] <= scene->t;
+        const bool is_due = imp_queue_time_of(&scene->queue, imp_scene_island_slot(scene, k)) <= scene->t;
         if (is_due && island->end.kind != IMP_END_TIME)
             return refuse_save(scene, "it was stopped amid an instant; run it on first");
     }
