@@ -67,6 +67,22 @@ void imp_cone_assemble(const imp_world *world, const imp_state *states, const im
         }
 }
 
+void imp_cone_assemble_normals(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
+                               int count, imp_cone_row *rows, double *w)
+{
+    imp_cone_find_rows(world, states, contacts, count, rows);
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++) {
+            const int one[2] = {contacts[i].body1, contacts[i].body2}, two[2] = {contacts[j].body1, contacts[j].body2};
+            double sum = 0;
+            for (int s = 0; s < 2; s++)
+                for (int t = 0; t < 2; t++)
+                    if (one[s] == two[t] && !world->bodies[one[s]].is_static)
+                        for (int k = 0; k < 6; k++) sum += rows[i].side[s][0][k] * rows[j].side[t][0][k];
+            w[(size_t)i * (size_t)count + (size_t)j] = sum;
+        }
+}
+
 /* What the bodies' velocities are at the contact, along its axes. */
 static void velocities_at(const imp_world *world, const imp_state *states, const imp_cone_contact *contact, double *u)
 {

@@ -35,6 +35,10 @@ void imp_cone_find_turns(const imp_world *world, const imp_state *states, const 
 void imp_cone_assemble(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts, int count,
                        imp_cone_row *rows, double *w);
 
+/* Of the normals alone: w is count^2. */
+void imp_cone_assemble_normals(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
+                               int count, imp_cone_row *rows, double *w);
+
 /* The same with moments: w is (6 count)^2. */
 void imp_cone_assemble_turning(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
                                int count, imp_cone_row *rows, imp_cone_row *turns, double *w);

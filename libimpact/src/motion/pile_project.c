@@ -26,10 +26,7 @@ static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states,
 static void close_gaps(imp_pile *pile, const imp_world *world, const imp_state *states, int count)
 {
     const size_t n = (size_t)count;
-    imp_cone_assemble(world, states, pile->contacts, count, pile->rows, pile->w);
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++)
-            pile->w[i * n + j] = pile->w[3 * (3 * i * n + j)]; /* to the front: none is lost */
+    imp_cone_assemble_normals(world, states, pile->contacts, count, pile->rows, pile->w);
     for (int c = 0; c < count; c++) pile->last_u[c] = -pile->gap[c];
     imp_least_solve_pivoted(pile->w, count, IMP_LINEAR_VANISHING, pile->w + n * n, pile->pivots, pile->last_u);
     memset(pile->r, 0, sizeof *pile->r * 3 * n);
@@ -89,10 +86,11 @@ static double deepest(const imp_pile_contacts *touching)
 
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
-    const double slack = imp_pile_slack(pile, world), off = 0.1 * slack;
+    /* overlaps as small as a thousandth of a step's error are closed with the gaps of the next */
+    const double slack = imp_pile_slack(pile, world), left = 0.01 * slack;
     for (int pass = 0; pass < 2; pass++) {
         const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
-                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -off, false);
+                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -left, false);
         if (!found || !imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
         displace_nothing(pile, world, states);
         for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {

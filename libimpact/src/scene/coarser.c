@@ -209,7 +209,7 @@ impact_status imp_coarser_attend(impact_scene *scene, double t)
         const double due = scene->coarser_due;
         scene->coarser_due += IMP_COARSER_LOOKS * scene->duration;
         if (due <= scene->coarser->t) continue; /* the run was paused behind it, and both were looked at there */
-        status = imp_scene_look(scene, due);
+        status = imp_scene_look_between(scene, due);
         if (status == IMPACT_OK) status = follow_to(scene, due);
     }
     return status;

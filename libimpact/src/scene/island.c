@@ -161,7 +161,7 @@ void imp_island_give_forces(imp_island *island)
 
 /* ---- its clock ---- */
 
-impact_status imp_island_look(imp_island *island, double t)
+impact_status imp_island_look(imp_island *island, double t, bool parted)
 {
     imp_motion *motion = &island->motion;
     const imp_tracks *tracks = &island->scene->tracks;
@@ -173,8 +173,8 @@ impact_status imp_island_look(imp_island *island, double t)
     }
     memcpy(motion->sampled, island->states, (size_t)world->body_count * sizeof *island->states); /* static ones */
     if (!island->moves) return IMPACT_OK;
-    return island->stepped ? imp_motion_look_by_steps(motion, island->pile, t, motion->sampled)
-                           : imp_motion_look(motion, t, motion->sampled);
+    return island->stepped && parted ? imp_motion_look_by_steps(motion, island->pile, t, motion->sampled)
+                                     : imp_motion_look(motion, t, motion->sampled);
 }
 
 void imp_island_put_back(imp_island *island)

@@ -76,8 +76,9 @@ int imp_island_find(const imp_island *island, int body);
 impact_status imp_island_take_forces(imp_island *island);
 void imp_island_give_forces(imp_island *island);
 
-/* All its bodies' states at t, in a segment that covers it, held contacts put back exactly: in motion.sampled. */
-impact_status imp_island_look(imp_island *island, double t);
+/* All its bodies' states at t, in a segment that covers it, held contacts put back exactly; parted: and what overlaps
+ * between a pile's steps, by less than they err, moved apart: in motion.sampled. */
+impact_status imp_island_look(imp_island *island, double t, bool parted);
 /* States at island->t, where an integrator brought them, back to what the held contacts allow; no energy is booked:
  * the constraint's force has done as much on the way off as putting back undoes. */
 void imp_island_put_back(imp_island *island);

@@ -209,7 +209,9 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     scene->recorder = recorder ? &own : NULL;
     impact_status status = imp_scene_keys_begin(scene);
     if (status == IMPACT_OK) {
-        const impact_status ran = run(scene, t), seen = imp_scene_look(scene, scene->t);
+        const impact_status ran = run(scene, t);
+        const impact_status seen =
+            scene->is_coarser ? imp_scene_look_between(scene, scene->t) : imp_scene_look(scene, scene->t);
         status = imp_scene_receipt_judge(scene, ran == IMPACT_OK ? seen : ran);
         const impact_status followed = imp_coarser_follow(scene);
         if (followed != IMPACT_OK) status = followed;

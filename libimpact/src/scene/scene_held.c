@@ -105,7 +105,7 @@ int impact_scene_held(const impact_scene *scene, impact_held *held, int room)
     for (int k = 0; status == IMPACT_OK && k < scene->island_count; k++) {
         imp_island *island = scene->islands[k];
         if (!island) continue;
-        status = imp_island_look(island, scene->t);
+        status = imp_island_look(island, scene->t, true);
         if (status != IMPACT_OK) break;
         if (imp_island_lying(island))
             glide_row(island, scene->t, &rows);

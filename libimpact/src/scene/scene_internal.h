@@ -101,8 +101,10 @@ impact_status imp_scene_open_workspace(impact_scene *scene, char *message, unsig
 impact_status imp_scene_go_on(impact_scene *scene, double t_end);
 /* Every body's state at t, in scene->states. */
 impact_status imp_scene_look(impact_scene *scene, double t);
-/* The same by another look at what is on its own, into other room for all bodies' states. */
-impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look *at, imp_state *states);
+/* The same as the steps of piles leave it, overlaps between them and all. */
+impact_status imp_scene_look_between(impact_scene *scene, double t);
+/* By another look at what is on its own, and the one or the other at piles, into other room for all bodies' states. */
+impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look *at, bool parted, imp_state *states);
 /* The points that the steps of a pile hold, where its bodies were looked at at t; none of another island. Rows go to
  * the first `room` places; how many there are. */
 int imp_island_held_by_steps(const imp_island *island, double t, impact_held *held, int room);

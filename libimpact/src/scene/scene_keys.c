@@ -263,7 +263,7 @@ static bool put_account(impact_scene *scene)
 {
     if (!scene->recorder->account) return true;
     imp_state *states = scene->keys->states;
-    imp_scene_look_by(scene, scene->t, imp_segment_unturned, states);
+    imp_scene_look_by(scene, scene->t, imp_segment_unturned, true, states);
     scene->keys->accounted = scene->t;
     const impact_energy energy = imp_scene_energy_of(scene, states);
     return scene->recorder->account(scene->recorder->context, scene->t, &energy);

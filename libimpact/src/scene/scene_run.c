@@ -13,7 +13,7 @@
 
 /* ---- all bodies at one time ---- */
 
-impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look *at, imp_state *states)
+impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look *at, bool parted, imp_state *states)
 {
     for (int i = 0; i < scene->world.body_count; i++) {
         const imp_track *track = &scene->tracks.tracks[i];
@@ -22,7 +22,7 @@ impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look 
     for (int k = 0; k < scene->island_count; k++) {
         imp_island *island = scene->islands[k];
         if (!island) continue;
-        const impact_status status = imp_island_look(island, t);
+        const impact_status status = imp_island_look(island, t, parted);
         if (status != IMPACT_OK) return status;
         for (int i = 0; i < island->world.body_count; i++)
             states[island->world.bodies[i].index] = island->motion.sampled[i];
@@ -32,7 +32,12 @@ impact_status imp_scene_look_by(impact_scene *scene, double t, imp_segment_look 
 
 impact_status imp_scene_look(impact_scene *scene, double t)
 {
-    return imp_scene_look_by(scene, t, imp_segment_at, scene->states);
+    return imp_scene_look_by(scene, t, imp_segment_at, true, scene->states);
+}
+
+impact_status imp_scene_look_between(impact_scene *scene, double t)
+{
+    return imp_scene_look_by(scene, t, imp_segment_at, false, scene->states);
 }
 
 double imp_scene_energy_beside(impact_scene *scene, const imp_island *except, double t)
@@ -46,7 +51,7 @@ double imp_scene_energy_beside(impact_scene *scene, const imp_island *except, do
     for (int k = 0; k < scene->island_count; k++) {
         imp_island *island = scene->islands[k];
         const bool constant = island && (island->rests || (island->rolls && !island->loses)); /* in the account */
-        if (!island || island == except || constant || imp_island_look(island, t) != IMPACT_OK) continue;
+        if (!island || island == except || constant || imp_island_look(island, t, true) != IMPACT_OK) continue;
         energy += imp_world_kinetic_energy(&island->world, island->motion.sampled) +
                   imp_field_potential(&island->world, island->motion.sampled);
     }
