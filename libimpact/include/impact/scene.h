@@ -97,8 +97,9 @@ typedef enum impact_samples {
 typedef enum impact_motion_method {
     IMPACT_MOTION_AUTO,  /* in closed form where there is one: flight, with damping too, and balls that roll or slide;
                           * else flight and what is held at one contact by collocation, IMPACT_ODE_LOBATTO; slip
-                          * that dies out and what many contacts hold by IMPACT_ODE_DOP853 where nothing has faces;
-                          * the others, slip that begins and what is stiff by CVODE; piles as `piles` says */
+                          * that dies out and what many contacts hold by IMPACT_ODE_DOP853; what lies on flat
+                          * places of superquadrics, slip that begins and what is stiff by CVODE; piles as `piles`
+                          * says */
     IMPACT_MOTION_CVODE, /* all that moves by CVODE, flight too; no pile by steps */
     IMPACT_MOTION_RK4, /* all that moves by the classical Runge-Kutta method with the fixed `step`; no pile by steps */
     IMPACT_MOTION_STEPS, /* AUTO, and piles by steps from the start: piles = IMPACT_PILES_STEPS */
