@@ -86,8 +86,8 @@ static double deepest(const imp_pile_contacts *touching)
 
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
-    /* overlaps as small as a thousandth of a step's error are closed with the gaps of the next */
-    const double slack = imp_pile_slack(pile, world), left = 0.01 * slack;
+    /* overlaps as small as a ten-thousandth of a step's error are closed with the gaps of the next */
+    const double slack = imp_pile_slack(pile, world), left = 0.001 * slack;
     for (int pass = 0; pass < 2; pass++) {
         const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
                                      : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -left, false);
