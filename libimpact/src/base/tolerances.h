@@ -88,9 +88,7 @@
 /* Of the reach: what distance and dual bound may differ by, 18 u; the first answers of nearly parallel pairs that miss
  * it (1.4 %) are found again by all features. */
 #define IMP_CORE_ACCEPTED 4e-15
-/* The squared sine of edges' angle down to which their nearest points are found in one go: these are off by eps over
- * it.
- */
+/* The squared sine of edges' angle down to which their nearest points are found in one go, off by eps over it. */
 #define IMP_CORE_CROSSING 0.1
 /* Of the reach: a distance under this may be an overlap's rounding: then the facets are asked as well. */
 #define IMP_CORE_TOUCHING 1e-13
