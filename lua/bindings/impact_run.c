@@ -280,15 +280,21 @@ static bool save(impact_lua_scene *self, bool at_time)
     return self->save_failed = true, false;
 }
 
+static impact_status go_to(impact_lua_scene *self, double t, const impact_recorder *recorder)
+{
+    return self->whole && t == self->t_end ? impact_scene_run(self->scene, recorder)
+                                           : impact_scene_run_to(self->scene, t, recorder);
+}
+
 /* To t, event by event where checkpoints are due in between. */
 static impact_status run_to(impact_lua_scene *self, double t, const impact_recorder *recorder)
 {
     impact_event event;
-    if (!self->host || !self->host->save || !self->host->checkpoints)
-        return impact_scene_run_to(self->scene, t, recorder);
+    if (!self->host || !self->host->save || !self->host->checkpoints) return go_to(self, t, recorder);
     for (;;) {
         const impact_status status = impact_scene_step(self->scene, t, recorder, &event);
-        if (status < 0 || status == IMPACT_EVENT_LIMIT || event.body1 < 0 || self->stopped) return status;
+        if (status < 0 || status == IMPACT_EVENT_LIMIT || self->stopped) return status;
+        if (event.body1 < 0) return go_to(self, t, recorder);
         if (!save(self, false)) return IMPACT_OK;
     }
 }
@@ -315,7 +321,8 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
     const quat_lua_reader options = quat_lua_read(L, options_index, "run", NULL, keys);
     self->host = impact_lua_get_host(L);
     if (self->host && self->host->ran) *self->host->ran = true;
-    self->t_end = t_end;
+    self->whole = isnan(t_end);
+    self->t_end = self->whole ? self->duration : t_end;
     self->t_told = 0;
     self->samples_told = 0;
     self->sample_slot = function_slot(&options, "on_sample");
@@ -347,6 +354,6 @@ int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int optio
                                       .held = self->record ? on_held : NULL,
                                       .account = self->record ? on_account : NULL};
     const impact_status status =
-        event ? impact_scene_step(self->scene, t_end, &recorder, event) : run_and_save(self, &recorder);
+        event ? impact_scene_step(self->scene, self->t_end, &recorder, event) : run_and_save(self, &recorder);
     return finish(L, self, csv, record, status);
 }

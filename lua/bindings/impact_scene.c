@@ -222,7 +222,7 @@ static int scene_memory(lua_State *L)
 static int scene_run(lua_State *L)
 {
     impact_lua_scene *self = impact_lua_check_scene(L);
-    return impact_lua_run(L, self, self->duration, 2, NULL);
+    return impact_lua_run(L, self, NAN, 2, NULL);
 }
 
 static int scene_run_to(lua_State *L)

@@ -70,6 +70,7 @@ typedef struct impact_lua_scene {
     bool save_failed;
     char save_message[400];
     double t_end, t_told; /* of the run; of the last row */
+    bool whole;           /* it is to its duration, or until all rests */
     int files_slot;       /* the names of the files of a run that ends early; nil without CSV */
     unsigned long samples_told;
     bool record, keeps_rows;
@@ -139,7 +140,7 @@ void impact_lua_add_interaction(lua_State *L);
 
 /* A name for files that stays in its folder. */
 bool impact_lua_is_plain(const char *name);
-/* Runs to t_end, with the table of options at options_index: returns what run returns to the script. The scene is at
+/* Runs to t_end (NAN: to the duration, or until all rests), with the table of options at options_index: returns what run returns to the script. The scene is at
  * index 1. event, unless NULL: to the next event only, which goes there. */
 int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index, impact_event *event);
 

@@ -208,7 +208,8 @@ IMPACT_API void impact_scene_destroy(impact_scene *scene); /* NULL is fine */
 
 /* Runs on to the definition's duration, or to time t, which is not over. Rows go to the recorder (NULL: nowhere).
  * Samples stand at k/output_rate; two more, just before and just after, beside each event, for the bodies in it.
- * IMPACT_OK: the time was reached; IMPACT_AT_REST: nothing moves any more and nothing will, state stands until the end;
+ * IMPACT_OK: the time was reached; IMPACT_AT_REST: nothing moves any more and nothing will, state stands until the end:
+ * impact_scene_time is then when all had come to rest after a run to the duration, and t after one to t;
  * IMPACT_SOFT: one of these, but the scene's receipt failed (impact_scene_receipt and the message), or an impact was
  * soft (usage); other positive statuses: stopped early; negative: failed. See impact_scene_message. A scene at rest or
  * stopped can be run on. */

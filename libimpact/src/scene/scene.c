@@ -196,7 +196,7 @@ static impact_status run(impact_scene *scene, double t_end)
     return status;
 }
 
-impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
+static impact_status run_on(impact_scene *scene, double t, const impact_recorder *recorder)
 {
     impact_recorder own = {0};
     const char *why = recorder ? imp_definition_refusal(recorder, sizeof own) : NULL;
@@ -225,13 +225,21 @@ impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_re
     return status;
 }
 
+/* Where nothing moves any more a run is over, its time that of the rest; what was asked for a time has come there. */
+impact_status impact_scene_run_to(impact_scene *scene, double t, const impact_recorder *recorder)
+{
+    const impact_status status = run_on(scene, t, recorder);
+    if (status >= 0 && imp_scene_rests(scene)) scene->t = t;
+    return status;
+}
+
 impact_status impact_scene_step(impact_scene *scene, double t_max, const impact_recorder *recorder, impact_event *event)
 {
     impact_event unwanted;
     scene->first_event = event ? event : &unwanted;
     *scene->first_event = (impact_event){.t = t_max, .body1 = -1, .body2 = -1, .name1 = "", .name2 = "", .phases = ""};
     scene->one_event = true;
-    const impact_status status = impact_scene_run_to(scene, t_max, recorder);
+    const impact_status status = run_on(scene, t_max, recorder);
     scene->one_event = false;
     scene->first_event = NULL;
     return status;
@@ -239,7 +247,7 @@ impact_status impact_scene_step(impact_scene *scene, double t_max, const impact_
 
 impact_status impact_scene_run(impact_scene *scene, const impact_recorder *recorder)
 {
-    return impact_scene_run_to(scene, fmax(scene->duration, scene->t), recorder);
+    return run_on(scene, fmax(scene->duration, scene->t), recorder);
 }
 
 const char *impact_scene_message(const impact_scene *scene) { return scene->message; }

@@ -97,6 +97,8 @@ impact_status imp_scene_build(impact_scene *scene, const impact_scene_def *def);
 /* What solves impacts by CVODE, where it is asked to. */
 impact_status imp_scene_open_workspace(impact_scene *scene, char *message, unsigned long size);
 
+/* Whether nothing moves, and nothing will: no force may yet move what rests. */
+bool imp_scene_rests(const impact_scene *scene);
 /* Goes on to t_end. IMPACT_OK there; IMPACT_AT_REST, or why not. */
 impact_status imp_scene_go_on(impact_scene *scene, double t_end);
 /* Every body's state at t, in scene->states. */

@@ -193,6 +193,11 @@ static void begin_samples(impact_scene *scene)
     imp_queue_set(&scene->queue, 0, sample_time(scene));
 }
 
+bool imp_scene_rests(const impact_scene *scene)
+{
+    return scene->moving == 0 && scene->movable > 0 && !scene->unsteady;
+}
+
 impact_status imp_scene_go_on(impact_scene *scene, double t_end)
 {
     impact_status status = IMPACT_OK;
@@ -209,7 +214,7 @@ impact_status imp_scene_go_on(impact_scene *scene, double t_end)
     while (status == IMPACT_OK) {
         const double t = imp_queue_time(&scene->queue);
         if (scene->one_event && scene->event_count > events) t_end = scene->t; /* with all else of that instant */
-        if (scene->moving == 0 && scene->movable > 0 && !scene->unsteady) return IMPACT_AT_REST;
+        if (imp_scene_rests(scene)) return IMPACT_AT_REST;
         if (t > t_end) break;
         if (scene->event_count >= scene->max_events) {
             snprintf(scene->message, sizeof scene->message, "%ld events by t = %s: the limit", scene->event_count,

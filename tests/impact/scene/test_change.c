@@ -248,6 +248,31 @@ static void the_account_books_every_change(void **state)
     assert_true(refused > 0);
 }
 
+/* What rests at a time stands there, and what is pushed then has its events after it. */
+static void a_rest_takes_its_time(void **state)
+{
+    (void)state;
+    static const double times[] = {0.5, 1, 2.75};
+    impact_scene *scene = two_balls((qvec3){0, 0, radius}, (qvec3){9, 0, radius}, 1, 0, IMPACT_PILES_AUTO);
+    impact_event event;
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(impact_scene_run_to(scene, times[k], NULL), IMPACT_AT_REST);
+        assert_true(impact_scene_time(scene) == times[k]);
+    }
+    assert_int_equal(impact_scene_step(scene, 3, NULL, &event), IMPACT_AT_REST);
+    assert_true(event.body1 < 0 && impact_scene_time(scene) == 2.75); /* to the next event, and there is none */
+    assert_int_equal(impact_scene_run_to(scene, 3, NULL), IMPACT_AT_REST);
+    assert_int_equal(impact_scene_push(scene, BALL, (qvec3){0, 0, mass_of_ball * gravity / 4}, (qvec3){0, 0, radius}),
+                     IMPACT_OK);
+    assert_int_equal(impact_scene_step(scene, 4, NULL, &event), IMPACT_AT_REST); /* it comes down, and stays */
+    assert_int_equal(event.kind, IMPACT_EVENT_IMPACT);
+    assert_near(event.t, 3.5, 1e-12);
+    assert_true(impact_scene_time(scene) == event.t);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_AT_REST);
+    assert_near(impact_scene_time(scene), 3.5, 1e-12);
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -258,6 +283,7 @@ int main(void)
         cmocka_unit_test(a_set_state_flies_on_from_there),
         cmocka_unit_test(what_cannot_be_is_refused_in_words_and_changes_nothing),
         cmocka_unit_test(the_account_books_every_change),
+        cmocka_unit_test(a_rest_takes_its_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
