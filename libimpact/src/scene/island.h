@@ -45,7 +45,7 @@ typedef struct imp_island {
     double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
     double looked_at;   /* s: by the receipt */
     bool unanswered;    /* scratch: at this instant the law of encounters has found no answer once */
-    bool lies;          /* bodies with faces stay on each other: it is to be moved by steps */
+    bool lies;          /* bodies with faces stay on each other, or no forces hold it: it is to be moved by steps */
     bool stepped;       /* it moves by steps (stepped.h): */
     imp_pile *pile;     /* absent until then */
     double met_since;   /* s: from when on its pairs are marked that touch (imp_pair.met) */

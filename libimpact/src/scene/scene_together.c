@@ -120,12 +120,22 @@ typedef struct answering {
     bool spent, jams;
 } answering;
 
+/* m/s: the fastest approach of all, which any of them may be pressed by: what rests comes back from the blow that it
+ * passes on, not from its own approach, which is none. */
+static double fastest_approach(const gathering *g)
+{
+    double fastest = 0;
+    for (int c = 0; c < g->count; c++) fastest = fmax(fastest, -g->met[c].velocity);
+    return fastest;
+}
+
 static void describe(imp_island *island, gathering *g, bool spent)
 {
+    const double fastest = fastest_approach(g);
     for (int c = 0; c < g->count; c++) {
         imp_meeting *m = &g->met[c];
         const imp_pair *pair = &island->world.pairs[m->contact.pair];
-        const bool dies = spent || (!m->jams && imp_scene_dies_out(island, m, pair->law.restitution * m->velocity));
+        const bool dies = spent || (!m->jams && imp_scene_dies_out(island, m, pair->law.restitution * fastest));
         g->meetings[c] = (impact_meeting){.body1 = m->contact.body1,
                                           .body2 = m->contact.body2,
                                           .normal = m->contact.normal,
