@@ -115,7 +115,7 @@ static double settle_friction(imp_bodies_problem *p, double rho, double enough)
     imp_bodies_stiffen(p, rho);
     p->follows = true;
     const int steps = imp_bodies_settle(p, enough);
-    if (steps >= 0) return steps <= FEW ? fmin(10 * rho, IMP_BODIES_STIFFEST) : rho;
+    if (steps >= 0) return steps <= FEW ? fmin(IMP_BODIES_STIFFENS * rho, IMP_BODIES_STIFFEST) : rho;
     p->follows = false;
     imp_bodies_effect(p, p->r);
     set_offset(p);

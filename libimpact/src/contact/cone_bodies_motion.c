@@ -321,7 +321,7 @@ static inline void sweep_width(const imp_bodies_problem *p, int sweeps, const in
 
 void imp_bodies_sweep(const imp_bodies_problem *p, int sweeps)
 {
-    imp_bodies_stiffen(p, 1);
+    imp_bodies_stiffen(p, IMP_BODIES_SWEEP);
     imp_bodies_effect(p, p->r);
     if (p->width == 3)
         sweep_width(p, sweeps, 3);

@@ -63,7 +63,7 @@ static double off_as_told(impact_scene_def def)
 static void what_is_told_is_not_too_small(void **state)
 {
     (void)state;
-    const unsigned long seeds[] = {3002, 3009, 3037, 3038};
+    const unsigned long seeds[] = {3009, 3016, 3025, 3038};
     for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
         static pile_scene pile;
         random_pile_scene(seeds[k], (int)(seeds[k] % PILE_STARTS), &pile);
@@ -118,7 +118,7 @@ static void a_second_run_without_an_answer_has_parted(void **state)
 
 /* ---- the second scene is where the first is ---- */
 
-enum { DROPPED = 3049 };
+enum { DROPPED = 3049, PAUSED = 3052 };
 
 /* What a host pushes or puts elsewhere is pushed and put there in both: else they had parted. */
 static void what_a_host_changes_is_changed_in_both(void **state)
@@ -173,7 +173,7 @@ static void what_is_told_does_not_hang_on_pauses(void **state)
 {
     (void)state;
     static pile_scene pile;
-    random_pile_scene(DROPPED, DROPPED % PILE_STARTS, &pile);
+    random_pile_scene(PAUSED, PAUSED % PILE_STARTS, &pile);
     const double end = pile.def.duration = 0.3;
     impact_scene *whole = created(&pile.def), *parts = created(&pile.def);
     assert_true(runs_to(whole, end));
