@@ -112,39 +112,43 @@ static void take_product(double c[restrict SIDE][SIDE], double a[restrict SIDE][
             for (int l = 0; l < SIDE; l++) c[k][l] -= a[k][m] * b[m][l];
 }
 
-/* B D^-1 in B's place, of D = L U in its own. */
-static void divide_right(double b[SIDE][SIDE], double d[SIDE][SIDE])
+/* B D^-1 in B's place, of D^-1. */
+static void divide_right(double b[restrict SIDE][SIDE], double inverse[restrict SIDE][SIDE])
 {
     for (int k = 0; k < SIDE; k++) {
-        for (int l = 0; l < SIDE; l++) {
-            for (int m = 0; m < l; m++) b[k][l] -= b[k][m] * d[m][l];
-            b[k][l] /= d[l][l];
-        }
-        for (int l = SIDE - 1; l >= 0; l--)
-            for (int m = l + 1; m < SIDE; m++) b[k][l] -= b[k][m] * d[m][l];
+        double row[SIDE] = {0};
+        for (int m = 0; m < SIDE; m++)
+            for (int l = 0; l < SIDE; l++) row[l] += b[k][m] * inverse[m][l];
+        memcpy(b[k], row, sizeof row);
     }
 }
 
-static bool factor_block(double d[SIDE][SIDE])
+/* D^-1 in D's place (Gauss & Jordan): rows are multiplied by it at once, where substitution goes number by number. */
+static bool invert_block(double d[SIDE][SIDE])
 {
     for (int k = 0; k < SIDE; k++) {
         if (!(fabs(d[k][k]) > 0)) return false;
-        for (int l = k + 1; l < SIDE; l++) {
-            d[l][k] /= d[k][k];
-            for (int m = k + 1; m < SIDE; m++) d[l][m] -= d[l][k] * d[k][m];
+        const double part = 1 / d[k][k];
+        d[k][k] = 1;
+        for (int m = 0; m < SIDE; m++) d[k][m] *= part;
+        for (int l = 0; l < SIDE; l++) {
+            if (l == k) continue;
+            const double factor = d[l][k];
+            d[l][k] = 0;
+            for (int m = 0; m < SIDE; m++) d[l][m] -= factor * d[k][m];
         }
     }
     return true;
 }
 
 /* D^-1 x in x's place. */
-static void divide_left(double d[SIDE][SIDE], double *x)
+static void divide_left(double inverse[SIDE][SIDE], double *x)
 {
-    for (int k = 0; k < SIDE; k++)
-        for (int m = 0; m < k; m++) x[k] -= d[k][m] * x[m];
-    for (int k = SIDE - 1; k >= 0; k--) {
-        for (int m = k + 1; m < SIDE; m++) x[k] -= d[k][m] * x[m];
-        x[k] /= d[k][k];
+    double own[SIDE];
+    memcpy(own, x, sizeof own);
+    for (int k = 0; k < SIDE; k++) {
+        x[k] = 0;
+        for (int l = 0; l < SIDE; l++) x[k] += inverse[k][l] * own[l];
     }
 }
 
@@ -196,7 +200,7 @@ bool imp_skyline_factor(imp_skyline *sky)
             divide_right(row[j - begin].a, block_at(sky, sky->lower, j, j)->a);
         }
         for (int k = begin; k < i; k++) take_product(row[i - begin].a, row[k - begin].a, column[k - begin].a);
-        if (!factor_block(row[i - begin].a)) return false;
+        if (!invert_block(row[i - begin].a)) return false;
     }
     return true;
 }

@@ -2,7 +2,8 @@
  *
  * skyline: a matrix of 6 x 6 blocks, one row of them for each body, zero but where bodies touch: of each row, and each
  * column, what stands from its first block to the diagonal, in an order of the bodies that keeps both short (Cuthill
- * & McKee 1969, reversed), and its factors (1 + L)(D + U) in their place, without pivots. Internal.
+ * & McKee 1969, reversed), and its factors (1 + L)(D + U) in their place, without pivots, of the diagonal D^-1.
+ * Internal.
  */
 #ifndef IMP_SKYLINE_H
 #define IMP_SKYLINE_H
