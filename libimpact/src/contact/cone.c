@@ -307,16 +307,16 @@ static void polish(imp_cone_system *system, bool exact, int most, double *r, dou
     memcpy(u, system->own, length * sizeof *u);
 }
 
-/* Sweeps from own on, then Newton from there. */
-static void sweep_once(imp_cone_system *system, long sweeps, int most, double *own, double *r, double *u,
-                       imp_cone_outcome *outcome)
+/* Sweeps from own on, then Newton from there; imp_cone_sweep's change. */
+static double sweep_once(imp_cone_system *system, long sweeps, int most, double *own, double *r, double *u,
+                         imp_cone_outcome *outcome)
 {
-    const double before = outcome->residual;
-    imp_cone_sweep(system, sweeps, own);
+    const double before = outcome->residual, change = imp_cone_sweep(system, sweeps, own);
     imp_cone_velocities(system->problem, own, system->own);
     recall_answer(system, own, system->own);
     polish(system, true, most, r, u, outcome);
     if (outcome->residual < before) outcome->stage = IMP_CONE_SWEPT;
+    return change;
 }
 
 /* Few sweeps at a time: where they go round they come by what Newton starts from. */
@@ -327,31 +327,47 @@ static void wander(imp_cone_system *system, double *own, double *r, double *u, i
     double work = 0;
     for (long k = 0;
          work <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED) && !imp_cone_is_spent(system); k++) {
-        sweep_once(system, 1 + k % ROUND, STEPS, own, r, u, outcome);
+        (void)sweep_once(system, 1 + k % ROUND, STEPS, own, r, u, outcome);
         work += (double)(1 + k % ROUND) * each + newton;
     }
 }
 
-/* Ever more sweeps at a time, while they lead on, where there is an answer. */
+/* Ever more sweeps at a time, while they lead on: until they better no answer, or go on for ever where there is none.
+ * What goes by the same once may be the slowest to come to rest, before Aitken takes it away: by chance; twice it is
+ * not. */
 static void settle_down(imp_cone_system *system, double *own, double *r, double *u, imp_cone_outcome *outcome)
 {
-    enum { STEPS = 12, FIRST = 256, PATIENCE = 4 };
+    enum { STEPS = 12, FIRST = 256, PATIENCE = 4, DRIFTS = 2 };
     const double each = 27.0 * system->problem->count * system->problem->count; /* multiplications of three sweeps */
-    int idle = 0;
-    for (long n = FIRST; idle < PATIENCE && n * each <= IMP_CONE_SWEEPING && !(outcome->residual <= IMP_CONE_ACCEPTED);
+    int idle = 0, drifts = 0;
+    for (long n = FIRST; idle < PATIENCE && drifts < DRIFTS && n * each <= IMP_CONE_SWEEPING &&
+                         !(outcome->residual <= IMP_CONE_ACCEPTED);
          n *= 2) {
-        const double before = outcome->residual;
-        sweep_once(system, n, STEPS, own, r, u, outcome);
-        idle = outcome->residual < 0.5 * before || !(outcome->residual <= IMP_CONE_USABLE) ? 0 : idle + 1;
+        const double before = outcome->residual, change = sweep_once(system, n, STEPS, own, r, u, outcome);
+        const bool usable = outcome->residual <= IMP_CONE_USABLE;
+        idle = outcome->residual < 0.5 * before || !usable ? 0 : idle + 1;
+        drifts = change <= IMP_CONE_DRIFT && !usable ? drifts + 1 : 0;
     }
 }
 
 static void sweep(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
 {
-    const imp_cone_problem *problem = system->problem;
-    if (problem->lengths || problem->effort == IMP_CONE_BRIEF || imp_cone_is_spent(system)) return;
-    memset(system->tangent, 0, 3 * (size_t)problem->count * sizeof *system->tangent);
+    const size_t length = 3 * (size_t)system->problem->count * sizeof(double);
+    memset(system->tangent, 0, length);
+    memset(system->lift, 0, length);
     settle_down(system, system->tangent, r, u, outcome);
+}
+
+/* The path on which friction sets in. */
+static void kindle(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
+{
+    enum { STEPS = 20 };
+    const double before = outcome->residual;
+    system->by_rank = false;
+    imp_cone_kindle(system);
+    polish(system, true, STEPS, r, u, outcome);
+    system->by_rank = true;
+    if (outcome->residual < before) outcome->stage = IMP_CONE_KINDLED;
 }
 
 static imp_cone_status status_of(const imp_cone_outcome *outcome)
@@ -397,26 +413,15 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
         outcome->stage = IMP_CONE_EASED;
         polish(system, true, LAST_STEPS, r, u, outcome);
     }
-    if (!is_exact(system->problem, r, outcome)) sweep(system, r, u, outcome);
+    const bool more = !system->problem->lengths && system->problem->effort != IMP_CONE_BRIEF;
+    if (more && !is_exact(system->problem, r, outcome)) kindle(system, r, u, outcome);
+    if (more && !is_exact(system->problem, r, outcome) && !imp_cone_is_spent(system)) sweep(system, r, u, outcome);
     outcome->status = status_of(outcome);
     if (outcome->status == IMP_CONE_UNSETTLED && excludes(system, system->best, outcome)) {
         outcome->status = IMP_CONE_NO_SOLUTION;
         memcpy(r, system->best, (size_t)(imp_cone_width(system->problem) * system->problem->count) * sizeof *r);
         imp_cone_velocities(system->problem, r, u);
     }
-}
-
-/* The path on which friction sets in, and at last sweeps and Newton's steps. */
-static void look_on(imp_cone_system *system, double *r, double *u, imp_cone_outcome *outcome)
-{
-    enum { STEPS = 20 };
-    const double before = outcome->residual;
-    imp_cone_kindle(system);
-    polish(system, true, STEPS, r, u, outcome);
-    if (outcome->residual < before) outcome->stage = IMP_CONE_KINDLED;
-    memset(system->tangent, 0, 3 * (size_t)system->problem->count * sizeof *system->tangent);
-    if (!is_exact(system->problem, r, outcome)) wander(system, system->tangent, r, u, outcome);
-    outcome->status = status_of(outcome);
 }
 
 static imp_cone_mode mode_of(double friction, double torsional, const double *r)
@@ -452,7 +457,9 @@ imp_cone_outcome imp_cone_solve(const imp_cone_problem *problem, imp_cone_worksp
         const imp_cone_system spent = system; /* by the question of whether there is an answer */
         system = system_of(problem, workspace);
         system.factorings = spent.factorings, system.steps = spent.steps, system.work = spent.work;
-        look_on(&system, r, u, &outcome);
+        memset(system.tangent, 0, 3 * (size_t)problem->count * sizeof *system.tangent);
+        wander(&system, system.tangent, r, u, &outcome);
+        outcome.status = status_of(&outcome);
     }
     for (int c = 0; modes && c < problem->count; c++)
         modes[c] = mode_of(problem->friction[c], problem->lengths ? problem->lengths[c].torsional : 0, &r[width * c]);

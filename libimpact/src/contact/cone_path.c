@@ -198,13 +198,22 @@ static bool begin_path(imp_cone_system *system)
     return imp_cone_newton(system, 1, IMP_CONE_NEAR, MOST, false);
 }
 
+/* Linear systems that a path may turn round by. That on which friction sets in ends in an answer where there is one:
+ * round as many folds as it has, but where sweeps are all that is asked besides in no more work than theirs. */
+static int most_turns(const imp_cone_system *system)
+{
+    enum { TURNING = 200, KINDLED = 2000 };
+    if (!system->kindles) return TURNING;
+    if (system->problem->effort == IMP_CONE_WANDERS) return KINDLED;
+    return (int)fmin(KINDLED, IMP_CONE_SWEEPING / (2 / 3.0 * pow(system->n, 3)));
+}
+
 /* Down from e, by arc length if there is no other way. */
 static imp_cone_stage go_on(imp_cone_system *system, double e)
 {
-    enum { TURNING = 200, KINDLED = 2000 };
     const double last = descend(system, e, system->by_rank ? IMP_CONE_RANK_END : IMP_CONE_PATH_END);
     if (last <= IMP_CONE_ARC_LEAST) return IMP_CONE_PATH;
-    turn_round(system, last, system->kindles ? KINDLED : TURNING);
+    turn_round(system, last, most_turns(system));
     return IMP_CONE_ARC;
 }
 

@@ -7,6 +7,10 @@
  * whose only fixed points are answers (De Saxcé & Feng 1998). It goes slowly, the slower the larger the reactions are
  * that contacts press out of one another, and is asked last. What is left then falls by one ratio, that of the slowest:
  * of three points d apart, d' = rho d, the rest of the way is d' rho/(1 - rho) (Aitken 1926).
+ *
+ * Where there is no answer r goes on for ever, by the same at each sweep in the end, along pressures that balance: a
+ * map that brings no two points further apart and has no fixed point goes on by the least that it moves any (Pazy
+ * 1971). What comes to rest goes the less at each sweep the longer it has been swept.
  */
 #include "contact/cone_map.h"
 
@@ -59,22 +63,29 @@ static void sweep_on(const imp_cone_system *system, const double *size, long swe
     }
 }
 
-void imp_cone_sweep(const imp_cone_system *system, long sweeps, double *r)
+double imp_cone_sweep(const imp_cone_system *system, long sweeps, double *r)
 {
     const imp_cone_problem *problem = system->problem;
     const int width = 3 * problem->count;
-    double *size = system->scratch, *middle = system->trial, *first = system->rate;
+    double *size = system->scratch, *middle = system->trial, *first = system->rate, *drift = system->lift;
     for (int c = 0; c < problem->count; c++) size[c] = size_of_block(problem, c);
     memcpy(first, r, sizeof *r * (size_t)width);
     sweep_on(system, size, sweeps, r);
     memcpy(middle, r, sizeof *r * (size_t)width);
     sweep_on(system, size, sweeps, r);
-    double along = 0, square = 0;
+    double along = 0, square = 0, turned = 0, change = 0, before = 0;
     for (int i = 0; i < width; i++) {
-        along += (r[i] - middle[i]) * (middle[i] - first[i]);
-        square += (middle[i] - first[i]) * (middle[i] - first[i]);
+        const double way = middle[i] - first[i], next = r[i] - middle[i], each = next / (double)sweeps;
+        along += next * way;
+        square += way * way;
+        turned += (next - way) * (next - way);
+        change += (each - drift[i]) * (each - drift[i]);
+        before += drift[i] * drift[i];
+        drift[i] = each;
     }
-    if (!(along > 0 && along < square)) return;
-    for (int i = 0; i < width; i++) r[i] += (r[i] - middle[i]) * (along / (square - along));
-    sweep_on(system, size, sweeps, r); /* into the cones, and what is not slow */
+    if (along > 0 && along < square) {
+        for (int i = 0; i < width; i++) r[i] += (r[i] - middle[i]) * (along / (square - along));
+        sweep_on(system, size, sweeps, r); /* into the cones, and what is not slow */
+    }
+    return before > 0 && square > 0 ? sqrt(fmax(change / before, turned / square)) : INFINITY;
 }
