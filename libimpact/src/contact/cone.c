@@ -333,12 +333,13 @@ static void wander(imp_cone_system *system, double *own, double *r, double *u, i
 }
 
 /* Ever more sweeps at a time, while they lead on: until they better no answer, or go on for ever where there is none.
- * What goes by the same once may be the slowest to come to rest, before Aitken takes it away: by chance; twice it is
+ * What goes by the same once may be the slowest to come to rest, before Aitken takes it away; twice, and more so, it is
  * not. */
 static void settle_down(imp_cone_system *system, double *own, double *r, double *u, imp_cone_outcome *outcome)
 {
     enum { STEPS = 12, FIRST = 256, PATIENCE = 4, DRIFTS = 2 };
     const double each = 27.0 * system->problem->count * system->problem->count; /* multiplications of three sweeps */
+    double changed = INFINITY;
     int idle = 0, drifts = 0;
     for (long n = FIRST; idle < PATIENCE && drifts < DRIFTS && n * each <= IMP_CONE_SWEEPING &&
                          !(outcome->residual <= IMP_CONE_ACCEPTED);
@@ -346,7 +347,8 @@ static void settle_down(imp_cone_system *system, double *own, double *r, double 
         const double before = outcome->residual, change = sweep_once(system, n, STEPS, own, r, u, outcome);
         const bool usable = outcome->residual <= IMP_CONE_USABLE;
         idle = outcome->residual < 0.5 * before || !usable ? 0 : idle + 1;
-        drifts = change <= IMP_CONE_DRIFT && !usable ? drifts + 1 : 0;
+        drifts = change <= fmin(IMP_CONE_DRIFT, changed) && !usable ? drifts + 1 : 0;
+        changed = change;
     }
 }
 

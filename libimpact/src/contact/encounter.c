@@ -110,10 +110,9 @@ static void find_mobility(const imp_contact *contacts, int count, double *w)
 static size_t group_bytes(size_t n, bool linear)
 {
     const size_t own = n * (sizeof(imp_spring) + sizeof(imp_contact) + sizeof(imp_finding) + 1024) + 4096;
-    const size_t creep =
-        linear ? 0
-               : sizeof(double) * (imp_springs_creep_size(n) + imp_springs_bounces_size(n)) + n * sizeof(imp_spring);
-    return own + creep + n * n * (linear ? 48 : 2 * 72 + 2 * 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);
+    const size_t rooms = imp_springs_creep_size(n) + imp_springs_bounces_size(n) + imp_encounter_wedge_size(n),
+                 more = linear ? 0 : sizeof(double) * rooms + n * sizeof(imp_spring);
+    return own + more + n * n * (linear ? 48 : 2 * 72 + 2 * 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);
 }
 
 static void take_finding(const imp_finding *f, impact_meeting_outcome *m)

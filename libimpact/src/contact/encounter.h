@@ -124,13 +124,13 @@ typedef struct imp_wedge_question {
     const double *w;        /* (3 count)^2 */
     const double *friction; /* count */
     const bool *taken;      /* count: which take part; NULL: all */
-    long steps;             /* of the search; 0: IMP_WEDGE_STEPS */
 } imp_wedge_question;
 
-/* The least |G^T r|^2 that was found of pressures with sum r_n = 1, over the largest of one: INFINITY where a motion
- * takes the contacts apart, friction against it; up to IMP_WEDGE_BALANCED where none does; between them up to
- * IMP_WEDGE_TAKEN none is taken to do. room: 6 count. */
-double imp_encounter_wedged(const imp_wedge_question *question, double *room);
+/* Doubles of room for n contacts. */
+size_t imp_encounter_wedge_size(size_t n);
+/* Whether no motion takes the contacts apart, friction against it. room: begins with pressures, 3 count, sum r_n = 1,
+ * that then balance but for rounding. */
+bool imp_encounter_wedged(const imp_wedge_question *question, double *room);
 
 /* ---- encounter_mend.c: velocities of the bodies as impulses change them ---- */
 

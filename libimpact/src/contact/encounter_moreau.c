@@ -27,7 +27,7 @@ typedef struct moreau {
     double *u;                        /* 3 count: after compression */
     imp_cone_mode *modes;             /* 2 count */
     double *last_r, *last_u;          /* 6 count: where a problem may begin */
-    double *room;                     /* 6 count */
+    double *room;                     /* of the question whether it is wedged */
     double *least;                    /* count: eps c_n */
     double *rebound;                  /* count: b; by Poisson's law 0 */
     int bodies, (*couples)[2];        /* those that move; count */
@@ -58,17 +58,16 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
 }
 
 /* The problem's answer. Where none is found, and the group is not wedged, one exists (encounter_wedge.c), and is looked
- * for on. Where pressures balance impulses may be as great as they like, and what they leave is not told from their
- * rounding: then there is none. */
+ * for on. Where it is, pressures balance, impulses may be as great as they like, and what they leave is not told from
+ * their rounding: then there is none. */
 static bool find_answer(moreau *m, imp_cone_problem problem, double *r, double *u, imp_cone_outcome *o)
 {
     *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
     if (o->status == IMP_CONE_UNSETTLED) {
-        const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL, 0};
-        const double left = imp_encounter_wedged(&question, m->room);
-        if (left <= IMP_WEDGE_BALANCED) return false;
+        const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL};
+        if (imp_encounter_wedged(&question, m->room)) return false;
         problem.effort = IMP_CONE_WANDERS;
-        if (left > IMP_WEDGE_TAKEN) *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
+        *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
     }
     return solved(&problem, o, r, m->group);
 }
@@ -381,7 +380,7 @@ impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_wo
     m.modes = imp_encounter_take(workspace, 2 * n, sizeof *m.modes);
     m.last_r = imp_encounter_take(workspace, 6 * n, sizeof *m.last_r);
     m.last_u = imp_encounter_take(workspace, 6 * n, sizeof *m.last_u);
-    m.room = imp_encounter_take(workspace, 6 * n, sizeof *m.room);
+    m.room = imp_encounter_take(workspace, imp_encounter_wedge_size(n), sizeof *m.room);
     m.least = imp_encounter_take(workspace, n, sizeof *m.least);
     m.rebound = imp_encounter_take(workspace, n, sizeof *m.rebound);
     m.couples = imp_encounter_take(workspace, n, sizeof *m.couples);
@@ -391,7 +390,7 @@ impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_wo
     const bool compressed = compress(&m);
     if (compressed && !m.strikes) return IMPACT_SEPARATING;
     if (compressed && (newton || !restores(group) || restore(&m))) return IMPACT_OK;
-    const imp_wedge_question question = {group->count, group->w, m.friction, NULL, 0};
-    group->wedged = imp_encounter_wedged(&question, m.r) <= IMP_WEDGE_TAKEN;
+    const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
+    group->wedged = imp_encounter_wedged(&question, m.room);
     return IMPACT_EUNSETTLED;
 }

@@ -45,6 +45,7 @@ static bool take_room(imp_springs *s, impact_together_workspace *workspace)
     s->now = imp_encounter_take(workspace, width, sizeof *s->now);
     s->scratch = imp_encounter_take(workspace, width, sizeof *s->scratch);
     s->factor = imp_encounter_take(workspace, 12 * n * n + 10 * n, sizeof *s->factor);
+    s->wedge = imp_encounter_take(workspace, imp_encounter_wedge_size(n), sizeof *s->wedge);
     s->begin = imp_encounter_take(workspace, n, sizeof *s->begin);
     s->turning = imp_encounter_take(workspace, 2 * n * n + n, sizeof *s->turning);
     s->modes = imp_encounter_take(workspace, n, sizeof *s->modes);
@@ -106,17 +107,17 @@ static void report(const imp_springs *s, const units *unit, imp_group *group)
     group->chosen = group->chosen || s->chosen;
 }
 
-/* imp_encounter_wedged of the contacts that were pressed; room[6 count]: then with the pressures that it found. */
-static double find_wedge(imp_springs *s, long steps, double *room)
+/* imp_encounter_wedged of the contacts that were pressed, whose pressures are in s->wedge then. */
+static bool find_wedge(imp_springs *s)
 {
-    double *friction = s->factor + 6 * s->count;
+    double *friction = s->scratch;
     bool *taken = (bool *)(friction + s->count);
     for (int i = 0; i < s->count; i++) {
         friction[i] = s->springs[i].friction;
         taken[i] = s->springs[i].p[0] > 0 || imp_springs_presses(&s->springs[i]);
     }
-    const imp_wedge_question question = {s->count, s->w, friction, taken, steps};
-    return imp_encounter_wedged(&question, room);
+    const imp_wedge_question question = {s->count, s->w, friction, taken};
+    return imp_encounter_wedged(&question, s->wedge);
 }
 
 /* Pressures r that balance have 0 = r . G v = sum r_n u_n as long as those contacts stick, or have no friction: their
@@ -130,20 +131,45 @@ static bool have_stuck(const imp_springs *s, const double *r, double spent)
     return true;
 }
 
+/* Whether a group is wedged: when that is asked again; what was spent and the energy lost when it was last, and how
+ * often in sequence next to none was. */
+typedef struct wedge_watch {
+    double next, asked, lost;
+    int kept;
+} wedge_watch;
+
+/* Energy falls by dents and by friction alone; what comes loose, or to rest with nothing pressed, leaves none in the
+ * springs. Whether it stays there, held by friction or swinging: losing on as it did since it was asked last, they
+ * would not come to nothing before the group is given up. */
+static bool keeps_energy(const imp_springs *s, double spent, wedge_watch *watch)
+{
+    enum { OFTEN = 2 };
+    double stored = 0, lost = 0;
+    for (int i = 0; i < s->count; i++) {
+        stored += s->springs[i].stored;
+        for (int j = 0; j < 3; j++) lost -= s->springs[i].finding->work[j];
+    }
+    lost -= stored;
+    const double rate = (lost - watch->lost) / (spent - watch->asked);
+    watch->kept = rate * IMP_SPRINGS_ASKED_LAST <= IMP_WEDGE_KEPT * stored ? watch->kept + 1 : 0;
+    watch->lost = lost;
+    watch->asked = spent;
+    return watch->kept >= OFTEN;
+}
+
 /* What is wedged bounces in its dents for ever, or comes to rest in them; where it slips it may yet come loose, and is
- * waited for. *next: when it is asked again. */
-static bool is_wedged(imp_springs *s, double *next)
+ * waited for. */
+static bool is_wedged(imp_springs *s, wedge_watch *watch)
 {
     const double spent = fmax((double)(s->events + s->steps) / IMP_SPRINGS_LONG, s->work / IMP_SPRINGS_MUCH);
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
         if (!imp_springs_presses(c) || (c->friction > 0 && c->slip != IMP_SPRING_STICKS)) c->loose = spent;
     }
-    if (spent < *next) return false;
-    const bool last = spent >= IMP_SPRINGS_ASKED_LAST;
-    *next = last ? 2 * spent : fmin(2 * spent, IMP_SPRINGS_ASKED_LAST);
-    const double left = find_wedge(s, last ? IMP_WEDGE_STEPS_LAST : IMP_WEDGE_STEPS, s->factor);
-    return last ? left <= IMP_WEDGE_TAKEN : left <= IMP_WEDGE_BALANCED && have_stuck(s, s->factor, spent);
+    if (spent < watch->next) return false;
+    const bool last = spent >= IMP_SPRINGS_ASKED_LAST, keeps = keeps_energy(s, spent, watch);
+    watch->next = last ? 2 * spent : fmin(2 * spent, IMP_SPRINGS_ASKED_LAST);
+    return find_wedge(s) && (last || keeps || have_stuck(s, s->wedge, spent));
 }
 
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)
@@ -155,11 +181,11 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     if (!w || !u0 || !take_room(&s, workspace)) return IMPACT_ENOMEM;
     const units unit = find_units(group);
     set_up(&s, group, &unit, w, u0);
-    double next = IMP_SPRINGS_ASKED;
+    wedge_watch watch = {.next = IMP_SPRINGS_ASKED};
     while (s.steps + s.events < group->patience && s.work < IMP_SPRINGS_WORK) {
         s.closing = -1;
         if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
-        group->wedged = is_wedged(&s, &next);
+        group->wedged = is_wedged(&s, &watch);
         if (group->wedged) return IMPACT_EUNSETTLED;
         const bool pressed = imp_springs_pressed(&s);
         if (pressed && !imp_springs_end_bounces(&s)) {

@@ -93,7 +93,7 @@ typedef struct imp_springs {
     double *inverse;
     bool deficient; /* which is none: reactions are not unique */
     double *now;    /* 3 count: the forces of one order */
-    double *scratch, *factor;
+    double *scratch, *factor, *wedge;
     imp_spring_lead lead;
     int leader;
     int begin_count, *begin; /* contacts that begin to slip */
