@@ -96,8 +96,7 @@ bool imp_cone_follow_eased(imp_cone_system *system, double e);
 void imp_cone_kindle(imp_cone_system *system);
 
 /* Three times so many times over all contacts from r on, one after another; r[3 count] of points that do not resist
- * turning. Of what r goes by at a sweep, which lift (3 count) holds from call to call, how much has changed, at most:
- * from the first third to the second, and since the last call. */
+ * turning. How much of what r goes by at a sweep has changed since the last call, which lift (3 count) holds. */
 double imp_cone_sweep(const imp_cone_system *system, long sweeps, double *r);
 
 #endif

@@ -73,12 +73,11 @@ double imp_cone_sweep(const imp_cone_system *system, long sweeps, double *r)
     sweep_on(system, size, sweeps, r);
     memcpy(middle, r, sizeof *r * (size_t)width);
     sweep_on(system, size, sweeps, r);
-    double along = 0, square = 0, turned = 0, change = 0, before = 0;
+    double along = 0, square = 0, change = 0, before = 0;
     for (int i = 0; i < width; i++) {
         const double way = middle[i] - first[i], next = r[i] - middle[i], each = next / (double)sweeps;
         along += next * way;
         square += way * way;
-        turned += (next - way) * (next - way);
         change += (each - drift[i]) * (each - drift[i]);
         before += drift[i] * drift[i];
         drift[i] = each;
@@ -87,5 +86,5 @@ double imp_cone_sweep(const imp_cone_system *system, long sweeps, double *r)
         for (int i = 0; i < width; i++) r[i] += (r[i] - middle[i]) * (along / (square - along));
         sweep_on(system, size, sweeps, r); /* into the cones, and what is not slow */
     }
-    return before > 0 && square > 0 ? sqrt(fmax(change / before, turned / square)) : INFINITY;
+    return before > 0 ? sqrt(change / before) : INFINITY;
 }
