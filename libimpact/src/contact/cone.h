@@ -33,7 +33,7 @@ typedef struct imp_cone_lengths {
  * axes after them. Units are the caller's, kept by W. What is said to have "width count" numbers has so many. */
 /* Where no path leads to an answer. */
 typedef enum imp_cone_effort {
-    IMP_CONE_SWEEPS, /* the long sweeps of cone_sweep.c */
+    IMP_CONE_SWEEPS, /* the path on which friction sets in, then the long sweeps of cone_sweep.c */
     IMP_CONE_BRIEF,  /* none: the caller has another way, as a shorter step */
     IMP_CONE_WANDERS /* sweeps, then Newton from thousands of starts, up to seconds: nothing else is at hand */
 } imp_cone_effort;
