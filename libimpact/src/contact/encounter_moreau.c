@@ -57,19 +57,14 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
            (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
 }
 
-/* The problem's answer. Where none is found, and the group is not wedged, one exists (encounter_wedge.c), and is looked
- * for on. Where it is, pressures balance, impulses may be as great as they like, and what they leave is not told from
- * their rounding: then there is none. */
-static bool find_answer(moreau *m, imp_cone_problem problem, double *r, double *u, imp_cone_outcome *o)
+/* The problem's answer. Where none is found and the group is wedged pressures balance, impulses may be as great as they
+ * like, and what they leave is not told from their rounding: then there is none. */
+static bool find_answer(moreau *m, const imp_cone_problem *problem, double *r, double *u, imp_cone_outcome *o)
 {
-    *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
-    if (o->status == IMP_CONE_UNSETTLED) {
-        const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL};
-        if (imp_encounter_wedged(&question, m->room)) return false;
-        problem.effort = IMP_CONE_WANDERS;
-        *o = imp_cone_solve(&problem, m->cone, r, u, m->modes);
-    }
-    return solved(&problem, o, r, m->group);
+    *o = imp_cone_solve(problem, m->cone, r, u, m->modes);
+    const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL};
+    if (o->status == IMP_CONE_UNSETTLED && imp_encounter_wedged(&question, m->room)) return false;
+    return solved(problem, o, r, m->group);
 }
 
 /* Whether what pressed has the velocities that the modes say, and what did not keeps its rebound: where nothing solves
@@ -257,7 +252,7 @@ static bool compress(moreau *m)
                                       .last_u = m->last_u,
                                       .work = starts ? work_of_start(n) : 0};
     imp_cone_outcome o;
-    if (!find_answer(m, problem, m->group->p, m->u, &o)) return false;
+    if (!find_answer(m, &problem, m->group->p, m->u, &o)) return false;
     if (o.chosen) share(m, &problem, m->group->p);
     if (seeded && !take_seeds_away(m, problem)) return false;
     m->strikes = imp_encounter_strikes(m->group);
@@ -361,7 +356,7 @@ static bool restore(moreau *m)
                                       .last_u = m->last_u,
                                       .work = starts ? work_of_start(2 * n) : 0};
     imp_cone_outcome o;
-    if (!find_answer(m, problem, m->r, m->v, &o)) return false;
+    if (!find_answer(m, &problem, m->r, m->v, &o)) return false;
     clean(n, m->modes, m->modes + n, m->v);
     take_restitution(m);
     return true;
