@@ -57,13 +57,9 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
            (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
 }
 
-/* The problem's answer. Where none is found and the group is wedged pressures balance, impulses may be as great as they
- * like, and what they leave is not told from their rounding: then there is none. */
 static bool find_answer(moreau *m, const imp_cone_problem *problem, double *r, double *u, imp_cone_outcome *o)
 {
     *o = imp_cone_solve(problem, m->cone, r, u, m->modes);
-    const imp_wedge_question question = {m->group->count, m->group->w, m->friction, NULL};
-    if (o->status == IMP_CONE_UNSETTLED && imp_encounter_wedged(&question, m->room)) return false;
     return solved(problem, o, r, m->group);
 }
 
