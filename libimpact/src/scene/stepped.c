@@ -12,18 +12,20 @@
 
 /* ---- when ---- */
 
-/* Whether bodies that move are held on each other with friction, and by three contacts in all: fewer are no pile. */
-static bool is_pile(const imp_world *world)
+/* Whether bodies that move touch each other with friction, and by three contacts in all: fewer are no pile. What is held
+ * touches, and what has just struck: of a pile that chatters one contact is always open. */
+static bool is_pile(const imp_island *island)
 {
-    int held = 0;
+    const imp_world *world = &island->world;
+    int touching = 0;
     bool rough = false;
     for (int p = 0; p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        if (!imp_is_held(pair)) continue;
-        held++;
+        if (!imp_is_held(pair) && !island->notes[p].struck) continue;
+        touching++;
         rough = rough || (!world->bodies[pair->body2].is_static && pair->law.friction > 0);
     }
-    return rough && held >= 3;
+    return rough && touching >= 3;
 }
 
 /* Whether a pair has faces, or holds a flat place on what it may lie on. */
@@ -38,7 +40,7 @@ bool imp_island_loses_patience(imp_island *island, long rates)
 {
     if (island->stepped || island->scene->piles == IMPACT_PILES_EXACT) return false;
     const bool faces = meets_faces(island);
-    if (!faces && !is_pile(&island->world)) return false;
+    if (!faces && !is_pile(island)) return false;
     const double natural = imp_pile_natural_time(&island->world, island->states);
     long most = 0;
     for (int i = 0; i < island->world.body_count; i++) {

@@ -393,6 +393,44 @@ static void the_event_limit_holds(void **state)
     free(s);
 }
 
+/* Eight ellipsoids fall on each other. Two that stand on the floor come to where one slips while they are apart, and
+ * draws near, and sticks while they touch, and goes off: a thousand impacts in a millionth of a second, again and again,
+ * and never more than two contacts held, so that it was taken for no pile. */
+static void what_chatters_goes_by_steps(void **state)
+{
+    (void)state;
+    enum { COUNT = 8 };
+    static char names[COUNT][8];
+    impact_body_def bodies[1 + COUNT];
+    for (int i = 0; i <= COUNT; i++) bodies[i] = impact_default_body_def();
+    bodies[0].name = "floor";
+    bodies[0].is_static = true;
+    bodies[0].friction = 0.5;
+    impact_shape_plane(INFINITY, INFINITY, &bodies[0].shape);
+    for (int i = 1; i <= COUNT; i++) {
+        const double length = sqrt(5 + i * i);
+        impact_body_def *body = &bodies[i];
+        snprintf(names[i - 1], sizeof names[0], "%d", i);
+        body->name = names[i - 1];
+        body->friction = 0.8;
+        impact_shape_ellipsoid(0.05, 0.06, 0.08, &body->shape);
+        body->position = (qvec3){0.03 * sin(i) + 9e-3 * (i % 3 - 1), 0.03 * cos(i), 0.2 * i};
+        body->orientation =
+            (quat){cos(0.5 * i), sin(0.5 * i) / length, sin(0.5 * i) * i / length, sin(0.5 * i) * 2 / length};
+    }
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, -9.81};
+    def.bodies = bodies;
+    def.body_count = 1 + COUNT;
+    def.duration = 0.6;
+    def.max_events = 20000;
+    impact_scene *scene = make_scene(&def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_OK);
+    const impact_usage usage = impact_scene_usage(scene);
+    assert_true(usage.pile_steps > 0 && usage.events[IMPACT_EVENT_IMPACT] < 3000);
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest closed_forms[] = {
@@ -404,6 +442,7 @@ int main(void)
         cmocka_unit_test(in_groups_as_together),
         cmocka_unit_test(the_rows_are_in_order_and_account_for_the_energy),
         cmocka_unit_test(nothing_overlaps),
+        cmocka_unit_test(what_chatters_goes_by_steps),
         cmocka_unit_test(a_cradle_of_touching_balls),
         cmocka_unit_test(clamped_balls_come_to_rest),
         cmocka_unit_test(rough_clamped_balls_come_to_rest),
