@@ -859,8 +859,20 @@
 /* tau: a step so short is taken whatever its error: over it a force jumps, and may be off so far of what it does in the
  * time in which the speed falls to a part. */
 #define IMP_FACE_JUMP 1e-12
-/* In rest speeds: what is set in motion by a load that changes is accelerated as at rest up to this. */
+/* How a face begins to move: Newton's iterations, three to eight; the part of what a step is to gain at the least
+ * (Armijo, 1966); and, of the acceleration, the last step, whose square is rounding. */
+#define IMP_FACE_BEGINS 60
+#define IMP_FACE_FALLS 1e-4
+#define IMP_FACE_BEGUN 1e-9
+/* Of Newton's step: what gains nothing by so little of it is a rounding away. */
+#define IMP_FACE_HALVED 0x1p-30
+/* Of the longest first step from rest: the shortest; what does not go so creeps, */
+#define IMP_FACE_FIRST 0.05
+/* up to so many rest speeds. */
 #define IMP_FACE_SET_OUT 4.0
+/* Looks at what stands under forces that change, in the time in which it falls its reach, no farther apart than the
+ * longest step that they allow: what they do between two is not seen, as between the places of a step. */
+#define IMP_FACE_LOOKS 64
 /* Of the face's reach: a centre of pressure nearer to a border stands on it. */
 #define IMP_FACE_MARGIN 1e-9
 /* Of the face's reach: points so near to the side over which a body tips are on it: rounding of places found on another

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/face_motion.h"
 #include "base/tolerances.h"
+#include "motion/face_begin.h"
 
 #include <math.h>
 #include <quat/quat.h>
@@ -37,8 +38,7 @@ static double along_row(const double row[3], const double p[3])
     return row[0] * p[0] + row[1] * p[1] + row[2] * p[2];
 }
 
-/* From axes that stay to the face's, or back. */
-static void turn_by(const double v[2], double angle, double out[2])
+void imp_face_turn(const double v[2], double angle, double out[2])
 {
     const double c = cos(angle), s = sin(angle), x = v[0], y = v[1];
     out[0] = c * x - s * y, out[1] = s * x + c * y;
@@ -46,22 +46,23 @@ static void turn_by(const double v[2], double angle, double out[2])
 
 /* The pressure that balances where just this part is pressed; the load in the face's axes. */
 static bool press(const imp_face_motion *motion, const imp_face_load *load, const imp_pressed *pressed,
-                  const double twist[3], imp_face_balance *balance)
+                  const imp_face_twist *twist, imp_face_balance *balance)
 {
     double part[3][3], rub[3][3], a[3][4];
     const bool whole = pressed == &motion->whole;
     const double(*m)[3] = whole ? motion->moments : (const double(*)[3])part;
     if (pressed->count == 0) return false;
     if (!whole) imp_press_moments(pressed, part);
-    imp_press_rub(pressed, twist, rub);
-    const double mu = motion->friction, *j = motion->aside, across[2] = {-j[1], j[0]}, square = twist[2] * twist[2];
+    imp_press_rub(pressed, twist->way, rub);
+    const double mu = motion->friction, *j = motion->aside, across[2] = {-j[1], j[0]};
     for (int k = 0; k < 3; k++) {
         a[0][k] = m[0][k];
         for (int i = 0; i < 2; i++)
             a[1 + i][k] = m[1 + i][k] + motion->height * mu * rub[i][k] - across[i] * motion->turning * mu * rub[2][k];
     }
     a[0][3] = 1;
-    for (int i = 0; i < 2; i++) a[1 + i][3] = (across[i] * load->turn - square * j[i] - load->tip[i]) / load->press;
+    for (int i = 0; i < 2; i++)
+        a[1 + i][3] = (across[i] * load->turn - twist->square * j[i] - load->tip[i]) / load->press;
     if (!solve_three(a)) return false;
     for (int k = 0; k < 3; k++) balance->p[k] = a[k][3];
     for (int i = 0; i < 2; i++) {
@@ -72,8 +73,29 @@ static bool press(const imp_face_motion *motion, const imp_face_load *load, cons
     return true;
 }
 
-static bool balance_under(const imp_face_motion *motion, const imp_face_load *load, const double twist[3],
-                          imp_face_balance *balance)
+/* The same of a face that stands: friction is what balances the load. */
+static bool press_standing(const imp_face_motion *motion, const imp_face_load *load, const imp_pressed *pressed,
+                           imp_face_balance *balance)
+{
+    double m[3][3], a[3][4];
+    if (pressed->count == 0) return false;
+    imp_press_moments(pressed, m);
+    for (int i = 0; i < 2; i++) {
+        balance->force[i] = -load->pull[i] / load->press;
+        balance->center[i] = -motion->height * balance->force[i] - load->tip[i] / load->press;
+    }
+    balance->moment = -load->turn / (motion->turning * load->press);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) a[i][k] = m[i][k];
+        a[i][3] = i == 0 ? 1 : balance->center[i - 1];
+    }
+    if (!solve_three(a)) return false;
+    for (int k = 0; k < 3; k++) balance->p[k] = a[k][3];
+    return true;
+}
+
+bool imp_face_balance_under(const imp_face_motion *motion, const imp_face_load *load, const imp_face_twist *twist,
+                            imp_face_balance *balance)
 {
     imp_pressed part;
     double change = INFINITY;
@@ -82,7 +104,9 @@ static bool balance_under(const imp_face_motion *motion, const imp_face_load *lo
         memcpy(before, balance->p, sizeof before);
         const bool whole = imp_least_pressure(&motion->face, before) >= 0;
         if (!whole) imp_press_part(&motion->face, before, &part);
-        if (!press(motion, load, whole ? &motion->whole : &part, twist, balance)) return false;
+        const imp_pressed *pressed = whole ? &motion->whole : &part;
+        if (!(twist ? press(motion, load, pressed, twist, balance) : press_standing(motion, load, pressed, balance)))
+            return false;
         if (whole && imp_least_pressure(&motion->face, balance->p) >= 0) return true;
         for (int k = 0; k < 3; k++) {
             moved = fmax(moved, fabs(balance->p[k] - before[k]));
@@ -94,9 +118,24 @@ static bool balance_under(const imp_face_motion *motion, const imp_face_load *lo
     return false;
 }
 
+/* Of the twist (v, w) as it is. */
+static imp_face_twist moving(const double twist[3])
+{
+    return (imp_face_twist){{twist[0], twist[1], twist[2]}, twist[2] * twist[2]};
+}
+
 bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance)
 {
-    return balance_under(motion, &motion->load, twist, balance);
+    const imp_face_twist moves = moving(twist);
+    return imp_face_balance_under(motion, &motion->load, &moves, balance);
+}
+
+bool imp_face_load_at(const imp_face_motion *motion, const double *y, imp_face_load *load)
+{
+    *load = motion->load;
+    if (motion->loads && (!motion->loads(motion->context, y, load) || !(load->press > 0))) return false;
+    imp_face_turn(load->tip, -y[IMP_FACE_ANGLE], load->tip);
+    return true;
 }
 
 /* ---- rates ---- */
@@ -109,12 +148,12 @@ double imp_face_speed(const imp_face_motion *motion, const double *y)
 bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance)
 {
     double twist[3] = {0, 0, y[IMP_FACE_W]}, force[2];
-    imp_face_load load = motion->load;
-    if (motion->loads && (!motion->loads(motion->context, y, &load) || !(load.press > 0))) return false;
-    turn_by(&y[IMP_FACE_V], -y[IMP_FACE_ANGLE], twist);
-    turn_by(load.tip, -y[IMP_FACE_ANGLE], load.tip);
-    if (!balance_under(motion, &load, twist, balance)) return false;
-    turn_by(balance->force, y[IMP_FACE_ANGLE], force);
+    imp_face_load load;
+    if (!imp_face_load_at(motion, y, &load)) return false;
+    imp_face_turn(&y[IMP_FACE_V], -y[IMP_FACE_ANGLE], twist);
+    const imp_face_twist moves = moving(twist);
+    if (!imp_face_balance_under(motion, &load, &moves, balance)) return false;
+    imp_face_turn(balance->force, y[IMP_FACE_ANGLE], force);
     const double P = load.press;
     for (int i = 0; i < 2; i++) {
         rate[IMP_FACE_X + i] = y[IMP_FACE_V + i];
@@ -137,7 +176,7 @@ double imp_face_margin(const imp_face_motion *motion, const double *y, const imp
     const imp_flat_face *face = &motion->face;
     for (int i = 0; i < (face->count > 0 ? face->count : 1); i++) {
         double x[2];
-        turn_by(face->count > 0 ? face->corner[i] : face->center, y[IMP_FACE_ANGLE], x);
+        imp_face_turn(face->count > 0 ? face->corner[i] : face->center, y[IMP_FACE_ANGLE], x);
         for (int k = 0; k < 2; k++) x[k] += y[IMP_FACE_X + k];
         least = fmin(least, imp_face_spare(&motion->under, x) - face->radius);
     }
@@ -219,6 +258,7 @@ static void measure(const imp_face_motion *motion, const double *y, double unit[
 /* dt/dtau: under loads that change no longer than the time in which the body falls its reach. */
 static double clock_of(const imp_face_motion *motion, const double *y)
 {
+    if (motion->clock > 0) return motion->clock;
     const double speed = imp_face_speed(motion, y), least = motion->loads ? speed * sqrt(motion->load.press) : 0;
     return speed / (greatest_rate(motion) + least);
 }
@@ -268,11 +308,10 @@ static void back_solve(double a[SYSTEM][SYSTEM], const int *row, double *b)
     }
 }
 
-/* 1 - h A J of the velocities: J their rates' slopes at y, by differences. */
-static bool linearize(const imp_face_motion *motion, const collocation *c, const double *y, const double *rate,
-                      double h, imp_face_balance *last, double a[SYSTEM][SYSTEM], int *row)
+/* The slopes of the velocities' rates at y, by differences. */
+static bool face_slopes(const imp_face_motion *motion, const double *y, const double *rate, imp_face_balance *last,
+                        double slope[MOVING][MOVING])
 {
-    double slope[MOVING][MOVING];
     for (int j = 0; j < MOVING; j++) {
         double there[IMP_FACE_STATE], found[IMP_FACE_STATE];
         memcpy(there, y, sizeof there);
@@ -281,10 +320,17 @@ static bool linearize(const imp_face_motion *motion, const collocation *c, const
         if (!rates_in_tau(motion, there, found, last)) return false;
         for (int i = 0; i < MOVING; i++) slope[i][j] = (found[IMP_FACE_V + i] - rate[IMP_FACE_V + i]) / step;
     }
+    return true;
+}
+
+/* 1 - h A J of the velocities, with the slopes J at each node. */
+static bool linearize(const collocation *c, double h, double slope[][MOVING][MOVING], double a[SYSTEM][SYSTEM],
+                      int *row)
+{
     for (int n = 0; n < SYSTEM; n++)
         for (int m = 0; m < SYSTEM; m++) {
             const double part = h * c->way[n / MOVING][m / MOVING];
-            a[n][m] = (n == m) - part * slope[n % MOVING][m % MOVING];
+            a[n][m] = (n == m) - part * slope[m / MOVING][n % MOVING][m % MOVING];
         }
     return factor(a, row);
 }
@@ -335,31 +381,72 @@ static double follow_rates(double a[SYSTEM][SYSTEM], const int *row, const doubl
     return moved;
 }
 
-/* The rates at the nodes, by Newton's iteration for the velocities; all else only follows them; and those at y. It
- * begins with what rates would lead to that go from those as their slopes. */
-static bool collocate(const imp_face_motion *motion, const collocation *c, const double *y, double h,
-                      const double *unit, double k[][IMP_FACE_STATE], double *first)
+/* A step on its way. */
+typedef struct course {
+    double first[IMP_FACE_STATE]; /* rates where it begins; */
+    double rate[IMP_FACE_NODES][IMP_FACE_STATE],
+        there[IMP_FACE_NODES][IMP_FACE_STATE]; /* rates and states at its nodes */
+    double slope[IMP_FACE_NODES][MOVING][MOVING];
+    imp_face_balance last[IMP_FACE_NODES]; /* from one round to the next they hardly change */
+} course;
+
+/* With the rates and slopes of y all along. */
+static bool set_forth(const imp_face_motion *motion, const double *y, course *on)
 {
-    double rate[IMP_FACE_NODES][IMP_FACE_STATE], there[IMP_FACE_NODES][IMP_FACE_STATE],
-        made[IMP_FACE_NODES][IMP_FACE_STATE], a[SYSTEM][SYSTEM], change = INFINITY;
-    int row[SYSTEM];
-    imp_face_balance begun = {.p = {0}}, last[IMP_FACE_NODES]; /* from one round to the next they hardly change */
-    if (!rates_in_tau(motion, y, first, &begun) || !linearize(motion, c, y, first, h, &begun, a, row)) return false;
+    imp_face_balance begun = {.p = {0}};
+    if (!rates_in_tau(motion, y, on->first, &begun) || !face_slopes(motion, y, on->first, &begun, on->slope[0]))
+        return false;
     for (int i = 0; i < IMP_FACE_NODES; i++) {
-        memcpy(rate[i], first, sizeof rate[i]);
-        memcpy(there[i], y, sizeof there[i]);
-        last[i] = begun;
+        memcpy(on->rate[i], on->first, sizeof on->rate[i]);
+        memcpy(on->there[i], y, sizeof on->there[i]);
+        memcpy(on->slope[i], on->slope[0], sizeof on->slope[i]);
+        on->last[i] = begun;
     }
+    return true;
+}
+
+/* From rest: with the velocities that it would have if it began to move with half a node's time gone, and the slopes
+ * there. */
+static bool leave_rest(const imp_face_motion *motion, const double *y, double h, course *on)
+{
+    double a[3];
+    memset(on->first, 0, sizeof on->first);
+    if (imp_face_begins(motion, y, a, &on->last[0]) != IMP_FACE_GOES) return false;
+    for (int n = 0; n < MOVING; n++) on->first[IMP_FACE_V + n] = motion->clock * a[n];
+    on->first[IMP_FACE_TIME] = motion->clock;
+    for (int i = 0; i < IMP_FACE_NODES; i++) {
+        double *there = on->there[i], time = h * motion->clock * node[i];
+        memcpy(there, y, sizeof on->there[i]);
+        there[IMP_FACE_TIME] += 0.5 * time;
+        if (motion->loads && imp_face_begins(motion, there, a, &on->last[i]) != IMP_FACE_GOES) return false;
+        there[IMP_FACE_TIME] += 0.5 * time;
+        for (int n = 0; n < MOVING; n++) there[IMP_FACE_V + n] = time * a[n];
+        on->last[i] = on->last[0];
+        if (!rates_in_tau(motion, there, on->rate[i], &on->last[i]) ||
+            !face_slopes(motion, there, on->rate[i], &on->last[i], on->slope[i]))
+            return false;
+    }
+    return true;
+}
+
+/* The rates at the nodes, by Newton's iteration for the velocities; all else only follows them. It begins with what
+ * rates would lead to that go from those as their slopes. */
+static bool collocate(const imp_face_motion *motion, const collocation *c, const double *y, double h,
+                      const double *unit, course *on, double k[][IMP_FACE_STATE])
+{
+    double made[IMP_FACE_NODES][IMP_FACE_STATE], a[SYSTEM][SYSTEM], change = INFINITY;
+    int row[SYSTEM];
+    if (!linearize(c, h, on->slope, a, row)) return false;
     for (int round = -1; round < IMP_FACE_ROUNDS; round++) {
         for (int i = 0; round >= 0 && i < IMP_FACE_NODES; i++)
-            if (!rates_in_tau(motion, there[i], rate[i], &last[i])) return false;
-        states_at_nodes(c, y, h, rate, made);
-        const double turned = follow_rates(a, row, unit, made, there);
-        const double moved = fmax(turned, follow_velocities(motion, c, y, h, unit, there));
+            if (!rates_in_tau(motion, on->there[i], on->rate[i], &on->last[i])) return false;
+        states_at_nodes(c, y, h, on->rate, made);
+        const double turned = follow_rates(a, row, unit, made, on->there);
+        const double moved = fmax(turned, follow_velocities(motion, c, y, h, unit, on->there));
         for (int i = 0; i < IMP_FACE_NODES; i++)
-            for (int n = IMP_FACE_TIME; n < IMP_FACE_STATE; n++) there[i][n] = made[i][n];
+            for (int n = IMP_FACE_TIME; n < IMP_FACE_STATE; n++) on->there[i][n] = made[i][n];
         if (round >= 0 && (moved <= IMP_FACE_SETTLED || (moved >= change && moved <= IMP_FACE_TOLERANCE))) {
-            expand(c, rate, k);
+            expand(c, on->rate, k);
             return true;
         }
         if (moved >= change && round > 2) return false;
@@ -370,10 +457,10 @@ static bool collocate(const imp_face_motion *motion, const collocation *c, const
 
 /* y0 + h sum k_j of the integrals of P_j(1 + 2 s) = sum over i of binomial(j, i) binomial(j + i, i) s^i, about the end.
  */
-static void keep_path(const double *y, double h, double k[][IMP_FACE_STATE], imp_face_path *path)
+static void keep_path(const double *y, double h, double clock, double k[][IMP_FACE_STATE], imp_face_path *path)
 {
     memset(path, 0, sizeof *path);
-    path->length = h;
+    path->length = h, path->clock = clock;
     for (int n = 0; n < IMP_FACE_STATE; n++) path->c[0][n] = y[n] + h * k[0][n];
     for (int j = 0; j < IMP_FACE_NODES; j++) {
         double binomials = 1;
@@ -404,27 +491,36 @@ static double error_of(double k[][IMP_FACE_STATE], const double *first, double h
     return error;
 }
 
-bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
+/* A step of h, its error in tolerances; false: none so long. */
+static bool attempt(const imp_face_motion *motion, const collocation *c, const double *y, double h,
+                    double k[][IMP_FACE_STATE], double *error)
+{
+    course on;
+    double unit[IMP_FACE_STATE];
+    if (!(motion->clock > 0 ? leave_rest(motion, y, h, &on) : set_forth(motion, y, &on))) return false;
+    measure(motion, motion->clock > 0 ? on.there[IMP_FACE_NODES - 1] : y, unit);
+    if (!collocate(motion, c, y, h, unit, &on, k)) return false;
+    *error = error_of(k, on.first, h, unit);
+    return true;
+}
+
+static bool step_within(const imp_face_motion *motion, const double *y, double longest, double shortest, double *length,
+                        imp_face_path *path)
 {
     collocation c;
-    double k[IMP_FACE_NODES][IMP_FACE_STATE], unit[IMP_FACE_STATE], first[IMP_FACE_STATE];
-    const double clock = clock_of(motion, y), turns = fabs(y[IMP_FACE_W]) * clock;
-    /* |(v, k w)| grows as e^tau at most */
-    const double longest = motion->loads ? log1p(motion->longest / clock) : INFINITY;
+    double k[IMP_FACE_NODES][IMP_FACE_STATE], error;
     bool cut = false;
     lay_out(&c);
-    for (double h = fmin(fmin(*length, longest), IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN)); h > 0;) {
-        measure(motion, y, unit);
-        if (!collocate(motion, &c, y, h, unit, k, first)) {
+    for (double h = fmin(*length, longest); h > 0;) {
+        if (!attempt(motion, &c, y, h, k, &error)) {
             cut = true;
             h *= 0.5;
-            if (h <= IMP_FACE_SHORTEST) return false;
+            if (h <= shortest) return false;
             continue;
         }
-        const double error = error_of(k, first, h, unit);
         const double next = h * fmin(fmax(0.9 * pow(error, -1.0 / IMP_FACE_NODES), 0.2), 2);
         if (error <= 1 || (h <= IMP_FACE_JUMP && isfinite(error))) {
-            keep_path(y, h, k, path);
+            keep_path(y, h, motion->clock, k, path);
             *length = !(error <= 1) ? IMP_FACE_LONGEST : cut ? h : next;
             return true;
         }
@@ -434,14 +530,81 @@ bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double
     return false;
 }
 
+/* tau of a step under loads that change, if |(v, k w)| goes on as e^(g tau) as it does now, g <= 1: in which it changes
+ * by a factor of e at most, no more time passes than a step may last, and it turns no farther than in a step. */
+static double longest_in_tau(const imp_face_motion *motion, const double *y)
+{
+    const double clock = clock_of(motion, y), k = motion->gyration * motion->gyration, *v = &y[IMP_FACE_V],
+                 w = y[IMP_FACE_W], speed = imp_face_speed(motion, y);
+    const double part = fmin(motion->longest, IMP_FACE_TURN / fabs(w)) / clock;
+    double rate[IMP_FACE_STATE];
+    imp_face_balance balance = {.p = {0}};
+    if (!imp_face_rates(motion, y, rate, &balance)) return fmin(log1p(part), 1);
+    const double grows = v[0] * rate[IMP_FACE_V] + v[1] * rate[IMP_FACE_V + 1] + k * w * rate[IMP_FACE_W];
+    const double g = clock * grows / (speed * speed), once = 1 / fabs(g);
+    return g * part > -1 && fabs(g) > IMP_LEVEL ? fmin(log1p(g * part) / g, once) : fmin(part, once);
+}
+
+/* Where friction turns faster than the body gets on, for a load that grows from what the face holds moves it as the
+ * square of time, no polynomial follows: with the acceleration of the middle of a time so short that it does not count
+ * as motion yet. */
+static bool creep(const imp_face_motion *motion, const double *y, double longest, imp_face_path *path)
+{
+    const double aim = IMP_FACE_SET_OUT * motion->still;
+    double a[3], then[IMP_FACE_STATE], speed = INFINITY, h = longest;
+    for (int round = 0; round < IMP_FACE_BEGINS && speed > 2 * aim; round++) {
+        imp_face_balance balance;
+        memcpy(then, y, sizeof then);
+        then[IMP_FACE_TIME] += 0.5 * h;
+        const bool goes = imp_face_begins(motion, then, a, &balance) == IMP_FACE_GOES;
+        speed = goes ? h * qvec3_norm((qvec3){a[0], a[1], motion->gyration * a[2]}) : INFINITY;
+        if (speed > 2 * aim) h *= goes ? sqrt(aim / speed) : 0.5;
+    }
+    if (!(speed <= 2 * aim)) return false;
+    *path = (imp_face_path){.clock = 1};
+    memcpy(path->c[0], y, sizeof path->c[0]);
+    path->c[0][IMP_FACE_TIME] += h, path->c[1][IMP_FACE_TIME] = h;
+    for (int n = 0; n < MOVING; n++) {
+        path->c[0][n] += 0.5 * h * h * a[n], path->c[1][n] = h * h * a[n], path->c[2][n] = 0.5 * h * h * a[n];
+        path->c[0][IMP_FACE_V + n] = path->c[1][IMP_FACE_V + n] = h * a[n];
+    }
+    return true;
+}
+
+/* In which it turns no farther than a step may. */
+static bool step_from_rest(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
+{
+    imp_face_motion begun = *motion;
+    imp_face_balance balance;
+    double a[3];
+    if (imp_face_begins(motion, y, a, &balance) != IMP_FACE_GOES) return false;
+    begun.clock = 1 / sqrt(motion->load.press);
+    const double turns = sqrt(0.5 * fabs(a[2]) / IMP_FACE_TURN),
+                 longest = fmin(motion->loads ? motion->longest : INFINITY, fmin(1 / turns, *length * begun.clock));
+    *length = longest / begun.clock;
+    const bool found = step_within(&begun, y, *length, IMP_FACE_FIRST * *length, length, path);
+    *length = IMP_FACE_LONGEST;
+    return found || creep(motion, y, longest, path);
+}
+
+bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
+{
+    if (!(imp_face_speed(motion, y) > 0)) return step_from_rest(motion, y, length, path);
+    const double turns = fabs(y[IMP_FACE_W]) * clock_of(motion, y);
+    const double longest = motion->loads ? longest_in_tau(motion, y) : IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN);
+    return step_within(motion, y, longest, IMP_FACE_SHORTEST, length, path);
+}
+
 double imp_face_end_miss(const imp_face_motion *motion, const imp_face_path *path)
 {
     double begin[IMP_FACE_STATE], unit[IMP_FACE_STATE], rate[IMP_FACE_STATE], most = 0;
     imp_face_balance balance = {.p = {0}};
     if (path->length <= IMP_FACE_JUMP) return 0;
+    imp_face_motion own = *motion;
+    own.clock = path->clock;
     imp_face_at(path, -1, begin);
-    measure(motion, begin, unit);
-    if (!rates_in_tau(motion, path->c[0], rate, &balance)) return 0;
+    measure(motion, path->clock > 0 ? path->c[0] : begin, unit);
+    if (!rates_in_tau(&own, path->c[0], rate, &balance)) return 0;
     for (int n = 0; n < IMP_FACE_STATE; n++)
         most = fmax(most, fabs(path->length * rate[n] - path->c[1][n]) / (unit[n] * IMP_FACE_TOLERANCE));
     return most;

@@ -18,8 +18,9 @@
  *     dt = |(v, k w)|/A dtau,   A = mu P + |pull| where the step begins,  k the face's radius of gyration
  *
  * (under loads that change + |(v, k w)| root P, which bounds dt/dtau),
- * in which what slides and turns to its end goes there as e^-tau, smoothly, at the end along one twist. Lengths are in
- * units of the face's reach.
+ * in which what slides and turns to its end goes there as e^-tau, smoothly, at the end along one twist. What begins to
+ * move has no such time: its first step is one of t/root P, in which v = a t + ... is smooth (face_begin.h): no place
+ * of a step is at its begin, where friction has no direction. Lengths are in units of the face's reach.
  */
 #ifndef IMP_FACE_MOTION_H
 #define IMP_FACE_MOTION_H
@@ -65,6 +66,7 @@ typedef struct imp_face_motion {
     double turning;      /* m size^2/J */
     double aside[2];     /* j/(m size^2) */
     double gyration;     /* k */
+    double clock;        /* s: dt/dtau where it is the same all along a step; 0: as above */
     imp_flat_face under; /* what it lies on, in axes that stay; of */
     bool bounded;        /* else: a plane without end */
     imp_pressed whole;   /* of the face: by imp_face_prepare */
@@ -81,9 +83,21 @@ typedef struct imp_face_balance {
     double center[2];        /* of pressure */
 } imp_face_balance;
 
+/* A direction of motion (v, w) in the face's axes, not 0, of any size; and w^2 as it is: 0 of a motion that begins. */
+typedef struct imp_face_twist {
+    double way[3], square;
+} imp_face_twist;
+
+/* Under a load in the face's axes; twist NULL: it stands, and friction is what balances the load. Else as below. */
+bool imp_face_balance_under(const imp_face_motion *motion, const imp_face_load *load, const imp_face_twist *twist,
+                            imp_face_balance *balance);
 /* With the twist (v, w) in the face's axes, not 0; p is where to begin, 0 for the whole face pressed. False where no
  * pressure balances it: the body tips. */
 bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance);
+/* By an angle: from the face's axes to those that stay, or back. */
+void imp_face_turn(const double v[2], double angle, double out[2]);
+/* The load at y, its tip in the face's axes; false: there is none, or it does not press. */
+bool imp_face_load_at(const imp_face_motion *motion, const double *y, imp_face_load *load);
 /* Rates of y by time, y of IMP_FACE_STATE numbers: the last are time and works, over m size^2. */
 bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance);
 
@@ -98,14 +112,15 @@ enum { IMP_FACE_NODES = 9, IMP_FACE_TERMS = IMP_FACE_NODES + 1 };
 /* y over the step = sum of c[k] s^k, s in [-1, 0]. */
 typedef struct imp_face_path {
     double c[IMP_FACE_TERMS][IMP_FACE_STATE];
-    double length; /* in tau */
+    double length; /* in tau; 0 of what creeps */
+    double clock;  /* the motion's; 0: as its speed says */
 } imp_face_path;
 
 /* How far along a step its last node is: rates beyond are not asked for. */
 extern const double imp_face_last_node;
 
-/* One step from y, of a length (in tau) that begins with *length and suits its error; *length for the next. False:
- * there is none, for the body tips or leaves the border at once. */
+/* One step from y, of a length (in tau) that begins with *length and suits its error; *length for the next. Of a body
+ * at rest, from that on. False: there is none, for the body stands, tips or leaves the border at once. */
 bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path);
 void imp_face_at(const imp_face_path *path, double s, double *y);
 /* By how much, in tolerances of a step, the path's rates miss those of its end, where no node stands; 0 where the body

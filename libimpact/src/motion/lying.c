@@ -134,7 +134,7 @@ static bool set_motion(imp_lying *lying, const imp_pair *pair, const imp_state *
     const double L = lying->size, spin = qvec3_dot(n, lying->inertia), unit = lying->body->mass * L * L;
     memcpy(motion->scratch, states, (size_t)world->body_count * sizeof *states);
     m->friction = pair->law.friction;
-    m->context = lying;
+    m->context = lying, m->clock = 0;
     m->loads = world->field_count > 0 || body->linear_rate != 0 || body->angular_rate != 0 ? loads_at : NULL;
     m->turning = unit / spin;
     if (!loads_at(lying, lying->start, &m->load)) return false;
@@ -354,7 +354,8 @@ double imp_lying_until_edge(const imp_lying *lying, const imp_face_path *path)
     enum { HALVINGS = 20 };
     int edge;
     double s = 2, within = 0;
-    if (lying->moves->world->field_count == 0 || !(nearest_edge(lying, path, s, &edge) < 0)) return INFINITY;
+    if (lying->moves->world->field_count == 0 || path->clock > 0 || !(nearest_edge(lying, path, s, &edge) < 0))
+        return INFINITY;
     for (int i = 0; i < HALVINGS; i++) {
         const double middle = 0.5 * (within + s);
         *(nearest_edge(lying, path, middle, &edge) < 0 ? &s : &within) = middle;

@@ -35,7 +35,8 @@ void imp_lying_force(const imp_lying *lying, const double *y, const imp_face_bal
 /* Where the path is to end, s in (-1, 0]: at its end, where stride.t_end is, or beyond the first edge of a force. */
 double imp_lying_end(const imp_lying *lying, const imp_face_path *path, imp_end *end);
 /* How long, in tau, the next step is to be so that the first edge that the path, continued, comes to lies between its
- * last node and its end: no rate is asked for beyond it. Infinite: there is none as far as the next step may go. */
+ * last node and its end: no rate is asked for beyond it. Infinite: there is none as far as the next step may go, or the
+ * path is of another time. */
 double imp_lying_until_edge(const imp_lying *lying, const imp_face_path *path);
 /* A path to s as the step of a motion, of an island in which this body alone moves: from motion->stride.t on, which is
  * then at its end. IMPACT_ENOMEM. */

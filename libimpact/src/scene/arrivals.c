@@ -252,12 +252,21 @@ static void wake(imp_island *island)
     imp_island_count_moving(island);
 }
 
+/* What stands on its face, and no steps hold any more. */
+static impact_status leave_steps(imp_island *island)
+{
+    island->stepped = false;
+    island->outside = imp_gather_energy_outside(island->scene, island, island->t);
+    return conclude(island, imp_scene_settle(island));
+}
+
 static impact_status continue_steps(imp_island *island)
 {
     imp_stepped found;
     const impact_status status = imp_island_after_step(island, &found);
     if (status != IMPACT_OK) return imp_island_fail(island, status);
     const bool stood = imp_island_all_rest(island);
+    if (found == IMP_STEPPED_LIES) return leave_steps(island);
     if (found == IMP_STEPPED_REST && stood) return go_on(island);
     if (stood) wake(island);
     if (found == IMP_STEPPED_ON) return go_on(island);

@@ -4,6 +4,7 @@
 #include "contact/held_flat.h"
 #include "contact/held_spot.h"
 #include "contact/points.h"
+#include "motion/face_begin.h"
 #include "motion/lying.h"
 #include "scene/scene_events.h"
 #include "scene/scene_meeting.h"
@@ -16,7 +17,7 @@
 /* A motion of constant rates, in the face's units, until so many s from now. */
 typedef struct steady {
     double a[2], alpha, until;
-    bool fades, sets_out;
+    bool fades, stands, breaks;
 } steady;
 
 static double size_of(const double v[2]) { return hypot(v[0], v[1]); }
@@ -98,13 +99,35 @@ static bool fades_out(const imp_face_motion *m, const double *y, double slow, st
     return true;
 }
 
-/* Under a load that changes: from rest until it has a direction. */
-static bool sets_out(const imp_face_motion *m, double slow, steady *s)
+/* Whether the face stands under the load of so much later. */
+static bool stands_then(const imp_lying *lying, double later)
 {
-    const double still[2] = {0, 0};
-    if (!slides_straight(m, still, s)) return false;
-    s->until = IMP_FACE_SET_OUT * slow / size_of(s->a);
-    return s->sets_out = true;
+    double y[IMP_FACE_STATE], a[3];
+    imp_face_balance balance;
+    memcpy(y, lying->start, sizeof y);
+    y[IMP_FACE_TIME] = later;
+    return imp_face_begins(&lying->motion, y, a, &balance) == IMP_FACE_STANDS;
+}
+
+/* Under loads that change: until they are more than the face holds, or are to be looked at again. */
+static bool stands_on(const imp_lying *lying, steady *s)
+{
+    const imp_face_motion *m = &lying->motion;
+    const double look = fmin(m->longest, 1 / (IMP_FACE_LOOKS * sqrt(m->load.press)));
+    if (!imp_field_unsteady(lying->moves->world) || !stands_then(lying, 0)) return false;
+    *s = (steady){.until = IMP_FACE_LOOKS * look, .stands = true};
+    for (int k = 1; k <= IMP_FACE_LOOKS; k++) {
+        double stands = (k - 1) * look, goes = k * look;
+        if (stands_then(lying, goes)) continue;
+        for (;;) {
+            const double middle = 0.5 * (stands + goes), t0 = lying->t0;
+            if (!(t0 + middle > t0 + stands && t0 + middle < t0 + goes)) break;
+            *(stands_then(lying, middle) ? &stands : &goes) = middle;
+        }
+        s->until = goes, s->breaks = true;
+        break;
+    }
+    return true;
 }
 
 static bool find_steady(const imp_lying *lying, double slow, steady *s)
@@ -112,7 +135,7 @@ static bool find_steady(const imp_lying *lying, double slow, steady *s)
     const imp_face_motion *m = &lying->motion;
     const double *y = lying->start, *v = &y[IMP_FACE_V], w = y[IMP_FACE_W];
     *s = (steady){.until = INFINITY};
-    if (m->loads) return imp_face_speed(m, y) > 0 ? fades_out(m, y, slow, s) : sets_out(m, slow, s);
+    if (m->loads) return imp_face_speed(m, y) > 0 ? fades_out(m, y, slow, s) : stands_on(lying, s);
     if (w == 0 && slides_straight(m, v, s)) return true;
     if (size_of(v) == 0 && w != 0 && size_of(m->load.pull) == 0 && spins_in_place(m, w, s)) return true;
     return glides_freely(m, y, s) || fades_out(m, y, slow, s);
@@ -140,25 +163,48 @@ static bool find_lying(imp_island *island, const imp_pair *pair, double t, const
     return true;
 }
 
-/* Whether it moves, or is pulled away; and its face lies within what it lies on, or slides over its border in closed
- * form. */
+/* From rest. Where the face reaches over a border it is not all of it that is pressed: what this says then holds of a
+ * load that has no moment about the centre of pressure, as gravity has none (Jensen). */
+static imp_face_begin begins(const imp_lying *lying, imp_face_balance *balance)
+{
+    double a[3];
+    return imp_face_begins(&lying->motion, lying->start, a, balance);
+}
+
+/* Whether it moves, or begins to; and its face lies within what it lies on, or slides over its border in closed form.
+ */
 static bool glides(imp_island *island, const imp_lying *lying)
 {
     const imp_face_motion *m = &lying->motion;
     const double *y = lying->start;
+    double rate[IMP_FACE_STATE];
     imp_face_balance balance = {.p = {0}};
     steady s;
-    if (imp_face_speed(m, y) == 0 && !(size_of(m->load.pull) > m->friction * m->load.press)) return false;
+    const bool moves = imp_face_speed(m, y) > 0;
+    if (!moves && begins(lying, &balance) != IMP_FACE_GOES) return false;
     if (find_steady(lying, 0, &s)) return true;
-    double rate[IMP_FACE_STATE];
-    const bool moves = imp_face_speed(m, y) > 0 && imp_face_rates(m, y, rate, &balance);
-    if (!moves || !(imp_face_margin(m, y, &balance) > 2 * IMP_FACE_MARGIN)) return false;
+    if (moves && !imp_face_rates(m, y, rate, &balance)) return false;
+    if (!(imp_face_margin(m, y, &balance) > 2 * IMP_FACE_MARGIN)) return false;
     imp_face_path path;
     island->glide = IMP_FACE_LONGEST;
     return imp_face_motion_step(m, y, &island->glide, &path);
 }
 
-static impact_status tell_contact(imp_island *island, int p, const imp_lying *lying)
+/* Whether it stands, all of its face on what it lies on. */
+static bool stands_on_all(const imp_lying *lying)
+{
+    imp_face_balance balance;
+    return imp_face_speed(&lying->motion, lying->start) == 0 && begins(lying, &balance) == IMP_FACE_STANDS &&
+           imp_face_margin(&lying->motion, lying->start, &balance) > 2 * IMP_FACE_MARGIN;
+}
+
+/* Under forces that may move it later. */
+static bool stands_for_now(const imp_lying *lying)
+{
+    return imp_field_unsteady(lying->moves->world) && stands_on_all(lying);
+}
+
+static impact_status tell_slide(imp_island *island, int p, const imp_lying *lying, impact_event_kind kind)
 {
     const imp_pair *pair = &island->world.pairs[p];
     const imp_held_contact contact = {.pair = p,
@@ -166,7 +212,7 @@ static impact_status tell_contact(imp_island *island, int p, const imp_lying *ly
                                       .body2 = pair->body2,
                                       .normal = lying->normal,
                                       .r1 = qvec3_scale(lying->normal, -lying->motion.height * lying->size)};
-    impact_event event = imp_scene_event_of_contact(island, IMPACT_EVENT_CONTACT, &contact);
+    impact_event event = imp_scene_event_of_contact(island, kind, &contact);
     event.phases = "slide";
     return imp_scene_record(island, &event);
 }
@@ -221,16 +267,15 @@ static bool is_held_elsewhere_too(imp_island *island, const imp_pair *pair)
     return false;
 }
 
-/* The force of its glide and where it acts, from the centre of mass; the moment there, about the normal. From rest it
- * goes the way it is pulled. */
+/* The force of its face and where it acts, from the centre of mass; the moment there, about the normal. */
 static bool force_of_glide(const imp_lying *lying, qvec3 *force, qvec3 *arm, double *moment)
 {
-    double rate[IMP_FACE_STATE], y[IMP_FACE_STATE];
+    double rate[IMP_FACE_STATE];
+    const double *y = lying->start;
     imp_face_balance balance = {.p = {0}};
-    memcpy(y, lying->start, sizeof y);
-    if (!(imp_face_speed(&lying->motion, y) > 0))
-        memcpy(&y[IMP_FACE_V], lying->motion.load.pull, sizeof lying->motion.load.pull);
-    if (!imp_face_rates(&lying->motion, y, rate, &balance)) return false;
+    const bool moves = imp_face_speed(&lying->motion, y) > 0;
+    if (moves ? !imp_face_rates(&lying->motion, y, rate, &balance) : begins(lying, &balance) == IMP_FACE_NEITHER)
+        return false;
     imp_lying_force(lying, y, &balance, force, arm, moment);
     return true;
 }
@@ -269,6 +314,19 @@ static void lie(imp_island *island, int p)
     pair->site.corner = pair->site.face = 0;
 }
 
+/* It is told when it comes to rest, when its contact is made, and when it begins to slip. */
+static impact_status tell_of_lying(imp_island *island, int p, const imp_lying *lying, bool stands, bool lay_before)
+{
+    const int body = island->world.pairs[p].body1;
+    const bool stood = island->motion.resting[body];
+    island->motion.resting[body] = stands;
+    if (!stands && (stood || !lay_before))
+        return tell_slide(island, p, lying, stood ? IMPACT_EVENT_SLIP : IMPACT_EVENT_CONTACT);
+    if (!stands || stood) return IMPACT_OK;
+    const impact_event event = imp_scene_event_of_body(island, IMPACT_EVENT_REST, body);
+    return imp_scene_record(island, &event);
+}
+
 /* Lays the body of the pair whose points are first ... end - 1 exactly on its face: it glides there, or may rest. */
 static impact_status lay(imp_island *island, int first, int end, bool lay_before, bool *any)
 {
@@ -285,15 +343,15 @@ static impact_status lay(imp_island *island, int first, int end, bool lay_before
     imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), world->bodies[body].mass));
     island->states[body] = now;
     int side;
-    if (!glides(island, &lying)) {
+    const bool stands = stands_for_now(&lying);
+    if (!stands && !glides(island, &lying)) {
         if (tips_over(&lying, &side)) let_rise(island, first, end, &lying, side), *any = true;
         return IMPACT_OK;
     }
-    if (is_pressed_elsewhere_too(island, &world->pairs[first], &lying)) return IMPACT_OK;
+    if (!stands && is_pressed_elsewhere_too(island, &world->pairs[first], &lying)) return IMPACT_OK;
     for (int p = first; p < end; p++) lie(island, p);
-    island->motion.resting[body] = false;
     *any = true;
-    return lay_before ? IMPACT_OK : tell_contact(island, first, &lying);
+    return tell_of_lying(island, first, &lying, stands, lay_before);
 }
 
 impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any)
@@ -311,17 +369,20 @@ impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any)
 
 /* ---- flat places ---- */
 
-/* It lies on the plane's face as what has faces does, but for how it came there and what holds it afterwards. */
-static void glide_on_flat(imp_island *island, imp_pair *pair)
+/* It lies on the plane's face as what has faces does, but for how it came there and what holds it afterwards: at one
+ * point, which resists no torque, so that it stands too by its face where there are forces. */
+static impact_status glide_on_flat(imp_island *island, int p)
 {
     imp_lying lying;
+    imp_pair *pair = &island->world.pairs[p];
     const int body = pair->body1;
-    if (!imp_is_held(pair) || pair->footing.on != IMP_FOOT_FLAT || pair->rest.still || island->motion.resting[body])
-        return;
-    if (!imp_flat_lies(&island->world, pair, island->states)) return;
-    if (!find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying) ||
-        !glides(island, &lying))
-        return;
+    const bool forced = island->world.field_count > 0;
+    if (!imp_is_held(pair) || pair->footing.on != IMP_FOOT_FLAT || pair->rest.still ||
+        (island->motion.resting[body] && !forced) || !imp_flat_lies(&island->world, pair, island->states))
+        return IMPACT_OK;
+    if (!find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying)) return IMPACT_OK;
+    const bool stands = forced && stands_on_all(&lying);
+    if (!stands && !glides(island, &lying)) return IMPACT_OK;
     const imp_state now = imp_lying_state(&lying, lying.start);
     const double energy = imp_scene_undriven_energy(island);
     imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), island->world.bodies[body].mass));
@@ -330,11 +391,14 @@ static void glide_on_flat(imp_island *island, imp_pair *pair)
     pair->mode = IMP_OPEN;
     imp_end_incipient(pair);
     pair->footing.on = IMP_FOOT_FACE;
+    return tell_of_lying(island, p, &lying, stands, true);
 }
 
-void imp_island_glide_on_flats(imp_island *island)
+impact_status imp_island_glide_on_flats(imp_island *island)
 {
-    for (int p = 0; p < island->world.pair_count; p++) glide_on_flat(island, &island->world.pairs[p]);
+    impact_status status = IMPACT_OK;
+    for (int p = 0; status == IMPACT_OK && p < island->world.pair_count; p++) status = glide_on_flat(island, p);
+    return status;
 }
 
 bool imp_island_hold_flat(imp_island *island, int p)
@@ -351,8 +415,23 @@ bool imp_island_hold_flat(imp_island *island, int p)
         foot = IMP_FOOT_SPOT;
     }
     pair->footing.on = foot;
-    pair->mode = IMP_SLIDE;
+    pair->mode = island->motion.resting[pair->body1] ? IMP_STICK : IMP_SLIDE;
     return true;
+}
+
+bool imp_island_may_lie(imp_island *island)
+{
+    const imp_pile_memories *held = imp_pile_held(island->pile);
+    int moving = 0;
+    imp_lying lying;
+    for (int i = 0; i < island->world.body_count; i++) moving += !island->world.bodies[i].is_static;
+    if (moving != 1 || held->count < 3) return false;
+    for (int k = 1; k < held->count; k++)
+        if (held->list[k].pair != held->list[0].pair) return false;
+    const imp_pair *pair = &island->world.pairs[held->list[0].pair];
+    return island->world.bodies[pair->body2].is_static &&
+           find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying) &&
+           (stands_for_now(&lying) || (!island->motion.resting[pair->body1] && glides(island, &lying)));
 }
 
 imp_pair *imp_island_lying(const imp_island *island)
@@ -383,6 +462,19 @@ static imp_segment ends_here(imp_island *island, const imp_pair *pair)
     return s;
 }
 
+/* A stay to where its load is to be looked at again, or more than the face holds; or a force's edge or switch is
+ * before. */
+static void stay_to_end(imp_island *island, const imp_lying *lying, steady *s)
+{
+    double y[IMP_FACE_STATE];
+    imp_face_path path = {.c = {[1][IMP_FACE_TIME] = s->until}};
+    memcpy(path.c[0], lying->start, sizeof path.c[0]);
+    path.c[0][IMP_FACE_TIME] = s->until;
+    imp_face_at(&path, imp_lying_end(lying, &path, &island->end), y);
+    s->until = y[IMP_FACE_TIME];
+    if (island->end.kind == IMP_END_TIME) end_with(island, s->breaks ? IMP_END_BOUNDS : IMP_END_RENEWAL);
+}
+
 /* A step to an edge, or one whose end is as its path has it: what changed behind the last node is not missed. */
 static bool step_to_end(imp_island *island, const imp_lying *lying, imp_face_path *path, double *to)
 {
@@ -410,13 +502,11 @@ impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool
     }
     const imp_state start = imp_lying_state(&lying, lying.start);
     if (find_steady(&lying, island->scene->rest_speed / lying.size, &s)) {
+        const bool sticks = s.fades && lying.motion.friction > 0;
+        end_with(island, sticks ? IMP_END_STICK : isfinite(s.until) ? IMP_END_BOUNDS : IMP_END_TIME);
+        if (s.stands) stay_to_end(island, &lying, &s);
         *segment =
             imp_segment_roll(t, t + s.until, &start, along_face(&lying, s.a), qvec3_scale(lying.normal, s.alpha));
-        const bool sticks = s.fades && lying.motion.friction > 0;
-        end_with(island, sticks              ? IMP_END_STICK
-                         : s.sets_out        ? IMP_END_RENEWAL
-                         : isfinite(s.until) ? IMP_END_BOUNDS
-                                             : IMP_END_TIME);
         return IMPACT_OK;
     }
     double to;
@@ -440,7 +530,7 @@ bool imp_island_glide_force(imp_island *island, double t, const imp_state *state
     if (!find_lying(island, pair, t, states, 0, &lying) || !force_of_glide(&lying, &force, &arm, &moment)) return false;
     *held = (impact_held){.body1 = island->world.bodies[pair->body1].index,
                           .body2 = island->world.bodies[pair->body2].index,
-                          .mode = IMPACT_HOLD_SLIP,
+                          .mode = island->motion.resting[pair->body1] ? IMPACT_HOLD_STICK : IMPACT_HOLD_SLIP,
                           .point = qvec3_add(states[pair->body1].x, arm),
                           .normal = lying.normal,
                           .force = force,

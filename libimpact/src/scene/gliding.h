@@ -1,29 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * gliding: a body that lies with a face on a static one and nothing else holds, and slides or turns there under gravity
- * alone. Where its friction keeps its direction it has constant accelerations:
+ * gliding: a body that lies with a face on a static one and nothing else holds, and slides or turns there, or stands
+ * under forces that may move it later. Where its friction keeps its direction it has constant accelerations:
  *
  *     slides along e    a = (pull - mu P) e, pull along e or none; until the slip or the face it lies on ends
  *     turns on the spot alpha = M/J, the friction of its face alone holding no force; on level ground
  *
- * else its motion is integrated (motion/face_motion.h). A face that slides without turning is held by mu N however its
- * pressure lies; so one that stands still under gravity is, iff |pull| <= mu P: what friction takes of any twist about
- * the centre of pressure c is at least mu N |u(c)| (Jensen). Internal.
+ * else its motion is integrated (motion/face_motion.h). Whether it stands is a question to its face
+ * (motion/face_begin.h). A face that slides without turning is held by mu N however its pressure lies; so one that
+ * stands under what pulls at its centre is, iff |pull| <= mu P: what friction takes of any twist about the centre of
+ * pressure c is at least mu N |u(c)| (Jensen). Internal.
  */
 #ifndef IMP_GLIDING_H
 #define IMP_GLIDING_H
 
 #include "scene/scene_internal.h"
 
-/* The pairs of the island, whose points that touch are settled, in which a body glides: they lie (IMP_FOOT_FACE), the
- * body brought exactly onto its face. any: whether there are such. A row of contact is written unless it lay before. */
+/* The pairs of the island, whose points that touch are settled, in which a body glides, or stands for now: they lie
+ * (IMP_FOOT_FACE), the body brought exactly onto its face. any: whether there are such. A row of contact is written
+ * unless it lay before; of what stood before, one of slip. */
 impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any);
 
-/* The superquadrics that are held flat on a plane (held_flat.h), and slide or turn there: what their flat place is
- * of is a face. They lie, and are held no more; where their places end they are to be held again. */
-void imp_island_glide_on_flats(imp_island *island);
+/* The superquadrics that are held flat on a plane (held_flat.h), and slide or turn there, or stand under forces: what
+ * their flat place is of is a face. They lie, and are held no more; where their places end they are to be held again.
+ */
+impact_status imp_island_glide_on_flats(imp_island *island);
 /* The lying pair p, held again where its pressure is, so that it may tip; false: it is one of faces. */
 bool imp_island_hold_flat(imp_island *island, int p);
+
+/* Whether the one body of an island that goes by steps, which stands by the reactions at its points, does so for now by
+ * its face; or does not by its face, which has not been asked yet: it is to lie. One that rests has been, and tips. */
+bool imp_island_may_lie(imp_island *island);
 
 /* The pair of the island's one body that moves, if it glides; or NULL. */
 imp_pair *imp_island_lying(const imp_island *island);

@@ -34,8 +34,7 @@ static bool rise_from_faces(imp_island *island)
 static impact_status hold_on(imp_island *island, int opened, bool rejoin)
 {
     const impact_status status = imp_scene_hold(island, opened, rejoin);
-    if (status == IMPACT_OK) imp_island_glide_on_flats(island);
-    return status;
+    return status == IMPACT_OK ? imp_island_glide_on_flats(island) : status;
 }
 
 /* Modes changed without an impact; if what slides is drawn on now there is one. */

@@ -4,6 +4,7 @@
 #include "base/tolerances.h"
 #include "motion/motion_pile.h"
 #include "scene/following.h"
+#include "scene/gliding.h"
 #include "scene/scene_points.h"
 #include "world/world_gap.h"
 
@@ -188,7 +189,9 @@ impact_status imp_island_after_step(imp_island *island, imp_stepped *found)
     bool stands;
     const impact_status status = imp_island_can_stand(island, &stands);
     const double apart = IMP_PILE_APART * imp_pile_natural_time(&island->world, island->states);
-    *found = stands ? IMP_STEPPED_REST : island->t - island->met_since >= apart ? IMP_STEPPED_LOOK : IMP_STEPPED_ON;
+    *found = stands ? (imp_island_may_lie(island) ? IMP_STEPPED_LIES : IMP_STEPPED_REST)
+             : island->t - island->met_since >= apart ? IMP_STEPPED_LOOK
+                                                      : IMP_STEPPED_ON;
     return status;
 }
 

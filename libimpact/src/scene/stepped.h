@@ -25,6 +25,7 @@ impact_status imp_island_can_stand(imp_island *island, bool *can);
 typedef enum imp_stepped {
     IMP_STEPPED_ON,   /* it goes on */
     IMP_STEPPED_REST, /* all its bodies stand still, and can: to be brought to rest */
+    IMP_STEPPED_LIES, /* its one body that moves is to lie on its face, where it stands for now or begins to move */
     IMP_STEPPED_LOOK  /* it goes on, but for what has not touched the rest since the last look (imp_pair.met) */
 } imp_stepped;
 

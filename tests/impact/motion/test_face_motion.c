@@ -225,6 +225,36 @@ static void a_jump_is_stepped_over(void **state)
     assert_near(y[IMP_FACE_V], sqrt(1 - 2 * .2 * end), 1e-4); /* the height times the time of the shortest step */
 }
 
+/* A pull that grows from what friction holds. */
+static bool growing(const void *context, const double *y, imp_face_load *load)
+{
+    load->pull[0] = .5 + *(const double *)context * y[IMP_FACE_TIME];
+    load->power = load->pull[0] * y[IMP_FACE_V];
+    return true;
+}
+
+/* However slowly it moves yet, a step takes no more than the time that the load may be followed in; v = v0 + rate
+ * t^2/2. */
+static void no_step_is_longer_than_its_load_allows(void **state)
+{
+    (void)state;
+    for (double rate = 1; rate < 1e4; rate *= 10) {
+        imp_face_motion m = square_motion(.3, .5);
+        m.loads = growing, m.context = &rate, m.longest = 2e-3;
+        double y[IMP_FACE_STATE] = {0, 0, 0, 1e-6, 0, 0}, length = 1e6;
+        imp_face_path path;
+        for (int n = 0; n < 20; n++) {
+            const double begun = y[IMP_FACE_TIME], v = y[IMP_FACE_V];
+            assert_true(imp_face_motion_step(&m, y, &length, &path));
+            length = 1e6;
+            imp_face_at(&path, 0, y);
+            const double t = y[IMP_FACE_TIME];
+            assert_true(t - begun <= 1.26 * m.longest);
+            assert_near(y[IMP_FACE_V], v + rate * (t * t - begun * begun) / 2, 1e-9 * (1 + y[IMP_FACE_V]));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(the_pressure_balances),
@@ -232,6 +262,7 @@ int main(void)
                                        cmocka_unit_test(energy_is_kept),
                                        cmocka_unit_test(mirrored),
                                        cmocka_unit_test(a_force_ends_just_after_the_begin),
-                                       cmocka_unit_test(a_jump_is_stepped_over)};
+                                       cmocka_unit_test(a_jump_is_stepped_over),
+                                       cmocka_unit_test(no_step_is_longer_than_its_load_allows)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
