@@ -140,8 +140,8 @@ void impact_lua_add_interaction(lua_State *L);
 
 /* A name for files that stays in its folder. */
 bool impact_lua_is_plain(const char *name);
-/* Runs to t_end (NAN: to the duration, or until all rests), with the table of options at options_index: returns what run returns to the script. The scene is at
- * index 1. event, unless NULL: to the next event only, which goes there. */
+/* Runs to t_end (NAN: to the duration, or until all rests), with the table of options at options_index: returns what
+ * run returns to the script. The scene is at index 1. event, unless NULL: to the next event only, which goes there. */
 int impact_lua_run(lua_State *L, impact_lua_scene *self, double t_end, int options_index, impact_event *event);
 
 #endif

@@ -193,10 +193,7 @@ static void begin_samples(impact_scene *scene)
     imp_queue_set(&scene->queue, 0, sample_time(scene));
 }
 
-bool imp_scene_rests(const impact_scene *scene)
-{
-    return scene->moving == 0 && scene->movable > 0 && !scene->unsteady;
-}
+bool imp_scene_rests(const impact_scene *scene) { return scene->moving == 0 && scene->movable > 0 && !scene->unsteady; }
 
 impact_status imp_scene_go_on(impact_scene *scene, double t_end)
 {

@@ -13,8 +13,8 @@
 
 /* ---- when ---- */
 
-/* Whether bodies that move touch each other with friction, and by three contacts in all: fewer are no pile. What is held
- * touches, and what has just struck: of a pile that chatters one contact is always open. */
+/* Whether bodies that move touch each other with friction, and by three contacts in all: fewer are no pile. What is
+ * held touches, and what has just struck: of a pile that chatters one contact is always open. */
 static bool is_pile(const imp_island *island)
 {
     const imp_world *world = &island->world;

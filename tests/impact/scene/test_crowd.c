@@ -394,8 +394,8 @@ static void the_event_limit_holds(void **state)
 }
 
 /* Eight ellipsoids fall on each other. Two that stand on the floor come to where one slips while they are apart, and
- * draws near, and sticks while they touch, and goes off: a thousand impacts in a millionth of a second, again and again,
- * and never more than two contacts held, so that it was taken for no pile. */
+ * draws near, and sticks while they touch, and goes off: a thousand impacts in a millionth of a second, again and
+ * again, and never more than two contacts held, so that it was taken for no pile. */
 static void what_chatters_goes_by_steps(void **state)
 {
     (void)state;
