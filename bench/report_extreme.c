@@ -80,11 +80,12 @@ void extreme_open(extreme_trial *t)
     complain(t, message);
 }
 
+/* NAN: to the duration, or until all rests. */
 void extreme_go_on(extreme_trial *t, double until)
 {
     if (t->status < 0) return;
     const clock_t from = clock();
-    t->status = impact_scene_run_to(t->scene, until, NULL);
+    t->status = isnan(until) ? impact_scene_run(t->scene, NULL) : impact_scene_run_to(t->scene, until, NULL);
     t->cpu += (double)(clock() - from) / CLOCKS_PER_SEC;
     complain(t, impact_scene_message(t->scene));
 }
@@ -92,7 +93,7 @@ void extreme_go_on(extreme_trial *t, double until)
 static void run(extreme_trial *t)
 {
     extreme_open(t);
-    extreme_go_on(t, t->def.duration);
+    extreme_go_on(t, NAN);
 }
 
 impact_sample extreme_end_of(const extreme_trial *t, int body)
