@@ -231,6 +231,7 @@ impact_status imp_scene_hold(imp_island *island, int opened, bool rejoin)
     if (status == IMPACT_OK) world->usage.reactions_chosen += hangs_on_choice(island);
     if (status == IMPACT_OK) status = imp_scene_load(island);
     if (status == IMPACT_OK) status = record_changes(island);
+    /* three of six hundred heaps of balls come to this; steps ask for impulses, which may be there all the same */
     if (status == IMPACT_EUNSETTLED && island->scene->piles != IMPACT_PILES_EXACT) {
         island->lies = true;
         island->scene->message[0] = '\0';
