@@ -21,17 +21,40 @@
  * neighbourhood's. */
 static double off_zero(double component) { return copysign(fmax(fabs(component), IMP_OFF_FLAT), component); }
 
+/* W at one outward normal; of a ball its radius is all. */
+typedef struct surface_curve {
+    bool ball;
+    double radius;
+    quat axes;
+    qmat3 hessian; /* in the body's axes */
+    qvec3 outward;
+} surface_curve;
+
+static surface_curve curve_of(const imp_body *body, const imp_state *state, qvec3 outward)
+{
+    surface_curve curve = {
+        .ball = body->shape.kind == IMPACT_SPHERE, .radius = body->shape.a, .outward = outward, .axes = {1, 0, 0, 0}};
+    if (curve.ball) return curve;
+    curve.axes = imp_shape_axes(body, state);
+    const qvec3 d = quat_rotate_inverse(curve.axes, outward);
+    curve.hessian = impact_shape_support_hessian(&body->shape, (qvec3){off_zero(d.x), off_zero(d.y), off_zero(d.z)});
+    return curve;
+}
+
+static qvec3 bend_of(const surface_curve *curve, qvec3 v)
+{
+    if (curve->ball) return qvec3_scale(qvec3_axpy(-qvec3_dot(v, curve->outward), curve->outward, v), curve->radius);
+    const double(*h)[3] = curve->hessian.m;
+    const qvec3 b = quat_rotate_inverse(curve->axes, v);
+    return quat_rotate(curve->axes, (qvec3){h[0][0] * b.x + h[0][1] * b.y + h[0][2] * b.z,
+                                            h[1][0] * b.x + h[1][1] * b.y + h[1][2] * b.z,
+                                            h[2][0] * b.x + h[2][1] * b.y + h[2][2] * b.z});
+}
+
 qvec3 imp_surface_bend(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v)
 {
-    if (body->shape.kind == IMPACT_SPHERE)
-        return qvec3_scale(qvec3_axpy(-qvec3_dot(v, outward), outward, v), body->shape.a);
-    const quat q = imp_shape_axes(body, state);
-    const qvec3 d = quat_rotate_inverse(q, outward);
-    const qmat3 h = impact_shape_support_hessian(&body->shape, (qvec3){off_zero(d.x), off_zero(d.y), off_zero(d.z)});
-    const qvec3 b = quat_rotate_inverse(q, v);
-    return quat_rotate(q, (qvec3){h.m[0][0] * b.x + h.m[0][1] * b.y + h.m[0][2] * b.z,
-                                  h.m[1][0] * b.x + h.m[1][1] * b.y + h.m[1][2] * b.z,
-                                  h.m[2][0] * b.x + h.m[2][1] * b.y + h.m[2][2] * b.z});
+    const surface_curve curve = curve_of(body, state, outward);
+    return bend_of(&curve, v);
 }
 
 static qvec3 body_turning(const imp_body *body, const imp_state *state)
@@ -46,47 +69,52 @@ static qvec3 velocity_of(const imp_body *body, const imp_state *state)
 
 /* How much the surface there is flatter than round: the larger radius of curvature, about; 0 of what S does not suit.
  */
-static double flatness(const imp_body *body, const imp_state *state, qvec3 outward)
+static double flatness(const impact_shape *shape, const surface_curve *curve)
 {
-    const impact_shape *shape = &body->shape;
     const double least = fmin(shape->r, fmin(shape->s, shape->t)), most = fmax(shape->r, fmax(shape->s, shape->t));
     if (shape->kind != IMPACT_SUPERQUADRIC || least < 2 || most == 2) return 0;
-    const qvec3 t = imp_tangent(outward);
-    return qvec3_norm(imp_surface_bend(body, state, outward, t)) +
-           qvec3_norm(imp_surface_bend(body, state, outward, qvec3_cross(outward, t)));
+    const qvec3 t = imp_tangent(curve->outward);
+    return qvec3_norm(bend_of(curve, t)) + qvec3_norm(bend_of(curve, qvec3_cross(curve->outward, t)));
 }
 
-/* S v, 1/m: how a superquadric's outward normal turns along a tangential vector; exponents of 2 and more. With g the
- * gradient of sum |x/a|^p and D its Hessian, S = (1 - m m^T) D/|g|. */
-static qvec3 surface_turn(const imp_body *body, const imp_state *state, qvec3 arm, qvec3 outward, qvec3 v)
+/* How a superquadric's outward normal turns along its surface; exponents of 2 and more. With g the gradient of
+ * sum |x/a|^p and D its Hessian, S = (1 - m m^T) D/|g|. */
+typedef struct surface_turning {
+    quat axes;
+    double bend[3], slope; /* D, |g| */
+    qvec3 outward;
+} surface_turning;
+
+static surface_turning turning_of(const imp_body *body, const imp_state *state, qvec3 arm, qvec3 outward)
 {
     const impact_shape *shape = &body->shape;
-    const quat axes = imp_shape_axes(body, state);
-    const qvec3 place = quat_rotate_inverse(axes, qvec3_sub(arm, imp_shape_offset(body, state))),
-                along = quat_rotate_inverse(axes, v);
-    const double x[3] = {place.x, place.y, place.z}, a[3] = {shape->a, shape->b, shape->c};
-    const double p[3] = {shape->r, shape->s, shape->t}, b[3] = {along.x, along.y, along.z};
-    double length = 0, turn[3];
+    surface_turning own = {.axes = imp_shape_axes(body, state), .outward = outward};
+    const qvec3 place = quat_rotate_inverse(own.axes, qvec3_sub(arm, imp_shape_offset(body, state)));
+    const double x[3] = {place.x, place.y, place.z}, a[3] = {shape->a, shape->b, shape->c},
+                 p[3] = {shape->r, shape->s, shape->t};
     for (int i = 0; i < 3; i++) {
-        const double u = fabs(x[i] / a[i]), slope = p[i] / a[i] * pow(u, p[i] - 1);
-        length = hypot(length, slope);
-        turn[i] = p[i] * (p[i] - 1) / (a[i] * a[i]) * pow(u, p[i] - 2) * b[i];
+        const double u = fabs(x[i] / a[i]);
+        own.slope = hypot(own.slope, p[i] / a[i] * pow(u, p[i] - 1));
+        own.bend[i] = p[i] * (p[i] - 1) / (a[i] * a[i]) * pow(u, p[i] - 2);
     }
-    const qvec3 world = quat_rotate(axes, (qvec3){turn[0], turn[1], turn[2]});
-    return qvec3_scale(qvec3_axpy(-qvec3_dot(world, outward), outward, world), 1 / length);
+    return own;
+}
+
+/* S v, 1/m, of a tangential vector. */
+static qvec3 surface_turn(const surface_turning *own, qvec3 v)
+{
+    const qvec3 b = quat_rotate_inverse(own->axes, v);
+    const qvec3 world = quat_rotate(own->axes, (qvec3){own->bend[0] * b.x, own->bend[1] * b.y, own->bend[2] * b.z});
+    return qvec3_scale(qvec3_axpy(-qvec3_dot(world, own->outward), own->outward, world), 1 / own->slope);
 }
 
 /* Two bodies at their one point, and the slip of the first over the second. */
 typedef struct round_pair {
     const imp_body *body[2];
     const imp_state *state[2];
-    qvec3 arm[2], outward[2], omega[2], slip;
+    qvec3 arm[2], omega[2], slip;
+    surface_curve curve[2];
 } round_pair;
-
-static qvec3 pair_bend(const round_pair *r, int k, qvec3 v)
-{
-    return imp_surface_bend(r->body[k], r->state[k], r->outward[k], v);
-}
 
 /* The tangential x whose image is y; images of the two tangents. */
 static qvec3 tangent_of_image(const qvec3 t[2], const qvec3 image[2], qvec3 y)
@@ -103,8 +131,8 @@ static qvec3 round_turn(const round_pair *r, qvec3 n)
     const qvec3 t[2] = {imp_tangent(n), qvec3_cross(n, imp_tangent(n))};
     qvec3 image[2], moves = r->slip;
     for (int k = 0; k < 2; k++) {
-        image[k] = qvec3_add(pair_bend(r, 0, t[k]), pair_bend(r, 1, t[k]));
-        moves = qvec3_add(moves, pair_bend(r, k, qvec3_cross(r->omega[k], n)));
+        image[k] = qvec3_add(bend_of(&r->curve[0], t[k]), bend_of(&r->curve[1], t[k]));
+        moves = qvec3_add(moves, bend_of(&r->curve[k], qvec3_cross(r->omega[k], n)));
     }
     return tangent_of_image(t, image, moves);
 }
@@ -113,16 +141,15 @@ static imp_rates flatter_rates(const round_pair *r, int flat, qvec3 n)
 {
     const int other = 1 - flat;
     const double side = flat == 1 ? 1 : -1;
-    const qvec3 out = r->outward[flat], over = qvec3_scale(r->slip, side);
+    const qvec3 out = r->curve[flat].outward, over = qvec3_scale(r->slip, side);
+    const surface_curve *round = &r->curve[other];
+    const surface_turning turning = turning_of(r->body[flat], r->state[flat], r->arm[flat], out);
     const qvec3 t[2] = {imp_tangent(n), qvec3_cross(n, imp_tangent(n))};
     qvec3 image[2];
-    for (int k = 0; k < 2; k++)
-        image[k] =
-            qvec3_add(t[k], pair_bend(r, other, surface_turn(r->body[flat], r->state[flat], r->arm[flat], out, t[k])));
+    for (int k = 0; k < 2; k++) image[k] = qvec3_add(t[k], bend_of(round, surface_turn(&turning, t[k])));
     const qvec3 rolls = qvec3_cross(qvec3_sub(r->omega[other], r->omega[flat]), out);
-    const qvec3 z = tangent_of_image(t, image, qvec3_add(over, pair_bend(r, other, rolls)));
-    const qvec3 turn =
-        qvec3_add(qvec3_cross(r->omega[flat], out), surface_turn(r->body[flat], r->state[flat], r->arm[flat], out, z));
+    const qvec3 z = tangent_of_image(t, image, qvec3_add(over, bend_of(round, rolls)));
+    const qvec3 turn = qvec3_add(qvec3_cross(r->omega[flat], out), surface_turn(&turning, z));
     const qvec3 own = qvec3_add(qvec3_cross(r->omega[flat], r->arm[flat]), z),
                 others = qvec3_add(qvec3_cross(r->omega[other], r->arm[other]), qvec3_sub(z, over));
     return (imp_rates){
@@ -149,6 +176,7 @@ static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const qvec3 n = contact->normal, out1 = qvec3_neg(n), w1 = imp_omega(b1, s1), turn1 = qvec3_cross(w1, n);
+    const surface_curve curve = curve_of(b1, s1, out1);
     imp_rates rates = {.normal = {0, 0, 0}};
     if (b2->shape.kind != IMPACT_PLANE) {
         const qvec3 u = qvec3_sub(imp_point_velocity(b1, s1, contact->offset1),
@@ -157,17 +185,16 @@ static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const
         const round_pair r = {.body = {b1, b2},
                               .state = {s1, s2},
                               .arm = {contact->offset1, contact->offset2},
-                              .outward = {out1, n},
                               .omega = {w1, w2},
-                              .slip = qvec3_axpy(-qvec3_dot(u, n), n, u)};
-        const double flat1 = flatness(b1, s1, out1), flat2 = flatness(b2, s2, n);
+                              .slip = qvec3_axpy(-qvec3_dot(u, n), n, u),
+                              .curve = {curve, curve_of(b2, s2, n)}};
+        const double flat1 = flatness(&b1->shape, &r.curve[0]), flat2 = flatness(&b2->shape, &r.curve[1]);
         if (flat1 > 0 || flat2 > 0) return flatter_rates(&r, flat2 >= flat1, n);
         rates.normal = round_turn(&r, n);
-        rates.arm2 =
-            qvec3_add(qvec3_cross(w2, contact->offset2), pair_bend(&r, 1, qvec3_sub(rates.normal, qvec3_cross(w2, n))));
+        rates.arm2 = qvec3_add(qvec3_cross(w2, contact->offset2),
+                               bend_of(&r.curve[1], qvec3_sub(rates.normal, qvec3_cross(w2, n))));
     }
-    rates.arm1 =
-        qvec3_add(qvec3_cross(w1, contact->offset1), imp_surface_bend(b1, s1, out1, qvec3_sub(turn1, rates.normal)));
+    rates.arm1 = qvec3_add(qvec3_cross(w1, contact->offset1), bend_of(&curve, qvec3_sub(turn1, rates.normal)));
     return rates;
 }
 
