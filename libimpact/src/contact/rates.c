@@ -30,7 +30,7 @@ typedef struct surface_curve {
     qvec3 outward;
 } surface_curve;
 
-static surface_curve curve_of(const imp_body *body, const imp_state *state, qvec3 outward)
+static surface_curve surface_curve_of(const imp_body *body, const imp_state *state, qvec3 outward)
 {
     surface_curve curve = {
         .ball = body->shape.kind == IMPACT_SPHERE, .radius = body->shape.a, .outward = outward, .axes = {1, 0, 0, 0}};
@@ -53,7 +53,7 @@ static qvec3 bend_of(const surface_curve *curve, qvec3 v)
 
 qvec3 imp_surface_bend(const imp_body *body, const imp_state *state, qvec3 outward, qvec3 v)
 {
-    const surface_curve curve = curve_of(body, state, outward);
+    const surface_curve curve = surface_curve_of(body, state, outward);
     return bend_of(&curve, v);
 }
 
@@ -85,7 +85,7 @@ typedef struct surface_turning {
     qvec3 outward;
 } surface_turning;
 
-static surface_turning turning_of(const imp_body *body, const imp_state *state, qvec3 arm, qvec3 outward)
+static surface_turning surface_turning_of(const imp_body *body, const imp_state *state, qvec3 arm, qvec3 outward)
 {
     const impact_shape *shape = &body->shape;
     surface_turning own = {.axes = imp_shape_axes(body, state), .outward = outward};
@@ -143,7 +143,7 @@ static imp_rates flatter_rates(const round_pair *r, int flat, qvec3 n)
     const double side = flat == 1 ? 1 : -1;
     const qvec3 out = r->curve[flat].outward, over = qvec3_scale(r->slip, side);
     const surface_curve *round = &r->curve[other];
-    const surface_turning turning = turning_of(r->body[flat], r->state[flat], r->arm[flat], out);
+    const surface_turning turning = surface_turning_of(r->body[flat], r->state[flat], r->arm[flat], out);
     const qvec3 t[2] = {imp_tangent(n), qvec3_cross(n, imp_tangent(n))};
     qvec3 image[2];
     for (int k = 0; k < 2; k++) image[k] = qvec3_add(t[k], bend_of(round, surface_turn(&turning, t[k])));
@@ -176,7 +176,7 @@ static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
     const qvec3 n = contact->normal, out1 = qvec3_neg(n), w1 = imp_omega(b1, s1), turn1 = qvec3_cross(w1, n);
-    const surface_curve curve = curve_of(b1, s1, out1);
+    const surface_curve curve = surface_curve_of(b1, s1, out1);
     imp_rates rates = {.normal = {0, 0, 0}};
     if (b2->shape.kind != IMPACT_PLANE) {
         const qvec3 u = qvec3_sub(imp_point_velocity(b1, s1, contact->offset1),
@@ -187,7 +187,7 @@ static imp_rates round_rates(const imp_world *world, const imp_pair *pair, const
                               .arm = {contact->offset1, contact->offset2},
                               .omega = {w1, w2},
                               .slip = qvec3_axpy(-qvec3_dot(u, n), n, u),
-                              .curve = {curve, curve_of(b2, s2, n)}};
+                              .curve = {curve, surface_curve_of(b2, s2, n)}};
         const double flat1 = flatness(&b1->shape, &r.curve[0]), flat2 = flatness(&b2->shape, &r.curve[1]);
         if (flat1 > 0 || flat2 > 0) return flatter_rates(&r, flat2 >= flat1, n);
         rates.normal = round_turn(&r, n);

@@ -138,6 +138,29 @@ static impact_status find_still(imp_island *island)
     return status;
 }
 
+/* Whether one that sticks has slip: the projection of others left it where it slid, before its mode was found. */
+static bool sticks_with_slip(const imp_island *island)
+{
+    const imp_held *held = &island->motion.held;
+    for (int c = 0; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        if (contact->mode == IMP_STICK && !contact->still && contact->speed > island->world.slip_speed) return true;
+    }
+    return false;
+}
+
+/* Velocities to the modes, and modes to the velocities. */
+static impact_status project_and_resolve(imp_island *island)
+{
+    imp_motion *motion = &island->motion;
+    imp_held_project(&motion->held, &island->world, island->states, motion->loads);
+    motion->works.drive += imp_held_drive_power(&motion->held, &island->world);
+    impact_status status = imp_scene_load(island);
+    if (status == IMPACT_OK) status = find_still(island);
+    if (status == IMPACT_OK) status = imp_held_resolve(&motion->held, &island->world, island->states, motion->loads);
+    return status;
+}
+
 /* Puts the constraints of the contacts that are held in order, and opens those that would pull. */
 static impact_status make_consistent(imp_island *island)
 {
@@ -145,12 +168,8 @@ static impact_status make_consistent(imp_island *island)
     imp_held_wake(&island->world);
     impact_status status = imp_held_reserve(&motion->held, &island->world, island->states);
     if (status == IMPACT_OK) status = imp_scene_load(island);
-    if (status != IMPACT_OK) return status;
-    imp_held_project(&motion->held, &island->world, island->states, motion->loads);
-    motion->works.drive += imp_held_drive_power(&motion->held, &island->world);
-    status = imp_scene_load(island);
-    if (status == IMPACT_OK) status = find_still(island);
-    if (status == IMPACT_OK) status = imp_held_resolve(&motion->held, &island->world, island->states, motion->loads);
+    if (status == IMPACT_OK) status = project_and_resolve(island);
+    if (status == IMPACT_OK && sticks_with_slip(island)) status = project_and_resolve(island);
     if (status == IMPACT_EUNSETTLED)
         snprintf(island->scene->message, sizeof island->scene->message,
                  "no consistent set of contact forces found at t = %s", imp_number_of(island->t).text);
@@ -231,11 +250,5 @@ impact_status imp_scene_hold(imp_island *island, int opened, bool rejoin)
     if (status == IMPACT_OK) world->usage.reactions_chosen += hangs_on_choice(island);
     if (status == IMPACT_OK) status = imp_scene_load(island);
     if (status == IMPACT_OK) status = record_changes(island);
-    /* three of six hundred heaps of balls come to this; steps ask for impulses, which may be there all the same */
-    if (status == IMPACT_EUNSETTLED && island->scene->piles != IMPACT_PILES_EXACT) {
-        island->lies = true;
-        island->scene->message[0] = '\0';
-        return IMPACT_OK;
-    }
     return status == IMPACT_OK ? bring_to_rest(island) : status;
 }

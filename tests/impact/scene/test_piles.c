@@ -139,6 +139,14 @@ static void test_reactions_that_are_past(void **state)
     run(2029, PILE_IN_BOX);
 }
 
+/* Two corners come to be held at one instant, and what takes the bounce from the one gave the other, which slid as it
+ * was looked at, a slip that it then stuck with: its friction gave energy all along. */
+static void test_what_sticks_has_no_slip(void **state)
+{
+    (void)state;
+    run(118, PILE_SET);
+}
+
 static void test_normals_that_jump(void **state)
 {
     (void)state;
@@ -345,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_losses_do_not_fall),
         cmocka_unit_test(test_reactions_that_are_past),
         cmocka_unit_test(test_what_parts_is_searched_for),
+        cmocka_unit_test(test_what_sticks_has_no_slip),
         cmocka_unit_test(test_normals_that_jump),
         cmocka_unit_test(test_hidden_bottoms_hold_nothing),
         cmocka_unit_test(test_glides_meet_what_they_touch),
