@@ -942,6 +942,10 @@
  * then for 996. */
 #define IMP_PILE_AT_END 0.95
 #define IMP_PILE_LONGEST 1e-1
+/* Friction acts by the pressures that it is found with, but for this part of its distance from their centre. */
+#define IMP_PILE_SHIFTED 1e-1
+/* Of a pair's points that lie in a line: their area over the square of their reach, which is roundings'. */
+#define IMP_PILE_LINE 1e-9
 /* In that unit, too: what has not touched the rest of a pile for so long goes on exactly. A time, not a number of
  * steps: what strikes then is answered by another law (docs/scene.md), and which it is must not hang on the tolerance.
  */

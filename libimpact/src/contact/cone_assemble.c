@@ -18,12 +18,14 @@ void imp_cone_find_axes(qvec3 normal, qvec3 axes[3])
     axes[2] = qvec3_cross(normal, axes[1]);
 }
 
-static void find_side(const imp_body *body, quat q, const qvec3 axes[3], qvec3 arm, double sign, double side[3][6])
+static void find_side(const imp_body *body, quat q, const imp_cone_contact *contact, qvec3 arm, double sign,
+                      double side[3][6])
 {
+    const qvec3 *axes = contact->axes, rubs = qvec3_add(arm, contact->rub);
     const double linear = body->is_static ? 0 : sign * sqrt(body->inverse_mass);
     const qvec3 root = {sqrt(body->inverse_moments.x), sqrt(body->inverse_moments.y), sqrt(body->inverse_moments.z)};
     for (int k = 0; k < 3; k++) {
-        const qvec3 torque = qvec3_cross(arm, axes[k]);
+        const qvec3 torque = qvec3_cross(k == 0 ? arm : rubs, axes[k]);
         const qvec3 own = body->spherical ? torque : quat_rotate_inverse(q, torque);
         const double row[6] = {linear * axes[k].x,    linear * axes[k].y,    linear * axes[k].z,
                                sign * root.x * own.x, sign * root.y * own.y, sign * root.z * own.z};
@@ -46,8 +48,8 @@ void imp_cone_find_rows(const imp_world *world, const imp_state *states, const i
 {
     for (int c = 0; c < count; c++) {
         const imp_cone_contact *own = &contacts[c];
-        find_side(&world->bodies[own->body1], states[own->body1].q, own->axes, own->arm1, 1, rows[c].side[0]);
-        find_side(&world->bodies[own->body2], states[own->body2].q, own->axes, own->arm2, -1, rows[c].side[1]);
+        find_side(&world->bodies[own->body1], states[own->body1].q, own, own->arm1, 1, rows[c].side[0]);
+        find_side(&world->bodies[own->body2], states[own->body2].q, own, own->arm2, -1, rows[c].side[1]);
     }
 }
 
@@ -83,6 +85,19 @@ void imp_cone_assemble_normals(const imp_world *world, const imp_state *states, 
         }
 }
 
+static qvec3 turning_of(const imp_body *body, const imp_state *state)
+{
+    if (!body->is_static) return imp_omega(body, state);
+    return body->driven ? body->spin : (qvec3){0, 0, 0};
+}
+
+/* How the bodies turn on each other. */
+static qvec3 relative_turning(const imp_world *world, const imp_state *states, const imp_cone_contact *contact)
+{
+    return qvec3_sub(turning_of(&world->bodies[contact->body1], &states[contact->body1]),
+                     turning_of(&world->bodies[contact->body2], &states[contact->body2]));
+}
+
 /* What the bodies' velocities are at the contact, along its axes. */
 static void velocities_at(const imp_world *world, const imp_state *states, const imp_cone_contact *contact, double *u)
 {
@@ -90,25 +105,15 @@ static void velocities_at(const imp_world *world, const imp_state *states, const
         qvec3_sub(imp_point_velocity(&world->bodies[contact->body1], &states[contact->body1], contact->arm1),
                   imp_point_velocity(&world->bodies[contact->body2], &states[contact->body2], contact->arm2));
     for (int k = 0; k < 3; k++) u[k] = qvec3_dot(contact->axes[k], v);
+    if (!(qvec3_dot(contact->rub, contact->rub) > 0)) return;
+    const qvec3 more = qvec3_cross(relative_turning(world, states, contact), contact->rub);
+    for (int k = 1; k < 3; k++) u[k] += qvec3_dot(contact->axes[k], more);
 }
 
 void imp_cone_contact_velocities(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
                                  int count, double *u)
 {
     for (int c = 0; c < count; c++) velocities_at(world, states, &contacts[c], &u[3 * c]);
-}
-
-/* Gives the bodies the impulse p there, and the moment. */
-static void push_at(const imp_world *world, const imp_cone_contact *contact, qvec3 p, qvec3 moment, imp_state *states)
-{
-    const int bodies[2] = {contact->body1, contact->body2};
-    const qvec3 arms[2] = {contact->arm1, contact->arm2};
-    for (int s = 0; s < 2; s++, p = qvec3_neg(p), moment = qvec3_neg(moment)) {
-        if (world->bodies[bodies[s]].is_static) continue;
-        imp_state *state = &states[bodies[s]];
-        state->v = qvec3_axpy(world->bodies[bodies[s]].inverse_mass, p, state->v);
-        state->momentum = qvec3_add(state->momentum, qvec3_add(qvec3_cross(arms[s], p), moment));
-    }
 }
 
 static qvec3 sum_along(const imp_cone_contact *contact, const double *r)
@@ -118,11 +123,27 @@ static qvec3 sum_along(const imp_cone_contact *contact, const double *r)
     return p;
 }
 
+/* Gives the bodies the impulses r along the axes there, and the moment. */
+static void push_at(const imp_world *world, const imp_cone_contact *contact, const double *r, qvec3 moment,
+                    imp_state *states)
+{
+    const int bodies[2] = {contact->body1, contact->body2};
+    const qvec3 arms[2] = {contact->arm1, contact->arm2};
+    const qvec3 rubs = qvec3_axpy(r[2], contact->axes[2], qvec3_scale(contact->axes[1], r[1]));
+    qvec3 p = sum_along(contact, r);
+    moment = qvec3_add(moment, qvec3_cross(contact->rub, rubs));
+    for (int s = 0; s < 2; s++, p = qvec3_neg(p), moment = qvec3_neg(moment)) {
+        if (world->bodies[bodies[s]].is_static) continue;
+        imp_state *state = &states[bodies[s]];
+        state->v = qvec3_axpy(world->bodies[bodies[s]].inverse_mass, p, state->v);
+        state->momentum = qvec3_add(state->momentum, qvec3_add(qvec3_cross(arms[s], p), moment));
+    }
+}
+
 void imp_cone_push(const imp_world *world, const imp_cone_contact *contacts, int count, const double *r,
                    imp_state *states)
 {
-    for (int c = 0; c < count; c++)
-        push_at(world, &contacts[c], sum_along(&contacts[c], &r[3 * c]), (qvec3){0, 0, 0}, states);
+    for (int c = 0; c < count; c++) push_at(world, &contacts[c], &r[3 * c], (qvec3){0, 0, 0}, states);
 }
 
 /* ---- moments ---- */
@@ -182,20 +203,13 @@ void imp_cone_assemble_turning(const imp_world *world, const imp_state *states, 
         }
 }
 
-static qvec3 turning_of(const imp_body *body, const imp_state *state)
-{
-    if (!body->is_static) return imp_omega(body, state);
-    return body->driven ? body->spin : (qvec3){0, 0, 0};
-}
-
 void imp_cone_contact_turning(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
                               int count, double *u)
 {
     for (int c = 0; c < count; c++) {
         const imp_cone_contact *own = &contacts[c];
-        const imp_body *b1 = &world->bodies[own->body1], *b2 = &world->bodies[own->body2];
+        const qvec3 w = relative_turning(world, states, own);
         velocities_at(world, states, own, &u[6 * c]);
-        const qvec3 w = qvec3_sub(turning_of(b1, &states[own->body1]), turning_of(b2, &states[own->body2]));
         for (int k = 0; k < 3; k++) u[6 * c + 3 + k] = qvec3_dot(own->axes[k], w);
     }
 }
@@ -204,6 +218,5 @@ void imp_cone_push_turning(const imp_world *world, const imp_cone_contact *conta
                            imp_state *states)
 {
     for (int c = 0; c < count; c++)
-        push_at(world, &contacts[c], sum_along(&contacts[c], &r[6 * c]), sum_along(&contacts[c], &r[6 * c + 3]),
-                states);
+        push_at(world, &contacts[c], &r[6 * c], sum_along(&contacts[c], &r[6 * c + 3]), states);
 }

@@ -13,6 +13,7 @@ typedef struct imp_cone_contact {
     int body1, body2;
     qvec3 axes[3];    /* normal, from body 2 to body 1, and two tangents; world, orthonormal */
     qvec3 arm1, arm2; /* from the bodies' centres of mass, m */
+    qvec3 rub;        /* from there to where friction acts, m: 0 of a point, less far out of a corner of a face */
 } imp_cone_contact;
 
 /* Of one contact the three rows of G M^(-1/2), of both bodies: force along an axis to (linear, angular) per root of
@@ -43,7 +44,8 @@ void imp_cone_assemble_normals(const imp_world *world, const imp_state *states, 
 void imp_cone_assemble_turning(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
                                int count, imp_cone_row *rows, imp_cone_row *turns, double *w);
 
-/* What the bodies' velocities are at the contacts, along their axes: 3 count, m/s. */
+/* What the bodies' velocities are at the contacts, along their axes, across the normal where friction acts: 3 count,
+ * m/s. */
 void imp_cone_contact_velocities(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
                                  int count, double *u);
 

@@ -77,6 +77,8 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
     } else
         imp_pile_seek_strikes(pile, world, pile->middle, pile->strike.begun + 0.5 * h);
     if (pile->strike.found) return IMPACT_OK;
+    imp_pile_place_friction(&pile->touching, world, &pile->memory[pile->halved ? 3 : 1],
+                            pile->halved ? IMP_PILE_END : IMP_PILE_BEFORE);
     for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
         const impact_status status = imp_pile_answer(pile, world, pile->middle, count, h, to, result);
         if (status != IMPACT_OK) return status;

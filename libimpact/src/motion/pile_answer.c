@@ -97,9 +97,10 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
     for (int c = 0; c < count && world->driven; c++) {
         const imp_cone_contact *own = &pile->contacts[c];
         const imp_body *under = &world->bodies[own->body2];
-        const qvec3 v = imp_surface_velocity(under, own->arm2);
+        const qvec3 v[2] = {imp_surface_velocity(under, own->arm2),
+                            imp_surface_velocity(under, qvec3_add(own->arm2, own->rub))};
         for (int k = 0; k < pile->width; k++)
-            work += pile->r[pile->width * c + k] * qvec3_dot(own->axes[k % 3], k < 3 ? v : under->spin);
+            work += pile->r[pile->width * c + k] * qvec3_dot(own->axes[k % 3], k < 3 ? v[k > 0] : under->spin);
     }
     return work;
 }
@@ -110,10 +111,10 @@ static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *s
 {
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
-        const impact_contact contact = {
-            .normal = point->contact.axes[0], .offset1 = point->contact.arm1, .offset2 = point->contact.arm2};
+        const imp_cone_contact *own = &point->contact;
+        const impact_contact contact = {.normal = own->axes[0], .offset1 = own->arm1, .offset2 = own->arm2};
         double bend[6];
-        imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, point->contact.axes, states, bend);
+        imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, own->axes, own->rub, states, bend);
         for (int k = 0; k < pile->width; k++) {
             pile->before[pile->width * c + k] -= 0.5 * h * bend[k];
             pile->q[pile->width * c + k] += 0.5 * h * bend[k];
@@ -299,25 +300,42 @@ static imp_cone_outcome solve_at_length(imp_pile *pile, const imp_world *world, 
     return imp_pile_solve(pile, world, &question);
 }
 
-/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. h = 0: at
- * an instant; what they leave acts over the step that it is in. */
-impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
-                              imp_state *next, imp_pile_step_result *result)
+/* Into pile->r and u, for friction as it is placed; again: they are a start. */
+static imp_cone_outcome find_impulses(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
+                                      const imp_state *next, bool again)
 {
     const bool turning = pile->width > 3;
+    const size_t size = (size_t)(pile->width * count) * sizeof *pile->r;
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, next, pile->contacts, count, pile->q);
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, states, pile->contacts, count,
                                                                        pile->before);
     if (h > 0) add_bends(pile, world, states, count, h);
-    const double span = h > 0 ? h : pile->strike.span;
     const bool smooth = recall_step(pile, world, count, h);
-    const imp_pile_question question = question_of(pile, world, states, count, span);
+    if (again) memcpy(pile->last_r, pile->r, size), memcpy(pile->last_u, pile->u, size);
+    const imp_pile_question question = question_of(pile, world, states, count, h > 0 ? h : pile->strike.span);
     imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
     if (!smooth) outcome = lessen_bounces(pile, world, &question, outcome);
     if (pile->shortest && outcome.status != IMP_CONE_NO_ROOM && !is_usable(pile, world, count, outcome.residual))
         outcome = solve_at_length(pile, world, question);
     if (smooth && h > 0 && outcome.residual <= IMP_PILE_USABLE)
         outcome = follow_slip(pile, world, &question, h, outcome);
+    return outcome;
+}
+
+/* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. h = 0: at
+ * an instant; what they leave acts over the step that it is in. */
+impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
+                              imp_state *next, imp_pile_step_result *result)
+{
+    enum { SHIFTS = 2 };
+    const bool turning = pile->width > 3;
+    const double span = h > 0 ? h : pile->strike.span;
+    imp_cone_outcome outcome = find_impulses(pile, world, states, count, h, next, false);
+    for (int k = 0;
+         k < SHIFTS && is_usable(pile, world, count, outcome.residual) &&
+         imp_pile_shift_friction(&pile->touching, pile->members, count, pile->r, pile->width, pile->contacts);
+         k++)
+        outcome = find_impulses(pile, world, states, count, h, next, true);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !is_usable(pile, world, count, outcome.residual)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,

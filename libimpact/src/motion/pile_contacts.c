@@ -237,6 +237,7 @@ imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories
                              .gap = point->gap,
                              .arm1 = point->contact.arm1,
                              .arm2 = point->contact.arm2,
+                             .rub = point->contact.rub,
                              .normal = point->contact.axes[0]};
     return own;
 }

@@ -18,6 +18,7 @@ typedef struct imp_pile_point {
     imp_bearer bearer;
     imp_cone_contact contact;
     double gap;                   /* m */
+    double nearer;                /* how much nearer to the centre of pressure its friction acts, of the way; 0: not */
     int memory[IMP_PILE_RECALLS]; /* what is remembered of it, imp_pile_recall; -1: nothing */
     bool taken;                   /* scratch: it is an island's */
 } imp_pile_point;
@@ -27,7 +28,7 @@ typedef struct imp_pile_memory {
     int pair;
     impact_feature feature[2];
     double gap; /* m */
-    qvec3 arm1, arm2, normal;
+    qvec3 arm1, arm2, rub, normal;
     qvec3 reaction, velocity; /* N (impulse over h), m/s */
     qvec3 moment, turning;    /* N m, 1/s: of pairs that resist turning */
     bool taken;               /* scratch: it is a point's */
@@ -69,6 +70,15 @@ int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, in
  * other, and is held whichever. */
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
                      imp_pile_memories *memories, imp_pile_recalled from);
+
+/* Where the friction of each pair's points acts, by the pressures that are remembered from there, or of an even one. */
+void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories,
+                             imp_pile_recalled from);
+
+/* The same by pressures r, each contact's first of width numbers: of those points (count members, copied to own).
+ * False: they are where it acts. */
+bool imp_pile_shift_friction(imp_pile_contacts *contacts, const int *members, int count, const double *r, int width,
+                             imp_cone_contact *own);
 
 /* One more; NULL: there is no room. */
 imp_pile_memory *imp_pile_remember(imp_arena *arena, imp_pile_memories *memories, const imp_pile_point *point);

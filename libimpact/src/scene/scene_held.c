@@ -69,6 +69,7 @@ static void pile_rows(const imp_island *island, double t, held_rows *rows)
         const imp_pile_memory *memory = &held->list[k];
         const imp_pair *pair = &world->pairs[memory->pair];
         const qvec3 u = memory->velocity, along = qvec3_axpy(-qvec3_dot(u, memory->normal), memory->normal, u);
+        const qvec3 f = memory->reaction, friction = qvec3_axpy(-qvec3_dot(f, memory->normal), memory->normal, f);
         const bool slips = pair->law.friction == 0 || qvec3_norm(along) > world->slip_speed;
         const impact_held row = {.t = t,
                                  .body1 = world->bodies[pair->body1].index,
@@ -77,7 +78,7 @@ static void pile_rows(const imp_island *island, double t, held_rows *rows)
                                  .point = qvec3_add(island->motion.sampled[pair->body1].x, memory->arm1),
                                  .normal = memory->normal,
                                  .force = memory->reaction,
-                                 .moment = memory->moment};
+                                 .moment = qvec3_add(memory->moment, qvec3_cross(memory->rub, friction))};
         add_row(rows, &row);
     }
 }

@@ -1,0 +1,61 @@
+-- SPDX-License-Identifier: MIT
+--- The friction of faces on bodies that move themselves, which go by steps: it turns as the whole face's does, not as its corners'. A square,
+--- a disc and a line that spin on a free box, whatever its mass; what a torque turns, and what it does not; sliding that is as it was.
+local impact = require "impact"
+local quat = require "quat"
+local check = require "check"
+
+local G, mu, a = 9.81, .3, .1
+
+--- The body on a box of the mass, which stands on a rough floor.
+local function run(shape, height, mass, more)
+  local scene = impact.scene { gravity = { 0, 0, -G }, duration = more.duration, bodies = {
+    impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 0 },
+    impact.body { name = "base", shape = impact.box { a = .5, b = .5, c = .1 }, mass = mass, position = { 0, 0, .1 }, friction = mu, restitution = 0 },
+    impact.body { name = "body", shape = shape, mass = 2, position = { 0, 0, .2 + height }, orientation = more.orientation, friction = 1,
+      restitution = 0, velocity = more.velocity, omega = more.omega } },
+    forces = more.torque and { impact.force { name = "screw", body = "body", steady = true, law = function() return nil, { 0, 0, more.torque } end } } }
+  check.truth(scene:run(), "it runs")
+  check.truth(scene:usage().pile_steps > 0 or scene:time() == 0, "by steps")
+  local e = scene:energy()
+  check.close(e.start + e.force_work - e.damping_loss - e.sliding_loss - e.impact_loss, e.kinetic + e.potential, 1e-9 * e.start)
+  return scene:state "body", scene
+end
+
+local function about_z(angle) return quat.from_axis_angle({ 0, 0, 1 }, angle) end
+
+local box, disc, rod = impact.box { a = a, b = a, c = .05 }, impact.cylinder { radius = a, half_height = .05 }, impact.box { a = a, b = .01, c = .01 }
+local square = (math.sqrt(2) + math.log(1 + math.sqrt(2))) / 3 * a
+-- arm of the friction and moment of inertia of a kilogram; a disc is the polygon of its sixteen points, 1.3 % less
+for _, case in ipairs { { box, .05, square, 2 / 3 * a * a, 1e-3 }, { disc, .05, 2 / 3 * a, a * a / 2, .015 } } do
+  local shape, height, arm, J, off = table.unpack(case)
+  local slows, spin = mu * G * arm / J, 5
+  for _, mass in ipairs { 2, 100, 1e4 } do
+    for _, yaw in ipairs { 0, .4 } do
+      local state = run(shape, height, mass, { duration = .6 * spin / slows, omega = { 0, 0, spin }, orientation = about_z(yaw) })
+      check.close(state.omega.z, .4 * spin, .6 * spin * off)
+      local still = select(2, run(shape, height, mass, { duration = 3 * spin / slows, omega = { 0, 0, spin }, orientation = about_z(yaw) }))
+      check.close(still:state "body".omega:norm(), 0, 0)
+      check.truth(still:time() < 1.3 * spin / slows, "at rest")
+    end
+  end
+  -- at rest up to the whole face's torque
+  for _, part in ipairs { .5, .97, 1.03, 1.5 } do
+    local state, scene = run(shape, height, 2, { duration = .2, torque = part * 2 * mu * G * arm })
+    if part < 1 then
+      check.equal(scene:time(), 0)
+    else
+      check.close(state.omega.z, (part - 1) * mu * G * arm / J * .2, .03 * mu * G * arm / J * .2)
+    end
+  end
+end
+
+-- Of what is all but a line half its length's half.
+local slows = mu * G * (a / 2) / (a * a / 3)
+local state = run(rod, .01, 2, { duration = .5 * 5 / slows, omega = { 0, 0, 5 } })
+check.close(state.omega.z, 2.5, .05)
+
+-- What slides without turning is held by all of its friction, and not turned.
+state = run(box, .05, 1e4, { duration = .2, velocity = { 1, .5, 0 }, orientation = about_z(.3) })
+check.close(state.velocity:norm(), math.sqrt(1.25) - mu * G * .2, 1e-3)
+check.close(state.omega:norm(), 0, .02)
