@@ -851,6 +851,9 @@
 #define IMP_FACE_SETTLED 1e-12
 #define IMP_FACE_ROUNDS 20
 #define IMP_FACE_DIFFERENCE 1e-6
+/* The same of a line, along which friction is v/w log(v/w) of slow slip v: the log is then right to a fifth from the
+ * tolerance of a step on, and slopes to what rounding leaves of a difference, 1e-7. */
+#define IMP_LINE_DIFFERENCE 1e-9
 /* rad: the most that a body turns in a step: its quaternion is a polynomial of degree 12. */
 #define IMP_FACE_TURN 1.0
 /* tau: the longest step, in which the speed falls to a half; and the shortest: what does not go on so far tips. */

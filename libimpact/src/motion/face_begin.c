@@ -6,11 +6,12 @@
 #include <quat/quat.h>
 #include <string.h>
 
-/* A load, in the face's axes; twists and loads are (v, k w) and (F, M/k)/m with k^2 = J/m: M = 1. Lengths over size. */
+/* A load, in the face's axes; twists and loads are (v, k w) and (F, M/k)/m with k^2 = J/m, and across a line by the
+ * root of its ease likewise: M = 1. Lengths over size. */
 typedef struct problem {
     const imp_face_motion *motion;
     imp_face_load load;
-    double pulled[3], k;
+    double pulled[3], k[3];
     imp_pressed pressed; /* at rest, by */
     double p[3];
 } problem;
@@ -28,10 +29,11 @@ static void twist_axpy(double t, const double a[3], const double b[3], double ou
 /* D(d) under the pressure of rest, and its slope. */
 static double dissipation(const problem *q, const double d[3], double slope[3])
 {
-    const double twist[3] = {d[0], d[1], d[2] / q->k}, part = -q->motion->friction * q->load.press;
+    const double twist[3] = {d[0] / q->k[0], d[1] / q->k[1], d[2] / q->k[2]},
+                 part = -q->motion->friction * q->load.press;
     double rub[3][3];
     imp_press_rub(&q->pressed, twist, rub);
-    for (int i = 0; i < 3; i++) slope[i] = part * twist_dot(rub[i], q->p) / (i < 2 ? 1 : q->k);
+    for (int i = 0; i < 3; i++) slope[i] = part * twist_dot(rub[i], q->p) / q->k[i];
     return twist_dot(slope, d);
 }
 
@@ -51,7 +53,7 @@ static void step_in_plane(const problem *q, double across[2][3], const double d[
                           double step[3])
 {
     double h[2][2], g[2], there[3], turned[3];
-    const double small = IMP_FACE_DIFFERENCE * twist_size(d);
+    const double small = imp_face_difference(q->motion) * twist_size(d);
     for (int i = 0; i < 2; i++) g[i] = twist_dot(across[i], slope);
     for (int j = 0; j < 2; j++) {
         twist_axpy(small, across[j], d, there);
@@ -97,10 +99,10 @@ static bool holds(const problem *q, double d[3])
 static bool miss(const problem *q, const double a[3], double off[3], imp_face_balance *balance)
 {
     const double size = twist_size(a), P = q->load.press;
-    const imp_face_twist twist = {{a[0] / size, a[1] / size, a[2] / (q->k * size)}, 0};
+    const imp_face_twist twist = {.way = {a[0] / (q->k[0] * size), a[1] / (q->k[1] * size), a[2] / (q->k[2] * size)}};
     if (!(size > 0) || !imp_face_balance_under(q->motion, &q->load, &twist, balance)) return false;
-    for (int i = 0; i < 2; i++) off[i] = a[i] - q->pulled[i] - P * balance->force[i];
-    off[2] = a[2] - q->pulled[2] - P * balance->moment / q->k;
+    for (int i = 0; i < 2; i++) off[i] = a[i] - q->pulled[i] - P * balance->force[i] / q->k[i];
+    off[2] = a[2] - q->pulled[2] - P * balance->moment / q->k[2];
     return true;
 }
 
@@ -110,7 +112,7 @@ static bool step_to_motion(const problem *q, const double a[3], const double off
                            double step[3])
 {
     double J[3][3], there[3], turned[3];
-    const double small = IMP_FACE_DIFFERENCE * twist_size(a);
+    const double small = imp_face_difference(q->motion) * twist_size(a);
     for (int j = 0; j < 3; j++) {
         imp_face_balance last = *balance;
         memcpy(there, a, sizeof there);
@@ -165,11 +167,14 @@ static bool find_motion(const problem *q, double a[3], imp_face_balance *balance
 /* False: y has no load. */
 static bool pose(const imp_face_motion *motion, const double *y, problem *q)
 {
-    q->motion = motion, q->k = 1 / sqrt(motion->turning);
+    const double none[2] = {0, 0};
+    q->motion = motion;
+    q->k[0] = 1, q->k[1] = 1 / sqrt(imp_face_ease(motion)), q->k[2] = 1 / sqrt(motion->turning);
     if (!imp_face_load_at(motion, y, &q->load)) return false;
     imp_face_turn(q->load.pull, -y[IMP_FACE_ANGLE], q->load.pull);
-    for (int i = 0; i < 2; i++) q->pulled[i] = q->load.pull[i];
-    q->pulled[2] = q->k * q->load.turn;
+    q->pulled[0] = q->load.pull[0];
+    q->pulled[1] = q->k[1] * (q->load.pull[1] + motion->height * imp_face_roll_rate(motion, &q->load, none));
+    q->pulled[2] = q->k[2] * q->load.turn;
     return true;
 }
 
@@ -193,7 +198,8 @@ imp_face_begin imp_face_begins(const imp_face_motion *motion, const double *y, d
     for (int i = 0; i < 3; i++) a[i] = stands ? drives * d[i] / twist_dot(d, d) : q.pulled[i];
     *balance = (imp_face_balance){.p = {0}};
     if (!find_motion(&q, a, balance)) return IMP_FACE_NEITHER;
+    a[1] /= q.k[1];
     imp_face_turn(a, y[IMP_FACE_ANGLE], acceleration);
-    acceleration[2] = a[2] / q.k;
+    acceleration[2] = a[2] / q.k[2];
     return IMP_FACE_GOES;
 }

@@ -42,6 +42,7 @@ static void push_arc(imp_pressed *pressed, double begin, double end)
 static void begin_part(const imp_flat_face *face, imp_pressed *pressed)
 {
     pressed->count = 0;
+    pressed->line = face->count == IMP_FLAT_LINE;
     pressed->radius = face->radius;
     memcpy(pressed->center, face->center, sizeof pressed->center);
     memcpy(pressed->middle, face->center, sizeof pressed->middle);
@@ -60,7 +61,7 @@ void imp_press_all(const imp_flat_face *face, imp_pressed *pressed)
     const double turn = 2 * acos(-1);
     begin_part(face, pressed);
     if (face->count == 0) push_arc(pressed, 0, turn);
-    for (int i = 0; i < face->count; i++)
+    for (int i = 0; i < (pressed->line ? 1 : face->count); i++)
         push_side(pressed, at(face->corner[i]), at(face->corner[(i + 1) % face->count]));
 }
 
@@ -80,13 +81,22 @@ static void press_disc(const imp_flat_face *face, const double p[3], imp_pressed
     push_side(pressed, at(pressed->border[0].to), at(pressed->border[0].from));
 }
 
+static void press_line(const imp_flat_face *face, const double p[3], imp_pressed *pressed)
+{
+    const place a = at(face->corner[0]), b = at(face->corner[1]);
+    const double from = pressure_at(p, a), to = pressure_at(p, b);
+    if (from <= 0 && to <= 0) return;
+    const place zero = from * to < 0 ? along(a, from / (from - to), less(b, a)) : a;
+    push_side(pressed, from < 0 ? zero : a, to < 0 ? zero : b);
+}
+
 void imp_press_part(const imp_flat_face *face, const double p[3], imp_pressed *pressed)
 {
     place corner[IMP_FLAT_SIDES + 2];
     int count = 0;
     begin_part(face, pressed);
-    if (face->count == 0) {
-        press_disc(face, p, pressed);
+    if (face->count == 0 || pressed->line) {
+        (pressed->line ? press_line : press_disc)(face, p, pressed);
         return;
     }
     for (int i = 0; i < face->count; i++) {
@@ -117,6 +127,7 @@ double imp_face_spare(const imp_flat_face *face, const double x[2])
 {
     const place d = less(at(x), at(face->center));
     if (face->count == 0) return face->radius - hypot(d.x, d.y);
+    if (face->count == IMP_FLAT_LINE) return fmin(x[0] - face->corner[0][0], face->corner[1][0] - x[0]);
     double least = INFINITY;
     for (int i = 0; i < face->count; i++) least = fmin(least, imp_side_spare(face, i, x));
     return least;
@@ -210,9 +221,21 @@ static void add_triangle_moments(place a, place b, place c, double m[3][3])
     m[2][2] += twelfth * (s.y * s.y + a.y * a.y + b.y * b.y + c.y * c.y);
 }
 
+/* Of a line from low to high: its length, and times its middle, and the third of its cubes. */
+static void add_line_moments(double low, double high, double m[3][3])
+{
+    m[0][0] = high - low;
+    m[0][1] = m[1][0] = 0.5 * (high - low) * (high + low);
+    m[1][1] = (high - low) * (high * high + high * low + low * low) / 3;
+}
+
 void imp_press_moments(const imp_pressed *pressed, double m[3][3])
 {
     memset(m, 0, 9 * sizeof m[0][0]);
+    if (pressed->line) {
+        add_line_moments(pressed->border[0].from[0], pressed->border[0].to[0], m);
+        return;
+    }
     for (int i = 0; i < pressed->count; i++) {
         const imp_border *b = &pressed->border[i];
         if (b->arc)
@@ -351,17 +374,57 @@ static void rub_along_border(const imp_pressed *pressed, const double twist[3], 
     }
 }
 
+/* ---- a line ---- */
+
+/* s^k/rho from s1 to s2, k = 0 ... 3: but for k = 0 of d = 0, which is not asked for alone, but times d. */
+static void line_sums(double d, double s1, double s2, double sum[4])
+{
+    const double r1 = face_length((place){d, s1}), r2 = face_length((place){d, s2});
+    sum[0] = d * d > IMP_NOT_ZERO ? inverse_sum(d, s1, s2, r1, r2) : 0;
+    sum[1] = r1 + r2 > 0 ? (s2 - s1) * (s2 + s1) / (r1 + r2) : 0;
+    sum[2] = 0.5 * (s2 * r2 - s1 * r1 - d * d * sum[0]);
+    sum[3] = (r2 * r2 * r2 - r1 * r1 * r1) / 3 - d * d * sum[1];
+}
+
+static void rub_along_line(const imp_border *side, const double twist[3], double rub[3][3])
+{
+    const double way = twist[2] > 0 ? -1 : 1, o = -twist[1] / twist[2], d = twist[0] / twist[2];
+    double sum[4];
+    line_sums(d, side->from[0] - o, side->to[0] - o, sum);
+    rub[0][0] = way * d * sum[0];
+    rub[0][1] = way * d * (o * sum[0] + sum[1]);
+    rub[1][0] = way * sum[1];
+    rub[1][1] = rub[2][0] = way * (o * sum[1] + sum[2]);
+    rub[2][1] = way * (o * o * sum[1] + 2 * o * sum[2] + sum[3]);
+}
+
+static void cover_line(const imp_pressed *pressed, area_function *function, void *sum)
+{
+    const place from = at(pressed->border[0].from), side = less(at(pressed->border[0].to), from);
+    for (int k = 0; k < MANY; k++) {
+        double part;
+        const double t = gauss(MANY, k, &part);
+        function(along(from, t, side), part * side.x, sum);
+    }
+}
+
+/* ---- all of them ---- */
+
 void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub[3][3])
 {
     const double *m = pressed->middle, w = fabs(twist[2]);
     const double speed = qvec3_norm((qvec3){twist[0] - twist[2] * m[1], twist[1] + twist[2] * m[0], 0});
     memset(rub, 0, 9 * sizeof rub[0][0]);
     if (speed <= IMP_FACE_DISTANT * w * pressed->reach) {
-        rub_along_border(pressed, twist, rub);
+        if (pressed->line)
+            rub_along_line(&pressed->border[0], twist, rub);
+        else
+            rub_along_border(pressed, twist, rub);
         return;
     }
     const double along[3] = {twist[0] / speed, twist[1] / speed, twist[2] / speed};
     rub_sum sum = {along, rub};
-    for (int i = 0; i < pressed->count; i++)
+    if (pressed->line) cover_line(pressed, add_rub, &sum);
+    for (int i = 0; i < pressed->count && !pressed->line; i++)
         (pressed->border[i].arc ? cover_arc : cover_side)(pressed, &pressed->border[i], add_rub, &sum);
 }

@@ -15,6 +15,12 @@
  * all that is singular is there. The sum over the border cancels as u (|o|/L)^3: from o far away, or with w = 0, the
  * plane integral itself is smooth, and Gauss's places over the area give it to rounding.
  *
+ * A line along x at y = 0 has, per length, with u = w (d, s), d = v_x/w, s = x + v_y/w, rho = root(d^2 + s^2),
+ *
+ *     F = -sgn w int p (d, s)/rho dx        M = -sgn w int p x s/rho dx
+ *
+ * of s^k/rho alone, k = 0 ... 3; from o far away by Gauss's places.
+ *
  * F and M are linear in (a, b): what is returned is their matrix. Lengths are of the order of 1.
  */
 #ifndef IMP_FACE_FRICTION_H
@@ -22,11 +28,11 @@
 
 #include <stdbool.h>
 
-enum { IMP_FLAT_SIDES = 64 };
+enum { IMP_FLAT_LINE = 2, IMP_FLAT_SIDES = 64 };
 
-/* A convex polygon, counter-clockwise, or a disc. */
+/* A convex polygon, counter-clockwise, a disc, or a line along x at y = 0, its ends from low to high. */
 typedef struct imp_flat_face {
-    int count; /* of corners; 0: a disc */
+    int count; /* of corners; 0: a disc, IMP_FLAT_LINE: a line */
     double corner[IMP_FLAT_SIDES][2];
     double center[2], radius; /* the disc's */
 } imp_flat_face;
@@ -41,6 +47,7 @@ typedef struct imp_border {
 /* A convex part of a face. */
 typedef struct imp_pressed {
     int count;
+    bool line; /* its one side is all of it */
     imp_border border[IMP_FLAT_SIDES + 1];
     double center[2], radius; /* of its arcs */
     double middle[2], reach;  /* a place in the face, and how far its border is from there at most */
@@ -57,7 +64,8 @@ double imp_least_pressure(const imp_flat_face *face, const double p[3]);
 double imp_side_spare(const imp_flat_face *face, int i, const double x[2]);
 double imp_face_spare(const imp_flat_face *face, const double x[2]);
 
-/* m[i][j]: the integral of f_i f_j, f = (1, x, y): the force and the moments x p of each of the three pressures. */
+/* m[i][j]: the integral of f_i f_j, f = (1, x, y): the force and the moments x p of each of the three pressures; 0 for
+ * y of a line. */
 void imp_press_moments(const imp_pressed *pressed, double m[3][3]);
 
 /* rub[i][j] of the pressure f_j: F_x, F_y and the moment about the origin, per unit of the friction coefficient; twist:

@@ -44,6 +44,13 @@ void imp_face_turn(const double v[2], double angle, double out[2])
     out[0] = c * x - s * y, out[1] = s * x + c * y;
 }
 
+/* Of a line, which lies along x: across it nothing presses. */
+static void leave_across(const imp_face_motion *motion, double row[4])
+{
+    if (motion->face.count != IMP_FLAT_LINE) return;
+    row[0] = row[1] = row[3] = 0, row[2] = 1;
+}
+
 /* The pressure that balances where just this part is pressed; the load in the face's axes. */
 static bool press(const imp_face_motion *motion, const imp_face_load *load, const imp_pressed *pressed,
                   const imp_face_twist *twist, imp_face_balance *balance)
@@ -63,6 +70,8 @@ static bool press(const imp_face_motion *motion, const imp_face_load *load, cons
     a[0][3] = 1;
     for (int i = 0; i < 2; i++)
         a[1 + i][3] = (across[i] * load->turn - twist->square * j[i] - load->tip[i]) / load->press;
+    a[1][3] -= motion->rolling * twist->rolled / load->press;
+    leave_across(motion, a[2]);
     if (!solve_three(a)) return false;
     for (int k = 0; k < 3; k++) balance->p[k] = a[k][3];
     for (int i = 0; i < 2; i++) {
@@ -84,11 +93,17 @@ static bool press_standing(const imp_face_motion *motion, const imp_face_load *l
         balance->force[i] = -load->pull[i] / load->press;
         balance->center[i] = -motion->height * balance->force[i] - load->tip[i] / load->press;
     }
+    if (motion->rolling > 0) {
+        const double eased = imp_face_ease(motion) * load->press;
+        balance->force[1] = -(load->pull[1] + motion->height * load->tip[1] / motion->rolling) / eased;
+        balance->center[1] = 0;
+    }
     balance->moment = -load->turn / (motion->turning * load->press);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) a[i][k] = m[i][k];
         a[i][3] = i == 0 ? 1 : balance->center[i - 1];
     }
+    leave_across(motion, a[2]);
     if (!solve_three(a)) return false;
     for (int k = 0; k < 3; k++) balance->p[k] = a[k][3];
     return true;
@@ -119,14 +134,14 @@ bool imp_face_balance_under(const imp_face_motion *motion, const imp_face_load *
 }
 
 /* Of the twist (v, w) as it is. */
-static imp_face_twist moving(const double twist[3])
+static imp_face_twist moving(const double twist[3], double roll)
 {
-    return (imp_face_twist){{twist[0], twist[1], twist[2]}, twist[2] * twist[2]};
+    return (imp_face_twist){{twist[0], twist[1], twist[2]}, twist[2] * twist[2], roll * twist[2]};
 }
 
 bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], imp_face_balance *balance)
 {
-    const imp_face_twist moves = moving(twist);
+    const imp_face_twist moves = moving(twist, 0);
     return imp_face_balance_under(motion, &motion->load, &moves, balance);
 }
 
@@ -145,13 +160,57 @@ double imp_face_speed(const imp_face_motion *motion, const double *y)
     return qvec3_norm((qvec3){y[IMP_FACE_V], y[IMP_FACE_V + 1], motion->gyration * y[IMP_FACE_W]});
 }
 
+double imp_face_roll_rate(const imp_face_motion *motion, const imp_face_load *load, const double force[2])
+{
+    if (!(motion->rolling > 0)) return 0;
+    return (motion->height * load->press * force[1] + load->tip[1]) / motion->rolling;
+}
+
+double imp_face_ease(const imp_face_motion *motion)
+{
+    return motion->rolling > 0 ? 1 + motion->height * motion->height / motion->rolling : 1;
+}
+
+double imp_face_difference(const imp_face_motion *motion)
+{
+    return motion->rolling > 0 ? IMP_LINE_DIFFERENCE : IMP_FACE_DIFFERENCE;
+}
+
+/* c W h, by which a line's points are faster than its centre: in axes that stay. */
+static void over_center(const imp_face_motion *motion, const double *y, double roll, double out[2])
+{
+    const double across[2] = {0, motion->height * roll};
+    imp_face_turn(across, y[IMP_FACE_ANGLE], out);
+}
+
+void imp_face_center_velocity(const imp_face_motion *motion, const double *y, double v[2])
+{
+    double over[2] = {0, 0};
+    if (motion->rolling > 0) over_center(motion, y, y[IMP_FACE_ROLL], over);
+    for (int i = 0; i < 2; i++) v[i] = y[IMP_FACE_V + i] - over[i];
+}
+
+/* What rolling adds to the rates of a line's points. */
+static void add_rolling(const imp_face_motion *motion, const double *y, const imp_face_load *load,
+                        const imp_face_balance *balance, double *rate)
+{
+    const double c = motion->height, faster = imp_face_roll_rate(motion, load, balance->force);
+    const double own[2] = {-c * y[IMP_FACE_ROLL] * y[IMP_FACE_W], c * faster};
+    double more[2];
+    imp_face_turn(own, y[IMP_FACE_ANGLE], more);
+    imp_face_center_velocity(motion, y, &rate[IMP_FACE_X]);
+    for (int i = 0; i < 2; i++) rate[IMP_FACE_V + i] += more[i];
+    rate[IMP_FACE_ROLLED] = y[IMP_FACE_ROLL];
+    rate[IMP_FACE_ROLL] = faster;
+}
+
 bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance)
 {
     double twist[3] = {0, 0, y[IMP_FACE_W]}, force[2];
     imp_face_load load;
     if (!imp_face_load_at(motion, y, &load)) return false;
     imp_face_turn(&y[IMP_FACE_V], -y[IMP_FACE_ANGLE], twist);
-    const imp_face_twist moves = moving(twist);
+    const imp_face_twist moves = moving(twist, y[IMP_FACE_ROLL]);
     if (!imp_face_balance_under(motion, &load, &moves, balance)) return false;
     imp_face_turn(balance->force, y[IMP_FACE_ANGLE], force);
     const double P = load.press;
@@ -164,6 +223,8 @@ bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate
     rate[IMP_FACE_TIME] = 1;
     rate[IMP_FACE_PUSHED] = load.power;
     rate[IMP_FACE_DAMPED] = load.damping;
+    rate[IMP_FACE_ROLLED] = rate[IMP_FACE_ROLL] = 0;
+    if (motion->rolling > 0) add_rolling(motion, y, &load, balance, rate);
     rate[IMP_FACE_WORK] =
         -P * (balance->force[0] * twist[0] + balance->force[1] * twist[1] + balance->moment * twist[2]);
     return true;
@@ -249,8 +310,10 @@ static void measure(const imp_face_motion *motion, const double *y, double unit[
 {
     const double least = IMP_FACE_STILL / IMP_FACE_TOLERANCE * motion->still;
     const double speed = fmax(imp_face_speed(motion, y), least), time = speed / greatest_rate(motion);
-    for (int n = 0; n < IMP_FACE_V; n++) unit[n] = speed * time;
+    const double c = motion->rolling > 0 ? motion->height : 1, goes = speed + c * fabs(y[IMP_FACE_ROLL]);
+    for (int n = 0; n < IMP_FACE_V; n++) unit[n] = n < IMP_FACE_ANGLE ? goes * time : speed * time;
     for (int n = IMP_FACE_V; n < IMP_FACE_TIME; n++) unit[n] = speed;
+    unit[IMP_FACE_ROLL] = goes / c, unit[IMP_FACE_ROLLED] = goes / c * time;
     unit[IMP_FACE_TIME] = time;
     unit[IMP_FACE_WORK] = unit[IMP_FACE_PUSHED] = unit[IMP_FACE_DAMPED] = speed * speed;
 }
@@ -271,14 +334,27 @@ static bool rates_in_tau(const imp_face_motion *motion, const double *y, double 
     return imp_face_margin(motion, y, balance) > IMP_FACE_MARGIN;
 }
 
-enum { MOVING = 3, SYSTEM = MOVING * IMP_FACE_NODES };
+enum { MOVING = 4, SYSTEM = MOVING * IMP_FACE_NODES };
 
-/* LU with rows exchanged, in place; and its solution in place of b. */
-static bool factor(double a[SYSTEM][SYSTEM], int *row)
+/* The velocities, and the places that go with them; the last of a line alone. */
+static const int velocity[MOVING] = {IMP_FACE_V, IMP_FACE_V + 1, IMP_FACE_W, IMP_FACE_ROLL},
+                 place[MOVING] = {IMP_FACE_X, IMP_FACE_X + 1, IMP_FACE_ANGLE, IMP_FACE_ROLLED};
+
+static int moving_of(const imp_face_motion *motion) { return motion->rolling > 0 ? MOVING : MOVING - 1; }
+
+/* The places' rates. */
+static void going_at(const imp_face_motion *motion, const double *y, double out[MOVING])
 {
-    for (int k = 0; k < SYSTEM; k++) {
+    imp_face_center_velocity(motion, y, out);
+    out[2] = y[IMP_FACE_W], out[3] = y[IMP_FACE_ROLL];
+}
+
+/* LU with rows exchanged, in place, of so many; and its solution in place of b. */
+static bool factor(double a[SYSTEM][SYSTEM], int size, int *row)
+{
+    for (int k = 0; k < size; k++) {
         int best = k;
-        for (int i = k + 1; i < SYSTEM; i++)
+        for (int i = k + 1; i < size; i++)
             if (fabs(a[i][k]) > fabs(a[best][k])) best = i;
         row[k] = best;
         if (!(fabs(a[best][k]) > 0)) return false;
@@ -286,24 +362,24 @@ static bool factor(double a[SYSTEM][SYSTEM], int *row)
             const double swap = a[k][j];
             a[k][j] = a[best][j], a[best][j] = swap;
         }
-        for (int i = k + 1; i < SYSTEM; i++) {
+        for (int i = k + 1; i < size; i++) {
             const double part = a[i][k] /= a[k][k];
             if (part == 0) continue;
-            for (int j = k + 1; j < SYSTEM; j++) a[i][j] -= part * a[k][j];
+            for (int j = k + 1; j < size; j++) a[i][j] -= part * a[k][j];
         }
     }
     return true;
 }
 
-static void back_solve(double a[SYSTEM][SYSTEM], const int *row, double *b)
+static void back_solve(double a[SYSTEM][SYSTEM], int size, const int *row, double *b)
 {
-    for (int k = 0; k < SYSTEM; k++) {
+    for (int k = 0; k < size; k++) {
         const double swap = b[k];
         b[k] = b[row[k]], b[row[k]] = swap;
-        for (int i = k + 1; i < SYSTEM; i++) b[i] -= a[i][k] * b[k];
+        for (int i = k + 1; i < size; i++) b[i] -= a[i][k] * b[k];
     }
-    for (int k = SYSTEM - 1; k >= 0; k--) {
-        for (int j = k + 1; j < SYSTEM; j++) b[k] -= a[k][j] * b[j];
+    for (int k = size - 1; k >= 0; k--) {
+        for (int j = k + 1; j < size; j++) b[k] -= a[k][j] * b[j];
         b[k] /= a[k][k];
     }
 }
@@ -312,27 +388,29 @@ static void back_solve(double a[SYSTEM][SYSTEM], const int *row, double *b)
 static bool face_slopes(const imp_face_motion *motion, const double *y, const double *rate, imp_face_balance *last,
                         double slope[MOVING][MOVING])
 {
-    for (int j = 0; j < MOVING; j++) {
+    const int moving = moving_of(motion);
+    for (int j = 0; j < moving; j++) {
         double there[IMP_FACE_STATE], found[IMP_FACE_STATE];
         memcpy(there, y, sizeof there);
-        const double step = IMP_FACE_DIFFERENCE * imp_face_speed(motion, y);
-        there[IMP_FACE_V + j] += step;
+        const double step = imp_face_difference(motion) * imp_face_speed(motion, y);
+        there[velocity[j]] += step;
         if (!rates_in_tau(motion, there, found, last)) return false;
-        for (int i = 0; i < MOVING; i++) slope[i][j] = (found[IMP_FACE_V + i] - rate[IMP_FACE_V + i]) / step;
+        for (int i = 0; i < moving; i++) slope[i][j] = (found[velocity[i]] - rate[velocity[i]]) / step;
     }
     return true;
 }
 
 /* 1 - h A J of the velocities, with the slopes J at each node. */
-static bool linearize(const collocation *c, double h, double slope[][MOVING][MOVING], double a[SYSTEM][SYSTEM],
-                      int *row)
+static bool linearize(const collocation *c, int moving, double h, double slope[][MOVING][MOVING],
+                      double a[SYSTEM][SYSTEM], int *row)
 {
-    for (int n = 0; n < SYSTEM; n++)
-        for (int m = 0; m < SYSTEM; m++) {
-            const double part = h * c->way[n / MOVING][m / MOVING];
-            a[n][m] = (n == m) - part * slope[m / MOVING][n % MOVING][m % MOVING];
+    const int size = moving * IMP_FACE_NODES;
+    for (int n = 0; n < size; n++)
+        for (int m = 0; m < size; m++) {
+            const double part = h * c->way[n / moving][m / moving];
+            a[n][m] = (n == m) - part * slope[m / moving][n % moving][m % moving];
         }
-    return factor(a, row);
+    return factor(a, size, row);
 }
 
 static void states_at_nodes(const collocation *c, const double *y, double h, double rate[][IMP_FACE_STATE],
@@ -350,33 +428,37 @@ static void states_at_nodes(const collocation *c, const double *y, double h, dou
 static double follow_velocities(const imp_face_motion *motion, const collocation *c, const double *y, double h,
                                 const double *unit, double there[][IMP_FACE_STATE])
 {
+    const int moving = moving_of(motion);
     double going[IMP_FACE_NODES][MOVING], moved = 0;
     for (int i = 0; i < IMP_FACE_NODES; i++) {
         const double clock = clock_of(motion, there[i]);
-        for (int n = 0; n < MOVING; n++) going[i][n] = clock * there[i][IMP_FACE_V + n];
+        going_at(motion, there[i], going[i]);
+        for (int n = 0; n < moving; n++) going[i][n] *= clock;
     }
     for (int i = 0; i < IMP_FACE_NODES; i++)
-        for (int n = 0; n < MOVING; n++) {
+        for (int n = 0; n < moving; n++) {
+            const int to = place[n];
             double way = 0;
             for (int j = 0; j < IMP_FACE_NODES; j++) way += c->way[i][j] * going[j][n];
-            moved = fmax(moved, fabs(y[n] + h * way - there[i][n]) / unit[n]);
-            there[i][n] = y[n] + h * way;
+            moved = fmax(moved, fabs(y[to] + h * way - there[i][to]) / unit[to]);
+            there[i][to] = y[to] + h * way;
         }
     return moved;
 }
 
 /* The velocities at the nodes by one step of Newton's, from those that their rates lead to, and the places that go with
  * them; returns by how much they change, in units. */
-static double follow_rates(double a[SYSTEM][SYSTEM], const int *row, const double *unit, double made[][IMP_FACE_STATE],
-                           double there[][IMP_FACE_STATE])
+static double follow_rates(double a[SYSTEM][SYSTEM], int moving, const int *row, const double *unit,
+                           double made[][IMP_FACE_STATE], double there[][IMP_FACE_STATE])
 {
+    const int size = moving * IMP_FACE_NODES;
     double off[SYSTEM], moved = 0;
-    for (int n = 0; n < SYSTEM; n++)
-        off[n] = made[n / MOVING][IMP_FACE_V + n % MOVING] - there[n / MOVING][IMP_FACE_V + n % MOVING];
-    back_solve(a, row, off);
-    for (int n = 0; n < SYSTEM; n++) {
-        there[n / MOVING][IMP_FACE_V + n % MOVING] += off[n];
-        moved = fmax(moved, fabs(off[n]) / unit[IMP_FACE_V + n % MOVING]);
+    for (int n = 0; n < size; n++)
+        off[n] = made[n / moving][velocity[n % moving]] - there[n / moving][velocity[n % moving]];
+    back_solve(a, size, row, off);
+    for (int n = 0; n < size; n++) {
+        there[n / moving][velocity[n % moving]] += off[n];
+        moved = fmax(moved, fabs(off[n]) / unit[velocity[n % moving]]);
     }
     return moved;
 }
@@ -405,22 +487,34 @@ static bool set_forth(const imp_face_motion *motion, const double *y, course *on
     return true;
 }
 
+/* The accelerations with which it begins to move. */
+static bool set_out(const imp_face_motion *motion, const double *y, double a[MOVING], imp_face_balance *balance)
+{
+    imp_face_load load = {.press = 0};
+    if (imp_face_begins(motion, y, a, balance) != IMP_FACE_GOES) return false;
+    if (motion->rolling > 0 && !imp_face_load_at(motion, y, &load)) return false;
+    a[MOVING - 1] = imp_face_roll_rate(motion, &load, balance->force);
+    return true;
+}
+
 /* From rest: with the velocities that it would have if it began to move with half a node's time gone, and the slopes
  * there. */
 static bool leave_rest(const imp_face_motion *motion, const double *y, double h, course *on)
 {
-    double a[3];
+    double a[MOVING], going[MOVING];
     memset(on->first, 0, sizeof on->first);
-    if (imp_face_begins(motion, y, a, &on->last[0]) != IMP_FACE_GOES) return false;
-    for (int n = 0; n < MOVING; n++) on->first[IMP_FACE_V + n] = motion->clock * a[n];
+    if (!set_out(motion, y, a, &on->last[0])) return false;
+    going_at(motion, y, going);
+    for (int n = 0; n < MOVING; n++)
+        on->first[place[n]] = motion->clock * going[n], on->first[velocity[n]] = motion->clock * a[n];
     on->first[IMP_FACE_TIME] = motion->clock;
     for (int i = 0; i < IMP_FACE_NODES; i++) {
         double *there = on->there[i], time = h * motion->clock * node[i];
         memcpy(there, y, sizeof on->there[i]);
         there[IMP_FACE_TIME] += 0.5 * time;
-        if (motion->loads && imp_face_begins(motion, there, a, &on->last[i]) != IMP_FACE_GOES) return false;
+        if (motion->loads && !set_out(motion, there, a, &on->last[i])) return false;
         there[IMP_FACE_TIME] += 0.5 * time;
-        for (int n = 0; n < MOVING; n++) there[IMP_FACE_V + n] = time * a[n];
+        for (int n = 0; n < MOVING; n++) there[velocity[n]] += time * a[n];
         on->last[i] = on->last[0];
         if (!rates_in_tau(motion, there, on->rate[i], &on->last[i]) ||
             !face_slopes(motion, there, on->rate[i], &on->last[i], on->slope[i]))
@@ -436,15 +530,16 @@ static bool collocate(const imp_face_motion *motion, const collocation *c, const
 {
     double made[IMP_FACE_NODES][IMP_FACE_STATE], a[SYSTEM][SYSTEM], change = INFINITY;
     int row[SYSTEM];
-    if (!linearize(c, h, on->slope, a, row)) return false;
+    const int moving = moving_of(motion);
+    if (!linearize(c, moving, h, on->slope, a, row)) return false;
     for (int round = -1; round < IMP_FACE_ROUNDS; round++) {
         for (int i = 0; round >= 0 && i < IMP_FACE_NODES; i++)
             if (!rates_in_tau(motion, on->there[i], on->rate[i], &on->last[i])) return false;
         states_at_nodes(c, y, h, on->rate, made);
-        const double turned = follow_rates(a, row, unit, made, on->there);
+        const double turned = follow_rates(a, moving, row, unit, made, on->there);
         const double moved = fmax(turned, follow_velocities(motion, c, y, h, unit, on->there));
         for (int i = 0; i < IMP_FACE_NODES; i++)
-            for (int n = IMP_FACE_TIME; n < IMP_FACE_STATE; n++) on->there[i][n] = made[i][n];
+            for (int n = IMP_FACE_TIME; n <= IMP_FACE_DAMPED; n++) on->there[i][n] = made[i][n];
         if (round >= 0 && (moved <= IMP_FACE_SETTLED || (moved >= change && moved <= IMP_FACE_TOLERANCE))) {
             expand(c, on->rate, k);
             return true;
@@ -504,6 +599,9 @@ static bool attempt(const imp_face_motion *motion, const collocation *c, const d
     return true;
 }
 
+/* How fast it turns, about whatever. */
+static double turning_rate(const double *y) { return hypot(y[IMP_FACE_W], y[IMP_FACE_ROLL]); }
+
 static bool step_within(const imp_face_motion *motion, const double *y, double longest, double shortest, double *length,
                         imp_face_path *path)
 {
@@ -512,7 +610,7 @@ static bool step_within(const imp_face_motion *motion, const double *y, double l
     bool cut = false;
     lay_out(&c);
     for (double h = fmin(*length, longest); h > 0;) {
-        if (!attempt(motion, &c, y, h, k, &error)) {
+        if (!attempt(motion, &c, y, h, k, &error) || h * fabs(k[0][IMP_FACE_ROLLED]) > 2 * IMP_FACE_TURN) {
             cut = true;
             h *= 0.5;
             if (h <= shortest) return false;
@@ -536,7 +634,7 @@ static double longest_in_tau(const imp_face_motion *motion, const double *y)
 {
     const double clock = clock_of(motion, y), k = motion->gyration * motion->gyration, *v = &y[IMP_FACE_V],
                  w = y[IMP_FACE_W], speed = imp_face_speed(motion, y);
-    const double part = fmin(motion->longest, IMP_FACE_TURN / fabs(w)) / clock;
+    const double part = fmin(motion->longest, IMP_FACE_TURN / turning_rate(y)) / clock;
     double rate[IMP_FACE_STATE];
     imp_face_balance balance = {.p = {0}};
     if (!imp_face_rates(motion, y, rate, &balance)) return fmin(log1p(part), 1);
@@ -551,22 +649,27 @@ static double longest_in_tau(const imp_face_motion *motion, const double *y)
 static bool creep(const imp_face_motion *motion, const double *y, double longest, imp_face_path *path)
 {
     const double aim = IMP_FACE_SET_OUT * motion->still;
-    double a[3], then[IMP_FACE_STATE], speed = INFINITY, h = longest;
+    double a[MOVING], then[IMP_FACE_STATE], speed = INFINITY, h = longest;
+    if (y[IMP_FACE_ROLL] != 0) return false;
     for (int round = 0; round < IMP_FACE_BEGINS && speed > 2 * aim; round++) {
         imp_face_balance balance;
         memcpy(then, y, sizeof then);
         then[IMP_FACE_TIME] += 0.5 * h;
-        const bool goes = imp_face_begins(motion, then, a, &balance) == IMP_FACE_GOES;
+        const bool goes = set_out(motion, then, a, &balance);
         speed = goes ? h * qvec3_norm((qvec3){a[0], a[1], motion->gyration * a[2]}) : INFINITY;
         if (speed > 2 * aim) h *= goes ? sqrt(aim / speed) : 0.5;
     }
     if (!(speed <= 2 * aim)) return false;
+    double over[2] = {0, 0};
+    if (motion->rolling > 0) over_center(motion, y, a[MOVING - 1], over);
     *path = (imp_face_path){.clock = 1};
     memcpy(path->c[0], y, sizeof path->c[0]);
     path->c[0][IMP_FACE_TIME] += h, path->c[1][IMP_FACE_TIME] = h;
     for (int n = 0; n < MOVING; n++) {
-        path->c[0][n] += 0.5 * h * h * a[n], path->c[1][n] = h * h * a[n], path->c[2][n] = 0.5 * h * h * a[n];
-        path->c[0][IMP_FACE_V + n] = path->c[1][IMP_FACE_V + n] = h * a[n];
+        const int to = place[n];
+        const double own = n < 2 ? a[n] - over[n] : a[n];
+        path->c[0][to] += 0.5 * h * h * own, path->c[1][to] = h * h * own, path->c[2][to] = 0.5 * h * h * own;
+        path->c[0][velocity[n]] = path->c[1][velocity[n]] = h * a[n];
     }
     return true;
 }
@@ -576,10 +679,10 @@ static bool step_from_rest(const imp_face_motion *motion, const double *y, doubl
 {
     imp_face_motion begun = *motion;
     imp_face_balance balance;
-    double a[3];
-    if (imp_face_begins(motion, y, a, &balance) != IMP_FACE_GOES) return false;
+    double a[MOVING];
+    if (!set_out(motion, y, a, &balance)) return false;
     begun.clock = 1 / sqrt(motion->load.press);
-    const double turns = sqrt(0.5 * fabs(a[2]) / IMP_FACE_TURN),
+    const double turns = fmax(sqrt(0.5 * hypot(a[2], a[3]) / IMP_FACE_TURN), turning_rate(y) / IMP_FACE_TURN),
                  longest = fmin(motion->loads ? motion->longest : INFINITY, fmin(1 / turns, *length * begun.clock));
     *length = longest / begun.clock;
     const bool found = step_within(&begun, y, *length, IMP_FACE_FIRST * *length, length, path);
@@ -590,7 +693,7 @@ static bool step_from_rest(const imp_face_motion *motion, const double *y, doubl
 bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
 {
     if (!(imp_face_speed(motion, y) > 0)) return step_from_rest(motion, y, length, path);
-    const double turns = fabs(y[IMP_FACE_W]) * clock_of(motion, y);
+    const double turns = turning_rate(y) * clock_of(motion, y);
     const double longest = motion->loads ? longest_in_tau(motion, y) : IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN);
     return step_within(motion, y, longest, IMP_FACE_SHORTEST, length, path);
 }

@@ -21,6 +21,13 @@
  * in which what slides and turns to its end goes there as e^-tau, smoothly, at the end along one twist. What begins to
  * move has no such time: its first step is one of t/root P, in which v = a t + ... is smooth (face_begin.h): no place
  * of a step is at its begin, where friction has no direction. Lengths are in units of the face's reach.
+ *
+ * A line, along e, of a body that is round about it: across it no pressure is asked for, for about it the body rolls,
+ * with W and the moment I. With h = n x e, v + c W h is the velocity of the line's points without w, and the v of y:
+ *
+ *     I W' = c F.h + T.e,   v' = F/m + pull + c (W' h - W w e),   int p s = -c F.e - h.T - I W w
+ *
+ * It slides and turns to one instant as a face does; what is left rolls.
  */
 #ifndef IMP_FACE_MOTION_H
 #define IMP_FACE_MOTION_H
@@ -38,6 +45,8 @@ enum {
     IMP_FACE_WORK,   /* that friction has taken, */
     IMP_FACE_PUSHED, /* forces but gravity have done, */
     IMP_FACE_DAMPED, /* and damping has taken */
+    IMP_FACE_ROLLED, /* of a line: the angle about it, */
+    IMP_FACE_ROLL,   /* and its rate W */
     IMP_FACE_STATE
 };
 
@@ -65,6 +74,7 @@ typedef struct imp_face_motion {
     double still;        /* the rest speed; 0: none */
     double turning;      /* m size^2/J */
     double aside[2];     /* j/(m size^2) */
+    double rolling;      /* of a line, > 0: I/(m size^2); 0: a face */
     double gyration;     /* k */
     double clock;        /* s: dt/dtau where it is the same all along a step; 0: as above */
     imp_flat_face under; /* what it lies on, in axes that stay; of */
@@ -83,9 +93,10 @@ typedef struct imp_face_balance {
     double center[2];        /* of pressure */
 } imp_face_balance;
 
-/* A direction of motion (v, w) in the face's axes, not 0, of any size; and w^2 as it is: 0 of a motion that begins. */
+/* A direction of motion (v, w) in the face's axes, not 0, of any size; and w^2, and of a line W w, as they are: 0 of a
+ * motion that begins. */
 typedef struct imp_face_twist {
-    double way[3], square;
+    double way[3], square, rolled;
 } imp_face_twist;
 
 /* Under a load in the face's axes; twist NULL: it stands, and friction is what balances the load. Else as below. */
@@ -98,7 +109,15 @@ bool imp_face_balance_of(const imp_face_motion *motion, const double twist[3], i
 void imp_face_turn(const double v[2], double angle, double out[2]);
 /* The load at y, its tip in the face's axes; false: there is none, or it does not press. */
 bool imp_face_load_at(const imp_face_motion *motion, const double *y, imp_face_load *load);
-/* Rates of y by time, y of IMP_FACE_STATE numbers: the last are time and works, over m size^2. */
+/* W' of a line; 0 of a face: under a load in the face's axes, with such friction over m P. */
+double imp_face_roll_rate(const imp_face_motion *motion, const imp_face_load *load, const double force[2]);
+/* By how much more a force across a line moves its points than its centre, 1 + c^2 m/I; 1 of a face. */
+double imp_face_ease(const imp_face_motion *motion);
+/* Of the twist: by how much differences tell slopes of its friction. */
+double imp_face_difference(const imp_face_motion *motion);
+/* The centre's velocity, in axes that stay. */
+void imp_face_center_velocity(const imp_face_motion *motion, const double *y, double v[2]);
+/* Rates of y by time, y of IMP_FACE_STATE numbers: works are over m size^2. */
 bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate, imp_face_balance *balance);
 
 /* How far within all borders the centre of pressure is, and the face within what it lies on. */

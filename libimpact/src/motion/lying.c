@@ -36,6 +36,30 @@ static bool face_towards(const imp_body *body, const imp_state *state, qvec3 dir
     return found && face->count >= 3 && (face->disc > 0 || face->count <= IMP_FLAT_SIDES);
 }
 
+/* Its line along a, unit, through the centre of mass, about which all is alike: it turns about that as about a
+ * principal axis, and the same across it. */
+static bool is_round_about(const imp_body *body, const imp_state *state, qvec3 a)
+{
+    const qvec3 t = imp_tangent(a), b = qvec3_cross(a, t), offset = imp_shape_offset(body, state),
+                Ia = imp_inertia(body, state->q, a), It = imp_inertia(body, state->q, t),
+                Ib = imp_inertia(body, state->q, b);
+    const double level = IMP_LEVEL * (qvec3_norm(It) + qvec3_norm(Ib));
+    const double aslant = qvec3_norm(qvec3_cross(a, Ia)), apart = fabs(qvec3_dot(t, It) - qvec3_dot(b, Ib));
+    return aslant <= level && apart <= level && fabs(qvec3_dot(t, Ib)) <= level &&
+           qvec3_norm(qvec3_cross(a, offset)) <= IMP_LEVEL * body->radius;
+}
+
+/* The side line of a body that is round about its axis; along: that, unit, in the world. */
+static bool line_towards(const imp_body *body, const imp_state *state, qvec3 direction, double height,
+                         impact_face *face, qvec3 *along)
+{
+    const qvec3 d = quat_rotate_inverse(imp_shape_axes(body, state), direction);
+    if (body->shape.kind != IMPACT_CAPSULE && body->shape.kind != IMPACT_CYLINDER) return false;
+    if (impact_shape_face(&body->shape, d, height, face) != 1 || face->count != 2) return false;
+    *along = quat_rotate(imp_shape_axes(body, state), (qvec3){0, 0, 1});
+    return is_round_about(body, state, *along);
+}
+
 /* In the plane's axes over the size; about the normal the corners go the other way round where it looks against it. */
 static void lay_out_face(const imp_lying *lying, const imp_body *body, const imp_state *state, qvec3 shift,
                          const impact_face *face, bool reversed, imp_flat_face *out)
@@ -49,6 +73,16 @@ static void lay_out_face(const imp_lying *lying, const imp_body *body, const imp
             if (out->count > 0) out->corner[reversed ? face->count - 1 - i : i][k] = x;
         }
     }
+}
+
+static void lay_out_line(const imp_lying *lying, const impact_face *face, imp_flat_face *out)
+{
+    double end[2];
+    for (int i = 0; i < 2; i++)
+        end[i] = qvec3_dot(lying->axis[0], corner_of(lying->body, &lying->level, face, i)) / lying->size;
+    *out = (imp_flat_face){.count = IMP_FLAT_LINE,
+                           .center = {0.5 * (end[0] + end[1]), 0},
+                           .corner = {{fmin(end[0], end[1]), 0}, {fmax(end[0], end[1]), 0}}};
 }
 
 /* A plane's bounds, if it has any; on sides without end far beyond all that matters. */
@@ -95,6 +129,22 @@ static void level(imp_lying *lying, const imp_state *state, qvec3 outward)
     lying->start[IMP_FACE_W] = omega;
 }
 
+/* The same with a line, along `along` before: it keeps its roll, and the velocity of its centre. */
+static void level_line(imp_lying *lying, const imp_state *state, qvec3 along)
+{
+    const imp_body *body = lying->body;
+    const qvec3 n = lying->normal, outward = across(qvec3_neg(n), along);
+    level(lying, state, qvec3_scale(outward, 1 / qvec3_norm(outward)));
+    const qvec3 flat = across(along, n);
+    lying->axis[0] = qvec3_scale(flat, 1 / qvec3_norm(flat)), lying->axis[1] = qvec3_cross(n, lying->axis[0]);
+    const double own = qvec3_dot(lying->axis[0], imp_inertia(body, lying->level.q, lying->axis[0])),
+                 roll = qvec3_dot(lying->axis[0], imp_omega(body, state));
+    lying->rolled = qvec3_scale(lying->axis[0], own);
+    lying->level.momentum = qvec3_axpy(roll, lying->rolled, lying->level.momentum);
+    lying->level.v = across(state->v, n);
+    lying->start[IMP_FACE_ROLL] = roll;
+}
+
 /* What is but rounding of the other is none. */
 static double beside(double part, double whole) { return fabs(part) > IMP_LEVEL * fabs(whole) ? part : 0; }
 
@@ -137,6 +187,7 @@ static bool set_motion(imp_lying *lying, const imp_pair *pair, const imp_state *
     m->context = lying, m->clock = 0;
     m->loads = world->field_count > 0 || body->linear_rate != 0 || body->angular_rate != 0 ? loads_at : NULL;
     m->turning = unit / spin;
+    m->rolling = qvec3_norm(lying->rolled) / unit;
     if (!loads_at(lying, lying->start, &m->load)) return false;
     m->longest = fmin(imp_field_step_limit(world, motion->scratch, motion->loads),
                       imp_field_custom_step_limit(world, motion->scratch, motion->loads));
@@ -144,6 +195,7 @@ static bool set_motion(imp_lying *lying, const imp_pair *pair, const imp_state *
         m->aside[k] = beside(qvec3_dot(lying->axis[k], lying->inertia), spin) / unit;
         lying->start[IMP_FACE_V + k] = qvec3_dot(lying->axis[k], lying->level.v) / L;
     }
+    if (m->rolling > 0) lying->start[IMP_FACE_V + 1] += m->height * lying->start[IMP_FACE_ROLL];
     imp_face_prepare(m);
     m->gyration = sqrt((m->moments[1][1] + m->moments[2][2]) / m->moments[0][0]);
     return m->load.press > 0;
@@ -184,26 +236,36 @@ bool imp_lying_find(imp_motion *motion, const imp_pair *given, double t, const i
     const imp_state *state = &states[pair.body1], *below = &states[pair.body2];
     impact_contact contact;
     impact_face face, ground;
+    qvec3 along;
     if (!under->is_static || under->driven || pair.law.torsional > 0 || is_attracted(world)) return false;
     imp_world_gap(world, &pair, states, &contact);
     /* what rocks by less lies; of a superquadric that height is what its flat place is of */
     const double touching = imp_has_faces(body) ? imp_world_touching_distance(world, &pair, states) : 0,
                  height = touching + world->flat_height / fmax(lift_of(body), lift_of(under));
     const bool on_plane = under->shape.kind == IMPACT_PLANE;
-    if (!face_towards(body, state, qvec3_neg(contact.normal), height, &face)) return false;
+    const bool line = line_towards(body, state, qvec3_neg(contact.normal), height, &face, &along);
+    if (line && (pair.law.rolling > 0 || !(pair.law.friction > 0))) return false;
+    if (!line && !face_towards(body, state, qvec3_neg(contact.normal), height, &face)) return false;
     if (!on_plane && !face_towards(under, below, contact.normal, height, &ground)) return false;
     lying->body = body;
     lying->moves = motion, lying->t0 = t, lying->index = pair.body1;
     lying->normal = on_plane ? quat_rotate(below->q, (qvec3){0, 0, 1}) : normal_of(under, below, &ground);
-    level(lying, state, normal_of(body, state, &face));
+    lying->rolled = (qvec3){0, 0, 0};
+    if (line)
+        level_line(lying, state, along);
+    else
+        level(lying, state, normal_of(body, state, &face));
     const qvec3 n = lying->normal, low = corner_of(body, &lying->level, &face, 0);
     const double ground_level = on_plane ? 0 : qvec3_dot(n, corner_of(under, below, &ground, 0));
     const double gap = qvec3_dot(n, qvec3_sub(state->x, below->x)) + qvec3_dot(n, low) - ground_level;
     lying->level.x = qvec3_axpy(-gap, n, state->x);
     lying->size = farthest(lying, &face);
     lying->motion.height = -qvec3_dot(n, low) / lying->size;
-    keep_sliding(lying, state, pair.law.friction);
-    lay_out_face(lying, body, &lying->level, (qvec3){0, 0, 0}, &face, true, &lying->motion.face);
+    if (!line) keep_sliding(lying, state, pair.law.friction);
+    if (line)
+        lay_out_line(lying, &face, &lying->motion.face);
+    else
+        lay_out_face(lying, body, &lying->level, (qvec3){0, 0, 0}, &face, true, &lying->motion.face);
     const qvec3 apart = qvec3_sub(lying->level.x, below->x);
     lying->motion.bounded = !on_plane || plane_bounds(lying, under, below, apart, &lying->motion.under);
     if (!on_plane) lay_out_face(lying, under, below, qvec3_neg(apart), &ground, false, &lying->motion.under);
@@ -217,6 +279,17 @@ static qvec3 in_plane(const imp_lying *lying, double x, double y)
     return qvec3_add(qvec3_scale(lying->axis[0], lying->size * x), qvec3_scale(lying->axis[1], lying->size * y));
 }
 
+/* Rolled about its line first. */
+static void roll_on(const imp_lying *lying, const double *y, quat turn, imp_state *state)
+{
+    const quat roll = quat_from_rotation_vector(qvec3_scale(lying->axis[0], y[IMP_FACE_ROLLED]));
+    double v[2];
+    imp_face_center_velocity(&lying->motion, y, v);
+    state->v = in_plane(lying, v[0], v[1]);
+    state->q = quat_unit(quat_mul(turn, quat_mul(roll, lying->level.q)));
+    state->momentum = qvec3_axpy(y[IMP_FACE_ROLL], quat_rotate(turn, lying->rolled), state->momentum);
+}
+
 imp_state imp_lying_state(const imp_lying *lying, const double *y)
 {
     const quat turn = quat_from_rotation_vector(qvec3_scale(lying->normal, y[IMP_FACE_ANGLE]));
@@ -224,6 +297,7 @@ imp_state imp_lying_state(const imp_lying *lying, const double *y)
                        .v = in_plane(lying, y[IMP_FACE_V], y[IMP_FACE_V + 1]),
                        .q = quat_unit(quat_mul(turn, lying->level.q))};
     state.momentum = qvec3_scale(quat_rotate(turn, lying->inertia), y[IMP_FACE_W]);
+    if (imp_lies_on_line(lying)) roll_on(lying, y, turn, &state);
     return state;
 }
 
@@ -281,22 +355,24 @@ static void put_in_plane(imp_dense *dense, int i, const imp_lying *lying, const 
     }
 }
 
-/* What turns is no polynomial: one through Chebyshev's places. */
+/* What turns is no polynomial: one through Chebyshev's places. So does the velocity of what rolls. */
 static void put_turning(imp_dense *dense, int first, const imp_lying *lying, const imp_face_path *path)
 {
-    enum { TURNING = 7 };
+    enum { TURNING = 10 };
+    const int count = imp_lies_on_line(lying) ? TURNING : TURNING - 3;
     double s[IMP_DENSE_TERMS], value[TURNING][IMP_DENSE_TERMS], c[IMP_DENSE_TERMS];
     for (int k = 0; k < IMP_DENSE_TERMS; k++) {
         double y[IMP_FACE_STATE];
         s[k] = -0.5 * (1 - cos(acos(-1) * k / (IMP_DENSE_TERMS - 1)));
         imp_face_at(path, s[k], y);
         const imp_state at = imp_lying_state(lying, y);
-        const double now[TURNING] = {at.q.w, at.q.x, at.q.y, at.q.z, at.momentum.x, at.momentum.y, at.momentum.z};
-        for (int n = 0; n < TURNING; n++) value[n][k] = now[n];
+        const double now[TURNING] = {at.q.w,        at.q.x,        at.q.y, at.q.z, at.momentum.x,
+                                     at.momentum.y, at.momentum.z, at.v.x, at.v.y, at.v.z};
+        for (int n = 0; n < count; n++) value[n][k] = now[n];
     }
-    for (int n = 0; n < TURNING; n++) {
+    for (int n = 0; n < count; n++) {
         interpolate(s, value[n], c);
-        put(dense, first + (n < 4 ? 3 + n : Y_VELOCITY + 3 + n - 4), c);
+        put(dense, first + (n < 4 ? 3 + n : n < 7 ? Y_VELOCITY + 3 + n - 4 : Y_VELOCITY + n - 7), c);
     }
 }
 

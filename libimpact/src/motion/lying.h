@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * lying: a body of the world that lies with a face on a static one, as its face's motion (face_motion.h); and back.
- * Internal.
+ * lying: a body of the world that lies with a face on a static one, or with a line about which it is round, as its
+ * face's motion (face_motion.h); and back. Internal.
  */
 #ifndef IMP_LYING_H
 #define IMP_LYING_H
@@ -12,19 +12,23 @@
 typedef struct imp_lying {
     imp_face_motion motion;
     const imp_body *body;
-    imp_state level; /* the body exactly on the face, moving along it alone */
-    qvec3 normal, axis[2];
-    qvec3 inertia;     /* J n, kg m^2 */
-    double size;       /* m */
-    imp_motion *moves; /* of the loads, from t0 on */
+    imp_state level;       /* the body exactly on the face, moving along it alone */
+    qvec3 normal, axis[2]; /* axis[0] along its line */
+    qvec3 inertia;         /* J n, kg m^2 */
+    qvec3 rolled;          /* of a line: I e; 0 of a face */
+    double size;           /* m */
+    imp_motion *moves;     /* of the loads, from t0 on */
     double t0;
     int index;                    /* the body's */
     double start[IMP_FACE_STATE]; /* y of the level state */
 } imp_lying;
 
-/* The pair's body 1 on its static body 2 at t, where both have a face there and it is pressed on; false where not: also
- * where the surface moves, turning has friction of its own, or a force cannot be had. lying stays where it is. */
+/* The pair's body 1 on its static body 2 at t, where both have a face there, or the first such a line, and it is
+ * pressed on; false where not: also where the surface moves, turning, or of a line rolling, has friction of its own, or
+ * a force cannot be had. lying stays where it is. */
 bool imp_lying_find(imp_motion *motion, const imp_pair *pair, double t, const imp_state *states, imp_lying *lying);
+
+static inline bool imp_lies_on_line(const imp_lying *lying) { return lying->motion.rolling > 0; }
 
 /* The body with y. */
 imp_state imp_lying_state(const imp_lying *lying, const double *y);
