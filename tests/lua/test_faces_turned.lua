@@ -111,6 +111,7 @@ check.truth(told > 0, "some are stepped")
 
 --- A cylinder's rim in the crease of two planes, which it touches at two places that become one as it comes level with the crease: there one
 --- sticks, and its slip of 1e-10 m/s was put back by the arm from one to the other. The spin about that place went, or grew a hundredfold.
+--- Later it rocks between the planes, by bounces of 6e-6 m/s that are one or none by how far gaps can be told, which is not the same in all axes.
 local function creases(q)
   local bodies = {}
   for k, side in ipairs { 1, -1 } do
@@ -121,7 +122,7 @@ local function creases(q)
     friction = 1, restitution = 1, orientation = q * quat.normalize { .0208872803566, -.392709293122, -.0147705724794, .919306783834 },
     position = q:rotate { -.0127249597992, -.00847346750274, .130741269673 }, velocity = q:rotate { .00892813111821, -.0104326246784, -.00590475055877 },
     omega = q:rotate { -.0667649294846, .02299042451, -.592349550777 } }
-  local scene = impact.scene { gravity = q:rotate { 0, 0, -9.81 }, duration = .05, bodies = bodies, rules = { friction = "minimum", restitution = "minimum" } }
+  local scene = impact.scene { gravity = q:rotate { 0, 0, -9.81 }, duration = .021, bodies = bodies, rules = { friction = "minimum", restitution = "minimum" } }
   check.equal(scene:run(), "end of time")
   check.equal(scene:usage().pile_steps, 0)
   return q:conj():rotate(scene:state("can").velocity), scene:energy().impact_loss

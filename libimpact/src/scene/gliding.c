@@ -16,7 +16,7 @@
 
 /* A motion of constant rates, in the face's units, until so many s from now. */
 typedef struct steady {
-    double a[2], alpha, until;
+    double a[2], alpha, roll, until; /* of the centre, about the normal, and about a line */
     bool fades, stands, breaks;
 } steady;
 
@@ -61,6 +61,33 @@ static bool slides_straight(const imp_face_motion *m, const double v[2], steady 
     return true;
 }
 
+/* A line along itself, or across, without turning: as it slides across it rolls ever faster. */
+static bool line_slides_straight(const imp_face_motion *m, const double *y, steady *s)
+{
+    const double *v = &y[IMP_FACE_V], *pull = m->load.pull;
+    const int k = v[0] != 0 || (v[1] == 0 && pull[0] != 0) ? 0 : 1;
+    const double along = v[k] != 0 ? v[k] : pull[k];
+    if (v[1 - k] != 0 || pull[1 - k] != 0 || along == 0) return false;
+    const double way = copysign(1, along), twist[3] = {k == 0 ? way : 0, k == 1 ? way : 0, 0};
+    imp_face_balance balance = {.p = {0}};
+    if (!imp_face_balance_of(m, twist, &balance) || !(imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN))
+        return false;
+    double center[2];
+    imp_face_center_velocity(m, y, center);
+    *s = (steady){.roll = imp_face_roll_rate(m, &m->load, balance.force)};
+    s->a[k] = pull[k] + m->load.press * balance.force[k];
+    const double rate = way * (s->a[k] + (k == 1 ? m->height * s->roll : 0));
+    if (v[k] == 0 && !(rate > 0)) return false;
+    s->fades = rate < 0;
+    s->until = s->fades ? fabs(v[k]) / -rate : INFINITY;
+    for (int i = 0; i < IMP_FLAT_LINE && m->bounded; i++) {
+        if (!(imp_face_spare(&m->under, m->face.corner[i]) > 2 * IMP_FACE_MARGIN)) return false;
+        const double out = leaves(&m->under, m->face.corner[i], center, s->a);
+        if (out < s->until) s->until = out, s->fades = false;
+    }
+    return true;
+}
+
 /* On level ground, where friction makes no force. */
 static bool spins_in_place(const imp_face_motion *m, double w, steady *s)
 {
@@ -80,7 +107,8 @@ static bool spins_in_place(const imp_face_motion *m, double w, steady *s)
 static bool glides_freely(const imp_face_motion *m, const double *y, steady *s)
 {
     imp_face_balance balance = {.p = {0}};
-    if (m->friction > 0 || m->bounded || !imp_face_balance_of(m, &y[IMP_FACE_V], &balance)) return false;
+    if (m->friction > 0 || m->bounded || m->rolling > 0 || !imp_face_balance_of(m, &y[IMP_FACE_V], &balance))
+        return false;
     *s = (steady){.a = {m->load.pull[0], m->load.pull[1]}, .until = INFINITY};
     return imp_face_spare(&m->face, balance.center) > IMP_FACE_MARGIN;
 }
@@ -95,8 +123,22 @@ static bool fades_out(const imp_face_motion *m, const double *y, double slow, st
     const double falls = -(v[0] * rate[IMP_FACE_V] + v[1] * rate[IMP_FACE_V + 1] + k * w * rate[IMP_FACE_W]);
     if (!(falls > 0)) return false;
     const double until = speed * speed / falls;
-    *s = (steady){.a = {-v[0] / until, -v[1] / until}, .alpha = -w / until, .until = until, .fades = true};
+    const double ease = imp_face_ease(m), rolls = m->rolling > 0 ? (1 - 1 / ease) / m->height : 0;
+    *s = (steady){.a = {-v[0] / until, -v[1] / (ease * until)},
+                  .alpha = -w / until,
+                  .roll = -rolls * v[1] / until,
+                  .until = until,
+                  .fades = true};
     return true;
+}
+
+/* Whether what does not slip rolls, or begins to. */
+static bool rolls(const imp_face_motion *m, const double *y, const imp_face_balance *balance)
+{
+    imp_face_load load;
+    if (!(m->rolling > 0)) return false;
+    if (y[IMP_FACE_ROLL] != 0 || !imp_face_load_at(m, y, &load)) return true;
+    return m->height * fabs(imp_face_roll_rate(m, &load, balance->force)) > IMP_LEVEL * load.press;
 }
 
 /* Whether the face stands under the load of so much later. */
@@ -106,7 +148,7 @@ static bool stands_then(const imp_lying *lying, double later)
     imp_face_balance balance;
     memcpy(y, lying->start, sizeof y);
     y[IMP_FACE_TIME] = later;
-    return imp_face_begins(&lying->motion, y, a, &balance) == IMP_FACE_STANDS;
+    return imp_face_begins(&lying->motion, y, a, &balance) == IMP_FACE_STANDS && !rolls(&lying->motion, y, &balance);
 }
 
 /* Under loads that change: until they are more than the face holds, or are to be looked at again. */
@@ -136,12 +178,24 @@ static bool find_steady(const imp_lying *lying, double slow, steady *s)
     const double *y = lying->start, *v = &y[IMP_FACE_V], w = y[IMP_FACE_W];
     *s = (steady){.until = INFINITY};
     if (m->loads) return imp_face_speed(m, y) > 0 ? fades_out(m, y, slow, s) : stands_on(lying, s);
-    if (w == 0 && slides_straight(m, v, s)) return true;
-    if (size_of(v) == 0 && w != 0 && size_of(m->load.pull) == 0 && spins_in_place(m, w, s)) return true;
+    if (w == 0 && (m->rolling > 0 ? line_slides_straight(m, y, s) : slides_straight(m, v, s))) return true;
+    const bool on_the_spot = size_of(v) == 0 && w != 0 && size_of(m->load.pull) == 0 && y[IMP_FACE_ROLL] == 0;
+    if (on_the_spot && spins_in_place(m, w, s)) return true;
     return glides_freely(m, y, s) || fades_out(m, y, slow, s);
 }
 
 /* ---- whether it glides ---- */
+
+/* Of a line's slip and roll what its steps err by is none: along it friction is steep about none, v/w log(v/w). */
+static void clear_errors(imp_lying *lying)
+{
+    double *y = lying->start, *v = &y[IMP_FACE_V], *roll = &y[IMP_FACE_ROLL];
+    const double c = lying->motion.height, whole = size_of(v) + fabs(y[IMP_FACE_W]) + c * fabs(*roll);
+    for (int k = 0; k < 2; k++)
+        if (fabs(v[k]) <= IMP_FACE_TOLERANCE * whole) v[k] = 0;
+    if (fabs(y[IMP_FACE_W]) <= IMP_FACE_TOLERANCE * whole) y[IMP_FACE_W] = 0;
+    if (c * fabs(*roll) <= IMP_FACE_TOLERANCE * whole) *roll = 0;
+}
 
 /* Of the twist what is but a rounding of the rest is none; nor is what is slower than the rest speed. */
 static void clear_roundings(imp_lying *lying, double slow)
@@ -151,6 +205,7 @@ static void clear_roundings(imp_lying *lying, double slow)
     if (!(speed + fabs(*w) > slow)) v[0] = v[1] = *w = 0;
     if (fabs(*w) <= IMP_LEVEL * speed) *w = 0;
     if (speed <= IMP_LEVEL * fabs(*w)) v[0] = v[1] = 0;
+    if (imp_lies_on_line(lying)) clear_errors(lying);
 }
 
 static bool find_lying(imp_island *island, const imp_pair *pair, double t, const imp_state *states, double slow,
@@ -195,6 +250,7 @@ static bool stands_on_all(const imp_lying *lying)
 {
     imp_face_balance balance;
     return imp_face_speed(&lying->motion, lying->start) == 0 && begins(lying, &balance) == IMP_FACE_STANDS &&
+           !rolls(&lying->motion, lying->start, &balance) &&
            imp_face_margin(&lying->motion, lying->start, &balance) > 2 * IMP_FACE_MARGIN;
 }
 
@@ -367,6 +423,25 @@ impact_status imp_island_lay(imp_island *island, bool lay_before, bool *any)
     return status;
 }
 
+/* ---- what is held, and lies ---- */
+
+static void bring_onto(imp_island *island, int body, const imp_lying *lying)
+{
+    const imp_state now = imp_lying_state(lying, lying->start);
+    const double energy = imp_scene_undriven_energy(island);
+    imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), island->world.bodies[body].mass));
+    island->states[body] = now;
+    island->impact_loss += energy - imp_scene_undriven_energy(island);
+}
+
+/* Held no more. */
+static void let_lie(imp_pair *pair)
+{
+    pair->mode = IMP_OPEN;
+    imp_end_incipient(pair);
+    pair->footing.on = IMP_FOOT_FACE;
+}
+
 /* ---- flat places ---- */
 
 /* It lies on the plane's face as what has faces does, but for how it came there and what holds it afterwards: at one
@@ -383,14 +458,8 @@ static impact_status glide_on_flat(imp_island *island, int p)
     if (!find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying)) return IMPACT_OK;
     const bool stands = forced && stands_on_all(&lying);
     if (!stands && !glides(island, &lying)) return IMPACT_OK;
-    const imp_state now = imp_lying_state(&lying, lying.start);
-    const double energy = imp_scene_undriven_energy(island);
-    imp_island_push(island, qvec3_scale(qvec3_sub(now.v, island->states[body].v), island->world.bodies[body].mass));
-    island->states[body] = now;
-    island->impact_loss += energy - imp_scene_undriven_energy(island);
-    pair->mode = IMP_OPEN;
-    imp_end_incipient(pair);
-    pair->footing.on = IMP_FOOT_FACE;
+    bring_onto(island, body, &lying);
+    let_lie(pair);
     return tell_of_lying(island, p, &lying, stands, true);
 }
 
@@ -417,6 +486,77 @@ bool imp_island_hold_flat(imp_island *island, int p)
     pair->footing.on = foot;
     pair->mode = island->motion.resting[pair->body1] ? IMP_STICK : IMP_SLIDE;
     return true;
+}
+
+/* ---- lines ---- */
+
+/* The other end of the line that the pair holds one of; or NULL. */
+static imp_pair *other_end(imp_island *island, const imp_pair *pair)
+{
+    for (int p = 0; p < island->world.pair_count; p++) {
+        imp_pair *other = &island->world.pairs[p];
+        if (other != pair && other->site.corner > 0 && imp_same_bodies(other, pair) && imp_is_held(other)) return other;
+    }
+    return NULL;
+}
+
+/* Whether anything but the line holds its body. */
+static bool is_held_beside_line(const imp_island *island, const imp_pair *pair)
+{
+    for (int p = 0; p < island->world.pair_count; p++) {
+        const imp_pair *other = &island->world.pairs[p];
+        if (is_of(other, pair->body1) && !imp_same_bodies(other, pair) && imp_is_held(other)) return true;
+    }
+    return false;
+}
+
+/* What is held at both ends of a line, about which it is round, lies on all of it, where it slides or turns there, or
+ * stands under forces. What but rolls is held on. */
+static impact_status glide_on_line(imp_island *island, int p)
+{
+    imp_lying lying;
+    imp_pair *pair = &island->world.pairs[p], *other;
+    const int body = pair->body1;
+    const bool forced = island->world.field_count > 0;
+    if (!imp_is_held(pair) || pair->site.corner == 0 || !(other = other_end(island, pair)) || pair->rest.still ||
+        (island->motion.resting[body] && !forced) || is_held_beside_line(island, pair))
+        return IMPACT_OK;
+    if (!find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying) ||
+        !imp_lies_on_line(&lying))
+        return IMPACT_OK;
+    const bool stands = forced && stands_on_all(&lying);
+    if (!stands && (!glides(island, &lying) || is_pressed_elsewhere_too(island, pair, &lying))) return IMPACT_OK;
+    const bool stuck = pair->mode == IMP_STICK && other->mode == IMP_STICK && !stands;
+    bring_onto(island, body, &lying);
+    let_lie(pair);
+    let_lie(other);
+    if (stuck) island->motion.resting[body] = true; /* it is from then on that it slips */
+    return tell_of_lying(island, p, &lying, stands, true);
+}
+
+impact_status imp_island_glide_on_lines(imp_island *island)
+{
+    impact_status status = IMPACT_OK;
+    for (int p = 0; status == IMPACT_OK && p < island->world.pair_count; p++) status = glide_on_line(island, p);
+    return status;
+}
+
+bool imp_island_hold_line(imp_island *island, int p)
+{
+    imp_pair *pair = &island->world.pairs[p];
+    if (pair->site.corner == 0) return false;
+    pair->footing.on = IMP_FOOT_POINT;
+    pair->mode = island->motion.resting[pair->body1] ? IMP_STICK : IMP_SLIDE;
+    pair->site.side = (qvec3){0, 0, 0};
+    return true;
+}
+
+void imp_island_stop_on_line(imp_island *island, int p)
+{
+    imp_lying lying;
+    const imp_pair *pair = &island->world.pairs[p];
+    if (!find_lying(island, pair, island->t, island->states, INFINITY, &lying)) return;
+    island->states[pair->body1] = imp_lying_state(&lying, lying.start);
 }
 
 bool imp_island_may_lie(imp_island *island)
@@ -505,8 +645,8 @@ impact_status imp_island_glide_on(imp_island *island, imp_segment *segment, bool
         const bool sticks = s.fades && lying.motion.friction > 0;
         end_with(island, sticks ? IMP_END_STICK : isfinite(s.until) ? IMP_END_BOUNDS : IMP_END_TIME);
         if (s.stands) stay_to_end(island, &lying, &s);
-        *segment =
-            imp_segment_roll(t, t + s.until, &start, along_face(&lying, s.a), qvec3_scale(lying.normal, s.alpha));
+        const qvec3 spin_up = qvec3_axpy(s.roll, lying.axis[0], qvec3_scale(lying.normal, s.alpha));
+        *segment = imp_segment_roll(t, t + s.until, &start, along_face(&lying, s.a), spin_up);
         return IMPACT_OK;
     }
     double to;

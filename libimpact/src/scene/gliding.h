@@ -28,6 +28,14 @@ impact_status imp_island_glide_on_flats(imp_island *island);
 /* The lying pair p, held again where its pressure is, so that it may tip; false: it is one of faces. */
 bool imp_island_hold_flat(imp_island *island, int p);
 
+/* The bodies that are held at both ends of a line about which they are round, and slide or turn there, or stand under
+ * forces: they lie, held no more; the pairs of both ends stay. */
+impact_status imp_island_glide_on_lines(imp_island *island);
+/* The lying pair p, held again at its end of a line; false: it is none. */
+bool imp_island_hold_line(imp_island *island, int p);
+/* What lies on the pair's line has come to its stop: it but rolls. */
+void imp_island_stop_on_line(imp_island *island, int p);
+
 /* Whether the one body of an island that goes by steps, which stands by the reactions at its points, does so for now by
  * its face; or does not by its face, which has not been asked yet: it is to lie. One that rests has been, and tips. */
 bool imp_island_may_lie(imp_island *island);

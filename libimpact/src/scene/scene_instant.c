@@ -24,7 +24,7 @@ static bool rise_from_faces(imp_island *island)
     bool lay = false;
     for (int p = 0; p < island->world.pair_count; p++) {
         if (island->world.pairs[p].footing.on != IMP_FOOT_FACE) continue;
-        if (imp_island_hold_flat(island, p)) continue;
+        if (imp_island_hold_line(island, p) || imp_island_hold_flat(island, p)) continue;
         island->world.pairs[p].footing.on = IMP_FOOT_POINT;
         lay = true;
     }
@@ -33,7 +33,8 @@ static bool rise_from_faces(imp_island *island)
 
 static impact_status hold_on(imp_island *island, int opened, bool rejoin)
 {
-    const impact_status status = imp_scene_hold(island, opened, rejoin);
+    impact_status status = imp_scene_hold(island, opened, rejoin);
+    if (status == IMPACT_OK && !island->lies) status = imp_island_glide_on_lines(island);
     return status == IMPACT_OK ? imp_island_glide_on_flats(island) : status;
 }
 
@@ -243,6 +244,10 @@ static impact_status stop_gliding(imp_island *island, int p)
     const imp_pair *pair = &island->world.pairs[p];
     const bool flat = !imp_pair_has_faces(&island->world, pair); /* it is held, and tells it then */
     imp_scene_remember(island);
+    if (pair->site.corner > 0) {
+        imp_island_stop_on_line(island, p);
+        return imp_scene_settle(island);
+    }
     island->states[pair->body1].v = island->states[pair->body1].momentum = (qvec3){0, 0, 0};
     if (flat) return imp_scene_settle(island);
     const imp_held_contact contact = imp_held_contact_at(&island->world, p, island->states, island->motion.loads);

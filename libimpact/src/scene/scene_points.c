@@ -189,13 +189,16 @@ static bool is_point(const imp_pair *pair) { return pair->site.placed || pair->s
 
 static bool is_held_corner(const imp_pair *pair) { return pair->site.corner > 0 && imp_is_held(pair); }
 
+/* At an end of the line that its body lies on. */
+static bool lies_on_corners(const imp_pair *pair) { return pair->site.corner > 0 && pair->footing.on == IMP_FOOT_FACE; }
+
 void imp_scene_drop_points(imp_island *island)
 {
     imp_world *world = &island->world;
     int kept = 0;
     for (int p = 0; p < world->pair_count; p++) {
         imp_pair pair = world->pairs[p];
-        if (is_held_corner(&pair)) {
+        if (is_held_corner(&pair) || lies_on_corners(&pair)) {
             pair.site.placed = false;
         } else if (is_point(&pair)) {
             if (imp_corner_is_held(world, &pair, 0) || is_among(world->pairs, kept, &pair)) continue;
