@@ -21,7 +21,7 @@ local function run(shape, more)
   local at = there(more.position)
   local scene = impact.scene { gravity = pull, duration = more.duration or 1, forces = more.law and { impact.force { name = "push", body = "rod", steady = more.steady,
     law = more.law, max_step = .02 } } or nil, bodies = { impact.body(more.under or floor), impact.body { name = "rod", shape = shape, mass = 1,
-      position = { at.x, at.y, R }, orientation = turn * along, velocity = there(more.velocity), omega = there(more.omega), friction = more.friction or mu,
+      position = { at.x, at.y, more.radius or R }, orientation = turn * along, velocity = there(more.velocity), omega = there(more.omega), friction = more.friction or mu,
       restitution = 0, linear_damping = more.linear, angular_damping = more.angular } } }
   local seen = {}
   check.truth(scene:run { on_event = function(event) seen[#seen + 1] = event.event end }, "it runs")
@@ -78,6 +78,13 @@ do
   check.close((held[1].force - { -1.1, 0, G }):norm(), 0, 1e-14)
   check.close(held[1].moment.z, -.01, 1e-15)
   check.close(held[1].point.x, R * 1.1 / G, 1e-14)
+end
+
+-- A push across that grows from nothing rolls it from the begin: v = k t^2/2/(m + I/R^2).
+for _, shape in ipairs { capsule, cylinder } do
+  local state = run(shape, { law = function(t) return { 0, t, 0 } end, duration = .5 })
+  check.close(state.velocity.y, .125 / (1 + shape.inertia.z / R ^ 2), 1e-8)
+  check.close(state.omega.x, -state.velocity.y / R, 1e-8)
 end
 
 -- Along itself it slides as any face does; across it rolls ever faster until it but rolls, at v/(1 + I/(m R^2)).
@@ -206,6 +213,9 @@ for i = 1, 60 do
   run(shape, { velocity = { between(-2, 2), between(-2, 2), 0 }, omega = { between(-30, 30), 0, between(-10, 10) }, friction = between(.05, 1),
     slope = i % 3 == 0 and between(0, .3) or 0, down = { math.cos(angle), math.sin(angle) }, under = i % 5 == 0 and slab or floor, duration = between(.05, 1) })
 end
+
+-- A short line under a wide body, which rolls and turns with next to no slip along it.
+run(impact.cylinder { radius = .675779, half_height = .110565 }, { radius = .675779, omega = { -.2176, 0, 1.184 }, friction = 1.44 })
 
 -- Saved as it glides, and loaded, it goes on alike, to the bit; and as what was not saved does.
 for _, under in ipairs { floor, slab } do

@@ -878,6 +878,9 @@
 #define IMP_FACE_LOOKS 64
 /* Of the face's reach: a centre of pressure nearer to a border stands on it. */
 #define IMP_FACE_MARGIN 1e-9
+/* Of the line's reach: the same of its ends. Three times as much is pressed, of which moments about the middle tell
+ * pressures by its square: to 1e-11. */
+#define IMP_LINE_MARGIN 1e-3
 /* Of the face's reach: points so near to the side over which a body tips are on it: rounding of places found on another
  * way; corners stand farther apart. */
 #define IMP_TIP_SIDE 1e-6

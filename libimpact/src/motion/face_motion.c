@@ -232,7 +232,8 @@ bool imp_face_rates(const imp_face_motion *motion, const double *y, double *rate
 
 double imp_face_margin(const imp_face_motion *motion, const double *y, const imp_face_balance *balance)
 {
-    double least = imp_face_spare(&motion->face, balance->center);
+    const double end = motion->rolling > 0 ? IMP_LINE_MARGIN : 0;
+    double least = imp_face_spare(&motion->face, balance->center) - end;
     if (!motion->bounded) return least;
     const imp_flat_face *face = &motion->face;
     for (int i = 0; i < (face->count > 0 ? face->count : 1); i++) {
@@ -358,7 +359,7 @@ static bool factor(double a[SYSTEM][SYSTEM], int size, int *row)
             if (fabs(a[i][k]) > fabs(a[best][k])) best = i;
         row[k] = best;
         if (!(fabs(a[best][k]) > 0)) return false;
-        for (int j = 0; j < SYSTEM && best != k; j++) {
+        for (int j = k; j < size && best != k; j++) {
             const double swap = a[k][j];
             a[k][j] = a[best][j], a[best][j] = swap;
         }
@@ -643,6 +644,25 @@ static double longest_in_tau(const imp_face_motion *motion, const double *y)
     return g * part > -1 && fabs(g) > IMP_LEVEL ? fmin(log1p(g * part) / g, once) : fmin(part, once);
 }
 
+/* The path of constant accelerations from y on, so long. */
+static void set_off(const imp_face_motion *motion, const double *y, const double a[MOVING], double h,
+                    imp_face_path *path)
+{
+    double going[MOVING], over[2] = {0, 0};
+    if (motion->rolling > 0) over_center(motion, y, a[MOVING - 1], over);
+    going_at(motion, y, going);
+    *path = (imp_face_path){.clock = 1};
+    memcpy(path->c[0], y, sizeof path->c[0]);
+    path->c[0][IMP_FACE_TIME] += h, path->c[1][IMP_FACE_TIME] = h;
+    for (int n = 0; n < MOVING; n++) {
+        const double own = n < 2 ? a[n] - over[n] : a[n], bend = 0.5 * h * h * own;
+        double(*c)[IMP_FACE_STATE] = path->c;
+        const int to = place[n];
+        c[0][to] += h * going[n] + bend, c[1][to] = h * going[n] + 2 * bend, c[2][to] = bend;
+        c[0][velocity[n]] += h * a[n], c[1][velocity[n]] = h * a[n];
+    }
+}
+
 /* Where friction turns faster than the body gets on, for a load that grows from what the face holds moves it as the
  * square of time, no polynomial follows: with the acceleration of the middle of a time so short that it does not count
  * as motion yet. */
@@ -650,7 +670,7 @@ static bool creep(const imp_face_motion *motion, const double *y, double longest
 {
     const double aim = IMP_FACE_SET_OUT * motion->still;
     double a[MOVING], then[IMP_FACE_STATE], speed = INFINITY, h = longest;
-    if (y[IMP_FACE_ROLL] != 0) return false;
+    imp_face_load load;
     for (int round = 0; round < IMP_FACE_BEGINS && speed > 2 * aim; round++) {
         imp_face_balance balance;
         memcpy(then, y, sizeof then);
@@ -659,18 +679,10 @@ static bool creep(const imp_face_motion *motion, const double *y, double longest
         speed = goes ? h * qvec3_norm((qvec3){a[0], a[1], motion->gyration * a[2]}) : INFINITY;
         if (speed > 2 * aim) h *= goes ? sqrt(aim / speed) : 0.5;
     }
-    if (!(speed <= 2 * aim)) return false;
-    double over[2] = {0, 0};
-    if (motion->rolling > 0) over_center(motion, y, a[MOVING - 1], over);
-    *path = (imp_face_path){.clock = 1};
-    memcpy(path->c[0], y, sizeof path->c[0]);
-    path->c[0][IMP_FACE_TIME] += h, path->c[1][IMP_FACE_TIME] = h;
-    for (int n = 0; n < MOVING; n++) {
-        const int to = place[n];
-        const double own = n < 2 ? a[n] - over[n] : a[n];
-        path->c[0][to] += 0.5 * h * h * own, path->c[1][to] = h * h * own, path->c[2][to] = 0.5 * h * h * own;
-        path->c[0][velocity[n]] = path->c[1][velocity[n]] = h * a[n];
-    }
+    if (!(speed <= 2 * aim) || !imp_face_load_at(motion, then, &load)) return false;
+    set_off(motion, y, a, h, path);
+    path->c[0][IMP_FACE_PUSHED] += h * load.power, path->c[1][IMP_FACE_PUSHED] = h * load.power;
+    path->c[0][IMP_FACE_DAMPED] += h * load.damping, path->c[1][IMP_FACE_DAMPED] = h * load.damping;
     return true;
 }
 
@@ -687,14 +699,17 @@ static bool step_from_rest(const imp_face_motion *motion, const double *y, doubl
     *length = longest / begun.clock;
     const bool found = step_within(&begun, y, *length, IMP_FACE_FIRST * *length, length, path);
     *length = IMP_FACE_LONGEST;
-    return found || creep(motion, y, longest, path);
+    /* what it has gained by then is to count as motion, or it would be begun anew */
+    const bool counts = found && !(imp_face_speed(motion, path->c[0]) <= motion->still);
+    return counts || creep(motion, y, longest, path) || found;
 }
 
 bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
 {
     if (!(imp_face_speed(motion, y) > 0)) return step_from_rest(motion, y, length, path);
     const double turns = turning_rate(y) * clock_of(motion, y);
-    const double longest = motion->loads ? longest_in_tau(motion, y) : IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN);
+    const bool own = motion->loads || motion->rolling > 0; /* a line may turn slower, or faster, than it slides */
+    const double longest = own ? longest_in_tau(motion, y) : IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN);
     return step_within(motion, y, longest, IMP_FACE_SHORTEST, length, path);
 }
 
@@ -702,7 +717,7 @@ double imp_face_end_miss(const imp_face_motion *motion, const imp_face_path *pat
 {
     double begin[IMP_FACE_STATE], unit[IMP_FACE_STATE], rate[IMP_FACE_STATE], most = 0;
     imp_face_balance balance = {.p = {0}};
-    if (path->length <= IMP_FACE_JUMP) return 0;
+    if (path->length <= IMP_FACE_JUMP || (motion->rolling > 0 && !motion->loads)) return 0;
     imp_face_motion own = *motion;
     own.clock = path->clock;
     imp_face_at(path, -1, begin);

@@ -143,7 +143,7 @@ extern const double imp_face_last_node;
 bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path);
 void imp_face_at(const imp_face_path *path, double s, double *y);
 /* By how much, in tolerances of a step, the path's rates miss those of its end, where no node stands; 0 where the body
- * tips, and of a step over a jump. */
+ * tips, of a step over a jump, and of a line under a load that is constant. */
 double imp_face_end_miss(const imp_face_motion *motion, const imp_face_path *path);
 
 #endif

@@ -186,15 +186,17 @@ static bool find_steady(const imp_lying *lying, double slow, steady *s)
 
 /* ---- whether it glides ---- */
 
-/* Of a line's slip and roll what its steps err by is none: along it friction is steep about none, v/w log(v/w). */
+/* Of a line's twist what its steps err by is none: along it friction is steep about none, v/w log(v/w); nor are
+ * roundings of its roll. */
 static void clear_errors(imp_lying *lying)
 {
-    double *y = lying->start, *v = &y[IMP_FACE_V], *roll = &y[IMP_FACE_ROLL];
-    const double c = lying->motion.height, whole = size_of(v) + fabs(y[IMP_FACE_W]) + c * fabs(*roll);
+    double *y = lying->start, *v = &y[IMP_FACE_V], *w = &y[IMP_FACE_W], *roll = &y[IMP_FACE_ROLL];
+    const double c = lying->motion.height, slip = size_of(v) + fabs(*w), rolls = c * fabs(*roll),
+                 least = IMP_FACE_TOLERANCE * slip + IMP_LEVEL * rolls;
     for (int k = 0; k < 2; k++)
-        if (fabs(v[k]) <= IMP_FACE_TOLERANCE * whole) v[k] = 0;
-    if (fabs(y[IMP_FACE_W]) <= IMP_FACE_TOLERANCE * whole) y[IMP_FACE_W] = 0;
-    if (c * fabs(*roll) <= IMP_FACE_TOLERANCE * whole) *roll = 0;
+        if (fabs(v[k]) <= least) v[k] = 0;
+    if (fabs(*w) <= least) *w = 0;
+    if (rolls <= IMP_FACE_TOLERANCE * slip) *roll = 0;
 }
 
 /* Of the twist what is but a rounding of the rest is none; nor is what is slower than the rest speed. */
@@ -524,14 +526,14 @@ static impact_status glide_on_line(imp_island *island, int p)
     if (!find_lying(island, pair, island->t, island->states, island->scene->rest_speed, &lying) ||
         !imp_lies_on_line(&lying))
         return IMPACT_OK;
-    const bool stands = forced && stands_on_all(&lying);
-    if (!stands && (!glides(island, &lying) || is_pressed_elsewhere_too(island, pair, &lying))) return IMPACT_OK;
-    const bool stuck = pair->mode == IMP_STICK && other->mode == IMP_STICK && !stands;
+    const bool rests = forced && stands_on_all(&lying);
+    if (!rests && (!glides(island, &lying) || is_pressed_elsewhere_too(island, pair, &lying))) return IMPACT_OK;
+    const bool stuck = pair->mode == IMP_STICK && other->mode == IMP_STICK && !rests;
     bring_onto(island, body, &lying);
     let_lie(pair);
     let_lie(other);
     if (stuck) island->motion.resting[body] = true; /* it is from then on that it slips */
-    return tell_of_lying(island, p, &lying, stands, true);
+    return tell_of_lying(island, p, &lying, rests, true);
 }
 
 impact_status imp_island_glide_on_lines(imp_island *island)

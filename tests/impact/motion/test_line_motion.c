@@ -31,6 +31,7 @@ static imp_face_motion line_motion(double low, double height, double friction, d
                                       .friction = friction,
                                       .load.press = 1,
                                       .turning = turning,
+                                      .longest = INFINITY,
                                       .rolling = .5 * height * height});
 }
 
@@ -262,6 +263,23 @@ static void energy_is_kept(void **state)
     }
 }
 
+/* A short line under a wide body, which turns more slowly than it slides: to its end. */
+static void what_turns_slowly_comes_to_its_end(void **state)
+{
+    (void)state;
+    for (double height = .5; height < 4; height *= 1.5) {
+        imp_face_motion m = line_motion(1, height, .2 / height, 1 / (.3 + height * height / 4));
+        double y[IMP_FACE_STATE] = {0, 0, 0, 0, -1, 1}, length = .7;
+        y[IMP_FACE_ROLL] = -.1 / (height * height);
+        imp_face_path path;
+        int steps = 0;
+        for (; imp_face_speed(&m, y) > 1e-6; steps++) {
+            assert_true(steps < 1000 && imp_face_motion_step(&m, y, &length, &path));
+            imp_face_at(&path, 0, y);
+        }
+    }
+}
+
 /* ---- rest ---- */
 
 /* It is turned from mu m g h/2 on, h the half length, and with what is more; pulled across, it slips from where its
@@ -332,6 +350,7 @@ int main(void)
                                        cmocka_unit_test(it_has_no_seams),
                                        cmocka_unit_test(motion_is_that_of_its_places),
                                        cmocka_unit_test(energy_is_kept),
+                                       cmocka_unit_test(what_turns_slowly_comes_to_its_end),
                                        cmocka_unit_test(what_turns_it),
                                        cmocka_unit_test(it_begins_as_it_goes_on)};
     return cmocka_run_group_tests(tests, NULL, NULL);
