@@ -338,8 +338,8 @@ static bool rates_in_tau(const imp_face_motion *motion, const double *y, double 
 enum { MOVING = 4, SYSTEM = MOVING * IMP_FACE_NODES };
 
 /* The velocities, and the places that go with them; the last of a line alone. */
-static const int velocity[MOVING] = {IMP_FACE_V, IMP_FACE_V + 1, IMP_FACE_W, IMP_FACE_ROLL},
-                 place[MOVING] = {IMP_FACE_X, IMP_FACE_X + 1, IMP_FACE_ANGLE, IMP_FACE_ROLLED};
+static const int face_velocity[MOVING] = {IMP_FACE_V, IMP_FACE_V + 1, IMP_FACE_W, IMP_FACE_ROLL},
+                 face_place[MOVING] = {IMP_FACE_X, IMP_FACE_X + 1, IMP_FACE_ANGLE, IMP_FACE_ROLLED};
 
 static int moving_of(const imp_face_motion *motion) { return motion->rolling > 0 ? MOVING : MOVING - 1; }
 
@@ -394,9 +394,9 @@ static bool face_slopes(const imp_face_motion *motion, const double *y, const do
         double there[IMP_FACE_STATE], found[IMP_FACE_STATE];
         memcpy(there, y, sizeof there);
         const double step = imp_face_difference(motion) * imp_face_speed(motion, y);
-        there[velocity[j]] += step;
+        there[face_velocity[j]] += step;
         if (!rates_in_tau(motion, there, found, last)) return false;
-        for (int i = 0; i < moving; i++) slope[i][j] = (found[velocity[i]] - rate[velocity[i]]) / step;
+        for (int i = 0; i < moving; i++) slope[i][j] = (found[face_velocity[i]] - rate[face_velocity[i]]) / step;
     }
     return true;
 }
@@ -438,7 +438,7 @@ static double follow_velocities(const imp_face_motion *motion, const collocation
     }
     for (int i = 0; i < IMP_FACE_NODES; i++)
         for (int n = 0; n < moving; n++) {
-            const int to = place[n];
+            const int to = face_place[n];
             double way = 0;
             for (int j = 0; j < IMP_FACE_NODES; j++) way += c->way[i][j] * going[j][n];
             moved = fmax(moved, fabs(y[to] + h * way - there[i][to]) / unit[to]);
@@ -455,11 +455,11 @@ static double follow_rates(double a[SYSTEM][SYSTEM], int moving, const int *row,
     const int size = moving * IMP_FACE_NODES;
     double off[SYSTEM], moved = 0;
     for (int n = 0; n < size; n++)
-        off[n] = made[n / moving][velocity[n % moving]] - there[n / moving][velocity[n % moving]];
+        off[n] = made[n / moving][face_velocity[n % moving]] - there[n / moving][face_velocity[n % moving]];
     back_solve(a, size, row, off);
     for (int n = 0; n < size; n++) {
-        there[n / moving][velocity[n % moving]] += off[n];
-        moved = fmax(moved, fabs(off[n]) / unit[velocity[n % moving]]);
+        there[n / moving][face_velocity[n % moving]] += off[n];
+        moved = fmax(moved, fabs(off[n]) / unit[face_velocity[n % moving]]);
     }
     return moved;
 }
@@ -489,7 +489,7 @@ static bool set_forth(const imp_face_motion *motion, const double *y, course *on
 }
 
 /* The accelerations with which it begins to move. */
-static bool set_out(const imp_face_motion *motion, const double *y, double a[MOVING], imp_face_balance *balance)
+static bool goes_from_rest(const imp_face_motion *motion, const double *y, double a[MOVING], imp_face_balance *balance)
 {
     imp_face_load load = {.press = 0};
     if (imp_face_begins(motion, y, a, balance) != IMP_FACE_GOES) return false;
@@ -504,18 +504,18 @@ static bool leave_rest(const imp_face_motion *motion, const double *y, double h,
 {
     double a[MOVING], going[MOVING];
     memset(on->first, 0, sizeof on->first);
-    if (!set_out(motion, y, a, &on->last[0])) return false;
+    if (!goes_from_rest(motion, y, a, &on->last[0])) return false;
     going_at(motion, y, going);
     for (int n = 0; n < MOVING; n++)
-        on->first[place[n]] = motion->clock * going[n], on->first[velocity[n]] = motion->clock * a[n];
+        on->first[face_place[n]] = motion->clock * going[n], on->first[face_velocity[n]] = motion->clock * a[n];
     on->first[IMP_FACE_TIME] = motion->clock;
     for (int i = 0; i < IMP_FACE_NODES; i++) {
         double *there = on->there[i], time = h * motion->clock * node[i];
         memcpy(there, y, sizeof on->there[i]);
         there[IMP_FACE_TIME] += 0.5 * time;
-        if (motion->loads && !set_out(motion, there, a, &on->last[i])) return false;
+        if (motion->loads && !goes_from_rest(motion, there, a, &on->last[i])) return false;
         there[IMP_FACE_TIME] += 0.5 * time;
-        for (int n = 0; n < MOVING; n++) there[velocity[n]] += time * a[n];
+        for (int n = 0; n < MOVING; n++) there[face_velocity[n]] += time * a[n];
         on->last[i] = on->last[0];
         if (!rates_in_tau(motion, there, on->rate[i], &on->last[i]) ||
             !face_slopes(motion, there, on->rate[i], &on->last[i], on->slope[i]))
@@ -657,9 +657,9 @@ static void set_off(const imp_face_motion *motion, const double *y, const double
     for (int n = 0; n < MOVING; n++) {
         const double own = n < 2 ? a[n] - over[n] : a[n], bend = 0.5 * h * h * own;
         double(*c)[IMP_FACE_STATE] = path->c;
-        const int to = place[n];
+        const int to = face_place[n];
         c[0][to] += h * going[n] + bend, c[1][to] = h * going[n] + 2 * bend, c[2][to] = bend;
-        c[0][velocity[n]] += h * a[n], c[1][velocity[n]] = h * a[n];
+        c[0][face_velocity[n]] += h * a[n], c[1][face_velocity[n]] = h * a[n];
     }
 }
 
@@ -675,7 +675,7 @@ static bool creep(const imp_face_motion *motion, const double *y, double longest
         imp_face_balance balance;
         memcpy(then, y, sizeof then);
         then[IMP_FACE_TIME] += 0.5 * h;
-        const bool goes = set_out(motion, then, a, &balance);
+        const bool goes = goes_from_rest(motion, then, a, &balance);
         speed = goes ? h * qvec3_norm((qvec3){a[0], a[1], motion->gyration * a[2]}) : INFINITY;
         if (speed > 2 * aim) h *= goes ? sqrt(aim / speed) : 0.5;
     }
@@ -692,7 +692,7 @@ static bool step_from_rest(const imp_face_motion *motion, const double *y, doubl
     imp_face_motion begun = *motion;
     imp_face_balance balance;
     double a[MOVING];
-    if (!set_out(motion, y, a, &balance)) return false;
+    if (!goes_from_rest(motion, y, a, &balance)) return false;
     begun.clock = 1 / sqrt(motion->load.press);
     const double turns = fmax(sqrt(0.5 * hypot(a[2], a[3]) / IMP_FACE_TURN), turning_rate(y) / IMP_FACE_TURN),
                  longest = fmin(motion->loads ? motion->longest : INFINITY, fmin(1 / turns, *length * begun.clock));

@@ -536,11 +536,18 @@ static impact_status glide_on_line(imp_island *island, int p)
     return tell_of_lying(island, p, &lying, rests, true);
 }
 
+/* What lies is not among what is held: others of the island may be. */
 impact_status imp_island_glide_on_lines(imp_island *island)
 {
     impact_status status = IMPACT_OK;
-    for (int p = 0; status == IMPACT_OK && p < island->world.pair_count; p++) status = glide_on_line(island, p);
-    return status;
+    bool any = false;
+    for (int p = 0; status == IMPACT_OK && p < island->world.pair_count; p++) {
+        const bool held = imp_is_held(&island->world.pairs[p]);
+        status = glide_on_line(island, p);
+        any = any || (held && !imp_is_held(&island->world.pairs[p]));
+    }
+    if (status != IMPACT_OK || !any) return status;
+    return imp_held_reserve(&island->motion.held, &island->world, island->states);
 }
 
 bool imp_island_hold_line(imp_island *island, int p)
