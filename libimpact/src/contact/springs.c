@@ -172,6 +172,32 @@ static bool is_wedged(imp_springs *s, wedge_watch *watch)
     return find_wedge(s) && (last || keeps || have_stuck(s, s->wedge, spent));
 }
 
+/* No step goes on, or nothing is found that sticks: pressures of a wedge grow until what they leave of one another is
+ * their rounding, and then it is told as that. */
+static impact_status give_up(imp_springs *s, imp_group *group)
+{
+    group->wedged = find_wedge(s);
+    return IMPACT_EUNSETTLED;
+}
+
+/* Whether velocities are told to what the receipt takes: rounding of impulses that balance one another, and what held
+ * slips drift to beside them, is less. */
+static bool is_told(const imp_springs *s)
+{
+    for (int i = 0; i < s->count; i++)
+        if (s->springs[i].none > IMP_ENCOUNTER_RECEIPT) return false;
+    return true;
+}
+
+/* All is apart. What is wedged does not come apart but by that rounding. */
+static impact_status finish(imp_springs *s, const units *unit, imp_group *group)
+{
+    group->wedged = !is_told(s) && find_wedge(s);
+    if (group->wedged) return IMPACT_EUNSETTLED;
+    report(s, unit, group);
+    return IMPACT_OK;
+}
+
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)
 {
     const size_t width = 3 * (size_t)group->count;
@@ -184,15 +210,14 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     wedge_watch watch = {.next = IMP_SPRINGS_ASKED};
     while (s.steps + s.events < group->patience && s.work < IMP_SPRINGS_WORK) {
         s.closing = -1;
-        if (!imp_springs_settle(&s)) return IMPACT_EUNSETTLED;
+        if (!imp_springs_settle(&s)) return give_up(&s, group);
         group->wedged = is_wedged(&s, &watch);
         if (group->wedged) return IMPACT_EUNSETTLED;
         const bool pressed = imp_springs_pressed(&s);
         if (pressed && !imp_springs_end_bounces(&s)) {
-            if (!imp_springs_step(&s)) return IMPACT_EUNSETTLED;
+            if (!imp_springs_step(&s)) return give_up(&s, group);
         } else if (pressed || !imp_springs_drift(&s)) {
-            report(&s, &unit, group);
-            return IMPACT_OK;
+            return finish(&s, &unit, group);
         }
     }
     return IMPACT_EUNSETTLED;

@@ -6,6 +6,10 @@
  *
  *     p'' - p' = R (p' - p)      p_end = p'' + (p'' - p') R/(1 - R)      E_end = E'' + (E'' - E') R^2/(1 - R^2)
  *
+ * But friction's works: slip that does not come to nothing has part of them fall by R, the rest by R^2,
+ *
+ *     E_end = E'' + (E'' - E') R/(1 - R) + (E'' - E' - R (E' - E)) R^2/((1 - R) (1 - R^2))
+ *
  * R is that of as many rounds as leave it under IMP_BOUNCES_RATIO: 1/(1 - R)^2 is by what p_end has the rounding of p.
  * Moments are closings of one contact, whatever presses then: of two that bounce in turn one may always do. What
  * presses without bouncing is in no ratio. Where nothing does in between, rounds take ever longer, and what else
@@ -17,20 +21,25 @@
 #include <string.h>
 #include "base/tolerances.h"
 
-size_t imp_springs_bounces_size(size_t n) { return 12 * n; }
+/* Impulses and works of two moments, works of the third. */
+size_t imp_springs_bounces_size(size_t n) { return 15 * n; }
 
 static double *impulses_at(const imp_springs *s, int moment) { return s->bounces.room + 6 * s->count * moment; }
 
 static double *works_at(const imp_springs *s, int moment) { return impulses_at(s, moment) + 3 * s->count; }
 
+static void note_works(const imp_springs *s, double *work)
+{
+    for (int i = 0; i < s->count; i++)
+        for (int j = 0; j < 3; j++) work[3 * i + j] = s->springs[i].finding->work[j];
+}
+
 static void note_moment(const imp_springs *s, int moment)
 {
-    double *p = impulses_at(s, moment), *work = works_at(s, moment);
+    double *p = impulses_at(s, moment);
     for (int i = 0; i < s->count; i++)
-        for (int j = 0; j < 3; j++) {
-            p[3 * i + j] = s->springs[i].p[j];
-            work[3 * i + j] = s->springs[i].finding->work[j];
-        }
+        for (int j = 0; j < 3; j++) p[3 * i + j] = s->springs[i].p[j];
+    note_works(s, works_at(s, moment));
 }
 
 /* The ratio of the last two differences of impulses, least squares; *off: the most that is not in it. */
@@ -53,14 +62,15 @@ static double find_ratio(const imp_springs *s, double *off)
 /* To the end, where that ratio leads; works too. */
 static void go_to_end(imp_springs *s, double ratio)
 {
-    const double *p = impulses_at(s, 1), *work = works_at(s, 1), more = ratio / (1 - ratio),
+    const double *p = impulses_at(s, 1), *work = works_at(s, 1), *first = works_at(s, 0), more = ratio / (1 - ratio),
                  square = ratio * ratio / (1 - ratio * ratio);
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
-        for (int j = 0; j < 3; j++) {
-            c->p[j] += more * (c->p[j] - p[3 * i + j]);
-            c->finding->work[j] += square * (c->finding->work[j] - work[3 * i + j]);
-        }
+        for (int j = 0; j < 3; j++) c->p[j] += more * (c->p[j] - p[3 * i + j]);
+        for (int j = 0; j < 2; j++) c->finding->work[j] += square * (c->finding->work[j] - work[3 * i + j]);
+        const int k = 3 * i + 2;
+        const double last = c->finding->work[2] - work[k], slower = last - ratio * (work[k] - first[k]);
+        c->finding->work[2] += more * last + square / (1 - ratio) * slower;
     }
     imp_springs_find_velocities(s);
 }
@@ -85,8 +95,8 @@ static bool only_they_approach(const imp_springs *s)
 static bool ends(imp_springs *s, double ratio)
 {
     if (!only_they_approach(s)) return false;
-    double *work = works_at(s, 0); /* of the first there is no need now */
-    note_moment(s, 0);
+    double *work = works_at(s, 1) + 3 * s->count;
+    note_works(s, work);
     memcpy(s->kept, s->springs, (size_t)s->count * sizeof *s->kept);
     go_to_end(s, ratio);
     if (none_approaches(s, IMP_BOUNCES_ERROR)) return true;

@@ -53,11 +53,21 @@ static void open_spring(imp_spring *c)
     c->stored = 0;
 }
 
-static void close_spring(imp_springs *s, imp_spring *c)
+static void load_on(imp_springs *s, int contact)
 {
+    imp_spring *c = &s->springs[contact];
+    imp_springs_take_branch(s, contact, IMP_SPRING_LOADS, 0, c->stiffness);
+    c->stored = imp_springs_energy(s, c, c->x);
+}
+
+/* A dent that was hardly one, eps^2 delta_m <= tiny, is loaded on from where it closes: no event would tell that. */
+static void close_spring(imp_springs *s, int contact)
+{
+    imp_spring *c = &s->springs[contact];
     c->normal = c->deepest > 0 ? IMP_SPRING_UNLOADS : IMP_SPRING_LOADS;
     c->x = c->tiny; /* after a long flight x is rounded by far more */
     c->stored = imp_springs_energy(s, c, c->x);
+    if (c->normal == IMP_SPRING_UNLOADS && c->x >= imp_springs_again(c)) load_on(s, contact);
     c->summed = false;
     c->still = c->friction > 0 && hypot(c->u[1], c->u[2]) <= c->none;
     c->slip = c->friction == 0 ? IMP_SPRING_SMOOTH : c->still ? IMP_SPRING_STICKS : IMP_SPRING_SLIDES;
@@ -72,15 +82,14 @@ static bool settle_normal(imp_springs *s, int contact, bool pressed)
     const double again = imp_springs_again(c);
     if (c->normal == IMP_SPRING_OPEN) {
         if (c->x < c->tiny * (1 - IMP_SPRINGS_TOGETHER) || c->u[0] >= (pressed ? 0 : -c->none)) return false;
-        close_spring(s, c);
+        close_spring(s, contact);
         if (s->closing < 0 || contact == s->bounces.contact) s->closing = contact;
     } else if (c->x <= c->tiny * (1 + IMP_SPRINGS_TOGETHER) && c->u[0] >= 0) {
         open_spring(c);
     } else if (c->normal == IMP_SPRING_LOADS && c->restitution < 1 && c->u[0] >= 0) {
         turn_spring(s, contact);
     } else if (c->normal == IMP_SPRING_UNLOADS && c->x >= again && c->u[0] < 0) {
-        imp_springs_take_branch(s, contact, IMP_SPRING_LOADS, 0, c->stiffness);
-        c->stored = imp_springs_energy(s, c, c->x);
+        load_on(s, contact);
     } else {
         return false;
     }
