@@ -109,7 +109,7 @@ static void find_mobility(const imp_contact *contacts, int count, double *w)
 /* Bytes of a group's work: what the springs take, who take most; linear: what springs_linear.c does. */
 static size_t group_bytes(size_t n, bool linear)
 {
-    const size_t own = n * (sizeof(imp_spring) + sizeof(imp_contact) + sizeof(imp_finding) + 1024) + 4096;
+    const size_t own = n * (sizeof(imp_spring) + sizeof(imp_contact) + 2 * sizeof(imp_finding) + 1024) + 4096;
     const size_t rooms = imp_springs_creep_size(n) + imp_springs_bounces_size(n) + imp_encounter_wedge_size(n),
                  more = linear ? 0 : sizeof(double) * rooms + n * sizeof(imp_spring);
     return own + more + n * n * (linear ? 48 : 2 * 72 + 2 * 9 * 4 + 4 * 8 + 12 * 8 + 2 * 8);

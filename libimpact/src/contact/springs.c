@@ -7,6 +7,7 @@
 #include "contact/springs.h"
 
 #include <math.h>
+#include <string.h>
 #include "base/tolerances.h"
 
 typedef struct units {
@@ -120,6 +121,12 @@ static bool find_wedge(imp_springs *s)
     return imp_encounter_wedged(&question, s->wedge);
 }
 
+/* In units of what more than all but a few take in all. */
+static double spent_on(const imp_springs *s)
+{
+    return fmax((double)(s->events + s->steps) / IMP_SPRINGS_LONG, s->work / IMP_SPRINGS_MUCH);
+}
+
 /* Pressures r that balance have 0 = r . G v = sum r_n u_n as long as those contacts stick, or have no friction: their
  * dents keep sum r_n delta, and never all of them are let go. Whether they have stuck since half of what is spent. */
 static bool have_stuck(const imp_springs *s, const double *r, double spent)
@@ -161,7 +168,7 @@ static bool keeps_energy(const imp_springs *s, double spent, wedge_watch *watch)
  * waited for. */
 static bool is_wedged(imp_springs *s, wedge_watch *watch)
 {
-    const double spent = fmax((double)(s->events + s->steps) / IMP_SPRINGS_LONG, s->work / IMP_SPRINGS_MUCH);
+    const double spent = spent_on(s);
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
         if (!imp_springs_presses(c) || (c->friction > 0 && c->slip != IMP_SPRING_STICKS)) c->loose = spent;
@@ -189,36 +196,90 @@ static bool is_told(const imp_springs *s)
     return true;
 }
 
-/* All is apart. What is wedged does not come apart but by that rounding. */
-static impact_status finish(imp_springs *s, const units *unit, imp_group *group)
+/* Until all is apart: IMPACT_OK; else IMPACT_EUNSETTLED. */
+static impact_status follow(imp_springs *s, imp_group *group)
 {
-    group->wedged = !is_told(s) && find_wedge(s);
-    if (group->wedged) return IMPACT_EUNSETTLED;
-    report(s, unit, group);
-    return IMPACT_OK;
+    wedge_watch watch = {.next = IMP_SPRINGS_ASKED};
+    while (s->steps + s->events < group->patience && s->work < IMP_SPRINGS_WORK) {
+        s->closing = -1;
+        if (!imp_springs_settle(s)) return give_up(s, group);
+        group->wedged = is_wedged(s, &watch);
+        if (group->wedged) return IMPACT_EUNSETTLED;
+        const bool pressed = imp_springs_pressed(s);
+        if (pressed && !imp_springs_end_bounces(s)) {
+            if (!imp_springs_step(s)) return give_up(s, group);
+        } else if (pressed || !imp_springs_drift(s)) {
+            return IMPACT_OK;
+        }
+    }
+    return IMPACT_EUNSETTLED;
+}
+
+/* ---- what comes out of a wedge ---- */
+
+/* x += angle x x, of three numbers so far apart: as axes that are turned by so little have them. */
+static void turn_by(const double angle[3], double *x, size_t apart)
+{
+    const double before[3] = {x[0], x[apart], x[2 * apart]};
+    for (size_t k = 0; k < 3; k++) {
+        const size_t l = (k + 1) % 3, m = (k + 2) % 3;
+        x[k * apart] += angle[l] * before[m] - angle[m] * before[l];
+    }
+}
+
+/* The same bodies with normals 1e-11 from theirs; golden sections, so that no two are turned alike. */
+static void move_nearby(const imp_springs *s, double *w, double *u0)
+{
+    static const double golden = 0.6180339887498949;
+    const size_t width = 3 * (size_t)s->count;
+    for (size_t i = 0; i < width; i += 3) {
+        double angle[3];
+        for (size_t k = 0; k < 3; k++) angle[k] = IMP_SPRINGS_NEARBY * (fmod(golden * (double)(i + k + 1), 1) - 0.5);
+        turn_by(angle, &u0[i], 1);
+        for (size_t j = 0; j < width; j++) turn_by(angle, &w[i * width + j], width);
+        for (size_t j = 0; j < width; j++) turn_by(angle, &w[j * width + i], 1);
+    }
+    for (size_t i = 0; i < width; i++) s->springs[i / 3].u[i % 3] = u0[i];
+}
+
+/* Whether the group comes apart from nearby, too. blank: as before its first step. */
+static bool comes_apart_nearby(imp_springs blank, const imp_group *group, const units *unit, double *w, double *u0,
+                               imp_finding *findings)
+{
+    imp_group other = *group;
+    other.findings = findings;
+    memset(blank.springs, 0, (size_t)blank.count * sizeof *blank.springs);
+    set_up(&blank, &other, unit, w, u0);
+    move_nearby(&blank, w, u0);
+    pack_rows(&blank);
+    return follow(&blank, &other) == IMPACT_OK;
+}
+
+/* All is apart. What is wedged does not come apart but by the rounding of pressures; where it slips it may, but after
+ * hundreds of bounces, each of which takes rounding further, that is chance where all that is near stays wedged: as of
+ * what lies in a plane, which its bounces leave by any digit that is not zero. */
+static bool has_come_apart(imp_springs *s, imp_springs blank, imp_group *group, const units *unit, double *w,
+                           double *u0, imp_finding *findings)
+{
+    const bool told = is_told(s);
+    if ((told && spent_on(s) < IMP_SPRINGS_CHANCY) || !find_wedge(s)) return true;
+    return told && comes_apart_nearby(blank, group, unit, w, u0, findings);
 }
 
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)
 {
-    const size_t width = 3 * (size_t)group->count;
+    const size_t n = (size_t)group->count, width = 3 * n;
     imp_springs s = {.count = group->count, .exponent = exponent};
     double *w = imp_encounter_take(workspace, width * width, sizeof *w),
            *u0 = imp_encounter_take(workspace, width, sizeof *u0);
-    if (!w || !u0 || !take_room(&s, workspace)) return IMPACT_ENOMEM;
+    imp_finding *findings = imp_encounter_take(workspace, n, sizeof *findings);
+    if (!w || !u0 || !findings || !take_room(&s, workspace)) return IMPACT_ENOMEM;
+    const imp_springs blank = s;
     const units unit = find_units(group);
     set_up(&s, group, &unit, w, u0);
-    wedge_watch watch = {.next = IMP_SPRINGS_ASKED};
-    while (s.steps + s.events < group->patience && s.work < IMP_SPRINGS_WORK) {
-        s.closing = -1;
-        if (!imp_springs_settle(&s)) return give_up(&s, group);
-        group->wedged = is_wedged(&s, &watch);
-        if (group->wedged) return IMPACT_EUNSETTLED;
-        const bool pressed = imp_springs_pressed(&s);
-        if (pressed && !imp_springs_end_bounces(&s)) {
-            if (!imp_springs_step(&s)) return give_up(&s, group);
-        } else if (pressed || !imp_springs_drift(&s)) {
-            return finish(&s, &unit, group);
-        }
-    }
-    return IMPACT_EUNSETTLED;
+    const impact_status status = follow(&s, group);
+    if (status != IMPACT_OK) return status;
+    report(&s, &unit, group);
+    group->wedged = !has_come_apart(&s, blank, group, &unit, w, u0, findings);
+    return group->wedged ? IMPACT_EUNSETTLED : IMPACT_OK;
 }

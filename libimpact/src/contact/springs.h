@@ -96,6 +96,7 @@ typedef struct imp_springs {
     double *scratch, *factor, *wedge;
     imp_spring_lead lead;
     int leader;
+    double stretch;          /* of SPEED: g = stretch |u_t| */
     int begin_count, *begin; /* contacts that begin to slip */
     double *turning;         /* their system */
     imp_cone_workspace *cone;

@@ -6,6 +6,7 @@
  *     lambda = kappa x^eta:   k x_0 lambda_k = sum_i (i eta - k + i) x_i lambda_(k-i)       (Leibniz)
  *     g = w:  w' = -u_n/2,  x = w w,  lambda = kappa x w
  *     s s = u_t . u_t,   g lambda = r s,   G_t = -mu r u_t             g = s: r = lambda
+ *     (or g = s times a power of two, where s is next to nothing)
  *     straight: G_t = -mu g lambda e
  *     u_t that begins with 0: u_t = s e(theta), e theta' turning,  s' = G-acceleration along e,  s theta' = across it:
  *         order k gives theta_k from (diag((k + 1) |a|) + mu g lambda W_across) theta_k = rest, then s_(k+1)
@@ -79,14 +80,15 @@ static void find_speed(imp_spring *c, int k)
     c->speed[k] = (square - inner_square(c->speed, k)) / (2 * c->speed[0]);
 }
 
-static void find_friction(imp_spring *c, bool leads, int k)
+/* stretch: of the factor where it leads, else 1. */
+static void find_friction(imp_spring *c, bool leads, double stretch, int k)
 {
     const double *ratio = c->force;
     if (!leads) {
         c->ratio[k] = (c->push[0][k] - convolve(c->speed, c->ratio, k, 1, k)) / c->speed[0];
         ratio = c->ratio;
     }
-    for (int i = 1; i < 3; i++) c->push[i][k] = -c->friction * cauchy(ratio, c->velocity[i], k);
+    for (int i = 1; i < 3; i++) c->push[i][k] = -c->friction * stretch * cauchy(ratio, c->velocity[i], k);
 }
 
 /* Cosine and sine of the angle, order k, its own term as it stands. */
@@ -131,9 +133,9 @@ static void find_pushes(imp_springs *s, const double *factor, int k)
         const bool root = s->lead == IMP_SPRING_ROOT && s->leader == i,
                    speed = s->lead == IMP_SPRING_SPEED && s->leader == i;
         find_force(s, c, root, k);
-        c->push[0][k] = factor ? cauchy(factor, c->force, k) : c->force[k];
+        c->push[0][k] = factor ? s->stretch * cauchy(factor, c->force, k) : c->force[k];
         switch (c->slip) {
-        case IMP_SPRING_SLIDES: find_friction(c, speed, k); break;
+        case IMP_SPRING_SLIDES: find_friction(c, speed, speed ? s->stretch : 1, k); break;
         case IMP_SPRING_STRAIGHT:
             for (int j = 0; j < 2; j++) c->push[1 + j][k] = -c->friction * c->push[0][k] * c->along[j];
             break;
@@ -305,7 +307,7 @@ static void step_order(imp_springs *s, const double *factor, int k)
         imp_spring *c = &s->springs[i];
         const bool closed = c->normal != IMP_SPRING_OPEN;
         c->velocity[0][k + 1] = imp_springs_row(s, 3 * i) / (k + 1);
-        c->depth[k + 1] = -(factor ? cauchy(factor, c->velocity[0], k) : c->velocity[0][k]) / (k + 1);
+        c->depth[k + 1] = -(factor ? s->stretch * cauchy(factor, c->velocity[0], k) : c->velocity[0][k]) / (k + 1);
         if (!closed || (c->slip != IMP_SPRING_SLIDES && c->slip != IMP_SPRING_STRAIGHT)) continue;
         find_accelerations(s, i, k);
         if (c->slip == IMP_SPRING_SLIDES) find_speed(c, k + 1);
@@ -356,7 +358,7 @@ static double work_of_step(const imp_springs *s)
 static double time_of(const imp_springs *s, double h)
 {
     const double *factor = find_factor(s);
-    return factor ? factor[0] * h : h;
+    return factor ? s->stretch * factor[0] * h : h;
 }
 
 /* Whether slip turns so fast that a step covers hardly any of the time in which forces and its own speed change. */
@@ -368,9 +370,8 @@ static bool is_stiff(const imp_springs *s, double h)
     return time_of(s, h) * imp_springs_pace(s) < IMP_CREEP_STIFF;
 }
 
-static double expand_in_powers(imp_springs *s)
+static double expand_along_lead(imp_springs *s)
 {
-    choose_lead(s);
     begin(s);
     const double *factor = find_factor(s);
     for (int k = 0; k < IMP_SPRINGS_ORDER; k++) step_order(s, factor, k);
@@ -382,6 +383,18 @@ static double expand_in_powers(imp_springs *s)
         if (size > 0) h = fmin(h, exp(log(IMP_SPRINGS_TRUNCATION) / IMP_SPRINGS_ORDER - log(size) / k));
     }
     return h;
+}
+
+/* Where slip that leads is all but rounding tau goes so far that the last terms are less than a double holds, and bound
+ * nothing: then g is so many times as great that it is of order 1, as tau is then. */
+static double expand_in_powers(imp_springs *s)
+{
+    choose_lead(s);
+    s->stretch = 1;
+    const double h = expand_along_lead(s);
+    if (s->lead != IMP_SPRING_SPEED || !(h > IMP_SPRINGS_HELD_BY_DOUBLES)) return h;
+    s->stretch = 1 / imp_encounter_unit(s->springs[s->leader].speed[0]);
+    return expand_along_lead(s);
 }
 
 double imp_springs_expand(imp_springs *s)
