@@ -227,14 +227,14 @@ static void turn_by(const double angle[3], double *x, size_t apart)
     }
 }
 
-/* The same bodies with normals 1e-11 from theirs; golden sections, so that no two are turned alike. */
-static void move_nearby(const imp_springs *s, double *w, double *u0)
+/* The same bodies with normals that are turned by so much and less; golden sections, so that no two are turned alike. */
+static void move_nearby(const imp_springs *s, double turn, double *w, double *u0)
 {
     static const double golden = 0.6180339887498949;
     const size_t width = 3 * (size_t)s->count;
     for (size_t i = 0; i < width; i += 3) {
         double angle[3];
-        for (size_t k = 0; k < 3; k++) angle[k] = IMP_SPRINGS_NEARBY * (fmod(golden * (double)(i + k + 1), 1) - 0.5);
+        for (size_t k = 0; k < 3; k++) angle[k] = turn * (fmod(golden * (double)(i + k + 1), 1) - 0.5);
         turn_by(angle, &u0[i], 1);
         for (size_t j = 0; j < width; j++) turn_by(angle, &w[i * width + j], width);
         for (size_t j = 0; j < width; j++) turn_by(angle, &w[j * width + i], 1);
@@ -242,28 +242,59 @@ static void move_nearby(const imp_springs *s, double *w, double *u0)
     for (size_t i = 0; i < width; i++) s->springs[i / 3].u[i % 3] = u0[i];
 }
 
-/* Whether the group comes apart from nearby, too. blank: as before its first step. */
-static bool comes_apart_nearby(imp_springs blank, const imp_group *group, const units *unit, double *w, double *u0,
-                               imp_finding *findings)
+/* How far velocities are from those of the group's impulses, of the fastest. */
+static double distance_of(const imp_springs *s, const units *unit, const imp_group *group)
 {
-    imp_group other = *group;
-    other.findings = findings;
-    memset(blank.springs, 0, (size_t)blank.count * sizeof *blank.springs);
-    set_up(&blank, &other, unit, w, u0);
-    move_nearby(&blank, w, u0);
-    pack_rows(&blank);
-    return follow(&blank, &other) == IMPACT_OK;
+    const int width = 3 * s->count;
+    double most = 0;
+    for (int i = 0; i < width; i++) {
+        double sum = 0;
+        for (int j = 0; j < width; j++) {
+            const double p = s->springs[j / 3].p[j % 3] * (unit->velocity / unit->mobility);
+            sum += group->w[(size_t)i * (size_t)width + (size_t)j] * (p - group->p[j]);
+        }
+        most = fmax(most, fabs(sum) / unit->velocity);
+    }
+    return most;
+}
+
+/* What is needed to solve the group once more: the solver as before its first step, its room. */
+typedef struct again {
+    imp_springs blank;
+    const imp_group *group;
+    units unit;
+    double *w, *u0;
+    imp_finding *findings;
+} again;
+
+/* With normals turned by so much, or in another unit of velocities; *off: how far from the group's impulses it ends.
+ * Whether it comes apart. */
+static bool comes_apart(again once_more, double turn, double *off)
+{
+    imp_springs *s = &once_more.blank;
+    imp_group other = *once_more.group;
+    other.findings = once_more.findings;
+    memset(s->springs, 0, (size_t)s->count * sizeof *s->springs);
+    if (turn == 0) once_more.unit.velocity *= IMP_SPRINGS_OTHER_UNIT;
+    set_up(s, &other, &once_more.unit, once_more.w, once_more.u0);
+    move_nearby(s, turn, once_more.w, once_more.u0);
+    if (follow(s, &other) != IMPACT_OK) return false;
+    *off = distance_of(s, &once_more.unit, once_more.group);
+    return true;
 }
 
 /* All is apart. What is wedged does not come apart but by the rounding of pressures; where it slips it may, but after
- * hundreds of bounces, each of which takes rounding further, that is chance where all that is near stays wedged: as of
- * what lies in a plane, which its bounces leave by any digit that is not zero. */
-static bool has_come_apart(imp_springs *s, imp_springs blank, imp_group *group, const units *unit, double *w,
-                           double *u0, imp_finding *findings)
+ * hundreds of bounces each of which takes rounding further that is chance, where an answer in another unit is another
+ * one, and what is nearby stays wedged: as of what lies in a plane, which its bounces leave by any digit that is not
+ * zero. */
+static bool has_come_apart(imp_springs *s, const again *once_more)
 {
+    double off;
     const bool told = is_told(s);
     if ((told && spent_on(s) < IMP_SPRINGS_CHANCY) || !find_wedge(s)) return true;
-    return told && comes_apart_nearby(blank, group, unit, w, u0, findings);
+    if (!told) return false;
+    if (comes_apart(*once_more, 0, &off) && off <= IMP_SPRINGS_CHANCE) return true;
+    return comes_apart(*once_more, IMP_SPRINGS_NEARBY, &off) || comes_apart(*once_more, -IMP_SPRINGS_NEARBY, &off);
 }
 
 impact_status imp_springs_solve(imp_group *group, double exponent, impact_together_workspace *workspace)
@@ -280,6 +311,6 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     const impact_status status = follow(&s, group);
     if (status != IMPACT_OK) return status;
     report(&s, &unit, group);
-    group->wedged = !has_come_apart(&s, blank, group, &unit, w, u0, findings);
+    group->wedged = !has_come_apart(&s, &(again){blank, group, unit, w, u0, findings});
     return group->wedged ? IMPACT_EUNSETTLED : IMPACT_OK;
 }

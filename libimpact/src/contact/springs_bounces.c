@@ -11,6 +11,8 @@
  *     E_end = E'' + (E'' - E') R/(1 - R) + (E'' - E' - R (E' - E)) R^2/((1 - R) (1 - R^2))
  *
  * R is that of as many rounds as leave it under IMP_BOUNCES_RATIO: 1/(1 - R)^2 is by what p_end has the rounding of p.
+ * Where that would take too long R is that of the contact's approach, u'' = R u': p_end then has u_n = 0 there, and the
+ * rounding of p by 1/(1 - R).
  * Moments are closings of one contact, whatever presses then: of two that bounce in turn one may always do. What
  * presses without bouncing is in no ratio. Where nothing does in between, rounds take ever longer, and what else
  * approaches ends them: then there is no such end.
@@ -112,9 +114,12 @@ static bool look_for_end(imp_springs *s)
     imp_springs_bounces *b = &s->bounces;
     double off;
     const double ratio = find_ratio(s, &off), left = 1 - ratio;
+    const double by_approach = s->springs[b->contact].u[0] / b->approach;
+    const bool late = s->events + s->steps >= IMP_BOUNCES_LATE && by_approach > 0 && by_approach < 1;
     const bool falls = ratio > 0 && ratio < 1, told = s->springs[b->contact].u[0] <= -IMP_BOUNCES_SLOWEST;
     if (falls && told && ratio <= IMP_BOUNCES_RATIO && off <= IMP_BOUNCES_ERROR * left * left && ends(s, ratio))
         return true;
+    if (falls && told && late && off <= IMP_BOUNCES_ERROR * left && ends(s, by_approach)) return true;
     note_moment(s, 0);
     b->rounds = 0;
     b->span =
@@ -133,6 +138,9 @@ bool imp_springs_end_bounces(imp_springs *s)
     if (s->closing != b->contact) return false;
     b->expected = s->events + IMP_BOUNCES_LONGEST;
     b->rounds++;
-    if (b->rounds == b->span) note_moment(s, 1);
+    if (b->rounds == b->span) {
+        note_moment(s, 1);
+        b->approach = s->springs[b->contact].u[0];
+    }
     return b->rounds == 2 * b->span && look_for_end(s);
 }
