@@ -187,12 +187,12 @@ static impact_status give_up(imp_springs *s, imp_group *group)
     return IMPACT_EUNSETTLED;
 }
 
-/* Whether velocities are told to what the receipt takes: rounding of impulses that balance one another, and what held
+/* Whether velocities are known to what the receipt takes: rounding of impulses that balance one another, and what held
  * slips drift to beside them, is less. */
-static bool is_told(const imp_springs *s)
+static bool is_known(const imp_springs *s)
 {
     for (int i = 0; i < s->count; i++)
-        if (s->springs[i].none > IMP_ENCOUNTER_RECEIPT) return false;
+        if (s->springs[i].none > IMP_SPRINGS_KNOWN) return false;
     return true;
 }
 
@@ -227,7 +227,8 @@ static void turn_by(const double angle[3], double *x, size_t apart)
     }
 }
 
-/* The same bodies with normals that are turned by so much and less; golden sections, so that no two are turned alike. */
+/* The same bodies with normals that are turned by so much and less; golden sections, so that no two are turned alike.
+ */
 static void move_nearby(const imp_springs *s, double turn, double *w, double *u0)
 {
     static const double golden = 0.6180339887498949;
@@ -290,9 +291,9 @@ static bool comes_apart(again once_more, double turn, double *off)
 static bool has_come_apart(imp_springs *s, const again *once_more)
 {
     double off;
-    const bool told = is_told(s);
-    if ((told && spent_on(s) < IMP_SPRINGS_CHANCY) || !find_wedge(s)) return true;
-    if (!told) return false;
+    const bool known = is_known(s);
+    if ((known && spent_on(s) < IMP_SPRINGS_CHANCY) || !find_wedge(s)) return true;
+    if (!known) return false;
     if (comes_apart(*once_more, 0, &off) && off <= IMP_SPRINGS_CHANCE) return true;
     return comes_apart(*once_more, IMP_SPRINGS_NEARBY, &off) || comes_apart(*once_more, -IMP_SPRINGS_NEARBY, &off);
 }

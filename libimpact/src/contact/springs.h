@@ -78,7 +78,7 @@ typedef struct imp_springs_bounces {
     int contact;
     long rounds, span; /* closings since the first of three moments; between them */
     long expected;     /* events until which it closes again */
-    double approach; /* u_n at the second moment */
+    double approach;   /* u_n at the second moment */
     double *room;
 } imp_springs_bounces;
 

@@ -73,7 +73,8 @@ static void turning_the_scene_and_changing_units_changes_nothing(void **state)
 /* Encounters of the campaign (./run report together), answered in eight frames and units: by springs where slip comes
  * all but straight to its stop, so that series of |u_t| went on through it, or begins and stops again in one stride; by
  * Moreau's law where more than one answer is right, and units chose among them; where compression's impulses are not
- * unique; and where they are so great that their rounding is all of the residual. */
+ * unique; and where they are so great that their rounding is all of the residual; by springs where a contact closes
+ * beyond a dent that was hardly one; and where slip of 1e-14 leads time, in a measure in which series underflow. */
 static void no_frame_or_unit_chooses_the_answer(void **state)
 {
     (void)state;
@@ -82,12 +83,14 @@ static void no_frame_or_unit_chooses_the_answer(void **state)
         impact_together_law law;
         double exponent;
         int least, most;
-    } cases[] = {{101, 262, IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3}, {102, 1174, IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12},
-                 {102, 1870, IMPACT_TOGETHER_SPRINGS, 1, 2, 3},  {101, 2848, IMPACT_TOGETHER_SPRINGS, 1, 7, 12},
-                 {101, 3352, IMPACT_TOGETHER_MOREAU, 0, 2, 3},   {101, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},
-                 {102, 3651, IMPACT_TOGETHER_MOREAU, 0, 4, 6},   {102, 3430, IMPACT_TOGETHER_MOREAU, 0, 2, 3},
-                 {102, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},   {101, 4282, IMPACT_TOGETHER_MOREAU, 0, 7, 12},
-                 {404, 1956, IMPACT_TOGETHER_MOREAU, 0, 4, 6}};
+    } cases[] = {
+        {101, 262, IMPACT_TOGETHER_SPRINGS, 1.5, 2, 3},         {102, 1174, IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12},
+        {102, 1870, IMPACT_TOGETHER_SPRINGS, 1, 2, 3},          {101, 2848, IMPACT_TOGETHER_SPRINGS, 1, 7, 12},
+        {101, 3352, IMPACT_TOGETHER_MOREAU, 0, 2, 3},           {101, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},
+        {102, 3651, IMPACT_TOGETHER_MOREAU, 0, 4, 6},           {102, 3430, IMPACT_TOGETHER_MOREAU, 0, 2, 3},
+        {102, 3627, IMPACT_TOGETHER_MOREAU, 0, 4, 6},           {101, 4282, IMPACT_TOGETHER_MOREAU, 0, 7, 12},
+        {404, 1956, IMPACT_TOGETHER_MOREAU, 0, 4, 6},           {21100000, 11907, IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12},
+        {20100000, 11998, IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12}, {21000000, 10721, IMPACT_TOGETHER_SPRINGS, 1.5, 7, 12}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
         random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
@@ -191,7 +194,8 @@ static void moreau_s_energy_rises_only_by_different_restitutions(void **state)
  * that die out in 106723 steps and events; a pressed few of nine contacts, whose work was counted as that of all; and
  * bounces whose gaps grow from one to the next, beyond 1e308 of their dents, where they were taken to have ended; and
  * slip that creeps beside what swings for ten thousand times as long, off its balance by the rounding of W p, whose
- * terms are four hundred times the velocities: no step was taken to be good enough. */
+ * terms are four hundred times the velocities: no step was taken to be good enough; and bounces of which four thousand
+ * leave three parts in four, with rounding that no smaller ratio outweighs. */
 static void what_found_no_end_is_answered(void **state)
 {
     (void)state;
@@ -199,10 +203,11 @@ static void what_found_no_end_is_answered(void **state)
         uint64_t seed, number;
         double exponent;
         int least, most;
-    } cases[] = {{1, 1192, 1.5, 2, 3},    {1, 433, 1, 4, 6},       {1, 555, 1, 7, 12},      {1, 4055, 1.5, 4, 6},
-                 {102, 1111, 1.5, 7, 12}, {101, 2857, 1, 7, 12},   {102, 2166, 1, 4, 6},    {905, 341, 1.5, 2, 3},
-                 {907, 1184, 1.5, 4, 6},  {901, 2839, 1.5, 7, 12}, {904, 2771, 1.5, 7, 12}, {36, 5065, 1, 7, 12},
-                 {31, 5405, 1, 7, 12},    {603, 5863, 1, 7, 12},   {777, 1829, 1, 7, 12}};
+    } cases[] = {
+        {1, 1192, 1.5, 2, 3},    {1, 433, 1, 4, 6},       {1, 555, 1, 7, 12},      {1, 4055, 1.5, 4, 6},
+        {102, 1111, 1.5, 7, 12}, {101, 2857, 1, 7, 12},   {102, 2166, 1, 4, 6},    {905, 341, 1.5, 2, 3},
+        {907, 1184, 1.5, 4, 6},  {901, 2839, 1.5, 7, 12}, {904, 2771, 1.5, 7, 12}, {36, 5065, 1, 7, 12},
+        {31, 5405, 1, 7, 12},    {603, 5863, 1, 7, 12},   {777, 1829, 1, 7, 12},   {20050000, 3257, 1.5, 2, 3}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
         random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
@@ -282,6 +287,52 @@ static void bounces_that_never_end_are_followed_to_their_end(void **state)
         int closed = 0; /* what bounced stays together */
         for (int i = 0; i < e.meeting_count; i++) closed += fabs(a.meetings[i].normal_after) < 1e-11;
         assert_int_equal(closed, 2);
+    }
+}
+
+/* The same, where what bounces goes on to slide, or slides elsewhere meanwhile: friction's works fall by R, and not by
+ * R^2 as those of dents do. Receipts missed by 5e-9 to 8e-5. */
+static void works_of_bounces_go_to_their_own_end(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t seed, number;
+        double exponent;
+        int least, most;
+    } cases[] = {{20000000, 11408, 1.5, 7, 12},
+                 {21000000, 20995, 1, 7, 12},
+                 {21100000, 1370, 1.5, 2, 3},
+                 {20150000, 4937, 1.5, 4, 6}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
+        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
+        const random_encounter e = encounter_draw(&random, &ranges);
+        const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_at_most(a.outcome.residual, 1e-13);
+    }
+}
+
+/* Encounters of the campaign that no motion takes apart. Of two no series went on, as what pressures left of one
+ * another was their rounding; four came apart by that, with velocities known to 1e-4 to 1e-8; and two, in a plane,
+ * after thousands of bounces, otherwise in each frame, or not at all. */
+static void a_wedge_is_told_whatever_rounding_makes_of_it(void **state)
+{
+    (void)state;
+    static const struct {
+        uint64_t seed, number;
+        double exponent;
+        int least, most;
+    } cases[] = {{21000000, 10791, 1.5, 7, 12}, {21000000, 24972, 1, 7, 12},   {21000000, 7155, 1.5, 4, 6},
+                 {20050000, 5676, 1.5, 4, 6},   {21200000, 10511, 1.5, 7, 12}, {21000000, 24035, 1, 7, 12},
+                 {21100000, 8982, 1.5, 7, 12},  {21100000, 17358, 1, 4, 6}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
+        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
+        const random_encounter e = encounter_draw(&random, &ranges);
+        const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
+        assert_int_equal(a.status, IMPACT_EUNSETTLED);
+        assert_true(a.outcome.wedged >= 0);
     }
 }
 
@@ -488,6 +539,8 @@ int main(void)
         cmocka_unit_test(what_seems_to_go_on_for_ever_is_answered),
         cmocka_unit_test(impulses_without_end_are_no_answer),
         cmocka_unit_test(a_wedge_of_many_contacts_is_told),
+        cmocka_unit_test(a_wedge_is_told_whatever_rounding_makes_of_it),
+        cmocka_unit_test(works_of_bounces_go_to_their_own_end),
         cmocka_unit_test(a_struck_cube_on_the_floor_is_answered),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
         cmocka_unit_test(long_flights_come_back_to_where_contacts_close),
