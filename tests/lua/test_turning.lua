@@ -125,10 +125,10 @@ do
       omega = { 0, 0, 5 }, friction = 0.3, torsional_friction = tau } }):time()
   end
   -- The whole face without tau: J omega/(mu m g r), J = (2/3) m R², r = (sqrt 2 + asinh 1) R/3 its mean distance. By steps with tau, in
-  -- one ellipsoid with friction at the corners, at R sqrt 2: J omega/(m g sqrt((mu R sqrt 2)² + tau²)), known to a step.
+  -- one ellipsoid at each place of its friction, as far from the centre as r: J omega/(m g sqrt((mu r)² + tau²)), known to a step.
   local mean, tau = (math.sqrt(2) + math.log(1 + math.sqrt(2))) / 3 * R, 1e-2
   check.close(times[1], 2 / 3 * R ^ 2 * 5 / (0.3 * g * mean), 1e-12)
-  local wanted = 2 / 3 * R ^ 2 * 5 / (g * math.sqrt((0.3 * R * math.sqrt(2)) ^ 2 + tau ^ 2))
+  local wanted = 2 / 3 * R ^ 2 * 5 / (g * math.sqrt((0.3 * mean) ^ 2 + tau ^ 2))
   check.truth(times[2] >= wanted - 1e-12 and times[2] <= wanted + 0.05 * math.sqrt(1.5 * R / g), "the time of spinning")
 end
 

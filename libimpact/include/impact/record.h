@@ -89,7 +89,8 @@ typedef struct impact_held {
     qvec3 point;  /* world */
     qvec3 normal; /* from body 2 to body 1 */
     qvec3 force;  /* on body 1, N */
-    qvec3 moment; /* on body 1, N m: of torsional and rolling friction; of impact_scene_held, 0 in recorded rows */
+    qvec3 moment; /* on body 1 about the point, N m: of torsional and rolling friction, and of a face's that goes by
+                     steps, which acts nearer to its centre; of impact_scene_held, 0 in recorded rows */
 } impact_held;
 
 struct impact_energy;
