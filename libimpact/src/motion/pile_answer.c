@@ -327,14 +327,12 @@ static imp_cone_outcome find_impulses(imp_pile *pile, imp_world *world, const im
 impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
                               imp_state *next, imp_pile_step_result *result)
 {
-    enum { SHIFTS = 2 };
     const bool turning = pile->width > 3;
     const double span = h > 0 ? h : pile->strike.span;
     imp_cone_outcome outcome = find_impulses(pile, world, states, count, h, next, false);
-    for (int k = 0;
-         k < SHIFTS && is_usable(pile, world, count, outcome.residual) &&
-         imp_pile_shift_friction(&pile->touching, pile->members, count, pile->r, pile->width, pile->contacts);
-         k++)
+    /* once: where pressures are not unique each answer has others. A whole step's friction is placed as its halves' */
+    if (!pile->halved && is_usable(pile, world, count, outcome.residual) &&
+        imp_pile_shift_friction(&pile->touching, pile->members, count, pile->r, pile->width, pile->contacts))
         outcome = find_impulses(pile, world, states, count, h, next, true);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !is_usable(pile, world, count, outcome.residual)) {
