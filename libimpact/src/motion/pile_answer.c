@@ -114,7 +114,9 @@ static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *s
         const imp_cone_contact *own = &point->contact;
         const impact_contact contact = {.normal = own->axes[0], .offset1 = own->arm1, .offset2 = own->arm2};
         double bend[6];
-        imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, own->axes, own->rub, states, bend);
+        const double runs = imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, own->axes,
+                                             own->rub, states, bend);
+        if (!(h * runs <= imp_pile_smallest(world))) continue; /* past the ends of lines that are all but parallel */
         for (int k = 0; k < pile->width; k++) {
             pile->before[pile->width * c + k] -= 0.5 * h * bend[k];
             pile->q[pile->width * c + k] += 0.5 * h * bend[k];

@@ -147,6 +147,14 @@ static void test_what_sticks_has_no_slip(void **state)
     run(118, PILE_SET);
 }
 
+/* An edge and a cylinder's side cross, all but parallel: their place runs along both at kilometres a second, past their
+ * ends within a step, and what its velocity changes by, told at once, gave a body what nothing did. */
+static void test_places_that_run_past_their_ends(void **state)
+{
+    (void)state;
+    run(39, PILE_IN_BOX);
+}
+
 static void test_normals_that_jump(void **state)
 {
     (void)state;
@@ -354,6 +362,7 @@ int main(void)
         cmocka_unit_test(test_reactions_that_are_past),
         cmocka_unit_test(test_what_parts_is_searched_for),
         cmocka_unit_test(test_what_sticks_has_no_slip),
+        cmocka_unit_test(test_places_that_run_past_their_ends),
         cmocka_unit_test(test_normals_that_jump),
         cmocka_unit_test(test_hidden_bottoms_hold_nothing),
         cmocka_unit_test(test_glides_meet_what_they_touch),
