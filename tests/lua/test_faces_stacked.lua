@@ -12,7 +12,7 @@ local function run(shape, height, mass, more)
   local scene = impact.scene { gravity = { 0, 0, -G }, duration = more.duration, bodies = {
     impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 0 },
     impact.body { name = "base", shape = impact.box { a = .5, b = .5, c = .1 }, mass = mass, position = { 0, 0, .1 }, friction = mu, restitution = 0 },
-    impact.body { name = "body", shape = shape, mass = 2, position = { 0, 0, .2 + height }, orientation = more.orientation, friction = 1,
+    impact.body { name = "body", shape = shape, mass = 2, moments = more.moments, position = { 0, 0, .2 + height }, orientation = more.orientation, friction = 1,
       restitution = 0, velocity = more.velocity, omega = more.omega } },
     forces = more.torque and { impact.force { name = "screw", body = "body", steady = true, law = function() return nil, { 0, 0, more.torque } end } } }
   check.truth(scene:run(), "it runs")
@@ -54,6 +54,11 @@ end
 local slows = mu * G * (a / 2) / (a * a / 3)
 local state = run(rod, .01, 2, { duration = .5 * 5 / slows, omega = { 0, 0, 5 } })
 check.close(state.omega.z, 2.5, .05)
+
+-- Of a capsule's two points, too: a line of half length .12, J = .01.
+local lying = quat.from_axis_angle({ 0, 1, 0 }, math.pi / 2)
+state = run(impact.capsule { radius = .02, half_height = .12 }, .02, 100, { duration = .08, omega = { 0, 0, 5 }, orientation = lying, moments = { .01, .01, .0004 } })
+check.close(state.omega.z, 5 - mu * 2 * G * (.12 / 2) / .01 * .08, 1e-3)
 
 -- What slides without turning is held by all of its friction, and not turned.
 state = run(box, .05, 1e4, { duration = .2, velocity = { 1, .5, 0 }, orientation = about_z(.3) })
