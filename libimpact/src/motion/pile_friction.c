@@ -76,14 +76,14 @@ static double distance(const double a[2], const double b[2])
 }
 
 /* int |r| dA of the triangle of o and a side, r from o: a third of the side's distance h from o times int |r| ds along
- * it, of which the primitive is (s |r| + h^2 log(s + |r|))/2. */
+ * it, of which the primitive is (s |r| + h^2 asinh(s/h))/2. */
 static double side_reach(const double o[2], const double a[2], const double b[2])
 {
     const double length = distance(a, b), from = distance(o, a), to = distance(o, b);
     if (!(length > 0)) return 0;
     const double h = twice_area(o, a, b) / length, end = (to * to - from * from + length * length) / (2 * length),
-                 begin = end - length, turns = (end + to) / (begin + from);
-    return h / 6 * (end * to - begin * from + (turns > 0 && h * h > 0 ? h * h * log(turns) : 0));
+                 begin = end - length, along = end * to - begin * from;
+    return h / 6 * (h != 0 ? along + h * h * (asinh(end / fabs(h)) - asinh(begin / fabs(h))) : along);
 }
 
 /* How much nearer to the centre friction acts than the points are: of a polygon as above, else of a line. */
@@ -98,7 +98,7 @@ static double nearness(flat_points *flat)
         points += distance(center, flat->x[i]) / flat->count;
     }
     if (!(area > IMP_PILE_LINE * points * points)) return 0.5;
-    return reach / area / points;
+    return fmin(reach / area / points, 1); /* points that crowd near the centre tell of none beyond them */
 }
 
 /* The pressure that is remembered of a point, N; 0: nothing. */
