@@ -70,6 +70,20 @@ static void turning_the_scene_and_changing_units_changes_nothing(void **state)
     assert_true(compared > 250);
 }
 
+/* One of the campaign's answered by springs; and how ./run report together draws any. */
+typedef struct kept_encounter {
+    uint64_t seed, number;
+    double exponent;
+    int least, most; /* contacts */
+} kept_encounter;
+
+static random_encounter draw_kept(uint64_t seed, uint64_t number, int least, int most)
+{
+    const encounter_ranges ranges = {least, most, 10, 0.05, 1e4, 1e4};
+    random_stream random = {seed + 0x9e3779b97f4a7c15u * number};
+    return encounter_draw(&random, &ranges);
+}
+
 /* Encounters of the campaign (./run report together), answered in eight frames and units: by springs where slip comes
  * all but straight to its stop, so that series of |u_t| went on through it, or begins and stops again in one stride; by
  * Moreau's law where more than one answer is right, and units chose among them; where compression's impulses are not
@@ -199,19 +213,13 @@ static void moreau_s_energy_rises_only_by_different_restitutions(void **state)
 static void what_found_no_end_is_answered(void **state)
 {
     (void)state;
-    static const struct {
-        uint64_t seed, number;
-        double exponent;
-        int least, most;
-    } cases[] = {
+    static const kept_encounter cases[] = {
         {1, 1192, 1.5, 2, 3},    {1, 433, 1, 4, 6},       {1, 555, 1, 7, 12},      {1, 4055, 1.5, 4, 6},
         {102, 1111, 1.5, 7, 12}, {101, 2857, 1, 7, 12},   {102, 2166, 1, 4, 6},    {905, 341, 1.5, 2, 3},
         {907, 1184, 1.5, 4, 6},  {901, 2839, 1.5, 7, 12}, {904, 2771, 1.5, 7, 12}, {36, 5065, 1, 7, 12},
         {31, 5405, 1, 7, 12},    {603, 5863, 1, 7, 12},   {777, 1829, 1, 7, 12},   {20050000, 3257, 1.5, 2, 3}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
-        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
-        const random_encounter e = encounter_draw(&random, &ranges);
+        const random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
         const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
         assert_int_equal(a.status, IMPACT_OK);
         assert_true(a.outcome.residual < 1e-12);
@@ -251,9 +259,7 @@ static void what_no_path_leads_to_is_found(void **state)
                  {7001, 45554, 2, 3, IMPACT_NEWTON},  {7001, 41001, 7, 12, IMPACT_POISSON},
                  {424242, 16340, 4, 6, IMPACT_NEWTON}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
-        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
-        random_encounter e = encounter_draw(&random, &ranges);
+        random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
         e.restitution = cases[k].restitution;
         const answer a = solve(&e, IMPACT_TOGETHER_MOREAU, 0, NULL);
         assert_int_equal(a.status, IMPACT_OK);
@@ -267,19 +273,13 @@ static void what_no_path_leads_to_is_found(void **state)
 static void bounces_that_never_end_are_followed_to_their_end(void **state)
 {
     (void)state;
-    static const struct {
-        uint64_t seed, number;
-        double exponent;
-        int least, most;
-    } cases[] = {{905, 3316, 1, 2, 3},
-                 {906, 1717, 1.5, 4, 6},
-                 {903, 4606, 1, 4, 6},
-                 {35, 5506, 1, 7, 12},
-                 {406, 485, 1.5, 4, 6}};
+    static const kept_encounter cases[] = {{905, 3316, 1, 2, 3},
+                                           {906, 1717, 1.5, 4, 6},
+                                           {903, 4606, 1, 4, 6},
+                                           {35, 5506, 1, 7, 12},
+                                           {406, 485, 1.5, 4, 6}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
-        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
-        const random_encounter e = encounter_draw(&random, &ranges);
+        const random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
         const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
         assert_int_equal(a.status, IMPACT_OK);
         assert_at_most(a.outcome.residual, 1e-12);
@@ -295,18 +295,12 @@ static void bounces_that_never_end_are_followed_to_their_end(void **state)
 static void works_of_bounces_go_to_their_own_end(void **state)
 {
     (void)state;
-    static const struct {
-        uint64_t seed, number;
-        double exponent;
-        int least, most;
-    } cases[] = {{20000000, 11408, 1.5, 7, 12},
-                 {21000000, 20995, 1, 7, 12},
-                 {21100000, 1370, 1.5, 2, 3},
-                 {20150000, 4937, 1.5, 4, 6}};
+    static const kept_encounter cases[] = {{20000000, 11408, 1.5, 7, 12},
+                                           {21000000, 20995, 1, 7, 12},
+                                           {21100000, 1370, 1.5, 2, 3},
+                                           {20150000, 4937, 1.5, 4, 6}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
-        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
-        const random_encounter e = encounter_draw(&random, &ranges);
+        const random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
         const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
         assert_int_equal(a.status, IMPACT_OK);
         assert_at_most(a.outcome.residual, 1e-13);
@@ -319,17 +313,12 @@ static void works_of_bounces_go_to_their_own_end(void **state)
 static void a_wedge_is_told_whatever_rounding_makes_of_it(void **state)
 {
     (void)state;
-    static const struct {
-        uint64_t seed, number;
-        double exponent;
-        int least, most;
-    } cases[] = {{21000000, 10791, 1.5, 7, 12}, {21000000, 24972, 1, 7, 12},   {21000000, 7155, 1.5, 4, 6},
-                 {20050000, 5676, 1.5, 4, 6},   {21200000, 10511, 1.5, 7, 12}, {21000000, 24035, 1, 7, 12},
-                 {21100000, 8982, 1.5, 7, 12},  {21100000, 17358, 1, 4, 6}};
+    static const kept_encounter cases[] = {{21000000, 10791, 1.5, 7, 12}, {21000000, 24972, 1, 7, 12},
+                                           {21000000, 7155, 1.5, 4, 6},   {20050000, 5676, 1.5, 4, 6},
+                                           {21200000, 10511, 1.5, 7, 12}, {21000000, 24035, 1, 7, 12},
+                                           {21100000, 8982, 1.5, 7, 12},  {21100000, 17358, 1, 4, 6}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
-        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
-        const random_encounter e = encounter_draw(&random, &ranges);
+        const random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
         const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
         assert_int_equal(a.status, IMPACT_EUNSETTLED);
         assert_true(a.outcome.wedged >= 0);
@@ -364,9 +353,7 @@ static void what_seems_to_go_on_for_ever_is_answered(void **state)
         int least, most;
     } cases[] = {{7001, 50498, 4, 6}, {7001, 55019, 7, 12}, {7001, 57857, 7, 12}, {424242, 15105, 4, 6}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
-        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
-        random_encounter e = encounter_draw(&random, &ranges);
+        random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
         e.restitution = IMPACT_NEWTON;
         const answer a = solve(&e, IMPACT_TOGETHER_MOREAU, 0, NULL);
         assert_int_equal(a.status, IMPACT_OK);
@@ -513,9 +500,7 @@ static void what_never_ends_is_told_and_what_takes_long_is_answered(void **state
                  {406, 1425, 1, 7, 12, false},    {7001, 22203, 1, 4, 6, false}, {7001, 12264, 1.5, 7, 12, false},
                  {424242, 1786, 1.5, 4, 6, false}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const encounter_ranges ranges = {cases[k].least, cases[k].most, 10, 0.05, 1e4, 1e4};
-        random_stream random = {cases[k].seed + 0x9e3779b97f4a7c15u * cases[k].number};
-        const random_encounter e = encounter_draw(&random, &ranges);
+        const random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
         const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, cases[k].exponent, NULL);
         assert_int_equal(a.status, cases[k].wedged ? IMPACT_EUNSETTLED : IMPACT_OK);
         assert_int_equal(a.outcome.wedged >= 0, cases[k].wedged);
