@@ -32,7 +32,7 @@ local function go(n, q, body, duration)
   bodies[#bodies + 1] = impact.body { name = "body", shape = body.shape, mass = 1, orientation = q, friction = body.friction,
     restitution = body.restitution or 0, position = turned(q, table.unpack(body.position)),
     velocity = turned(q, table.unpack(body.velocity)), omega = turned(q, table.unpack(body.omega)) }
-  local scene = impact.scene { gravity = turned(q, 0, 0, -G), duration = duration, bodies = bodies, pile_tolerance = 1e-5 }
+  local scene = impact.scene { gravity = turned(q, 0, 0, -G), duration = duration, bodies = bodies, pile_tolerance = 5e-6 }
   check.truth(scene:run(), "it runs")
   check.equal(scene:receipt(), "ok")
   local s, back = scene:state "body", q:conj()

@@ -951,13 +951,11 @@
 #define IMP_PILE_GAIN 1e-2
 /* The longest step at the default tolerance, in which contacts turn by less than .1, in units of the time in which the
  * smallest body falls its radius; as the cube root of the tolerance at others, as errors are; and of how many parts of
- * it the first is one. The shortest is the tolerance of them: what it meets an impact wrong by, at the speed of that
- * fall, is as much of the radius. */
+ * it the first is one. */
 #define IMP_PILE_FIRST 5
-/* Of a step's error: a step that errs less is followed by one twice as long. Its error may grow as h, and as h³: with
- * .1, where the latter would be allowed too, what residuals leave of every step kept thirty bricks at steps a fiftieth
- * as long as they need, 1240 for 342. */
-#define IMP_PILE_LENGTHENS 0.3
+/* Of the error that a step may have: at so much of it the next aims; and how much shorter than one it is at least. */
+#define IMP_PILE_AIM 0.7
+#define IMP_PILE_SHORTENS 0.1
 /* Of a step: what strikes later is left to the next. Struck early, as within a pair that is held, it is off by what is
  * left of its way, and the same strike is met again at the end of ever shorter steps: twenty dominoes take 1125 steps
  * then for 996. */

@@ -10,12 +10,21 @@ void imp_pile_begin(imp_pile *pile)
     pile->step = 0;
     pile->begun = false;
     pile->memory[0].count = 0;
+    for (int k = 0; k < IMP_PILE_RATES; k++)
+        for (int i = 0; i < pile->bodies; i++) pile->rates[k][i] = (imp_pile_rates){0};
+}
+
+static void copy_rates(const imp_pile *pile, imp_pile_rates *const from[], imp_pile_rates *const to[])
+{
+    for (int k = 0; k < IMP_PILE_RATES && pile->bodies > 0; k++)
+        memcpy(to[k], from[k], sizeof *to[k] * (size_t)pile->bodies);
 }
 
 impact_status imp_pile_keep(imp_pile *pile)
 {
     pile->kept.step = pile->step;
     pile->kept.begun = pile->begun;
+    copy_rates(pile, pile->rates, pile->kept.rates);
     return imp_pile_copy_memories(pile->arena, &pile->kept.memory, &pile->memory[0]) ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
@@ -23,6 +32,7 @@ impact_status imp_pile_take_back(imp_pile *pile)
 {
     pile->step = pile->kept.step;
     pile->begun = pile->kept.begun;
+    copy_rates(pile, pile->kept.rates, pile->rates);
     return imp_pile_copy_memories(pile->arena, &pile->memory[0], &pile->kept.memory) ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
@@ -70,15 +80,10 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
     if (!imp_pile_find_points(&pile->touching, world, pile->middle, to, h, imp_pile_slack(pile, world), false) ||
         !imp_pile_reserve_contacts(pile, world, pile->touching.count))
         return IMPACT_ENOMEM;
-    imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[1], IMP_PILE_BEFORE);
-    if (pile->halved) {
-        imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[4], IMP_PILE_HALF);
-        imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[3], IMP_PILE_END);
-    } else
-        imp_pile_seek_strikes(pile, world, pile->middle, pile->strike.begun + 0.5 * h);
+    imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[1]);
+    imp_pile_seek_strikes(pile, world, pile->middle, 0.5 * h);
     if (pile->strike.found) return IMPACT_OK;
-    imp_pile_place_friction(&pile->touching, world, &pile->memory[pile->halved ? 3 : 1],
-                            pile->halved ? IMP_PILE_END : IMP_PILE_BEFORE);
+    imp_pile_place_friction(&pile->touching, world, &pile->memory[1]);
     for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
         const impact_status status = imp_pile_answer(pile, world, pile->middle, count, h, to, result);
         if (status != IMPACT_OK) return status;
@@ -102,7 +107,6 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
         status = push_bodies(pile, world, t, h, pile->mean, to, result);
     }
     if (status != IMPACT_OK || pile->strike.found) return status;
-    if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[2])) return IMPACT_ENOMEM;
     /* x' = x_m + h v'/2; of what tumbles with the turning that it has in its end's orientation, near enough */
     imp_pile_drift(world, to, 0.5 * h, to);
     for (int i = 0; i < world->body_count; i++) {
@@ -115,19 +119,51 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
 
 /* ---- the step that its error allows ---- */
 
-/* How far apart any body's point stands in two ends of a step. */
-static double apart(const imp_world *world, const imp_state *a, const imp_state *b)
+/* Of any of the body's points, m/s, at these velocities, m/s and 1/s. */
+static double speed_of(const imp_body *body, qvec3 along, qvec3 about)
+{
+    const bool ball = body->shape.kind == IMPACT_SPHERE && !body->shifted;
+    return qvec3_norm(along) + (ball ? 0 : body->radius * qvec3_norm(about));
+}
+
+/* What the body's velocities changed by over h, but for the rates. */
+static double deviation_from(const imp_body *body, const imp_pile_rates *rates, double h, const imp_state *from,
+                             const imp_state *to)
+{
+    const qvec3 along = qvec3_sub(to->v, from->v), about = qvec3_sub(imp_omega(body, to), imp_omega(body, from));
+    return speed_of(body, qvec3_axpy(-h, rates->v, along), qvec3_axpy(-h, rates->omega, about));
+}
+
+/* The measure of the step's error: half of it times what velocities deviate by; and, of turning about axes that turn,
+ * what exp(h w1/2) exp(h w0/2) leaves of Magnus' series, h^2 (w1 x w0)/24. */
+static double step_error(const imp_pile *pile, const imp_world *world, double h, const imp_state *from,
+                         const imp_state *to)
 {
     double most = 0;
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         if (body->is_static) continue;
-        const quat turn = quat_mul(a[i].q, quat_conj(b[i].q));
-        const double angle =
-            body->shape.kind == IMPACT_SPHERE && !body->shifted ? 0 : 2 * qvec3_norm((qvec3){turn.x, turn.y, turn.z});
-        most = fmax(most, qvec3_norm(qvec3_sub(a[i].x, b[i].x)) + body->radius * angle);
+        double least = INFINITY;
+        for (int k = 0; k < IMP_PILE_RATES; k++)
+            least = fmin(least, deviation_from(body, &pile->rates[k][i], h, &from[i], &to[i]));
+        const qvec3 turns = qvec3_cross(imp_omega(body, &from[i]), imp_omega(body, &to[i]));
+        most = fmax(most, 0.5 * h * least + speed_of(body, (qvec3){0, 0, 0}, qvec3_scale(turns, h * h / 24)));
     }
     return most;
+}
+
+/* Of the step from there to there over h; those before go one back. */
+static void remember_rates(imp_pile *pile, const imp_world *world, double h, const imp_state *from, const imp_state *to)
+{
+    imp_pile_rates *own = pile->rates[IMP_PILE_RATES - 1];
+    for (int k = IMP_PILE_RATES - 1; k > 0; k--) pile->rates[k] = pile->rates[k - 1];
+    pile->rates[0] = own;
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        const qvec3 turned = qvec3_sub(imp_omega(body, &to[i]), imp_omega(body, &from[i]));
+        own[i].v = qvec3_scale(qvec3_sub(to[i].v, from[i].v), 1 / h);
+        own[i].omega = qvec3_scale(turned, 1 / h);
+    }
 }
 
 double imp_pile_natural_time(const imp_world *world, const imp_state *states)
@@ -139,38 +175,26 @@ double imp_pile_natural_time(const imp_world *world, const imp_state *states)
     return size / (sqrt(g * size) + (g > 0 ? 0 : speed) + IMP_NOT_ZERO);
 }
 
-/* The step in two halves, and whole; there: the whole was found, as the first half of one tried before. halfway: the
- * first half is found. */
-static impact_status try_step(imp_pile *pile, imp_world *world, double t, double h, const imp_state *states, bool there,
-                              bool *halfway, imp_pile_step_result *result)
+/* s: in which what goes fastest, at least as fast as the smallest body falls, goes as far as a step may err. */
+static double least_step(const imp_pile *pile, const imp_world *world, const imp_state *states, double natural)
 {
-    imp_pile_step_result scratch = {.taken = 0};
-    imp_pile_memories *memory = pile->memory;
-    *result = (imp_pile_step_result){.taken = h};
-    if (!imp_pile_copy_memories(pile->arena, &memory[1], &memory[0])) return IMPACT_ENOMEM;
-    impact_status status = step_once(pile, world, t, 0.5 * h, states, pile->half, result);
-    *halfway = status == IMPACT_OK && !pile->strike.found;
-    if (!*halfway) return status;
-    if (!imp_pile_copy_memories(pile->arena, &memory[4], &memory[1])) return IMPACT_ENOMEM;
-    pile->strike.begun = 0.5 * h;
-    status = step_once(pile, world, t + 0.5 * h, 0.5 * h, pile->half, pile->end, result);
-    if (status != IMPACT_OK || pile->strike.found) return status;
-    if (!imp_pile_copy_memories(pile->arena, &memory[3], &memory[1]) ||
-        !imp_pile_copy_memories(pile->arena, &memory[1], &memory[0]))
-        return IMPACT_ENOMEM;
-    pile->halved = true;
-    if (!there) status = step_once(pile, world, t, h, states, pile->whole, &scratch);
-    pile->halved = false;
-    result->error += apart(world, pile->whole, pile->end);
-    return status;
+    const double size = imp_pile_smallest(world);
+    double fastest = size / natural;
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (!body->is_static) fastest = fmax(fastest, speed_of(body, states[i].v, imp_omega(body, &states[i])));
+    }
+    return pile->tolerance * size / fastest;
 }
 
-/* Half as long: whole it is the first half of the step before, where that was found. */
-static bool keep_first_half(imp_pile *pile, bool halfway)
+static impact_status try_step(imp_pile *pile, imp_world *world, double t, double h, const imp_state *states,
+                              imp_pile_step_result *result)
 {
-    imp_state *whole = pile->whole;
-    if (halfway) pile->whole = pile->half, pile->half = whole;
-    return halfway;
+    *result = (imp_pile_step_result){.taken = h};
+    if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0])) return IMPACT_ENOMEM;
+    const impact_status status = step_once(pile, world, t, h, states, pile->end, result);
+    if (status == IMPACT_OK && !pile->strike.found) result->error += step_error(pile, world, h, states, pile->end);
+    return status;
 }
 
 /* What touches at the first step and does not approach is held from there: it does not come to touch within the step.
@@ -197,10 +221,9 @@ static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_stat
  * came to overlap after the middle of the second half no contact has met, and how far that has to be moved apart is
  * error too. */
 static impact_status try_and_project(imp_pile *pile, imp_world *world, double t, double h, const imp_state *from,
-                                     bool there, bool *halfway, double allowed, imp_state *to,
-                                     imp_pile_step_result *result)
+                                     double allowed, imp_state *to, imp_pile_step_result *result)
 {
-    impact_status status = try_step(pile, world, t, h, from, there, halfway, result);
+    impact_status status = try_step(pile, world, t, h, from, result);
     double parted = 0;
     if (status != IMPACT_OK || pile->strike.found || result->error > allowed) return status;
     memcpy(to, pile->end, sizeof *to * (size_t)world->body_count);
@@ -213,7 +236,7 @@ static impact_status try_and_project(imp_pile *pile, imp_world *world, double t,
 /* The steps that are tried for one. */
 typedef struct pile_trial {
     double h, cut; /* s; that was to be tried where a strike was met */
-    bool there, halfway, good;
+    bool good;
     int strikes;
     imp_pile_step_result struck; /* what strikes at its begin does */
 } pile_trial;
@@ -225,7 +248,6 @@ static impact_status meet_strike(imp_pile *pile, imp_world *world, pile_trial *t
     const imp_pile_strike *strike = &pile->strike;
     bool struck = false;
     const bool at_once = strike->time * strike->approach <= imp_pile_slack(pile, world);
-    trial->there = false;
     if (at_once && trial->strikes++ < MOST) {
         const impact_status status = imp_pile_strike_now(pile, world, pile->from, &trial->struck, &struck);
         if (status == IMPACT_ENOMEM) return status;
@@ -237,20 +259,26 @@ static impact_status meet_strike(imp_pile *pile, imp_world *world, pile_trial *t
     return IMPACT_OK;
 }
 
+/* How much longer the next step may be, at most so much: errors are as h where velocities jump within a step, as h^2
+ * where accelerations do, and as h^3 of what is smooth. */
+static double part_allowed(double error, double allowed, double most)
+{
+    return fmax(fmin(sqrt(IMP_PILE_AIM * allowed / fmax(error, IMP_NOT_ZERO)), most), IMP_PILE_SHORTENS);
+}
+
 static impact_status try_length(imp_pile *pile, imp_world *world, double t, double wanted, double least,
                                 pile_trial *trial, imp_pile_step_result *result)
 {
     pile->shortest = !(trial->h > least);
     const double allowed = pile->shortest ? INFINITY : wanted;
     pile->strike = (imp_pile_strike){.allowed = allowed, .span = trial->h};
-    impact_status status = try_and_project(pile, world, t, trial->h, pile->from, trial->there, &trial->halfway, allowed,
-                                           pile->projected, result);
+    impact_status status = try_and_project(pile, world, t, trial->h, pile->from, allowed, pile->projected, result);
     if (status == IMPACT_OK && pile->strike.found) return meet_strike(pile, world, trial);
     trial->good = status == IMPACT_OK && result->error <= allowed;
     if (status == IMPACT_EUNSETTLED && !pile->shortest) status = IMPACT_OK;
     if (trial->good) return status;
-    trial->there = keep_first_half(pile, trial->halfway);
-    trial->h *= 0.5;
+    const double shorter = (result->error > allowed ? part_allowed(result->error, allowed, 0.5) : 0.5) * trial->h;
+    trial->h = trial->h > least ? fmax(shorter, least) : shorter;
     return status;
 }
 
@@ -260,9 +288,9 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
     const size_t size = sizeof *states * (size_t)world->body_count;
     const double natural = imp_pile_natural_time(world, states), wanted = pile->tolerance * imp_pile_smallest(world);
-    const double least = pile->tolerance * natural; /* of which any error is allowed */
+    const double least = least_step(pile, world, states, natural); /* of which any error is allowed */
     if (!(pile->step > 0)) pile->step = pile->longest / IMP_PILE_FIRST * natural;
-    pile_trial trial = {.h = fmin(most, fmin(pile->step, pile->longest * natural))};
+    pile_trial trial = {.h = fmin(most, fmin(fmax(pile->step, least), pile->longest * natural))};
     memcpy(pile->from, states, size);
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
     while (status == IMPACT_OK && !trial.good) status = try_length(pile, world, t, wanted, least, &trial, result);
@@ -270,7 +298,7 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
     memcpy(states, pile->projected, size);
     result->error += trial.struck.error, result->sliding += trial.struck.sliding;
     result->drive_work += trial.struck.drive_work;
-    /* h³ where modes stay, h where they change: doubled where the first would allow as much */
-    pile->step = fmax(trial.cut, result->error < IMP_PILE_LENGTHENS * wanted ? 2 * trial.h : trial.h);
+    remember_rates(pile, world, trial.h, pile->from, pile->end);
+    pile->step = fmax(trial.cut, part_allowed(result->error, wanted, 2) * trial.h);
     return imp_pile_copy_memories(pile->arena, &pile->memory[0], imp_pile_ended(pile)) ? IMPACT_OK : IMPACT_ENOMEM;
 }

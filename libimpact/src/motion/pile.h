@@ -16,13 +16,16 @@
  * Pairs with torsional or rolling friction have moments in the same problem (cone.h): c turns (mu u_t, tau w_n), and
  * w_t.
  *
- * Free flight in uniform gravity is exact. A step is taken once whole and once in two halves; what their ends differ by
- * is its measured error, and chooses the next; what overlaps at its end, as it came after the last middle, and has to
- * be parted is error too. Where what closes within a step strikes so hard that half a step of it is more than may be
- * off, the step ends where it closes, and all of its island is struck at that instant, q = G v with neither loads nor
- * time: the next step begins with what that leaves. Overlaps that arrivals leave, and gaps by which held contacts open
- * on round bodies, h² in each step, are put back along normals, least in the metric of mass. The limit h -> 0 is
- * Coulomb's law with Newton's restitution, at simultaneous contacts Moreau's.
+ * Free flight in uniform gravity is exact. Places go as with the mean of both ends' velocities. With d what these
+ * change by but for h times the mean acceleration of the step before, smooth motion is off by |d| h/12 then (the
+ * trapezoid's h^3 a'/12, d being h^2 a'), and what jumps by d within the step, who knows when, by up to |d| h/2: the
+ * measured error, which chooses the next. An impulse is in the mean of the step before: where the one before that is
+ * nearer, it is that. What overlaps at the end, as it came after the middle, and has to be parted is error too. Where
+ * what closes within a step strikes so hard that half a step of it is more than may be off, the step ends where it
+ * closes, and all of its island is struck at that instant, q = G v with neither loads nor time: the next step begins
+ * with what that leaves. Overlaps that arrivals leave, and gaps by which held contacts open on round bodies, h² in each
+ * step, are put back along normals, least in the metric of mass. The limit h -> 0 is Coulomb's law with Newton's
+ * restitution, at simultaneous contacts Moreau's.
  */
 #ifndef IMP_PILE_H
 #define IMP_PILE_H
@@ -35,10 +38,16 @@
 /* What first strikes within the step that is tried. */
 typedef struct imp_pile_strike {
     double allowed, span; /* m, s: what the step may err; how long it is */
-    double begun;         /* s: where its part at hand begins */
     bool found;
     double time, approach; /* s from its begin, where the gap closes; m/s, at what rate */
 } imp_pile_strike;
+
+/* How fast a body's velocities changed, m/s^2 and 1/s^2. */
+typedef struct imp_pile_rates {
+    qvec3 v, omega;
+} imp_pile_rates;
+
+enum { IMP_PILE_RATES = 2 };
 
 typedef struct imp_pile {
     imp_arena *arena; /* the pile's own */
@@ -51,20 +60,19 @@ typedef struct imp_pile {
     imp_cone_bodies by_bodies;
     int *number; /* per body of the world: its own in an island, -1: it does not move */
     imp_rest_workspace rest;
-    imp_state *middle, *mean, *whole, *half, *end, *projected;
-    imp_state *from; /* where the last step began: with what strikes there struck */
+    imp_state *middle, *mean, *end, *projected;
+    imp_state *from;                       /* where the last step began: with what strikes there struck */
+    imp_pile_rates *rates[IMP_PILE_RATES]; /* per body: over the last step, and the one before; 0: there was none */
     imp_load *loads;
     imp_pile_contacts touching;
-    /* as the accepted step left them, those before the step at hand, what it leaves, what the second half of a step
-     * tried left, and the first */
-    imp_pile_memories memory[5];
+    imp_pile_memories memory[3]; /* as the accepted step left them, those before the step at hand, what it leaves */
     struct {
         imp_pile_memories memory;
+        imp_pile_rates *rates[IMP_PILE_RATES];
         double step;
         bool begun;
     } kept; /* imp_pile_keep */
     imp_pile_strike strike;
-    bool halved;       /* the step at hand is whole, its halves done */
     bool shortest;     /* it is so short that any error is allowed */
     int contacts_most; /* there is room for in: */
     imp_cone_contact *contacts;
@@ -82,8 +90,8 @@ typedef struct imp_pile {
 
 /* What one accepted step did. */
 typedef struct imp_pile_step_result {
-    double taken; /* s */
-    double error; /* m: how far the whole step's end lies from the two halves', any body's point; the measure */
+    double taken;                           /* s */
+    double error;                           /* m: how far any body's point may be off for it; the measure */
     double force_work, damping, drive_work; /* J: of the loads and of driven surfaces */
     double sliding;                         /* J: what friction took of slip that stays or ends */
     int contacts;                           /* at its end */

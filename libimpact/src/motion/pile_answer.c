@@ -20,40 +20,30 @@ qvec3 imp_pile_from_parts(const imp_cone_contact *contact, const double *parts, 
     return v;
 }
 
-static const imp_pile_memory *remembered(const imp_pile *pile, const imp_pile_point *point, imp_pile_recalled from)
+/* From before the step. */
+static const imp_pile_memory *remembered(const imp_pile *pile, const imp_pile_point *point)
 {
-    static const int of[IMP_PILE_RECALLS] = {[IMP_PILE_BEFORE] = 1, [IMP_PILE_HALF] = 4, [IMP_PILE_END] = 3};
-    return point->memory[from] < 0 ? NULL : &pile->memory[of[from]].list[point->memory[from]];
+    return point->memory < 0 ? NULL : &pile->memory[1].list[point->memory];
 }
 
-/* Adds the contact's impulses of h, and has its velocities at the end. */
-static void recall_part(imp_pile *pile, const imp_pile_memory *m, int c, double h)
-{
-    const int i = pile->width * c;
-    double impulses[6];
-    if (!m) return;
-    parts_of(&pile->contacts[c], m->reaction, m->moment, pile->width, h, impulses);
-    parts_of(&pile->contacts[c], m->velocity, m->turning, pile->width, 1, &pile->last_u[i]);
-    for (int k = 0; k < pile->width; k++) pile->last_r[i + k] += impulses[k];
-}
-
-/* Where the impulses may begin: of a whole step as its halves' sum, else as before the step. A contact that was open
- * before it bounces off what it approaches at the velocities pile->before; what is held does not. Whether none does:
- * pile->bounce is by how much more each is to part, < 0. */
+/* Where the impulses may begin: as before the step. A contact that was open before it bounces off what it approaches at
+ * the velocities pile->before; what is held does not. Whether none does: pile->bounce is by how much more each is to
+ * part, < 0. */
 static bool recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
     bool smooth = true;
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
-        const imp_pile_memory *before = remembered(pile, point, IMP_PILE_BEFORE);
+        const imp_pile_memory *before = remembered(pile, point);
         const int i = pile->width * c;
         pile->bounce[c] = before ? 0 : world->pairs[point->pair].law.restitution * fmin(0, pile->before[i]);
         pile->q[i] += pile->bounce[c];
         smooth = smooth && (before || pile->before[i] >= 0);
-        for (int k = 0; k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
-        if (!pile->halved) recall_part(pile, before, c, h);
-        recall_part(pile, remembered(pile, point, IMP_PILE_HALF), c, 0.5 * h);
-        recall_part(pile, remembered(pile, point, IMP_PILE_END), c, 0.5 * h);
+        if (before) {
+            parts_of(&pile->contacts[c], before->reaction, before->moment, pile->width, h, &pile->last_r[i]);
+            parts_of(&pile->contacts[c], before->velocity, before->turning, pile->width, 1, &pile->last_u[i]);
+        } else
+            for (int k = 0; k < pile->width; k++) pile->last_r[i + k] = 0, pile->last_u[i + k] = pile->q[i + k];
     }
     return smooth;
 }
@@ -75,7 +65,7 @@ static bool remember_step(imp_pile *pile, imp_pile_memories *memories, int count
         const int i = pile->width * c;
         if (pile->u[i] > mobility_of(pile, c) * pile->r[i]) continue;
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
-        const imp_pile_memory *before = remembered(pile, point, IMP_PILE_BEFORE);
+        const imp_pile_memory *before = remembered(pile, point);
         imp_pile_memory *m = imp_pile_remember(pile->arena, memories, point);
         if (!m) return false;
         m->velocity = imp_pile_from_parts(&pile->contacts[c], &pile->u[i], 1);
@@ -332,8 +322,8 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
     const bool turning = pile->width > 3;
     const double span = h > 0 ? h : pile->strike.span;
     imp_cone_outcome outcome = find_impulses(pile, world, states, count, h, next, false);
-    /* once: where pressures are not unique each answer has others. A whole step's friction is placed as its halves' */
-    if (!pile->halved && is_usable(pile, world, count, outcome.residual) &&
+    /* once: where pressures are not unique each answer has others */
+    if (is_usable(pile, world, count, outcome.residual) &&
         imp_pile_shift_friction(&pile->touching, pile->members, count, pile->r, pile->width, pile->contacts))
         outcome = find_impulses(pile, world, states, count, h, next, true);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;

@@ -51,7 +51,7 @@ static bool add_point(imp_pile_contacts *contacts, const imp_world *world, int p
                                         .arm1 = point->contact.offset1,
                                         .arm2 = point->contact.offset2},
                             .gap = point->contact.gap,
-                            .memory = {-1, -1, -1}};
+                            .memory = -1};
     imp_cone_find_axes(point->contact.normal, own->contact.axes);
     if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)
         contacts->root[root_of(contacts->root, pair->body1)] = root_of(contacts->root, pair->body2);
@@ -152,7 +152,6 @@ typedef struct pair_points {
     int count;
     imp_pile_memory *memories;
     int memory_count, first; /* of those: its number among all */
-    imp_pile_recalled from;
 } pair_points;
 
 /* How far apart a point and what is remembered are; infinite: alike is asked for, and they are of other features. */
@@ -178,7 +177,7 @@ static imp_pile_memory *nearest_memory(const pair_points *own, const imp_pile_po
 static bool is_nearer_to_another(const pair_points *own, const imp_pile_memory *m, double apart, bool alike)
 {
     for (int i = 0; i < own->count; i++)
-        if (own->points[i].memory[own->from] < 0 && apart_of(m, &own->points[i], alike) < apart) return true;
+        if (own->points[i].memory < 0 && apart_of(m, &own->points[i], alike) < apart) return true;
     return false;
 }
 
@@ -188,11 +187,11 @@ static bool recall_nearest(const pair_points *own, double far, bool alike)
     bool some = false;
     for (int i = 0; i < own->count; i++) {
         imp_pile_point *point = &own->points[i];
-        if (point->memory[own->from] >= 0) continue;
+        if (point->memory >= 0) continue;
         double apart;
         imp_pile_memory *memory = nearest_memory(own, point, alike, &apart);
         if (!memory || apart > far || is_nearer_to_another(own, memory, apart, alike)) continue;
-        point->memory[own->from] = own->first + (int)(memory - own->memories);
+        point->memory = own->first + (int)(memory - own->memories);
         memory->taken = some = true;
     }
     return some;
@@ -211,12 +210,12 @@ static void find_memories(pair_points *own, const imp_pile_memories *memories)
 }
 
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
-                     imp_pile_memories *memories, imp_pile_recalled from)
+                     imp_pile_memories *memories)
 {
     for (int k = 0; k < memories->count; k++) memories->list[k].taken = false;
     if (memories->count == 0) return;
     for (int i = 0; i < contacts->count;) {
-        pair_points own = {.points = &contacts->points[i], .from = from};
+        pair_points own = {.points = &contacts->points[i]};
         while (i < contacts->count && contacts->points[i].pair == own.points->pair) i++, own.count++;
         find_memories(&own, memories);
         if (own.memory_count == 0) continue;

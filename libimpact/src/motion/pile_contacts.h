@@ -8,19 +8,16 @@
 #include "contact/cone_assemble.h"
 #include "contact/points.h"
 
-/* What a point is remembered from: what was held before the step; of a whole step, its two halves. */
-typedef enum imp_pile_recalled { IMP_PILE_BEFORE, IMP_PILE_HALF, IMP_PILE_END, IMP_PILE_RECALLS } imp_pile_recalled;
-
 /* A point at which two bodies touch. */
 typedef struct imp_pile_point {
     int pair;
     impact_feature feature[2];
     imp_bearer bearer;
     imp_cone_contact contact;
-    double gap;                   /* m */
-    double nearer;                /* how much nearer to the centre of pressure its friction acts, of the way; 0: not */
-    int memory[IMP_PILE_RECALLS]; /* what is remembered of it, imp_pile_recall; -1: nothing */
-    bool taken;                   /* scratch: it is an island's */
+    double gap;    /* m */
+    double nearer; /* how much nearer to the centre of pressure its friction acts, of the way; 0: not */
+    int memory;    /* the number of what is remembered of it, imp_pile_recall; -1: nothing */
+    bool taken;    /* scratch: it is an island's */
 } imp_pile_point;
 
 /* What a step held there; world axes. */
@@ -69,11 +66,10 @@ int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, in
  * points of the pair move in h at the velocities of the states: on a border a point has the features of one side or the
  * other, and is held whichever. */
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
-                     imp_pile_memories *memories, imp_pile_recalled from);
+                     imp_pile_memories *memories);
 
-/* Where the friction of each pair's points acts, by the pressures that are remembered from there, or of an even one. */
-void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories,
-                             imp_pile_recalled from);
+/* Where the friction of each pair's points acts, by the pressures that are remembered, or of an even one. */
+void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories);
 
 /* The same by pressures r, each contact's first of width numbers: of those points (count members, copied to own).
  * False: they are where it acts. */

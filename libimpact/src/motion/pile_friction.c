@@ -102,10 +102,9 @@ static double nearness(flat_points *flat)
 }
 
 /* The pressure that is remembered of a point, N; 0: nothing. */
-static double remembered_pressure(const imp_pile_point *point, const imp_pile_memories *memories,
-                                  imp_pile_recalled from)
+static double remembered_pressure(const imp_pile_point *point, const imp_pile_memories *memories)
 {
-    const int own = point->memory[from];
+    const int own = point->memory;
     return own < 0 ? 0 : fmax(qvec3_dot(memories->list[own].reaction, point->contact.axes[0]), 0);
 }
 
@@ -124,7 +123,7 @@ static bool is_disc(const imp_pile_point *points, int count)
     return count == IMP_POINTS;
 }
 
-static void place_pair(imp_pile_point *points, int count, const imp_pile_memories *memories, imp_pile_recalled from)
+static void place_pair(imp_pile_point *points, int count, const imp_pile_memories *memories)
 {
     const imp_cone_contact *first = &points[0].contact;
     flat_points flat = {.count = count};
@@ -132,7 +131,7 @@ static void place_pair(imp_pile_point *points, int count, const imp_pile_memorie
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const qvec3 arm = points[i].contact.arm1, place = qvec3_sub(arm, first->arm1);
-        const double pressure = remembered_pressure(&points[i], memories, from);
+        const double pressure = remembered_pressure(&points[i], memories);
         for (int k = 0; k < 2; k++) flat.x[i][k] = qvec3_dot(first->axes[k + 1], place);
         pressed = qvec3_axpy(pressure, arm, pressed);
         mean = qvec3_axpy(1.0 / count, arm, mean);
@@ -146,13 +145,12 @@ static void place_pair(imp_pile_point *points, int count, const imp_pile_memorie
     }
 }
 
-void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories,
-                             imp_pile_recalled from)
+void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories)
 {
     for (int i = 0, count; i < contacts->count; i += count) {
         imp_pile_point *first = &contacts->points[i];
         for (count = 1; i + count < contacts->count && first[count].pair == first->pair;) count++;
-        if (count > 1 && world->pairs[first->pair].law.friction > 0) place_pair(first, count, memories, from);
+        if (count > 1 && world->pairs[first->pair].law.friction > 0) place_pair(first, count, memories);
     }
 }
 

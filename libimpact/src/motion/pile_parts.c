@@ -30,9 +30,12 @@ bool imp_pile_reserve_bodies(imp_pile *pile, const imp_world *world)
     const size_t bodies = (size_t)world->body_count;
     bool there = imp_pile_contacts_reserve(&pile->touching, world);
     if (world->body_count <= pile->bodies) return there;
-    imp_state **states[] = {&pile->middle, &pile->mean,      &pile->whole, &pile->half,
-                            &pile->end,    &pile->projected, &pile->from};
-    for (int k = 0; k < 7; k++) *states[k] = replaced(pile, *states[k], bodies, sizeof **states[k], &there);
+    imp_state **states[] = {&pile->middle, &pile->mean, &pile->end, &pile->projected, &pile->from};
+    for (int k = 0; k < 5; k++) *states[k] = replaced(pile, *states[k], bodies, sizeof **states[k], &there);
+    for (int k = 0; k < IMP_PILE_RATES; k++) {
+        imp_pile_rates **rates[] = {&pile->rates[k], &pile->kept.rates[k]};
+        for (int i = 0; i < 2; i++) *rates[i] = replaced(pile, *rates[i], bodies, sizeof **rates[i], &there);
+    }
     pile->loads = replaced(pile, pile->loads, bodies, sizeof *pile->loads, &there);
     pile->number = replaced(pile, pile->number, bodies, sizeof *pile->number, &there);
     pile->velocities = replaced(pile, pile->velocities, bodies, sizeof *pile->velocities, &there);

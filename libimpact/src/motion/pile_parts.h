@@ -56,8 +56,8 @@ void imp_pile_seek_strikes(imp_pile *pile, const imp_world *world, const imp_sta
 impact_status imp_pile_strike_now(imp_pile *pile, imp_world *world, imp_state *states, imp_pile_step_result *result,
                                   bool *struck);
 
-/* What the second half of the step tried last left held. */
-static inline imp_pile_memories *imp_pile_ended(imp_pile *pile) { return &pile->memory[3]; }
+/* What the step tried last left held. */
+static inline imp_pile_memories *imp_pile_ended(imp_pile *pile) { return &pile->memory[2]; }
 
 /* Moves bodies along normals, least in the metric of mass: what is held to gap zero, where that can be; then overlaps
  * apart, *parted (m) being how far that moves any point. Gaps within the slack may stay. The step over h ended in the

@@ -15,9 +15,9 @@ static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states,
     for (int k = 0; k < held->count; k++) apart = fmax(apart, 2 * held->list[k].gap);
     imp_pile_contacts_mark(touching, world, held);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
-    imp_pile_recall(touching, world, states, h, held, IMP_PILE_BEFORE);
+    imp_pile_recall(touching, world, states, h, held);
     for (int k = 0; k < touching->count; k++)
-        touching->points[k].taken = touching->points[k].memory[IMP_PILE_BEFORE] < 0 || touching->points[k].gap > apart;
+        touching->points[k].taken = touching->points[k].memory < 0 || touching->points[k].gap > apart;
     return true;
 }
 

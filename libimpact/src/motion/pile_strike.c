@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * What strikes within a step. An open contact that closes at the rate w at the time tau is struck in the middle of the
- * part that finds it. Of the two bodies one has its speed changed by w/2 at least; the middles of the whole step and of
- * its half are h/4 apart: their ends are off by w h/8 or more, however it rebounds. Where that may not be the step ends
- * at tau = t_m + g/w, g the gap at t_m; there the same impulses are exchanged without time, and places are off by what
- * the rate w changes until then, the square of h.
+ * step that finds it. Of the two bodies one has its speed changed by w/2 at least: places may be off by w h/4 or more,
+ * however it rebounds. Where that may not be the step ends at tau = t_m + g/w, g the gap at t_m; there the same
+ * impulses are exchanged without time, and places are off by what the rate w changes until then, the square of h.
  */
 #include "base/tolerances.h"
 #include "motion/pile_parts.h"
@@ -16,9 +15,9 @@ static double strikes_at(const imp_pile *pile, const imp_world *world, const imp
                          const imp_pile_point *point)
 {
     double u[3];
-    if (point->memory[IMP_PILE_BEFORE] >= 0) return 0;
+    if (point->memory >= 0) return 0;
     imp_cone_contact_velocities(world, states, &point->contact, 1, u);
-    return -u[0] * pile->strike.span > 8 * pile->strike.allowed ? -u[0] : 0;
+    return -u[0] * pile->strike.span > 4 * pile->strike.allowed ? -u[0] : 0;
 }
 
 /* Whether the point is struck within the step; what closes as it ends is left to the next. */
@@ -90,7 +89,7 @@ impact_status imp_pile_strike_now(imp_pile *pile, imp_world *world, imp_state *s
     imp_pile_contacts *touching = &pile->touching;
     imp_state *next = pile->projected;
     imp_pile_step_result own = {.taken = 0};
-    *struck = pile->halved = false;
+    *struck = false;
     memcpy(pile->middle, states, size);
     memcpy(next, states, size);
     pile->memory[2].count = 0;
@@ -99,8 +98,8 @@ impact_status imp_pile_strike_now(imp_pile *pile, imp_world *world, imp_state *s
     if (!imp_pile_find_points(touching, world, states, states, h, imp_pile_slack(pile, world), false) ||
         !imp_pile_reserve_contacts(pile, world, touching->count))
         return IMPACT_ENOMEM;
-    imp_pile_recall(touching, world, states, h, &pile->memory[1], IMP_PILE_BEFORE);
-    imp_pile_place_friction(touching, world, &pile->memory[1], IMP_PILE_BEFORE);
+    imp_pile_recall(touching, world, states, h, &pile->memory[1]);
+    imp_pile_place_friction(touching, world, &pile->memory[1]);
     const impact_status status = strike_islands(pile, world, next, &own, struck);
     if (status != IMPACT_OK || !*struck) return status;
     memcpy(states, next, size);

@@ -178,11 +178,14 @@ impact_status imp_saved_walk(imp_saved *s, imp_archive *a, imp_arena *arena)
 
 /* ---- what can be ---- */
 
-static bool is_state(const imp_state *s)
+/* Of an energy that a start may have: what turns at 1e304 rad/s has steps that end in none. */
+static bool is_state(const impact_scene *scene, int body, const imp_state *s)
 {
+    const imp_body *own = &scene->world.bodies[body];
     const double sum =
         s->x.x + s->x.y + s->x.z + s->v.x + s->v.y + s->v.z + s->momentum.x + s->momentum.y + s->momentum.z;
-    return isfinite(sum) && fabs(quat_norm(s->q) - 1) < IMP_COLLIDE_UNIT;
+    if (!isfinite(sum) || !(fabs(quat_norm(s->q) - 1) < IMP_COLLIDE_UNIT)) return false;
+    return own->is_static || fabs(imp_body_energy(own, s, scene->world.gravity)) < IMP_MOST_ENERGY;
 }
 
 static bool is_time(double t, const imp_saved *s) { return t >= 0 && t <= s->t; }
@@ -194,7 +197,7 @@ static const char *body_fault(const imp_saved *s, const impact_scene *scene)
     for (int k = 0; k < scene->world.field_count; k++) slots += scene->world.fields[k].slots;
     if (s->inside_count != slots) return "as many edges of forces as the scene has";
     for (int k = 0; k < s->body_count; k++) {
-        if (!is_state(&s->bodies[k].state)) return "a body's state";
+        if (!is_state(scene, k, &s->bodies[k].state)) return "a body's state";
         if (!is_time(s->bodies[k].t0, s)) return "the time of a body's state";
     }
     for (int k = 0; k < 2 * s->beyond_count; k++)
@@ -228,7 +231,7 @@ static const char *island_fault(const imp_saved *s, const impact_scene *scene, c
     for (int m = 0; m < island->member_count; m++) {
         const int body = members[m].body;
         if (body >= s->body_count || (m > 0 && body <= members[m - 1].body)) return "an island's bodies";
-        if (!is_state(&members[m].state)) return "the state of a body in an island";
+        if (!is_state(scene, body, &members[m].state)) return "the state of a body in an island";
         here[body] = true;
         if (scene->world.bodies[body].is_static) continue;
         if (taken[body]) return "a body of one island alone";

@@ -43,12 +43,12 @@ static void rims_remember_their_own(void **state)
             if (random_unit(&random) < 0.5) {
                 touches[contacts.count] = k;
                 points[contacts.count++] = (imp_pile_point){
-                    .feature = {rim, face}, .contact.arm1 = place_of(k, ahead), .memory = {-1, -1, -1}};
+                    .feature = {rim, face}, .contact.arm1 = place_of(k, ahead), .memory = -1};
             }
         }
-        imp_pile_recall(&contacts, &world, states, 0, &memories, IMP_PILE_BEFORE);
+        imp_pile_recall(&contacts, &world, states, 0, &memories);
         for (int i = 0; i < contacts.count; i++) {
-            const int found = points[i].memory[IMP_PILE_BEFORE];
+            const int found = points[i].memory;
             bool there = false;
             for (int m = 0; m < memories.count; m++) there = there || held[m] == touches[i];
             if (there) assert_true(found >= 0 && held[found] == touches[i]);
@@ -66,10 +66,10 @@ static void place(const double (*at)[2], int count, imp_pile_point *points)
     imp_pile_contacts contacts = {.points = points, .count = count, .room = count};
     for (int k = 0; k < count; k++) {
         points[k] = (imp_pile_point){.contact = {.body1 = 0, .body2 = 1, .arm1 = {at[k][0], at[k][1], -1}},
-                                     .memory = {-1, -1, -1}};
+                                     .memory = -1};
         imp_cone_find_axes((qvec3){0, 0, 1}, points[k].contact.axes);
     }
-    imp_pile_place_friction(&contacts, &world, &none, IMP_PILE_BEFORE);
+    imp_pile_place_friction(&contacts, &world, &none);
 }
 
 /* Squares turned, triangles and lines against their mean distances; and whatever else a patch may be, places that

