@@ -13,6 +13,10 @@ static void copy(double *to, const double *from, int n) { memcpy(to, from, sizeo
 
 /* ---- by e ---- */
 
+/* What of e |F| may be on the path: on that which has folds to go round, and ends in an answer, so little that what is
+ * followed is the path itself. */
+static double nearness(const imp_cone_system *system) { return system->kindles ? IMP_CONE_ON_PATH : IMP_CONE_NEAR; }
+
 /* From e to the next: the tangent, then Newton; false, and z as before, where that fails. */
 static bool go_down(imp_cone_system *system, double e, double next)
 {
@@ -24,7 +28,7 @@ static bool go_down(imp_cone_system *system, double e, double next)
         imp_cone_drift(system, system->z, e, system->step);
         imp_cone_back(system, system->step);
         for (int i = 0; i < n; i++) system->z[i] += (next * next - e * e) * system->step[i];
-        if (imp_cone_newton(system, next, IMP_CONE_NEAR * next, MOST, next > IMP_CONE_ARC_LEAST)) return true;
+        if (imp_cone_newton(system, next, nearness(system) * next, MOST, next > IMP_CONE_ARC_LEAST)) return true;
     }
     copy(system->z, system->kept, n);
     return false;
@@ -105,7 +109,7 @@ static bool correct_arc(imp_cone_system *system, const cone_arc *arc, double *lo
     for (*used = 0; *used < MOST; (*used)++) {
         const double e = exp(*log_e);
         const double norm = imp_cone_defect(system, system->z, e, system->step);
-        if (norm <= IMP_CONE_NEAR * e) return true;
+        if (norm <= IMP_CONE_ON_PATH * e) return true;
         if (!(norm < 2 * before)) return false;
         before = norm;
         copy(system->value, system->step, n);

@@ -5,13 +5,15 @@
  * know better. The components A miss the velocities u' that their modes have by that rounding,
  * |u - u'| <= 32 eps sum |W p|, and it is taken away in rounds, each from the velocities that the last one left:
  *
- *     W_AA dp = u' - u,   A: the normals that pressed and what sticks,   dp of least norm
+ *     (W D)_A dp = (u' - u)_A,   A: the normals that pressed and what sticks,   dp of least norm
+ *
+ * D what goes with an impulse of A: itself, and of the normal of what slides friction too, as much of it as there was.
  */
 #include "contact/encounter.h"
 
 #include <float.h>
 #include "base/tolerances.h"
-#include "contact/least.h"
+#include "contact/held_linear.h"
 
 qvec3 imp_encounter_impulse(const imp_contact *contact, const double p[3])
 {
@@ -54,14 +56,22 @@ static double terms_of(const imp_group *g, const double *p, int contact)
     return most;
 }
 
-/* The normals that pressed, and what sticks: slip's friction hangs on its normal. */
-static int find_pressed(const imp_group *g, const double *after, const double *p, int *which)
+/* A component of A: its impulse is along its own axis, or, of the normal of slip, with its friction, in the ratio
+ * in which they are: |p_t| = mu p_n stays so. */
+typedef struct unknown {
+    int row;
+    bool slides;
+} unknown;
+
+/* The normals that pressed, and what sticks. */
+static int find_unknowns(const imp_group *g, const double *after, const double *p, unknown *unknowns)
 {
     int n = 0;
     for (int i = 0; i < g->count; i++) {
-        const double *u = &after[3 * i];
-        const bool sticks = g->contacts[i].friction > 0 && u[1] == 0 && u[2] == 0;
-        for (int j = 0; j < (sticks ? 3 : 1) && p[3 * i] > 0; j++) which[n++] = 3 * i + j;
+        if (!(p[3 * i] > 0)) continue;
+        const bool sticks = g->contacts[i].friction > 0 && after[3 * i + 1] == 0 && after[3 * i + 2] == 0;
+        unknowns[n++] = (unknown){3 * i, !sticks};
+        for (int k = 1; sticks && k < 3; k++) unknowns[n++] = (unknown){3 * i + k, false};
     }
     return n;
 }
@@ -74,32 +84,67 @@ static double greatest_speed(const imp_group *g)
     return speed;
 }
 
-/* Into more[3 count]; false: u misses u' by no more than rounding of velocities, or by more than that of impulses. */
-static bool find_mending(const imp_group *g, const double *after, const double *p, double *more,
+/* The change of the velocity along `row` by the unknown of another. */
+static double change_by(const imp_group *g, const double *p, int row, const unknown *other)
+{
+    const double *w = &g->w[(size_t)row * 3 * (size_t)g->count + (size_t)other->row], *own = &p[other->row];
+    return other->slides ? w[0] + (w[1] * own[1] + w[2] * own[2]) / own[0] : w[0];
+}
+
+/* Into more[3 count] what changes the velocities of A by `off`; each measured by the power of two near the root of its
+ * own mobility, so that masses far apart are none to the elimination, and none of W's digits are lost. */
+static bool solve_mending(const imp_group *g, const double *p, const unknown *unknowns, int n, const double *off,
+                          double *more, impact_together_workspace *workspace)
+{
+    const size_t width = 3 * (size_t)g->count, square = (size_t)n * (size_t)n;
+    imp_linear linear = {.n = n,
+                         .doubtful = IMP_ENCOUNTER_DOUBTFUL,
+                         .vanishing = IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON,
+                         .matrix = imp_encounter_take(workspace, square, sizeof *linear.matrix),
+                         .spare = imp_encounter_take(workspace, square, sizeof *linear.spare),
+                         .scratch = imp_encounter_take(workspace, (size_t)n, sizeof *linear.scratch),
+                         .rows = imp_encounter_take(workspace, (size_t)n, sizeof *linear.rows),
+                         .columns = imp_encounter_take(workspace, (size_t)n, sizeof *linear.columns)};
+    double *size = imp_encounter_take(workspace, (size_t)n, sizeof *size),
+           *x = imp_encounter_take(workspace, (size_t)n, sizeof *x);
+    if (!x) return false;
+    for (int k = 0; k < n; k++) size[k] = 1 / imp_encounter_unit(sqrt(g->w[(size_t)unknowns[k].row * (width + 1)]));
+    for (int k = 0; k < n; k++) {
+        x[k] = size[k] * off[k];
+        for (int l = 0; l < n; l++)
+            linear.matrix[k * n + l] = size[k] * size[l] * change_by(g, p, unknowns[k].row, &unknowns[l]);
+    }
+    imp_linear_factor(&linear);
+    imp_linear_solve(&linear, x);
+    for (size_t i = 0; i < width; i++) more[i] = 0;
+    for (int k = 0; k < n; k++) {
+        const int row = unknowns[k].row;
+        more[row] = size[k] * x[k];
+        for (int l = 1; unknowns[k].slides && l < 3; l++) more[row + l] = more[row] * (p[row + l] / p[row]);
+    }
+    return true;
+}
+
+/* Into more[3 count]; false: u misses u' by no more than `enough` of the greatest speed, or by more than rounding of
+ * impulses. */
+static bool find_mending(const imp_group *g, const double *after, const double *p, double enough, double *more,
                          impact_together_workspace *workspace)
 {
     const double eps = IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON, speed = greatest_speed(g);
     const size_t width = 3 * (size_t)g->count;
     double *u = imp_encounter_take(workspace, width, sizeof *u), worst = 0;
-    int *which = imp_encounter_take(workspace, width, sizeof *which);
-    if (!u || !which) return false;
+    unknown *unknowns = imp_encounter_take(workspace, width, sizeof *unknowns);
+    if (!u || !unknowns) return false;
     imp_encounter_look(g, u);
-    const int n = find_pressed(g, after, p, which);
+    const int n = find_unknowns(g, after, p, unknowns);
     for (int k = 0; k < n; k++) {
-        const double off = fabs(after[which[k]] - u[which[k]]);
-        if (!(off <= eps * (terms_of(g, p, which[k] / 3) + speed))) return false;
-        worst = fmax(worst, off);
+        const int row = unknowns[k].row;
+        const double off = after[row] - u[row];
+        if (!(fabs(off) <= eps * (terms_of(g, p, row / 3) + speed))) return false;
+        worst = fmax(worst, fabs(off));
+        u[k] = off; /* k <= row */
     }
-    if (worst <= eps * speed) return false;
-    const size_t square = (size_t)n * (size_t)n;
-    double *scratch = imp_encounter_take(workspace, 3 * square + (size_t)n, sizeof *scratch),
-           *inverse = imp_encounter_take(workspace, square, sizeof *inverse);
-    if (!scratch || !inverse) return false;
-    (void)imp_least_inverse(g->w, (int)width, which, n, eps, scratch, inverse);
-    for (size_t i = 0; i < width; i++) more[i] = 0;
-    for (int k = 0; k < n; k++)
-        for (int l = 0; l < n; l++) more[which[k]] += inverse[k * n + l] * (after[which[l]] - u[which[l]]);
-    return true;
+    return worst > enough * speed && solve_mending(g, p, unknowns, n, u, more, workspace);
 }
 
 void imp_encounter_mend(const imp_group *g, const double *after, double *p, impact_together_workspace *workspace)
@@ -108,7 +153,9 @@ void imp_encounter_mend(const imp_group *g, const double *after, double *p, impa
     const size_t used = work->used;
     for (int round = 0; round < IMP_ENCOUNTER_MENDINGS; round++) {
         double *more = imp_encounter_take(workspace, 3 * (size_t)g->count, sizeof *more);
-        if (!more || !find_mending(g, after, p, more, workspace)) break;
+        /* begun where more than rounding of velocities is missed, and led on to that of one */
+        const double enough = (round > 0 ? 1 : IMP_ENCOUNTER_ROUNDINGS) * DBL_EPSILON;
+        if (!more || !find_mending(g, after, p, enough, more, workspace)) break;
         imp_encounter_push(g, more);
         for (int i = 0; i < 3 * g->count; i++) p[i] += more[i];
         work->used = used;

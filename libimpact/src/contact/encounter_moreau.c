@@ -35,7 +35,8 @@ typedef struct moreau {
     imp_cone_row *rows;               /* count */
 } moreau;
 
-/* Whether what r leaves is rounding of W r, though that be more than q: encounter_mend.c takes it away. */
+/* Whether what r leaves is rounding of W r: encounter_mend.c takes it away. Rounding as large as q leaves no velocity
+ * known, and what r is then is chance. */
 static bool is_rounding(const imp_cone_problem *problem, double residual, const double *r)
 {
     const int n = 3 * problem->count;
@@ -46,7 +47,8 @@ static bool is_rounding(const imp_cone_problem *problem, double residual, const 
         terms = fmax(terms, sum);
         size = fmax(size, fabs(problem->q[i]));
     }
-    return residual * size <= IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * terms;
+    const double rounding = IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * terms;
+    return residual * size <= rounding && rounding < size;
 }
 
 static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, const double *r, imp_group *group)
@@ -146,12 +148,13 @@ static void book(imp_finding *f, int phase, const double *p, const double *u, co
     f->compressions += phase == 0 && p[0] > 0;
 }
 
-/* What the modes say is zero, where W r + q leaves the rounding of r; sticks: modes of the problem's friction. */
-static void clean(int count, const imp_cone_mode *modes, const imp_cone_mode *sticks, double *u)
+/* What the modes say is zero, where W r + q leaves the rounding of r; parts: modes of the same slip, of a second
+ * problem (else the same). */
+static void clean(int count, const imp_cone_mode *modes, const imp_cone_mode *parts, double *u)
 {
     for (int i = 0; i < count; i++) {
         if (modes[i] != IMP_CONE_OPEN) u[3 * i] = 0;
-        if (sticks[i] == IMP_CONE_STICKS) u[3 * i + 1] = u[3 * i + 2] = 0;
+        if (modes[i] == IMP_CONE_STICKS || parts[i] == IMP_CONE_STICKS) u[3 * i + 1] = u[3 * i + 2] = 0;
     }
 }
 

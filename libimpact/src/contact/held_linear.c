@@ -195,10 +195,11 @@ void imp_linear_factor(imp_linear *system)
 {
     const size_t bytes = (size_t)system->n * (size_t)system->n * sizeof *system->matrix;
     const double most = largest_entry(system->matrix, system->n * system->n);
+    const double none = system->vanishing > 0 ? system->vanishing : IMP_LINEAR_VANISHING;
     memcpy(system->spare, system->matrix, bytes);
-    if (reduce_regular(system, fmax(system->doubtful, IMP_LINEAR_VANISHING) * most)) return;
+    if (reduce_regular(system, fmax(system->doubtful, none) * most)) return;
     memcpy(system->matrix, system->spare, bytes);
-    reduce_singular(system, IMP_LINEAR_VANISHING * most);
+    reduce_singular(system, none * most);
     system->sign = 0;
     find_basis(system);
 }

@@ -11,6 +11,7 @@
 typedef struct imp_linear {
     int n, rank;
     double doubtful;     /* pivots under this part of the greatest element are looked at again, by complete pivoting */
+    double vanishing;    /* of the greatest element: pivots under it are none; 0: 1e-12 */
     int sign;            /* of the determinant; 0 where equations are missing */
     double *matrix;      /* n^2: comes in by rows, and is spent */
     double *spare;       /* n^2 of scratch */

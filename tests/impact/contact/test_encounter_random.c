@@ -267,6 +267,41 @@ static void what_no_path_leads_to_is_found(void **state)
     }
 }
 
+/* Newton's problems of the campaign that no other way solves: the path on which friction sets in does where it is
+ * followed itself. In steps that went by it at a tenth of e it was lost, or crept. */
+static void the_path_on_which_friction_sets_in_is_followed_to_its_end(void **state)
+{
+    (void)state;
+    static const kept_encounter cases[] = {{20000000, 47331, 0, 7, 12}, {20050000, 44223, 0, 4, 6},
+                                           {20050000, 48374, 0, 7, 12}, {20050000, 48847, 0, 7, 12},
+                                           {21100000, 44734, 0, 4, 6},  {21100000, 46943, 0, 7, 12},
+                                           {21100000, 49961, 0, 7, 12}, {21100000, 49978, 0, 7, 12}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        random_encounter e = draw_kept(cases[k].seed, cases[k].number, cases[k].least, cases[k].most);
+        e.restitution = IMPACT_NEWTON;
+        const answer a = solve(&e, IMPACT_TOGETHER_MOREAU, 0, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_at_most(a.outcome.residual, 1e-12);
+    }
+}
+
+/* An encounter by Moreau's law with impulses so great, and among themselves so nearly balanced, that what takes their
+ * rounding away (encounter_mend.c) changes them by a billionth: friction of what slides has to follow. */
+static void friction_follows_what_mends_its_pressure(void **state)
+{
+    (void)state;
+    random_stream random = {5};
+    const random_encounter e = draw_kept(20000000, 37034, 7, 12);
+    for (int run = 0; run < 8; run++) {
+        const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10),
+                                       random_log(&random, 0.1, 10), random_log(&random, 0.1, 10)};
+        const random_encounter other = change_frame(&e, &frame);
+        const answer a = solve(&other, IMPACT_TOGETHER_MOREAU, 0, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_at_most(a.outcome.residual, 1e-14);
+    }
+}
+
 /* Encounters of the campaign whose bodies bounce from contact to contact, ever less, each round like the one before:
  * two that once spent the work allowed, and one that came to where its springs count as open, after 45000 steps, with
  * 2e-9 of its speed left; and two of whose two contacts one always presses, which come to rest. */
@@ -518,6 +553,8 @@ int main(void)
         cmocka_unit_test(what_found_no_end_is_answered),
         cmocka_unit_test(what_comes_loose_is_no_wedge),
         cmocka_unit_test(what_no_path_leads_to_is_found),
+        cmocka_unit_test(friction_follows_what_mends_its_pressure),
+        cmocka_unit_test(the_path_on_which_friction_sets_in_is_followed_to_its_end),
         cmocka_unit_test(bounces_that_never_end_are_followed_to_their_end),
         cmocka_unit_test(what_never_ends_is_told_and_what_takes_long_is_answered),
         cmocka_unit_test(what_no_path_leads_to_is_answered),
