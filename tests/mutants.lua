@@ -46,7 +46,7 @@ local rooms = {
   { "^libimpact/src/motion/spin", { "impact_segment", "impact_search", "impact_crowd", "impact_search_proof", "impact_random_scenes", "impact_scene_answers" } },
   { "^libimpact/src/contact/patch", { "impact_patch", "impact_held_still" } },
   { "^libimpact/src/contact/points", { "impact_patch", "impact_random_scenes", "impact_cases", "impact_piles" } },
-  { "^libimpact/src/contact/rest", { "impact_rest", "impact_cases" } }, { "^libimpact/src/contact/least", { "impact_patch", "impact_held", "impact_encounter_random", "impact_piles" } },
+  { "^libimpact/src/contact/rest", { "impact_rest", "impact_cases", "impact_encounter_random" } }, { "^libimpact/src/contact/least", { "impact_patch", "impact_held", "impact_encounter_random", "impact_piles" } },
   { "^libimpact/src/contact/skyline", { "impact_cone", "impact_springs", "impact_held_system" } },
   { "^libimpact/src/contact/held_still", { "impact_held_still", "impact_cases" } }, { "^libimpact/src/contact/held_flat", { "impact_held_flat" } }, { "^libimpact/src/contact/held_line%.", { "impact_held_line" } },
   { "^libimpact/src/contact/held_linear", { "impact_held_linear", "impact_held_still", "impact_held" } },

@@ -604,12 +604,6 @@
 #define IMP_ENCOUNTER_DOUBTFUL 1e-8
 /* Rounds in which that is taken away, each of what the last one left: the condition of W times eps of it. */
 #define IMP_ENCOUNTER_MENDINGS 3
-/* Of the mean mobility: what contacts give way for an impulse where compression's are not unique; and of that, in a
- * second step towards none, from which Newton goes on. Rounding over both, 1e-11, is what is left to chance. */
-#define IMP_MOREAU_SHARING 1e-3
-#define IMP_MOREAU_SHARED 0.03
-/* Where Newton does not go on from there steps are shortened, to this ratio, and begin nearer to none. */
-#define IMP_MOREAU_SHORTEST 0.9
 /* Seeds of contacts that are pressed and may be drawn on: of the group's fastest speed, under which velocities are none
  * (IMP_SPRINGS_STILL) and whose energy that of an open spring; and of the slip, far over what the cone problem takes
  * for none (its answer's modes are then solved for without). */

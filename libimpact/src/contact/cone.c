@@ -221,15 +221,28 @@ double imp_cone_residual(const imp_cone_problem *problem, const double *r, doubl
     return worst;
 }
 
-double imp_cone_rounding(const imp_cone_problem *problem, const double *r)
+/* The sum of the sizes of one row's terms. */
+static double terms_of_row(const imp_cone_problem *problem, int row, const double *r)
 {
     const int n = imp_cone_width(problem) * problem->count;
+    double sum = 0;
+    for (int j = 0; j < n; j++) sum += fabs(problem->w[(size_t)row * (size_t)n + (size_t)j] * r[j]);
+    return sum;
+}
+
+/* The proof asks for û_n = u_n + mu |u_t|, which is off by both. */
+double imp_cone_rounding(const imp_cone_problem *problem, const double *r)
+{
+    const int width = imp_cone_width(problem);
     const double size = imp_cone_largest(problem, problem->q, true);
     double terms = 0;
-    for (int i = 0; i < n; i++) {
-        double sum = 0;
-        for (int j = 0; j < n; j++) sum += fabs(problem->w[(size_t)i * (size_t)n + (size_t)j] * r[j]);
-        terms = fmax(terms, sum);
+    for (int c = 0; c < problem->count; c++) {
+        double row[IMP_CONE_WIDEST];
+        for (int k = 0; k < width; k++) {
+            row[k] = terms_of_row(problem, width * c + k, r);
+            terms = fmax(terms, row[k]);
+        }
+        terms = fmax(terms, row[0] + problem->friction[c] * hypot(row[1], row[2]));
     }
     return size > 0 ? IMP_CONE_ROUNDINGS * DBL_EPSILON * terms / size : 0;
 }
@@ -254,7 +267,8 @@ static bool excludes(imp_cone_system *system, double *direction, imp_cone_outcom
                 (i == j ? IMP_CONE_SHIFT : 0);
     }
     system->start[count] = system->n = system->count = count;
-    system->exact = system->by_rank = false;
+    system->exact = false;
+    system->end = IMP_CONE_PATH_END;
     (void)imp_cone_follow(system);
     imp_cone_values(system, system->z, 0, system->x, system->u);
     double sum = 0, pressed = 0, moved = 0;
@@ -365,10 +379,9 @@ static void kindle(imp_cone_system *system, double *r, double *u, imp_cone_outco
 {
     enum { STEPS = 20 };
     const double before = outcome->residual;
-    system->by_rank = false;
+    system->end = IMP_CONE_PATH_END;
     imp_cone_kindle(system);
     polish(system, true, STEPS, r, u, outcome);
-    system->by_rank = true;
     if (outcome->residual < before) outcome->stage = IMP_CONE_KINDLED;
 }
 
@@ -404,7 +417,7 @@ static void solve(imp_cone_system *system, double *r, double *u, imp_cone_outcom
         polish(system, true, LAST_STEPS, r, u, outcome);
     }
     if (!is_exact(system->problem, r, outcome)) {
-        system->by_rank = true;
+        system->end = IMP_CONE_RANK_END;
         const imp_cone_stage stage = imp_cone_follow(system);
         const double before = outcome->residual;
         polish(system, true, LAST_STEPS, r, u, outcome);
@@ -440,6 +453,7 @@ static imp_cone_system system_of(const imp_cone_problem *problem, imp_cone_works
     find_order(&system, workspace);
     find_scales(&system);
     find_matrix(&system);
+    system.end = IMP_CONE_PATH_END;
     return system;
 }
 

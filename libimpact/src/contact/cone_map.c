@@ -215,7 +215,7 @@ void imp_cone_factor(imp_cone_system *system, const double *z, double e)
                          .scratch = system->scratch,
                          .rows = system->rows,
                          .columns = system->columns};
-    if (e == 0 || (system->by_rank && e <= IMP_CONE_ARC_LEAST))
+    if (e <= IMP_CONE_ARC_LEAST) /* what A leaves open -U' alone tells, of size e^2: rounding hides it */
         imp_linear_factor(&linear);
     else if (!imp_linear_factor_regular(&linear))
         linear.sign = 0;

@@ -39,7 +39,7 @@ typedef struct imp_cone_system {
     int *order;      /* the problem's contacts in an order of their own */
     double d, size;  /* the scales, so that no units remain: the mean of W's diagonal; Q, the largest |q_c| */
     double eased;    /* alpha, what A's diagonal has too much */
-    bool by_rank;    /* small e: what A leaves open is told by -U' alone, of size e^2, which elimination may lose */
+    double end;      /* e, where paths end */
     bool kindles;    /* F is that of the path on which friction sets in */
     bool exact;      /* F is asked of the problem itself, in twice the precision */
     int count, n;    /* lobes, unknowns */

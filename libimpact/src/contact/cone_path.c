@@ -24,7 +24,7 @@ static bool go_down(imp_cone_system *system, double e, double next)
     const int n = system->n;
     copy(system->kept, system->z, n);
     imp_cone_factor(system, system->z, e);
-    if (system->sign > 0 || (system->by_rank && e <= IMP_CONE_ARC_LEAST)) {
+    if (system->sign > 0 || e <= IMP_CONE_ARC_LEAST) {
         imp_cone_drift(system, system->z, e, system->step);
         imp_cone_back(system, system->step);
         for (int i = 0; i < n; i++) system->z[i] += (next * next - e * e) * system->step[i];
@@ -215,7 +215,7 @@ static int most_turns(const imp_cone_system *system)
 /* Down from e, by arc length if there is no other way. */
 static imp_cone_stage go_on(imp_cone_system *system, double e)
 {
-    const double last = descend(system, e, system->by_rank ? IMP_CONE_RANK_END : IMP_CONE_PATH_END);
+    const double last = descend(system, e, system->end);
     if (last <= IMP_CONE_ARC_LEAST) return IMP_CONE_PATH;
     turn_round(system, last, most_turns(system));
     return IMP_CONE_ARC;

@@ -15,6 +15,7 @@
 #include <impact/together.h>
 #include "base/arena.h"
 #include "contact/cone_bodies.h"
+#include "contact/rest.h"
 
 /* One contact of a group. */
 typedef struct imp_contact {
@@ -68,6 +69,7 @@ struct impact_together_workspace {
     imp_block plan, work; /* of a call; of one group */
     imp_cone_workspace cone;
     imp_cone_bodies bodies;
+    imp_rest_workspace rest;
 };
 
 /* A workspace in the arena, with which it goes: not to be destroyed. */
@@ -142,6 +144,20 @@ void imp_encounter_look(const imp_group *group, double *u);
 /* p has pushed, after which contacts have the velocities `after` but for rounding: that is taken away, and p changed.
  */
 void imp_encounter_mend(const imp_group *group, const double *after, double *p, impact_together_workspace *workspace);
+
+/* ---- encounter_share.c ---- */
+
+typedef struct imp_share_question {
+    const double *u;         /* 3 count: the velocities that the impulses leave */
+    double still;            /* m/s: what of them is rounding */
+    int bodies;              /* that move */
+    const int (*couples)[2]; /* count: of each contact the two, 0 .. bodies - 1; -1: one that does not */
+} imp_share_question;
+
+/* group->p to those impulses of least norm that leave the same velocities, modes[count] to what these say; false, and
+ * both stay, where they are not found. */
+bool imp_encounter_share(const imp_group *group, const imp_share_question *question, imp_cone_mode *modes,
+                         impact_together_workspace *workspace);
 
 /* ---- encounter_pressed.c ---- */
 

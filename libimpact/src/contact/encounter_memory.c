@@ -10,7 +10,7 @@ impact_status imp_together_workspace_in(imp_arena *arena, impact_together_worksp
 {
     *workspace = imp_arena_take(arena, 1, sizeof **workspace);
     if (!*workspace) return IMPACT_ENOMEM;
-    (*workspace)->arena = (*workspace)->cone.arena = (*workspace)->bodies.arena = arena;
+    (*workspace)->arena = (*workspace)->cone.arena = (*workspace)->bodies.arena = (*workspace)->rest.arena = arena;
     return IMPACT_OK;
 }
 

@@ -158,47 +158,17 @@ static void clean(int count, const imp_cone_mode *modes, const imp_cone_mode *pa
     }
 }
 
-/* The problem of contacts that give way by so much for an impulse, into r and u of the room `to`: of several answers
- * the one that the other room's leads to (begun: there is one). Whether it is solved. */
-static bool solve_giving(moreau *m, const imp_cone_problem *problem, double gives, bool begun, int to)
+/* The impulses of compression where they are not unique, on which restitution depends: without it they are what the
+ * solver's path has of rounding. */
+static void share(moreau *m, double residual)
 {
-    const size_t n = 3 * (size_t)problem->count, own = n * (size_t)to, other = n * (size_t)(1 - to);
-    imp_cone_problem giving = *problem;
-    for (size_t i = 0; i < n * n; i++) m->w[i] = problem->w[i] + (i % (n + 1) == 0 ? gives : 0);
-    giving.w = m->w;
-    giving.near_last = begun;
-    if (begun) giving.last_r = m->r + other, giving.last_u = m->v + other;
-    const imp_cone_outcome o = imp_cone_solve(&giving, m->cone, m->r + own, m->v + own, m->modes);
-    m->group->steps += o.factorings;
-    return o.status == IMP_CONE_SOLVED;
-}
-
-/* The impulses of compression where they are not unique, on which restitution depends: those that contacts share which
- * give way a little for each impulse, and are unique so; then, in steps towards none, those next to them of contacts
- * that do not. Without it they are what the solver's path has of rounding. */
-static void share(moreau *m, const imp_cone_problem *problem, double *p)
-{
-    const size_t n = 3 * (size_t)problem->count;
-    double mean = 0, gives = IMP_MOREAU_SHARING, least = gives * IMP_MOREAU_SHARED, ratio = IMP_MOREAU_SHARED;
-    size_t at = 0;
-    for (size_t i = 0; i < n; i++) mean += problem->w[i * (n + 1)] / (double)n;
-    if (!solve_giving(m, problem, gives * mean, false, 0)) return;
-    while (gives > 0) {
-        const double next = gives <= least ? 0 : fmax(ratio * gives, least);
-        if (solve_giving(m, problem, next * mean, true, at == 0)) {
-            at = 1 - at;
-            gives = next;
-            ratio = IMP_MOREAU_SHARED;
-        } else if (next > 0) {
-            ratio = sqrt(ratio);
-            if (ratio > IMP_MOREAU_SHORTEST) return;
-        } else {
-            least *= IMP_MOREAU_SHARED;
-            if (least < DBL_EPSILON) return; /* a rounding of W is no giving way */
-        }
-    }
-    memcpy(p, m->r + n * at, n * sizeof *p);
-    memcpy(m->u, m->v + n * at, n * sizeof *m->u);
+    const int width = 3 * m->group->count;
+    double size = 0;
+    for (int i = 0; i < width; i++) size = fmax(size, fabs(m->q[i]));
+    if (m->bodies == 0) couple_contacts(m);
+    const imp_share_question question = {m->u, fmax(residual, IMP_CONE_ACCEPTED) * size, m->bodies,
+                                         (const int(*)[2])m->couples};
+    (void)imp_encounter_share(m->group, &question, m->modes, m->workspace);
 }
 
 /* The velocities before, less the rebounds. */
@@ -252,7 +222,7 @@ static bool compress(moreau *m)
                                       .work = starts ? work_of_start(n) : 0};
     imp_cone_outcome o;
     if (!find_answer(m, &problem, m->group->p, m->u, &o)) return false;
-    if (o.chosen) share(m, &problem, m->group->p);
+    if (o.chosen) share(m, o.residual);
     if (seeded && !take_seeds_away(m, problem)) return false;
     m->strikes = imp_encounter_strikes(m->group);
     if (!m->strikes) return true;

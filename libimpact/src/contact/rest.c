@@ -19,7 +19,9 @@ typedef struct rest_system {
     const double *friction;
     const imp_cone_lengths *lengths;
     const imp_cone_row *rows, *turns;
-    const int *number; /* per body of the world; -1: does not move */
+    const int *number;       /* per body of the world; -1: does not move */
+    double least;            /* size of a load and forces: what is smaller is missed by as much as that may be */
+    const int (*couples)[2]; /* per contact, such numbers; NULL: by `contact` and `number` */
     double *matrix, *spare, *scratch, *load, *x, *trial, *step, *gradient, *forces, *sizes;
     int *pivots, *columns;
 } rest_system;
@@ -55,10 +57,10 @@ void imp_rest_release(imp_rest_workspace *workspace)
     *workspace = (imp_rest_workspace){.arena = workspace->arena};
 }
 
-static rest_system furnish_rest(imp_rest_workspace *workspace, const imp_world *world, int count)
+static rest_system furnish_rest(imp_rest_workspace *workspace, int bodies, int count)
 {
     rest_system s = {.contacts = count, .rows = workspace->rows, .turns = workspace->turns};
-    const size_t n = 6 * (size_t)world->body_count;
+    const size_t n = 6 * (size_t)bodies;
     double *block = workspace->block,
            **vectors[] = {&s.scratch, &s.load, &s.x, &s.trial, &s.step, &s.gradient, &s.sizes};
     s.matrix = block, s.spare = block + n * n, block += REST_SQUARES * n * n;
@@ -73,8 +75,8 @@ static rest_system furnish_rest(imp_rest_workspace *workspace, const imp_world *
 /* The moving bodies of a contact's two sides, -1 where there is none. */
 static void sides_of(const rest_system *s, int c, int body[2])
 {
-    body[0] = s->number[s->contact[c].body1];
-    body[1] = s->number[s->contact[c].body2];
+    body[0] = s->couples ? s->couples[c][0] : s->number[s->contact[c].body1];
+    body[1] = s->couples ? s->couples[c][1] : s->number[s->contact[c].body2];
 }
 
 /* The row k of G of one side. */
@@ -153,7 +155,8 @@ static double find_gradient(const rest_system *s)
     }
     for (int b = 0; b < s->bodies; b++) {
         const double left = sqrt(product(&s->gradient[6 * b], &s->gradient[6 * b], 6));
-        if (left > worst * s->sizes[b]) worst = left / s->sizes[b];
+        const double size = fmax(s->sizes[b], s->least);
+        if (left > worst * size) worst = left / size;
     }
     return worst;
 }
@@ -382,7 +385,7 @@ imp_rest_outcome imp_rest_solve(const imp_world *world, const imp_state *states,
     const double *direction = NULL;
     if (count > workspace->contacts || world->body_count > workspace->bodies)
         return (imp_rest_outcome){.status = IMP_REST_UNDECIDED, .residual = INFINITY};
-    rest_system s = furnish_rest(workspace, world, count);
+    rest_system s = furnish_rest(workspace, world->body_count, count);
     s.contact = contacts, s.friction = friction;
     s.lengths = lengths, s.width = lengths ? IMP_CONE_WIDEST : 3;
     number_bodies(&s, world, s.columns + 6 * world->body_count);
@@ -394,4 +397,33 @@ imp_rest_outcome imp_rest_solve(const imp_world *world, const imp_state *states,
     memset(s.trial, 0, sizeof *s.trial * (size_t)s.n);
     show_motion(&s, world, states, direction ? direction : s.trial, velocities);
     return outcome;
+}
+
+bool imp_rest_find_least(const imp_rest_question *question, imp_rest_workspace *workspace, double *forces)
+{
+    enum { REFINEMENTS = 3 };
+    const double *direction;
+    const int count = question->count;
+    if (count > workspace->contacts || question->bodies > workspace->bodies) return false;
+    rest_system s = furnish_rest(workspace, question->bodies, count);
+    s.couples = question->couples, s.rows = question->rows, s.friction = question->friction;
+    s.bodies = question->bodies, s.n = 6 * question->bodies, s.width = 3;
+    const size_t length = 3 * (size_t)count * sizeof *forces;
+    memset(s.load, 0, (size_t)s.n * sizeof *s.load);
+    memcpy(s.forces, forces, length);
+    (void)find_gradient(&s);
+    for (int i = 0; i < s.n; i++) s.load[i] = -s.gradient[i];
+    for (int b = 0; b < s.bodies; b++) s.least = fmax(s.least, sqrt(product(&s.load[6 * b], &s.load[6 * b], 6)));
+    const imp_rest_outcome outcome = minimise(&s, &direction);
+    if (outcome.status != IMP_REST_RESTS) return false;
+    memcpy(forces, s.forces, length);
+    /* to rounding: what is left would be taken from forces on the border of their cones */
+    double before = outcome.residual;
+    for (int k = 0; k < REFINEMENTS; k++) {
+        const double left = refine(&s);
+        if (!(left < before)) break;
+        memcpy(forces, s.forces, length);
+        before = left;
+    }
+    return true;
 }

@@ -55,4 +55,16 @@ imp_rest_outcome imp_rest_solve(const imp_world *world, const imp_state *states,
                                 const imp_load *loads, imp_rest_workspace *workspace, double *reactions,
                                 imp_rest_velocity *velocities);
 
+/* Contacts whose forces are within cones, without moments. */
+typedef struct imp_rest_question {
+    int count, bodies;
+    const int (*couples)[2]; /* per contact the bodies that move, 0 .. bodies - 1; -1: a side that does not */
+    const imp_cone_row *rows;
+    const double *friction;
+} imp_rest_question;
+
+/* Of all forces with the G^T f of these (3 count, within their cones) those of least norm, in their place; false, and
+ * they stay, where they are not found. */
+bool imp_rest_find_least(const imp_rest_question *question, imp_rest_workspace *workspace, double *forces);
+
 #endif

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where contacts determine each other, impulses p that leave the bodies' velocities are not unique. Those of least norm
+ * are,
+ *
+ *     least sum |p_c|^2:   G^T p given,   p_c in the face of K on which p_c . (u + mu |u_t| n) = 0
+ *
+ * as the problem is strictly convex: contacts that give way alike share so, however little they give (Tikhonov). The
+ * face is all of K where a contact sticks, the ray n - mu u_t/|u_t| where it slides, nothing where it opens. A ray is a
+ * cone without friction, along a row of G of its own, so that rest.h finds them.
+ */
+#include "contact/encounter.h"
+
+#include <string.h>
+
+/* The face that a contact's velocity leaves, under `still` of rounding; line: a ray's, unit. */
+static imp_cone_mode find_face(const imp_contact *contact, const double *u, double still, double line[3])
+{
+    const double slip = hypot(u[1], u[2]), mu = contact->friction, part = 1 / sqrt(1 + mu * mu);
+    if (u[0] > still) return IMP_CONE_OPEN;
+    if (mu > 0 && slip <= still) return IMP_CONE_STICKS;
+    line[0] = part;
+    for (int k = 1; k < 3; k++) line[k] = mu > 0 ? -part * mu * u[k] / slip : 0;
+    return IMP_CONE_SLIDES;
+}
+
+/* The row of G along the line, alone. */
+static void set_line(const imp_contact *contact, const double line[3], imp_cone_row *row)
+{
+    for (int side = 0; side < 2; side++)
+        for (int l = 0; l < 6; l++)
+            for (int k = 0; k < 3; k++) row->side[side][0][l] += line[k] * contact->row[side][k][l];
+}
+
+typedef struct shares {
+    imp_cone_row *rows;
+    double *friction, *forces, (*lines)[3];
+    imp_cone_mode *faces;
+} shares;
+
+static bool find_shares(const imp_group *g, const shares *s, const imp_share_question *question,
+                        impact_together_workspace *workspace)
+{
+    const imp_rest_question rest = {g->count, question->bodies, question->couples, s->rows, s->friction};
+    for (int i = 0; i < g->count; i++) {
+        const imp_contact *contact = &g->contacts[i];
+        const double *own = &g->p[3 * i];
+        s->faces[i] = find_face(contact, &question->u[3 * i], question->still, s->lines[i]);
+        if (s->faces[i] == IMP_CONE_STICKS) {
+            memcpy(s->rows[i].side, contact->row, sizeof contact->row);
+            memcpy(&s->forces[3 * i], own, 3 * sizeof *own);
+            s->friction[i] = contact->friction;
+        } else if (s->faces[i] == IMP_CONE_SLIDES) {
+            set_line(contact, s->lines[i], &s->rows[i]);
+            for (int k = 0; k < 3; k++) s->forces[3 * i] += s->lines[i][k] * own[k];
+        }
+    }
+    return imp_rest_reserve(&workspace->rest, g->count, question->bodies) &&
+           imp_rest_find_least(&rest, &workspace->rest, s->forces);
+}
+
+bool imp_encounter_share(const imp_group *g, const imp_share_question *question, imp_cone_mode *modes,
+                         impact_together_workspace *workspace)
+{
+    const size_t n = (size_t)g->count, used = workspace->work.used;
+    shares s;
+    s.rows = imp_encounter_take(workspace, n, sizeof *s.rows);
+    s.friction = imp_encounter_take(workspace, n, sizeof *s.friction);
+    s.forces = imp_encounter_take(workspace, 3 * n, sizeof *s.forces);
+    s.lines = imp_encounter_take(workspace, n, sizeof *s.lines);
+    s.faces = imp_encounter_take(workspace, n, sizeof *s.faces);
+    const bool found = s.faces && find_shares(g, &s, question, workspace);
+    for (int i = 0; found && i < g->count; i++) {
+        const bool slides = s.faces[i] == IMP_CONE_SLIDES;
+        modes[i] = s.faces[i];
+        for (int k = 0; k < 3; k++) g->p[3 * i + k] = slides ? s.forces[3 * i] * s.lines[i][k] : s.forces[3 * i + k];
+    }
+    workspace->work.used = used;
+    return found;
+}
