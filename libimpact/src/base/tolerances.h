@@ -598,9 +598,9 @@
  * that slide at 1e-8 of the ball's speed, among 94 contacts, it left 2e-10, and all paths, 600 systems and 1.2 s, found
  * none better. Of 20 contacts it is ten thousand systems. */
 #define IMP_ENCOUNTER_WORK 2e9
-/* Of the greatest element: a pivot of a column under it may be a rounding of what has none; complete pivoting tells, and
- * takes those over the rounding of W, IMP_ENCOUNTER_ROUNDINGS eps. Four points of one body that slide on the floor had
- * 5e-16 of a velocity taken away by a thousandth of their impulses. */
+/* Of the greatest element: a pivot of a column under it may be a rounding of what has none; complete pivoting tells,
+ * and takes those over the rounding of W, IMP_ENCOUNTER_ROUNDINGS eps. Four points of one body that slide on the floor
+ * had 5e-16 of a velocity taken away by a thousandth of their impulses. */
 #define IMP_ENCOUNTER_DOUBTFUL 1e-8
 /* Rounds in which that is taken away, each of what the last one left: the condition of W times eps of it. */
 #define IMP_ENCOUNTER_MENDINGS 3
