@@ -35,8 +35,7 @@ typedef struct moreau {
     imp_cone_row *rows;               /* count */
 } moreau;
 
-/* Whether what r leaves is rounding of W r: encounter_mend.c takes it away. Rounding as large as q leaves no velocity
- * known, and what r is then is chance. */
+/* Whether what r leaves is rounding of W r, though that be more than q: encounter_mend.c takes it away. */
 static bool is_rounding(const imp_cone_problem *problem, double residual, const double *r)
 {
     const int n = 3 * problem->count;
@@ -47,8 +46,7 @@ static bool is_rounding(const imp_cone_problem *problem, double residual, const 
         terms = fmax(terms, sum);
         size = fmax(size, fabs(problem->q[i]));
     }
-    const double rounding = IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * terms;
-    return residual * size <= rounding && rounding < size;
+    return residual * size <= IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * terms;
 }
 
 static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, const double *r, imp_group *group)
