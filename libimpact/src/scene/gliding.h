@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * gliding: a body that lies with a face on a static one and nothing else holds, and slides or turns there, or stands
- * under forces that may move it later. Where its friction keeps its direction it has constant accelerations:
- *
- *     slides along e    a = (pull - mu P) e, pull along e or none; until the slip or the face it lies on ends
- *     turns on the spot alpha = M/J, the friction of its face alone holding no force; on level ground
- *
- * else its motion is integrated (motion/face_motion.h). Whether it stands is a question to its face
- * (motion/face_begin.h). A face that slides without turning is held by mu N however its pressure lies; so one that
- * stands under what pulls at its centre is, iff |pull| <= mu P: what friction takes of any twist about the centre of
- * pressure c is at least mu N |u(c)| (Jensen). Internal.
+ * under forces that may move it later: in closed form (motion/lying_steady.h), or its motion is integrated
+ * (motion/face_motion.h). Whether it stands is a question to its face (motion/face_begin.h). A face that slides without
+ * turning is held by mu N however its pressure lies; so one that stands under what pulls at its centre is, iff |pull| <=
+ * mu P: what friction takes of any twist about the centre of pressure c is at least mu N |u(c)| (Jensen). Internal.
  */
 #ifndef IMP_GLIDING_H
 #define IMP_GLIDING_H
