@@ -149,7 +149,7 @@ void imp_encounter_mend(const imp_group *group, const double *after, double *p, 
 
 typedef struct imp_share_question {
     const double *u;         /* 3 count: the velocities that the impulses leave */
-    double still;            /* m/s: what of them is rounding */
+    double speed, still;     /* m/s: the fastest before; what of them is rounding */
     int bodies;              /* that move */
     const int (*couples)[2]; /* count: of each contact the two, 0 .. bodies - 1; -1: one that does not */
 } imp_share_question;

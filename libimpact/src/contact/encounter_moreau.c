@@ -164,7 +164,7 @@ static void share(moreau *m, double residual)
     double size = 0;
     for (int i = 0; i < width; i++) size = fmax(size, fabs(m->q[i]));
     if (m->bodies == 0) couple_contacts(m);
-    const imp_share_question question = {m->u, fmax(residual, IMP_CONE_ACCEPTED) * size, m->bodies,
+    const imp_share_question question = {m->u, size, fmax(residual, IMP_CONE_ACCEPTED) * size, m->bodies,
                                          (const int(*)[2])m->couples};
     (void)imp_encounter_share(m->group, &question, m->modes, m->workspace);
 }

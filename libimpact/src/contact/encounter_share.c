@@ -13,15 +13,34 @@
 
 #include <string.h>
 
-/* The face that a contact's velocity leaves, under `still` of rounding; line: a ray's, unit. */
-static imp_cone_mode find_face(const imp_contact *contact, const double *u, double still, double line[3])
+/* Along the ray of the slip; unit. */
+static void find_line(double mu, const double *u, double line[3])
 {
-    const double slip = hypot(u[1], u[2]), mu = contact->friction, part = 1 / sqrt(1 + mu * mu);
-    if (u[0] > still) return IMP_CONE_OPEN;
-    if (mu > 0 && slip <= still) return IMP_CONE_STICKS;
+    const double slip = hypot(u[1], u[2]), part = 1 / sqrt(1 + mu * mu);
     line[0] = part;
     for (int k = 1; k < 3; k++) line[k] = mu > 0 ? -part * mu * u[k] / slip : 0;
-    return IMP_CONE_SLIDES;
+}
+
+/* How far the impulse lies off the line. */
+static double distance_to(const double line[3], const double *p)
+{
+    double along = 0, off = 0;
+    for (int k = 0; k < 3; k++) along += line[k] * p[k];
+    for (int k = 0; k < 3; k++) off = hypot(off, p[k] - along * line[k]);
+    return off;
+}
+
+/* The face that a contact's velocity leaves; line: a ray's. Under `still` a velocity is rounding; over it, too, where
+ * the impulse lies farther off that face, as a part of the greatest, than the velocity is of the fastest: of the two
+ * one is zero. */
+static imp_cone_mode find_face(const imp_contact *contact, const imp_share_question *question, const double *u,
+                               const double *p, double most, double line[3])
+{
+    const double slip = hypot(u[1], u[2]), mu = contact->friction, unit = question->speed / most;
+    if (u[0] > fmax(question->still, p[0] * unit)) return IMP_CONE_OPEN;
+    if (mu > 0 && slip <= question->still) return IMP_CONE_STICKS;
+    find_line(mu, u, line);
+    return mu > 0 && slip <= distance_to(line, p) * unit ? IMP_CONE_STICKS : IMP_CONE_SLIDES;
 }
 
 /* The row of G along the line, alone. */
@@ -42,10 +61,13 @@ static bool find_shares(const imp_group *g, const shares *s, const imp_share_que
                         impact_together_workspace *workspace)
 {
     const imp_rest_question rest = {g->count, question->bodies, question->couples, s->rows, s->friction};
+    double most = 0;
+    for (int i = 0; i < 3 * g->count; i++) most = fmax(most, fabs(g->p[i]));
+    if (!(most > 0)) return false;
     for (int i = 0; i < g->count; i++) {
         const imp_contact *contact = &g->contacts[i];
         const double *own = &g->p[3 * i];
-        s->faces[i] = find_face(contact, &question->u[3 * i], question->still, s->lines[i]);
+        s->faces[i] = find_face(contact, question, &question->u[3 * i], own, most, s->lines[i]);
         if (s->faces[i] == IMP_CONE_STICKS) {
             memcpy(s->rows[i].side, contact->row, sizeof contact->row);
             memcpy(&s->forces[3 * i], own, 3 * sizeof *own);
