@@ -104,6 +104,20 @@ static void what_goes_on_after_steps_is_in_it(void **state)
     assert_true(off_as_told(s.def) > 5e-4);
 }
 
+/* A needle that whirls over a ridge, its points faster than a fall: no step is so long that it loses it. */
+static void what_whirls_is_followed(void **state)
+{
+    (void)state;
+    static random_scene s;
+    random_scene_make(1001190, &s);
+    s.def.max_steps = 6000;
+    impact_scene *scene = created(&s.def);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_EUNSETTLED);
+    assert_true(impact_scene_usage(scene).pile_steps > 500);
+    assert_true(impact_scene_pile_error(scene) < 0.02 && isinf(impact_scene_pile_parted(scene)));
+    impact_scene_destroy(scene);
+}
+
 /* The second's first step finds no answer: motions part there, and the run is not ended by it. */
 static void a_second_run_without_an_answer_has_parted(void **state)
 {
@@ -209,6 +223,7 @@ int main(void)
         cmocka_unit_test(what_is_told_is_not_too_small),
         cmocka_unit_test(motions_that_part_are_told),
         cmocka_unit_test(what_goes_on_after_steps_is_in_it),
+        cmocka_unit_test(what_whirls_is_followed),
         cmocka_unit_test(a_second_run_without_an_answer_has_parted),
         cmocka_unit_test(what_a_host_changes_is_changed_in_both),
         cmocka_unit_test(what_is_saved_says_as_much),
