@@ -187,16 +187,6 @@ static double least_step(const imp_pile *pile, const imp_world *world, const imp
     return pile->tolerance * size / fastest;
 }
 
-static impact_status try_step(imp_pile *pile, imp_world *world, double t, double h, const imp_state *states,
-                              imp_pile_step_result *result)
-{
-    *result = (imp_pile_step_result){.taken = h};
-    if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0])) return IMPACT_ENOMEM;
-    const impact_status status = step_once(pile, world, t, h, states, pile->end, result);
-    if (status == IMPACT_OK && !pile->strike.found) result->error += step_error(pile, world, h, states, pile->end);
-    return status;
-}
-
 /* What touches at the first step and does not approach is held from there: it does not come to touch within the step.
  */
 static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_state *states)
@@ -218,14 +208,17 @@ static impact_status begin_held(imp_pile *pile, imp_world *world, const imp_stat
 }
 
 /* Tries the step, and puts where it ends, if its error is allowed, into `to`, gaps closed and overlaps parted: what
- * came to overlap after the middle of the second half no contact has met, and how far that has to be moved apart is
- * error too. */
-static impact_status try_and_project(imp_pile *pile, imp_world *world, double t, double h, const imp_state *from,
-                                     double allowed, imp_state *to, imp_pile_step_result *result)
+ * came to overlap after the middle no contact has met, and how far that has to be moved apart is error too. */
+static impact_status try_step(imp_pile *pile, imp_world *world, double t, double h, double allowed, imp_state *to,
+                              imp_pile_step_result *result)
 {
-    impact_status status = try_step(pile, world, t, h, from, result);
     double parted = 0;
-    if (status != IMPACT_OK || pile->strike.found || result->error > allowed) return status;
+    *result = (imp_pile_step_result){.taken = h};
+    if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0])) return IMPACT_ENOMEM;
+    impact_status status = step_once(pile, world, t, h, pile->from, pile->end, result);
+    if (status != IMPACT_OK || pile->strike.found) return status;
+    result->error += step_error(pile, world, h, pile->from, pile->end);
+    if (result->error > allowed) return IMPACT_OK;
     memcpy(to, pile->end, sizeof *to * (size_t)world->body_count);
     status = imp_pile_project(pile, world, h, to, &parted);
     result->error += parted;
@@ -272,7 +265,7 @@ static impact_status try_length(imp_pile *pile, imp_world *world, double t, doub
     pile->shortest = !(trial->h > least);
     const double allowed = pile->shortest ? INFINITY : wanted;
     pile->strike = (imp_pile_strike){.allowed = allowed, .span = trial->h};
-    impact_status status = try_and_project(pile, world, t, trial->h, pile->from, allowed, pile->projected, result);
+    impact_status status = try_step(pile, world, t, trial->h, allowed, pile->projected, result);
     if (status == IMPACT_OK && pile->strike.found) return meet_strike(pile, world, trial);
     trial->good = status == IMPACT_OK && result->error <= allowed;
     if (status == IMPACT_EUNSETTLED && !pile->shortest) status = IMPACT_OK;
