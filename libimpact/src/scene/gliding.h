@@ -3,8 +3,8 @@
  * gliding: a body that lies with a face on a static one and nothing else holds, and slides or turns there, or stands
  * under forces that may move it later: in closed form (motion/lying_steady.h), or its motion is integrated
  * (motion/face_motion.h). Whether it stands is a question to its face (motion/face_begin.h). A face that slides without
- * turning is held by mu N however its pressure lies; so one that stands under what pulls at its centre is, iff |pull| <=
- * mu P: what friction takes of any twist about the centre of pressure c is at least mu N |u(c)| (Jensen). Internal.
+ * turning is held by mu N however its pressure lies; so one that stands under what pulls at its centre is, iff |pull|
+ * <= mu P: what friction takes of any twist about the centre of pressure c is at least mu N |u(c)| (Jensen). Internal.
  */
 #ifndef IMP_GLIDING_H
 #define IMP_GLIDING_H

@@ -42,8 +42,8 @@ static void rims_remember_their_own(void **state)
             }
             if (random_unit(&random) < 0.5) {
                 touches[contacts.count] = k;
-                points[contacts.count++] = (imp_pile_point){
-                    .feature = {rim, face}, .contact.arm1 = place_of(k, ahead), .memory = -1};
+                points[contacts.count++] =
+                    (imp_pile_point){.feature = {rim, face}, .contact.arm1 = place_of(k, ahead), .memory = -1};
             }
         }
         imp_pile_recall(&contacts, &world, states, 0, &memories);
@@ -65,8 +65,8 @@ static void place(const double (*at)[2], int count, imp_pile_point *points)
     const imp_pile_memories none = {.count = 0};
     imp_pile_contacts contacts = {.points = points, .count = count, .room = count};
     for (int k = 0; k < count; k++) {
-        points[k] = (imp_pile_point){.contact = {.body1 = 0, .body2 = 1, .arm1 = {at[k][0], at[k][1], -1}},
-                                     .memory = -1};
+        points[k] =
+            (imp_pile_point){.contact = {.body1 = 0, .body2 = 1, .arm1 = {at[k][0], at[k][1], -1}}, .memory = -1};
         imp_cone_find_axes((qvec3){0, 0, 1}, points[k].contact.axes);
     }
     imp_pile_place_friction(&contacts, &world, &none);
