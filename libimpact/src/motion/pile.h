@@ -9,9 +9,10 @@
  *     u = W p + q,  q = G (v + h M^-1 F) + h b/2  and, along normals that approach at u_n < 0, less e u_n
  *     v' = v + h M^-1 F + M^-1 G^T p      x' = x + h (v + v')/2
  *
- * b is the rate of G v at v (rates.h): u is what the velocities are at the step's end, where bodies and contacts have
- * turned; with G v alone what rocks would lose energy in every step. Friction is against the slip of the middle: where
- * that turns the problem is solved again with u_t + c, c turning the first answer's slip into the mean of both ends'.
+ * e u_n is none where the loads end that bounce within the step. b is the rate of G v at v (rates.h): u is what the
+ * velocities are at the step's end, where bodies and contacts have turned; with G v alone what rocks would lose energy
+ * in every step. Friction is against the slip of the middle: where that turns the problem is solved again with u_t + c,
+ * c turning the first answer's slip into the mean of both ends'.
  *
  * Pairs with torsional or rolling friction have moments in the same problem (cone.h): c turns (mu u_t, tau w_n), and
  * w_t.

@@ -26,9 +26,18 @@ static const imp_pile_memory *remembered(const imp_pile *pile, const imp_pile_po
     return point->memory < 0 ? NULL : &pile->memory[1].list[point->memory];
 }
 
-/* Where the impulses may begin: as before the step. A contact that was open before it bounces off what it approaches at
- * the velocities pile->before; what is held does not. Whether none does: pile->bounce is by how much more each is to
- * part, < 0. */
+/* By how much more what was open before the step is to part, < 0, for the velocities pile->before with which it closes;
+ * pile->q has the loads. A bounce at e w that these end within the step, 2 e w < h a, is none: at its end the body
+ * would fall again, by h a of which nothing is known to the bounce, and be caught, step after step for ever. */
+static double bounce_of(const imp_pile *pile, const imp_world *world, const imp_pile_point *point, int i, double h)
+{
+    const double back = world->pairs[point->pair].law.restitution * fmin(0, pile->before[i]),
+                 falls = pile->before[i] - pile->q[i];
+    return h > 0 && -2 * back < falls ? 0 : back;
+}
+
+/* Where the impulses may begin: as before the step. A contact that was open before it bounces off what it approaches,
+ * pile->bounce; what is held does not. Whether none does approach. */
 static bool recall_step(imp_pile *pile, const imp_world *world, int count, double h)
 {
     bool smooth = true;
@@ -36,7 +45,7 @@ static bool recall_step(imp_pile *pile, const imp_world *world, int count, doubl
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pile_memory *before = remembered(pile, point);
         const int i = pile->width * c;
-        pile->bounce[c] = before ? 0 : world->pairs[point->pair].law.restitution * fmin(0, pile->before[i]);
+        pile->bounce[c] = before ? 0 : bounce_of(pile, world, point, i, h);
         pile->q[i] += pile->bounce[c];
         smooth = smooth && (before || pile->before[i] >= 0);
         if (before) {

@@ -195,6 +195,14 @@ static void test_small_bounces_on_what_glides_end(void **state)
     run(204, PILE_IN_BOX);
 }
 
+/* A bounce that ends within a step was held open by it, fell on, and was caught by the next: for two seconds, 3600
+ * steps. */
+static void test_small_bounces_end_within_a_step(void **state)
+{
+    (void)state;
+    assert_true(run(268, PILE_SET).pile_steps < 1500);
+}
+
 /* Caught between others a body cannot leave one by as much as restitution tells: no impulses do that. Without
  * restitution the last has some, a thousand times those that no friction asks for. */
 static void test_jams_are_answered(void **state)
@@ -380,6 +388,7 @@ int main(void)
         cmocka_unit_test(test_hidden_bottoms_hold_nothing),
         cmocka_unit_test(test_glides_meet_what_they_touch),
         cmocka_unit_test(test_small_bounces_on_what_glides_end),
+        cmocka_unit_test(test_small_bounces_end_within_a_step),
         cmocka_unit_test(test_jams_are_answered),
         cmocka_unit_test(test_bounces_on_what_stands_die_out),
         cmocka_unit_test(test_time_advances),
