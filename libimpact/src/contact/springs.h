@@ -78,7 +78,6 @@ typedef struct imp_springs_bounces {
     int contact;
     long rounds, span; /* closings since the first of three moments; between them */
     long expected;     /* events until which it closes again */
-    double approach;   /* u_n at the second moment */
     double *room;
 } imp_springs_bounces;
 
@@ -200,6 +199,22 @@ size_t imp_springs_bounces_size(size_t n);
 /* Whether bounces are like those before, to whose end impulses, works and velocities have gone then; s->closing closes.
  */
 bool imp_springs_end_bounces(imp_springs *s);
+
+/* Of three moments, the last one now: impulses and works, 3 count each. */
+static inline double *imp_springs_impulses_at(const imp_springs *s, int moment)
+{
+    return s->bounces.room + 6 * s->count * moment;
+}
+static inline double *imp_springs_works_at(const imp_springs *s, int moment)
+{
+    return imp_springs_impulses_at(s, moment) + 3 * s->count;
+}
+
+/* ---- springs_rest.c ---- */
+
+/* To where bounces end by their end's own equations, impulses, works and velocities; ratio: of the last differences of
+ * impulses. False: they do not come to rest, or are not seen to, and nothing is changed. */
+bool imp_springs_come_to_rest(imp_springs *s, double ratio);
 
 /* ---- springs_changes.c ---- */
 

@@ -11,8 +11,7 @@
  *     E_end = E'' + (E'' - E') R/(1 - R) + (E'' - E' - R (E' - E)) R^2/((1 - R) (1 - R^2))
  *
  * R is that of as many rounds as leave it under IMP_BOUNCES_RATIO: 1/(1 - R)^2 is by what p_end has the rounding of p.
- * Where that would take too long R is that of the contact's approach, u'' = R u': p_end then has u_n = 0 there, and the
- * rounding of p by 1/(1 - R).
+ * Where that would take too long, or nothing is in one ratio, the end is found by its own equations (springs_rest.c).
  * Moments are closings of one contact, whatever presses then: of two that bounce in turn one may always do. What
  * presses without bouncing is in no ratio. Where nothing does in between, rounds take ever longer, and what else
  * approaches ends them: then there is no such end.
@@ -23,48 +22,42 @@
 #include <string.h>
 #include "base/tolerances.h"
 
-/* Impulses and works of two moments, works of the third. */
-size_t imp_springs_bounces_size(size_t n) { return 15 * n; }
-
-static double *impulses_at(const imp_springs *s, int moment) { return s->bounces.room + 6 * s->count * moment; }
-
-static double *works_at(const imp_springs *s, int moment) { return impulses_at(s, moment) + 3 * s->count; }
-
-static void note_works(const imp_springs *s, double *work)
-{
-    for (int i = 0; i < s->count; i++)
-        for (int j = 0; j < 3; j++) work[3 * i + j] = s->springs[i].finding->work[j];
-}
+/* Impulses and works of three moments. */
+size_t imp_springs_bounces_size(size_t n) { return 18 * n; }
 
 static void note_moment(const imp_springs *s, int moment)
 {
-    double *p = impulses_at(s, moment);
+    double *p = imp_springs_impulses_at(s, moment), *work = imp_springs_works_at(s, moment);
     for (int i = 0; i < s->count; i++)
-        for (int j = 0; j < 3; j++) p[3 * i + j] = s->springs[i].p[j];
-    note_works(s, works_at(s, moment));
+        for (int j = 0; j < 3; j++) {
+            p[3 * i + j] = s->springs[i].p[j];
+            work[3 * i + j] = s->springs[i].finding->work[j];
+        }
 }
 
-/* The ratio of the last two differences of impulses, least squares; *off: the most that is not in it. */
-static double find_ratio(const imp_springs *s, double *off)
+/* The ratio of the last two differences of impulses, least squares; *off: the most that is not in it; *pushed: the
+ * most of the last one. */
+static double find_ratio(const imp_springs *s, double *off, double *pushed)
 {
-    const double *first = impulses_at(s, 0), *second = impulses_at(s, 1);
-    double both = 0, square = 0, worst = 0;
+    const double *first = imp_springs_impulses_at(s, 0), *second = imp_springs_impulses_at(s, 1),
+                 *third = imp_springs_impulses_at(s, 2);
+    double both = 0, square = 0;
+    *off = *pushed = 0;
     for (int i = 0; i < 3 * s->count; i++) {
-        const double before = second[i] - first[i], after = s->springs[i / 3].p[i % 3] - second[i];
+        const double before = second[i] - first[i], after = third[i] - second[i];
         both += before * after, square += before * before;
+        *pushed = fmax(*pushed, fabs(after));
     }
-    for (int i = 0; i < 3 * s->count; i++) {
-        const double before = second[i] - first[i], after = s->springs[i / 3].p[i % 3] - second[i];
-        worst = fmax(worst, fabs(after - both / square * before));
-    }
-    *off = worst;
+    for (int i = 0; i < 3 * s->count; i++)
+        *off = fmax(*off, fabs(third[i] - second[i] - both / square * (second[i] - first[i])));
     return both / square;
 }
 
 /* To the end, where that ratio leads; works too. */
 static void go_to_end(imp_springs *s, double ratio)
 {
-    const double *p = impulses_at(s, 1), *work = works_at(s, 1), *first = works_at(s, 0), more = ratio / (1 - ratio),
+    const double *p = imp_springs_impulses_at(s, 1), *work = imp_springs_works_at(s, 1),
+                 *first = imp_springs_works_at(s, 0), more = ratio / (1 - ratio),
                  square = ratio * ratio / (1 - ratio * ratio);
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
@@ -87,20 +80,17 @@ static bool none_approaches(const imp_springs *s, double error)
 /* What has not been pushed since the moment before does not approach. */
 static bool only_they_approach(const imp_springs *s)
 {
-    const double *p = impulses_at(s, 1);
+    const double *p = imp_springs_impulses_at(s, 1);
     for (int i = 0; i < s->count; i++)
         if (s->springs[i].p[0] == p[3 * i] && s->springs[i].u[0] < -s->springs[i].none) return false;
     return true;
 }
 
-/* To the end by that ratio; the state stays as it was where that is none. */
-static bool ends(imp_springs *s, double ratio)
+/* Whether it is the end, where nothing approaches; the state becomes what it was at the third moment where it is not.
+ */
+static bool stays(imp_springs *s)
 {
-    if (!only_they_approach(s)) return false;
-    double *work = works_at(s, 1) + 3 * s->count;
-    note_works(s, work);
-    memcpy(s->kept, s->springs, (size_t)s->count * sizeof *s->kept);
-    go_to_end(s, ratio);
+    const double *work = imp_springs_works_at(s, 2);
     if (none_approaches(s, IMP_BOUNCES_ERROR)) return true;
     memcpy(s->springs, s->kept, (size_t)s->count * sizeof *s->kept);
     for (int i = 0; i < s->count; i++)
@@ -108,22 +98,35 @@ static bool ends(imp_springs *s, double ratio)
     return false;
 }
 
+/* To the end, by the ratio, or, late, by what it is. */
+static bool ends(imp_springs *s, double ratio, double off, double pushed)
+{
+    const double left = 1 - ratio;
+    const bool falls = ratio > 0 && ratio < 1, late = s->events + s->steps >= IMP_BOUNCES_LATE;
+    if (!falls || s->springs[s->bounces.contact].u[0] > -IMP_BOUNCES_SLOWEST || !only_they_approach(s)) return false;
+    memcpy(s->kept, s->springs, (size_t)s->count * sizeof *s->kept);
+    if (ratio <= IMP_BOUNCES_RATIO && off <= IMP_BOUNCES_ERROR * left * left) {
+        go_to_end(s, ratio);
+        if (stays(s)) return true;
+    }
+    /* they have fallen by enough, or are alike and will fall for ever */
+    const bool goes_on = ratio * ratio <= IMP_BOUNCES_RATIO || off <= IMP_BOUNCES_ERROR * pushed;
+    return late && goes_on && imp_springs_come_to_rest(s, ratio) && stays(s);
+}
+
 /* At the third moment. If it is not the end, the next three are as far apart as the ratio asks, or twice as far. */
 static bool look_for_end(imp_springs *s)
 {
     imp_springs_bounces *b = &s->bounces;
-    double off;
-    const double ratio = find_ratio(s, &off), left = 1 - ratio;
-    const double by_approach = s->springs[b->contact].u[0] / b->approach;
-    const bool late = s->events + s->steps >= IMP_BOUNCES_LATE && by_approach > 0 && by_approach < 1;
-    const bool falls = ratio > 0 && ratio < 1, told = s->springs[b->contact].u[0] <= -IMP_BOUNCES_SLOWEST;
-    if (falls && told && ratio <= IMP_BOUNCES_RATIO && off <= IMP_BOUNCES_ERROR * left * left && ends(s, ratio))
-        return true;
-    if (falls && told && late && off <= IMP_BOUNCES_ERROR * left && ends(s, by_approach)) return true;
+    double off, pushed;
+    note_moment(s, 2);
+    const double ratio = find_ratio(s, &off, &pushed);
+    if (ends(s, ratio, off, pushed)) return true;
     note_moment(s, 0);
     b->rounds = 0;
     b->span =
-        (long)fmax(2 * (double)b->span, falls ? fmin(log(IMP_BOUNCES_RATIO) / log(ratio), 4) * (double)b->span + 1 : 0);
+        (long)fmax(2 * (double)b->span,
+                   ratio > 0 && ratio < 1 ? fmin(log(IMP_BOUNCES_RATIO) / log(ratio), 4) * (double)b->span + 1 : 0);
     return false;
 }
 
@@ -138,9 +141,6 @@ bool imp_springs_end_bounces(imp_springs *s)
     if (s->closing != b->contact) return false;
     b->expected = s->events + IMP_BOUNCES_LONGEST;
     b->rounds++;
-    if (b->rounds == b->span) {
-        note_moment(s, 1);
-        b->approach = s->springs[b->contact].u[0];
-    }
+    if (b->rounds == b->span) note_moment(s, 1);
     return b->rounds == 2 * b->span && look_for_end(s);
 }

@@ -334,6 +334,37 @@ static void bounces_that_never_end_are_followed_to_their_end(void **state)
     }
 }
 
+/* The same in no rhythm of their own, or so slowly that no ratio outweighs rounding: of two contacts while a third
+ * joins in ever anew, of three that come loose in no direction, of four, two of which slide on, and of two that fall by
+ * 6e-6 from round to round. Their end's own equations tell it; energies are those that a million steps and events come
+ * to, followed until nothing is left. The last one's slip drives its bounces, which fall no more than it does: all
+ * comes apart in the end. */
+static void what_bounces_in_no_rhythm_comes_to_rest(void **state)
+{
+    (void)state;
+    static const struct {
+        kept_encounter of;
+        int closed;
+        double energy, off;
+    } cases[] = {{{20200000, 5163, 1.5, 4, 6}, 3, 1.7057600824714116, 1e-12},
+                 {{21200000, 13845, 1, 2, 3}, 3, 0.75277245328024633, 1e-12},
+                 {{20050000, 18316, 1, 4, 6}, 4, 0.80132998504625452, 1e-11},
+                 {{21100000, 19464, 1, 4, 6}, 2, 3.4647183320134767, 1e-12},
+                 {{20410000, 3759, 1, 7, 12}, 3, 2.2543250815782, 1e-12},
+                 {{7001, 835, 1.5, 2, 6}, 0, 0.010838975502575935, 1e-7}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const kept_encounter *own = &cases[k].of;
+        const random_encounter e = draw_kept(own->seed, own->number, own->least, own->most);
+        const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, own->exponent, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_at_most(a.outcome.residual, 1e-12);
+        assert_near(a.outcome.energy_after, cases[k].energy, cases[k].off);
+        int closed = 0;
+        for (int i = 0; i < e.meeting_count; i++) closed += fabs(a.meetings[i].normal_after) < 1e-11;
+        assert_int_equal(closed, cases[k].closed);
+    }
+}
+
 /* The same, where what bounces goes on to slide, or slides elsewhere meanwhile: friction's works fall by R, and not by
  * R^2 as those of dents do. Receipts missed by 5e-9 to 8e-5. */
 static void works_of_bounces_go_to_their_own_end(void **state)
@@ -565,6 +596,7 @@ int main(void)
         cmocka_unit_test(impulses_without_end_are_no_answer),
         cmocka_unit_test(a_wedge_of_many_contacts_is_told),
         cmocka_unit_test(a_wedge_is_told_whatever_rounding_makes_of_it),
+        cmocka_unit_test(what_bounces_in_no_rhythm_comes_to_rest),
         cmocka_unit_test(works_of_bounces_go_to_their_own_end),
         cmocka_unit_test(a_struck_cube_on_the_floor_is_answered),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
