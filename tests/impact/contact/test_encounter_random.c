@@ -336,9 +336,9 @@ static void bounces_that_never_end_are_followed_to_their_end(void **state)
 
 /* The same in no rhythm of their own, or so slowly that no ratio outweighs rounding: of two contacts while a third
  * joins in ever anew, of three that come loose in no direction, of four, two of which slide on, and of two that fall by
- * 6e-6 from round to round. Their end's own equations tell it; energies are those that a million steps and events come
- * to, followed until nothing is left. The last one's slip drives its bounces, which fall no more than it does: all
- * comes apart in the end. */
+ * 6e-6 from round to round. Their end's own equations tell it; energies are those that they come to where they
+ * are followed until nothing is left, for up to forty-six million steps and events. The last one's slip drives its
+ * bounces, which fall no more than it does: all comes apart in the end. */
 static void what_bounces_in_no_rhythm_comes_to_rest(void **state)
 {
     (void)state;

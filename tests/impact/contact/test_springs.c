@@ -191,6 +191,59 @@ static void one_contact_is_impact_collide(void **state)
     impact_together_workspace_destroy(workspace);
 }
 
+/* ---- where bounces end ---- */
+
+/* One contact that slides along x, W = 1, friction .3: pushed by 1 and by .5 between three moments, at `approach` now,
+ * its friction so large a part of what it should have been. Whether it comes to rest, and with what. */
+static bool comes_to_rest(double approach, double part, imp_spring *contact, imp_finding *finding)
+{
+    const double w[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, mu = 0.3, slip = 5,
+                 u0[3] = {-approach - 1.5, slip + 1.5 * mu * part};
+    int start[] = {0, 1, 2, 3}, column[] = {0, 1, 2}, begin[1];
+    double room[18] = {0}, factor[28], now[3];
+    imp_cone_mode modes[1];
+    impact_together_workspace *workspace;
+    assert_int_equal(impact_together_workspace_create(NULL, &workspace), IMPACT_OK);
+    assert_true(imp_cone_reserve(&workspace->cone, 1));
+    assert_int_equal(imp_springs_bounces_size(1), 18);
+    *finding = (imp_finding){.work = {-3, 2, -9}};
+    *contact = (imp_spring){.friction = mu, .finding = finding, .u = {-approach, slip}, .p = {1.5, -1.5 * mu * part}};
+    imp_springs s = {.count = 1,
+                     .springs = contact,
+                     .w = w,
+                     .u0 = u0,
+                     .rows = {start, column},
+                     .now = now,
+                     .factor = factor,
+                     .begin = begin,
+                     .modes = modes,
+                     .cone = &workspace->cone,
+                     .bounces = {.room = room}};
+    const double second[] = {1, -mu * part, 0, -2, 1, -6}, third[] = {1.5, -1.5 * mu * part, 0, -3, 2, -9};
+    memcpy(imp_springs_impulses_at(&s, 1), second, sizeof second);
+    memcpy(imp_springs_impulses_at(&s, 2), third, sizeof third);
+    const bool rests = imp_springs_come_to_rest(&s, 0.5);
+    impact_together_workspace_destroy(workspace);
+    return rests;
+}
+
+/* At rest after .5 more, as the ratio says; not where that takes it elsewhere, nor where friction was not what slip
+ * that stays has. */
+static void bounces_end_where_their_course_leads(void **state)
+{
+    (void)state;
+    imp_spring contact;
+    imp_finding finding;
+    assert_true(comes_to_rest(0.5, 1, &contact, &finding));
+    assert_near(contact.p[0], 2, 1e-15);
+    assert_near(contact.u[0], 0, 1e-15);
+    assert_near(contact.u[1], 5 - 0.3 * 0.5, 1e-15);
+    assert_false(comes_to_rest(0.25, 1, &contact, &finding));
+    assert_false(comes_to_rest(0.8, 1, &contact, &finding));
+    assert_false(comes_to_rest(0.5, 0.9, &contact, &finding));
+    assert_near(contact.p[0], 1.5, 0);
+}
+
 /* ---- many ---- */
 
 /* The worst difference of velocities over so many random encounters; *followed: how many the oracle went through. */
@@ -280,6 +333,7 @@ int main(void)
         cmocka_unit_test(a_lone_zero_is_shown_to_be_the_only_one),
         cmocka_unit_test(a_block_too_small_is_told),
         cmocka_unit_test(one_contact_is_impact_collide),
+        cmocka_unit_test(bounces_end_where_their_course_leads),
         cmocka_unit_test(random_encounters_are_the_oracle_s),
         cmocka_unit_test(both_solvers_of_linear_springs_agree),
     };
