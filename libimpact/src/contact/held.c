@@ -115,7 +115,10 @@ imp_held_contact imp_held_contact_at(imp_world *world, int p, const imp_state *s
     if (carried && imp_flat_lies(world, pair, states)) return imp_flat_contact(world, p, states, loads);
     impact_contact met;
     imp_spot spot;
-    if (carried)
+    imp_rates rates = {.normal = {0, 0, 0}};
+    if (pair->site.corner > 0)
+        met = imp_corner_contact(world, pair, states, &rates.arm1);
+    else if (carried)
         met = carried_contact(world, pair, states, &spot);
     else
         imp_world_gap(world, pair, states, &met);
@@ -128,12 +131,9 @@ imp_held_contact imp_held_contact_at(imp_world *world, int p, const imp_state *s
     contact.incipient = pair->mode == IMP_SLIDE && imp_is_incipient(pair);
     contact.direction =
         contact.incipient || contact.speed == 0 ? pair->slip.direction : qvec3_scale(contact.slip, 1 / contact.speed);
-    imp_rates rates = {.normal = {0, 0, 0}};
-    if (pair->site.corner > 0)
-        rates.arm1 = imp_corner_rate(world, pair, states);
-    else if (carried)
+    if (carried)
         carried_rates(world, &contact, states, &spot, &rates.arm1);
-    else
+    else if (!(pair->site.corner > 0))
         rates = imp_contact_rates(world, pair, pair->site.placed ? pair->site.bearer : IMP_BORNE_BY_BOTH, &met, states);
     if (b2->driven) rates.arm2 = qvec3_add(s1->v, rates.arm1); /* its centre stands still */
     contact.normal_rate = rates.normal;

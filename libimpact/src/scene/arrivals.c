@@ -223,7 +223,7 @@ static bool rim_passes(const imp_island *island)
         if (!imp_is_held(pair) || pair->site.corner == 0) continue;
         const imp_body *body = &world->bodies[pair->body1];
         const double allowed = island->scene->pile_tolerance * body->radius;
-        const qvec3 normal = imp_corner_contact(world, pair, island->states).normal,
+        const qvec3 normal = imp_corner_contact(world, pair, island->states, NULL).normal,
                     across = imp_corner_across(world, pair, island->states),
                     tips = qvec3_cross(normal, imp_omega(body, &island->states[pair->body1]));
         const double speed = qvec3_norm(across) * qvec3_norm(tips);

@@ -89,25 +89,25 @@ typedef struct corner_view {
     double level;     /* m: how high along the normal that face is over its centre of mass */
 } corner_view;
 
-static corner_view view_of(const imp_world *world, const imp_pair *pair, const imp_state *states)
+static void look_at_corner(const imp_world *world, const imp_pair *pair, const imp_state *states, corner_view *v)
 {
     const imp_body *body = &world->bodies[pair->body1], *under = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
-    corner_view v = {.axes = imp_shape_axes(body, s1),
-                     .centre = imp_shape_offset(body, s1),
-                     .normal = quat_rotate(s2->q, (qvec3){0, 0, 1}),
-                     .apart = qvec3_sub(s1->x, s2->x)};
+    v->axes = imp_shape_axes(body, s1);
+    v->centre = imp_shape_offset(body, s1);
+    v->normal = quat_rotate(s2->q, (qvec3){0, 0, 1});
+    v->apart = qvec3_sub(s1->x, s2->x);
+    v->level = 0;
     if (pair->site.face > 0) {
         imp_form below;
         imp_form_make(&under->shape, 1, quat_identity(), &below);
         const qvec3 n = face_normal(&below, pair->site.face - 1);
-        v.normal = quat_rotate(imp_shape_axes(under, s2), n);
-        v.level = face_height(&below, pair->site.face - 1, n) + qvec3_dot(v.normal, imp_shape_offset(under, s2));
+        v->normal = quat_rotate(imp_shape_axes(under, s2), n);
+        v->level = face_height(&below, pair->site.face - 1, n) + qvec3_dot(v->normal, imp_shape_offset(under, s2));
     }
-    v.up = quat_rotate_inverse(v.axes, v.normal);
-    imp_form_make(&body->shape, 1, quat_identity(), &v.form);
-    if (body->shape.kind == IMPACT_SPHERE) v.form.rounding = body->shape.a; /* its centre, and a ball about it */
-    return v;
+    v->up = quat_rotate_inverse(v->axes, v->normal);
+    imp_form_make(&body->shape, 1, quat_identity(), &v->form);
+    if (body->shape.kind == IMPACT_SPHERE) v->form.rounding = body->shape.a; /* its centre, and a ball about it */
 }
 
 static qvec3 from_centre(const corner_view *v, qvec3 at) { return qvec3_add(v->centre, quat_rotate(v->axes, at)); }
@@ -127,7 +127,8 @@ static qvec3 up_rate(const imp_world *world, const imp_pair *pair, const imp_sta
 int imp_corner_ahead(const imp_world *world, const imp_pair *pair, const imp_state *states, int corner)
 {
     if (corner == 0 || imp_ridge_count(&world->bodies[pair->body1].shape) == 0) return corner;
-    const corner_view v = view_of(world, pair, states);
+    corner_view v;
+    look_at_corner(world, pair, states, &v);
     const qvec3 rate = up_rate(world, pair, states, &v);
     return 1 + imp_ridge_ahead(&v.form, corner - 1, qvec3_neg(v.up), qvec3_neg(rate),
                                imp_world_touching_distance(world, pair, states));
@@ -151,17 +152,6 @@ static corner_place own_place(const imp_world *world, const imp_pair *pair, cons
     return place;
 }
 
-impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states)
-{
-    const corner_view v = view_of(world, pair, states);
-    const qvec3 corner = from_centre(&v, own_place(world, pair, states, &v).at);
-    impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
-    contact.offset2 = qvec3_add(v.apart, contact.offset1);
-    contact.gap = qvec3_dot(contact.normal, contact.offset2) - v.level;
-    contact.offset2 = qvec3_axpy(-contact.gap, contact.normal, contact.offset2);
-    return contact;
-}
-
 /* How the place moves in the shape's axes, where the normal turns in them. */
 static qvec3 place_rate(const imp_form *form, const corner_place *place, int i, qvec3 up, qvec3 rate)
 {
@@ -172,14 +162,21 @@ static qvec3 place_rate(const imp_form *form, const corner_place *place, int i, 
     return qvec3_scale(qvec3_axpy(-qvec3_dot(e, turn), e, turn), place->rim);
 }
 
-qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states)
+impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states, qvec3 *rate)
 {
-    const corner_view v = view_of(world, pair, states);
-    const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]);
+    corner_view v;
+    look_at_corner(world, pair, states, &v);
     const corner_place place = own_place(world, pair, states, &v);
-    const qvec3 turns = up_rate(world, pair, states, &v);
-    return qvec3_add(qvec3_cross(omega, from_centre(&v, place.at)),
-                     quat_rotate(v.axes, place_rate(&v.form, &place, pair->site.corner - 1, v.up, turns)));
+    const qvec3 corner = from_centre(&v, place.at);
+    impact_contact contact = {.normal = v.normal, .offset1 = qvec3_axpy(-v.form.rounding, v.normal, corner)};
+    contact.offset2 = qvec3_add(v.apart, contact.offset1);
+    contact.gap = qvec3_dot(contact.normal, contact.offset2) - v.level;
+    contact.offset2 = qvec3_axpy(-contact.gap, contact.normal, contact.offset2);
+    if (!rate) return contact;
+    const qvec3 omega = imp_omega(&world->bodies[pair->body1], &states[pair->body1]),
+                runs = place_rate(&v.form, &place, pair->site.corner - 1, v.up, up_rate(world, pair, states, &v));
+    *rate = qvec3_add(qvec3_cross(omega, corner), quat_rotate(v.axes, runs));
+    return contact;
 }
 
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner)
@@ -232,14 +229,16 @@ static bool is_same(qvec3 a, qvec3 b) { return a.x == b.x && a.y == b.y && a.z =
 
 qvec3 imp_corner_across(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    const corner_view v = view_of(world, pair, states);
+    corner_view v;
+    look_at_corner(world, pair, states, &v);
     const corner_place place = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
     return quat_rotate(v.axes, qvec3_scale(place.along, -2 * place.rim));
 }
 
 qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
-    const corner_view v = view_of(world, pair, states);
+    corner_view v;
+    look_at_corner(world, pair, states, &v);
     const corner_place place = place_of(&v.form, v.up, pair->site.corner - 1, IMP_RIDGE_BEYOND);
     return 2 * place.rim * place.slope > imp_world_touching_distance(world, pair, states) ? place.along
                                                                                           : (qvec3){0, 0, 0};
@@ -248,12 +247,13 @@ qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_st
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
-    const corner_view v = view_of(world, pair, states);
+    corner_view v;
+    look_at_corner(world, pair, states, &v);
     const corner_place own = own_place(world, pair, states, &v);
     double least = INFINITY;
     if (pair->site.face > 0)
         least = within_border(&world->bodies[pair->body2], &states[pair->body2], pair->site.face - 1,
-                              imp_corner_contact(world, pair, states).offset2);
+                              imp_corner_contact(world, pair, states, NULL).offset2);
     if (v.form.kind == IMP_FORM_QUADRIC && !v.form.round)
         least = fmin(least, imp_ridge_room(&v.form, pair->site.corner - 1, qvec3_neg(v.up)));
     for (int i = 0; i < count; i++) {
@@ -268,7 +268,8 @@ double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const 
 double imp_corner_lowest(const imp_world *world, const imp_pair *pair, const imp_state *states)
 {
     const int count = imp_corner_count(&world->bodies[pair->body1]);
-    const corner_view v = view_of(world, pair, states);
+    corner_view v;
+    look_at_corner(world, pair, states, &v);
     double least = INFINITY;
     for (int i = 0; i < count; i++) least = fmin(least, height_of(&v, place_of(&v.form, v.up, i, IMP_RIDGE_END).at));
     return least;

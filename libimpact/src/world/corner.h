@@ -38,11 +38,9 @@ int imp_corner_face_under(const imp_body *body, const imp_state *state, const im
 /* Whether the corner of that number, or for 0 any, of the pair's body 1 is held on its body 2. */
 bool imp_corner_is_held(const imp_world *world, const imp_pair *pair, int corner);
 
-/* Of a pair with a corner (imp_site.corner) on its plane, or on body 2's face (imp_site.face). */
-impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states);
-
-/* How the contact point moves from body 1's centre, m/s. */
-qvec3 imp_corner_rate(const imp_world *world, const imp_pair *pair, const imp_state *states);
+/* Of a pair with a corner (imp_site.corner) on its plane, or on body 2's face (imp_site.face). *rate: how the contact
+ * point moves from body 1's centre, m/s; NULL: that is not asked for. */
+impact_contact imp_corner_contact(const imp_world *world, const imp_pair *pair, const imp_state *states, qvec3 *rate);
 
 /* From the lowest place of the pair's rim to its far side, m; 0 of a corner. */
 qvec3 imp_corner_across(const imp_world *world, const imp_pair *pair, const imp_state *states);

@@ -54,7 +54,7 @@ impact_status imp_world_gap_within(imp_world *world, imp_pair *pair, const imp_s
                                    impact_contact *contact)
 {
     if (pair->site.placed || pair->site.corner > 0) {
-        *contact = pair->site.corner > 0 ? imp_corner_contact(world, pair, states) : pair->site.contact;
+        *contact = pair->site.corner > 0 ? imp_corner_contact(world, pair, states, NULL) : pair->site.contact;
         return IMPACT_OK;
     }
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
