@@ -6,10 +6,10 @@
  *     u = u0 + W c,  K* contains u + mu |u_t| n,  c . (u + mu |u_t| n) = 0,  K contains c            compression
  *     u' = u + W r:  r_n >= eps c_n,  u_n' >= 0,  (r_n - eps c_n) u_n' = 0,  r_t against u_t'         restitution
  *
- * The second is a problem of the same kind in twice the contacts: of each contact once the part eps c_n, whose normal
- * row is set apart, v = d (r - eps c_n), so that it is what it is, and once what is more; each with friction of its own
- * cone against the one u_t. Newton's restitution is one problem, of what velocities are more than their rebound (Moreau
- * 1988):
+ * The second is a problem of the same kind in more contacts: of each contact what is more than eps c_n, and of those
+ * that pressed the part eps c_n besides, whose normal row is set apart, v = d (r - eps c_n), so that it is what it is;
+ * each with friction of its own cone against the one u_t. Newton's restitution is one problem, of what velocities are
+ * more than their rebound (Moreau 1988):
  *
  *     b = eps max(-u0_n, 0):  u' = u0 + W p,  K* contains u' - b n + mu |u_t'| n,  p . (the same) = 0,  K contains p
  */
@@ -29,6 +29,7 @@ typedef struct moreau {
     double *last_r, *last_u;          /* 6 count: where a problem may begin */
     double *room;                     /* of the question whether it is wedged */
     double *least;                    /* count: eps c_n */
+    int parts, *part_of;              /* those that are not zero; count: whose they are */
     double *rebound;                  /* count: b; by Poisson's law 0 */
     int bodies, (*couples)[2];        /* those that move; count */
     bool strikes;                     /* not only the seeds of what is pressed do */
@@ -118,13 +119,14 @@ static bool find_start(moreau *m, const double *q, const double *least)
 static void part_start(const moreau *m)
 {
     const int n = m->group->count;
-    for (int i = 0; i < n; i++) {
-        double *own = &m->last_r[3 * i], *part = &m->last_r[3 * (n + i)];
+    for (int k = 0; k < m->parts; k++) {
+        const int i = m->part_of[k];
+        double *own = &m->last_r[3 * i], *part = &m->last_r[3 * (n + k)];
         const double share = own[0] > 0 ? fmin(m->least[i] / own[0], 1) : 0;
         part[0] = m->least[i], part[1] = share * own[1], part[2] = share * own[2];
         own[0] = fmax(own[0] - m->least[i], 0), own[1] -= part[1], own[2] -= part[2];
-        memcpy(&m->last_u[3 * (n + i)], &m->last_u[3 * i], 3 * sizeof *m->last_u);
-        m->last_u[3 * (n + i)] = 0;
+        memcpy(&m->last_u[3 * (n + k)], &m->last_u[3 * i], 3 * sizeof *m->last_u);
+        m->last_u[3 * (n + k)] = 0;
     }
 }
 
@@ -261,21 +263,51 @@ static void add_parts(const moreau *m)
     }
 }
 
-/* The second problem: contact i is what is more, n + i its part eps c_n. */
+/* Of a part of nothing, v = d r, both r and û would be on the border of their cones: in cone_map.h's units
+ * y_n - |y_t| = x_n, so that e^2 = x_n (x_n + |x_t|), and the path would come to it as e, where else it does as e^2. */
+static void find_parts(moreau *m)
+{
+    m->parts = 0;
+    for (int i = 0; i < m->group->count; i++) {
+        m->least[i] = m->group->contacts[i].restitution * m->group->p[3 * i];
+        if (m->least[i] > 0) m->part_of[m->parts++] = i;
+    }
+}
+
+/* The row of W that one of the second problem has. */
+static size_t row_of(const moreau *m, size_t i)
+{
+    const size_t one = 3 * (size_t)m->group->count;
+    return i < one ? i : 3 * (size_t)m->part_of[(i - one) / 3] + i % 3;
+}
+
+/* The second problem: contact i is what is more, n + k the part eps c_n of the k-th that has one. */
 static void set_restitution(moreau *m)
 {
     const imp_group *g = m->group;
-    const size_t n = (size_t)g->count, one = 3 * n, two = 6 * n;
+    const size_t n = (size_t)g->count, one = 3 * n, two = one + 3 * (size_t)m->parts;
     double mean = 0;
     for (size_t i = 0; i < n; i++) mean += g->w[3 * i * (one + 1)] / (double)n;
     for (size_t i = 0; i < two; i++)
         for (size_t j = 0; j < two; j++) {
             const bool apart = (i >= one && i % 3 == 0) || (j >= one && j % 3 == 0);
-            m->w[i * two + j] = apart ? (i == j ? mean : 0) : g->w[i % one * one + j % one];
+            m->w[i * two + j] = apart ? (i == j ? mean : 0) : g->w[row_of(m, i) * one + row_of(m, j)];
         }
     add_parts(m);
-    for (size_t i = 0; i < one; i++) m->q[one + i] = i % 3 == 0 ? -mean * m->least[i / 3] : m->q[i];
-    for (size_t i = 0; i < n; i++) m->friction[n + i] = m->friction[i];
+    for (size_t i = one; i < two; i++) m->q[i] = i % 3 == 0 ? -mean * m->least[row_of(m, i) / 3] : m->q[row_of(m, i)];
+    for (size_t k = 0; k < (size_t)m->parts; k++) m->friction[n + k] = m->friction[m->part_of[k]];
+}
+
+/* Each contact's part at its own place, n + i. */
+static void spread_parts(moreau *m)
+{
+    const int n = m->group->count;
+    for (int i = n - 1, k = m->parts - 1; i >= 0; i--) {
+        const bool any = k >= 0 && m->part_of[k] == i;
+        for (int j = 0; j < 3; j++) m->r[3 * (n + i) + j] = any ? m->r[3 * (n + k) + j] : 0;
+        m->modes[n + i] = any ? m->modes[n + k] : IMP_CONE_OPEN;
+        k -= any;
+    }
 }
 
 /* The second problem's answer: of each contact r more than its part, which are with it in p. The last of it is pushed.
@@ -311,19 +343,20 @@ static bool restore(moreau *m)
 {
     imp_group *g = m->group;
     const int n = g->count;
-    for (int i = 0; i < n; i++) m->least[i] = g->contacts[i].restitution * g->p[3 * i];
+    find_parts(m);
     const bool starts = find_start(m, m->u, m->least);
     if (starts) part_start(m);
     set_restitution(m);
-    const imp_cone_problem problem = {.count = 2 * n,
+    const imp_cone_problem problem = {.count = n + m->parts,
                                       .w = m->w,
                                       .q = m->q,
                                       .friction = m->friction,
                                       .last_r = starts ? m->last_r : NULL,
                                       .last_u = m->last_u,
-                                      .work = starts ? work_of_start(2 * n) : 0};
+                                      .work = starts ? work_of_start(n + m->parts) : 0};
     imp_cone_outcome o;
     if (!find_answer(m, &problem, m->r, m->v, &o)) return false;
+    spread_parts(m);
     clean(n, m->modes, m->modes + n, m->v);
     take_restitution(m);
     return true;
@@ -344,6 +377,7 @@ impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_wo
     m.last_u = imp_encounter_take(workspace, 6 * n, sizeof *m.last_u);
     m.room = imp_encounter_take(workspace, imp_encounter_wedge_size(n), sizeof *m.room);
     m.least = imp_encounter_take(workspace, n, sizeof *m.least);
+    m.part_of = imp_encounter_take(workspace, n, sizeof *m.part_of);
     m.rebound = imp_encounter_take(workspace, n, sizeof *m.rebound);
     m.couples = imp_encounter_take(workspace, n, sizeof *m.couples);
     m.rows = imp_encounter_take(workspace, n, sizeof *m.rows);

@@ -311,6 +311,27 @@ static void friction_follows_what_mends_its_pressure(void **state)
     }
 }
 
+/* An encounter by Moreau's law of nine contacts, five of which press: with parts of nothing in restitution's problem
+ * for the others no path led to its answer. Impulses are hundreds of times what is exchanged. */
+static void what_did_not_press_has_no_part_in_restitution(void **state)
+{
+    (void)state;
+    random_stream random = {5};
+    const random_encounter e = draw_kept(20410000, 5826, 7, 12);
+    const answer a = solve(&e, IMPACT_TOGETHER_MOREAU, 0, NULL);
+    assert_int_equal(a.status, IMPACT_OK);
+    assert_at_most(a.outcome.residual, 1e-12);
+    for (int run = 0; run < 3; run++) {
+        const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10),
+                                       random_log(&random, 0.1, 10), random_log(&random, 0.1, 10)};
+        const random_encounter other = change_frame(&e, &frame);
+        answer b = solve(&other, IMPACT_TOGETHER_MOREAU, 0, NULL);
+        assert_int_equal(b.status, IMPACT_OK);
+        change_back(&b, e.body_count, &frame);
+        assert_at_most(distance(&e, &a, &b), 1e-10);
+    }
+}
+
 /* Encounters of the campaign whose bodies bounce from contact to contact, ever less, each round like the one before:
  * two that once spent the work allowed, and one that came to where its springs count as open, after 45000 steps, with
  * 2e-9 of its speed left; and two of whose two contacts one always presses, which come to rest. */
@@ -589,6 +610,7 @@ int main(void)
         cmocka_unit_test(what_no_path_leads_to_is_found),
         cmocka_unit_test(friction_follows_what_mends_its_pressure),
         cmocka_unit_test(the_path_on_which_friction_sets_in_is_followed_to_its_end),
+        cmocka_unit_test(what_did_not_press_has_no_part_in_restitution),
         cmocka_unit_test(bounces_that_never_end_are_followed_to_their_end),
         cmocka_unit_test(what_never_ends_is_told_and_what_takes_long_is_answered),
         cmocka_unit_test(what_no_path_leads_to_is_answered),
