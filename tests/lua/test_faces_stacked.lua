@@ -77,3 +77,43 @@ for _, yaw in ipairs { 0, .3, math.pi / 4 } do
   check.truth(turned > .74 and turned < .95, "turned by " .. turned)
   check.close(x.x, .682, .06)
 end
+
+-- Two plates that lean against each other and slide apart touch along a strip of their edges, whose corners are so near to each other that closing the
+-- gaps of each would turn them by radians. The tilt's equation, with the foot at mu N and the push H at the top:
+--   m x'' = mu N - H      m z'' = N - m g      I th'' = (r x f)_y of both      x = -(L sin th + w cos th), z = L cos th + w sin th
+local function lean(th, duration)
+  local L, w, m, I, rate, steps = .5, .005, 1, (.5 ^ 2 + .005 ^ 2) / 3, 0, 4000
+  local function acceleration(angle, turning)
+    local s, c = math.sin(angle), math.cos(angle)
+    local function off(A)
+      local X, Z = -(L * c - w * s) * A + (L * s + w * c) * turning ^ 2, (-L * s + w * c) * A - (L * c + w * s) * turning ^ 2
+      local N = m * (G + Z)
+      local H = .2 * N - m * X
+      return I * A - (-(L * c + w * s) * .2 * N - (w * c - L * s) * N - (L * c - w * s) * H)
+    end
+    return off(0) / (off(0) - off(1))
+  end
+  local h = duration / steps
+  for _ = 1, steps do
+    local middle, turning = th + h / 2 * rate, rate + h / 2 * acceleration(th, rate)
+    th, rate = th + h * turning, rate + h * acceleration(middle, turning)
+  end
+  return L * math.cos(th) + w * math.sin(th), rate
+end
+for _, th in ipairs { .5, .51, .52 } do
+  local L, w, plates = .5, .005, { impact.body { name = "floor", shape = impact.plane(), friction = 1 } }
+  for k, side in ipairs { 1, -1 } do
+    plates[k + 1] = impact.body { name = k == 1 and "left" or "right", shape = impact.box { a = w, b = .2, c = L }, mass = 1, friction = 1, restitution = 0,
+      orientation = quat.from_axis_angle({ 0, 1, 0 }, side * th),
+      position = { -side * (L * math.sin(th) + w * math.cos(th)), 0, L * math.cos(th) + w * math.sin(th) } }
+  end
+  local scene = impact.scene { gravity = { 0, 0, -G }, duration = .14, bodies = plates, pairs = { { bodies = { "floor", "left" }, friction = .2 },
+    { bodies = { "floor", "right" }, friction = .2 }, { bodies = { "left", "right" }, friction = .6 } } }
+  check.equal(scene:run(), "end of time")
+  local z, rate = lean(th, .14)
+  for k, name in ipairs { "left", "right" } do
+    check.close(scene:state(name).position.z, z, 5e-5)
+    check.close(scene:state(name).omega.y, k == 1 and rate or -rate, 2e-3)
+  end
+  check.close(scene:energy().impact_loss, 0, 1e-3)
+end

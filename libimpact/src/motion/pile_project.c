@@ -5,14 +5,21 @@
 
 #include <string.h>
 
-/* The points that were held at the end of the step, as far apart as the step met them or as it may err: what is farther
- * apart has parted, as a face that leaves another over its border, and would be drawn back by what the step slid. */
-static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states, double h, double slack)
+/* How far apart what is held may be: as far as the step met it or as it may err, m. */
+static double most_apart(imp_pile *pile, const imp_world *world, double slack)
+{
+    const imp_pile_memories *held = imp_pile_ended(pile);
+    double apart = fmax(slack, pile->tolerance * imp_pile_smallest(world));
+    for (int k = 0; k < held->count; k++) apart = fmax(apart, 2 * held->list[k].gap);
+    return apart;
+}
+
+/* The points that were held at the end of the step and are no farther apart than that: what is has parted, as a face
+ * that leaves another over its border, and would be drawn back by what the step slid. */
+static bool find_held(imp_pile *pile, imp_world *world, const imp_state *states, double h, double apart)
 {
     imp_pile_contacts *touching = &pile->touching;
-    double apart = fmax(slack, pile->tolerance * imp_pile_smallest(world));
     imp_pile_memories *held = imp_pile_ended(pile);
-    for (int k = 0; k < held->count; k++) apart = fmax(apart, 2 * held->list[k].gap);
     imp_pile_contacts_mark(touching, world, held);
     if (!imp_pile_find_points(touching, world, states, states, h, apart, true)) return false;
     imp_pile_recall(touching, world, states, h, held);
@@ -33,15 +40,45 @@ static void close_gaps(imp_pile *pile, const imp_world *world, const imp_state *
     for (int c = 0; c < count; c++) pile->r[3 * c] = pile->last_u[c];
 }
 
+/* How far its displacement moves any of the body's points, m. */
+static double way_of_body(const imp_world *world, const imp_state *displaced, int i)
+{
+    const imp_body *body = &world->bodies[i];
+    if (body->is_static) return 0;
+    return qvec3_norm(displaced[i].v) + body->radius * qvec3_norm(imp_omega(body, &displaced[i]));
+}
+
+/* How far the displacements move any body's point, m. */
+static double way_of(const imp_world *world, const imp_state *displaced)
+{
+    double most = 0;
+    for (int i = 0; i < world->body_count; i++) most = fmax(most, way_of_body(world, displaced, i));
+    return most;
+}
+
+/* Whether closing the island's gaps moves a point farther than what is held may be apart and the gaps together, each of
+ * which takes about its own size. So do contacts beside each other, d apart: gaps that differ by e take a turn by e/d,
+ * of which no gap that a step has left tells anything. */
+static bool goes_astray(const imp_pile *pile, const imp_world *world, int count, double apart)
+{
+    double most = 0;
+    for (int c = 0; c < count; c++) {
+        apart += fabs(pile->gap[c]);
+        most = fmax(most, way_of_body(world, pile->middle, pile->contacts[c].body1));
+        most = fmax(most, way_of_body(world, pile->middle, pile->contacts[c].body2));
+    }
+    return most > apart;
+}
+
 /* Gives the displacements those impulses, unless the equations that were left out are not met then: of contacts that
- * are more than motions not every gap can be zero. */
-static void push_together(imp_pile *pile, imp_world *world, int count, double slack)
+ * are more than motions not every gap can be zero; or they go astray. */
+static void push_together(imp_pile *pile, imp_world *world, int count, double slack, double apart)
 {
     double off = 0;
     imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
     imp_cone_contact_velocities(world, pile->middle, pile->contacts, count, pile->u);
     for (int c = 0; c < count; c++) off = fmax(off, fabs(pile->gap[c] + pile->u[3 * c]));
-    if (off <= 0.1 * slack) return;
+    if (off <= 0.1 * slack && !goes_astray(pile, world, count, apart)) return;
     for (int i = 0; i < 3 * count; i++) pile->r[i] = -pile->r[i];
     imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
 }
@@ -56,18 +93,6 @@ static void part_overlaps(imp_pile *pile, const imp_world *world, int count)
     const imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
     if (outcome.residual <= question.usable) /* what it leaves is a part of the overlaps */
         imp_cone_push(world, pile->contacts, count, pile->r, pile->middle);
-}
-
-/* How far the displacements move any body's point, m. */
-static double way_of(const imp_world *world, const imp_state *displaced)
-{
-    double most = 0;
-    for (int i = 0; i < world->body_count; i++) {
-        const imp_body *body = &world->bodies[i];
-        if (body->is_static) continue;
-        most = fmax(most, qvec3_norm(displaced[i].v) + body->radius * qvec3_norm(imp_omega(body, &displaced[i])));
-    }
-    return most;
 }
 
 /* Everything that moves stands where it is in the states, pile->middle has its displacement. */
@@ -87,16 +112,16 @@ static double deepest(const imp_pile_contacts *touching)
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
     /* overlaps as small as a ten-thousandth of a step's error are closed with the gaps of the next */
-    const double slack = imp_pile_slack(pile, world), left = 0.001 * slack;
+    const double slack = imp_pile_slack(pile, world), left = 0.001 * slack, apart = most_apart(pile, world, slack);
     for (int pass = 0; pass < 2; pass++) {
-        const bool found = pass == 0 ? find_held(pile, world, states, h, slack)
+        const bool found = pass == 0 ? find_held(pile, world, states, h, apart)
                                      : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -left, false);
         if (!found || !imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
         displace_nothing(pile, world, states);
         for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
             if (pass == 0) {
                 close_gaps(pile, world, states, count);
-                push_together(pile, world, count, slack);
+                push_together(pile, world, count, slack, apart);
             } else
                 part_overlaps(pile, world, count);
         }
