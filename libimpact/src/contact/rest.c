@@ -318,14 +318,23 @@ static void show_motion(const rest_system *s, const imp_world *world, const imp_
     }
 }
 
+/* Counts the steps at a stand: near the balance each squares what the one before left, so that what several do not
+ * halve is the least there is, of loads that nothing balances by more than rounding. */
+static int count_idle(int idle, double residual, double *least)
+{
+    const bool stands = residual < IMP_REST_NEAR && residual > 0.5 * *least;
+    *least = fmin(*least, residual);
+    return stands ? idle + 1 : 0;
+}
+
 static imp_rest_outcome minimise(const rest_system *s, const double **direction)
 {
-    enum { MOST_STEPS = 100, REFINEMENTS = 3 };
+    enum { MOST_STEPS = 100, MOST_IDLE = 8, REFINEMENTS = 3 };
     imp_rest_outcome outcome = {.status = IMP_REST_UNDECIDED, .residual = INFINITY};
     const double size = sqrt(product(s->load, s->load, s->n));
     memset(s->x, 0, sizeof *s->x * (size_t)s->n);
-    double value = value_at(s, s->x), left = size;
-    for (; outcome.steps < MOST_STEPS; outcome.steps++) {
+    double value = value_at(s, s->x), left = size, least = INFINITY;
+    for (int idle = 0; outcome.steps < MOST_STEPS && idle < MOST_IDLE; outcome.steps++) {
         (void)value_at(s, s->x);
         outcome.residual = find_gradient(s);
         for (int k = 0; k < REFINEMENTS && outcome.residual > IMP_REST_BALANCED && outcome.residual < IMP_REST_NEAR;
@@ -335,14 +344,15 @@ static imp_rest_outcome minimise(const rest_system *s, const double **direction)
             outcome.status = IMP_REST_RESTS;
             return outcome;
         }
+        idle = count_idle(idle, outcome.residual, &least);
         if (!find_step(s, outcome.steps == 0)) break;
         const double *tried[2] = {s->step, s->x};
         for (int k = 0; k < 2; k++) {
-            const double least = excluded_by(s, tried[k]);
-            if (!(least > IMP_REST_EXCLUDING * size)) continue;
+            const double excluded = excluded_by(s, tried[k]);
+            if (!(excluded > IMP_REST_EXCLUDING * size)) continue;
             *direction = tried[k];
             outcome.status = IMP_REST_MOVES;
-            outcome.least_reactions = least;
+            outcome.least_reactions = excluded;
             return outcome;
         }
         shorten(s);

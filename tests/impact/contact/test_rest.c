@@ -235,6 +235,24 @@ static void what_nothing_holds_goes(void **state)
     free(p);
 }
 
+/* A ball on two rails, whose places across are e apart: it rolls down them, by nothing that reactions could hold, and
+ * by less than shows that none do. That is soon found out. */
+static void what_all_but_rests_is_left_soon(void **state)
+{
+    (void)state;
+    for (double e = 1e-8; e > 1e-11; e /= 10) {
+        pile *p = new_pile();
+        const double x = 0.07, z = 0.0714;
+        add_box(p, 1, (qvec3){0, 0, z}, down);
+        for (int side = -1; side <= 1; side += 2)
+            contact(p, 1, 0, (qvec3){side * x, side < 0 ? e : 0, 0},
+                    qvec3_scale((qvec3){-side * x, 0, z}, 1 / hypot(x, z)), 0.5);
+        assert_int_not_equal(solve(p), IMP_REST_RESTS);
+        assert_true(p->outcome.steps <= 20);
+        free(p);
+    }
+}
+
 static int furnish(void **state)
 {
     (void)state;
@@ -256,6 +274,7 @@ int main(void)
         cmocka_unit_test(slopes_hold_up_to_their_friction),
         cmocka_unit_test(loads_made_from_reactions_are_balanced),
         cmocka_unit_test(what_nothing_holds_goes),
+        cmocka_unit_test(what_all_but_rests_is_left_soon),
     };
     return cmocka_run_group_tests(tests, furnish, clear);
 }
