@@ -257,7 +257,34 @@ static double within_face(const impact_face *face, qvec3 normal, qvec3 place)
     return least;
 }
 
-/* Body k's face towards the other, and the other's place that is lowest over it. */
+/* Outward from the side of a cylinder or cone at the place's azimuth, in the shape's axes. */
+static qvec3 normal_of_side(const impact_shape *shape, qvec3 place)
+{
+    const double rho = hypot(place.x, place.y), radius = shape->a - shape->rounding,
+                 height = shape->kind == IMPACT_CONE ? shape->c - 2 * shape->rounding : INFINITY, up = radius / height,
+                 size = hypot(1, up);
+    const qvec3 out = rho > 0 ? (qvec3){place.x / rho, place.y / rho, 0} : (qvec3){1, 0, 0};
+    return (qvec3){out.x / size, out.y / size, up / size};
+}
+
+/* m: how deep a place lies under the planes of all faces but one and under the side: a ball of that radius about it is
+ * within them. */
+static double depth_beside(const impact_shape *shape, int own, qvec3 place)
+{
+    const face_list faces = faces_of(shape);
+    double least = INFINITY;
+    for (int f = 0; f < faces.count; f++) {
+        const qvec3 n = normal_of_face(&faces, f);
+        if (f != own) least = fmin(least, height_of_face(&faces, f, n) - qvec3_dot(n, place));
+    }
+    if (is_flat_sided(shape)) return least;
+    qvec3 farthest;
+    const qvec3 side = normal_of_side(shape, place);
+    return fmin(least, impact_shape_support(shape, side, &farthest) - qvec3_dot(side, place));
+}
+
+/* Body k's face towards the other, and the other's place that is lowest over it. Where that is under the face, the ball
+ * about it that touches the face is within the body: no direction is a nearer way out. */
 static bool stands_on(const imp_body *const body[2], const imp_state *const state[2], int k, qvec3 towards,
                       impact_contact *contact)
 {
@@ -265,7 +292,8 @@ static bool stands_on(const imp_body *const body[2], const imp_state *const stat
     const quat axes = imp_shape_axes(under, state[k]), upper = imp_shape_axes(above, state[1 - k]);
     qvec3 normal, lowest;
     impact_face face;
-    if (face_along(under, quat_rotate_inverse(axes, towards), &normal) < 0) return false;
+    const int own_face = face_along(under, quat_rotate_inverse(axes, towards), &normal);
+    if (own_face < 0) return false;
     if (impact_shape_face(&under->shape, normal, IMP_ROUNDOFF * under->radius, &face) != 2) return false;
     const qvec3 n = quat_rotate(axes, normal);
     impact_shape_support(&above->shape, quat_rotate_inverse(upper, qvec3_neg(n)), &lowest);
@@ -275,6 +303,7 @@ static bool stands_on(const imp_body *const body[2], const imp_state *const stat
                 local = quat_rotate_inverse(axes, place);
     const double gap = qvec3_dot(normal, qvec3_sub(local, face.point[0]));
     if (!(within_face(&face, normal, local) >= fmax(0, -gap))) return false;
+    if (gap < 0 && !(depth_beside(&under->shape, own_face, local) >= -gap)) return false;
     const qvec3 foot = qvec3_axpy(-gap, n, qvec3_add(between, own));
     *contact = (impact_contact){.gap = gap,
                                 .lower = gap,

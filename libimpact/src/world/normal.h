@@ -29,7 +29,8 @@ void imp_settle_among(const imp_world *world, const imp_pair *pair, const imp_st
 
 /* The gap where one body stands on a face of the other, near the direction `normal` (from body 2 to body 1): its lowest
  * place, whose foot is within the face, is as far from it as the face's plane parts them, which no gap exceeds and no
- * distance is under. False: it is not so, or they overlap by more than the foot is within. Shapes of which one is
+ * distance is under. False: it is not so, or they overlap by more than the foot is within, or a nearer way out leads
+ * through another face or the side, as from under the base of a cone. Shapes of which one is
  * neither a polytope nor a ball are found so in a hundredth of the time that Newton takes, where the other's place is
  * not unique.
  */

@@ -96,7 +96,7 @@ static void at_an_edge_the_rate_decides(void **state)
 }
 
 /* A ball over a box's top, a cylinder's disc and a cone's base, or beside: by its lowest point, as long as that is
- * within the border, by as much as it lies deep. */
+ * within the border, and under the cone's side, by as much as it lies deep. */
 static void what_stands_over_a_face(void **state)
 {
     (void)state;
@@ -119,10 +119,11 @@ static void what_stands_over_a_face(void **state)
         const imp_state ground = {.x = random_vector(&random, 0.1, 10), .q = q},
                         one = {.x = qvec3_add(ground.x, quat_rotate(q, (qvec3){x, y, way * (top + radius + gap)})),
                                .q = random_rotation(&random)};
-        const double room = kind == 0 ? fmin(0.2 - fabs(x), 0.3 - fabs(y)) : 0.25 - hypot(x, y);
+        const double room = kind == 0 ? fmin(0.2 - fabs(x), 0.3 - fabs(y)) : 0.25 - hypot(x, y), deep = fmax(0, -gap),
+                     under_side = kind < 2 || deep == 0 ? room : (room - 0.25 / 0.4 * deep) * 0.4 / hypot(0.25, 0.4);
         const qvec3 n = quat_rotate(q, (qvec3){0, 0, way});
-        if (fabs(room - fmax(0, -gap)) < 1e-9) continue;
-        const bool stands = room >= fmax(0, -gap);
+        if (fabs(fmin(room, under_side) - deep) < 1e-9) continue;
+        const bool stands = fmin(room, under_side) >= deep;
         for (int swapped = 0; swapped < 2; swapped++) {
             impact_contact contact;
             const bool found = swapped ? imp_face_gap(&face, &ground, &above, &one, qvec3_neg(n), &contact)
@@ -141,10 +142,44 @@ static void what_stands_over_a_face(void **state)
     assert_true(over > 500 && beside > 500);
 }
 
+/* A ball that touches flat boxes, discs and cones, or all but does, wherever and whatever direction it is looked for:
+ * where a face is said to part them it does, as the whole search has it. */
+static void no_nearer_way_out_is_left(void **state)
+{
+    (void)state;
+    random_stream random = {72};
+    impact_shape ball, under[4];
+    assert_int_equal(impact_shape_sphere(radius, &ball), IMPACT_OK);
+    assert_int_equal(impact_shape_box(0.2, 0.3, 0.01, 0, &under[0]), IMPACT_OK);
+    assert_int_equal(impact_shape_cylinder(0.25, 0.01, 0, &under[1]), IMPACT_OK);
+    assert_int_equal(impact_shape_cone(0.25, 0.4, 0, &under[2]), IMPACT_OK);
+    assert_int_equal(impact_shape_cone(0.25, 0.1, 0.02, &under[3]), IMPACT_OK);
+    const imp_body above = body_of(ball, false);
+    int found = 0;
+    for (int run = 0; run < 20000; run++) {
+        const imp_body face = body_of(under[run % 4], false);
+        const imp_state ground = {.q = {1, 0, 0, 0}};
+        imp_state one = {.x = random_vector(&random, 0.1, 1), .q = {1, 0, 0, 0}};
+        impact_contact whole, contact;
+        const impact_solid solids[2] = {{.shape = ball, .position = one.x, .orientation = one.q},
+                                        {.shape = under[run % 4], .orientation = ground.q}};
+        if (impact_gap(&solids[0], &solids[1], NULL, &whole) != IMPACT_OK) continue;
+        one.x = qvec3_axpy(1e-3 * random_unit(&random) - 9e-4 - whole.gap, whole.normal, one.x);
+        impact_solid moved = solids[0];
+        moved.position = one.x;
+        if (impact_gap(&moved, &solids[1], NULL, &whole) != IMPACT_OK) continue;
+        const qvec3 n = run % 3 == 0 ? random_direction(&random) : whole.normal;
+        if (!imp_face_gap(&above, &one, &face, &ground, n, &contact)) continue;
+        assert_near(contact.gap, whole.gap, 1e-12);
+        found++;
+    }
+    assert_true(found > 2000);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_disc_that_lands_flat_stays_where_it_touches),
-                                       cmocka_unit_test(at_an_edge_the_rate_decides),
-                                       cmocka_unit_test(what_stands_over_a_face)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_disc_that_lands_flat_stays_where_it_touches), cmocka_unit_test(at_an_edge_the_rate_decides),
+        cmocka_unit_test(what_stands_over_a_face), cmocka_unit_test(no_nearer_way_out_is_left)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
