@@ -56,9 +56,9 @@ static double way_of(const imp_world *world, const imp_state *displaced)
     return most;
 }
 
-/* Whether closing the island's gaps moves a point farther than what is held may be apart and the gaps together, each of
- * which takes about its own size. So do contacts beside each other, d apart: gaps that differ by e take a turn by e/d,
- * of which no gap that a step has left tells anything. */
+/* Whether closing the island's gaps moves a point much farther than what is held may be apart and the gaps together,
+ * each of which takes about its own size. So do contacts beside each other, d apart: gaps that differ by e take a turn
+ * by e/d, of which no gap that a step has left tells anything. */
 static bool goes_astray(const imp_pile *pile, const imp_world *world, int count, double apart)
 {
     double most = 0;
@@ -67,7 +67,7 @@ static bool goes_astray(const imp_pile *pile, const imp_world *world, int count,
         most = fmax(most, way_of_body(world, pile->middle, pile->contacts[c].body1));
         most = fmax(most, way_of_body(world, pile->middle, pile->contacts[c].body2));
     }
-    return most > apart;
+    return most > IMP_PILE_ASTRAY * apart;
 }
 
 /* Gives the displacements those impulses, unless the equations that were left out are not met then: of contacts that
