@@ -14,7 +14,7 @@
  * with the order; the worst residual of the answered; those that were turned and compared, those of them that were off,
  * and those of these by Moreau that have several answers: both solve his problems, with receipts that pass, and are
  * more than 1e-6 apart; CPU time, us: median, the part .99, most; Taylor steps or linear systems: median, most. Then
- * one line for each that is not answered: its number from the seed, so that it can be made again.
+ * one line for each that is not answered, as drawn or turned: its number from the seed, so that it can be made again.
  */
 #include <stdio.h>
 #include <string.h>
@@ -101,7 +101,10 @@ static void turn_one(const family *f, const random_encounter *e, const answer *a
                                    random_log(random, 0.1, 10)};
     const random_encounter other = change_frame(e, &frame);
     answer b = solve(&other, f->law, f->exponent, workspace);
-    if (b.status != IMPACT_OK) return;
+    if (b.status != IMPACT_OK) {
+        fprintf(stderr, "encounter %ld: turned: %s\n", number, impact_status_string(b.status));
+        return;
+    }
     change_back(&b, e->body_count, &frame);
     const double off = distance(e, a, &b), allowed = allowance(random, e, f->law, f->exponent, a, off);
     t->turned++;

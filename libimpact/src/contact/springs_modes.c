@@ -7,10 +7,18 @@
  * discs: springs_choose.c chooses them.
  *
  * Slip goes straight where nothing turns it: the response across it vanishes for every force that is there, each
- * against its own direction.
+ * against its own direction. Velocities tell its direction e to their rounding over |u_t|, and rounding grows with
+ * impulses; the line that normal forces push it along, where they have one, is known from W alone. With v_d what that
+ * of contact d does to u_t, it is at the angle
+ *
+ *     a = sum_d (v_d . e)(v_d x e) / sum_d (v_d . e)^2        (least sum_d (v_d x e')^2)
+ *
+ * from e, but for a^2. Where that is less than rounding, |a| |u_t| <= none, and a^2 is, e is taken to be it: slip that
+ * is no more than rounding has no direction, and would be turned into that line.
  */
 #include "contact/springs.h"
 
+#include <float.h>
 #include <math.h>
 #include "base/tolerances.h"
 #include "contact/least.h"
@@ -154,6 +162,24 @@ static void take_only_way(imp_springs *s, int c)
     along[0] = e[0], along[1] = e[1];
 }
 
+/* Slip of contact c along the line that normal forces push it along, where it is that but for its rounding. */
+static void take_line_of_pressures(imp_springs *s, int c)
+{
+    imp_spring *own = &s->springs[c];
+    double *across = s->factor, *row = s->now, both = 0, square = 0;
+    const double e[2] = {own->along[0], own->along[1]};
+    find_across(s, c, e, row);
+    for (int d = 0; d < s->count; d++) across[d] = row[3 * d];
+    find_across(s, c, (double[]){e[1], -e[0]}, row);
+    for (int d = 0; d < s->count; d++) {
+        if (!imp_springs_presses(&s->springs[d])) continue;
+        both += across[d] * row[3 * d], square += row[3 * d] * row[3 * d];
+    }
+    const double angle = square > 0 ? both / square : 0;
+    if (!(fabs(angle) * hypot(own->u[1], own->u[2]) <= own->none && angle * angle <= DBL_EPSILON)) return;
+    own->along[0] = e[0] - angle * e[1], own->along[1] = e[1] + angle * e[0];
+}
+
 /* Whether nothing that presses turns the slip of contact c. */
 static bool goes_straight(imp_springs *s, int c)
 {
@@ -183,6 +209,7 @@ void imp_springs_straighten(imp_springs *s)
         if (!imp_springs_presses(c) || c->slip < IMP_SPRING_SLIDES) continue;
         find_direction(c, c->along);
         if (c->slip == IMP_SPRING_BEGINS) take_only_way(s, i);
+        if (!c->still) take_line_of_pressures(s, i);
         c->slip = IMP_SPRING_STRAIGHT;
     }
     bool again = true;

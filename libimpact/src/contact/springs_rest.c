@@ -102,7 +102,7 @@ static double distance_at(const imp_springs *s, const rest *r, int moment)
 }
 
 /* Whether what takes part has done since the moment before as it will: pressed, and where slip is left had friction
- * against that, but for rounding. */
+ * against that, but for what its power has of rounding: of slip that comes to nothing rounding tells the direction. */
 static bool goes_on(const imp_springs *s, const rest *r)
 {
     const double *then = imp_springs_impulses_at(s, 1), *now = imp_springs_impulses_at(s, 2);
@@ -113,7 +113,7 @@ static bool goes_on(const imp_springs *s, const rest *r)
         if (!(pushed > 0) || s->modes[c] == IMP_CONE_OPEN) return false;
         most = fmax(most, pushed);
         for (int j = 1; j < 3 && s->modes[c] == IMP_CONE_SLIDES && r->friction[c] > 0; j++)
-            worst = fmax(worst, fabs(now[row + j] - then[row + j] + r->friction[c] * pushed * after[j] / speed));
+            worst = fmax(worst, fabs(speed * (now[row + j] - then[row + j]) + r->friction[c] * pushed * after[j]));
     }
     return worst <= IMP_BOUNCES_ERROR * most;
 }

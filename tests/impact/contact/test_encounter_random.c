@@ -386,6 +386,27 @@ static void what_bounces_in_no_rhythm_comes_to_rest(void **state)
     }
 }
 
+/* The second of these in other frames: its slips go straight, in a plane, though its impulses grow to 2e4 times what is
+ * exchanged, and rounding turns velocities by as much as they do; and slip that comes to nothing leaves friction, all
+ * of it, a direction that is rounding's. */
+static void what_bounces_comes_to_rest_in_any_frame(void **state)
+{
+    (void)state;
+    random_stream random = {5};
+    const random_encounter e = draw_kept(21200000, 13845, 2, 3);
+    const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, 1, NULL);
+    for (int run = 0; run < 4; run++) {
+        const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10),
+                                       random_log(&random, 0.1, 10), random_log(&random, 0.1, 10)};
+        const random_encounter other = change_frame(&e, &frame);
+        answer b = solve(&other, IMPACT_TOGETHER_SPRINGS, 1, NULL);
+        assert_int_equal(b.status, IMPACT_OK);
+        assert_in_range(b.outcome.steps, a.outcome.steps - 1000, a.outcome.steps + 1000);
+        change_back(&b, e.body_count, &frame);
+        assert_at_most(distance(&e, &a, &b), 1e-9);
+    }
+}
+
 /* The same, where what bounces goes on to slide, or slides elsewhere meanwhile: friction's works fall by R, and not by
  * R^2 as those of dents do. Receipts missed by 5e-9 to 8e-5. */
 static void works_of_bounces_go_to_their_own_end(void **state)
@@ -619,6 +640,7 @@ int main(void)
         cmocka_unit_test(a_wedge_of_many_contacts_is_told),
         cmocka_unit_test(a_wedge_is_told_whatever_rounding_makes_of_it),
         cmocka_unit_test(what_bounces_in_no_rhythm_comes_to_rest),
+        cmocka_unit_test(what_bounces_comes_to_rest_in_any_frame),
         cmocka_unit_test(works_of_bounces_go_to_their_own_end),
         cmocka_unit_test(a_struck_cube_on_the_floor_is_answered),
         cmocka_unit_test(elastic_encounters_without_friction_keep_energy),
