@@ -102,7 +102,8 @@ static void turn_one(const family *f, const random_encounter *e, const answer *a
     const random_encounter other = change_frame(e, &frame);
     answer b = solve(&other, f->law, f->exponent, workspace);
     if (b.status != IMPACT_OK) {
-        fprintf(stderr, "encounter %ld: turned: %s\n", number, impact_status_string(b.status));
+        fprintf(stderr, "encounter %ld: turned: %s%s\n", number, impact_status_string(b.status),
+                b.outcome.wedged >= 0 ? ", wedged" : "");
         return;
     }
     change_back(&b, e->body_count, &frame);
