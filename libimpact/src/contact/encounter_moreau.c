@@ -275,7 +275,7 @@ static void find_parts(moreau *m)
 }
 
 /* The row of W that one of the second problem has. */
-static size_t row_of(const moreau *m, size_t i)
+static size_t row_in_group(const moreau *m, size_t i)
 {
     const size_t one = 3 * (size_t)m->group->count;
     return i < one ? i : 3 * (size_t)m->part_of[(i - one) / 3] + i % 3;
@@ -291,10 +291,11 @@ static void set_restitution(moreau *m)
     for (size_t i = 0; i < two; i++)
         for (size_t j = 0; j < two; j++) {
             const bool apart = (i >= one && i % 3 == 0) || (j >= one && j % 3 == 0);
-            m->w[i * two + j] = apart ? (i == j ? mean : 0) : g->w[row_of(m, i) * one + row_of(m, j)];
+            m->w[i * two + j] = apart ? (i == j ? mean : 0) : g->w[row_in_group(m, i) * one + row_in_group(m, j)];
         }
     add_parts(m);
-    for (size_t i = one; i < two; i++) m->q[i] = i % 3 == 0 ? -mean * m->least[row_of(m, i) / 3] : m->q[row_of(m, i)];
+    for (size_t i = one; i < two; i++)
+        m->q[i] = i % 3 == 0 ? -mean * m->least[row_in_group(m, i) / 3] : m->q[row_in_group(m, i)];
     for (size_t k = 0; k < (size_t)m->parts; k++) m->friction[n + k] = m->friction[m->part_of[k]];
 }
 
