@@ -561,8 +561,8 @@
 #define IMP_SPRINGS_OTHER_UNIT 1.3
 #define IMP_SPRINGS_CHANCE 1e-8
 #define IMP_SPRINGS_NEARBY 0x1p-37
-/* Steps and events of one group: a quarter more than the longest random encounter with ratios of 1e4 that is known to end
- * takes, 234875 (N = 50000, seed 21200000, number 13845 of ./run report together). */
+/* Steps and events of one group: a quarter more than the longest random encounter with ratios of 1e4 that is known to
+ * end takes, 234875 (N = 50000, seed 21200000, number 13845 of ./run report together). */
 #define IMP_SPRINGS_STEPS 300000
 /* Multiplications of one group, some two seconds: a hundred contacts with friction take a thirtieth; of random ones
  * whose stiffnesses and restitutions make ratios of 1e6 the longest that are known end at 1.1e9. */
@@ -579,8 +579,8 @@
  * random encounters of up to 6 contacts, looked at from 1000 and 2000 steps on, 18 are ended so within a tenth, and all
  * where following them ends; of 10 that are a tenth to a half apart 4 are not. */
 #define IMP_BOUNCES_APART 0.1
-/* Steps and events from which bounces are ended by the equations of rest: what takes fewer is done by then, but for a few in a
- * thousand. */
+/* Steps and events from which bounces are ended by the equations of rest: what takes fewer is done by then, but for a
+ * few in a thousand. */
 #define IMP_BOUNCES_LATE 40000
 /* Of velocities: bounces slower than a thousand times that are not ended: what of them is left would not be told from
  * it, as where the seed of a contact that is pressed (IMP_SPRINGS_SEED) bounces before it grows. */
@@ -961,8 +961,8 @@
  * it the first is one. */
 #define IMP_PILE_FIRST 5
 /* How many times as far as what is held may be apart, and its gaps together, bodies may be moved to close these: in 300
- * random piles the farthest that led on was 33 times, and 319 and three others of 1000 (./run report piles) did not come
- * to their end where once as far was too much; corners microns apart threw two plates a thousand times as far. */
+ * random piles the farthest that led on was 33 times, and 319 and three others of 1000 (./run report piles) did not
+ * come to their end where once as far was too much; corners microns apart threw two plates a thousand times as far. */
 #define IMP_PILE_ASTRAY 1e2
 /* Of the error that a step may have: at so much of it the next aims, .5 to .9 being alike: five rows of twenty dominoes
  * try 16 to 17 thousand steps with each. And as how much of one that failed the next is tried at least. */
