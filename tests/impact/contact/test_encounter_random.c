@@ -11,6 +11,13 @@
 
 static const encounter_ranges campaign = {2, 8, 3, 0.1, 100, 100};
 
+/* Turned, with lengths, masses and times in other units. */
+static encounter_frame random_frame(random_stream *random)
+{
+    return (encounter_frame){random_rotation(random), random_log(random, 0.1, 10), random_log(random, 0.1, 10),
+                             random_log(random, 0.1, 10)};
+}
+
 static void draw_permutation(random_stream *random, int *order, int n)
 {
     for (int i = 0; i < n; i++) order[i] = i;
@@ -116,8 +123,7 @@ static void no_frame_or_unit_chooses_the_answer(void **state)
         const answer a = solve(&e, cases[k].law, cases[k].exponent, NULL);
         assert_int_equal(a.status, IMPACT_OK);
         for (int run = 0; run < 8; run++) {
-            const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10),
-                                           random_log(&random, 0.1, 10), random_log(&random, 0.1, 10)};
+            const encounter_frame frame = random_frame(&random);
             const random_encounter other = change_frame(&e, &frame);
             answer b = solve(&other, cases[k].law, cases[k].exponent, NULL);
             assert_int_equal(b.status, IMPACT_OK);
@@ -237,8 +243,7 @@ static void what_comes_loose_is_no_wedge(void **state)
     const encounter_ranges ranges = {7, 12, 10, 0.05, 1e4, 1e4};
     random_stream random = {777 + 0x9e3779b97f4a7c15u * 1829}, other = {1 + 0x9e3779b97f4a7c15u * 720u};
     const random_encounter e = encounter_draw(&random, &ranges), loose = encounter_draw(&other, &ranges);
-    const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10), random_log(&random, 0.1, 10),
-                                   random_log(&random, 0.1, 10)};
+    const encounter_frame frame = random_frame(&random);
     const random_encounter turned = change_frame(&e, &frame);
     const answer a = solve(&turned, IMPACT_TOGETHER_SPRINGS, 1, NULL),
                  b = solve(&loose, IMPACT_TOGETHER_SPRINGS, 1.5, NULL);
@@ -302,8 +307,7 @@ static void friction_follows_what_mends_its_pressure(void **state)
     random_stream random = {5};
     const random_encounter e = draw_kept(20000000, 37034, 7, 12);
     for (int run = 0; run < 8; run++) {
-        const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10),
-                                       random_log(&random, 0.1, 10), random_log(&random, 0.1, 10)};
+        const encounter_frame frame = random_frame(&random);
         const random_encounter other = change_frame(&e, &frame);
         const answer a = solve(&other, IMPACT_TOGETHER_MOREAU, 0, NULL);
         assert_int_equal(a.status, IMPACT_OK);
@@ -322,8 +326,7 @@ static void what_did_not_press_has_no_part_in_restitution(void **state)
     assert_int_equal(a.status, IMPACT_OK);
     assert_at_most(a.outcome.residual, 1e-12);
     for (int run = 0; run < 3; run++) {
-        const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10),
-                                       random_log(&random, 0.1, 10), random_log(&random, 0.1, 10)};
+        const encounter_frame frame = random_frame(&random);
         const random_encounter other = change_frame(&e, &frame);
         answer b = solve(&other, IMPACT_TOGETHER_MOREAU, 0, NULL);
         assert_int_equal(b.status, IMPACT_OK);
@@ -396,8 +399,7 @@ static void what_bounces_comes_to_rest_in_any_frame(void **state)
     const random_encounter e = draw_kept(21200000, 13845, 2, 3);
     const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, 1, NULL);
     for (int run = 0; run < 4; run++) {
-        const encounter_frame frame = {random_rotation(&random), random_log(&random, 0.1, 10),
-                                       random_log(&random, 0.1, 10), random_log(&random, 0.1, 10)};
+        const encounter_frame frame = random_frame(&random);
         const random_encounter other = change_frame(&e, &frame);
         answer b = solve(&other, IMPACT_TOGETHER_SPRINGS, 1, NULL);
         assert_int_equal(b.status, IMPACT_OK);
