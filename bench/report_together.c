@@ -13,8 +13,10 @@
  * not settled; those whose energy rose (by springs: by more than 1e-14; Moreau's may), and those whose bits changed
  * with the order; the worst residual of the answered; those that were turned and compared, those of them that were off,
  * and those of these by Moreau that have several answers: both solve his problems, with receipts that pass, and are
- * more than 1e-6 apart; CPU time, us: median, the part .99, most; Taylor steps or linear systems: median, most. Then
- * one line for each that is not answered, as drawn or turned: its number from the seed, so that it can be made again.
+ * more than 1e-6 apart; those that turned are told as wedged, and those of them of which the same happens to changes
+ * of their data of 1e-11: there chance tells whether a wedge locks or comes loose; CPU time, us: median, the part .99,
+ * most; Taylor steps or linear systems: median, most. Then one line for each that is not answered, as drawn or turned:
+ * its number from the seed, so that it can be made again.
  */
 #include <stdio.h>
 #include <string.h>
@@ -39,7 +41,7 @@ static const family families[] = {
 enum { FAMILIES = sizeof families / sizeof *families };
 
 typedef struct tally {
-    int answered, separating, soft, sensitive, wedged, unsettled, risen, changed, turned, off, several;
+    int answered, separating, soft, sensitive, wedged, unsettled, risen, changed, turned, off, several, lost, chance;
     double worst, *time, *steps;
 } tally;
 
@@ -102,8 +104,12 @@ static void turn_one(const family *f, const random_encounter *e, const answer *a
     const random_encounter other = change_frame(e, &frame);
     answer b = solve(&other, f->law, f->exponent, workspace);
     if (b.status != IMPACT_OK) {
-        fprintf(stderr, "encounter %ld: turned: %s%s\n", number, impact_status_string(b.status),
-                b.outcome.wedged >= 0 ? ", wedged" : "");
+        const bool chance = b.outcome.wedged >= 0 && is_lost_nearby(random, e, f->law, f->exponent, 1e-11);
+        t->lost++;
+        t->chance += chance;
+        if (!chance)
+            fprintf(stderr, "encounter %ld: turned: %s%s\n", number, impact_status_string(b.status),
+                    b.outcome.wedged >= 0 ? ", wedged" : "");
         return;
     }
     change_back(&b, e->body_count, &frame);
@@ -157,7 +163,8 @@ int main(int argc, char **argv)
     printf("law,restitution,exponent,contacts,encounters,answered,separating,soft,sensitive,wedged,unsettled,energy_"
            "rose,order_"
            "changed,"
-           "residual,turned,turned_off,several,time_median,time_99,time_most,steps_median,steps_most\n");
+           "residual,turned,turned_off,several,turned_lost,chance,time_median,time_99,time_most,steps_median,steps_"
+           "most\n");
     long number = 0;
     for (int k = 0; k < FAMILIES; k++) {
         const family *f = &families[k];
@@ -169,12 +176,12 @@ int main(int argc, char **argv)
         for (int i = 0; i < runs; i++) solve_one(f, (uint64_t)seed, only < 0 ? number + i : only, workspace, i, &t);
         number += share;
         if (runs == 0) continue;
-        printf("%s,%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
+        printf("%s,%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%d,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
                impact_together_law_name(f->law), impact_law_name(f->restitution), f->exponent, f->least, f->most, runs,
                t.answered, t.separating, t.soft, t.sensitive, t.wedged, t.unsettled, t.risen, t.changed, t.worst,
-               t.turned, t.off, t.several, measure_quantile(t.time, runs, 0.5), measure_quantile(t.time, runs, 0.99),
-               measure_quantile(t.time, runs, 1), measure_quantile(t.steps, runs, 0.5),
-               measure_quantile(t.steps, runs, 1));
+               t.turned, t.off, t.several, t.lost, t.chance, measure_quantile(t.time, runs, 0.5),
+               measure_quantile(t.time, runs, 0.99), measure_quantile(t.time, runs, 1),
+               measure_quantile(t.steps, runs, 0.5), measure_quantile(t.steps, runs, 1));
         fflush(stdout);
         free(t.time);
         free(t.steps);

@@ -78,24 +78,39 @@ static inline double distance(const random_encounter *e, const answer *a, const 
     return off / size;
 }
 
-/* How far the answer goes after relative changes of the data of so much, the most of 512 tries, or until one is
- * `enough`. */
+/* The answer after relative changes of the data of so much. */
+static inline answer solve_nearby(random_stream *random, const random_encounter *e, impact_together_law law,
+                                  double exponent, double change)
+{
+    random_encounter near = *e;
+    for (int b = 0; b < e->body_count; b++)
+        near.bodies[b].velocity = qvec3_axpy(change, random_direction(random), near.bodies[b].velocity);
+    for (int i = 0; i < e->meeting_count; i++) {
+        near.meetings[i].normal = qvec3_axpy(change, random_direction(random), near.meetings[i].normal);
+        near.meetings[i].stiffness *= 1 + change * random_unit(random);
+    }
+    return solve(&near, law, exponent, NULL);
+}
+
+/* How far the answer goes after such changes, the most of 512 tries, or until one is `enough`. */
 static inline double spread(random_stream *random, const random_encounter *e, impact_together_law law, double exponent,
                             const answer *a, double change, double enough)
 {
     double most = 0;
     for (int k = 0; k < 512 && most < enough; k++) {
-        random_encounter near = *e;
-        for (int b = 0; b < e->body_count; b++)
-            near.bodies[b].velocity = qvec3_axpy(change, random_direction(random), near.bodies[b].velocity);
-        for (int i = 0; i < e->meeting_count; i++) {
-            near.meetings[i].normal = qvec3_axpy(change, random_direction(random), near.meetings[i].normal);
-            near.meetings[i].stiffness *= 1 + change * random_unit(random);
-        }
-        const answer b = solve(&near, law, exponent, NULL);
+        const answer b = solve_nearby(random, e, law, exponent, change);
         if (b.status >= 0) most = fmax(most, distance(e, a, &b));
     }
     return most;
+}
+
+/* Whether such changes leave it without an answer, in one of 512 tries: as where it is chance whether a wedge locks. */
+static inline bool is_lost_nearby(random_stream *random, const random_encounter *e, impact_together_law law,
+                                  double exponent, double change)
+{
+    bool lost = false;
+    for (int k = 0; k < 512 && !lost; k++) lost = solve_nearby(random, e, law, exponent, change).status < 0;
+    return lost;
 }
 
 /* How far an answer may be off that is right to 1e-11 times its sensitivity: as far as it goes after such changes of

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 #include "base/tolerances.h"
+#include "contact/least.h"
 
 typedef struct units {
     double velocity, mobility, stiffness;
@@ -146,15 +147,16 @@ typedef struct wedge_watch {
 } wedge_watch;
 
 /* Energy falls by dents and by friction alone; what comes loose, or to rest with nothing pressed, leaves none in the
- * springs. Whether it stays there, held by friction or swinging: losing on as it did since it was asked last, they
- * would not come to nothing before the group is given up. */
+ * springs, of which those that load give back eps^2. Whether it stays there, held by friction or swinging: losing on as
+ * it did since it was asked last, they would not come to nothing before the group is given up. */
 static bool keeps_energy(const imp_springs *s, double spent, wedge_watch *watch)
 {
     enum { OFTEN = 2 };
     double stored = 0, lost = 0;
     for (int i = 0; i < s->count; i++) {
-        stored += s->springs[i].stored;
-        for (int j = 0; j < 3; j++) lost -= s->springs[i].finding->work[j];
+        const imp_spring *c = &s->springs[i];
+        stored += (c->normal == IMP_SPRING_LOADS ? c->restitution * c->restitution : 1) * c->stored;
+        for (int j = 0; j < 3; j++) lost -= c->finding->work[j];
     }
     lost -= stored;
     const double rate = (lost - watch->lost) / (spent - watch->asked);
@@ -196,12 +198,33 @@ static bool is_known(const imp_springs *s)
     return true;
 }
 
-/* Until all is apart: IMPACT_OK; else IMPACT_EUNSETTLED. */
+/* Whether all is at rest at its contacts, however it is pressed there: what is left of energy, of the springs and of
+ * the motion that impulses could take, (1/2) u . W^+ u, is no more than a spring holds that counts as open. It never
+ * rises, so that nothing more will come of it: in a wedge roundings of what was bounce on for ever. What ends by itself
+ * does so before that is asked. */
+static bool has_come_to_rest(imp_springs *s)
+{
+    const int width = 3 * s->count;
+    double *x = s->now, energy = 0;
+    if (spent_on(s) < IMP_SPRINGS_ASKED) return false;
+    for (int i = 0; i < s->count; i++) energy += s->springs[i].stored;
+    for (int i = 0; i < width; i++) {
+        x[i] = s->springs[i / 3].u[i % 3];
+        if (energy > IMP_SPRINGS_ENERGY || x[i] * x[i] > 2 * IMP_SPRINGS_ENERGY * imp_springs_entry(s, i, i))
+            return false;
+    }
+    (void)imp_least_solve_pivoted(s->w, width, IMP_SPRINGS_RANK, s->factor, (int *)s->scratch, x);
+    for (int i = 0; i < width; i++) energy += 0.5 * s->springs[i / 3].u[i % 3] * x[i];
+    return energy <= IMP_SPRINGS_ENERGY;
+}
+
+/* Until all is apart, or at rest: IMPACT_OK; else IMPACT_EUNSETTLED. */
 static impact_status follow(imp_springs *s, imp_group *group)
 {
     wedge_watch watch = {.next = IMP_SPRINGS_ASKED};
     while (s->steps + s->events < group->patience && s->work < IMP_SPRINGS_WORK) {
         s->closing = -1;
+        if (has_come_to_rest(s)) return IMPACT_OK;
         if (!imp_springs_settle(s)) return give_up(s, group);
         group->wedged = is_wedged(s, &watch);
         if (group->wedged) return IMPACT_EUNSETTLED;

@@ -426,6 +426,36 @@ static void works_of_bounces_go_to_their_own_end(void **state)
     }
 }
 
+/* Two bodies of the campaign that come to rest in a wedge, twice: what was rounding bounced on and was told as wedged,
+ * the first in five frames of eight, the second, each of whose steps costs much, as drawn. And two that come loose
+ * late, whose springs were counted twice where dents were loaded on, so that they seemed to lose no energy: in two of
+ * eight. */
+static void what_comes_to_rest_in_a_wedge_is_answered_in_any_frame(void **state)
+{
+    (void)state;
+    static const struct {
+        kept_encounter of;
+        bool stops;
+    } cases[] = {
+        {{30000000, 1072, 1, 7, 12}, true}, {{2001, 682, 1.5, 7, 12}, true}, {{20550000, 824, 1.5, 4, 6}, false}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const kept_encounter *own = &cases[k].of;
+        random_stream random = {1};
+        const random_encounter e = draw_kept(own->seed, own->number, own->least, own->most);
+        const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, own->exponent, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        assert_int_equal(a.outcome.energy_after < 1e-24 * a.outcome.energy_before, cases[k].stops);
+        for (int run = 0; run < 4; run++) {
+            const encounter_frame frame = random_frame(&random);
+            const random_encounter other = change_frame(&e, &frame);
+            answer b = solve(&other, IMPACT_TOGETHER_SPRINGS, own->exponent, NULL);
+            assert_int_equal(b.status, IMPACT_OK);
+            change_back(&b, e.body_count, &frame);
+            assert_at_most(distance(&e, &a, &b), 1e-10);
+        }
+    }
+}
+
 /* Encounters of the campaign that no motion takes apart. Of two no series went on, as what pressures left of one
  * another was their rounding; four came apart by that, with velocities known to 1e-4 to 1e-8; and two, in a plane,
  * after thousands of bounces, otherwise in each frame, or not at all. */
@@ -486,18 +516,6 @@ static void impulses_without_end_are_no_answer(void **state)
         assert_int_equal(a.status, IMPACT_EUNSETTLED);
         assert_true(a.outcome.wedged >= 0);
     }
-}
-
-/* Twelve contacts of two bodies, which no motion takes apart, each of whose steps costs much. */
-static void a_wedge_of_many_contacts_is_told(void **state)
-{
-    (void)state;
-    const encounter_ranges ranges = {7, 12, 10, 0.05, 1e4, 1e4};
-    random_stream random = {2001 + 0x9e3779b97f4a7c15u * 682u};
-    const random_encounter e = encounter_draw(&random, &ranges);
-    const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, 1.5, NULL);
-    assert_int_equal(a.status, IMPACT_EUNSETTLED);
-    assert_true(a.outcome.wedged >= 0);
 }
 
 /* A cube falls with a corner on one that rests on the floor, which four contacts hold more than they need to: with
@@ -583,7 +601,8 @@ static void elastic_encounters_without_friction_keep_energy(void **state)
 }
 
 /* Three contacts of one body in a plane, held by friction: it goes from one to the other over gaps that grow, a
- * thousand times its dents and more, and comes back where it closed. */
+ * thousand times its dents and more, and comes back where it closed; at rest at last but for the energy of a spring that
+ * counts as open, 2^-90. */
 static void long_flights_come_back_to_where_contacts_close(void **state)
 {
     (void)state;
@@ -592,7 +611,7 @@ static void long_flights_come_back_to_where_contacts_close(void **state)
     const random_encounter e = encounter_draw(&random, &ranges);
     const answer a = solve(&e, IMPACT_TOGETHER_SPRINGS, 1, NULL);
     assert_int_equal(a.status, IMPACT_OK);
-    assert_at_most(a.outcome.residual, 1e-14);
+    assert_at_most(a.outcome.residual, 0x1p-44);
 }
 
 /* Of the campaign (./run report together, N = 2250): wedges by friction, which pressures of their own hold but for
@@ -639,7 +658,7 @@ int main(void)
         cmocka_unit_test(what_no_path_leads_to_is_answered),
         cmocka_unit_test(what_seems_to_go_on_for_ever_is_answered),
         cmocka_unit_test(impulses_without_end_are_no_answer),
-        cmocka_unit_test(a_wedge_of_many_contacts_is_told),
+        cmocka_unit_test(what_comes_to_rest_in_a_wedge_is_answered_in_any_frame),
         cmocka_unit_test(a_wedge_is_told_whatever_rounding_makes_of_it),
         cmocka_unit_test(what_bounces_in_no_rhythm_comes_to_rest),
         cmocka_unit_test(what_bounces_comes_to_rest_in_any_frame),
