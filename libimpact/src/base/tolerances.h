@@ -527,14 +527,14 @@
 /* Radii of a power's series that a step goes: 5^22 eps is .5, of a force that is small where the radius is. */
 #define IMP_SPRINGS_REACH 5
 /* The least restitution of springs: what unloads is 1/eps times as stiff in time as what loads, and a pressed contact
- * then swings that much faster. Less counts as the first of these with which steps and events do not take longer than
- * IMP_SPRINGS_TRIED, as where what turns opens at once, else as the last; what comes back is off by as much of the
+ * then swings that much faster. Less counts as the first of these where steps and events do not take longer than
+ * IMP_SPRINGS_TRIED, as where what turns opens at once, else as the second; what comes back is off by as much of the
  * approach, and told. The energy that comes back of the hardest is 2^-60, a hundred roundings of the spring's own under
- * which it counts as open. */
+ * which it counts as open. Of random encounters with restitutions under 1e-3 99 in a hundred of those that end do so
+ * within 845; of what does not end by 2000 with the hardest two in a hundred do with 2^-20. */
 #define IMP_SPRINGS_HARDEST 0x1p-30
-#define IMP_SPRINGS_HARD 0x1p-20
 #define IMP_SPRINGS_LEAST 1e-3
-#define IMP_SPRINGS_TRIED 2000
+#define IMP_SPRINGS_TRIED 1000
 /* Steps and events, or multiplications, by which what is spent is counted: more than all but a few take in all. After
  * the first part of that a group is asked whether it is wedged, and whenever it has spent twice as much: each question
  * costs a hundredth. From the last on what is not proved to be loose is taken for wedged. */

@@ -207,18 +207,16 @@ static impact_status solve_springs(plan *call, int from, int count, double least
     return status;
 }
 
-/* What unloads is 1/eps times as stiff in time as what loads, and where it stays pressed it swings that much faster: of
- * smaller restitutions the least is taken that does not take long. */
+/* What unloads is 1/eps times as stiff in time as what loads, and where it stays pressed it swings that much faster:
+ * smaller restitutions are taken where that does not take long. */
 static impact_status solve_as_hard_as_can_be(plan *call, int from, int count, impact_together_workspace *workspace,
                                              imp_group *group)
 {
-    static const double least[] = {IMP_SPRINGS_HARDEST, IMP_SPRINGS_HARD};
     bool small = false;
     for (int i = from; i < from + count; i++)
         small = small || call->encounter->meetings[call->order.meeting[i]].restitution < IMP_SPRINGS_LEAST;
     impact_status status = IMPACT_EUNSETTLED;
-    for (int k = 0; small && k < 2 && status == IMPACT_EUNSETTLED; k++)
-        status = solve_springs(call, from, count, least[k], IMP_SPRINGS_TRIED, workspace, group);
+    if (small) status = solve_springs(call, from, count, IMP_SPRINGS_HARDEST, IMP_SPRINGS_TRIED, workspace, group);
     if (status != IMPACT_EUNSETTLED) return status;
     return solve_springs(call, from, count, IMP_SPRINGS_LEAST, IMP_SPRINGS_STEPS, workspace, group);
 }
