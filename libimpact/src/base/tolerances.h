@@ -582,6 +582,9 @@
 /* Steps and events from which bounces are ended by the equations of rest: what takes fewer is done by then, but for a
  * few in a thousand. */
 #define IMP_BOUNCES_LATE 40000
+/* From then on: the ratio that leaves moments as far apart as they are. Twice as far each time, impulses fell by ten and
+ * a hundred thousand from look to look, past where they may be ended: slower than the last of these. */
+#define IMP_BOUNCES_FALLEN 0.5
 /* Of velocities: bounces slower than a thousand times that are not ended: what of them is left would not be told from
  * it, as where the seed of a contact that is pressed (IMP_SPRINGS_SEED) bounces before it grows. */
 #define IMP_BOUNCES_SLOWEST 0x1p-30

@@ -226,6 +226,8 @@ double imp_springs_again(const imp_spring *c);
 /* The velocity across slip that goes straight from which on it does no longer; INFINITY: whatever it does is nothing.
  */
 double imp_springs_turned(const imp_springs *s, int contact);
+/* Of its friction alone the contact's slip changes by up to so much. */
+double imp_springs_mobility_along(const imp_springs *s, int contact);
 /* How fast forces change: springs swing, or are let go. */
 double imp_springs_pace(const imp_springs *s);
 /* Whether any is closed. */

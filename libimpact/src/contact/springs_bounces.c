@@ -98,11 +98,13 @@ static bool stays(imp_springs *s)
     return false;
 }
 
+static bool is_late(const imp_springs *s) { return s->events + s->steps >= IMP_BOUNCES_LATE; }
+
 /* To the end, by the ratio, or, late, by what it is. */
 static bool ends(imp_springs *s, double ratio, double off, double pushed)
 {
     const double left = 1 - ratio;
-    const bool falls = ratio > 0 && ratio < 1, late = s->events + s->steps >= IMP_BOUNCES_LATE;
+    const bool falls = ratio > 0 && ratio < 1;
     if (!falls || s->springs[s->bounces.contact].u[0] > -IMP_BOUNCES_SLOWEST || !only_they_approach(s)) return false;
     memcpy(s->kept, s->springs, (size_t)s->count * sizeof *s->kept);
     if (ratio <= IMP_BOUNCES_RATIO && off <= IMP_BOUNCES_ERROR * left * left) {
@@ -111,10 +113,21 @@ static bool ends(imp_springs *s, double ratio, double off, double pushed)
     }
     /* they have fallen by enough, or are alike and will fall for ever */
     const bool goes_on = ratio * ratio <= IMP_BOUNCES_RATIO || off <= IMP_BOUNCES_ERROR * pushed;
-    return late && goes_on && imp_springs_come_to_rest(s, ratio) && stays(s);
+    return is_late(s) && goes_on && imp_springs_come_to_rest(s, ratio) && stays(s);
 }
 
-/* At the third moment. If it is not the end, the next three are as far apart as the ratio asks, or twice as far. */
+/* Rounds between the next three moments: as many as the ratio asks, or twice as many; late, where they have fallen by
+ * enough, as many: what is waited for then comes to nothing while they fall. */
+static long next_span(const imp_springs *s, double ratio)
+{
+    const long span = s->bounces.span;
+    const bool falls = ratio > 0 && ratio < 1;
+    if (falls && ratio <= IMP_BOUNCES_FALLEN && is_late(s)) return span;
+    const double asked = falls ? fmin(log(IMP_BOUNCES_RATIO) / log(ratio), 4) * (double)span + 1 : 0;
+    return (long)fmax(2 * (double)span, asked);
+}
+
+/* At the third moment; if it is not the end, three others follow. */
 static bool look_for_end(imp_springs *s)
 {
     imp_springs_bounces *b = &s->bounces;
@@ -124,9 +137,7 @@ static bool look_for_end(imp_springs *s)
     if (ends(s, ratio, off, pushed)) return true;
     note_moment(s, 0);
     b->rounds = 0;
-    b->span =
-        (long)fmax(2 * (double)b->span,
-                   ratio > 0 && ratio < 1 ? fmin(log(IMP_BOUNCES_RATIO) / log(ratio), 4) * (double)b->span + 1 : 0);
+    b->span = next_span(s, ratio);
     return false;
 }
 

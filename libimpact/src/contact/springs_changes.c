@@ -110,8 +110,7 @@ double imp_springs_pace(const imp_springs *s)
     return fmax(pace, rate / most);
 }
 
-/* Of its friction alone the contact's slip changes by up to so much. */
-static double mobility_along(const imp_springs *s, int contact)
+double imp_springs_mobility_along(const imp_springs *s, int contact)
 {
     return fmax(imp_springs_entry(s, 3 * contact + 1, 3 * contact + 1),
                 imp_springs_entry(s, 3 * contact + 2, 3 * contact + 2));
@@ -124,7 +123,7 @@ static bool is_spent(const imp_springs *s, int contact)
     const imp_spring *c = &s->springs[contact];
     if (!(c->u[0] > 0)) return false;
     const double left = c->friction * c->kappa * pow(c->x, s->exponent) * c->x / c->u[0];
-    return left * mobility_along(s, contact) <= IMP_SPRINGS_SPENT;
+    return left * imp_springs_mobility_along(s, contact) <= IMP_SPRINGS_SPENT;
 }
 
 double imp_springs_turned(const imp_springs *s, int contact)

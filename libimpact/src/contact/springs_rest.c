@@ -16,6 +16,10 @@
  *
  *     E_end = E'' + u'_t . P_t + (E'' - E' - u'_t . (p''_t - p'_t)) D''^2/(D'^2 - D''^2)
  *
+ * The slip u'_t is that of the end. Until then it turns to it, by an angle phi that falls as D does, and friction turns
+ * with it: of the impulses to come mu phi P_n is not against u'_t, which is of second order too. It is waited for until
+ * that does nothing, with phi as it has been since the moment before.
+ *
  * That they do come to it is not in these equations; the course has to tell.
  */
 #include "contact/springs.h"
@@ -101,21 +105,43 @@ static double distance_at(const imp_springs *s, const rest *r, int moment)
     return sum;
 }
 
-/* Whether what takes part has done since the moment before as it will: pressed, and where slip is left had friction
- * against that, but for what its power has of rounding: of slip that comes to nothing rounding tells the direction. */
+/* What friction of contact c, which slides, has been off the slip that is left since the moment before, times that: a
+ * power. */
+static double power_missed(const imp_springs *s, const rest *r, int c)
+{
+    const int row = 3 * r->which[c];
+    const double *then = &imp_springs_impulses_at(s, 1)[row], *now = &imp_springs_impulses_at(s, 2)[row];
+    const double *after = &r->after[3 * c], speed = hypot(after[1], after[2]),
+                 bound = r->friction[c] * (now[0] - then[0]);
+    return hypot(speed * (now[1] - then[1]) + bound * after[1], speed * (now[2] - then[2]) + bound * after[2]);
+}
+
+/* Whether friction of contact c has been against the slip that is left, but for what its power has of rounding: of slip
+ * that comes to nothing rounding tells the direction. most: the most that a contact was pushed. Or will be, but for
+ * what would be none of a velocity: slip that goes on turns to where it is left, by ever less. */
+static bool has_slid_so(const imp_springs *s, const rest *r, int c, double most)
+{
+    const double *after = &r->after[3 * c], missed = power_missed(s, r, c);
+    const double pushed =
+        imp_springs_impulses_at(s, 2)[3 * r->which[c]] - imp_springs_impulses_at(s, 1)[3 * r->which[c]];
+    return missed <= IMP_BOUNCES_ERROR * most ||
+           missed * (r->impulse[3 * c] / pushed) * imp_springs_mobility_along(s, r->which[c]) <=
+               IMP_BOUNCES_ERROR * hypot(after[1], after[2]);
+}
+
+/* Whether what takes part has done since the moment before as it will: pressed, and slid where slip is left. */
 static bool goes_on(const imp_springs *s, const rest *r)
 {
     const double *then = imp_springs_impulses_at(s, 1), *now = imp_springs_impulses_at(s, 2);
-    double most = 0, worst = 0;
+    double most = 0;
     for (int c = 0; c < r->count; c++) {
-        const int row = 3 * r->which[c];
-        const double *after = &r->after[3 * c], speed = hypot(after[1], after[2]), pushed = now[row] - then[row];
+        const double pushed = now[3 * r->which[c]] - then[3 * r->which[c]];
         if (!(pushed > 0) || s->modes[c] == IMP_CONE_OPEN) return false;
         most = fmax(most, pushed);
-        for (int j = 1; j < 3 && s->modes[c] == IMP_CONE_SLIDES && r->friction[c] > 0; j++)
-            worst = fmax(worst, fabs(speed * (now[row + j] - then[row + j]) + r->friction[c] * pushed * after[j]));
     }
-    return worst <= IMP_BOUNCES_ERROR * most;
+    for (int c = 0; c < r->count; c++)
+        if (s->modes[c] == IMP_CONE_SLIDES && r->friction[c] > 0 && !has_slid_so(s, r, c, most)) return false;
+    return true;
 }
 
 /* Whether the course comes to it: its own ratio leads there too. What bounces on undiminished while something else
