@@ -139,29 +139,40 @@ static bool have_stuck(const imp_springs *s, const double *r, double spent)
     return true;
 }
 
-/* Whether a group is wedged: when that is asked again; what was spent and the energy lost when it was last, and how
- * often in sequence next to none was. */
+/* Whether a group is wedged: when that is asked again; what was spent and the energy lost when it was last; the most
+ * that springs have held since, and between the two times before; and how often in sequence next to none went. */
 typedef struct wedge_watch {
-    double next, asked, lost;
+    double next, asked, lost, most, before;
     int kept;
 } wedge_watch;
 
+/* What springs give back: of what those hold that load eps^2. */
+static double stored_energy(const imp_springs *s)
+{
+    double sum = 0;
+    for (int i = 0; i < s->count; i++) {
+        const imp_spring *c = &s->springs[i];
+        sum += (c->normal == IMP_SPRING_LOADS ? c->restitution * c->restitution : 1) * c->stored;
+    }
+    return sum;
+}
+
 /* Energy falls by dents and by friction alone; what comes loose, or to rest with nothing pressed, leaves none in the
- * springs, of which those that load give back eps^2. Whether it stays there, held by friction or swinging: losing on as
- * it did since it was asked last, they would not come to nothing before the group is given up. */
+ * springs. Whether it stays there, held by friction or swinging: losing on as it did since it was asked last, or giving
+ * it back to the bodies, as what comes loose by and by does, they would not come to nothing before the group is given
+ * up. What swings holds as much again and again. */
 static bool keeps_energy(const imp_springs *s, double spent, wedge_watch *watch)
 {
     enum { OFTEN = 2 };
-    double stored = 0, lost = 0;
-    for (int i = 0; i < s->count; i++) {
-        const imp_spring *c = &s->springs[i];
-        stored += (c->normal == IMP_SPRING_LOADS ? c->restitution * c->restitution : 1) * c->stored;
-        for (int j = 0; j < 3; j++) lost -= c->finding->work[j];
-    }
-    lost -= stored;
-    const double rate = (lost - watch->lost) / (spent - watch->asked);
+    const double stored = stored_energy(s);
+    double lost = -stored;
+    for (int i = 0; i < s->count; i++)
+        for (int j = 0; j < 3; j++) lost -= s->springs[i].finding->work[j];
+    const double gone = fmax(lost - watch->lost, watch->before - watch->most), rate = gone / (spent - watch->asked);
     watch->kept = rate * IMP_SPRINGS_ASKED_LAST <= IMP_WEDGE_KEPT * stored ? watch->kept + 1 : 0;
     watch->lost = lost;
+    watch->before = watch->most;
+    watch->most = stored;
     watch->asked = spent;
     return watch->kept >= OFTEN;
 }
@@ -175,6 +186,7 @@ static bool is_wedged(imp_springs *s, wedge_watch *watch)
         imp_spring *c = &s->springs[i];
         if (!imp_springs_presses(c) || (c->friction > 0 && c->slip != IMP_SPRING_STICKS)) c->loose = spent;
     }
+    watch->most = fmax(watch->most, stored_energy(s));
     if (spent < watch->next) return false;
     const bool last = spent >= IMP_SPRINGS_ASKED_LAST, keeps = keeps_energy(s, spent, watch);
     watch->next = last ? 2 * spent : fmin(2 * spent, IMP_SPRINGS_ASKED_LAST);

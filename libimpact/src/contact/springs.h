@@ -45,6 +45,7 @@ typedef struct imp_spring {
     double u[3], p[3];
     double rounding; /* of u, by its terms */
     double none;     /* a velocity that is none: rounding, or what held slips have drifted to */
+    bool free;       /* SLIDES, and could beside what sticks */
     bool still;      /* u_t is zero: it came to a stop, or was never more than rounding */
     bool summed;     /* u_t has been summed from step to step since it was 0: free of the rounding of u0 and W p */
     bool creeps;     /* SLIDES, so slowly that its direction is `along` (springs_creep.c) */
@@ -134,6 +135,9 @@ void imp_springs_pack_pressed(imp_springs *s);
 double imp_springs_row(const imp_springs *s, int i);
 /* The accelerations of now: forces into `now`; du/dt of contact c, component i by imp_springs_row. */
 void imp_springs_forces(imp_springs *s);
+/* Whether what sticks leaves the contact's slip two ways of its own: were it to stick too reactions would be as unique
+ * as they are. */
+bool imp_springs_is_free(const imp_springs *s, int contact);
 /* Which slips go straight. */
 void imp_springs_straighten(imp_springs *s);
 

@@ -139,6 +139,26 @@ static bool has_turned(const imp_springs *s, int contact)
            fabs(c->along[0] * c->u[2] - c->along[1] * c->u[1]) > imp_springs_turned(s, contact);
 }
 
+static double slip_that_is_none(const imp_spring *c)
+{
+    return c->free ? fmin(c->none, IMP_SPRINGS_TOLD * c->rounding) : c->none;
+}
+
+/* What held slips have drifted to is none of a slip that they leave no way of its own, nor of one that stops together
+ * with another. One that they leave free its friction brings to rest: stopped at twice their drift it would be the next
+ * that they are measured by, and of two that stop by turns the drift would double each time. */
+static void find_free(imp_springs *s)
+{
+    bool together = false;
+    for (int i = 0; i < s->count; i++) {
+        imp_spring *c = &s->springs[i];
+        const bool slides = c->normal != IMP_SPRING_OPEN && c->slip == IMP_SPRING_SLIDES;
+        c->free = slides && c->none > IMP_SPRINGS_TOLD * c->rounding && imp_springs_is_free(s, i);
+        together = together || (slides && hypot(c->u[1], c->u[2]) <= slip_that_is_none(c));
+    }
+    for (int i = 0; i < s->count; i++) s->springs[i].free = s->springs[i].free && !together;
+}
+
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
  * What it still turns by in the time speed/|along| that is left, and by what forces change in it, is
  * under rounding. Where the contact is about to open, and too little of its friction is left, any direction will do:
@@ -147,15 +167,15 @@ static bool settle_slip(const imp_springs *s, int contact, imp_spring *c)
 {
     if (has_turned(s, contact)) c->slip = IMP_SPRING_SLIDES;
     if (c->normal == IMP_SPRING_OPEN || (c->slip != IMP_SPRING_SLIDES && c->slip != IMP_SPRING_BEGINS)) return false;
-    const double speed = hypot(c->u[1], c->u[2]);
-    const bool begins = c->slip == IMP_SPRING_BEGINS, over = !begins && speed <= c->none,
+    const double speed = hypot(c->u[1], c->u[2]), none = slip_that_is_none(c);
+    const bool begins = c->slip == IMP_SPRING_BEGINS, over = !begins && speed <= none,
                spent = !over && is_spent(s, contact);
     if (over) c->still = true;
     if (over || (!spent && (begins || speed > IMP_SPRINGS_SLOW || c->creeps))) return over;
     const double x = imp_springs_row(s, 3 * contact + 1), y = imp_springs_row(s, 3 * contact + 2);
     const double e[2] = {begins ? c->along[0] : c->u[1] / speed, begins ? c->along[1] : c->u[2] / speed};
     const double along = x * e[0] + y * e[1], across = fabs(y * e[0] - x * e[1]);
-    if (spent || (along < 0 && speed * (across + imp_springs_pace(s) * speed) <= -c->none * along)) {
+    if (spent || (along < 0 && speed * (across + imp_springs_pace(s) * speed) <= -none * along)) {
         c->slip = IMP_SPRING_STRAIGHT;
         c->along[0] = e[0], c->along[1] = e[1];
     }
@@ -201,6 +221,7 @@ bool imp_springs_settle(imp_springs *s)
     }
     if (changed && undecided && !imp_springs_choose(s)) return false;
     if (changed) imp_springs_straighten(s);
+    find_free(s);
     imp_springs_forces(s);
     for (int i = 0; i < s->count; i++) s->stopped = settle_slip(s, i, &s->springs[i]) || s->stopped;
     return !s->stopped || imp_springs_settle(s);

@@ -123,7 +123,7 @@ void imp_springs_forces(imp_springs *s)
 /* ---- straight slip ---- */
 
 /* The response across e at contact c to every component, stick answering. */
-static void find_across(imp_springs *s, int c, const double e[2], double *row)
+static void find_across(const imp_springs *s, int c, const double e[2], double *row)
 {
     const int n = s->stick_count, width = 3 * s->count;
     for (int j = 0; j < width; j++)
@@ -134,6 +134,17 @@ static void find_across(imp_springs *s, int c, const double e[2], double *row)
     }
     for (int a = 0; a < n; a++)
         for (int j = 0; j < width; j++) row[j] -= s->scratch[a] * imp_springs_entry(s, s->stick[a], j);
+}
+
+bool imp_springs_is_free(const imp_springs *s, int contact)
+{
+    double *row = s->factor, *x = &row[3 * contact + 1], *y = x + 1, most = 0;
+    find_across(s, contact, (double[]){0, -1}, row);
+    const double xx = *x, xy = *y;
+    find_across(s, contact, (double[]){1, 0}, row);
+    const double least = 0.5 * (xx + *y - hypot(xx - *y, 2 * xy));
+    for (int i = 0; i < s->stick_count; i++) most = fmax(most, imp_springs_entry(s, s->stick[i], s->stick[i]));
+    return least > IMP_SPRINGS_RANK * fmax(most, imp_springs_mobility_along(s, contact));
 }
 
 /* A response across the slip of contact c that is rounding. */
