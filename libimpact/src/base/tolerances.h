@@ -584,8 +584,8 @@
 /* Steps and events from which bounces are ended by the equations of rest: what takes fewer is done by then, but for a
  * few in a thousand. */
 #define IMP_BOUNCES_LATE 40000
-/* From then on: the ratio that leaves moments as far apart as they are. Twice as far each time, impulses fell by ten and
- * a hundred thousand from look to look, past where they may be ended: slower than the last of these. */
+/* From then on: the ratio that leaves moments as far apart as they are. Twice as far each time, impulses fell by ten
+ * and a hundred thousand from look to look, past where they may be ended: slower than the last of these. */
 #define IMP_BOUNCES_FALLEN 0.5
 /* Of velocities: bounces slower than a thousand times that are not ended: what of them is left would not be told from
  * it, as where the seed of a contact that is pressed (IMP_SPRINGS_SEED) bounces before it grows. */
@@ -598,7 +598,10 @@
 /* Of the lighter body's mass times the fastest speed: what an impulse may be off by without telling: the roundings of
  * a solve for dozens of contacts, whose velocities, slip among them, are as large as that. */
 #define IMP_ENCOUNTER_GRAIN (512 * IMP_ROUNDOFF)
-/* eps, of the terms of a velocity u0 + W p in a group: their sums' rounding, and that of the bodies' velocities. */
+/* eps, of the greatest terms of a velocity u0 + W p in a group: their sums' rounding, and that of the bodies'
+ * velocities. Of its own terms one missed up to 2.7 times as much in a wedge of 12 contacts (N = 12000, seed 40000000,
+ * number 8746 of
+ * ./run report together). */
 #define IMP_ENCOUNTER_ROUNDINGS 32
 /* Contacts of an encounter from which Moreau's problems begin in the space of the bodies: a brick wall's 77 take 4 s
  * along the central path. */

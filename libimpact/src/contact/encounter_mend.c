@@ -3,7 +3,7 @@
  * Where heavy bodies press light ones impulses are far greater than what they leave of one another: W p of a rounded W
  * is then off by eps |W| |p|, which is a light body's whole velocity, or a heavy one's mass. The bodies' own velocities
  * know better. The components A miss the velocities u' that their modes have by that rounding,
- * |u - u'| <= 32 eps sum |W p|, and it is taken away in rounds, each from the velocities that the last one left:
+ * |u - u'| <= 32 eps max sum |W p|, and it is taken away in rounds, each from the velocities that the last one left:
  *
  *     (W D)_A dp = (u' - u)_A,   A: the normals that pressed and what sticks,   dp of least norm
  *
@@ -43,12 +43,13 @@ void imp_encounter_look(const imp_group *g, double *u)
     for (int i = 0; i < g->count; i++) imp_encounter_velocity(&g->contacts[i], g->velocity, g->omega, &u[3 * i]);
 }
 
-/* The largest terms of a contact's u: pushes along one of its axes are rounded along all. */
-static double terms_of(const imp_group *g, const double *p, int contact)
+/* The largest terms of a velocity. Those of one contact tell it at none: what is found of the problem is right to what
+ * rounds the greatest, wherever it is, and pushes along one axis are rounded along all. */
+static double greatest_terms(const imp_group *g, const double *p)
 {
     const int width = 3 * g->count;
     double most = 0;
-    for (int row = 3 * contact; row < 3 * contact + 3; row++) {
+    for (int row = 0; row < width; row++) {
         double sum = 0;
         for (int j = 0; j < width; j++) sum += fabs(g->w[(size_t)row * (size_t)width + (size_t)j] * p[j]);
         most = fmax(most, sum);
@@ -130,7 +131,8 @@ static bool solve_mending(const imp_group *g, const double *p, const unknown *un
 static bool find_mending(const imp_group *g, const double *after, const double *p, double enough, double *more,
                          impact_together_workspace *workspace)
 {
-    const double eps = IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON, speed = greatest_speed(g);
+    const double speed = greatest_speed(g),
+                 rounding = IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * (greatest_terms(g, p) + speed);
     const size_t width = 3 * (size_t)g->count;
     double *u = imp_encounter_take(workspace, width, sizeof *u), worst = 0;
     unknown *unknowns = imp_encounter_take(workspace, width, sizeof *unknowns);
@@ -140,7 +142,7 @@ static bool find_mending(const imp_group *g, const double *after, const double *
     for (int k = 0; k < n; k++) {
         const int row = unknowns[k].row;
         const double off = after[row] - u[row];
-        if (!(fabs(off) <= eps * (terms_of(g, p, row / 3) + speed))) return false;
+        if (!(fabs(off) <= rounding)) return false;
         worst = fmax(worst, fabs(off));
         u[k] = off; /* k <= row */
     }

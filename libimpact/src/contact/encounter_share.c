@@ -13,12 +13,12 @@
 
 #include <string.h>
 
-/* Along the ray of the slip; unit. */
-static void find_line(double mu, const double *u, double line[3])
+/* Along the ray against the tangents' direction (across), or with it: sign 1; unit. */
+static void find_line(double mu, const double *across, double sign, double line[3])
 {
-    const double slip = hypot(u[1], u[2]), part = 1 / sqrt(1 + mu * mu);
+    const double size = hypot(across[1], across[2]), part = 1 / sqrt(1 + mu * mu);
     line[0] = part;
-    for (int k = 1; k < 3; k++) line[k] = mu > 0 ? -part * mu * u[k] / slip : 0;
+    for (int k = 1; k < 3; k++) line[k] = mu > 0 ? sign * part * mu * across[k] / size : 0;
 }
 
 /* How far the impulse lies off the line. */
@@ -32,15 +32,19 @@ static double distance_to(const double line[3], const double *p)
 
 /* The face that a contact's velocity leaves; line: a ray's. Under `still` a velocity is rounding; over it, too, where
  * the impulse lies farther off that face, as a part of the greatest, than the velocity is of the fastest: of the two
- * one is zero. */
+ * one is zero. The ray of what slides is told by the one of its slip and its friction that is so the greater: a slow
+ * slip's rounding would turn a great impulse off what it leaves. */
 static imp_cone_mode find_face(const imp_contact *contact, const imp_share_question *question, const double *u,
                                const double *p, double most, double line[3])
 {
     const double slip = hypot(u[1], u[2]), mu = contact->friction, unit = question->speed / most;
     if (u[0] > fmax(question->still, p[0] * unit)) return IMP_CONE_OPEN;
     if (mu > 0 && slip <= question->still) return IMP_CONE_STICKS;
-    find_line(mu, u, line);
-    return mu > 0 && slip <= distance_to(line, p) * unit ? IMP_CONE_STICKS : IMP_CONE_SLIDES;
+    find_line(mu, u, -1, line);
+    if (mu > 0 && slip <= distance_to(line, p) * unit) return IMP_CONE_STICKS;
+    const double friction = hypot(p[1], p[2]);
+    if (mu > 0 && friction * unit > slip) find_line(mu, p, 1, line);
+    return IMP_CONE_SLIDES;
 }
 
 /* The row of G along the line, alone. */

@@ -315,6 +315,31 @@ static void friction_follows_what_mends_its_pressure(void **state)
     }
 }
 
+/* Encounters by Moreau's law whose impulses are 67 times what is exchanged, beside a body that nothing pushes, and ten
+ * million times, in a wedge that comes to rest: what a velocity misses is rounding of the greatest impulses, wherever
+ * they are, and great impulses tell the ray that they slide on better than the slip they leave. */
+static void rounding_of_great_impulses_is_mended_everywhere(void **state)
+{
+    (void)state;
+    random_encounter beside = draw_kept(20530000, 7691, 7, 12);
+    beside.restitution = IMPACT_NEWTON;
+    const random_encounter cases[] = {draw_kept(40000000, 8746, 7, 12), beside};
+    random_stream random = {5};
+    for (int k = 0; k < 2; k++) {
+        const answer a = solve(&cases[k], IMPACT_TOGETHER_MOREAU, 0, NULL);
+        assert_int_equal(a.status, IMPACT_OK);
+        for (int run = 0; run < 6; run++) {
+            const encounter_frame frame = random_frame(&random);
+            const random_encounter other = change_frame(&cases[k], &frame);
+            answer b = solve(&other, IMPACT_TOGETHER_MOREAU, 0, NULL);
+            assert_int_equal(b.status, IMPACT_OK);
+            assert_at_most(b.outcome.residual, 1e-14);
+            change_back(&b, cases[k].body_count, &frame);
+            assert_at_most(distance(&cases[k], &a, &b), 1e-11);
+        }
+    }
+}
+
 /* An encounter by Moreau's law of nine contacts, five of which press: with parts of nothing in restitution's problem
  * for the others no path led to its answer. Impulses are hundreds of times what is exchanged. */
 static void what_did_not_press_has_no_part_in_restitution(void **state)
@@ -676,6 +701,7 @@ int main(void)
         cmocka_unit_test(what_no_path_leads_to_is_found),
         cmocka_unit_test(friction_follows_what_mends_its_pressure),
         cmocka_unit_test(the_path_on_which_friction_sets_in_is_followed_to_its_end),
+        cmocka_unit_test(rounding_of_great_impulses_is_mended_everywhere),
         cmocka_unit_test(what_did_not_press_has_no_part_in_restitution),
         cmocka_unit_test(bounces_that_never_end_are_followed_to_their_end),
         cmocka_unit_test(what_never_ends_is_told_and_what_takes_long_is_answered),
