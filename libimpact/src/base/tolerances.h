@@ -599,9 +599,8 @@
  * a solve for dozens of contacts, whose velocities, slip among them, are as large as that. */
 #define IMP_ENCOUNTER_GRAIN (512 * IMP_ROUNDOFF)
 /* eps, of the greatest terms of a velocity u0 + W p in a group: their sums' rounding, and that of the bodies'
- * velocities. Of its own terms one missed up to 2.7 times as much in a wedge of 12 contacts (N = 12000, seed 40000000,
- * number 8746 of
- * ./run report together). */
+ * velocities. Of its own terms one missed up to 2.7 times as much in a wedge of 12 contacts (./run report together,
+ * N = 12000, seed 40000000, number 8746). */
 #define IMP_ENCOUNTER_ROUNDINGS 32
 /* Contacts of an encounter from which Moreau's problems begin in the space of the bodies: a brick wall's 77 take 4 s
  * along the central path. */
