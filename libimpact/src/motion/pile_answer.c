@@ -108,6 +108,7 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
  * bodies and contacts turn. */
 static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *states, int count, double h)
 {
+    const double smallest = imp_pile_smallest(world);
     for (int c = 0; c < count; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_cone_contact *own = &point->contact;
@@ -115,7 +116,7 @@ static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *s
         double bend[6];
         const double runs = imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, own->axes,
                                              own->rub, states, bend);
-        if (!(h * runs <= imp_pile_smallest(world))) continue; /* past the ends of lines that are all but parallel */
+        if (!(h * runs <= smallest)) continue; /* past the ends of lines that are all but parallel */
         for (int k = 0; k < pile->width; k++) {
             pile->before[pile->width * c + k] -= 0.5 * h * bend[k];
             pile->q[pile->width * c + k] += 0.5 * h * bend[k];
