@@ -104,7 +104,7 @@ static void turn_one(const family *f, const random_encounter *e, const answer *a
     const random_encounter other = change_frame(e, &frame);
     answer b = solve(&other, f->law, f->exponent, workspace);
     if (b.status != IMPACT_OK) {
-        const bool chance = b.outcome.wedged >= 0 && is_lost_nearby(random, e, f->law, f->exponent, 1e-11);
+        const bool chance = b.outcome.wedged >= 0 && is_lost_nearby(random, e, f->law, f->exponent);
         t->lost++;
         t->chance += chance;
         if (!chance)

@@ -78,6 +78,9 @@ static inline double distance(const random_encounter *e, const answer *a, const 
     return off / size;
 }
 
+/* What answers are asked to stand: relative changes of the data, and how far in another frame they may be off. */
+#define ENCOUNTER_CHANGE 1e-11
+
 /* The answer after relative changes of the data of so much. */
 static inline answer solve_nearby(random_stream *random, const random_encounter *e, impact_together_law law,
                                   double exponent, double change)
@@ -104,12 +107,13 @@ static inline double spread(random_stream *random, const random_encounter *e, im
     return most;
 }
 
-/* Whether such changes leave it without an answer, in one of 512 tries: as where it is chance whether a wedge locks. */
+/* Whether changes of the data leave it without an answer, in one of 512 tries: as where it is chance whether a wedge
+ * locks. */
 static inline bool is_lost_nearby(random_stream *random, const random_encounter *e, impact_together_law law,
-                                  double exponent, double change)
+                                  double exponent)
 {
     bool lost = false;
-    for (int k = 0; k < 512 && !lost; k++) lost = solve_nearby(random, e, law, exponent, change).status < 0;
+    for (int k = 0; k < 512 && !lost; k++) lost = solve_nearby(random, e, law, exponent, ENCOUNTER_CHANGE).status < 0;
     return lost;
 }
 
@@ -118,8 +122,7 @@ static inline bool is_lost_nearby(random_stream *random, const random_encounter 
 static inline double allowance(random_stream *random, const random_encounter *e, impact_together_law law,
                                double exponent, const answer *a, double enough)
 {
-    const double change = 1e-11;
-    return fmax(change, spread(random, e, law, exponent, a, change, enough));
+    return fmax(ENCOUNTER_CHANGE, spread(random, e, law, exponent, a, ENCOUNTER_CHANGE, enough));
 }
 
 #endif

@@ -217,13 +217,11 @@ static bool is_known(const imp_springs *s)
 static bool has_come_to_rest(imp_springs *s)
 {
     const int width = 3 * s->count;
-    double *x = s->now, energy = 0;
-    if (spent_on(s) < IMP_SPRINGS_ASKED) return false;
-    for (int i = 0; i < s->count; i++) energy += s->springs[i].stored;
+    double *x = s->now, energy = stored_energy(s);
+    if (spent_on(s) < IMP_SPRINGS_ASKED || energy > IMP_SPRINGS_ENERGY) return false;
     for (int i = 0; i < width; i++) {
         x[i] = s->springs[i / 3].u[i % 3];
-        if (energy > IMP_SPRINGS_ENERGY || x[i] * x[i] > 2 * IMP_SPRINGS_ENERGY * imp_springs_entry(s, i, i))
-            return false;
+        if (x[i] * x[i] > 2 * IMP_SPRINGS_ENERGY * imp_springs_entry(s, i, i)) return false;
     }
     (void)imp_least_solve_pivoted(s->w, width, IMP_SPRINGS_RANK, s->factor, (int *)s->scratch, x);
     for (int i = 0; i < width; i++) energy += 0.5 * s->springs[i / 3].u[i % 3] * x[i];
