@@ -16,7 +16,7 @@ static imp_grid_entry *take_entries(imp_arena *arena, int entries)
 impact_status imp_grid_open(imp_grid *grid, imp_arena *arena, int entries)
 {
     unsigned buckets = 16;
-    while (buckets < 2u * (unsigned)entries) buckets *= 2;
+    while (buckets < 4u * (unsigned)entries) buckets *= 2;
     *grid = (imp_grid){.arena = arena,
                        .entries = take_entries(arena, entries),
                        .places = imp_arena_take(arena, (size_t)entries, sizeof *grid->places),
@@ -42,13 +42,6 @@ static int64_t cell_of(double x, const imp_grid_level *level)
     return cell > -most && cell < most ? (int64_t)cell : (int64_t)(cell > 0 ? most : -most);
 }
 
-/* One coordinate's part of a cell's key. */
-static uint64_t part_of(int64_t cell, int axis)
-{
-    static const uint64_t odd[3] = {0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u, 0x94d049bb133111ebu};
-    return (uint64_t)(uint32_t)cell * odd[axis];
-}
-
 /* Tells the cells of a query apart, which are no more than CELL_MASK along each axis. */
 enum { CELL_BITS = 10, CELL_MASK = (1 << CELL_BITS) - 1 };
 static uint32_t short_cell(int64_t x, int64_t y, int64_t z)
@@ -57,18 +50,26 @@ static uint32_t short_cell(int64_t x, int64_t y, int64_t z)
            (uint32_t)(z & CELL_MASK) << 2 * CELL_BITS;
 }
 
-static int *bucket_of(const imp_grid *grid, int exponent, uint64_t key)
+/* Of the cell z = 0; the bucket of another is that many further, so that the cells that a query asks for side by side
+ * are one line of the cache. */
+static uint32_t column_of(int exponent, int64_t x, int64_t y)
 {
-    const uint64_t h = (key ^ (uint64_t)(uint32_t)exponent * 0x2545f4914f6cdd1du) * 0xd6e8feb86659fd93u;
-    return &grid->buckets[(h >> 32) & grid->bucket_mask];
+    const uint64_t key = (uint32_t)x * 0x9e3779b97f4a7c15u ^ (uint32_t)y * 0xbf58476d1ce4e5b9u ^
+                         (uint32_t)exponent * 0x2545f4914f6cdd1du;
+    return (uint32_t)(key * 0xd6e8feb86659fd93u >> 32);
+}
+
+static int *bucket_of(const imp_grid *grid, uint32_t column, int64_t z)
+{
+    return &grid->buckets[(column + (uint32_t)z) & grid->bucket_mask];
 }
 
 static int *bucket_at(const imp_grid *grid, const imp_grid_entry *e)
 {
     const imp_grid_level *level = &grid->levels[e->level];
-    uint64_t key = 0;
-    for (int k = 0; k < 3; k++) key ^= part_of(cell_of(e->box.low[k], level), k);
-    return bucket_of(grid, level->exponent, key);
+    int64_t cell[3];
+    for (int k = 0; k < 3; k++) cell[k] = cell_of(e->box.low[k], level);
+    return bucket_of(grid, column_of(level->exponent, cell[0], cell[1]), cell[2]);
 }
 
 static void take_away(imp_grid *grid, imp_grid_entry *e)
@@ -92,54 +93,66 @@ static int level_of(imp_grid *grid, int exponent)
         imp_arena_grow(grid->arena, grid->levels, &grid->level_room, grid->level_count + 1, sizeof *levels);
     if (!levels) return -1;
     grid->levels = levels;
-    grid->levels[grid->level_count] = (imp_grid_level){exponent, ldexp(1, -exponent), 0, -1};
+    grid->levels[grid->level_count] = (imp_grid_level){exponent, ldexp(1, -exponent), 0, 0, -1};
     return grid->level_count++;
+}
+
+static double longest_side(const imp_box *box)
+{
+    double side = IMP_GRID_LEAST;
+    for (int k = 0; k < 3; k++)
+        if (box->high[k] - box->low[k] > side) side = box->high[k] - box->low[k];
+    return side;
+}
+
+/* It stays on the level that it was on while its side is no less than half its cells' and less than twice that: boxes
+ * of a size that is near a power of two would else be on two levels, and be asked for on both. */
+static int find_level(imp_grid *grid, double side, int before)
+{
+    if (before >= 0) {
+        const double cells = side * grid->levels[before].scale;
+        if (cells >= 0.25 && cells < 1) return before;
+    }
+    int exponent;
+    frexp(side, &exponent);
+    return level_of(grid, exponent);
 }
 
 impact_status imp_grid_put(imp_grid *grid, int entry, const imp_box *box)
 {
     imp_grid_entry *e = &grid->entries[entry];
+    const double side = longest_side(box);
+    const int k = find_level(grid, side, e->level);
     take_away(grid, e);
-    double side = IMP_GRID_LEAST;
-    for (int k = 0; k < 3; k++)
-        if (box->high[k] - box->low[k] > side) side = box->high[k] - box->low[k];
-    int exponent;
-    frexp(side, &exponent);
-    const int level = level_of(grid, exponent);
-    if (level < 0) return IMPACT_ENOMEM;
+    if (k < 0) return IMPACT_ENOMEM;
+    imp_grid_level *level = &grid->levels[k];
+    if (side > level->longest) level->longest = side;
     e->box = *box;
-    e->level = level;
-    int64_t cell[3];
-    for (int k = 0; k < 3; k++) cell[k] = cell_of(box->low[k], &grid->levels[level]);
-    e->cell = short_cell(cell[0], cell[1], cell[2]);
-    int *bucket = bucket_at(grid, e), *first = &grid->levels[level].first;
+    e->level = k;
+    e->cell = short_cell(cell_of(box->low[0], level), cell_of(box->low[1], level), cell_of(box->low[2], level));
+    int *bucket = bucket_at(grid, e);
     e->next = *bucket, e->previous = -1;
-    grid->places[entry] = (imp_grid_place){*first, -1};
+    grid->places[entry] = (imp_grid_place){level->first, -1};
     if (*bucket >= 0) grid->entries[*bucket].previous = entry;
-    if (*first >= 0) grid->places[*first].previous = entry;
-    *bucket = *first = entry;
-    grid->levels[level].count++;
+    if (level->first >= 0) grid->places[level->first].previous = entry;
+    *bucket = level->first = entry;
+    level->count++;
     return IMPACT_OK;
 }
 
 static bool reserve_found(imp_grid *grid, int more)
 {
+    if (grid->found_count + more <= grid->found_room) return true;
     int *found = imp_arena_grow(grid->arena, grid->found, &grid->found_room, grid->found_count + more, sizeof *found);
     if (found) grid->found = found;
     return found;
 }
 
-/* Without a branch: whether it is found is as good as chance. */
-static void look_at(imp_grid *grid, int entry, bool among, const imp_box *box)
-{
-    grid->found[grid->found_count] = entry;
-    grid->found_count += among & imp_boxes_overlap(&grid->entries[entry].box, box);
-}
-
 static bool look_through(imp_grid *grid, int level, const imp_box *box)
 {
     if (!reserve_found(grid, grid->levels[level].count)) return false;
-    for (int i = grid->levels[level].first; i >= 0; i = grid->places[i].next) look_at(grid, i, true, box);
+    for (int i = grid->levels[level].first; i >= 0; i = grid->places[i].next)
+        if (imp_boxes_overlap(&grid->entries[i].box, box)) grid->found[grid->found_count++] = i;
     return true;
 }
 
@@ -151,41 +164,46 @@ typedef struct cell_walk {
     uint32_t cell[ABREAST];
 } cell_walk;
 
-/* To the end of all chains: the boxes in their cells; others lie in the same buckets. */
+/* To the end of all chains: the boxes in their cells; others lie in the same buckets. Without a branch: whether one is
+ * found is as good as chance. */
 static bool walk_cells(imp_grid *grid, cell_walk *walk, const imp_box *box)
 {
     while (walk->count > 0) {
-        const int count = walk->count;
-        if (!reserve_found(grid, count)) return false;
-        walk->count = 0;
-        for (int k = 0; k < count; k++) {
-            const imp_grid_entry *e = &grid->entries[walk->at[k]];
+        if (!reserve_found(grid, walk->count)) return false;
+        int left = 0, *found = grid->found + grid->found_count, new = 0;
+        for (int k = 0; k < walk->count; k++) {
+            const int at = walk->at[k];
             const uint32_t cell = walk->cell[k];
-            look_at(grid, walk->at[k], (e->level == walk->level) & (e->cell == cell), box);
-            walk->at[walk->count] = e->next, walk->cell[walk->count] = cell;
-            walk->count += e->next >= 0;
+            const imp_grid_entry *e = &grid->entries[at];
+            found[new] = at;
+            new += (e->level == walk->level) & (e->cell == cell) & imp_boxes_overlap(&e->box, box);
+            walk->at[left] = e->next, walk->cell[left] = cell;
+            left += e->next >= 0;
         }
+        walk->count = left;
+        grid->found_count += new;
     }
     return true;
 }
 
 static bool look_on_level(imp_grid *grid, int level, const imp_box *box)
 {
+    const imp_grid_level *on = &grid->levels[level];
     int64_t low[3], high[3];
     double cells = 1;
     for (int k = 0; k < 3; k++) {
-        low[k] = cell_of(box->low[k], &grid->levels[level]) - 1;
-        high[k] = cell_of(box->high[k], &grid->levels[level]);
+        low[k] = cell_of(box->low[k] - on->longest - 4 * IMP_ROUNDOFF * (fabs(box->low[k]) + on->longest), on);
+        high[k] = cell_of(box->high[k], on);
         const double along = (double)high[k] - (double)low[k] + 1;
         cells *= along <= CELL_MASK ? along : INFINITY; /* no two cells of one query have the same short numbers */
     }
-    if (cells > grid->levels[level].count) return look_through(grid, level, box);
+    if (cells > on->count) return look_through(grid, level, box);
     cell_walk walk = {.level = level};
     for (int64_t x = low[0]; x <= high[0]; x++)
         for (int64_t y = low[1]; y <= high[1]; y++) {
-            const uint64_t key = part_of(x, 0) ^ part_of(y, 1);
+            const uint32_t column = column_of(on->exponent, x, y);
             for (int64_t z = low[2]; z <= high[2]; z++) {
-                const int first = *bucket_of(grid, grid->levels[level].exponent, key ^ part_of(z, 2));
+                const int first = *bucket_of(grid, column, z);
                 walk.at[walk.count] = first, walk.cell[walk.count] = short_cell(x, y, z);
                 walk.count += first >= 0;
                 if (walk.count == ABREAST && !walk_cells(grid, &walk, box)) return false;

@@ -16,12 +16,16 @@ typedef struct imp_box {
     double low[3], high[3];
 } imp_box;
 
-/* All six at once: a gas tells one box in ten, and branches to leave early take it a fifteenth longer. */
+/* All six at once, without a branch: a gas tells one box in ten. The sign of a difference is exact. */
 static inline bool imp_boxes_overlap(const imp_box *a, const imp_box *b)
 {
-    unsigned overlap = 1;
-    for (int k = 0; k < 3; k++) overlap &= (unsigned)(a->low[k] <= b->high[k]) & (unsigned)(b->low[k] <= a->high[k]);
-    return overlap != 0;
+    double apart = a->low[0] - b->high[0];
+    for (int k = 0; k < 3; k++) {
+        const double above = a->low[k] - b->high[k], below = b->low[k] - a->high[k];
+        apart = apart > above ? apart : above;
+        apart = apart > below ? apart : below;
+    }
+    return apart <= 0;
 }
 
 /* One line of a processor's cache: a query looks at dozens of them. */
@@ -37,8 +41,9 @@ typedef struct imp_grid_place {
 } imp_grid_place;
 
 typedef struct imp_grid_level {
-    int exponent; /* cells of 2^exponent m */
-    double scale; /* 2^-exponent */
+    int exponent;   /* cells of 2^exponent m */
+    double scale;   /* 2^-exponent */
+    double longest; /* side of a box that was ever put there */
     int count, first;
 } imp_grid_level;
 
