@@ -8,11 +8,14 @@
  * cube that falls on a corner (.5, .3), ten set on each other with masses 1 and 1e4 in turn, five dropped with offsets,
  * two dice thrown (.4, .5), five dominoes and twenty (.3, .3), a wall of thirty bricks that a ball strikes (.6, .1);
  * median and slowest of nine such rows of twenty, pushed ever harder, of nine walls, struck ever farther aside, and of
- * sets of three bodies with faces, dropped (.2 ... .8, 0 ... .6): docs/faces.md.
+ * sets of three bodies with faces, dropped (.2 ... .8, 0 ... .6): docs/faces.md. And error against run time, of the
+ * first .2 s of five dominoes: pile_tolerance; s of CPU; steps; the error that is told, m; and by how much places of
+ * bodies are off, m, from those with 1e-7.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <impact/scene.h>
 #include "../tests/kit/contact_random.h"
@@ -243,8 +246,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* s of CPU; told: with its row. */
-static double measure(const pile_scene *s, impact_piles piles, bool told)
+static impact_scene_def def_of(const pile_scene *s)
 {
     impact_scene_def def = impact_default_scene_def();
     def.name = s->name;
@@ -254,11 +256,18 @@ static double measure(const pile_scene *s, impact_piles piles, bool told)
     def.duration = s->duration;
     def.output_rate = 0;
     def.friction_rule = def.restitution_rule = IMPACT_MINIMUM;
-    def.piles = piles;
     def.together = s->together;
+    return def;
+}
+
+/* s of CPU; told: with its row. */
+static double measure(const pile_scene *s, impact_piles piles, bool told)
+{
+    impact_scene_def def = def_of(s);
     impact_scene *scene;
     char message[256];
     double begun = cpu_clock();
+    def.piles = piles;
     if (impact_scene_create(&def, &scene, message, sizeof message) != IMPACT_OK) {
         fprintf(stderr, "bench_piles: %s: %s\n", s->name, message);
         return NAN;
@@ -308,6 +317,53 @@ static void measure_many(const char *name, pile_scene (*make)(uint64_t number), 
     fflush(stdout);
 }
 
+/* ---- error against run time ---- */
+
+static double apart(const impact_sample *a, const impact_sample *b, double radius)
+{
+    const quat turn = quat_mul(a->orientation, quat_conj(b->orientation));
+    return qvec3_norm(qvec3_sub(a->position, b->position)) + 2 * radius * qvec3_norm((qvec3){turn.x, turn.y, turn.z});
+}
+
+/* NAN: it did not end. */
+static double run_dominoes(double tolerance, impact_usage *usage, double *told, impact_sample *at, int *count)
+{
+    pile_scene s = dominoes(5, "5 dominoes", 0);
+    for (int b = 0; b < s.count; b++) s.bodies[b].name = s.names[b];
+    impact_scene_def def = def_of(&s);
+    def.duration = 0.2;
+    def.pile_tolerance = tolerance;
+    impact_scene *scene;
+    if (impact_scene_create(&def, &scene, NULL, 0) != IMPACT_OK) return NAN;
+    const double begun = cpu_clock();
+    const impact_status status = impact_scene_run(scene, NULL);
+    const double seconds = cpu_clock() - begun;
+    *usage = impact_scene_usage(scene);
+    *told = impact_scene_pile_error(scene);
+    *count = s.count;
+    for (int b = 0; b < s.count; b++) impact_scene_body(scene, b, &at[b]);
+    impact_scene_destroy(scene);
+    return status < 0 ? NAN : seconds;
+}
+
+static void compare_tolerances(void)
+{
+    const double tolerances[] = {1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
+    const double domino = 0.0271; /* m, its radius */
+    impact_sample finest[MOST], at[MOST];
+    puts("\npile_tolerance,cpu_s,pile_steps,told_m,off_m");
+    for (int k = 0; k < 5; k++) {
+        impact_usage usage;
+        double told, off = 0;
+        int count;
+        const double seconds = run_dominoes(tolerances[k], &usage, &told, at, &count);
+        if (k == 0) memcpy(finest, at, sizeof finest);
+        for (int b = 0; b < count; b++) off = fmax(off, apart(&at[b], &finest[b], domino));
+        printf("%g,%.3f,%ld,%.2g,%.2g\n", tolerances[k], seconds, usage.pile_steps, told, off);
+        fflush(stdout);
+    }
+}
+
 int main(void)
 {
     const pile_scene balls[] = {shaft(), heap(), box()},
@@ -321,5 +377,6 @@ int main(void)
     measure_many("20 dominoes", twenty_dominoes, 9);
     measure_many("30 bricks struck", bricks, 9);
     measure_many("3 drawn", drawn, 60);
+    compare_tolerances();
     return 0;
 }
