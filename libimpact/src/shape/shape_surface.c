@@ -16,6 +16,17 @@ static imp_form form_of(const impact_shape *shape)
     return form;
 }
 
+/* Without its form, which takes five times as long: a pile of boxes asks for nothing as often. */
+static double support_of_box(const impact_shape *shape, const double d[3], qvec3 *point)
+{
+    double axis[3], x[3];
+    imp_core_axes(shape, axis);
+    const double h = imp_box_support(axis, d, x), length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int k = 0; k < 3; k++) x[k] += shape->rounding * (d[k] / length);
+    if (point) *point = (qvec3){x[0], x[1], x[2]};
+    return h + shape->rounding * length;
+}
+
 double impact_shape_support(const impact_shape *shape, qvec3 direction, qvec3 *point)
 {
     const double d[3] = {direction.x, direction.y, direction.z};
@@ -24,6 +35,7 @@ double impact_shape_support(const impact_shape *shape, qvec3 direction, qvec3 *p
         if (point) *point = up ? (qvec3){0, 0, 0} : (qvec3){NAN, NAN, NAN};
         return up ? 0 : INFINITY;
     }
+    if (shape->kind == IMPACT_BOX) return support_of_box(shape, d, point);
     const imp_form form = form_of(shape);
     imp_surface s;
     double x[3], normal[3];

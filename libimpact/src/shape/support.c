@@ -201,12 +201,12 @@ static double nested_support(const imp_form *form, const double w[3], imp_surfac
 }
 
 /* The middle of what a core reaches along d where that is an edge, side or cap. */
-static double box_support(const imp_form *form, const double d[3], double x[3])
+double imp_box_support(const double axis[3], const double d[3], double x[3])
 {
     double h = 0;
     for (int i = 0; i < 3; i++) {
-        x[i] = d[i] > 0 ? form->axis[i] : d[i] < 0 ? -form->axis[i] : 0;
-        h += form->axis[i] * fabs(d[i]);
+        x[i] = d[i] > 0 ? axis[i] : d[i] < 0 ? -axis[i] : 0;
+        h += axis[i] * fabs(d[i]);
     }
     return h;
 }
@@ -238,7 +238,7 @@ static double core_support(const imp_form *form, const double d[3], imp_surface 
     int vertex;
     double h = 0;
     switch (form->kind) {
-    case IMP_FORM_BOX: h = box_support(form, d, s->u); break;
+    case IMP_FORM_BOX: h = imp_box_support(form->axis, d, s->u); break;
     case IMP_FORM_CYLINDER: h = cylinder_support(form, d, s->u); break;
     case IMP_FORM_CONE: h = cone_support(form, d, s->u); break;
     default: h = imp_core_support(&form->core, d, &vertex); imp_core_vertex(&form->core, vertex, s->u);
@@ -444,6 +444,13 @@ static void core_hessian(const imp_form *form, const double d[3], double H[3][3]
         return;
     }
     const double slack = IMP_CORE_TIE * fmax(form->axis[0], fmax(form->axis[1], form->axis[2]));
+    if (form->kind == IMP_FORM_BOX) {
+        for (int k = 0; k < 3; k++) {
+            const double side = 2 * form->axis[k];
+            if (side > slack && side * fabs(d[k]) <= slack) H[k][k] = INFINITY;
+        }
+        return;
+    }
     const int count = imp_core_reached(&form->core, d, slack, vertex, mean);
     for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
     for (int i = 0; i < count; i++) {

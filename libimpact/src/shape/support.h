@@ -48,6 +48,9 @@ void imp_form_make(const impact_shape *shape, double scale, quat orientation, im
 /* The same body with another orientation. */
 void imp_form_turn(imp_form *form, quat orientation);
 
+/* h(d) of a box of these half sides, and the middle of what reaches so far. */
+double imp_box_support(const double axis[3], const double d[3], double x[3]);
+
 /* h(d) for a non-zero d in the body's axes, and the surface point where it is reached. */
 double imp_form_support(const imp_form *form, const double d[3], imp_surface *surface);
 
