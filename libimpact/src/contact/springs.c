@@ -46,7 +46,7 @@ static bool take_room(imp_springs *s, impact_together_workspace *workspace)
     s->inverse = imp_encounter_take(workspace, 4 * n * n, sizeof *s->inverse);
     s->now = imp_encounter_take(workspace, width, sizeof *s->now);
     s->scratch = imp_encounter_take(workspace, width, sizeof *s->scratch);
-    s->factor = imp_encounter_take(workspace, 12 * n * n + 16 * n, sizeof *s->factor);
+    s->factor = imp_encounter_take(workspace, 12 * n * n + 22 * n, sizeof *s->factor);
     s->wedge = imp_encounter_take(workspace, imp_encounter_wedge_size(n), sizeof *s->wedge);
     s->begin = imp_encounter_take(workspace, n, sizeof *s->begin);
     s->turning = imp_encounter_take(workspace, 2 * n * n + n, sizeof *s->turning);

@@ -16,9 +16,18 @@
  *
  *     E_end = E'' + u'_t . P_t + (E'' - E' - u'_t . (p''_t - p'_t)) D''^2/(D'^2 - D''^2)
  *
- * The slip u'_t is that of the end. Until then it turns to it, by an angle phi that falls as D does, and friction turns
- * with it: of the impulses to come mu phi P_n is not against u'_t, which is of second order too. It is waited for until
- * that does nothing, with phi as it has been since the moment before.
+ * The slip u'_t is that of the end. Until then it turns to it, by an angle that falls as D does, and friction turns
+ * with it. What friction has been off the slip that is left since the moment before, along e = u'_t/|u'_t|,
+ *
+ *     m'' = p''_t - p'_t + mu (p''_n - p'_n) e
+ *
+ * is of second order too: of what is to come M = m'' D''^2/(D'^2 - D''^2) is not against u'_t, and it pushes beside P,
+ * u' = u + W (P + M). What that misses is of third order. With R^2 = (D'^2 - D''^2)/(D^2 - D'^2), of which m' told m''
+ * to be R^2 m', m'' = a + b, m' = a/R^2 + b/R^3, and of M
+ *
+ *     b (R^2/(1 - R^2) - R^3/(1 - R^3)),   b = (R^2 m' - m'')/(1/R - 1)
+ *
+ * is too much, and is waited for until that does nothing.
  *
  * That they do come to it is not in these equations; the course has to tell.
  */
@@ -30,7 +39,8 @@
 /* The cone problem of the contacts that take part. */
 typedef struct rest {
     int count, *which;
-    double *w, *q, *impulse, *after, *last_r, *last_u, *friction;
+    double *w, *u, *q, *impulse, *after, *last_r, *last_u, *friction; /* q = u + W M */
+    double *turned;                                                   /* M, normals 0 */
 } rest;
 
 static rest take_part(imp_springs *s)
@@ -42,11 +52,13 @@ static rest take_part(imp_springs *s)
     const size_t width = 3 * (size_t)r.count;
     r.w = s->factor, r.q = r.w + width * width, r.impulse = r.q + width, r.after = r.impulse + width;
     r.last_r = r.after + width, r.last_u = r.last_r + width, r.friction = r.last_u + width;
+    r.u = r.friction + r.count, r.turned = r.u + width;
     for (size_t i = 0; i < width; i++) {
         const int row = 3 * r.which[i / 3] + (int)(i % 3);
         for (size_t j = 0; j < width; j++)
             r.w[i * width + j] = imp_springs_entry(s, row, 3 * r.which[j / 3] + (int)(j % 3));
-        r.q[i] = s->springs[row / 3].u[row % 3];
+        r.q[i] = r.u[i] = s->springs[row / 3].u[row % 3];
+        r.turned[i] = 0;
     }
     for (int c = 0; c < r.count; c++) r.friction[c] = s->springs[r.which[c]].friction;
     return r;
@@ -87,7 +99,7 @@ static bool find_rest(imp_springs *s, const rest *r)
     return o.status == IMP_CONE_SOLVED || o.status == IMP_CONE_INEXACT;
 }
 
-/* D^2 at a moment: impulses to come are then more by what has been exchanged since. */
+/* D^2 at a moment: impulses to come, which are with M, are then more by what has been exchanged since. */
 static double distance_at(const imp_springs *s, const rest *r, int moment)
 {
     const double *then = imp_springs_impulses_at(s, moment), *now = imp_springs_impulses_at(s, 2);
@@ -95,52 +107,99 @@ static double distance_at(const imp_springs *s, const rest *r, int moment)
     double sum = 0;
     for (int i = 0; i < width; i++) {
         const int own = 3 * r->which[i / 3] + i % 3;
-        double speed = r->after[i] - r->q[i];
+        double speed = r->after[i] - r->u[i];
         for (int j = 0; j < width; j++) {
             const int other = 3 * r->which[j / 3] + j % 3;
             speed += r->w[i * width + j] * (now[other] - then[other]);
         }
-        sum += (r->impulse[i] + now[own] - then[own]) * speed;
+        sum += (r->impulse[i] + r->turned[i] + now[own] - then[own]) * speed;
     }
     return sum;
 }
 
-/* What friction of contact c, which slides, has been off the slip that is left since the moment before, times that: a
- * power. */
-static double power_missed(const imp_springs *s, const rest *r, int c)
+/* Of what is of second order: what is to come, of what was since the moment before; and of what m' told of m'' wrong
+ * what M is off by. */
+typedef struct rest_course {
+    double share, falls, untold;
+} rest_course;
+
+/* Whether the motion comes nearer to u'. */
+static bool find_rest_course(const imp_springs *s, const rest *r, rest_course *way)
+{
+    const double first = distance_at(s, r, 0), before = distance_at(s, r, 1), now = distance_at(s, r, 2);
+    way->share = now / (before - now);
+    way->falls = (before - now) / (first - before);
+    const double ratio = sqrt(way->falls), square = way->falls, cube = ratio * square;
+    way->untold = (square / (1 - square) - cube / (1 - cube)) / (1 / ratio - 1);
+    return now > 0 && now < before;
+}
+
+/* Whether friction of contact c is against a slip that is left; slip of nothing has no direction. */
+static bool slides_to_rest(const imp_springs *s, const rest *r, int c)
+{
+    return s->modes[c] == IMP_CONE_SLIDES && r->friction[c] > 0 && hypot(r->after[3 * c + 1], r->after[3 * c + 2]) > 0;
+}
+
+/* What friction of contact c, which slides on, has been off the slip that is left from a moment to the next: m. */
+static void find_missed(const imp_springs *s, const rest *r, int c, int moment, double missed[2])
 {
     const int row = 3 * r->which[c];
-    const double *then = &imp_springs_impulses_at(s, 1)[row], *now = &imp_springs_impulses_at(s, 2)[row];
-    const double *after = &r->after[3 * c], speed = hypot(after[1], after[2]),
-                 bound = r->friction[c] * (now[0] - then[0]);
-    return hypot(speed * (now[1] - then[1]) + bound * after[1], speed * (now[2] - then[2]) + bound * after[2]);
+    const double *then = &imp_springs_impulses_at(s, moment)[row], *next = &imp_springs_impulses_at(s, moment + 1)[row];
+    const double *after = &r->after[3 * c], bound = r->friction[c] * (next[0] - then[0]) / hypot(after[1], after[2]);
+    for (int j = 0; j < 2; j++) missed[j] = next[1 + j] - then[1 + j] + bound * after[1 + j];
 }
 
-/* Whether friction of contact c has been against the slip that is left, but for what its power has of rounding: of slip
- * that comes to nothing rounding tells the direction. most: the most that a contact was pushed. Or will be, but for
- * what would be none of a velocity: slip that goes on turns to where it is left, by ever less. */
-static bool has_slid_so(const imp_springs *s, const rest *r, int c, double most)
-{
-    const double *after = &r->after[3 * c], missed = power_missed(s, r, c);
-    const double pushed =
-        imp_springs_impulses_at(s, 2)[3 * r->which[c]] - imp_springs_impulses_at(s, 1)[3 * r->which[c]];
-    return missed <= IMP_BOUNCES_ERROR * most ||
-           missed * (r->impulse[3 * c] / pushed) * imp_springs_mobility_along(s, r->which[c]) <=
-               IMP_BOUNCES_ERROR * hypot(after[1], after[2]);
-}
-
-/* Whether what takes part has done since the moment before as it will: pressed, and slid where slip is left. */
-static bool goes_on(const imp_springs *s, const rest *r)
+/* Whether that is rounding, by its power: of slip that comes to nothing rounding tells the direction. */
+static bool is_against(const imp_springs *s, const rest *r, int c, const double missed[2])
 {
     const double *then = imp_springs_impulses_at(s, 1), *now = imp_springs_impulses_at(s, 2);
     double most = 0;
+    for (int i = 0; i < r->count; i++) most = fmax(most, now[3 * r->which[i]] - then[3 * r->which[i]]);
+    return hypot(r->after[3 * c + 1], r->after[3 * c + 2]) * hypot(missed[0], missed[1]) <= IMP_BOUNCES_ERROR * most;
+}
+
+/* M, and q with it; share: of m''. Whether it is any. */
+static bool turn_friction(const imp_springs *s, const rest *r, double share)
+{
+    const int width = 3 * r->count;
+    bool turns = false;
+    for (int c = 0; c < r->count; c++) {
+        double missed[2];
+        if (!slides_to_rest(s, r, c)) continue;
+        find_missed(s, r, c, 1, missed);
+        if (is_against(s, r, c, missed)) continue;
+        for (int j = 0; j < 2; j++) r->turned[3 * c + 1 + j] = share * missed[j];
+        turns = true;
+    }
+    for (int i = 0; i < width && turns; i++) {
+        r->q[i] = r->u[i];
+        for (int j = 0; j < width; j++) r->q[i] += r->w[i * width + j] * r->turned[j];
+    }
+    return turns;
+}
+
+/* Whether friction of contact c has been against the slip that is left, or what of it will not be is told so well that
+ * the rest would be none of a velocity: slip that goes on turns to where it is left, by ever less. */
+static bool has_slid_so(const imp_springs *s, const rest *r, int c, const rest_course *way)
+{
+    double before[2], missed[2];
+    find_missed(s, r, c, 0, before);
+    find_missed(s, r, c, 1, missed);
+    if (is_against(s, r, c, missed)) return true;
+    if (!(way->falls > 0 && way->falls < 1)) return false;
+    const double wrong = hypot(missed[0] - way->falls * before[0], missed[1] - way->falls * before[1]);
+    return way->untold * wrong * imp_springs_mobility_along(s, r->which[c]) <= IMP_BOUNCES_ERROR;
+}
+
+/* Whether what takes part has done since the moment before as it will: pressed, and slid where slip is left. */
+static bool goes_on(const imp_springs *s, const rest *r, const rest_course *way)
+{
+    const double *then = imp_springs_impulses_at(s, 1), *now = imp_springs_impulses_at(s, 2);
     for (int c = 0; c < r->count; c++) {
         const double pushed = now[3 * r->which[c]] - then[3 * r->which[c]];
         if (!(pushed > 0) || s->modes[c] == IMP_CONE_OPEN) return false;
-        most = fmax(most, pushed);
+        if (slides_to_rest(s, r, c) && !has_slid_so(s, r, c, way)) return false;
     }
-    for (int c = 0; c < r->count; c++)
-        if (s->modes[c] == IMP_CONE_SLIDES && r->friction[c] > 0 && !has_slid_so(s, r, c, most)) return false;
     return true;
 }
 
@@ -167,7 +226,9 @@ static void go_to_rest(imp_springs *s, const rest *r, double share)
     for (int c = 0; c < r->count; c++) {
         const int row = 3 * r->which[c];
         const double *p = imp_springs_impulses_at(s, 1) + row, *works = imp_springs_works_at(s, 1) + row,
-                     *to_come = &r->impulse[3 * c];
+                     *turned = &r->turned[3 * c];
+        const double to_come[3] = {r->impulse[3 * c], r->impulse[3 * c + 1] + turned[1],
+                                   r->impulse[3 * c + 2] + turned[2]};
         imp_spring *own = &s->springs[r->which[c]];
         double *work = own->finding->work;
         for (int j = 0; j < 2; j++) work[j] += share * (work[j] - works[j]);
@@ -182,9 +243,10 @@ bool imp_springs_come_to_rest(imp_springs *s, double ratio)
 {
     const rest r = take_part(s);
     guess_rest(s, &r, ratio / (1 - ratio));
-    if (!find_rest(s, &r) || !goes_on(s, &r) || !is_led_to(&r)) return false;
-    const double before = distance_at(s, &r, 1), now = distance_at(s, &r, 2);
-    if (!(now > 0 && now < before)) return false;
-    go_to_rest(s, &r, now / (before - now));
+    rest_course way;
+    if (!find_rest(s, &r) || !find_rest_course(s, &r, &way)) return false;
+    if (turn_friction(s, &r, way.share) && !(find_rest(s, &r) && find_rest_course(s, &r, &way))) return false;
+    if (!goes_on(s, &r, &way) || !is_led_to(&r)) return false;
+    go_to_rest(s, &r, way.share);
     return true;
 }

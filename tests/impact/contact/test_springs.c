@@ -200,7 +200,7 @@ static bool comes_to_rest(double approach, double part, imp_spring *contact, imp
     const double w[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, mu = 0.3, slip = 5,
                  u0[3] = {-approach - 1.5, slip + 1.5 * mu * part};
     int start[] = {0, 1, 2, 3}, column[] = {0, 1, 2}, begin[1];
-    double room[18] = {0}, factor[28], now[3];
+    double room[18] = {0}, factor[34], now[3]; /* 12 + 22 */
     imp_cone_mode modes[1];
     impact_together_workspace *workspace;
     assert_int_equal(impact_together_workspace_create(NULL, &workspace), IMPACT_OK);
