@@ -126,14 +126,14 @@ static bool correct_arc(imp_cone_system *system, const cone_arc *arc, double *lo
     return false;
 }
 
-/* On by arc length to the end of the path, as far as the steps do not creep. */
-static void turn_round(imp_cone_system *system, double e, int most)
+/* On by arc length round all folds, as far as the steps do not creep; the last e. */
+static double turn_round(imp_cone_system *system, double e, int most)
 {
     const int before = system->factorings;
     const double widest = 1; /* of a contact's size */
     cone_arc arc = {.log_e = log(e)};
     double length = 0.1;
-    while (arc.log_e > log(IMP_CONE_PATH_END) && arc.log_e < 1 && system->factorings - before < most &&
+    while (arc.log_e > log(IMP_CONE_ARC_LEAST) && arc.log_e < 1 && system->factorings - before < most &&
            !imp_cone_is_spent(system)) {
         if (!find_tangent(system, &arc)) break;
         int used = 0;
@@ -150,6 +150,7 @@ static void turn_round(imp_cone_system *system, double e, int most)
         }
         if (used <= 3) length = fmin(widest, 2 * length);
     }
+    return exp(arc.log_e);
 }
 
 /* ---- by A + alpha 1 ---- */
@@ -212,12 +213,14 @@ static int most_turns(const imp_cone_system *system)
     return (int)fmin(KINDLED, IMP_CONE_SWEEPING / (2 / 3.0 * pow(system->n, 3)));
 }
 
-/* Down from e, by arc length if there is no other way. */
+/* Down from e, by arc length if there is no other way: as far as folds are told from rounding. Below that matrices are
+ * taken apart by rank, and where reactions are not unique no determinant tells where the path goes. */
 static imp_cone_stage go_on(imp_cone_system *system, double e)
 {
     const double last = descend(system, e, system->end);
     if (last <= IMP_CONE_ARC_LEAST) return IMP_CONE_PATH;
-    turn_round(system, last, most_turns(system));
+    const double turned = turn_round(system, last, most_turns(system));
+    if (turned <= IMP_CONE_ARC_LEAST) (void)descend(system, turned, system->end);
     return IMP_CONE_ARC;
 }
 
