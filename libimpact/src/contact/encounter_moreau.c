@@ -340,6 +340,43 @@ static bool restores(const imp_group *g)
     return false;
 }
 
+static double greatest_size(const double *x, int count)
+{
+    double most = 0;
+    for (int i = 0; i < count; i++) most = fmax(most, fabs(x[i]));
+    return most;
+}
+
+/* The second problem with d so many times as great; velocities v with it. */
+static void change_scale(moreau *m, double times)
+{
+    const size_t n = (size_t)m->group->count, width = 3 * (n + (size_t)m->parts);
+    for (size_t i = 3 * n; i < width; i += 3) {
+        m->w[i * (width + 1)] *= times;
+        m->q[i] *= times;
+        m->v[i] *= times;
+    }
+}
+
+/* An answer is right to a part of the greatest of q. Where that is a part, d eps c_n, of impulses far greater than what
+ * they leave of one another, velocities may be left by more than is taken of an answer: then once more, from there,
+ * with d so little that no part is greater than the velocities. With that at once paths lead to another of several
+ * answers.
+ */
+static bool find_restitution(moreau *m, imp_cone_problem *problem)
+{
+    const int width = 3 * problem->count;
+    imp_cone_outcome o;
+    if (!find_answer(m, problem, m->r, m->v, &o)) return false;
+    const double size = greatest_size(m->q, width), speed = greatest_size(m->q, 3 * m->group->count);
+    if (o.residual * size <= IMP_CONE_ACCEPTED * speed || !(speed > 0 && speed < size)) return true;
+    change_scale(m, speed / size);
+    memcpy(m->last_r, m->r, (size_t)width * sizeof *m->r);
+    memcpy(m->last_u, m->v, (size_t)width * sizeof *m->v);
+    problem->last_r = m->last_r;
+    return find_answer(m, problem, m->r, m->v, &o);
+}
+
 static bool restore(moreau *m)
 {
     imp_group *g = m->group;
@@ -348,15 +385,14 @@ static bool restore(moreau *m)
     const bool starts = find_start(m, m->u, m->least);
     if (starts) part_start(m);
     set_restitution(m);
-    const imp_cone_problem problem = {.count = n + m->parts,
-                                      .w = m->w,
-                                      .q = m->q,
-                                      .friction = m->friction,
-                                      .last_r = starts ? m->last_r : NULL,
-                                      .last_u = m->last_u,
-                                      .work = starts ? work_of_start(n + m->parts) : 0};
-    imp_cone_outcome o;
-    if (!find_answer(m, &problem, m->r, m->v, &o)) return false;
+    imp_cone_problem problem = {.count = n + m->parts,
+                                .w = m->w,
+                                .q = m->q,
+                                .friction = m->friction,
+                                .last_r = starts ? m->last_r : NULL,
+                                .last_u = m->last_u,
+                                .work = starts ? work_of_start(n + m->parts) : 0};
+    if (!find_restitution(m, &problem)) return false;
     spread_parts(m);
     clean(n, m->modes, m->modes + n, m->v);
     take_restitution(m);
