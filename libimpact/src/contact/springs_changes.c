@@ -144,19 +144,16 @@ static double slip_that_is_none(const imp_spring *c)
     return c->free ? fmin(c->none, IMP_SPRINGS_TOLD * c->rounding) : c->none;
 }
 
-/* What held slips have drifted to is none of a slip that they leave no way of its own, nor of one that stops together
- * with another. One that they leave free its friction brings to rest: stopped at twice their drift it would be the next
- * that they are measured by, and of two that stop by turns the drift would double each time. */
+/* What held slips have drifted to is none of a slip that they leave no way of its own. One that they leave free its
+ * friction brings to rest: stopped at twice their drift it would be the next that they are measured by, and of two that
+ * stop by turns the drift would double each time. */
 static void find_free(imp_springs *s)
 {
-    bool together = false;
     for (int i = 0; i < s->count; i++) {
         imp_spring *c = &s->springs[i];
-        const bool slides = c->normal != IMP_SPRING_OPEN && c->slip == IMP_SPRING_SLIDES;
-        c->free = slides && c->none > IMP_SPRINGS_TOLD * c->rounding && imp_springs_is_free(s, i);
-        together = together || (slides && hypot(c->u[1], c->u[2]) <= slip_that_is_none(c));
+        c->free = imp_springs_presses(c) && c->slip == IMP_SPRING_SLIDES && c->none > IMP_SPRINGS_TOLD * c->rounding &&
+                  imp_springs_is_free(s, i);
     }
-    for (int i = 0; i < s->count; i++) s->springs[i].free = s->springs[i].free && !together;
 }
 
 /* A slip that is over, or so near its end that its direction is settled: it goes straight to it then. Forces as of now.
