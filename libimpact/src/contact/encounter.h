@@ -141,9 +141,10 @@ qvec3 imp_encounter_impulse(const imp_contact *contact, const double p[3]); /* w
 void imp_encounter_push(const imp_group *group, const double *p);
 /* The velocities of the contacts now, u[3 count]. */
 void imp_encounter_look(const imp_group *group, double *u);
-/* p has pushed, after which contacts have the velocities `after` but for rounding: that is taken away, and p changed.
- */
-void imp_encounter_mend(const imp_group *group, const double *after, double *p, impact_together_workspace *workspace);
+/* p has pushed, after which contacts have the velocities `after` but for rounding and the residual of the answer that
+ * both are (imp_cone_outcome): that is taken away, and p changed. */
+void imp_encounter_mend(const imp_group *group, const double *after, double residual, double *p,
+                        impact_together_workspace *workspace);
 
 /* ---- encounter_share.c ---- */
 

@@ -3,7 +3,9 @@
  * Where heavy bodies press light ones impulses are far greater than what they leave of one another: W p of a rounded W
  * is then off by eps |W| |p|, which is a light body's whole velocity, or a heavy one's mass. The bodies' own velocities
  * know better. The components A miss the velocities u' that their modes have by that rounding,
- * |u - u'| <= 32 eps max sum |W p|, and it is taken away in rounds, each from the velocities that the last one left:
+ * |u - u'| <= 32 eps max sum |W p|, or by what the solver left: of its answer's residual R either velocities or
+ * impulses are off by such a part, |u - u'| <= R max sum |W p|. It is taken away in rounds, each from the velocities
+ * that the last one left:
  *
  *     (W D)_A dp = (u' - u)_A,   A: the normals that pressed and what sticks,   dp of least norm
  *
@@ -126,13 +128,12 @@ static bool solve_mending(const imp_group *g, const double *p, const unknown *un
     return true;
 }
 
-/* Into more[3 count]; false: u misses u' by no more than `enough` of the greatest speed, or by more than rounding of
- * impulses. */
-static bool find_mending(const imp_group *g, const double *after, const double *p, double enough, double *more,
-                         impact_together_workspace *workspace)
+/* Into more[3 count]; false: u misses u' by no more than `enough` of the greatest speed, or by more than that part of
+ * impulses does. */
+static bool find_mending(const imp_group *g, const double *after, const double *p, double part, double enough,
+                         double *more, impact_together_workspace *workspace)
 {
-    const double speed = greatest_speed(g),
-                 rounding = IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * (greatest_terms(g, p) + speed);
+    const double speed = greatest_speed(g), most = part * (greatest_terms(g, p) + speed);
     const size_t width = 3 * (size_t)g->count;
     double *u = imp_encounter_take(workspace, width, sizeof *u), worst = 0;
     unknown *unknowns = imp_encounter_take(workspace, width, sizeof *unknowns);
@@ -142,22 +143,24 @@ static bool find_mending(const imp_group *g, const double *after, const double *
     for (int k = 0; k < n; k++) {
         const int row = unknowns[k].row;
         const double off = after[row] - u[row];
-        if (!(fabs(off) <= rounding)) return false;
+        if (!(fabs(off) <= most)) return false;
         worst = fmax(worst, fabs(off));
         u[k] = off; /* k <= row */
     }
     return worst > enough * speed && solve_mending(g, p, unknowns, n, u, more, workspace);
 }
 
-void imp_encounter_mend(const imp_group *g, const double *after, double *p, impact_together_workspace *workspace)
+void imp_encounter_mend(const imp_group *g, const double *after, double residual, double *p,
+                        impact_together_workspace *workspace)
 {
     imp_block *work = &workspace->work;
+    const double part = fmax(IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON, fmin(residual, IMP_CONE_USABLE));
     const size_t used = work->used;
     for (int round = 0; round < IMP_ENCOUNTER_MENDINGS; round++) {
         double *more = imp_encounter_take(workspace, 3 * (size_t)g->count, sizeof *more);
         /* begun where more than rounding of velocities is missed, and led on to that of one */
         const double enough = (round > 0 ? 1 : IMP_ENCOUNTER_ROUNDINGS) * DBL_EPSILON;
-        if (!more || !find_mending(g, after, p, enough, more, workspace)) break;
+        if (!more || !find_mending(g, after, p, part, enough, more, workspace)) break;
         imp_encounter_push(g, more);
         for (int i = 0; i < 3 * g->count; i++) p[i] += more[i];
         work->used = used;

@@ -33,6 +33,7 @@ typedef struct moreau {
     double *rebound;                  /* count: b; by Poisson's law 0 */
     int bodies, (*couples)[2];        /* those that move; count */
     bool strikes;                     /* not only the seeds of what is pressed do */
+    double residual;                  /* of the last problem's answer */
     imp_cone_row *rows;               /* count */
 } moreau;
 
@@ -50,10 +51,11 @@ static bool is_rounding(const imp_cone_problem *problem, double residual, const 
     return residual * size <= IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON * terms;
 }
 
-static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, const double *r, imp_group *group)
+static bool solved(moreau *m, const imp_cone_problem *problem, const imp_cone_outcome *o, const double *r)
 {
-    group->steps += o->factorings;
-    group->chosen = group->chosen || o->chosen;
+    m->residual = o->residual;
+    m->group->steps += o->factorings;
+    m->group->chosen = m->group->chosen || o->chosen;
     return o->status == IMP_CONE_SOLVED || o->status == IMP_CONE_INEXACT ||
            (o->status == IMP_CONE_UNSETTLED && is_rounding(problem, o->residual, r));
 }
@@ -61,7 +63,7 @@ static bool solved(const imp_cone_problem *problem, const imp_cone_outcome *o, c
 static bool find_answer(moreau *m, const imp_cone_problem *problem, double *r, double *u, imp_cone_outcome *o)
 {
     *o = imp_cone_solve(problem, m->cone, r, u, m->modes);
-    return solved(problem, o, r, m->group);
+    return solved(m, problem, o, r);
 }
 
 /* Whether what pressed has the velocities that the modes say, and what did not keeps its rebound: where nothing solves
@@ -205,7 +207,7 @@ static bool take_seeds_away(moreau *m, imp_cone_problem problem)
         problem.last_r = m->last_r;
     }
     const imp_cone_outcome o = imp_cone_solve(&problem, m->cone, g->p, m->u, m->modes);
-    return solved(&problem, &o, g->p, m->group);
+    return solved(m, &problem, &o, g->p);
 }
 
 static bool compress(moreau *m)
@@ -229,7 +231,7 @@ static bool compress(moreau *m)
     clean(n, m->modes, m->modes, m->u);
     for (int i = 0; i < n; i++) m->u[3 * i] += m->rebound[i];
     imp_encounter_push(m->group, m->group->p);
-    imp_encounter_mend(m->group, m->u, m->group->p, m->workspace);
+    imp_encounter_mend(m->group, m->u, m->residual, m->group->p, m->workspace);
     memcpy(m->q, m->u, 3 * (size_t)n * sizeof *m->q);
     imp_encounter_look(m->group, m->u);
     if (o.status == IMP_CONE_UNSETTLED && !comes_to(m->group, m->u, m->q, m->rebound)) return false;
@@ -324,7 +326,7 @@ static void take_restitution(moreau *m)
         memcpy(&p[3 * i], sum, sizeof sum);
     }
     imp_encounter_push(g, p);
-    imp_encounter_mend(g, m->v, p, m->workspace);
+    imp_encounter_mend(g, m->v, m->residual, p, m->workspace);
     imp_encounter_look(g, after);
     for (int i = 0; i < n; i++) {
         book(&g->findings[i], 1, &p[3 * i], &m->u[3 * i], &after[3 * i]);
