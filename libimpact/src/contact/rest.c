@@ -8,6 +8,7 @@
 #include "base/tolerances.h"
 #include "contact/held_linear.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -411,7 +412,7 @@ imp_rest_outcome imp_rest_solve(const imp_world *world, const imp_state *states,
 
 bool imp_rest_find_least(const imp_rest_question *question, imp_rest_workspace *workspace, double *forces)
 {
-    enum { REFINEMENTS = 3 };
+    enum { REFINEMENTS = 3, ROUNDINGS = 4 };
     const double *direction;
     const int count = question->count;
     if (count > workspace->contacts || question->bodies > workspace->bodies) return false;
@@ -423,7 +424,10 @@ bool imp_rest_find_least(const imp_rest_question *question, imp_rest_workspace *
     memcpy(s.forces, forces, length);
     (void)find_gradient(&s);
     for (int i = 0; i < s.n; i++) s.load[i] = -s.gradient[i];
-    for (int b = 0; b < s.bodies; b++) s.least = fmax(s.least, sqrt(product(&s.load[6 * b], &s.load[6 * b], 6)));
+    /* far greater forces leave it to the rounding of their sums: of that nothing may be balanced */
+    for (int b = 0; b < s.bodies; b++)
+        s.least = fmax(s.least, fmax(sqrt(product(&s.load[6 * b], &s.load[6 * b], 6)),
+                                     ROUNDINGS * DBL_EPSILON / IMP_REST_BALANCED * s.sizes[b]));
     const imp_rest_outcome outcome = minimise(&s, &direction);
     if (outcome.status != IMP_REST_RESTS) return false;
     memcpy(forces, s.forces, length);
