@@ -65,7 +65,7 @@ local rooms = {
   { "^libimpact/src/scene/scene_together", { "impact_scene_together", "impact_scene_answers" } },
   { "^libimpact/src/scene/", { "impact_scene_answers", "impact_scene", "impact_cases", "impact_surface_velocity", "impact_scene_together", "impact_random_scenes" } },
   { "^libimpact/src/motion/search_", { "impact_search_proof", "impact_toi", "impact_search" } }, { "^libimpact/src/motion/search", { "impact_search", "impact_crowd", "impact_motion" } }, { "^libimpact/src/motion/face", { "impact_face_motion", "impact_face_begin", "impact_line_motion", "impact_face_friction", "lua_faces_gliding", "lua_faces_begin", "lua_faces_lines" } }, { "^libimpact/src/motion/motion_method", { "lua_faces_gliding", "impact_scene_answers", "impact_motion", "impact_force", "impact_cases", "impact_random_scenes" } }, { "^libimpact/src/motion/motion_guard", { "impact_motion_guard", "impact_force_time", "impact_motion" } },
-  { "^libimpact/src/motion/pile", { "impact_pile", "impact_pile_order", "impact_coarser", "impact_pile_contacts", "lua_faces_stacked", "lua_turning", "impact_piles" } },
+  { "^libimpact/src/motion/pile", { "impact_pile", "impact_pile_order", "impact_coarser", "impact_pile_contacts", "lua_faces_stacked", "lua_turning", "lua_units", "impact_piles" } },
   { "^libimpact/src/motion/motion_stretch", { "impact_motion", "lua_faces_exact", "lua_faces_held", "lua_faces_turned", "impact_held_modes", "impact_cases", "lua_faces_seams" } },
   { "^libimpact/src/motion/lying", { "lua_faces_gliding", "lua_faces_lines", "lua_faces_turned", "lua_faces_begin", "impact_ramps" } },
   { "^libimpact/src/world/corner", { "lua_faces_exact", "lua_faces_held", "lua_faces_seams", "impact_cases" } },

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 -- What is integrated does not hang on the units of its definition: bars that tip over from an edge of theirs, on a plane and on a box, from a metre's size
--- down to a tenth of a millimetre's. Lengths in L, times in sqrt(L), masses in L^3.
+-- down to a tenth of a millimetre's. Lengths in L, times in sqrt(L), masses in L^3. Nor does what is stepped.
 local check = require "check"
 local impact = require "impact"
 local quat = require "quat"
@@ -33,6 +33,25 @@ for _, bar in ipairs { "box", "cylinder" } do
       end
     end
   end
+end
+
+-- Two boxes that fall on each other come to rest after the same steps, be they of a millimetre or of a thousand kilometres, and rest is 1e-9 m/s to all.
+local function boxes_rest(L)
+  local bodies = { impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 1 } }
+  for i = 1, 2 do
+    bodies[i + 1] = impact.body { name = "box " .. i, shape = impact.box { a = L, b = L, c = L }, mass = 1, friction = 0.5, restitution = 0.3,
+      position = { 0.3 * L * (i - 1), 0.2 * L * (i - 1), 1.1 * L + 2.1 * L * (i - 1) } }
+  end
+  local scene = impact.scene { gravity = { 0, 0, -9.81 }, duration = 10 * math.sqrt(L), output_rate = 0, bodies = bodies }
+  check.equal(scene:run(), "at rest")
+  return scene:time() / math.sqrt(L), scene:usage().pile_steps
+end
+
+local rests, steps = boxes_rest(1)
+for _, L in ipairs { 1e-3, 1e2, 1e3, 1e6 } do
+  local own, taken = boxes_rest(L)
+  check.close(own, rests, 1e-6)
+  check.equal(taken, steps)
 end
 
 check.report "units"

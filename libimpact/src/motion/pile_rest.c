@@ -17,6 +17,13 @@ static bool is_dragged(const imp_pile_contacts *touching, const imp_world *world
     return false;
 }
 
+/* What counts as motion, m/s: the rest speed, or more where a fall of the bodies' own size is so fast that what
+ * residuals are accepted leaves more of it. In other units the same pile comes to rest at the same step. */
+static double least_motion(const imp_world *world, const imp_state *states, double rest_speed)
+{
+    return fmax(rest_speed, IMP_PILE_RESTS * imp_pile_smallest(world) / imp_pile_natural_time(world, states));
+}
+
 static bool is_touched(const imp_pile_contacts *touching, int body)
 {
     for (int k = 0; k < touching->count; k++) {
@@ -52,11 +59,11 @@ impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const i
     imp_pile_contacts *touching = &pile->touching;
     *rests = false;
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
+    const double least = least_motion(world, states, rest_speed);
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
         if (body->is_static) continue;
-        if (qvec3_norm(states[i].v) + body->radius * qvec3_norm(imp_omega(body, &states[i])) > rest_speed)
-            return IMPACT_OK;
+        if (qvec3_norm(states[i].v) + body->radius * qvec3_norm(imp_omega(body, &states[i])) > least) return IMPACT_OK;
     }
     if (!imp_field_loads(world, t, states, pile->loads)) return IMPACT_OK;
     imp_pile_contacts_mark(touching, world, &pile->memory[0]);
@@ -66,7 +73,7 @@ impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const i
     imp_pile_place_friction(touching, world, &pile->memory[0]);
     for (int i = 0; i < world->body_count; i++)
         if (!world->bodies[i].is_static && !is_touched(touching, i)) return IMPACT_OK;
-    if (is_dragged(touching, world, rest_speed)) return IMPACT_OK;
+    if (is_dragged(touching, world, least)) return IMPACT_OK;
     const int closed = touching->count;
     if (!imp_pile_reserve_contacts(pile, world, closed) || !imp_rest_reserve(&pile->rest, closed, world->body_count))
         return IMPACT_ENOMEM;
