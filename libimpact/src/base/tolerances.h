@@ -891,6 +891,14 @@
 /* tau: a step so short is taken whatever its error: over it a force jumps, and may be off so far of what it does in the
  * time in which the speed falls to a part. */
 #define IMP_FACE_JUMP 1e-12
+/* Of a step, and of the mean pressure: how near to where the line of no pressure comes to a corner of the face a step
+ * ends. What is missed there is the cube of it, a billionth of what made the step no good. */
+#define IMP_FACE_BEND 1e-3
+/* Of the time until the centre of turning comes to the border, a step towards it: from there the border is three half
+ * lengths off the step's middle, and Legendre's terms fall as 5.8^-k. And in tau, what goes all the way: d^2 log d is
+ * then some tolerances. */
+#define IMP_FACE_TOWARDS 0.5
+#define IMP_FACE_NEARS 1e-2
 /* How a face begins to move: Newton's iterations, three to eight; the part of what a step is to gain at the least
  * (Armijo, 1966); and, of the acceleration, the last step, whose square is rounding. */
 #define IMP_FACE_BEGINS 60

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/face_motion.h"
+#include "base/bracket.h"
 #include "base/tolerances.h"
 #include "motion/face_begin.h"
 
@@ -588,16 +589,61 @@ static double error_of(double k[][IMP_FACE_STATE], const double *first, double h
 }
 
 /* A step of h, its error in tolerances; false: none so long. */
-static bool attempt(const imp_face_motion *motion, const collocation *c, const double *y, double h,
+static bool attempt(const imp_face_motion *motion, const collocation *c, const double *y, double h, course *on,
                     double k[][IMP_FACE_STATE], double *error)
 {
-    course on;
     double unit[IMP_FACE_STATE];
-    if (!(motion->clock > 0 ? leave_rest(motion, y, h, &on) : set_forth(motion, y, &on))) return false;
-    measure(motion, motion->clock > 0 ? on.there[IMP_FACE_NODES - 1] : y, unit);
-    if (!collocate(motion, c, y, h, unit, &on, k)) return false;
-    *error = error_of(k, on.first, h, unit);
+    if (!(motion->clock > 0 ? leave_rest(motion, y, h, on) : set_forth(motion, y, on))) return false;
+    measure(motion, motion->clock > 0 ? on->there[IMP_FACE_NODES - 1] : y, unit);
+    if (!collocate(motion, c, y, h, unit, on, k)) return false;
+    *error = error_of(k, on->first, h, unit);
     return true;
+}
+
+/* ---- where the pressed part comes to have other sides ---- */
+
+static int corners_of(const imp_flat_face *face) { return face->count > 0 ? face->count : 1; }
+
+/* The pressure at a corner; of a disc the least. */
+static double pressure_of(const imp_flat_face *face, int i, const double p[3])
+{
+    if (face->count == 0) return imp_least_pressure(face, p);
+    return p[0] + p[1] * face->corner[i][0] + p[2] * face->corner[i][1];
+}
+
+/* Above zero until one of the corners has another sign than there. */
+static double same_side(const imp_flat_face *face, const double there[3], const double p[3])
+{
+    double least = INFINITY;
+    for (int i = 0; i < corners_of(face); i++)
+        least = fmin(least, copysign(1, pressure_of(face, i, there)) * pressure_of(face, i, p));
+    return least;
+}
+
+/* Where, of the step, the line of no pressure first comes to a corner, between two of its nodes; 0: nowhere. There the
+ * pressed part has one side more or less, and of the rates, which change as the cube of what is beyond, no polynomial
+ * tells. The path is one whose step is no good: near enough for that. */
+static double first_bend(const imp_face_motion *motion, const course *on, const imp_face_path *path)
+{
+    const imp_flat_face *face = &motion->face;
+    int i = 1;
+    while (i < IMP_FACE_NODES && same_side(face, on->last[0].p, on->last[i].p) >= 0) i++;
+    if (i == IMP_FACE_NODES) return 0;
+    imp_face_balance balance = on->last[i];
+    imp_bracket b = {.low = node[i - 1],
+                     .high = node[i],
+                     .at_low = same_side(face, on->last[0].p, on->last[i - 1].p),
+                     .at_high = same_side(face, on->last[0].p, on->last[i].p)};
+    for (int k = 0; k < IMP_BRACKET_MOST && b.high - b.low > IMP_FACE_BEND; k++) {
+        double y[IMP_FACE_STATE], rate[IMP_FACE_STATE];
+        const double guess = imp_bracket_guess(&b);
+        imp_face_at(path, guess - 1, y);
+        if (!rates_in_tau(motion, y, rate, &balance)) return 0;
+        const double value = same_side(face, on->last[0].p, balance.p);
+        if (fabs(value) <= IMP_FACE_BEND) return guess;
+        imp_bracket_take(&b, guess, value, value < 0);
+    }
+    return b.high;
 }
 
 /* How fast it turns, about whatever. */
@@ -607,24 +653,27 @@ static bool step_within(const imp_face_motion *motion, const double *y, double l
                         imp_face_path *path)
 {
     collocation c;
-    double k[IMP_FACE_NODES][IMP_FACE_STATE], error;
+    course on;
+    double k[IMP_FACE_NODES][IMP_FACE_STATE], error, bent = 0;
     bool cut = false;
     lay_out(&c);
     for (double h = fmin(*length, longest); h > 0;) {
-        if (!attempt(motion, &c, y, h, k, &error) || h * fabs(k[0][IMP_FACE_ROLLED]) > 2 * IMP_FACE_TURN) {
+        if (!attempt(motion, &c, y, h, &on, k, &error) || h * fabs(k[0][IMP_FACE_ROLLED]) > 2 * IMP_FACE_TURN) {
             cut = true;
             h *= 0.5;
             if (h <= shortest) return false;
             continue;
         }
         const double next = h * fmin(fmax(0.9 * pow(error, -1.0 / IMP_FACE_NODES), 0.2), 2);
+        keep_path(y, h, motion->clock, k, path);
         if (error <= 1 || (h <= IMP_FACE_JUMP && isfinite(error))) {
-            keep_path(y, h, motion->clock, k, path);
-            *length = !(error <= 1) ? IMP_FACE_LONGEST : cut ? h : next;
+            *length = !(error <= 1) ? IMP_FACE_LONGEST : fmax(bent, cut ? h : next);
             return true;
         }
         if (h <= IMP_FACE_JUMP) return false;
-        h = fmax(next, IMP_FACE_JUMP);
+        const double bend = h * first_bend(motion, &on, path);
+        bent = bend > 0 ? h : 0;
+        h = fmax(bend > 0 ? bend : next, IMP_FACE_JUMP);
     }
     return false;
 }
@@ -704,13 +753,36 @@ static bool step_from_rest(const imp_face_motion *motion, const double *y, doubl
     return counts || creep(motion, y, longest, path) || found;
 }
 
+/* How far the centre of turning is within the face's border; INFINITY: there is none, or it is a line's. */
+static double center_spare(const imp_face_motion *motion, const double *y)
+{
+    double v[2];
+    imp_face_turn(&y[IMP_FACE_V], -y[IMP_FACE_ANGLE], v);
+    const double center[2] = {-v[1] / y[IMP_FACE_W], v[0] / y[IMP_FACE_W]};
+    return motion->rolling > 0 || y[IMP_FACE_W] == 0 ? INFINITY : imp_face_spare(&motion->face, center);
+}
+
+/* tau of a step towards where the centre of turning crosses the border, d away: there friction has d^2 log d, which a
+ * polynomial follows no farther than to a part of the way; what is next to it goes there. */
+static double longest_to_border(const imp_face_motion *motion, const double *y)
+{
+    double rate[IMP_FACE_STATE], then[IMP_FACE_STATE];
+    imp_face_balance balance = {.p = {0}};
+    if (motion->rolling > 0 || !rates_in_tau(motion, y, rate, &balance)) return INFINITY;
+    for (int n = 0; n < IMP_FACE_STATE; n++) then[n] = y[n] + IMP_FACE_DIFFERENCE * rate[n];
+    const double spare = center_spare(motion, y), closes = (spare - center_spare(motion, then)) / IMP_FACE_DIFFERENCE,
+                 way = spare / closes;
+    if (!(way > 0)) return INFINITY;
+    return way < IMP_FACE_NEARS ? fmax(way, 0.1 * IMP_FACE_NEARS) : fmax(IMP_FACE_TOWARDS * way, IMP_FACE_NEARS);
+}
+
 bool imp_face_motion_step(const imp_face_motion *motion, const double *y, double *length, imp_face_path *path)
 {
     if (!(imp_face_speed(motion, y) > 0)) return step_from_rest(motion, y, length, path);
     const double turns = turning_rate(y) * clock_of(motion, y);
     const bool own = motion->loads || motion->rolling > 0; /* a line may turn slower, or faster, than it slides */
     const double longest = own ? longest_in_tau(motion, y) : IMP_FACE_TURN / fmax(turns, IMP_FACE_TURN);
-    return step_within(motion, y, longest, IMP_FACE_SHORTEST, length, path);
+    return step_within(motion, y, fmin(longest, longest_to_border(motion, y)), IMP_FACE_SHORTEST, length, path);
 }
 
 double imp_face_end_miss(const imp_face_motion *motion, const imp_face_path *path)
