@@ -74,7 +74,7 @@ local rooms = {
   { "^libimpact/src/contact/held", { "impact_held_still", "impact_held_modes", "impact_held", "impact_cases" } },
   { "^libimpact/src/contact/cone_", { "impact_cone", "impact_cone_turning", "impact_cone_bodies", "lua_faces_stacked", "impact_encounter_random" } }, { "^libimpact/src/contact/turning", { "impact_cone_turning", "impact_rolling", "impact_scene_answers" } },
   { "^libimpact/src/contact/encounter_share", { "impact_encounter_random", "impact_piles" } },
-  { "^libimpact/src/contact/encounter", { "impact_encounter", "impact_encounter_limits", "impact_encounter_known", "impact_encounter_wedge",
+  { "^libimpact/src/contact/encounter", { "impact_encounter", "impact_encounter_limits", "impact_encounter_mend", "impact_encounter_known", "impact_encounter_wedge",
     "impact_encounter_newton", "impact_encounter_pressed", "impact_encounter_receipt", "impact_encounter_random" } },
   { "^libimpact/src/contact/springs", { "impact_springs", "impact_encounter_known", "impact_encounter", "impact_encounter_random", "impact_encounter_incipient" } },
   { "^libimpact/src/contact/rates", { "impact_rates", "impact_pile_order", "lua_faces_stacked", "impact_held_spot", "impact_held_line", "impact_held", "impact_held_modes" } },
