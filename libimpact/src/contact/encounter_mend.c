@@ -66,14 +66,12 @@ typedef struct unknown {
     bool slides;
 } unknown;
 
-/* The normals that pressed, and what sticks. An impulse that makes no more of a velocity than `least`, which velocities
- * are uncertain by, is none that pressed: of a stone that strikes another the ice under both would be drawn on. */
-static int find_unknowns(const imp_group *g, const double *after, const double *p, double least, unknown *unknowns)
+/* The normals that pressed, and what sticks. */
+static int find_unknowns(const imp_group *g, const double *after, const double *p, unknown *unknowns)
 {
-    const size_t width = 3 * (size_t)g->count;
     int n = 0;
     for (int i = 0; i < g->count; i++) {
-        if (!(g->w[3 * (size_t)i * (width + 1)] * p[3 * i] > least)) continue;
+        if (!(p[3 * i] > 0)) continue;
         const bool sticks = g->contacts[i].friction > 0 && after[3 * i + 1] == 0 && after[3 * i + 2] == 0;
         unknowns[n++] = (unknown){3 * i, !sticks};
         for (int k = 1; sticks && k < 3; k++) unknowns[n++] = (unknown){3 * i + k, false};
@@ -135,13 +133,13 @@ static bool solve_mending(const imp_group *g, const double *p, const unknown *un
 static bool find_mending(const imp_group *g, const double *after, const double *p, double part, double enough,
                          double *more, impact_together_workspace *workspace)
 {
-    const double speed = greatest_speed(g), terms = greatest_terms(g, p), most = part * (terms + speed);
+    const double speed = greatest_speed(g), most = part * (greatest_terms(g, p) + speed);
     const size_t width = 3 * (size_t)g->count;
     double *u = imp_encounter_take(workspace, width, sizeof *u), worst = 0;
     unknown *unknowns = imp_encounter_take(workspace, width, sizeof *unknowns);
     if (!u || !unknowns) return false;
     imp_encounter_look(g, u);
-    const int n = find_unknowns(g, after, p, part * fmin(terms, speed), unknowns);
+    const int n = find_unknowns(g, after, p, unknowns);
     for (int k = 0; k < n; k++) {
         const int row = unknowns[k].row;
         const double off = after[row] - u[row];
@@ -152,11 +150,19 @@ static bool find_mending(const imp_group *g, const double *after, const double *
     return worst > enough * speed && solve_mending(g, p, unknowns, n, u, more, workspace);
 }
 
+/* Of impulses, what the residual leaves. 0 where that is no more than what is accepted of velocities: to mend it, the
+ * ice under two stones of which one strikes the other pulled at both by 1e-11 N s. */
+static double part_left(const imp_group *g, const double *p, double residual)
+{
+    const bool counts = residual * greatest_terms(g, p) > IMP_CONE_ACCEPTED * greatest_speed(g);
+    return counts ? fmin(residual, IMP_CONE_USABLE) : 0;
+}
+
 void imp_encounter_mend(const imp_group *g, const double *after, double residual, double *p,
                         impact_together_workspace *workspace)
 {
     imp_block *work = &workspace->work;
-    const double part = fmax(IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON, fmin(residual, IMP_CONE_USABLE));
+    const double part = fmax(IMP_ENCOUNTER_ROUNDINGS * DBL_EPSILON, part_left(g, p, residual));
     const size_t used = work->used;
     for (int round = 0; round < IMP_ENCOUNTER_MENDINGS; round++) {
         double *more = imp_encounter_take(workspace, 3 * (size_t)g->count, sizeof *more);
