@@ -41,9 +41,8 @@ typedef struct imp_grid_place {
 } imp_grid_place;
 
 typedef struct imp_grid_level {
-    int exponent;   /* cells of 2^exponent m */
-    double scale;   /* 2^-exponent */
-    double longest; /* side of a box that was ever put there */
+    int exponent; /* cells of 2^exponent m */
+    double scale; /* 2^-exponent */
     int count, first;
 } imp_grid_level;
 

@@ -53,17 +53,6 @@ static double height_of_face(const face_list *list, int face, qvec3 normal)
     return imp_core_height(&list->form.core, face, n) + list->shape->rounding;
 }
 
-/* Whether a place is so far under the face's plane, by one of its corners, whose height is no more than the face's. */
-static bool is_far_under(const face_list *list, int face, qvec3 normal, qvec3 place, double within)
-{
-    if (!is_flat_sided(list->shape)) return false;
-    const impact_hull *hull = list->form.core.hull;
-    double corner[3];
-    imp_core_vertex(&list->form.core, hull->loop[hull->start[face]], corner);
-    const double height = normal.x * corner[0] + normal.y * corner[1] + normal.z * corner[2] + list->shape->rounding;
-    return qvec3_dot(normal, place) - height < -within;
-}
-
 /* A direction, from body 2 to body 1: how far it separates them, how fast more, and where they reach farthest. */
 typedef struct parting {
     double gap, rate;
@@ -209,7 +198,6 @@ static void consider_faces(settling *s, int k, impact_contact *contact)
                 place = quat_rotate_inverse(axes, qvec3_add(from, touches));
     for (int f = 0; f < faces.count; f++) {
         const qvec3 local = normal_of_face(&faces, f);
-        if (is_far_under(&faces, f, local, place, s->within)) continue;
         if (qvec3_dot(local, place) - height_of_face(&faces, f, local) < -s->within) continue;
         const qvec3 out = quat_rotate(axes, local), n = k == 0 ? qvec3_neg(out) : out;
         if (qvec3_norm(qvec3_sub(n, s->found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
