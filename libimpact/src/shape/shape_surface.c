@@ -16,7 +16,7 @@ static imp_form form_of(const impact_shape *shape)
     return form;
 }
 
-/* Without its form, which takes five times as long: a pile of boxes asks for nothing as often. */
+/* Without its form, which takes five times as long: a wall of bricks takes a fiftieth fewer instructions for it. */
 static double support_of_box(const impact_shape *shape, const double d[3], qvec3 *point)
 {
     double axis[3], x[3];

@@ -444,13 +444,6 @@ static void core_hessian(const imp_form *form, const double d[3], double H[3][3]
         return;
     }
     const double slack = IMP_CORE_TIE * fmax(form->axis[0], fmax(form->axis[1], form->axis[2]));
-    if (form->kind == IMP_FORM_BOX) {
-        for (int k = 0; k < 3; k++) {
-            const double side = 2 * form->axis[k];
-            if (side > slack && side * fabs(d[k]) <= slack) H[k][k] = INFINITY;
-        }
-        return;
-    }
     const int count = imp_core_reached(&form->core, d, slack, vertex, mean);
     for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
     for (int i = 0; i < count; i++) {
