@@ -971,10 +971,10 @@
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
-/* Of the speed at which the smallest falls its radius: slower than this is no motion, whatever the rest speed, for the
- * residual that is accepted leaves so much: IMP_BODIES_ACCEPTED of what gravity brings in the longest step. Two boxes
- * of 100 m crept at 1e-9 m/s for ever, of 1 m for 32 steps. */
-#define IMP_PILE_RESTS 2e-9
+/* Of the speed at which the smallest falls its radius, 2e-9: slower than this is no motion, whatever the rest speed,
+ * for the residual that is accepted leaves so much: that part of what gravity brings in the longest step, of speed and
+ * of turning. Two boxes of 100 m crept at 1e-9 m/s for ever, of 1 m for 32 steps. */
+#define IMP_PILE_RESTS (2 * IMP_BODIES_ACCEPTED * IMP_PILE_LONGEST)
 /* The longest step at the default tolerance, in which contacts turn by less than .1, in units of the time in which the
  * smallest body falls its radius; as the cube root of the tolerance at others, as errors are; and of how many parts of
  * it the first is one. */
