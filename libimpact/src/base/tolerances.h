@@ -944,7 +944,8 @@
 #define IMP_PILE_RESIDUAL 1e-1
 #define IMP_PILE_STILL 1e-2
 /* Contacts of an island up to which its impulses are looked for in their own space: at once, as with so few it costs no
- * more than that of the bodies; and where that of the bodies does not settle: some 3e7 multiplications then for each of
+ * more than that of the bodies, and they are unique: of four on a face that space finds any, the bodies' those that are
+ * near where it begins; and where that of the bodies does not settle: some 3e7 multiplications then for each of
  * 20 to 60 systems. */
 #define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100
@@ -997,6 +998,14 @@
  * tolerance.
  */
 #define IMP_PILE_SHIFTED 1e-1
+/* Of the speed at which the smallest falls its radius: a face that slides no faster rubs as at rest, for its slip is
+ * over within a millionth of the radius, and what steps leave of what stands is no slip. */
+#define IMP_PILE_GLIDES 1e-3
+/* Of sliding: turning, at a face's reach, that is less is as so much, but for its square. And how well it is known
+ * where the friction of a face's points acts, and how well enough, of the reach. */
+#define IMP_GLIDE_LEAST 1e-3
+#define IMP_GLIDE_KNOWN 1e-6
+#define IMP_GLIDE_USABLE 1e-2
 /* Of a pair's points that lie in a line: their area over the square of their reach, which is roundings'. */
 #define IMP_PILE_LINE 1e-9
 /* In that unit, too: what has not touched the rest of a pile for so long goes on exactly. A time, not a number of

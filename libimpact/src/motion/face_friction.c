@@ -271,6 +271,7 @@ static void add_rub(place x, double weight, void *sum)
 typedef struct border_sums {
     double once[2], twice[2][2]; /* of r_i/|r| and r_i r_j/|r|, times r x dr */
     double size, turn[2];        /* of |r| and |r| r_i */
+    double inverse;              /* of 1/|r| */
 } border_sums;
 
 /* The integral of 1/|r|, asinh(s2/h) - asinh(s1/h), as one: of the argument (s2 r1 - s1 r2)/h^2, by its conjugate where
@@ -303,6 +304,7 @@ static void add_side_sums(place from, place to, border_sums *sums)
         }
     }
     sums->size += h * size;
+    sums->inverse += h * inverse;
 }
 
 static void add_arc_place(place r, place outward, double weight, border_sums *sums)
@@ -315,6 +317,7 @@ static void add_arc_place(place r, place outward, double weight, border_sums *su
         for (int j = 0; j < 2; j++) sums->twice[i][j] += across * x[i] * x[j] / size;
     }
     sums->size += across * size;
+    sums->inverse += across / size;
 }
 
 /* From `from` to `to`, away from the angle that is nearest to o, which is off the circle by so much. */
@@ -353,10 +356,10 @@ static void add_whole_arc(const imp_pressed *pressed, place o, const imp_border 
     }
 }
 
-static void rub_along_border(const imp_pressed *pressed, const double twist[3], double rub[3][3])
+static place centre_of_turning(const double twist[3]) { return (place){-twist[1] / twist[2], twist[0] / twist[2]}; }
+
+static border_sums sums_about(const imp_pressed *pressed, place o)
 {
-    const place o = {-twist[1] / twist[2], twist[0] / twist[2]};
-    const double way = twist[2] > 0 ? -1 : 1, offset[3] = {1, o.x, o.y};
     border_sums sums = {.size = 0};
     for (int i = 0; i < pressed->count; i++) {
         const imp_border *b = &pressed->border[i];
@@ -365,6 +368,14 @@ static void rub_along_border(const imp_pressed *pressed, const double twist[3], 
         else
             add_side_sums(less(at(b->from), o), less(at(b->to), o), &sums);
     }
+    return sums;
+}
+
+static void rub_along_border(const imp_pressed *pressed, const double twist[3], double rub[3][3])
+{
+    const place o = centre_of_turning(twist);
+    const double way = twist[2] > 0 ? -1 : 1, offset[3] = {1, o.x, o.y};
+    const border_sums sums = sums_about(pressed, o);
     for (int j = 0; j < 3; j++) {
         double g[2], size = offset[j] * sums.size / 3;
         for (int i = 0; i < 2; i++) g[i] = offset[j] * sums.once[i] / 2 + (j > 0 ? sums.twice[i][j - 1] / 3 : 0);
@@ -410,12 +421,26 @@ static void cover_line(const imp_pressed *pressed, area_function *function, void
 
 /* ---- all of them ---- */
 
-void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub[3][3])
+static void cover(const imp_pressed *pressed, area_function *function, void *sum)
+{
+    if (pressed->line) cover_line(pressed, function, sum);
+    for (int i = 0; i < pressed->count && !pressed->line; i++)
+        (pressed->border[i].arc ? cover_arc : cover_side)(pressed, &pressed->border[i], function, sum);
+}
+
+/* Whether the centre of turning is so near that there are sums along the border; else the speed of the middle. */
+static bool turns_near(const imp_pressed *pressed, const double twist[3], double *speed)
 {
     const double *m = pressed->middle, w = fabs(twist[2]);
-    const double speed = qvec3_norm((qvec3){twist[0] - twist[2] * m[1], twist[1] + twist[2] * m[0], 0});
+    *speed = qvec3_norm((qvec3){twist[0] - twist[2] * m[1], twist[1] + twist[2] * m[0], 0});
+    return *speed <= IMP_FACE_DISTANT * w * pressed->reach;
+}
+
+void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub[3][3])
+{
+    double speed;
     memset(rub, 0, 9 * sizeof rub[0][0]);
-    if (speed <= IMP_FACE_DISTANT * w * pressed->reach) {
+    if (turns_near(pressed, twist, &speed)) {
         if (pressed->line)
             rub_along_line(&pressed->border[0], twist, rub);
         else
@@ -424,7 +449,27 @@ void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub
     }
     const double along[3] = {twist[0] / speed, twist[1] / speed, twist[2] / speed};
     rub_sum sum = {along, rub};
-    if (pressed->line) cover_line(pressed, add_rub, &sum);
-    for (int i = 0; i < pressed->count && !pressed->line; i++)
-        (pressed->border[i].arc ? cover_arc : cover_side)(pressed, &pressed->border[i], add_rub, &sum);
+    cover(pressed, add_rub, &sum);
+}
+
+typedef struct inverse_sum_of {
+    const double *twist;
+    double sum;
+} inverse_sum_of;
+
+static void add_inverse(place x, double weight, void *sum)
+{
+    inverse_sum_of *own = sum;
+    const double *v = own->twist;
+    own->sum += weight / face_length((place){v[0] - v[2] * x.y, v[1] + v[2] * x.x});
+}
+
+double imp_press_inverse_speed(const imp_pressed *pressed, const double twist[3])
+{
+    double speed;
+    if (turns_near(pressed, twist, &speed))
+        return sums_about(pressed, centre_of_turning(twist)).inverse / fabs(twist[2]);
+    inverse_sum_of own = {twist, 0};
+    cover(pressed, add_inverse, &own);
+    return own.sum;
 }

@@ -71,5 +71,7 @@ void imp_press_moments(const imp_pressed *pressed, double m[3][3]);
 /* rub[i][j] of the pressure f_j: F_x, F_y and the moment about the origin, per unit of the friction coefficient; twist:
  * v_x, v_y at the origin and w, not all 0. */
 void imp_press_rub(const imp_pressed *pressed, const double twist[3], double rub[3][3]);
+/* The integral of 1/|u|, which is infinite only of a line that turns about a place in it: of no line. */
+double imp_press_inverse_speed(const imp_pressed *pressed, const double twist[3]);
 
 #endif

@@ -83,7 +83,8 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
     imp_pile_recall(&pile->touching, world, pile->middle, h, &pile->memory[1]);
     imp_pile_seek_strikes(pile, world, pile->middle, 0.5 * h);
     if (pile->strike.found) return IMPACT_OK;
-    imp_pile_place_friction(&pile->touching, world, &pile->memory[1]);
+    const double glides = IMP_PILE_GLIDES * imp_pile_smallest(world) / imp_pile_natural_time(world, pile->middle);
+    imp_pile_place_friction(&pile->touching, world, &pile->memory[1], pile->middle, glides);
     for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
         const impact_status status = imp_pile_answer(pile, world, pile->middle, count, h, to, result);
         if (status != IMPACT_OK) return status;

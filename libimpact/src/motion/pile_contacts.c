@@ -51,6 +51,7 @@ static bool add_point(imp_pile_contacts *contacts, const imp_world *world, int p
                                         .arm1 = point->contact.offset1,
                                         .arm2 = point->contact.offset2},
                             .gap = point->contact.gap,
+                            .strength = 1,
                             .memory = -1};
     imp_cone_find_axes(point->contact.normal, own->contact.axes);
     if (!world->bodies[pair->body1].is_static && !world->bodies[pair->body2].is_static)

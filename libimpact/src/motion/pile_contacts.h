@@ -14,10 +14,12 @@ typedef struct imp_pile_point {
     impact_feature feature[2];
     imp_bearer bearer;
     imp_cone_contact contact;
-    double gap;    /* m */
-    double nearer; /* how much nearer to the centre of pressure its friction acts, of the way; 0: not */
-    int memory;    /* the number of what is remembered of it, imp_pile_recall; -1: nothing */
-    bool taken;    /* scratch: it is an island's */
+    double gap;      /* m */
+    double nearer;   /* how much nearer to the centre of pressure its friction acts, of the way; 0: not */
+    qvec3 aside;     /* and how far beside that, m: where its face slides */
+    double strength; /* of its friction: 1, but where its face slides */
+    int memory;      /* the number of what is remembered of it, imp_pile_recall; -1: nothing */
+    bool taken;      /* scratch: it is an island's */
 } imp_pile_point;
 
 /* What a step held there; world axes. */
@@ -68,8 +70,11 @@ int imp_pile_take_island(imp_pile_contacts *contacts, const imp_world *world, in
 void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const imp_state *states, double h,
                      imp_pile_memories *memories);
 
-/* Where the friction of each pair's points acts, by the pressures that are remembered, or of an even one. */
-void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories);
+/* Where the friction of each pair's points acts, and how strong it is, by the pressures that are remembered, or of an
+ * even one, and the slip of the states; without (NULL), and of faces that slide slower than the least, m/s, as at rest.
+ * What is remembered of a face that slides is made linear over it. */
+void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, imp_pile_memories *memories,
+                             const imp_state *states, double least);
 
 /* The same by pressures r, each contact's first of width numbers: of those points (count members, copied to own).
  * False: they are where it acts. */

@@ -1,17 +1,24 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where the friction of a face acts. Its points bear the pressure of all of it, N in all, and what they do to what
- * slides without turning is what the face does: mu N at the centre of pressure. Against turning about its centre a face
- * that is pressed evenly has mu N times the mean distance from there, where its corners have mu N times theirs, 1.85
- * times as much of a square. So friction acts not at the corners but nearer to the centre of pressure, by
+ * Where the friction of a face acts, and how strong it is. Its points bear the pressure of all of it, N in all. What
+ * slides is rubbed at other places, and more or less strongly, so that all of them are to it what the face is, evenly
+ * pressed (face_points.h): force and torque, however many points there are and whatever part of the pressure each
+ * bears. That part is not unique of more than three, and friction with it: so each step begins from the linear pressure
+ * that has the last one's sum and centre, as a stiff layer's would be, near which its answer stays.
+ *
+ * At rest a point's friction acts on its way to the centre of pressure, at
  *
  *     mean distance / mean distance of the points:   a square (sqrt 2 + asinh 1)/(3 sqrt 2), a disc 2/3, a line 1/2
  *
- * of their way: sliding is as it was, turning right, and what does both off by as much as four places differ from all
- * (docs/faces.md). The centre of pressure is that of the reactions themselves, which are looked for anew with it.
+ * of it: corners hold more torque than a face, mu N times their mean distance from the centre, of a square 1.85 times
+ * as much. So are lines where they slide too (docs/faces.md). The centre of pressure is that of the reactions
+ * themselves, which are looked for anew with it.
  */
 #include "base/tolerances.h"
+#include "motion/face_points.h"
 #include "motion/pile_contacts.h"
+
+#include <string.h>
 
 /* A pair's points in the plane of the contact. */
 typedef struct flat_points {
@@ -86,12 +93,11 @@ static double side_reach(const double o[2], const double a[2], const double b[2]
     return h / 6 * (h != 0 ? along + h * h * (asinh(end / fabs(h)) - asinh(begin / fabs(h))) : along);
 }
 
-/* How much nearer to the centre friction acts than the points are: of a polygon as above, else of a line. */
-static double nearness(flat_points *flat)
+/* At what part of the way friction acts at rest: of a polygon, sorted round, as above, else of a line. */
+static double part_at_rest(const flat_points *flat)
 {
     double center[2], points = 0, reach = 0;
     if (flat->count == 2) return 0.5;
-    sort_round(flat);
     const double area = area_of(flat, center);
     for (int i = 0; i < flat->count; i++) {
         reach += side_reach(center, flat->x[i], flat->x[(i + 1) % flat->count]);
@@ -108,11 +114,57 @@ static double remembered_pressure(const imp_pile_point *point, const imp_pile_me
     return own < 0 ? 0 : fmax(qvec3_dot(memories->list[own].reaction, point->contact.axes[0]), 0);
 }
 
-/* The part of the way from the centre of pressure, on body 1, along the surface. */
+static void put_in_plane(const qvec3 axes[3], qvec3 way, double out[2])
+{
+    for (int k = 0; k < 2; k++) out[k] = qvec3_dot(axes[k + 1], way);
+}
+
+/* The linear pressure with this centre, parts of it at the points of a plane; false: it pulls at some, or they are in a
+ * line. It is the one of least norm: 1/count + d_i . S^-1 sum n_j d_j, d from the points' mean, S = sum d d. */
+static bool linear_parts(const flat_points *flat, double *part)
+{
+    double mean[2], s[3] = {0, 0, 0}, c[2] = {0, 0};
+    mean_of(flat, mean);
+    for (int i = 0; i < flat->count; i++) {
+        const double x = flat->x[i][0] - mean[0], y = flat->x[i][1] - mean[1];
+        s[0] += x * x, s[1] += x * y, s[2] += y * y;
+        c[0] += part[i] * x, c[1] += part[i] * y;
+    }
+    const double square = s[0] * s[2] - s[1] * s[1];
+    if (!(square > IMP_PILE_LINE * (s[0] + s[2]) * (s[0] + s[2]))) return false;
+    const double slope[2] = {(s[2] * c[0] - s[1] * c[1]) / square, (s[0] * c[1] - s[1] * c[0]) / square};
+    double least = INFINITY;
+    for (int i = 0; i < flat->count; i++) {
+        part[i] = 1.0 / flat->count + slope[0] * (flat->x[i][0] - mean[0]) + slope[1] * (flat->x[i][1] - mean[1]);
+        least = fmin(least, part[i]);
+    }
+    return least >= 0;
+}
+
+/* The remembered reactions with a pressure that is linear over the points, if that presses all. */
+static void even_pair(const imp_pile_point *points, int count, const flat_points *flat, imp_pile_memories *memories)
+{
+    double pressure[IMP_POINTS], part[IMP_POINTS], sum = 0;
+    for (int i = 0; i < count; i++) {
+        if (points[i].memory < 0) return;
+        sum += pressure[i] = remembered_pressure(&points[i], memories);
+    }
+    for (int i = 0; i < count; i++) part[i] = pressure[i] / sum;
+    if (!(sum > 0) || !linear_parts(flat, part)) return;
+    for (int i = 0; i < count; i++) {
+        imp_pile_memory *own = &memories->list[points[i].memory];
+        const double grows = pressure[i] > IMP_PILE_LINE * sum ? part[i] * sum / pressure[i] : 0;
+        own->reaction =
+            grows > 0 ? qvec3_scale(own->reaction, grows) : qvec3_scale(points[i].contact.axes[0], part[i] * sum);
+        own->moment = qvec3_scale(own->moment, grows);
+    }
+}
+
+/* From where the point bears, along the surface; the centre of pressure on body 1. */
 static qvec3 rub_of(const imp_pile_point *point, qvec3 center)
 {
     const qvec3 n = point->contact.axes[0], way = qvec3_sub(point->contact.arm1, center);
-    return qvec3_scale(qvec3_axpy(-qvec3_dot(n, way), n, way), -point->nearer);
+    return qvec3_axpy(-point->nearer, qvec3_axpy(-qvec3_dot(n, way), n, way), point->aside);
 }
 
 /* A whole disc's points, a sixteenth of its rim apart. */
@@ -123,34 +175,131 @@ static bool is_disc(const imp_pile_point *points, int count)
     return count == IMP_POINTS;
 }
 
-static void place_pair(imp_pile_point *points, int count, const imp_pile_memories *memories)
+/* A pair's points, what they bear of the pressure, and its centre, on body 1. */
+typedef struct face_pressure {
+    int count;
+    double part[IMP_POINTS];
+    qvec3 center; /* on body 1 */
+} face_pressure;
+
+static face_pressure pressure_of(const imp_pile_point *points, int count, const imp_pile_memories *memories)
+{
+    face_pressure p = {.count = count, .center = {0, 0, 0}};
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += p.part[i] = remembered_pressure(&points[i], memories);
+    for (int i = 0; i < count; i++) {
+        const qvec3 arm = points[i].contact.arm1;
+        p.part[i] = sum > 0 ? p.part[i] / sum : 1.0 / count;
+        p.center = qvec3_axpy(p.part[i], arm, p.center);
+    }
+    return p;
+}
+
+/* How body 1 goes on body 2 at the centre of pressure: along the plane's axes and about its normal. */
+static void twist_of(const imp_world *world, const imp_state *states, const imp_cone_contact *contact, qvec3 center,
+                     double twist[3])
+{
+    double u[6];
+    imp_cone_contact there = *contact;
+    there.rub = qvec3_sub(center, contact->arm1);
+    imp_cone_contact_turning(world, states, &there, 1, u);
+    memcpy(twist, &u[1], 3 * sizeof *twist);
+}
+
+/* The face of the points, sorted round, about its centre and over its reach; false: they are in a line. */
+static bool face_of(const flat_points *flat, bool disc, double *reach, imp_flat_face *face)
+{
+    double center[2];
+    *face = (imp_flat_face){.count = disc ? 0 : flat->count, .radius = disc};
+    mean_of(flat, center);
+    *reach = 0;
+    for (int i = 0; i < flat->count; i++) *reach = fmax(*reach, distance(center, flat->x[i]));
+    if (disc) return true;
+    if (flat->count == 2 || !(area_of(flat, center) > IMP_PILE_LINE * *reach * *reach)) return false;
+    for (int i = 0; i < flat->count; i++)
+        for (int k = 0; k < 2; k++) face->corner[i][k] = (flat->x[i][k] - center[k]) / *reach;
+    return true;
+}
+
+/* How a pair's face slides: over its reach, about the centre of pressure. */
+typedef struct face_slide {
+    imp_flat_face face;
+    double twist[3], reach;
+} face_slide;
+
+/* Whether it is a face, and slides faster than the least. */
+static bool face_slides(const imp_world *world, const imp_pile_point *points, const face_pressure *pressure,
+                        const flat_points *sorted, const imp_state *states, double least, face_slide *slide)
+{
+    if (!states || !face_of(sorted, is_disc(points, sorted->count), &slide->reach, &slide->face)) return false;
+    twist_of(world, states, &points[0].contact, pressure->center, slide->twist);
+    slide->twist[2] *= slide->reach;
+    return hypot(slide->twist[0], slide->twist[1]) + fabs(slide->twist[2]) > least;
+}
+
+/* Where it rubs; false: there are no such places. */
+static bool place_sliding(imp_pile_point *points, const face_pressure *pressure, const face_slide *slide)
 {
     const imp_cone_contact *first = &points[0].contact;
-    flat_points flat = {.count = count};
-    qvec3 pressed = {0, 0, 0}, mean = {0, 0, 0};
-    double sum = 0;
-    for (int i = 0; i < count; i++) {
-        const qvec3 arm = points[i].contact.arm1, place = qvec3_sub(arm, first->arm1);
-        const double pressure = remembered_pressure(&points[i], memories);
-        for (int k = 0; k < 2; k++) flat.x[i][k] = qvec3_dot(first->axes[k + 1], place);
-        pressed = qvec3_axpy(pressure, arm, pressed);
-        mean = qvec3_axpy(1.0 / count, arm, mean);
-        sum += pressure;
+    imp_face_points own = {.count = pressure->count};
+    for (int i = 0; i < own.count; i++) {
+        const qvec3 arm = qvec3_sub(points[i].contact.arm1, pressure->center);
+        put_in_plane(first->axes, qvec3_scale(arm, 1 / slide->reach), own.bear[i]);
+        own.part[i] = pressure->part[i];
     }
-    const double nearer = 1 - (is_disc(points, count) ? 2.0 / 3 : nearness(&flat));
-    const qvec3 center = sum > 0 ? qvec3_scale(pressed, 1 / sum) : mean;
+    if (!imp_points_as_face(&slide->face, slide->twist, &own)) return false;
+    for (int i = 0; i < own.count; i++) {
+        points[i].nearer = 1 - own.k;
+        points[i].strength = own.strength;
+        points[i].aside = (qvec3){0, 0, 0};
+        for (int k = 0; k < 2; k++) {
+            const double aside = slide->reach * (own.rub[i][k] - own.k * own.bear[i][k]);
+            points[i].aside = qvec3_axpy(aside, first->axes[k + 1], points[i].aside);
+        }
+    }
+    return true;
+}
+
+static void place_pair(const imp_world *world, imp_pile_point *points, int count, imp_pile_memories *memories,
+                       const imp_state *states, double least)
+{
+    face_pressure pressure = pressure_of(points, count, memories);
+    flat_points flat = {.count = count};
+    face_slide slide;
+    for (int i = 0; i < count; i++)
+        put_in_plane(points[0].contact.axes, qvec3_sub(points[i].contact.arm1, points[0].contact.arm1), flat.x[i]);
+    flat_points sorted = flat;
+    sort_round(&sorted);
+    bool slides = face_slides(world, points, &pressure, &sorted, states, least, &slide);
+    if (slides) {
+        even_pair(points, count, &flat, memories);
+        pressure = pressure_of(points, count, memories);
+        slides = place_sliding(points, &pressure, &slide);
+    }
+    const double part = slides ? 0 : is_disc(points, count) ? 2.0 / 3 : part_at_rest(&sorted);
     for (int i = 0; i < count; i++) {
-        points[i].nearer = nearer;
-        points[i].contact.rub = rub_of(&points[i], center);
+        if (!slides) points[i].nearer = 1 - part;
+        points[i].contact.rub = rub_of(&points[i], pressure.center);
     }
 }
 
-void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories)
+/* How many points from this one on are of its pair. */
+static int points_of_pair(const imp_pile_contacts *contacts, int first)
+{
+    int count = 1;
+    while (first + count < contacts->count && contacts->points[first + count].pair == contacts->points[first].pair)
+        count++;
+    return count;
+}
+
+void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, imp_pile_memories *memories,
+                             const imp_state *states, double least)
 {
     for (int i = 0, count; i < contacts->count; i += count) {
         imp_pile_point *first = &contacts->points[i];
-        for (count = 1; i + count < contacts->count && first[count].pair == first->pair;) count++;
-        if (count > 1 && world->pairs[first->pair].law.friction > 0) place_pair(first, count, memories);
+        count = points_of_pair(contacts, i);
+        if (count > 1 && world->pairs[first->pair].law.friction > 0)
+            place_pair(world, first, count, memories, states, least);
     }
 }
 
@@ -188,7 +337,7 @@ bool imp_pile_shift_friction(imp_pile_contacts *contacts, const int *members, in
     for (int c = 0, same; c < count; c += same) {
         const imp_pile_point *first = &contacts->points[members[c]];
         for (same = 1; c + same < count && contacts->points[members[c + same]].pair == first->pair;) same++;
-        if (first->nearer > 0)
+        if (first->nearer != 0)
             shifted = shift_pair(contacts, &members[c], same, &r[width * c], width, &own[c]) || shifted;
     }
     return shifted;

@@ -123,7 +123,7 @@ int imp_pile_gather_island(imp_pile *pile, const imp_world *world)
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_pair *pair = &world->pairs[point->pair];
         pile->contacts[c] = point->contact;
-        pile->friction[c] = pair->law.friction;
+        pile->friction[c] = point->strength * pair->law.friction;
         pile->lengths[c] = (imp_cone_lengths){pair->law.torsional, pair->law.rolling};
         pile->gap[c] = point->gap;
         if (imp_is_rough(pair)) pile->width = IMP_CONE_WIDEST;

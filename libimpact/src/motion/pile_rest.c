@@ -70,7 +70,7 @@ impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const i
     if (!imp_pile_find_points(touching, world, states, NULL, 0, imp_pile_slack(pile, world), false))
         return IMPACT_ENOMEM;
     imp_pile_recall(touching, world, states, 0, &pile->memory[0]);
-    imp_pile_place_friction(touching, world, &pile->memory[0]);
+    imp_pile_place_friction(touching, world, &pile->memory[0], NULL, 0);
     for (int i = 0; i < world->body_count; i++)
         if (!world->bodies[i].is_static && !is_touched(touching, i)) return IMPACT_OK;
     if (is_dragged(touching, world, least)) return IMPACT_OK;

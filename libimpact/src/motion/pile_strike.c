@@ -99,7 +99,7 @@ impact_status imp_pile_strike_now(imp_pile *pile, imp_world *world, imp_state *s
         !imp_pile_reserve_contacts(pile, world, touching->count))
         return IMPACT_ENOMEM;
     imp_pile_recall(touching, world, states, h, &pile->memory[1]);
-    imp_pile_place_friction(touching, world, &pile->memory[1]);
+    imp_pile_place_friction(touching, world, &pile->memory[1], NULL, 0);
     const impact_status status = strike_islands(pile, world, next, &own, struck);
     if (status != IMPACT_OK || !*struck) return status;
     memcpy(states, next, size);

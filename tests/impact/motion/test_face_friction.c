@@ -37,7 +37,7 @@ static imp_flat_face random_face(unsigned long *seed, bool disc)
 typedef struct oracle {
     const imp_flat_face *face;
     const double *p, *twist;
-    int part; /* 0, 1: force; 2: moment */
+    int part; /* 0, 1: force; 2: moment; 3: 1/|u| */
     double x, scale;
 } oracle;
 
@@ -73,6 +73,7 @@ static double friction_there(oracle *o, double y)
     const double *v = o->twist, u[2] = {v[0] - v[2] * y, v[1] + v[2] * o->x}, size = hypot(u[0], u[1]);
     const double p = o->p[0] + o->p[1] * o->x + o->p[2] * y;
     if (!(size > 0)) return 0;
+    if (o->part == 3) return p / size;
     return -p / size * (o->part == 0 ? u[0] : o->part == 1 ? u[1] : o->x * u[1] - y * u[0]);
 }
 
@@ -205,6 +206,24 @@ static void it_is_the_integral_over_the_area(void **state)
     }
 }
 
+static void the_inverse_of_the_speed_too(void **state)
+{
+    (void)state;
+    unsigned long seed = 5;
+    static const double near[] = {1 - 1e-3, .3, 0, 2, 3.9, 4.1, 30};
+    const double even[3] = {1, 0, 0};
+    for (int k = 0; k < 21; k++) {
+        const imp_flat_face face = random_face(&seed, k % 3 == 0);
+        imp_pressed whole;
+        double twist[3];
+        imp_press_all(&face, &whole);
+        turn_about(&face, face.radius * near[k % 7], uniform(&seed, 0, 2 * pi), k % 2 ? 1 : -2, twist);
+        oracle o = {.face = &face, .p = even, .twist = twist, .part = 3, .scale = 1};
+        const double sum = oracle_sum(&o);
+        assert_near(imp_press_inverse_speed(&whole, twist), sum, 1e-12 * sum);
+    }
+}
+
 /* The border's sums and the area's, on both sides of where one takes over from the other. */
 static void both_sums_meet(void **state)
 {
@@ -304,7 +323,7 @@ static void a_square_slides_and_turns_to_its_end(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_is_the_integral_over_the_area),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(it_is_the_integral_over_the_area), cmocka_unit_test(the_inverse_of_the_speed_too),
                                        cmocka_unit_test(both_sums_meet), cmocka_unit_test(closed_forms),
                                        cmocka_unit_test(power_is_convex),
                                        cmocka_unit_test(a_square_slides_and_turns_to_its_end)};

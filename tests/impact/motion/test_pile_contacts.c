@@ -62,14 +62,14 @@ static void place(const double (*at)[2], int count, imp_pile_point *points)
     imp_body bodies[2] = {{.radius = 1}, {.is_static = true}};
     imp_pair pair = {.body1 = 0, .body2 = 1, .law = {.friction = 0.5}};
     const imp_world world = {.bodies = bodies, .body_count = 2, .pairs = &pair, .pair_count = 1};
-    const imp_pile_memories none = {.count = 0};
+    imp_pile_memories none = {.count = 0};
     imp_pile_contacts contacts = {.points = points, .count = count, .room = count};
     for (int k = 0; k < count; k++) {
         points[k] =
             (imp_pile_point){.contact = {.body1 = 0, .body2 = 1, .arm1 = {at[k][0], at[k][1], -1}}, .memory = -1};
         imp_cone_find_axes((qvec3){0, 0, 1}, points[k].contact.axes);
     }
-    imp_pile_place_friction(&contacts, &world, &none);
+    imp_pile_place_friction(&contacts, &world, &none, NULL, 0);
 }
 
 /* Squares turned, triangles and lines against their mean distances; and whatever else a patch may be, places that
