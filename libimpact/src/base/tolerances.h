@@ -779,6 +779,9 @@
 #define IMP_REST_BALANCED 1e-13
 /* The residual from which the forces themselves are corrected: Newton's next step squares it. */
 #define IMP_REST_NEAR 1e-8
+/* eps, of forces far greater than their loads: what the rounding of G leaves of those that nothing balances. Of 200
+ * frames of nine contacts (./run report together, N = 12000, seed 43800000, number 8370) 45 leave 5 to 82. */
+#define IMP_REST_ROUNDINGS 256
 /* Of its greatest element, added to the Hessian's diagonal: its rounding. */
 #define IMP_REST_SHIFT 1e-13
 /* Of the load's size: reactions larger than this are none. A slope of mu (1 + 1e-6) shows 1e9 and more. */

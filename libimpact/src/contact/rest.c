@@ -414,6 +414,7 @@ bool imp_rest_find_least(const imp_rest_question *question, imp_rest_workspace *
 {
     enum { REFINEMENTS = 3, ROUNDINGS = 4 };
     const double *direction;
+    double greatest = 0;
     const int count = question->count;
     if (count > workspace->contacts || question->bodies > workspace->bodies) return false;
     rest_system s = furnish_rest(workspace, question->bodies, count);
@@ -425,14 +426,20 @@ bool imp_rest_find_least(const imp_rest_question *question, imp_rest_workspace *
     (void)find_gradient(&s);
     for (int i = 0; i < s.n; i++) s.load[i] = -s.gradient[i];
     /* far greater forces leave it to the rounding of their sums: of that nothing may be balanced */
-    for (int b = 0; b < s.bodies; b++)
+    for (int b = 0; b < s.bodies; b++) {
         s.least = fmax(s.least, fmax(sqrt(product(&s.load[6 * b], &s.load[6 * b], 6)),
                                      ROUNDINGS * DBL_EPSILON / IMP_REST_BALANCED * s.sizes[b]));
+        greatest = fmax(greatest, s.sizes[b]);
+    }
     const imp_rest_outcome outcome = minimise(&s, &direction);
-    if (outcome.status != IMP_REST_RESTS) return false;
+    /* G is rounded too: of bodies that move as one it leaves what no forces balance; Newton's steps stand there */
+    const bool rests = outcome.status == IMP_REST_RESTS,
+               stands = outcome.status == IMP_REST_UNDECIDED &&
+                        outcome.residual * s.least <= IMP_REST_ROUNDINGS * DBL_EPSILON * greatest;
+    if (!rests && !stands) return false;
     memcpy(forces, s.forces, length);
     /* to rounding: what is left would be taken from forces on the border of their cones */
-    double before = outcome.residual;
+    double before = rests ? outcome.residual : INFINITY;
     for (int k = 0; k < REFINEMENTS; k++) {
         const double left = refine(&s);
         if (!(left < before)) break;
