@@ -111,8 +111,9 @@ static bool ends(imp_springs *s, double ratio, double off, double pushed)
         go_to_end(s, ratio);
         if (stays(s)) return true;
     }
-    /* they have fallen by enough, or are alike and will fall for ever */
-    const bool goes_on = ratio * ratio <= IMP_BOUNCES_RATIO || off <= IMP_BOUNCES_ERROR * pushed;
+    /* they have fallen by enough, or so alike that the ratio tells impulses to come, pushed R/(1 - R), as well as they
+     * are compared: what is not in it is off R/(1 - R)^2 of them */
+    const bool goes_on = ratio * ratio <= IMP_BOUNCES_RATIO || off <= IMP_BOUNCES_APART * left * pushed;
     return is_late(s) && goes_on && imp_springs_come_to_rest(s, ratio) && stays(s);
 }
 
