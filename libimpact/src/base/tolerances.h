@@ -578,9 +578,9 @@
 #define IMP_BOUNCES_RATIO 0.75
 /* Of velocities: what is left at the end of what no ratio explains: a tenth of what the receipt takes. */
 #define IMP_BOUNCES_ERROR 0x1p-40
-/* Of impulses to come: how far those by the ratio of the last ones may be from those by the equations of rest. Of 22000
- * random encounters of up to 6 contacts, looked at from 1000 and 2000 steps on, 18 are ended so within a tenth, and all
- * where following them ends; of 10 that are a tenth to a half apart 4 are not. */
+/* Of impulses to come: how well the ratio of the last ones has to tell them, and how far they may be from those by the
+ * equations of rest. Of 22000 random encounters of up to 6 contacts, looked at from 1000 and 2000 steps on, 18 are
+ * ended so within a tenth, and all where following them ends; of 10 that are a tenth to a half apart 4 are not. */
 #define IMP_BOUNCES_APART 0.1
 /* Steps and events from which bounces are ended by the equations of rest: what takes fewer is done by then, but for a
  * few in a thousand. */
