@@ -68,7 +68,7 @@ local rooms = {
   { "^libimpact/src/motion/pile", { "impact_pile", "impact_pile_order", "impact_coarser", "impact_pile_contacts", "lua_faces_stacked", "lua_turning", "lua_units", "impact_piles" } },
   { "^libimpact/src/motion/motion_stretch", { "impact_motion", "lua_faces_exact", "lua_faces_held", "lua_faces_turned", "impact_held_modes", "impact_cases", "lua_faces_seams" } },
   { "^libimpact/src/motion/lying", { "lua_faces_gliding", "lua_faces_lines", "lua_faces_turned", "lua_faces_begin", "impact_ramps" } },
-  { "^libimpact/src/world/corner", { "lua_faces_exact", "lua_faces_held", "lua_faces_seams", "impact_cases" } },
+  { "^libimpact/src/world/corner", { "impact_corner", "lua_faces_exact", "lua_faces_held", "lua_faces_seams", "impact_cases" } },
   { "^libimpact/src/motion/motion_", { "impact_motion", "impact_force", "impact_cases", "impact_random_scenes" } },
   { "^libimpact/src/contact/held%.c$", { "impact_held", "impact_cases", "lua_faces_turned" } },
   { "^libimpact/src/contact/held", { "impact_held_still", "impact_held_modes", "impact_held", "impact_cases" } },

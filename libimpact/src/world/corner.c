@@ -256,11 +256,11 @@ double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const 
                               imp_corner_contact(world, pair, states, NULL).offset2);
     if (v.form.kind == IMP_FORM_QUADRIC && !v.form.round)
         least = fmin(least, imp_ridge_room(&v.form, pair->site.corner - 1, qvec3_neg(v.up)));
+    if (own.rim > 0) least = fmin(least, 2 * own.rim * own.slope); /* of other rims that are held their pairs tell */
     for (int i = 0; i < count; i++) {
         const corner_place place = place_of(&v.form, v.up, i, IMP_RIDGE_END);
-        const bool held = imp_corner_is_held(world, pair, i + 1);
-        if (held ? !(place.rim > 0) : is_same(place.at, own.at)) continue;
-        least = fmin(least, held ? 2 * place.rim * own.slope : height_of(&v, place.at));
+        if (imp_corner_is_held(world, pair, i + 1) || is_same(place.at, own.at)) continue;
+        least = fmin(least, height_of(&v, place.at));
     }
     return least;
 }

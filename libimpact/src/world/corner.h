@@ -49,8 +49,9 @@ qvec3 imp_corner_across(const imp_world *world, const imp_pair *pair, const imp_
 qvec3 imp_corner_side(const imp_world *world, const imp_pair *pair, const imp_state *states);
 
 /* m: how high over the plane the lowest is of what may land yet: body 1's corners and rims but those that are held,
- * and of those rims the side across from imp_site.side: below it once the rim has passed flat, and its lowest place has
- * changed over; or, where that is less, how far the pair's corner is within its face's border. */
+ * and, where the pair's own is a rim, its side across from imp_site.side: below it once the rim has passed flat, and
+ * its lowest place has changed over; or, where that is less, how far the pair's corner is within its face's border.
+ * The pair is held. Infinite: nothing is left to land. */
 double imp_corner_clearance(const imp_world *world, const imp_pair *pair, const imp_state *states);
 /* m: how high the lowest of them all is: < 0 beside the border of a face. */
 double imp_corner_lowest(const imp_world *world, const imp_pair *pair, const imp_state *states);
