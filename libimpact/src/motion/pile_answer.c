@@ -105,11 +105,12 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
 }
 
 /* The places are those of the step's middle: what its two ends' velocities differ by from what they would be there, as
- * bodies and contacts turn. */
-static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *states, int count, double h)
+ * bodies and contacts turn, into pile->bend. */
+static void find_bends(const imp_pile *pile, imp_world *world, const imp_state *states, int count, double h)
 {
     const double smallest = imp_pile_smallest(world);
-    for (int c = 0; c < count; c++) {
+    memset(pile->bend, 0, (size_t)(pile->width * count) * sizeof *pile->bend);
+    for (int c = 0; c < count && h > 0; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_cone_contact *own = &point->contact;
         const impact_contact contact = {.normal = own->axes[0], .offset1 = own->arm1, .offset2 = own->arm2};
@@ -117,10 +118,7 @@ static void add_bends(const imp_pile *pile, imp_world *world, const imp_state *s
         const double runs = imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, own->axes,
                                              own->rub, states, bend);
         if (!(h * runs <= smallest)) continue; /* past the ends of lines that are all but parallel */
-        for (int k = 0; k < pile->width; k++) {
-            pile->before[pile->width * c + k] -= 0.5 * h * bend[k];
-            pile->q[pile->width * c + k] += 0.5 * h * bend[k];
-        }
+        for (int k = 0; k < pile->width; k++) pile->bend[pile->width * c + k] = h * bend[k];
     }
 }
 
@@ -200,25 +198,16 @@ static imp_pile_question question_of(const imp_pile *pile, const imp_world *worl
                                .usable = fmin(error / fastest, IMP_PILE_USABLE)};
 }
 
-/* Friction acts along the slip of the step's middle where that turns: found from the slip at its end. */
-static imp_cone_outcome follow_slip(imp_pile *pile, const imp_world *world, const imp_pile_question *question, double h,
-                                    imp_cone_outcome first)
+/* Where friction is to act along the slip of the step's middle, and that turns by what counts: into pile->lead. */
+static bool find_leads(imp_pile *pile, const imp_world *world, int count, double h)
 {
-    const int count = question->count;
-    const size_t size = (size_t)(pile->width * count);
     const double natural = imp_pile_natural_time(world, pile->middle), smallest = imp_pile_smallest(world);
     double most = 0, lead[6];
-    for (int c = 0; c < count; c++) most = fmax(most, lead_of(pile, c, smallest, lead));
-    if (!(most / h * natural * natural > IMP_PILE_LEAD * pile->tolerance * smallest)) return first;
     for (int c = 0; c < count; c++) {
-        lead_of(pile, c, smallest, lead);
+        most = fmax(most, lead_of(pile, c, smallest, lead));
         memcpy(&pile->lead[pile->width * c], lead, sizeof *lead * (size_t)pile->width);
     }
-    memcpy(pile->last_r, pile->r, size * sizeof *pile->r);
-    for (size_t i = 0; i < size; i++) pile->q[i] += pile->lead[i], pile->last_u[i] = pile->u[i] + pile->lead[i];
-    const imp_cone_outcome second = imp_pile_solve(pile, world, question);
-    for (size_t i = 0; i < size; i++) pile->u[i] -= pile->lead[i];
-    return second;
+    return most / h * natural * natural > IMP_PILE_LEAD * pile->tolerance * smallest;
 }
 
 /* J: what the impulses give the bodies, where of the bounces the part is taken; *size: of what it is the sum. */
@@ -302,26 +291,60 @@ static imp_cone_outcome solve_at_length(imp_pile *pile, const imp_world *world, 
     return imp_pile_solve(pile, world, &question);
 }
 
-/* Into pile->r and u, for friction as it is placed; again: they are a start. */
-static imp_cone_outcome find_impulses(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h,
-                                      const imp_state *next, bool again)
+/* What is asked for, for friction as it is placed: pile->q, before, bounce, and a start; pile->bend is known. Whether
+ * nothing bounces. */
+static bool ask(imp_pile *pile, imp_world *world, const imp_state *states, int count, double h, const imp_state *next)
 {
     const bool turning = pile->width > 3;
-    const size_t size = (size_t)(pile->width * count) * sizeof *pile->r;
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, next, pile->contacts, count, pile->q);
     (turning ? imp_cone_contact_turning : imp_cone_contact_velocities)(world, states, pile->contacts, count,
                                                                        pile->before);
-    if (h > 0) add_bends(pile, world, states, count, h);
-    const bool smooth = recall_step(pile, world, count, h);
-    if (again) memcpy(pile->last_r, pile->r, size), memcpy(pile->last_u, pile->u, size);
-    const imp_pile_question question = question_of(pile, world, states, count, h > 0 ? h : pile->strike.span);
-    imp_cone_outcome outcome = imp_pile_solve(pile, world, &question);
-    if (!smooth) outcome = lessen_bounces(pile, world, &question, outcome);
-    if (pile->shortest && outcome.status != IMP_CONE_NO_ROOM && !is_usable(pile, world, count, outcome.residual))
-        outcome = solve_at_length(pile, world, question);
-    if (smooth && h > 0 && outcome.residual <= IMP_PILE_USABLE)
-        outcome = follow_slip(pile, world, &question, h, outcome);
+    for (int i = 0; i < pile->width * count; i++)
+        pile->before[i] -= 0.5 * pile->bend[i], pile->q[i] += 0.5 * pile->bend[i];
+    return recall_step(pile, world, count, h);
+}
+
+/* Into pile->r and u. */
+static imp_cone_outcome find_impulses(imp_pile *pile, const imp_world *world, const imp_pile_question *question,
+                                      bool smooth)
+{
+    imp_cone_outcome outcome = imp_pile_solve(pile, world, question);
+    if (!smooth) outcome = lessen_bounces(pile, world, question, outcome);
+    if (pile->shortest && outcome.status != IMP_CONE_NO_ROOM &&
+        !is_usable(pile, world, question->count, outcome.residual))
+        outcome = solve_at_length(pile, world, *question);
     return outcome;
+}
+
+/* The same from there, with the leads. */
+static imp_cone_outcome find_again(imp_pile *pile, const imp_world *world, const imp_pile_question *question,
+                                   bool smooth, bool leads)
+{
+    const size_t size = (size_t)(pile->width * question->count);
+    if (!leads) memset(pile->lead, 0, size * sizeof *pile->lead);
+    memcpy(pile->last_r, pile->r, size * sizeof *pile->r);
+    for (size_t i = 0; i < size; i++) pile->q[i] += pile->lead[i], pile->last_u[i] = pile->u[i] + pile->lead[i];
+    const imp_cone_outcome outcome = find_impulses(pile, world, question, smooth);
+    for (size_t i = 0; i < size; i++) pile->u[i] -= pile->lead[i];
+    return outcome;
+}
+
+/* Friction acts where the pressures have their centre, and along the slip of the step's middle: both as the first
+ * answer has them. Once: where pressures are not unique each answer has others. */
+static imp_cone_outcome find_with_friction(imp_pile *pile, imp_world *world, const imp_state *states, int count,
+                                           double h, const imp_state *next)
+{
+    find_bends(pile, world, states, count, h);
+    const bool smooth = ask(pile, world, states, count, h, next);
+    const imp_pile_question question = question_of(pile, world, states, count, h > 0 ? h : pile->strike.span);
+    const imp_cone_outcome first = find_impulses(pile, world, &question, smooth);
+    if (!is_usable(pile, world, count, first.residual)) return first;
+    const bool leads = smooth && h > 0 && first.residual <= IMP_PILE_USABLE && find_leads(pile, world, count, h);
+    const bool shifted =
+        imp_pile_shift_friction(&pile->touching, pile->members, count, pile->r, pile->width, pile->contacts);
+    /* bends stay: they differ by what the centre moves in a step, of h, times h; so do the leads */
+    if (shifted) (void)ask(pile, world, states, count, h, next);
+    return leads || shifted ? find_again(pile, world, &question, smooth, leads) : first;
 }
 
 /* The impulses of one island over a step h: states have the velocities before, `next` those with the loads. h = 0: at
@@ -331,11 +354,7 @@ impact_status imp_pile_answer(imp_pile *pile, imp_world *world, const imp_state 
 {
     const bool turning = pile->width > 3;
     const double span = h > 0 ? h : pile->strike.span;
-    imp_cone_outcome outcome = find_impulses(pile, world, states, count, h, next, false);
-    /* once: where pressures are not unique each answer has others */
-    if (is_usable(pile, world, count, outcome.residual) &&
-        imp_pile_shift_friction(&pile->touching, pile->members, count, pile->r, pile->width, pile->contacts))
-        outcome = find_impulses(pile, world, states, count, h, next, true);
+    const imp_cone_outcome outcome = find_with_friction(pile, world, states, count, h, next);
     if (outcome.status == IMP_CONE_NO_ROOM) return IMPACT_ENOMEM;
     if (outcome.status == IMP_CONE_BAD || !is_usable(pile, world, count, outcome.residual)) {
         snprintf(pile->message, sizeof pile->message, "the impulses of %d contacts are %s", count,

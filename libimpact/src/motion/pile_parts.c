@@ -71,8 +71,9 @@ bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int wante
     pile->w = imp_arena_take_unset(pile->arena, n * n, sizeof *pile->w); /* which many contacts never touch */
     there = there && pile->w;
     pile->gap = replaced(pile, pile->gap, count, sizeof *pile->gap, &there);
-    double **vectors[] = {&pile->q, &pile->r, &pile->u, &pile->before, &pile->last_r, &pile->last_u, &pile->lead};
-    for (int k = 0; k < 7; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
+    double **vectors[] = {&pile->q,      &pile->r,      &pile->u,    &pile->before,
+                          &pile->last_r, &pile->last_u, &pile->lead, &pile->bend};
+    for (int k = 0; k < 8; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);
     const int dense =
         contacts < IMP_PILE_DENSE ? contacts : IMP_PILE_DENSE; /* more are never solved in their own space */
     there = (widest > 3 ? imp_cone_reserve_turning : imp_cone_reserve)(&pile->cone, dense) && there;

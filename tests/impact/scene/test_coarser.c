@@ -63,7 +63,7 @@ static double off_as_told(impact_scene_def def)
 static void what_is_told_is_not_too_small(void **state)
 {
     (void)state;
-    const unsigned long seeds[] = {3009, 3029, 3032, 3038};
+    const unsigned long seeds[] = {3009, 3012, 3029, 3038};
     for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
         static pile_scene pile;
         random_pile_scene(seeds[k], (int)(seeds[k] % PILE_STARTS), &pile);
