@@ -114,7 +114,7 @@ static double remembered_pressure(const imp_pile_point *point, const imp_pile_me
     return own < 0 ? 0 : fmax(qvec3_dot(memories->list[own].reaction, point->contact.axes[0]), 0);
 }
 
-static void put_in_plane(const qvec3 axes[3], qvec3 way, double out[2])
+static void lay_in_plane(const qvec3 axes[3], qvec3 way, double out[2])
 {
     for (int k = 0; k < 2; k++) out[k] = qvec3_dot(axes[k + 1], way);
 }
@@ -182,7 +182,7 @@ typedef struct face_pressure {
     qvec3 center; /* on body 1 */
 } face_pressure;
 
-static face_pressure pressure_of(const imp_pile_point *points, int count, const imp_pile_memories *memories)
+static face_pressure face_pressure_of(const imp_pile_point *points, int count, const imp_pile_memories *memories)
 {
     face_pressure p = {.count = count, .center = {0, 0, 0}};
     double sum = 0;
@@ -244,7 +244,7 @@ static bool place_sliding(imp_pile_point *points, const face_pressure *pressure,
     imp_face_points own = {.count = pressure->count};
     for (int i = 0; i < own.count; i++) {
         const qvec3 arm = qvec3_sub(points[i].contact.arm1, pressure->center);
-        put_in_plane(first->axes, qvec3_scale(arm, 1 / slide->reach), own.bear[i]);
+        lay_in_plane(first->axes, qvec3_scale(arm, 1 / slide->reach), own.bear[i]);
         own.part[i] = pressure->part[i];
     }
     if (!imp_points_as_face(&slide->face, slide->twist, &own)) return false;
@@ -263,17 +263,17 @@ static bool place_sliding(imp_pile_point *points, const face_pressure *pressure,
 static void place_pair(const imp_world *world, imp_pile_point *points, int count, imp_pile_memories *memories,
                        const imp_state *states, double least)
 {
-    face_pressure pressure = pressure_of(points, count, memories);
+    face_pressure pressure = face_pressure_of(points, count, memories);
     flat_points flat = {.count = count};
     face_slide slide;
     for (int i = 0; i < count; i++)
-        put_in_plane(points[0].contact.axes, qvec3_sub(points[i].contact.arm1, points[0].contact.arm1), flat.x[i]);
+        lay_in_plane(points[0].contact.axes, qvec3_sub(points[i].contact.arm1, points[0].contact.arm1), flat.x[i]);
     flat_points sorted = flat;
     sort_round(&sorted);
     bool slides = face_slides(world, points, &pressure, &sorted, states, least, &slide);
     if (slides) {
         even_pair(points, count, &flat, memories);
-        pressure = pressure_of(points, count, memories);
+        pressure = face_pressure_of(points, count, memories);
         slides = place_sliding(points, &pressure, &slide);
     }
     const double part = slides ? 0 : is_disc(points, count) ? 2.0 / 3 : part_at_rest(&sorted);
