@@ -369,6 +369,36 @@ static void what_leaves_edge_on_edge_is_not_crept_after(void **state)
     }
 }
 
+/* A ball that keeps nine tenths of its speed at each bounce comes to rest by steps when they are over, sqrt(2 h/g) (1 +
+ * e)/(1 - e) after it is dropped from h, but for those that are lower than a step may err. */
+static void what_bounces_high_comes_to_rest(void **state)
+{
+    (void)state;
+    const double height = 0.01, g = 9.81, e = 0.9, over = sqrt(2 * height / g) * (1 + e) / (1 - e);
+    impact_body_def bodies[2] = {impact_default_body_def(), impact_default_body_def()};
+    bodies[0].name = "floor";
+    impact_shape_plane(INFINITY, INFINITY, &bodies[0].shape);
+    bodies[1].name = "ball";
+    bodies[1].mass = 1;
+    impact_shape_sphere(0.1, &bodies[1].shape);
+    bodies[1].position.z = 0.1 + height;
+    bodies[0].is_static = true;
+    bodies[0].restitution = 1;
+    bodies[1].restitution = e;
+    impact_scene_def def = impact_default_scene_def();
+    def.gravity = (qvec3){0, 0, -g};
+    def.bodies = bodies;
+    def.body_count = 2;
+    def.duration = 4;
+    def.piles = IMPACT_PILES_STEPS;
+    def.restitution_rule = IMPACT_MINIMUM;
+    impact_scene *scene;
+    assert_int_equal(impact_scene_create(&def, &scene, NULL, 0), IMPACT_OK);
+    assert_int_equal(impact_scene_run(scene, NULL), IMPACT_AT_REST);
+    assert_true(fabs(impact_scene_time(scene) - over) < 0.1 * over);
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -391,6 +421,7 @@ int main(void)
         cmocka_unit_test(test_small_bounces_end_within_a_step),
         cmocka_unit_test(test_jams_are_answered),
         cmocka_unit_test(test_bounces_on_what_stands_die_out),
+        cmocka_unit_test(what_bounces_high_comes_to_rest),
         cmocka_unit_test(test_time_advances),
         cmocka_unit_test(test_errors_fall_with_the_tolerance),
         cmocka_unit_test(what_leaves_edge_on_edge_is_not_crept_after),
