@@ -72,8 +72,8 @@ void imp_pile_recall(imp_pile_contacts *contacts, const imp_world *world, const 
 
 /* Where the friction of each pair's points acts, and how strong it is, by the pressures that are remembered, or of an
  * even one, and the slip of the states; without (NULL), and of faces that slide slower than the least, m/s, as at rest.
- * What is remembered of a face that slides is made linear over it. */
-void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, imp_pile_memories *memories,
+ */
+void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories,
                              const imp_state *states, double least);
 
 /* The same by pressures r, each contact's first of width numbers: of those points (count members, copied to own).

@@ -3,8 +3,8 @@
  * Where the friction of a face acts, and how strong it is. Its points bear the pressure of all of it, N in all. What
  * slides is rubbed at other places, and more or less strongly, so that all of them are to it what the face is, evenly
  * pressed (face_points.h): force and torque, however many points there are and whatever part of the pressure each
- * bears. That part is not unique of more than three, and friction with it: so each step begins from the linear pressure
- * that has the last one's sum and centre, as a stiff layer's would be, near which its answer stays.
+ * bears. That part is not unique of more than three, and friction with it: each step's answer stays near the last one's
+ * parts (pile_solve.c).
  *
  * At rest a point's friction acts on its way to the centre of pressure, at
  *
@@ -119,47 +119,6 @@ static void lay_in_plane(const qvec3 axes[3], qvec3 way, double out[2])
     for (int k = 0; k < 2; k++) out[k] = qvec3_dot(axes[k + 1], way);
 }
 
-/* The linear pressure with this centre, parts of it at the points of a plane; false: it pulls at some, or they are in a
- * line. It is the one of least norm: 1/count + d_i . S^-1 sum n_j d_j, d from the points' mean, S = sum d d. */
-static bool linear_parts(const flat_points *flat, double *part)
-{
-    double mean[2], s[3] = {0, 0, 0}, c[2] = {0, 0};
-    mean_of(flat, mean);
-    for (int i = 0; i < flat->count; i++) {
-        const double x = flat->x[i][0] - mean[0], y = flat->x[i][1] - mean[1];
-        s[0] += x * x, s[1] += x * y, s[2] += y * y;
-        c[0] += part[i] * x, c[1] += part[i] * y;
-    }
-    const double square = s[0] * s[2] - s[1] * s[1];
-    if (!(square > IMP_PILE_LINE * (s[0] + s[2]) * (s[0] + s[2]))) return false;
-    const double slope[2] = {(s[2] * c[0] - s[1] * c[1]) / square, (s[0] * c[1] - s[1] * c[0]) / square};
-    double least = INFINITY;
-    for (int i = 0; i < flat->count; i++) {
-        part[i] = 1.0 / flat->count + slope[0] * (flat->x[i][0] - mean[0]) + slope[1] * (flat->x[i][1] - mean[1]);
-        least = fmin(least, part[i]);
-    }
-    return least >= 0;
-}
-
-/* The remembered reactions with a pressure that is linear over the points, if that presses all. */
-static void even_pair(const imp_pile_point *points, int count, const flat_points *flat, imp_pile_memories *memories)
-{
-    double pressure[IMP_POINTS], part[IMP_POINTS], sum = 0;
-    for (int i = 0; i < count; i++) {
-        if (points[i].memory < 0) return;
-        sum += pressure[i] = remembered_pressure(&points[i], memories);
-    }
-    for (int i = 0; i < count; i++) part[i] = pressure[i] / sum;
-    if (!(sum > 0) || !linear_parts(flat, part)) return;
-    for (int i = 0; i < count; i++) {
-        imp_pile_memory *own = &memories->list[points[i].memory];
-        const double grows = pressure[i] > IMP_PILE_LINE * sum ? part[i] * sum / pressure[i] : 0;
-        own->reaction =
-            grows > 0 ? qvec3_scale(own->reaction, grows) : qvec3_scale(points[i].contact.axes[0], part[i] * sum);
-        own->moment = qvec3_scale(own->moment, grows);
-    }
-}
-
 /* From where the point bears, along the surface; the centre of pressure on body 1. */
 static qvec3 rub_of(const imp_pile_point *point, qvec3 center)
 {
@@ -260,23 +219,18 @@ static bool place_sliding(imp_pile_point *points, const face_pressure *pressure,
     return true;
 }
 
-static void place_pair(const imp_world *world, imp_pile_point *points, int count, imp_pile_memories *memories,
+static void place_pair(const imp_world *world, imp_pile_point *points, int count, const imp_pile_memories *memories,
                        const imp_state *states, double least)
 {
-    face_pressure pressure = face_pressure_of(points, count, memories);
+    const face_pressure pressure = face_pressure_of(points, count, memories);
     flat_points flat = {.count = count};
     face_slide slide;
     for (int i = 0; i < count; i++)
         lay_in_plane(points[0].contact.axes, qvec3_sub(points[i].contact.arm1, points[0].contact.arm1), flat.x[i]);
-    flat_points sorted = flat;
-    sort_round(&sorted);
-    bool slides = face_slides(world, points, &pressure, &sorted, states, least, &slide);
-    if (slides) {
-        even_pair(points, count, &flat, memories);
-        pressure = face_pressure_of(points, count, memories);
-        slides = place_sliding(points, &pressure, &slide);
-    }
-    const double part = slides ? 0 : is_disc(points, count) ? 2.0 / 3 : part_at_rest(&sorted);
+    sort_round(&flat);
+    const bool slides =
+        face_slides(world, points, &pressure, &flat, states, least, &slide) && place_sliding(points, &pressure, &slide);
+    const double part = slides ? 0 : is_disc(points, count) ? 2.0 / 3 : part_at_rest(&flat);
     for (int i = 0; i < count; i++) {
         if (!slides) points[i].nearer = 1 - part;
         points[i].contact.rub = rub_of(&points[i], pressure.center);
@@ -292,7 +246,7 @@ static int points_of_pair(const imp_pile_contacts *contacts, int first)
     return count;
 }
 
-void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, imp_pile_memories *memories,
+void imp_pile_place_friction(imp_pile_contacts *contacts, const imp_world *world, const imp_pile_memories *memories,
                              const imp_state *states, double least)
 {
     for (int i = 0, count; i < contacts->count; i += count) {

@@ -218,9 +218,9 @@ static void the_inverse_of_the_speed_too(void **state)
         double twist[3];
         imp_press_all(&face, &whole);
         turn_about(&face, face.radius * near[k % 7], uniform(&seed, 0, 2 * pi), k % 2 ? 1 : -2, twist);
-        oracle o = {.face = &face, .p = even, .twist = twist, .part = 3, .scale = 1};
+        oracle o = {.face = &face, .p = even, .twist = twist, .part = 3, .scale = 1e4};
         const double sum = oracle_sum(&o);
-        assert_near(imp_press_inverse_speed(&whole, twist), sum, 1e-12 * sum);
+        assert_near(imp_press_inverse_speed(&whole, twist), sum, 1e-9 * sum);
     }
 }
 
@@ -323,8 +323,10 @@ static void a_square_slides_and_turns_to_its_end(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_is_the_integral_over_the_area), cmocka_unit_test(the_inverse_of_the_speed_too),
-                                       cmocka_unit_test(both_sums_meet), cmocka_unit_test(closed_forms),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(it_is_the_integral_over_the_area),
+                                       cmocka_unit_test(the_inverse_of_the_speed_too),
+                                       cmocka_unit_test(both_sums_meet),
+                                       cmocka_unit_test(closed_forms),
                                        cmocka_unit_test(power_is_convex),
                                        cmocka_unit_test(a_square_slides_and_turns_to_its_end)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -62,7 +62,7 @@ static void place(const double (*at)[2], int count, imp_pile_point *points)
     imp_body bodies[2] = {{.radius = 1}, {.is_static = true}};
     imp_pair pair = {.body1 = 0, .body2 = 1, .law = {.friction = 0.5}};
     const imp_world world = {.bodies = bodies, .body_count = 2, .pairs = &pair, .pair_count = 1};
-    imp_pile_memories none = {.count = 0};
+    const imp_pile_memories none = {.count = 0};
     imp_pile_contacts contacts = {.points = points, .count = count, .room = count};
     for (int k = 0; k < count; k++) {
         points[k] =
