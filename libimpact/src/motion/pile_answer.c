@@ -28,7 +28,8 @@ static const imp_pile_memory *remembered(const imp_pile *pile, const imp_pile_po
 
 /* By how much more what was open before the step is to part, < 0, for the velocities pile->before with which it closes;
  * pile->q has the loads. A bounce at e w that these, h a, let rise by less than a step may err, (e w)^2/2a, is none: by
- * as much gaps are closed, and with e = .9 that would lift a ball as high as it had bounced, again and again for ever. */
+ * as much gaps are closed, and with e = .9 that would lift a ball as high as it had bounced, again and again for ever.
+ */
 static double bounce_of(const imp_pile *pile, const imp_world *world, const imp_pile_point *point, int i, double h)
 {
     const double back = world->pairs[point->pair].law.restitution * fmin(0, pile->before[i]),
