@@ -948,8 +948,7 @@
 #define IMP_PILE_RESIDUAL 1e-1
 #define IMP_PILE_STILL 1e-2
 /* Contacts of an island up to which its impulses are looked for in their own space: at once, as with so few it costs no
- * more than that of the bodies, and they are unique: of four on a face that space finds any, the bodies' those that are
- * near where it begins; and where that of the bodies does not settle: some 3e7 multiplications then for each of
+ * more than that of the bodies; and where that of the bodies does not settle: some 3e7 multiplications then for each of
  * 20 to 60 systems. */
 #define IMP_PILE_FEW 4
 #define IMP_PILE_DENSE 100

@@ -16,8 +16,9 @@ typedef struct imp_pile_point {
     imp_cone_contact contact;
     double gap;      /* m */
     double nearer;   /* how much nearer to the centre of pressure its friction acts, of the way; 0: not */
-    qvec3 aside;     /* and how far beside that, m: where its face slides */
-    double strength; /* of its friction: 1, but where its face slides */
+    bool slides;     /* its face does: then */
+    qvec3 aside;     /* how far beside that, m, and */
+    double strength; /* how many times as strong; else 0 and 1 */
     int memory;      /* the number of what is remembered of it, imp_pile_recall; -1: nothing */
     bool taken;      /* scratch: it is an island's */
 } imp_pile_point;

@@ -208,6 +208,7 @@ static bool place_sliding(imp_pile_point *points, const face_pressure *pressure,
     }
     if (!imp_points_as_face(&slide->face, slide->twist, &own)) return false;
     for (int i = 0; i < own.count; i++) {
+        points[i].slides = true;
         points[i].nearer = 1 - own.k;
         points[i].strength = own.strength;
         points[i].aside = (qvec3){0, 0, 0};

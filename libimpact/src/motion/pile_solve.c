@@ -86,23 +86,25 @@ static imp_cone_outcome by_contacts_from_there(imp_pile *pile, const imp_world *
     return by_contacts(pile, world, &question);
 }
 
-/* Of more than three points of a face the contacts' space finds any pressures, that of the bodies some near where it
- * begins. */
-static bool is_unique(const imp_pile *pile, int count)
+/* Of more than three points of a face pressures are not unique, and friction hangs on them where it slides: the
+ * contacts' space finds any, that of the bodies some near where it begins. */
+static bool slides_on_many(const imp_pile *pile, int count)
 {
     enum { UNIQUE = 3 };
-    for (int c = UNIQUE; c < count; c++)
-        if (pile->touching.points[pile->members[c]].pair == pile->touching.points[pile->members[c - UNIQUE]].pair)
-            return false;
-    return true;
+    const imp_pile_point *points = pile->touching.points;
+    for (int c = UNIQUE; c < count; c++) {
+        const imp_pile_point *point = &points[pile->members[c]];
+        if (point->slides && point->pair == points[pile->members[c - UNIQUE]].pair) return true;
+    }
+    return false;
 }
 
 imp_cone_outcome imp_pile_solve(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
 {
-    if (question->count <= IMP_PILE_FEW && is_unique(pile, question->count)) return by_contacts(pile, world, question);
+    const bool few = question->count <= IMP_PILE_FEW;
+    if (few && !slides_on_many(pile, question->count)) return by_contacts(pile, world, question);
     const imp_cone_outcome quick = by_bodies(pile, world, question);
     const bool answered = quick.status != IMP_CONE_BAD && quick.status != IMP_CONE_NO_ROOM;
-    const bool few = question->count <= IMP_PILE_FEW;
     if (!answered || (!few && quick.residual <= question->usable) || question->count > IMP_PILE_DENSE) return quick;
     return by_contacts_from_there(pile, world, *question);
 }
