@@ -84,6 +84,18 @@ for _, yaw in ipairs { 0, .3, math.pi / 8, math.pi / 4 } do
   end
 end
 
+-- What has come to rest, and is pulled by .9 of what its face holds and turned to and fro by an eighth, stands: what its steps leave is no slip, by which
+-- friction would be as of one that turns.
+do
+  local scene = impact.scene { gravity = { 0, 0, -1 }, duration = 2, piles = "steps", bodies = {
+    impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 0 },
+    impact.body { name = "body", shape = impact.box { a = 1, b = 1, c = .001 }, mass = 1, position = { 0, 0, .001 }, friction = 1, restitution = 0, omega = { 0, 0, .2 } } },
+    forces = { impact.force { name = "pull", body = "body", law = function(t) return { t > 1 and .9 or 0, 0, 0 }, { 0, 0, .1 * math.sin(37 * t) } end } } }
+  check.equal(scene:run(), "end of time")
+  check.close(scene:state("body").velocity:norm(), 0, 1e-9)
+  check.close(scene:state("body").omega:norm(), 0, 1e-9)
+end
+
 -- Two plates that lean against each other and slide apart touch along a strip of their edges, whose corners are so near to each other that closing the
 -- gaps of each would turn them by radians. The tilt's equation, with the foot at mu N and the push H at the top:
 --   m x'' = mu N - H      m z'' = N - m g      I th'' = (r x f)_y of both      x = -(L sin th + w cos th), z = L cos th + w sin th

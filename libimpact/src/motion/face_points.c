@@ -56,6 +56,8 @@ static double place_again(const face_moments *m, imp_face_points *points, double
     return moved;
 }
 
+/* At first as it comes; what goes to and fro then, halfway. Places farther out than the points bear, of one in a
+ * hundred random faces up to nine times as far and rubbed a fourteenth as strongly, are none. */
 bool imp_points_as_face(const imp_flat_face *face, const double twist[3], imp_face_points *points)
 {
     enum { MOST = 60, WHOLE = 4 };
@@ -64,5 +66,5 @@ bool imp_points_as_face(const imp_flat_face *face, const double twist[3], imp_fa
     for (int i = 0; i < points->count; i++)
         for (int k = 0; k < 2; k++) points->rub[i][k] = 0.5 * points->bear[i][k];
     for (int i = 0; i < MOST && !(moved <= IMP_GLIDE_KNOWN); i++) moved = place_again(&m, points, i < WHOLE ? 1 : 0.5);
-    return moved <= IMP_GLIDE_USABLE && points->strength >= 0.5 && points->strength <= 2;
+    return moved <= IMP_GLIDE_USABLE && points->k <= 1;
 }

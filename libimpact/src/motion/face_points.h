@@ -14,7 +14,7 @@
  *     m = sum x_i n_i/|u_i| over S      k^2 sum |x_i - m|^2 n_i/|u_i| = S (C/A - |B/A|^2)      s = A/S
  *
  * S = sum n_i/|u_i|: solved in turn with the |u_i|. Where the pressure is so uneven that a point would have to rub
- * where nothing slides there are none.
+ * where nothing slides, or farther out than it bears, there are none.
  */
 #ifndef IMP_FACE_POINTS_H
 #define IMP_FACE_POINTS_H

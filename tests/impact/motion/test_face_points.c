@@ -79,6 +79,7 @@ static int compare(double uneven, double turning, double *worst)
         const double way = 2 * pi * random_unit(&random), twist[3] = {cos(way), sin(way), k % 2 ? turning : -turning};
         double wanted[3], got[3];
         if (!imp_points_as_face(&face, twist, &points)) continue;
+        assert_true(points.k > 0 && points.k <= 1 && points.strength > 0);
         friction_of_face(&face, twist, wanted);
         friction_of_points(&points, twist, got);
         for (int i = 0; i < 3; i++) *worst = fmax(*worst, fabs(got[i] - wanted[i]));
@@ -87,7 +88,8 @@ static int compare(double uneven, double turning, double *worst)
     return found;
 }
 
-/* Where it slides as fast as its border turns, or faster, all have; where it turns faster nine in ten. */
+/* Where it slides as fast as its border turns, or faster, all have; where it turns faster nine in ten, more of even
+ * pressures. */
 static void points_rub_as_the_face_does(void **state)
 {
     (void)state;
@@ -96,7 +98,7 @@ static void points_rub_as_the_face_does(void **state)
         for (int uneven = 0; uneven < 2; uneven++) {
             double worst;
             const int found = compare(0.5 * uneven, turning[k], &worst);
-            assert_true(turning[k] > 1 ? found >= 0.9 * RUNS : found == RUNS);
+            assert_true(found >= (turning[k] <= 1 ? 1 : uneven ? 0.88 : 0.94) * RUNS);
             assert_true(worst <= 2 * (turning[k] > 1 ? IMP_GLIDE_USABLE : IMP_GLIDE_KNOWN));
         }
 }

@@ -59,15 +59,16 @@ static double off_as_told(impact_scene_def def)
     return off;
 }
 
-/* Those of 45 that are farthest off, but one: it is an estimate, and 3009 is off by 1.4 times what it tells. */
+/* Those of 90 that are farthest off, but one: it is an estimate, and a body of 3009 tips from where it all but
+ * balances, so that what it is off by doubles each tenth of a second, to 5.6 times what is told. */
 static void what_is_told_is_not_too_small(void **state)
 {
     (void)state;
-    const unsigned long seeds[] = {3013, 3021, 3038, 3040};
+    const unsigned long seeds[] = {3013, 3038, 3051, 3072};
     for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
         static pile_scene pile;
         random_pile_scene(seeds[k], (int)(seeds[k] % PILE_STARTS), &pile);
-        assert_true(off_as_told(pile.def) > 4e-4);
+        assert_true(off_as_told(pile.def) > 5e-4);
         pile_scene_end(&pile);
     }
 }
