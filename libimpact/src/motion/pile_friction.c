@@ -231,11 +231,9 @@ static void place_pair(const imp_world *world, imp_pile_point *points, int count
     sort_round(&flat);
     const bool slides =
         face_slides(world, points, &pressure, &flat, states, least, &slide) && place_sliding(points, &pressure, &slide);
-    const double part = slides ? 0 : is_disc(points, count) ? 2.0 / 3 : part_at_rest(&flat);
-    for (int i = 0; i < count; i++) {
-        if (!slides) points[i].nearer = 1 - part;
-        points[i].contact.rub = rub_of(&points[i], pressure.center);
-    }
+    const double part = is_disc(points, count) ? 2.0 / 3 : part_at_rest(&flat);
+    for (int i = 0; i < count && !slides; i++) points[i].nearer = 1 - part;
+    for (int i = 0; i < count; i++) points[i].contact.rub = rub_of(&points[i], pressure.center);
 }
 
 /* How many points from this one on are of its pair. */
