@@ -75,7 +75,7 @@ for _, yaw in ipairs { 0, .3, math.pi / 8, math.pi / 4 } do
     if thick > 0 then
       bodies[3] = impact.body { name = "base", shape = impact.box { a = 5, b = 5, c = thick }, mass = 1e4, position = { 0, 0, thick }, friction = 1, restitution = 0 }
     end
-    local scene = impact.scene { gravity = { 0, 0, -1 }, duration = 6, piles = "steps", bodies = bodies }
+    local scene = impact.scene { gravity = { 0, 0, -1 }, duration = 6, piles = "steps", pile_tolerance = 1e-4, bodies = bodies }
     check.equal(scene:run(), "at rest")
     local q, x = scene:state "body".orientation, scene:state "body".position
     check.close(2 * math.atan(q.z, q.w) - yaw, .7437, .002)

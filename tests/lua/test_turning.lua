@@ -115,14 +115,14 @@ end
 -- By steps: a cylinder on its side rolls out like (1 + 1/2) R v²/(2 rho g); a box spins out on its face.
 do
   local rho, v, half = 2e-3, 0.5, math.sqrt(0.5)
-  local s, ended = run { floor(), impact.body { name = "log", shape = impact.cylinder { radius = R, half_height = R }, position = { 0, 0, R },
-    orientation = { half, half, 0, 0 }, velocity = { v, 0, 0 }, omega = { 0, v / R, 0 }, friction = 1, rolling_friction = rho } }
+  local s, ended = run({ floor(), impact.body { name = "log", shape = impact.cylinder { radius = R, half_height = R }, position = { 0, 0, R },
+    orientation = { half, half, 0, 0 }, velocity = { v, 0, 0 }, omega = { 0, v / R, 0 }, friction = 1, rolling_friction = rho } }, 0, { pile_tolerance = 1e-5 })
   check.equal(ended, "at rest")
   check.close(s:state("log").position.x * 4 * rho * g / (3 * R * v ^ 2), 1, 1e-6)
   local times = {}
   for i, tau in ipairs { 0, 1e-2 } do
     times[i] = run({ floor(), impact.body { name = "box", shape = impact.box { a = R, b = R, c = R / 2 }, position = { 0, 0, R / 2 },
-      omega = { 0, 0, 5 }, friction = 0.3, torsional_friction = tau } }):time()
+      omega = { 0, 0, 5 }, friction = 0.3, torsional_friction = tau } }, 0, { pile_tolerance = 1e-5 }):time()
   end
   -- The whole face without tau: J omega/(mu m g r), J = (2/3) m R², r = (sqrt 2 + asinh 1) R/3 its mean distance. By steps with tau, in
   -- one ellipsoid at each place of its friction, as far from the centre as r: J omega/(m g sqrt((mu r)² + tau²)), known to a step.

@@ -163,7 +163,8 @@ typedef struct impact_scene_def {
     impact_scene_together together;
     impact_samples samples;
     impact_methods methods;
-    /* in [1e-9, 1e-2], of the smallest radius of an island that moves by steps: what one of them may err */
+    /* in [1e-9, 1e-2], of the smallest radius of an island that moves by steps: what one of them may err, and no more
+     * than the radius of a ball within its thinnest body */
     double pile_tolerance;
 } impact_scene_def;
 
@@ -174,7 +175,7 @@ IMPACT_API void impact_fill_pair_def(impact_pair_def *def, size_t struct_size);
 
 /* Every default in one place (scene_defaults.c): Earth's gravity, 1 kg/dm^3, product rules (as in the thesis),
  * Poisson's law, tolerance 1e-13, rest_height 1e-12 m, rest_speed 1e-9 m/s, 24 samples per second, a million events,
- * 1e8 steps, key_tolerance 1e-10, pile_tolerance 1e-4, every body's samples. */
+ * 1e8 steps, key_tolerance 1e-10, pile_tolerance 1e-3, every body's samples. */
 IMPACT_INLINE impact_scene_def impact_default_scene_def(void)
 {
     impact_scene_def def;

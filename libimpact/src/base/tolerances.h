@@ -28,10 +28,10 @@
 /* Of a key's place, without one: of a body of 1 m an atom's diameter. A finer one than the least is its rounding. */
 #define IMP_LEAST_KEY_TOLERANCE 1e-14
 #define IMP_DEFAULT_KEY_TOLERANCE 1e-10
-/* Of the smallest radius, what a step of a pile may err: a hundredth of what a picture shows. A tenth of it asks for
- * three times the work of twenty falling dominoes, whose end is told as little better, 3.2 mm for 3.6, since motions
- * part. And the least: where the shortest step falls its radius's 1e-18, two roundings of a millimetre in a metre. */
-#define IMP_DEFAULT_PILE_TOLERANCE 1e-4
+/* Of the smallest radius, what a step of a pile may err: a tenth of what a picture shows. A tenth of it asks for two
+ * and a half times the work of twenty falling dominoes, whose end is told as half as uncertain: motions part (bench
+ * piles). And the least: where the shortest step falls its radius's 1e-18, two roundings of a millimetre in a metre. */
+#define IMP_DEFAULT_PILE_TOLERANCE 1e-3
 #define IMP_LEAST_PILE_TOLERANCE 1e-9
 /* m, of a bounce, and m/s: what no eye and no instrument sees of bodies of centimetres to metres, and doubles hold to
  * three digits in gaps of 1 m. */
@@ -930,12 +930,10 @@
 
 /* ---- motion: piles that are stepped, docs/cone.md ---- */
 
-/* Of the smallest body's radius: gaps up to this are closed at the default tolerance, a tenth of a step's error, and as
- * much more or less at others. Where contacts are more than motions overlaps that are put back leave gaps elsewhere:
- * taken as open those bodies would fall and be caught for ever. Static faces that lie no farther apart, of the smaller
- * of two bodies, are one to what is stepped.
- */
-#define IMP_PILE_SLACK 1e-5
+/* Of a step's error: gaps up to this are closed. Where contacts are more than motions overlaps that are put back leave
+ * gaps elsewhere: taken as open those bodies would fall and be caught for ever. Static faces that lie no farther apart,
+ * of what a step may err at the default tolerance, are one to what is stepped. */
+#define IMP_PILE_SLACK 1e-1
 /* Of a step's error: how far bodies may be off, in the time in which the smallest falls its radius, where friction acts
  * along the slip of the step's end instead of its middle's. With none such the answers are as good: it saves a second
  * solution where slip hardly turns. */
@@ -975,11 +973,11 @@
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
-/* Of the speed at which the smallest falls its radius, 2e-9: slower than this is no motion, whatever the rest speed,
- * for the residual that is accepted leaves so much: that part of what gravity brings in the longest step, of speed and
- * of turning. Two boxes of 100 m crept at 1e-9 m/s for ever, of 1 m for 32 steps. */
-#define IMP_PILE_RESTS (2 * IMP_BODIES_ACCEPTED * IMP_PILE_LONGEST)
-/* The longest step at the default tolerance, in which contacts turn by less than .1, in units of the time in which the
+/* Of the speed at which the smallest falls its radius, 1.6e-8: slower than this is no motion, whatever the rest speed,
+ * for the residual that is accepted leaves so much: of what gravity brings in the longest step that part of contacts'
+ * speeds, and of bodies' some times as much. Two boxes of 100 m crept at 1e-9 m/s for ever, of 1 m for 32 steps. */
+#define IMP_PILE_RESTS (8 * IMP_BODIES_ACCEPTED * IMP_PILE_LONGEST)
+/* The longest step at the default tolerance, in which contacts turn by less than .2, in units of the time in which the
  * smallest body falls its radius; as the cube root of the tolerance at others, as errors are; and of how many parts of
  * it the first is one. */
 #define IMP_PILE_FIRST 5
@@ -995,7 +993,10 @@
  * left of its way, and the same strike is met again at the end of ever shorter steps: twenty dominoes take 1125 steps
  * then for 996. */
 #define IMP_PILE_AT_END 0.95
-#define IMP_PILE_LONGEST 1e-1
+#define IMP_PILE_LONGEST 2e-1
+/* rad that what is no ball turns by in a step. A log that rolls by 2 a step turns aside by twice as much at each, from
+ * roundings on; by 1 it does not. */
+#define IMP_PILE_TURN 1
 /* Friction acts by the pressures that it is found with, but for this part of its distance from their centre: with half
  * of it twenty dominoes take a fifteenth more time, and with none of it looked at errors do not fall with the
  * tolerance.

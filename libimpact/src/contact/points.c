@@ -63,36 +63,35 @@ static int keep_near(imp_point *points, int count, double height)
 }
 
 int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, double flush,
-                    imp_point *points)
+                    impact_contact *contact, imp_point *points)
 {
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const imp_state *s1 = &states[pair->body1], *s2 = &states[pair->body2];
-    impact_contact contact;
-    if (is_mixed(b1, b2) && pair->cache.valid && imp_face_gap(b1, s1, b2, s2, pair->cache.normal, &contact)) {
-        pair->cache.normal = contact.normal;
-        imp_settle_among(world, pair, states, flush, &contact);
+    if (is_mixed(b1, b2) && pair->cache.valid && imp_face_gap(b1, s1, b2, s2, pair->cache.normal, contact)) {
+        pair->cache.normal = contact->normal;
+        imp_settle_among(world, pair, states, flush, contact);
     } else {
-        (void)imp_world_gap_within(world, pair, states, flush, &contact);
+        (void)imp_world_gap_within(world, pair, states, flush, contact);
     }
-    if (!(contact.gap <= height)) return 0;
+    if (!(contact->gap <= height)) return 0;
     int count = 0;
     if (imp_pair_can_lie(world, pair)) {
         const qvec3 shift1 = imp_shape_offset(b1, s1), shift2 = imp_shape_offset(b2, s2);
         const impact_solid solid1 = imp_solid_of(b1, s1), solid2 = imp_solid_of(b2, s2);
-        impact_contact shape = contact;
-        shape.offset1 = qvec3_sub(contact.offset1, shift1), shape.offset2 = qvec3_sub(contact.offset2, shift2);
+        impact_contact shape = *contact;
+        shape.offset1 = qvec3_sub(contact->offset1, shift1), shape.offset2 = qvec3_sub(contact->offset2, shift2);
         impact_patch patch;
         /* Of each body all that lies no higher than the lowest point and this: its part of `height` over the other.
          * What lies higher than a ball within it may be of another face than the lowest, as the top of a thin plate:
          * the patch is of one. */
-        const double most = fmin(height - contact.gap, fmin(b1->inner, b2->inner));
+        const double most = fmin(height - contact->gap, fmin(b1->inner, b2->inner));
         const impact_status found = impact_patch_find(&solid1, &solid2, &shape, most, &patch);
         for (int i = 0; found == IMPACT_OK && i < patch.count; i++)
             points[count++] = point_of(&patch, i, shift1, shift2);
         if (found == IMPACT_OK && patch.disc > 0) imp_points_turn_rim(world, pair, states, points, count);
         count = keep_near(points, count, height);
     }
-    if (count == 0 && imp_world_inside_bounds(world, pair, states, &contact) >= 0)
-        points[count++] = (imp_point){.contact = contact, .feature = {{IMPACT_SMOOTH, -1}, {IMPACT_SMOOTH, -1}}};
+    if (count == 0 && imp_world_inside_bounds(world, pair, states, contact) >= 0)
+        points[count++] = (imp_point){.contact = *contact, .feature = {{IMPACT_SMOOTH, -1}, {IMPACT_SMOOTH, -1}}};
     return count;
 }

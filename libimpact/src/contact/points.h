@@ -32,8 +32,9 @@ bool imp_pair_can_lie(const imp_world *world, const imp_pair *pair);
 
 /* The pair's points that lie at most `height` (m) apart along the normal, within the bounds of a plane, in points (room
  * for IMP_POINTS); how many. Where neither body is flat and across bounds there is the one, or none. flush (m): how far
- * below a face a body may be and still be on it, not beside (world/normal.h). */
+ * below a face a body may be and still be on it, not beside (world/normal.h). *contact: whose normal it is; its own
+ * place is none of the points where another of the same faces is deeper, or they are cut elsewhere. */
 int imp_points_find(imp_world *world, imp_pair *pair, const imp_state *states, double height, double flush,
-                    imp_point *points);
+                    impact_contact *contact, imp_point *points);
 
 #endif

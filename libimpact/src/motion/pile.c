@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/pile.h"
 #include "motion/pile_parts.h"
+#include "base/number.h"
 #include "base/tolerances.h"
+#include "world/field.h"
+#include "world/world_gap.h"
 
+#include <stdio.h>
 #include <string.h>
 
 void imp_pile_begin(imp_pile *pile)
@@ -120,11 +124,13 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
 
 /* ---- the step that its error allows ---- */
 
+/* Which no turning moves. */
+static bool is_ball(const imp_body *body) { return body->shape.kind == IMPACT_SPHERE && !body->shifted; }
+
 /* Of any of the body's points, m/s, at these velocities, m/s and 1/s. */
 static double speed_of(const imp_body *body, qvec3 along, qvec3 about)
 {
-    const bool ball = body->shape.kind == IMPACT_SPHERE && !body->shifted;
-    return qvec3_norm(along) + (ball ? 0 : body->radius * qvec3_norm(about));
+    return qvec3_norm(along) + (is_ball(body) ? 0 : body->radius * qvec3_norm(about));
 }
 
 /* What the body's velocities changed by over h, but for the rates. */
@@ -185,7 +191,18 @@ static double least_step(const imp_pile *pile, const imp_world *world, const imp
         const imp_body *body = &world->bodies[i];
         if (!body->is_static) fastest = fmax(fastest, speed_of(body, states[i].v, imp_omega(body, &states[i])));
     }
-    return pile->tolerance * size / fastest;
+    return imp_pile_allowed(pile, world) / fastest;
+}
+
+/* s: the longest step. What turns by two radians in one is led on by rates of where it was: its rounding grows. */
+static double longest_step(const imp_pile *pile, const imp_world *world, const imp_state *states, double natural)
+{
+    double fastest = 0;
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (!body->is_static && !is_ball(body)) fastest = fmax(fastest, qvec3_norm(imp_omega(body, &states[i])));
+    }
+    return fmin(pile->longest * natural, IMP_PILE_TURN / (fastest + IMP_NOT_ZERO));
 }
 
 /* What touches at the first step and does not approach is held from there: it does not come to touch within the step.
@@ -230,10 +247,42 @@ static impact_status try_step(imp_pile *pile, imp_world *world, double t, double
 /* The steps that are tried for one. */
 typedef struct pile_trial {
     double h, cut; /* s; that was to be tried where a strike was met */
+    double energy; /* J, of where it begins */
     bool good;
     int strikes;
     imp_pile_step_result struck; /* what strikes at its begin does */
 } pile_trial;
+
+static double energy_of(const imp_world *world, const imp_state *states)
+{
+    return imp_world_kinetic_energy(world, states) + imp_field_potential(world, states);
+}
+
+/* What energy the bodies may gain in a step by its errors, J: of what they have, and of their weight times their size.
+ */
+static double gain_allowed(const imp_world *world, const imp_state *before)
+{
+    double size = imp_world_kinetic_energy(world, before);
+    for (int i = 0; i < world->body_count; i++) {
+        const imp_body *body = &world->bodies[i];
+        if (!body->is_static) size += body->mass * qvec3_norm(world->gravity) * body->radius;
+    }
+    return IMP_PILE_GAIN * size;
+}
+
+/* An error of places that is allowed is a great one of velocities in a short step. Whether it gave no more than these
+ * may; where no shorter one is to be had nothing is known of what follows. */
+static bool gives_nothing(imp_pile *pile, const imp_world *world, const pile_trial *trial,
+                          const imp_pile_step_result *result, const imp_state *to)
+{
+    const double gain = energy_of(world, to) - trial->energy + result->damping + result->sliding - result->force_work -
+                        result->drive_work + trial->struck.sliding - trial->struck.drive_work;
+    if (gain <= gain_allowed(world, pile->from)) return true;
+    if (pile->shortest)
+        snprintf(pile->message, sizeof pile->message, "they gave bodies %s J that nothing did",
+                 imp_number_of(gain).text);
+    return false;
+}
 
 /* Strikes what strikes at the begin, or ends the step where it does. */
 static impact_status meet_strike(imp_pile *pile, imp_world *world, pile_trial *trial)
@@ -269,6 +318,10 @@ static impact_status try_length(imp_pile *pile, imp_world *world, double t, doub
     impact_status status = try_step(pile, world, t, trial->h, allowed, pile->projected, result);
     if (status == IMPACT_OK && pile->strike.found) return meet_strike(pile, world, trial);
     trial->good = status == IMPACT_OK && result->error <= allowed;
+    if (trial->good && !gives_nothing(pile, world, trial, result, pile->projected)) {
+        trial->good = false;
+        status = IMPACT_EUNSETTLED;
+    }
     if (status == IMPACT_EUNSETTLED && !pile->shortest) status = IMPACT_OK;
     if (trial->good) return status;
     const double shorter = (result->error > allowed ? part_allowed(result->error, allowed, 0.5) : 0.5) * trial->h;
@@ -281,10 +334,11 @@ impact_status imp_pile_step(imp_pile *pile, imp_world *world, double t, double m
 {
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
     const size_t size = sizeof *states * (size_t)world->body_count;
-    const double natural = imp_pile_natural_time(world, states), wanted = pile->tolerance * imp_pile_smallest(world);
+    const double natural = imp_pile_natural_time(world, states), wanted = imp_pile_allowed(pile, world);
     const double least = least_step(pile, world, states, natural); /* of which any error is allowed */
     if (!(pile->step > 0)) pile->step = pile->longest / IMP_PILE_FIRST * natural;
-    pile_trial trial = {.h = fmin(most, fmin(fmax(pile->step, least), pile->longest * natural))};
+    pile_trial trial = {.h = fmin(most, fmin(fmax(pile->step, least), longest_step(pile, world, states, natural))),
+                        .energy = energy_of(world, states)};
     memcpy(pile->from, states, size);
     impact_status status = pile->begun ? IMPACT_OK : begin_held(pile, world, states);
     while (status == IMPACT_OK && !trial.good) status = try_length(pile, world, t, wanted, least, &trial, result);

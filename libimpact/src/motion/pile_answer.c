@@ -33,7 +33,7 @@ static const imp_pile_memory *remembered(const imp_pile *pile, const imp_pile_po
 static double bounce_of(const imp_pile *pile, const imp_world *world, const imp_pile_point *point, int i, double h)
 {
     const double back = world->pairs[point->pair].law.restitution * fmin(0, pile->before[i]),
-                 falls = pile->before[i] - pile->q[i], allowed = pile->tolerance * imp_pile_smallest(world);
+                 falls = pile->before[i] - pile->q[i], allowed = imp_pile_allowed(pile, world);
     return h > 0 && back * back * h < 2 * allowed * falls ? 0 : back;
 }
 
@@ -190,7 +190,7 @@ static imp_pile_question question_of(const imp_pile *pile, const imp_world *worl
                                      double h)
 {
     const double fastest = imp_pile_fastest(pile, count) + IMP_NOT_ZERO,
-                 error = IMP_PILE_RESIDUAL * pile->tolerance * imp_pile_smallest(world) / h,
+                 error = IMP_PILE_RESIDUAL * imp_pile_allowed(pile, world) / h,
                  still = IMP_PILE_STILL * fastest_body(pile, world, states, count);
     return (imp_pile_question){.count = count,
                                .recalls = true,
@@ -208,7 +208,7 @@ static bool find_leads(imp_pile *pile, const imp_world *world, int count, double
         most = fmax(most, lead_of(pile, c, smallest, lead));
         memcpy(&pile->lead[pile->width * c], lead, sizeof *lead * (size_t)pile->width);
     }
-    return most / h * natural * natural > IMP_PILE_LEAD * pile->tolerance * smallest;
+    return most / h * natural * natural > IMP_PILE_LEAD * imp_pile_allowed(pile, world);
 }
 
 /* J: what the impulses give the bodies, where of the bounces the part is taken; *size: of what it is the sum. */

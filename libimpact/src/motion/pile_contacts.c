@@ -74,18 +74,19 @@ static bool is_on_rim(const imp_point *p)
     return p->feature[0].kind == IMPACT_RIM || p->feature[1].kind == IMPACT_RIM;
 }
 
-/* A rim's points are some of its places, and a face's border cuts it anywhere: bodies may overlap most between two of
- * them. That contact is one more, after the points found, among which there is room for it; how many then. */
-static int add_deepest(imp_world *world, imp_pair *pair, const imp_state *states, imp_point *points, int found)
+/* A rim's points are some of its places, and those of two faces the corners of what they share, within some height: an
+ * edge may stand in a face between them, and two bodies overlap most at another place. That is one more, after the
+ * points found, among which there is room for it; how many then. */
+static int add_deepest(imp_world *world, imp_pair *pair, const imp_state *states, const impact_contact *contact,
+                       imp_point *points, int found)
 {
     bool rim = false;
     double least = INFINITY;
     for (int k = 0; k < found; k++) rim = rim || is_on_rim(&points[k]), least = fmin(least, points[k].contact.gap);
-    if (!rim) return found;
     const double touching = imp_world_touching_distance(world, pair, states);
-    impact_contact deepest;
-    imp_world_gap(world, pair, states, &deepest);
-    if (!(deepest.gap < fmin(least, 0) - touching)) return found;
+    impact_contact deepest = *contact;
+    if (rim) imp_world_gap(world, pair, states, &deepest); /* the contact is a face's */
+    if (found == 0 || !(deepest.gap < fmin(least, 0) - touching)) return found;
     points[found] = (imp_point){.contact = deepest, .feature = {{IMPACT_SMOOTH, -1}, {IMPACT_SMOOTH, -1}}};
     return found + 1;
 }
@@ -104,8 +105,9 @@ bool imp_pile_find_points(imp_pile_contacts *contacts, imp_world *world, const i
         if (imp_pair_has_faces(world, pair) && imp_world_separation(world, pair, states) > height) continue;
         imp_point points[IMP_POINTS + 1];
         const double flush = imp_stepped_flush(&world->bodies[pair->body1], &world->bodies[pair->body2]);
-        int found = imp_points_find(world, pair, states, height, flush, points);
-        if (!next) found = add_deepest(world, pair, states, points, found);
+        impact_contact contact;
+        int found = imp_points_find(world, pair, states, height, flush, &contact, points);
+        if (!next) found = add_deepest(world, pair, states, &contact, points, found);
         for (int k = 0; k < found; k++) {
             const impact_contact *c = &points[k].contact;
             const bool closes =

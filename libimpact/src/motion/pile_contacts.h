@@ -21,6 +21,7 @@ typedef struct imp_pile_point {
     double strength; /* how many times as strong; else 0 and 1 */
     int memory;      /* the number of what is remembered of it, imp_pile_recall; -1: nothing */
     bool taken;      /* scratch: it is an island's */
+    bool parts;      /* scratch: it is to be parted */
 } imp_pile_point;
 
 /* What a step held there; world axes. */

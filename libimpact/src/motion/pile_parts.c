@@ -110,9 +110,17 @@ double imp_pile_smallest(const imp_world *world)
     return least;
 }
 
+double imp_pile_allowed(const imp_pile *pile, const imp_world *world)
+{
+    double most = pile->tolerance * imp_pile_smallest(world);
+    for (int i = 0; i < world->body_count; i++)
+        if (!world->bodies[i].is_static) most = fmin(most, world->bodies[i].inner);
+    return most;
+}
+
 double imp_pile_slack(const imp_pile *pile, const imp_world *world)
 {
-    return pile->tolerance / IMP_DEFAULT_PILE_TOLERANCE * IMP_PILE_SLACK * imp_pile_smallest(world);
+    return IMP_PILE_SLACK * imp_pile_allowed(pile, world);
 }
 
 /* The points of the next island to the front of the arrays, with their gaps; how many. */

@@ -9,7 +9,7 @@
 static double most_apart(imp_pile *pile, const imp_world *world, double slack)
 {
     const imp_pile_memories *held = imp_pile_ended(pile);
-    double apart = fmax(slack, pile->tolerance * imp_pile_smallest(world));
+    double apart = fmax(slack, imp_pile_allowed(pile, world));
     for (int k = 0; k < held->count; k++) apart = fmax(apart, 2 * held->list[k].gap);
     return apart;
 }
@@ -102,6 +102,21 @@ static void displace_nothing(imp_pile *pile, const imp_world *world, const imp_s
     for (int i = 0; i < world->body_count; i++) pile->middle[i].v = pile->middle[i].momentum = (qvec3){0, 0, 0};
 }
 
+/* The points that overlap by more than that where they are displaced join those that part; whether any does. */
+static bool join_overlaps(const imp_pile *pile, const imp_world *world, double left)
+{
+    bool joined = false;
+    for (int k = 0; k < pile->touching.count; k++) {
+        imp_pile_point *point = &pile->touching.points[k];
+        double u[3];
+        imp_cone_contact_velocities(world, pile->middle, &point->contact, 1, u);
+        const bool joins = !point->parts && point->gap + u[0] < -left;
+        point->parts = point->parts || joins;
+        joined = joined || joins;
+    }
+    return joined;
+}
+
 static double deepest(const imp_pile_contacts *touching)
 {
     double most = 0;
@@ -109,25 +124,52 @@ static double deepest(const imp_pile_contacts *touching)
     return most;
 }
 
+/* Parts what overlaps by more than that, and what is near and would overlap by it, by more than a tenth of what
+ * overlaps: so each time leaves less. One after another the contacts of two bodies drove each other ever deeper.
+ * pile->middle gets the displacement. Whether anything overlaps. */
+static bool part_near(imp_pile *pile, imp_world *world, const imp_state *states, double left)
+{
+    imp_pile_contacts *touching = &pile->touching;
+    const double joins = fmax(left, 0.1 * deepest(touching));
+    displace_nothing(pile, world, states);
+    for (int k = 0; k < touching->count; k++) touching->points[k].parts = false;
+    bool any = false;
+    while (join_overlaps(pile, world, any ? joins : left)) {
+        any = true;
+        displace_nothing(pile, world, states);
+        for (int k = 0; k < touching->count; k++) touching->points[k].taken = !touching->points[k].parts;
+        for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) part_overlaps(pile, world, count);
+    }
+    return any;
+}
+
+/* What touches, where anything overlaps by more than that. */
+static bool find_overlaps(imp_pile *pile, imp_world *world, const imp_state *states, double left)
+{
+    const double near = imp_pile_allowed(pile, world);
+    imp_pile_contacts *touching = &pile->touching;
+    if (!imp_pile_find_points(touching, world, states, NULL, 0, -left, false)) return false;
+    if (touching->count > 0 && !imp_pile_find_points(touching, world, states, NULL, 0, near, false)) return false;
+    return imp_pile_reserve_contacts(pile, world, touching->count);
+}
+
 impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_state *states, double *parted)
 {
-    /* overlaps as small as a ten-thousandth of a step's error are closed with the gaps of the next */
-    const double slack = imp_pile_slack(pile, world), left = 0.001 * slack, apart = most_apart(pile, world, slack);
-    for (int pass = 0; pass < 2; pass++) {
-        const bool found = pass == 0 ? find_held(pile, world, states, h, apart)
-                                     : imp_pile_find_points(&pile->touching, world, states, NULL, 0, -left, false);
-        if (!found || !imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
-        displace_nothing(pile, world, states);
-        for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
-            if (pass == 0) {
-                close_gaps(pile, world, states, count);
-                push_together(pile, world, count, slack, apart);
-            } else
-                part_overlaps(pile, world, count);
-        }
-        *parted = way_of(world, pile->middle);
-        imp_pile_drift(world, pile->middle, 1, states);
+    const double slack = imp_pile_slack(pile, world), apart = most_apart(pile, world, slack);
+    if (!find_held(pile, world, states, h, apart) || !imp_pile_reserve_contacts(pile, world, pile->touching.count))
+        return IMPACT_ENOMEM;
+    displace_nothing(pile, world, states);
+    for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) {
+        close_gaps(pile, world, states, count);
+        push_together(pile, world, count, slack, apart);
     }
+    imp_pile_drift(world, pile->middle, 1, states);
+    /* overlaps as small as a ten-thousandth of a step's error are closed with the gaps of the next */
+    const double left = 0.001 * slack;
+    if (!find_overlaps(pile, world, states, left)) return IMPACT_ENOMEM;
+    (void)part_near(pile, world, states, left);
+    *parted = way_of(world, pile->middle);
+    imp_pile_drift(world, pile->middle, 1, states);
     return IMPACT_OK;
 }
 
@@ -136,15 +178,12 @@ impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states)
     /* places turn: each leaves the square of what the one before did; about a rim, where two normals take turns, half
      */
     enum { PASSES = 40 };
-    const double rounding = IMP_TOUCHING * imp_pile_smallest(world), near = pile->tolerance * imp_pile_smallest(world);
+    const double rounding = IMP_TOUCHING * imp_pile_smallest(world);
     if (!imp_pile_reserve_bodies(pile, world)) return IMPACT_ENOMEM;
     imp_pile_contacts_mark(&pile->touching, world, imp_pile_held(pile));
     for (int pass = 0; pass < PASSES; pass++) {
-        if (!imp_pile_find_points(&pile->touching, world, states, NULL, 0, near, false)) return IMPACT_ENOMEM;
-        if (!(deepest(&pile->touching) > rounding)) return IMPACT_OK;
-        if (!imp_pile_reserve_contacts(pile, world, pile->touching.count)) return IMPACT_ENOMEM;
-        displace_nothing(pile, world, states);
-        for (int count; (count = imp_pile_gather_island(pile, world)) > 0;) part_overlaps(pile, world, count);
+        if (!find_overlaps(pile, world, states, rounding)) return IMPACT_ENOMEM;
+        if (!part_near(pile, world, states, rounding)) return IMPACT_OK;
         imp_pile_drift(world, pile->middle, 1, states);
     }
     return IMPACT_OK;

@@ -41,7 +41,7 @@ typedef struct imp_island {
     imp_end end;        /* what its segments end in */
     double impact_loss; /* J, not given to the scene yet; */
     double loss_before; /* as the receipt saw it last */
-    double gained;      /* J: since then, by impacts whose law gave it */
+    double gained;      /* J: since then, by impacts whose law gave it, and by closing what lands */
     double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
     double looked_at;   /* s: by the receipt */
     bool unanswered;    /* scratch: at this instant the law of encounters has found no answer once */

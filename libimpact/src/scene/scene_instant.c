@@ -117,10 +117,12 @@ static impact_status list_landing(imp_island *island, int p)
 }
 
 /* Takes the gaps of what lands to zero with those of what is held, none at the cost of another: putting back what was
- * held has moved the rest by the integrator's error. */
+ * held has moved the rest by the integrator's error, and steps leave what flies from them as near as they err. The
+ * energy that closing takes or gives stands under impacts: of two thousand landings it was 1e-9 of all. */
 static impact_status close_landing(imp_island *island, int p)
 {
     imp_world *world = &island->world;
+    const double energy = imp_island_energy(island);
     const int count = world->pair_count;
     imp_pair *pairs = imp_arena_take(world->arena, (size_t)count, sizeof *pairs);
     impact_status status = pairs ? IMPACT_OK : IMPACT_ENOMEM;
@@ -132,6 +134,9 @@ static impact_status close_landing(imp_island *island, int p)
         world->pair_count = count;
     }
     imp_arena_give(world->arena, pairs);
+    const double given = imp_island_energy(island) - energy;
+    island->impact_loss -= given;
+    island->gained += fmax(0, given);
     return status == IMPACT_OK ? imp_held_reserve(&island->motion.held, world, island->states) : status;
 }
 
@@ -257,13 +262,10 @@ static impact_status stop_gliding(imp_island *island, int p)
     return status == IMPACT_OK ? imp_scene_settle(island) : status;
 }
 
-/* Another corner than pairs[p]'s has landed, or that has come to a border. The energy that closing takes or gives
- * stands under impacts: of two thousand such landings it was 1e-9 of all. */
+/* Another corner than pairs[p]'s has landed, or that has come to a border. */
 static impact_status land(imp_island *island, int p)
 {
-    const double account = imp_island_energy(island) + island->impact_loss;
     const impact_status status = close_landing(island, p);
-    island->impact_loss = account - imp_island_energy(island);
     return status == IMPACT_OK ? imp_scene_settle(island) : status;
 }
 

@@ -42,7 +42,7 @@ static int corner_of(const imp_island *island, const imp_pair *pair, const imp_p
         impact_contact foot = point->contact;
         if (speed > 0) foot.offset2 = qvec3_axpy(ahead / speed, v, foot.offset2);
         *face = imp_corner_face_under(under, &island->states[pair->body2], &foot,
-                                      island->stepped ? IMP_PILE_SLACK : 2 * IMP_TOUCHING);
+                                      island->stepped ? IMP_PILE_SLACK * IMP_DEFAULT_PILE_TOLERANCE : 2 * IMP_TOUCHING);
         return *face > 0 ? 1 : 0;
     }
     *face = on.kind == IMPACT_FACE && on.index >= 0 && on.index < imp_corner_faces(under) ? on.index + 1 : 0;
@@ -78,10 +78,11 @@ void imp_scene_name_corner(imp_island *island, imp_pair *pair)
 {
     imp_world *world = &island->world;
     imp_point points[IMP_POINTS];
+    impact_contact contact;
     int face;
     if (pair->site.placed || pair->site.corner > 0 || !imp_pair_has_faces(world, pair)) return;
     const double touching = imp_world_touching_distance(world, pair, island->states);
-    const int count = imp_points_find(world, pair, island->states, touching, touching, points);
+    const int count = imp_points_find(world, pair, island->states, touching, touching, &contact, points);
     const int corner = count == 1 ? corner_of(island, pair, &points[0], count, &face) : 0;
     if (corner > 0) pair->site.corner = corner, pair->site.face = face;
 }
@@ -91,11 +92,12 @@ static impact_status place(imp_island *island, const imp_pair *before, int p, in
 {
     imp_world *world = &island->world;
     imp_point points[IMP_POINTS];
+    impact_contact contact;
     imp_pair whole = whole_pair(&before[p]);
     const double touching = imp_world_touching_distance(world, &whole, island->states);
     const imp_body *b1 = &world->bodies[whole.body1], *b2 = &world->bodies[whole.body2];
     const double flush = island->stepped ? imp_stepped_flush(b1, b2) : touching;
-    const int count = imp_points_find(world, &whole, island->states, touching, flush, points);
+    const int count = imp_points_find(world, &whole, island->states, touching, flush, &contact, points);
     const impact_status status = imp_island_reserve(island, world->body_count, world->pair_count + count + 1);
     const int first = world->pair_count;
     for (int k = 0; status == IMPACT_OK && k < count; k++) {

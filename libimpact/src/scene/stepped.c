@@ -125,25 +125,6 @@ static const imp_body *heaviest_of(const imp_world *world)
     return heaviest;
 }
 
-/* What energy the bodies may gain in a step by its errors, J: of what they have, and of their weight times their size.
- */
-static double gain_allowed(const imp_island *island, const imp_state *before)
-{
-    double size = imp_world_kinetic_energy(&island->world, before);
-    for (int i = 0; i < island->world.body_count; i++) {
-        const imp_body *body = &island->world.bodies[i];
-        if (!body->is_static) size += body->mass * qvec3_norm(island->world.gravity) * body->radius;
-    }
-    return IMP_PILE_GAIN * size;
-}
-
-static impact_status refuse_gain(impact_scene *scene, double t, double gain)
-{
-    snprintf(scene->message, sizeof scene->message, "by steps at t = %s: they gave bodies %s J that nothing did",
-             imp_number_of(t).text, imp_number_of(gain).text);
-    return IMPACT_EUNSETTLED;
-}
-
 impact_status imp_island_step(imp_island *island)
 {
     impact_scene *scene = island->scene;
@@ -161,12 +142,9 @@ impact_status imp_island_step(imp_island *island)
                  island->pile->message[0] ? island->pile->message : impact_status_string(status));
         return status;
     }
-    const double loss = imp_island_stepped_loss(island, island->states, &motion->works),
-                 gain = island->impact_loss - loss;
-    if (!(gain <= gain_allowed(island, island->before))) return refuse_gain(scene, motion->stride.t, gain);
     /* what strikes where the step begins has struck in its segments */
     memcpy(island->before, island->pile->from, sizeof *island->before * (size_t)island->world.body_count);
-    island->impact_loss = loss;
+    island->impact_loss = imp_island_stepped_loss(island, island->states, &motion->works);
     island->end = (imp_end){IMP_END_TIME, 0};
     scene->pile_error += result.error;
     scene->world.usage.pile_steps++;

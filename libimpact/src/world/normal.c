@@ -328,5 +328,5 @@ double imp_stepped_flush(const imp_body *body1, const imp_body *body2)
 {
     const double radius1 = body1->is_static ? INFINITY : body1->radius,
                  radius2 = body2->is_static ? INFINITY : body2->radius;
-    return IMP_PILE_SLACK * fmin(radius1, radius2);
+    return IMP_PILE_SLACK * IMP_DEFAULT_PILE_TOLERANCE * fmin(radius1, radius2);
 }

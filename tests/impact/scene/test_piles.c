@@ -11,6 +11,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include "kit/pile_scene.h"
+#include "kit/random_scene.h"
 
 static bool not_for_ever(void *context, double t, double end)
 {
@@ -391,11 +392,49 @@ static void what_bounces_high_comes_to_rest(void **state)
     def.body_count = 2;
     def.duration = 4;
     def.piles = IMPACT_PILES_STEPS;
+    def.pile_tolerance = 1e-5;
     def.restitution_rule = IMPACT_MINIMUM;
     impact_scene *scene;
     assert_int_equal(impact_scene_create(&def, &scene, NULL, 0), IMPACT_OK);
     assert_int_equal(impact_scene_run(scene, NULL), IMPACT_AT_REST);
     assert_true(fabs(impact_scene_time(scene) - over) < 0.1 * over);
+    impact_scene_destroy(scene);
+}
+
+/* What overlaps is parted at once with all that is near: of a body between two others, one contact after the other,
+ * overlaps grew to centimetres. Two bodies overlap most where an edge stands in a face, of which no corner tells. */
+static void what_overlaps_is_parted(void **state)
+{
+    (void)state;
+    run(635, PILE_DROPPED);
+    run(232, PILE_SET);
+}
+
+/* A plate of a hundredth of a millimetre, whose radius is 53: what lies on it stays there. */
+static void thin_plates_are_not_passed(void **state)
+{
+    (void)state;
+    run(537, PILE_IN_BOX);
+}
+
+/* What flies from a pile and lands is as near as steps err: what closing that takes is in the account. */
+static void landings_after_steps_are_booked(void **state)
+{
+    (void)state;
+    run(914, PILE_DROPPED);
+    run(804, PILE_IN_BOX);
+}
+
+/* A step whose places err by less than they may, but which gives bodies energy, is no step: a shorter one is. */
+static void steps_that_give_energy_are_shortened(void **state)
+{
+    (void)state;
+    static random_scene s;
+    random_scene_make(708324, &s);
+    impact_scene *scene;
+    assert_int_equal(impact_scene_create(&s.def, &scene, NULL, 0), IMPACT_OK);
+    assert_true(impact_scene_run(scene, NULL) >= 0);
+    assert_true(impact_scene_usage(scene).pile_steps > 0);
     impact_scene_destroy(scene);
 }
 
@@ -422,6 +461,10 @@ int main(void)
         cmocka_unit_test(test_jams_are_answered),
         cmocka_unit_test(test_bounces_on_what_stands_die_out),
         cmocka_unit_test(what_bounces_high_comes_to_rest),
+        cmocka_unit_test(what_overlaps_is_parted),
+        cmocka_unit_test(thin_plates_are_not_passed),
+        cmocka_unit_test(landings_after_steps_are_booked),
+        cmocka_unit_test(steps_that_give_energy_are_shortened),
         cmocka_unit_test(test_time_advances),
         cmocka_unit_test(test_errors_fall_with_the_tolerance),
         cmocka_unit_test(what_leaves_edge_on_edge_is_not_crept_after),

@@ -117,7 +117,7 @@ static void defaults_are_those_of_the_header(void **state)
     const impact_scene_def def = impact_default_scene_def();
     assert_near(def.tolerance, 1e-13, 0);
     assert_near(def.key_tolerance, 1e-10, 0);
-    assert_near(def.pile_tolerance, 1e-4, 0);
+    assert_near(def.pile_tolerance, 1e-3, 0);
     assert_near(def.rest_height, 1e-12, 0);
     assert_near(def.rest_speed, 1e-9, 0);
 }
