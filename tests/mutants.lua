@@ -59,7 +59,7 @@ local rooms = {
   { "^libimpact/src/scene/tracks", { "impact_crowd", "impact_scene", "impact_scene_answers" } },
   { "^libimpact/src/scene/scene_build", { "impact_rolling", "impact_scene", "impact_scene_answers", "impact_cases" } },
   { "^libimpact/src/scene/island", { "impact_scene_answers", "impact_scene", "lua_scene", "lua_units", "lua_faces_tolerance", "impact_random_scenes" } },
-  { "^libimpact/src/scene/scene_instant", { "lua_faces_exact", "lua_faces_tolerance", "lua_alike", "lua_units", "impact_scene", "impact_cases", "impact_random_scenes" } },
+  { "^libimpact/src/scene/scene_instant", { "impact_piles", "lua_faces_exact", "lua_faces_tolerance", "lua_alike", "lua_units", "impact_scene", "impact_cases", "impact_random_scenes" } },
   { "^libimpact/src/scene/stepped", { "lua_faces_begin", "impact_crowd", "impact_piles", "impact_scene", "impact_random_scenes" } },
   { "^libimpact/src/scene/gliding", { "lua_faces_gliding", "lua_faces_lines", "lua_faces_begin", "impact_scene", "impact_cases", "impact_piles" } },
   { "^libimpact/src/scene/scene_together", { "impact_scene_together", "impact_scene_answers" } },
