@@ -135,3 +135,15 @@ for _, th in ipairs { .5, .51, .52 } do
   end
   check.close(scene:energy().impact_loss, 0, 1e-3)
 end
+
+-- Where nothing falls, and all is at rest to begin with, forces press and pull two boxes over a floor: together, as friction between them holds.
+do
+  local pull = impact.force { name = "pull", law = function() return { 2, 0, -3 } end }
+  local bodies = { impact.body { name = "floor", shape = impact.plane(), friction = .2, restitution = 1 } }
+  for k, name in ipairs { "under", "on" } do
+    bodies[k + 1] = impact.body { name = name, shape = impact.box { a = .1, b = .1, c = .1 }, mass = 1, position = { .02 * k, 0, .2 * k - .1 }, friction = 1, restitution = 0 }
+  end
+  local scene = impact.scene { gravity = { 0, 0, 0 }, duration = 1, piles = "steps", forces = { pull }, bodies = bodies }
+  check.equal(scene:run(), "end of time")
+  for k, name in ipairs { "under", "on" } do check.close(scene:state(name).position.x, .02 * k + (4 - .2 * 6) / 2 / 2, 5e-5) end
+end

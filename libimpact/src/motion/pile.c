@@ -258,14 +258,14 @@ static double energy_of(const imp_world *world, const imp_state *states)
     return imp_world_kinetic_energy(world, states) + imp_field_potential(world, states);
 }
 
-/* What energy the bodies may gain in a step by its errors, J: of what they have, and of their weight times their size.
- */
-static double gain_allowed(const imp_world *world, const imp_state *before)
+/* What energy the bodies may gain in a step by its errors, J: of what they have, and of what their loads do over their
+ * size. */
+static double gain_allowed(const imp_pile *pile, const imp_world *world)
 {
-    double size = imp_world_kinetic_energy(world, before);
+    double size = imp_world_kinetic_energy(world, pile->from);
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
-        if (!body->is_static) size += body->mass * qvec3_norm(world->gravity) * body->radius;
+        if (!body->is_static) size += qvec3_norm(pile->loads[i].force) * body->radius;
     }
     return IMP_PILE_GAIN * size;
 }
@@ -277,7 +277,7 @@ static bool gives_nothing(imp_pile *pile, const imp_world *world, const pile_tri
 {
     const double gain = energy_of(world, to) - trial->energy + result->damping + result->sliding - result->force_work -
                         result->drive_work + trial->struck.sliding - trial->struck.drive_work;
-    if (gain <= gain_allowed(world, pile->from)) return true;
+    if (gain <= gain_allowed(pile, world)) return true;
     if (pile->shortest)
         snprintf(pile->message, sizeof pile->message, "they gave bodies %s J that nothing did",
                  imp_number_of(gain).text);
