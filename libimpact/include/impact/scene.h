@@ -163,8 +163,7 @@ typedef struct impact_scene_def {
     impact_scene_together together;
     impact_samples samples;
     impact_methods methods;
-    /* in [1e-9, 1e-2], of the smallest radius of an island that moves by steps: what one of them may err, and no more
-     * than the radius of a ball within its thinnest body */
+    /* in [1e-9, 1e-2], of the smallest radius of an island that moves by steps: what one of them may err */
     double pile_tolerance;
 } impact_scene_def;
 

@@ -112,10 +112,7 @@ double imp_pile_smallest(const imp_world *world)
 
 double imp_pile_allowed(const imp_pile *pile, const imp_world *world)
 {
-    double most = pile->tolerance * imp_pile_smallest(world);
-    for (int i = 0; i < world->body_count; i++)
-        if (!world->bodies[i].is_static) most = fmin(most, world->bodies[i].inner);
-    return most;
+    return pile->tolerance * imp_pile_smallest(world);
 }
 
 double imp_pile_slack(const imp_pile *pile, const imp_world *world)

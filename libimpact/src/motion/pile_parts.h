@@ -14,8 +14,7 @@ bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int wante
 
 /* A measure of the pile: its smallest body, m. */
 double imp_pile_smallest(const imp_world *world);
-/* What a step may err, m: its tolerance's part of that, and no more than the radius of a ball within the thinnest body:
- * else what lies on a plate would come to be under it. */
+/* What a step may err, m: its tolerance's part of that. */
 double imp_pile_allowed(const imp_pile *pile, const imp_world *world);
 /* Gaps up to this are closed, m: a tenth of a step's error. */
 double imp_pile_slack(const imp_pile *pile, const imp_world *world);
