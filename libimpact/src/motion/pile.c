@@ -124,13 +124,10 @@ static impact_status step_once(imp_pile *pile, imp_world *world, double t, doubl
 
 /* ---- the step that its error allows ---- */
 
-/* Which no turning moves. */
-static bool is_ball(const imp_body *body) { return body->shape.kind == IMPACT_SPHERE && !body->shifted; }
-
 /* Of any of the body's points, m/s, at these velocities, m/s and 1/s. */
 static double speed_of(const imp_body *body, qvec3 along, qvec3 about)
 {
-    return qvec3_norm(along) + (is_ball(body) ? 0 : body->radius * qvec3_norm(about));
+    return qvec3_norm(along) + (imp_is_ball(body) ? 0 : body->radius * qvec3_norm(about));
 }
 
 /* What the body's velocities changed by over h, but for the rates. */
@@ -200,7 +197,7 @@ static double longest_step(const imp_pile *pile, const imp_world *world, const i
     double fastest = 0;
     for (int i = 0; i < world->body_count; i++) {
         const imp_body *body = &world->bodies[i];
-        if (!body->is_static && !is_ball(body)) fastest = fmax(fastest, qvec3_norm(imp_omega(body, &states[i])));
+        if (!body->is_static && !imp_is_ball(body)) fastest = fmax(fastest, qvec3_norm(imp_omega(body, &states[i])));
     }
     return fmin(pile->longest * natural, IMP_PILE_TURN / (fastest + IMP_NOT_ZERO));
 }

@@ -124,13 +124,12 @@ static double deepest(const imp_pile_contacts *touching)
     return most;
 }
 
-/* Parts what overlaps by more than is left, and what is near and would overlap by it, by more than that part of what
- * does: so each time leaves less. One after another the contacts of two bodies drove each other ever deeper.
- * pile->middle gets the displacement. Whether anything overlaps. */
-static bool part_near(imp_pile *pile, imp_world *world, const imp_state *states, double left, double part)
+/* Parts what overlaps by more than `left`, and what is near and would overlap by it, by more than `joins`, both in m:
+ * one after another the contacts of two bodies drove each other ever deeper. pile->middle gets the displacement.
+ * Whether anything overlaps. */
+static bool part_near(imp_pile *pile, imp_world *world, const imp_state *states, double left, double joins)
 {
     imp_pile_contacts *touching = &pile->touching;
-    const double joins = fmax(left, part * deepest(touching));
     displace_nothing(pile, world, states);
     for (int k = 0; k < touching->count; k++) touching->points[k].parts = false;
     bool any = false;
@@ -167,8 +166,7 @@ impact_status imp_pile_project(imp_pile *pile, imp_world *world, double h, imp_s
     /* overlaps as small as a ten-thousandth of a step's error are closed with the gaps of the next */
     const double left = 0.001 * slack;
     if (!find_overlaps(pile, world, states, left)) return IMPACT_ENOMEM;
-    /* what parts more than overlaps opens contacts, which fall and are caught for ever */
-    (void)part_near(pile, world, states, left, 0.5);
+    (void)part_near(pile, world, states, left, fmax(left, IMP_PILE_JOINS * deepest(&pile->touching)));
     *parted = way_of(world, pile->middle);
     imp_pile_drift(world, pile->middle, 1, states);
     return IMPACT_OK;
@@ -184,7 +182,7 @@ impact_status imp_pile_part(imp_pile *pile, imp_world *world, imp_state *states)
     imp_pile_contacts_mark(&pile->touching, world, imp_pile_held(pile));
     for (int pass = 0; pass < PASSES; pass++) {
         if (!find_overlaps(pile, world, states, rounding)) return IMPACT_ENOMEM;
-        if (!part_near(pile, world, states, rounding, 0.1)) return IMPACT_OK;
+        if (!part_near(pile, world, states, rounding, rounding)) return IMPACT_OK;
         imp_pile_drift(world, pile->middle, 1, states);
     }
     return IMPACT_OK;

@@ -60,21 +60,18 @@ static double off_as_told(impact_scene_def def)
     return off;
 }
 
-/* Of 90 one, 3038, is off by 1.3 times what is told, which is an estimate, and three by more than half of it; these are
- * by less. When motions part hangs on how the machine's sines round, and with it how far off they come before: most are
- * by much. */
+/* Those of 90 that are farthest off, but for two: it is an estimate, 3038 is off by 1.3 times what is told; and how far
+ * off 3012 comes before motions part hangs on how the machine's sines round. */
 static void what_is_told_is_not_too_small(void **state)
 {
     (void)state;
-    const unsigned long seeds[] = {3011, 3065, 3073, 3074, 3075, 3088};
-    int by_much = 0;
+    const unsigned long seeds[] = {3037, 3064, 3074, 3088};
     for (size_t k = 0; k < sizeof seeds / sizeof *seeds; k++) {
         static pile_scene pile;
         random_pile_scene(seeds[k], (int)(seeds[k] % PILE_STARTS), &pile);
-        by_much += off_as_told(pile.def) > 1e-4;
+        assert_true(off_as_told(pile.def) > 1e-3);
         pile_scene_end(&pile);
     }
-    assert_true(by_much >= 4);
 }
 
 /* Piles whose motions part: some body comes to lie its own size from where finer steps bring it, and the time from

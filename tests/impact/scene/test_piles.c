@@ -341,7 +341,6 @@ static void test_errors_fall_with_the_tolerance(void **state)
     const double t = 0.32, tolerance[] = {1e-5, 1e-6, 1e-7}, most[] = {1.5e-3, 3e-4, 6e-5};
     pile_scene pile;
     random_pile_scene(310331, PILE_DROPPED, &pile);
-    pile.def.pile_tolerance = 1e-4;
     impact_scene *finest = scene_at(&pile, 1e-8, t);
     for (int k = 0; k < 3; k++) {
         int small = 0;
