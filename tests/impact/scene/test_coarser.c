@@ -150,6 +150,20 @@ static void a_second_run_without_an_answer_has_parted(void **state)
     pile_scene_end(&pile);
 }
 
+/* Where no shorter step is to be had impulses are looked for the long way: else the second run had no answer, and what
+ * is told ended, at the first steps. */
+static void the_shortest_steps_are_answered_the_long_way(void **state)
+{
+    (void)state;
+    static pile_scene pile;
+    random_pile_scene(53, PILE_SET, &pile);
+    impact_scene *scene = created(&pile.def);
+    assert_true(runs_to(scene, 0.1));
+    assert_true(impact_scene_usage(scene).pile_steps > 0 && impact_scene_pile_parted(scene) > 0.03);
+    impact_scene_destroy(scene);
+    pile_scene_end(&pile);
+}
+
 /* ---- the second scene is where the first is ---- */
 
 /* What a host pushes or puts elsewhere is pushed and put there in both: else they had parted. */
@@ -244,6 +258,7 @@ int main(void)
         cmocka_unit_test(what_goes_on_after_steps_is_in_it),
         cmocka_unit_test(what_whirls_is_followed),
         cmocka_unit_test(a_second_run_without_an_answer_has_parted),
+        cmocka_unit_test(the_shortest_steps_are_answered_the_long_way),
         cmocka_unit_test(what_a_host_changes_is_changed_in_both),
         cmocka_unit_test(what_is_saved_says_as_much),
         cmocka_unit_test(what_is_told_does_not_hang_on_pauses),

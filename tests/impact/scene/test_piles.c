@@ -417,6 +417,14 @@ static void what_overlaps_is_parted(void **state)
     run_coarse(635, PILE_DROPPED);
     run_coarse(232, PILE_SET);
     run_coarse(537, PILE_IN_BOX); /* a plate not half as thick as a step may err */
+    run_coarse(74, PILE_IN_BOX);  /* by more than eight passes, at 1.05 s */
+}
+
+/* Bounces that no impulses hold are lessened until some do. */
+static void bounces_that_nothing_holds_are_lessened(void **state)
+{
+    (void)state;
+    run_coarse(3000, PILE_IN_BOX);
 }
 
 /* What flies from a pile and lands is as near as steps err: what closing that takes is in the account. */
@@ -472,6 +480,7 @@ int main(void)
         cmocka_unit_test(test_bounces_on_what_stands_die_out),
         cmocka_unit_test(what_bounces_high_comes_to_rest),
         cmocka_unit_test(what_overlaps_is_parted),
+        cmocka_unit_test(bounces_that_nothing_holds_are_lessened),
         cmocka_unit_test(landings_after_steps_are_booked),
         cmocka_unit_test(steps_that_give_energy_are_shortened),
         cmocka_unit_test(test_time_advances),
