@@ -447,13 +447,13 @@ static void it_ends_when_it_is_told_to(void **state)
     const impact_status status =
         ask(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = 0.02}, &t);
     assert_true(status == IMPACT_STOPPED || (status == IMPACT_OK && t.summary.dropped > 0));
-    /* rounds of timing give way to the budget: all, one, or none of a setting */
+    /* rounds of timing give way to the budget: all, those before it ended, one, or none of a setting */
     assert_int_equal(
         ask(&s.def, &(impact_report_def){.struct_size = sizeof(impact_report_def), .seconds = 0.5, .rounds = 15}, &t),
         IMPACT_OK);
     for (int k = 0; k < t.count; k++) {
         const impact_report_row *row = &t.rows[k];
-        assert_true(row->rounds == 0 || row->rounds == 1 || row->rounds == 15);
+        assert_true(row->rounds >= 0 && row->rounds <= 15);
         assert_true(row->rounds == 0 || (row->cpu > 0 && row->spread >= 1));
     }
 }
