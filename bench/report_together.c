@@ -41,7 +41,7 @@ static const family families[] = {
 enum { FAMILIES = sizeof families / sizeof *families };
 
 typedef struct tally {
-    int answered, separating, soft, sensitive, wedged, unsettled, risen, changed, turned, off, several, lost, chance;
+    int answered, separating, soft, sensitive, early, wedged, unsettled, risen, changed, turned, off, several, lost, chance;
     double worst, *time, *steps;
 } tally;
 
@@ -80,12 +80,13 @@ static void count_status(const answer *a, tally *t, long number)
     t->answered += a->status == IMPACT_OK;
     t->separating += a->status == IMPACT_SEPARATING;
     t->soft += a->status == IMPACT_SOFT;
+    t->early += a->outcome.ended_early;
     t->wedged += a->outcome.wedged >= 0;
     const bool unsettled = a->status < 0 && a->outcome.wedged < 0;
     t->unsettled += unsettled;
     if (a->status == IMPACT_SOFT || unsettled)
-        fprintf(stderr, "encounter %ld: %s, residual %.2g\n", number, impact_status_string(a->status),
-                a->outcome.residual);
+        fprintf(stderr, "encounter %ld: %s, residual %.2g, error %.2g%s\n", number, impact_status_string(a->status),
+                a->outcome.residual, a->outcome.error, a->outcome.ended_early ? ", ended early" : "");
 }
 
 /* Whether an answer whose receipt does not pass misses by no more than its data's roundings, 2^-50, do: as changes a
@@ -141,7 +142,7 @@ static void solve_one(const family *f, uint64_t seed, long number, impact_togeth
     count_status(&a, t, number);
     const answer b = solve(&other, f->law, f->exponent, workspace);
     t->changed += !same_bits(&a, &b, e.body_count);
-    t->sensitive += a.status == IMPACT_SOFT && is_sensitive(f, &e, &a, &random);
+    t->sensitive += a.status == IMPACT_SOFT && !a.outcome.ended_early && is_sensitive(f, &e, &a, &random);
     if (a.status != IMPACT_OK) return;
     turn_one(f, &e, &a, &random, workspace, number, t);
     t->worst = fmax(t->worst, a.outcome.residual);
@@ -160,7 +161,7 @@ int main(int argc, char **argv)
         return 2;
     }
     if (impact_together_workspace_create(NULL, &workspace) != IMPACT_OK) return 1;
-    printf("law,restitution,exponent,contacts,encounters,answered,separating,soft,sensitive,wedged,unsettled,energy_"
+    printf("law,restitution,exponent,contacts,encounters,answered,separating,soft,sensitive,ended_early,wedged,unsettled,energy_"
            "rose,order_"
            "changed,"
            "residual,turned,turned_off,several,turned_lost,chance,time_median,time_99,time_most,steps_median,steps_"
@@ -176,9 +177,9 @@ int main(int argc, char **argv)
         for (int i = 0; i < runs; i++) solve_one(f, (uint64_t)seed, only < 0 ? number + i : only, workspace, i, &t);
         number += share;
         if (runs == 0) continue;
-        printf("%s,%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%d,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
+        printf("%s,%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%d,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
                impact_together_law_name(f->law), impact_law_name(f->restitution), f->exponent, f->least, f->most, runs,
-               t.answered, t.separating, t.soft, t.sensitive, t.wedged, t.unsettled, t.risen, t.changed, t.worst,
+               t.answered, t.separating, t.soft, t.sensitive, t.early, t.wedged, t.unsettled, t.risen, t.changed, t.worst,
                t.turned, t.off, t.several, t.lost, t.chance, measure_quantile(t.time, runs, 0.5),
                measure_quantile(t.time, runs, 0.99), measure_quantile(t.time, runs, 1),
                measure_quantile(t.steps, runs, 0.5), measure_quantile(t.steps, runs, 1));

@@ -101,7 +101,7 @@ static void push_vectors(lua_State *L, const char *key, const qvec3 *values, int
 static void push_together(lua_State *L, const impact_encounter *e, const impact_together_outcome *o,
                           impact_status status)
 {
-    lua_createtable(L, 0, 13);
+    lua_createtable(L, 0, 14);
     push_vectors(L, "v", o->velocity, e->body_count);
     push_vectors(L, "w", o->omega, e->body_count);
     lua_createtable(L, e->meeting_count, 0);
@@ -118,6 +118,7 @@ static void push_together(lua_State *L, const impact_encounter *e, const impact_
     quat_lua_set_integer(L, "events", o->events);
     quat_lua_set_integer(L, "steps", o->steps);
     quat_lua_set_boolean(L, "chosen", o->chosen);
+    quat_lua_set_boolean(L, "ended_early", o->ended_early);
     quat_lua_set_boolean(L, "energy_rose", o->energy_rose);
     quat_lua_set_string(L, "solver", impact_together_solver_name(o->solver));
     quat_lua_set_string(L, "status",

@@ -287,6 +287,7 @@ core.layer()
 ---@field events integer
 ---@field steps integer
 ---@field chosen boolean  reactions are not unique
+---@field ended_early boolean  springs: what was left when their work was spent ended at once; error tells what by
 ---@field energy_rose boolean  not by springs
 ---@field solver "none"|"alone"|"series"|"cone"|"sweeps"
 ---@field status "ok"|"separating"|"soft"

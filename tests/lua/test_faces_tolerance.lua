@@ -45,10 +45,14 @@ local function bar_ends(tolerance, floor)
   return bar.position
 end
 
-for _, floor in ipairs { impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 1 },
-  impact.body { name = "floor", static = true, shape = impact.box { a = 4, b = 4, c = 1 }, position = { 0, 0, -1 }, friction = 1, restitution = 1 } } do
+local wide = impact.body { name = "floor", static = true, shape = impact.box { a = 4, b = 4, c = 1 }, position = { 0, 0, -1 },
+  friction = 1, restitution = 1 }
+for _, floor in ipairs { impact.body { name = "floor", shape = impact.plane(), friction = 1, restitution = 1 }, wide } do
   local level = bar_ends(1e-13, floor)
   for digits = 12, 6, -1 do check.close((bar_ends(10.0 ^ -digits, floor) - level):norm(), 0, 10.0 ^ -digits) end
 end
+
+-- Whatever it is tilted by when it lands, the wide floor has one normal under it.
+for run = -20, 19 do bar_ends(1e-9 * (1 + run / 500), wide) end
 
 check.report "faces_tolerance"

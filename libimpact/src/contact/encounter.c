@@ -117,18 +117,20 @@ static size_t group_bytes(size_t n, bool linear)
 
 static void take_finding(const imp_finding *f, impact_meeting_outcome *m)
 {
-    m->work_compression = f->work[0], m->work_restitution = f->work[1], m->work_friction = f->work[2];
-    m->compressions = f->compressions;
+    m->work_compression += f->work[0], m->work_restitution += f->work[1], m->work_friction += f->work[2];
+    m->compressions += f->compressions;
+    if (m->phase_count > 0) return;
     m->phase_count = f->phase_count;
     memcpy(m->phases, f->phases, sizeof m->phases);
 }
 
+/* To what is there of the meetings. */
 static void take_answer(plan *call, const imp_group *group)
 {
     for (int i = 0; i < group->count; i++) {
         const imp_contact *c = &group->contacts[i];
         impact_meeting_outcome *m = &call->meetings[c->source];
-        m->impulse = imp_encounter_impulse(c, &group->p[3 * i]);
+        m->impulse = qvec3_add(m->impulse, imp_encounter_impulse(c, &group->p[3 * i]));
         take_finding(&group->findings[i], m);
         if (!imp_encounter_is_drawn(group, i)) continue;
         m->phases[0] = IMPACT_TANGENTIAL; /* as it was compressed first, sliding */
@@ -225,8 +227,45 @@ static impact_status solve_with_moreau(plan *call, int from, int count, impact_t
                                        imp_group *group)
 {
     if (!make_group(call, from, count, false, workspace, group)) return IMPACT_ENOMEM;
-    const bool newton = call->encounter->restitution == IMPACT_NEWTON;
-    return approaches(group) ? imp_moreau_solve(group, newton, workspace) : IMPACT_SEPARATING;
+    const imp_rebound rebound =
+        call->encounter->restitution == IMPACT_NEWTON ? IMP_REBOUND_NEWTON : IMP_REBOUND_POISSON;
+    return approaches(group) ? imp_moreau_solve(group, rebound, workspace) : IMPACT_SEPARATING;
+}
+
+/* By how much of the fastest approach velocities have changed from group->u0, and what springs hold might change them:
+ * (1/2) u^2/W_nn at the most. */
+static double ending_error(const plan *call, const imp_group *group, double held, const double *after)
+{
+    double fastest = 0, changed = 0, mobility = 0;
+    for (int i = 0; i < group->count; i++) {
+        fastest = fmax(fastest, -call->meetings[group->contacts[i].source].normal_before);
+        mobility = fmax(mobility, group->w[(size_t)(3 * i) * (3 * (size_t)group->count + 1)]);
+    }
+    for (int i = 0; i < 3 * group->count; i++) changed = fmax(changed, fabs(after[i] - group->u0[i]));
+    return (changed + sqrt(2 * held * mobility)) / fastest;
+}
+
+/* What springs have left to do when the work that they are allowed is spent comes to its end at once, by what stops all
+ * approach; what they hold is lost. Energy falls by no more than was left, and the error tells what that can be: no
+ * answer where it is as much as they approach. */
+static impact_status end_springs(plan *call, int from, int count, impact_together_workspace *workspace,
+                                 imp_group *group)
+{
+    const double held = group->held;
+    imp_encounter_push(group, group->p);
+    take_answer(call, group);
+    if (!make_group(call, from, count, false, workspace, group)) return IMPACT_ENOMEM;
+    double *after = imp_encounter_take(workspace, 3 * (size_t)count, sizeof *after);
+    if (!after) return IMPACT_ENOMEM;
+    const impact_status status = imp_moreau_solve(group, IMP_REBOUND_NONE, workspace);
+    if (status < 0) return status;
+    imp_encounter_look(group, after);
+    group->error = ending_error(call, group, held, after);
+    if (!(group->error < 1)) return IMPACT_EUNSETTLED;
+    if (status == IMPACT_OK) take_answer(call, group);
+    call->outcome->error = fmax(call->outcome->error, group->error);
+    call->outcome->ended_early = true;
+    return IMPACT_SOFT;
 }
 
 static impact_status solve_group(plan *call, int from, int count, impact_together_workspace *workspace)
@@ -236,6 +275,10 @@ static impact_status solve_group(plan *call, int from, int count, impact_togethe
     const impact_status status = springs ? solve_as_hard_as_can_be(call, from, count, workspace, &group)
                                          : solve_with_moreau(call, from, count, workspace, &group);
     if (group.wedged) call->outcome->wedged = group.contacts[0].source;
+    if (springs && status == IMPACT_EUNSETTLED && !group.wedged) {
+        set_solver(call, IMPACT_TOGETHER_SERIES);
+        return end_springs(call, from, count, workspace, &group);
+    }
     if (status != IMPACT_OK) return status;
     if (springs && !imp_encounter_strikes(&group)) return IMPACT_SEPARATING;
     set_solver(call, springs ? IMPACT_TOGETHER_SERIES : IMPACT_TOGETHER_CONE);

@@ -50,6 +50,7 @@ typedef struct imp_group {
     double least;  /* springs: smaller restitutions count as this */
     long patience; /* springs: steps and events allowed */
     double error;  /* of restitution */
+    double held;   /* springs: what they would still give back, J */
 } imp_group;
 
 /* Memory that is cut up anew each time. */
@@ -170,9 +171,11 @@ bool imp_encounter_is_drawn(const imp_group *group, int contact);
 bool imp_encounter_draws(const imp_group *group);
 bool imp_encounter_strikes(const imp_group *group);
 
-/* ---- encounter_moreau.c: compression and restitution by the cone solver, Poisson's or Newton's; the velocities are
- * pushed ---- */
+/* ---- encounter_moreau.c: compression and restitution by the cone solver; the velocities are pushed ---- */
+
+typedef enum imp_rebound { IMP_REBOUND_POISSON, IMP_REBOUND_NEWTON, IMP_REBOUND_NONE } imp_rebound;
+
 /* IMPACT_SEPARATING: nothing approaches, nor does friction draw: they are not. */
-impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_workspace *workspace);
+impact_status imp_moreau_solve(imp_group *group, imp_rebound rebound, impact_together_workspace *workspace);
 
 #endif

@@ -401,8 +401,9 @@ static bool restore(moreau *m)
     return true;
 }
 
-impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_workspace *workspace)
+impact_status imp_moreau_solve(imp_group *group, imp_rebound rebound, impact_together_workspace *workspace)
 {
+    const bool newton = rebound == IMP_REBOUND_NEWTON, poisson = rebound == IMP_REBOUND_POISSON && restores(group);
     const size_t n = (size_t)group->count;
     moreau m = {.group = group, .workspace = workspace, .cone = &workspace->cone};
     m.w = imp_encounter_take(workspace, 36 * n * n, sizeof *m.w);
@@ -424,7 +425,7 @@ impact_status imp_moreau_solve(imp_group *group, bool newton, impact_together_wo
     for (size_t i = 0; i < n && newton; i++) m.rebound[i] = group->contacts[i].restitution * fmax(-group->u0[3 * i], 0);
     const bool compressed = compress(&m);
     if (compressed && !m.strikes) return IMPACT_SEPARATING;
-    if (compressed && (newton || !restores(group) || restore(&m))) return IMPACT_OK;
+    if (compressed && (!poisson || restore(&m))) return IMPACT_OK;
     const imp_wedge_question question = {group->count, group->w, m.friction, NULL};
     group->wedged = imp_encounter_wedged(&question, m.room);
     return IMPACT_EUNSETTLED;

@@ -96,6 +96,17 @@ static void set_up(imp_springs *s, const imp_group *group, const units *unit, do
 
 /* ---- the answer ---- */
 
+/* What springs give back: of what those hold that load eps^2. */
+static double stored_energy(const imp_springs *s)
+{
+    double sum = 0;
+    for (int i = 0; i < s->count; i++) {
+        const imp_spring *c = &s->springs[i];
+        sum += (c->normal == IMP_SPRING_LOADS ? c->restitution * c->restitution : 1) * c->stored;
+    }
+    return sum;
+}
+
 static void report(const imp_springs *s, const units *unit, imp_group *group)
 {
     for (int i = 0; i < s->count; i++) {
@@ -104,6 +115,7 @@ static void report(const imp_springs *s, const units *unit, imp_group *group)
     }
     for (int i = 0; i < s->count; i++)
         group->error = fmax(group->error, s->springs[i].restitution - group->contacts[i].restitution);
+    group->held = stored_energy(s) * unit->velocity * (unit->velocity / unit->mobility);
     group->events += s->events;
     group->steps += s->steps;
     group->chosen = group->chosen || s->chosen;
@@ -145,17 +157,6 @@ typedef struct wedge_watch {
     double next, asked, lost, most, before;
     int kept;
 } wedge_watch;
-
-/* What springs give back: of what those hold that load eps^2. */
-static double stored_energy(const imp_springs *s)
-{
-    double sum = 0;
-    for (int i = 0; i < s->count; i++) {
-        const imp_spring *c = &s->springs[i];
-        sum += (c->normal == IMP_SPRING_LOADS ? c->restitution * c->restitution : 1) * c->stored;
-    }
-    return sum;
-}
 
 /* Energy falls by dents and by friction alone; what comes loose, or to rest with nothing pressed, leaves none in the
  * springs. Whether it stays there, held by friction or swinging: losing on as it did since it was asked last, or giving
@@ -343,8 +344,8 @@ impact_status imp_springs_solve(imp_group *group, double exponent, impact_togeth
     const units unit = find_units(group);
     set_up(&s, group, &unit, w, u0);
     const impact_status status = follow(&s, group);
-    if (status != IMPACT_OK) return status;
     report(&s, &unit, group);
+    if (status != IMPACT_OK) return status;
     group->wedged = !has_come_apart(&s, &(again){blank, group, unit, w, u0, findings});
     return group->wedged ? IMPACT_EUNSETTLED : IMPACT_OK;
 }

@@ -209,6 +209,20 @@ static bool was_drawn(const gathering *g)
     return false;
 }
 
+/* The first answer that is not known to the last digits. */
+static void tell_soft(imp_island *island, const gathering *g, const impact_together_outcome *outcome)
+{
+    impact_scene *scene = island->scene;
+    const imp_body *bodies = island->world.bodies;
+    char known[96] = "does not pass its receipt";
+    if (outcome->ended_early)
+        snprintf(known, sizeof known, "was ended early, and is known to %.2g of their approach", outcome->error);
+    snprintf(scene->message, sizeof scene->message,
+             "%d contacts at t = %s, one of '%s' and '%s': their answer together %s", g->count,
+             imp_number_of(island->t).text, bodies[g->met[0].contact.body1].name, bodies[g->met[0].contact.body2].name,
+             known);
+}
+
 /* Below zero nothing was answered. */
 static impact_status answer(imp_island *island, gathering *g, answering how)
 {
@@ -233,11 +247,7 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
     const impact_status status = impact_collide_together(&encounter, &outcome);
     if (status < 0 || status == IMPACT_SEPARATING) return status;
     if (how.jams && !was_drawn(g)) return IMPACT_SEPARATING;
-    if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0)
-        snprintf(scene->message, sizeof scene->message,
-                 "%d contacts at t = %s, one of '%s' and '%s': their answer together does not pass its receipt",
-                 g->count, imp_number_of(island->t).text, world->bodies[g->met[0].contact.body1].name,
-                 world->bodies[g->met[0].contact.body2].name);
+    if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0) tell_soft(island, g, &outcome);
     for (int i = 0; i < world->body_count; i++) imp_scene_set_velocities(island, i, g->velocity[i], g->omega[i]);
     imp_held_wake(world);
     if (outcome.energy_rose) imp_scene_gain(island, works_of(g));

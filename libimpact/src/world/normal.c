@@ -185,7 +185,9 @@ static void consider(settling *s, qvec3 n, impact_contact *contact)
     contact->offset1 = p.offset[0], contact->offset2 = p.offset[1];
 }
 
-/* Those of body k's faces. The other's place there lies under the plane of most: they separate nothing. */
+/* Those of body k's faces. The other's place there lies under the plane of most: they separate nothing. One that is
+ * turned from what was found by less than lifts the smaller body by `within` is the same: along a bar's own face the
+ * floor, which it is flush with, reaches as much farther as it is wider than the bar. */
 static void consider_faces(settling *s, int k, impact_contact *contact)
 {
     const imp_body *own = s->m->body[k];
@@ -193,6 +195,7 @@ static void consider_faces(settling *s, int k, impact_contact *contact)
     const imp_state *state = s->m->state[k], *others = s->m->state[1 - k];
     const face_list faces = faces_of(&own->shape);
     const quat axes = imp_shape_axes(own, state);
+    const double size = fmin(own->radius, s->m->body[1 - k]->radius);
     const qvec3 touches = k == 0 ? s->found.offset2 : s->found.offset1,
                 from = qvec3_sub(qvec3_sub(others->x, state->x), imp_shape_offset(own, state)),
                 place = quat_rotate_inverse(axes, qvec3_add(from, touches));
@@ -200,7 +203,7 @@ static void consider_faces(settling *s, int k, impact_contact *contact)
         const qvec3 local = normal_of_face(&faces, f);
         if (qvec3_dot(local, place) - height_of_face(&faces, f, local) < -s->within) continue;
         const qvec3 out = quat_rotate(axes, local), n = k == 0 ? qvec3_neg(out) : out;
-        if (qvec3_norm(qvec3_sub(n, s->found.normal)) <= IMP_TOUCHING) continue; /* its own, but for rounding */
+        if (size * qvec3_norm(qvec3_sub(n, s->found.normal)) <= s->within) continue;
         if (separated_by(s->m->body, s->m->state, n) >= -s->within) consider(s, n, contact);
     }
 }

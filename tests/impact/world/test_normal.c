@@ -50,6 +50,39 @@ static void a_disc_that_lands_flat_stays_where_it_touches(void **state)
     }
 }
 
+/* A bar flush with a floor that is eight times as wide has the floor's normal however it moves; along its own the
+ * floor's far edge would be what bears it. A floor that ends under its lower end has, where it is tilted by more, the
+ * one of the two along which they approach less fast. */
+static void what_lies_flush_has_one_normal(void **state)
+{
+    (void)state;
+    impact_shape wide, narrow;
+    random_stream random = {68};
+    int turned = 0;
+    assert_int_equal(impact_shape_box(4, 4, 1, 0, &wide), IMPACT_OK);
+    assert_int_equal(impact_shape_box(0.5, 0.1, 0.02, 0, &narrow), IMPACT_OK);
+    const imp_body floor = body_of(wide, true), bar = body_of(narrow, false);
+    const double within = 3e-9;
+    for (int run = 0; run < 4000; run++) {
+        const bool flush = run % 2;
+        const double tilt =
+            (flush ? 0.02 + 0.1 * random_unit(&random) : 1.1 + random_unit(&random)) * within / bar.radius;
+        const quat q = random_rotation(&random), tilted = {cos(tilt / 2), 0, sin(tilt / 2), 0};
+        const qvec3 up = quat_rotate(q, (qvec3){0, 0, 1}),
+                    corner = quat_rotate(quat_mul(q, tilted), (qvec3){0.5, 0.1, -0.02});
+        const imp_state below = {.x = quat_rotate(q, (qvec3){flush ? 0 : -3.49, 0, -1}), .q = q},
+                        above = {.x = qvec3_scale(up, -qvec3_dot(up, corner)),
+                                 .q = quat_mul(q, tilted),
+                                 .v = random_vector(&random, 0.1, 10)};
+        impact_contact contact = {
+            .offset1 = corner, .offset2 = qvec3_sub(qvec3_add(above.x, corner), below.x), .normal = up};
+        imp_settle_normal(&bar, &above, &floor, &below, within, &contact);
+        if (flush) assert_near3(contact.normal, up, 0);
+        turned += qvec3_norm(qvec3_sub(contact.normal, up)) > 0;
+    }
+    assert_true(turned > 200);
+}
+
 /* Two boxes, edge along edge: the upper one is over the lower's top and beside its side alike. Any motion chooses: the
  * normal along which they approach less, or part more; and none is chosen anew where the one that was found parts. */
 static void at_an_edge_the_rate_decides(void **state)
@@ -179,7 +212,8 @@ static void no_nearer_way_out_is_left(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_disc_that_lands_flat_stays_where_it_touches), cmocka_unit_test(at_an_edge_the_rate_decides),
+        cmocka_unit_test(a_disc_that_lands_flat_stays_where_it_touches),
+        cmocka_unit_test(what_lies_flush_has_one_normal), cmocka_unit_test(at_an_edge_the_rate_decides),
         cmocka_unit_test(what_stands_over_a_face), cmocka_unit_test(no_nearer_way_out_is_left)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
