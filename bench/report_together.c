@@ -41,7 +41,8 @@ static const family families[] = {
 enum { FAMILIES = sizeof families / sizeof *families };
 
 typedef struct tally {
-    int answered, separating, soft, sensitive, early, wedged, unsettled, risen, changed, turned, off, several, lost, chance;
+    int answered, separating, soft, sensitive, early, wedged, unsettled, risen, changed, turned, off, several, lost,
+        chance;
     double worst, *time, *steps;
 } tally;
 
@@ -161,7 +162,8 @@ int main(int argc, char **argv)
         return 2;
     }
     if (impact_together_workspace_create(NULL, &workspace) != IMPACT_OK) return 1;
-    printf("law,restitution,exponent,contacts,encounters,answered,separating,soft,sensitive,ended_early,wedged,unsettled,energy_"
+    printf("law,restitution,exponent,contacts,encounters,answered,separating,soft,sensitive,ended_early,wedged,"
+           "unsettled,energy_"
            "rose,order_"
            "changed,"
            "residual,turned,turned_off,several,turned_lost,chance,time_median,time_99,time_most,steps_median,steps_"
@@ -179,8 +181,8 @@ int main(int argc, char **argv)
         if (runs == 0) continue;
         printf("%s,%s,%g,%d-%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%.2g,%d,%d,%d,%d,%d,%.0f,%.0f,%.0f,%.0f,%.0f\n",
                impact_together_law_name(f->law), impact_law_name(f->restitution), f->exponent, f->least, f->most, runs,
-               t.answered, t.separating, t.soft, t.sensitive, t.early, t.wedged, t.unsettled, t.risen, t.changed, t.worst,
-               t.turned, t.off, t.several, t.lost, t.chance, measure_quantile(t.time, runs, 0.5),
+               t.answered, t.separating, t.soft, t.sensitive, t.early, t.wedged, t.unsettled, t.risen, t.changed,
+               t.worst, t.turned, t.off, t.several, t.lost, t.chance, measure_quantile(t.time, runs, 0.5),
                measure_quantile(t.time, runs, 0.99), measure_quantile(t.time, runs, 1),
                measure_quantile(t.steps, runs, 0.5), measure_quantile(t.steps, runs, 1));
         fflush(stdout);
