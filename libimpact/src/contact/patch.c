@@ -77,7 +77,7 @@ static bool lay_face(const impact_solid *body, qvec3 center, qvec3 direction, do
 static int corner_at(const face_side *s, const double p[2], double slack)
 {
     for (int i = 0; i < s->face.count; i++)
-        if (hypot(p[0] - s->corner[i][0], p[1] - s->corner[i][1]) <= slack) return i;
+        if (fabs(p[0] - s->corner[i][0]) <= slack && fabs(p[1] - s->corner[i][1]) <= slack) return i;
     return -1;
 }
 
@@ -90,7 +90,7 @@ static impact_feature feature_at(const face_side *s, const double p[2], double s
     for (int i = 0; s->face.dimension == 2 && i < flat->count; i++) {
         const double *a = flat->p[i], *b = flat->p[(i + 1) % flat->count];
         const double x = b[0] - a[0], y = b[1] - a[1];
-        if (fabs(x * (p[1] - a[1]) - y * (p[0] - a[0])) > slack * hypot(x, y)) continue;
+        if (fabs(x * (p[1] - a[1]) - y * (p[0] - a[0])) > slack * (fabs(x) + fabs(y))) continue;
         const impact_feature_kind kind = s->face.corner[flat->from[i]].kind;
         return (impact_feature){kind == IMPACT_VERTEX ? IMPACT_EDGE : kind, -1};
     }
