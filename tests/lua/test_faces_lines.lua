@@ -232,4 +232,51 @@ for _, under in ipairs { floor, slab } do
   check.close((whole:state("rod").velocity - second:state("rod").velocity):norm(), 0, 1e-12)
 end
 
+-- Pipes on a pipe, parallel or crossing it at so little that they lie on it, are held at both ends of what they share. One that slides along it
+-- stops as on a floor; without friction it comes off sideways as a ball comes off a ball, which has a closed form of its own.
+local function pipe(shape, yaw, more)
+  local low = { name = "low", static = true, shape = shape, orientation = along, friction = more.friction, restitution = 0 }
+  local scene = impact.scene { gravity = { 0, 0, -G }, duration = more.duration, pile_tolerance = more.tolerance, output_rate = 0, bodies = { impact.body(low),
+    impact.body { name = "rod", shape = shape, mass = 1, position = { 0, 0, 2 * R }, orientation = more.orientation or quat.from_axis_angle(up, yaw) * along,
+      velocity = more.velocity, friction = 1, restitution = 0 } } }
+  check.truth(scene:run(), "it runs")
+  check.truth(scene:usage().pile_steps < 200, "in few steps")
+  return scene:state "rod"
+end
+
+local function ball_off_ball(speed, duration)
+  local ball = impact.sphere { radius = R }
+  local scene = impact.scene { gravity = { 0, 0, -G }, duration = duration, output_rate = 0, bodies = {
+    impact.body { name = "low", static = true, shape = ball, friction = 0, restitution = 0 },
+    impact.body { name = "ball", shape = ball, mass = 1, position = { 0, 0, 2 * R }, velocity = { 0, speed, 0 }, friction = 0, restitution = 0 } } }
+  check.truth(scene:run(), "it runs")
+  check.equal(scene:usage().pile_steps, 0)
+  return scene:state "ball"
+end
+
+local off = ball_off_ball(.2, .15)
+for _, shape in ipairs { capsule, cylinder } do
+  for _, yaw in ipairs { 0, 1e-12, 1e-9, 1e-6, 1e-4 } do
+    local slid = pipe(shape, yaw, { velocity = { .05, 0, 0 }, friction = mu, duration = .1, tolerance = 1e-5 })
+    check.close(slid.position.x, .05 ^ 2 / (2 * mu * G), 1e-6)
+    check.close(slid.velocity:norm(), 0, 1e-3)
+    if yaw < 1e-6 then
+      local fell = pipe(shape, yaw, { velocity = { 0, .2, 0 }, friction = 0, duration = .15, tolerance = 1e-4 })
+      check.close((fell.position - off.position):norm(), 0, 2e-5)
+    end
+  end
+end
+
+-- In the groove between two that all but touch it is proved to rest.
+for _, yaw in ipairs { 0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9 } do
+  local height = R + math.sqrt(3) * R + 3 * yaw ^ 2
+  local function static(name, y, turn)
+    return impact.body { name = name, static = true, shape = cylinder, position = { 0, y, R }, orientation = quat.from_axis_angle(up, turn) * along, friction = .7 }
+  end
+  local scene = impact.scene { gravity = { 0, 0, -G }, duration = 1, bodies = { static("west", -R, 0), static("east", R, -yaw),
+    impact.body { name = "top", shape = cylinder, mass = 1, position = { 0, 0, height }, orientation = quat.from_axis_angle(up, .7 * yaw) * along, friction = .7 } } }
+  check.equal(scene:run(), "at rest")
+  check.equal(scene:time(), 0)
+end
+
 check.report "faces_lines"

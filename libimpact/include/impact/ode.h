@@ -36,7 +36,7 @@ typedef enum impact_ode_method {
 
 /* y' into rate[n]. Return 0; > 0: try a smaller step; < 0: give up. */
 typedef int impact_ode_rhs(double t, const double *y, double *rate, void *context);
-/* g into value[roots]. Return 0, or non-zero to give up. */
+/* g into value[roots], NaN where it does not cross. Return 0, or non-zero to give up. */
 typedef int impact_ode_roots(double t, const double *y, double *value, void *context);
 
 typedef struct impact_ode_def {

@@ -17,6 +17,7 @@ enum { IMPACT_PATCH_POINTS = 16 };
 
 typedef struct impact_patch_point {
     qvec3 offset1, offset2;            /* of the two faces, from the centres, world, m */
+    qvec3 normal;                      /* unit, world: the patch's, but where lines of round sides cross */
     double height;                     /* of face 1 over face 2 here, along the normal, m */
     impact_feature feature1, feature2; /* what of each body is here */
     bool closed;                       /* height <= the height asked for */
@@ -35,7 +36,9 @@ typedef struct impact_patch {
 /* The patch at a contact that impact_gap gave of the two solids: the faces of both towards each other (see
  * impact_shape_face, with height in m >= 0), clipped against one another along the normal. Its points are the extreme
  * ones: corners of one over the other, and crossings of borders; between planes the height is affine, so that they tell
- * all of it. Where a body has but a point there, or the faces are beside each other, the patch is the contact's witness
+ * all of it. Lines of round sides that all but lie on each other, d apart at an end of what they share, are apart there
+ * by d^2/2R, R the sum of their radii across: where that is no more than the height at both ends, these are the patch.
+ * Where a body has but a point there, or the faces are beside each other, the patch is the contact's witness
  * points. IMPACT_EARGUMENT: height < 0; IMPACT_EDOMAIN: a height, normal or gap that is not finite; else IMPACT_OK. */
 IMPACT_API impact_status impact_patch_find(const impact_solid *body1, const impact_solid *body2,
                                            const impact_contact *contact, double height, impact_patch *patch);

@@ -182,6 +182,15 @@ void impact_ode_last_step(const impact_ode *ode, double *begin, double *end)
 
 const char *impact_ode_message(const impact_ode *ode) { return ode->message; }
 
+int imp_ode_root_values(const impact_ode *ode, double t, const double *y, double *value)
+{
+    if (ode->roots == 0) return 0;
+    const int answer = ode->def.root_functions(t, y, value, ode->def.context);
+    for (int i = 0; i < ode->roots; i++)
+        if (isnan(value[i])) value[i] = 1;
+    return answer;
+}
+
 impact_status imp_ode_explain(impact_ode *ode, double reached, double step, const char *why)
 {
     snprintf(ode->message, sizeof ode->message, "integration stopped at t = %s, step %.3g: %s",

@@ -110,7 +110,7 @@ static int roots(sunrealtype t, N_Vector y, sunrealtype *value, void *context)
 {
     const impact_ode *ode = context;
     for (int i = ode->roots; i < ode->def.roots; i++) value[i] = 1; /* those not at work never cross */
-    return ode->roots == 0 ? 0 : ode->def.root_functions(t, N_VGetArrayPointer(y), value, ode->def.context);
+    return imp_ode_root_values(ode, t, N_VGetArrayPointer(y), value);
 }
 
 /* A tolerance for each component, copied; or one for all. */

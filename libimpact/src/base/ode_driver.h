@@ -39,6 +39,10 @@ struct impact_ode {
 
 extern const imp_ode_driver imp_ode_rk4, imp_ode_lobatto, imp_ode_dop853;
 
+/* The root functions at work; not 0 where they give up. One that is NaN does not cross there: CVODE's secants would go
+ * on for ever. */
+int imp_ode_root_values(const impact_ode *ode, double t, const double *y, double *value);
+
 /* "integration stopped at t = ..., step ...: why". IMPACT_EINTEGRATOR. */
 impact_status imp_ode_explain(impact_ode *ode, double reached, double step, const char *why);
 

@@ -16,7 +16,7 @@ impact_status imp_ode_roots_at(impact_ode *ode, imp_ode_roots *roots, double t, 
 {
     if (ode->roots == 0) return IMPACT_OK;
     roots->calls++;
-    return ode->def.root_functions(t, y, value, ode->def.context) == 0
+    return imp_ode_root_values(ode, t, y, value) == 0
                ? IMPACT_OK
                : imp_ode_explain(ode, ode->t, ode->step_end - ode->step_begin, "a root function gave up");
 }

@@ -15,6 +15,7 @@
 
 typedef struct face_side {
     impact_face face;
+    const impact_shape *shape;
     quat turn;
     qvec3 center; /* from body 2's */
     imp_flat flat;
@@ -55,7 +56,7 @@ static bool lay_face(const impact_solid *body, qvec3 center, qvec3 direction, do
                      face_side *s)
 {
     impact_shape shape = body->shape;
-    s->turn = quat_unit(body->orientation), s->center = center;
+    s->shape = &body->shape, s->turn = quat_unit(body->orientation), s->center = center;
     if (shape.kind == IMPACT_PLANE) shape.a = fmin(shape.a, f->room), shape.b = fmin(shape.b, f->room);
     if (impact_shape_face(&shape, quat_rotate_inverse(s->turn, direction), height, &s->face) < 0) return false;
     lay_plane(s, f);
@@ -130,6 +131,7 @@ static void put_point(const face_side s[2], const patch_frame *f, const double p
     const qvec3 flat = qvec3_axpy(p[0], f->x, qvec3_scale(f->y, p[1]));
     patch->point[patch->count++] = (impact_patch_point){.offset1 = qvec3_sub(qvec3_axpy(z1, f->n, flat), s[0].center),
                                                         .offset2 = qvec3_axpy(z2, f->n, flat),
+                                                        .normal = f->n,
                                                         .height = z1 - z2,
                                                         .feature1 = feature_at(&s[0], p, f->slack),
                                                         .feature2 = feature_at(&s[1], p, f->slack),
@@ -142,6 +144,7 @@ static void lone_point(const face_side s[2], const impact_contact *contact, doub
     patch->count = 1;
     patch->point[0] = (impact_patch_point){.offset1 = contact->offset1,
                                            .offset2 = contact->offset2,
+                                           .normal = contact->normal,
                                            .height = contact->gap,
                                            .feature1 = s[0].face.feature,
                                            .feature2 = s[1].face.feature,
@@ -205,6 +208,102 @@ static void clip_faces(face_side s[2], const patch_frame *f, double height, impa
     for (int i = 0; i < common.count; i++) put_point(s, f, common.p[i], height, patch);
 }
 
+/* ---- lines on each other ---- */
+
+/* A place of a line: across the normal, how far along, its height, and how round the body is across it. */
+typedef struct line_place {
+    double p[2], z, radius;
+} line_place;
+
+/* m: the radius across a line of the surface at its point. */
+static double radius_across(const impact_shape *shape, qvec3 point)
+{
+    switch (shape->kind) {
+    case IMPACT_CYLINDER:
+    case IMPACT_CAPSULE: return hypot(point.x, point.y);
+    case IMPACT_CONE: return hypot(point.x, point.y) * hypot(1, shape->a / shape->c);
+    default: return shape->rounding;
+    }
+}
+
+static line_place place_between(const face_side *s, double part)
+{
+    line_place place;
+    for (int k = 0; k < 2; k++) place.p[k] = s->corner[0][k] + part * (s->corner[1][k] - s->corner[0][k]);
+    place.z = height_of_plane(s, place.p);
+    const double r0 = radius_across(s->shape, s->face.point[0]), r1 = radius_across(s->shape, s->face.point[1]);
+    place.radius = r0 + part * (r1 - r0);
+    return place;
+}
+
+/* The places of both, so far along the first line. */
+static void places_at(const face_side s[2], const double u[2], double t, line_place place[2])
+{
+    double from[2];
+    for (int k = 0; k < 2; k++)
+        from[k] = (s[k].corner[0][0] - s[0].corner[0][0]) * u[0] + (s[k].corner[0][1] - s[0].corner[0][1]) * u[1];
+    for (int k = 0; k < 2; k++) {
+        const double x = s[k].corner[1][0] - s[k].corner[0][0], y = s[k].corner[1][1] - s[k].corner[0][1];
+        place[k] = place_between(&s[k], (t - from[k]) / (x * u[0] + y * u[1]));
+    }
+}
+
+/* Where what two lines share begins and ends, along the first, whose direction is u; false: it is a point, or none. */
+static bool find_shared(const face_side s[2], const patch_frame *f, const double u[2], double end[2])
+{
+    end[0] = -INFINITY, end[1] = INFINITY;
+    for (int k = 0; k < 2; k++) {
+        double t[2];
+        for (int i = 0; i < 2; i++)
+            t[i] = (s[k].corner[i][0] - s[0].corner[0][0]) * u[0] + (s[k].corner[i][1] - s[0].corner[0][1]) * u[1];
+        end[0] = fmax(end[0], fmin(t[0], t[1])), end[1] = fmin(end[1], fmax(t[0], t[1]));
+    }
+    return end[1] - end[0] > f->slack;
+}
+
+/* d^2/2R, of what is d to the side. */
+static double rise_across(double aside, double radius, double slack)
+{
+    return fabs(aside) <= slack ? 0 : aside * aside / (2 * radius);
+}
+
+/* Of lines d apart the surfaces are nearest between them, at R1/R and R2/R of the way, where each has fallen back. */
+static void put_between(const face_side s[2], const patch_frame *f, const line_place place[2], double aside,
+                        const double across[2], double height, impact_patch *patch)
+{
+    const double radius = place[0].radius + place[1].radius, rise = rise_across(aside, radius, f->slack),
+                 part = rise > 0 ? place[0].radius / radius : 0, tilt = rise > 0 ? -aside / radius : 0;
+    const double p[2] = {place[0].p[0] + part * aside * across[0], place[0].p[1] + part * aside * across[1]},
+                 z1 = place[0].z + part * rise, z2 = place[1].z - (1 - part) * rise;
+    const qvec3 flat = qvec3_axpy(p[0], f->x, qvec3_scale(f->y, p[1])),
+                side = qvec3_axpy(across[0], f->x, qvec3_scale(f->y, across[1]));
+    patch->point[patch->count++] =
+        (impact_patch_point){.offset1 = qvec3_sub(qvec3_axpy(z1, f->n, flat), s[0].center),
+                             .offset2 = qvec3_axpy(z2, f->n, flat),
+                             .normal = qvec3_scale(qvec3_axpy(tilt, side, f->n), 1 / hypot(1, tilt)),
+                             .height = z1 - z2,
+                             .feature1 = feature_at(&s[0], place[0].p, f->slack),
+                             .feature2 = feature_at(&s[1], place[1].p, f->slack),
+                             .closed = z1 - z2 <= height};
+}
+
+/* The ends of what two lines share, if they are as good as on each other there. */
+static void join_lines(const face_side s[2], const patch_frame *f, double height, impact_patch *patch)
+{
+    const double x = s[0].corner[1][0] - s[0].corner[0][0], y = s[0].corner[1][1] - s[0].corner[0][1],
+                 length = hypot(x, y), u[2] = {x / length, y / length}, across[2] = {-u[1], u[0]};
+    double end[2], aside[2];
+    line_place place[2][2];
+    if (!find_shared(s, f, u, end)) return;
+    for (int i = 0; i < 2; i++) {
+        places_at(s, u, end[i], place[i]);
+        aside[i] =
+            (place[i][1].p[0] - place[i][0].p[0]) * across[0] + (place[i][1].p[1] - place[i][0].p[1]) * across[1];
+        if (!(rise_across(aside[i], place[i][0].radius + place[i][1].radius, f->slack) <= height)) return;
+    }
+    for (int i = 0; i < 2; i++) put_between(s, f, place[i], aside[i], across, height, patch);
+}
+
 /* No less than the bounding radius, which of shapes without a core takes a search. */
 static double shape_reach(const impact_shape *shape)
 {
@@ -240,7 +339,10 @@ impact_status impact_patch_find(const impact_solid *body1, const impact_solid *b
     if (!lay_face(body1, c, qvec3_neg(n), height, &f, &s[0]) || !lay_face(body2, none, n, height, &f, &s[1]))
         return IMPACT_EARGUMENT;
     patch->dimension1 = s[0].face.dimension, patch->dimension2 = s[1].face.dimension;
-    if (s[0].face.dimension > 0 && s[1].face.dimension > 0) clip_faces(s, &f, height, patch);
+    if (s[0].face.dimension == 1 && s[1].face.dimension == 1)
+        join_lines(s, &f, height, patch);
+    else if (s[0].face.dimension > 0 && s[1].face.dimension > 0)
+        clip_faces(s, &f, height, patch);
     if (patch->count > 0 && (s[0].bent || s[1].bent)) put_nearest(s, &f, contact, height, patch);
     if (patch->count == 0) lone_point(s, contact, height, patch);
     patch->dimension = patch_dimension(patch);

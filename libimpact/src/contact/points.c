@@ -34,6 +34,7 @@ bool imp_pair_can_lie(const imp_world *world, const imp_pair *pair)
 static imp_bearer bearer_of(const impact_patch *patch)
 {
     if (patch->count < 2) return IMP_BORNE_BY_BOTH;
+    if (patch->dimension1 == 1 && patch->dimension2 == 1) return IMP_BORNE_BY_LINES;
     return patch->dimension2 == 2 ? IMP_BORNE_BY_2 : IMP_BORNE_BY_1;
 }
 
@@ -41,7 +42,7 @@ static imp_point point_of(const impact_patch *patch, int i, qvec3 shift1, qvec3 
 {
     const impact_patch_point *p = &patch->point[i];
     return (imp_point){.contact = {.gap = p->height,
-                                   .normal = patch->normal,
+                                   .normal = p->normal,
                                    .offset1 = qvec3_add(p->offset1, shift1),
                                    .offset2 = qvec3_add(p->offset2, shift2)},
                        .feature = {p->feature1, p->feature2},

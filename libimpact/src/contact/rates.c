@@ -235,12 +235,13 @@ static imp_rates borne_rates(const imp_world *world, const imp_pair *pair, imp_b
 imp_rates imp_contact_rates(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
                             const imp_state *states)
 {
-    if (bearer != IMP_BORNE_BY_BOTH) return borne_rates(world, pair, bearer, contact, states);
+    if (bearer == IMP_BORNE_BY_1 || bearer == IMP_BORNE_BY_2) return borne_rates(world, pair, bearer, contact, states);
     const imp_body *b1 = &world->bodies[pair->body1], *b2 = &world->bodies[pair->body2];
     const bool on_plane = b2->shape.kind == IMPACT_PLANE;
     if (imp_is_ball(b1) && (on_plane || imp_is_ball(b2))) return ball_rates(world, pair, contact->normal, states);
-    return on_plane || !imp_pair_has_faces(world, pair) ? round_rates(world, pair, contact, states)
-                                                        : imp_feature_rates(world, pair, contact, states);
+    return on_plane || !imp_pair_has_faces(world, pair)
+               ? round_rates(world, pair, contact, states)
+               : imp_feature_rates(world, pair, bearer == IMP_BORNE_BY_LINES, contact, states);
 }
 
 static qvec3 angular_acceleration(const imp_body *body, const imp_state *state, const imp_load *load)

@@ -18,8 +18,9 @@ typedef struct imp_rates {
 imp_rates imp_contact_rates(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
                             const imp_state *states);
 
-/* The same of the one point of two bodies of which one has faces. */
-imp_rates imp_feature_rates(const imp_world *world, const imp_pair *pair, const impact_contact *contact,
+/* The same of the one point of two bodies of which one has faces; joined: or of one of those of lines that lie on each
+ * other, which is where they do and not where they would cross. */
+imp_rates imp_feature_rates(const imp_world *world, const imp_pair *pair, bool joined, const impact_contact *contact,
                             const imp_state *states);
 
 /* W v, m^2: of a tangential vector, W the Hessian of the body's support function at the outward normal, world. */

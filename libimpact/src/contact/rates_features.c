@@ -92,12 +92,19 @@ static double turn_across(const side s[2], qvec3 n, qvec3 t, qvec3 rest)
     return qvec3_dot(t, qvec3_sub(wanted_bend(s, n), both_bend(s, rest))) / bend;
 }
 
-static qvec3 normal_rate(const side s[2], qvec3 n)
+/* How far two lines cross, sin of the angle; 0 where they do not, or lie on each other. */
+static double crossing_of(const side s[2], bool joined, qvec3 n)
+{
+    if (joined || s[0].dimension != 1 || s[1].dimension != 1) return 0;
+    const double crossing = qvec3_dot(n, qvec3_cross(s[0].e, s[1].e));
+    return fabs(crossing) > IMP_LEVEL ? crossing : 0;
+}
+
+static qvec3 normal_rate(const side s[2], bool joined, qvec3 n)
 {
     for (int k = 1; k >= 0; k--)
         if (s[k].dimension == 2) return s[k].turns;
-    const double crossing = qvec3_dot(n, qvec3_cross(s[0].e, s[1].e));
-    if (s[0].dimension == 1 && s[1].dimension == 1 && fabs(crossing) > IMP_LEVEL)
+    if (crossing_of(s, joined, n) != 0)
         return with_parts(n, s[0].e, qvec3_dot(s[0].e, s[0].turns), s[1].e, qvec3_dot(s[1].e, s[1].turns));
     for (int k = 0; k < 2; k++) {
         if (s[k].dimension == 0) continue;
@@ -111,14 +118,14 @@ static qvec3 normal_rate(const side s[2], qvec3 n)
     return with_parts(n, c1, qvec3_dot(t1, wanted), c2, qvec3_dot(t2, wanted)); /* the matrix is symmetric */
 }
 
-imp_rates imp_feature_rates(const imp_world *world, const imp_pair *pair, const impact_contact *contact,
+imp_rates imp_feature_rates(const imp_world *world, const imp_pair *pair, bool joined, const impact_contact *contact,
                             const imp_state *states)
 {
     const qvec3 n = contact->normal;
     const side s[2] = {side_of(&world->bodies[pair->body1], &states[pair->body1], qvec3_neg(n), contact->offset1, n),
                        side_of(&world->bodies[pair->body2], &states[pair->body2], n, contact->offset2, n)};
     const qvec3 apart = qvec3_sub(s[0].velocity, s[1].velocity);
-    imp_rates rates = {.normal = normal_rate(s, n)};
+    imp_rates rates = {.normal = normal_rate(s, joined, n)};
     const qvec3 own1 = qvec3_add(qvec3_cross(s[0].omega, s[0].arm),
                                  feature_bend(&s[0], qvec3_sub(s[0].turns, rates.normal))),
                 own2 = qvec3_add(qvec3_cross(s[1].omega, s[1].arm),
@@ -128,10 +135,10 @@ imp_rates imp_feature_rates(const imp_world *world, const imp_pair *pair, const 
         return rates;
     }
     rates.arm1 = own1;
-    if (s[0].dimension == 1 && s[1].dimension == 1) {
+    const double crossing = crossing_of(s, joined, n);
+    if (crossing != 0) {
         const qvec3 aside = qvec3_cross(s[1].e, n), off = qvec3_sub(qvec3_sub(own2, apart), own1);
-        const double crossing = qvec3_dot(s[0].e, aside);
-        if (fabs(crossing) > IMP_LEVEL) rates.arm1 = qvec3_axpy(qvec3_dot(off, aside) / crossing, s[0].e, own1);
+        rates.arm1 = qvec3_axpy(qvec3_dot(off, aside) / crossing, s[0].e, own1);
     }
     rates.arm2 = qvec3_add(rates.arm1, apart);
     return rates;

@@ -280,6 +280,8 @@ int imp_motion_root_values(double tau, const double *y, double *value, void *con
     value += edges;
     const bool wakes = imp_field_unsteady(world);
     for (int i = 0; i < world->body_count; i++) {
+        value[i] = 1;
+        if (world->bodies[i].is_static) continue;
         const double speed = imp_motion_speed(&world->bodies[i], &states[i]);
         value[i] = !motion->resting[i] ? speed - motion->rest_speed : wakes ? 2 * motion->rest_speed - speed : 1;
     }

@@ -95,7 +95,7 @@ impact_status imp_pile_strike_now(imp_pile *pile, imp_world *world, imp_state *s
     pile->memory[2].count = 0;
     if (!imp_pile_copy_memories(pile->arena, &pile->memory[1], &pile->memory[0])) return IMPACT_ENOMEM;
     imp_pile_contacts_mark(touching, world, &pile->memory[1]);
-    if (!imp_pile_find_points(touching, world, states, states, h, imp_pile_slack(pile, world), false) ||
+    if (!imp_pile_find_points(touching, world, states, states, 0, imp_pile_slack(pile, world), false) ||
         !imp_pile_reserve_contacts(pile, world, touching->count))
         return IMPACT_ENOMEM;
     imp_pile_recall(touching, world, states, h, &pile->memory[1]);

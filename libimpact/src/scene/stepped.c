@@ -40,8 +40,8 @@ static bool meets_faces(const imp_island *island)
 bool imp_island_loses_patience(imp_island *island, long rates)
 {
     if (island->stepped || island->scene->piles == IMPACT_PILES_EXACT) return false;
-    const bool faces = meets_faces(island);
-    if (!faces && !is_pile(island)) return false;
+    const bool faces = meets_faces(island), pile = !faces && is_pile(island);
+    if (!faces && !pile && !imp_scene_holds_any(island)) return false;
     const double natural = imp_pile_natural_time(&island->world, island->states);
     long most = 0;
     for (int i = 0; i < island->world.body_count; i++) {
@@ -52,7 +52,7 @@ bool imp_island_loses_patience(imp_island *island, long rates)
         patience->work += faces ? 1 : rates > IMP_EVENT_RATES ? rates : IMP_EVENT_RATES;
         if (patience->work > most) most = patience->work;
     }
-    return most >= (faces ? IMP_FACES_PATIENCE : IMP_PILE_PATIENCE);
+    return most >= (faces ? IMP_FACES_PATIENCE : pile ? IMP_PILE_PATIENCE : IMP_HELD_PATIENCE);
 }
 
 /* A pile that remembers nothing. */

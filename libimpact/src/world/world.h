@@ -92,8 +92,8 @@ typedef struct imp_footing {
     int line;
 } imp_footing;
 
-/* Whose face turns a contact's normal; of a lone point both surfaces do. */
-typedef enum imp_bearer { IMP_BORNE_BY_BOTH, IMP_BORNE_BY_1, IMP_BORNE_BY_2 } imp_bearer;
+/* Whose face turns a contact's normal; of a lone point both surfaces do, and of lines that lie on each other. */
+typedef enum imp_bearer { IMP_BORNE_BY_BOTH, IMP_BORNE_BY_1, IMP_BORNE_BY_2, IMP_BORNE_BY_LINES } imp_bearer;
 
 /* Which point it is of two bodies with faces. */
 typedef struct imp_site {

@@ -96,6 +96,30 @@ static void each_call_refused_in_turn(void **state)
     }
 }
 
+/* A root function that is no number within a step does not cross there: CVODE's search for the root went on for ever.
+ */
+static int swing_without_numbers(double t, const double *y, double *value, void *context)
+{
+    const int answer = swing_root(t, y, value, context);
+    if (y[0] < 1e-3 && y[0] > -0.1) value[0] = NAN;
+    return answer;
+}
+
+static void what_is_no_number_does_not_cross(void **state)
+{
+    (void)state;
+    for (int m = 0; m < 5; m++) {
+        if (!is_here(methods[m])) continue;
+        witness w = {0};
+        impact_ode_def def = def_of(methods[m], &w);
+        impact_ode *ode;
+        def.root_functions = swing_without_numbers;
+        assert_int_equal(impact_ode_create(&def, &ode), IMPACT_OK);
+        assert_int_equal(go(ode), IMPACT_OK);
+        impact_ode_destroy(ode);
+    }
+}
+
 static void each_piece_of_memory_refused_in_turn(void **state)
 {
     (void)state;
@@ -182,6 +206,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_call_refused_in_turn),
+        cmocka_unit_test(what_is_no_number_does_not_cross),
         cmocka_unit_test(each_piece_of_memory_refused_in_turn),
         cmocka_unit_test(what_no_step_can_do_is_told),
         cmocka_unit_test(what_leaves_double_precision_is_told),

@@ -2,13 +2,11 @@
  *
  * Patches of integer boxes against the clipped rectangles in exact fractions, and by hand.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "kit/near.h"
+
 #include <string.h>
 #include <impact/patch.h>
+#include "base/numbers.h"
 #include "kit/face_pairs.h"
 
 /* ---- fractions ---- */
@@ -342,6 +340,69 @@ static void points_of_polyhedra_are_theirs(void **state)
     assert_true(bent > 1000);
 }
 
+/* Sides of cylinders and capsules that cross at a small angle, `end` from where they do: at both ends of what they
+ * share they are as far apart as their axes but for the radii, each point lies on both, and its normal goes from axis
+ * to axis. Where an end is farther apart than the height they touch at the contact's point alone. */
+static void lines_of_round_sides(void **state)
+{
+    (void)state;
+    random_stream random = {91};
+    int joined = 0;
+    enum { RUNS = 4000 };
+    for (int run = 0; run < RUNS; run++) {
+        impact_solid solid[2];
+        double radius[2], half[2];
+        for (int k = 0; k < 2; k++) {
+            radius[k] = random_log(&random, 0.05, 0.5), half[k] = random_log(&random, 0.3, 2);
+            (run >> k & 1 ? impact_shape_capsule(radius[k], half[k], &solid[k].shape)
+                          : impact_shape_cylinder(radius[k], half[k], 0, &solid[k].shape));
+        }
+        const double height = random_log(&random, 1e-9, 1e-5), gap = 0.3 * height * random_unit(&random),
+                     both = radius[0] + radius[1], x = 0.4 * random_unit(&random) - 0.2,
+                     end[2] = {fmax(-half[1], x - half[0]), fmin(half[1], x + half[0])},
+                     met = end[0] + random_unit(&random) * (end[1] - end[0]),
+                     angle = random_log(&random, 1e-3, 10) * sqrt(2 * both * height) / (end[1] - end[0]);
+        const quat turn = random_rotation(&random), lying = quat_from_rotation_vector((qvec3){0, IMP_PI / 2, 0}),
+                   crossed = quat_from_rotation_vector((qvec3){0, 0, angle});
+        solid[1].position = random_vector(&random, 0.1, 10);
+        solid[1].orientation = quat_mul(turn, lying);
+        const qvec3 above = {x, (x - met) * tan(angle), both + gap};
+        solid[0].position = qvec3_add(solid[1].position, quat_rotate(turn, above));
+        solid[0].orientation = quat_mul(turn, quat_mul(crossed, lying));
+        const qvec3 place = {met, 0, radius[1]}, upper = {met, 0, radius[1] + gap};
+        const impact_contact contact = {.gap = gap,
+                                        .normal = quat_rotate(turn, (qvec3){0, 0, 1}),
+                                        .offset1 = quat_rotate(turn, qvec3_sub(upper, above)),
+                                        .offset2 = quat_rotate(turn, place)};
+        impact_patch patch;
+        assert_int_equal(impact_patch_find(&solid[0], &solid[1], &contact, height, &patch), IMPACT_OK);
+        const double aside[2] = {(end[0] - met) * tan(angle), (end[1] - met) * tan(angle)},
+                     farthest = fmax(fabs(aside[0]), fabs(aside[1])), most = sqrt(2 * both * height);
+        if (fabs(farthest - most) < 0.01 * most) continue;
+        assert_int_equal(patch.count, farthest < most ? 2 : 1);
+        if (patch.count == 1) {
+            assert_near3(patch.point[0].offset2, contact.offset2, 1e-9);
+            continue;
+        }
+        joined++;
+        for (int i = 0; i < 2; i++) {
+            const impact_patch_point *p = &patch.point[i];
+            const qvec3 two = quat_rotate_inverse(turn, p->offset2), n = quat_rotate_inverse(turn, p->normal),
+                        one = quat_rotate_inverse(quat_mul(turn, crossed), p->offset1);
+            const double z = both + gap, apart = hypot(z, aside[i]);
+            const qvec3 across = {0, aside[i] / apart, z / apart};
+            assert_near(p->height, apart - both, 1e-3 * height);
+            assert_near3(n, across, 1e-2 * most);
+            assert_near(two.x, end[i], 1e-2 * most);
+            assert_near(hypot(two.y, two.z), radius[1], 1e-3 * height);
+            assert_near(hypot(one.y, one.z), radius[0], 1e-3 * height);
+            assert_near3(qvec3_sub(qvec3_add(above, quat_rotate_inverse(turn, p->offset1)), two),
+                         qvec3_scale(across, p->height), 2e-2 * most);
+        }
+    }
+    assert_in_range(joined, RUNS / 3, RUNS);
+}
+
 static void mistakes(void **state)
 {
     (void)state;
@@ -371,6 +432,7 @@ int main(void)
         cmocka_unit_test(a_small_tilt_is_told),
         cmocka_unit_test(flats_of_superquadrics),
         cmocka_unit_test(identities),
+        cmocka_unit_test(lines_of_round_sides),
         cmocka_unit_test(mistakes),
         cmocka_unit_test(points_of_polyhedra_are_theirs),
     };
