@@ -32,7 +32,7 @@ core.layer()
 ---@field normal vec3  from the second body to the first
 ---@field gap number  m
 ---@field disc? number  radius, where the patch is a whole disc
----@field points {offset1: vec3, offset2: vec3, height: number, closed: boolean, feature1: string, feature2: string}[]
+---@field points {offset1: vec3, offset2: vec3, normal: vec3, height: number, closed: boolean, feature1: string, feature2: string}[]
 
 ---@class impact.solid
 ---@field shape impact.shape

@@ -88,7 +88,7 @@ typedef struct impact_together_outcome {
     double
         error;  /* of velocities, of the fastest approach: springs take a restitution under .001 as more if they must */
     int groups; /* of contacts tied by moving bodies */
-    long events;      /* springs: changes of a contact's mode; sequence: impacts */
+    long events;      /* springs: changes of a contact's mode; sequence: impacts; these and steps also without answer */
     long steps;       /* springs: Taylor steps; Moreau: linear systems */
     bool ended_early; /* springs: the work allowed was spent; what was left ended at once, and error tells what by */
     bool energy_rose; /* not by springs: Moreau's law with different restitutions, and Newton's, can */
@@ -116,10 +116,10 @@ IMPACT_API impact_status impact_collide_together_check(const impact_encounter *e
  * impact_collide (springs: Stronge's law, Moreau: Poisson's or Newton's). The bits of the answer depend neither on the
  * numbering of bodies nor on the order of contacts (but by the law SEQUENCE). IMPACT_OK: and the receipt passed;
  * IMPACT_SEPARATING: no contact approaches, nothing changed; IMPACT_SOFT: the receipt did not pass, `residual` says by
- * how much, or springs were ended early, which `error` tells the doubt of. Below zero nothing is answered, and velocities are those given: as impact_collide_together_check;
- * IMPACT_EUNSETTLED (the contacts are wedged, or the cone problem found no answer); IMPACT_EINTEGRATOR,
- * IMPACT_ENOMEM. Sources: Darboux 1880; Keller 1986; Stronge 2000; Liu, Zhao & Brogliato 2008; Moreau 1988; Glocker &
- * Pfeiffer 1995. */
+ * how much, or springs were ended early, which `error` tells the doubt of. Below zero nothing is answered, and
+ * velocities are those given: as impact_collide_together_check; IMPACT_EUNSETTLED (the contacts are wedged, or the cone
+ * problem found no answer); IMPACT_EINTEGRATOR, IMPACT_ENOMEM. Sources: Darboux 1880; Keller 1986; Stronge 2000; Liu,
+ * Zhao & Brogliato 2008; Moreau 1988; Glocker & Pfeiffer 1995. */
 IMPACT_API impact_status impact_collide_together(const impact_encounter *encounter, impact_together_outcome *outcome);
 
 #ifdef __cplusplus

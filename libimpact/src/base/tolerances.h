@@ -1026,6 +1026,10 @@
  * each other, and balls that roll about in a box, are stepped too, which the exact motion brings to their end. */
 #define IMP_PILE_PATIENCE 8000
 #define IMP_EVENT_RATES 16
+/* Steps and events of an encounter that count as an event more: they take that long together. One that takes all the
+ * work allowed is more than patience with faces; in a second of CPU a cylinder between an ellipsoid and a ball went on
+ * by ten microseconds, for ever, by Stronge's law with friction 1. */
+#define IMP_EVENT_STRIDES 100
 /* Of what is held otherwise: the most that was met is 8500, of a superquadric of exponents 3 and 4 that wobbles; where
  * curvatures are infinite or none, as of exponents under 2, the integrator may ask for a million in a microsecond. */
 #define IMP_HELD_PATIENCE 400000

@@ -279,7 +279,10 @@ static impact_status solve_group(plan *call, int from, int count, impact_togethe
         set_solver(call, IMPACT_TOGETHER_SERIES);
         return end_springs(call, from, count, workspace, &group);
     }
-    if (status != IMPACT_OK) return status;
+    if (status != IMPACT_OK) {
+        call->outcome->events += group.events, call->outcome->steps += group.steps; /* they were made in vain */
+        return status;
+    }
     if (springs && !imp_encounter_strikes(&group)) return IMPACT_SEPARATING;
     set_solver(call, springs ? IMPACT_TOGETHER_SERIES : IMPACT_TOGETHER_CONE);
     if (springs) imp_encounter_push(&group, group.p);

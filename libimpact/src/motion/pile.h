@@ -23,10 +23,11 @@
  * measured error, which chooses the next. An impulse is in the mean of the step before: where the one before that is
  * nearer, it is that. What overlaps at the end, as it came after the middle, and has to be parted is error too. Where
  * what closes within a step strikes so hard that a quarter of a step of it is more than may be off, the step ends where
- * it closes, and all of its island is struck at that instant, q = G v with neither loads nor time: the next step begins
- * with what that leaves. Overlaps that arrivals leave, and gaps by which held contacts open on round bodies, h² in each
- * step, are put back along normals, least in the metric of mass. The limit h -> 0 is Coulomb's law with Newton's
- * restitution, at simultaneous contacts Moreau's.
+ * it closes, and what touches then of its island is struck at that instant, q = G v with neither loads nor time: the
+ * next step begins with what that leaves. Overlaps that arrivals leave, and gaps by which held contacts open on round
+ * bodies, h² in each step, are put back along normals, least in the metric of mass; what is parted pays for it by its
+ * approach (pile_project.c). The limit h -> 0 is Coulomb's law with Newton's restitution, at simultaneous contacts
+ * Moreau's.
  */
 #ifndef IMP_PILE_H
 #define IMP_PILE_H

@@ -44,6 +44,7 @@ typedef struct imp_island {
     double gained;      /* J: since then, by impacts whose law gave it, and by closing what lands */
     double balance;     /* J: energy + losses - what was given, when its motion began; of steps, of the one at hand */
     double looked_at;   /* s: by the receipt */
+    long strides;       /* steps and events of encounters since its patience was asked last */
     bool unanswered;    /* scratch: at this instant the law of encounters has found no answer once */
     bool lies;          /* bodies with faces stay on each other, or no forces hold it: it is to be moved by steps */
     bool stepped;       /* it moves by steps (stepped.h): */

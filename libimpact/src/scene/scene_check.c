@@ -218,12 +218,13 @@ static void check_custom(check *c, const impact_force_def *force)
     require(c, fits, "switch_period", force->switch_period, "is shorter than the switches in it");
 }
 
-static void check_force(check *c, const impact_force_def *force)
+static void check_force(check *c, const impact_force_def *force, const impact_body_def *bodies)
 {
-    char stranger[160];
-    snprintf(stranger, sizeof stranger, "acts on body '%s', which the scene does not have",
-             force->body ? force->body : "");
-    require_words(c, !force->body || imp_names_find(c->names, force->body) >= 0, stranger);
+    const int body = force->body ? imp_names_find(c->names, force->body) : -1;
+    char words[160];
+    snprintf(words, sizeof words, "acts on body '%s', which %s", force->body ? force->body : "",
+             body < 0 ? "the scene does not have" : "is static: nothing moves it");
+    require_words(c, !force->body || (body >= 0 && !bodies[body].is_static), words);
     require(c, force->reach > 0, "reach", force->reach, "must be positive");
     switch (force->kind) {
     case IMPACT_FORCE_WIND:
@@ -338,7 +339,7 @@ impact_status imp_scene_check(const impact_scene_def *def, imp_arena *arena, imp
     for (int k = 0; c.status == IMPACT_OK && k < def->force_count; k++) {
         c.kind = "force";
         c.name = def->forces[k].name ? def->forces[k].name : "";
-        check_force(&c, &def->forces[k]);
+        check_force(&c, &def->forces[k], def->bodies);
     }
     for (int k = 0; c.status == IMPACT_OK && k < def->pair_count; k++) {
         c.kind = "pair with";

@@ -245,6 +245,7 @@ static impact_status answer(imp_island *island, gathering *g, answering how)
                                         .workspace = scene->together_workspace};
     impact_together_outcome outcome = {.velocity = g->velocity, .omega = g->omega, .meetings = g->outcomes};
     const impact_status status = impact_collide_together(&encounter, &outcome);
+    island->strides += outcome.steps + outcome.events;
     if (status < 0 || status == IMPACT_SEPARATING) return status;
     if (how.jams && !was_drawn(g)) return IMPACT_SEPARATING;
     if (status == IMPACT_SOFT && world->usage.impacts_soft++ == 0) tell_soft(island, g, &outcome);

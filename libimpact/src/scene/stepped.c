@@ -43,13 +43,15 @@ bool imp_island_loses_patience(imp_island *island, long rates)
     const bool faces = meets_faces(island), pile = !faces && is_pile(island);
     if (!faces && !pile && !imp_scene_holds_any(island)) return false;
     const double natural = imp_pile_natural_time(&island->world, island->states);
-    long most = 0;
+    long most = 0, own = 1 + island->strides / IMP_EVENT_STRIDES;
+    if (!faces) own = rates > own * IMP_EVENT_RATES ? rates : own * IMP_EVENT_RATES;
+    island->strides = 0;
     for (int i = 0; i < island->world.body_count; i++) {
         const imp_body *body = &island->world.bodies[i];
         imp_patience *patience = &island->scene->tracks.tracks[body->index].patience;
         if (body->is_static) continue;
         if (!(fabs(island->t - patience->since) <= natural)) *patience = (imp_patience){.since = island->t};
-        patience->work += faces ? 1 : rates > IMP_EVENT_RATES ? rates : IMP_EVENT_RATES;
+        patience->work += own;
         if (patience->work > most) most = patience->work;
     }
     return most >= (faces ? IMP_FACES_PATIENCE : pile ? IMP_PILE_PATIENCE : IMP_HELD_PATIENCE);

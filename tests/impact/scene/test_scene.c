@@ -525,6 +525,8 @@ static void bad_definitions_are_named(void **state)
     def.forces = &wind;
     def.force_count = 1;
     expect_refusal(&def, "force 'gust': acts on body 'cone', which the scene does not have");
+    wind.body = bodies[0].name;
+    expect_refusal(&def, "force 'gust': acts on body 'floor', which is static: nothing moves it");
     def.force_count = 0;
     def.compliance = 3.5;
     expect_refusal(&def, "scene 'scene': compliance = 3.5: needs Stronge's law");

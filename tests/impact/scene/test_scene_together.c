@@ -4,8 +4,10 @@
  * digits (docs/together.md), in any order of the definition.
  */
 #include <math.h>
-#include "kit/scene_log.h"
+#include "kit/islands.h"
 #include "kit/contact_random.h"
+#include "base/tolerances.h"
+#include "scene/stepped.h"
 
 static const double radius = 0.3;
 
@@ -291,9 +293,28 @@ static void what_rests_comes_back_from_a_blow(void **state)
     }
 }
 
+/* An island of bodies with faces goes by steps after so many events; encounters that take long count as more. */
+static void long_encounters_try_patience(void **state)
+{
+    (void)state;
+    impact_body_def bodies[2] = {plane_body("floor", (qvec3){0, 0, 0}, quat_identity(), 0.5, 0),
+                                 smooth_ball("box", (qvec3){0, 0, 0.1}, (qvec3){0, 0, 0})};
+    assert_int_equal(impact_shape_box(0.1, 0.1, 0.1, 0, &bodies[1].shape), IMPACT_OK);
+    impact_scene_def def = scene_of(bodies, 2, IMPACT_SCENE_TOGETHER_AUTO);
+    def.gravity.z = -9.81;
+    impact_scene *scene = make_scene(&def);
+    imp_island *island = whole_island(scene);
+    long asked = 0;
+    for (island->strides = 1000L * IMP_EVENT_STRIDES; !imp_island_loses_patience(island, 0); asked++)
+        island->strides = 1000L * IMP_EVENT_STRIDES;
+    assert_int_equal(asked, IMP_FACES_PATIENCE / 1001);
+    impact_scene_destroy(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(long_encounters_try_patience),
         cmocka_unit_test(impacts_of_an_instant_count_pi),
         cmocka_unit_test(impacts_of_an_instant_are_bounded),
         cmocka_unit_test(a_ball_meets_two),
