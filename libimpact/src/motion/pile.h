@@ -61,6 +61,7 @@ typedef struct imp_pile {
     imp_cone_workspace cone;
     imp_cone_bodies by_bodies;
     int *number; /* per body of the world: its own in an island, -1: it does not move */
+    int *listed; /* and of an island's bodies by these numbers */
     imp_rest_workspace rest;
     imp_state *middle, *mean, *end, *projected;
     imp_state *from;                       /* where the last step began: with what strikes there struck */

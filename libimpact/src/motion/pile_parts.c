@@ -38,6 +38,7 @@ bool imp_pile_reserve_bodies(imp_pile *pile, const imp_world *world)
     }
     pile->loads = replaced(pile, pile->loads, bodies, sizeof *pile->loads, &there);
     pile->number = replaced(pile, pile->number, bodies, sizeof *pile->number, &there);
+    pile->listed = replaced(pile, pile->listed, bodies, sizeof *pile->listed, &there);
     pile->velocities = replaced(pile, pile->velocities, bodies, sizeof *pile->velocities, &there);
     pile->bodies = there ? world->body_count : 0;
     return there;
@@ -127,6 +128,21 @@ double imp_pile_allowed(const imp_pile *pile, const imp_world *world)
 double imp_pile_slack(const imp_pile *pile, const imp_world *world)
 {
     return IMP_PILE_SLACK * imp_pile_allowed(pile, world);
+}
+
+int imp_pile_list_bodies(imp_pile *pile, const imp_world *world, int count)
+{
+    int bodies = 0;
+    for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
+    for (int c = 0; c < count; c++) {
+        const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
+        for (int k = 0; k < 2; k++) {
+            if (world->bodies[body[k]].is_static || pile->number[body[k]] >= 0) continue;
+            pile->number[body[k]] = bodies;
+            pile->listed[bodies++] = body[k];
+        }
+    }
+    return bodies;
 }
 
 /* The points of the next island to the front of the arrays, with their gaps; how many. */

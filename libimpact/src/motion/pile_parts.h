@@ -26,6 +26,8 @@ void imp_pile_drift(const imp_world *world, const imp_state *velocities, double 
 
 /* The points of the next island to the front of the arrays, with their gaps; how many. */
 int imp_pile_gather_island(imp_pile *pile, const imp_world *world);
+/* Its bodies that move, once each: into pile->number and listed; how many. */
+int imp_pile_list_bodies(imp_pile *pile, const imp_world *world, int count);
 
 /* A cone problem of the island at hand: pile->q, friction, contacts, places in pile->middle. */
 typedef struct imp_pile_question {

@@ -142,31 +142,15 @@ static bool part_near(imp_pile *pile, imp_world *world, const imp_state *states,
     return any;
 }
 
-/* The bodies of the island that is gathered, once each, into pile->pivots; how many. */
-static int list_bodies(imp_pile *pile, const imp_world *world, int count)
-{
-    int bodies = 0;
-    for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
-    for (int c = 0; c < count; c++) {
-        const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
-        for (int k = 0; k < 2; k++) {
-            if (world->bodies[body[k]].is_static || pile->number[body[k]] >= 0) continue;
-            pile->number[body[k]] = bodies;
-            pile->pivots[bodies++] = body[k];
-        }
-    }
-    return bodies;
-}
-
 /* What is parted by D, against loads F, had come no farther: it has less energy by W = -F.D than where it was found,
  * and that is its approach's, v' = v + a D, a (v.M D) + a^2 (D.M D)/2 = -W, or all of it. Without that what falls to
  * and fro between two contacts within a step each gets what it loses there again from being parted. */
 static void slow_down(imp_pile *pile, const imp_world *world, int count, imp_state *states)
 {
-    const int bodies = list_bodies(pile, world, count);
+    const int bodies = imp_pile_list_bodies(pile, world, count);
     double approach = 0, size = 0, work = 0;
     for (int k = 0; k < bodies; k++) {
-        const int b = pile->pivots[k];
+        const int b = pile->listed[k];
         const imp_body *body = &world->bodies[b];
         const imp_state *by = &pile->middle[b];
         const qvec3 turn = imp_omega(body, by);
@@ -178,8 +162,8 @@ static void slow_down(imp_pile *pile, const imp_world *world, int count, imp_sta
     const double left = approach * approach - 2 * work * size,
                  part = left > 0 ? 2 * work / (sqrt(left) - approach) : -approach / size;
     for (int k = 0; k < bodies; k++) {
-        imp_state *state = &states[pile->pivots[k]];
-        const imp_state *by = &pile->middle[pile->pivots[k]];
+        imp_state *state = &states[pile->listed[k]];
+        const imp_state *by = &pile->middle[pile->listed[k]];
         state->v = qvec3_axpy(part, by->v, state->v);
         state->momentum = qvec3_axpy(part, by->momentum, state->momentum);
     }

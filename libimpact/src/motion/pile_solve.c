@@ -11,13 +11,7 @@
 /* Whom each contact couples, by numbers of their own from 0; how many move. */
 static int couple_bodies(imp_pile *pile, const imp_world *world, int count)
 {
-    int bodies = 0;
-    for (int c = 0; c < count; c++) pile->number[pile->contacts[c].body1] = pile->number[pile->contacts[c].body2] = -1;
-    for (int c = 0; c < count; c++) {
-        const int body[2] = {pile->contacts[c].body1, pile->contacts[c].body2};
-        for (int k = 0; k < 2; k++)
-            if (!world->bodies[body[k]].is_static && pile->number[body[k]] < 0) pile->number[body[k]] = bodies++;
-    }
+    const int bodies = imp_pile_list_bodies(pile, world, count);
     for (int c = 0; c < count; c++) {
         pile->couples[c][0] = pile->number[pile->contacts[c].body1];
         pile->couples[c][1] = pile->number[pile->contacts[c].body2];
