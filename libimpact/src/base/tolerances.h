@@ -1030,8 +1030,9 @@
  * work allowed is more than patience with faces; in a second of CPU a cylinder between an ellipsoid and a ball went on
  * by ten microseconds, for ever, by Stronge's law with friction 1. */
 #define IMP_EVENT_STRIDES 100
-/* Of what is held otherwise: the most that was met is 8500, of a superquadric of exponents 3 and 4 that wobbles; where
- * curvatures are infinite or none, as of exponents under 2, the integrator may ask for a million in a microsecond. */
+/* Of two bodies held on each other otherwise: the most that was met is 8500, of a superquadric of exponents 3 and 4
+ * that wobbles; where curvatures are infinite or none, as of exponents under 2, the integrator may ask for a million in
+ * a microsecond. */
 #define IMP_HELD_PATIENCE 400000
 /* Stretches and events of what has faces, or stands on a flat place, in the same time: the motion between them is
  * smooth for longer (a superquadric of exponents 3 and 4 that wobbles asks for 8500 rates), and bounces on corners die

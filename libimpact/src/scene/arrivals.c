@@ -48,13 +48,19 @@ static void give_up(imp_island *loose)
 
 static impact_status conclude_steps(imp_island *island);
 
+static bool holds_any(const imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++)
+        if (imp_is_held(&island->world.pairs[p])) return true;
+    return false;
+}
+
 /* What is held, and the exact way does not settle, goes on by steps: of corners and flat places more may hold than
  * there are motions, and in three of six hundred heaps of balls no contact forces are found; steps ask for impulses,
  * which may be there all the same. */
 static void step_where_unsettled(imp_island *island, impact_status *status)
 {
-    if (*status != IMPACT_EUNSETTLED || island->scene->piles == IMPACT_PILES_EXACT || !imp_scene_holds_any(island))
-        return;
+    if (*status != IMPACT_EUNSETTLED || island->scene->piles == IMPACT_PILES_EXACT || !holds_any(island)) return;
     *status = IMPACT_OK;
     island->lies = true;
     island->scene->message[0] = '\0';
@@ -238,11 +244,11 @@ static impact_status turn_to_steps(impact_scene *scene, imp_island *island, doub
     return status == IMPACT_OK ? conclude_steps(stepped) : status;
 }
 
-/* Where the integrator cannot go on, what is held goes on by steps: surfaces may have edges that no curvature tells. */
+/* Where the integrator cannot go on, what corners or flat places hold goes on by steps. */
 static impact_status go_on_or_by_steps(impact_scene *scene, imp_island *island, double t)
 {
     const impact_status status = go_on(island);
-    if (status != IMPACT_EUNSETTLED || scene->piles == IMPACT_PILES_EXACT || !imp_scene_holds_any(island))
+    if (status != IMPACT_EUNSETTLED || scene->piles == IMPACT_PILES_EXACT || !imp_scene_holds_features(island))
         return status;
     scene->message[0] = '\0';
     return turn_to_steps(scene, island, t);

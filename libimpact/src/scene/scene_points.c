@@ -212,13 +212,6 @@ void imp_scene_drop_points(imp_island *island)
     world->pair_count = kept;
 }
 
-bool imp_scene_holds_any(const imp_island *island)
-{
-    for (int p = 0; p < island->world.pair_count; p++)
-        if (imp_is_held(&island->world.pairs[p])) return true;
-    return false;
-}
-
 bool imp_scene_holds_features(const imp_island *island)
 {
     const imp_world *world = &island->world;

@@ -27,8 +27,6 @@ void imp_scene_name_corner(imp_island *island, imp_pair *pair);
 
 /* Of the points leaves the corners that are held; of bodies that none holds, the pair as a whole. */
 void imp_scene_drop_points(imp_island *island);
-/* Whether anything is held. */
-bool imp_scene_holds_any(const imp_island *island);
 /* Whether a corner is held, or what has a flat place: what the exact motion may not get on with. */
 bool imp_scene_holds_features(const imp_island *island);
 

@@ -37,11 +37,21 @@ static bool meets_faces(const imp_island *island)
     return imp_scene_holds_features(island);
 }
 
+/* Whether two bodies that move are held on each other: what is not goes exactly again at once. */
+static bool holds_movers(const imp_island *island)
+{
+    for (int p = 0; p < island->world.pair_count; p++) {
+        const imp_pair *pair = &island->world.pairs[p];
+        if (imp_is_held(pair) && !island->world.bodies[pair->body2].is_static) return true;
+    }
+    return false;
+}
+
 bool imp_island_loses_patience(imp_island *island, long rates)
 {
     if (island->stepped || island->scene->piles == IMPACT_PILES_EXACT) return false;
     const bool faces = meets_faces(island), pile = !faces && is_pile(island);
-    if (!faces && !pile && !imp_scene_holds_any(island)) return false;
+    if (!faces && !pile && !holds_movers(island)) return false;
     const double natural = imp_pile_natural_time(&island->world, island->states);
     long most = 0, own = 1 + island->strides / IMP_EVENT_STRIDES;
     if (!faces) own = rates > own * IMP_EVENT_RATES ? rates : own * IMP_EVENT_RATES;
