@@ -111,18 +111,9 @@ double imp_pile_smallest(const imp_world *world)
     return least;
 }
 
-/* m: the radius of the ball within the thinnest body: what overlaps by more may find its way out on the other side. */
-static double thinnest_body(const imp_world *world)
-{
-    double least = INFINITY;
-    for (int i = 0; i < world->body_count; i++)
-        if (!world->bodies[i].is_static) least = fmin(least, world->bodies[i].inner);
-    return least;
-}
-
 double imp_pile_allowed(const imp_pile *pile, const imp_world *world)
 {
-    return fmin(pile->tolerance * imp_pile_smallest(world), thinnest_body(world));
+    return pile->tolerance * imp_pile_smallest(world);
 }
 
 double imp_pile_slack(const imp_pile *pile, const imp_world *world)
