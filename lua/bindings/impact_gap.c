@@ -124,10 +124,10 @@ static const char *const feature_words[] = {[IMPACT_SMOOTH] = "smooth",
 
 static void push_patch_point(lua_State *L, const impact_patch_point *p)
 {
-    lua_createtable(L, 0, 6);
+    lua_createtable(L, 0, 7);
     quat_lua_set_vec3(L, "offset1", p->offset1);
-    quat_lua_set_vec3(L, "normal", p->normal);
     quat_lua_set_vec3(L, "offset2", p->offset2);
+    quat_lua_set_vec3(L, "normal", p->normal);
     quat_lua_set_number(L, "height", p->height);
     quat_lua_set_boolean(L, "closed", p->closed);
     quat_lua_set_string(L, "feature1", feature_words[p->feature1.kind]);

@@ -117,9 +117,10 @@ IMPACT_API impact_status impact_collide_together_check(const impact_encounter *e
  * numbering of bodies nor on the order of contacts (but by the law SEQUENCE). IMPACT_OK: and the receipt passed;
  * IMPACT_SEPARATING: no contact approaches, nothing changed; IMPACT_SOFT: the receipt did not pass, `residual` says by
  * how much, or springs were ended early, which `error` tells the doubt of. Below zero nothing is answered, and
- * velocities are those given: as impact_collide_together_check; IMPACT_EUNSETTLED (the contacts are wedged, or the cone
- * problem found no answer); IMPACT_EINTEGRATOR, IMPACT_ENOMEM. Sources: Darboux 1880; Keller 1986; Stronge 2000; Liu,
- * Zhao & Brogliato 2008; Moreau 1988; Glocker & Pfeiffer 1995. */
+ * velocities are those given: as impact_collide_together_check; IMPACT_EUNSETTLED (the contacts are wedged, the cone
+ * problem found no answer, or springs that were ended early leave in doubt as much as what approached);
+ * IMPACT_EINTEGRATOR, IMPACT_ENOMEM. Sources: Darboux 1880; Keller 1986; Stronge 2000; Liu, Zhao & Brogliato 2008;
+ * Moreau 1988; Glocker & Pfeiffer 1995. */
 IMPACT_API impact_status impact_collide_together(const impact_encounter *encounter, impact_together_outcome *outcome);
 
 #ifdef __cplusplus

@@ -49,7 +49,7 @@ typedef struct imp_group {
     bool chosen, wedged;
     double least;  /* springs: smaller restitutions count as this */
     long patience; /* springs: steps and events allowed */
-    double error;  /* of restitution */
+    double error;  /* of velocities, of the fastest approach */
     double held;   /* springs: what they would still give back, J */
 } imp_group;
 

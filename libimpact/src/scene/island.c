@@ -57,6 +57,7 @@ void imp_island_clear(imp_island *island)
     world->incipient_speed = whole->incipient_speed;
     world->flat_height = whole->flat_height;
     island->number = -1;
+    island->strides = 0;
     island->impact_loss = island->loss_before = island->gained = island->outside = 0;
     island->rests = island->rolls = island->loses = island->lies = island->stepped = island->moves = false;
     island->end = (imp_end){IMP_END_TIME, 0};

@@ -49,13 +49,14 @@ static bool holds_movers(const imp_island *island)
 
 bool imp_island_loses_patience(imp_island *island, long rates)
 {
+    const long events = 1 + island->strides / IMP_EVENT_STRIDES;
+    island->strides = 0;
     if (island->stepped || island->scene->piles == IMPACT_PILES_EXACT) return false;
     const bool faces = meets_faces(island), pile = !faces && is_pile(island);
     if (!faces && !pile && !holds_movers(island)) return false;
     const double natural = imp_pile_natural_time(&island->world, island->states);
-    long most = 0, own = 1 + island->strides / IMP_EVENT_STRIDES;
-    if (!faces) own = rates > own * IMP_EVENT_RATES ? rates : own * IMP_EVENT_RATES;
-    island->strides = 0;
+    const long least = events * IMP_EVENT_RATES, own = faces ? events : rates > least ? rates : least;
+    long most = 0;
     for (int i = 0; i < island->world.body_count; i++) {
         const imp_body *body = &island->world.bodies[i];
         imp_patience *patience = &island->scene->tracks.tracks[body->index].patience;
