@@ -81,17 +81,19 @@ static inline double distance(const random_encounter *e, const answer *a, const 
 /* What answers are asked to stand: relative changes of the data, and how far in another frame they may be off. */
 #define ENCOUNTER_CHANGE 1e-11
 
-/* The answer after relative changes of the data of so much. */
+/* The answer after relative changes of so much of some of its data: of velocities, normals, stiffnesses. All at once
+ * may leave a wedge that is planar without an answer, and tell nothing of how it goes. */
 static inline answer solve_nearby(random_stream *random, const random_encounter *e, impact_together_law law,
                                   double exponent, double change)
 {
     random_encounter near = *e;
-    for (int b = 0; b < e->body_count; b++)
+    const int some = 1 + (int)(7 * random_unit(random));
+    for (int b = 0; b < e->body_count && (some & 1); b++)
         near.bodies[b].velocity = qvec3_axpy(change, random_direction(random), near.bodies[b].velocity);
-    for (int i = 0; i < e->meeting_count; i++) {
+    for (int i = 0; i < e->meeting_count && (some & 2); i++)
         near.meetings[i].normal = qvec3_axpy(change, random_direction(random), near.meetings[i].normal);
+    for (int i = 0; i < e->meeting_count && (some & 4); i++)
         near.meetings[i].stiffness *= 1 + change * random_unit(random);
-    }
     return solve(&near, law, exponent, NULL);
 }
 

@@ -261,18 +261,23 @@ static bool find_shared(const face_side s[2], const patch_frame *f, const double
     return end[1] - end[0] > f->slack;
 }
 
-/* d^2/2R, of what is d to the side. */
+/* How far surfaces that are d to the side of each other part by it: d^2/2R of round ones, no more than d of sharp ones.
+ */
 static double rise_across(double aside, double radius, double slack)
 {
-    return fabs(aside) <= slack ? 0 : aside * aside / (2 * radius);
+    const double d = fabs(aside);
+    return d <= slack ? 0 : d < 2 * radius ? d * d / (2 * radius) : d;
 }
 
-/* Of lines d apart the surfaces are nearest between them, at R1/R and R2/R of the way, where each has fallen back. */
+/* Of lines d apart the surfaces are nearest between them, at R1/R and R2/R of the way, where each has fallen back;
+ * sharp edges have no way that they fall back. */
 static void put_between(const face_side s[2], const patch_frame *f, const line_place place[2], double aside,
                         const double across[2], double height, impact_patch *patch)
 {
-    const double radius = place[0].radius + place[1].radius, rise = rise_across(aside, radius, f->slack),
-                 part = rise > 0 ? place[0].radius / radius : 0, tilt = rise > 0 ? -aside / radius : 0;
+    const double radius = place[0].radius + place[1].radius;
+    const bool round = fabs(aside) > f->slack && fabs(aside) < 2 * radius;
+    const double rise = round ? rise_across(aside, radius, f->slack) : 0, part = round ? place[0].radius / radius : 0,
+                 tilt = round ? -aside / radius : 0;
     const double p[2] = {place[0].p[0] + part * aside * across[0], place[0].p[1] + part * aside * across[1]},
                  z1 = place[0].z + part * rise, z2 = place[1].z - (1 - part) * rise;
     const qvec3 flat = qvec3_axpy(p[0], f->x, qvec3_scale(f->y, p[1])),

@@ -267,8 +267,8 @@ static void turn_along(const qvec3 axes[3], qvec3 normal_rate, qvec3 vector, qve
         along[k] = qvec3_dot(axes[k], rate) - qvec3_dot(normal_rate, axes[k]) * qvec3_dot(axes[0], vector);
 }
 
-double imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
-                        const qvec3 axes[3], qvec3 rub, const imp_state *states, double bend[6])
+void imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
+                      const qvec3 axes[3], qvec3 rub, const imp_state *states, double bend[6])
 {
     const imp_body *body[2] = {&world->bodies[pair->body1], &world->bodies[pair->body2]};
     const imp_state *state[2] = {&states[pair->body1], &states[pair->body2]};
@@ -287,13 +287,11 @@ double imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer beare
     turn_along(axes, rates.normal, qvec3_sub(velocity[0], velocity[1]), qvec3_sub(acceleration[0], acceleration[1]),
                bend);
     turn_along(axes, rates.normal, qvec3_sub(turning[0], turning[1]), qvec3_sub(bending[0], bending[1]), bend + 3);
-    const double runs = fmax(qvec3_norm(rates.arm1), qvec3_norm(rates.arm2));
-    if (!(qvec3_dot(rub, rub) > 0)) return runs;
+    if (!(qvec3_dot(rub, rub) > 0)) return;
     double more[3];
     const qvec3 rub_rate = qvec3_cross(turning[bearer == IMP_BORNE_BY_1], rub),
                 turns = qvec3_sub(turning[0], turning[1]),
                 rate = qvec3_add(qvec3_cross(qvec3_sub(bending[0], bending[1]), rub), qvec3_cross(turns, rub_rate));
     turn_along(axes, rates.normal, qvec3_cross(turns, rub), rate, more);
     bend[1] += more[1], bend[2] += more[2];
-    return runs;
 }

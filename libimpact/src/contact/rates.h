@@ -32,9 +32,8 @@ qvec3 imp_point_acceleration(const imp_body *body, const imp_state *state, const
 
 /* The rates of the contact's velocity, and of how the bodies turn on each other, along axes that turn with its normal:
  * those of the velocities alone, without loads or reactions; across it of the velocity at rub (m) from there, which
- * goes with whose corner it is. axes: the normal and two tangents; 6 numbers, m/s^2 and 1/s^2. Returns how fast the
- * place runs over the bodies, m/s. */
-double imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
-                        const qvec3 axes[3], qvec3 rub, const imp_state *states, double bend[6]);
+ * goes with whose corner it is. axes: the normal and two tangents; 6 numbers, m/s^2 and 1/s^2. */
+void imp_contact_bend(imp_world *world, const imp_pair *pair, imp_bearer bearer, const impact_contact *contact,
+                      const qvec3 axes[3], qvec3 rub, const imp_state *states, double bend[6]);
 
 #endif

@@ -3,6 +3,7 @@
 #include "base/bracket.h"
 #include "base/tolerances.h"
 #include "contact/rates.h"
+#include "world/normal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -109,16 +110,13 @@ static double drive_work(const imp_pile *pile, const imp_world *world, int count
  * bodies and contacts turn, into pile->bend. */
 static void find_bends(const imp_pile *pile, imp_world *world, const imp_state *states, int count, double h)
 {
-    const double smallest = imp_pile_smallest(world);
     memset(pile->bend, 0, (size_t)(pile->width * count) * sizeof *pile->bend);
     for (int c = 0; c < count && h > 0; c++) {
         const imp_pile_point *point = &pile->touching.points[pile->members[c]];
         const imp_cone_contact *own = &point->contact;
         const impact_contact contact = {.normal = own->axes[0], .offset1 = own->arm1, .offset2 = own->arm2};
         double bend[6];
-        const double runs = imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, own->axes,
-                                             own->rub, states, bend);
-        if (!(h * runs <= smallest)) continue; /* past the ends of lines that are all but parallel */
+        imp_contact_bend(world, &world->pairs[point->pair], point->bearer, &contact, own->axes, own->rub, states, bend);
         for (int k = 0; k < pile->width; k++) pile->bend[pile->width * c + k] = h * bend[k];
     }
 }
@@ -330,15 +328,51 @@ static imp_cone_outcome find_again(imp_pile *pile, const imp_world *world, const
     return outcome;
 }
 
+static bool is_edge_or_corner(impact_feature feature)
+{
+    return feature.kind == IMPACT_EDGE || feature.kind == IMPACT_VERTEX;
+}
+
+/* Edges on each other that slip part along one of the normals at the ends of their fan, and bear along it. */
+static bool turn_edges(imp_pile *pile, const imp_world *world, int count)
+{
+    const double still = IMP_PILE_USABLE * imp_pile_fastest(pile, count);
+    bool turned = false;
+    for (int c = 0; c < count; c++) {
+        imp_pile_point *point = &pile->touching.points[pile->members[c]];
+        imp_cone_contact *own = &pile->contacts[c];
+        const double *u = &pile->u[pile->width * c];
+        if (!is_edge_or_corner(point->feature[0]) || !is_edge_or_corner(point->feature[1])) continue;
+        if (!(pile->r[pile->width * c] > 0) || !(hypot(u[1], u[2]) > still)) continue;
+        const impact_contact contact = {.normal = own->axes[0], .offset1 = own->arm1, .offset2 = own->arm2};
+        imp_edges edges;
+        if (!imp_edge_normals(world, &world->pairs[point->pair], pile->middle, &contact, &edges)) continue;
+        const qvec3 slip = qvec3_axpy(u[1], own->axes[1], qvec3_scale(own->axes[2], u[2]));
+        const double across = qvec3_dot(slip, qvec3_sub(edges.normal[0], edges.normal[1]));
+        if (!(fabs(across) > still)) continue; /* along the edges */
+        const int parts = across > 0 ? 0 : 1;
+        imp_cone_find_axes(edges.normal[parts], point->contact.axes);
+        memcpy(own->axes, point->contact.axes, sizeof own->axes);
+        point->bearer = edges.owner[parts] == 0 ? IMP_BORNE_BY_1 : IMP_BORNE_BY_2;
+        turned = true;
+    }
+    return turned;
+}
+
 /* Friction acts where the pressures have their centre, and along the slip of the step's middle: both as the first
  * answer has them. Once: where pressures are not unique each answer has others. */
 static imp_cone_outcome find_with_friction(imp_pile *pile, imp_world *world, const imp_state *states, int count,
                                            double h, const imp_state *next)
 {
     find_bends(pile, world, states, count, h);
-    const bool smooth = ask(pile, world, states, count, h, next);
+    bool smooth = ask(pile, world, states, count, h, next);
     const imp_pile_question question = question_of(pile, world, states, count, h > 0 ? h : pile->strike.span);
-    const imp_cone_outcome first = find_impulses(pile, world, &question, smooth);
+    imp_cone_outcome first = find_impulses(pile, world, &question, smooth);
+    if (is_usable(pile, world, count, first.residual) && turn_edges(pile, world, count)) {
+        find_bends(pile, world, states, count, h);
+        smooth = ask(pile, world, states, count, h, next);
+        first = find_impulses(pile, world, &question, smooth);
+    }
     if (!is_usable(pile, world, count, first.residual)) return first;
     const bool leads = smooth && h > 0 && first.residual <= IMP_PILE_USABLE && find_leads(pile, world, count, h);
     const bool shifted =

@@ -162,6 +162,9 @@ typedef struct settling {
     const meeting *m;
     impact_contact found;
     double within, fastest; /* NAN: what is found has not been looked at */
+    int faces;              /* whose normals differ; the first two */
+    qvec3 normal[2];
+    int owner[2]; /* -1: a face of both bodies is there, flush */
 } settling;
 
 static double rate_found(const settling *s)
@@ -172,6 +175,13 @@ static double rate_found(const settling *s)
                : parting_along(s->m->body, s->m->state, &s->found, s->found.normal).rate;
 }
 
+static void take_normal(qvec3 n, const parting *p, impact_contact *contact)
+{
+    contact->normal = n;
+    contact->gap = contact->lower = contact->upper = p->gap;
+    contact->offset1 = p->offset[0], contact->offset2 = p->offset[1];
+}
+
 /* One that separates them, from body 2 to body 1. */
 static void consider(settling *s, qvec3 n, impact_contact *contact)
 {
@@ -180,14 +190,31 @@ static void consider(settling *s, qvec3 n, impact_contact *contact)
     const parting p = parting_along(s->m->body, s->m->state, &s->found, n);
     if (!(p.rate > s->fastest && p.gap >= -s->within) || is_hidden(s->m, p.offset, n, s->within)) return;
     s->fastest = p.rate;
-    contact->normal = n;
-    contact->gap = contact->lower = contact->upper = p.gap;
-    contact->offset1 = p.offset[0], contact->offset2 = p.offset[1];
+    take_normal(n, &p, contact);
+}
+
+static double smaller_radius(const settling *s) { return fmin(s->m->body[0]->radius, s->m->body[1]->radius); }
+
+/* Turned by less than lifts the smaller body by `within`. */
+static bool are_flush(const settling *s, qvec3 n1, qvec3 n2)
+{
+    return smaller_radius(s) * qvec3_norm(qvec3_sub(n1, n2)) <= s->within;
+}
+
+static void note_face(settling *s, int k, qvec3 n)
+{
+    for (int i = 0; i < s->faces && i < 2; i++)
+        if (are_flush(s, n, s->normal[i])) {
+            if (s->owner[i] != k) s->owner[i] = -1;
+            return;
+        }
+    if (s->faces < 2) s->normal[s->faces] = n, s->owner[s->faces] = k;
+    s->faces++;
 }
 
 /* Those of body k's faces. The other's place there lies under the plane of most: they separate nothing. One that is
- * turned from what was found by less than lifts the smaller body by `within` is the same: along a bar's own face the
- * floor, which it is flush with, reaches as much farther as it is wider than the bar. */
+ * the same as was found needs no look: along a bar's own face the floor, which it is flush with, reaches as much
+ * farther as it is wider than the bar. */
 static void consider_faces(settling *s, int k, impact_contact *contact)
 {
     const imp_body *own = s->m->body[k];
@@ -195,7 +222,6 @@ static void consider_faces(settling *s, int k, impact_contact *contact)
     const imp_state *state = s->m->state[k], *others = s->m->state[1 - k];
     const face_list faces = faces_of(&own->shape);
     const quat axes = imp_shape_axes(own, state);
-    const double size = fmin(own->radius, s->m->body[1 - k]->radius);
     const qvec3 touches = k == 0 ? s->found.offset2 : s->found.offset1,
                 from = qvec3_sub(qvec3_sub(others->x, state->x), imp_shape_offset(own, state)),
                 place = quat_rotate_inverse(axes, qvec3_add(from, touches));
@@ -203,9 +229,56 @@ static void consider_faces(settling *s, int k, impact_contact *contact)
         const qvec3 local = normal_of_face(&faces, f);
         if (qvec3_dot(local, place) - height_of_face(&faces, f, local) < -s->within) continue;
         const qvec3 out = quat_rotate(axes, local), n = k == 0 ? qvec3_neg(out) : out;
-        if (size * qvec3_norm(qvec3_sub(n, s->found.normal)) <= s->within) continue;
-        if (separated_by(s->m->body, s->m->state, n) >= -s->within) consider(s, n, contact);
+        const bool same = are_flush(s, n, s->found.normal);
+        if (!same && separated_by(s->m->body, s->m->state, n) < -s->within) continue;
+        note_face(s, k, n);
+        if (!same) consider(s, n, contact);
     }
+}
+
+/* m/s: how fast bodies part is known no better than a direction. */
+static double rate_error(const settling *s)
+{
+    double speed = 0;
+    for (int k = 0; k < 2; k++) {
+        const imp_body *body = s->m->body[k];
+        const imp_state *state = s->m->state[k];
+        if (!body->is_static) speed += qvec3_norm(state->v) + body->radius * qvec3_norm(imp_omega(body, state));
+    }
+    return s->within / smaller_radius(s) * speed;
+}
+
+/* Two faces, of one body each: edges that lie along each other touch alike along all directions between. Of edges that
+ * lie d beside each other these separate by d |n1 - n2| differently; so do, of all lengths, a face and an edge in it
+ * that are nearly flush. */
+static bool is_between(const settling *s)
+{
+    if (s->faces != 2 || s->owner[0] < 0 || s->owner[1] < 0) return false;
+    double gap[2];
+    for (int i = 0; i < 2; i++) {
+        const parting p = parting_along(s->m->body, s->m->state, &s->found, s->normal[i]);
+        if (is_hidden(s->m, p.offset, s->normal[i], s->within)) return false;
+        gap[i] = p.gap;
+    }
+    return fabs(gap[0] - gap[1]) <= s->within * qvec3_norm(qvec3_sub(s->normal[0], s->normal[1]));
+}
+
+/* Where they part along both alike. How fast what is held by a step parts is known no better than that errs, and its
+ * answer tells. */
+static bool part_alike(const settling *s)
+{
+    if (s->within >= imp_stepped_flush(s->m->body[0], s->m->body[1])) return true;
+    double rate[2];
+    for (int i = 0; i < 2; i++) rate[i] = parting_along(s->m->body, s->m->state, &s->found, s->normal[i]).rate;
+    return fabs(rate[0] - rate[1]) <= rate_error(s);
+}
+
+static void take_middle(const settling *s, impact_contact *contact)
+{
+    qvec3 n;
+    if (qvec3_normalize(qvec3_add(s->normal[0], s->normal[1]), &n) != QUAT_OK) return;
+    const parting p = parting_along(s->m->body, s->m->state, &s->found, n);
+    if (p.gap >= -s->within) take_normal(n, &p, contact);
 }
 
 static void settle(const meeting *m, double within, impact_contact *contact)
@@ -213,6 +286,15 @@ static void settle(const meeting *m, double within, impact_contact *contact)
     if (!(fabs(contact->gap) <= within)) return;
     settling s = {.m = m, .found = *contact, .within = within, .fastest = NAN};
     for (int k = 0; k < 2; k++) consider_faces(&s, k, contact);
+    if (is_between(&s) && part_alike(&s)) take_middle(&s, contact);
+}
+
+static meeting meeting_among(const imp_world *world, const imp_pair *pair, const imp_state *states)
+{
+    return (meeting){.body = {&world->bodies[pair->body1], &world->bodies[pair->body2]},
+                     .state = {&states[pair->body1], &states[pair->body2]},
+                     .others = world,
+                     .states = states};
 }
 
 void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp_body *body2, const imp_state *state2,
@@ -225,11 +307,20 @@ void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp
 void imp_settle_among(const imp_world *world, const imp_pair *pair, const imp_state *states, double within,
                       impact_contact *contact)
 {
-    const meeting m = {.body = {&world->bodies[pair->body1], &world->bodies[pair->body2]},
-                       .state = {&states[pair->body1], &states[pair->body2]},
-                       .others = world,
-                       .states = states};
+    const meeting m = meeting_among(world, pair, states);
     settle(&m, within, contact);
+}
+
+bool imp_edge_normals(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                      const impact_contact *contact, imp_edges *edges)
+{
+    const meeting m = meeting_among(world, pair, states);
+    settling s = {.m = &m, .found = *contact, .within = imp_stepped_flush(m.body[0], m.body[1]), .fastest = NAN};
+    impact_contact fastest = *contact;
+    for (int k = 0; k < 2; k++) consider_faces(&s, k, &fastest);
+    if (!is_between(&s)) return false;
+    for (int i = 0; i < 2; i++) edges->normal[i] = s.normal[i], edges->owner[i] = s.owner[i];
+    return true;
 }
 
 /* ---- a gap by a face ---- */

@@ -6,7 +6,13 @@
  *
  *     g = max over n of g_n,     g' = max {n . (v1 - v2 at the contact) : g_n = g}
  *
- * The contact's normal is the direction that attains g': the bodies approach iff they do along every one.  Internal.
+ * The contact's normal is the direction that attains g': the bodies approach iff they do along every one.
+ *
+ * Sharp edges that lie along each other, of which neither face is flush with one of the other's, touch along a fan of
+ * directions between two faces. Rounded by r they touch along the line between their axes, 2r apart, which turns by
+ * the mean of what the bodies turn: where g' is that of both faces the contact's normal is the fan's middle, which does
+ * too. Edges between flush faces (cubes across from each other in a wall) go along one of these: their normal is one
+ * of them.  Internal.
  */
 #ifndef IMP_NORMAL_H
 #define IMP_NORMAL_H
@@ -26,6 +32,18 @@ void imp_settle_normal(const imp_body *body1, const imp_state *state1, const imp
  * n.u >= 0 for one n = a s - b f between the side's s and the bottom's leave s.u >= 0. */
 void imp_settle_among(const imp_world *world, const imp_pair *pair, const imp_state *states, double within,
                       impact_contact *contact);
+
+/* Of sharp edges that lie along each other, each at one end of the fan of their normals: a face's normal, whose body
+ * (0 or 1) it is. */
+typedef struct imp_edges {
+    qvec3 normal[2]; /* world, from body 2 to body 1 */
+    int owner[2];
+} imp_edges;
+
+/* Whether the contact, which is held by a step, is of such edges. Where they stay together they bear in the fan's
+ * middle; where they slip they part along one of the two, and bear along that. */
+bool imp_edge_normals(const imp_world *world, const imp_pair *pair, const imp_state *states,
+                      const impact_contact *contact, imp_edges *edges);
 
 /* The gap where one body stands on a face of the other, near the direction `normal` (from body 2 to body 1): its lowest
  * place, whose foot is within the face, is as far from it as the face's plane parts them, which no gap exceeds and no

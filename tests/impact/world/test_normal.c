@@ -128,6 +128,50 @@ static void at_an_edge_the_rate_decides(void **state)
     assert_near3(apart.normal, (qvec3){1, 0, 0}, 0);
 }
 
+/* Two boxes lean on each other, edge on edge, about y: what they touch along goes from the one's side to the other's.
+ * At rest, and where they part along both alike, it is the middle, whichever is listed first; else that along which
+ * they part fastest. Held by a step it is the middle, however they move. */
+static void edges_on_each_other_touch_along_the_middle(void **state)
+{
+    (void)state;
+    impact_shape box;
+    random_stream random = {72};
+    const double a = 0.2, c = 0.3;
+    assert_int_equal(impact_shape_box(a, 0.25, c, 0, &box), IMPACT_OK);
+    const imp_body body[2] = {body_of(box, false), body_of(box, false)};
+    for (int run = 0; run < 4000; run++) {
+        const quat q = random_rotation(&random);
+        const double lean[2] = {0.02 + 0.7 * random_unit(&random), 0.02 + 0.7 * random_unit(&random)};
+        const int moves = run % 4; /* 0: at rest, 1: along the middle, 2: across, 3: across, and held by a step */
+        imp_state at[2];
+        qvec3 corner[2], out[2];
+        for (int k = 0; k < 2; k++) {
+            const double side = k == 0 ? 1 : -1; /* the first is on the left and leans to the right */
+            at[k] = (imp_state){.q = quat_mul(q, (quat){cos(lean[k] / 2), 0, side * sin(lean[k] / 2), 0})};
+            corner[k] = quat_rotate(at[k].q, (qvec3){side * a, 0, c});
+            out[k] = quat_rotate(at[k].q, (qvec3){1, 0, 0}); /* from the first to the second */
+            at[k].x = qvec3_neg(corner[k]);
+        }
+        qvec3 middle;
+        assert_int_equal(qvec3_normalize(qvec3_add(out[0], out[1]), &middle), QUAT_OK);
+        const qvec3 across = qvec3_cross(middle, quat_rotate(q, (qvec3){0, 1, 0}));
+        const double along = 2 * random_unit(&random) - 1, sideways = moves < 2 ? 0 : 2 * random_unit(&random) - 1;
+        if (moves > 0) at[1].v = qvec3_axpy(sideways, across, qvec3_scale(middle, along));
+        for (int first = 0; first < 2; first++) { /* normals go from body 2 to body 1 */
+            const imp_body *one = &body[first], *two = &body[1 - first];
+            const double sign = first == 0 ? -1 : 1, within = moves == 3 ? 2 * imp_stepped_flush(one, two) : 1e-9;
+            const int found = run / 4 % 2;
+            impact_contact contact = {
+                .normal = qvec3_scale(out[found], sign), .offset1 = corner[first], .offset2 = corner[1 - first]};
+            imp_settle_normal(one, &at[first], two, &at[1 - first], within, &contact);
+            const double rate[2] = {qvec3_dot(out[0], at[1].v), qvec3_dot(out[1], at[1].v)};
+            const int fastest = rate[found] < 0 && rate[1 - found] > rate[found] ? 1 - found : found;
+            assert_near3(contact.normal, qvec3_scale(moves == 2 ? out[fastest] : middle, sign), 1e-14);
+            assert_near3(contact.offset1, corner[first], 1e-12);
+        }
+    }
+}
+
 /* A ball over a box's top, a cylinder's disc and a cone's base, or beside: by its lowest point, as long as that is
  * within the border, and under the cone's side, by as much as it lies deep. */
 static void what_stands_over_a_face(void **state)
@@ -211,9 +255,11 @@ static void no_nearer_way_out_is_left(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_disc_that_lands_flat_stays_where_it_touches),
-        cmocka_unit_test(what_lies_flush_has_one_normal), cmocka_unit_test(at_an_edge_the_rate_decides),
-        cmocka_unit_test(what_stands_over_a_face), cmocka_unit_test(no_nearer_way_out_is_left)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_disc_that_lands_flat_stays_where_it_touches),
+                                       cmocka_unit_test(what_lies_flush_has_one_normal),
+                                       cmocka_unit_test(at_an_edge_the_rate_decides),
+                                       cmocka_unit_test(edges_on_each_other_touch_along_the_middle),
+                                       cmocka_unit_test(what_stands_over_a_face),
+                                       cmocka_unit_test(no_nearer_way_out_is_left)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
