@@ -40,7 +40,7 @@ typedef struct impact_face {
 /* All of the shape within height (m, >= 0) of its supporting plane across the direction (body frame, unit), as far as
  * it is flat: a vertex, edge or face, a side line, a cap; of superquadrics |x_i|^p_i <= p height/A, where the exponent
  * along the face is 3 or more, and the direction stands off its axis by no more than the height allows; of those with
- * two exponents of 1 and a third below 3 (of superellipsoids with one of 1) a line from edge to edge. What is curved is
+ * two exponents of 1 (of superellipsoids with one of 1) a line from edge to edge. What is curved is
  * a point. Planes: along +z their bounds. The dimension; -1 for a height < 0, a direction that is not unit or
  * finite, or a plane seen from another side. */
 IMPACT_API int impact_shape_face(const impact_shape *shape, qvec3 direction, double height, impact_face *face);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/held_spot.h"
+#include "shape/ridge.h"
+#include "shape/solid.h"
 #include "shape/support.h"
 
 static bool is_nested(const impact_shape *shape)
@@ -12,7 +14,8 @@ bool imp_spot_suits(const imp_world *world, const imp_pair *pair)
     const impact_shape *shape = &world->bodies[pair->body1].shape;
     if (world->bodies[pair->body2].shape.kind != IMPACT_PLANE) return false;
     if (shape->kind != IMPACT_SUPERQUADRIC && shape->kind != IMPACT_SUPERELLIPSOID) return false;
-    return fmin(shape->r, fmin(shape->s, shape->t)) > 1 && (shape->r != 2 || shape->s != 2 || shape->t != 2);
+    const bool has_edges = imp_ridge_count(shape) > 0 || imp_is_octahedron(shape);
+    return !has_edges && (shape->r != 2 || shape->s != 2 || shape->t != 2);
 }
 
 /* The x >= 0 of x + x^n = s, n >= 1, s >= 0: Newton from above falls monotonically. */
@@ -27,10 +30,15 @@ static double split(double s, double n)
     return fmax(x, 0);
 }
 
-/* u and e of one axis from s. */
+/* u and e of one axis from s; of p = 1 u is 0 on the edge, and e is 1 beside it. */
 static void part(double s, double p, double *u, double *e)
 {
     const double size = fabs(s);
+    if (p == 1) {
+        *u = copysign(fmax(size - 1, 0), s);
+        *e = copysign(fmin(size, 1), s);
+        return;
+    }
     const double smaller = p == 2 ? 0.5 * size : split(size, p > 2 ? p - 1 : 1 / (p - 1)), rest = size - smaller;
     /* near 0 the rest of one axis is all rounding: the power is exact */
     const double larger = rest > 0.1 * size ? rest : pow(smaller, p > 2 ? p - 1 : 1 / (p - 1));
@@ -200,33 +208,70 @@ static void section_rates(const impact_shape *shape, const imp_spot *spot, const
             (e_rate[i] / spot->slope[i] - (t - r) / ((t - 1) * (r - 1)) * turn * spot->section[i]) / spot->k_ratio;
 }
 
-/* The normal m is p e/a over its length l, so that e' = (a/p)(l m' + l' m); sum p e u' = 0, u' = e'/slope, gives l'. Of
- * superellipsoids m is e/a over its length; e is homogeneous in (x, y) and in z alike, and sum e u' = 0 is sum u e' =
- * 0. */
-imp_spot_rate imp_spot_move(const impact_shape *shape, const imp_spot *spot, qvec3 normal_rate)
+/* With l the length of the normal m = p e/(a l), e' = (a/p)(l m' + l' m). Of superellipsoids m is e/a over its length; e
+ * is homogeneous in (x, y) and in z alike, and sum e u' = 0 is sum u e' = 0. */
+typedef struct spot_turn {
+    double axis[3], p[3]; /* axis: a/p */
+    double m_rate[3], length, e_rate[3], u_rate[3];
+} spot_turn;
+
+static spot_turn turn_of_spot(const impact_shape *shape, const imp_spot *spot, qvec3 normal_rate)
 {
-    const double m_rate[3] = {normal_rate.x, normal_rate.y, normal_rate.z};
-    const bool nested = is_nested(shape);
-    double p[3], axis[3], squares = 0, turning = 0, mass = 0, e_rate[3], u_rate[3];
-    exponents_of(shape, p, axis);
+    spot_turn t = {.m_rate = {normal_rate.x, normal_rate.y, normal_rate.z}};
+    double squares = 0;
+    exponents_of(shape, t.p, t.axis);
     for (int i = 0; i < 3; i++) {
-        if (!nested) axis[i] /= p[i];
-        squares += spot->e[i] / axis[i] * (spot->e[i] / axis[i]);
+        if (!is_nested(shape)) t.axis[i] /= t.p[i];
+        squares += spot->e[i] / t.axis[i] * (spot->e[i] / t.axis[i]);
     }
-    const double length = sqrt(squares);
+    t.length = sqrt(squares);
+    return t;
+}
+
+/* From l'/l; u' = e'/slope. */
+static void stretch_turn(const imp_spot *spot, double stretch, spot_turn *t)
+{
     for (int i = 0; i < 3; i++) {
-        /* p e/slope = p u/(p - 1) */
-        const double q = nested ? 1 : p[i] / (p[i] - 1);
-        turning += q * spot->u[i] * axis[i] * length * m_rate[i];
+        t->e_rate[i] = t->axis[i] * t->length * t->m_rate[i] + spot->e[i] * stretch;
+        t->u_rate[i] = t->p[i] > 1 ? t->e_rate[i] / spot->slope[i] : 0;
+    }
+}
+
+/* Beside the edge of an exponent of 1 its own e stays, which gives l'/l, and u' is what sum p e u' = 0 leaves. */
+static void turn_beside(const imp_spot *spot, int sharp, spot_turn *t)
+{
+    double sum = 0;
+    stretch_turn(spot, -t->axis[sharp] * t->length * t->m_rate[sharp] / spot->e[sharp], t);
+    for (int i = 0; i < 3; i++) sum += t->p[i] * spot->e[i] * t->u_rate[i];
+    t->e_rate[sharp] = 0;
+    t->u_rate[sharp] = -sum / spot->e[sharp];
+}
+
+/* sum p e u' = 0 gives l'/l: p e/slope is p u/(p - 1). */
+static void turn_smoothly(const impact_shape *shape, const imp_spot *spot, spot_turn *t)
+{
+    double turning = 0, mass = 0;
+    for (int i = 0; i < 3; i++) {
+        const double q = is_nested(shape) ? 1 : t->p[i] > 1 ? t->p[i] / (t->p[i] - 1) : 0;
+        turning += q * spot->u[i] * t->axis[i] * t->length * t->m_rate[i];
         mass += q * spot->u[i] * spot->e[i];
     }
-    for (int i = 0; i < 3; i++) {
-        e_rate[i] = axis[i] * length * m_rate[i] - spot->e[i] * turning / mass;
-        u_rate[i] = e_rate[i] / spot->slope[i];
-    }
-    if (nested) section_rates(shape, spot, e_rate, u_rate);
-    imp_spot_rate rate = {.point_speed = hypot(u_rate[0], hypot(u_rate[1], u_rate[2]))};
-    for (int i = 0; i < 3; i++) rate.s[i] = u_rate[i] + e_rate[i];
-    rate.point_rate = (qvec3){shape->a * u_rate[0], shape->b * u_rate[1], shape->c * u_rate[2]};
+    stretch_turn(spot, -turning / mass, t);
+    if (is_nested(shape)) section_rates(shape, spot, t->e_rate, t->u_rate);
+}
+
+imp_spot_rate imp_spot_move(const impact_shape *shape, const imp_spot *spot, qvec3 normal_rate)
+{
+    spot_turn t = turn_of_spot(shape, spot, normal_rate);
+    int beside = -1;
+    for (int i = 0; i < 3; i++)
+        if (t.p[i] == 1 && spot->u[i] != 0) beside = i;
+    if (beside >= 0)
+        turn_beside(spot, beside, &t);
+    else
+        turn_smoothly(shape, spot, &t);
+    imp_spot_rate rate = {.point_speed = hypot(t.u_rate[0], hypot(t.u_rate[1], t.u_rate[2]))};
+    for (int i = 0; i < 3; i++) rate.s[i] = t.u_rate[i] + t.e_rate[i];
+    rate.point_rate = (qvec3){shape->a * t.u_rate[0], shape->b * t.u_rate[1], shape->c * t.u_rate[2]};
     return rate;
 }

@@ -12,7 +12,7 @@
 
 int imp_ridge_count(const impact_shape *shape)
 {
-    if (fmax(shape->r, fmax(shape->s, shape->t)) >= IMP_FLAT_EXPONENT) return 0;
+
     const int ones = (shape->r == 1) + (shape->s == 1) + (shape->t == 1);
     if (shape->kind == IMPACT_SUPERQUADRIC) return ones == 2 ? 6 : 0;
     if (shape->kind != IMPACT_SUPERELLIPSOID) return 0;
@@ -67,7 +67,8 @@ static curve_place place_on(const curve *c, double alpha, double beta, double en
     return beyond ? (curve_place){small, large, rate, large_rate} : (curve_place){large, small, large_rate, rate};
 }
 
-/* Along the curve's axes: alpha with its sign, beta, and the sides on which the place is. */
+/* Along the curve's axes: alpha with its sign, beta, and the sides on which the place is. A direction that is level but
+ * for rounding is level: over a flat place that would lead to some end of it. */
 typedef struct curve_view {
     double alpha, beta, side, up;
 } curve_view;
@@ -75,7 +76,8 @@ typedef struct curve_view {
 static curve_view view_of_curve(const imp_form *form, const curve *c, const double d[3])
 {
     const double side = c->side != 0 ? c->side : copysign(1, d[c->x]);
-    return (curve_view){form->axis[c->x] * side * d[c->x], form->axis[c->z] * fabs(d[c->z]), side,
+    return (curve_view){form->axis[c->x] * side * d[c->x],
+                        fabs(d[c->z]) > IMP_LEVEL ? form->axis[c->z] * fabs(d[c->z]) : 0, side,
                         copysign(1, d[c->z])};
 }
 

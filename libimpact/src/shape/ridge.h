@@ -18,8 +18,7 @@
 
 #include "shape/support.h"
 
-/* How many such features the shape has: 6, 4, 3, or 0 where it has none. An octahedron is a polyhedron; where the
- * third exponent is 3 or more the edges have flat places, and it is held by these (face.c). */
+/* How many such features the shape has: 6, 4, 3, or 0 where it has none. An octahedron is a polyhedron. */
 int imp_ridge_count(const impact_shape *shape);
 
 /* An apex, that is, and no curve. */
