@@ -151,6 +151,17 @@ static void solve_one(const family *f, uint64_t seed, long number, impact_togeth
                                                   : a.outcome.energy_rose;
 }
 
+static void print_heading(void)
+{
+    static const char *const columns[] = {"law",         "restitution", "exponent",    "contacts",      "encounters",
+                                          "answered",    "separating",  "soft",        "sensitive",     "ended_early",
+                                          "wedged",      "unsettled",   "energy_rose", "order_changed", "residual",
+                                          "turned",      "turned_off",  "several",     "turned_lost",   "chance",
+                                          "time_median", "time_99",     "time_most",   "steps_median",  "steps_most"};
+    for (size_t k = 0; k < sizeof columns / sizeof *columns; k++) printf("%s%s", k ? "," : "", columns[k]);
+    printf("\n");
+}
+
 int main(int argc, char **argv)
 {
     static const char *const names[] = {"--encounters", "--seed", "--only", NULL};
@@ -162,12 +173,7 @@ int main(int argc, char **argv)
         return 2;
     }
     if (impact_together_workspace_create(NULL, &workspace) != IMPACT_OK) return 1;
-    printf("law,restitution,exponent,contacts,encounters,answered,separating,soft,sensitive,ended_early,wedged,"
-           "unsettled,energy_"
-           "rose,order_"
-           "changed,"
-           "residual,turned,turned_off,several,turned_lost,chance,time_median,time_99,time_most,steps_median,steps_"
-           "most\n");
+    print_heading();
     long number = 0;
     for (int k = 0; k < FAMILIES; k++) {
         const family *f = &families[k];
