@@ -115,6 +115,8 @@ double imp_face_roll_rate(const imp_face_motion *motion, const imp_face_load *lo
 double imp_face_ease(const imp_face_motion *motion);
 /* Of the twist: by how much differences tell slopes of its friction. */
 double imp_face_difference(const imp_face_motion *motion);
+/* c W h, by which a line's points are faster than its centre, of its roll W or W': in axes that stay. */
+void imp_face_over_center(const imp_face_motion *motion, const double *y, double roll, double out[2]);
 /* The centre's velocity, in axes that stay. */
 void imp_face_center_velocity(const imp_face_motion *motion, const double *y, double v[2]);
 /* Rates of y by time, y of IMP_FACE_STATE numbers: works are over m size^2. */
