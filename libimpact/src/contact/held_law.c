@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/held_law.h"
+#include "base/tolerances.h"
+#include "contact/encounter.h"
 #include "contact/held_flat.h"
 
 #include <math.h>
@@ -15,7 +17,8 @@ bool imp_held_law_take(imp_arena *arena, int count, imp_held_law *law)
                           .cone = {.arena = arena}};
     if (!law->contact || !law->contacts || !law->rows || !law->modes || !law->w) return false;
     law->q = law->w + n * n, law->r = law->q + n, law->u = law->r + n, law->friction = law->u + n;
-    return imp_cone_reserve(&law->cone, count);
+    law->room = imp_arena_take(arena, imp_encounter_wedge_size(size), sizeof *law->room);
+    return law->room && imp_cone_reserve(&law->cone, count);
 }
 
 void imp_held_law_give(imp_held_law *law)
@@ -27,6 +30,7 @@ void imp_held_law_give(imp_held_law *law)
     imp_arena_give(arena, law->rows);
     imp_arena_give(arena, law->modes);
     imp_arena_give(arena, law->w);
+    imp_arena_give(arena, law->room);
 }
 
 static void list_contacts(const imp_held *held, int island, imp_held_law *law)
@@ -73,11 +77,21 @@ static void find_problem(const imp_held *held, const imp_world *world, const imp
     }
 }
 
+/* Where pressures balance that no load makes, as between two walls, each contact yields a little: bodies that do have
+ * none of these. */
+static void let_yield(imp_held_law *law)
+{
+    const imp_wedge_question question = {.count = law->count, .w = law->w, .friction = law->friction};
+    if (law->count < 2 || !imp_encounter_wedged(&question, law->room)) return;
+    for (int i = 0; i < 3 * law->count; i++) law->w[i * (3 * law->count + 1)] *= 1 + IMP_HELD_YIELDS;
+}
+
 void imp_held_law_find(const imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,
                        int island, imp_held_law *law)
 {
     list_contacts(held, island, law);
     find_problem(held, world, states, loads, law);
+    let_yield(law);
     law->size = 0;
     for (int i = 0; i < 3 * law->count; i++) law->size = fmax(law->size, fabs(law->q[i]));
 }

@@ -310,8 +310,9 @@ static void take_forces(imp_held *held, int island, bool with_friction, bool uni
     }
 }
 
+/* yields: of its own response, each unknown's. */
 static imp_linear factor_island(imp_held *held, const imp_world *world, const imp_state *states, bool with_friction,
-                                int island)
+                                int island, double yields)
 {
     const int n = list_unknowns(held, world, states, island, with_friction);
     imp_linear system = {.n = n,
@@ -322,23 +323,37 @@ static imp_linear factor_island(imp_held *held, const imp_world *world, const im
                          .rows = held->order,
                          .columns = held->order + n};
     build_matrix(held->unknowns, n, system.matrix);
+    for (int i = 0; i < n; i++) system.matrix[i * (n + 1)] *= 1 + yields;
     imp_linear_factor(&system);
     return system;
+}
+
+static bool island_slides(const imp_held *held, int island)
+{
+    for (int c = island; c < held->count; c++) {
+        const imp_held_contact *contact = &held->contacts[c];
+        if (held->island[c] == island && contact->mode == IMP_SLIDE && contact->friction > 0) return true;
+    }
+    return false;
 }
 
 static void solve_island(imp_held *held, const imp_world *world, const imp_state *states, bool with_friction,
                          int island)
 {
-    const imp_linear system = factor_island(held, world, states, with_friction, island);
+    imp_linear system = factor_island(held, world, states, with_friction, island, 0);
     const bool unique = system.rank == system.n;
-    if (with_friction && !unique) begin_forces(held, system.n);
+    if (with_friction && !unique) {
+        if (island_slides(held, island))
+            system = factor_island(held, world, states, true, island, IMP_HELD_YIELDS);
+        begin_forces(held, system.n);
+    }
     find_forces(held, &system);
     take_forces(held, island, with_friction, unique);
 }
 
 int imp_system_count_idle(imp_held *held, const imp_world *world, const imp_state *states, int island)
 {
-    const imp_linear system = factor_island(held, world, states, true, island);
+    const imp_linear system = factor_island(held, world, states, true, island, 0);
     return system.n - system.rank;
 }
 

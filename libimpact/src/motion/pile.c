@@ -40,7 +40,7 @@ impact_status imp_pile_take_back(imp_pile *pile)
     return imp_pile_copy_memories(pile->arena, &pile->memory[0], &pile->kept.memory) ? IMPACT_OK : IMPACT_ENOMEM;
 }
 
-static void add_loads(const imp_world *world, const imp_load *loads, double h, imp_state *states)
+void imp_pile_add_loads(const imp_world *world, const imp_load *loads, double h, imp_state *states)
 {
     for (int i = 0; i < world->body_count; i++) {
         if (world->bodies[i].is_static) continue;
@@ -74,7 +74,7 @@ static impact_status push_bodies(imp_pile *pile, imp_world *world, double t, dou
 {
     if (!imp_field_loads(world, t + 0.5 * h, loaded, pile->loads)) return IMPACT_EDOMAIN;
     memcpy(to, pile->middle, sizeof *to * (size_t)world->body_count);
-    add_loads(world, pile->loads, h, to);
+    imp_pile_add_loads(world, pile->loads, h, to);
     for (int i = 0; i < world->body_count; i++) {
         result->force_work += h * pile->loads[i].work_rate;
         result->damping += h * pile->loads[i].damping_rate;

@@ -87,6 +87,7 @@ typedef struct imp_pile {
     int widest, width; /* numbers a contact: that there is room for; of the island at hand, 3, or 6 with moments */
     double *bounce;    /* m/s, per contact, <= 0 */
     double *gap, *friction, *w, *q, *r, *u, *before, *last_r, *last_u, *lead, *bend;
+    double *balance; /* of the question whether pressures balance */
     imp_rest_velocity *velocities;
     char message[160];
 } imp_pile;

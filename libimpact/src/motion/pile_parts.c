@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "motion/pile_parts.h"
 #include "base/tolerances.h"
+#include "contact/encounter.h"
 
 #include <quat/exponential.h>
 
@@ -72,6 +73,7 @@ bool imp_pile_reserve_contacts(imp_pile *pile, const imp_world *world, int wante
     pile->w = imp_arena_take_unset(pile->arena, n * n, sizeof *pile->w); /* which many contacts never touch */
     there = there && pile->w;
     pile->gap = replaced(pile, pile->gap, count, sizeof *pile->gap, &there);
+    pile->balance = replaced(pile, pile->balance, imp_encounter_wedge_size(count), sizeof *pile->balance, &there);
     double **vectors[] = {&pile->q,      &pile->r,      &pile->u,    &pile->before,
                           &pile->last_r, &pile->last_u, &pile->lead, &pile->bend};
     for (int k = 0; k < 8; k++) *vectors[k] = replaced(pile, *vectors[k], n, sizeof **vectors[k], &there);

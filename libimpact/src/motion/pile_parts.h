@@ -24,6 +24,9 @@ quat imp_pile_turned(quat q, qvec3 omega, double h);
 /* What moves goes on with its velocities for h. */
 void imp_pile_drift(const imp_world *world, const imp_state *velocities, double h, imp_state *states);
 
+/* Adds what loads change velocities by in h. */
+void imp_pile_add_loads(const imp_world *world, const imp_load *loads, double h, imp_state *states);
+
 /* The points of the next island to the front of the arrays, with their gaps; how many. */
 int imp_pile_gather_island(imp_pile *pile, const imp_world *world);
 /* Its bodies that move, once each: into pile->number and listed; how many. */
@@ -39,6 +42,12 @@ typedef struct imp_pile_question {
 
 /* Into pile->r and u. */
 imp_cone_outcome imp_pile_solve(imp_pile *pile, const imp_world *world, const imp_pile_question *question);
+
+/* Whether pressures may balance among the island's contacts that no load makes, as between two walls; of islands that
+ * are not solved in their own space it is not asked. pile->w has the problem then, */
+bool imp_pile_may_balance(imp_pile *pile, const imp_world *world, int count);
+/* and this its solution where all contacts yield a little (contact/held_law.c), which have no such pressures. */
+imp_cone_outcome imp_pile_yield(imp_pile *pile, const imp_pile_question *question);
 
 /* The greatest velocity that contacts have without impulses, pile->q, m/s. */
 double imp_pile_fastest(const imp_pile *pile, int count);

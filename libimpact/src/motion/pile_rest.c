@@ -2,6 +2,8 @@
 #include "motion/pile_parts.h"
 #include "base/tolerances.h"
 
+#include <string.h>
+
 /* Whether a static body's surface moves along under what touches it with friction. */
 static bool is_dragged(const imp_pile_contacts *touching, const imp_world *world, double rest_speed)
 {
@@ -53,6 +55,25 @@ static void remember_rest(imp_pile *pile, int count)
     }
 }
 
+/* Reactions that balance the loads may be such as no load makes: a box that just fits between two walls. Whether the
+ * loads make what holds it, as far as that is told. */
+static bool holds_by_loads(imp_pile *pile, const imp_world *world, const imp_state *states, int count)
+{
+    const size_t size = sizeof *states * (size_t)world->body_count;
+    memcpy(pile->middle, states, size);
+    if (!imp_pile_may_balance(pile, world, count)) return true;
+    memcpy(pile->end, states, size);
+    for (int i = 0; i < world->body_count; i++) pile->end[i].v = pile->end[i].momentum = (qvec3){0, 0, 0};
+    imp_pile_add_loads(world, pile->loads, 1, pile->end);
+    imp_cone_contact_velocities(world, pile->end, pile->contacts, count, pile->q);
+    const imp_pile_question question = {.count = count, .usable = IMP_PILE_USABLE};
+    const imp_cone_outcome outcome = imp_pile_yield(pile, &question);
+    if (outcome.status == IMP_CONE_BAD || !(outcome.residual <= IMP_PILE_USABLE)) return true;
+    double left = 0;
+    for (int i = 0; i < 3 * count; i++) left = fmax(left, fabs(pile->u[i]));
+    return left <= IMP_PILE_USABLE * imp_pile_fastest(pile, count);
+}
+
 impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const imp_state *states, double rest_speed,
                              bool *rests)
 {
@@ -84,6 +105,7 @@ impact_status imp_pile_rests(imp_pile *pile, imp_world *world, double t, const i
                                                         pile->loads, &pile->rest, pile->r, pile->velocities);
         if (outcome.status != IMP_REST_RESTS) return IMPACT_OK;
         remember_rest(pile, count);
+        if (!holds_by_loads(pile, world, states, count)) return IMPACT_OK;
     }
     *rests = true;
     return IMPACT_OK;

@@ -5,6 +5,7 @@
  */
 #include "motion/pile_parts.h"
 #include "base/tolerances.h"
+#include "contact/encounter.h"
 
 #include <string.h>
 
@@ -34,13 +35,65 @@ static imp_cone_problem problem_of(const imp_pile *pile, const imp_pile_question
                               .effort = question->effort};
 }
 
+static void assemble_island(imp_pile *pile, const imp_world *world, int count)
+{
+    if (pile->width > 3)
+        imp_cone_assemble_turning(world, pile->middle, pile->contacts, count, pile->rows, pile->turns, pile->w);
+    else
+        imp_cone_assemble(world, pile->middle, pile->contacts, count, pile->rows, pile->w);
+}
+
 static imp_cone_outcome by_contacts(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
 {
-    imp_cone_problem problem = problem_of(pile, question);
-    if (pile->width > 3)
-        imp_cone_assemble_turning(world, pile->middle, pile->contacts, problem.count, pile->rows, pile->turns, pile->w);
-    else
-        imp_cone_assemble(world, pile->middle, pile->contacts, problem.count, pile->rows, pile->w);
+    const imp_cone_problem problem = problem_of(pile, question);
+    assemble_island(pile, world, problem.count);
+    return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
+}
+
+/* Whether no motion of all bodies alike, along the sum of their normals, takes all contacts with static bodies apart,
+ * friction against it: what is between walls. */
+static bool is_enclosed(const imp_pile *pile, const imp_world *world, int count)
+{
+    qvec3 away = {0, 0, 0};
+    for (int c = 0; c < count; c++)
+        if (world->bodies[pile->contacts[c].body2].is_static) away = qvec3_add(away, pile->contacts[c].axes[0]);
+    for (int c = 0; c < count; c++) {
+        const imp_cone_contact *own = &pile->contacts[c];
+        if (!world->bodies[own->body2].is_static) continue;
+        const double along = qvec3_dot(away, own->axes[0]);
+        if (!(along > pile->friction[c] * qvec3_norm(qvec3_axpy(-along, own->axes[0], away)))) return true;
+    }
+    return false;
+}
+
+/* Whether one body alone touches several that are static, at more points than tell how it is pressed. */
+static bool is_borne_by_several(const imp_pile *pile, const imp_world *world, int count)
+{
+    enum { UNIQUE = 3 };
+    bool several = false;
+    for (int c = 0; c < count; c++) {
+        const imp_cone_contact *own = &pile->contacts[c];
+        if (!world->bodies[own->body2].is_static || own->body1 != pile->contacts[0].body1) return false;
+        several = several || own->body2 != pile->contacts[0].body2;
+    }
+    return several && count > UNIQUE;
+}
+
+bool imp_pile_may_balance(imp_pile *pile, const imp_world *world, int count)
+{
+    if (count > IMP_PILE_DENSE || pile->width > 3) return false;
+    const bool several = is_borne_by_several(pile, world, count);
+    if (!several && !is_enclosed(pile, world, count)) return false;
+    assemble_island(pile, world, count);
+    const imp_wedge_question question = {.count = count, .w = pile->w, .friction = pile->friction};
+    return several || imp_encounter_wedged(&question, pile->balance);
+}
+
+imp_cone_outcome imp_pile_yield(imp_pile *pile, const imp_pile_question *question)
+{
+    const imp_cone_problem problem = problem_of(pile, question);
+    const size_t n = 3 * (size_t)question->count;
+    for (size_t i = 0; i < n; i++) pile->w[i * (n + 1)] *= 1 + IMP_HELD_YIELDS;
     return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
 }
 
@@ -95,6 +148,10 @@ static bool slides_on_many(const imp_pile *pile, int count)
 
 imp_cone_outcome imp_pile_solve(imp_pile *pile, const imp_world *world, const imp_pile_question *question)
 {
+    if (imp_pile_may_balance(pile, world, question->count)) {
+        const imp_cone_outcome outcome = imp_pile_yield(pile, question);
+        if (outcome.status != IMP_CONE_BAD && outcome.residual <= question->usable) return outcome;
+    }
     const bool few = question->count <= IMP_PILE_FEW;
     if (few && !slides_on_many(pile, question->count)) return by_contacts(pile, world, question);
     const imp_cone_outcome quick = by_bodies(pile, world, question);

@@ -59,15 +59,14 @@ static bool has_flats(const imp_world *world, const imp_pair *pair)
 
 /* Whether the component goes on by steps: bodies that move, or have faces or flat places, touch each other in it, or
  * resist turning on a plane, until a ball but rolls there; by choice, any touches. One that has just begun its steps
- * has had to. */
+ * has had to: taken back to where nothing settles it, it would begin them again, for ever. */
 static bool stays_stepped(const imp_island *island, const int *root, int component)
 {
     const imp_world *world = &island->world;
-    const bool always = island->scene->piles == IMPACT_PILES_STEPS;
+    const bool always = island->scene->piles == IMPACT_PILES_STEPS || island->t == island->met_since;
     for (int p = 0; island->stepped && p < world->pair_count; p++) {
         const imp_pair *pair = &world->pairs[p];
-        const bool rough =
-            imp_is_rough(pair) && (island->t == island->met_since || !imp_island_rolls_out(island, pair));
+        const bool rough = imp_is_rough(pair) && !imp_island_rolls_out(island, pair);
         const bool counts = pair->met && (always || rough || has_flats(world, pair));
         if (counts && root[pair->body1] == component) return true;
     }

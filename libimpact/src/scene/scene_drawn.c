@@ -9,6 +9,7 @@
  * determinant of that response times those of H alone is the sign that a real exponent of growth takes.
  */
 #include "scene/scene_drawn.h"
+#include "base/tolerances.h"
 #include "collide/collide_tangential.h"
 #include "contact/held_system.h"
 
@@ -88,7 +89,8 @@ static void ask_contacts(const imp_island *island, imp_held *held, const imp_hel
     }
 }
 
-/* d(u_n)/d(lambda), m/s^2 for 1 N, of the contact `own`, without it among those that answer. */
+/* d(u_n)/d(lambda) of the contact `own`, without it among those that answer; of what it would be without them. Held
+ * between two walls neither of its contacts moves along its normal: all that is told then is rounding. */
 static double response_of(imp_island *island, int own)
 {
     imp_held *held = &island->motion.held;
@@ -97,9 +99,9 @@ static double response_of(imp_island *island, int own)
     held->contacts[own] = held->contacts[--held->count];
     ask_contacts(island, held, &contact, force);
     imp_system_solve(held, &island->world, island->states, true);
-    const qvec3 change = qvec3_add(imp_system_response(&island->world, island->states, &contact, &contact, force),
-                                   imp_system_change(held, &contact));
-    return qvec3_dot(contact.normal, change);
+    const qvec3 alone = imp_system_response(&island->world, island->states, &contact, &contact, force),
+                change = qvec3_add(alone, imp_system_change(held, &contact));
+    return qvec3_dot(contact.normal, change) / qvec3_norm(alone);
 }
 
 /* Let go, a contact whose pressure is lambda would go at -response lambda: drawn on and pressed it has lambda < 0. */
@@ -121,7 +123,7 @@ static int find_drawn(imp_island *island, int after, imp_held_contact *kept)
     memcpy(kept, held->contacts, bytes);
     for (int c = 0; c < count && found < 0; c++) {
         if (kept[c].pair <= after || !may_be_drawn(island, &kept[c])) continue;
-        if (response_of(island, c) < 0) found = c;
+        if (response_of(island, c) < -IMP_TOUCHING) found = c;
         memcpy(held->contacts, kept, bytes);
         held->count = count;
     }

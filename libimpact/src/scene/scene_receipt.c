@@ -92,6 +92,15 @@ static double fallen(imp_island *island)
     return scene->impact_loss_fallen + scene->sliding_fallen + island->motion.fallen;
 }
 
+/* J, of falls by the bodies' own radii: where nothing has energy yet what is none is told by these. */
+static double energy_of_falls(const imp_world *world)
+{
+    double sum = 0;
+    for (int i = 0; i < world->body_count; i++)
+        if (!world->bodies[i].is_static) sum += world->bodies[i].mass * world->bodies[i].radius;
+    return sum * qvec3_norm(world->gravity);
+}
+
 void imp_scene_receipt_look(imp_island *island)
 {
     impact_scene *scene = island->scene;
@@ -109,7 +118,8 @@ void imp_scene_receipt_look(imp_island *island)
     look_at(scene, "energy", &r->energy, scale > 0 ? fabs(off) / scale : fabs(off), r->limit_energy);
     look_at(scene, "momentum", &r->momentum, island->pushed.off, r->limit_momentum);
     island->pushed.off = 0;
-    look_at(scene, "loss_fallen", &r->loss_fallen, fallen(island), r->limit_energy * scale);
+    look_at(scene, "loss_fallen", &r->loss_fallen, fallen(island),
+            r->limit_energy * fmax(scale, energy_of_falls(&island->world)));
 }
 
 /* ---- the whole ---- */
