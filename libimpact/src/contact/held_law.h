@@ -17,7 +17,7 @@ typedef struct imp_held_law {
     imp_cone_row *rows;
     imp_cone_mode *modes;
     double *w, *q, *r, *u, *friction;
-    double size; /* the largest part of q as the loads make it, m/s^2 */
+    double size;  /* the largest part of q as the loads make it, m/s^2 */
     double *room; /* of the question whether pressures balance */
     imp_cone_workspace cone;
 } imp_held_law;

@@ -208,8 +208,8 @@ static void section_rates(const impact_shape *shape, const imp_spot *spot, const
             (e_rate[i] / spot->slope[i] - (t - r) / ((t - 1) * (r - 1)) * turn * spot->section[i]) / spot->k_ratio;
 }
 
-/* With l the length of the normal m = p e/(a l), e' = (a/p)(l m' + l' m). Of superellipsoids m is e/a over its length; e
- * is homogeneous in (x, y) and in z alike, and sum e u' = 0 is sum u e' = 0. */
+/* With l the length of the normal m = p e/(a l), e' = (a/p)(l m' + l' m). Of superellipsoids m is e/a over its length;
+ * e is homogeneous in (x, y) and in z alike, and sum e u' = 0 is sum u e' = 0. */
 typedef struct spot_turn {
     double axis[3], p[3]; /* axis: a/p */
     double m_rate[3], length, e_rate[3], u_rate[3];

@@ -7,8 +7,8 @@
  * e = |u|^(p-1) sgn u, u = x/a, it is e that follows the normal, and u = |e|^(1/(p-1)) sgn e. So the spot is not solved
  * from the orientation but integrated along, as s = u + e on each axis: both u and e are functions of s of slope at
  * most 1. A superellipsoid of two exponents, K^t + |u_z|^t = 1 with K^r = |u_x|^r + |u_y|^r, has e = K^(t-r) |u|^(r-1)
- * sgn u along x and y: the gradient of K^t/t, so that s = u + e is that of a convex function still. Of p = 1 e is any of
- * -1 ... 1 on the edge u = 0, and sgn u beside it.
+ * sgn u along x and y: the gradient of K^t/t, so that s = u + e is that of a convex function still. Of p = 1 e is any
+ * of -1 ... 1 on the edge u = 0, and sgn u beside it.
  */
 #ifndef IMP_HELD_SPOT_H
 #define IMP_HELD_SPOT_H

@@ -343,8 +343,7 @@ static void solve_island(imp_held *held, const imp_world *world, const imp_state
     imp_linear system = factor_island(held, world, states, with_friction, island, 0);
     const bool unique = system.rank == system.n;
     if (with_friction && !unique) {
-        if (island_slides(held, island))
-            system = factor_island(held, world, states, true, island, IMP_HELD_YIELDS);
+        if (island_slides(held, island)) system = factor_island(held, world, states, true, island, IMP_HELD_YIELDS);
         begin_forces(held, system.n);
     }
     find_forces(held, &system);

@@ -77,8 +77,7 @@ static curve_view view_of_curve(const imp_form *form, const curve *c, const doub
 {
     const double side = c->side != 0 ? c->side : copysign(1, d[c->x]);
     return (curve_view){form->axis[c->x] * side * d[c->x],
-                        fabs(d[c->z]) > IMP_LEVEL ? form->axis[c->z] * fabs(d[c->z]) : 0, side,
-                        copysign(1, d[c->z])};
+                        fabs(d[c->z]) > IMP_LEVEL ? form->axis[c->z] * fabs(d[c->z]) : 0, side, copysign(1, d[c->z])};
 }
 
 static int curved_axis(const imp_form *form) { return is_bicone(form) ? 2 : curve_of(form, 0).z; }
