@@ -78,6 +78,16 @@ for _, shape in ipairs { impact.sphere(a), impact.box { a = a, b = a, c = a }, i
   check.close(scene:state("falls").position.z, -g * 0.005, 2e-5)
 end
 
+-- So do two that lie on each other.
+do
+  local cube = impact.box { a = a, b = a, c = a }
+  local scene = impact.scene { name = "two", gravity = { 0, 0, -g }, duration = 0.1, bodies = { plane("left", { 0, 1, 0 }, { 0, -a, 0 }, 0.6), plane("right", { 0, -1, 0 }, { 0, a, 0 }, 0.6),
+    impact.body { name = "lower", shape = cube, mass = 1, friction = 1 }, impact.body { name = "upper", shape = cube, mass = 3, friction = 1, position = { 0, 0, 2 * a } } } }
+  scene:run()
+  check.close(scene:state("lower").position.z, -g * 0.005, 2e-4)
+  check.close(scene:state("upper").position.z, 2 * a - g * 0.005, 2e-4)
+end
+
 -- A thin box slides from one board onto another that is flush: the same however they are listed, and, pressed linearly, by g (mu1 f1 + mu2 f2), to
 -- what points are not a face.
 local function onto(reversed)
