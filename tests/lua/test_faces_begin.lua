@@ -168,3 +168,14 @@ check.truth(struck:run { on_event = function(event) if event.event == "slip" and
 check.close(slip, mu * G * square_arm / .3, 1e-9)
 local e = struck:energy()
 check.close(e.start + e.force_work - e.sliding_loss - e.impact_loss, e.kinetic + e.potential, 1e-9)
+
+-- What is laid on a side between two edges that straight lines join, level but for rounding, stands at once, however flat these edges are.
+for _, t in ipairs { 2, 4, 20, 100 } do
+  for _, shape in ipairs { impact.superquadric { a = 0.06, b = 0.06, c = 0.1, r = 1, s = 1, t = t }, impact.superellipsoid { a = 0.06, b = 0.06, c = 0.1, eps1 = 2 / t, eps2 = 2 } } do
+    local lies = quat.from_axis_angle({ 0, 1, 0 }, math.pi / 2) * quat.from_axis_angle({ 0, 0, 1 }, -math.pi / 4)
+    local scene = impact.scene { name = "side", gravity = { 0, 0, -9.81 }, duration = 1, bodies = { impact.body { name = "floor", shape = impact.plane(), friction = 0.7 },
+      impact.body { name = "lies", shape = shape, mass = 1, friction = 0.7, position = { 0, 0, 0.06 / math.sqrt(2) }, orientation = lies } } }
+    scene:run()
+    check.equal(scene:time(), 0)
+  end
+end

@@ -307,7 +307,7 @@
 #define IMP_HOLD_ROUNDING 1e-9
 /* What contacts yield by where pressures balance that no load makes, of what their own forces move: over what the
  * modes' residuals leave (1e-12 of IMP_MODES_FAR), and under what would tell in them. */
-#define IMP_HELD_YIELDS 1e-6
+#define IMP_YIELDS 1e-6
 /* A pair that is open is pressed where the loads' part of its acceleration towards the body is more than this: what the
  * reactions of others balance leaves less. */
 #define IMP_PRESSED_OF_LOADS 1e-9

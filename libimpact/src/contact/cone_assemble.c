@@ -4,6 +4,7 @@
  * symmetric and its bits know nothing of the contacts' order.
  */
 #include "contact/cone_assemble.h"
+#include "base/tolerances.h"
 
 #include <math.h>
 #include <string.h>
@@ -108,6 +109,11 @@ static void velocities_at(const imp_world *world, const imp_state *states, const
     if (!(qvec3_dot(contact->rub, contact->rub) > 0)) return;
     const qvec3 more = qvec3_cross(relative_turning(world, states, contact), contact->rub);
     for (int k = 1; k < 3; k++) u[k] += qvec3_dot(contact->axes[k], more);
+}
+
+void imp_cone_let_yield(double *w, int n)
+{
+    for (int i = 0; i < n; i++) w[i * (n + 1)] *= 1 + IMP_YIELDS;
 }
 
 void imp_cone_contact_velocities(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,

@@ -44,6 +44,10 @@ void imp_cone_assemble_normals(const imp_world *world, const imp_state *states, 
 void imp_cone_assemble_turning(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,
                                int count, imp_cone_row *rows, imp_cone_row *turns, double *w);
 
+/* Lets each of n unknowns yield, by a little of what its own force moves: of reactions that are not unique those that
+ * loads make are the answer then (docs/model.md). w: n^2. */
+void imp_cone_let_yield(double *w, int n);
+
 /* What the bodies' velocities are at the contacts, along their axes, across the normal where friction acts: 3 count,
  * m/s. */
 void imp_cone_contact_velocities(const imp_world *world, const imp_state *states, const imp_cone_contact *contacts,

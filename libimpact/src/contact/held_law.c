@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact/held_law.h"
-#include "base/tolerances.h"
 #include "contact/encounter.h"
 #include "contact/held_flat.h"
 
@@ -83,7 +82,7 @@ static void let_yield(imp_held_law *law)
 {
     const imp_wedge_question question = {.count = law->count, .w = law->w, .friction = law->friction};
     if (law->count < 2 || !imp_encounter_wedged(&question, law->room)) return;
-    for (int i = 0; i < 3 * law->count; i++) law->w[i * (3 * law->count + 1)] *= 1 + IMP_HELD_YIELDS;
+    imp_cone_let_yield(law->w, 3 * law->count);
 }
 
 void imp_held_law_find(const imp_held *held, const imp_world *world, const imp_state *states, const imp_load *loads,

@@ -4,6 +4,7 @@
  * three for a rolling one. Contacts that share no moving body, however remotely, are solved apart.
  */
 #include "contact/held_system.h"
+#include "contact/cone_assemble.h"
 #include "contact/held_linear.h"
 
 #include <float.h>
@@ -310,9 +311,8 @@ static void take_forces(imp_held *held, int island, bool with_friction, bool uni
     }
 }
 
-/* yields: of its own response, each unknown's. */
 static imp_linear factor_island(imp_held *held, const imp_world *world, const imp_state *states, bool with_friction,
-                                int island, double yields)
+                                int island, bool yields)
 {
     const int n = list_unknowns(held, world, states, island, with_friction);
     imp_linear system = {.n = n,
@@ -323,7 +323,7 @@ static imp_linear factor_island(imp_held *held, const imp_world *world, const im
                          .rows = held->order,
                          .columns = held->order + n};
     build_matrix(held->unknowns, n, system.matrix);
-    for (int i = 0; i < n; i++) system.matrix[i * (n + 1)] *= 1 + yields;
+    if (yields) imp_cone_let_yield(system.matrix, n);
     imp_linear_factor(&system);
     return system;
 }
@@ -340,10 +340,10 @@ static bool island_slides(const imp_held *held, int island)
 static void solve_island(imp_held *held, const imp_world *world, const imp_state *states, bool with_friction,
                          int island)
 {
-    imp_linear system = factor_island(held, world, states, with_friction, island, 0);
+    imp_linear system = factor_island(held, world, states, with_friction, island, false);
     const bool unique = system.rank == system.n;
     if (with_friction && !unique) {
-        if (island_slides(held, island)) system = factor_island(held, world, states, true, island, IMP_HELD_YIELDS);
+        if (island_slides(held, island)) system = factor_island(held, world, states, true, island, true);
         begin_forces(held, system.n);
     }
     find_forces(held, &system);
@@ -352,7 +352,7 @@ static void solve_island(imp_held *held, const imp_world *world, const imp_state
 
 int imp_system_count_idle(imp_held *held, const imp_world *world, const imp_state *states, int island)
 {
-    const imp_linear system = factor_island(held, world, states, true, island, 0);
+    const imp_linear system = factor_island(held, world, states, true, island, false);
     return system.n - system.rank;
 }
 

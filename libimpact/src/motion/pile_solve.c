@@ -92,8 +92,7 @@ bool imp_pile_may_balance(imp_pile *pile, const imp_world *world, int count)
 imp_cone_outcome imp_pile_yield(imp_pile *pile, const imp_pile_question *question)
 {
     const imp_cone_problem problem = problem_of(pile, question);
-    const size_t n = 3 * (size_t)question->count;
-    for (size_t i = 0; i < n; i++) pile->w[i * (n + 1)] *= 1 + IMP_HELD_YIELDS;
+    imp_cone_let_yield(pile->w, 3 * question->count);
     return imp_cone_solve(&problem, &pile->cone, pile->r, pile->u, NULL);
 }
 

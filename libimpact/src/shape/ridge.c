@@ -12,7 +12,6 @@
 
 int imp_ridge_count(const impact_shape *shape)
 {
-
     const int ones = (shape->r == 1) + (shape->s == 1) + (shape->t == 1);
     if (shape->kind == IMPACT_SUPERQUADRIC) return ones == 2 ? 6 : 0;
     if (shape->kind != IMPACT_SUPERELLIPSOID) return 0;
