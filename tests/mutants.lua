@@ -21,7 +21,7 @@ local rooms = {
   { "^libquat/src/jacobian%.c$", { "quat_jacobian", "quat_limits" } }, { "^libquat/src/project%.c$", { "quat_project" } },
   { "^libquat/src/quat%.c$", { "quat_quat" } }, { "^libquat/src/rotation%.c$", { "quat_rotation", "quat_limits" } },
   { "^libquat/src/sequence%.c$", { "quat_sequence" } }, { "^libquat/src/spline%.c$", { "quat_spline" } },
-  { "^libimpact/src/shape/ridge", { "impact_ridge", "impact_apexes", "impact_scene_answers" } }, { "^libimpact/src/shape/", { "impact_support", "impact_shape", "impact_gap" } },
+  { "^libimpact/src/shape/ridge", { "impact_ridge", "impact_apexes", "impact_scene_answers", "lua_faces_begin" } }, { "^libimpact/src/shape/", { "impact_support", "impact_shape", "impact_gap" } },
   { "^libimpact/src/flight/elliptic", { "impact_elliptic", "impact_tumble" } }, { "^libimpact/src/flight/", { "impact_flight", "impact_tumble" } },
   { "^libimpact/src/base/ode%.", { "impact_ode", "impact_ode_refusals" } },
   { "^libimpact/src/base/ode_", { "impact_ode_one_step", "impact_ode", "impact_ode_rk4", "impact_force", "impact_motion" } }, { "^libimpact/src/motion/key", { "impact_run", "impact_run_words" } },
