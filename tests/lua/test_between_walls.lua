@@ -78,6 +78,12 @@ for _, shape in ipairs { impact.sphere(a), impact.box { a = a, b = a, c = a }, i
   check.close(scene:state("falls").position.z, -g * 0.005, 2e-5)
 end
 
+do -- where nothing has energy yet roundings of 1e-32 J are none
+  local scene = impact.scene { name = "slot", gravity = { 0, 0, -g }, duration = 0.1, bodies = { plane("left", { 0, 1, 0 }, { 0, -0.1, 0 }, 0.6), plane("right", { 0, -1, 0 }, { 0, 0.1, 0 }, 0.6),
+    impact.body { name = "falls", shape = impact.capsule { radius = 0.1, half_height = 0.2 }, mass = 1, friction = 1 } } }
+  check.equal(scene:run(), "end of time")
+end
+
 -- So do two that lie on each other.
 do
   local cube = impact.box { a = a, b = a, c = a }
