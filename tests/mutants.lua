@@ -52,7 +52,7 @@ local rooms = {
   { "^libimpact/src/contact/held_still", { "impact_held_still", "impact_cases" } }, { "^libimpact/src/contact/held_flat", { "impact_held_flat" } }, { "^libimpact/src/contact/held_line%.", { "impact_held_line" } },
   { "^libimpact/src/contact/held_linear", { "impact_held_linear", "impact_held_still", "impact_held" } },
   { "^libimpact/src/contact/held_s[po]", { "impact_held_spot", "impact_held_still", "impact_held_modes", "impact_held" } },
-  { "^libimpact/src/contact/held_system", { "lua_between_walls", "impact_held_system", "impact_held_still", "impact_held_modes", "impact_held" } },
+  { "^libimpact/src/contact/held_system", { "impact_random_scenes", "lua_between_walls", "impact_held_system", "impact_held_still", "impact_held_modes", "impact_held" } },
   { "^libimpact/src/scene/coarser", { "impact_coarser", "impact_piles", "lua_bands" } }, { "^libimpact/src/scene/arrivals", { "impact_arrivals", "impact_scene", "impact_rolling", "impact_crowd", "lua_faces_tolerance", "lua_scene", "lua_faces_turned" } },
   { "^libimpact/src/scene/queue", { "impact_queue" } }, { "^libimpact/src/scene/rules", { "impact_rules" } },
   { "^libimpact/src/scene/scene_receipt", { "impact_scene_receipt", "impact_scene_answers", "impact_cases" } },

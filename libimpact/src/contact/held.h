@@ -36,6 +36,7 @@ typedef struct imp_held_contact {
     double mobility; /* slip's acceleration over the friction, 1/kg */
     double turn;     /* the angle from direction about the normal */
     bool redundant;  /* its reaction is not unique */
+    bool unmet;      /* no reactions of its island do what is wanted */
     qvec3 slip_rate; /* tangential relative acceleration of the contact points, m/s^2 */
 } imp_held_contact;
 

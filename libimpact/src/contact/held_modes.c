@@ -34,14 +34,15 @@ static double greatest_force(const imp_held *held, int island)
     return scale;
 }
 
-/* Whether the contact, solved for, pulls no more than rounding; nor slides without pressure, where that is no matter of
- * choice; and its friction is in its cone, against slip that begins on it. What rolls with a slip begun is asked. */
+/* Whether the contact does what its mode asks of it; pulls no more than rounding; nor slides without pressure, where
+ * that is no matter of choice; and its friction is in its cone, against slip that begins on it. What rolls with a slip
+ * begun is asked. */
 static bool obeys(const imp_held_contact *contact, const imp_pair *pair, double scale)
 {
     const double rounding = IMP_MODE_ROUNDING * scale;
     const bool presses = contact->mode == IMP_SLIDE && !contact->redundant;
     if (contact->still) return true;
-    if (contact->mode == IMP_STICK && imp_is_incipient(pair)) return false;
+    if (contact->unmet || (contact->mode == IMP_STICK && imp_is_incipient(pair))) return false;
     if (contact->pressure < (presses ? rounding : -rounding)) return false;
     return contact->mode == IMP_STICK ? contact->margin >= -rounding
                                       : !contact->incipient || contact->hold >= 1 - IMP_HOLD_ROUNDING;

@@ -263,25 +263,42 @@ static void add_force(imp_held *held, imp_unknown *u, double more)
     }
 }
 
+/* The largest of what all equations ask for beyond what the forces so far do, which x is set to. */
+static double residuals(const imp_held *held, int n, double *x)
+{
+    const imp_unknown *u = held->unknowns;
+    double left = 0;
+    for (int i = 0; i < n; i++) {
+        x[i] = residual(held, &u[i]) / u[i].scale;
+        left = fmax(left, fabs(x[i]));
+    }
+    return left;
+}
+
+static double asked_for(const imp_held *held, int n)
+{
+    const imp_unknown *u = held->unknowns;
+    double asked = 0;
+    for (int i = 0; i < n; i++)
+        asked = fmax(asked, fabs(qvec3_dot(u[i].row, held->contacts[u[i].contact].wanted)) / u[i].scale);
+    return asked;
+}
+
 /* The forces; and then what their rounding has left, so often that what they do is right to rounding: of the motion,
- * not of the forces, which can be far greater than what they leave of one another. */
-static void find_forces(imp_held *held, const imp_linear *system)
+ * not of the forces, which can be far greater than what they leave of one another. Whether they do what is asked. */
+static bool find_forces(imp_held *held, const imp_linear *system)
 {
     enum { MOST = 6 };
     imp_unknown *u = held->unknowns;
-    double *x = held->right, first = 0, before = INFINITY;
-    for (int pass = 0; pass < MOST; pass++) {
-        double left = 0;
-        for (int i = 0; i < system->n; i++) {
-            x[i] = residual(held, &u[i]) / u[i].scale;
-            left = fmax(left, fabs(x[i]));
-        }
-        if (pass == 0) first = left;
-        if (left <= DBL_EPSILON * first || !(left < 0.5 * before)) return;
+    double *x = held->right, before = INFINITY, left = residuals(held, system->n, x);
+    const double first = left;
+    for (int pass = 0; pass < MOST && left > DBL_EPSILON * first && left < 0.5 * before; pass++) {
         before = left;
         imp_linear_solve(system, x);
         for (int i = 0; i < system->n; i++) add_force(held, &u[i], x[i] / u[i].scale);
+        left = residuals(held, system->n, x);
     }
+    return left <= IMP_UNMET * asked_for(held, system->n);
 }
 
 /* Where forces are not unique those nearest to what the contacts have. */
@@ -295,7 +312,7 @@ static void begin_forces(imp_held *held, int n)
     }
 }
 
-static void take_forces(imp_held *held, int island, bool with_friction, bool unique)
+static void take_forces(imp_held *held, int island, bool with_friction, bool unique, bool met)
 {
     const imp_unknown *u = held->unknowns;
     for (int c = island; c < held->count; c++) {
@@ -303,6 +320,7 @@ static void take_forces(imp_held *held, int island, bool with_friction, bool uni
         if (held->island[c] != island) continue;
         const int count = unknowns_of(contact, with_friction);
         contact->redundant = !unique;
+        contact->unmet = !met;
         contact->pressure = u->value;
         const bool turns = contact->mode == IMP_SLIDE && count == 2;
         contact->turn = turns ? u[1].value / (contact->friction * contact->pressure) : 0;
@@ -346,8 +364,8 @@ static void solve_island(imp_held *held, const imp_world *world, const imp_state
         if (island_slides(held, island)) system = factor_island(held, world, states, true, island, true);
         begin_forces(held, system.n);
     }
-    find_forces(held, &system);
-    take_forces(held, island, with_friction, unique);
+    const bool met = find_forces(held, &system);
+    take_forces(held, island, with_friction, unique, met);
 }
 
 int imp_system_count_idle(imp_held *held, const imp_world *world, const imp_state *states, int island)
