@@ -1044,6 +1044,10 @@
  * smooth for longer (a superquadric of exponents 3 and 4 that wobbles asks for 8500 rates), and bounces on corners die
  * out. */
 #define IMP_FACES_PATIENCE 4000
+/* A step of the integrator shorter than t's rounding counts as so many: what lies face on face while the point that
+ * holds it runs from end to end takes no end of them, and asks for the gap by its longest way. (By the variable that is
+ * integrated: while slip dies out t stands, and that gets on.) */
+#define IMP_STOOD_STRIDES 10
 
 /* ---- one impact: what is given, and rare places ---- */
 

@@ -40,6 +40,7 @@ typedef struct imp_stride {
     long steps;
     int still;    /* steps in a row that did not advance */
     bool passed;  /* the last step ended at a root that is no event */
+    bool stood;   /* it was shorter, by its own variable, than t's rounding */
     bool restart; /* the next step begins a new stretch */
 } imp_stride;
 

@@ -268,6 +268,7 @@ static impact_status step_on(imp_motion *motion, double *y, imp_end *end)
         return imp_motion_stuck(motion, "the motion has left double precision", s->t);
     if (imp_motion_loss_falls(motion, y) && s->t > s->from && imp_motion_take_back(motion, y)) return renew(end);
     s->t = y[Y_TIME];
+    s->stood = s->tau - tau_before <= IMP_ROUNDOFF * fabs(s->t);
     s->steps++;
     if (!imp_motion_gains(motion, s->t))
         return imp_motion_stuck(motion, "time all but stands: 100000 steps were too short to tell", s->t);

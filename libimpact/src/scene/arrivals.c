@@ -71,7 +71,7 @@ static impact_status conclude(imp_island *island, impact_status status)
 {
     impact_scene *scene = island->scene;
     step_where_unsettled(island, &status);
-    const bool impatient = imp_island_loses_patience(island, 0);
+    const bool impatient = imp_island_loses_patience(island, 0, false);
     if (status == IMPACT_OK && (island->lies || impatient || imp_island_needs_steps(island))) {
         imp_island *stepped;
         imp_scene_receipt_look(island);
@@ -295,7 +295,8 @@ impact_status imp_scene_continue(impact_scene *scene, imp_island *island)
     if (island->end.kind != IMP_END_TIME) imp_island_put_back(island);
     if (!finish(island)) return IMPACT_ESINK;
     if (island->stepped) return continue_steps(island);
-    if (island->end.kind == IMP_END_TIME && imp_island_loses_patience(island, island->motion.last_rates))
+    if (island->end.kind == IMP_END_TIME &&
+        imp_island_loses_patience(island, island->motion.last_rates, island->motion.stride.stood))
         return turn_to_steps(scene, island, t);
     if (island->end.kind == IMP_END_TIME) return go_on_or_by_steps(scene, island, t);
     if (!imp_scene_account_before(scene)) return IMPACT_ESINK;

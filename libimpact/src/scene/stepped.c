@@ -47,7 +47,7 @@ static bool holds_movers(const imp_island *island)
     return false;
 }
 
-bool imp_island_loses_patience(imp_island *island, long rates)
+bool imp_island_loses_patience(imp_island *island, long rates, bool stood)
 {
     const long events = 1 + island->strides / IMP_EVENT_STRIDES;
     island->strides = 0;
@@ -55,7 +55,11 @@ bool imp_island_loses_patience(imp_island *island, long rates)
     const bool faces = meets_faces(island), pile = !faces && is_pile(island);
     if (!faces && !pile && !holds_movers(island)) return false;
     const double natural = imp_pile_natural_time(&island->world, island->states);
-    const long least = events * IMP_EVENT_RATES, own = faces ? events : rates > least ? rates : least;
+    const long least = events * IMP_EVENT_RATES,
+               rough = faces           ? events
+                       : rates > least ? rates
+                                       : least,
+               own = stood ? IMP_STOOD_STRIDES * rough : rough;
     long most = 0;
     for (int i = 0; i < island->world.body_count; i++) {
         const imp_body *body = &island->world.bodies[i];

@@ -9,9 +9,10 @@
 #include "motion/pile.h"
 #include "scene/island.h"
 
-/* Counts an event, or a stretch of motion that took so many rates, for each body of the island; whether one has had so
- * many that the island, in which bodies that move are held on each other or have faces, is to go on by steps. */
-bool imp_island_loses_patience(imp_island *island, long rates);
+/* Counts an event, or a stretch of motion that took so many rates, for each body of the island, several times where it
+ * stood (imp_stride); whether one has had so many that the island, in which bodies that move are held on each other or
+ * have faces, is to go on by steps. */
+bool imp_island_loses_patience(imp_island *island, long rates, bool stood);
 
 /* The island, which has just been gathered with all its bodies' near pairs, begins its steps. */
 impact_status imp_island_begin_steps(imp_island *island);

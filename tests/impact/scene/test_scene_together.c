@@ -305,7 +305,7 @@ static void long_encounters_try_patience(void **state)
     impact_scene *scene = make_scene(&def);
     imp_island *island = whole_island(scene);
     long asked = 0;
-    for (island->strides = 1000L * IMP_EVENT_STRIDES; !imp_island_loses_patience(island, 0); asked++)
+    for (island->strides = 1000L * IMP_EVENT_STRIDES; !imp_island_loses_patience(island, 0, false); asked++)
         island->strides = 1000L * IMP_EVENT_STRIDES;
     assert_int_equal(asked, IMP_FACES_PATIENCE / 1001);
     impact_scene_destroy(scene);
