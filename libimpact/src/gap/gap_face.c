@@ -352,7 +352,10 @@ bool imp_face_judge(const imp_gap_solids *pair, const imp_face *face, imp_gap_br
     for (int k = 0; k < 2; k++) /* the points prove the upper end where they lie in their bodies */
         if (!imp_gap_holds(&pair->form[k], face->chart[k].x, IMP_GAP_OUTSIDE * pair->reach)) return false;
     meeting->stiffness = stiffness(pair, face, meeting->gap);
-    if (meeting->gap < 0 && !(meeting->stiffness >= -IMP_GAP_STIFFNESS * pair->size)) return false;
+    /* Radii that add up to the depth, as at a point of a cone's axis, are capped by the second term (add_radii). */
+    const double none =
+        IMP_GAP_STIFFNESS * pair->size + IMP_GAP_LEAST_CURVATURE / pair->size * meeting->gap * meeting->gap;
+    if (meeting->gap < 0 && !(meeting->stiffness >= -none)) return false;
     meeting->shares = meeting->gap >= 0 || share_a_point(pair, face);
     memcpy(meeting->n, face->m, sizeof meeting->n);
     for (int k = 0; k < 2; k++) memcpy(meeting->x[k], face->chart[k].x, sizeof meeting->x[k]);

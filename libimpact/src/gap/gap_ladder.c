@@ -18,6 +18,7 @@ typedef struct search {
     impact_gap_path path;
     bool found;
     double thin;          /* smallest semi-axis */
+    bool arcs;            /* imp_gap_has_arcs */
     bool sharp;           /* both bodies have edges or vertices: an overlap counts as deep if not proved otherwise */
     double low, low_n[3]; /* the largest g met, and where */
     double most;          /* no overlap's gap is more: proved, or INFINITY */
@@ -30,28 +31,58 @@ static bool is_sharp(const imp_form *form)
 
 static double distance_of(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
+/* |x/axis|^p near x: its value there, its slope at x and the most of its second derivative within reach of it; false
+ * where that has no bound. low, high: between which it lies. */
+typedef struct power {
+    double value, slope, bend, low, high, steepest;
+} power;
+
+static bool power_near(double place, double axis, double p, double reach, power *f)
+{
+    const double at = place / axis, near = (place - reach) / axis, far = (place + reach) / axis;
+    if (p < 2 && !(near > 0)) return false;
+    *f = (power){.value = pow(at, p),
+                 .slope = p * pow(at, p - 1) / axis,
+                 .bend = p * (p - 1) * pow(p < 2 ? near : far, p - 2) / (axis * axis),
+                 .low = pow(fmax(near, 0), p),
+                 .high = pow(far, p),
+                 .steepest = p * pow(far, p - 1) / axis};
+    return true;
+}
+
+/* S^k of the section's sum S = f + g, of a superellipsoid. */
+static bool section_near(const power *f, const power *g, double k, power *section)
+{
+    const double S = f->value + g->value, low = f->low + g->low, high = f->high + g->high;
+    if (!(low > 0)) return false;
+    const double steepest = f->steepest * f->steepest + g->steepest * g->steepest;
+    const double along = k > 1 ? k * (k - 1) * pow(k < 2 ? low : high, k - 2) * steepest : 0;
+    section->slope = k * pow(S, k - 1) * sqrt(f->slope * f->slope + g->slope * g->slope);
+    section->bend = k * pow(k < 1 ? low : high, k - 1) * fmax(f->bend, g->bend) + along;
+    return true;
+}
+
 /* A radius up to depth such that the ball that touches the surface from inside at the witness point x (world) lies in
  * the body: with f <= 1 the body and F its largest second derivative within two depths of x, f is at most
  * 1 - |grad f| |z|^2/(2 r) + F |z|^2/2 at x + z of the ball of radius r. 0: none is known. */
 static double inner_radius(const imp_form *form, const double x[3], double depth)
 {
-    double slope = 0, bend = 0, body[3];
-    if (form->nested) return 0;
-    if (form->kind != IMP_FORM_QUADRIC) {
-        imp_to_body(form->rotation, x, body);
-        return imp_walk_inner_radius(form, body);
-    }
+    double body[3];
+    power f[3], section = {0};
+    imp_to_body(form->rotation, x, body);
+    if (form->kind != IMP_FORM_QUADRIC) return imp_walk_inner_radius(form, body);
     for (int i = 0; i < 3; i++) {
-        const double place =
-            fabs(form->rotation[0][i] * x[0] + form->rotation[1][i] * x[1] + form->rotation[2][i] * x[2]);
-        const double p = form->p[i], axis = form->axis[i], near = (place - 2 * depth) / axis,
-                     far = (place + 2 * depth) / axis;
-        if (p < 2 && !(near > 0)) return 0;
-        const double first = p * pow(place / axis, p - 1) / axis;
-        slope += first * first;
-        bend = fmax(bend, p * (p - 1) * pow(p < 2 ? near : far, p - 2) / (axis * axis));
+        const double p = i == 2 && form->nested ? form->p[IMP_SECTION] : form->p[i];
+        if (!power_near(fabs(body[i]), form->axis[i], p, 2 * depth, &f[i])) return 0;
     }
-    return sqrt(slope) >= bend * depth ? depth : sqrt(slope) / bend;
+    if (form->nested && !section_near(&f[0], &f[1], form->p[IMP_SECTION] / form->p[0], &section)) return 0;
+    if (!form->nested) {
+        section.slope = sqrt(f[0].slope * f[0].slope + f[1].slope * f[1].slope);
+        section.bend = fmax(f[0].bend, f[1].bend);
+    }
+    const double slope = sqrt(section.slope * section.slope + f[2].slope * f[2].slope),
+                 bend = fmax(section.bend, f[2].bend);
+    return slope >= bend * depth ? depth : slope / bend;
 }
 
 /* Whether an overlap's answer is proved the nearest way out: balls in both bodies, touching them at their witness
@@ -91,37 +122,6 @@ static bool newton_from(search *s, const double n[3], const double (*x)[3], impa
     return true;
 }
 
-/* Proves the best answer the nearest way out, to the accuracy that is promised; what speaks against it is taken. */
-static bool prove_best(search *s)
-{
-    for (int tries = 0; tries < MAX_PROOFS; tries++) {
-        imp_gap_peaks peaks = {0};
-        double gap = s->best.gap, other[3];
-        memcpy(other, s->best.n, sizeof other);
-        const double peak[3] = {gap * other[0], gap * other[1], gap * other[2]};
-        imp_gap_peak_add(peak, &peaks);
-        const imp_proof proof = imp_gap_prove(s->pair, &peaks, IMP_GAP_SLACK * s->pair->reach, false, &gap, other);
-        if (proof != IMP_PROOF_AGAINST) return proof == IMP_PROOF_NEAREST;
-        note_low(s, gap, other);
-        if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
-    }
-    return false;
-}
-
-/* Newton from n and, when not NULL, the points x; true when the search is over. A shallow answer that is not plain is
- * proved, or what speaks against it seeds the next. */
-static bool try_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
-{
-    if (!newton_from(s, n, x, path)) return false;
-    if (plain(s)) return true;
-    return -s->best.gap <= IMP_GAP_DEEP * s->thin && prove_best(s);
-}
-
-static bool has_faces(const imp_gap_solids *pair)
-{
-    return pair->form[0].kind != IMP_FORM_QUADRIC && pair->form[1].kind != IMP_FORM_QUADRIC;
-}
-
 /* Nearest points of the bodies drawn apart along n, and their normal. Of two faces on each other n alone tells a corner
  * and any place of a rim, and from there Newton goes astray: they lie far aside of each other for the way along n. */
 static void nearest_apart(const imp_gap_solids *pair, const double n[3], double m[3], double x[2][3])
@@ -131,6 +131,97 @@ static void nearest_apart(const imp_gap_solids *pair, const double n[3], double 
     const double way = fmax(0, IMP_GAP_APART * apart.size - imp_pair_gap(pair, n, NULL));
     for (int i = 0; i < 3; i++) m[i] = n[i], apart.c[i] += way * n[i];
     imp_gap_simplex(&apart, 1, IMP_GAP_APART_CLOSED, APART_STEPS, m, x, &low, &high);
+}
+
+static void difference(const imp_gap_solids *pair, const double x[2][3], double v[3])
+{
+    for (int i = 0; i < 3; i++) v[i] = pair->c[i] + x[1][i] - x[0][i];
+}
+
+/* Points from the midst of the faces or edges that the normal n touches: the mean of those of normals about it. */
+static void midst(const imp_gap_solids *pair, const double n[3], double lean, double x[2][3])
+{
+    double t[2][3];
+    imp_across(n, t);
+    memset(x, 0, 2 * sizeof x[0]);
+    for (int turn = 0; turn < 8; turn++) {
+        double m[3], y[2][3];
+        for (int i = 0; i < 3; i++)
+            m[i] = n[i] + lean * (cos(turn * 0.7853981633974483) * t[0][i] + sin(turn * 0.7853981633974483) * t[1][i]);
+        imp_pair_gap(pair, m, y);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < 3; i++) x[k][i] += y[k][i] / 8;
+    }
+}
+
+/* Newton from the midst of what the best normal met touches. */
+static bool settle_low(search *s)
+{
+    double x[2][3];
+    for (double lean = IMP_GAP_LEAST_LEAN; lean < IMP_GAP_MOST_LEAN;
+         lean *= 10) { /* edges and vertices are round at any scale */
+        midst(s->pair, s->low_n, lean, x);
+        if (newton_from(s, s->low_n, (const double(*)[3])x, IMPACT_PATH_FALLBACK) &&
+            s->best.gap >= s->low - IMP_GAP_SLACK * s->pair->reach)
+            return true;
+    }
+    return false;
+}
+
+/* Whether the bodies overlap, by a tetrahedron of points of their difference about 0; from the normal n. */
+static bool overlaps(const imp_gap_solids *pair, const double n[3])
+{
+    double m[3] = {n[0], n[1], n[2]}, x[2][3], low, high;
+    return imp_gap_simplex(pair, 1, IMP_GAP_APART_CLOSED, APART_STEPS, m, x, &low, &high) == IMP_SIMPLEX_OVERLAP;
+}
+
+/* The nearest way out by the features of what overlaps, and Newton for its witness points; true when it is the answer.
+ */
+static bool find_way_out(search *s)
+{
+    const double slack = IMP_GAP_SLACK * s->pair->reach;
+    double gap = s->found ? s->best.gap : -INFINITY, n[3], m[3], x[2][3];
+    if (!s->found && !overlaps(s->pair, s->low_n)) return false;
+    const bool all = imp_gap_highest_by_arcs(s->pair, slack, &gap, n);
+    if (all) s->most = fmin(s->most, gap + slack);
+    if (s->found && !(gap > s->best.gap)) return all;
+    note_low(s, gap, n);
+    nearest_apart(s->pair, n, m, x);
+    if (newton_from(s, m, (const double(*)[3])x, IMPACT_PATH_FALLBACK) && s->best.gap >= gap - slack)
+        return all || plain(s);
+    return settle_low(s) && (all || plain(s));
+}
+
+/* Proves the best answer the nearest way out, to the accuracy that is promised; what speaks against it is taken. */
+static bool prove_best(search *s)
+{
+    if (s->arcs) return find_way_out(s);
+    for (int tries = 0; tries < MAX_PROOFS; tries++) {
+        double gap = s->best.gap, other[3];
+        memcpy(other, s->best.n, sizeof other);
+        const double peak[3] = {gap * other[0], gap * other[1], gap * other[2]};
+        imp_gap_peaks peaks = {0};
+        imp_gap_peak_add(peak, &peaks);
+        const imp_proof proof = imp_gap_prove(s->pair, &peaks, IMP_GAP_SLACK * s->pair->reach, false, &gap, other);
+        if (proof != IMP_PROOF_AGAINST) return proof == IMP_PROOF_NEAREST;
+        note_low(s, gap, other);
+        if (!newton_from(s, other, NULL, IMPACT_PATH_FALLBACK)) return false;
+    }
+    return false;
+}
+
+/* Newton from n and, when not NULL, the points x; true when the search is over. An answer that is not plain is proved
+ * where it is shallow, or its proof cheap, or what speaks against it seeds the next. */
+static bool try_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
+{
+    if (!newton_from(s, n, x, path)) return false;
+    if (plain(s)) return true;
+    return (s->arcs || -s->best.gap <= IMP_GAP_DEEP * s->thin) && prove_best(s);
+}
+
+static bool has_faces(const imp_gap_solids *pair)
+{
+    return pair->form[0].kind != IMP_FORM_QUADRIC && pair->form[1].kind != IMP_FORM_QUADRIC;
 }
 
 /* The same as try_from, by a start that suits the bodies. What it finds deep, and not proved the nearest, is but noted:
@@ -146,6 +237,8 @@ static bool try_normal(search *s, const double n[3], impact_gap_path path)
             return true;
         }
         if (other.found) note_low(s, other.best.gap, other.best.n);
+        if (s->arcs) note_low(s, imp_pair_gap(s->pair, n, NULL), n);
+        if (s->arcs && find_way_out(s)) return true;
     }
     return try_from(s, n, NULL, path);
 }
@@ -282,27 +375,6 @@ static bool try_homotopy(search *s)
     return try_from(s, n, NULL, IMPACT_PATH_FALLBACK);
 }
 
-static void difference(const imp_gap_solids *pair, const double x[2][3], double v[3])
-{
-    for (int i = 0; i < 3; i++) v[i] = pair->c[i] + x[1][i] - x[0][i];
-}
-
-/* Points from the midst of the faces or edges that the normal n touches: the mean of those of normals about it. */
-static void midst(const imp_gap_solids *pair, const double n[3], double lean, double x[2][3])
-{
-    double t[2][3];
-    imp_across(n, t);
-    memset(x, 0, 2 * sizeof x[0]);
-    for (int turn = 0; turn < 8; turn++) {
-        double m[3], y[2][3];
-        for (int i = 0; i < 3; i++)
-            m[i] = n[i] + lean * (cos(turn * 0.7853981633974483) * t[0][i] + sin(turn * 0.7853981633974483) * t[1][i]);
-        imp_pair_gap(pair, m, y);
-        for (int k = 0; k < 2; k++)
-            for (int i = 0; i < 3; i++) x[k][i] += y[k][i] / 8;
-    }
-}
-
 /* The highest g over the whole sphere but for slack, from the highest met; false where the work allowed is not enough.
  */
 static bool climb(search *s, double slack)
@@ -319,25 +391,11 @@ static bool climb(search *s, double slack)
     return proof == IMP_PROOF_NEAREST;
 }
 
-/* Newton from the midst of what the best normal met touches. */
-static bool settle_low(search *s)
-{
-    double x[2][3];
-    for (double lean = IMP_GAP_LEAST_LEAN; lean < IMP_GAP_MOST_LEAN;
-         lean *= 10) { /* edges and vertices are round at any scale */
-        midst(s->pair, s->low_n, lean, x);
-        if (newton_from(s, s->low_n, (const double(*)[3])x, IMPACT_PATH_FALLBACK) &&
-            s->best.gap >= s->low - IMP_GAP_SLACK * s->pair->reach)
-            return true;
-    }
-    return false;
-}
-
 /* The normals of a body's faces and caps: a deep overlap's nearest way out is along one of them, or near an edge. */
 static void look_along_faces(search *s, int body)
 {
     const imp_form *form = &s->pair->form[body];
-    const bool turned = form->kind == IMP_FORM_CYLINDER || form->kind == IMP_FORM_CONE;
+    const bool turned = imp_of_revolution(form);
     const int count = turned ? 2 : form->kind == IMP_FORM_QUADRIC ? 0 : form->core.hull->face_count;
     for (int f = 0; f < count; f++) {
         double own[3] = {0, 0, f ? 1 : -1}, n[3];
@@ -396,7 +454,8 @@ static void draw_apart(search *s)
     if (!(s->low <= 0 && -s->low <= IMP_GAP_PARTED * reach)) return;
     imp_gap_solids parted = *s->pair;
     for (int i = 0; i < 3; i++) parted.c[i] += way * s->low_n[i];
-    search apart = {.pair = &parted, .low = -INFINITY, .most = INFINITY, .thin = s->thin, .sharp = s->sharp};
+    search apart = {
+        .pair = &parted, .low = -INFINITY, .most = INFINITY, .thin = s->thin, .arcs = s->arcs, .sharp = s->sharp};
     double upper = INFINITY;
     if (!try_from(&apart, s->low_n, NULL, IMPACT_PATH_NEWTON) && !try_simplex(&apart, &upper)) return;
     const double g = imp_pair_gap(s->pair, apart.best.n, NULL);
@@ -461,6 +520,7 @@ impact_status imp_gap_settle(const imp_gap_solids *pair, const double *cached, i
                 .low = -INFINITY,
                 .most = INFINITY,
                 .thin = INFINITY,
+                .arcs = imp_gap_has_arcs(pair),
                 .sharp = pair->form[0].kind != IMP_FORM_QUADRIC || pair->form[1].kind != IMP_FORM_QUADRIC ||
                          (is_sharp(&pair->form[0]) && is_sharp(&pair->form[1]))};
     for (int k = 0; k < 2; k++)

@@ -119,6 +119,12 @@ typedef enum imp_proof { IMP_PROOF_NEAREST, IMP_PROOF_AGAINST, IMP_PROOF_OPEN } 
 imp_proof imp_gap_prove(const imp_gap_solids *pair, imp_gap_peaks *peaks, double slack, bool climb, double *gap,
                         double n[3]);
 
+/* Whether one body is a polytope with edges and the other a cylinder or cone; and then, of two that share a point, the
+ * highest g but for the slack, by their features, where it is more than *gap by that: *gap, and n its normal. False: the
+ * work allowed was not enough. */
+bool imp_gap_has_arcs(const imp_gap_solids *pair);
+bool imp_gap_highest_by_arcs(const imp_gap_solids *pair, double slack, double *gap, double n[3]);
+
 /* How far x (world, relative to the centre) is outside the body, to first order; negative inside. */
 double imp_gap_outside(const imp_form *form, const double x[3]);
 /* Whether it is so by no more than slack > 0; a NaN is not. */

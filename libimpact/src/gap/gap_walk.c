@@ -6,8 +6,6 @@
 
 static double size_of_form(const imp_form *form) { return fmax(form->axis[0], fmax(form->axis[1], form->axis[2])); }
 
-static bool is_turned(const imp_form *form) { return form->kind == IMP_FORM_CYLINDER || form->kind == IMP_FORM_CONE; }
-
 static void put_on(imp_surface *s, imp_walk_kind kind, int index) { s->kind = (short)kind, s->index = (short)index; }
 
 static void make_unit(double v[3])
@@ -166,8 +164,29 @@ static int edge_of_faces(const impact_hull *hull, const int f[2])
     return -1;
 }
 
+/* Within a segment, which has no faces; the normal is there already. */
+static void start_within_segment(const imp_form *form, const double x[3], imp_surface *s)
+{
+    double a[3], b[3], along[3], from[3];
+    edge_ends(&form->core, 0, a, b);
+    for (int k = 0; k < 3; k++) along[k] = b[k] - a[k], from[k] = x[k] - a[k];
+    const double square = imp_dot(along, along), at = imp_dot(from, along) / square,
+                 off = imp_dot(s->e, along) / square;
+    if (!(at > IMP_WALK_START && at < 1 - IMP_WALK_START)) return;
+    double across[3];
+    for (int k = 0; k < 3; k++) across[k] = s->e[k] - off * along[k];
+    if (!(imp_norm(across) > IMP_WALK_START)) return; /* a normal along it is an end's */
+    for (int k = 0; k < 3; k++) s->u[k] = a[k] + at * along[k], s->e[k] = across[k];
+    make_unit(s->e);
+    put_on(s, IMP_ON_EDGE, 0);
+}
+
 static void start_at_point(const imp_form *form, const double x[3], imp_surface *s)
 {
+    if (form->core.hull->face_count == 0) {
+        if (form->core.hull->edge_count > 0) start_within_segment(form, x, s);
+        return;
+    }
     int found[2] = {-1, -1};
     const int count = faces_at(&form->core, x, IMP_WALK_START * size_of_form(form), found);
     const int edge = count == 2 ? edge_of_faces(form->core.hull, found) : -1;
@@ -356,7 +375,7 @@ static void start_turned_at(const imp_form *form, const double x[3], imp_surface
 
 void imp_walk_start(const imp_form *form, const double d[3], const double *x, imp_surface *s)
 {
-    if (is_turned(form)) {
+    if (imp_of_revolution(form)) {
         start_turned(form, d, s);
         if (x) start_turned_at(form, x, s);
         return;
@@ -417,7 +436,7 @@ void imp_walk_chart(const imp_form *form, const imp_surface *s, double P[2][3], 
 void imp_walk_move(const imp_form *form, const double step[2], imp_surface *s)
 {
     switch ((imp_walk_kind)s->kind) {
-    case IMP_ON_VERTEX: (is_turned(form) ? move_on_apex : move_on_vertex)(form, step, s); break;
+    case IMP_ON_VERTEX: (imp_of_revolution(form) ? move_on_apex : move_on_vertex)(form, step, s); break;
     case IMP_ON_EDGE: move_on_edge(form, step, s); break;
     case IMP_ON_FACE: move_on_face(form, step, s); break;
     case IMP_ON_CAP: move_on_cap(form, step, s); break;

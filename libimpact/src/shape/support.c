@@ -431,7 +431,7 @@ static void core_hessian(const imp_form *form, const double d[3], double H[3][3]
     const double across = d[0] * d[0] + d[1] * d[1];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) H[i][j] = 0;
-    if (form->kind == IMP_FORM_CYLINDER || form->kind == IMP_FORM_CONE) {
+    if (imp_of_revolution(form)) {
         imp_surface s;
         core_support(form, d, &s);
         const double rim = across > 0 ? sqrt(s.u[0] * s.u[0] + s.u[1] * s.u[1]) / (across * sqrt(across)) : INFINITY;

@@ -36,6 +36,11 @@ typedef struct imp_form {
     imp_core core;         /* of boxes and polytopes */
 } imp_form;
 
+static inline bool imp_of_revolution(const imp_form *form)
+{
+    return form->kind == IMP_FORM_CYLINDER || form->kind == IMP_FORM_CONE;
+}
+
 /* Of a core: u is the core's point, e the unit normal; kind and index the feature it is on (gap_walk.h). */
 typedef struct imp_surface {
     double u[4], e[4];

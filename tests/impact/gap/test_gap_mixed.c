@@ -10,6 +10,8 @@
 #include <cmocka.h>
 #include <impact/toi.h>
 #include "gap/gap_walk.h"
+#include "base/tolerances.h"
+#include "gap/gap_solver.h"
 #include "kit/figures.h"
 #include "kit/mixed_pairs.h"
 
@@ -218,11 +220,41 @@ static void balls_in_cylinders(void **state)
     }
 }
 
+/* What balls in both bodies prove at once, the halving of the whole sphere of normals does not speak against. */
+static void nearest_by_the_whole_sphere(void **state)
+{
+    (void)state;
+    random_stream random = {8};
+    int asked = 0;
+    for (int i = 0; i < 3000; i++) {
+        mixed_pair made = random_mixed_pair(&random, i % MIXED_CAPSULE_SMOOTH, -random_log(&random, 1e-5, 0.1));
+        const impact_solid *b = made.body;
+        impact_contact contact;
+        const impact_status status = impact_gap(&b[0], &b[1], NULL, &contact);
+        const double scale = imp_gap_scale(&b[0], &b[1]), rounding = b[0].shape.rounding + b[1].shape.rounding;
+        double gap = (contact.gap + rounding) * scale;
+        if (status == IMPACT_OK && gap < 0) {
+            imp_gap_solids pair;
+            imp_gap_pair(&b[0], b[0].orientation, &b[1], b[1].orientation, scale, &pair);
+            double n[3] = {contact.normal.x, contact.normal.y, contact.normal.z};
+            const double peak[3] = {gap * n[0], gap * n[1], gap * n[2]};
+            imp_gap_peaks peaks = {0};
+            imp_gap_peak_add(peak, &peaks);
+            assert_int_not_equal(imp_gap_prove(&pair, &peaks, 2 * IMP_GAP_SLACK * pair.reach, false, &gap, n),
+                                 IMP_PROOF_AGAINST);
+            asked++;
+        }
+        end_mixed_pair(&made);
+    }
+    assert_in_range(asked, 1500, 3000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(apart),
         cmocka_unit_test(shallow_overlap),
+        cmocka_unit_test(nearest_by_the_whole_sphere),
         cmocka_unit_test(deep_overlap),
         cmocka_unit_test(swapped),
         cmocka_unit_test(times_of_impact),

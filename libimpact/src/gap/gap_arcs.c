@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The nearest way out of a polytope for a cylinder or cone that shares a point with it. The ball about 0 that touches
+ * the boundary of their difference D from inside does so where D has one normal, which is where the cones of normals of
+ * the polytope's feature and of the other's, N_P(p) and N_T(x), have but a ray in common (of a sum of convex bodies
+ * they intersect: Schneider 2014, theorem 2.2.1). So the highest g is at
+ *
+ *     a face's normal; the axis (a cap's);
+ *     a vertex on the side: the highest of a sinusoid over the circle of the side's normals;
+ *     an edge on the side or a rim: on the arc between the normals of the edge's faces;
+ *
+ * and never at a vertex on a rim or the apex, or at an edge on the apex. On the arc, with m the polytope's outward
+ * normal, v a vertex of the edge, e its direction, a the axis, C the way from centre to centre, and the rims of radii
+ * r_k at heights h_k (a cone's apex is one of radius 0),
+ *
+ *     g(m) = m.(C - v) + min_k f_k,    f_k = h_k z - r_k rho,    z = m.a,    rho = sqrt(1 - z^2).
+ *
+ * It is halved until each piece is known not to be above the bound B < 0, by one of two ways:
+ *
+ *   - a point w of D, the support point of its middle, has g(m) <= m.w, and w.m <= B at both ends: then it is so
+ *     between them, as w.d - B |d| is convex in d;
+ *   - with s = m.(C - v), s + f_k has s'' + f_k'' + s + f_k = -K, K = r_k (e.a)^2 / rho^3, along the arc: with K <= K1
+ *     on the piece s + f_k + K1 is below the sinusoid through its values at the ends (Sturm), which is below B + K1.
+ *
+ * The second is what ends an edge along the axis, or the like, where g is the same all along.
+ */
+#include "base/tolerances.h"
+#include "gap/gap_chart.h"
+#include "gap/gap_solver.h"
+#include <string.h>
+
+/* A piece is halved 2 log2(1e7) times before the first way clears it at any curvature. */
+enum { MOST_PIECES = 2000, MOST_WAITING = 64 };
+
+typedef struct way {
+    const imp_core *core; /* the polytope's; all is in its axes */
+    double a[3], C[3];    /* unit axis; centre of the other less the polytope's */
+    double h[2], r[2];    /* its rims */
+    double best, n[3];    /* the highest g met, and its m; or what was asked for */
+    double bound, slack;  /* what pieces are cleared by: the best and the slack */
+    int pieces;
+} way;
+
+/* m on an arc, and what g is made of there. */
+typedef struct spot {
+    double m[3], across[3], s, z, rho; /* across: m's part across the axis, of length rho */
+} spot;
+
+typedef struct piece {
+    spot end[2];
+    double w[3]; /* the point of D that all but cleared what it was cut from */
+} piece;
+
+static bool has_edges(const imp_form *form)
+{
+    return (form->kind == IMP_FORM_BOX || form->kind == IMP_FORM_POLYTOPE) && form->core.hull->edge_count > 0;
+}
+
+static int polytope_of(const imp_gap_solids *pair)
+{
+    for (int k = 0; k < 2; k++)
+        if (has_edges(&pair->form[k]) && imp_of_revolution(&pair->form[1 - k])) return k;
+    return -1;
+}
+
+bool imp_gap_has_arcs(const imp_gap_solids *pair) { return polytope_of(pair) >= 0; }
+
+static way way_of(const imp_gap_solids *pair, int polytope)
+{
+    const imp_form *own = &pair->form[polytope], *turned = &pair->form[1 - polytope];
+    const double axis[3] = {turned->rotation[0][2], turned->rotation[1][2], turned->rotation[2][2]};
+    const bool cone = turned->kind == IMP_FORM_CONE;
+    way w = {.core = &own->core,
+             .h = {cone ? turned->base : -turned->axis[2], cone ? turned->base + turned->axis[2] : turned->axis[2]},
+             .r = {turned->axis[0], cone ? 0 : turned->axis[0]}};
+    imp_to_body(own->rotation, axis, w.a);
+    imp_to_body(own->rotation, pair->c, w.C);
+    for (int i = 0; polytope == 1 && i < 3; i++) w.C[i] = -w.C[i];
+    return w;
+}
+
+static void raise_to(way *w, double g, const double m[3])
+{
+    if (!(g > w->best)) return;
+    w->best = g;
+    memcpy(w->n, m, sizeof w->n);
+    w->bound = g + w->slack;
+}
+
+/* v's part across the axis, taken twice: of what is all but along it the first leaves rounding. Returns that along it.
+ */
+static double take_across(const way *w, const double v[3], double across[3])
+{
+    const double along = imp_dot(v, w->a);
+    for (int i = 0; i < 3; i++) across[i] = v[i] - along * w->a[i];
+    const double left = imp_dot(across, w->a);
+    for (int i = 0; i < 3; i++) across[i] -= left * w->a[i];
+    return along;
+}
+
+/* Of the unit m. */
+static void lean(const way *w, spot *p)
+{
+    p->z = take_across(w, p->m, p->across);
+    p->rho = imp_norm(p->across);
+}
+
+static double rim_height(const way *w, const spot *p, int k) { return w->h[k] * p->z - w->r[k] * p->rho; }
+
+/* Of the rim that reaches farther against m. */
+static int rim_at(const way *w, const spot *p) { return rim_height(w, p, 1) < rim_height(w, p, 0); }
+
+/* g(m) where the polytope reaches as far as h along the unit m. */
+static void look_along(way *w, const double m[3], double h)
+{
+    spot p = {.m = {m[0], m[1], m[2]}};
+    lean(w, &p);
+    raise_to(w, imp_dot(m, w->C) - h + rim_height(w, &p, rim_at(w, &p)), m);
+}
+
+static void look_anywhere(way *w, const double m[3])
+{
+    int vertex;
+    look_along(w, m, imp_core_support(w->core, m, &vertex));
+}
+
+/* The vertex on the side: z and rho are those of the side's normals. */
+static void look_at_vertex(way *w, const double v[3], double z, double rho)
+{
+    const double from[3] = {w->C[0] - v[0], w->C[1] - v[1], w->C[2] - v[2]};
+    double d[3], across[2][3], m[3];
+    const double along = take_across(w, from, d);
+    const double aside = imp_norm(d);
+    if (!(z * (along + w->h[0]) + rho * (aside - w->r[0]) > w->best)) return;
+    imp_across(w->a, across);
+    for (int i = 0; i < 3; i++) m[i] = z * w->a[i] + rho * (aside > 0 ? d[i] / aside : across[0][i]);
+    look_anywhere(w, m);
+}
+
+static void look_at_vertices(way *w)
+{
+    const double rise = w->h[0] - w->h[1], fall = w->r[0] - w->r[1], length = hypot(rise, fall);
+    for (int i = 0; i < w->core->hull->vertex_count; i++) {
+        double v[3];
+        imp_core_vertex(w->core, i, v);
+        look_at_vertex(w, v, fall / (rise < 0 ? -length : length), fabs(rise) / length);
+    }
+}
+
+static bool clears_piece(const piece *p, const double w[3], double bound)
+{
+    return imp_dot(w, p->end[0].m) <= bound && imp_dot(w, p->end[1].m) <= bound;
+}
+
+/* The highest of the sinusoid with values p and q a chord apart, between them. */
+static double sinusoid_peak(double p, double q, double chord)
+{
+    const double square = chord * chord, less = 0.5 * square, most = fmax(p, q); /* less: 1 - cos */
+    if (q - p + p * less <= 0 || p - q + q * less <= 0) return most;             /* it falls from one end on */
+    return sqrt(((p - q) * (p - q) + 2 * p * q * less) / (square * (1 - 0.25 * square)));
+}
+
+/* No rho on the piece is less: m's part across is no less than that of the chord's point below it. */
+static double least_rho(const piece *p)
+{
+    double chord[3], nearest[3];
+    const double *from = p->end[0].across;
+    for (int i = 0; i < 3; i++) chord[i] = p->end[1].across[i] - from[i];
+    const double square = imp_dot(chord, chord), at = square > 0 ? -imp_dot(from, chord) / square : 0;
+    for (int i = 0; i < 3; i++) nearest[i] = from[i] + fmin(fmax(at, 0), 1) * chord[i];
+    return imp_norm(nearest);
+}
+
+/* The second way, by rim k, on the arc across e, where K is not far above the depth: above that g bends more than the
+ * ball about 0 does, and the first way soon clears it. */
+static bool bends_little(const way *w, const piece *p, const double e[3], int k)
+{
+    const double rho = least_rho(p), along = imp_dot(e, w->a);
+    const double most = w->r[k] * along * along / (imp_dot(e, e) * rho * rho * rho);
+    double chord[3];
+    if (!(most <= -IMP_GAP_BENDS * w->bound)) return false;
+    for (int i = 0; i < 3; i++) chord[i] = p->end[0].m[i] - p->end[1].m[i];
+    return sinusoid_peak(p->end[0].s + rim_height(w, &p->end[0], k) + most,
+                         p->end[1].s + rim_height(w, &p->end[1], k) + most, imp_norm(chord)) <= w->bound + most;
+}
+
+/* The piece's middle, the point of D it has, and its rim. */
+static int halfway(const way *w, const double d[3], const piece *p, spot *mid, double point[3])
+{
+    for (int i = 0; i < 3; i++) mid->m[i] = p->end[0].m[i] + p->end[1].m[i];
+    const double length = imp_norm(mid->m);
+    for (int i = 0; i < 3; i++) mid->m[i] /= length;
+    mid->s = imp_dot(mid->m, d);
+    lean(w, mid);
+    const int rim = rim_at(w, mid);
+    const double out = mid->rho > 0 ? w->r[rim] / mid->rho : 0;
+    for (int i = 0; i < 3; i++) point[i] = d[i] + w->h[rim] * w->a[i] - out * mid->across[i];
+    return rim;
+}
+
+/* All normals between the two on the arc of the edge e, d being from its vertex to the other body's centre: false when
+ * there were too many pieces. */
+static bool look_along_arc(way *w, const double d[3], const double e[3], const double from[3], const double to[3])
+{
+    piece waiting[MOST_WAITING] = {{.end = {{.m = {from[0], from[1], from[2]}}, {.m = {to[0], to[1], to[2]}}}}};
+    for (int k = 0; k < 2; k++) {
+        waiting[0].end[k].s = imp_dot(waiting[0].end[k].m, d);
+        lean(w, &waiting[0].end[k]);
+    }
+    for (int count = 1; count > 0;) {
+        piece *top = &waiting[count - 1];
+        if (++w->pieces > MOST_PIECES || count == MOST_WAITING) return false;
+        if (clears_piece(top, top->w, w->bound)) {
+            count--;
+            continue;
+        }
+        spot mid;
+        const int rim = halfway(w, d, top, &mid, top->w);
+        raise_to(w, mid.s + rim_height(w, &mid, rim), mid.m);
+        if (clears_piece(top, top->w, w->bound) || bends_little(w, top, e, rim)) {
+            count--;
+            continue;
+        }
+        waiting[count] = *top;
+        top->end[1] = mid, waiting[count++].end[0] = mid;
+    }
+    return true;
+}
+
+/* Of a segment's edge, which has no faces beside it, all that is across it: four quarters. */
+static bool look_around(way *w, const double d[3], const double e[3])
+{
+    double t[2][3], unit[3];
+    const double length = imp_norm(e);
+    for (int i = 0; i < 3; i++) unit[i] = e[i] / length;
+    imp_across(unit, t);
+    for (int quarter = 0; quarter < 4; quarter++) {
+        double end[2][3];
+        for (int k = 0; k < 2; k++) {
+            const int turn = (quarter + k) % 4;
+            for (int i = 0; i < 3; i++) end[k][i] = turn < 2 ? t[turn][i] : -t[turn - 2][i];
+        }
+        if (!look_along_arc(w, d, e, end[0], end[1])) return false;
+    }
+    return true;
+}
+
+static bool look_at_edges(way *w, const double (*normal)[3])
+{
+    const impact_hull *hull = w->core->hull;
+    for (int i = 0; i < hull->edge_count; i++) {
+        const imp_hull_edge *edge = &hull->edge[i];
+        double v[3], u[3], d[3], e[3];
+        imp_core_vertex(w->core, edge->v[0], v);
+        imp_core_vertex(w->core, edge->v[1], u);
+        for (int k = 0; k < 3; k++) d[k] = w->C[k] - v[k], e[k] = u[k] - v[k];
+        if (edge->f[0] < 0 ? !look_around(w, d, e) : !look_along_arc(w, d, e, normal[edge->f[0]], normal[edge->f[1]]))
+            return false;
+    }
+    return true;
+}
+
+/* Normals of faces, and of the other's caps. */
+static void look_along_normals(way *w, double (*normal)[3])
+{
+    const double back[3] = {-w->a[0], -w->a[1], -w->a[2]};
+    for (int f = 0; f < w->core->hull->face_count; f++) {
+        imp_core_normal(w->core, f, normal[f]);
+        look_along(w, normal[f], imp_core_height(w->core, f, normal[f]));
+    }
+    look_anywhere(w, w->a);
+    look_anywhere(w, back);
+}
+
+bool imp_gap_highest_by_arcs(const imp_gap_solids *pair, double slack, double *gap, double n[3])
+{
+    const int polytope = polytope_of(pair);
+    way w = way_of(pair, polytope);
+    double normal[2 * IMPACT_HULL_POINTS][3];
+    w.slack = slack, w.best = w.bound = *gap + slack;
+    look_along_normals(&w, normal);
+    look_at_vertices(&w);
+    const bool all = w.bound < 0 && look_at_edges(&w, (const double(*)[3])normal) && w.bound < 0;
+    if (!(w.best > *gap + slack)) return all;
+    *gap = w.best;
+    imp_to_world(pair->form[polytope].rotation, w.n, n);
+    for (int i = 0; polytope == 1 && i < 3; i++) n[i] = -n[i];
+    return all;
+}

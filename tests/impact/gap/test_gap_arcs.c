@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The nearest way out of a polytope for a cylinder or cone, by features, against the halving of the whole sphere of
+ * normals, which knows nothing of them; in random poses and in those where features line up.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <string.h>
+#include "base/tolerances.h"
+#include "gap/gap_chart.h"
+#include "gap/gap_solver.h"
+#include "kit/mixed_pairs.h"
+#include "kit/near.h"
+
+typedef struct arcs_pair {
+    impact_solid body[2];
+    impact_hull *hull;
+    imp_gap_solids pair;
+} arcs_pair;
+
+/* A turn by quarters, thirds and eighths, or by almost that, or any. */
+static quat some_turn(random_stream *random)
+{
+    quat q = quat_identity();
+    if (random_unit(random) < 0.4) return random_rotation(random);
+    for (int k = 0; k < 3; k++) {
+        const int parts[] = {4, 6, 8};
+        const double angle = 2 * M_PI / parts[(int)(3 * random_unit(random))] * (int)(8 * random_unit(random));
+        const qvec3 axis = {k == 0, k == 1, k == 2};
+        quat turn;
+        quat_from_axis_angle(axis, angle + (random_unit(random) < 0.2 ? random_log(random, 1e-15, 1e-3) : 0), &turn);
+        q = quat_mul(turn, q);
+    }
+    return q;
+}
+
+static double draw_size(random_stream *random) { return random_unit(random) < 0.4 ? 0.5 : random_log(random, 0.2, 1); }
+
+static impact_shape some_polytope(random_stream *random, impact_hull **hull)
+{
+    impact_shape shape;
+    const double kind = random_unit(random), a = draw_size(random), b = draw_size(random), c = draw_size(random);
+    *hull = NULL;
+    if (kind < 0.4)
+        assert_int_equal(impact_shape_box(a, b, c, 0, &shape), IMPACT_OK);
+    else if (kind < 0.55)
+        assert_int_equal(impact_shape_capsule(a, c, &shape), IMPACT_OK);
+    else
+        shape = random_solid_shape(random, RANDOM_POLYHEDRON, hull);
+    return shape;
+}
+
+/* Centres that coincide, that differ along an axis or a diagonal, or by anything; until they overlap. */
+static arcs_pair some_pair(random_stream *random)
+{
+    arcs_pair p;
+    p.body[0] = (impact_solid){.shape = some_polytope(random, &p.hull), .orientation = some_turn(random)};
+    p.body[1] = (impact_solid){.orientation = some_turn(random)};
+    const double a = draw_size(random), c = draw_size(random);
+    if (random_unit(random) < 0.5)
+        assert_int_equal(impact_shape_cylinder(a, c, 0, &p.body[1].shape), IMPACT_OK);
+    else
+        assert_int_equal(impact_shape_cone(a, c, 0, &p.body[1].shape), IMPACT_OK);
+    const double kind = random_unit(random), way = random_unit(random) < 0.5 ? 0.5 : random_unit(random);
+    const qvec3 any = random_vector(random, 0.1, 1.5);
+    p.body[0].position = kind < 0.15   ? (qvec3){0, 0, 0}
+                         : kind < 0.35 ? (qvec3){0, 0, way}
+                         : kind < 0.5  ? (qvec3){way, way, 0}
+                                       : any;
+    if (random_unit(random) < 0.5) {
+        const impact_solid first = p.body[0];
+        p.body[0] = p.body[1], p.body[1] = first;
+    }
+    const double scale = imp_gap_scale(&p.body[0], &p.body[1]);
+    imp_gap_pair(&p.body[0], p.body[0].orientation, &p.body[1], p.body[1].orientation, scale, &p.pair);
+    return p;
+}
+
+/* Above what the halving of the sphere leaves; where it ends. */
+static imp_proof halved(const imp_gap_solids *pair, double slack, double *gap)
+{
+    double n[3] = {0, 0, 1}, x[2][3], v[3];
+    imp_gap_peaks peaks = {0};
+    *gap = imp_pair_gap(pair, n, x);
+    for (int i = 0; i < 3; i++) v[i] = pair->c[i] + x[1][i] - x[0][i];
+    imp_gap_peak_add(v, &peaks);
+    return imp_gap_prove(pair, &peaks, slack, true, gap, n);
+}
+
+static void as_the_whole_sphere_has_it(void **state)
+{
+    (void)state;
+    random_stream random = {11};
+    int compared = 0;
+    for (int i = 0; i < 6000; i++) {
+        arcs_pair p = some_pair(&random);
+        assert_true(imp_gap_has_arcs(&p.pair));
+        const double coarse = 1e-4 * p.pair.reach, fine = IMP_GAP_SLACK * p.pair.reach;
+        double whole, gap = -INFINITY, n[3];
+        const imp_proof proof = halved(&p.pair, coarse, &whole);
+        if (proof == IMP_PROOF_NEAREST && whole < -2 * coarse) {
+            const bool all = imp_gap_highest_by_arcs(&p.pair, fine, &gap, n);
+            if (!all || !(gap <= whole + coarse) || !(gap >= whole - fine))
+                fail_msg("%d: all %d, %.17g by features, %.17g by halving", i, all, gap, whole);
+            assert_near(imp_pair_gap(&p.pair, n, NULL), gap, 4e-15 * p.pair.reach);
+            assert_near(imp_norm(n), 1, 4e-15);
+            compared++;
+        }
+        impact_hull_destroy(p.hull);
+    }
+    assert_in_range(compared, 2500, 6000);
+}
+
+/* What is asked for above the highest is proved not to be there, and n is left; just below it is found. */
+static void asked_from_above_and_below(void **state)
+{
+    (void)state;
+    random_stream random = {12};
+    for (int i = 0; i < 3000; i++) {
+        arcs_pair p = some_pair(&random);
+        const double fine = IMP_GAP_SLACK * p.pair.reach;
+        double highest = -INFINITY, n[3], left[3] = {7, 7, 7};
+        if (imp_gap_highest_by_arcs(&p.pair, fine, &highest, n)) {
+            double gap = highest;
+            assert_true(imp_gap_highest_by_arcs(&p.pair, fine, &gap, left));
+            assert_true(gap == highest && left[0] == 7);
+            gap = highest - 1e-9 * p.pair.reach;
+            assert_true(imp_gap_highest_by_arcs(&p.pair, fine, &gap, left));
+            assert_near(gap, highest, 2 * fine);
+        }
+        impact_hull_destroy(p.hull);
+    }
+}
+
+/* Every overlap has its answer, with its points, and no normal of many has a larger g. */
+static void every_overlap_is_answered(void **state)
+{
+    (void)state;
+    random_stream random = {13};
+    int flagged = 0, overlaps = 0;
+    for (int i = 0; i < 6000; i++) {
+        arcs_pair p = some_pair(&random);
+        impact_contact contact;
+        const impact_status status = impact_gap(&p.body[0], &p.body[1], NULL, &contact);
+        if (contact.gap < 0) {
+            overlaps++;
+            flagged += status != IMPACT_OK;
+            const double rounding = p.body[0].shape.rounding + p.body[1].shape.rounding;
+            const double scale = imp_gap_scale(&p.body[0], &p.body[1]), core = (contact.gap + rounding) * scale;
+            for (int k = 0; k < 400 && status == IMPACT_OK && core < 0; k++) {
+                const qvec3 m = random_direction(&random);
+                assert_true(imp_pair_gap(&p.pair, (double[3]){m.x, m.y, m.z}, NULL) <= core + 2e-14 * p.pair.reach);
+            }
+            if (status == IMPACT_OK) assert_true(impact_gap_receipt(&p.body[0], &p.body[1], &contact, NULL) <= 20);
+        }
+        impact_hull_destroy(p.hull);
+    }
+    assert_in_range(overlaps, 3000, 6000);
+    assert_true(flagged <= overlaps / 1000);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(as_the_whole_sphere_has_it),
+                                       cmocka_unit_test(asked_from_above_and_below),
+                                       cmocka_unit_test(every_overlap_is_answered)};
+    return cmocka_run_group_tests_name("impact.gap_arcs", tests, NULL, NULL);
+}
