@@ -160,14 +160,17 @@ static double sinusoid_peak(double p, double q, double chord)
     return sqrt(((p - q) * (p - q) + 2 * p * q * less) / (square * (1 - 0.25 * square)));
 }
 
-/* No rho on the piece is less: m's part across is no less than that of the chord's point below it. */
+/* No rho on the piece is less. On less than a quarter rho has no least one inside where from one end on it rises; else
+ * m's part across is no less than that of the chord's point below it. */
 static double least_rho(const piece *p)
 {
+    const spot *a = &p->end[0], *b = &p->end[1];
+    const double cosine = imp_dot(a->m, b->m), both = imp_dot(a->across, b->across), least = fmin(a->rho, b->rho);
+    if (cosine > 0 && both >= (1 - 2 * IMP_ROUNDOFF) * cosine * least * least) return least;
     double chord[3], nearest[3];
-    const double *from = p->end[0].across;
-    for (int i = 0; i < 3; i++) chord[i] = p->end[1].across[i] - from[i];
-    const double square = imp_dot(chord, chord), at = square > 0 ? -imp_dot(from, chord) / square : 0;
-    for (int i = 0; i < 3; i++) nearest[i] = from[i] + fmin(fmax(at, 0), 1) * chord[i];
+    for (int i = 0; i < 3; i++) chord[i] = b->across[i] - a->across[i];
+    const double square = imp_dot(chord, chord), at = square > 0 ? -imp_dot(a->across, chord) / square : 0;
+    for (int i = 0; i < 3; i++) nearest[i] = a->across[i] + fmin(fmax(at, 0), 1) * chord[i];
     return imp_norm(nearest);
 }
 

@@ -187,9 +187,8 @@ static bool find_way_out(search *s)
     if (s->found && !(gap > s->best.gap)) return all;
     note_low(s, gap, n);
     nearest_apart(s->pair, n, m, x);
-    if (newton_from(s, m, (const double(*)[3])x, IMPACT_PATH_FALLBACK) && s->best.gap >= gap - slack)
-        return all || plain(s);
-    return settle_low(s) && (all || plain(s));
+    if (!newton_from(s, m, (const double(*)[3])x, IMPACT_PATH_FALLBACK) || s->best.gap < gap - slack) return false;
+    return all || plain(s); /* cores that but touch are not above a bound < 0 */
 }
 
 /* Proves the best answer the nearest way out, to the accuracy that is promised; what speaks against it is taken. */

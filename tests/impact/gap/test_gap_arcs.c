@@ -12,6 +12,7 @@
 #include "base/tolerances.h"
 #include "gap/gap_chart.h"
 #include "gap/gap_solver.h"
+#include "gap/gap_walk.h"
 #include "kit/mixed_pairs.h"
 #include "kit/near.h"
 
@@ -162,10 +163,89 @@ static void every_overlap_is_answered(void **state)
     assert_true(flagged <= overlaps / 1000);
 }
 
+/* g is the same all around, or all along an arc: an edge along the axis. */
+static void an_edge_along_the_axis(void **state)
+{
+    (void)state;
+    random_stream random = {14};
+    for (int i = 0; i < 200; i++) {
+        const quat turn = random_rotation(&random);
+        const double radius = random_log(&random, 0.1, 0.5);
+        impact_solid body[2] = {{.orientation = turn}, {.orientation = turn}};
+        impact_contact contact;
+        assert_int_equal(impact_shape_cylinder(radius, 1, 0, &body[0].shape), IMPACT_OK);
+        if (i % 2)
+            assert_int_equal(impact_shape_capsule(0.1, 3, &body[1].shape), IMPACT_OK);
+        else
+            assert_int_equal(impact_shape_box(1, 1.5, 4, 0, &body[1].shape), IMPACT_OK);
+        if (i % 2 == 0) body[1].position = quat_rotate(turn, (qvec3){1, 1.5, 0});
+        assert_int_equal(impact_gap(&body[0], &body[1], NULL, &contact), IMPACT_OK);
+        assert_near(contact.gap, -radius - (i % 2 ? 0.1 : 0), 1e-14);
+    }
+}
+
+/* A vertex on a cone's axis, near the apex: as near a way out all around, the radii at which add up to the depth. */
+static void a_vertex_on_a_cone_s_axis(void **state)
+{
+    (void)state;
+    random_stream random = {15};
+    for (int i = 0; i < 400; i++) {
+        impact_solid body[2] = {{.orientation = quat_identity()}, {.orientation = random_rotation(&random)}};
+        const double radius = random_log(&random, 0.3, 1), height = random_log(&random, 0.1, 1),
+                     deep = random_log(&random, 1e-4, 0.05);
+        impact_contact contact;
+        assert_int_equal(impact_shape_box(0.5, 0.6, 0.7, 0, &body[0].shape), IMPACT_OK);
+        assert_int_equal(impact_shape_cone(radius, height, 0, &body[1].shape), IMPACT_OK);
+        /* the vertex that all of a box lies beyond, from the apex inwards */
+        const qvec3 out = quat_rotate(body[1].orientation, (qvec3){0, 0, 1});
+        const qvec3 vertex = {copysign(0.5, -out.x), copysign(0.6, -out.y), copysign(0.7, -out.z)};
+        const qvec3 apex = quat_rotate(body[1].orientation, (qvec3){0, 0, 0.75 * height - deep});
+        body[0].position = qvec3_sub(apex, vertex);
+        const impact_status status = impact_gap(&body[0], &body[1], NULL, &contact);
+        assert_int_equal(status, IMPACT_OK);
+        assert_true(impact_gap_receipt(&body[0], &body[1], &contact, NULL) <= 20);
+    }
+}
+
+/* Rounded ones too, whose cores may but touch. */
+static void mixed_pairs_are_answered(void **state)
+{
+    (void)state;
+    random_stream random = {16};
+    for (int i = 0; i < 2000; i++) {
+        mixed_pair pair =
+            random_mixed_pair(&random, i % 2 ? MIXED_CYLINDER_BOX : MIXED_CONE_HULL, -random_log(&random, 1e-5, 0.3));
+        impact_contact contact;
+        assert_int_equal(impact_gap(&pair.body[0], &pair.body[1], NULL, &contact), IMPACT_OK);
+        assert_true(contact.gap >= pair.gap - 1e-14 * pair.reach);
+        end_mixed_pair(&pair);
+    }
+}
+
+/* Where a walk begins within a segment, with a normal that is an end's. */
+static void a_normal_along_a_segment(void **state)
+{
+    (void)state;
+    impact_shape capsule;
+    imp_form form;
+    imp_surface s;
+    assert_int_equal(impact_shape_capsule(0.1, 1, &capsule), IMPACT_OK);
+    imp_form_make(&capsule, 1, quat_identity(), &form);
+    imp_walk_start(&form, (double[3]){0, 0, 1}, (double[3]){0, 0, 0.3}, &s);
+    assert_int_equal(s.kind, IMP_ON_VERTEX);
+    assert_near(s.e[2], 1, 0);
+    imp_walk_start(&form, (double[3]){1, 0, 1e-9}, (double[3]){0, 0, 0.3}, &s);
+    assert_int_equal(s.kind, IMP_ON_EDGE);
+    assert_near(s.e[2], 0, 0);
+    assert_near(s.u[2], 0.3, 1e-15);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(as_the_whole_sphere_has_it),
-                                       cmocka_unit_test(asked_from_above_and_below),
-                                       cmocka_unit_test(every_overlap_is_answered)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(as_the_whole_sphere_has_it), cmocka_unit_test(asked_from_above_and_below),
+        cmocka_unit_test(every_overlap_is_answered),  cmocka_unit_test(mixed_pairs_are_answered),
+        cmocka_unit_test(a_normal_along_a_segment),   cmocka_unit_test(an_edge_along_the_axis),
+        cmocka_unit_test(a_vertex_on_a_cone_s_axis)};
     return cmocka_run_group_tests_name("impact.gap_arcs", tests, NULL, NULL);
 }
