@@ -986,6 +986,9 @@
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
+/* Of the least step, whose places may be off by anything: what gives bodies energy is tried again in shorter ones, to this
+ * part. Their places may be right all the same, and in both scenes met one or two halvings were enough. */
+#define IMP_PILE_LEAST_GIVING 0x1p-10
 /* Of the speed at which the smallest falls its radius, 1.6e-8: slower than this is no motion, whatever the rest speed,
  * for the residual that is accepted leaves so much: of what gravity brings in the longest step that part of contacts'
  * speeds, and of bodies' some times as much. Two boxes of 100 m crept at 1e-9 m/s for ever, of 1 m for 32 steps. */

@@ -267,14 +267,14 @@ static double gain_allowed(const imp_pile *pile, const imp_world *world)
 }
 
 /* An error of places that is allowed is a great one of velocities in a short step. Whether it gave no more than these
- * may; where no shorter one is to be had nothing is known of what follows. */
+ * may; where no shorter one is tried nothing is known of what follows. */
 static bool gives_nothing(imp_pile *pile, const imp_world *world, const pile_trial *trial,
-                          const imp_pile_step_result *result, const imp_state *to)
+                          const imp_pile_step_result *result, const imp_state *to, bool last)
 {
     const double gain = energy_of(world, to) - trial->energy + result->damping + result->sliding - result->force_work -
                         result->drive_work + trial->struck.sliding - trial->struck.drive_work;
     if (gain <= gain_allowed(pile, world)) return true;
-    if (pile->shortest)
+    if (last)
         snprintf(pile->message, sizeof pile->message, "they gave bodies %s J that nothing did",
                  imp_number_of(gain).text);
     return false;
@@ -314,9 +314,10 @@ static impact_status try_length(imp_pile *pile, imp_world *world, double t, doub
     impact_status status = try_step(pile, world, t, trial->h, allowed, pile->projected, result);
     if (status == IMPACT_OK && pile->strike.found) return meet_strike(pile, world, trial);
     trial->good = status == IMPACT_OK && result->error <= allowed;
-    if (trial->good && !gives_nothing(pile, world, trial, result, pile->projected)) {
+    const bool last = !(trial->h > IMP_PILE_LEAST_GIVING * least);
+    if (trial->good && !gives_nothing(pile, world, trial, result, pile->projected, last)) {
         trial->good = false;
-        status = IMPACT_EUNSETTLED;
+        status = last ? IMPACT_EUNSETTLED : IMPACT_OK;
     }
     if (status == IMPACT_EUNSETTLED && !pile->shortest) status = IMPACT_OK;
     if (trial->good) return status;
