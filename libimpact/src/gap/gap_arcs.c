@@ -27,6 +27,7 @@
 #include "base/tolerances.h"
 #include "gap/gap_chart.h"
 #include "gap/gap_solver.h"
+#include "gap/gap_walk.h"
 #include <string.h>
 
 /* A piece is halved 2 log2(1e7) times before the first way clears it at any curvature. */
@@ -37,7 +38,9 @@ typedef struct way {
     double a[3], C[3];    /* unit axis; centre of the other less the polytope's */
     double h[2], r[2];    /* its rims */
     double best, n[3];    /* the highest g met, and its m; or what was asked for */
-    double bound, slack;  /* what pieces are cleared by: the best and the slack */
+    imp_walk_kind kind;   /* the polytope's feature there; a cap's normal: which is not known */
+    int index;
+    double bound, slack; /* what pieces are cleared by: the best and the slack */
     int pieces;
 } way;
 
@@ -45,6 +48,11 @@ typedef struct way {
 typedef struct spot {
     double m[3], across[3], s, z, rho; /* across: m's part across the axis, of length rho */
 } spot;
+
+typedef struct edge_arc {
+    int index;
+    double d[3], e[3]; /* from its first vertex to the other's centre, and to its second */
+} edge_arc;
 
 typedef struct piece {
     spot end[2];
@@ -79,10 +87,10 @@ static way way_of(const imp_gap_solids *pair, int polytope)
     return w;
 }
 
-static void raise_to(way *w, double g, const double m[3])
+static void raise_to(way *w, double g, const double m[3], imp_walk_kind kind, int index)
 {
     if (!(g > w->best)) return;
-    w->best = g;
+    w->best = g, w->kind = kind, w->index = index;
     memcpy(w->n, m, sizeof w->n);
     w->bound = g + w->slack;
 }
@@ -111,17 +119,18 @@ static double rim_height(const way *w, const spot *p, int k) { return w->h[k] * 
 static int rim_at(const way *w, const spot *p) { return rim_height(w, p, 1) < rim_height(w, p, 0); }
 
 /* g(m) where the polytope reaches as far as h along the unit m. */
-static void look_along(way *w, const double m[3], double h)
+static void look_along(way *w, const double m[3], double h, imp_walk_kind kind, int index)
 {
     spot p = {.m = {m[0], m[1], m[2]}};
     lean(w, &p);
-    raise_to(w, imp_dot(m, w->C) - h + rim_height(w, &p, rim_at(w, &p)), m);
+    raise_to(w, imp_dot(m, w->C) - h + rim_height(w, &p, rim_at(w, &p)), m, kind, index);
 }
 
-static void look_anywhere(way *w, const double m[3])
+static void look_anywhere(way *w, const double m[3], imp_walk_kind kind)
 {
     int vertex;
-    look_along(w, m, imp_core_support(w->core, m, &vertex));
+    const double h = imp_core_support(w->core, m, &vertex);
+    look_along(w, m, h, kind, vertex);
 }
 
 /* The vertex on the side: z and rho are those of the side's normals. */
@@ -134,7 +143,7 @@ static void look_at_vertex(way *w, const double v[3], double z, double rho)
     if (!(z * (along + w->h[0]) + rho * (aside - w->r[0]) > w->best)) return;
     imp_across(w->a, across);
     for (int i = 0; i < 3; i++) m[i] = z * w->a[i] + rho * (aside > 0 ? d[i] / aside : across[0][i]);
-    look_anywhere(w, m);
+    look_anywhere(w, m, IMP_ON_VERTEX);
 }
 
 static void look_at_vertices(way *w)
@@ -201,13 +210,12 @@ static int halfway(const way *w, const double d[3], const piece *p, spot *mid, d
     return rim;
 }
 
-/* All normals between the two on the arc of the edge e, d being from its vertex to the other body's centre: false when
- * there were too many pieces. */
-static bool look_along_arc(way *w, const double d[3], const double e[3], const double from[3], const double to[3])
+/* All normals between the two on the edge's arc: false when there were too many pieces. */
+static bool look_along_arc(way *w, const edge_arc *edge, const double from[3], const double to[3])
 {
     piece waiting[MOST_WAITING] = {{.end = {{.m = {from[0], from[1], from[2]}}, {.m = {to[0], to[1], to[2]}}}}};
     for (int k = 0; k < 2; k++) {
-        waiting[0].end[k].s = imp_dot(waiting[0].end[k].m, d);
+        waiting[0].end[k].s = imp_dot(waiting[0].end[k].m, edge->d);
         lean(w, &waiting[0].end[k]);
     }
     for (int count = 1; count > 0;) {
@@ -218,9 +226,9 @@ static bool look_along_arc(way *w, const double d[3], const double e[3], const d
             continue;
         }
         spot mid;
-        const int rim = halfway(w, d, top, &mid, top->w);
-        raise_to(w, mid.s + rim_height(w, &mid, rim), mid.m);
-        if (clears_piece(top, top->w, w->bound) || bends_little(w, top, e, rim)) {
+        const int rim = halfway(w, edge->d, top, &mid, top->w);
+        raise_to(w, mid.s + rim_height(w, &mid, rim), mid.m, IMP_ON_EDGE, edge->index);
+        if (clears_piece(top, top->w, w->bound) || bends_little(w, top, edge->e, rim)) {
             count--;
             continue;
         }
@@ -231,11 +239,11 @@ static bool look_along_arc(way *w, const double d[3], const double e[3], const d
 }
 
 /* Of a segment's edge, which has no faces beside it, all that is across it: four quarters. */
-static bool look_around(way *w, const double d[3], const double e[3])
+static bool look_around(way *w, const edge_arc *edge)
 {
     double t[2][3], unit[3];
-    const double length = imp_norm(e);
-    for (int i = 0; i < 3; i++) unit[i] = e[i] / length;
+    const double length = imp_norm(edge->e);
+    for (int i = 0; i < 3; i++) unit[i] = edge->e[i] / length;
     imp_across(unit, t);
     for (int quarter = 0; quarter < 4; quarter++) {
         double end[2][3];
@@ -243,22 +251,29 @@ static bool look_around(way *w, const double d[3], const double e[3])
             const int turn = (quarter + k) % 4;
             for (int i = 0; i < 3; i++) end[k][i] = turn < 2 ? t[turn][i] : -t[turn - 2][i];
         }
-        if (!look_along_arc(w, d, e, end[0], end[1])) return false;
+        if (!look_along_arc(w, edge, end[0], end[1])) return false;
     }
     return true;
+}
+
+static edge_arc edge_of(const way *w, int index)
+{
+    const short *v = w->core->hull->edge[index].v;
+    edge_arc edge = {.index = index};
+    double from[3], to[3];
+    imp_core_vertex(w->core, v[0], from);
+    imp_core_vertex(w->core, v[1], to);
+    for (int i = 0; i < 3; i++) edge.d[i] = w->C[i] - from[i], edge.e[i] = to[i] - from[i];
+    return edge;
 }
 
 static bool look_at_edges(way *w, const double (*normal)[3])
 {
     const impact_hull *hull = w->core->hull;
     for (int i = 0; i < hull->edge_count; i++) {
-        const imp_hull_edge *edge = &hull->edge[i];
-        double v[3], u[3], d[3], e[3];
-        imp_core_vertex(w->core, edge->v[0], v);
-        imp_core_vertex(w->core, edge->v[1], u);
-        for (int k = 0; k < 3; k++) d[k] = w->C[k] - v[k], e[k] = u[k] - v[k];
-        if (edge->f[0] < 0 ? !look_around(w, d, e) : !look_along_arc(w, d, e, normal[edge->f[0]], normal[edge->f[1]]))
-            return false;
+        const short *f = hull->edge[i].f;
+        const edge_arc edge = edge_of(w, i);
+        if (f[0] < 0 ? !look_around(w, &edge) : !look_along_arc(w, &edge, normal[f[0]], normal[f[1]])) return false;
     }
     return true;
 }
@@ -269,24 +284,111 @@ static void look_along_normals(way *w, double (*normal)[3])
     const double back[3] = {-w->a[0], -w->a[1], -w->a[2]};
     for (int f = 0; f < w->core->hull->face_count; f++) {
         imp_core_normal(w->core, f, normal[f]);
-        look_along(w, normal[f], imp_core_height(w->core, f, normal[f]));
+        look_along(w, normal[f], imp_core_height(w->core, f, normal[f]), IMP_ON_FACE, f);
     }
-    look_anywhere(w, w->a);
-    look_anywhere(w, back);
+    look_anywhere(w, w->a, IMP_ON_CAP);
+    look_anywhere(w, back, IMP_ON_CAP);
 }
 
-bool imp_gap_highest_by_arcs(const imp_gap_solids *pair, double slack, double *gap, double n[3])
+/* The other body's rims (a cone's apex) along the best normal, from the polytope's centre; of the two the part of the
+ * way from the first to the second that reaches farther; whether both do. */
+static bool reach_rims(const way *w, double rim[2][3], double *part)
+{
+    spot p = {.m = {w->n[0], w->n[1], w->n[2]}};
+    lean(w, &p);
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 3; i++)
+            rim[k][i] = w->C[i] + w->h[k] * w->a[i] - (p.rho > 0 ? w->r[k] / p.rho : 0) * p.across[i];
+    *part = rim_at(w, &p);
+    return fabs(rim_height(w, &p, 1) - rim_height(w, &p, 0)) <= IMP_WALK_START * fabs(w->h[1] - w->h[0]);
+}
+
+/* The part of the way from rim to rim at which, seen along the normal, it crosses the edge. */
+static double cross_edge(const edge_arc *edge, const double from[3], const double line[3], double part)
+{
+    const double cross = imp_dot(line, edge->e), square = imp_dot(edge->e, edge->e),
+                 det = imp_dot(line, line) * square - cross * cross;
+    return det > 0 ? (cross * imp_dot(from, edge->e) - square * imp_dot(from, line)) / det : part;
+}
+
+/* What of the polytope's and of the other's meet along the best normal, and where, both from the polytope's centre. */
+typedef struct meeting_place {
+    imp_walk_kind kind[2];
+    int index[2];
+    double x[2][3];
+} meeting_place;
+
+/* The polytope's vertex is on the other's side, or on its cap, which it may miss where an edge or face lies along it.
+ */
+static bool meet_vertex(const way *w, meeting_place *p)
+{
+    double from[3], across[3];
+    imp_core_vertex(w->core, w->index, p->x[0]);
+    for (int i = 0; i < 3; i++) p->x[1][i] = p->x[0][i] + w->best * w->n[i], from[i] = p->x[1][i] - w->C[i];
+    p->kind[0] = IMP_ON_VERTEX, p->index[0] = w->index;
+    p->kind[1] = w->kind == IMP_ON_CAP ? IMP_ON_CAP : IMP_ON_SIDE;
+    p->index[1] = w->kind == IMP_ON_CAP && imp_dot(w->n, w->a) < 0;
+    take_across(w, from, across);
+    return w->kind == IMP_ON_VERTEX || imp_norm(across) <= w->r[p->index[1]];
+}
+
+static void meet_edge(const way *w, const double rim[2][3], bool side, double part, meeting_place *p)
+{
+    const edge_arc edge = edge_of(w, w->index);
+    double vertex[3], from[3], line[3];
+    for (int i = 0; i < 3; i++)
+        vertex[i] = w->C[i] - edge.d[i], from[i] = rim[0][i] - vertex[i], line[i] = rim[1][i] - rim[0][i];
+    if (side) part = cross_edge(&edge, from, line, part);
+    for (int i = 0; i < 3; i++) from[i] += fmin(fmax(part, 0), 1) * line[i];
+    const double at = imp_dot(from, edge.e) / imp_dot(edge.e, edge.e);
+    for (int i = 0; i < 3; i++) p->x[1][i] = vertex[i] + from[i], p->x[0][i] = vertex[i] + at * edge.e[i];
+    p->index[1] = part > 0;
+    if (part > 0 && part < 1) p->kind[1] = IMP_ON_SIDE, p->index[1] = 0;
+}
+
+/* False: it is not known, as where a side or cap lies on a face. */
+static bool meet(const way *w, meeting_place *p)
+{
+    double rim[2][3], part;
+    if (w->kind == IMP_ON_VERTEX || w->kind == IMP_ON_CAP) return meet_vertex(w, p);
+    const bool side = reach_rims(w, rim, &part);
+    *p = (meeting_place){.kind = {w->kind, IMP_ON_RIM}, .index = {w->index, part > 0}};
+    if (w->kind == IMP_ON_EDGE) meet_edge(w, (const double(*)[3])rim, side, part, p);
+    for (int i = 0; i < 3 && w->kind == IMP_ON_FACE; i++)
+        p->x[1][i] = rim[p->index[1]][i], p->x[0][i] = p->x[1][i] - w->best * w->n[i];
+    if (p->kind[1] == IMP_ON_RIM && w->r[p->index[1]] == 0) p->kind[1] = IMP_ON_VERTEX, p->index[1] = 0;
+    return w->kind == IMP_ON_EDGE || !side;
+}
+
+static bool put_on_features(const way *w, const imp_gap_solids *pair, int polytope, imp_surface at[2])
+{
+    const imp_form *own = &pair->form[polytope], *turned = &pair->form[1 - polytope];
+    meeting_place p;
+    double y[3], m[3], world[3], back[3];
+    if (!meet(w, &p)) return false;
+    imp_walk_put(own, p.kind[0], p.index[0], p.x[0], w->n, &at[polytope]);
+    for (int i = 0; i < 3; i++) back[i] = -w->n[i], p.x[1][i] -= w->C[i];
+    imp_to_world(own->rotation, back, world);
+    imp_to_body(turned->rotation, world, m);
+    imp_to_world(own->rotation, p.x[1], world);
+    imp_to_body(turned->rotation, world, y);
+    imp_walk_put(turned, p.kind[1], p.index[1], y, m, &at[1 - polytope]);
+    return true;
+}
+
+bool imp_gap_highest_by_arcs(const imp_gap_solids *pair, double slack, double gap, imp_way_out *way_out)
 {
     const int polytope = polytope_of(pair);
     way w = way_of(pair, polytope);
     double normal[2 * IMPACT_HULL_POINTS][3];
-    w.slack = slack, w.best = w.bound = *gap + slack;
+    w.slack = slack, w.best = w.bound = gap + slack;
     look_along_normals(&w, normal);
     look_at_vertices(&w);
-    const bool all = w.bound < 0 && look_at_edges(&w, (const double(*)[3])normal) && w.bound < 0;
-    if (!(w.best > *gap + slack)) return all;
-    *gap = w.best;
-    imp_to_world(pair->form[polytope].rotation, w.n, n);
-    for (int i = 0; polytope == 1 && i < 3; i++) n[i] = -n[i];
-    return all;
+    way_out->all = w.bound < 0 && look_at_edges(&w, (const double(*)[3])normal) && w.bound < 0;
+    if (!(w.best > gap + slack)) return false;
+    way_out->gap = w.best;
+    way_out->placed = put_on_features(&w, pair, polytope, way_out->at);
+    imp_to_world(pair->form[polytope].rotation, w.n, way_out->n);
+    for (int i = 0; polytope == 1 && i < 3; i++) way_out->n[i] = -way_out->n[i];
+    return true;
 }

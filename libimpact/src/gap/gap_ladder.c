@@ -111,15 +111,19 @@ static void note_low(search *s, double g, const double n[3])
 
 /* A local maximum is taken where the bodies are known to overlap: by a point in common, or as g is nowhere >= 0. The
  * witness points of a deep overlap, and all between them, may well lie outside the other body. */
-static bool newton_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
+static bool take(search *s, const imp_gap_bracket *meeting, impact_gap_path path)
 {
-    imp_gap_bracket meeting;
-    if (!imp_gap_newton(s->pair, n, x, &meeting) || !(meeting.shares || s->most < 0)) return false;
-    if (s->found && !(meeting.gap > s->best.gap)) return false;
-    s->best = meeting;
+    if (!(meeting->shares || s->most < 0) || (s->found && !(meeting->gap > s->best.gap))) return false;
+    s->best = *meeting;
     s->path = path;
     s->found = true;
     return true;
+}
+
+static bool newton_from(search *s, const double n[3], const double (*x)[3], impact_gap_path path)
+{
+    imp_gap_bracket meeting;
+    return imp_gap_newton(s->pair, n, x, &meeting) && take(s, &meeting, path);
 }
 
 /* Nearest points of the bodies drawn apart along n, and their normal. Of two faces on each other n alone tells a corner
@@ -180,15 +184,20 @@ static bool overlaps(const imp_gap_solids *pair, const double n[3])
 static bool find_way_out(search *s)
 {
     const double slack = IMP_GAP_SLACK * s->pair->reach;
-    double gap = s->found ? s->best.gap : -INFINITY, n[3], m[3], x[2][3];
     if (!s->found && !overlaps(s->pair, s->low_n)) return false;
-    const bool all = imp_gap_highest_by_arcs(s->pair, slack, &gap, n);
-    if (all) s->most = fmin(s->most, gap + slack);
-    if (s->found && !(gap > s->best.gap)) return all;
-    note_low(s, gap, n);
-    nearest_apart(s->pair, n, m, x);
-    if (!newton_from(s, m, (const double(*)[3])x, IMPACT_PATH_FALLBACK) || s->best.gap < gap - slack) return false;
-    return all || plain(s); /* cores that but touch are not above a bound < 0 */
+    imp_way_out out;
+    imp_gap_bracket meeting;
+    if (!imp_gap_highest_by_arcs(s->pair, slack, s->found ? s->best.gap : -INFINITY, &out)) return out.all;
+    if (out.all) s->most = fmin(s->most, out.gap + slack);
+    note_low(s, out.gap, out.n);
+    bool taken = out.placed && imp_gap_newton_at(s->pair, out.at, &meeting) && meeting.gap >= out.gap - slack &&
+                 take(s, &meeting, IMPACT_PATH_FALLBACK);
+    if (!taken) {
+        double m[3], x[2][3];
+        nearest_apart(s->pair, out.n, m, x);
+        taken = newton_from(s, m, (const double(*)[3])x, IMPACT_PATH_FALLBACK) && s->best.gap >= out.gap - slack;
+    }
+    return taken && (out.all || plain(s)); /* cores that but touch are not above a bound < 0 */
 }
 
 /* Proves the best answer the nearest way out, to the accuracy that is promised; what speaks against it is taken. */

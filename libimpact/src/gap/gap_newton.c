@@ -7,11 +7,9 @@
 
 enum { NEWTON_STEPS = 16, MORE_NEWTON_STEPS = 8 }; /* more when the steps have become small */
 
-bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double (*x)[3], imp_gap_bracket *meeting)
+/* last: the step that led to s. */
+static bool newton(const imp_gap_solids *pair, imp_surface s[2], double last, imp_gap_bracket *meeting)
 {
-    imp_surface s[2];
-    imp_face_start(pair, n, x, s);
-    double last = INFINITY;
     int settled = 0; /* how often it has: while the bracket is wider than rounding, a few more steps may close it */
     for (int i = 0, end = NEWTON_STEPS; i < end; i++) {
         imp_face face;
@@ -22,7 +20,7 @@ bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double 
             if (imp_face_judge(pair, &face, &now)) {
                 if (settled++ == 0 || now.upper - now.lower < meeting->upper - meeting->lower) *meeting = now;
                 if (meeting->upper - meeting->lower <= IMP_GAP_TIGHT * pair->reach || settled == 4) return true;
-            } else if (imp_face_slide(pair, &face, s)) {
+            } else if (i > 0 && imp_face_slide(pair, &face, s)) {
                 last = INFINITY;
                 continue;
             }
@@ -32,4 +30,17 @@ bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double 
         if (!imp_face_advance(pair, &face, step, s, &last)) return settled > 0;
     }
     return settled > 0;
+}
+
+bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double (*x)[3], imp_gap_bracket *meeting)
+{
+    imp_surface s[2];
+    imp_face_start(pair, n, x, s);
+    return newton(pair, s, INFINITY, meeting);
+}
+
+bool imp_gap_newton_at(const imp_gap_solids *pair, const imp_surface at[2], imp_gap_bracket *meeting)
+{
+    imp_surface s[2] = {at[0], at[1]};
+    return newton(pair, s, 0, meeting);
 }

@@ -51,6 +51,9 @@ double imp_pair_gap(const imp_gap_solids *pair, const double n[3], double x[2][3
  * local maximum may be of bodies that are apart, unless it shares, or is proved the highest. */
 bool imp_gap_newton(const imp_gap_solids *pair, const double n[3], const double (*x)[3], imp_gap_bracket *meeting);
 
+/* The same from surface points that face each other, as they are. */
+bool imp_gap_newton_at(const imp_gap_solids *pair, const imp_surface at[2], imp_gap_bracket *meeting);
+
 /* Two moving bodies at one time. */
 typedef struct imp_gap_moved {
     impact_solid body[2]; /* orientations unit */
@@ -120,10 +123,17 @@ imp_proof imp_gap_prove(const imp_gap_solids *pair, imp_gap_peaks *peaks, double
                         double n[3]);
 
 /* Whether one body is a polytope with edges and the other a cylinder or cone; and then, of two that share a point, the
- * highest g but for the slack, by their features, where it is more than *gap by that: *gap, and n its normal. False: the
- * work allowed was not enough. */
+ * highest g but for the slack, by their features, where it is more than *gap by that. */
+typedef struct imp_way_out {
+    double gap, n[3];
+    bool all;          /* no g is higher but for the slack: the work allowed was enough */
+    bool placed;       /* at: points of both on the features that face each other */
+    imp_surface at[2]; /* as the pair's bodies are */
+} imp_way_out;
+
 bool imp_gap_has_arcs(const imp_gap_solids *pair);
-bool imp_gap_highest_by_arcs(const imp_gap_solids *pair, double slack, double *gap, double n[3]);
+/* Whether one was found; all is told anyway. */
+bool imp_gap_highest_by_arcs(const imp_gap_solids *pair, double slack, double gap, imp_way_out *way_out);
 
 /* How far x (world, relative to the centre) is outside the body, to first order; negative inside. */
 double imp_gap_outside(const imp_form *form, const double x[3]);

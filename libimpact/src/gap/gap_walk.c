@@ -389,6 +389,23 @@ void imp_walk_start(const imp_form *form, const double d[3], const double *x, im
     if (x) start_at_point(form, x, s);
 }
 
+void imp_walk_put(const imp_form *form, imp_walk_kind kind, int index, const double x[3], const double m[3],
+                  imp_surface *s)
+{
+    const double across = hypot(m[0], m[1]), u[3] = {across > 0 ? m[0] / across : 1, across > 0 ? m[1] / across : 0, 0};
+    if (kind == IMP_ON_RIM) {
+        place_on_rim(form, u, across, m[2], index, s);
+    } else if (kind == IMP_ON_SIDE) {
+        place_on_side(form, u, x[2], s);
+    } else if (kind == IMP_ON_CAP) {
+        place_on_cap(form, x[0], x[1], index, s);
+    } else {
+        memcpy(s->u, x, 3 * sizeof *x);
+        memcpy(s->e, m, 3 * sizeof *m);
+        put_on(s, kind, index);
+    }
+}
+
 static void chart_of_turned(const imp_form *form, const imp_surface *s, double P[2][3], double Q[2][3])
 {
     double u[3], cosine, sine, length;

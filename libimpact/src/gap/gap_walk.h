@@ -29,6 +29,9 @@ typedef enum imp_walk_kind {
 /* All in body axes; the steps of points are in sizes of the body. */
 void imp_walk_start(const imp_form *form, const double d[3], const double *x, imp_surface *s);
 void imp_walk_chart(const imp_form *form, const imp_surface *s, double P[2][3], double Q[2][3]);
+/* On that feature: at the point x of it, its normal m. */
+void imp_walk_put(const imp_form *form, imp_walk_kind kind, int index, const double x[3], const double m[3],
+                  imp_surface *s);
 void imp_walk_move(const imp_form *form, const double step[2], imp_surface *s);
 
 /* Radius of a ball in the body that touches the surface at the point x: 0 on edges, rims and vertices, and of cones. */

@@ -100,14 +100,15 @@ static void as_the_whole_sphere_has_it(void **state)
         arcs_pair p = some_pair(&random);
         assert_true(imp_gap_has_arcs(&p.pair));
         const double coarse = 1e-4 * p.pair.reach, fine = IMP_GAP_SLACK * p.pair.reach;
-        double whole, gap = -INFINITY, n[3];
+        double whole;
         const imp_proof proof = halved(&p.pair, coarse, &whole);
         if (proof == IMP_PROOF_NEAREST && whole < -2 * coarse) {
-            const bool all = imp_gap_highest_by_arcs(&p.pair, fine, &gap, n);
-            if (!all || !(gap <= whole + coarse) || !(gap >= whole - fine))
-                fail_msg("%d: all %d, %.17g by features, %.17g by halving", i, all, gap, whole);
-            assert_near(imp_pair_gap(&p.pair, n, NULL), gap, 4e-15 * p.pair.reach);
-            assert_near(imp_norm(n), 1, 4e-15);
+            imp_way_out out;
+            assert_true(imp_gap_highest_by_arcs(&p.pair, fine, -INFINITY, &out));
+            if (!out.all || !(out.gap <= whole + coarse) || !(out.gap >= whole - fine))
+                fail_msg("%d: all %d, %.17g by features, %.17g by halving", i, out.all, out.gap, whole);
+            assert_near(imp_pair_gap(&p.pair, out.n, NULL), out.gap, 4e-15 * p.pair.reach);
+            assert_near(imp_norm(out.n), 1, 4e-15);
             compared++;
         }
         impact_hull_destroy(p.hull);
@@ -115,7 +116,7 @@ static void as_the_whole_sphere_has_it(void **state)
     assert_in_range(compared, 2500, 6000);
 }
 
-/* What is asked for above the highest is proved not to be there, and n is left; just below it is found. */
+/* What is asked for above the highest is proved not to be there; just below it is found. */
 static void asked_from_above_and_below(void **state)
 {
     (void)state;
@@ -123,14 +124,14 @@ static void asked_from_above_and_below(void **state)
     for (int i = 0; i < 3000; i++) {
         arcs_pair p = some_pair(&random);
         const double fine = IMP_GAP_SLACK * p.pair.reach;
-        double highest = -INFINITY, n[3], left[3] = {7, 7, 7};
-        if (imp_gap_highest_by_arcs(&p.pair, fine, &highest, n)) {
-            double gap = highest;
-            assert_true(imp_gap_highest_by_arcs(&p.pair, fine, &gap, left));
-            assert_true(gap == highest && left[0] == 7);
-            gap = highest - 1e-9 * p.pair.reach;
-            assert_true(imp_gap_highest_by_arcs(&p.pair, fine, &gap, left));
-            assert_near(gap, highest, 2 * fine);
+        imp_way_out out, asked;
+        assert_true(imp_gap_highest_by_arcs(&p.pair, fine, -INFINITY, &out));
+        if (out.all) {
+            assert_false(imp_gap_highest_by_arcs(&p.pair, fine, out.gap, &asked));
+            assert_true(asked.all);
+            assert_true(imp_gap_highest_by_arcs(&p.pair, fine, out.gap - 1e-9 * p.pair.reach, &asked));
+            assert_true(asked.all);
+            assert_near(asked.gap, out.gap, 2 * fine);
         }
         impact_hull_destroy(p.hull);
     }
@@ -207,19 +208,22 @@ static void a_vertex_on_a_cone_s_axis(void **state)
     }
 }
 
-/* Rounded ones too, whose cores may but touch. */
+/* Rounded ones too, whose cores may but touch; a nanometre deep at a vertex or apex, too, whose features only tell
+ * where. */
 static void mixed_pairs_are_answered(void **state)
 {
     (void)state;
     random_stream random = {16};
+    int flagged = 0;
     for (int i = 0; i < 2000; i++) {
         mixed_pair pair =
-            random_mixed_pair(&random, i % 2 ? MIXED_CYLINDER_BOX : MIXED_CONE_HULL, -random_log(&random, 1e-5, 0.3));
+            random_mixed_pair(&random, i % 2 ? MIXED_CYLINDER_BOX : MIXED_CONE_HULL, -random_log(&random, 1e-9, 0.3));
         impact_contact contact;
-        assert_int_equal(impact_gap(&pair.body[0], &pair.body[1], NULL, &contact), IMPACT_OK);
+        flagged += impact_gap(&pair.body[0], &pair.body[1], NULL, &contact) != IMPACT_OK;
         assert_true(contact.gap >= pair.gap - 1e-14 * pair.reach);
         end_mixed_pair(&pair);
     }
+    assert_in_range(flagged, 0, 2);
 }
 
 /* Where a walk begins within a segment, with a normal that is an end's. */
