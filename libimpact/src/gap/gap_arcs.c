@@ -38,7 +38,7 @@ typedef struct way {
     double a[3], C[3];    /* unit axis; centre of the other less the polytope's */
     double h[2], r[2];    /* its rims */
     double best, n[3];    /* the highest g met, and its m; or what was asked for */
-    imp_walk_kind kind;   /* the polytope's feature there; a cap's normal: which is not known */
+    imp_walk_kind kind;   /* the polytope's feature there; a cap: of its normal, at the vertex of that index */
     int index;
     double bound, slack; /* what pieces are cleared by: the best and the slack */
     int pieces;
