@@ -163,8 +163,8 @@
 /* Of the reach, what a proof that there is no nearer way out leaves: half of the bracket that is promised. Of the depth
  * and of the size, what it leaves where that cannot be had (a ring of ways out, alike but for rounding). */
 #define IMP_GAP_SLACK 1e-14
-/* How many times the depth a rim may bend g by where its sinusoids are asked (gap_arcs.c): with much more, what g is made
- * of is lost in their rounding. */
+/* How many times the depth a rim may bend g by where its sinusoids are asked (gap_arcs.c): with much more, what g is
+ * made of is lost in their rounding. */
 #define IMP_GAP_BENDS 2
 #define IMP_GAP_COARSE_DEPTH 5e-3
 #define IMP_GAP_COARSE_SIZE 1e-3
@@ -986,8 +986,8 @@
 /* Of the energy at hand: what a step may give bodies beyond what loads do. Errors of 1e-5 of the radius give 1e-5 of
  * it; points taken for others once gave a thousand times it. */
 #define IMP_PILE_GAIN 1e-2
-/* Of the least step, whose places may be off by anything: what gives bodies energy is tried again in shorter ones, to this
- * part. Their places may be right all the same, and in both scenes met one or two halvings were enough. */
+/* Of the least step, whose places may be off by anything: what gives bodies energy is tried again in shorter ones, to
+ * this part. Their places may be right all the same, and in both scenes met one or two halvings were enough. */
 #define IMP_PILE_LEAST_GIVING 0x1p-10
 /* Of the speed at which the smallest falls its radius, 1.6e-8: slower than this is no motion, whatever the rest speed,
  * for the residual that is accepted leaves so much: of what gravity brings in the longest step that part of contacts'
