@@ -163,11 +163,11 @@
 /* Of the reach, what a proof that there is no nearer way out leaves: half of the bracket that is promised. Of the depth
  * and of the size, what it leaves where that cannot be had (a ring of ways out, alike but for rounding). */
 #define IMP_GAP_SLACK 1e-14
+#define IMP_GAP_COARSE_DEPTH 5e-3
+#define IMP_GAP_COARSE_SIZE 1e-3
 /* How many times the depth a rim may bend g by where its sinusoids are asked (gap_arcs.c): with much more, what g is
  * made of is lost in their rounding. */
 #define IMP_GAP_BENDS 2
-#define IMP_GAP_COARSE_DEPTH 5e-3
-#define IMP_GAP_COARSE_SIZE 1e-3
 /* Of the reach, and of the depth at most: a middle so near the bound is within 1e-3 rad of a peak, where Newton
  * converges; and of the cosine: as near to a known peak it is not asked again. */
 #define IMP_GAP_NEAR_PEAK 1e-6
